@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "slam/core/grid2d.hpp"
+#include "slam/core/labels.hpp"
+#include "slam/core/rgbd_frame.hpp"
+
+namespace mh {
+
+using InstanceId = std::uint16_t;  ///< 0 = none
+
+/// A surface's look. Texel (x, y) of the texture covers u in [x/w, (x+1)/w), v in [y/h, (y+1)/h);
+/// v grows downwards in the picture; the texture repeats.
+struct Material {
+  std::string name;
+  Rgb8 base_colour{255, 255, 255};  ///< sRGB; multiplies the texture and the vertex colours
+  Grid2d<Rgb8> texture;             ///< sRGB; empty = base_colour alone
+  Eigen::Vector3f emission = Eigen::Vector3f::Zero();  ///< linear radiance added to what is reflected
+};
+
+/// An object (or a wall, a floor): what one instance id stands for.
+struct Instance {
+  InstanceId id = 0;
+  ClassId class_id = kVoid;
+  std::string name;  ///< unique in the scene, e.g. "kitchen/chair_2"
+  Eigen::Vector3f min_m = Eigen::Vector3f::Zero(), max_m = Eigen::Vector3f::Zero();  ///< world box
+};
+
+struct Light {
+  enum class Kind { kSun, kSphere, kSky };
+  Kind kind = Kind::kSphere;
+  Eigen::Vector3f position_m = Eigen::Vector3f::Zero();    ///< sphere: centre
+  Eigen::Vector3f direction = {0.0F, 0.0F, -1.0F};         ///< sun: the way its light travels, unit
+  float radius_m = 0.05F;                                  ///< sphere: radius
+  float angular_radius_rad = 0.00465F;                     ///< sun: half its apparent size
+  /// Linear RGB. Sun: irradiance on a surface facing it; sky: radiance of rays that leave the
+  /// scene; sphere: radiant intensity (irradiance at 1 m).
+  Eigen::Vector3f colour = Eigen::Vector3f::Ones();
+};
+
+struct Room {
+  std::string name;
+  std::vector<Eigen::Vector2d> polygon_m;  ///< inner floor outline, counter-clockwise
+};
+
+/// What there is to see: one indexed triangle mesh with a material, a class and an instance per
+/// face. World frame z up, metres. Faces are seen and lit from both sides.
+struct Scene {
+  std::string name;
+
+  // Per vertex. uvs and colours are empty where the source has none; all sizes match otherwise.
+  std::vector<Eigen::Vector3f> positions_m;
+  std::vector<Eigen::Vector2f> uvs;
+  std::vector<Rgb8> colours;  ///< sRGB
+  /// Baked light, linear RGB: irradiance / pi, so that outgoing radiance = albedo * light.
+  /// Empty = unlit: shown at full albedo.
+  std::vector<Eigen::Vector3f> light;
+
+  // Per face.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint16_t> material_of;  ///< index into materials
+  std::vector<ClassId> class_of;
+  std::vector<InstanceId> instance_of;
+
+  std::vector<Material> materials;
+  std::vector<Instance> instances;  ///< ordered by id; ids are 1 .. n, gaps allowed
+  std::vector<Light> lights;
+  std::vector<Room> rooms;  ///< empty for meshes that came without a plan
+
+  double floor_area_m2() const;  ///< summed over rooms
+};
+
+/// Checks every index and size. @throws InputError naming what is inconsistent.
+void validate(const Scene& scene);
+
+/// Digest (xxh3-64) of everything that can be seen of the scene: the key of what is made from it.
+std::uint64_t digest(const Scene& scene);
+
+}  // namespace mh

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/core/camera.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace mh {
+
+void validate(const Camera& camera) {
+  const auto require = [](bool good, const char* field, double value) {
+    if (!good || !std::isfinite(value))
+      throw std::invalid_argument(fmt::format("camera: {} = {} is out of range", field, value));
+  };
+  require(camera.width_px > 0, "width_px", camera.width_px);
+  require(camera.height_px > 0, "height_px", camera.height_px);
+  require(camera.fx_px > 0, "fx_px", camera.fx_px);
+  require(camera.fy_px > 0, "fy_px", camera.fy_px);
+  require(camera.cx_px >= 0 && camera.cx_px < camera.width_px, "cx_px", camera.cx_px);
+  require(camera.cy_px >= 0 && camera.cy_px < camera.height_px, "cy_px", camera.cy_px);
+  require(camera.rate_hz > 0, "rate_hz", camera.rate_hz);
+  require(camera.baseline_m > 0, "baseline_m", camera.baseline_m);
+}
+
+}  // namespace mh

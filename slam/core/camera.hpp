@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+namespace mh {
+
+/// Brown-Conrady ("plumb bob") lens distortion, the order of OpenCV and ROS.
+struct Distortion {
+  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
+  bool none() const { return k1 == 0 && k2 == 0 && p1 == 0 && p2 == 0 && k3 == 0; }
+  friend bool operator==(const Distortion&, const Distortion&) = default;
+};
+
+/// A pinhole RGB-D camera: x right, y down, z forward; pixel centres at integers.
+struct Camera {
+  int width_px = 640;
+  int height_px = 480;
+  double fx_px = 525.0, fy_px = 525.0;
+  double cx_px = 319.5, cy_px = 239.5;
+  Distortion distortion;
+  double rate_hz = 30.0;
+  /// Baseline of the depth sensor's triangulation; gives a depth its disparity fx * b / z and so
+  /// its weight. 0.075 m: PrimeSense, Khoshelham and Elberink, Sensors 2012.
+  double baseline_m = 0.075;
+
+  /// Pixel (undistorted) of a point in front of the camera; its z must be positive.
+  Eigen::Vector2d project(const Eigen::Vector3d& point_in_camera) const {
+    const double inverse_z = 1.0 / point_in_camera.z();
+    return {fx_px * point_in_camera.x() * inverse_z + cx_px,
+            fy_px * point_in_camera.y() * inverse_z + cy_px};
+  }
+  /// Point at depth z (m) behind an undistorted pixel.
+  Eigen::Vector3d unproject(double u_px, double v_px, double depth_m) const {
+    return {(u_px - cx_px) / fx_px * depth_m, (v_px - cy_px) / fy_px * depth_m, depth_m};
+  }
+  double disparity_px(double depth_m) const { return fx_px * baseline_m / depth_m; }
+  bool in_image(double u_px, double v_px) const {
+    return u_px >= 0 && v_px >= 0 && u_px <= width_px - 1 && v_px <= height_px - 1;
+  }
+
+  friend bool operator==(const Camera&, const Camera&) = default;
+};
+
+/// @throws std::invalid_argument naming the field when a size or focal length is not positive,
+/// or the principal point lies outside the image.
+void validate(const Camera& camera);
+
+}  // namespace mh

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/core/files.hpp"
+
+#include <unistd.h>
+
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace fs = std::filesystem;
+
+void make_output_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder))
+    throw InputError(fmt::format("{}: cannot be made a folder{}", folder.string(),
+                                 error ? ": " + error.message() : ""));
+  const fs::path probe = folder / fmt::format(".probe.{}", getpid());
+  {
+    std::ofstream out(probe);
+    out << "x";
+    if (!out.flush()) throw InputError(fmt::format("{}: cannot be written to", folder.string()));
+  }
+  fs::remove(probe, error);
+}
+
+void write_atomically(const fs::path& file, const std::function<void(const fs::path&)>& write) {
+  const fs::path temporary =
+      file.parent_path() /
+      fmt::format(".{}.{}.tmp{}", file.stem().string(), getpid(), file.extension().string());
+  std::error_code error;
+  try {
+    write(temporary);
+    if (!fs::exists(temporary, error))
+      throw InputError(fmt::format("{}: cannot be written", file.string()));
+    fs::rename(temporary, file, error);
+    if (error) throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
+  } catch (...) {
+    fs::remove(temporary, error);
+    throw;
+  }
+}
+
+void write_atomically(const fs::path& file, std::string_view content) {
+  write_atomically(file, [&](const fs::path& temporary) {
+    std::ofstream out(temporary, std::ios::binary);
+    out.write(content.data(), static_cast<std::streamsize>(content.size()));
+    if (!out.flush()) throw InputError(fmt::format("{}: cannot be written", file.string()));
+  });
+}
+
+std::string read_file(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::error_code error;
+  if (!in || fs::is_directory(file, error))
+    throw InputError(fmt::format("{}: cannot be read: no such file", file.string()));
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+}  // namespace mh

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace mh {
+
+/// Creates a folder (and its parents) and proves that files can be written into it.
+/// @throws InputError naming the folder.
+void make_output_folder(const std::filesystem::path& folder);
+
+/// Calls `write` with a temporary path beside `file`, then renames it into place: readers see the
+/// old file or the whole new one. The temporary is removed on any failure, and keeps the ending of
+/// `file` (image writers choose the format by it). @throws InputError if it cannot be written.
+void write_atomically(const std::filesystem::path& file,
+                      const std::function<void(const std::filesystem::path&)>& write);
+void write_atomically(const std::filesystem::path& file, std::string_view content);
+
+/// Whole content of a file. @throws InputError naming it.
+std::string read_file(const std::filesystem::path& file);
+
+}  // namespace mh

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "slam/core/grid2d.hpp"
+#include "slam/core/labels.hpp"
+
+namespace mh {
+
+/// Time in integer nanoseconds.
+using Stamp = std::int64_t;
+
+/// 8-bit sRGB colour.
+struct Rgb8 {
+  std::uint8_t r = 0, g = 0, b = 0;
+  friend bool operator==(const Rgb8&, const Rgb8&) = default;
+};
+
+/// Per-pixel class distributions, stored as a palette: pixel (x, y) has distribution
+/// palette[index(x, y)]. Exact labels need one entry per class, a detector one per detection.
+/// An empty index grid means that the frame carries no labels at all.
+struct SemanticImage {
+  Grid2d<std::uint8_t> index;
+  std::vector<ClassDistribution> palette;
+
+  /// The class distribution at a pixel; empty (void) where there are no labels.
+  const ClassDistribution& at(int x, int y) const {
+    static const ClassDistribution kVoid;
+    return index.empty() ? kVoid : palette[index(x, y)];
+  }
+  friend bool operator==(const SemanticImage&, const SemanticImage&) = default;
+};
+
+/// All that SLAM ever sees of a moment: no pose, no instance ids, no truth.
+struct RgbdFrame {
+  Stamp stamp_ns = 0;
+  Grid2d<Rgb8> colour;
+  Grid2d<float> depth_m;  ///< along the optical axis, registered to colour; 0 = no return
+  SemanticImage semantics;
+};
+
+}  // namespace mh

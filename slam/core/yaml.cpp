@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/core/yaml.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+
+namespace mh {
+namespace {
+
+void check_no_duplicate_keys(const YAML::Node& node, const std::string& file) {
+  if (node.IsMap()) {
+    std::set<std::string> seen;
+    for (const auto& entry : node) {
+      if (!entry.first.IsScalar())
+        throw InputError(fmt::format("{}:{}: a key must be a plain word", file,
+                                     entry.first.Mark().line + 1));
+      if (!seen.insert(entry.first.Scalar()).second)
+        throw InputError(fmt::format("{}:{}: key '{}' stands twice", file,
+                                     entry.first.Mark().line + 1, entry.first.Scalar()));
+      check_no_duplicate_keys(entry.second, file);
+    }
+  } else if (node.IsSequence()) {
+    for (const auto& item : node) check_no_duplicate_keys(item, file);
+  }
+}
+
+}  // namespace
+
+YamlReader::YamlReader(YAML::Node node, std::string file, std::string place)
+    : node_(std::move(node)), file_(std::move(file)), place_(std::move(place)) {}
+
+YamlReader YamlReader::load(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  if (!in || std::filesystem::is_directory(file))
+    throw InputError(fmt::format("{}: cannot be read: no such file", file.string()));
+  std::ostringstream text;
+  text << in.rdbuf();
+  return parse(text.str(), file.string());
+}
+
+YamlReader YamlReader::parse(const std::string& text, const std::string& name) {
+  try {
+    YAML::Node node = YAML::Load(text);
+    check_no_duplicate_keys(node, name);
+    return {node, name, ""};
+  } catch (const YAML::Exception& e) {
+    throw InputError(fmt::format("{}:{}: is no valid YAML: {}", name, e.mark.line + 1, e.msg));
+  }
+}
+
+int YamlReader::line() const { return node_.Mark().line + 1; }
+
+void YamlReader::fail(const std::string& what) const {
+  const std::string where = place_.empty() ? "" : place_ + ": ";
+  throw InputError(fmt::format("{}:{}: {}{}", file_, line(), where, what));
+}
+
+bool YamlReader::has(const std::string& key) const { return node_.IsMap() && node_[key].IsDefined(); }
+
+std::optional<YamlReader> YamlReader::find(const std::string& key) {
+  if (!node_.IsMap()) fail("must be a mapping");
+  read_.insert(key);
+  const YAML::Node& node = node_;  // const access never inserts
+  YAML::Node child = node[key];
+  if (!child.IsDefined()) return std::nullopt;
+  return YamlReader{child, file_, place_.empty() ? key : place_ + "." + key};
+}
+
+YamlReader YamlReader::at(const std::string& key) {
+  if (auto child = find(key)) return *child;
+  fail(fmt::format("key '{}' is missing", key));
+}
+
+std::vector<YamlReader> YamlReader::items() const {
+  if (!node_.IsSequence()) fail("must be a list");
+  std::vector<YamlReader> result;
+  for (std::size_t i = 0; i < node_.size(); ++i)
+    result.push_back(YamlReader{node_[i], file_, fmt::format("{}[{}]", place_, i)});
+  return result;
+}
+
+std::vector<std::pair<std::string, YamlReader>> YamlReader::entries() {
+  if (!node_.IsMap()) fail("must be a mapping");
+  std::vector<std::pair<std::string, YamlReader>> result;
+  for (const auto& entry : node_) {
+    const std::string& key = entry.first.Scalar();
+    read_.insert(key);
+    result.emplace_back(key, YamlReader{entry.second, file_, place_.empty() ? key : place_ + "." + key});
+  }
+  return result;
+}
+
+std::string YamlReader::as_string() const {
+  if (!node_.IsScalar()) fail("must be a word");
+  return node_.Scalar();
+}
+
+bool YamlReader::as_bool() const {
+  if (!node_.IsScalar()) fail("must be true or false");
+  try {
+    return node_.as<bool>();
+  } catch (const YAML::Exception&) {
+    fail(fmt::format("'{}' is not true or false", node_.Scalar()));
+  }
+}
+
+double YamlReader::as_double(double min, double max) const {
+  if (!node_.IsScalar()) fail("must be a number");
+  double value = 0;
+  try {
+    value = node_.as<double>();
+  } catch (const YAML::Exception&) {
+    fail(fmt::format("'{}' is not a number", node_.Scalar()));
+  }
+  if (!std::isfinite(value)) fail(fmt::format("'{}' is not a finite number", node_.Scalar()));
+  if (value < min || value > max)
+    fail(fmt::format("{} is outside [{}, {}]", node_.Scalar(), min, max));
+  return value;
+}
+
+std::int64_t YamlReader::as_int(std::int64_t min, std::int64_t max) const {
+  if (!node_.IsScalar()) fail("must be a whole number");
+  std::int64_t value = 0;
+  try {
+    value = node_.as<std::int64_t>();
+  } catch (const YAML::Exception&) {
+    fail(fmt::format("'{}' is not a whole number", node_.Scalar()));
+  }
+  if (value < min || value > max) fail(fmt::format("{} is outside [{}, {}]", value, min, max));
+  return value;
+}
+
+std::vector<double> YamlReader::as_numbers(std::size_t n) const {
+  std::vector<double> numbers;
+  for (const YamlReader& item : items()) numbers.push_back(item.as_double());
+  if (n != 0 && numbers.size() != n)
+    fail(fmt::format("has {} numbers, {} are needed", numbers.size(), n));
+  return numbers;
+}
+
+std::string YamlReader::string(const std::string& key, const std::string& fallback) {
+  const auto child = find(key);
+  return child ? child->as_string() : fallback;
+}
+
+bool YamlReader::boolean(const std::string& key, bool fallback) {
+  const auto child = find(key);
+  return child ? child->as_bool() : fallback;
+}
+
+double YamlReader::number_or(const std::string& key, double fallback, double min, double max) {
+  const auto child = find(key);
+  return child ? child->as_double(min, max) : fallback;
+}
+
+std::int64_t YamlReader::integer_or(const std::string& key, std::int64_t fallback, std::int64_t min,
+                                    std::int64_t max) {
+  const auto child = find(key);
+  return child ? child->as_int(min, max) : fallback;
+}
+
+void YamlReader::finish() const {
+  for (const auto& entry : node_) {
+    const std::string& key = entry.first.Scalar();
+    if (read_.contains(key)) continue;
+    std::string known;
+    for (const std::string& k : read_) known += (known.empty() ? "" : ", ") + k;
+    throw InputError(fmt::format("{}:{}: unknown key '{}{}' (known here: {})", file_,
+                                 entry.first.Mark().line + 1, place_.empty() ? "" : place_ + ".",
+                                 key, known));
+  }
+}
+
+}  // namespace mh

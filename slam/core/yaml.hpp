@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <yaml-cpp/yaml.h>
+
+#include "slam/core/error.hpp"
+
+namespace mh {
+
+/// A strict view of one YAML mapping or value. Every error is an InputError of the form
+/// "file:line: place: what is wrong with which value". Keys that nobody asked for are errors too:
+/// call finish() when a mapping has been read.
+class YamlReader {
+ public:
+  /// Parses a file. @throws InputError if it is missing or is no YAML.
+  static YamlReader load(const std::filesystem::path& file);
+  /// Parses text; `name` stands for the file in messages.
+  static YamlReader parse(const std::string& text, const std::string& name);
+
+  bool has(const std::string& key) const;
+  /// The child under a key. @throws InputError if absent.
+  YamlReader at(const std::string& key);
+  /// The child under a key, nullopt if absent.
+  std::optional<YamlReader> find(const std::string& key);
+  /// The elements of this sequence. @throws InputError if it is none.
+  std::vector<YamlReader> items() const;
+  /// The entries of this mapping in file order, all counted as read. @throws InputError if it is none.
+  std::vector<std::pair<std::string, YamlReader>> entries();
+
+  bool is_scalar() const { return node_.IsScalar(); }
+  bool is_sequence() const { return node_.IsSequence(); }
+  bool is_map() const { return node_.IsMap(); }
+
+  /// This scalar. @throws InputError on the wrong type.
+  std::string as_string() const;
+  bool as_bool() const;
+  double as_double(double min = -kInf, double max = kInf) const;  ///< finite, within [min, max]
+  std::int64_t as_int(std::int64_t min, std::int64_t max) const;
+  /// A sequence of exactly n numbers (n = 0: any count).
+  std::vector<double> as_numbers(std::size_t n = 0) const;
+
+  std::string string(const std::string& key) { return at(key).as_string(); }
+  std::string string(const std::string& key, const std::string& fallback);
+  bool boolean(const std::string& key, bool fallback);
+  double number(const std::string& key, double min = -kInf, double max = kInf) {
+    return at(key).as_double(min, max);
+  }
+  double number_or(const std::string& key, double fallback, double min = -kInf, double max = kInf);
+  std::int64_t integer(const std::string& key, std::int64_t min, std::int64_t max) {
+    return at(key).as_int(min, max);
+  }
+  std::int64_t integer_or(const std::string& key, std::int64_t fallback, std::int64_t min,
+                          std::int64_t max);
+
+  /// @throws InputError if this mapping has a key that was never asked for.
+  void finish() const;
+  /// An InputError at this place.
+  [[noreturn]] void fail(const std::string& what) const;
+
+  const std::string& file() const { return file_; }
+  int line() const;  ///< 1-based
+
+ private:
+  static constexpr double kInf = std::numeric_limits<double>::infinity();
+  YamlReader(YAML::Node node, std::string file, std::string place);
+
+  YAML::Node node_;
+  std::string file_;
+  std::string place_;
+  std::set<std::string> read_;
+};
+
+}  // namespace mh

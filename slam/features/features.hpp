@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "slam/core/camera.hpp"
+#include "slam/core/rgbd_frame.hpp"
+
+namespace mh {
+
+/// 256-bit rotated BRIEF descriptor (Rublee et al., ICCV 2011), bit i in word i / 64.
+using Descriptor = std::array<std::uint64_t, 4>;
+
+inline int hamming(const Descriptor& a, const Descriptor& b) {
+  return std::popcount(a[0] ^ b[0]) + std::popcount(a[1] ^ b[1]) + std::popcount(a[2] ^ b[2]) +
+         std::popcount(a[3] ^ b[3]);
+}
+
+struct Keypoint {
+  float u_px = 0, v_px = 0;          ///< undistorted, at full resolution
+  float depth_m = 0;                 ///< 0 = none
+  float angle_rad = 0;               ///< orientation by intensity centroid, [0, 2 pi)
+  std::int32_t octave = 0;           ///< pyramid level, 0 = finest
+  ClassId label = kVoid;             ///< most probable class at its pixel
+};
+
+/// The features of one frame; arrays of equal length.
+struct Features {
+  std::vector<Keypoint> keypoints;
+  std::vector<Descriptor> descriptors;
+  std::size_t size() const { return keypoints.size(); }
+};
+
+struct FeatureConfig {
+  int count = 1000;          ///< keypoints wanted per frame
+  int levels = 8;            ///< pyramid levels
+  double scale = 1.2;        ///< between levels
+  int fast_threshold = 20;   ///< grey levels
+  int fast_threshold_low = 7;  ///< used in cells where the first finds nothing
+  double max_depth_m = 8.0;  ///< depth beyond is dropped
+};
+
+/// ORB keypoints spread evenly over image and pyramid, with descriptors, depth and labels.
+/// @throws InputError if the frame's size is not the camera's.
+Features extract(const RgbdFrame& frame, const Camera& camera, const FeatureConfig& config);
+
+}  // namespace mh

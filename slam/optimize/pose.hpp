@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "slam/core/camera.hpp"
+#include "slam/core/random.hpp"
+#include "slam/core/se3.hpp"
+
+namespace mh {
+
+/// A landmark seen in the image. Residual: (u, v) and, where depth is known, the pseudo-disparity
+/// d = fx * baseline / z (Camera::disparity_px), all divided by sigma.
+struct PoseObservation {
+  Eigen::Vector3d point_in_world;
+  double u_px = 0, v_px = 0;
+  double disparity_px = -1;  ///< negative = no depth
+  double sigma_px = 1;       ///< standard deviation of the keypoint (scale^octave)
+};
+
+struct PoseConfig {
+  int rounds = 4;            ///< inlier sets are formed anew after each
+  int iterations = 10;       ///< Gauss-Newton steps per round
+  double chi2_mono = 5.991;    ///< 95 % of chi-square, 2 degrees of freedom
+  double chi2_stereo = 7.815;  ///< 95 % of chi-square, 3 degrees of freedom
+  int min_inliers = 10;
+};
+
+struct PoseEstimate {
+  SE3 camera_from_world;
+  std::vector<std::uint8_t> inlier;  ///< one per observation
+  int inlier_count = 0;
+};
+
+/// Robust reprojection: argmin over T of sum rho(|pi(T X_i) - u_i|^2 / sigma_i^2), Huber rho in the
+/// first half of the rounds, left perturbation T <- exp(delta) T, analytic Jacobians.
+/// @returns nullopt below config.min_inliers or when the normal equations are singular.
+std::optional<PoseEstimate> estimate_pose(std::span<const PoseObservation> observations,
+                                          const SE3& camera_from_world_guess, const Camera& camera,
+                                          const PoseConfig& config = {});
+
+struct RansacConfig {
+  int max_iterations = 300;
+  double confidence = 0.99;
+  int min_inliers = 10;
+};
+
+/// Pose from scratch: P3P (OpenCV's AP3P) on random triples inside RANSAC, inliers by the chi-square
+/// gates of PoseConfig. Draws depend on the stream alone.
+/// @returns the best consensus, or nullopt below config.min_inliers.
+std::optional<PoseEstimate> solve_pnp_ransac(std::span<const PoseObservation> observations,
+                                             const Camera& camera, const RansacConfig& config,
+                                             RandomStream stream);
+
+}  // namespace mh

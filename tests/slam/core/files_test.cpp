@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/core/files.hpp"
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+namespace fs = std::filesystem;
+
+TEST(WriteAtomically, KeepsTheOldFileWhenWritingFails) {
+  const fs::path folder = fs::path(testing::TempDir()) / "write_atomically";
+  fs::remove_all(folder);
+  make_output_folder(folder);
+  const fs::path file = folder / "result.json";
+  write_atomically(file, "old");
+  EXPECT_THROW(write_atomically(file,
+                                [](const fs::path& temporary) {
+                                  std::ofstream(temporary) << "half";
+                                  throw std::runtime_error("disk full");
+                                }),
+               std::runtime_error);
+  EXPECT_EQ(read_file(file), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << "a temporary was left behind";
+}
+
+TEST(MakeOutputFolder, RefusesAPathThatIsAFile) {
+  const fs::path file = fs::path(testing::TempDir()) / "a_file";
+  std::ofstream(file) << "x";
+  EXPECT_THROW(make_output_folder(file), InputError);
+  EXPECT_THROW(make_output_folder(file / "below"), InputError);
+}
+
+}  // namespace
+}  // namespace mh
