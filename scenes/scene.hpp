@@ -22,6 +22,7 @@ struct Material {
   std::string name;
   Rgb8 base_colour{255, 255, 255};  ///< sRGB; multiplies the texture and the vertex colours
   Grid2d<Rgb8> texture;             ///< sRGB; empty = base_colour alone
+  Eigen::Vector2f tile_m{1.0F, 1.0F};  ///< physical size of one repeat of the texture, where known
   Eigen::Vector3f emission = Eigen::Vector3f::Zero();  ///< linear radiance added to what is reflected
 };
 

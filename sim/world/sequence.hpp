@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sim/render/renderer.hpp"
+#include "sim/sensors/sensors.hpp"
+#include "slam/core/trajectory.hpp"
+
+namespace mh {
+
+/// What really was: never handed to SLAM, only to what scores it.
+struct GroundTruth {
+  Stamp stamp_ns = 0;
+  SE3 world_from_camera;
+};
+
+struct SimulatedFrame {
+  RgbdFrame frame;
+  GroundTruth truth;
+};
+
+/// The frames that a camera delivers along a path through a scene, made on demand. Frame i under the
+/// same `attempt` stream is the same bits whenever and wherever it is asked for.
+class SimulatedSequence {
+ public:
+  SimulatedSequence(std::shared_ptr<const Renderer> renderer, Camera camera,
+                    std::vector<TimedPose> world_from_camera, SensorConfig sensors, LabelMode labels);
+
+  std::size_t size() const { return path_.size(); }
+  const Camera& camera() const { return camera_; }
+  const std::vector<TimedPose>& path() const { return path_; }
+  /// Sensor noise is keyed by (attempt, i, pixel).
+  SimulatedFrame at(std::size_t i, RandomStream attempt) const;
+
+ private:
+  std::shared_ptr<const Renderer> renderer_;  // shared: one BVH serves every run of a scene
+  Camera camera_;
+  std::vector<TimedPose> path_;
+  SensorConfig sensors_;
+  LabelMode labels_;
+};
+
+}  // namespace mh
