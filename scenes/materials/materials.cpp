@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/materials/materials.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scenes/materials/painters.hpp"
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+
+constexpr float kWhole = 0.0F;  // marks a picture: the tile is MaterialSpec::size_m
+
+struct Kind {
+  std::string_view name;
+  float tile_u_m, tile_v_m;  ///< size of one repeat, kWhole for pictures
+  float texel_m;
+  Painter paint;
+};
+
+constexpr std::array kKinds = {
+    Kind{"bark", 0.5F, 0.5F, 0.002F, paint_wood_grain},
+    Kind{"book_covers", kWhole, kWhole, 0.002F, paint_wood_grain},
+    Kind{"book_spines", kWhole, kWhole, 0.0015F, paint_wood_grain},
+    Kind{"brushed_metal", 1.0F, 1.0F, 0.002F, paint_wood_grain},
+    Kind{"carpet", 1.2F, 1.2F, 0.0025F, paint_wood_grain},
+    Kind{"ceiling_paint", 2.0F, 2.0F, 0.004F, paint_wood_grain},
+    Kind{"ceramic", 1.0F, 1.0F, 0.004F, paint_wood_grain},
+    Kind{"curtain_fabric", 0.8F, 0.8F, 0.002F, paint_wood_grain},
+    Kind{"fabric", 0.6F, 0.6F, 0.0015F, paint_wood_grain},
+    Kind{"foliage", kWhole, kWhole, 0.0015F, paint_wood_grain},
+    Kind{"garden_view", kWhole, kWhole, 0.004F, paint_wood_grain},
+    Kind{"glass", 1.0F, 1.0F, 0.004F, paint_wood_grain},
+    Kind{"knit", 0.5F, 0.5F, 0.0015F, paint_wood_grain},
+    Kind{"leather", 0.8F, 0.8F, 0.002F, paint_wood_grain},
+    Kind{"painting", kWhole, kWhole, 0.002F, paint_wood_grain},
+    Kind{"paper", kWhole, kWhole, 0.0015F, paint_wood_grain},
+    Kind{"parquet", 2.0F, 2.0F, 0.0025F, paint_wood_grain},
+    Kind{"plaster", 2.4F, 2.4F, 0.004F, paint_wood_grain},
+    Kind{"plastic", 1.0F, 1.0F, 0.004F, paint_wood_grain},
+    Kind{"poster", kWhole, kWhole, 0.0015F, paint_wood_grain},
+    Kind{"rug_pattern", kWhole, kWhole, 0.0025F, paint_wood_grain},
+    Kind{"screen", kWhole, kWhole, 0.002F, paint_wood_grain},
+    Kind{"stone", 1.2F, 1.2F, 0.002F, paint_wood_grain},
+    Kind{"tiles", 1.2F, 1.2F, 0.002F, paint_wood_grain},
+    Kind{"wood_boards", 2.4F, 1.2F, 0.0025F, paint_wood_grain},
+    Kind{"wood_grain", 2.0F, 0.8F, 0.002F, paint_wood_grain},
+};
+
+constexpr auto kNames = [] {
+  std::array<std::string_view, kKinds.size()> names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kKinds[i].name;
+  return names;
+}();
+
+constexpr int kMaxTexels = 1024;
+
+const Kind& find_kind(std::string_view name) {
+  const auto* const found = std::ranges::find(kKinds, name, &Kind::name);
+  if (found == kKinds.end()) throw InputError(fmt::format("unknown kind of material: {}", name));
+  return *found;
+}
+
+/// A stable number for a name (FNV-1a), so that two kinds with one seed share no random stream.
+std::uint64_t name_key(std::string_view name) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  return hash;
+}
+
+void check(const MaterialSpec& spec) {
+  if (!(spec.variation >= 0.0 && spec.variation <= 1.0))
+    throw InputError(
+        fmt::format("material {}: variation must lie in [0, 1], is {}", spec.name, spec.variation));
+  if (!(spec.size_m.minCoeff() > 0.0F) || !spec.size_m.allFinite())
+    throw InputError(fmt::format("material {}: size_m must be positive, is {} x {}", spec.name,
+                                 spec.size_m.x(), spec.size_m.y()));
+}
+
+}  // namespace
+
+Material make_material(const MaterialSpec& spec) {
+  const Kind& kind = find_kind(spec.kind);
+  check(spec);
+  Material material;
+  material.name = spec.name.empty() ? spec.kind : spec.name;
+  material.tile_m =
+      is_picture(spec.kind) ? spec.size_m : Eigen::Vector2f(kind.tile_u_m, kind.tile_v_m);
+  // Long pictures get coarser texels rather than cut ones.
+  const float texel_m = std::max(kind.texel_m, material.tile_m.maxCoeff() / kMaxTexels);
+  const auto texels = [&](float length_m) {
+    return std::max(8, static_cast<int>(std::lround(length_m / texel_m)));
+  };
+  material.texture = kind.paint({.width = texels(material.tile_m.x()),
+                                 .height = texels(material.tile_m.y()),
+                                 .texel_m = texel_m,
+                                 .tone = Tint(spec.tone),
+                                 .variation = static_cast<float>(spec.variation),
+                                 .random = RandomStream(spec.seed).fork(name_key(spec.kind))});
+  return material;
+}
+
+std::span<const std::string_view> material_kinds() {
+  return kNames;
+}
+
+bool is_picture(std::string_view kind) {
+  return find_kind(kind).tile_u_m == kWhole;
+}
+
+}  // namespace mh

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <Eigen/Core>
+
+#include "scenes/scene.hpp"
+
+namespace mh {
+
+/// What a surface is made of; the texture follows from this alone, bit for bit.
+struct MaterialSpec {
+  std::string name;          ///< name of the result; empty = the kind
+  std::string kind;          ///< one of material_kinds()
+  Rgb8 tone{180, 140, 100};  ///< sRGB, the surface's mean colour (pictures: their key colour)
+  double variation = 0.5;    ///< contrast of the pattern, 0 (faint) to 1 (strong)
+  std::uint64_t seed = 0;    ///< another seed is another piece of the same stuff
+  Eigen::Vector2f size_m{1.0F, 1.0F};  ///< size of the whole picture where is_picture(kind)
+};
+
+/// Makes a procedural surface at 1.5 to 4 mm per texel, at most 1024 x 1024. Materials that repeat
+/// tile without a seam and choose their own Material::tile_m; pictures (posters, rows of books,
+/// screens, views) cover spec.size_m once. The grain of wood runs along u.
+/// @throws InputError on an unknown kind, a variation outside [0, 1] or a size that is not
+/// positive.
+Material make_material(const MaterialSpec& spec);
+
+/// Every kind, in alphabetical order.
+std::span<const std::string_view> material_kinds();
+
+/// Whether a kind fills spec.size_m once instead of repeating. @throws InputError if unknown.
+bool is_picture(std::string_view kind);
+
+}  // namespace mh

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "slam/core/grid2d.hpp"
+#include "slam/core/random.hpp"
+
+namespace mh {
+
+/// A periodic scalar field sampled at texels: the raw stuff of procedural textures.
+using Field = Grid2d<float>;
+
+/// Value noise in [-1, 1]: random values on a cells_x by cells_y lattice (which wraps around),
+/// joined smoothly. K. Perlin's fade curve between the nodes.
+Field value_noise(int width, int height, int cells_x, int cells_y, RandomStream random);
+
+/// Fractal sum of value noise in about [-1, 1]: each octave doubles the lattice and scales its
+/// height by `gain`. Octaves finer than two texels are left out.
+Field fbm(int width, int height, int cells_x, int cells_y, int octaves, float gain,
+          RandomStream random);
+
+/// Independent normal noise at every texel, standard deviation 1.
+Field white_noise(int width, int height, RandomStream random);
+
+/// Bilinear value of a field that repeats, at texel coordinates.
+float sample(const Field& field, float x, float y);
+
+/// Distances (texels) to the nearest and second nearest of one random point per lattice cell, and
+/// which point is the nearest (its lattice index). Wraps around.
+struct Voronoi {
+  Field nearest, second;
+  Grid2d<int> cell;
+};
+/// @param jitter 0 = points at cell centres, 1 = anywhere in their cells.
+Voronoi voronoi(int width, int height, int cells_x, int cells_y, float jitter, RandomStream random);
+
+}  // namespace mh
