@@ -27,8 +27,8 @@ struct SemanticImage {
 
   /// The class distribution at a pixel; empty (void) where there are no labels.
   const ClassDistribution& at(int x, int y) const {
-    static const ClassDistribution kVoid;
-    return index.empty() ? kVoid : palette[index(x, y)];
+    static const ClassDistribution kNothing;
+    return index.empty() ? kNothing : palette[index(x, y)];
   }
   friend bool operator==(const SemanticImage&, const SemanticImage&) = default;
 };

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "slam/core/camera.hpp"
+#include "slam/features/features.hpp"
+
+namespace mh {
+
+/// Keypoints of one frame in square cells, so that those near a pixel are found without a scan.
+class FeatureGrid {
+ public:
+  FeatureGrid() = default;
+  FeatureGrid(const std::vector<Keypoint>& keypoints, const Camera& camera);
+
+  /// Calls visit(index) for every keypoint whose cell touches the square of half-width radius_px
+  /// around (u_px, v_px): a superset of those within it, in an order fixed by the input.
+  template <class Visit>
+  void for_each_near(float u_px, float v_px, float radius_px, Visit visit) const {
+    const int x0 = column(u_px - radius_px), x1 = column(u_px + radius_px);
+    const int y0 = row(v_px - radius_px), y1 = row(v_px + radius_px);
+    for (int y = y0; y <= y1; ++y)
+      for (std::uint32_t i = start_[cell(x0, y)]; i < start_[cell(x1, y) + 1]; ++i) visit(order_[i]);
+  }
+
+ private:
+  static constexpr float kCell_px = 16.0F;
+  int column(float u_px) const;
+  int row(float v_px) const;
+  std::size_t cell(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
+  }
+
+  int columns_ = 0, rows_ = 0;
+  std::vector<std::uint32_t> start_;  // per cell, one more at the end
+  std::vector<std::uint32_t> order_;  // keypoint indices by cell
+};
+
+}  // namespace mh

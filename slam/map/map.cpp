@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/map/map.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+namespace mh {
+namespace {
+
+/// Index of the descriptor with the least median Hamming distance to the others; the first of equals.
+std::size_t most_central(const std::vector<const Descriptor*>& descriptors) {
+  const std::size_t n = descriptors.size();
+  if (n <= 2) return 0;
+  std::vector<int> distances(n);
+  std::size_t best = 0;
+  int best_median = INT32_MAX;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) distances[j] = hamming(*descriptors[i], *descriptors[j]);
+    std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(n / 2),
+                     distances.end());
+    if (distances[n / 2] < best_median) {
+      best_median = distances[n / 2];
+      best = i;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+KeyframeId Map::add(Keyframe keyframe) {
+  keyframe.id = KeyframeId{static_cast<std::uint32_t>(keyframes_.size())};
+  keyframe.landmarks.assign(keyframe.features.size(), LandmarkId{});
+  keyframe.covisible.clear();
+  keyframes_.push_back(std::move(keyframe));
+  ++keyframe_count_;
+  return keyframes_.back().id;
+}
+
+LandmarkId Map::add_landmark(const Eigen::Vector3d& position_in_world, KeyframeId keyframe,
+                             std::uint32_t feature) {
+  Landmark landmark;
+  landmark.id = LandmarkId{static_cast<std::uint32_t>(landmarks_.size())};
+  landmark.position_in_world = position_in_world;
+  landmark.first_keyframe = keyframe;
+  landmarks_.push_back(std::move(landmark));
+  ++landmark_count_;
+  const LandmarkId id = landmarks_.back().id;
+  [[maybe_unused]] const bool added = add_observation(id, keyframe, feature);
+  assert(added);
+  return id;
+}
+
+bool Map::add_observation(LandmarkId landmark, KeyframeId keyframe, std::uint32_t feature) {
+  Landmark& l = mutable_at(landmark);
+  Keyframe& k = mutable_at(keyframe);
+  if (l.erased || k.erased || k.landmarks[feature].valid()) return false;
+  const auto place = std::lower_bound(
+      l.observations.begin(), l.observations.end(), keyframe,
+      [](const Observation& o, KeyframeId wanted) { return o.keyframe < wanted; });
+  if (place != l.observations.end() && place->keyframe == keyframe) return false;
+  l.observations.insert(place, {keyframe, feature});
+  k.landmarks[feature] = landmark;
+  return true;
+}
+
+void Map::erase_observation(LandmarkId landmark, KeyframeId keyframe) {
+  Landmark& l = mutable_at(landmark);
+  const auto place = std::find_if(l.observations.begin(), l.observations.end(),
+                                  [&](const Observation& o) { return o.keyframe == keyframe; });
+  if (place == l.observations.end()) return;
+  mutable_at(keyframe).landmarks[place->feature] = LandmarkId{};
+  l.observations.erase(place);
+  if (l.observations.empty()) erase(landmark);
+}
+
+void Map::erase(LandmarkId landmark) {
+  Landmark& l = mutable_at(landmark);
+  if (l.erased) return;
+  for (const Observation& o : l.observations) mutable_at(o.keyframe).landmarks[o.feature] = LandmarkId{};
+  l.observations.clear();
+  l.erased = true;
+  --landmark_count_;
+}
+
+void Map::fuse(LandmarkId from, LandmarkId into) {
+  if (from == into || at(from).erased || at(into).erased) return;
+  const std::vector<Observation> moved = at(from).observations;
+  const int visible = at(from).visible;
+  const int found = at(from).found;
+  erase(from);
+  for (const Observation& o : moved) add_observation(into, o.keyframe, o.feature);
+  mutable_at(into).visible += visible;
+  mutable_at(into).found += found;
+}
+
+void Map::erase(KeyframeId keyframe) {
+  Keyframe& k = mutable_at(keyframe);
+  if (k.erased || keyframe_count_ == 1) return;
+  KeyframeId parent = k.covisible.empty() ? KeyframeId{} : k.covisible.front().id;
+  if (!parent.valid())  // seen by nobody else: hang it on the nearest standing keyframe in time
+    for (const Keyframe& other : keyframes_)
+      if (!other.erased && other.id != keyframe && (!parent.valid() || other.id < keyframe))
+        parent = other.id;
+  for (std::uint32_t i = 0; i < k.landmarks.size(); ++i)
+    if (k.landmarks[i].valid()) erase_observation(k.landmarks[i], keyframe);
+  for (const Keyframe::Neighbour& n : std::vector(k.covisible)) set_neighbour(n.id, keyframe, 0);
+  k.covisible.clear();
+  k.parent = parent;
+  k.camera_from_parent = k.camera_from_world * at(parent).camera_from_world.inverse();
+  k.erased = true;
+  k.features = {};  // nobody will ask again: a long run must not grow
+  k.grid = {};
+  k.words = {};
+  k.landmarks = {};
+  --keyframe_count_;
+}
+
+void Map::refresh(LandmarkId id, const FeatureConfig& config) {
+  Landmark& l = mutable_at(id);
+  if (l.erased) return;
+  std::vector<const Descriptor*> descriptors;
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  for (const Observation& o : l.observations) {
+    const Keyframe& k = at(o.keyframe);
+    descriptors.push_back(&k.features.descriptors[o.feature]);
+    direction += (l.position_in_world - k.camera_from_world.inverse().translation()).normalized();
+  }
+  const std::size_t central = most_central(descriptors);
+  l.descriptor = *descriptors[central];
+  l.label = at(l.observations[central].keyframe).features.keypoints[l.observations[central].feature].label;
+  l.mean_direction = direction.norm() > 1e-9 ? Eigen::Vector3d(direction.normalized())
+                                             : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
+
+  // A corner seen at octave o from distance d is seen at octave 0 from scale^o times as far away
+  // (max), and at the coarsest octave from that over scale^(levels - 1) (min).
+  const Observation& reference = l.observations.front();
+  const Keyframe& k = at(reference.keyframe);
+  const double distance = (k.camera_from_world * l.position_in_world).norm();
+  const int octave = k.features.keypoints[reference.feature].octave;
+  l.max_distance_m = distance * std::pow(config.scale, octave);
+  l.min_distance_m = l.max_distance_m / std::pow(config.scale, config.levels - 1);
+}
+
+void Map::set_neighbour(KeyframeId of, KeyframeId neighbour, int shared) {
+  auto& covisible = mutable_at(of).covisible;
+  std::erase_if(covisible, [&](const Keyframe::Neighbour& n) { return n.id == neighbour; });
+  if (shared < kMinShared) return;
+  const auto place = std::find_if(covisible.begin(), covisible.end(), [&](const Keyframe::Neighbour& n) {
+    return n.shared != shared ? n.shared < shared : neighbour < n.id;
+  });
+  covisible.insert(place, {neighbour, shared});
+}
+
+void Map::update_covisibility(KeyframeId id) {
+  if (at(id).erased) return;
+  std::map<KeyframeId, int> shared;
+  for (const LandmarkId landmark : at(id).landmarks)
+    if (landmark.valid())
+      for (const Observation& o : at(landmark).observations)
+        if (o.keyframe != id) ++shared[o.keyframe];
+  for (const Keyframe::Neighbour& n : std::vector(at(id).covisible))
+    if (!shared.contains(n.id)) shared[n.id] = 0;
+  for (const auto& [other, count] : shared) {
+    set_neighbour(id, other, count);
+    set_neighbour(other, id, count);
+  }
+}
+
+SE3 Map::camera_from_world(KeyframeId id) const {
+  SE3 camera_from_here;
+  while (at(id).erased) {
+    camera_from_here = camera_from_here * at(id).camera_from_parent;
+    id = at(id).parent;
+  }
+  return camera_from_here * at(id).camera_from_world;
+}
+
+KeyframeId Map::standing(KeyframeId id) const {
+  while (at(id).erased) id = at(id).parent;
+  return id;
+}
+
+void Map::check_invariants() const {
+  const auto require = [](bool good, const char* what, std::uint32_t id) {
+    if (!good) throw std::logic_error(fmt::format("map: {} (id {})", what, id));
+  };
+  for (const Keyframe& k : keyframes_) {
+    if (k.erased) {
+      require(k.covisible.empty() && k.landmarks.empty(), "an erased keyframe holds on", k.id.value);
+      continue;
+    }
+    for (std::uint32_t i = 0; i < k.landmarks.size(); ++i) {
+      if (!k.landmarks[i].valid()) continue;
+      const Landmark& l = at(k.landmarks[i]);
+      require(!l.erased, "a keyframe names an erased landmark", k.id.value);
+      require(std::find(l.observations.begin(), l.observations.end(), Observation{k.id, i}) !=
+                  l.observations.end(),
+              "a landmark does not know its keyframe", l.id.value);
+    }
+    for (const Keyframe::Neighbour& n : k.covisible) {
+      const auto& back = at(n.id).covisible;
+      require(std::any_of(back.begin(), back.end(),
+                          [&](const auto& b) { return b.id == k.id && b.shared == n.shared; }),
+              "covisibility is not symmetric", k.id.value);
+    }
+  }
+  for (const Landmark& l : landmarks_) {
+    require(l.erased == l.observations.empty(), "a landmark stands that nobody sees", l.id.value);
+    for (const Observation& o : l.observations)
+      require(!at(o.keyframe).erased && at(o.keyframe).landmarks[o.feature] == l.id,
+              "a keyframe does not know its landmark", l.id.value);
+  }
+}
+
+std::uint64_t Map::digest() const {
+  XXH3_state_t* state = XXH3_createState();
+  XXH3_64bits_reset(state);
+  const auto feed = [&](const auto& value) { XXH3_64bits_update(state, &value, sizeof(value)); };
+  for (const Keyframe& k : keyframes_) {
+    feed(k.stamp_ns);
+    feed(k.erased);
+    for (int i = 0; i < 9; ++i) feed(k.camera_from_world.rotation().data()[i]);
+    for (int i = 0; i < 3; ++i) feed(k.camera_from_world.translation().data()[i]);
+  }
+  for (const Landmark& l : landmarks_) {
+    feed(l.erased);
+    feed(l.label);
+    for (int i = 0; i < 3; ++i) feed(l.position_in_world.data()[i]);
+    for (const Observation& o : l.observations) {
+      feed(o.keyframe.value);
+      feed(o.feature);
+    }
+  }
+  const std::uint64_t digest = XXH3_64bits_digest(state);
+  XXH3_freeState(state);
+  return digest;
+}
+
+}  // namespace mh

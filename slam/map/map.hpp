@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "slam/core/ids.hpp"
+#include "slam/core/rgbd_frame.hpp"
+#include "slam/core/se3.hpp"
+#include "slam/features/features.hpp"
+#include "slam/features/feature_grid.hpp"
+#include "slam/semantics/augmented_vector.hpp"
+
+namespace mh {
+
+/// A keyframe's features as the bag of words sees them.
+struct WordIndex {
+  AugmentedVector vector;  ///< equation 1
+  /// (node, feature) ordered: features under the same node of the vocabulary may match.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> by_node;
+};
+
+struct Keyframe {
+  KeyframeId id;
+  Stamp stamp_ns = 0;
+  SE3 camera_from_world;
+  Features features;
+  FeatureGrid grid;
+  WordIndex words;
+  std::vector<LandmarkId> landmarks;  ///< per feature; invalid = none
+
+  struct Neighbour {
+    KeyframeId id;
+    int shared = 0;  ///< landmarks seen by both
+  };
+  std::vector<Neighbour> covisible;  ///< at least kMinShared; most shared first, then by id
+
+  bool erased = false;
+  KeyframeId parent;       ///< what an erased keyframe's pose hangs on
+  SE3 camera_from_parent;  ///< valid if erased
+};
+
+struct Observation {
+  KeyframeId keyframe;
+  std::uint32_t feature = 0;
+  friend bool operator==(const Observation&, const Observation&) = default;
+};
+
+struct Landmark {
+  LandmarkId id;
+  Eigen::Vector3d position_in_world = Eigen::Vector3d::Zero();
+  std::vector<Observation> observations;  ///< ordered by keyframe, one per keyframe
+
+  // Derived from the observations by Map::refresh().
+  Descriptor descriptor{};    ///< the observed one with the least median distance to the others
+  ClassId label = kVoid;      ///< of the observation that supplies the descriptor
+  Eigen::Vector3d mean_direction = Eigen::Vector3d::UnitZ();  ///< from cameras to the landmark
+  double min_distance_m = 0, max_distance_m = 0;  ///< range in which the pyramid can match it
+
+  KeyframeId first_keyframe;
+  int visible = 1;  ///< frames in which it was expected
+  int found = 1;    ///< frames in which it was an inlier
+  bool erased = false;
+};
+
+/// Keyframes, landmarks and who sees whom. Entities are addressed by id and never move; erased
+/// ones stay as tombstones. Invariants (check_invariants()): an observation and the keyframe's
+/// landmark slot always name each other; erased entities are named by nobody; covisibility is
+/// symmetric.
+class Map {
+ public:
+  /// Least number of shared landmarks that makes two keyframes neighbours.
+  static constexpr int kMinShared = 15;
+
+  const std::vector<Keyframe>& keyframes() const { return keyframes_; }
+  const std::vector<Landmark>& landmarks() const { return landmarks_; }
+  const Keyframe& at(KeyframeId id) const { return keyframes_[id.value]; }
+  const Landmark& at(LandmarkId id) const { return landmarks_[id.value]; }
+  int keyframe_count() const { return keyframe_count_; }
+  int landmark_count() const { return landmark_count_; }
+  bool empty() const { return keyframe_count_ == 0; }
+
+  /// Takes over a keyframe without landmarks; gives it its id.
+  KeyframeId add(Keyframe keyframe);
+  LandmarkId add_landmark(const Eigen::Vector3d& position_in_world, KeyframeId keyframe,
+                          std::uint32_t feature);
+  /// No effect if the keyframe sees the landmark already or the feature has one.
+  bool add_observation(LandmarkId landmark, KeyframeId keyframe, std::uint32_t feature);
+  /// Erases the landmark when nobody is left to see it.
+  void erase_observation(LandmarkId landmark, KeyframeId keyframe);
+  void erase(LandmarkId landmark);
+  /// Moves the observations of `from` to `into` (where a keyframe sees both, into's stays), then
+  /// erases `from`.
+  void fuse(LandmarkId from, LandmarkId into);
+  /// Erases a keyframe; its pose hangs on its best neighbour from then on. The last one stays.
+  void erase(KeyframeId keyframe);
+
+  void set_pose(KeyframeId id, const SE3& camera_from_world) {
+    keyframes_[id.value].camera_from_world = camera_from_world;
+  }
+  void set_position(LandmarkId id, const Eigen::Vector3d& position_in_world) {
+    landmarks_[id.value].position_in_world = position_in_world;
+  }
+  void count_visible(LandmarkId id) { ++landmarks_[id.value].visible; }
+  void count_found(LandmarkId id) { ++landmarks_[id.value].found; }
+
+  /// Recomputes descriptor, label, mean direction and distance range of a landmark.
+  void refresh(LandmarkId id, const FeatureConfig& config);
+  /// Counts anew which keyframes share landmarks with this one, on both sides.
+  void update_covisibility(KeyframeId id);
+
+  /// Pose of any keyframe ever added, through its parents if it was erased.
+  SE3 camera_from_world(KeyframeId id) const;
+  /// The keyframe itself if it stands, else the nearest standing one up its parents.
+  KeyframeId standing(KeyframeId id) const;
+
+  /// @throws std::logic_error naming the broken invariant.
+  void check_invariants() const;
+  /// xxh3-64 over poses, positions and observations.
+  std::uint64_t digest() const;
+
+ private:
+  Keyframe& mutable_at(KeyframeId id) { return keyframes_[id.value]; }
+  Landmark& mutable_at(LandmarkId id) { return landmarks_[id.value]; }
+  void set_neighbour(KeyframeId of, KeyframeId neighbour, int shared);
+
+  std::vector<Keyframe> keyframes_;
+  std::vector<Landmark> landmarks_;
+  int keyframe_count_ = 0;
+  int landmark_count_ = 0;
+};
+
+}  // namespace mh

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace mh {
+
+/// The places where descriptors are compared.
+enum class Matcher {
+  kMotionModel,
+  kReferenceKeyframe,
+  kLocalMap,
+  kTriangulation,
+  kFusion,
+  kRelocalizationWords,
+  kRelocalizationProjection,
+  kCount
+};
+std::string_view name(Matcher matcher);
+
+/// What equation 2 did in one matcher during one step.
+struct MatcherCounts {
+  std::int64_t compared = 0;        ///< descriptor pairs
+  std::int64_t penalised = 0;       ///< of them, labels known and different: distance times xi
+  std::int64_t rejected_by_xi = 0;  ///< best pairs under the threshold before xi, over it after
+  std::int64_t ratio_helped = 0;    ///< pairs that pass the ratio test only because xi inflated the second best
+  MatcherCounts& operator+=(const MatcherCounts& other);
+};
+using MatchCounts = std::array<MatcherCounts, static_cast<std::size_t>(Matcher::kCount)>;
+
+inline MatcherCounts& at(MatchCounts& counts, Matcher matcher) {
+  return counts[static_cast<std::size_t>(matcher)];
+}
+
+}  // namespace mh

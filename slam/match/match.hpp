@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "slam/features/features.hpp"
+#include "slam/map/map.hpp"
+#include "slam/features/feature_grid.hpp"
+#include "slam/match/config.hpp"
+#include "slam/match/counts.hpp"
+
+namespace mh {
+
+/// A descriptor with the label that equation 2 needs.
+struct LabelledDescriptor {
+  const Descriptor& descriptor;
+  ClassId label;
+};
+
+/// Equation 2 over ORB descriptors, keeping count of what it did.
+class SemanticMatcher {
+ public:
+  SemanticMatcher(const SemanticConfig& config, MatcherCounts& counts)
+      : xi_(static_cast<float>(config.xi)),
+        policy_(config.void_is_a_label ? VoidPolicy::kIsALabel : VoidPolicy::kUnknown),
+        counts_(counts) {}
+
+  struct Distance {
+    float plain = 0;     ///< Hamming distance, bits
+    float semantic = 0;  ///< after equation 2
+  };
+  Distance operator()(LabelledDescriptor p, LabelledDescriptor q) {
+    const auto plain = static_cast<float>(hamming(p.descriptor, q.descriptor));
+    const bool disagree = labels_disagree(p.label, q.label, policy_);
+    ++counts_.compared;
+    counts_.penalised += disagree;
+    return {plain, semantic_distance(plain, disagree, xi_)};
+  }
+  /// The best of several under a gate: nearest by semantic distance, ratio test against the second.
+  struct Best {
+    std::uint32_t index = UINT32_MAX;
+    Distance first{1e9F, 1e9F}, second{1e9F, 1e9F};
+    int first_octave = -1, second_octave = -2;
+    void offer(std::uint32_t i, Distance d, int octave) {
+      if (d.semantic < first.semantic) {
+        second = first;
+        second_octave = first_octave;
+        first = d;
+        first_octave = octave;
+        index = i;
+      } else if (d.semantic < second.semantic) {
+        second = d;
+        second_octave = octave;
+      }
+    }
+  };
+  /// Applies gate and ratio test (ratio >= 1: none) and counts where xi changed the outcome.
+  bool accept(const Best& best, float max_distance, float ratio);
+
+ private:
+  float xi_;
+  VoidPolicy policy_;
+  MatcherCounts& counts_;
+};
+
+/// Something with a place in the image, looked for among a frame's features.
+struct ProjectionTarget {
+  float u_px = 0, v_px = 0;
+  float disparity_px = -1;       ///< negative = not compared
+  float radius_px = 0;
+  int min_octave = 0, max_octave = 0;
+  const Descriptor* descriptor = nullptr;
+  ClassId label = kVoid;
+  float angle_rad = -1;          ///< orientation to agree with; negative = none
+};
+
+struct ProjectionGate {
+  float max_distance = 50;   ///< after equation 2
+  float ratio = 1.0F;        ///< of two best on the same octave; >= 1: no ratio test
+  bool check_angle = false;  ///< keep the dominant rotations only
+};
+
+/// For each target the feature that it matches, or none. A feature goes to the target with the
+/// smallest distance (the first of equals); features with taken[i] != 0 are passed over.
+std::vector<std::int32_t> match_by_projection(std::span<const ProjectionTarget> targets,
+                                              const Features& features, const FeatureGrid& grid,
+                                              std::span<const std::uint8_t> taken,
+                                              const ProjectionGate& gate, SemanticMatcher matcher);
+
+struct FeatureMatch {
+  std::uint32_t a = 0, b = 0;  ///< feature indices
+};
+
+/// Matches features of two frames that fall under the same vocabulary node: nearest neighbour with
+/// gate, ratio test and dominant rotation; each feature at most once.
+/// @param use_a, use_b  which features take part (same lengths as the frames' features).
+/// @param compatible    geometric test of a pair, e.g. the epipolar line; may be empty.
+std::vector<FeatureMatch> match_by_words(
+    const Features& a, const WordIndex& words_a, std::span<const std::uint8_t> use_a,
+    const Features& b, const WordIndex& words_b, std::span<const std::uint8_t> use_b,
+    float max_distance, float ratio, SemanticMatcher matcher,
+    const std::function<bool(std::uint32_t, std::uint32_t)>& compatible = {});
+
+}  // namespace mh

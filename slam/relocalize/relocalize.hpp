@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "slam/core/camera.hpp"
+#include "slam/core/random.hpp"
+#include "slam/map/map.hpp"
+#include "slam/match/config.hpp"
+#include "slam/match/counts.hpp"
+#include "slam/optimize/pose.hpp"
+#include "slam/semantics/candidate_selection.hpp"
+
+namespace mh {
+
+struct RelocalizeConfig {
+  int min_word_matches = 15;
+  int min_inliers = 50;  ///< to accept a pose
+  RansacConfig ransac;
+};
+
+/// Where an attempt to relocalize ended: the farthest stage that any candidate reached and failed,
+/// or kVerified.
+enum class RelocalizationStage { kNone, kNoCandidate, kMatches, kPnp, kInliers, kVerified };
+std::string_view name(RelocalizationStage stage);
+
+/// Keyframes left after each step of Algorithm 1.
+struct CandidateCounts {
+  int keyframes = 0;           ///< in the map
+  int c1 = 0, c2 = 0, c3 = 0;  ///< after equations 3, 4 and 5
+  int final = 0;               ///< after equation 6
+  double label_mass = 0;       ///< share of the query vector's L1 mass held by labels
+};
+
+/// A frame prepared for search: its features with index and bag of words.
+struct Query {
+  const Features& features;
+  const FeatureGrid& grid;
+  const WordIndex& words;
+};
+
+struct RelocalizationResult {
+  RelocalizationStage stage = RelocalizationStage::kNoCandidate;
+  CandidateCounts candidates;
+  std::optional<SE3> camera_from_world;
+  std::vector<LandmarkId> landmarks;  ///< per feature; inliers of the pose
+  int inliers = 0;
+  KeyframeId keyframe;                ///< the candidate that led to the pose
+};
+
+/// Algorithm 1 over the whole map. Where the query has no label member, words are counted.
+CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedVector& query,
+                                                const SemanticConfig& config);
+
+/// Finds the camera in the map without any guess: candidate keyframes, matches by words, PnP with
+/// RANSAC, refinement, guided search. The first candidate (in order of score) that holds wins.
+RelocalizationResult relocalize(const Query& query, const Map& map, const Camera& camera,
+                                const FeatureConfig& features, const SemanticConfig& semantics,
+                                const MatchConfig& match, const RelocalizeConfig& config,
+                                RandomStream stream, MatchCounts& counts);
+
+}  // namespace mh

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace mh {
+
+struct KeyframeConfig {
+  int max_interval = 30;            ///< frames after which a keyframe is wanted in any case
+  double min_tracked_share = 0.75;  ///< of the reference keyframe's landmarks
+  int min_close_tracked = 100;      ///< close points tracked below this, and
+  int min_close_new = 70;           ///< close points untracked above this: a keyframe is needed
+  double close_depth_m = 3.5;       ///< depth is trusted to make a landmark at once up to here
+  double redundant_share = 0.9;     ///< of a keyframe's landmarks seen by 3 others: culled
+};
+
+struct TrackConfig {
+  int min_inliers = 20;          ///< after the local map, to count as tracked
+  int min_inliers_frame = 10;    ///< after the motion model
+  double search_radius_px = 15;  ///< around the predicted place, at octave 0
+  double local_radius_px = 5;    ///< around the place by the tracked pose, at octave 0
+  int local_keyframes = 60;      ///< at most, in the local map
+  double near_distance_m = 2.5;  ///< keyframes this near and
+  double near_angle_rad = 0.9;   ///< facing this alike join the local map, whatever they share
+};
+
+}  // namespace mh
