@@ -12,10 +12,10 @@
 namespace mh {
 
 struct BundleObservation {
-  std::uint32_t pose = 0;    ///< index into BundleProblem::camera_from_world
-  std::uint32_t point = 0;   ///< index into BundleProblem::points_in_world
+  std::uint32_t pose = 0;   ///< index into BundleProblem::camera_from_world
+  std::uint32_t point = 0;  ///< index into BundleProblem::points_in_world
   float u_px = 0, v_px = 0;
-  float disparity_px = -1;   ///< negative = no depth
+  float disparity_px = -1;  ///< negative = no depth
   float sigma_px = 1;
 };
 
@@ -28,23 +28,24 @@ struct BundleProblem {
 };
 
 struct BundleConfig {
-  int iterations = 5;         ///< with Huber; then outliers are dropped and
-  int refine_iterations = 10; ///< more follow without
+  int iterations = 5;          ///< with Huber; then outliers are dropped and
+  int refine_iterations = 10;  ///< more follow without
   double chi2_mono = 5.991;
   double chi2_stereo = 7.815;
 };
 
 struct BundleResult {
-  std::vector<SE3> camera_from_world;         ///< all, fixed ones unchanged
+  std::vector<SE3> camera_from_world;  ///< all, fixed ones unchanged
   std::vector<Eigen::Vector3d> points_in_world;
-  std::vector<std::uint8_t> outlier;          ///< per observation: beyond its gate or behind the camera
-  double initial_cost = 0, final_cost = 0;    ///< sum of rho over all observations / over inliers
+  std::vector<std::uint8_t> outlier;  ///< per observation: beyond its gate or behind the camera
+  double initial_cost = 0, final_cost = 0;  ///< sum of rho over all observations / over inliers
   int iterations = 0;
 };
 
 /// Bundle adjustment by Levenberg-Marquardt with the Schur complement over points, analytic
 /// Jacobians (Triggs et al., "Bundle adjustment: a modern synthesis", 1999). Single-threaded; sums
 /// in input order.
-BundleResult adjust(const BundleProblem& problem, const Camera& camera, const BundleConfig& config = {});
+BundleResult adjust(const BundleProblem& problem, const Camera& camera,
+                    const BundleConfig& config = {});
 
 }  // namespace mh

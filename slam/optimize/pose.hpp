@@ -24,8 +24,8 @@ struct PoseObservation {
 };
 
 struct PoseConfig {
-  int rounds = 4;            ///< inlier sets are formed anew after each
-  int iterations = 10;       ///< Gauss-Newton steps per round
+  int rounds = 4;              ///< inlier sets are formed anew after each
+  int iterations = 10;         ///< Gauss-Newton steps per round
   double chi2_mono = 5.991;    ///< 95 % of chi-square, 2 degrees of freedom
   double chi2_stereo = 7.815;  ///< 95 % of chi-square, 3 degrees of freedom
   int min_inliers = 10;
@@ -50,8 +50,13 @@ struct RansacConfig {
   int min_inliers = 10;
 };
 
-/// Pose from scratch: P3P (OpenCV's AP3P) on random triples inside RANSAC, inliers by the chi-square
-/// gates of PoseConfig. Draws depend on the stream alone.
+/// Judges each observation at a pose by the chi-square gates; points behind the camera (z < 1 cm)
+/// fail. Writes one flag per observation (the vector is reused). @returns how many pass.
+int find_inliers(std::span<const PoseObservation> observations, const SE3& camera_from_world,
+                 const Camera& camera, const PoseConfig& config, std::vector<std::uint8_t>& inlier);
+
+/// Pose from scratch: P3P (OpenCV's AP3P) on random triples inside RANSAC, inliers by the
+/// chi-square gates of PoseConfig. Draws depend on the stream alone.
 /// @returns the best consensus, or nullopt below config.min_inliers.
 std::optional<PoseEstimate> solve_pnp_ransac(std::span<const PoseObservation> observations,
                                              const Camera& camera, const RansacConfig& config,

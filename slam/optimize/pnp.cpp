@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <opencv2/calib3d.hpp>
+
+#include "slam/optimize/pose.hpp"
+
+namespace mh {
+namespace {
+
+using Triple = std::array<std::size_t, 3>;
+
+/// Three different indices below count, drawn for one iteration.
+Triple draw_triple(RandomStream stream, int iteration, std::size_t count) {
+  const auto base = static_cast<std::uint64_t>(iteration) * 3;
+  Triple triple{};
+  triple[0] = stream.below(base, count);
+  triple[1] = stream.below(base + 1, count - 1);
+  if (triple[1] >= triple[0]) ++triple[1];
+  // The third skips both, the smaller first.
+  triple[2] = stream.below(base + 2, count - 2);
+  const auto [low, high] = std::minmax(triple[0], triple[1]);
+  if (triple[2] >= low) ++triple[2];
+  if (triple[2] >= high) ++triple[2];
+  return triple;
+}
+
+/// True where the triangle is so thin, in space or in the image, that P3P has no stable answer:
+/// height below a thousandth of its base, or an area of less than one square pixel.
+bool is_degenerate(std::span<const PoseObservation> observations, const Triple& triple) {
+  const PoseObservation& a = observations[triple[0]];
+  const PoseObservation& b = observations[triple[1]];
+  const PoseObservation& c = observations[triple[2]];
+  const Eigen::Vector3d ab = b.point_in_world - a.point_in_world;
+  const Eigen::Vector3d ac = c.point_in_world - a.point_in_world;
+  const double base2 = std::max({ab.squaredNorm(), ac.squaredNorm(), (ab - ac).squaredNorm()});
+  if (!(ab.cross(ac).norm() > 1e-3 * base2)) return true;
+  const double area2_px =
+      (b.u_px - a.u_px) * (c.v_px - a.v_px) - (b.v_px - a.v_px) * (c.u_px - a.u_px);
+  return !(std::abs(area2_px) > 2.0);
+}
+
+/// Up to four poses that map three points onto their pixels; none where the solver finds none.
+std::vector<SE3> solve_p3p(std::span<const PoseObservation> observations, const Triple& triple,
+                           const Camera& camera) {
+  cv::Mat points(3, 3, CV_64F);
+  cv::Mat pixels(3, 2, CV_64F);
+  for (int row = 0; row < 3; ++row) {
+    const PoseObservation& o = observations[triple[static_cast<std::size_t>(row)]];
+    for (int k = 0; k < 3; ++k) points.at<double>(row, k) = o.point_in_world[k];
+    pixels.at<double>(row, 0) = o.u_px;
+    pixels.at<double>(row, 1) = o.v_px;
+  }
+  const cv::Matx33d intrinsics(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0,
+                               1);
+  std::vector<cv::Mat> rotations;
+  std::vector<cv::Mat> translations;
+  try {
+    cv::solveP3P(points, pixels, intrinsics, cv::noArray(), rotations, translations,
+                 cv::SOLVEPNP_AP3P);
+  } catch (const cv::Exception&) {
+    return {};  // one unlucky triple is no reason to give up the query
+  }
+  std::vector<SE3> poses;
+  for (std::size_t i = 0; i < rotations.size(); ++i) {
+    const Eigen::Vector3d rotation(rotations[i].ptr<double>());
+    const Eigen::Vector3d translation(translations[i].ptr<double>());
+    if (rotation.allFinite() && translation.allFinite())
+      poses.emplace_back(so3_exp(rotation), translation);
+  }
+  return poses;
+}
+
+/// Iterations after which a triple without outliers was drawn with the given confidence (Fischler
+/// and Bolles 1981), capped at max_iterations.
+int iterations_needed(int inliers, std::size_t count, const RansacConfig& config) {
+  const double share = static_cast<double>(inliers) / static_cast<double>(count);
+  const double miss = 1.0 - share * share * share;
+  if (miss <= 0.0) return 1;
+  if (miss >= 1.0) return config.max_iterations;
+  const double needed = std::ceil(std::log(1.0 - config.confidence) / std::log(miss));
+  return static_cast<int>(std::min<double>(needed, config.max_iterations));
+}
+
+std::vector<PoseObservation> select(std::span<const PoseObservation> observations,
+                                    std::span<const std::uint8_t> inlier) {
+  std::vector<PoseObservation> selected;
+  for (std::size_t i = 0; i < observations.size(); ++i)
+    if (inlier[i]) selected.push_back(observations[i]);
+  return selected;
+}
+
+struct Consensus {
+  SE3 camera_from_world;
+  std::vector<std::uint8_t> inlier;
+  int count = 0;
+};
+
+/// The pose of a random triple on which most observations agree; the first one among equals.
+Consensus best_consensus(std::span<const PoseObservation> observations, const Camera& camera,
+                         const RansacConfig& config, const PoseConfig& gates, RandomStream stream) {
+  Consensus best;
+  std::vector<std::uint8_t> inlier;
+  int limit = config.max_iterations;
+  for (int iteration = 0; iteration < limit; ++iteration) {
+    const Triple triple = draw_triple(stream, iteration, observations.size());
+    if (is_degenerate(observations, triple)) continue;
+    for (const SE3& pose : solve_p3p(observations, triple, camera)) {
+      const int count = find_inliers(observations, pose, camera, gates, inlier);
+      if (count <= best.count) continue;
+      best.camera_from_world = pose;
+      best.inlier.swap(inlier);
+      best.count = count;
+    }
+    limit = std::min(limit, iterations_needed(best.count, observations.size(), config));
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<PoseEstimate> solve_pnp_ransac(std::span<const PoseObservation> observations,
+                                             const Camera& camera, const RansacConfig& config,
+                                             RandomStream stream) {
+  PoseConfig gates;
+  gates.min_inliers = std::max(config.min_inliers, 4);  // any three points agree with their own P3P
+  if (static_cast<int>(observations.size()) < gates.min_inliers) return std::nullopt;
+
+  Consensus best = best_consensus(observations, camera, config, gates, stream);
+  if (best.count < 4) return std::nullopt;
+
+  // A pose from three noisy points misses inliers that the refined one explains: twice refined on
+  // its own consensus, then judged over all.
+  PoseConfig refine = gates;
+  refine.min_inliers = 4;
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::vector<PoseObservation> consensus = select(observations, best.inlier);
+    const auto refined = estimate_pose(consensus, best.camera_from_world, camera, refine);
+    if (!refined) return std::nullopt;
+    best.camera_from_world = refined->camera_from_world;
+    best.count = find_inliers(observations, best.camera_from_world, camera, gates, best.inlier);
+    if (best.count < 4) return std::nullopt;
+  }
+  if (best.count < gates.min_inliers) return std::nullopt;
+  return PoseEstimate{.camera_from_world = best.camera_from_world,
+                      .inlier = std::move(best.inlier),
+                      .inlier_count = best.count};
+}
+
+}  // namespace mh
