@@ -20,11 +20,11 @@ inline int hamming(const Descriptor& a, const Descriptor& b) {
 }
 
 struct Keypoint {
-  float u_px = 0, v_px = 0;          ///< undistorted, at full resolution
-  float depth_m = 0;                 ///< 0 = none
-  float angle_rad = 0;               ///< orientation by intensity centroid, [0, 2 pi)
-  std::int32_t octave = 0;           ///< pyramid level, 0 = finest
-  ClassId label = kVoid;             ///< most probable class at its pixel
+  float u_px = 0, v_px = 0;  ///< undistorted, at full resolution
+  float depth_m = 0;         ///< 0 = none
+  float angle_rad = 0;       ///< orientation by intensity centroid, [0, 2 pi)
+  std::int32_t octave = 0;   ///< pyramid level, 0 = finest
+  ClassId label = kVoid;     ///< most probable class at its pixel
 };
 
 /// The features of one frame; arrays of equal length.
@@ -35,12 +35,12 @@ struct Features {
 };
 
 struct FeatureConfig {
-  int count = 1000;          ///< keypoints wanted per frame
-  int levels = 8;            ///< pyramid levels
-  double scale = 1.2;        ///< between levels
-  int fast_threshold = 20;   ///< grey levels
+  int count = 1000;            ///< keypoints wanted per frame
+  int levels = 8;              ///< pyramid levels
+  double scale = 1.2;          ///< between levels
+  int fast_threshold = 20;     ///< grey levels
   int fast_threshold_low = 7;  ///< used in cells where the first finds nothing
-  double max_depth_m = 8.0;  ///< depth beyond is dropped
+  double max_depth_m = 8.0;    ///< depth beyond is dropped
 };
 
 /// ORB keypoints spread evenly over image and pyramid, with descriptors, depth and labels.

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/features/features.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <opencv2/calib3d.hpp>
+
+#include "slam/core/error.hpp"
+#include "slam/features/corners.hpp"
+#include "slam/features/describe.hpp"
+#include "slam/features/pyramid.hpp"
+
+namespace mh {
+namespace {
+
+template <class T>
+void require_size(const Grid2d<T>& grid, const Camera& camera, const char* name) {
+  if (grid.width() == camera.width_px && grid.height() == camera.height_px) return;
+  throw InputError(fmt::format("frame: {} is {}x{}, but the camera's pictures are {}x{}", name,
+                               grid.width(), grid.height(), camera.width_px, camera.height_px));
+}
+
+void require_sizes(const RgbdFrame& frame, const Camera& camera) {
+  require_size(frame.colour, camera, "colour");
+  if (!frame.depth_m.empty()) require_size(frame.depth_m, camera, "depth");
+  if (!frame.semantics.index.empty()) require_size(frame.semantics.index, camera, "label image");
+}
+
+std::vector<std::vector<Corner>> corners_per_level(const std::vector<PyramidLevel>& pyramid,
+                                                   const FeatureConfig& config) {
+  std::vector<std::vector<Corner>> found;
+  std::vector<int> available;
+  for (const PyramidLevel& level : pyramid) {
+    found.push_back(find_corners(level.image, kPatchReach_px, config.fast_threshold,
+                                 config.fast_threshold_low));
+    available.push_back(static_cast<int>(found.back().size()));
+  }
+  const std::vector<int> share = share_out(config.count, 1.0 / config.scale, available);
+  for (std::size_t l = 0; l < found.size(); ++l) found[l] = spread(found[l], share[l]);
+  return found;
+}
+
+float depth_at(const Grid2d<float>& depth_m, int x, int y, double max_depth_m) {
+  if (depth_m.empty()) return 0.0F;
+  const float depth = depth_m(x, y);
+  return depth > 0 && depth <= max_depth_m ? depth : 0.0F;  // NaN fails both comparisons
+}
+
+void append(const PyramidLevel& level, int octave, const Corner& corner, const RgbdFrame& frame,
+            double max_depth_m, Features& features) {
+  const cv::Point2d raw =
+      level.to_full({static_cast<double>(corner.x), static_cast<double>(corner.y)});
+  const int x = std::clamp(cvRound(raw.x), 0, frame.colour.width() - 1);
+  const int y = std::clamp(cvRound(raw.y), 0, frame.colour.height() - 1);
+
+  Keypoint keypoint;
+  keypoint.u_px = static_cast<float>(raw.x);
+  keypoint.v_px = static_cast<float>(raw.y);
+  keypoint.depth_m = depth_at(frame.depth_m, x, y, max_depth_m);
+  keypoint.angle_rad = to_radians(orientation_deg(level.image, corner.x, corner.y));
+  keypoint.octave = octave;
+  keypoint.label = frame.semantics.at(x, y).most_probable();
+  features.keypoints.push_back(keypoint);
+  features.descriptors.push_back(describe(level.blurred, corner.x, corner.y, keypoint.angle_rad));
+}
+
+void undistort(const Camera& camera, std::vector<Keypoint>& keypoints) {
+  if (camera.distortion.none() || keypoints.empty()) return;
+  const cv::Matx33d matrix(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0, 1);
+  const Distortion& d = camera.distortion;
+  const cv::Vec<double, 5> coefficients(d.k1, d.k2, d.p1, d.p2, d.k3);
+  std::vector<cv::Point2d> points;
+  for (const Keypoint& k : keypoints) points.emplace_back(k.u_px, k.v_px);
+  // Stops at 1/1000 px, far below what a corner is worth.
+  const cv::TermCriteria stop(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 40, 1e-3);
+  cv::undistortPoints(points, points, matrix, coefficients, cv::noArray(), matrix, stop);
+  for (std::size_t i = 0; i < keypoints.size(); ++i) {
+    keypoints[i].u_px = static_cast<float>(points[i].x);
+    keypoints[i].v_px = static_cast<float>(points[i].y);
+  }
+}
+
+}  // namespace
+
+Features extract(const RgbdFrame& frame, const Camera& camera, const FeatureConfig& config) {
+  require_sizes(frame, camera);
+  const std::vector<PyramidLevel> pyramid =
+      make_pyramid(frame.colour, config, 2 * kPatchReach_px + 1);
+  const std::vector<std::vector<Corner>> corners = corners_per_level(pyramid, config);
+
+  Features features;
+  features.keypoints.reserve(static_cast<std::size_t>(config.count));
+  features.descriptors.reserve(static_cast<std::size_t>(config.count));
+  for (std::size_t l = 0; l < pyramid.size(); ++l)
+    for (const Corner& corner : corners[l])
+      append(pyramid[l], static_cast<int>(l), corner, frame, config.max_depth_m, features);
+  undistort(camera, features.keypoints);
+  return features;
+}
+
+}  // namespace mh

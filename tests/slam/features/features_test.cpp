@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/features/features.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "slam/core/error.hpp"
+#include "slam/core/random.hpp"
+
+namespace mh {
+namespace {
+
+constexpr int kWidth = 640;
+constexpr int kHeight = 480;
+
+// A lens and a sensor: without them neighbouring pixels are equally good corners, and non-maximal
+// suppression drops both.
+void soften(cv::Mat& image) {
+  cv::GaussianBlur(image, image, {5, 5}, 0.8);
+  for (int y = 0; y < image.rows; ++y)
+    for (int x = 0; x < image.cols; ++x) {
+      const auto noise = RandomStream(77).below(static_cast<std::uint64_t>(y * image.cols + x), 3);
+      auto& pixel = image.at<std::uint8_t>(y, x);
+      pixel = static_cast<std::uint8_t>(std::min<int>(255, pixel + static_cast<int>(noise)));
+    }
+}
+
+// Overlapping squares of random brightness: corners of every strength and size. Contrast falls
+// linearly from left (strong) to right (weak).
+cv::Mat squares(int width, int height, std::uint64_t seed, double weakest = 0.2) {
+  cv::Mat image(height, width, CV_8U, cv::Scalar(128));
+  const RandomStream random(seed);
+  for (std::uint64_t i = 0; i < 1500; ++i) {
+    const RandomStream r = random.fork(i);
+    const int x = static_cast<int>(r.below(0, static_cast<std::uint64_t>(width)));
+    const int y = static_cast<int>(r.below(1, static_cast<std::uint64_t>(height)));
+    const int size = 4 + static_cast<int>(r.below(2, 40));
+    const double contrast = 1 - (1 - weakest) * x / width;
+    const double grey = 128 + contrast * (r.uniform(3) * 250 - 125);
+    cv::rectangle(image, {x, y, size, size}, cv::Scalar(grey), cv::FILLED);
+  }
+  soften(image);
+  return image;
+}
+
+RgbdFrame frame_of(const cv::Mat& grey) {
+  RgbdFrame frame;
+  frame.colour = Grid2d<Rgb8>(grey.cols, grey.rows);
+  frame.depth_m = Grid2d<float>(grey.cols, grey.rows, 2.0F);
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x) {
+      const auto g = grey.at<std::uint8_t>(y, x);
+      frame.colour(x, y) = {g, g, g};
+    }
+  return frame;
+}
+
+Camera camera_of(const RgbdFrame& frame) {
+  Camera camera;
+  camera.width_px = frame.colour.width();
+  camera.height_px = frame.colour.height();
+  camera.cx_px = (camera.width_px - 1) / 2.0;
+  camera.cy_px = (camera.height_px - 1) / 2.0;
+  return camera;
+}
+
+Features extract_from(const cv::Mat& grey, const FeatureConfig& config = {}) {
+  const RgbdFrame frame = frame_of(grey);
+  return extract(frame, camera_of(frame), config);
+}
+
+// The pixel of its own pyramid level at which a keypoint was found.
+cv::Point2d on_its_level(const Keypoint& k, const FeatureConfig& config, cv::Size full) {
+  const double scale = std::pow(config.scale, k.octave);
+  const double width = std::round(full.width / scale), height = std::round(full.height / scale);
+  return {(k.u_px + 0.5) * width / full.width - 0.5, (k.v_px + 0.5) * height / full.height - 0.5};
+}
+
+// Degrees that cv::ORB turns into exactly these radians. Several floats may do; the nearest one.
+float degrees_for(float radians) {
+  const auto factor = static_cast<float>(CV_PI / 180.0);
+  const auto guess = static_cast<float>(radians * 180.0 / CV_PI);
+  for (float low = guess, high = guess;;
+       low = std::nextafter(low, -1e9F), high = std::nextafter(high, 1e9F)) {
+    if (low * factor == radians) return low;
+    if (high * factor == radians) return high;
+    if (high - guess > 0.01F) return std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
+double angle_difference(double a, double b) {
+  return std::abs(std::remainder(a - b, 2 * std::numbers::pi));
+}
+
+TEST(Extract, DescriptorsEqualThoseOfOpenCvBitForBit) {
+  const cv::Mat image = squares(kWidth, kHeight, 1);
+  const FeatureConfig config;
+  const Features features = extract_from(image, config);
+  ASSERT_EQ(features.size(), 1000U);
+
+  // cv::ORB holds its scale as a float and rounds pt / scale to the pixel of the level.
+  std::vector<cv::KeyPoint> keypoints;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    const Keypoint& k = features.keypoints[i];
+    const cv::Point2d p = on_its_level(k, config, image.size());
+    ASSERT_NEAR(p.x, std::round(p.x), 1e-3);
+    ASSERT_NEAR(p.y, std::round(p.y), 1e-3);
+    const double scale = std::pow(config.scale, k.octave);
+    const float degrees = degrees_for(k.angle_rad);
+    ASSERT_FALSE(std::isnan(degrees));
+    keypoints.emplace_back(static_cast<float>(std::round(p.x) * scale),
+                           static_cast<float>(std::round(p.y) * scale), 31.0F, degrees, 1.0F,
+                           k.octave, static_cast<int>(i));
+  }
+  const auto orb = cv::ORB::create(1000, 1.2F, 8, /*edgeThreshold=*/1);
+  cv::Mat descriptors;
+  orb->compute(image, keypoints, descriptors);
+  ASSERT_EQ(keypoints.size(), features.size());
+  ASSERT_EQ(descriptors.rows, 1000);
+
+  std::vector<int> per_octave(8, 0);
+  for (int row = 0; row < descriptors.rows; ++row) {
+    const auto i = static_cast<std::size_t>(keypoints[static_cast<std::size_t>(row)].class_id);
+    Descriptor expected;
+    std::memcpy(expected.data(), descriptors.ptr(row), sizeof expected);
+    EXPECT_EQ(hamming(features.descriptors[i], expected), 0) << "keypoint " << i;
+    ++per_octave[static_cast<std::size_t>(features.keypoints[i].octave)];
+  }
+  EXPECT_GE(*std::min_element(per_octave.begin(), per_octave.end()), 30);
+}
+
+TEST(Extract, OrientationsEqualThoseOfOpenCv) {
+  const cv::Mat image = squares(kWidth, kHeight, 2);
+  FeatureConfig config;
+  config.levels = 1;
+  const Features features = extract_from(image, config);
+  const auto orb = cv::ORB::create(20000, 1.2F, 1, 19, 0, 2, cv::ORB::FAST_SCORE, 31, 20);
+  std::vector<cv::KeyPoint> theirs;
+  orb->detect(image, theirs);
+
+  int compared = 0;
+  for (const Keypoint& k : features.keypoints)
+    for (const cv::KeyPoint& t : theirs) {
+      if (t.pt.x != k.u_px || t.pt.y != k.v_px) continue;
+      // cv::fastAtan2 is good to about 0.3 deg.
+      EXPECT_LT(angle_difference(k.angle_rad, t.angle * CV_PI / 180.0), 0.006);
+      ++compared;
+    }
+  EXPECT_GT(compared, 500);
+}
+
+TEST(Extract, IsDeterministic) {
+  const cv::Mat image = squares(kWidth, kHeight, 3);
+  const Features a = extract_from(image), b = extract_from(image);
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_EQ(a.descriptors, b.descriptors);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a.keypoints[i].u_px, b.keypoints[i].u_px);
+    EXPECT_EQ(a.keypoints[i].v_px, b.keypoints[i].v_px);
+    EXPECT_EQ(a.keypoints[i].angle_rad, b.keypoints[i].angle_rad);
+  }
+}
+
+TEST(Extract, AQuarterTurnTurnsAnglesAndKeepsDescriptors) {
+  const cv::Mat image = squares(480, 480, 4);
+  cv::Mat turned;
+  cv::rotate(image, turned, cv::ROTATE_90_CLOCKWISE);
+  FeatureConfig config;
+  config.levels = 1;  // pyramid levels are sampled at the same places only where sizes divide
+  const Features a = extract_from(image, config), b = extract_from(turned, config);
+  ASSERT_EQ(a.size(), 1000U);
+
+  int found = 0, close = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      // (x, y) goes to (height - 1 - y, x).
+      if (b.keypoints[j].u_px != 479 - a.keypoints[i].v_px ||
+          b.keypoints[j].v_px != a.keypoints[i].u_px)
+        continue;
+      ++found;
+      EXPECT_LT(angle_difference(b.keypoints[j].angle_rad,
+                                 a.keypoints[i].angle_rad + std::numbers::pi / 2),
+                1e-4);
+      // Only comparisons whose points fall between pixels can change: few.
+      close += hamming(a.descriptors[i], b.descriptors[j]) <= 10;
+    }
+  EXPECT_GT(found, 700);  // ties of strength are broken in image order, which the turn changes
+  EXPECT_GE(close, 95 * found / 100);
+}
+
+TEST(Extract, SpreadsKeypointsOverUnevenTexture) {
+  // Nine tenths of all corners, and the strongest, lie in one corner of the picture.
+  cv::Mat image = squares(kWidth, kHeight, 5, 0.1);
+  cv::Mat rest = image;
+  rest.convertTo(rest, CV_8U, 0.3, 90);
+  squares(160, 120, 6, 1.0).copyTo(image(cv::Rect(0, 0, 160, 120)));
+  const Features features = extract_from(image);
+  ASSERT_EQ(features.size(), 1000U);
+  int in_patch = 0;
+  std::vector<int> per_tile(12, 0);
+  for (const Keypoint& k : features.keypoints) {
+    in_patch += k.u_px < 160 && k.v_px < 120;
+    ++per_tile[static_cast<std::size_t>(k.v_px / 160) * 4 + static_cast<std::size_t>(k.u_px / 160)];
+  }
+  EXPECT_LT(in_patch, 200);  // its share of the area is 1/16
+  EXPECT_GT(*std::min_element(per_tile.begin(), per_tile.end()), 30);
+}
+
+TEST(Extract, LowThresholdServesCellsWithoutStrongCorners) {
+  // Squares 12 grey levels brighter than their ground: invisible at 20, visible at 7.
+  cv::Mat image(kHeight, kWidth, CV_8U, cv::Scalar(100));
+  for (int y = 30; y < kHeight - 40; y += 40)
+    for (int x = 30; x < kWidth - 40; x += 40)
+      cv::rectangle(image, {x, y, 15, 15}, cv::Scalar(112), cv::FILLED);
+  cv::GaussianBlur(image, image, {5, 5}, 0.8);
+  EXPECT_GT(extract_from(image).size(), 200U);
+  FeatureConfig high_only;
+  high_only.fast_threshold_low = high_only.fast_threshold;
+  EXPECT_EQ(extract_from(image, high_only).size(), 0U);
+}
+
+TEST(Extract, FindsACornerAtTheSamePlaceOnEveryLevel) {
+  // One bright quadrant; its corner lies between pixels at (299.5, 219.5).
+  cv::Mat image(kHeight, kWidth, CV_8U, cv::Scalar(40));
+  image(cv::Rect(300, 220, kWidth - 300, kHeight - 220)).setTo(220);
+  soften(image);
+  const Features features = extract_from(image);
+  std::vector<int> per_octave(8, 0);
+  for (const Keypoint& k : features.keypoints) {
+    const double scale = std::pow(1.2, k.octave);
+    ++per_octave[static_cast<std::size_t>(k.octave)];
+    // FAST answers within two pixels of its level, inside the corner.
+    EXPECT_NEAR(k.u_px, 299.5, 2.0 * scale) << k.octave;
+    EXPECT_NEAR(k.v_px, 219.5, 2.0 * scale) << k.octave;
+  }
+  EXPECT_GE(*std::min_element(per_octave.begin(), per_octave.end()), 1);
+}
+
+TEST(Extract, ImagesWithoutTextureHaveNoFeatures) {
+  for (const int grey : {0, 255, 127}) {
+    EXPECT_EQ(extract_from(cv::Mat(kHeight, kWidth, CV_8U, cv::Scalar(grey))).size(), 0U);
+    EXPECT_EQ(extract_from(cv::Mat(5, 7, CV_8U, cv::Scalar(grey))).size(), 0U);
+  }
+}
+
+TEST(Extract, NeverReturnsMoreThanAskedFor) {
+  const cv::Mat image = squares(kWidth, kHeight, 7);
+  for (const int count : {0, 1, 7, 500, 2000}) {
+    FeatureConfig config;
+    config.count = count;
+    EXPECT_EQ(extract_from(image, config).size(), static_cast<std::size_t>(count));
+  }
+}
+
+TEST(Extract, TakesDepthAndLabelAtTheKeypointsPixel) {
+  RgbdFrame frame = frame_of(squares(kWidth, kHeight, 8));
+  frame.semantics.index = Grid2d<std::uint8_t>(kWidth, kHeight);
+  frame.semantics.palette = {ClassDistribution{}, ClassDistribution::one_hot(5),
+                             ClassDistribution{{{3, 0.3F}, {9, 0.6F}}}};
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      frame.depth_m(x, y) = 1.0F + 0.005F * static_cast<float>(x) + 0.001F * static_cast<float>(y);
+      frame.semantics.index(x, y) = static_cast<std::uint8_t>((x / 7 + y / 5) % 3);
+    }
+  const Features features = extract(frame, camera_of(frame), {});
+  ASSERT_EQ(features.size(), 1000U);
+  constexpr ClassId kLabels[] = {kVoid, 5, 9};
+  for (const Keypoint& k : features.keypoints) {
+    const int x = static_cast<int>(std::lround(k.u_px)), y = static_cast<int>(std::lround(k.v_px));
+    // lround and OpenCV's rounding part ways at one half exactly.
+    if (std::abs(k.u_px - x) > 0.499F || std::abs(k.v_px - y) > 0.499F) continue;
+    EXPECT_EQ(k.depth_m, frame.depth_m(x, y));
+    EXPECT_EQ(k.label, kLabels[(x / 7 + y / 5) % 3]);
+  }
+}
+
+TEST(Extract, DepthThatIsNoDepthCountsAsNone) {
+  RgbdFrame frame = frame_of(squares(kWidth, kHeight, 9));
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity, -1.0F, 0.0F, 8.001F}) {
+    std::fill(frame.depth_m.begin(), frame.depth_m.end(), bad);
+    const Features features = extract(frame, camera_of(frame), {});
+    ASSERT_EQ(features.size(), 1000U);
+    for (const Keypoint& k : features.keypoints) EXPECT_EQ(k.depth_m, 0.0F);
+  }
+  frame.depth_m = {};
+  for (const Keypoint& k : extract(frame, camera_of(frame), {}).keypoints)
+    EXPECT_EQ(k.depth_m, 0.0F);
+}
+
+TEST(Extract, UndistortedKeypointsDistortBackToTheirPixels) {
+  const RgbdFrame frame = frame_of(squares(kWidth, kHeight, 10));
+  Camera camera = camera_of(frame);
+  const Features raw = extract(frame, camera, {});
+  // Freiburg 1 of the TUM benchmark: strong, with tangential terms.
+  camera.distortion = {.k1 = 0.2624, .k2 = -0.9531, .p1 = -0.0054, .p2 = 0.0026, .k3 = 1.1633};
+  const Features straight = extract(frame, camera, {});
+  ASSERT_EQ(raw.size(), straight.size());
+  float moved_px = 0;
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    const double x = (straight.keypoints[i].u_px - camera.cx_px) / camera.fx_px;
+    const double y = (straight.keypoints[i].v_px - camera.cy_px) / camera.fy_px;
+    const auto& [k1, k2, p1, p2, k3] = camera.distortion;
+    const double r2 = x * x + y * y;
+    const double radial = 1 + k1 * r2 + k2 * r2 * r2 + k3 * r2 * r2 * r2;
+    const double xd = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x);
+    const double yd = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y;
+    EXPECT_NEAR(xd * camera.fx_px + camera.cx_px, raw.keypoints[i].u_px, 0.01);
+    EXPECT_NEAR(yd * camera.fy_px + camera.cy_px, raw.keypoints[i].v_px, 0.01);
+    moved_px = std::max(moved_px, std::hypot(straight.keypoints[i].u_px - raw.keypoints[i].u_px,
+                                             straight.keypoints[i].v_px - raw.keypoints[i].v_px));
+    EXPECT_EQ(raw.keypoints[i].depth_m, straight.keypoints[i].depth_m);
+  }
+  EXPECT_EQ(raw.descriptors, straight.descriptors);
+  EXPECT_GT(moved_px, 3.0F);
+}
+
+TEST(Extract, RefusesAFrameOfAnotherSize) {
+  RgbdFrame frame = frame_of(squares(kWidth, kHeight, 11));
+  Camera camera = camera_of(frame);
+  camera.width_px = 641;
+  EXPECT_THROW(extract(frame, camera, {}), InputError);
+  camera.width_px = kWidth;
+  frame.depth_m = Grid2d<float>(320, 240);
+  EXPECT_THROW(extract(frame, camera, {}), InputError);
+  frame.depth_m = {};
+  frame.semantics.index = Grid2d<std::uint8_t>(kWidth, 240);
+  EXPECT_THROW(extract(frame, camera, {}), InputError);
+}
+
+}  // namespace
+}  // namespace mh
