@@ -13,10 +13,10 @@ namespace mh {
 
 /// The exact picture of a moment: no noise, no lens. All grids have the camera's size.
 struct RenderedFrame {
-  Grid2d<Rgb8> colour;            ///< sRGB
-  Grid2d<float> depth_m;          ///< along the optical axis; 0 = nothing hit
-  Grid2d<ClassId> classes;        ///< kVoid where nothing was hit
-  Grid2d<InstanceId> instances;   ///< 0 where nothing was hit
+  Grid2d<Rgb8> colour;           ///< sRGB
+  Grid2d<float> depth_m;         ///< along the optical axis; 0 = nothing hit
+  Grid2d<ClassId> classes;       ///< kVoid where nothing was hit
+  Grid2d<InstanceId> instances;  ///< 0 where nothing was hit
 };
 
 /// Renders one scene; two implementations exist or are planned (Embree, OSMesa).
@@ -28,9 +28,9 @@ class Renderer {
 };
 
 struct RenderConfig {
-  int threads = 1;          ///< threads over tiles of one picture; never changes a bit of it
-  float exposure = 1.0F;    ///< linear radiance that maps to white is 1 / exposure
-  bool portable = false;    ///< pin Embree to AVX2, so that pictures agree across processors
+  int threads = 1;        ///< threads over tiles of one picture; never changes a bit of it
+  float exposure = 1.0F;  ///< linear radiance that maps to white is 1 / exposure
+  bool portable = false;  ///< pin Embree to AVX2, so that pictures agree across processors
 };
 
 /// Ray-traces with Embree. Keeps no reference to the scene.

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "slam/core/rgbd_frame.hpp"
+
+namespace mh {
+
+/// Linear light in [0, 1] of an 8-bit sRGB value; IEC 61966-2-1.
+float srgb_to_linear(std::uint8_t value);
+Eigen::Vector3f srgb_to_linear(Rgb8 colour);
+
+/// The nearest 8-bit sRGB value of a linear one, clamped to [0, 1]; a table of 2^14 entries, whose
+/// steps are below a quarter of a grey level.
+std::uint8_t linear_to_srgb(float linear);
+
+/// The table behind linear_to_srgb: entry i stands for linear i / kSrgbTableMax.
+inline constexpr int kSrgbTableMax = 16383;
+const std::uint8_t* srgb_table();
+
+/// Relative luminance of linear RGB; Rec. 709.
+inline float luminance(const Eigen::Vector3f& linear) {
+  return 0.2126F * linear.x() + 0.7152F * linear.y() + 0.0722F * linear.z();
+}
+
+}  // namespace mh

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/render/embree_scene.hpp"
+
+#include <immintrin.h>
+
+#include <cstring>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+
+constexpr unsigned kFlushToZeroAndDenormalsAreZero = 0x8040;  // bits of MXCSR
+
+void check(RTCDevice device, const char* what) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error != RTC_ERROR_NONE)
+    throw MachineError(
+        fmt::format("Embree failed to {} (error {})", what, static_cast<int>(error)));
+}
+
+}  // namespace
+
+FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) {
+  _mm_setcsr(saved_ | kFlushToZeroAndDenormalsAreZero);
+}
+FlushDenormals::~FlushDenormals() {
+  _mm_setcsr(saved_);
+}
+
+EmbreeScene::EmbreeScene(const Scene& scene, int build_threads, bool portable) {
+  const FlushDenormals flush;
+  const std::string settings =
+      fmt::format("threads={}{}", std::max(1, build_threads), portable ? ",isa=avx2" : "");
+  device_ = rtcNewDevice(settings.c_str());
+  check(device_, "start");
+  scene_ = rtcNewScene(device_);
+
+  std::vector<std::uint32_t> opaque, luminous;
+  for (std::uint32_t f = 0; f < scene.triangles.size(); ++f) {
+    const bool emits =
+        !scene.materials.empty() && !scene.materials[scene.material_of[f]].emission.isZero();
+    (emits ? luminous : opaque).push_back(f);
+  }
+  attach(scene, std::move(opaque), kOpaqueFaces);
+  attach(scene, std::move(luminous), kLuminousFaces);
+  rtcCommitScene(scene_);
+  check(device_, "build the hierarchy");
+}
+
+EmbreeScene::~EmbreeScene() {
+  rtcReleaseScene(scene_);
+  rtcReleaseDevice(device_);
+}
+
+void EmbreeScene::attach(const Scene& scene, std::vector<std::uint32_t> faces, unsigned mask) {
+  const unsigned id = static_cast<unsigned>(faces_.size());
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  // Embree allocates the buffers: it reads 16 bytes past a vertex buffer's end.
+  auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+      std::max<std::size_t>(1, scene.positions_m.size())));
+  auto* indices = static_cast<std::uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(std::uint32_t), faces.size()));
+  check(device_, "allocate the scene");
+  for (std::size_t v = 0; v < scene.positions_m.size(); ++v)
+    std::memcpy(positions + 3 * v, scene.positions_m[v].data(), 3 * sizeof(float));
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    std::memcpy(indices + 3 * i, scene.triangles[faces[i]].data(), 3 * sizeof(std::uint32_t));
+  rtcSetGeometryMask(geometry, mask);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene_, geometry, id);
+  rtcReleaseGeometry(geometry);
+  faces_.push_back(std::move(faces));
+}
+
+#if RTC_VERSION_MAJOR >= 4
+
+void EmbreeScene::intersect16(const int* valid, RTCRayHit16& rays, bool coherent) const {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  if (coherent) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcIntersect16(valid, scene_, &rays, &arguments);
+}
+
+void EmbreeScene::occluded16(const int* valid, RTCRay16& rays) const {
+  rtcOccluded16(valid, scene_, &rays);
+}
+
+#else
+
+void EmbreeScene::intersect16(const int* valid, RTCRayHit16& rays, bool coherent) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags =
+      coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  rtcIntersect16(valid, scene_, &context, &rays);
+}
+
+void EmbreeScene::occluded16(const int* valid, RTCRay16& rays) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded16(valid, scene_, &context, &rays);
+}
+
+#endif
+
+}  // namespace mh

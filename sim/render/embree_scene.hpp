@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include "scenes/scene.hpp"
+
+namespace mh {
+
+/// Flushes denormals to zero on this thread while it lives, as Embree asks for.
+class FlushDenormals {
+ public:
+  FlushDenormals();
+  ~FlushDenormals();
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+ private:
+  unsigned saved_;
+};
+
+/// Which faces a ray can meet: bits of RTCRay::mask.
+inline constexpr unsigned kOpaqueFaces = 1;
+inline constexpr unsigned kLuminousFaces = 2;  ///< faces of materials that emit light
+inline constexpr unsigned kAllFaces = ~0U;
+
+/// The triangles of a scene in an Embree hierarchy; owns all that it needs. Tracing is safe from
+/// several threads. One place for the differences between Embree 3 and 4.
+class EmbreeScene {
+ public:
+  /// @param portable pins the instruction set to AVX2, so that results agree across processors.
+  /// @throws MachineError if Embree fails (out of memory, or no AVX2 where it is pinned).
+  EmbreeScene(const Scene& scene, int build_threads, bool portable);
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  /// Traces 16 rays to their first hits; lanes whose `valid` is 0 are left alone.
+  void intersect16(const int* valid, RTCRayHit16& rays, bool coherent) const;
+  /// Tells for 16 rays whether anything is in the way: their tfar becomes -infinity.
+  void occluded16(const int* valid, RTCRay16& rays) const;
+
+  /// Index in Scene::triangles of a hit.
+  std::uint32_t face_of(unsigned geometry_id, unsigned primitive_id) const {
+    return faces_[geometry_id][primitive_id];
+  }
+
+ private:
+  void attach(const Scene& scene, std::vector<std::uint32_t> faces, unsigned mask);
+
+  RTCDevice device_ = nullptr;
+  RTCScene scene_ = nullptr;
+  std::vector<std::vector<std::uint32_t>> faces_;  // by geometry id
+};
+
+}  // namespace mh
