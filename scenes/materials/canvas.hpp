@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "scenes/materials/colour.hpp"
+#include "slam/core/grid2d.hpp"
+
+namespace mh {
+
+/// Draws antialiased shapes and letters into a picture; coordinates in texels, parts outside are
+/// cut off. Keeps a reference to the picture.
+class Canvas {
+ public:
+  explicit Canvas(Grid2d<Rgb8>& picture) : picture_(picture) {}
+
+  void rectangle(float x, float y, float width, float height, Tint tint);
+  void frame(float x, float y, float width, float height, float thickness, Tint tint);
+  void line(float x0, float y0, float x1, float y1, float thickness, Tint tint);
+  void ellipse(float x, float y, float radius_x, float radius_y, float angle_rad, Tint tint);
+  void polygon(const std::vector<Eigen::Vector2f>& corners, Tint tint);
+  /// Writes text whose capitals are `height` tall, its baseline starting at (x, y), and returns its
+  /// width. `upwards` turns the line by 90 degrees, as on the spine of a book.
+  float text(std::string_view words, float x, float y, float height, float thickness, Tint tint,
+             bool upwards = false);
+  static float text_width(std::string_view words, float height);
+
+ private:
+  Grid2d<Rgb8>& picture_;
+};
+
+}  // namespace mh
