@@ -47,6 +47,9 @@ EmbreeScene::EmbreeScene(const Scene& scene, int build_threads, bool portable) {
   }
   attach(scene, std::move(opaque), kOpaqueFaces);
   attach(scene, std::move(luminous), kLuminousFaces);
+  // Watertight edges: without it single rays slip between faces that share an edge (ten pixels of
+  // the sphere in the tests). Costs an eighth of the tracing time.
+  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
   rtcCommitScene(scene_);
   check(device_, "build the hierarchy");
 }

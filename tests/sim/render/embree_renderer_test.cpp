@@ -83,7 +83,7 @@ TEST(EmbreeRenderer, FinelyCutSphereHasTheDepthOfASphere) {
       } else if (discriminant > 1e-2) {  // incidence below 79 deg
         ++hits;
         // Facets of 6 x 6 mm sag by up to 2e-5 m; the incidence multiplies that by up to 5.
-        ASSERT_NEAR(frame.depth_m(x, y), b - std::sqrt(discriminant), 1e-4);
+        ASSERT_NEAR(frame.depth_m(x, y), b - std::sqrt(discriminant), 1e-4) << x << " " << y;
       }
     }
   EXPECT_GT(hits, 40000);  // pi (525 * 0.5 / 2)^2 = 54,000
