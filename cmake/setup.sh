@@ -5,7 +5,7 @@
 root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd -P)
 
 fail() {
-  printf '%s: %s\n' "$(basename -- "$0")" "$1" >&2
+  printf "%s: %s\n" "$0" "$1" >&2
   exit "${2:-2}"
 }
 
@@ -42,8 +42,7 @@ install_packages() {
   [[ -n $missing ]] || return 0
   if (( $(id -u) != 0 )); then
     command -v sudo >/dev/null ||
-      fail "neither root nor sudo, but these packages are missing: ${missing//$'\n'/ };
-run as root once, $how_to_skip"
+      fail "neither root nor sudo to install ${missing//$'\n'/ }: run once as root, $how_to_skip"
     as_root=(sudo)
   fi
   local log=$root/build/install.log
