@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/protocol/digest.hpp"
+
+#define XXH_INLINE_ALL
+#include <fmt/format.h>
+#include <xxhash.h>
+
+namespace mh {
+namespace {
+
+template <class T>
+std::uint64_t digest_value(const T& value, std::uint64_t seed) {
+  return digest_bytes(&value, sizeof value, seed);
+}
+
+template <class T>
+std::uint64_t digest_grid(const Grid2d<T>& grid, std::uint64_t seed) {
+  const int size[2] = {grid.width(), grid.height()};
+  return digest_bytes(grid.data(), grid.size() * sizeof(T), digest_value(size, seed));
+}
+
+std::uint64_t digest_pose(const SE3& pose, std::uint64_t seed) {
+  seed = digest_bytes(pose.rotation().data(), 9 * sizeof(double), seed);
+  return digest_bytes(pose.translation().data(), 3 * sizeof(double), seed);
+}
+
+}  // namespace
+
+std::uint64_t digest_bytes(const void* data, std::size_t size, std::uint64_t seed) {
+  return XXH3_64bits_withSeed(data, size, seed);
+}
+
+std::uint64_t digest(const RgbdFrame& frame) {
+  std::uint64_t d = digest_value(frame.stamp_ns, 0);
+  d = digest_grid(frame.colour, d);
+  d = digest_grid(frame.depth_m, d);
+  d = digest_grid(frame.semantics.index, d);
+  for (const ClassDistribution& distribution : frame.semantics.palette) {
+    d = digest_value(distribution.entries.size(), d);
+    for (const auto& [id, probability] : distribution.entries)
+      d = digest_value(probability, digest_value(id, d));
+  }
+  return d;
+}
+
+std::uint64_t digest(const std::optional<SE3>& pose) {
+  return pose ? digest_pose(*pose, 1) : 0;
+}
+
+std::uint64_t digest(const Trajectory& trajectory) {
+  std::uint64_t d = digest_value(trajectory.size(), 0);
+  for (const TimedPose& pose : trajectory)
+    d = digest_pose(pose.world_from_camera, digest_value(pose.stamp_ns, d));
+  return d;
+}
+
+std::uint64_t digest_of_matching(const StepReport& report) {
+  const int numbers[] = {static_cast<int>(report.status), report.keypoints, report.inliers,
+                         report.keyframe_added ? 1 : 0, static_cast<int>(report.relocalization)};
+  std::uint64_t d = digest_value(numbers, 0);
+  for (const MatcherCounts& counts : report.matches) {
+    const std::int64_t c[] = {counts.compared, counts.penalised, counts.rejected_by_xi,
+                              counts.ratio_helped};
+    d = digest_value(c, d);
+  }
+  if (report.candidates) {
+    const CandidateCounts& c = *report.candidates;
+    const int counts[] = {c.keyframes, c.c1, c.c2, c.c3, c.final};
+    d = digest_value(c.label_mass, digest_value(counts, d));
+  }
+  return d;
+}
+
+std::string hex(std::uint64_t digest) {
+  return fmt::format("{:016x}", digest);
+}
+
+}  // namespace mh

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "slam/core/rgbd_frame.hpp"
+#include "slam/core/trajectory.hpp"
+#include "slam/pipeline/report.hpp"
+
+namespace mh {
+
+/// xxh3-64 digests of what a run sees and says: equal bits, equal digest. `seed` chains them.
+std::uint64_t digest_bytes(const void* data, std::size_t size, std::uint64_t seed = 0);
+std::uint64_t digest(const RgbdFrame& frame);  ///< stamp, colour, depth and labels
+std::uint64_t digest(const std::optional<SE3>& pose);
+std::uint64_t digest(const Trajectory& trajectory);
+/// Everything that a step said of its matching and relocalizing, the pose apart.
+std::uint64_t digest_of_matching(const StepReport& report);
+
+/// 16 hexadecimal digits.
+std::string hex(std::uint64_t digest);
+
+}  // namespace mh

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "bench/protocol/config.hpp"
+#include "bench/systems/system.hpp"
+
+namespace mh {
+
+/// Delivers frame i of a sequence as the sensor saw it under one noise stream: the same bits
+/// whenever and wherever it is asked for.
+using FrameSource = std::function<RgbdFrame(std::size_t index, RandomStream noise)>;
+
+/// One track call of the mapping, in order.
+struct MappedFrame {
+  std::size_t index = 0;  ///< in the sequence
+  int restart = 0;        ///< restarts so far: it keys the random streams
+  TrackStatus status = TrackStatus::kLost;
+  int inliers = 0;
+  bool keyframe_added = false;
+  std::uint64_t image_digest = 0;
+  std::uint64_t matching_digest = 0;
+  std::uint64_t pose_digest = 0;
+};
+
+struct MappingOutcome {
+  std::vector<MappedFrame> calls;
+  std::vector<std::size_t> dropped;  ///< frames removed after too many failed restarts, in order
+  int failures = 0;                  ///< times that tracking was lost
+  int restarts = 0;                  ///< rewinds
+  int before_map = 0;                ///< frames at the start that gave no map yet
+  bool gave_up = false;              ///< ProtocolConfig::max_effort was spent
+  std::size_t offered = 0;           ///< frames of the sequence that are no test frames
+  MatchCounts matches{};             ///< summed over all track calls
+};
+
+/// Test frames are the last of every `test_interval`: 29, 59, ... at 30.
+bool is_test_frame(std::size_t index, const ProtocolConfig& config);
+
+/// Frame and report of a track call as it happens: for progress and for keeping keyframe depth.
+using MappingObserver =
+    std::function<void(const MappedFrame&, const RgbdFrame&, const StepReport&)>;
+
+/// Maps a sequence (section 3.1 of the paper). A failure is a frame reported lost while tracking
+/// was on, or a frame reported lost at which the feed had failed before. After a failure at frame i
+/// the feed goes back to i - 50 and goes on with the map as it is; frames reported lost on the way
+/// back to i are no failures: the system is still relocalizing there. After five restarts in a row
+/// that did not get past the trouble, the frame that failed last is dropped, the feed goes back 50
+/// once more and the count starts again. Frames reported lost before anything is mapped are passed
+/// over: there is nothing to go back to.
+///
+/// Ends: the frame to get past only moves forward, a drop removes a frame for good, and between two
+/// of these events there are at most five restarts; beyond max_effort * count track calls (or
+/// count + 1,000, if more) the rest stays unmapped.
+///
+/// Noise and SLAM draw from streams keyed by (restart, frame), so that a restart is no replica.
+/// @param count   frames in the sequence
+MappingOutcome map_sequence(System& system, std::size_t count, const FrameSource& frames,
+                            const ProtocolConfig& config, RandomStream stream,
+                            const MappingObserver& observe = {});
+
+/// The noise stream of mapping frames after so many restarts; equal for every system.
+RandomStream mapping_noise(RandomStream stream, int restart);
+
+}  // namespace mh

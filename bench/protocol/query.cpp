@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/protocol/query.hpp"
+
+#include <algorithm>
+
+#include "bench/protocol/digest.hpp"
+
+namespace mh {
+namespace {
+
+enum StreamName : std::uint64_t { kNoise = 1, kSlam = 2, kBlank = 3 };
+
+std::uint64_t chain(std::uint64_t sum, std::uint64_t next) {
+  return digest_bytes(&next, sizeof next, sum);
+}
+
+/// Shows blank frames until the session reports that it is lost.
+int lose(RelocalizationSession& session, const RgbdFrame& like, int at_most, RandomStream stream) {
+  const RgbdFrame blank = blank_frame(like.colour.width(), like.colour.height(), like.stamp_ns);
+  for (int shown = 1; shown <= at_most; ++shown)
+    if (session.feed(blank, stream.fork(static_cast<std::uint64_t>(shown))).status ==
+        TrackStatus::kLost)
+      return shown;
+  return at_most;
+}
+
+}  // namespace
+
+RgbdFrame blank_frame(int width_px, int height_px, Stamp stamp_ns) {
+  return {.stamp_ns = stamp_ns,
+          .colour = Grid2d<Rgb8>(width_px, height_px),
+          .depth_m = Grid2d<float>(width_px, height_px),
+          .semantics = {}};
+}
+
+QueryAnswer query(const System& frozen, std::size_t index, const FrameSource& frames,
+                  const ProtocolConfig& config, RandomStream stream) {
+  const RandomStream noise = stream.fork(kNoise).fork(index);
+  const RandomStream draws = stream.fork(kSlam).fork(index);
+  const auto session = frozen.open_session();
+
+  QueryAnswer answer;
+  answer.index = index;
+  for (int attempt = 0; attempt < config.query_attempts; ++attempt) {
+    const auto key = static_cast<std::uint64_t>(attempt);
+    const RgbdFrame frame = frames(index, noise.fork(key));
+    if (attempt == 0)
+      answer.blank_frames =
+          lose(*session, frame, config.max_blank_frames, stream.fork(kBlank).fork(index));
+
+    const StepReport report = session->feed(frame, draws.fork(key));
+    ++answer.attempts;
+    answer.stage = std::max(answer.stage, report.relocalization);
+    if (attempt == 0) answer.candidates = report.candidates;
+    for (std::size_t m = 0; m < answer.matches.size(); ++m) answer.matches[m] += report.matches[m];
+    answer.image_digest = chain(answer.image_digest, digest(frame));
+    answer.matching_digest = chain(answer.matching_digest, digest_of_matching(report));
+    answer.pose_digest = chain(answer.pose_digest, digest(report.world_from_camera));
+    if (report.status != TrackStatus::kLost && report.world_from_camera) {
+      answer.world_from_camera = report.world_from_camera;
+      break;
+    }
+  }
+  return answer;
+}
+
+std::vector<std::size_t> test_frames(std::size_t count, const ProtocolConfig& config) {
+  std::vector<std::size_t> frames;
+  for (std::size_t i = 0; i < count; ++i)
+    if (is_test_frame(i, config)) frames.push_back(i);
+  return frames;
+}
+
+}  // namespace mh

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "bench/protocol/config.hpp"
+#include "bench/protocol/mapping.hpp"
+#include "bench/systems/system.hpp"
+
+namespace mh {
+
+/// What a system answered to one test frame.
+struct QueryAnswer {
+  std::size_t index = 0;                 ///< of the test frame in its sequence
+  int blank_frames = 0;                  ///< shown until the system was lost
+  int attempts = 0;                      ///< times that the test frame was shown
+  std::optional<SE3> world_from_camera;  ///< the first pose that was returned
+  /// The furthest stage that an attempt reached; kVerified where a pose was returned.
+  RelocalizationStage stage = RelocalizationStage::kNone;
+  std::optional<CandidateCounts> candidates;  ///< of the first attempt
+  MatchCounts matches{};                      ///< summed over attempts
+  std::uint64_t image_digest = 0;             ///< chained over attempts
+  std::uint64_t matching_digest = 0;
+  std::uint64_t pose_digest = 0;
+};
+
+/// A black picture without depth or labels: what the paper shows between test frames.
+RgbdFrame blank_frame(int width_px, int height_px, Stamp stamp_ns);
+
+/// Puts one test frame to a frozen system (section 3.2 of the paper): a fresh session, blank frames
+/// until it is lost, then the test frame up to config.query_attempts times or until a pose comes
+/// back. Noise and SLAM draw from streams keyed by (test frame, attempt) alone: the answer depends
+/// on no other query.
+QueryAnswer query(const System& frozen, std::size_t index, const FrameSource& frames,
+                  const ProtocolConfig& config, RandomStream stream);
+
+/// The test frames of a sequence, in order.
+std::vector<std::size_t> test_frames(std::size_t count, const ProtocolConfig& config);
+
+}  // namespace mh

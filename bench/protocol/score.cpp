@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/protocol/score.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+#include <numbers>
+
+namespace mh {
+namespace {
+
+const TimedPose* find_stamp(const Trajectory& trajectory, Stamp stamp_ns) {
+  const auto found =
+      std::lower_bound(trajectory.begin(), trajectory.end(), stamp_ns,
+                       [](const TimedPose& pose, Stamp stamp) { return pose.stamp_ns < stamp; });
+  return found != trajectory.end() && found->stamp_ns == stamp_ns ? &*found : nullptr;
+}
+
+double separation(const TimedPose& mapped, const TimedPose& query, NearestBy by) {
+  if (by == NearestBy::kTime)
+    return static_cast<double>(std::abs(mapped.stamp_ns - query.stamp_ns)) * 1e-9;
+  const SE3& a = mapped.world_from_camera;
+  const SE3& b = query.world_from_camera;
+  return (a.translation() - b.translation()).norm() + angle_between_rad(a, b);
+}
+
+}  // namespace
+
+SE3 local_truth(const Anchor& anchor, const SE3& true_world_from_camera) {
+  const SE3 anchor_from_query = anchor.truth.inverse() * true_world_from_camera;
+  return anchor.estimate * anchor_from_query;
+}
+
+std::optional<Anchor> nearest_mapped(const Trajectory& estimate, const Trajectory& mapping_truth,
+                                     const TimedPose& true_query, NearestBy by) {
+  std::optional<Anchor> best;
+  double best_separation = std::numeric_limits<double>::infinity();
+  for (const TimedPose& pose : estimate) {
+    const TimedPose* truth = find_stamp(mapping_truth, pose.stamp_ns);
+    if (truth == nullptr) continue;
+    const double s = separation(*truth, true_query, by);
+    if (s >= best_separation) continue;
+    best_separation = s;
+    best = Anchor{pose.world_from_camera, truth->world_from_camera, pose.stamp_ns};
+  }
+  return best;
+}
+
+QueryScore score(const QueryAnswer& answer, const TimedPose& truth,
+                 const std::optional<Anchor>& anchor, const SE3& truth_from_estimate,
+                 const ProtocolConfig& config) {
+  QueryScore s{.answer = answer,
+               .stamp_ns = truth.stamp_ns,
+               .true_world_from_camera = truth.world_from_camera,
+               .success = answer.world_from_camera.has_value()};
+  if (!s.success) return s;
+  const SE3& estimate = *answer.world_from_camera;
+  const SE3 aligned = truth_from_estimate * estimate;
+  s.aligned_distance_m = (aligned.translation() - truth.world_from_camera.translation()).norm();
+  if (anchor) {
+    const SE3 expected = local_truth(*anchor, truth.world_from_camera);
+    s.distance_m = (estimate.translation() - expected.translation()).norm();
+    s.angle_deg = angle_between_rad(estimate, expected) * 180.0 / std::numbers::pi;
+    s.correct =
+        s.distance_m <= config.correct_distance_m && s.angle_deg <= config.correct_angle_deg;
+  }
+  s.wrong = !s.correct;
+  return s;
+}
+
+}  // namespace mh

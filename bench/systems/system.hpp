@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "slam/core/random.hpp"
+#include "slam/core/rgbd_frame.hpp"
+#include "slam/core/trajectory.hpp"
+#include "slam/pipeline/report.hpp"
+
+namespace mh {
+
+/// A lost tracker in front of a frozen map: where one query is put. Sessions of one system share
+/// nothing that changes, so they may run in any order and at the same time.
+class RelocalizationSession {
+ public:
+  virtual ~RelocalizationSession() = default;
+  /// Shows one frame. A report whose status is not kLost carries a pose.
+  virtual StepReport feed(const RgbdFrame& frame, RandomStream stream) = 0;
+};
+
+/// A SLAM system under test, as the protocol drives it. It sees frames and nothing else.
+class System {
+ public:
+  virtual ~System() = default;
+
+  /// Processes the next frame, mapping included. All random draws come from the stream.
+  virtual StepReport track(const RgbdFrame& frame, RandomStream stream) = 0;
+  /// The feed goes back in time: tracking counts as lost, the map stays.
+  virtual void rewind() = 0;
+  /// Forgets everything, the map too.
+  virtual void reset() = 0;
+  /// Ends the mapping. track, rewind and reset must not be called afterwards.
+  virtual void freeze() = 0;
+  /// Each tracked frame once, ordered by stamp, as world_from_camera in the system's own world.
+  virtual Trajectory trajectory() const = 0;
+  /// A new session that starts lost. Call freeze() first.
+  virtual std::unique_ptr<RelocalizationSession> open_session() const = 0;
+};
+
+}  // namespace mh

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "bench/systems/system.hpp"
+
+namespace mh {
+
+/// Wall time (ms) of every call that handled a frame, in call order.
+struct CallTimes {
+  std::vector<double> track_ms;
+  std::vector<double> relocalize_ms;  ///< blank frames included
+};
+
+/// A system whose calls are timed on the way; what it answers is untouched.
+class TimedSystem : public System {
+ public:
+  explicit TimedSystem(std::unique_ptr<System> inner);
+
+  StepReport track(const RgbdFrame& frame, RandomStream stream) override;
+  void rewind() override { inner_->rewind(); }
+  void reset() override { inner_->reset(); }
+  void freeze() override { inner_->freeze(); }
+  Trajectory trajectory() const override { return inner_->trajectory(); }
+  std::unique_ptr<RelocalizationSession> open_session() const override;
+
+  CallTimes times() const;
+
+ private:
+  std::unique_ptr<System> inner_;
+  std::vector<double> track_ms_;
+  mutable std::mutex mutex_;  // sessions of one system may run side by side
+  mutable std::vector<double> relocalize_ms_;
+};
+
+/// Median and 95th percentile, ms.
+struct TimeSummary {
+  double median_ms = 0;
+  double p95_ms = 0;
+};
+TimeSummary summarize(std::vector<double> times_ms);
+
+}  // namespace mh

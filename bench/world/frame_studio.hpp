@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "sim/render/renderer.hpp"
+#include "sim/sensors/sensors.hpp"
+#include "slam/core/trajectory.hpp"
+
+namespace mh {
+
+/// The frames along one path, shared by the runs that see the same noise: rendering and sensing are
+/// done once per (frame, noise stream), then dressed in each run's labels. Keeps the last few
+/// pictures; frames are pure functions of their key, so what is kept never changes a bit.
+/// Safe to call from several threads.
+class FrameStudio {
+ public:
+  /// @param kept  pictures remembered (some 5 MB each at 640x480)
+  FrameStudio(std::shared_ptr<const Renderer> renderer, Camera camera,
+              std::vector<TimedPose> world_from_camera, SensorConfig sensors,
+              std::size_t kept = 24);
+
+  std::size_t size() const { return path_.size(); }
+  const Camera& camera() const { return camera_; }
+  const std::vector<TimedPose>& path() const { return path_; }
+
+  RgbdFrame frame(std::size_t index, RandomStream noise, LabelMode labels);
+
+ private:
+  struct Shot {
+    RenderedFrame truth;
+    RgbdFrame unlabelled;
+  };
+  using Key = std::pair<std::size_t, std::uint64_t>;
+  using SharedShot = std::shared_future<std::shared_ptr<const Shot>>;
+
+  std::shared_ptr<const Shot> shot(std::size_t index, RandomStream noise);
+
+  std::shared_ptr<const Renderer> renderer_;  // shared: one BVH serves every path of a scene
+  Camera camera_;
+  std::vector<TimedPose> path_;
+  SensorConfig sensors_;
+  std::size_t kept_;
+  std::mutex mutex_;
+  std::deque<std::pair<Key, SharedShot>> shots_;  // oldest first
+};
+
+}  // namespace mh

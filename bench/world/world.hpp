@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "bench/plan/suite.hpp"
+#include "robots/model/robot.hpp"
+#include "scenes/scene.hpp"
+#include "sim/motion/motion.hpp"
+#include "sim/render/renderer.hpp"
+#include "sim/sensors/sensors.hpp"
+#include "slam/vocabulary/vocabulary.hpp"
+
+namespace mh {
+
+/// What every run of a suite shares, built once and then only read.
+struct World {
+  std::shared_ptr<const Scene> scene;
+  std::shared_ptr<const Renderer> renderer;
+  Robot robot;
+  DrivenPath mapping;
+  std::optional<DrivenPath> second;  ///< the second tour, where the suite has one
+  std::shared_ptr<const Vocabulary> vocabulary;
+  std::vector<SensorConfig> levels;  ///< as Suite::levels
+};
+
+/// Told what is being done, one short line each.
+using Say = std::function<void(std::string_view)>;
+
+/// A scene ready to be looked at: loaded, and lit where it came with lamps but no baked light.
+/// @throws InputError naming file and place.
+Scene load_lit_scene(const std::filesystem::path& file, int threads);
+
+/// Loads scene, robot, vocabulary and levels, bakes the light, drives both tours.
+/// @param max_frames  cuts the mapping tour after so many frames (the second tour likewise)
+/// @throws InputError if a file is bad or a tour cannot be driven.
+World build_world(const Suite& suite, std::optional<std::size_t> max_frames, int threads,
+                  const Say& say);
+
+}  // namespace mh

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "bench/systems/system.hpp"
+
+namespace mh {
+
+/// A system that follows a script instead of looking: frame i carries stamp i, and the script says
+/// whether the n-th showing of frame i (n = 1, 2, ...) is tracked. Its answers to queries are the
+/// script's too.
+class FakeSystem : public System {
+ public:
+  using Tracks = std::function<bool(Stamp frame, int showing)>;
+
+  explicit FakeSystem(Tracks tracks) : tracks_(std::move(tracks)) {}
+
+  StepReport track(const RgbdFrame& frame, RandomStream stream) override {
+    fed.push_back(frame.stamp_ns);
+    streams.push_back(stream.key());
+    const bool tracked = tracks_(frame.stamp_ns, ++showings_[frame.stamp_ns]);
+    StepReport report;
+    report.status = tracked ? TrackStatus::kTracked : TrackStatus::kLost;
+    if (!tracked) return report;
+    report.world_from_camera = pose(frame.stamp_ns);
+    poses_[frame.stamp_ns] = pose(frame.stamp_ns);
+    return report;
+  }
+  void rewind() override { ++rewinds; }
+  void reset() override {
+    ++resets;
+    poses_.clear();
+  }
+  void freeze() override { frozen = true; }
+  Trajectory trajectory() const override {
+    Trajectory t;
+    for (const auto& [stamp, p] : poses_) t.push_back({stamp, p});
+    return t;
+  }
+  std::unique_ptr<RelocalizationSession> open_session() const override;
+
+  static SE3 pose(Stamp stamp) {
+    return {Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.01 * static_cast<double>(stamp), 0, 0)};
+  }
+
+  /// On which attempt (1, 2, ...) a query is answered; 0 = never. Default: the first.
+  std::function<int(Stamp frame)> answers_at = [](Stamp) { return 1; };
+  /// How many blank frames are still believed to be tracked.
+  int believes_blanks = 0;
+
+  std::vector<Stamp> fed;
+  std::vector<std::uint64_t> streams;
+  int rewinds = 0, resets = 0;
+  bool frozen = false;
+
+ private:
+  Tracks tracks_;
+  std::map<Stamp, int> showings_;
+  std::map<Stamp, SE3> poses_;
+};
+
+class FakeSession : public RelocalizationSession {
+ public:
+  explicit FakeSession(const FakeSystem& system) : system_(system) {}
+  StepReport feed(const RgbdFrame& frame, RandomStream stream) override {
+    StepReport report;
+    const bool blank = frame.depth_m(0, 0) == 0.0F;
+    if (blank) {
+      report.status =
+          ++blanks_ > system_.believes_blanks ? TrackStatus::kLost : TrackStatus::kTracked;
+      return report;
+    }
+    const bool found = ++attempts_ == system_.answers_at(frame.stamp_ns);
+    report.relocalization = found ? RelocalizationStage::kVerified : RelocalizationStage::kMatches;
+    report.candidates = CandidateCounts{.keyframes = 10, .c1 = 9, .c2 = 4, .c3 = 3, .final = 1};
+    if (!found) return report;
+    report.status = TrackStatus::kRelocalized;
+    // A pose that depends on the draws and on nothing else: what the permutation law needs.
+    const double wobble = 1e-3 * stream.uniform(0);
+    report.world_from_camera = SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0, wobble, 0)) *
+                               FakeSystem::pose(frame.stamp_ns);
+    return report;
+  }
+
+ private:
+  const FakeSystem& system_;
+  int blanks_ = 0, attempts_ = 0;
+};
+
+inline std::unique_ptr<RelocalizationSession> FakeSystem::open_session() const {
+  return std::make_unique<FakeSession>(*this);
+}
+
+/// Frames of 2 x 2 pixels whose stamp is their index; colour tells the noise stream.
+inline RgbdFrame fake_frame(std::size_t index, RandomStream noise) {
+  RgbdFrame frame;
+  frame.stamp_ns = static_cast<Stamp>(index);
+  frame.colour = Grid2d<Rgb8>(2, 2, Rgb8{static_cast<std::uint8_t>(noise.below(0, 256)), 0, 0});
+  frame.depth_m = Grid2d<float>(2, 2, 1.0F);
+  return frame;
+}
+
+}  // namespace mh

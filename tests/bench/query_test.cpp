@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/protocol/query.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "bench/protocol/score.hpp"
+#include "tests/bench/fake_system.hpp"
+
+namespace mh {
+namespace {
+
+FakeSystem mapped() {
+  FakeSystem system([](Stamp, int) { return true; });
+  map_sequence(system, 300, fake_frame, {}, RandomStream(1));
+  system.freeze();
+  return system;
+}
+
+TEST(TestFrames, AreTheLastOfEveryThirty) {
+  EXPECT_EQ(test_frames(100, {}), (std::vector<std::size_t>{29, 59, 89}));
+}
+
+TEST(Query, StopsAtTheFirstPoseThatComesBack) {
+  FakeSystem system = mapped();
+  system.answers_at = [](Stamp) { return 3; };
+  const QueryAnswer answer = query(system, 59, fake_frame, {}, RandomStream(1));
+  ASSERT_TRUE(answer.world_from_camera);
+  EXPECT_EQ(answer.attempts, 3);
+  EXPECT_EQ(answer.blank_frames, 1);
+  EXPECT_EQ(answer.stage, RelocalizationStage::kVerified);
+  ASSERT_TRUE(answer.candidates);
+  EXPECT_EQ(answer.candidates->c2, 4);
+}
+
+TEST(Query, GivesUpAfterFiveAttemptsAndNamesTheStage) {
+  FakeSystem system = mapped();
+  system.answers_at = [](Stamp) { return 6; };
+  const QueryAnswer answer = query(system, 59, fake_frame, {}, RandomStream(1));
+  EXPECT_FALSE(answer.world_from_camera);
+  EXPECT_EQ(answer.attempts, 5);
+  EXPECT_EQ(answer.stage, RelocalizationStage::kMatches);
+}
+
+TEST(Query, ShowsBlankFramesUntilLost) {
+  FakeSystem system = mapped();
+  system.believes_blanks = 4;
+  EXPECT_EQ(query(system, 59, fake_frame, {}, RandomStream(1)).blank_frames, 5);
+  system.believes_blanks = 1000;
+  EXPECT_EQ(query(system, 59, fake_frame, {}, RandomStream(1)).blank_frames, 30);
+}
+
+TEST(Query, PermutingTheQueriesChangesNothing) {
+  FakeSystem system = mapped();
+  system.answers_at = [](Stamp frame) { return static_cast<int>(frame / 30 % 6); };
+  const auto ask = [&](std::vector<std::size_t> order) {
+    std::map<std::size_t, std::pair<std::uint64_t, std::uint64_t>> answers;
+    for (const std::size_t index : order) {
+      const QueryAnswer a = query(system, index, fake_frame, {}, RandomStream(9));
+      answers[index] = {a.pose_digest, a.image_digest};
+    }
+    return answers;
+  };
+  std::vector<std::size_t> order = test_frames(300, {});
+  const auto forwards = ask(order);
+  std::reverse(order.begin(), order.end());
+  EXPECT_EQ(forwards, ask(order));
+  std::rotate(order.begin(), order.begin() + 3, order.end());
+  EXPECT_EQ(forwards, ask(order));
+  // Not vacuous: different queries do get different answers.
+  EXPECT_NE(forwards.at(29), forwards.at(59));
+}
+
+/// A true pose beside its drifted estimate: the whole map is turned and moved by `drift`.
+SE3 at(double x, double y, double yaw) {
+  return {Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
+          Eigen::Vector3d(x, y, 1.0)};
+}
+
+TEST(LocalTruth, ADriftOfTheWholeMapIsNoError) {
+  const SE3 drift = at(3.0, -2.0, 0.4);
+  const SE3 anchor = at(1, 2, 0.3), query_truth = at(1.1, 2.0, 0.35);
+  const SE3 expected = local_truth({drift * anchor, anchor, 0}, query_truth);
+  const SE3 error = expected.inverse() * (drift * query_truth);
+  EXPECT_LT(error.log().norm(), 1e-12);
+}
+
+TEST(NearestMapped, IsNextInTimeOrNextInPlaceAndHeading) {
+  const Trajectory truth = {
+      {0, at(0, 0, 0)}, {10, at(1, 0, 0)}, {20, at(0.1, 0, 3.0)}, {30, at(5, 0, 0)}};
+  const Trajectory estimate = {truth[0], truth[1], truth[2]};  // frame 30 was never mapped
+  const TimedPose query{26, at(0.2, 0, 0)};
+  EXPECT_EQ(nearest_mapped(estimate, truth, query, NearestBy::kTime)->stamp_ns, 20);
+  // Frame 20 is nearest in place but faces away (3 rad count as 3 m); frame 0 is 0.2 m off.
+  EXPECT_EQ(nearest_mapped(estimate, truth, query, NearestBy::kPlace)->stamp_ns, 0);
+  EXPECT_FALSE(nearest_mapped({}, truth, query, NearestBy::kTime));
+}
+
+TEST(Score, TellsCorrectFromWrong) {
+  const ProtocolConfig config;
+  const TimedPose truth{0, at(0, 0, 0)};
+  const Anchor anchor{at(0, 0, 0), at(0, 0, 0), 0};
+  const auto with = [&](std::optional<SE3> estimate) {
+    QueryAnswer answer;
+    answer.world_from_camera = estimate;
+    return score(answer, truth, anchor, SE3(), config);
+  };
+  const QueryScore good = with(at(0.2, 0, 0.1));
+  EXPECT_TRUE(good.success && good.correct && !good.wrong);
+  EXPECT_NEAR(good.distance_m, 0.2, 1e-12);
+  EXPECT_NEAR(good.angle_deg, 5.7296, 1e-3);
+  const QueryScore far = with(at(0.3, 0, 0));
+  EXPECT_TRUE(far.success && !far.correct && far.wrong);
+  const QueryScore turned = with(at(0, 0, 0.2));
+  EXPECT_TRUE(turned.success && !turned.correct && turned.wrong);
+  const QueryScore none = with(std::nullopt);
+  EXPECT_TRUE(!none.success && !none.correct && !none.wrong);
+}
+
+}  // namespace
+}  // namespace mh
