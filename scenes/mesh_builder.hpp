@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "scenes/materials/materials.hpp"
+#include "scenes/scene.hpp"
+
+namespace mh {
+
+using MaterialId = std::uint16_t;  ///< index into Scene::materials
+
+/// How a box is dressed.
+struct BoxStyle {
+  float bevel_m = 0.004F;  ///< chamfer of all edges; 0 = sharp
+  int grain_axis = -1;     ///< 0, 1, 2: u (the grain of wood) runs along x, y, z; -1: the longest
+};
+
+/// Builds shapes into a Scene. Shapes are given in metres in the current frame (see push); their
+/// texture coordinates are kept in metres and divided by the material's tile when finished.
+/// Neighbouring faces of one shape share their points bit for bit, so that no ray slips between
+/// them. Faces wind counter-clockwise seen from outside.
+class MeshBuilder {
+ public:
+  /// The material made from a spec, made once per distinct spec; it may glow (linear radiance).
+  MaterialId material(const MaterialSpec& spec, const Eigen::Vector3f& emission = {0, 0, 0});
+
+  /// Starts an object: what is added from now on belongs to it. @pre the name is new.
+  InstanceId begin_instance(const std::string& name, ClassId class_id);
+  /// What is added from now on belongs to an object begun earlier (0: to nothing, class void).
+  void resume_instance(InstanceId id);
+  InstanceId current_instance() const { return instance_; }
+
+  /// No edge of a tessellated flat face is longer than this (m).
+  float max_edge_m = 0.12F;
+
+  /// Nests a frame: outer_from_inner applies to everything until pop().
+  void push(const Eigen::Isometry3f& outer_from_inner);
+  void pop();
+  const Eigen::Isometry3f& world_from_local() const { return frames_.back(); }
+
+  void box(MaterialId material, const Eigen::Vector3f& min_m, const Eigen::Vector3f& max_m,
+           const BoxStyle& style = {});
+  /// A straight bar from a to b with a rectangular section; `side` is the direction of its width.
+  void beam(MaterialId material, const Eigen::Vector3f& a, const Eigen::Vector3f& b, float width_m,
+            float depth_m, const Eigen::Vector3f& side = {1, 0, 0});
+  /// A flat parallelogram seen from the side where u runs right and v runs down; texture
+  /// coordinates start at (0, 0) in `corner` (upper left), so that pictures appear once.
+  void picture(MaterialId material, const Eigen::Vector3f& corner, const Eigen::Vector3f& right,
+               const Eigen::Vector3f& down);
+  /// A flat rectangular grid with given breaks along two directions and an optional mask of cells
+  /// to leave out (holes for doors and windows). Normal: u_axis x v_axis.
+  void panel(MaterialId material, const Eigen::Vector3f& origin, const Eigen::Vector3f& u_axis,
+             const Eigen::Vector3f& v_axis, std::span<const float> u_breaks,
+             std::span<const float> v_breaks,
+             const std::function<bool(float u, float v)>& leave_out = nullptr);
+  /// Round body between two centres (a cone if the radii differ); caps close it.
+  void cylinder(MaterialId material, const Eigen::Vector3f& a, const Eigen::Vector3f& b,
+                float radius_a_m, float radius_b_m, int sides = 16, bool caps = true);
+  /// Revolves a profile of (radius, height) around the z axis through `centre`, listed so that
+  /// the outside lies to the right of its way (upwards: outwards).
+  void lathe(MaterialId material, const Eigen::Vector3f& centre,
+             std::span<const Eigen::Vector2f> profile, int sides = 24);
+  /// A polygon in the xy plane (counter-clockwise, star-shaped about its mean) extruded in z.
+  void prism(MaterialId material, std::span<const Eigen::Vector2f> outline, float z0_m, float z1_m);
+  /// A tube along a polyline with a radius at each point.
+  void tube(MaterialId material, std::span<const Eigen::Vector3f> points,
+            std::span<const float> radii_m, int sides = 8);
+  void tube(MaterialId material, std::span<const Eigen::Vector3f> points, float radius_m,
+            int sides = 8);
+  /// A soft box: edges rounded by radius_m, the top and bottom swollen by bulge_m.
+  void cushion(MaterialId material, const Eigen::Vector3f& centre, const Eigen::Vector3f& size_m,
+               float radius_m, float bulge_m = 0.0F, float edge_m = 0.07F);
+  /// A surface point(s, t), s and t in [0, 1], with nu x nv cells; size_m is its size in texture.
+  void sheet(MaterialId material, const std::function<Eigen::Vector3f(float, float)>& point, int nu,
+             int nv, const Eigen::Vector2f& size_m);
+  /// A pointed leaf from `root` along `way` (unit), bending down by `droop` (share of its length).
+  void leaf(MaterialId material, const Eigen::Vector3f& root, const Eigen::Vector3f& way,
+            float length_m, float width_m, float droop);
+
+  std::size_t triangle_count() const { return scene_.triangles.size(); }
+  /// Adds lights, rooms and a name to the scene being built.
+  Scene& scene() { return scene_; }
+  /// Puts texture coordinates into repeats of the materials, measures the objects and hands the
+  /// scene over; the builder is spent.
+  Scene finish();
+
+ private:
+  using Grid = std::vector<std::uint32_t>;
+  std::uint32_t vertex(MaterialId material, const Eigen::Vector3f& local, const Eigen::Vector2f& uv);
+  void triangle(MaterialId material, std::uint32_t a, std::uint32_t b, std::uint32_t c);
+  void grid_faces(MaterialId material, const Grid& grid, int nu, int nv, bool flip);
+  void disc(MaterialId material, const Eigen::Vector3f& centre,
+            const std::vector<Eigen::Vector3f>& ring, bool flip);
+  int cells(float length_m) const;
+
+  Scene scene_;
+  std::vector<MaterialId> material_of_vertex_;
+  std::vector<Eigen::Isometry3f> frames_{Eigen::Isometry3f::Identity()};
+  std::map<std::string, MaterialId> materials_;
+  InstanceId instance_ = 0;
+  ClassId class_ = kVoid;
+  std::uint64_t shape_count_ = 0;
+};
+
+/// Values from a to b whose steps are equal and at most `step`, both ends included; the given
+/// stops between them are hit exactly.
+std::vector<float> breaks(float a, float b, float step, std::vector<float> stops = {});
+
+Eigen::Isometry3f translation(float x, float y, float z);
+Eigen::Isometry3f turn_z(float angle_rad);
+/// Rotation about a unit axis through the origin.
+Eigen::Isometry3f turn(const Eigen::Vector3f& axis, float angle_rad);
+
+}  // namespace mh
