@@ -2,16 +2,17 @@
 #include "slam/core/camera.hpp"
 
 #include <cmath>
-#include <stdexcept>
 
 #include <fmt/format.h>
+
+#include "slam/core/error.hpp"
 
 namespace mh {
 
 void validate(const Camera& camera) {
   const auto require = [](bool good, const char* field, double value) {
     if (!good || !std::isfinite(value))
-      throw std::invalid_argument(fmt::format("camera: {} = {} is out of range", field, value));
+      throw InputError(fmt::format("camera: {} = {} is out of range", field, value));
   };
   require(camera.width_px > 0, "width_px", camera.width_px);
   require(camera.height_px > 0, "height_px", camera.height_px);

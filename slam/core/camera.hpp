@@ -42,7 +42,7 @@ struct Camera {
   friend bool operator==(const Camera&, const Camera&) = default;
 };
 
-/// @throws std::invalid_argument naming the field when a size or focal length is not positive,
+/// @throws InputError naming the field when a size or focal length is not positive,
 /// or the principal point lies outside the image.
 void validate(const Camera& camera);
 

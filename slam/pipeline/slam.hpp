@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -10,10 +11,17 @@
 #include "slam/core/trajectory.hpp"
 #include "slam/map/map.hpp"
 #include "slam/pipeline/config.hpp"
+#include "slam/pipeline/report.hpp"
 #include "slam/track/tracker.hpp"
 #include "slam/vocabulary/vocabulary.hpp"
 
 namespace mh {
+
+/// A tracked frame, remembered relative to its reference keyframe, so that it moves with the map.
+struct TrackedFrame {
+  KeyframeId reference;
+  SE3 camera_from_reference;
+};
 
 /// The whole state of one SLAM run: a value. Copying it copies the map.
 struct SlamState {
@@ -22,13 +30,16 @@ struct SlamState {
   std::shared_ptr<const Vocabulary> vocabulary;  // shared: large, immutable
   Map map;
   Tracker tracker;
+  std::map<Stamp, TrackedFrame> tracked_frames;  ///< the last attempt at each stamp, if it held
+  std::optional<Stamp> last_stamp_ns;            ///< of the last frame fed
 };
 
-/// @throws InputError / std::invalid_argument if camera or config are out of range.
+/// @throws InputError naming the field of camera or config that is out of range.
 SlamState make_slam(const Camera& camera, const SlamConfig& config,
                     std::shared_ptr<const Vocabulary> vocabulary);
 
-/// Processes one frame, mapping included. Random draws depend on the stream alone.
+/// Processes one frame, mapping included: the whole system on one page (step.cpp). The first frame
+/// with enough depth becomes the world's origin. Random draws depend on the stream alone.
 /// @throws InputError if the frame does not fit the camera or its stamp does not grow.
 StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream);
 
@@ -36,12 +47,13 @@ StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream);
 void rewind(SlamState& state);
 
 /// Localization against a map that no longer changes. The tracker is the caller's, so that many
-/// queries start from equal states: Tracker{} is lost.
+/// queries start from equal states: Tracker{} is lost. Stamps are not checked.
 StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& frame,
                     RandomStream stream);
 
 /// Each tracked frame once (its last attempt), ordered by stamp, as its pose relative to its
-/// reference keyframe composed with that keyframe's pose now.
+/// reference keyframe composed with that keyframe's pose now. The frame of reference is the first
+/// camera.
 Trajectory trajectory(const SlamState& state);
 
 }  // namespace mh

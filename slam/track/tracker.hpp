@@ -21,11 +21,12 @@ struct LastFrame {
 
 /// What tracking remembers between frames; Tracker{} is lost.
 struct Tracker {
-  bool tracking = false;                 ///< false = lost (or nothing mapped yet)
-  std::optional<LastFrame> last;
-  std::optional<SE3> last_motion;        ///< current_from_previous camera motion, per frame
-  KeyframeId reference;                  ///< keyframe that shares most landmarks
+  std::optional<LastFrame> last;             ///< none = lost (or nothing mapped yet)
+  std::optional<Vector6d> velocity_per_s;    ///< twist of the camera, in its own frame
+  KeyframeId reference;                      ///< keyframe that shares most landmarks
   int frames_since_keyframe = 0;
+
+  bool tracking() const { return last.has_value(); }
 };
 
 }  // namespace mh

@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/map/local_mapping.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "slam/match/expect.hpp"
+#include "slam/match/match.hpp"
+
+namespace mh {
+namespace {
+
+constexpr std::size_t kMinNewLandmarks = 100;
+constexpr std::size_t kTriangulationNeighbours = 8;
+constexpr std::size_t kFusionNeighbours = 10;
+constexpr std::size_t kAdjustedNeighbours = 10;
+constexpr std::size_t kFixedKeyframes = 20;
+constexpr double kFoundShare = 0.25;     // of the frames in which a young landmark was expected
+constexpr double kMinParallaxCosine = 0.9998;  // about 1.1 degrees between the two rays
+constexpr double kChi2Line = 3.84;       // 95 % of chi-square, 1 degree of freedom
+constexpr double kChi2Point = 5.991;     // and 2
+
+std::vector<KeyframeId> best_neighbours(const Map& map, KeyframeId id, std::size_t count) {
+  std::vector<KeyframeId> result;
+  for (const Keyframe::Neighbour& n : map.at(id).covisible) {
+    if (result.size() == count) break;
+    result.push_back(n.id);
+  }
+  return result;
+}
+
+Eigen::Vector3d bearing(const Keypoint& k, const Camera& camera) {
+  return camera.unproject(k.u_px, k.v_px, 1.0);
+}
+
+/// Squared distance (px^2) of keypoint b from the line that keypoint a's ray draws in b's image.
+double epipolar_distance2(const Keypoint& a, const Keypoint& b, const Eigen::Matrix3d& essential,
+                          const Camera& camera) {
+  // Line in normalised coordinates; focal lengths differ little, so one scale serves both axes.
+  const Eigen::Vector3d line = essential * bearing(a, camera);
+  const double norm2 = line.head<2>().squaredNorm();
+  if (norm2 < 1e-18) return 1e18;
+  const double offset = line.dot(bearing(b, camera));
+  return offset * offset / norm2 * camera.fx_px * camera.fy_px;
+}
+
+bool reprojects(const Eigen::Vector3d& point_in_world, const Keyframe& keyframe, const Keypoint& k,
+                const Camera& camera, const FeatureConfig& features) {
+  const Eigen::Vector3d p = keyframe.camera_from_world * point_in_world;
+  if (p.z() < 0.05) return false;
+  const double sigma = octave_scale(features, k.octave);
+  const Eigen::Vector2d error = camera.project(p) - Eigen::Vector2d(k.u_px, k.v_px);
+  return error.squaredNorm() <= kChi2Point * sigma * sigma;
+}
+
+/// The point where two rays pass each other closest, midway (world frame).
+std::optional<Eigen::Vector3d> midpoint(const SE3& world_from_a, const SE3& world_from_b,
+                                        const Eigen::Vector3d& ray_a, const Eigen::Vector3d& ray_b) {
+  const Eigen::Vector3d da = (world_from_a.rotation() * ray_a).normalized();
+  const Eigen::Vector3d db = (world_from_b.rotation() * ray_b).normalized();
+  const Eigen::Vector3d between = world_from_b.translation() - world_from_a.translation();
+  const double cosine = da.dot(db);
+  const double denominator = 1.0 - cosine * cosine;
+  if (denominator < 1e-9) return std::nullopt;
+  const double sa = (between.dot(da) - cosine * between.dot(db)) / denominator;
+  const double sb = (cosine * between.dot(da) - between.dot(db)) / denominator;
+  if (sa <= 0 || sb <= 0) return std::nullopt;
+  return 0.5 * (world_from_a.translation() + sa * da + world_from_b.translation() + sb * db);
+}
+
+/// The point that two matched features see: by parallax where there is enough, else by whichever
+/// depth is at hand; none if it does not reproject into both.
+std::optional<Eigen::Vector3d> triangulate(const Keyframe& a, const Keypoint& ka, const Keyframe& b,
+                                           const Keypoint& kb, const MappingContext& context) {
+  const SE3 world_from_a = a.camera_from_world.inverse();
+  const SE3 world_from_b = b.camera_from_world.inverse();
+  const Eigen::Vector3d ray_a = bearing(ka, context.camera), ray_b = bearing(kb, context.camera);
+  const double cosine = (world_from_a.rotation() * ray_a).normalized().dot(
+      (world_from_b.rotation() * ray_b).normalized());
+  std::optional<Eigen::Vector3d> point;
+  if (cosine < kMinParallaxCosine) {
+    point = midpoint(world_from_a, world_from_b, ray_a, ray_b);
+  } else if (ka.depth_m > 0) {
+    point = unproject(ka, context.camera, world_from_a);
+  } else if (kb.depth_m > 0) {
+    point = unproject(kb, context.camera, world_from_b);
+  }
+  if (!point || !reprojects(*point, a, ka, context.camera, context.features) ||
+      !reprojects(*point, b, kb, context.camera, context.features))
+    return std::nullopt;
+  return point;
+}
+
+void refresh_keyframe(Map& map, KeyframeId keyframe, const MappingContext& context) {
+  for (const LandmarkId id : std::vector(map.at(keyframe).landmarks))
+    if (id.valid()) map.refresh(id, context.features);
+}
+
+}  // namespace
+
+void add_landmarks_from_depth(Map& map, KeyframeId keyframe, const MappingContext& context) {
+  const SE3 world_from_camera = map.at(keyframe).camera_from_world.inverse();
+  std::vector<std::pair<float, std::uint32_t>> by_depth;
+  const auto& keypoints = map.at(keyframe).features.keypoints;
+  for (std::uint32_t i = 0; i < keypoints.size(); ++i)
+    if (keypoints[i].depth_m > 0) by_depth.emplace_back(keypoints[i].depth_m, i);
+  std::sort(by_depth.begin(), by_depth.end());
+
+  std::size_t count = 0;
+  for (const auto& [depth, i] : by_depth) {
+    if (depth > context.config.close_depth_m && count >= kMinNewLandmarks) break;
+    ++count;
+    if (map.at(keyframe).landmarks[i].valid()) continue;
+    const Eigen::Vector3d point =
+        unproject(map.at(keyframe).features.keypoints[i], context.camera, world_from_camera);
+    map.refresh(map.add_landmark(point, keyframe, i), context.features);
+  }
+}
+
+void cull_young_landmarks(Map& map, KeyframeId newest) {
+  // Landmark ids grow with their first keyframe: the young ones are at the end.
+  for (std::size_t n = map.landmarks().size(); n > 0; --n) {
+    const Landmark& l = map.landmarks()[n - 1];
+    const std::uint32_t age = newest.value - l.first_keyframe.value;
+    if (age > 3) break;
+    if (l.erased) continue;
+    const bool seldom_found = l.found < kFoundShare * l.visible;
+    const bool seen_once = age >= 2 && l.observations.size() < 2;
+    if (seldom_found || seen_once) map.erase(l.id);
+  }
+}
+
+void triangulate_with_neighbours(Map& map, KeyframeId keyframe, const MappingContext& context,
+                                 MatcherCounts& counts) {
+  for (const KeyframeId other : best_neighbours(map, keyframe, kTriangulationNeighbours)) {
+    const Keyframe& a = map.at(keyframe);
+    const Keyframe& b = map.at(other);
+    const SE3 b_from_a = b.camera_from_world * a.camera_from_world.inverse();
+    if (b_from_a.translation().norm() < context.camera.baseline_m) continue;  // depth knows better
+    const Eigen::Matrix3d essential = hat(b_from_a.translation()) * b_from_a.rotation();
+
+    const auto unmapped = [](const Keyframe& k) {
+      std::vector<std::uint8_t> use(k.features.size());
+      for (std::size_t i = 0; i < use.size(); ++i) use[i] = !k.landmarks[i].valid();
+      return use;
+    };
+    const auto on_line = [&](std::uint32_t fa, std::uint32_t fb) {
+      const Keypoint& kb = b.features.keypoints[fb];
+      const double sigma = octave_scale(context.features, kb.octave);
+      return epipolar_distance2(a.features.keypoints[fa], kb, essential, context.camera) <
+             kChi2Line * sigma * sigma;
+    };
+    const auto matches = match_by_words(
+        a.features, a.words, unmapped(a), b.features, b.words, unmapped(b),
+        static_cast<float>(context.match.max_distance), 1.0F,
+        SemanticMatcher(context.semantics, counts), on_line);
+    for (const FeatureMatch& m : matches) {
+      const auto point = triangulate(map.at(keyframe), map.at(keyframe).features.keypoints[m.a],
+                                     map.at(other), map.at(other).features.keypoints[m.b], context);
+      if (!point) continue;
+      const LandmarkId id = map.add_landmark(*point, keyframe, m.a);
+      map.add_observation(id, other, m.b);
+      map.refresh(id, context.features);
+    }
+  }
+}
+
+namespace {
+
+/// Looks for landmarks in a keyframe: where the feature found has a landmark already, the one with
+/// more observations takes over the other's.
+void fuse_into(Map& map, KeyframeId keyframe, const std::vector<LandmarkId>& landmarks,
+               const MappingContext& context, MatcherCounts& counts) {
+  constexpr float kRadius_px = 3.0F;
+  const Keyframe& k = map.at(keyframe);
+  const Eigen::Vector3d camera_in_world = k.camera_from_world.inverse().translation();
+  std::vector<std::uint8_t> seen(map.landmarks().size(), 0);
+  for (const LandmarkId id : k.landmarks)
+    if (id.valid()) seen[id.value] = 1;
+
+  std::vector<ProjectionTarget> targets;
+  std::vector<LandmarkId> target_landmark;
+  for (const LandmarkId id : landmarks) {
+    if (!id.valid() || seen[id.value] != 0 || map.at(id).erased) continue;
+    seen[id.value] = 1;
+    const auto target = expect(map.at(id), k.camera_from_world, camera_in_world, context.camera,
+                               context.features, kRadius_px);
+    if (!target) continue;
+    targets.push_back(*target);
+    target_landmark.push_back(id);
+  }
+  const std::vector<std::uint8_t> taken(k.features.size(), 0);
+  const auto found = match_by_projection(
+      targets, k.features, k.grid, taken,
+      {.max_distance = static_cast<float>(context.match.max_distance)},
+      SemanticMatcher(context.semantics, counts));
+  for (std::size_t t = 0; t < found.size(); ++t) {
+    if (found[t] < 0) continue;
+    const auto feature = static_cast<std::uint32_t>(found[t]);
+    const LandmarkId mine = map.at(keyframe).landmarks[feature];
+    const LandmarkId theirs = target_landmark[t];
+    if (map.at(theirs).erased) continue;
+    if (!reprojects(map.at(theirs).position_in_world, map.at(keyframe),
+                    map.at(keyframe).features.keypoints[feature], context.camera, context.features))
+      continue;
+    if (!mine.valid()) {
+      map.add_observation(theirs, keyframe, feature);
+    } else if (map.at(mine).observations.size() > map.at(theirs).observations.size()) {
+      map.fuse(theirs, mine);
+    } else {
+      map.fuse(mine, theirs);
+    }
+  }
+}
+
+}  // namespace
+
+void fuse_with_neighbours(Map& map, KeyframeId keyframe, const MappingContext& context,
+                          MatcherCounts& counts) {
+  std::vector<KeyframeId> neighbours = best_neighbours(map, keyframe, kFusionNeighbours);
+  for (const KeyframeId first : std::vector(neighbours))
+    for (const KeyframeId second : best_neighbours(map, first, 5))
+      if (second != keyframe &&
+          std::find(neighbours.begin(), neighbours.end(), second) == neighbours.end())
+        neighbours.push_back(second);
+
+  for (const KeyframeId neighbour : neighbours)
+    fuse_into(map, neighbour, std::vector(map.at(keyframe).landmarks), context, counts);
+  std::vector<LandmarkId> theirs;
+  for (const KeyframeId neighbour : neighbours)
+    theirs.insert(theirs.end(), map.at(neighbour).landmarks.begin(), map.at(neighbour).landmarks.end());
+  fuse_into(map, keyframe, theirs, context, counts);
+}
+
+void adjust_neighbourhood(Map& map, KeyframeId keyframe, const MappingContext& context) {
+  // Free: the keyframe and its best neighbours, but never the first keyframe, which is the origin.
+  std::vector<KeyframeId> free;
+  if (keyframe.value != 0) free.push_back(keyframe);
+  for (const KeyframeId id : best_neighbours(map, keyframe, kAdjustedNeighbours))
+    if (id.value != 0) free.push_back(id);
+  if (free.empty()) return;
+
+  std::vector<std::int32_t> pose_of(map.keyframes().size(), -1);
+  BundleProblem problem;
+  problem.free_poses = static_cast<std::uint32_t>(free.size());
+  for (const KeyframeId id : free) {
+    pose_of[id.value] = static_cast<std::int32_t>(problem.camera_from_world.size());
+    problem.camera_from_world.push_back(map.at(id).camera_from_world);
+  }
+  std::vector<std::uint8_t> seen(map.landmarks().size(), 0);
+  std::vector<LandmarkId> points;
+  for (const KeyframeId id : free)
+    for (const LandmarkId l : map.at(id).landmarks)
+      if (l.valid() && seen[l.value] == 0) {
+        seen[l.value] = 1;
+        points.push_back(l);
+      }
+
+  // Fixed: the others that see these points, those that see most of them.
+  std::vector<std::int32_t> sees(map.keyframes().size(), 0);
+  for (const LandmarkId l : points)
+    for (const Observation& o : map.at(l).observations)
+      if (pose_of[o.keyframe.value] < 0) ++sees[o.keyframe.value];
+  std::vector<KeyframeId> fixed;
+  for (const Keyframe& k : map.keyframes())
+    if (sees[k.id.value] > 0) fixed.push_back(k.id);
+  std::stable_sort(fixed.begin(), fixed.end(),
+                   [&](KeyframeId a, KeyframeId b) { return sees[a.value] > sees[b.value]; });
+  if (fixed.size() > kFixedKeyframes) fixed.resize(kFixedKeyframes);
+  if (fixed.empty()) return;  // nothing holds the frame of reference
+  for (const KeyframeId id : fixed) {
+    pose_of[id.value] = static_cast<std::int32_t>(problem.camera_from_world.size());
+    problem.camera_from_world.push_back(map.at(id).camera_from_world);
+  }
+
+  std::vector<Observation> observation_of;
+  for (std::uint32_t p = 0; p < points.size(); ++p) {
+    const Landmark& l = map.at(points[p]);
+    problem.points_in_world.push_back(l.position_in_world);
+    for (const Observation& o : l.observations) {
+      const std::int32_t pose = pose_of[o.keyframe.value];
+      if (pose < 0) continue;
+      const PoseObservation seen_at =
+          observe(l.position_in_world, map.at(o.keyframe).features.keypoints[o.feature],
+                  context.camera, context.features);
+      problem.observations.push_back({.pose = static_cast<std::uint32_t>(pose),
+                                      .point = p,
+                                      .u_px = static_cast<float>(seen_at.u_px),
+                                      .v_px = static_cast<float>(seen_at.v_px),
+                                      .disparity_px = static_cast<float>(seen_at.disparity_px),
+                                      .sigma_px = static_cast<float>(seen_at.sigma_px)});
+      observation_of.push_back(o);
+    }
+  }
+
+  const BundleResult result = adjust(problem, context.camera, context.bundle);
+  for (std::size_t i = 0; i < free.size(); ++i)
+    map.set_pose(free[i], result.camera_from_world[i].normalized());
+  for (std::size_t p = 0; p < points.size(); ++p)
+    map.set_position(points[p], result.points_in_world[p]);
+  for (std::size_t j = 0; j < observation_of.size(); ++j)
+    if (result.outlier[j] != 0)
+      map.erase_observation(points[problem.observations[j].point], observation_of[j].keyframe);
+  for (const LandmarkId l : points) map.refresh(l, context.features);
+}
+
+void cull_redundant_keyframes(Map& map, KeyframeId newest, const MappingContext& context) {
+  for (const KeyframeId id : best_neighbours(map, newest, map.keyframes().size())) {
+    // The first is the origin; the latest few are what tracking stands on.
+    if (id.value == 0 || newest.value - id.value < 3) continue;
+    const Keyframe& k = map.at(id);
+    int total = 0, redundant = 0;
+    for (std::size_t i = 0; i < k.landmarks.size(); ++i) {
+      const Keypoint& keypoint = k.features.keypoints[i];
+      if (!k.landmarks[i].valid() || keypoint.depth_m <= 0 ||
+          keypoint.depth_m > context.config.close_depth_m)
+        continue;
+      ++total;
+      int others = 0;
+      for (const Observation& o : map.at(k.landmarks[i]).observations)
+        others += o.keyframe != id &&
+                  map.at(o.keyframe).features.keypoints[o.feature].octave <= keypoint.octave + 1;
+      redundant += others >= 3;
+    }
+    if (redundant > context.config.redundant_share * total) map.erase(id);
+  }
+}
+
+void map_keyframe(Map& map, KeyframeId keyframe, const MappingContext& context, MatchCounts& counts) {
+  cull_young_landmarks(map, keyframe);
+  map.update_covisibility(keyframe);
+  triangulate_with_neighbours(map, keyframe, context, at(counts, Matcher::kTriangulation));
+  fuse_with_neighbours(map, keyframe, context, at(counts, Matcher::kFusion));
+  refresh_keyframe(map, keyframe, context);
+  map.update_covisibility(keyframe);
+  adjust_neighbourhood(map, keyframe, context);
+  cull_redundant_keyframes(map, keyframe, context);
+}
+
+}  // namespace mh

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "slam/core/error.hpp"
+#include "slam/map/local_mapping.hpp"
+#include "slam/pipeline/slam.hpp"
+#include "slam/track/track.hpp"
+
+namespace mh {
+namespace {
+
+constexpr int kMinInitialPoints = 100;  // with depth, for a frame to become the origin
+constexpr double kSecond_ns = 1e9;
+
+/// A frame's features, indexed. Words are looked up only where a stage asks for them.
+struct PreparedFrame {
+  Stamp stamp_ns;
+  Features features;
+  FeatureGrid grid;
+  std::optional<WordIndex> words;
+};
+
+PreparedFrame prepare(const RgbdFrame& frame, const SlamState& state) {
+  Features features = extract(frame, state.camera, state.config.features);
+  FeatureGrid grid(features.keypoints, state.camera);
+  return {frame.stamp_ns, std::move(features), std::move(grid), std::nullopt};
+}
+
+WordIndex index_words(const Features& features, const Vocabulary& vocabulary,
+                      const SemanticConfig& semantics) {
+  WordIndex index;
+  std::vector<Label> labels;
+  std::vector<WordId> words;
+  for (std::uint32_t i = 0; i < features.size(); ++i) {
+    const Vocabulary::Quantized quantized = vocabulary.quantize(features.descriptors[i]);
+    words.push_back(quantized.word);
+    labels.push_back(features.keypoints[i].label);
+    index.by_node.emplace_back(quantized.node, i);
+  }
+  std::sort(index.by_node.begin(), index.by_node.end());
+  index.vector = augmented_vector(
+      std::span<const Label>(labels), std::span<const WordId>(words), semantics.gamma,
+      [&](WordId word) { return static_cast<double>(vocabulary.idf(word)); },
+      semantics.void_is_a_label ? VoidPolicy::kIsALabel : VoidPolicy::kUnknown);
+  return index;
+}
+
+Query with_words(PreparedFrame& frame, const SlamState& state) {
+  if (!frame.words)
+    frame.words = index_words(frame.features, *state.vocabulary, state.config.semantics);
+  return {frame.features, frame.grid, *frame.words};
+}
+
+Query without_words(const PreparedFrame& frame) {
+  static const WordIndex kNone;
+  return {frame.features, frame.grid, frame.words ? *frame.words : kNone};
+}
+
+SE3 predict(const Tracker& tracker, Stamp stamp_ns) {
+  if (!tracker.velocity_per_s) return tracker.last->camera_from_world;
+  const double elapsed_s = static_cast<double>(stamp_ns - tracker.last->stamp_ns) / kSecond_ns;
+  return SE3::exp(*tracker.velocity_per_s * elapsed_s) * tracker.last->camera_from_world;
+}
+
+struct Located {
+  TrackedPose tracked;
+  LocalMap local;
+  std::vector<LandmarkId> expected;
+};
+
+/// Finds the camera of a frame in the map: motion model, reference keyframe, relocalization; then
+/// the local map. Reads the map, never writes it.
+std::optional<Located> locate(const SlamState& state, const Tracker& tracker, PreparedFrame& frame,
+                              RandomStream stream, StepReport& report) {
+  const SlamConfig& config = state.config;
+  const TrackContext context{state.map,    state.camera, config.features, config.semantics,
+                             config.match, config.pose,  config.track};
+  std::optional<TrackedPose> tracked;
+  if (tracker.tracking()) {
+    const SE3 guess = predict(tracker, frame.stamp_ns);
+    tracked = track_motion(without_words(frame), *tracker.last, guess, context,
+                           at(report.matches, Matcher::kMotionModel));
+    if (!tracked)
+      tracked = track_reference(with_words(frame, state), state.map.standing(tracker.reference),
+                                tracker.last->camera_from_world, context,
+                                at(report.matches, Matcher::kReferenceKeyframe));
+  }
+  const bool relocalizing = !tracked;
+  if (relocalizing) {
+    RelocalizationResult found =
+        relocalize(with_words(frame, state), state.map, state.camera, config.features,
+                   config.semantics, config.match, config.relocalize, stream, report.matches);
+    report.relocalization = found.stage;
+    report.candidates = found.candidates;
+    if (!found.camera_from_world) return std::nullopt;
+    tracked = TrackedPose{*found.camera_from_world, std::move(found.landmarks), found.inliers};
+  }
+
+  LocalMap local = local_map(*tracked, context);
+  auto refined = track_local_map(without_words(frame), *tracked, local,
+                                 static_cast<float>(config.track.local_radius_px), context,
+                                 at(report.matches, Matcher::kLocalMap));
+  const int needed = relocalizing ? config.relocalize.min_inliers : config.track.min_inliers;
+  if (!refined || refined->tracked.inliers < needed) {
+    if (relocalizing) report.relocalization = RelocalizationStage::kInliers;
+    return std::nullopt;
+  }
+  report.status = relocalizing ? TrackStatus::kRelocalized : TrackStatus::kTracked;
+  return Located{std::move(refined->tracked), std::move(local), std::move(refined->expected)};
+}
+
+/// What the next frame is matched against.
+void remember(Tracker& tracker, PreparedFrame&& frame, const SE3& camera_from_world,
+              std::vector<LandmarkId> landmarks, KeyframeId reference) {
+  tracker.velocity_per_s.reset();
+  if (tracker.last && frame.stamp_ns > tracker.last->stamp_ns) {
+    const double elapsed_s = static_cast<double>(frame.stamp_ns - tracker.last->stamp_ns) / kSecond_ns;
+    tracker.velocity_per_s =
+        (camera_from_world * tracker.last->camera_from_world.inverse()).log() / elapsed_s;
+  }
+  tracker.last = LastFrame{frame.stamp_ns, camera_from_world, std::move(frame.features),
+                           std::move(landmarks)};
+  tracker.reference = reference;
+}
+
+KeyframeId insert_keyframe(SlamState& state, PreparedFrame& frame, const SE3& camera_from_world,
+                           const std::vector<LandmarkId>& landmarks, MatchCounts& counts) {
+  const SlamConfig& config = state.config;
+  const MappingContext context{state.camera, config.features, config.semantics,
+                               config.match, config.bundle,   config.keyframe};
+  Keyframe keyframe;
+  keyframe.stamp_ns = frame.stamp_ns;
+  keyframe.camera_from_world = camera_from_world;
+  keyframe.words = with_words(frame, state).words;
+  keyframe.features = frame.features;
+  keyframe.grid = frame.grid;
+  const KeyframeId id = state.map.add(std::move(keyframe));
+  for (std::uint32_t i = 0; i < landmarks.size(); ++i)
+    if (landmarks[i].valid()) {
+      state.map.add_observation(landmarks[i], id, i);
+      state.map.refresh(landmarks[i], config.features);
+    }
+  add_landmarks_from_depth(state.map, id, context);
+  if (state.map.keyframe_count() > 1) map_keyframe(state.map, id, context, counts);
+  state.tracker.frames_since_keyframe = 0;
+  return id;
+}
+
+StepReport initialize(SlamState& state, PreparedFrame frame, StepReport report) {
+  const auto with_depth = std::count_if(frame.features.keypoints.begin(), frame.features.keypoints.end(),
+                                        [](const Keypoint& k) { return k.depth_m > 0; });
+  if (with_depth < kMinInitialPoints) return report;
+  const std::vector<LandmarkId> none(frame.features.size());
+  const KeyframeId id = insert_keyframe(state, frame, SE3(), none, report.matches);
+  state.tracked_frames[frame.stamp_ns] = {id, SE3()};
+  report.status = TrackStatus::kInitialized;
+  report.world_from_camera = SE3();
+  report.keyframe_added = true;
+  report.inliers = static_cast<int>(with_depth);
+  remember(state.tracker, std::move(frame), SE3(), state.map.at(id).landmarks, id);
+  return report;
+}
+
+void check(const SlamState& state, const RgbdFrame& frame) {
+  if (state.last_stamp_ns && frame.stamp_ns <= *state.last_stamp_ns)
+    throw InputError(fmt::format("frame at {} ns: stamps must grow, the last was {} ns",
+                                 frame.stamp_ns, *state.last_stamp_ns));
+}
+
+}  // namespace
+
+SlamState make_slam(const Camera& camera, const SlamConfig& config,
+                    std::shared_ptr<const Vocabulary> vocabulary) {
+  validate(camera);
+  validate(config);
+  SlamState state;
+  state.camera = camera;
+  state.config = config;
+  state.vocabulary = std::move(vocabulary);
+  return state;
+}
+
+StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream) {
+  check(state, frame);
+  state.last_stamp_ns = frame.stamp_ns;
+  PreparedFrame prepared = prepare(frame, state);
+  StepReport report;
+  report.keypoints = static_cast<int>(prepared.features.size());
+  state.tracked_frames.erase(frame.stamp_ns);
+  if (state.map.empty()) return initialize(state, std::move(prepared), report);
+
+  auto located = locate(state, state.tracker, prepared, stream, report);
+  if (!located) {
+    state.tracker = Tracker{};
+    return report;
+  }
+  for (const LandmarkId id : located->expected) state.map.count_visible(id);
+  for (const LandmarkId id : located->tracked.landmarks)
+    if (id.valid()) state.map.count_found(id);
+
+  ++state.tracker.frames_since_keyframe;
+  KeyframeId reference = located->local.reference;
+  SE3 camera_from_world = located->tracked.camera_from_world;
+  std::vector<LandmarkId> landmarks = std::move(located->tracked.landmarks);
+  report.inliers = located->tracked.inliers;
+  if (needs_keyframe({camera_from_world, landmarks, report.inliers}, prepared.features, state.map,
+                     reference, state.tracker.frames_since_keyframe, state.config.keyframe)) {
+    reference = insert_keyframe(state, prepared, camera_from_world, landmarks, report.matches);
+    camera_from_world = state.map.at(reference).camera_from_world;
+    landmarks = state.map.at(reference).landmarks;
+    report.keyframe_added = true;
+  }
+
+  report.world_from_camera = camera_from_world.inverse();
+  state.tracked_frames[frame.stamp_ns] = {
+      reference, camera_from_world * state.map.camera_from_world(reference).inverse()};
+  remember(state.tracker, std::move(prepared), camera_from_world, std::move(landmarks), reference);
+  return report;
+}
+
+void rewind(SlamState& state) {
+  state.tracker = Tracker{};
+  state.last_stamp_ns.reset();
+}
+
+StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& frame,
+                    RandomStream stream) {
+  PreparedFrame prepared = prepare(frame, frozen);
+  StepReport report;
+  report.keypoints = static_cast<int>(prepared.features.size());
+  auto located = locate(frozen, tracker, prepared, stream, report);
+  if (!located) {
+    tracker = Tracker{};
+    return report;
+  }
+  report.inliers = located->tracked.inliers;
+  report.world_from_camera = located->tracked.camera_from_world.inverse();
+  remember(tracker, std::move(prepared), located->tracked.camera_from_world,
+           std::move(located->tracked.landmarks), located->local.reference);
+  return report;
+}
+
+Trajectory trajectory(const SlamState& state) {
+  Trajectory poses;
+  for (const auto& [stamp_ns, frame] : state.tracked_frames)
+    poses.push_back({stamp_ns, (frame.camera_from_reference *
+                                state.map.camera_from_world(frame.reference)).inverse()});
+  return poses;
+}
+
+}  // namespace mh

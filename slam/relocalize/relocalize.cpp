@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/relocalize/relocalize.hpp"
+
+#include <algorithm>
+
+#include "slam/match/expect.hpp"
+#include "slam/match/match.hpp"
+
+namespace mh {
+namespace {
+
+constexpr std::size_t kNeighbours = 10;
+
+/// N_k of equation 5: k and its best covisible keyframes.
+std::vector<KeyframeId> neighbourhood(const Map& map, KeyframeId k) {
+  std::vector<KeyframeId> result{k};
+  const auto& covisible = map.at(k).covisible;
+  for (std::size_t i = 0; i < std::min(kNeighbours, covisible.size()); ++i)
+    result.push_back(covisible[i].id);
+  return result;
+}
+
+int overlap(const AugmentedVector& f, const AugmentedVector& k, Overlap what) {
+  switch (what) {
+    case Overlap::kLabels: return shared_labels(f, k);
+    case Overlap::kAugmented: return shared_labels(f, k) + shared_words(f, k);
+    case Overlap::kWords: break;
+  }
+  return shared_words(f, k);
+}
+
+struct Attempt {
+  RelocalizationStage stage = RelocalizationStage::kMatches;
+  SE3 camera_from_world;
+  std::vector<LandmarkId> landmarks;
+  int inliers = 0;
+};
+
+/// Relocalizes against one candidate keyframe.
+class CandidateTrial {
+ public:
+  CandidateTrial(const Query& query, const Map& map, const Camera& camera,
+                 const FeatureConfig& features, const SemanticConfig& semantics,
+                 const MatchConfig& match, const RelocalizeConfig& config, MatchCounts& counts)
+      : query_(query), map_(map), camera_(camera), features_(features), semantics_(semantics),
+        match_(match), config_(config), counts_(counts) {}
+
+  Attempt run(KeyframeId candidate, RandomStream stream) {
+    Attempt attempt;
+    attempt.landmarks = match_appearance(map_.at(candidate), attempt.inliers);
+    if (attempt.inliers < config_.min_word_matches) return attempt;
+
+    attempt.stage = RelocalizationStage::kPnp;
+    std::vector<std::uint32_t> feature_of;
+    const auto observations = observe_all(attempt.landmarks, feature_of);
+    const auto pnp = solve_pnp_ransac(observations, camera_, config_.ransac, stream);
+    if (!pnp) return attempt;
+    adopt(*pnp, feature_of, attempt);
+
+    // Few inliers after PnP usually mean few word matches, not a wrong pose: look again where the
+    // pose says, first widely, then narrowly around the better pose.
+    attempt.stage = RelocalizationStage::kInliers;
+    refine(attempt);
+    for (const auto& [radius_px, max_distance] : {std::pair{10.0F, match_.max_distance_loose},
+                                                  std::pair{4.0F, 2 * match_.max_distance_loose / 3}}) {
+      if (attempt.inliers >= config_.min_inliers || attempt.inliers < config_.ransac.min_inliers) break;
+      search_by_pose(map_.at(candidate), radius_px, static_cast<float>(max_distance), attempt);
+      refine(attempt);
+    }
+    if (attempt.inliers >= config_.min_inliers) attempt.stage = RelocalizationStage::kVerified;
+    return attempt;
+  }
+
+ private:
+  std::vector<LandmarkId> match_appearance(const Keyframe& keyframe, int& count) {
+    std::vector<std::uint8_t> with_landmark(keyframe.features.size());
+    for (std::size_t i = 0; i < with_landmark.size(); ++i)
+      with_landmark[i] = keyframe.landmarks[i].valid();
+    const std::vector<std::uint8_t> all(query_.features.size(), 1);
+    const auto matches = match_by_words(
+        keyframe.features, keyframe.words, with_landmark, query_.features, query_.words, all,
+        static_cast<float>(match_.max_distance), static_cast<float>(match_.ratio),
+        SemanticMatcher(semantics_, at(counts_, Matcher::kRelocalizationWords)));
+    std::vector<LandmarkId> landmarks(query_.features.size());
+    for (const FeatureMatch& m : matches) landmarks[m.b] = keyframe.landmarks[m.a];
+    count = static_cast<int>(matches.size());
+    return landmarks;
+  }
+
+  std::vector<PoseObservation> observe_all(const std::vector<LandmarkId>& landmarks,
+                                           std::vector<std::uint32_t>& feature_of) const {
+    std::vector<PoseObservation> observations;
+    for (std::uint32_t i = 0; i < landmarks.size(); ++i)
+      if (landmarks[i].valid()) {
+        observations.push_back(observe(map_.at(landmarks[i]).position_in_world,
+                                       query_.features.keypoints[i], camera_, features_));
+        feature_of.push_back(i);
+      }
+    return observations;
+  }
+
+  void adopt(const PoseEstimate& estimate, const std::vector<std::uint32_t>& feature_of,
+             Attempt& attempt) const {
+    attempt.camera_from_world = estimate.camera_from_world;
+    attempt.inliers = estimate.inlier_count;
+    for (std::size_t j = 0; j < feature_of.size(); ++j)
+      if (estimate.inlier[j] == 0) attempt.landmarks[feature_of[j]] = LandmarkId{};
+  }
+
+  void refine(Attempt& attempt) const {
+    std::vector<std::uint32_t> feature_of;
+    const auto observations = observe_all(attempt.landmarks, feature_of);
+    const auto estimate = estimate_pose(observations, attempt.camera_from_world, camera_);
+    if (estimate)
+      adopt(*estimate, feature_of, attempt);
+    else
+      attempt.inliers = 0;
+  }
+
+  void search_by_pose(const Keyframe& keyframe, float radius_px, float max_distance, Attempt& attempt) {
+    std::vector<std::uint8_t> taken(query_.features.size(), 0);
+    std::vector<LandmarkId> known;
+    for (std::size_t i = 0; i < taken.size(); ++i)
+      if (attempt.landmarks[i].valid()) {
+        taken[i] = 1;
+        known.push_back(attempt.landmarks[i]);
+      }
+    std::sort(known.begin(), known.end());
+    const Eigen::Vector3d camera_in_world = attempt.camera_from_world.inverse().translation();
+    std::vector<ProjectionTarget> targets;
+    std::vector<LandmarkId> target_landmark;
+    for (std::size_t i = 0; i < keyframe.landmarks.size(); ++i) {
+      const LandmarkId id = keyframe.landmarks[i];
+      if (!id.valid() || std::binary_search(known.begin(), known.end(), id)) continue;
+      auto target = expect(map_.at(id), attempt.camera_from_world, camera_in_world, camera_,
+                           features_, radius_px);
+      if (!target) continue;
+      target->angle_rad = keyframe.features.keypoints[i].angle_rad;
+      targets.push_back(*target);
+      target_landmark.push_back(id);
+    }
+    const auto found = match_by_projection(
+        targets, query_.features, query_.grid, taken,
+        {.max_distance = max_distance, .check_angle = true},
+        SemanticMatcher(semantics_, at(counts_, Matcher::kRelocalizationProjection)));
+    for (std::size_t t = 0; t < found.size(); ++t)
+      if (found[t] >= 0) attempt.landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
+  }
+
+  const Query& query_;
+  const Map& map_;
+  const Camera& camera_;
+  const FeatureConfig& features_;
+  const SemanticConfig& semantics_;
+  const MatchConfig& match_;
+  const RelocalizeConfig& config_;
+  MatchCounts& counts_;
+};
+
+}  // namespace
+
+std::string_view name(RelocalizationStage stage) {
+  switch (stage) {
+    case RelocalizationStage::kNone: return "none";
+    case RelocalizationStage::kNoCandidate: return "no_candidate";
+    case RelocalizationStage::kMatches: return "matches";
+    case RelocalizationStage::kPnp: return "pnp";
+    case RelocalizationStage::kInliers: return "inliers";
+    case RelocalizationStage::kVerified: return "verified";
+  }
+  return "?";
+}
+
+CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedVector& query,
+                                                const SemanticConfig& config) {
+  std::vector<KeyframeId> keyframes;
+  for (const Keyframe& keyframe : map.keyframes())
+    if (!keyframe.erased) keyframes.push_back(keyframe.id);
+  const Overlap what = query.labels.empty() ? Overlap::kWords : config.overlap;
+  // A keyframe is asked for once per neighbourhood that it belongs to.
+  std::vector<double> similarity(map.keyframes().size(), -1.0);
+  return select_candidates(
+      std::span<const KeyframeId>(keyframes),
+      [&](KeyframeId k) { return overlap(query, map.at(k).words.vector, what); },
+      [&](KeyframeId k) { return neighbourhood(map, k); },
+      [&](KeyframeId k) {
+        double& s = similarity[k.value];
+        if (s < 0) s = l1_similarity(query, map.at(k).words.vector);
+        return s;
+      },
+      config.alpha, config.beta);
+}
+
+RelocalizationResult relocalize(const Query& query, const Map& map, const Camera& camera,
+                                const FeatureConfig& features, const SemanticConfig& semantics,
+                                const MatchConfig& match, const RelocalizeConfig& config,
+                                RandomStream stream, MatchCounts& counts) {
+  RelocalizationResult result;
+  const auto selection = select_keyframes(map, query.words.vector, semantics);
+  result.candidates = {.keyframes = map.keyframe_count(),
+                       .c1 = selection.c1,
+                       .c2 = selection.c2,
+                       .c3 = selection.c3,
+                       .final = static_cast<int>(selection.candidates.size()),
+                       .label_mass = query.words.vector.label_mass()};
+  CandidateTrial trial(query, map, camera, features, semantics, match, config, counts);
+  for (const auto& candidate : selection.candidates) {
+    Attempt attempt = trial.run(candidate.keyframe, stream.fork(candidate.keyframe.value));
+    result.stage = std::max(result.stage, attempt.stage);
+    if (attempt.stage != RelocalizationStage::kVerified) continue;
+    result.camera_from_world = attempt.camera_from_world;
+    result.landmarks = std::move(attempt.landmarks);
+    result.inliers = attempt.inliers;
+    result.keyframe = candidate.keyframe;
+    break;
+  }
+  return result;
+}
+
+}  // namespace mh

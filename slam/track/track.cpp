@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/track/track.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "slam/match/expect.hpp"
+#include "slam/match/match.hpp"
+
+namespace mh {
+namespace {
+
+constexpr std::size_t kNeighboursOfEach = 10;
+
+ProjectionTarget target_of(const Eigen::Vector3d& point_in_camera, const Keypoint& from,
+                           const Descriptor& descriptor, const Camera& camera, float radius_px,
+                           const FeatureConfig& features) {
+  const Eigen::Vector2d pixel = camera.project(point_in_camera);
+  return {.u_px = static_cast<float>(pixel.x()),
+          .v_px = static_cast<float>(pixel.y()),
+          .radius_px = radius_px * octave_scale(features, from.octave),
+          .min_octave = from.octave - 1,
+          .max_octave = from.octave + 1,
+          .descriptor = &descriptor,
+          .label = from.label,
+          .angle_rad = from.angle_rad};
+}
+
+}  // namespace
+
+std::optional<TrackedPose> optimise_matches(const Query& query,
+                                            const std::vector<LandmarkId>& landmarks,
+                                            const SE3& guess, const Map& map, const Camera& camera,
+                                            const FeatureConfig& features, const PoseConfig& pose) {
+  std::vector<PoseObservation> observations;
+  std::vector<std::uint32_t> feature_of;
+  for (std::uint32_t i = 0; i < landmarks.size(); ++i) {
+    if (!landmarks[i].valid()) continue;
+    observations.push_back(
+        observe(map.at(landmarks[i]).position_in_world, query.features.keypoints[i], camera, features));
+    feature_of.push_back(i);
+  }
+  const auto estimate = estimate_pose(observations, guess, camera, pose);
+  if (!estimate) return std::nullopt;
+  TrackedPose tracked{estimate->camera_from_world, std::vector<LandmarkId>(landmarks.size()), 0};
+  for (std::size_t j = 0; j < feature_of.size(); ++j)
+    if (estimate->inlier[j] != 0) {
+      tracked.landmarks[feature_of[j]] = landmarks[feature_of[j]];
+      ++tracked.inliers;
+    }
+  return tracked;
+}
+
+std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& last, const SE3& guess,
+                                        const TrackContext& context, MatcherCounts& counts) {
+  const auto& [map, camera, features, semantics, match, pose, config] = context;
+  const SE3 world_from_last = last.camera_from_world.inverse();
+
+  // The last frame's points: landmarks, and what depth says of its other keypoints.
+  struct Source {
+    Eigen::Vector3d point_in_world;
+    LandmarkId landmark;
+  };
+  std::vector<Source> sources;
+  std::vector<ProjectionTarget> targets;
+  for (std::uint32_t i = 0; i < last.features.size(); ++i) {
+    const Keypoint& keypoint = last.features.keypoints[i];
+    LandmarkId landmark = last.landmarks[i];
+    if (landmark.valid() && map.at(landmark).erased) landmark = {};
+    if (!landmark.valid() && keypoint.depth_m <= 0) continue;
+    const Eigen::Vector3d point = landmark.valid() ? map.at(landmark).position_in_world
+                                                   : unproject(keypoint, camera, world_from_last);
+    const Eigen::Vector3d in_camera = guess * point;
+    if (in_camera.z() < 0.05) continue;
+    const ProjectionTarget target =
+        target_of(in_camera, keypoint, last.features.descriptors[i], camera,
+                  static_cast<float>(config.search_radius_px), features);
+    if (!camera.in_image(target.u_px, target.v_px)) continue;
+    sources.push_back({point, landmark});
+    targets.push_back(target);
+  }
+
+  const std::vector<std::uint8_t> taken(query.features.size(), 0);
+  const ProjectionGate gate{.max_distance = static_cast<float>(match.max_distance_loose),
+                            .check_angle = true};
+  std::vector<std::int32_t> found;
+  // A guess that is far off finds little: search again in twice the radius.
+  for (const float widen : {1.0F, 2.0F}) {
+    if (widen > 1.0F)
+      for (ProjectionTarget& target : targets) target.radius_px *= widen;
+    found = match_by_projection(targets, query.features, query.grid, taken, gate,
+                                SemanticMatcher(semantics, counts));
+    if (std::count_if(found.begin(), found.end(), [](int f) { return f >= 0; }) >=
+        2 * config.min_inliers_frame)
+      break;
+  }
+
+  std::vector<PoseObservation> observations;
+  std::vector<std::size_t> source_of;
+  for (std::size_t t = 0; t < found.size(); ++t) {
+    if (found[t] < 0) continue;
+    observations.push_back(observe(sources[t].point_in_world,
+                                   query.features.keypoints[static_cast<std::size_t>(found[t])],
+                                   camera, features));
+    source_of.push_back(t);
+  }
+  const auto estimate = estimate_pose(observations, guess, camera, pose);
+  if (!estimate || estimate->inlier_count < config.min_inliers_frame) return std::nullopt;
+
+  TrackedPose tracked{estimate->camera_from_world,
+                      std::vector<LandmarkId>(query.features.size()), estimate->inlier_count};
+  for (std::size_t j = 0; j < source_of.size(); ++j)
+    if (estimate->inlier[j] != 0)
+      tracked.landmarks[static_cast<std::size_t>(found[source_of[j]])] = sources[source_of[j]].landmark;
+  return tracked;
+}
+
+std::optional<TrackedPose> track_reference(const Query& query, KeyframeId reference,
+                                           const SE3& guess, const TrackContext& context,
+                                           MatcherCounts& counts) {
+  const Keyframe& keyframe = context.map.at(reference);
+  std::vector<std::uint8_t> with_landmark(keyframe.features.size());
+  for (std::size_t i = 0; i < with_landmark.size(); ++i) with_landmark[i] = keyframe.landmarks[i].valid();
+  const std::vector<std::uint8_t> all(query.features.size(), 1);
+  const auto matches = match_by_words(
+      keyframe.features, keyframe.words, with_landmark, query.features, query.words, all,
+      static_cast<float>(context.match.max_distance), static_cast<float>(context.match.ratio),
+      SemanticMatcher(context.semantics, counts));
+  std::vector<LandmarkId> landmarks(query.features.size());
+  for (const FeatureMatch& m : matches) landmarks[m.b] = keyframe.landmarks[m.a];
+  auto tracked = optimise_matches(query, landmarks, guess, context.map, context.camera,
+                                  context.features, context.pose);
+  if (!tracked || tracked->inliers < context.config.min_inliers_frame) return std::nullopt;
+  return tracked;
+}
+
+LocalMap local_map(const TrackedPose& tracked, const TrackContext& context) {
+  const Map& map = context.map;
+  std::map<KeyframeId, int> votes;
+  for (const LandmarkId landmark : tracked.landmarks)
+    if (landmark.valid())
+      for (const Observation& o : map.at(landmark).observations) ++votes[o.keyframe];
+  std::vector<std::pair<KeyframeId, int>> voted(votes.begin(), votes.end());
+  std::stable_sort(voted.begin(), voted.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+
+  LocalMap local;
+  std::vector<std::uint8_t> has(map.keyframes().size(), 0);
+  const auto limit = static_cast<std::size_t>(context.config.local_keyframes);
+  const auto take = [&](KeyframeId id) {
+    if (has[id.value] != 0 || map.at(id).erased) return;
+    has[id.value] = 1;
+    local.keyframes.push_back(id);
+  };
+  if (!voted.empty()) local.reference = voted.front().first;
+  for (const auto& [id, count] : voted)
+    if (local.keyframes.size() < limit / 2) take(id);
+
+  // Near and alike, nearest first.
+  const SE3 world_from_camera = tracked.camera_from_world.inverse();
+  std::vector<std::pair<double, KeyframeId>> near;
+  for (const Keyframe& keyframe : map.keyframes()) {
+    if (keyframe.erased) continue;
+    const SE3 world_from_keyframe = keyframe.camera_from_world.inverse();
+    const double distance = (world_from_keyframe.translation() - world_from_camera.translation()).norm();
+    if (distance > context.config.near_distance_m) continue;
+    const double cosine = world_from_keyframe.rotation().col(2).dot(world_from_camera.rotation().col(2));
+    if (cosine < std::cos(context.config.near_angle_rad)) continue;
+    near.emplace_back(distance, keyframe.id);
+  }
+  std::sort(near.begin(), near.end());
+  for (const auto& [distance, id] : near)
+    if (local.keyframes.size() < 3 * limit / 4) take(id);
+
+  for (std::size_t i = 0; i < std::min(kNeighboursOfEach, voted.size()); ++i)
+    for (const Keyframe::Neighbour& n : map.at(voted[i].first).covisible)
+      if (local.keyframes.size() < limit) take(n.id);
+
+  std::vector<std::uint8_t> seen(map.landmarks().size(), 0);
+  for (const KeyframeId id : local.keyframes)
+    for (const LandmarkId landmark : map.at(id).landmarks) {
+      if (!landmark.valid() || seen[landmark.value] != 0) continue;
+      seen[landmark.value] = 1;
+      local.landmarks.push_back(landmark);
+    }
+  return local;
+}
+
+std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedPose& tracked,
+                                              const LocalMap& local, float radius_px,
+                                              const TrackContext& context, MatcherCounts& counts) {
+  const Map& map = context.map;
+  std::vector<std::uint8_t> matched(map.landmarks().size(), 0);
+  std::vector<std::uint8_t> taken(query.features.size(), 0);
+  std::vector<LandmarkId> landmarks = tracked.landmarks;
+  LocalMapResult result;
+  for (std::size_t i = 0; i < landmarks.size(); ++i)
+    if (landmarks[i].valid()) {
+      matched[landmarks[i].value] = 1;
+      taken[i] = 1;
+      result.expected.push_back(landmarks[i]);
+    }
+
+  const Eigen::Vector3d camera_in_world = tracked.camera_from_world.inverse().translation();
+  std::vector<ProjectionTarget> targets;
+  std::vector<LandmarkId> target_landmark;
+  for (const LandmarkId id : local.landmarks) {
+    if (matched[id.value] != 0) continue;
+    const auto target = expect(map.at(id), tracked.camera_from_world, camera_in_world,
+                               context.camera, context.features, radius_px);
+    if (!target) continue;
+    targets.push_back(*target);
+    target_landmark.push_back(id);
+    result.expected.push_back(id);
+  }
+  const auto found = match_by_projection(
+      targets, query.features, query.grid, taken,
+      {.max_distance = static_cast<float>(context.match.max_distance_loose),
+       .ratio = static_cast<float>(context.match.ratio_projection)},
+      SemanticMatcher(context.semantics, counts));
+  for (std::size_t t = 0; t < found.size(); ++t)
+    if (found[t] >= 0) landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
+
+  auto refined = optimise_matches(query, landmarks, tracked.camera_from_world, map, context.camera,
+                                  context.features, context.pose);
+  if (!refined) return std::nullopt;
+  result.tracked = std::move(*refined);
+  return result;
+}
+
+bool needs_keyframe(const TrackedPose& tracked, const Features& features, const Map& map,
+                    KeyframeId reference, int frames_since_keyframe, const KeyframeConfig& config) {
+  // Landmarks that have proven themselves; in a young map, all.
+  const std::size_t proven = map.keyframe_count() > 2 ? 2 : 1;
+  int reference_landmarks = 0;
+  for (const LandmarkId id : map.at(reference).landmarks)
+    if (id.valid() && map.at(id).observations.size() >= proven) ++reference_landmarks;
+
+  int close_tracked = 0, close_new = 0;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    const float depth = features.keypoints[i].depth_m;
+    if (depth <= 0 || depth > config.close_depth_m) continue;
+    ++(tracked.landmarks[i].valid() ? close_tracked : close_new);
+  }
+  const bool thin = close_tracked < config.min_close_tracked && close_new > config.min_close_new;
+  const bool drifted = tracked.inliers < config.min_tracked_share * reference_landmarks;
+  const bool old = frames_since_keyframe >= config.max_interval && close_new > config.min_close_new;
+  return thin || drifted || old;
+}
+
+}  // namespace mh

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "slam/map/map.hpp"
+#include "slam/match/config.hpp"
+#include "slam/match/counts.hpp"
+#include "slam/optimize/pose.hpp"
+#include "slam/relocalize/relocalize.hpp"
+#include "slam/track/config.hpp"
+#include "slam/track/tracker.hpp"
+
+namespace mh {
+
+/// A camera pose with the landmarks that support it.
+struct TrackedPose {
+  SE3 camera_from_world;
+  std::vector<LandmarkId> landmarks;  ///< per feature; inliers only
+  int inliers = 0;
+};
+
+/// What every stage of tracking works with; references live as long as the step.
+struct TrackContext {
+  const Map& map;
+  const Camera& camera;
+  const FeatureConfig& features;
+  const SemanticConfig& semantics;
+  const MatchConfig& match;
+  const PoseConfig& pose;
+  const TrackConfig& config;
+};
+
+/// The pose of a frame from the last one and a guess of the motion: the last frame's landmarks, and
+/// the points behind its other keypoints with depth, are looked for where the guess puts them.
+/// @returns nullopt below config.min_inliers_frame.
+std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& last, const SE3& guess,
+                                        const TrackContext& context, MatcherCounts& counts);
+
+/// The pose of a frame by appearance: words shared with the reference keyframe.
+/// @returns nullopt below config.min_inliers_frame.
+std::optional<TrackedPose> track_reference(const Query& query, KeyframeId reference,
+                                           const SE3& guess, const TrackContext& context,
+                                           MatcherCounts& counts);
+
+/// The part of the map that a pose may see.
+struct LocalMap {
+  std::vector<KeyframeId> keyframes;
+  std::vector<LandmarkId> landmarks;
+  KeyframeId reference;  ///< shares most landmarks with the frame
+};
+
+/// Keyframes that share landmarks with the frame, their neighbours, and those that stand near and
+/// look alike, whatever they share: so a place seen long ago is found again without a detour.
+LocalMap local_map(const TrackedPose& tracked, const TrackContext& context);
+
+struct LocalMapResult {
+  TrackedPose tracked;
+  std::vector<LandmarkId> expected;  ///< landmarks that should have been visible
+};
+
+/// Refines a pose with every landmark of the local map that can be found in the frame.
+/// @returns nullopt if the optimisation fails.
+std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedPose& tracked,
+                                              const LocalMap& local, float radius_px,
+                                              const TrackContext& context, MatcherCounts& counts);
+
+/// Whether the map needs this frame as a keyframe.
+bool needs_keyframe(const TrackedPose& tracked, const Features& features, const Map& map,
+                    KeyframeId reference, int frames_since_keyframe, const KeyframeConfig& config);
+
+/// Landmarks of the inlier observations, per feature; the front of every tracking stage's end.
+std::optional<TrackedPose> optimise_matches(const Query& query,
+                                            const std::vector<LandmarkId>& landmarks,
+                                            const SE3& guess, const Map& map, const Camera& camera,
+                                            const FeatureConfig& features, const PoseConfig& pose);
+
+}  // namespace mh
