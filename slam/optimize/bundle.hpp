@@ -28,23 +28,30 @@ struct BundleProblem {
 };
 
 struct BundleConfig {
-  int iterations = 5;          ///< with Huber; then outliers are dropped and
-  int refine_iterations = 10;  ///< more follow without
-  double chi2_mono = 5.991;
-  double chi2_stereo = 7.815;
+  int iterations = 5;               ///< with Huber; then outliers are dropped and
+  int refine_iterations = 10;       ///< more follow without
+  double relative_decrease = 1e-6;  ///< of the cost: a step that gains less ends its phase
+  double chi2_mono = 5.991;         ///< 95 % of chi-square, 2 degrees of freedom
+  double chi2_stereo = 7.815;       ///< 95 % of chi-square, 3 degrees of freedom
 };
 
 struct BundleResult {
   std::vector<SE3> camera_from_world;  ///< all, fixed ones unchanged
   std::vector<Eigen::Vector3d> points_in_world;
   std::vector<std::uint8_t> outlier;  ///< per observation: beyond its gate or behind the camera
-  double initial_cost = 0, final_cost = 0;  ///< sum of rho over all observations / over inliers
-  int iterations = 0;
+  double initial_cost = 0;            ///< sum of Huber's rho over all observations
+  double final_cost = 0;              ///< sum of squared whitened residuals over the inliers
+  int iterations = 0;                 ///< trial steps of both phases
 };
 
 /// Bundle adjustment by Levenberg-Marquardt with the Schur complement over points, analytic
-/// Jacobians (Triggs et al., "Bundle adjustment: a modern synthesis", 1999). Single-threaded; sums
-/// in input order.
+/// Jacobians (Triggs et al., "Bundle adjustment: a modern synthesis", 1999); the residuals of
+/// PoseObservation. Single-threaded; sums in input order.
+///
+/// Observations of points behind their camera take no part (a step that would move a point there is
+/// charged for it). A point that its observations do not determine (one, without depth) stays where
+/// it is and its observation takes no part; a pose without observations stays too.
+/// @pre indices within range, observations ordered by point (asserted).
 BundleResult adjust(const BundleProblem& problem, const Camera& camera,
                     const BundleConfig& config = {});
 

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/optimize/bundle.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "slam/optimize/reprojection.hpp"
+
+namespace mh {
+namespace {
+
+using Matrix63d = Eigen::Matrix<double, 6, 3>;
+
+/// A cost at rounding level: (1e-9 sigma)^2 per observation.
+constexpr double kPerfectChi2 = 1e-18;
+/// Marquardt's damping, relative to the diagonal. The least value still bounds the inverse of a
+/// point without parallax.
+constexpr double kInitialDamping = 1e-4;
+constexpr double kLeastDamping = 1e-8;
+constexpr double kGreatestDamping = 1e12;
+
+struct State {
+  std::vector<SE3> camera_from_world;
+  std::vector<Eigen::Vector3d> points_in_world;
+};
+
+/// The reduced camera system and what is needed to find the points from its solution. Everything
+/// is allocated once, before the first iteration.
+struct Workspace {
+  std::vector<std::uint32_t> first_observation;  ///< of each point; one more entry at the end
+  std::vector<std::uint8_t> active;              ///< observations that count in this phase
+  std::vector<std::uint8_t> adjusted;            ///< points that are moved
+
+  std::vector<Matrix63d> pose_point;           ///< per observation: W = J_pose^T J_point
+  std::vector<std::uint8_t> coupled;           ///< per observation: W is in use
+  std::vector<Eigen::Matrix3d> point_inverse;  ///< per point: V^-1, damped
+  std::vector<Eigen::Vector3d> point_gradient;
+  Eigen::MatrixXd reduced;        ///< lower triangle of U - W V^-1 W^T
+  Eigen::VectorXd pose_diagonal;  ///< diagonal of U, for the damping
+  Eigen::VectorXd right_side;
+  Eigen::VectorXd pose_step;
+  Eigen::LLT<Eigen::MatrixXd> factor;
+};
+
+Measurement measurement(const BundleObservation& o) {
+  return {.u_px = o.u_px, .v_px = o.v_px, .disparity_px = o.disparity_px, .sigma_px = o.sigma_px};
+}
+
+double gate(const BundleObservation& o, const BundleConfig& config) {
+  return o.disparity_px >= 0 ? config.chi2_stereo : config.chi2_mono;
+}
+
+/// Squared whitened residual, kBehindChi2 for a point behind the camera.
+double chi2_of(const BundleObservation& o, const State& state, const Camera& camera) {
+  const Eigen::Vector3d p = state.camera_from_world[o.pose] * state.points_in_world[o.point];
+  if (p.z() < kMinimumDepth_m) return kBehindChi2;
+  return reprojection_residual(p, measurement(o), camera).squaredNorm();
+}
+
+Workspace make_workspace(const BundleProblem& problem) {
+  const std::size_t points = problem.points_in_world.size();
+  const std::size_t observations = problem.observations.size();
+  const auto unknowns = static_cast<Eigen::Index>(6 * problem.free_poses);
+  Workspace w;
+  w.first_observation.assign(points + 1, 0);
+  for (std::size_t i = 0; i < observations; ++i) {
+    const BundleObservation& o = problem.observations[i];
+    assert(o.pose < problem.camera_from_world.size() && o.point < points);
+    assert(i == 0 || problem.observations[i - 1].point <= o.point);
+    ++w.first_observation[o.point + 1];
+  }
+  for (std::size_t i = 0; i < points; ++i) w.first_observation[i + 1] += w.first_observation[i];
+  w.active.assign(observations, 1);
+  w.adjusted.assign(points, 0);
+  w.pose_point.resize(observations);
+  w.coupled.assign(observations, 0);
+  w.point_inverse.resize(points);
+  w.point_gradient.resize(points);
+  w.reduced.resize(unknowns, unknowns);
+  w.pose_diagonal.resize(unknowns);
+  w.right_side.resize(unknowns);
+  w.pose_step.resize(unknowns);
+  return w;
+}
+
+/// Holds every point that its active observations do not determine (fewer than two, and no
+/// depth), and lets go of those observations: marginalised, they would say nothing about a pose.
+void choose_points(const BundleProblem& problem, Workspace& w) {
+  for (std::size_t point = 0; point < problem.points_in_world.size(); ++point) {
+    const std::uint32_t begin = w.first_observation[point];
+    const std::uint32_t end = w.first_observation[point + 1];
+    int count = 0;
+    bool depth = false;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      count += w.active[i];
+      depth |= w.active[i] && problem.observations[i].disparity_px >= 0;
+    }
+    w.adjusted[point] = depth || count >= 2;
+    if (!w.adjusted[point]) std::fill(w.active.begin() + begin, w.active.begin() + end, 0);
+  }
+}
+
+/// Sum of rho over the active observations.
+double cost_of(const BundleProblem& problem, const Workspace& w, const State& state,
+               const Camera& camera, const BundleConfig& config, bool robust) {
+  double cost = 0;
+  for (std::size_t i = 0; i < problem.observations.size(); ++i) {
+    if (!w.active[i]) continue;
+    const BundleObservation& o = problem.observations[i];
+    const double chi2 = chi2_of(o, state, camera);
+    cost += robust ? huber_loss(chi2, gate(o, config)) : chi2;
+  }
+  return cost;
+}
+
+/// Adds one point's observations to the pose blocks and to its own; fills W for each.
+void linearize_point(const BundleProblem& problem, Workspace& w, const State& state,
+                     std::uint32_t point, const Camera& camera, const BundleConfig& config,
+                     bool robust, Eigen::Matrix3d& point_information) {
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  point_information.setZero();
+  for (std::uint32_t i = w.first_observation[point]; i < w.first_observation[point + 1]; ++i) {
+    w.coupled[i] = 0;
+    if (!w.active[i]) continue;
+    const BundleObservation& o = problem.observations[i];
+    const SE3& pose = state.camera_from_world[o.pose];
+    const Eigen::Vector3d p = pose * state.points_in_world[point];
+    if (p.z() < kMinimumDepth_m) continue;
+    const Measurement measured = measurement(o);
+    const Eigen::Vector3d r = reprojection_residual(p, measured, camera);
+    const double weight = robust ? huber_weight(r.squaredNorm(), gate(o, config)) : 1.0;
+    const CameraFrameTerm term = camera_frame_term(p, r, weight, measured, camera);
+    const Eigen::Matrix3d mixed = term.information * pose.rotation();
+    point_information.noalias() += pose.rotation().transpose() * mixed;
+    gradient.noalias() += pose.rotation().transpose() * term.gradient;
+    if (o.pose >= problem.free_poses) continue;
+
+    w.coupled[i] = 1;
+    w.pose_point[i].topRows<3>() = mixed;
+    w.pose_point[i].bottomRows<3>() = cross_columns(p, mixed);
+    const Eigen::Index at = 6 * static_cast<Eigen::Index>(o.pose);
+    const Eigen::Matrix3d turned = cross_columns(p, term.information);
+    const Eigen::Matrix3d turned_twice = cross_columns(p, turned.transpose());
+    w.reduced.block<3, 3>(at, at) += term.information;
+    w.reduced.block<3, 3>(at + 3, at) += turned;
+    w.reduced.block<3, 3>(at + 3, at + 3) += turned_twice;
+    w.pose_diagonal.segment<3>(at) += term.information.diagonal();
+    w.pose_diagonal.segment<3>(at + 3) += turned_twice.diagonal();
+    w.right_side.segment<3>(at) -= term.gradient;
+    w.right_side.segment<3>(at + 3) -= p.cross(term.gradient);
+  }
+  w.point_gradient[point] = gradient;
+}
+
+/// Takes one point out of the system: reduced -= W V^-1 W^T, right side += W V^-1 g.
+void eliminate_point(const BundleProblem& problem, Workspace& w, std::uint32_t point) {
+  const Eigen::Matrix3d& inverse = w.point_inverse[point];
+  const std::uint32_t end = w.first_observation[point + 1];
+  for (std::uint32_t a = w.first_observation[point]; a < end; ++a) {
+    if (!w.coupled[a]) continue;
+    const Matrix63d weighted = w.pose_point[a] * inverse;
+    const std::uint32_t pose_a = problem.observations[a].pose;
+    const Eigen::Index row = 6 * static_cast<Eigen::Index>(pose_a);
+    w.right_side.segment<6>(row) += weighted * w.point_gradient[point];
+    for (std::uint32_t b = a; b < end; ++b) {
+      if (!w.coupled[b]) continue;
+      const std::uint32_t pose_b = problem.observations[b].pose;
+      const Eigen::Index column = 6 * static_cast<Eigen::Index>(pose_b);
+      if (pose_a >= pose_b)
+        w.reduced.block<6, 6>(row, column).noalias() -= weighted * w.pose_point[b].transpose();
+      // The mirrored block; both where one pose sees the point twice.
+      if (pose_a < pose_b || (pose_a == pose_b && a != b))
+        w.reduced.block<6, 6>(column, row).noalias() -= w.pose_point[b] * weighted.transpose();
+    }
+  }
+}
+
+/// Linearises at the state and reduces the system to the poses.
+void build_reduced_system(const BundleProblem& problem, Workspace& w, const State& state,
+                          const Camera& camera, const BundleConfig& config, bool robust,
+                          double damping) {
+  w.reduced.setZero();
+  w.pose_diagonal.setZero();
+  w.right_side.setZero();
+  Eigen::Matrix3d information;
+  for (std::uint32_t point = 0; point < problem.points_in_world.size(); ++point) {
+    if (!w.adjusted[point]) continue;
+    linearize_point(problem, w, state, point, camera, config, robust, information);
+    const double trace = information.trace();
+    if (!(trace > 0)) {  // every observation has slipped behind its camera
+      w.point_inverse[point].setZero();
+      continue;
+    }
+    // The floor keeps the inverse finite where an axis of the world gets no information at all.
+    information.diagonal() *= 1.0 + damping;
+    information.diagonal().array() += kLeastDamping * trace;
+    w.point_inverse[point] = information.inverse();
+    eliminate_point(problem, w, point);
+  }
+  w.reduced.diagonal() += damping * w.pose_diagonal;
+  // A pose that nothing speaks about stays where it is.
+  for (Eigen::Index k = 0; k < w.pose_diagonal.size(); ++k)
+    if (!(w.pose_diagonal[k] > 0)) w.reduced(k, k) = 1.0;
+}
+
+/// Solves for the poses, substitutes back for the points. @returns false if the system is not
+/// positive definite.
+bool take_step(const BundleProblem& problem, Workspace& w, const State& from, State& to) {
+  w.factor.compute(w.reduced);
+  if (w.factor.info() != Eigen::Success) return false;
+  w.pose_step = w.right_side;
+  w.factor.solveInPlace(w.pose_step);
+  if (!w.pose_step.allFinite()) return false;
+  for (std::uint32_t pose = 0; pose < problem.free_poses; ++pose) {
+    const Vector6d step = w.pose_step.segment<6>(6 * static_cast<Eigen::Index>(pose));
+    to.camera_from_world[pose] = SE3::exp(step) * from.camera_from_world[pose];
+  }
+  for (std::uint32_t point = 0; point < problem.points_in_world.size(); ++point) {
+    if (!w.adjusted[point]) continue;
+    Eigen::Vector3d right = -w.point_gradient[point];
+    for (std::uint32_t i = w.first_observation[point]; i < w.first_observation[point + 1]; ++i) {
+      if (!w.coupled[i]) continue;
+      const Eigen::Index at = 6 * static_cast<Eigen::Index>(problem.observations[i].pose);
+      right.noalias() -= w.pose_point[i].transpose() * w.pose_step.segment<6>(at);
+    }
+    to.points_in_world[point] = from.points_in_world[point] + w.point_inverse[point] * right;
+  }
+  return true;
+}
+
+/// One phase of Levenberg-Marquardt over the active observations. @returns trial steps made.
+int minimize(const BundleProblem& problem, Workspace& w, State& state, State& trial,
+             const Camera& camera, const BundleConfig& config, bool robust, int iterations) {
+  choose_points(problem, w);
+  double cost = cost_of(problem, w, state, camera, config, robust);
+  const double perfect = kPerfectChi2 * static_cast<double>(problem.observations.size());
+  double damping = kInitialDamping;
+  int made = 0;
+  while (made < iterations && cost > perfect && damping < kGreatestDamping) {
+    ++made;
+    build_reduced_system(problem, w, state, camera, config, robust, damping);
+    const bool solved = take_step(problem, w, state, trial);
+    const double trial_cost =
+        solved ? cost_of(problem, w, trial, camera, config, robust) : HUGE_VAL;
+    if (!(trial_cost <= cost)) {
+      damping *= 10.0;
+      continue;
+    }
+    const bool settled = cost - trial_cost <= config.relative_decrease * cost;
+    std::swap(state, trial);
+    cost = trial_cost;
+    damping = std::max(0.1 * damping, kLeastDamping);
+    if (settled) break;
+  }
+  return made;
+}
+
+}  // namespace
+
+BundleResult adjust(const BundleProblem& problem, const Camera& camera,
+                    const BundleConfig& config) {
+  assert(problem.free_poses <= problem.camera_from_world.size());
+  const std::size_t count = problem.observations.size();
+  Workspace w = make_workspace(problem);
+  State state{problem.camera_from_world, problem.points_in_world};
+  State trial = state;
+  BundleResult result;
+
+  for (std::size_t i = 0; i < count; ++i) {
+    const BundleObservation& o = problem.observations[i];
+    const double chi2 = chi2_of(o, state, camera);
+    result.initial_cost += huber_loss(chi2, gate(o, config));
+    w.active[i] = chi2 != kBehindChi2;
+  }
+  result.iterations = minimize(problem, w, state, trial, camera, config, true, config.iterations);
+
+  if (config.refine_iterations > 0) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const BundleObservation& o = problem.observations[i];
+      w.active[i] = chi2_of(o, state, camera) <= gate(o, config);
+    }
+    trial = state;
+    result.iterations +=
+        minimize(problem, w, state, trial, camera, config, false, config.refine_iterations);
+  }
+
+  for (std::uint32_t pose = 0; pose < problem.free_poses; ++pose)
+    state.camera_from_world[pose] = state.camera_from_world[pose].normalized();
+  result.outlier.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const BundleObservation& o = problem.observations[i];
+    const double chi2 = chi2_of(o, state, camera);
+    result.outlier[i] = !(chi2 <= gate(o, config));
+    if (!result.outlier[i]) result.final_cost += chi2;
+  }
+  result.camera_from_world = std::move(state.camera_from_world);
+  result.points_in_world = std::move(state.points_in_world);
+  return result;
+}
+
+}  // namespace mh
