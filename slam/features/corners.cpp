@@ -2,36 +2,15 @@
 #include "slam/features/corners.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
-
-#include <opencv2/features2d.hpp>
 
 namespace mh {
 namespace {
 
 constexpr int kCell_px = 36;
-constexpr int kFastRadius_px = 3;  // of FAST's circle: cv::FAST leaves a border that wide
-
-// Appends the corners of `area` (in pixels of the image), judged as if the whole image were
-// searched.
-void append_corners(const cv::Mat& image, const cv::Rect& area, int threshold,
-                    std::vector<cv::KeyPoint>& scratch, std::vector<Corner>& out) {
-  // One pixel more than the circle needs, so that maxima at the area's rim are compared with their
-  // neighbours beyond it.
-  constexpr int kMargin = kFastRadius_px + 1;
-  const cv::Rect grown = cv::Rect(area.x - kMargin, area.y - kMargin, area.width + 2 * kMargin,
-                                  area.height + 2 * kMargin) &
-                         cv::Rect({0, 0}, image.size());
-  cv::FAST(image(grown), scratch, threshold, /*nonmaxSuppression=*/true);
-  for (const cv::KeyPoint& k : scratch) {
-    const cv::Point p(cvRound(k.pt.x) + grown.x, cvRound(k.pt.y) + grown.y);
-    if (!area.contains(p)) continue;
-    out.push_back({static_cast<std::int16_t>(p.x), static_cast<std::int16_t>(p.y),
-                   static_cast<std::int16_t>(k.response)});
-  }
-}
 
 // The area under search, cut into cells of about kCell_px.
 struct Cells {
@@ -43,18 +22,22 @@ struct Cells {
         columns(std::max(1, cvRound(static_cast<double>(a.width) / kCell_px))),
         rows(std::max(1, cvRound(static_cast<double>(a.height) / kCell_px))) {}
 
-  int left(int column) const { return area.x + area.width * column / columns; }
-  int top(int row) const { return area.y + area.height * row / rows; }
-  // Inverse of left and top: the last cell that starts at or before a pixel.
-  int column_of(int x) const { return ((x - area.x + 1) * columns - 1) / area.width; }
-  int row_of(int y) const { return ((y - area.y + 1) * rows - 1) / area.height; }
+  std::size_t count() const { return static_cast<std::size_t>(columns) * rows; }
+  std::size_t of(const Corner& c) const {
+    const int column = (c.x - area.x) * columns / area.width;
+    const int row = (c.y - area.y) * rows / area.height;
+    return static_cast<std::size_t>(row) * columns + column;
+  }
 };
 
-std::vector<char> occupied(const Cells& cells, const std::vector<Corner>& corners) {
-  std::vector<char> result(static_cast<std::size_t>(cells.columns) * cells.rows, 0);
-  for (const Corner& c : corners)
-    result[static_cast<std::size_t>(cells.row_of(c.y)) * cells.columns + cells.column_of(c.x)] = 1;
-  return result;
+// From the order of rows and columns to that of `stronger`: a counting sort, which is stable.
+std::vector<Corner> strongest_first(const std::vector<Corner>& corners) {
+  std::array<std::size_t, 257> start{};
+  for (const Corner& c : corners) ++start[static_cast<std::size_t>(256 - c.strength)];
+  for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
+  std::vector<Corner> sorted(corners.size());
+  for (const Corner& c : corners) sorted[start[static_cast<std::size_t>(255 - c.strength)]++] = c;
+  return sorted;
 }
 
 // Corners at least `spacing` apart, strongest first, at most `count`.
@@ -117,30 +100,17 @@ class SpacedPicker {
 
 std::vector<Corner> find_corners(const cv::Mat& image, int edge_px, int threshold,
                                  int low_threshold) {
-  assert(edge_px > kFastRadius_px);
-  const cv::Rect area(edge_px, edge_px, image.cols - 2 * edge_px, image.rows - 2 * edge_px);
-  if (area.width <= 0 || area.height <= 0) return {};
+  std::vector<Corner> corners = fast_corners(image, edge_px, std::min(threshold, low_threshold));
+  if (corners.empty()) return corners;
 
-  std::vector<Corner> corners;
-  std::vector<cv::KeyPoint> scratch;
-  append_corners(image, area, threshold, scratch, corners);
-
-  const Cells cells(area);
-  const std::vector<char> full = occupied(cells, corners);
-  for (int row = 0; row < cells.rows; ++row) {
-    const char* row_full = &full[static_cast<std::size_t>(row) * cells.columns];
-    // Neighbouring empty cells are searched in one go.
-    for (int first = 0, last = 0; first < cells.columns; first = last + 1) {
-      last = first;
-      if (row_full[first]) continue;
-      while (last + 1 < cells.columns && !row_full[last + 1]) ++last;
-      const cv::Point top_left(cells.left(first), cells.top(row));
-      const cv::Point bottom_right(cells.left(last + 1), cells.top(row + 1));
-      append_corners(image, {top_left, bottom_right}, low_threshold, scratch, corners);
-    }
-  }
-  std::sort(corners.begin(), corners.end(), stronger);
-  return corners;
+  const Cells cells({edge_px, edge_px, image.cols - 2 * edge_px, image.rows - 2 * edge_px});
+  std::vector<char> has_strong(cells.count(), 0);
+  for (const Corner& c : corners)
+    if (c.strength >= threshold) has_strong[cells.of(c)] = 1;
+  std::erase_if(corners, [&](const Corner& c) {
+    return c.strength < (has_strong[cells.of(c)] ? threshold : low_threshold);
+  });
+  return strongest_first(corners);
 }
 
 std::vector<Corner> spread(const std::vector<Corner>& corners, int count) {

@@ -1,31 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include <opencv2/core.hpp>
 
+#include "slam/features/fast.hpp"
+
 namespace mh {
 
-/// A corner on one pyramid level.
-struct Corner {
-  std::int16_t x = 0, y = 0;  ///< pixel of the level
-  std::int16_t strength = 0;  ///< grey levels: largest threshold at which it still is a corner
-
-  friend bool operator==(const Corner&, const Corner&) = default;
-};
-
-/// A total order: stronger first, then upper, then left.
-inline bool stronger(const Corner& a, const Corner& b) {
-  if (a.strength != b.strength) return a.strength > b.strength;
-  if (a.y != b.y) return a.y < b.y;
-  return a.x < b.x;
-}
-
-/// FAST-9 corners (Rosten and Drummond, ECCV 2006) at least `edge_px` from the border, local maxima
-/// only. Cells of about 36 px in which `threshold` finds nothing are searched again with
-/// `low_threshold`. Strongest first.
+/// FAST corners above `threshold`, at least `edge_px` from the border. Cells of about 36 px that
+/// hold none give theirs above `low_threshold`. Strongest first.
 std::vector<Corner> find_corners(const cv::Mat& image, int edge_px, int threshold,
                                  int low_threshold);
 

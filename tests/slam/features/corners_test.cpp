@@ -67,37 +67,76 @@ TEST(Spread, ALineOfCornersIsThinnedEvenly) {
   EXPECT_GE(closest_pair(picked), 9);
 }
 
-TEST(FindCorners, FindsTheSameAsFastOverTheWholeImageWhereEveryCellHasSome) {
-  cv::Mat image(480, 640, CV_8U);
-  const RandomStream random(3);
-  for (int y = 0; y < 480; ++y)
-    for (int x = 0; x < 640; ++x)
+// Blocks of random brightness, slightly blurred.
+cv::Mat blocks(int width, int height, std::uint64_t seed) {
+  cv::Mat image(height, width, CV_8U);
+  const RandomStream random(seed);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
       image.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(
           random.below(static_cast<std::uint64_t>((y / 9) * 1000 + x / 9), 256));
   cv::GaussianBlur(image, image, {5, 5}, 0.8);
-  const std::vector<Corner> corners = find_corners(image, 19, 20, 7);
-  std::vector<cv::KeyPoint> all;
-  cv::FAST(image, all, 20, true);
-  std::size_t inside = 0;
-  for (const cv::KeyPoint& k : all)
-    inside += k.pt.x >= 19 && k.pt.y >= 19 && k.pt.x < 640 - 19 && k.pt.y < 480 - 19;
-  EXPECT_GT(inside, 500U);
-  EXPECT_EQ(corners.size(), inside);
+  return image;
 }
 
-TEST(FindCorners, LowThresholdFindsNothingTwice) {
-  // Weak corners right at the rims of cells, some of which hold strong corners.
-  cv::Mat image(480, 640, CV_8U, cv::Scalar(100));
-  for (int i = 0; i < 400; ++i) {
-    const RandomStream r = RandomStream(4).fork(static_cast<std::uint64_t>(i));
-    const cv::Rect square(static_cast<int>(r.below(0, 600)), static_cast<int>(r.below(1, 440)), 12,
-                          12);
-    image(square).setTo(i % 10 == 0 ? 200 : 112);
+void expect_equal_to_opencv(const cv::Mat& image, int edge_px, int threshold) {
+  std::vector<cv::KeyPoint> all;
+  cv::FAST(image, all, threshold, true);
+  std::vector<Corner> expected;
+  const cv::Rect area(edge_px, edge_px, image.cols - 2 * edge_px, image.rows - 2 * edge_px);
+  for (const cv::KeyPoint& k : all)
+    if (area.contains(k.pt))
+      expected.push_back({static_cast<std::int16_t>(k.pt.x), static_cast<std::int16_t>(k.pt.y),
+                          static_cast<std::int16_t>(k.response)});
+  EXPECT_EQ(fast_corners(image, edge_px, threshold), expected) << threshold;
+  EXPECT_GT(expected.size(), 10U);
+}
+
+TEST(FastCorners, EqualThoseOfOpenCv) {
+  const cv::Mat image = blocks(640, 480, 3);
+  for (const int threshold : {1, 7, 20, 60}) expect_equal_to_opencv(image, 19, threshold);
+  // Widths that fill no whole number of SIMD registers, and windows of a larger image.
+  for (const int width : {71, 96, 127, 130}) {
+    expect_equal_to_opencv(image(cv::Rect(11, 5, width, 90)), 4, 10);
+    expect_equal_to_opencv(image(cv::Rect(11, 5, width, 90)).clone(), 4, 10);
   }
-  cv::GaussianBlur(image, image, {5, 5}, 0.8);
+}
+
+TEST(FastCorners, KnowsBlackFromWhite) {
+  // The extremes of contrast, bright on dark and dark on bright.
+  cv::Mat image(60, 60, CV_8U, cv::Scalar(0));
+  image.at<std::uint8_t>(20, 20) = 255;
+  image(cv::Rect(30, 0, 30, 60)).setTo(255);
+  image.at<std::uint8_t>(20, 45) = 0;
+  const std::vector<Corner> expected = {{20, 20, 254}, {45, 20, 254}};
+  EXPECT_EQ(fast_corners(image, 4, 200), expected);
+}
+
+TEST(FastCorners, ImagesThatHoldOnlyBorderHaveNone) {
+  EXPECT_TRUE(fast_corners(blocks(38, 90, 1), 19, 7).empty());
+  EXPECT_TRUE(fast_corners(blocks(90, 20, 1), 19, 7).empty());
+}
+
+TEST(FindCorners, LowThresholdServesExactlyTheCellsWithoutStrongCorners) {
+  cv::Mat image = blocks(640, 480, 4);
+  // The right half at an eighth of its contrast.
+  cv::Mat right = image(cv::Rect(320, 0, 320, 480));
+  right.convertTo(right, CV_8U, 0.12, 100);
   const std::vector<Corner> corners = find_corners(image, 19, 20, 7);
-  ASSERT_GT(corners.size(), 300U);
-  EXPECT_GE(closest_pair(corners), 2);  // local maxima do not touch, not even across cells
+  const std::vector<Corner> strong = find_corners(image, 19, 20, 20);
+  EXPECT_TRUE(std::is_sorted(corners.begin(), corners.end(), stronger));
+  EXPECT_TRUE(
+      std::includes(corners.begin(), corners.end(), strong.begin(), strong.end(), stronger));
+  std::size_t strong_left = 0, weak_left = 0, weak_right = 0;
+  for (const Corner& c : corners) {
+    EXPECT_GE(c.strength, 7);
+    strong_left += c.x < 280 && c.strength >= 20;
+    weak_left += c.x < 280 && c.strength < 20;
+    weak_right += c.x > 360 && c.strength < 20;
+  }
+  EXPECT_GT(strong_left, 300U);
+  EXPECT_EQ(weak_left, 0U);
+  EXPECT_GT(weak_right, 300U);
 }
 
 TEST(ShareOut, FollowsAGeometricSeriesAndSumsToTheTotal) {

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+namespace mh {
+
+/// A corner on one pyramid level.
+struct Corner {
+  std::int16_t x = 0, y = 0;  ///< pixel of the level
+  std::int16_t strength = 0;  ///< grey levels: largest threshold at which it still is a corner
+
+  friend bool operator==(const Corner&, const Corner&) = default;
+};
+
+/// A total order: stronger first, then upper, then left.
+inline bool stronger(const Corner& a, const Corner& b) {
+  if (a.strength != b.strength) return a.strength > b.strength;
+  if (a.y != b.y) return a.y < b.y;
+  return a.x < b.x;
+}
+
+/// FAST-9 corners (Rosten and Drummond, ECCV 2006): 9 contiguous pixels of the 16 on a circle of
+/// radius 3 px are all brighter, or all darker, than the centre by more than `threshold`. Only
+/// those stronger than their 8 neighbours. The same as cv::FAST, but strength is computed for all
+/// pixels without branches, so that one pass serves every threshold from `threshold` up.
+/// @param edge_px    corners keep that distance from the border; at least 4.
+/// @param threshold  grey levels, 0 to 254.
+/// @returns corners in the order of rows, then columns.
+std::vector<Corner> fast_corners(const cv::Mat& image, int edge_px, int threshold);
+
+}  // namespace mh
