@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,11 +12,17 @@
 
 namespace mh {
 
-/// One leg of a tour: drive to (x, y), facing the given heading at arrival; or turn in place.
+/// One leg of a tour: drive to a place, turn in place there, pause there. A waypoint with neither
+/// turn nor pause is passed without stopping, its corner cut by a bow (PathConfig::cut_m).
 struct Waypoint {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
-  std::optional<double> heading_rad;  ///< none: face the way of travel
-  double pause_s = 0.0;
+  // Where the base looks on the way: to look_at_m if given; else it turns over the leg until it
+  // has heading_rad at arrival, if given; else it faces the way of travel.
+  std::optional<double> heading_rad;
+  std::optional<Eigen::Vector2d> look_at_m;
+  double turn_rad = 0.0;  ///< turned in place at arrival, counter-clockwise; may exceed a round
+  double pause_s = 0.0;   ///< rest after the turn
+  int line = 0;           ///< in the tour's file, for messages; 0 = none
 };
 
 struct Tour {
@@ -23,25 +30,33 @@ struct Tour {
   std::filesystem::path file;  ///< where it came from, for messages
   Eigen::Vector2d start_m = Eigen::Vector2d::Zero();
   double start_heading_rad = 0.0;
+  // A tour may be driven more gently than the robot could; never faster.
+  std::optional<double> max_velocity_m_per_s;
+  std::optional<double> max_turn_rad_per_s;
   std::vector<Waypoint> waypoints;
 };
 
-/// Reads a tour (YAML). @throws InputError naming file, line, field and value.
+/// Reads a tour (YAML): `name`; `start: {position: [x, y], heading_deg}`; optional
+/// `speed_m_per_s`, `turn_deg_per_s`; `waypoints`, a list of mappings with any of `to: [x, y]`,
+/// `heading_deg`, `face: travel | [x, y]`, `turn_deg`, `pause_s`. Without `to` it stays in place.
+/// @throws InputError naming file, line, field and value.
 Tour load_tour(const std::filesystem::path& file);
 
 /// What the robot really did: base and camera, at the camera's rate.
 struct DrivenPath {
-  std::vector<TimedPose> camera;         ///< world_from_camera, stamps of frames
-  std::vector<TimedPose> base;           ///< world_from_base, same stamps
+  std::vector<TimedPose> camera;  ///< world_from_camera, stamps of frames
+  std::vector<TimedPose> base;    ///< world_from_base, same stamps
   double length_m = 0.0;
   double turned_in_place_rad = 0.0;
   double max_penetration_m = 0.0;
-  double contact_time_s = 0.0;           ///< time spent touching something
+  double contact_time_s = 0.0;  ///< time spent touching something
 };
 
 /// Drives the robot through the scene with Bullet, velocity and acceleration limited, and samples
-/// the camera. @throws InputError naming tour, waypoint and place if a waypoint is not reached or
-/// the start pose is inside something.
+/// the camera. Stamps are round(i * 1e9 / rate). The base comes from Bullet's body, the camera from
+/// the base and base_from_camera; nothing is added.
+/// @throws InputError naming tour, waypoint, place and what stands in the way if a waypoint is not
+/// reached, or if the start pose is inside something or outside the rooms.
 DrivenPath drive(const Scene& scene, const Robot& robot, const Tour& tour);
 
 }  // namespace mh

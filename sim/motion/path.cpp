@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/motion/path.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace mh {
+namespace {
+
+Eigen::Vector2d unit(double heading_rad) {
+  return {std::cos(heading_rad), std::sin(heading_rad)};
+}
+
+double heading_rad(const Eigen::Vector2d& v) {
+  return std::atan2(v.y(), v.x());
+}
+
+}  // namespace
+
+RoundedPath::RoundedPath(std::span<const Eigen::Vector2d> corners_m, const PathConfig& config) {
+  assert(corners_m.size() >= 2);
+  const auto add = [this](const Eigen::Vector2d& start, double heading, double curvature,
+                          double length) {
+    if (length <= 0) return;
+    pieces_.push_back({length_m_, start, heading, curvature});
+    length_m_ += length;
+  };
+
+  corner_s_m_.push_back(0);
+  Eigen::Vector2d from = corners_m[0];
+  for (std::size_t i = 1; i + 1 < corners_m.size(); ++i) {
+    const Eigen::Vector2d in = corners_m[i] - corners_m[i - 1];
+    const Eigen::Vector2d out = corners_m[i + 1] - corners_m[i];
+    const double turn_rad = std::remainder(heading_rad(out) - heading_rad(in), 2 * M_PI);
+    const double cut_m = std::min({config.cut_m, 0.5 * in.norm(), 0.5 * out.norm()});
+    // An arc that leaves a corner's legs at distance `cut` has radius cut / tan(turn / 2).
+    const double curvature = std::tan(0.5 * turn_rad) / cut_m;
+    const bool straight = std::abs(turn_rad) < 1e-6;
+    const double arc_m = straight ? 0.0 : turn_rad / curvature;
+    const Eigen::Vector2d bow_start =
+        straight ? corners_m[i] : corners_m[i] - cut_m * in.normalized();
+    add(from, heading_rad(in), 0, (bow_start - from).norm());
+    corner_s_m_.push_back(length_m_ + 0.5 * arc_m);
+    add(bow_start, heading_rad(in), curvature, arc_m);
+    from = straight ? corners_m[i] : corners_m[i] + cut_m * out.normalized();
+  }
+  const Eigen::Vector2d last = corners_m.back() - corners_m[corners_m.size() - 2];
+  add(from, heading_rad(last), 0, (corners_m.back() - from).norm());
+  corner_s_m_.push_back(length_m_);
+  assert(!pieces_.empty());
+}
+
+PathPoint RoundedPath::at(double s_m) const {
+  const double inside_m = std::clamp(s_m, 0.0, length_m_);
+  const auto after = std::upper_bound(pieces_.begin() + 1, pieces_.end(), inside_m,
+                                      [](double s, const Piece& p) { return s < p.start_s_m; });
+  const Piece& piece = *(after - 1);
+  const double ds = inside_m - piece.start_s_m, k = piece.curvature_per_m;
+  const double heading = piece.heading_rad + k * ds;
+  // The integral of the tangent along a line or an arc.
+  const Eigen::Vector2d moved =
+      k == 0 ? Eigen::Vector2d(ds * unit(heading))
+             : Eigen::Vector2d((unit(heading - M_PI_2) - unit(piece.heading_rad - M_PI_2)) / k);
+  return {piece.start_m + moved + (s_m - inside_m) * unit(heading), unit(heading),
+          inside_m == s_m ? k : 0.0};
+}
+
+SpeedProfile::SpeedProfile(const RoundedPath& path, const SpeedLimits& limits) {
+  constexpr double kSpacing_m = 0.01;  // well below the shortest bow
+  const auto intervals = static_cast<std::size_t>(std::ceil(path.length_m() / kSpacing_m)) + 1;
+  spacing_m_ = path.length_m() / static_cast<double>(intervals);
+  squared_.assign(intervals + 1, 0.0);  // at rest at the end
+  for (std::size_t i = intervals; i-- > 0;) {
+    // Both ends of an interval mind a bow that begins or ends within it.
+    double curvature = 0;
+    for (const double beside : {-1.0, 0.0, 1.0})
+      curvature = std::max(
+          curvature,
+          std::abs(path.at(spacing_m_ * (static_cast<double>(i) + beside)).curvature_per_m));
+    const double to_brake = squared_[i + 1] + 2 * limits.along_m_per_s2 * spacing_m_;
+    const double to_turn = limits.across_m_per_s2 / std::max(curvature, 1e-9);
+    squared_[i] = std::min({limits.velocity_m_per_s * limits.velocity_m_per_s, to_turn, to_brake});
+  }
+}
+
+double SpeedProfile::at(double s_m) const {
+  const double place = std::clamp(s_m / spacing_m_, 0.0, static_cast<double>(squared_.size() - 1));
+  const auto i = std::min(static_cast<std::size_t>(place), squared_.size() - 2);
+  const double share = place - static_cast<double>(i);
+  return std::sqrt((1 - share) * squared_[i] + share * squared_[i + 1]);
+}
+
+}  // namespace mh

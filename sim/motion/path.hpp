@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace mh {
+
+struct PathConfig {
+  /// A bow begins and ends at most this far from its corner, m; so a right angle is rounded with
+  /// this radius and passes the corner at 0.41 of it.
+  double cut_m = 0.35;
+};
+
+struct PathPoint {
+  Eigen::Vector2d position_m;
+  Eigen::Vector2d direction;   ///< unit tangent
+  double curvature_per_m = 0;  ///< positive to the left
+};
+
+/// A plane curve through given corners: straight lines joined by tangent arcs. Begins and ends
+/// exactly at the first and last corner.
+class RoundedPath {
+ public:
+  /// @param corners_m at least two, each apart from the next; no corner turns back on itself.
+  RoundedPath(std::span<const Eigen::Vector2d> corners_m, const PathConfig& config = {});
+
+  double length_m() const { return length_m_; }
+  /// The point at arc length s; beyond either end the path goes on straight.
+  PathPoint at(double s_m) const;
+  /// Arc length of the point that stands for corner i (the middle of its bow).
+  double corner_s_m(std::size_t i) const { return corner_s_m_[i]; }
+
+ private:
+  struct Piece {
+    double start_s_m;
+    Eigen::Vector2d start_m;
+    double heading_rad;
+    double curvature_per_m;
+  };
+  std::vector<Piece> pieces_;
+  std::vector<double> corner_s_m_;
+  double length_m_ = 0;
+};
+
+struct SpeedLimits {
+  double velocity_m_per_s = 0;
+  double along_m_per_s2 = 0;   ///< speeding up and slowing down
+  double across_m_per_s2 = 0;  ///< v^2 * curvature
+};
+
+/// The fastest speed at each arc length from which the robot can still take every bow ahead and
+/// stop at the end of the path.
+class SpeedProfile {
+ public:
+  SpeedProfile(const RoundedPath& path, const SpeedLimits& limits);
+  double at(double s_m) const;  ///< m/s
+
+ private:
+  double spacing_m_ = 0;
+  std::vector<double> squared_;  // v^2 changes linearly under constant acceleration
+};
+
+}  // namespace mh

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Core>
+
+#include "robots/model/robot.hpp"
+#include "scenes/scene.hpp"
+
+namespace mh {
+
+/// Where the base is and how it moves. World frame; heading counted from world x, in (-pi, pi].
+struct BaseState {
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
+  double heading_rad = 0.0;
+  Eigen::Vector2d velocity_m_per_s = Eigen::Vector2d::Zero();
+  double turn_rad_per_s = 0.0;
+};
+
+/// The velocity that the base should have, world frame.
+struct BaseCommand {
+  Eigen::Vector2d velocity_m_per_s = Eigen::Vector2d::Zero();
+  double turn_rad_per_s = 0.0;
+};
+
+struct Contact {
+  bool touching = false;       ///< nearer to something than kTouch_m
+  double penetration_m = 0.0;  ///< depth of the deepest overlap, 0 = none
+  InstanceId instance = 0;     ///< what is touched (the deepest, if several)
+};
+
+/// Closer than this counts as touching: Bullet holds a pressed body a hair away from the wall.
+inline constexpr double kTouch_m = 5e-4;
+
+/// A robot's base in a scene, moved by Bullet: a rigid upright cylinder that slides on the floor
+/// and turns about its axis. It is driven by impulses whose size respects BaseLimits, so that its
+/// velocity and (contacts apart) acceleration never exceed them. What lies wholly below 3 cm or
+/// above the robot's head is no obstacle. Deterministic: the same steps give the same bits.
+class PlanarWorld {
+ public:
+  /// @param step_s duration of one step; contacts stay shallow for steps up to 1/200 s.
+  PlanarWorld(const Scene& scene, const Robot& robot, const Eigen::Vector2d& start_m,
+              double start_heading_rad, double step_s = 1.0 / 240.0);
+  ~PlanarWorld();
+  PlanarWorld(const PlanarWorld&) = delete;
+  PlanarWorld& operator=(const PlanarWorld&) = delete;
+
+  /// Accelerates towards the command as far as the limits allow, and moves on by one step.
+  Contact step(const BaseCommand& command);
+  BaseState state() const;
+  /// What the base touches where it stands now.
+  Contact contact();
+  double step_s() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mh

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include <Eigen/Core>
+
+#include "slam/core/camera.hpp"
+#include "slam/core/grid2d.hpp"
+#include "slam/core/se3.hpp"
+
+namespace mh {
+
+// Values of an OccupancyGrid's cells, as in ROS nav_msgs/OccupancyGrid.
+inline constexpr std::int8_t kFree = 0;
+inline constexpr std::int8_t kOccupied = 100;
+inline constexpr std::int8_t kUnknown = -1;
+
+/// The floor seen from above. Cell (x, y) covers [x, x+1) x [y, y+1) times resolution_m from
+/// origin_m; so row 0 is the southernmost, y grows northwards (pictures are turned over on
+/// writing).
+struct OccupancyGrid {
+  Grid2d<std::int8_t> cells;
+  double resolution_m = 0.05;
+  Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();  ///< world place of the corner of cell (0, 0)
+
+  /// World place of the middle of a cell.
+  Eigen::Vector2d centre_m(int x, int y) const {
+    return origin_m + resolution_m * Eigen::Vector2d(x + 0.5, y + 0.5);
+  }
+};
+
+struct OccupancyConfig {
+  double resolution_m = 0.05;
+  double max_range_m = 4.0;  ///< farther returns only clear the way up to here
+  int stride_px = 2;         ///< every n-th pixel of every n-th row is used
+};
+
+/// An octree of occupancy probabilities, fed with depth images (OctoMap: Hornung et al.,
+/// Autonomous Robots 2013).
+class OccupancyMapper {
+ public:
+  explicit OccupancyMapper(const OccupancyConfig& config = {});
+  ~OccupancyMapper();
+  OccupancyMapper(OccupancyMapper&&) noexcept;
+  OccupancyMapper& operator=(OccupancyMapper&&) noexcept;
+
+  /// Adds what was seen: the space up to each return is free, the return itself occupied. Each
+  /// voxel is updated once per image. @param depth_m along z, undistorted, 0 = no return.
+  void insert(const Grid2d<float>& depth_m, const Camera& camera, const SE3& world_from_camera);
+
+  /// Cells over the mapped area: occupied if any voxel between the heights is, else free if any
+  /// voxel there is free, else unknown. Empty if nothing was seen between the heights.
+  OccupancyGrid project(double min_z_m, double max_z_m) const;
+
+  std::size_t leaf_count() const;
+
+  /// Writes OctoMap's binary format (each voxel free, occupied or unknown).
+  /// @throws InputError if the file cannot be written.
+  void save_bt(const std::filesystem::path& file) const;
+  /// Reads such a file. @throws InputError naming it.
+  static OccupancyMapper load_bt(const std::filesystem::path& file);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Writes stem.pgm and stem.yaml as ROS map_server reads them (mode trinary; upper row = north).
+/// @throws InputError if a file cannot be written.
+void save_map_server(const OccupancyGrid& grid, const std::filesystem::path& stem);
+
+/// Reads such a pair by its YAML file (mode trinary, no rotation).
+/// @throws InputError naming file, line, field and value.
+OccupancyGrid load_map_server(const std::filesystem::path& yaml_file);
+
+}  // namespace mh

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robots/model/robot.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+const std::string kPepper = MH_SOURCE_DIR "/robots/pepper/pepper.yaml";
+
+/// The message with which Pepper's file is refused after one edit.
+std::string refusal(const std::string& from, const std::string& to) {
+  std::string text = read_file(kPepper);
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  const std::string file = testing::TempDir() + "robot_test.yaml";
+  write_atomically(file, text);
+  try {
+    load_robot(file);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+TEST(LoadRobot, PepperHasItsPublishedFigures) {
+  const Robot robot = load_robot(kPepper);
+  EXPECT_EQ(robot.name, "pepper");
+  EXPECT_DOUBLE_EQ(robot.mass_kg, 28.681);
+  EXPECT_DOUBLE_EQ(robot.footprint_radius_m, 0.26);
+  EXPECT_DOUBLE_EQ(robot.height_m, 1.21);
+  EXPECT_DOUBLE_EQ(robot.limits.max_velocity_m_per_s, 0.55);
+  EXPECT_DOUBLE_EQ(robot.limits.max_acceleration_m_per_s2, 0.55);
+  EXPECT_DOUBLE_EQ(robot.limits.max_turn_rad_per_s, 1.0);
+}
+
+TEST(LoadRobot, FieldOfViewSpansTheImage) {
+  const Camera camera = load_robot(kPepper).camera;
+  // Image borders lie half a pixel outside the outermost pixel centres.
+  const double left = std::atan((-0.5 - camera.cx_px) / camera.fx_px);
+  const double right = std::atan((camera.width_px - 0.5 - camera.cx_px) / camera.fx_px);
+  EXPECT_NEAR((right - left) * 180 / std::numbers::pi, 58.0, 1e-9);
+  const double top = std::atan((-0.5 - camera.cy_px) / camera.fy_px);
+  const double bottom = std::atan((camera.height_px - 0.5 - camera.cy_px) / camera.fy_px);
+  EXPECT_NEAR((bottom - top) * 180 / std::numbers::pi, 45.0, 1e-9);
+}
+
+TEST(LoadRobot, OpticalAxesFollowRep103) {
+  const SE3 base_from_camera = load_robot(kPepper).base_from_camera;
+  EXPECT_TRUE(base_from_camera.translation().isApprox(Eigen::Vector3d(0.0134, 0.0390, 1.1093)));
+  // What lies ahead of the base lies along z of the camera; its left is the camera's -x.
+  const Eigen::Matrix3d camera_from_base = base_from_camera.rotation().transpose();
+  EXPECT_TRUE((camera_from_base * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitZ()));
+  EXPECT_TRUE((camera_from_base * Eigen::Vector3d::UnitY()).isApprox(-Eigen::Vector3d::UnitX()));
+  EXPECT_TRUE((camera_from_base * Eigen::Vector3d::UnitZ()).isApprox(-Eigen::Vector3d::UnitY()));
+}
+
+TEST(LoadRobot, RefusesBadFilesWithFileLinePlaceAndValue) {
+  EXPECT_NE(refusal("mass_kg: 28.681", "mass_kg: -3").find("base.mass_kg: -3 is outside"),
+            std::string::npos);
+  EXPECT_NE(refusal("name: pepper", "name: pepper\ncolour: white").find("colour"),
+            std::string::npos);
+  EXPECT_NE(refusal("width_px: 640", "width_px: wide").find("camera.width_px: 'wide'"),
+            std::string::npos);
+  EXPECT_NE(refusal("  rate_hz: 30.0", "  # rate").find("key 'rate_hz' is missing"),
+            std::string::npos);
+  EXPECT_THROW(load_robot("/no/such/robot.yaml"), InputError);
+}
+
+}  // namespace
+}  // namespace mh
