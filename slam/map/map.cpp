@@ -22,10 +22,12 @@ std::size_t most_central(const std::vector<const Descriptor*>& descriptors) {
   int best_median = INT32_MAX;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) distances[j] = hamming(*descriptors[i], *descriptors[j]);
-    std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(n / 2),
+    // The distance 0 to itself sorts first; the median of the others follows.
+    const std::size_t median = 1 + (n - 1) / 2;
+    std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(median),
                      distances.end());
-    if (distances[n / 2] < best_median) {
-      best_median = distances[n / 2];
+    if (distances[median] < best_median) {
+      best_median = distances[median];
       best = i;
     }
   }

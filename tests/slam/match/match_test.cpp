@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/match/match.hpp"
+
+#include <gtest/gtest.h>
+
+#include "slam/core/random.hpp"
+
+namespace mh {
+namespace {
+
+/// Descriptor `base` with the first n bits flipped.
+Descriptor flipped(Descriptor base, int n) {
+  for (int i = 0; i < n; ++i) base[static_cast<std::size_t>(i / 64)] ^= 1ULL << (i % 64);
+  return base;
+}
+
+struct Frame {
+  Features features;
+  void add(float u, float v, Descriptor d, ClassId label = kVoid, int octave = 0, float angle = 1.0F) {
+    features.keypoints.push_back(
+        {.u_px = u, .v_px = v, .angle_rad = angle, .octave = octave, .label = label});
+    features.descriptors.push_back(d);
+  }
+};
+
+const Descriptor kBase{0x123456789abcdefULL, 0xfedcba987654321ULL, 0x0f0f0f0f0f0f0f0fULL, 42};
+
+TEST(MatchByProjection, PenalisesDisagreeingLabelsAndCounts) {
+  Frame frame;
+  frame.add(100, 100, flipped(kBase, 20), ClassId{5});  // nearer, but a chair
+  frame.add(103, 100, flipped(kBase, 25), ClassId{7});  // a table, like the target
+  const FeatureGrid grid(frame.features.keypoints, Camera{});
+  const std::vector<std::uint8_t> taken(2, 0);
+  const ProjectionTarget target{.u_px = 101, .v_px = 100, .radius_px = 10, .min_octave = 0,
+                                .max_octave = 0, .descriptor = &kBase, .label = ClassId{7}};
+  const auto match = [&](double xi, MatcherCounts& counts) {
+    const SemanticConfig config{.xi = xi};
+    return match_by_projection({&target, 1}, frame.features, grid, taken, {},
+                               SemanticMatcher(config, counts))[0];
+  };
+  MatcherCounts plain, semantic;
+  EXPECT_EQ(match(1.0, plain), 0);
+  EXPECT_EQ(match(1.5, semantic), 1);  // 20 * 1.5 = 30 > 25
+  EXPECT_EQ(semantic.compared, 2);
+  EXPECT_EQ(semantic.penalised, 1);
+  EXPECT_EQ(semantic.rejected_by_xi, 0);
+}
+
+TEST(SemanticMatcher, CountsThresholdAndRatioEffectsApart) {
+  MatcherCounts counts;
+  SemanticMatcher matcher(SemanticConfig{.xi = 2.0}, counts);
+  // Best 30 -> 60 by the penalty, over the gate of 50.
+  SemanticMatcher::Best best;
+  best.offer(0, matcher({flipped(kBase, 30), ClassId{1}}, {kBase, ClassId{2}}), 0);
+  EXPECT_FALSE(matcher.accept(best, 50, 0.75F));
+  EXPECT_EQ(counts.rejected_by_xi, 1);
+  // Best 40, second 44 -> 88: the ratio test passes only because the second was inflated.
+  best = {};
+  best.offer(0, matcher({flipped(kBase, 40), ClassId{1}}, {kBase, ClassId{1}}), 0);
+  best.offer(1, matcher({flipped(kBase, 44), ClassId{1}}, {kBase, ClassId{2}}), 0);
+  EXPECT_TRUE(matcher.accept(best, 50, 0.75F));
+  EXPECT_EQ(counts.ratio_helped, 1);
+}
+
+TEST(MatchByProjection, AFeatureGoesToTheNearestTarget) {
+  Frame frame;
+  frame.add(100, 100, kBase);
+  const FeatureGrid grid(frame.features.keypoints, Camera{});
+  const Descriptor far = flipped(kBase, 20), near = flipped(kBase, 5);
+  const std::vector<ProjectionTarget> targets{
+      {.u_px = 100, .v_px = 100, .radius_px = 5, .descriptor = &far},
+      {.u_px = 102, .v_px = 100, .radius_px = 5, .descriptor = &near},
+      {.u_px = 101, .v_px = 100, .radius_px = 5, .descriptor = &far}};
+  MatcherCounts counts;
+  const auto match = match_by_projection(targets, frame.features, grid, std::vector<std::uint8_t>(1, 0),
+                                         {}, SemanticMatcher(SemanticConfig{}, counts));
+  EXPECT_EQ(match, (std::vector<std::int32_t>{-1, 0, -1}));
+}
+
+TEST(MatchByProjection, RespectsRadiusOctaveAndTaken) {
+  Frame frame;
+  frame.add(100, 100, kBase, kVoid, 3);
+  frame.add(140, 100, kBase, kVoid, 0);
+  frame.add(101, 101, kBase, kVoid, 0);
+  const FeatureGrid grid(frame.features.keypoints, Camera{});
+  const ProjectionTarget target{.u_px = 100, .v_px = 100, .radius_px = 10, .min_octave = 0,
+                                .max_octave = 1, .descriptor = &kBase};
+  MatcherCounts counts;
+  const SemanticMatcher matcher(SemanticConfig{}, counts);
+  EXPECT_EQ(match_by_projection({&target, 1}, frame.features, grid,
+                                std::vector<std::uint8_t>{0, 0, 0}, {}, matcher)[0], 2);
+  EXPECT_EQ(match_by_projection({&target, 1}, frame.features, grid,
+                                std::vector<std::uint8_t>{0, 0, 1}, {}, matcher)[0], -1);
+}
+
+TEST(FeatureGrid, FindsWhatAScanFinds) {
+  std::vector<Keypoint> keypoints;
+  const RandomStream random(3);
+  for (int i = 0; i < 500; ++i)
+    keypoints.push_back({.u_px = static_cast<float>(random.uniform(2 * i, 0, 639)),
+                         .v_px = static_cast<float>(random.uniform(2 * i + 1, 0, 479))});
+  const FeatureGrid grid(keypoints, Camera{});
+  for (const float radius : {3.0F, 40.0F, 900.0F})
+    for (const auto& [u, v] : {std::pair{5.0F, 470.0F}, {320.0F, 240.0F}, {-10.0F, 900.0F}}) {
+      std::vector<std::uint32_t> found, scanned;
+      const auto within = [&, u = u, v = v](std::uint32_t i) {
+        return std::abs(keypoints[i].u_px - u) <= radius && std::abs(keypoints[i].v_px - v) <= radius;
+      };
+      grid.for_each_near(u, v, radius, [&](std::uint32_t i) {
+        if (within(i)) found.push_back(i);
+      });
+      for (std::uint32_t i = 0; i < keypoints.size(); ++i)
+        if (within(i)) scanned.push_back(i);
+      std::sort(found.begin(), found.end());
+      EXPECT_EQ(found, scanned);
+    }
+}
+
+TEST(MatchByWords, MatchesWithinNodesOnceAndByDominantRotation) {
+  Frame a, b;
+  WordIndex words_a, words_b;
+  const RandomStream random(9);
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    const Descriptor d{random.bits(4 * i), random.bits(4 * i + 1), random.bits(4 * i + 2),
+                       random.bits(4 * i + 3)};
+    a.add(0, 0, d, kVoid, 0, 1.0F);
+    // All turn by 0.5 rad but the last, which turns by 3.
+    b.add(0, 0, flipped(d, 6), kVoid, 0, i == 39 ? 4.0F : 1.5F);
+    words_a.by_node.emplace_back(i % 4, i);
+    words_b.by_node.emplace_back(i == 7 ? 9 : i % 4, i);  // feature 7 falls under another node
+  }
+  std::sort(words_a.by_node.begin(), words_a.by_node.end());
+  std::sort(words_b.by_node.begin(), words_b.by_node.end());
+  MatcherCounts counts;
+  const std::vector<std::uint8_t> all(40, 1);
+  const auto matches = match_by_words(a.features, words_a, all, b.features, words_b, all, 50, 0.75F,
+                                      SemanticMatcher(SemanticConfig{}, counts));
+  EXPECT_EQ(matches.size(), 38U);  // 40 but the other node's and the other rotation's
+  for (const FeatureMatch& m : matches) {
+    EXPECT_EQ(m.a, m.b);
+    EXPECT_NE(m.a, 7U);
+    EXPECT_NE(m.a, 39U);
+  }
+}
+
+}  // namespace
+}  // namespace mh
