@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "slam/core/random.hpp"
+#include "slam/features/features.hpp"
+
+namespace mh {
+
+struct Clusters {
+  std::vector<Descriptor> centres;  ///< distinct, each with members
+  std::vector<std::uint32_t>
+      cluster_of;  ///< per descriptor: its nearest centre, first among equals
+};
+
+/// k-medians in Hamming space: seeds drawn with probability proportional to squared distance from
+/// those already drawn (k-means++, Arthur and Vassilvitskii, SODA 2007), then assignment and
+/// bitwise majority (ties give 0) in turn until assignments stay or `max_iterations` are done.
+/// Up to k distinct descriptors become clusters of their own. Clusters left without members are
+/// dropped.
+/// @param members  indices into `descriptors`: what is clustered; not empty.
+/// @returns cluster_of in the order of `members`.
+Clusters cluster(std::span<const Descriptor> descriptors, std::span<const std::uint32_t> members,
+                 int k, int max_iterations, RandomStream random);
+
+/// Index of the centre nearest to a descriptor, the first among equals. @pre there is one.
+inline std::uint32_t nearest(std::span<const Descriptor> centres, const Descriptor& descriptor) {
+  std::uint32_t best = 0;
+  int best_distance = hamming(centres[0], descriptor);
+  for (std::uint32_t i = 1; i < centres.size(); ++i)
+    if (const int distance = hamming(centres[i], descriptor); distance < best_distance) {
+      best = i;
+      best_distance = distance;
+    }
+  return best;
+}
+
+}  // namespace mh
