@@ -6,15 +6,36 @@
 namespace mh {
 
 struct BakeConfig {
-  int samples = 96;     ///< hemisphere rays per vertex
-  int bounces = 2;      ///< indirect bounces gathered by iteration over vertices
-  int sun_samples = 8;  ///< shadow rays per sun and per lamp
+  int samples = 128;     ///< hemisphere rays per vertex, rounded up to whole packets of 16
+  int bounces = 2;       ///< diffuse interreflections
+  int sun_samples = 16;  ///< shadow rays per sun and per lamp, rounded up likewise
+  int smoothing = 6;     ///< rounds of averaging the indirect part over neighbouring vertices
   std::uint64_t seed = 0;
   int threads = 2;  ///< never changes a bit of the result
 };
 
-/// Computes Scene::light (irradiance / pi at every vertex) from the scene's lights by ray tracing:
-/// sun through windows, sky, lamps with soft shadows, diffuse bounces. Deterministic.
+/// Computes Scene::light (irradiance / pi at every vertex, linear RGB) by ray tracing: sun through
+/// windows, sphere lamps with soft shadows, sky and glowing surfaces seen by hemisphere rays, and
+/// `bounces` diffuse interreflections gathered from the vertices' light of the round before.
+///
+/// What a vertex stands for, where a scene is not a textbook's:
+/// - Light is that of the side that the faces' normals show. Only where that side gets next to none
+///   (a closed box turned inside out) the other side's is taken. "The brighter side" would let the
+///   sky shine through every thin outer wall.
+/// - Light is measured all over the nearer half of the vertex's faces, so that a vertex in a corner
+///   is not measured inside the neighbouring wall, and the edge of a shadow becomes a ramp as wide
+///   as the faces instead of a staircase.
+/// - A vertex inside something solid (furniture standing on a tessellated floor) sees mostly backs
+///   of faces; its light is filled in from its neighbours, lest it darkens the floor around.
+/// - Glowing faces cast no shadow for suns and lamps (lamp shades, window panes), and within reach
+///   of a lamp's centre (three radii, at least 0.3 m) their glow is that lamp's, not counted twice.
+/// Deterministic: random numbers are counted by (seed, vertex).
+/// @throws std::invalid_argument if a count is negative or samples is 0.
 void bake_light(Scene& scene, const BakeConfig& config = {});
+
+/// The exposure (see RenderConfig) under which the median surface of the rooms comes out as
+/// `median_radiance` (linear; 0.2 is sRGB 124). Surfaces are weighted by area; where the scene
+/// knows its rooms, only what shows into them counts. 1 for an empty or black scene.
+float suggest_exposure(const Scene& scene, float median_radiance = 0.2F);
 
 }  // namespace mh

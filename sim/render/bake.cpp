@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/render/bake.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "sim/render/bake_points.hpp"
+#include "sim/render/colour.hpp"
+#include "sim/render/embree_scene.hpp"
+#include "sim/render/parallel.hpp"
+#include "slam/core/random.hpp"
+
+namespace mh {
+namespace {
+
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+using Colours = std::vector<Vector3f>;
+
+constexpr int kLanes = 16;
+constexpr int kVerticesPerJob = 1024;
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+// No real surface reflects more, and interreflections must fade.
+constexpr float kMaxAlbedo = 0.95F;
+// A vertex whose rays meet more backs than this share is inside something.
+constexpr float kInsideShare = 0.5F;
+// A side with less than this share of the scene's mean light, and of the other side's, is dark:
+// inside a closed box that is turned inside out.
+constexpr float kDarkShare = 0.02F;
+// Light is averaged only between vertices whose normals differ by less than 25 deg, and the less
+// the further they differ beyond this share, the size of the noise: contact shadows stay.
+constexpr float kSameSurface = 0.9F;
+constexpr float kNoise = 0.1F;
+
+/// Evenly spread points of the unit disc (Vogel's sunflower), turned by a random angle and shifted
+/// by a random share of a step: the same low-discrepancy pattern at each vertex, no two alike.
+class DiscPattern {
+ public:
+  explicit DiscPattern(int count) {
+    const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
+    for (int i = 0; i < count; ++i)
+      directions_.emplace_back(static_cast<float>(std::cos(i * golden_angle)),
+                               static_cast<float>(std::sin(i * golden_angle)));
+  }
+  int size() const { return static_cast<int>(directions_.size()); }
+  /// Point i for the given turn (cosine, sine) and shift in [0, 1).
+  Vector2f at(int i, const Vector2f& turn, float shift) const {
+    const float radius = std::sqrt((static_cast<float>(i) + shift) / static_cast<float>(size()));
+    const Vector2f& d = directions_[static_cast<std::size_t>(i)];
+    return radius *
+           Vector2f(d.x() * turn.x() - d.y() * turn.y(), d.x() * turn.y() + d.y() * turn.x());
+  }
+
+ private:
+  std::vector<Vector2f> directions_;
+};
+
+struct Turn {
+  Vector2f rotation;
+  float shift;
+};
+
+Turn random_turn(const RandomStream& stream, std::uint64_t index) {
+  const double angle = stream.uniform(2 * index, 0.0, 2.0 * std::numbers::pi);
+  return {{static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))},
+          static_cast<float>(stream.uniform(2 * index + 1))};
+}
+
+/// Two unit vectors that make a right-handed frame with the unit vector n.
+void make_frame(const Vector3f& n, Vector3f& a, Vector3f& b) {
+  a = (std::abs(n.x()) > 0.7F ? Vector3f::UnitY() : Vector3f::UnitX()).cross(n).normalized();
+  b = n.cross(a);
+}
+
+void set_ray(RTCRay16& rays, int lane, const Vector3f& origin, const Vector3f& direction, float end,
+             unsigned mask) {
+  rays.org_x[lane] = origin.x(), rays.org_y[lane] = origin.y(), rays.org_z[lane] = origin.z();
+  rays.dir_x[lane] = direction.x(), rays.dir_y[lane] = direction.y();
+  rays.dir_z[lane] = direction.z();
+  rays.tnear[lane] = 0.0F, rays.tfar[lane] = end, rays.time[lane] = 0.0F;
+  rays.mask[lane] = mask, rays.id[lane] = 0, rays.flags[lane] = 0;
+}
+
+int whole_packets(int count) {
+  return (count + kLanes - 1) / kLanes * kLanes;
+}
+
+struct Gathered {
+  Vector3f light = Vector3f::Zero();
+  bool inside = false;
+};
+
+class Baker {
+ public:
+  Baker(const Scene& scene, const BakeConfig& config)
+      : scene_(scene),
+        config_(config),
+        bvh_(scene, config.threads, false),
+        points_(scene),
+        hemisphere_(whole_packets(config.samples)),
+        shadow_(whole_packets(std::max(1, config.sun_samples))) {
+    valid_.fill(-1);
+    for (const Light& light : scene.lights)
+      if (light.kind == Light::Kind::kSky) sky_ += light.colour;
+    find_albedo();
+    find_glow();
+  }
+
+  Colours bake() {
+    const std::size_t count = points_.size();
+    Colours direct(count), indirect(count, Vector3f::Zero());
+    std::vector<char> inside(count, 0);
+    for_each_vertex([&](std::size_t v) { direct[v] = direct_light(v, 1.0F); });
+    // Round 0 gathers sky and glow alone; each round after it adds one interreflection.
+    for (int round = 0; round <= config_.bounces; ++round) {
+      leaving_ = round == 0 ? Colours(count, Vector3f::Zero()) : light_leaving(direct, indirect);
+      Colours next(count);
+      for_each_vertex([&](std::size_t v) {
+        const Gathered gathered = gather(v, 1.0F, round);
+        next[v] = gathered.light;
+        inside[v] = gathered.inside;
+      });
+      indirect = std::move(next);
+      mend(inside, direct, indirect);
+    }
+    leaving_ = light_leaving(direct, indirect);
+    Colours light(count);
+    double total = 0.0;
+    for (std::size_t v = 0; v < count; ++v) {
+      light[v] = direct[v] + indirect[v];
+      total += luminance(light[v]);
+    }
+    const float dark =
+        kDarkShare *
+        static_cast<float>(total / static_cast<double>(std::max<std::size_t>(1, count)));
+    for_each_vertex([&](std::size_t v) {
+      if (inside[v] || luminance(light[v]) > dark) return;
+      const Vector3f other = direct_light(v, -1.0F) + gather(v, -1.0F, config_.bounces).light;
+      if (luminance(light[v]) <= kDarkShare * luminance(other)) light[v] = other;
+    });
+    return light;
+  }
+
+ private:
+  template <class Work>
+  void for_each_vertex(const Work& work) const {
+    const int jobs = static_cast<int>((points_.size() + kVerticesPerJob - 1) / kVerticesPerJob);
+    parallel_for(jobs, config_.threads, [&](int job) {
+      const FlushDenormals flush;
+      const std::size_t begin = static_cast<std::size_t>(job) * kVerticesPerJob;
+      const std::size_t end = std::min(points_.size(), begin + kVerticesPerJob);
+      for (std::size_t v = begin; v < end; ++v) work(v);
+    });
+  }
+
+  void find_albedo() {
+    for (const Material& material : scene_.materials) {
+      Vector3f mean = Vector3f::Ones();
+      if (!material.texture.empty()) {
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (const Rgb8& texel : material.texture) sum += srgb_to_linear(texel).cast<double>();
+        mean = (sum / static_cast<double>(material.texture.size())).cast<float>();
+      }
+      albedo_.push_back(
+          mean.cwiseProduct(srgb_to_linear(material.base_colour)).cwiseMin(kMaxAlbedo));
+    }
+    if (albedo_.empty()) albedo_.push_back(Vector3f::Constant(kMaxAlbedo));
+  }
+
+  /// The radiance that each face emits, without what its lamp accounts for.
+  void find_glow() {
+    glow_.assign(scene_.triangles.size(), Vector3f::Zero());
+    for (std::size_t f = 0; f < glow_.size(); ++f) {
+      if (scene_.materials.empty()) break;
+      const Vector3f& emission = scene_.materials[scene_.material_of[f]].emission;
+      if (emission.isZero()) continue;
+      const auto& t = scene_.triangles[f];
+      const Vector3f centre =
+          (scene_.positions_m[t[0]] + scene_.positions_m[t[1]] + scene_.positions_m[t[2]]) / 3.0F;
+      const bool of_a_lamp =
+          std::any_of(scene_.lights.begin(), scene_.lights.end(), [&](const Light& light) {
+            return light.kind == Light::Kind::kSphere &&
+                   (light.position_m - centre).norm() < std::max(0.3F, 3.0F * light.radius_m);
+          });
+      if (!of_a_lamp) glow_[f] = emission;
+    }
+  }
+
+  /// Irradiance / pi from suns and lamps on one side of a vertex.
+  Vector3f direct_light(std::size_t v, float side) const {
+    Vector3f irradiance = Vector3f::Zero();
+    for (std::size_t l = 0; l < scene_.lights.size(); ++l) {
+      const Light& light = scene_.lights[l];
+      if (light.kind == Light::Kind::kSky) continue;
+      const Turn turn = random_turn(RandomStream(config_.seed).fork(1000 + l), v);
+      irradiance +=
+          light.colour * (light.kind == Light::Kind::kSun ? sun_share(light, v, side, turn)
+                                                          : lamp_share(light, v, side, turn));
+    }
+    return irradiance / kPi;
+  }
+
+  /// Mean over the sun's disc of cosine x visibility.
+  float sun_share(const Light& sun, std::size_t v, float side, const Turn& turn) const {
+    const Vector3f normal = side * points_.normal(v), to_sun = -sun.direction.normalized();
+    if (normal.dot(to_sun) <= -sun.angular_radius_rad) return 0.0F;
+    Vector3f a, b;
+    make_frame(to_sun, a, b);
+    return shadowed_mean(
+        v, side, turn, [&](const Vector2f& p, const Vector3f&, Vector3f& way, float& end) {
+          way = (to_sun + std::tan(sun.angular_radius_rad) * (p.x() * a + p.y() * b)).normalized();
+          end = kInfinity;
+          return normal.dot(way);
+        });
+  }
+
+  /// Mean over the lamp's disc, as seen from the point, of cosine x visibility / distance^2.
+  float lamp_share(const Light& lamp, std::size_t v, float side, const Turn& turn) const {
+    const Vector3f normal = side * points_.normal(v);
+    const float nearest = std::max(lamp.radius_m * lamp.radius_m, 1e-4F);
+    return shadowed_mean(v, side, turn,
+                         [&](const Vector2f& p, const Vector3f& origin, Vector3f& way, float& end) {
+                           const Vector3f to_lamp = lamp.position_m - origin;
+                           Vector3f a, b;
+                           make_frame(to_lamp.normalized(), a, b);
+                           way = to_lamp + lamp.radius_m * (p.x() * a + p.y() * b);
+                           end = 0.999F;  // what is at the lamp does not shade its light
+                           const float square = way.squaredNorm();
+                           return normal.dot(way) / std::sqrt(square) / std::max(square, nearest);
+                         });
+  }
+
+  /// Mean of what `aim` returns for each point of the shadow pattern, 0 where something opaque is
+  /// in the way or the source is behind the surface.
+  template <class Aim>
+  float shadowed_mean(std::size_t v, float side, const Turn& turn, const Aim& aim) const {
+    float sum = 0.0F;
+    for (int first = 0; first < shadow_.size(); first += kLanes) {
+      alignas(64) RTCRay16 rays;
+      alignas(64) std::array<int, kLanes> valid;
+      std::array<float, kLanes> weight;
+      bool any = false;
+      for (int i = 0; i < kLanes; ++i) {
+        Vector3f way = Vector3f::UnitZ();
+        float end = 0.0F;
+        const Vector3f origin = points_.origin_m(v, first + i, turn.shift, side);
+        weight[i] = aim(shadow_.at(first + i, turn.rotation, turn.shift), origin, way, end);
+        valid[i] = weight[i] > 0.0F ? -1 : 0;
+        any |= weight[i] > 0.0F;
+        set_ray(rays, i, origin, way, end, kOpaqueFaces);
+      }
+      if (!any) continue;
+      bvh_.occluded16(valid.data(), rays);
+      for (int i = 0; i < kLanes; ++i)
+        if (valid[i] != 0 && rays.tfar[i] >= 0.0F) sum += weight[i];
+    }
+    return sum / static_cast<float>(shadow_.size());
+  }
+
+  /// Cosine-weighted mean of the radiance that arrives on one side of a vertex from sky, glowing
+  /// faces and faces that reflect `leaving_`: irradiance / pi.
+  Gathered gather(std::size_t v, float side, int round) const {
+    const Vector3f normal = side * points_.normal(v);
+    Vector3f a, b;
+    make_frame(normal, a, b);
+    const Turn turn =
+        random_turn(RandomStream(config_.seed).fork(static_cast<std::uint64_t>(round)), v);
+    Vector3f sum = Vector3f::Zero();
+    int backs = 0;
+    for (int first = 0; first < hemisphere_.size(); first += kLanes) {
+      alignas(64) RTCRayHit16 packet;
+      for (int i = 0; i < kLanes; ++i) {
+        const Vector2f p = hemisphere_.at(first + i, turn.rotation, turn.shift);
+        const float up = std::sqrt(std::max(0.0F, 1.0F - p.squaredNorm()));
+        set_ray(packet.ray, i, points_.origin_m(v, first + i, turn.shift, side),
+                p.x() * a + p.y() * b + up * normal, kInfinity, kAllFaces);
+        packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+      }
+      bvh_.intersect16(valid_.data(), packet, false);
+      for (int i = 0; i < kLanes; ++i) {
+        if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
+          sum += sky_;
+          continue;
+        }
+        sum += radiance_at(packet.hit, i);
+        backs += packet.hit.Ng_x[i] * packet.ray.dir_x[i] +
+                     packet.hit.Ng_y[i] * packet.ray.dir_y[i] +
+                     packet.hit.Ng_z[i] * packet.ray.dir_z[i] >
+                 0.0F;
+      }
+    }
+    const auto rays = static_cast<float>(hemisphere_.size());
+    return {sum / rays, static_cast<float>(backs) > kInsideShare * rays};
+  }
+
+  Vector3f radiance_at(const RTCHit16& hit, int lane) const {
+    const std::uint32_t face = bvh_.face_of(hit.geomID[lane], hit.primID[lane]);
+    const auto& t = scene_.triangles[face];
+    const float u = hit.u[lane], w = hit.v[lane];
+    const Vector3f light =
+        (1.0F - u - w) * leaving_[t[0]] + u * leaving_[t[1]] + w * leaving_[t[2]];
+    const std::size_t material = scene_.materials.empty() ? 0 : scene_.material_of[face];
+    return albedo_[material].cwiseProduct(light) + glow_[face];
+  }
+
+  /// Per vertex: light x vertex colour; the material's share comes with the face.
+  Colours light_leaving(const Colours& direct, const Colours& indirect) const {
+    Colours leaving(direct.size());
+    for (std::size_t v = 0; v < leaving.size(); ++v) {
+      leaving[v] = direct[v] + indirect[v];
+      if (!scene_.colours.empty())
+        leaving[v] = leaving[v].cwiseProduct(srgb_to_linear(scene_.colours[v]));
+    }
+    return leaving;
+  }
+
+  /// Fills vertices inside solids from their neighbours and smooths the indirect light.
+  void mend(const std::vector<char>& inside, Colours& direct, Colours& indirect) const {
+    std::vector<char> known(inside.size());
+    for (std::size_t v = 0; v < known.size(); ++v) known[v] = !inside[v];
+    fill(known, direct, indirect);
+    for (int round = 0; round < config_.smoothing; ++round) {
+      const Colours before = indirect;
+      for (std::size_t v = 0; v < before.size(); ++v) {
+        const float own = luminance(before[v]);
+        Vector3f sum = before[v];
+        float weight = 1.0F;
+        for (const std::uint32_t n : neighbours_.of(v)) {
+          if (!known[n] || points_.normal(n).dot(points_.normal(v)) < kSameSurface) continue;
+          const float step = (luminance(before[n]) - own) / (kNoise * own + 1e-6F);
+          const float w = 1.0F / (1.0F + step * step);
+          sum += w * before[n];
+          weight += w;
+        }
+        indirect[v] = sum / weight;
+      }
+    }
+  }
+
+  /// Gives unknown vertices the mean of their known neighbours, ring by ring from the rim inwards.
+  void fill(std::vector<char>& known, Colours& direct, Colours& indirect) const {
+    constexpr int kRings = 16;  // furniture is rarely wider than so many cells
+    for (int ring = 0; ring < kRings; ++ring) {
+      std::vector<std::size_t> filled;
+      for (std::size_t v = 0; v < known.size(); ++v) {
+        if (known[v]) continue;
+        Vector3f sum_direct = Vector3f::Zero(), sum_indirect = Vector3f::Zero();
+        float weight = 0.0F;
+        for (const std::uint32_t n : neighbours_.of(v)) {
+          if (!known[n] || points_.normal(n).dot(points_.normal(v)) < kSameSurface) continue;
+          sum_direct += direct[n];
+          sum_indirect += indirect[n];
+          weight += 1.0F;
+        }
+        if (weight <= 0.0F) continue;
+        direct[v] = sum_direct / weight;
+        indirect[v] = sum_indirect / weight;
+        filled.push_back(v);
+      }
+      if (filled.empty()) return;
+      for (const std::size_t v : filled) known[v] = 1;
+    }
+  }
+
+  const Scene& scene_;
+  const BakeConfig config_;
+  EmbreeScene bvh_;
+  BakePoints points_;
+  VertexNeighbours neighbours_{scene_};
+  DiscPattern hemisphere_, shadow_;
+  alignas(64) std::array<int, kLanes> valid_{};
+  Colours albedo_;  // by material
+  Colours glow_;    // by face
+  Vector3f sky_ = Vector3f::Zero();
+  Colours leaving_;  // by vertex, of the round before
+};
+
+}  // namespace
+
+void bake_light(Scene& scene, const BakeConfig& config) {
+  if (config.samples < 1 || config.bounces < 0 || config.sun_samples < 0 || config.smoothing < 0)
+    throw std::invalid_argument("bake_light: negative count, or samples is 0");
+  validate(scene);
+  scene.light = Baker(scene, config).bake();
+}
+
+}  // namespace mh
