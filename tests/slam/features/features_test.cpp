@@ -12,64 +12,17 @@
 #include <opencv2/imgproc.hpp>
 
 #include "slam/core/error.hpp"
-#include "slam/core/random.hpp"
+#include "tests/slam/features/texture.hpp"
 
 namespace mh {
 namespace {
+using testing::camera_of;
+using testing::frame_of;
+using testing::soften;
+using testing::squares;
 
 constexpr int kWidth = 640;
 constexpr int kHeight = 480;
-
-// A lens and a sensor: without them neighbouring pixels are equally good corners, and non-maximal
-// suppression drops both.
-void soften(cv::Mat& image) {
-  cv::GaussianBlur(image, image, {5, 5}, 0.8);
-  for (int y = 0; y < image.rows; ++y)
-    for (int x = 0; x < image.cols; ++x) {
-      const auto noise = RandomStream(77).below(static_cast<std::uint64_t>(y * image.cols + x), 3);
-      auto& pixel = image.at<std::uint8_t>(y, x);
-      pixel = static_cast<std::uint8_t>(std::min<int>(255, pixel + static_cast<int>(noise)));
-    }
-}
-
-// Overlapping squares of random brightness: corners of every strength and size. Contrast falls
-// linearly from left (strong) to right (weak).
-cv::Mat squares(int width, int height, std::uint64_t seed, double weakest = 0.2) {
-  cv::Mat image(height, width, CV_8U, cv::Scalar(128));
-  const RandomStream random(seed);
-  for (std::uint64_t i = 0; i < 1500; ++i) {
-    const RandomStream r = random.fork(i);
-    const int x = static_cast<int>(r.below(0, static_cast<std::uint64_t>(width)));
-    const int y = static_cast<int>(r.below(1, static_cast<std::uint64_t>(height)));
-    const int size = 4 + static_cast<int>(r.below(2, 40));
-    const double contrast = 1 - (1 - weakest) * x / width;
-    const double grey = 128 + contrast * (r.uniform(3) * 250 - 125);
-    cv::rectangle(image, {x, y, size, size}, cv::Scalar(grey), cv::FILLED);
-  }
-  soften(image);
-  return image;
-}
-
-RgbdFrame frame_of(const cv::Mat& grey) {
-  RgbdFrame frame;
-  frame.colour = Grid2d<Rgb8>(grey.cols, grey.rows);
-  frame.depth_m = Grid2d<float>(grey.cols, grey.rows, 2.0F);
-  for (int y = 0; y < grey.rows; ++y)
-    for (int x = 0; x < grey.cols; ++x) {
-      const auto g = grey.at<std::uint8_t>(y, x);
-      frame.colour(x, y) = {g, g, g};
-    }
-  return frame;
-}
-
-Camera camera_of(const RgbdFrame& frame) {
-  Camera camera;
-  camera.width_px = frame.colour.width();
-  camera.height_px = frame.colour.height();
-  camera.cx_px = (camera.width_px - 1) / 2.0;
-  camera.cy_px = (camera.height_px - 1) / 2.0;
-  return camera;
-}
 
 Features extract_from(const cv::Mat& grey, const FeatureConfig& config = {}) {
   const RgbdFrame frame = frame_of(grey);
