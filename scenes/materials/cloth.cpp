@@ -62,7 +62,7 @@ Picture paint_leather(const PaintJob& job) {
   const Voronoi grain = voronoi(job.width, job.height, cells, cells, 1.0F, job.random.fork(0));
   const Field folds = fbm(job.width, job.height, 4, 4, 5, 0.6F, job.random.fork(1));
   return paint(job, [&](int x, int y) {
-    const float crease = smoothstep(1.3F, 0.0F, grain.second(x, y) - grain.nearest(x, y));
+    const float crease = smoothstep(0.3F, 0.0F, grain.second(x, y) - grain.nearest(x, y));
     const float wrinkle = smoothstep(0.05F, 0.0F, std::abs(folds(x, y)));
     return job.tone *
            (1.05F + job.variation * (-0.20F * crease - 0.16F * wrinkle + 0.24F * folds(x, y)));
@@ -78,7 +78,7 @@ Picture paint_carpet(const PaintJob& job) {
   return paint(job, [&](int x, int y) {
     const auto id = static_cast<std::uint64_t>(tufts.cell(x, y));
     const auto tuft = static_cast<float>(shade.uniform(id, -1.0, 1.0));
-    const float hollow = tufts.nearest(x, y) / static_cast<float>(job.texels(0.008));
+    const float hollow = tufts.nearest(x, y);
     return job.tone * (1.0F + job.variation * (0.24F * tuft + 0.22F * (0.4F - hollow) +
                                                0.20F * broad(x, y) + 0.07F * pile(x, y)));
   });

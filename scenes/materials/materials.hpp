@@ -22,7 +22,7 @@ struct MaterialSpec {
   Eigen::Vector2f size_m{1.0F, 1.0F};  ///< size of the whole picture where is_picture(kind)
 };
 
-/// Makes a procedural surface at 1.5 to 4 mm per texel, at most 1024 x 1024. Materials that repeat
+/// Makes a procedural surface at 1 to 4 mm per texel, at most 1024 x 1024. Materials that repeat
 /// tile without a seam and choose their own Material::tile_m; pictures (posters, rows of books,
 /// screens, views) cover spec.size_m once. The grain of wood runs along u.
 /// @throws InputError on an unknown kind, a variation outside [0, 1] or a size that is not

@@ -120,20 +120,21 @@ Voronoi voronoi(int width, int height, int cells_x, int cells_y, float jitter,
   for (int j = 0; j < cells_y; ++j)
     for (int i = 0; i < cells_x; ++i) {
       const auto k = static_cast<std::uint64_t>(j * cells_x + i);
-      px(i, j) = (0.5F + 0.5F * jitter * signed_uniform(random, 2 * k)) * cell_w;
-      py(i, j) = (0.5F + 0.5F * jitter * signed_uniform(random, 2 * k + 1)) * cell_h;
+      px(i, j) = 0.5F + 0.5F * jitter * signed_uniform(random, 2 * k);
+      py(i, j) = 0.5F + 0.5F * jitter * signed_uniform(random, 2 * k + 1);
     }
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
-      const float fx = static_cast<float>(x) + 0.5F, fy = static_cast<float>(y) + 0.5F;
-      const int ci = static_cast<int>(fx / cell_w), cj = static_cast<int>(fy / cell_h);
+      const float fx = (static_cast<float>(x) + 0.5F) / cell_w;
+      const float fy = (static_cast<float>(y) + 0.5F) / cell_h;
+      const int ci = static_cast<int>(fx), cj = static_cast<int>(fy);
       float best = 1e30F, next = 1e30F;
       int cell = 0;
       for (int j = cj - 1; j <= cj + 1; ++j)
         for (int i = ci - 1; i <= ci + 1; ++i) {
           const int wi = wrap(i, cells_x), wj = wrap(j, cells_y);
-          const float dx = static_cast<float>(i) * cell_w + px(wi, wj) - fx;
-          const float dy = static_cast<float>(j) * cell_h + py(wi, wj) - fy;
+          const float dx = static_cast<float>(i) + px(wi, wj) - fx;
+          const float dy = static_cast<float>(j) + py(wi, wj) - fy;
           const float d = dx * dx + dy * dy;
           if (d < best) {
             next = best;

@@ -24,7 +24,7 @@ Field white_noise(int width, int height, RandomStream random);
 /// Bilinear value of a field that repeats, at texel coordinates.
 float sample(const Field& field, float x, float y);
 
-/// Distances (texels) to the nearest and second nearest of one random point per lattice cell, and
+/// Distances, in lattice cells, to the nearest and second nearest of one random point per cell, and
 /// which point is the nearest (its lattice index). Wraps around.
 struct Voronoi {
   Field nearest, second;

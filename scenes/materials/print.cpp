@@ -64,7 +64,7 @@ Tint cloth_for(const PaintJob& job, Dice& dice) {
   if (style == 0) return Tint(234, 229, 214) * dice.uniform(0.88F, 1.0F);
   if (style == 1) return Tint(38, 36, 40) * dice.uniform(0.7F, 1.5F);
   if (style <= 3) return job.tone * dice.uniform(0.6F, 1.15F);
-  return hsv(dice.uniform(), dice.uniform(0.25F, 0.85F), dice.uniform(0.25F, 0.9F));
+  return hsv(dice.uniform(), dice.uniform(0.2F, 0.68F), dice.uniform(0.22F, 0.78F));
 }
 
 /// Grain over a whole picture, so that flat prints are not mathematically flat.
@@ -148,7 +148,8 @@ void spine(Picture& picture, const PaintJob& job, Dice& dice, int x, int y, int 
   }
   const float letter = std::clamp(0.42F * w, 4.0F, 12.0F);
   std::string title = dice.words(2 + dice.below(2));
-  while (title.size() > 3 && Canvas::text_width(title, letter) > 0.62F * h) title.pop_back();
+  while (title.find(' ') != std::string::npos && Canvas::text_width(title, letter) > 0.62F * h)
+    title.resize(title.rfind(' '));
   const float length = Canvas::text_width(title, letter);
   canvas.text(title, 0.5F * (w + letter), 0.12F * h + length, letter, letter > 7.0F ? 2.0F : 1.0F,
               ink, true);
@@ -212,7 +213,7 @@ Picture paint_poster(const PaintJob& job) {
   Canvas canvas(picture);
   const auto w = static_cast<float>(job.width), h = static_cast<float>(job.height);
   const float small = std::min(w, h);
-  for (int i = 0; i < 9; ++i) {
+  for (int i = 0; i < 22; ++i) {
     const Tint tint = i % 3 == 0   ? third
                       : i % 3 == 1 ? second
                                    : blend(second, Tint(255, 250, 235), 0.6F);

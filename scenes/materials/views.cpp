@@ -85,7 +85,7 @@ Picture paint_garden(const PaintJob& job) {
       return Tint(112, 146, 66) * (0.98F + band + 0.22F * grass(x, y));
     }
     if (v > near) {  // hedge: lit above, dark between the leaves
-      const float gap = hedge.nearest(x, y) / 5.0F;
+      const float gap = 1.2F * hedge.nearest(x, y);
       const float light = 1.15F - 1.2F * (v - near);
       return green * (light * (1.05F - 0.5F * gap + 0.35F * leaves(x, y)));
     }
@@ -126,7 +126,7 @@ Picture paint_leaf(const PaintJob& job) {
         std::abs(2.0F * (static_cast<float>(y) + 0.5F) / static_cast<float>(job.height) - 1.0F);
     const float along = (u - 0.30F * v) * 11.0F + 0.5F * mottle(x, y);
     const float side = std::abs(along - std::round(along)) * 2.0F;
-    const float rib = smoothstep(0.07F * (1.2F - u), 0.02F, v);
+    const float rib = smoothstep(0.04F + 0.05F * (1.0F - u), 0.02F, v);
     const float ribs = smoothstep(0.16F, 0.05F, side) * (1.0F - 0.6F * v);
     const float between = 0.88F + 0.16F * side - 0.12F * v;
     const float light = between + job.variation * (0.35F * mottle(x, y) + 0.10F * cells(x, y));

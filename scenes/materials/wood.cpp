@@ -145,11 +145,11 @@ Picture paint_parquet(const PaintJob& job) {
 }
 
 Picture paint_bark(const PaintJob& job) {
-  const Voronoi plates = voronoi(job.width, job.height, std::max(3, job.width / job.texels(0.08)),
-                                 std::max(3, job.height / job.texels(0.025)), 0.9F, job.random);
-  const Field rough = fbm(job.width, job.height, 10, 24, 5, 0.7F, job.random.fork(1));
+  const Voronoi plates = voronoi(job.width, job.height, std::max(3, job.width / job.texels(0.03)),
+                                 std::max(3, job.height / job.texels(0.1)), 0.9F, job.random);
+  const Field rough = fbm(job.width, job.height, 24, 10, 5, 0.7F, job.random.fork(1));
   return paint(job, [&](int x, int y) {
-    const float ridge = smoothstep(0.0F, 5.0F, plates.second(x, y) - plates.nearest(x, y));
+    const float ridge = smoothstep(0.0F, 0.4F, plates.second(x, y) - plates.nearest(x, y));
     const float light = 0.45F + 0.6F * ridge + 0.9F * job.variation * rough(x, y);
     return job.tone * light;
   });

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+#include <assimp/Importer.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "scenes/mesh_io/labels_file.hpp"
+#include "scenes/mesh_io/materials_in.hpp"
+#include "scenes/mesh_io/mesh_io.hpp"
+#include "scenes/mesh_io/node_name.hpp"
+#include "scenes/srgb.hpp"
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// What is particular to a file format.
+struct Format {
+  bool ply = false, gltf = false, y_up = false;
+};
+
+Format format_of(const fs::path& file) {
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const bool gltf = ending == ".glb" || ending == ".gltf";
+  return {.ply = ending == ".ply", .gltf = gltf, .y_up = gltf || ending == ".dae"};
+}
+
+/// The class that a glTF node's extras name, by name or by number.
+std::optional<ClassId> extra_class(const aiMetadata& extras) {
+  aiString name;
+  if (extras.Get("class", name)) return class_by_name(name.C_Str());
+  std::int32_t id = 0;
+  double number = 0;
+  if (extras.Get("class", number))
+    id = static_cast<std::int32_t>(number);
+  else if (!extras.Get("class", id))
+    return std::nullopt;
+  if (id < 0 || id >= static_cast<std::int32_t>(classes().size())) return std::nullopt;
+  return static_cast<ClassId>(id);
+}
+
+std::optional<InstanceId> extra_instance(const aiMetadata& extras) {
+  std::int32_t id = 0;
+  std::uint64_t unsigned_id = 0;
+  double number = 0;
+  if (extras.Get("instance", number))
+    id = static_cast<std::int32_t>(number);
+  else if (extras.Get("instance", unsigned_id))
+    id = static_cast<std::int32_t>(unsigned_id);
+  else if (!extras.Get("instance", id))
+    return std::nullopt;
+  if (id < 0 || id > 65535) return std::nullopt;
+  return static_cast<InstanceId>(id);
+}
+
+/// The label of a node: its extras first, then its name.
+NodeLabel label_of(const aiNode& node) {
+  NodeLabel label = parse_node_name(node.mName.C_Str());
+  if (node.mMetaData == nullptr) return label;
+  if (const auto id = extra_class(*node.mMetaData)) label.class_id = *id;
+  if (const auto id = extra_instance(*node.mMetaData)) label.instance = *id;
+  return label;
+}
+
+/// Walks the nodes of a file and gathers their meshes into one scene.
+class Gatherer {
+ public:
+  Gatherer(const aiScene& in, const fs::path& file, const Format& format, Scene& scene)
+      : in_(in), file_(file), format_(format), scene_(scene) {}
+
+  void run() {
+    survey(*in_.mRootNode);
+    reserve_ids(*in_.mRootNode);
+    visit(*in_.mRootNode, aiMatrix4x4());
+    // Per-vertex arrays are all or nothing: parts that lack them were filled with neutral values.
+    if (!any_uvs_) scene_.uvs.clear();
+    if (!any_colours_) scene_.colours.clear();
+    if (!any_light_) scene_.light.clear();
+    std::ranges::sort(scene_.instances, {}, &Instance::id);
+  }
+
+ private:
+  /// Whether save_glb wrote the file: then vertex colours are light.
+  void survey(const aiNode& node) {
+    ours_ = ours_ || (format_.gltf && std::string_view(node.mName.C_Str()).find("#instance=") !=
+                                          std::string_view::npos);
+    for (unsigned i = 0; i < node.mNumChildren; ++i) survey(*node.mChildren[i]);
+  }
+
+  /// Ids that the file names are kept; the others take what is free.
+  void reserve_ids(const aiNode& node) {
+    if (const auto id = label_of(node).instance) reserved_.insert(*id);
+    for (unsigned i = 0; i < node.mNumChildren; ++i) reserve_ids(*node.mChildren[i]);
+  }
+
+  void visit(const aiNode& node, const aiMatrix4x4& world_from_parent) {
+    const aiMatrix4x4 world_from_node = world_from_parent * node.mTransformation;
+    if (node.mNumMeshes > 0) {
+      const NodeLabel label = label_of(node);
+      const InstanceId instance = enter_instance(label);
+      for (unsigned i = 0; i < node.mNumMeshes; ++i)
+        add(*in_.mMeshes[node.mMeshes[i]], world_from_node, label.class_id, instance);
+    }
+    for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i], world_from_node);
+  }
+
+  InstanceId free_id() {
+    while (reserved_.contains(next_id_)) {
+      if (next_id_ == 65535)
+        throw InputError(fmt::format("{}: more than 65535 objects", file_.string()));
+      ++next_id_;
+    }
+    reserved_.insert(next_id_);
+    return next_id_;
+  }
+
+  /// The id for a node's faces; a PLY is one unlabelled piece.
+  InstanceId enter_instance(const NodeLabel& label) {
+    if (format_.ply) return 0;
+    if (label.instance == InstanceId{0}) return 0;
+    const InstanceId id = label.instance ? *label.instance : free_id();
+    if (std::ranges::find(scene_.instances, id, &Instance::id) != scene_.instances.end()) return id;
+    Instance instance{.id = id, .class_id = label.class_id, .name = label.name};
+    if (instance.name.empty()) instance.name = "object";
+    for (int copy = 2; !names_.insert(instance.name).second; ++copy)
+      instance.name = fmt::format("{}_{}", label.name, copy);
+    scene_.instances.push_back(instance);
+    return id;
+  }
+
+  void add(const aiMesh& mesh, const aiMatrix4x4& world_from_node, ClassId class_id,
+           InstanceId instance) {
+    const auto first = static_cast<std::uint32_t>(scene_.positions_m.size());
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) add_vertex(mesh, i, world_from_node);
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+      const aiFace& face = mesh.mFaces[i];
+      if (face.mNumIndices != 3) continue;  // points and lines cannot be seen
+      std::array<std::uint32_t, 3> triangle;
+      for (int corner = 0; corner < 3; ++corner) {
+        if (face.mIndices[corner] >= mesh.mNumVertices)
+          throw InputError(fmt::format("{}: face {} names vertex {} of {}", file_.string(), i,
+                                       face.mIndices[corner], mesh.mNumVertices));
+        triangle[corner] = first + face.mIndices[corner];
+      }
+      scene_.triangles.push_back(triangle);
+      scene_.material_of.push_back(static_cast<std::uint16_t>(mesh.mMaterialIndex));
+      scene_.class_of.push_back(class_id);
+      scene_.instance_of.push_back(instance);
+    }
+  }
+
+  void add_vertex(const aiMesh& mesh, unsigned i, const aiMatrix4x4& world_from_node) {
+    const aiVector3D p = world_from_node * mesh.mVertices[i];
+    const Eigen::Vector3f position =
+        format_.y_up ? Eigen::Vector3f(p.x, -p.z, p.y) : Eigen::Vector3f(p.x, p.y, p.z);
+    if (!position.allFinite())
+      throw InputError(fmt::format("{}: vertex {} has a position that is not finite",
+                                   file_.string(), scene_.positions_m.size()));
+    scene_.positions_m.push_back(position);
+
+    Eigen::Vector2f uv = Eigen::Vector2f::Zero();
+    if (mesh.HasTextureCoords(0)) {
+      any_uvs_ = true;
+      uv = {mesh.mTextureCoords[0][i].x, 1.0F - mesh.mTextureCoords[0][i].y};
+      if (!uv.allFinite()) uv.setZero();
+    }
+    scene_.uvs.push_back(uv);
+
+    Eigen::Vector3f colour = Eigen::Vector3f::Ones();
+    if (mesh.HasVertexColors(0)) {
+      (ours_ ? any_light_ : any_colours_) = true;
+      const aiColor4D& c = mesh.mColors[0][i];
+      colour = Eigen::Vector3f(c.r, c.g, c.b).cwiseMax(0.0F);
+    }
+    scene_.light.push_back(ours_ ? colour : Eigen::Vector3f::Ones().eval());
+    scene_.colours.push_back(ours_ ? Rgb8{255, 255, 255} : srgb_colour(colour));
+  }
+
+  Rgb8 srgb_colour(const Eigen::Vector3f& colour) const {
+    if (format_.gltf) return srgb_from_linear(colour);
+    const Eigen::Vector3f level = 255.0F * colour.cwiseMin(1.0F) + Eigen::Vector3f::Constant(0.5F);
+    return {static_cast<std::uint8_t>(level.x()), static_cast<std::uint8_t>(level.y()),
+            static_cast<std::uint8_t>(level.z())};
+  }
+
+  const aiScene& in_;
+  const fs::path& file_;
+  const Format& format_;
+  Scene& scene_;
+  std::set<InstanceId> reserved_{0};
+  std::set<std::string> names_;
+  InstanceId next_id_ = 1;
+  bool ours_ = false, any_uvs_ = false, any_colours_ = false, any_light_ = false;
+};
+
+const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Format& format) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error))
+    throw InputError(fmt::format("{}: cannot be read: no such file", file.string()));
+  // No step that reorders vertices or faces: labels beside a PLY count on their order.
+  const unsigned steps =
+      format.ply ? unsigned{aiProcess_Triangulate} : aiProcess_Triangulate | aiProcess_GlobalScale;
+  const aiScene* in = importer.ReadFile(file.string(), steps);
+  if (in == nullptr || in->mRootNode == nullptr)
+    throw InputError(fmt::format("{}: is no mesh that can be read: {}", file.string(),
+                                 importer.GetErrorString()));
+  return *in;
+}
+
+/// assimp gives a mesh without a material a grey one; vertex colours should show as they are.
+void whiten_default_material(const Format& format, Scene& scene) {
+  if (scene.colours.empty() && scene.light.empty()) return;
+  for (Material& material : scene.materials)
+    if (material.texture.empty() && (format.ply || material.name == AI_DEFAULT_MATERIAL_NAME))
+      material.base_colour = {255, 255, 255};
+}
+
+void find_boxes(Scene& scene) {
+  std::vector<Instance*> by_id(65536, nullptr);
+  for (Instance& instance : scene.instances) {
+    instance.min_m.setConstant(std::numeric_limits<float>::infinity());
+    instance.max_m = -instance.min_m;
+    by_id[instance.id] = &instance;
+  }
+  for (std::size_t face = 0; face < scene.triangles.size(); ++face)
+    if (Instance* instance = by_id[scene.instance_of[face]])
+      for (const std::uint32_t vertex : scene.triangles[face]) {
+        instance->min_m = instance->min_m.cwiseMin(scene.positions_m[vertex]);
+        instance->max_m = instance->max_m.cwiseMax(scene.positions_m[vertex]);
+      }
+  for (Instance& instance : scene.instances)  // those without faces
+    if (!instance.min_m.allFinite()) instance.min_m = instance.max_m = Eigen::Vector3f::Zero();
+}
+
+}  // namespace
+
+Scene load_mesh(const fs::path& file, std::vector<std::string>* warnings) {
+  const Format format = format_of(file);
+  Assimp::Importer importer;
+  const aiScene& in = read(importer, file, format);
+  Scene scene;
+  scene.name = file.stem().string();
+  scene.materials = convert_materials(in, file, format.gltf, warnings);
+  Gatherer(in, file, format, scene).run();
+  if (scene.triangles.empty())
+    throw InputError(fmt::format("{}: has no faces to be seen", file.string()));
+  whiten_default_material(format, scene);
+  if (scene.uvs.empty())
+    for (Material& material : scene.materials) material.texture = {};
+  if (format.ply && fs::exists(labels_path(file))) load_labels(scene, labels_path(file));
+  find_boxes(scene);
+  validate(scene);
+  return scene;
+}
+
+}  // namespace mh

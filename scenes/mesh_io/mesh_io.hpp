@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.hpp"
+
+namespace mh {
+
+/// Reads a mesh file through assimp: PLY, glTF/GLB, OBJ, DAE (and what else assimp knows). The
+/// result is z-up: glTF and DAE, which are y-up, are turned; the others are taken as they are.
+///
+/// Textures may be embedded or lie beside the file. One that is missing or cannot be decoded is
+/// replaced by magenta and named in `warnings`. Transparency is ignored.
+///
+/// Class and instance come from
+/// - the side file <stem>.labels.json of a PLY, as save_scannet_ply writes it;
+/// - node names `name#class=CLASS#instance=ID`, as save_glb writes them, or glTF node extras
+///   `class` (a name or an id) and `instance`;
+/// - else from the node's name: "kitchen/night_stand_2" is a night stand; every node is an
+/// instance.
+///
+/// Vertex colours of a file written by save_glb are its baked light and return to Scene::light;
+/// everybody else's are Scene::colours.
+/// @param warnings where to append one line per flaw that could be mended; may be null.
+/// @throws InputError for a missing file, no mesh, no faces, positions that are not finite, or
+/// labels that do not fit the mesh.
+Scene load_mesh(const std::filesystem::path& file, std::vector<std::string>* warnings = nullptr);
+
+/// Writes a ScanNet-like mesh: binary little-endian PLY with x y z (float) and red green blue alpha
+/// (uchar, sRGB) per vertex, faces as `uchar int vertex_indices`. The colour of a vertex is what
+/// can be seen there: texture x base colour x vertex colour x baked light, plus emission; where a
+/// vertex joins several materials, the first face counts.
+///
+/// Beside it <stem>.labels.json: {"format": "modelhouse-labels", "version": 1, "name", "vertices":
+/// count, "faces": count, "instances": [[id, class name, name], ...], "runs": [[count, instance id,
+/// class name], ...] over the faces in file order, "rooms": [[name, [[x, y], ...]], ...]}.
+/// @throws InputError if a file cannot be written.
+void save_scannet_ply(const Scene& scene, const std::filesystem::path& file);
+
+/// Writes a binary glTF 2.0 with embedded PNG textures, y-up as glTF wants it, one node per
+/// instance (and class) named `name#class=CLASS#instance=ID`, and baked light times vertex colour
+/// as linear vertex colours (they may exceed 1) of unlit materials. Lamps, rooms and tile sizes are
+/// not kept.
+/// @throws InputError if the file cannot be written.
+void save_glb(const Scene& scene, const std::filesystem::path& file);
+
+}  // namespace mh

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/mesh_io/mesh_io.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <numbers>
+
+#include "scenes/load.hpp"
+#include "scenes/materials/materials.hpp"
+#include "scenes/mesh_io/node_name.hpp"
+#include "scenes/srgb.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+namespace fs = std::filesystem;
+
+class MeshIo : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() /
+              ("mh_mesh_io_" + std::string(info->name()) + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path write(const std::string& name, const std::string& content) const {
+    std::ofstream(folder_ / name, std::ios::binary) << content;
+    return folder_ / name;
+  }
+
+  /// The message of the InputError that loading throws.
+  static std::string error_of(const fs::path& file) {
+    try {
+      load_mesh(file);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  fs::path folder_;
+};
+
+/// Curved, textured, lit pieces of three classes and one unlabelled; materials are shared.
+Scene example_scene() {
+  Scene scene;
+  scene.name = "example";
+  scene.materials = {
+      make_material({.name = "oak", .kind = "wood_grain"}),
+      make_material({.name = "weave", .kind = "fabric", .tone = {70, 90, 140}}),
+      {.name = "paint", .base_colour = {210, 60, 35}, .texture = {}},
+      {.name = "bulb", .base_colour = {255, 240, 200}, .texture = {}, .emission = {3, 2.5F, 2}}};
+  scene.instances = {{.id = 1, .class_id = 5, .name = "kitchen/chair_1"},
+                     {.id = 4, .class_id = 43, .name = "kitchen/potted_plant"},
+                     {.id = 9, .class_id = 35, .name = "lamp"}};
+  const std::array<InstanceId, 4> instance{1, 4, 9, 0};
+  const std::array<ClassId, 4> class_id{5, 43, 35, 2};
+  for (int piece = 0; piece < 4; ++piece)
+    for (int j = 0; j <= 12; ++j)
+      for (int i = 0; i <= 12; ++i) {
+        const auto u = static_cast<float>(i) / 12.0F, v = static_cast<float>(j) / 12.0F;
+        const auto first = static_cast<std::uint32_t>(scene.positions_m.size());
+        scene.positions_m.emplace_back(2.0F * piece + u, 3.0F * v - 1.1F,
+                                       0.3F * std::sin(5.0F * u + v) + 0.1F);
+        scene.uvs.emplace_back(2.3F * u - 0.4F, 1.7F * v);
+        scene.light.emplace_back(0.2F + 1.1F * u, 0.9F - 0.5F * v, 0.4F);
+        if (i == 12 || j == 12) continue;
+        for (const auto& triangle : {std::array{first, first + 1, first + 13},
+                                     std::array{first + 1, first + 14, first + 13}}) {
+          scene.triangles.push_back(triangle);
+          scene.material_of.push_back(static_cast<std::uint16_t>(j < 6 ? piece : 0));
+          scene.class_of.push_back(class_id[piece]);
+          scene.instance_of.push_back(instance[piece]);
+        }
+      }
+  scene.rooms = {{.name = "kitchen", .polygon_m = {{0, 0}, {4.125, 0}, {4.125, 3}, {0, 3}}}};
+  validate(scene);
+  return scene;
+}
+
+/// A face as it can be compared across files: where it is, what it is, what it looks like.
+struct FaceRecord {
+  std::array<Eigen::Vector3f, 3> corners;
+  std::array<Eigen::Vector2f, 3> uvs;
+  std::array<Eigen::Vector3f, 3> light;
+  ClassId class_id;
+  InstanceId instance;
+  std::string material;
+};
+
+std::vector<FaceRecord> sorted_faces(const Scene& scene) {
+  std::vector<FaceRecord> faces;
+  for (std::size_t f = 0; f < scene.triangles.size(); ++f) {
+    FaceRecord record;
+    for (int k = 0; k < 3; ++k) {
+      const auto v = scene.triangles[f][k];
+      record.corners[k] = scene.positions_m[v];
+      record.uvs[k] = scene.uvs[v];
+      record.light[k] = scene.light[v];
+    }
+    record.class_id = scene.class_of[f];
+    record.instance = scene.instance_of[f];
+    record.material = scene.materials[scene.material_of[f]].name;
+    faces.push_back(record);
+  }
+  const auto key = [](const FaceRecord& r) {
+    const Eigen::Vector3f c = r.corners[0] + r.corners[1] + r.corners[2];
+    return std::tuple(std::lround(c.x() * 1e3F), std::lround(c.y() * 1e3F),
+                      std::lround(c.z() * 1e3F));
+  };
+  std::ranges::sort(faces, {}, key);
+  return faces;
+}
+
+TEST_F(MeshIo, GlbReadBackIsTheSameScene) {
+  const Scene scene = example_scene();
+  save_glb(scene, folder_ / "scene.glb");
+  std::vector<std::string> warnings;
+  const Scene read = load_mesh(folder_ / "scene.glb", &warnings);
+  EXPECT_TRUE(warnings.empty());
+  ASSERT_EQ(read.triangles.size(), scene.triangles.size());
+
+  const auto expected = sorted_faces(scene), actual = sorted_faces(read);
+  for (std::size_t f = 0; f < expected.size(); ++f) {
+    EXPECT_EQ(actual[f].class_id, expected[f].class_id);
+    EXPECT_EQ(actual[f].instance, expected[f].instance);
+    EXPECT_EQ(actual[f].material, expected[f].material);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_LT((actual[f].corners[k] - expected[f].corners[k]).norm(), 1e-5F);
+      EXPECT_LT((actual[f].uvs[k] - expected[f].uvs[k]).norm(), 1e-5F);
+      EXPECT_LT((actual[f].light[k] - expected[f].light[k]).norm(), 1e-5F);
+    }
+  }
+  ASSERT_EQ(read.instances.size(), scene.instances.size());
+  for (std::size_t i = 0; i < read.instances.size(); ++i) {
+    EXPECT_EQ(read.instances[i].id, scene.instances[i].id);
+    EXPECT_EQ(read.instances[i].class_id, scene.instances[i].class_id);
+    EXPECT_EQ(read.instances[i].name, scene.instances[i].name);
+  }
+  for (const Material& material : scene.materials) {
+    const auto found = std::ranges::find(read.materials, material.name, &Material::name);
+    ASSERT_NE(found, read.materials.end()) << material.name;
+    EXPECT_EQ(found->texture, material.texture) << material.name;
+    EXPECT_EQ(found->base_colour, material.base_colour) << material.name;
+    EXPECT_LT((found->emission - material.emission).norm(), 1e-5F) << material.name;
+  }
+}
+
+TEST_F(MeshIo, PlyReadBackKeepsOrderLabelsAndColours) {
+  const Scene scene = example_scene();
+  save_scannet_ply(scene, folder_ / "scene.ply");
+  const Scene read = load_scene(folder_ / "scene.ply");
+  EXPECT_EQ(read.name, scene.name);
+  ASSERT_EQ(read.triangles, scene.triangles);
+  EXPECT_EQ(read.class_of, scene.class_of);
+  EXPECT_EQ(read.instance_of, scene.instance_of);
+  ASSERT_EQ(read.positions_m.size(), scene.positions_m.size());
+  for (std::size_t v = 0; v < read.positions_m.size(); ++v)
+    EXPECT_EQ(read.positions_m[v], scene.positions_m[v]);
+  ASSERT_EQ(read.colours.size(), scene.positions_m.size());
+  EXPECT_TRUE(read.light.empty());
+  ASSERT_EQ(read.rooms.size(), 1U);
+  EXPECT_DOUBLE_EQ(read.floor_area_m2(), scene.floor_area_m2());
+  EXPECT_EQ(read.instances[1].name, "kitchen/potted_plant");
+  for (const Material& material : read.materials)
+    EXPECT_EQ(material.base_colour, (Rgb8{255, 255, 255}));
+  for (std::size_t i = 0; i < read.instances.size(); ++i)
+    EXPECT_LT(read.instances[i].min_m.x(), read.instances[i].max_m.x());
+}
+
+TEST_F(MeshIo, PlyColourIsTextureTimesLight) {
+  // A uniform texture of known colour under known light: the vertex colour has a closed form.
+  Scene scene;
+  scene.name = "square";
+  scene.materials = {
+      {.name = "m", .base_colour = {128, 255, 64}, .texture = Grid2d<Rgb8>(4, 4, {200, 100, 255})}};
+  scene.positions_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  scene.uvs = {{0, 0}, {0.9F, 0.1F}, {-3.7F, 5.2F}};
+  scene.light = {{1, 1, 1}, {0.25F, 0.5F, 0.75F}, {9, 9, 9}};
+  scene.triangles = {{0, 1, 2}};
+  scene.material_of = {0};
+  scene.class_of = {2};
+  scene.instance_of = {0};
+  save_scannet_ply(scene, folder_ / "square.ply");
+  const Scene read = load_mesh(folder_ / "square.ply");
+  const auto linear = [](double level) {
+    const double v = level / 255.0;
+    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+  };
+  const auto level = [](double v) {
+    v = std::min(v, 1.0);
+    return 255.0 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
+  };
+  for (int v = 0; v < 3; ++v) {
+    const Eigen::Vector3f light = scene.light[v];
+    EXPECT_NEAR(read.colours[v].r, level(linear(200) * linear(128) * light.x()), 1.0);
+    EXPECT_NEAR(read.colours[v].g, level(linear(100) * light.y()), 1.0);
+    EXPECT_NEAR(read.colours[v].b, level(linear(64) * light.z()), 1.0);
+  }
+}
+
+TEST_F(MeshIo, GltfExtrasNameClassAndInstanceAndYBecomesUp) {
+  // One triangle from data in the file: (0,0,0), (1,0,0), (0,2,0) in glTF's y-up frame.
+  const auto file = write("extras.gltf", R"({"asset":{"version":"2.0"},"scene":0,
+    "scenes":[{"nodes":[0,1]}],
+    "nodes":[{"name":"thing","mesh":0,"extras":{"class":"night stand","instance":7}},
+             {"name":"sofa_left","mesh":0,"translation":[0,0,5]}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+    "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAAEAAAAAA"}],
+    "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,2,0]}]})");
+  const Scene scene = load_mesh(file);
+  ASSERT_EQ(scene.triangles.size(), 2U);
+  EXPECT_EQ(scene.class_of[0], *class_by_name("night stand"));
+  EXPECT_EQ(scene.instance_of[0], 7);
+  EXPECT_EQ(scene.class_of[1], *class_by_name("sofa"));
+  EXPECT_EQ(scene.instance_of[1], 1);
+  EXPECT_TRUE(scene.positions_m[2].isApprox(Eigen::Vector3f(0, 0, 2)));
+  EXPECT_TRUE(scene.positions_m[5].isApprox(Eigen::Vector3f(0, -5, 2)));
+}
+
+TEST_F(MeshIo, ObjTextureBesideItAndAMissingOneIsNamedAndMagenta) {
+  write("room.mtl", "newmtl there\nKd 1 1 1\nmap_Kd pic.ppm\nnewmtl gone\nmap_Kd nowhere.png\n");
+  write("pic.ppm", std::string("P6\n2 1\n255\n") + std::string("\xff\x00\x00\x00\x00\xff", 6));
+  const auto file = write("room.obj",
+                          "mtllib room.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+                          "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                          "o chair_1\nusemtl there\nf 1/1 2/2 3/3 4/4\n"
+                          "o table_1\nusemtl gone\nf 1/1 2/2 3/3\n");
+  std::vector<std::string> warnings;
+  const Scene scene = load_mesh(file, &warnings);
+  EXPECT_EQ(scene.triangles.size(), 3U);  // the square became two
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("nowhere.png"), std::string::npos);
+  const auto& there = *std::ranges::find(scene.materials, "there", &Material::name);
+  EXPECT_EQ(there.texture(0, 0), (Rgb8{255, 0, 0}));
+  EXPECT_EQ(there.texture(1, 0), (Rgb8{0, 0, 255}));
+  const auto& gone = *std::ranges::find(scene.materials, "gone", &Material::name);
+  EXPECT_TRUE(gone.texture.empty());
+  EXPECT_EQ(gone.base_colour, (Rgb8{255, 0, 255}));
+  // v counts downwards here: OBJ's (0, 0) is the lower left of the picture.
+  for (std::size_t v = 0; v < scene.positions_m.size(); ++v)
+    EXPECT_FLOAT_EQ(scene.uvs[v].y(), 1.0F - scene.positions_m[v].y());
+  EXPECT_EQ(scene.class_of[0], *class_by_name("chair"));
+  EXPECT_EQ(scene.class_of[2], *class_by_name("table"));
+  EXPECT_NE(scene.instance_of[0], scene.instance_of[2]);
+}
+
+TEST_F(MeshIo, DaeIsTurnedZUpAndScaledToMetres) {
+  const auto file = write("box.dae", R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="centimeter" meter="0.01"/><up_axis>Y_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh><source id="p"><float_array id="pa" count="9">0 0 0 100 0 0 0 200 0</float_array>
+<technique_common><accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="lamp" name="lamp"><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)");
+  const Scene scene = load_mesh(file);
+  ASSERT_EQ(scene.triangles.size(), 1U);
+  EXPECT_TRUE(scene.positions_m[scene.triangles[0][2]].isApprox(Eigen::Vector3f(0, 0, 2), 1e-5F))
+      << scene.positions_m[scene.triangles[0][2]].transpose();
+  EXPECT_EQ(scene.class_of[0], *class_by_name("lamp"));
+}
+
+TEST_F(MeshIo, BadFilesGiveOneErrorThatNamesThem) {
+  EXPECT_NE(error_of(folder_ / "none.ply").find("no such file"), std::string::npos);
+  const auto text = write("text.ply", "this is no mesh\n");
+  EXPECT_NE(error_of(text).find("text.ply"), std::string::npos);
+  EXPECT_NE(error_of(write("text.glb", "this is no mesh\n")).find("text.glb"), std::string::npos);
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement face ";
+  const std::string list = "\nproperty list uchar int vertex_indices\nend_header\n";
+  const auto nan = write("nan.ply", header + "1" + list + "0 0 0\n1 0 0\nnan 1 0\n3 0 1 2\n");
+  EXPECT_NE(error_of(nan).find("not finite"), std::string::npos) << error_of(nan);
+  const auto points = write("points.ply", header + "0" + list + "0 0 0\n1 0 0\n0 1 0\n");
+  EXPECT_NE(error_of(points).find("no faces"), std::string::npos) << error_of(points);
+  const auto wild = write("wild.ply", header + "1" + list + "0 0 0\n1 0 0\n0 1 0\n3 0 1 99\n");
+  EXPECT_NE(error_of(wild), "");
+  EXPECT_THROW(load_scene(folder_ / "scene.xyz"), InputError);
+}
+
+TEST_F(MeshIo, LabelsOfAnotherMeshAreRefused) {
+  const Scene scene = example_scene();
+  save_scannet_ply(scene, folder_ / "a.ply");
+  Scene smaller = scene;
+  smaller.triangles.pop_back();
+  smaller.material_of.pop_back();
+  smaller.class_of.pop_back();
+  smaller.instance_of.pop_back();
+  save_scannet_ply(smaller, folder_ / "b.ply");
+  fs::rename(folder_ / "b.labels.json", folder_ / "a.labels.json");
+  EXPECT_NE(error_of(folder_ / "a.ply").find("a.labels.json"), std::string::npos);
+  write("a.labels.json", "{\"format\": ");
+  EXPECT_NE(error_of(folder_ / "a.ply").find("a.labels.json"), std::string::npos);
+}
+
+TEST_F(MeshIo, AnUnwritableFolderLeavesNothingBehind) {
+  EXPECT_THROW(save_glb(example_scene(), folder_ / "none" / "a.glb"), InputError);
+  EXPECT_THROW(save_scannet_ply(example_scene(), folder_ / "none" / "a.ply"), InputError);
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST(NodeName, RoundTrip) {
+  for (const ClassInfo& info : classes()) {
+    const NodeLabel label = parse_node_name(node_name("kitchen/x_2", info.id, 513));
+    EXPECT_EQ(label.name, "kitchen/x_2");
+    EXPECT_EQ(label.class_id, info.id);
+    EXPECT_EQ(label.instance, 513);
+  }
+}
+
+TEST(NodeName, GuessesClassFromTheFirstWordsOfTheLastPart) {
+  EXPECT_EQ(guess_class("kitchen/night_stand_2"), *class_by_name("night stand"));
+  EXPECT_EQ(guess_class("Chair.003"), *class_by_name("chair"));
+  EXPECT_EQ(guess_class("sofa left"), *class_by_name("sofa"));
+  EXPECT_EQ(guess_class("table/gadget"), kVoid);
+  EXPECT_EQ(guess_class(""), kVoid);
+}
+
+}  // namespace
+}  // namespace mh
