@@ -10,8 +10,8 @@ namespace mh {
 
 struct PathConfig {
   /// A bow begins and ends at most this far from its corner, m; so a right angle is rounded with
-  /// this radius and passes the corner at 0.41 of it.
-  double cut_m = 0.35;
+  /// this radius and passes the corner at a distance of 0.41 of it.
+  double cut_m = 0.45;
 };
 
 struct PathPoint {

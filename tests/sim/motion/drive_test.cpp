@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/motion/motion.hpp"
+#include "sim/motion/path.hpp"
 #include "slam/core/error.hpp"
 #include "tests/sim/boxes.hpp"
 
@@ -59,8 +60,8 @@ TEST(Drive, AStraightLegIsAsLongAsItsEndsAreApart) {
 
 TEST(Drive, ARoundTripIsShorterThanItsCornersByTheLawOfBows) {
   const DrivenPath path = drive(empty_room(), pepper(), tour_of({to(8, 2), to(8, 8), to(2, 8)}));
-  // Each right angle, cut 0.35 m before and after, saves (2 - pi / 2) * 0.35 m.
-  EXPECT_NEAR(path.length_m, 18.0 - 2 * (2 - M_PI_2) * 0.35, 0.02);
+  // A right angle left at distance r before and met again at r after saves (2 - pi / 2) r.
+  EXPECT_NEAR(path.length_m, 18.0 - 2 * (2 - M_PI_2) * PathConfig{}.cut_m, 0.02);
 }
 
 TEST(Drive, FramesAreStampedAtTheCamerasRateAndCarryItsPose) {
