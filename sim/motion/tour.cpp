@@ -10,8 +10,10 @@ namespace {
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 Eigen::Vector2d read_place(const YamlReader& yaml) {
-  const std::vector<double> xy = yaml.as_numbers(2);
-  return {xy[0], xy[1]};
+  constexpr double kFar_m = 1000.0;
+  yaml.as_numbers(2);
+  const std::vector<YamlReader> xy = yaml.items();
+  return {xy[0].as_double(-kFar_m, kFar_m), xy[1].as_double(-kFar_m, kFar_m)};
 }
 
 /// @param before_m where the robot stands before this waypoint

@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include <btBulletDynamicsCommon.h>
@@ -72,6 +73,7 @@ Eigen::Vector2d limited(const Eigen::Vector2d& v, double limit) {
 // Members are destroyed in reverse order: the world before what it refers to.
 struct PlanarWorld::Impl {
   BaseLimits limits;
+  double radius_m, height_m;
   double step_s;
   std::unique_ptr<Obstacles> obstacles_in_band;
   std::unique_ptr<btBvhTriangleMeshShape> house_shape;  // none if there is nothing to hit
@@ -87,6 +89,8 @@ struct PlanarWorld::Impl {
   Impl(const Scene& scene, const Robot& model, const Eigen::Vector2d& start_m, double heading_rad,
        double step)
       : limits(model.limits),
+        radius_m(model.footprint_radius_m),
+        height_m(model.height_m),
         step_s(step),
         obstacles_in_band(obstacles(scene, static_cast<float>(model.height_m))),
         robot_shape(btVector3(static_cast<btScalar>(model.footprint_radius_m),
@@ -128,6 +132,29 @@ struct PlanarWorld::Impl {
     robot->setAngularFactor(btVector3(0, 0, 1));
     robot->setActivationState(DISABLE_DEACTIVATION);
     world.addRigidBody(robot.get());
+  }
+
+  /// What crosses the robot's axis, if anything: a mesh is hollow, so that a robot that stands in
+  /// the middle of a bed touches none of its faces.
+  std::optional<InstanceId> instance_on_axis() const {
+    struct Hit : btCollisionWorld::ClosestRayResultCallback {
+      using ClosestRayResultCallback::ClosestRayResultCallback;
+      int face = -1;
+      btScalar addSingleResult(btCollisionWorld::LocalRayResult& ray,
+                               bool normal_is_world) override {
+        if (ray.m_localShapeInfo != nullptr) face = ray.m_localShapeInfo->m_triangleIndex;
+        return ClosestRayResultCallback::addSingleResult(ray, normal_is_world);
+      }
+    };
+    if (!house) return std::nullopt;
+    const btVector3& p = robot->getWorldTransform().getOrigin();
+    const btVector3 top(p.x(), p.y(), static_cast<btScalar>(height_m)), bottom(p.x(), p.y(), 0);
+    Hit hit(top, bottom);
+    btCollisionWorld::rayTestSingle(btTransform(btQuaternion::getIdentity(), top),
+                                    btTransform(btQuaternion::getIdentity(), bottom), house.get(),
+                                    house_shape.get(), house->getWorldTransform(), hit);
+    if (hit.face < 0) return std::nullopt;
+    return obstacles_in_band->instance_of[static_cast<std::size_t>(hit.face)];
   }
 
   Contact deepest_contact() {
@@ -197,6 +224,8 @@ Contact PlanarWorld::step(const BaseCommand& command) {
 
 Contact PlanarWorld::contact() {
   impl_->world.performDiscreteCollisionDetection();
+  if (const auto on_axis = impl_->instance_on_axis())
+    return {.touching = true, .penetration_m = impl_->radius_m, .instance = *on_axis};
   return impl_->deepest_contact();
 }
 

@@ -49,7 +49,8 @@ class PlanarWorld {
   /// Accelerates towards the command as far as the limits allow, and moves on by one step.
   Contact step(const BaseCommand& command);
   BaseState state() const;
-  /// What the base touches where it stands now.
+  /// What the base touches where it stands now; what crosses its axis counts as overlapping by the
+  /// whole footprint radius.
   Contact contact();
   double step_s() const;
 

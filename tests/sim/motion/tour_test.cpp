@@ -55,6 +55,7 @@ TEST(LoadTour, RefusesBadFilesWithLineAndPlace) {
   };
   EXPECT_NE(with("{to: [1]}").find(":4: waypoints[0].to: has 1 numbers"), std::string::npos);
   EXPECT_NE(with("{to: [1, x]}").find("'x' is not a number"), std::string::npos);
+  EXPECT_NE(with("{to: [1, 1e9]}").find("1e9 is outside"), std::string::npos);
   EXPECT_NE(with("{too: [1, 2]}").find("too"), std::string::npos);
   EXPECT_NE(with("{}").find("does nothing"), std::string::npos);
   EXPECT_NE(with("{to: [1, 2], face: up}").find("'up' is neither"), std::string::npos);

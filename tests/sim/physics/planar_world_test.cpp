@@ -116,6 +116,10 @@ TEST(PlanarWorld, SeesAStartInsideFurniture) {
   EXPECT_NEAR(contact.penetration_m, 0.1, 1e-3);
   EXPECT_EQ(contact.instance, 6);
   EXPECT_FALSE(PlanarWorld(scene, pepper(), {3, 5}, 0).contact().touching);
+  add_box(scene, "bed", {6, 4, 0.2F}, {8, 6, 0.6F});
+  const Contact in_bed = PlanarWorld(scene, pepper(), {7, 5.1}, 0).contact();  // touches no face
+  EXPECT_NEAR(in_bed.penetration_m, 0.26, 1e-6);
+  EXPECT_EQ(in_bed.instance, 7);
 }
 
 }  // namespace
