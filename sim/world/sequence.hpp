@@ -21,12 +21,13 @@ struct SimulatedFrame {
   GroundTruth truth;
 };
 
-/// The frames that a camera delivers along a path through a scene, made on demand. Frame i under the
-/// same `attempt` stream is the same bits whenever and wherever it is asked for.
+/// The frames that a camera delivers along a path through a scene, made on demand. Frame i under
+/// the same `attempt` stream is the same bits whenever and wherever it is asked for.
 class SimulatedSequence {
  public:
   SimulatedSequence(std::shared_ptr<const Renderer> renderer, Camera camera,
-                    std::vector<TimedPose> world_from_camera, SensorConfig sensors, LabelMode labels);
+                    std::vector<TimedPose> world_from_camera, SensorConfig sensors,
+                    LabelMode labels);
 
   std::size_t size() const { return path_.size(); }
   const Camera& camera() const { return camera_; }

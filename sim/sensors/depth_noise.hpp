@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "sim/sensors/sensors.hpp"
+
+namespace mh {
+
+/// A structured-light sensor's reading of an exact depth picture (m, 0 = nothing there).
+Grid2d<float> noisy_depth(const Grid2d<float>& depth_m, const Camera& camera,
+                          const DepthNoiseConfig& config, RandomStream stream);
+
+}  // namespace mh

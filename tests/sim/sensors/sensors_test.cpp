@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/sensors/sensors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+const Camera kCamera;
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+RenderedFrame blank_frame(float depth_m, Rgb8 colour = {120, 130, 140}) {
+  const int w = kCamera.width_px, h = kCamera.height_px;
+  return {Grid2d<Rgb8>(w, h, colour), Grid2d<float>(w, h, depth_m), Grid2d<ClassId>(w, h),
+          Grid2d<InstanceId>(w, h)};
+}
+
+/// Depth of the plane with unit normal (0, -sin t, -cos t) that cuts the axis at `distance_m`: a
+/// surface leaning back by the angle t.
+RenderedFrame leaning_plane(double distance_m, double angle_rad) {
+  RenderedFrame frame = blank_frame(0.0F);
+  for (int y = 0; y < kCamera.height_px; ++y) {
+    const double b = (y - kCamera.cy_px) / kCamera.fy_px;
+    const double depth =
+        distance_m * std::cos(angle_rad) / (std::cos(angle_rad) + b * std::sin(angle_rad));
+    for (float& z : frame.depth_m.row(y)) z = depth > 0.0 ? static_cast<float>(depth) : 0.0F;
+  }
+  return frame;
+}
+
+/// The angle between a pixel's ray and that plane's normal.
+double incidence_rad(int x, int y, double angle_rad) {
+  const Eigen::Vector3d d = kCamera.unproject(x, y, 1.0).normalized();
+  return std::acos(std::abs(d.dot(Eigen::Vector3d(0, std::sin(angle_rad), std::cos(angle_rad)))));
+}
+
+SensorConfig no_noise() {
+  SensorConfig config;
+  config.colour_noise_on = false;
+  config.depth_noise = {.axial = false,
+                        .lateral = false,
+                        .quantisation = false,
+                        .grazing_holes = false,
+                        .min_range_m = 0.0,
+                        .max_range_m = 1e6};
+  return config;
+}
+
+RgbdFrame sensed(const RenderedFrame& truth, const SensorConfig& config, std::uint64_t seed = 1) {
+  return sense(truth, kCamera, config, LabelMode::kNone, RandomStream(seed), 5);
+}
+
+struct Moments {
+  double n = 0, sum = 0, square = 0;
+  void add(double x) { n += 1, sum += x, square += x * x; }
+  double mean() const { return sum / n; }
+  double sigma() const { return std::sqrt(square / n - mean() * mean()); }
+};
+
+TEST(DepthNoise, AllOffIsTheTruth) {
+  const RenderedFrame truth = leaning_plane(2.0, 0.5);
+  EXPECT_EQ(sensed(truth, no_noise()).depth_m, truth.depth_m);
+  SensorConfig off;
+  off.depth_noise_on = off.colour_noise_on = false;
+  EXPECT_EQ(sensed(truth, off).depth_m, truth.depth_m);
+  EXPECT_EQ(sensed(truth, off).colour, truth.colour);
+  EXPECT_EQ(sensed(truth, off).stamp_ns, 5);
+}
+
+TEST(DepthNoise, AxialSigmaOverDistanceIsThePublishedOne) {
+  SensorConfig config = no_noise();
+  config.depth_noise.axial = true;
+  for (const double z : {0.6, 1.0, 2.0, 3.5, 5.0}) {
+    const RgbdFrame frame = sensed(blank_frame(static_cast<float>(z)), config);
+    Moments moments;
+    for (const float depth : frame.depth_m) moments.add(depth - z);
+    const double published = 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
+    EXPECT_NEAR(moments.sigma(), published, 0.05 * published) << z;
+    // 307,200 draws: the mean's own sigma is sigma / 554.
+    EXPECT_NEAR(moments.mean(), 0.0, 5.0 * published / 554.0) << z;
+  }
+}
+
+TEST(DepthNoise, AxialSigmaGrowsWithSteepIncidenceAsPublished) {
+  SensorConfig config = no_noise();
+  config.depth_noise.axial = true;
+  const double angle = 70.0 * kDegree;
+  const RenderedFrame truth = leaning_plane(2.0, angle);
+  const RgbdFrame frame = sensed(truth, config);
+  Moments standardised;
+  double smallest_angular_share = 1.0;
+  for (int y = 200; y < 260; ++y)
+    for (int x = 0; x < kCamera.width_px; ++x) {
+      const double z = truth.depth_m(x, y), theta = incidence_rad(x, y, angle);
+      ASSERT_GT(theta, 60.0 * kDegree);
+      const double ratio = theta / (std::numbers::pi / 2 - theta);
+      const double flat = 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
+      const double sigma = flat + 0.0001 / std::sqrt(z) * ratio * ratio;
+      smallest_angular_share = std::min(smallest_angular_share, (sigma - flat) / flat);
+      standardised.add((frame.depth_m(x, y) - z) / sigma);
+    }
+  EXPECT_GT(smallest_angular_share, 0.05);  // else the term would go unseen
+  EXPECT_NEAR(standardised.sigma(), 1.0, 0.03);
+}
+
+TEST(DepthNoise, LateralNoiseMovesEdgesAndNothingElse) {
+  SensorConfig config = no_noise();
+  config.depth_noise.lateral = true;
+  RenderedFrame truth = blank_frame(2.0F);
+  for (int y = 0; y < kCamera.height_px; ++y)
+    for (int x = 0; x < 320; ++x) truth.depth_m(x, y) = 1.0F;
+  const RgbdFrame frame = sensed(truth, config);
+  const double sigma = lateral_sigma_px(0.0);
+  EXPECT_DOUBLE_EQ(sigma, 0.8);
+  for (int k = 0; k < 3; ++k) {  // k px left of the last near column
+    int far = 0;
+    for (int y = 0; y < kCamera.height_px; ++y) {
+      const float depth = frame.depth_m(319 - k, y);
+      ASSERT_TRUE(std::abs(depth - 1.0F) < 1e-4F || std::abs(depth - 2.0F) < 1e-4F);
+      far += depth > 1.5F;
+    }
+    const double expected = 0.5 * std::erfc((k + 0.5) / sigma / std::numbers::sqrt2);
+    const double spread = std::sqrt(expected * (1 - expected) / kCamera.height_px);
+    EXPECT_NEAR(static_cast<double>(far) / kCamera.height_px, expected, 4 * spread + 0.02) << k;
+  }
+  for (int y = 0; y < kCamera.height_px; ++y)
+    for (int x = 0; x < kCamera.width_px; ++x)
+      if (std::abs(x - 320) > 6) {
+        ASSERT_NEAR(frame.depth_m(x, y), truth.depth_m(x, y), 1e-5);
+      }
+
+  // On a smooth slope it changes nothing: an inverse depth is affine there.
+  const RenderedFrame slope = leaning_plane(2.0, 0.9);
+  const RgbdFrame slid = sensed(slope, config);
+  for (int y = 0; y < kCamera.height_px; ++y)
+    for (int x = 0; x < kCamera.width_px; ++x)
+      ASSERT_NEAR(slid.depth_m(x, y), slope.depth_m(x, y), 2e-4 * slope.depth_m(x, y));
+}
+
+TEST(DepthNoise, QuantisationStepIsAnEighthOfAPixelOfDisparity) {
+  SensorConfig config = no_noise();
+  config.depth_noise.quantisation = true;
+  const RenderedFrame truth = leaning_plane(2.0, 0.6);
+  const RgbdFrame frame = sensed(truth, config);
+  std::set<float> distinct;
+  for (int y = 0; y < kCamera.height_px; ++y) {
+    const double before = kCamera.disparity_px(truth.depth_m(7, y));
+    const double after = kCamera.disparity_px(frame.depth_m(7, y));
+    ASSERT_NEAR(after * 8.0, std::round(after * 8.0), 1e-3);
+    ASSERT_LE(std::abs(after - before), 0.5 / 8.0 + 1e-4);
+    distinct.insert(frame.depth_m(7, y));
+  }
+  EXPECT_GT(distinct.size(), 50U);
+  // Khoshelham and Elberink: z^2 / (f b) per pixel, so about 1.3 cm per step at 2 m.
+  const float low = *std::prev(distinct.upper_bound(2.0F)), high = *distinct.upper_bound(2.0F);
+  EXPECT_NEAR(high - low, 2.0 * 2.0 / (525.0 * 0.075) / 8.0, 5e-4);
+}
+
+TEST(DepthNoise, GrazingSurfacesGiveNoReturn) {
+  SensorConfig config = no_noise();
+  config.depth_noise.grazing_holes = true;
+  const double angle = 75.0 * kDegree;
+  const RenderedFrame truth = leaning_plane(3.0, angle);
+  const RgbdFrame frame = sensed(truth, config);
+  int holes = 0, kept = 0;
+  for (int y = 0; y < kCamera.height_px; ++y) {
+    if (truth.depth_m(300, y) <= 0.0F || truth.depth_m(300, y) > 100.0F) continue;
+    const double theta = incidence_rad(300, y, angle);
+    if (std::abs(theta - kMaxIncidenceRad) < 0.2 * kDegree) continue;  // rounding of the gradient
+    const bool hole = frame.depth_m(300, y) == 0.0F;
+    ASSERT_EQ(hole, theta > kMaxIncidenceRad) << y;
+    (hole ? holes : kept) += 1;
+  }
+  EXPECT_GT(holes, 20);
+  EXPECT_GT(kept, 200);
+}
+
+TEST(DepthNoise, NothingIsSeenOutOfRange) {
+  SensorConfig config = no_noise();
+  config.depth_noise.min_range_m = 0.4;
+  config.depth_noise.max_range_m = 8.0;
+  EXPECT_EQ(sensed(blank_frame(0.39F), config).depth_m(5, 5), 0.0F);
+  EXPECT_EQ(sensed(blank_frame(0.41F), config).depth_m(5, 5), 0.41F);
+  EXPECT_EQ(sensed(blank_frame(7.9F), config).depth_m(5, 5), 7.9F);
+  EXPECT_EQ(sensed(blank_frame(8.1F), config).depth_m(5, 5), 0.0F);
+  EXPECT_EQ(sensed(blank_frame(0.0F), config).depth_m(5, 5), 0.0F);
+}
+
+TEST(ColourNoise, IsGaussianWithTheStatedSigmaAndIndependentChannels) {
+  SensorConfig config = no_noise();
+  config.colour_noise_on = true;
+  const RgbdFrame frame = sensed(blank_frame(2.0F), config);
+  Moments r, g, b, rg;
+  int beyond_two = 0;
+  const double sigma = 0.007 * 255.0;
+  for (const Rgb8& c : frame.colour) {
+    r.add(c.r - 120), g.add(c.g - 130), b.add(c.b - 140), rg.add((c.r - 120) * (c.g - 130));
+    beyond_two += std::abs(c.r - 120) > 3.5;  // more than 3.5 grey levels = 1.961 sigma
+  }
+  const double rounded = std::sqrt(sigma * sigma + 1.0 / 12.0);  // rounding to whole levels
+  for (const Moments& channel : {r, g, b}) {
+    EXPECT_NEAR(channel.sigma(), rounded, 0.01 * rounded);
+    EXPECT_NEAR(channel.mean(), 0.0, 0.02);
+  }
+  EXPECT_NEAR(rg.mean(), 0.0, 0.03);
+  EXPECT_NEAR(beyond_two / r.n, std::erfc(3.5 / sigma / std::numbers::sqrt2), 0.002);
+}
+
+TEST(ColourNoise, StopsAtBlackAndWhite) {
+  SensorConfig config = no_noise();
+  config.colour_noise_on = true;
+  config.colour_noise.sigma = 0.1;
+  const RgbdFrame frame = sensed(blank_frame(2.0F, {0, 255, 128}), config);
+  int black = 0, white = 0;
+  for (const Rgb8& c : frame.colour) {
+    ASSERT_LT(c.r, 128);  // wrapping round would turn black into white
+    ASSERT_GT(c.g, 127);
+    black += c.r == 0, white += c.g == 255;
+  }
+  EXPECT_GT(black, 140000);
+  EXPECT_GT(white, 140000);
+}
+
+TEST(Sense, SameKeySameBitsOtherKeyOtherNoise) {
+  const RenderedFrame truth = leaning_plane(2.0, 0.5);
+  const RgbdFrame a = sensed(truth, {}, 1), b = sensed(truth, {}, 1), c = sensed(truth, {}, 2);
+  EXPECT_EQ(a.depth_m, b.depth_m);
+  EXPECT_EQ(a.colour, b.colour);
+  EXPECT_NE(a.depth_m, c.depth_m);
+  EXPECT_NE(a.colour, c.colour);
+  // Labels and depth noise do not touch the colour's stream.
+  SensorConfig colour_only;
+  colour_only.depth_noise_on = false;
+  EXPECT_EQ(sense(truth, kCamera, colour_only, LabelMode::kBoxes, RandomStream(1), 5).colour,
+            a.colour);
+}
+
+void paint(RenderedFrame& frame, int left, int top, int right, int bottom, ClassId class_id,
+           InstanceId instance) {
+  for (int y = top; y <= bottom; ++y)
+    for (int x = left; x <= right; ++x) {
+      frame.classes(x, y) = class_id;
+      frame.instances(x, y) = instance;
+    }
+}
+
+TEST(LabelImage, ExactLabelsAreThePixelsClasses) {
+  RenderedFrame truth = blank_frame(2.0F);
+  paint(truth, 10, 10, 200, 200, 1, 1);
+  paint(truth, 50, 60, 90, 99, 5, 2);
+  const SemanticImage image = label_image(truth, LabelMode::kExact);
+  for (int y = 0; y < kCamera.height_px; ++y)
+    for (int x = 0; x < kCamera.width_px; ++x)
+      ASSERT_EQ(image.at(x, y), ClassDistribution::one_hot(truth.classes(x, y)));
+  EXPECT_TRUE(image.at(0, 0).entries.empty());
+  EXPECT_EQ(image.at(60, 70).most_probable(), 5);
+  EXPECT_TRUE(label_image(truth, LabelMode::kNone).index.empty());
+  EXPECT_TRUE(label_image(truth, LabelMode::kNone).at(3, 3).entries.empty());
+}
+
+TEST(LabelImage, BoxesAreThoseWorkedOutByHand) {
+  constexpr ClassId kChair = 5, kTable = 7, kWall = 1;
+  RenderedFrame truth = blank_frame(2.0F);
+  paint(truth, 0, 0, 639, 479, kWall, 1);       // no COCO class: background
+  paint(truth, 100, 100, 299, 249, kTable, 2);  // box 100..299 x 100..249
+  paint(truth, 150, 150, 179, 299, kChair, 3);  // smaller: over the table
+  paint(truth, 400, 50, 408, 60, kChair, 4);    // 9 x 11 = 99 px: too little to be seen
+  paint(truth, 500, 50, 509, 59, kChair, 5);    // 100 px: just enough
+  paint(truth, 600, 300, 604, 319, kTable, 6);  // one object in two parts, 100 px each:
+  paint(truth, 620, 400, 624, 419, kTable, 6);  // one box around both
+  const SemanticImage image = label_image(truth, LabelMode::kBoxes);
+  const auto expected = [&](int x, int y) -> ClassId {
+    const auto within = [&](int l, int t, int r, int b) {
+      return x >= l && x <= r && y >= t && y <= b;
+    };
+    if (within(150, 150, 179, 299) || within(500, 50, 509, 59)) return kChair;
+    if (within(100, 100, 299, 249) || within(600, 300, 624, 419)) return kTable;
+    return kBackground;
+  };
+  for (int y = 0; y < kCamera.height_px; ++y)
+    for (int x = 0; x < kCamera.width_px; ++x)
+      ASSERT_EQ(image.at(x, y), ClassDistribution::one_hot(expected(x, y))) << x << " " << y;
+}
+
+TEST(LabelImage, SmallerBoxesLieOverLargerOnesWhateverTheirIds) {
+  RenderedFrame truth = blank_frame(2.0F);
+  paint(truth, 0, 0, 400, 400, 6, 9);      // sofa
+  paint(truth, 100, 100, 200, 200, 4, 3);  // bed inside its box, lower id
+  EXPECT_EQ(label_image(truth, LabelMode::kBoxes).at(150, 150).most_probable(), 4);
+  paint(truth, 0, 0, 400, 400, 6, 3);
+  paint(truth, 100, 100, 200, 200, 4, 9);
+  EXPECT_EQ(label_image(truth, LabelMode::kBoxes).at(150, 150).most_probable(), 4);
+}
+
+TEST(SensorLevels, FrozenFilesSayWhatTheirNamesSay) {
+  const std::filesystem::path folder = std::filesystem::path(MH_SOURCE_DIR) / "sim/sensors/levels";
+  const SensorConfig ideal = load_sensor_config(folder / "ideal.yaml");
+  EXPECT_FALSE(ideal.depth_noise_on);
+  EXPECT_FALSE(ideal.colour_noise_on);
+  const SensorConfig pepper = load_sensor_config(folder / "pepper.yaml");
+  EXPECT_TRUE(pepper.depth_noise_on && pepper.colour_noise_on);
+  const DepthNoiseConfig& d = pepper.depth_noise;
+  EXPECT_TRUE(d.axial && d.lateral && d.quantisation && d.grazing_holes);
+  EXPECT_EQ(d.min_range_m, 0.4);
+  EXPECT_EQ(d.max_range_m, 8.0);
+  EXPECT_EQ(pepper.colour_noise.sigma, 0.007);
+}
+
+TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / "modelhouse_bad_level.yaml";
+  const auto message = [&](const std::string& text) -> std::string {
+    write_atomically(file, text);
+    try {
+      load_sensor_config(file);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const std::string colour = "colour_noise: {sigma: 0.01}\n";
+  EXPECT_NE(message("depth_noise: {wobble: true}\n" + colour).find("wobble"), std::string::npos);
+  EXPECT_NE(message("depth_noise: {axial: 3}\n" + colour).find(":1:"), std::string::npos);
+  EXPECT_NE(message("depth_noise: {min_range_m: 2, max_range_m: 1}\n" + colour).find("max_range_m"),
+            std::string::npos);
+  EXPECT_NE(message("depth_noise: {}\ncolour_noise: {sigma: -1}\n").find("-1"), std::string::npos);
+  EXPECT_NE(message("depth_noise: {}\n").find("colour_noise"), std::string::npos);
+  EXPECT_EQ(message("depth_noise: {}\n" + colour), "accepted");
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace mh

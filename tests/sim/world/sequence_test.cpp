@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/world/sequence.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/sim/scene_builder.hpp"
+
+namespace mh {
+namespace {
+
+SimulatedSequence three_steps_towards_a_wall(LabelMode labels) {
+  Scene scene = test::plain_scene({120, 120, 120});
+  test::add_quad(scene, {-9, -9, 3}, {18, 0, 0}, {0, 18, 0}, 5, 1);
+  std::vector<TimedPose> path;
+  for (int i = 0; i < 3; ++i)
+    path.push_back({1000 + i, SE3(Eigen::Matrix3d::Identity(), {0, 0, 0.5 * i})});
+  return {make_embree_renderer(scene), Camera{}, path, SensorConfig{}, labels};
+}
+
+TEST(SimulatedSequence, FramesCarryStampTruthAndWhatTheCameraSees) {
+  const SimulatedSequence sequence = three_steps_towards_a_wall(LabelMode::kExact);
+  ASSERT_EQ(sequence.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SimulatedFrame seen = sequence.at(i, RandomStream(1));
+    EXPECT_EQ(seen.frame.stamp_ns, 1000 + static_cast<Stamp>(i));
+    EXPECT_EQ(seen.truth.stamp_ns, seen.frame.stamp_ns);
+    EXPECT_EQ(seen.truth.world_from_camera.translation().z(), 0.5 * static_cast<double>(i));
+    double sum = 0.0;
+    for (const float depth : seen.frame.depth_m) sum += depth;
+    const double expected = 3.0 - 0.5 * static_cast<double>(i);
+    EXPECT_NEAR(sum / 307200.0, expected, 0.01);  // noise of 1.4 cm and steps of up to 3 cm
+    EXPECT_EQ(seen.frame.semantics.at(10, 10).most_probable(), 5);
+  }
+}
+
+TEST(SimulatedSequence, NoiseIsKeyedByAttemptAndFrameNotByTheOrderOfAsking) {
+  const SimulatedSequence sequence = three_steps_towards_a_wall(LabelMode::kNone);
+  const RandomStream first(7), other = first.fork(1);
+  const RgbdFrame early = sequence.at(1, first).frame;
+  sequence.at(2, first);
+  sequence.at(0, other);
+  const RgbdFrame late = sequence.at(1, first).frame;
+  EXPECT_EQ(early.depth_m, late.depth_m);
+  EXPECT_EQ(early.colour, late.colour);
+  EXPECT_NE(sequence.at(1, other).frame.depth_m, early.depth_m);
+  EXPECT_NE(sequence.at(1, other).frame.colour, early.colour);
+  // The wall looks the same from everywhere, so that equal noise would give equal pictures.
+  EXPECT_NE(sequence.at(0, first).frame.colour, early.colour);
+  EXPECT_TRUE(early.semantics.index.empty());
+}
+
+}  // namespace
+}  // namespace mh
