@@ -56,7 +56,7 @@ class LeftPerturbation : public ceres::Manifold {
 
 class ReprojectionCost : public ceres::SizedCostFunction<3, 7, 3> {
  public:
-  explicit ReprojectionCost(const Measurement& measured) : measured_(measured) {}
+  explicit ReprojectionCost(const ImageMeasurement& measured) : measured_(measured) {}
   bool Evaluate(const double* const* parameters, double* residuals,
                 double** jacobians) const override {
     const SE3 pose = LeftPerturbation::load(parameters[0]);
@@ -78,7 +78,7 @@ class ReprojectionCost : public ceres::SizedCostFunction<3, 7, 3> {
   }
 
  private:
-  Measurement measured_;
+  ImageMeasurement measured_;
 };
 
 void ours(benchmark::State& state) {

@@ -46,7 +46,7 @@ struct Workspace {
   Eigen::LLT<Eigen::MatrixXd> factor;
 };
 
-Measurement measurement(const BundleObservation& o) {
+ImageMeasurement measurement(const BundleObservation& o) {
   return {.u_px = o.u_px, .v_px = o.v_px, .disparity_px = o.disparity_px, .sigma_px = o.sigma_px};
 }
 
@@ -130,7 +130,7 @@ void linearize_point(const BundleProblem& problem, Workspace& w, const State& st
     const SE3& pose = state.camera_from_world[o.pose];
     const Eigen::Vector3d p = pose * state.points_in_world[point];
     if (p.z() < kMinimumDepth_m) continue;
-    const Measurement measured = measurement(o);
+    const ImageMeasurement measured = measurement(o);
     const Eigen::Vector3d r = reprojection_residual(p, measured, camera);
     const double weight = robust ? huber_weight(r.squaredNorm(), gate(o, config)) : 1.0;
     const CameraFrameTerm term = camera_frame_term(p, r, weight, measured, camera);

@@ -27,11 +27,11 @@ struct NormalEquations {
   double cost = 0;
 };
 
-Measurement measurement(const PoseObservation& o) {
+ImageMeasurement measurement(const PoseObservation& o) {
   return {.u_px = o.u_px, .v_px = o.v_px, .disparity_px = o.disparity_px, .sigma_px = o.sigma_px};
 }
 
-double gate(const Measurement& measured, const PoseConfig& config) {
+double gate(const ImageMeasurement& measured, const PoseConfig& config) {
   return measured.has_depth() ? config.chi2_stereo : config.chi2_mono;
 }
 
@@ -45,7 +45,7 @@ NormalEquations linearize(std::span<const PoseObservation> observations,
   NormalEquations sum;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     if (!inlier[i]) continue;
-    const Measurement measured = measurement(observations[i]);
+    const ImageMeasurement measured = measurement(observations[i]);
     const double limit = gate(measured, config);
     const Eigen::Vector3d p = camera_from_world * observations[i].point_in_world;
     if (p.z() < kMinimumDepth_m) {
@@ -117,7 +117,7 @@ int find_inliers(std::span<const PoseObservation> observations, const SE3& camer
   inlier.resize(observations.size());
   int count = 0;
   for (std::size_t i = 0; i < observations.size(); ++i) {
-    const Measurement measured = measurement(observations[i]);
+    const ImageMeasurement measured = measurement(observations[i]);
     const Eigen::Vector3d p = camera_from_world * observations[i].point_in_world;
     const bool fits =
         p.z() >= kMinimumDepth_m &&

@@ -15,7 +15,7 @@ namespace mh {
 inline constexpr double kMinimumDepth_m = 0.01;
 
 /// One measurement (u, v[, disparity]) in px; disparity < 0 = no depth.
-struct Measurement {
+struct ImageMeasurement {
   double u_px = 0, v_px = 0;
   double disparity_px = -1;
   double sigma_px = 1;
@@ -26,7 +26,7 @@ struct Measurement {
 /// Whitened residual (prediction - measurement) / sigma of a point in the camera's frame; its third
 /// element is 0 without depth. Valid for z >= kMinimumDepth_m.
 inline Eigen::Vector3d reprojection_residual(const Eigen::Vector3d& point_in_camera,
-                                             const Measurement& measured, const Camera& camera) {
+                                             const ImageMeasurement& measured, const Camera& camera) {
   const double inverse_z = 1.0 / point_in_camera.z();
   const double inverse_sigma = 1.0 / measured.sigma_px;
   const double u_px = camera.fx_px * point_in_camera.x() * inverse_z + camera.cx_px;
@@ -38,7 +38,7 @@ inline Eigen::Vector3d reprojection_residual(const Eigen::Vector3d& point_in_cam
 
 /// Derivative of that residual by the point in the camera's frame; third row 0 without depth.
 inline Eigen::Matrix3d reprojection_jacobian(const Eigen::Vector3d& point_in_camera,
-                                             const Measurement& measured, const Camera& camera) {
+                                             const ImageMeasurement& measured, const Camera& camera) {
   const double inverse_z = 1.0 / point_in_camera.z();
   const double a = camera.fx_px * inverse_z / measured.sigma_px;
   const double b = camera.fy_px * inverse_z / measured.sigma_px;
@@ -68,7 +68,7 @@ struct CameraFrameTerm {
 
 inline CameraFrameTerm camera_frame_term(const Eigen::Vector3d& point_in_camera,
                                          const Eigen::Vector3d& residual, double weight,
-                                         const Measurement& measured, const Camera& camera) {
+                                         const ImageMeasurement& measured, const Camera& camera) {
   const double inverse_z = 1.0 / point_in_camera.z();
   const double x = point_in_camera.x() * inverse_z;
   const double y = point_in_camera.y() * inverse_z;

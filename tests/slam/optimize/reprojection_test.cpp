@@ -16,13 +16,13 @@ constexpr double kTolerance = 1e-5;
 const Camera kCamera{};
 const Eigen::Vector3d kPoints[] = {{0.3, -0.4, 1.7}, {-1.2, 0.8, 3.5}, {0.01, 0.0, 0.6}};
 
-Measurement measured(bool depth) {
+ImageMeasurement measured(bool depth) {
   return {.u_px = 301.5, .v_px = 222.25, .disparity_px = depth ? 14.5 : -1.0, .sigma_px = 1.7};
 }
 
 TEST(Reprojection, PointJacobianEqualsCentralDifferences) {
   for (const bool depth : {false, true}) {
-    const Measurement m = measured(depth);
+    const ImageMeasurement m = measured(depth);
     for (const Eigen::Vector3d& p : kPoints) {
       const Eigen::Matrix3d analytic = reprojection_jacobian(p, m, kCamera);
       for (int k = 0; k < 3; ++k) {
@@ -40,7 +40,7 @@ TEST(Reprojection, PointJacobianEqualsCentralDifferences) {
 TEST(Reprojection, PoseJacobianEqualsCentralDifferences) {
   const SE3 pose = testing::true_pose();
   for (const bool depth : {false, true}) {
-    const Measurement m = measured(depth);
+    const ImageMeasurement m = measured(depth);
     for (const Eigen::Vector3d& p : kPoints) {
       const Eigen::Vector3d point_in_world = pose.inverse() * p;
       const Eigen::Matrix<double, 3, 6> analytic =
@@ -59,7 +59,7 @@ TEST(Reprojection, PoseJacobianEqualsCentralDifferences) {
 
 TEST(Reprojection, WorldPointJacobianEqualsCentralDifferences) {
   const SE3 pose = testing::true_pose();
-  const Measurement m = measured(true);
+  const ImageMeasurement m = measured(true);
   for (const Eigen::Vector3d& p : kPoints) {
     const Eigen::Vector3d point = pose.inverse() * p;
     const Eigen::Matrix3d analytic = reprojection_jacobian(p, m, kCamera) * pose.rotation();
@@ -75,7 +75,7 @@ TEST(Reprojection, WorldPointJacobianEqualsCentralDifferences) {
 
 TEST(Reprojection, CameraFrameTermIsTheProductOfJacobians) {
   for (const bool depth : {false, true}) {
-    const Measurement m = measured(depth);
+    const ImageMeasurement m = measured(depth);
     for (const Eigen::Vector3d& p : kPoints) {
       const Eigen::Vector3d r = reprojection_residual(p, m, kCamera);
       const Eigen::Matrix3d j = reprojection_jacobian(p, m, kCamera);

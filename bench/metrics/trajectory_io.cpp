@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/metrics/trajectory_io.hpp"
+
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r\n\v\f";
+
+std::vector<std::string> split(std::string_view line) {
+  std::vector<std::string> words;
+  std::size_t begin = line.find_first_not_of(kBlanks);
+  while (begin != std::string_view::npos) {
+    const std::size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
+    words.emplace_back(line.substr(begin, end - begin));
+    begin = line.find_first_not_of(kBlanks, end);
+  }
+  return words;
+}
+
+/// Where a line stands, for messages.
+struct Place {
+  const std::string& file;
+  int line;
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(fmt::format("{}:{}: {}", file, line, what));
+  }
+};
+
+double parse_number(const std::string& word, const char* field, const Place& place) {
+  double value = 0;
+  // from_chars knows no leading plus.
+  const char* begin = word.data() + (word.front() == '+' ? 1 : 0);
+  const char* end = word.data() + word.size();
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  if (error != std::errc() || stop != end)
+    place.fail(fmt::format("{}: '{}' is no number", field, word));
+  if (!std::isfinite(value)) place.fail(fmt::format("{}: '{}' is not finite", field, word));
+  return value;
+}
+
+/// Calls `use` with the words of each line that is neither empty nor a comment.
+void for_each_line(const std::string& text, const std::string& name,
+                   const std::function<void(const std::vector<std::string>&, const Place&)>& use) {
+  int number = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    ++number;
+    const std::string_view line = std::string_view(text).substr(begin, end - begin);
+    const std::vector<std::string> words = split(line.substr(0, line.find('#')));
+    if (!words.empty()) use(words, Place{name, number});
+    begin = end + 1;
+  }
+}
+
+Stamp parse_stamp_at(const std::string& word, const Place& place) {
+  try {
+    return parse_stamp(word);
+  } catch (const InputError& error) {
+    place.fail(fmt::format("stamp: {}", error.what()));
+  }
+}
+
+}  // namespace
+
+Stamp parse_stamp(const std::string& text) {
+  const auto fail = [&] {
+    throw InputError(fmt::format("'{}' is no time in seconds from 0 to 9.2e9", text));
+  };
+  // value = digits * 10^exponent seconds.
+  std::string digits;
+  int exponent = 0;
+  std::size_t at = !text.empty() && text[0] == '+' ? 1 : 0;
+  bool point = false;
+  bool any = false;
+  for (; at < text.size(); ++at) {
+    const char c = text[at];
+    if (c == '.' && !point) {
+      point = true;
+    } else if (c >= '0' && c <= '9') {
+      any = true;
+      if (point) --exponent;
+      if (!digits.empty() || c != '0') digits += c;
+    } else {
+      break;
+    }
+  }
+  if (!any) fail();
+  if (at < text.size()) {
+    if (text[at] != 'e' && text[at] != 'E') fail();
+    int power = 0;
+    const char* begin = text.data() + at + 1;
+    if (begin != text.data() + text.size() && *begin == '+') ++begin;
+    const auto [stop, error] = std::from_chars(begin, text.data() + text.size(), power);
+    if (error != std::errc() || stop != text.data() + text.size() || std::abs(power) > 1000) fail();
+    exponent += power;
+  }
+  if (digits.empty()) return 0;
+  const int shift = exponent + 9;  // digits * 10^shift nanoseconds
+  bool round_up = false;
+  if (shift >= 0) {
+    if (static_cast<int>(digits.size()) + shift > 19) fail();
+    digits.append(static_cast<std::size_t>(shift), '0');
+  } else {
+    const int kept = static_cast<int>(digits.size()) + shift;
+    if (kept < 0) return 0;
+    round_up = digits[static_cast<std::size_t>(kept)] >= '5';
+    if (kept == 0) return round_up;
+    digits.resize(static_cast<std::size_t>(kept));
+  }
+  Stamp stamp = 0;
+  const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), stamp);
+  if (error != std::errc() || stamp > 9'200'000'000'000'000'000) fail();
+  return stamp + round_up;
+}
+
+std::string format_stamp(Stamp stamp_ns) {
+  assert(stamp_ns >= 0);
+  return fmt::format("{}.{:09}", stamp_ns / 1'000'000'000, stamp_ns % 1'000'000'000);
+}
+
+Trajectory parse_tum(const std::string& text, const std::string& name) {
+  static constexpr const char* kFields[] = {"tx", "ty", "tz", "qx", "qy", "qz", "qw"};
+  Trajectory trajectory;
+  for_each_line(text, name, [&](const std::vector<std::string>& words, const Place& place) {
+    if (words.size() != 8)
+      place.fail(
+          fmt::format("pose: {} values, expected 8 (stamp tx ty tz qx qy qz qw)", words.size()));
+    const Stamp stamp_ns = parse_stamp_at(words[0], place);
+    if (!trajectory.empty() && stamp_ns <= trajectory.back().stamp_ns)
+      place.fail(fmt::format("stamp: {} does not come after {}", words[0],
+                             format_stamp(trajectory.back().stamp_ns)));
+    double v[7];
+    for (std::size_t k = 0; k < 7; ++k) v[k] = parse_number(words[k + 1], kFields[k], place);
+    const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
+    if (std::abs(rotation.norm() - 1.0) > 0.1)
+      place.fail(fmt::format("quaternion: norm {:g}, expected 1", rotation.norm()));
+    trajectory.push_back({stamp_ns, SE3(rotation, Eigen::Vector3d(v[0], v[1], v[2]))});
+  });
+  if (trajectory.empty()) throw InputError(fmt::format("{}: contains no poses", name));
+  return trajectory;
+}
+
+Trajectory read_tum(const std::filesystem::path& file) {
+  return parse_tum(read_file(file), file.string());
+}
+
+std::string format_tum(const Trajectory& trajectory) {
+  std::string text = "# stamp tx ty tz qx qy qz qw\n";
+  for (const TimedPose& pose : trajectory) {
+    const Eigen::Vector3d& t = pose.world_from_camera.translation();
+    const Eigen::Quaterniond q = pose.world_from_camera.quaternion();
+    text += fmt::format("{} {} {} {} {} {} {} {}\n", format_stamp(pose.stamp_ns), t.x(), t.y(),
+                        t.z(), q.x(), q.y(), q.z(), q.w());
+  }
+  return text;
+}
+
+void write_tum(const std::filesystem::path& file, const Trajectory& trajectory) {
+  write_atomically(file, format_tum(trajectory));
+}
+
+Trajectory parse_kitti(const std::string& text, const std::string& name, Stamp period_ns) {
+  assert(period_ns > 0);
+  Trajectory trajectory;
+  for_each_line(text, name, [&](const std::vector<std::string>& words, const Place& place) {
+    if (words.size() != 12)
+      place.fail(fmt::format("pose: {} values, expected 12 (3x4 matrix by rows)", words.size()));
+    Eigen::Matrix<double, 3, 4> matrix;
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 4; ++column)
+        matrix(row, column) =
+            parse_number(words[static_cast<std::size_t>(4 * row + column)], "matrix", place);
+    const Eigen::Matrix3d rotation = matrix.leftCols<3>();
+    const double off = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm();
+    if (!(off < 1e-3) || rotation.determinant() < 0)
+      place.fail("matrix: its left 3x3 part is no rotation");
+    const auto index = static_cast<Stamp>(trajectory.size());
+    trajectory.push_back({index * period_ns, SE3(rotation, matrix.col(3)).normalized()});
+  });
+  if (trajectory.empty()) throw InputError(fmt::format("{}: contains no poses", name));
+  return trajectory;
+}
+
+Trajectory read_kitti(const std::filesystem::path& file, Stamp period_ns) {
+  return parse_kitti(read_file(file), file.string(), period_ns);
+}
+
+std::string format_kitti(const Trajectory& trajectory) {
+  std::string text;
+  for (const TimedPose& pose : trajectory) {
+    const Eigen::Matrix3d& r = pose.world_from_camera.rotation();
+    const Eigen::Vector3d& t = pose.world_from_camera.translation();
+    for (int row = 0; row < 3; ++row)
+      text += fmt::format("{}{} {} {} {}", row == 0 ? "" : " ", r(row, 0), r(row, 1), r(row, 2),
+                          t[row]);
+    text += '\n';
+  }
+  return text;
+}
+
+void write_kitti(const std::filesystem::path& file, const Trajectory& trajectory) {
+  write_atomically(file, format_kitti(trajectory));
+}
+
+}  // namespace mh
