@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/render/bake.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "sim/render/colour.hpp"
+#include "sim/render/renderer.hpp"
+#include "tests/sim/scene_builder.hpp"
+
+namespace mh {
+namespace {
+
+using Eigen::Vector3f;
+using test::add_box;
+using test::add_quad;
+using test::plain_scene;
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+/// A floor of 4 x 4 m about the origin, facing up, in cells of 10 cm.
+Scene floor_scene() {
+  Scene scene = plain_scene();
+  add_quad(scene, {-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, 1, 0, 40);
+  return scene;
+}
+
+Light sphere_lamp(const Vector3f& position_m, float intensity) {
+  Light lamp;
+  lamp.position_m = position_m;
+  lamp.colour = Vector3f(1.0F, 0.5F, 0.25F) * intensity;
+  return lamp;
+}
+
+TEST(BakeLight, FloorUnderALampFollowsInverseSquareAndCosine) {
+  Scene scene = floor_scene();
+  scene.lights.push_back(sphere_lamp({0, 0, 1.5F}, 2.0F));
+  bake_light(scene);
+  ASSERT_EQ(scene.light.size(), scene.positions_m.size());
+  for (std::size_t v = 0; v < scene.light.size(); ++v) {
+    const float distance = (scene.positions_m[v] - Vector3f(0, 0, 1.5F)).norm();
+    const float expected = 2.0F * (1.5F / distance) / (distance * distance) / kPi;
+    // Averages over cells of 10 cm at 1.5 m and a lamp of 5 cm: 2 %; on the border half a cell.
+    const bool border = scene.positions_m[v].head<2>().cwiseAbs().maxCoeff() > 1.95F;
+    ASSERT_NEAR(scene.light[v].x(), expected, (border ? 0.06F : 0.02F) * expected);
+    ASSERT_NEAR(scene.light[v].y(), 0.5F * scene.light[v].x(), 1e-6);
+    ASSERT_NEAR(scene.light[v].z(), 0.25F * scene.light[v].x(), 1e-6);
+  }
+}
+
+TEST(BakeLight, SunLightsWithTheCosineAndTablesCastShadows) {
+  Scene scene = floor_scene();
+  const std::size_t floor_vertices = scene.positions_m.size();
+  add_quad(scene, {-0.5F, -0.5F, 1}, {1, 0, 0}, {0, 1, 0}, 7, 2, 0, 10);
+  Light sun;
+  sun.kind = Light::Kind::kSun;
+  sun.direction = Vector3f(1, 0, -1).normalized();
+  sun.colour = {3, 3, 3};
+  scene.lights.push_back(sun);
+  bake_light(scene, {.bounces = 0});
+  const float lit = 3.0F * std::sqrt(0.5F) / kPi;
+  int shadowed = 0;
+  for (std::size_t v = 0; v < floor_vertices; ++v) {
+    // The shadow of [-0.5, 0.5] at height 1 under a sun from 45 deg: [0.5, 1.5] on the floor.
+    const float outside =
+        std::max(std::abs(scene.positions_m[v].x() - 1.0F), std::abs(scene.positions_m[v].y())) -
+        0.5F;
+    const float light = scene.light[v].x();
+    if (outside > 0.11F) {
+      ASSERT_NEAR(light, lit, 1e-3F * lit);
+    } else if (outside < -0.11F) {
+      ++shadowed;
+      ASSERT_EQ(light, 0.0F);
+    } else {  // the edge is a ramp one cell wide
+      ASSERT_GE(light, 0.0F);
+      ASSERT_LE(light, 1.001F * lit);
+    }
+  }
+  EXPECT_EQ(shadowed, 49);  // 7 x 7 vertices at least 11 cm inside a metre
+}
+
+TEST(BakeLight, OpenSkyGivesItsRadiance) {
+  Scene scene = floor_scene();
+  scene.lights.push_back({.kind = Light::Kind::kSky, .colour = {0.5F, 0.6F, 0.7F}});
+  bake_light(scene);
+  for (const Vector3f& light : scene.light)
+    ASSERT_LT((light - Vector3f(0.5F, 0.6F, 0.7F)).norm(), 1e-5F);
+}
+
+TEST(BakeLight, ClosedBoxOfConstantGlowIsTheGeometricSeries) {
+  // Inside a closed surface of albedo a that glows with radiance e everywhere, each interreflection
+  // adds a factor a: after n of them light = e (1 + a + ... + a^n), at every point.
+  Scene scene = plain_scene({188, 188, 188});
+  scene.materials[0].emission = {0.5F, 0.25F, 1.0F};
+  add_box(scene, {0, 0, 0}, {3, 2, 2.5F}, true, 1, 1, 0, 8);
+  const float albedo = srgb_to_linear(std::uint8_t{188});
+  for (const int bounces : {0, 1, 4}) {
+    bake_light(scene, {.bounces = bounces});
+    float series = 0.0F;
+    for (int k = 0; k <= bounces; ++k) series += std::pow(albedo, static_cast<float>(k));
+    for (const Vector3f& light : scene.light)
+      ASSERT_LT((light - series * scene.materials[0].emission).norm(), 1e-3F * series);
+  }
+}
+
+TEST(BakeLight, ColourOfATextureBleedsByItsMean) {
+  Scene scene = plain_scene();
+  scene.materials[0].texture = Grid2d<Rgb8>(2, 1);
+  scene.materials[0].texture(0, 0) = {255, 0, 0};
+  scene.materials[0].emission = {1, 1, 1};
+  add_box(scene, {0, 0, 0}, {2, 2, 2}, true, 1, 1, 0, 4);
+  bake_light(scene, {.bounces = 1});
+  for (const Vector3f& light : scene.light)
+    ASSERT_LT((light - Vector3f(1.5F, 1.0F, 1.0F)).norm(), 1e-3F);  // half red: 1 + 0.5
+}
+
+TEST(BakeLight, RoomsAreDarkWithoutLightEvenUnderABrightSky) {
+  Scene scene = plain_scene();
+  add_box(scene, {0, 0, 0}, {3, 3, 2.5F}, true, 1, 1, 0, 10);  // single sheets: the sky is right behind
+  scene.lights.push_back({.kind = Light::Kind::kSky, .colour = {9, 9, 9}});
+  scene.lights.push_back(sphere_lamp({1.5F, 1.5F, 2.0F}, 1.0F));
+  bake_light(scene);
+  // Everything is lit by the lamp alone: nowhere near the sky's radiance.
+  for (const Vector3f& light : scene.light) {
+    ASSERT_GT(light.x(), 0.01F);
+    ASSERT_LT(light.x(), 3.0F);
+    ASSERT_LT(light.z(), 0.3F * light.x());  // the lamp's colour, not the sky's
+  }
+}
+
+TEST(BakeLight, BoxTurnedInsideOutIsLitLikeAProperOne) {
+  const auto brightness_of_box = [](bool inwards) {
+    Scene scene = floor_scene();
+    const std::size_t first = scene.positions_m.size();
+    add_box(scene, {-0.3F, -0.3F, 0.2F}, {0.3F, 0.3F, 0.8F}, inwards, 3, 2, 0, 6);
+    scene.lights.push_back(sphere_lamp({0.5F, 0.7F, 2.0F}, 2.0F));
+    bake_light(scene);
+    double sum = 0.0;
+    for (std::size_t v = first; v < scene.light.size(); ++v) sum += scene.light[v].x();
+    return sum / static_cast<double>(scene.light.size() - first);
+  };
+  const double proper = brightness_of_box(false);
+  EXPECT_GT(proper, 0.05);
+  EXPECT_NEAR(brightness_of_box(true), proper, 0.1 * proper);
+}
+
+TEST(BakeLight, FloorInsideAStandingBoxTakesTheLightAroundIt) {
+  Scene scene = floor_scene();
+  const std::size_t floor_vertices = scene.positions_m.size();
+  add_box(scene, {-0.33F, -0.33F, 0}, {0.33F, 0.33F, 0.1F}, false, 3, 2, 0, 4);
+  scene.lights.push_back({.kind = Light::Kind::kSky, .colour = {1, 1, 1}});
+  bake_light(scene);
+  for (std::size_t v = 0; v < floor_vertices; ++v) ASSERT_GT(scene.light[v].x(), 0.4F);
+}
+
+TEST(BakeLight, ThreadsChangeNoBitAndSeedsDo) {
+  const auto baked = [](int threads, std::uint64_t seed) {
+    Scene scene = floor_scene();
+    add_box(scene, {0, 0, 0.3F}, {0.5F, 0.5F, 0.6F}, false, 3, 2, 0, 5);
+    scene.lights.push_back({.kind = Light::Kind::kSky, .colour = {1, 1, 1}});
+    scene.lights.push_back(sphere_lamp({0.5F, 0.7F, 2.0F}, 2.0F));
+    bake_light(scene, {.seed = seed, .threads = threads});
+    return scene.light;
+  };
+  const auto one = baked(1, 3);
+  EXPECT_EQ(one, baked(2, 3));
+  EXPECT_NE(one, baked(1, 4));
+}
+
+TEST(SuggestExposure, BringsTheMedianSurfaceToTheStatedRadiance) {
+  Scene scene = plain_scene({188, 188, 188});
+  add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 1, 0, 8);
+  scene.light.assign(scene.positions_m.size(), Vector3f::Constant(0.1F));
+  const float albedo = srgb_to_linear(std::uint8_t{188});
+  EXPECT_NEAR(suggest_exposure(scene) * 0.1F * albedo, 0.2F, 1e-5);
+  // What looks at no room does not count: a bright outer side under the floor.
+  scene.rooms.push_back({"room", {{0, 0}, {1, 0}, {1, 1}, {0, 1}}});
+  add_quad(scene, {5, 0, 0}, {9, 0, 0}, {0, 9, 0}, 2, 1, 0, 1);
+  scene.light.resize(scene.positions_m.size(), Vector3f::Constant(7.0F));
+  EXPECT_NEAR(suggest_exposure(scene) * 0.1F * albedo, 0.2F, 1e-5);
+  EXPECT_EQ(suggest_exposure(Scene{}), 1.0F);
+}
+
+}  // namespace
+}  // namespace mh
