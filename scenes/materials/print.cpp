@@ -53,9 +53,15 @@ Tint hsv(float hue, float saturation, float value) {
   return {channel(5.0F), channel(3.0F), channel(1.0F)};
 }
 
+/// A colour at random; value and saturation within these bounds.
+Tint random_tint(Dice& dice, float s_low, float s_high, float v_low, float v_high) {
+  const float hue = dice.uniform(), saturation = dice.uniform(s_low, s_high);
+  return hsv(hue, saturation, dice.uniform(v_low, v_high));
+}
+
 Tint ink_for(Tint paper, Dice& dice) {
   const float brightness = 0.3F * paper.r + 0.6F * paper.g + 0.1F * paper.b;
-  if (brightness > 130.0F) return hsv(dice.uniform(), 0.5F, dice.uniform(0.08F, 0.25F));
+  if (brightness > 130.0F) return random_tint(dice, 0.5F, 0.5F, 0.08F, 0.25F);
   return dice.below(3) == 0 ? Tint(226, 190, 96) : Tint(238, 234, 222);
 }
 
@@ -64,7 +70,7 @@ Tint cloth_for(const PaintJob& job, Dice& dice) {
   if (style == 0) return Tint(234, 229, 214) * dice.uniform(0.88F, 1.0F);
   if (style == 1) return Tint(38, 36, 40) * dice.uniform(0.7F, 1.5F);
   if (style <= 3) return job.tone * dice.uniform(0.6F, 1.15F);
-  return hsv(dice.uniform(), dice.uniform(0.2F, 0.68F), dice.uniform(0.22F, 0.78F));
+  return random_tint(dice, 0.2F, 0.68F, 0.22F, 0.78F);
 }
 
 /// Grain over a whole picture, so that flat prints are not mathematically flat.
@@ -122,6 +128,11 @@ void emblem(Canvas& canvas, Dice& dice, float x, float y, float radius, Tint a, 
       }
       canvas.ellipse(x, y, 0.25F * radius, 0.25F * radius, 0.0F, b);
   }
+}
+
+void slash(Canvas& canvas, Dice& dice, float x, float y, float reach, float thickness, Tint tint) {
+  const float dx = dice.uniform(-2, 2) * reach, dy = dice.uniform(-2, 2) * reach;
+  canvas.line(x, y, x + dx, y + dy, thickness, tint);
 }
 
 /// One book seen from its back, standing at x and `width` wide; its top edge at y.
@@ -204,8 +215,8 @@ Picture paint_book_cover(const PaintJob& job) {
 
 Picture paint_poster(const PaintJob& job) {
   Dice dice(job.random);
-  const Tint second = hsv(dice.uniform(), dice.uniform(0.4F, 0.8F), dice.uniform(0.5F, 0.95F));
-  const Tint third = hsv(dice.uniform(), 0.7F, dice.uniform(0.2F, 0.6F));
+  const Tint second = random_tint(dice, 0.4F, 0.8F, 0.5F, 0.95F);
+  const Tint third = random_tint(dice, 0.7F, 0.7F, 0.2F, 0.6F);
   const Tint below = blend(job.tone, second, 0.35F);
   Picture picture = paint(job, [&](int, int y) {
     return blend(job.tone, below, static_cast<float>(y) / static_cast<float>(job.height));
@@ -224,8 +235,7 @@ Picture paint_poster(const PaintJob& job) {
         emblem(canvas, dice, x, y, r, tint, job.tone);
         break;
       case 1:
-        canvas.line(x, y, x + dice.uniform(-2, 2) * r, y + dice.uniform(-2, 2) * r, 0.02F * small,
-                    tint);
+        slash(canvas, dice, x, y, r, 0.02F * small, tint);
         break;
       case 2:
         for (int k = 0; k < 6; ++k)
