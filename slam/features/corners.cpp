@@ -80,7 +80,8 @@ class SpacedPicker {
   }
 
  private:
-  static constexpr Corner kNone{-20000, -20000, 0};  // farther from any corner than any spacing
+  static constexpr Corner kNone{-20000, -20000, 0, 0,
+                                0};  // farther from any corner than any spacing
 
   static bool is_free(const Corner& c, const Corner* cell, int columns, int spacing) {
     for (int dy = -1; dy <= 1; ++dy)
@@ -121,19 +122,12 @@ std::vector<Corner> spread(const std::vector<Corner>& corners, int count) {
 
   SpacedPicker picker(corners);
   int good = 1;  // at spacing 1 nothing is refused
-  std::vector<Corner> best(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(wanted));
   int bad = picker.largest_spacing(wanted) + 1;
   while (bad - good > 1) {
     const int spacing = good + (bad - good) / 2;
-    std::vector<Corner> picked = picker.pick(spacing, wanted);
-    if (picked.size() < wanted) {
-      bad = spacing;
-    } else {
-      good = spacing;
-      best = std::move(picked);
-    }
+    (picker.pick(spacing, wanted).size() < wanted ? bad : good) = spacing;
   }
-  return best;
+  return picker.pick((good + 1) / 2, wanted);
 }
 
 std::vector<int> share_out(int total, double ratio, const std::vector<int>& available) {

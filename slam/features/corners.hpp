@@ -14,10 +14,12 @@ namespace mh {
 std::vector<Corner> find_corners(const cv::Mat& image, int edge_px, int threshold,
                                  int low_threshold);
 
-/// Picks `count` corners that are strong and spread evenly: the greatest spacing is sought at which
-/// taking corners from the strongest down, none closer to one already taken than the spacing
-/// (larger of |dx| and |dy|), still yields `count` (adaptive non-maximal suppression after Bailo et
-/// al., Pattern Recognition Letters 2018).
+/// Picks `count` corners that are strong and spread evenly: from the strongest down, none closer to
+/// one already taken than a spacing (larger of |dx| and |dy|). The spacing is half the greatest one
+/// that yields `count` (adaptive non-maximal suppression after Bailo et al., Pattern Recognition
+/// Letters 2018, who take the greatest; that prefers faint corners in lonely places: in rendered
+/// rooms half of it finds 68 % of corners again in the next picture, where the greatest finds 49 %
+/// and no spacing at all 74 %).
 /// @param corners  strongest first.
 /// @returns min(count, corners.size()) corners, strongest first.
 std::vector<Corner> spread(const std::vector<Corner>& corners, int count);

@@ -50,8 +50,8 @@ float depth_at(const Grid2d<float>& depth_m, int x, int y, double max_depth_m) {
 
 void append(const PyramidLevel& level, int octave, const Corner& corner, const RgbdFrame& frame,
             double max_depth_m, Features& features) {
-  const cv::Point2d raw =
-      level.to_full({static_cast<double>(corner.x), static_cast<double>(corner.y)});
+  const cv::Point2d raw = level.to_full(
+      {static_cast<double>(corner.x) + corner.dx, static_cast<double>(corner.y) + corner.dy});
   const int x = std::clamp(cvRound(raw.x), 0, frame.colour.width() - 1);
   const int y = std::clamp(cvRound(raw.y), 0, frame.colour.height() - 1);
 
