@@ -32,7 +32,9 @@ std::pair<Vector3f, Vector3f> across(const Vector3f& way) {
 }
 
 /// Projects a welded soft shape to the plane without a seam: no face that occurs is edge-on.
-Vector2f soft_uv(const Vector3f& p) { return {p.x() + 0.6F * p.z(), p.y() + 0.6F * p.z()}; }
+Vector2f soft_uv(const Vector3f& p) {
+  return {p.x() + 0.6F * p.z(), p.y() + 0.6F * p.z()};
+}
 
 }  // namespace
 
@@ -63,13 +65,15 @@ Eigen::Isometry3f turn(const Vector3f& axis, float angle_rad) {
   return Eigen::Isometry3f(Eigen::AngleAxisf(angle_rad, axis));
 }
 
-Eigen::Isometry3f turn_z(float angle_rad) { return turn(Vector3f::UnitZ(), angle_rad); }
+Eigen::Isometry3f turn_z(float angle_rad) {
+  return turn(Vector3f::UnitZ(), angle_rad);
+}
 
 MaterialId MeshBuilder::material(const MaterialSpec& spec, const Vector3f& emission) {
-  const std::string key = fmt::format(
-      "{}|{}|{},{},{}|{}|{}|{},{}|{},{},{}", spec.name, spec.kind, spec.tone.r, spec.tone.g,
-      spec.tone.b, spec.variation, spec.seed, spec.size_m.x(), spec.size_m.y(), emission.x(),
-      emission.y(), emission.z());
+  const std::string key =
+      fmt::format("{}|{}|{},{},{}|{}|{}|{},{}|{},{},{}", spec.name, spec.kind, spec.tone.r,
+                  spec.tone.g, spec.tone.b, spec.variation, spec.seed, spec.size_m.x(),
+                  spec.size_m.y(), emission.x(), emission.y(), emission.z());
   const auto [found, is_new] =
       materials_.try_emplace(key, static_cast<MaterialId>(scene_.materials.size()));
   if (is_new) {
@@ -113,7 +117,8 @@ std::uint32_t MeshBuilder::vertex(MaterialId material, const Vector3f& local, co
 }
 
 void MeshBuilder::triangle(MaterialId material, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  const Vector3f &pa = scene_.positions_m[a], &pb = scene_.positions_m[b], &pc = scene_.positions_m[c];
+  const Vector3f &pa = scene_.positions_m[a], &pb = scene_.positions_m[b],
+                 &pc = scene_.positions_m[c];
   // At the poles of round shapes two corners fall together; leaving such a face out opens nothing.
   if ((pb - pa).cross(pc - pa).norm() < 1e-9F) return;
   scene_.triangles.push_back({a, b, c});
@@ -150,7 +155,8 @@ void MeshBuilder::box(MaterialId material, const Vector3f& min_m, const Vector3f
   if (grain < 0) size.maxCoeff(&grain);
   // Every box is cut from another place of the stuff.
   const RandomStream random = RandomStream(scene_.instances.size()).fork(shape_count_++);
-  const Vector2f offset(static_cast<float>(random.uniform(0)), static_cast<float>(random.uniform(1)));
+  const Vector2f offset(static_cast<float>(random.uniform(0)),
+                        static_cast<float>(random.uniform(1)));
 
   // Breaks per axis inside the bevel, shared by faces and bevels.
   std::array<std::vector<float>, 3> stops;
@@ -236,15 +242,17 @@ void MeshBuilder::beam(MaterialId material, const Vector3f& a, const Vector3f& b
 }
 
 void MeshBuilder::picture(MaterialId material, const Vector3f& corner, const Vector3f& right,
-                          const Vector3f& down) {
+                          const Vector3f& down, const Vector2f& uv0,
+                          std::optional<Vector2f> uv_size) {
+  const Vector2f uv = uv_size.value_or(Vector2f(right.norm(), down.norm()));
   const int nu = cells(right.norm()), nv = cells(down.norm());
   Grid grid;
   for (int j = 0; j <= nv; ++j)
     for (int i = 0; i <= nu; ++i) {
       const float s = static_cast<float>(i) / static_cast<float>(nu);
       const float t = static_cast<float>(j) / static_cast<float>(nv);
-      grid.push_back(vertex(material, corner + s * right + t * down,
-                            {s * right.norm(), t * down.norm()}));
+      grid.push_back(
+          vertex(material, corner + s * right + t * down, uv0 + Vector2f(s * uv.x(), t * uv.y())));
     }
   grid_faces(material, grid, nu, nv, true);
 }
@@ -263,7 +271,8 @@ void MeshBuilder::panel(MaterialId material, const Vector3f& origin, const Vecto
         kept[j * (nu - 1) + i] = 0;
         continue;
       }
-      for (const std::size_t k : {j * nu + i, j * nu + i + 1, (j + 1) * nu + i, (j + 1) * nu + i + 1})
+      for (const std::size_t k :
+           {j * nu + i, j * nu + i + 1, (j + 1) * nu + i, (j + 1) * nu + i + 1})
         used[k] = 1;
     }
   std::vector<std::uint32_t> id(nu * nv, 0);
@@ -406,8 +415,9 @@ void MeshBuilder::tube(MaterialId material, std::span<const Vector3f> points,
       const Vector3f p = points[j] + c.x() * x + c.y() * y;
       if (k < sides && j == 0) first_ring.push_back(p);
       if (k < sides && j == n - 1) last_ring.push_back(p);
-      grid.push_back(vertex(material, p, {way, kTau * radii_m[0] * static_cast<float>(k) /
-                                                   static_cast<float>(sides)}));
+      grid.push_back(
+          vertex(material, p,
+                 {way, kTau * radii_m[0] * static_cast<float>(k) / static_cast<float>(sides)}));
     }
   }
   grid_faces(material, grid, sides, static_cast<int>(n) - 1, false);
@@ -432,7 +442,8 @@ void MeshBuilder::cushion(MaterialId material, const Vector3f& centre, const Vec
     Vector3f cube;  // closer lines near the edges, where the surface bends
     for (int k = 0; k < 3; ++k) {
       const float t = 2.0F * static_cast<float>(i[static_cast<std::size_t>(k)]) /
-                          static_cast<float>(n[static_cast<std::size_t>(k)]) - 1.0F;
+                          static_cast<float>(n[static_cast<std::size_t>(k)]) -
+                      1.0F;
       cube[k] = half[k] * std::sin(t * kTau / 4.0F * 0.8F) / std::sin(kTau / 4.0F * 0.8F);
     }
     const Vector3f inner = cube.cwiseMax(-core).cwiseMin(core);
@@ -490,7 +501,8 @@ void MeshBuilder::leaf(MaterialId material, const Vector3f& root, const Vector3f
     for (int i = -1; i <= 1; ++i) {
       const float fold = i == 0 ? 0.0F : 0.25F * half;  // a keel along the middle
       const Vector3f p = spine + static_cast<float>(i) * half * side + fold * up;
-      grid.push_back(vertex(material, p, {t * length_m, half * static_cast<float>(i)}));
+      grid.push_back(
+          vertex(material, p, {t * length_m, 0.5F * width_m + half * static_cast<float>(i)}));
     }
   }
   grid_faces(material, grid, 2, kStations, true);

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -53,9 +54,11 @@ class MeshBuilder {
   void beam(MaterialId material, const Eigen::Vector3f& a, const Eigen::Vector3f& b, float width_m,
             float depth_m, const Eigen::Vector3f& side = {1, 0, 0});
   /// A flat parallelogram seen from the side where u runs right and v runs down; texture
-  /// coordinates start at (0, 0) in `corner` (upper left), so that pictures appear once.
+  /// coordinates start in `corner` (upper left) with uv0 and end with uv0 + uv_size, metres in the
+  /// picture; without uv_size the parallelogram's own size, so that pictures appear once.
   void picture(MaterialId material, const Eigen::Vector3f& corner, const Eigen::Vector3f& right,
-               const Eigen::Vector3f& down);
+               const Eigen::Vector3f& down, const Eigen::Vector2f& uv0 = {0, 0},
+               std::optional<Eigen::Vector2f> uv_size = std::nullopt);
   /// A flat rectangular grid with given breaks along two directions and an optional mask of cells
   /// to leave out (holes for doors and windows). Normal: u_axis x v_axis.
   void panel(MaterialId material, const Eigen::Vector3f& origin, const Eigen::Vector3f& u_axis,
@@ -95,7 +98,8 @@ class MeshBuilder {
 
  private:
   using Grid = std::vector<std::uint32_t>;
-  std::uint32_t vertex(MaterialId material, const Eigen::Vector3f& local, const Eigen::Vector2f& uv);
+  std::uint32_t vertex(MaterialId material, const Eigen::Vector3f& local,
+                       const Eigen::Vector2f& uv);
   void triangle(MaterialId material, std::uint32_t a, std::uint32_t b, std::uint32_t c);
   void grid_faces(MaterialId material, const Grid& grid, int nu, int nv, bool flip);
   void disc(MaterialId material, const Eigen::Vector3f& centre,

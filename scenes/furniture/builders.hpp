@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "scenes/furniture/furniture.hpp"
+
+/// One function per kind of object; furniture.cpp lists them under their names.
+namespace mh::build {
+
+// seats.cpp
+void bed(Piece& piece);
+void sofa(Piece& piece);
+void armchair(Piece& piece);
+void chair(Piece& piece);
+void bench(Piece& piece);
+void pillow(Piece& piece);
+void teddy_bear(Piece& piece);
+
+// tables.cpp
+void dining_table(Piece& piece);
+void coffee_table(Piece& piece);
+void console_table(Piece& piece);
+void desk(Piece& piece);
+void night_stand(Piece& piece);
+
+// storage.cpp
+void bookshelf(Piece& piece);
+void open_shelf(Piece& piece);
+void wall_shelf(Piece& piece);
+void shoe_shelf(Piece& piece);
+void sideboard(Piece& piece);
+void tv_board(Piece& piece);
+void dresser(Piece& piece);
+void wardrobe(Piece& piece);
+void cupboard(Piece& piece);
+void box(Piece& piece);
+void book_stack(Piece& piece);
+
+// kitchen.cpp
+void refrigerator(Piece& piece);
+void kitchen_counter(Piece& piece);
+void oven(Piece& piece);
+void range_hood(Piece& piece);
+void wall_cabinet(Piece& piece);
+void microwave(Piece& piece);
+void toaster(Piece& piece);
+void kettle(Piece& piece);
+void pan(Piece& piece);
+
+// lamps.cpp
+void floor_lamp(Piece& piece);
+void table_lamp(Piece& piece);
+void ceiling_lamp(Piece& piece);
+void pendant_lamp(Piece& piece);
+
+// cloth.cpp
+void curtain(Piece& piece);
+void rug(Piece& piece);
+void towel(Piece& piece);
+void coat_rack(Piece& piece);
+void bag(Piece& piece);
+
+// plants.cpp
+void plant_tall(Piece& piece);
+void plant_bushy(Piece& piece);
+
+// things.cpp
+void television(Piece& piece);
+void laptop(Piece& piece);
+void picture(Piece& piece);
+void photo_frame(Piece& piece);
+void mirror(Piece& piece);
+void clock(Piece& piece);
+void bottle(Piece& piece);
+void cup(Piece& piece);
+void bowl(Piece& piece);
+void vase(Piece& piece);
+
+}  // namespace mh::build
+
+namespace mh::build {
+
+/// Usual materials and parts that several kinds share.
+MaterialSpec oak(std::uint64_t seed = 15);
+MaterialSpec plain(std::string kind, Rgb8 tone, double variation = 0.3, std::uint64_t seed = 1);
+/// Rows of books standing on z = 0 from x0 to x1, spines at y = front (facing -y), at most
+/// `height` tall and `depth` deep; the current object is theirs.
+void books(Piece& piece, float x0, float x1, float front, float z, float height, float depth,
+           std::uint64_t row);
+/// A bar handle from a to b standing off by `off` along -y.
+void handle(Piece& piece, MaterialId material, const Eigen::Vector3f& a, const Eigen::Vector3f& b,
+            float off = 0.03F);
+
+}  // namespace mh::build

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/house.hpp"
+
+#include <cassert>
+#include <vector>
+
+#include "scenes/house_plan.hpp"
+#include "scenes/house_shell.hpp"
+#include "slam/core/yaml.hpp"
+
+namespace mh {
+namespace {
+
+/// A stable number for a name (FNV-1a): a piece keeps its looks when others come or go.
+std::uint64_t name_key(std::string_view name) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  return hash;
+}
+
+void add_lamp_light(const ItemPlan& item, Scene& scene) {
+  if (!item.kind->bulb || !item.glow) return;
+  Light light{.kind = Light::Kind::kSphere, .colour = *item.glow};
+  light.position_m = item.position_m.cast<float>();
+  light.position_m.z() += *item.kind->bulb * static_cast<float>(item.size_m.z());
+  light.radius_m = item.kind->mount == Mount::kCeiling ? 0.06F : 0.03F;
+  scene.lights.push_back(light);
+}
+
+void build_item(const ItemPlan& item, MeshBuilder& mesh) {
+  const auto class_id = class_by_name(item.kind->class_name);
+  assert(class_id);
+  mesh.begin_instance(item.name, *class_id);
+  Eigen::Isometry3f world_from_piece = Eigen::Isometry3f::Identity();
+  world_from_piece.translation() = item.position_m.cast<float>();
+  mesh.push(world_from_piece * turn_z(static_cast<float>(item.turn_rad)));
+  Piece piece(mesh, item.name, item.size_m.cast<float>(), item.materials,
+              RandomStream(name_key(item.name)));
+  item.kind->build(piece);
+  mesh.pop();
+}
+
+Scene build(const HousePlan& house) {
+  MeshBuilder mesh;
+  mesh.scene().name = house.name;
+  build_shell(house, mesh);
+  for (const ItemPlan& item : house.items) build_item(item, mesh);
+  Scene scene = mesh.finish();
+  if (house.sun) scene.lights.push_back(*house.sun);
+  if (house.sky) scene.lights.push_back(*house.sky);
+  for (const ItemPlan& item : house.items) add_lamp_light(item, scene);
+  for (const RoomPlan& room : house.rooms) {
+    const FloorRect& r = room.rect;
+    scene.rooms.push_back({room.name, {{r.x0, r.y0}, {r.x1, r.y0}, {r.x1, r.y1}, {r.x0, r.y1}}});
+  }
+  validate(scene);
+  return scene;
+}
+
+}  // namespace
+
+Scene load_house(const std::filesystem::path& yaml) {
+  return build(read_house_plan(YamlReader::load(yaml)));
+}
+
+Scene build_house(const std::string& yaml_text, const std::string& name) {
+  return build(read_house_plan(YamlReader::parse(yaml_text, name)));
+}
+
+}  // namespace mh
