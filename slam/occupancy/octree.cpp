@@ -66,11 +66,11 @@ void OccupancyMapper::insert(const Grid2d<float>& depth_m, const Camera& camera,
     for (int x = stride / 2; x < depth_m.width(); x += stride)
       if (const double z = depth_m(x, y); z > 0)
         points_in_world.push_back(point(world_from_camera * camera.unproject(x, y, z)));
-  // One update per voxel and image ("discretize") is 9 times faster and as exact at 5 cm; inner
-  // nodes are brought up to date once per image.
+  // One update per voxel and image ("discretize") is 9 times faster and as exact at 5 cm. Inner
+  // nodes are left as they are ("lazy"): whatever is asked of the tree, its leaves answer.
+  constexpr bool kLazy = true, kDiscretize = true;
   impl_->tree.insertPointCloud(points_in_world, point(world_from_camera.translation()),
-                               impl_->config.max_range_m, true, true);
-  impl_->tree.updateInnerOccupancy();
+                               impl_->config.max_range_m, kLazy, kDiscretize);
 }
 
 OccupancyGrid OccupancyMapper::project(double min_z_m, double max_z_m) const {
@@ -107,7 +107,9 @@ std::size_t OccupancyMapper::leaf_count() const {
 // stderr at each file.
 void OccupancyMapper::save_bt(const std::filesystem::path& file) const {
   write_atomically(file, [&](const std::filesystem::path& temporary) {
-    const octomap::OcTree& tree = impl_->tree;
+    octomap::OcTree tree(impl_->tree);
+    tree.toMaxLikelihood();  // as the format does, so that equal neighbours can be joined first
+    tree.prune();
     std::ofstream out(temporary, std::ios::binary);
     out << kMagic << "\n"
         << fmt::format("id {}\nsize {}\nres {}\ndata\n", tree.getTreeType(), tree.size(),
