@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/sensors/depth_noise.hpp"
 
+#include <immintrin.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include "sim/sensors/normal_table.hpp"
 
@@ -26,73 +30,75 @@ double angular_term(double incidence_rad) {
 }
 
 /// What depends on the incidence alone, by its cosine.
-struct IncidenceTable {
-  static constexpr int kSteps = 1024;
-  std::array<float, kSteps + 1> lateral_px, axial_m_sqrt_m;
-  float min_cosine;
-
-  IncidenceTable() : min_cosine(static_cast<float>(std::cos(kMaxIncidenceRad))) {
-    for (int i = 0; i <= kSteps; ++i) {
+class IncidenceTable {
+ public:
+  IncidenceTable() {
+    for (std::size_t i = 0; i <= kSteps; ++i) {
       const double incidence = std::acos(static_cast<double>(i) / kSteps);
-      lateral_px[static_cast<std::size_t>(i)] = static_cast<float>(lateral_sigma_px(incidence));
-      axial_m_sqrt_m[static_cast<std::size_t>(i)] =
-          static_cast<float>(kAxialAngular * angular_term(incidence));
+      lateral_px_[i] = static_cast<float>(lateral_sigma_px(incidence));
+      angular_[i] = static_cast<float>(kAxialAngular * angular_term(incidence));
     }
   }
+  float lateral_px(float cosine) const { return lateral_px_[step(cosine)]; }
+  /// The angular part of axial sigma times the root of the depth.
+  float angular(float cosine) const { return angular_[step(cosine)]; }
+
+ private:
+  static constexpr std::size_t kSteps = 1024;
   static std::size_t step(float cosine) {
-    return static_cast<std::size_t>(std::min(cosine, 1.0F) * kSteps + 0.5F);
+    return static_cast<std::size_t>(static_cast<int>(std::min(cosine, 1.0F) * kSteps + 0.5F));
   }
+  std::array<float, kSteps + 1> lateral_px_, angular_;
 };
 
 /// The surface behind a pixel as a plane: over pixels, the inverse depth of a plane is affine.
-struct Surfaces {
-  Grid2d<float> inverse_depth;     // 1/m; 0 = nothing there
-  Grid2d<float> slope_x, slope_y;  // 1/m per px
-  Grid2d<float> cosine;            // of the incidence
+struct Surface {
+  float inverse_depth = 0;         // 1/m; 0 = nothing there
+  float slope_x = 0, slope_y = 0;  // 1/m per px
+  float cosine = 0;                // of the incidence
 };
 
-/// The smaller of the two one-sided differences: it does not reach across an edge of the object.
+/// The smaller of the two one-sided differences: it does not reach across an object's edge.
 float gentler(float before, float here, float after) {
   const float forward = after - here, backward = here - before;
   return std::abs(forward) < std::abs(backward) ? forward : backward;
 }
 
-Surfaces find_surfaces(const Grid2d<float>& depth_m, const Camera& camera) {
+Grid2d<Surface> find_surfaces(const Grid2d<float>& depth_m, const Camera& camera) {
   const int w = depth_m.width(), h = depth_m.height();
-  Surfaces s{Grid2d<float>(w, h), Grid2d<float>(w, h), Grid2d<float>(w, h), Grid2d<float>(w, h)};
+  Grid2d<float> inverse(w, h);
   for (std::size_t i = 0; i < depth_m.size(); ++i) {
-    const float z = depth_m.data()[i];
-    s.inverse_depth.data()[i] = z > 0.0F ? 1.0F / z : 0.0F;
+    const float z = depth_m.data()[i], reciprocal = 1.0F / z;
+    inverse.data()[i] = z > 0.0F ? reciprocal : 0.0F;
   }
   const auto fx = static_cast<float>(camera.fx_px), fy = static_cast<float>(camera.fy_px);
   const auto cx = static_cast<float>(camera.cx_px), cy = static_cast<float>(camera.cy_px);
+  Grid2d<Surface> surfaces(w, h);
   for (int y = 0; y < h; ++y) {
-    const float* row = s.inverse_depth.row(y).data();
-    // At the border the difference that exists stands for both.
-    const float* above = y > 0 ? row - w : nullptr;
-    const float* below = y + 1 < h ? row + w : nullptr;
-    float* slope_x = s.slope_x.row(y).data();
-    float* slope_y = s.slope_y.row(y).data();
-    float* cosine = s.cosine.row(y).data();
-    for (int x = 1; x + 1 < w; ++x) slope_x[x] = gentler(row[x - 1], row[x], row[x + 1]);
-    if (w > 1) slope_x[0] = row[1] - row[0], slope_x[w - 1] = row[w - 1] - row[w - 2];
-    if (above && below) {
-      for (int x = 0; x < w; ++x) slope_y[x] = gentler(above[x], row[x], below[x]);
-    } else if (above || below) {
-      for (int x = 0; x < w; ++x) slope_y[x] = above ? row[x] - above[x] : below[x] - row[x];
-    }
+    const float* here = inverse.row(y).data();
+    // In the outer columns and rows the difference that exists stands for both.
+    const float* above = y > 0 ? here - w : here;
+    const float* below = y + 1 < h ? here + w : here;
+    const bool border = y == 0 || y + 1 == h;
     const float b = (static_cast<float>(y) - cy) / fy;
-    for (int x = 0; x < w; ++x) {
+    Surface* out = surfaces.row(y).data();
+    const auto fit = [&](int x, float slope_x) {
+      const float slope_y = border ? below[x] - above[x] : gentler(above[x], here[x], below[x]);
       // The plane n . X = 1 through the point X = z d, d = (a, b, 1), so that n . d = 1/z.
       const float a = (static_cast<float>(x) - cx) / fx;
-      const float nx = slope_x[x] * fx, ny = slope_y[x] * fy, nz = row[x] - nx * a - ny * b;
+      const float nx = slope_x * fx, ny = slope_y * fy, nz = here[x] - nx * a - ny * b;
       const float squares = (nx * nx + ny * ny + nz * nz) * (a * a + b * b + 1.0F);
-      cosine[x] = squares > 0.0F ? row[x] / std::sqrt(squares) : 1.0F;
-    }
+      out[x] = {here[x], slope_x, slope_y, here[x] / std::sqrt(squares + 1e-30F)};
+    };
+    for (int x = 1; x + 1 < w; ++x) fit(x, gentler(here[x - 1], here[x], here[x + 1]));
+    fit(0, w > 1 ? here[1] - here[0] : 0.0F);
+    if (w > 1) fit(w - 1, here[w - 1] - here[w - 2]);
   }
-  return s;
+  return surfaces;
 }
 
+/// Reads a picture row by row; the passes over a row are separate, so that those without table
+/// lookups run in vector registers.
 class DepthSensor {
  public:
   DepthSensor(const Grid2d<float>& depth_m, const Camera& camera, const DepthNoiseConfig& config,
@@ -102,61 +108,94 @@ class DepthSensor {
         config_(config),
         stream_(stream),
         steps_per_inverse_depth_(
-            static_cast<float>(kDisparityStepsPerPx * camera.fx_px * camera.baseline_m)) {}
+            static_cast<float>(kDisparityStepsPerPx * camera.fx_px * camera.baseline_m)),
+        row_(static_cast<std::size_t>(depth_m.width())) {}
 
-  float read(int x, int y) const {
-    const auto pixel =
-        static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(depth_m_.width()) +
-        static_cast<std::uint64_t>(x);
-    const std::uint64_t bits = stream_.bits(pixel);
-    const auto normal = [&](int k) { return normals_[(bits >> (kNormalBits * k)) & kNormalMask]; };
-    int sx = x, sy = y;
-    if (config_.lateral) stray(x, y, normal(0), normal(1), sx, sy);
-    float depth = depth_seen(x, y, sx, sy);
-    if (depth <= 0.0F) return 0.0F;
-    const float cosine = surfaces_.cosine(sx, sy);
-    if (config_.grazing_holes && cosine < incidence_.min_cosine) return 0.0F;
-    if (config_.axial) depth += axial_sigma(depth, cosine) * normal(2);
-    if (config_.quantisation) {
-      const float steps = std::floor(steps_per_inverse_depth_ / depth + 0.5F);
-      depth = steps >= 1.0F ? steps_per_inverse_depth_ / steps : 0.0F;
-    }
-    const bool in_range = depth >= static_cast<float>(config_.min_range_m) &&
-                          depth <= static_cast<float>(config_.max_range_m);
-    return in_range ? depth : 0.0F;
+  void read_row(int y, std::span<float> depth) {
+    look(y, depth);
+    if (config_.grazing_holes) punch_holes(depth);
+    if (config_.axial) add_axial_noise(depth);
+    if (config_.quantisation) quantise(depth);
+    const auto nearest = static_cast<float>(config_.min_range_m);
+    const auto farthest = static_cast<float>(config_.max_range_m);
+    for (float& z : depth) z = z >= nearest && z <= farthest ? z : 0.0F;
   }
 
  private:
-  /// Where a pixel really looks: some pixels aside.
-  void stray(int x, int y, float nx, float ny, int& sx, int& sy) const {
-    const float sigma = incidence_.lateral_px[IncidenceTable::step(surfaces_.cosine(x, y))];
-    sx = std::clamp(x + static_cast<int>(std::lrint(sigma * nx)), 0, depth_m_.width() - 1);
-    sy = std::clamp(y + static_cast<int>(std::lrint(sigma * ny)), 0, depth_m_.height() - 1);
+  struct Draw {
+    float normal;   // for the axial noise
+    float cosine;   // of the incidence on what is seen
+    float angular;  // see IncidenceTable
+  };
+
+  /// Draws a row's random numbers and finds what each pixel sees.
+  void look(int y, std::span<float> depth) {
+    const int w = depth_m_.width(), h = depth_m_.height();
+    const auto first = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(w);
+    std::copy_n(depth_m_.row(y).begin(), w, depth.begin());
+    for (int x = 0; x < w; ++x) {
+      const std::uint64_t bits = stream_.bits(first + static_cast<std::uint64_t>(x));
+      const auto normal = [&](int k) {
+        return normals_[(bits >> (kNormalBits * k)) & kNormalMask];
+      };
+      const Surface* seen = &surfaces_(x, y);
+      if (config_.lateral) {
+        const float sigma = incidence_.lateral_px(seen->cosine);
+        const int sx = std::clamp(x + round(sigma * normal(0)), 0, w - 1);
+        const int sy = std::clamp(y + round(sigma * normal(1)), 0, h - 1);
+        seen = &surfaces_(sx, sy);
+        depth[static_cast<std::size_t>(x)] = depth_of(*seen, x - sx, y - sy);
+      }
+      row_[static_cast<std::size_t>(x)] = {normal(2), seen->cosine,
+                                           incidence_.angular(seen->cosine)};
+    }
   }
 
-  /// Depth, at pixel (x, y), of the surface seen at (sx, sy). Following its plane back keeps the
-  /// lateral noise to the edges: on a slope it would else double what axial noise already is.
-  float depth_seen(int x, int y, int sx, int sy) const {
-    if (sx == x && sy == y) return depth_m_(x, y);
-    const float w = surfaces_.inverse_depth(sx, sy);
-    if (w <= 0.0F) return 0.0F;
-    const float moved = w + surfaces_.slope_x(sx, sy) * static_cast<float>(x - sx) +
-                        surfaces_.slope_y(sx, sy) * static_cast<float>(y - sy);
-    return 1.0F / std::clamp(moved, 0.8F * w, 1.25F * w);  // a thin thing has no plane to follow
+  static int round(float value) { return _mm_cvt_ss2si(_mm_set_ss(value)); }
+
+  /// Depth of a surface some pixels aside of where it was seen. Following its plane keeps the
+  /// lateral noise to the edges: on a slope it would double what the axial noise already is.
+  static float depth_of(const Surface& seen, int dx, int dy) {
+    const float w = seen.inverse_depth;
+    const float moved =
+        w + seen.slope_x * static_cast<float>(dx) + seen.slope_y * static_cast<float>(dy);
+    // A thin thing has no plane to follow.
+    const float limited = std::min(std::max(moved, 0.8F * w), 1.25F * w);
+    const float z = 1.0F / limited;
+    return w > 0.0F ? z : 0.0F;
   }
 
-  float axial_sigma(float depth, float cosine) const {
-    const float z = depth - static_cast<float>(kAxialNearest);
-    const float angular = incidence_.axial_m_sqrt_m[IncidenceTable::step(cosine)];
-    return static_cast<float>(kAxialFloor) + static_cast<float>(kAxialSquare) * z * z +
-           (angular > 0.0F ? angular / std::sqrt(depth) : 0.0F);
+  void punch_holes(std::span<float> depth) const {
+    const auto least = static_cast<float>(std::cos(kMaxIncidenceRad));
+    for (std::size_t x = 0; x < depth.size(); ++x)
+      depth[x] = row_[x].cosine < least ? 0.0F : depth[x];
+  }
+
+  void add_axial_noise(std::span<float> depth) const {
+    for (std::size_t x = 0; x < depth.size(); ++x) {
+      const float away = depth[x] - static_cast<float>(kAxialNearest);
+      const float sigma = static_cast<float>(kAxialFloor) +
+                          static_cast<float>(kAxialSquare) * away * away +
+                          row_[x].angular / std::sqrt(std::max(depth[x], 1e-3F));
+      const float noisy = depth[x] + sigma * row_[x].normal;
+      depth[x] = depth[x] > 0.0F ? noisy : 0.0F;
+    }
+  }
+
+  void quantise(std::span<float> depth) const {
+    for (float& z : depth) {
+      const float steps = std::floor(steps_per_inverse_depth_ / z + 0.5F);
+      const float quantised = steps_per_inverse_depth_ / steps;
+      z = z > 0.0F && steps >= 1.0F ? quantised : 0.0F;
+    }
   }
 
   const Grid2d<float>& depth_m_;
-  Surfaces surfaces_;
+  Grid2d<Surface> surfaces_;
   DepthNoiseConfig config_;
   RandomStream stream_;
   float steps_per_inverse_depth_;
+  std::vector<Draw> row_;
   const std::array<float, 1 << kNormalBits>& normals_ = normal_table();
   const IncidenceTable incidence_;
 };
@@ -176,10 +215,9 @@ double lateral_sigma_px(double incidence_rad) {
 
 Grid2d<float> noisy_depth(const Grid2d<float>& depth_m, const Camera& camera,
                           const DepthNoiseConfig& config, RandomStream stream) {
-  const DepthSensor sensor(depth_m, camera, config, stream);
+  DepthSensor sensor(depth_m, camera, config, stream);
   Grid2d<float> read(depth_m.width(), depth_m.height());
-  for (int y = 0; y < read.height(); ++y)
-    for (int x = 0; x < read.width(); ++x) read(x, y) = sensor.read(x, y);
+  for (int y = 0; y < read.height(); ++y) sensor.read_row(y, read.row(y));
   return read;
 }
 
