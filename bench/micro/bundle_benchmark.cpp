@@ -139,7 +139,7 @@ BENCHMARK(ceres_dense_schur)->Unit(benchmark::kMillisecond);
 void pose_of_300_matches(benchmark::State& state) {
   const SE3 truth = testing::true_pose();
   auto observations = testing::observe(300, truth, kCamera, RandomStream(1));
-  testing::add_noise(observations, RandomStream(2));
+  testing::add_noise(observations, kCamera, RandomStream(2));
   testing::make_outliers(observations, 30, kCamera, RandomStream(3));
   const SE3 guess = SE3::exp(testing::tangent(0.02, -0.01, 0.02, 0.01, 0.01, -0.01)) * truth;
   for (auto _ : state) {

@@ -8,6 +8,7 @@
 #include "slam/core/camera.hpp"
 #include "slam/core/random.hpp"
 #include "slam/optimize/bundle.hpp"
+#include "tests/slam/optimize/synthetic.hpp"
 
 namespace mh::testing {
 
@@ -60,7 +61,8 @@ inline SyntheticBundle make_bundle(const BundleShape& shape, const Camera& camer
       o.v_px = static_cast<float>(pixel.y() + scale * noise.normal(draw + 2));
       if (noise.uniform(draw + 3) < shape.depth_share)
         o.disparity_px =
-            static_cast<float>(camera.disparity_px(p.z()) + scale * noise.normal(draw + 4));
+            static_cast<float>(camera.disparity_px(p.z()) +
+                               disparity_sigma_px(camera) * scale * noise.normal(draw + 4));
       draw += 5;
       problem.observations.push_back(o);
     }

@@ -25,7 +25,8 @@ double chi2_of(const BundleObservation& o, const std::vector<SE3>& poses,
                const std::vector<Eigen::Vector3d>& points) {
   const Eigen::Vector3d p = poses[o.pose] * points[o.point];
   if (p.z() <= 0) return 1e9;
-  const double d = o.disparity_px < 0 ? 0 : kCamera.disparity_px(p.z()) - o.disparity_px;
+  double d = o.disparity_px < 0 ? 0 : kCamera.disparity_px(p.z()) - o.disparity_px;
+  d /= testing::disparity_sigma_px(kCamera);
   const Eigen::Vector2d e = kCamera.project(p) - Eigen::Vector2d(o.u_px, o.v_px);
   return (e.squaredNorm() + d * d) / (static_cast<double>(o.sigma_px) * o.sigma_px);
 }
@@ -54,7 +55,8 @@ struct CeresCost {
     residual[1] = (kCamera.fy_px * p[1] / p[2] + kCamera.cy_px - T(o.v_px)) / sigma;
     residual[2] = o.disparity_px < 0
                       ? T(0)
-                      : (kCamera.fx_px * kCamera.baseline_m / p[2] - T(o.disparity_px)) / sigma;
+                      : (kCamera.fx_px * kCamera.baseline_m / p[2] - T(o.disparity_px)) /
+                            (sigma * testing::disparity_sigma_px(kCamera));
     return true;
   }
 };

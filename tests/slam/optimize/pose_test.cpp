@@ -53,7 +53,7 @@ TEST(EstimatePose, RecoversTruthWithThirtyPercentOutliers) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const RandomStream stream(seed);
     auto observations = observe(200, truth, kCamera, stream.fork(0));
-    add_noise(observations, stream.fork(1));
+    add_noise(observations, kCamera, stream.fork(1));
     make_outliers(observations, 60, kCamera, stream.fork(2));
     const auto estimate =
         estimate_pose(observations, ten_centimetres_and_five_degrees(truth), kCamera);
@@ -116,7 +116,7 @@ TEST(EstimatePose, GivesNothingWhereNothingCanBeKnown) {
 TEST(EstimatePose, GivesTheSameBitsTwice) {
   const SE3 truth = true_pose();
   auto observations = observe(150, truth, kCamera, RandomStream(7));
-  add_noise(observations, RandomStream(8));
+  add_noise(observations, kCamera, RandomStream(8));
   const auto a = estimate_pose(observations, truth, kCamera);
   const auto b = estimate_pose(observations, truth, kCamera);
   ASSERT_TRUE(a && b);
@@ -129,7 +129,7 @@ TEST(SolvePnpRansac, FindsThePoseAmongFiftyPercentOutliers) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const RandomStream stream(seed);
     auto observations = observe(100, truth, kCamera, stream.fork(0));
-    add_noise(observations, stream.fork(1));
+    add_noise(observations, kCamera, stream.fork(1));
     make_outliers(observations, 50, kCamera, stream.fork(2));
     const auto estimate = solve_pnp_ransac(observations, kCamera, {}, stream.fork(3));
     ASSERT_TRUE(estimate) << seed;
@@ -179,7 +179,7 @@ TEST(SolvePnpRansac, GivesNothingWhereNothingCanBeKnown) {
 TEST(SolvePnpRansac, DependsOnItsStreamAlone) {
   const SE3 truth = true_pose();
   auto observations = observe(100, truth, kCamera, RandomStream(13));
-  add_noise(observations, RandomStream(14));
+  add_noise(observations, kCamera, RandomStream(14));
   make_outliers(observations, 40, kCamera, RandomStream(15));
   const auto a = solve_pnp_ransac(observations, kCamera, {}, RandomStream(16));
   solve_pnp_ransac(observations, kCamera, {}, RandomStream(99));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <numbers>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "slam/core/random.hpp"
 #include "slam/core/se3.hpp"
 #include "slam/optimize/pose.hpp"
+#include "slam/optimize/reprojection.hpp"
 
 namespace mh::testing {
 
@@ -15,6 +17,14 @@ inline Vector6d tangent(double x, double y, double z, double rx, double ry, doub
   Vector6d v;
   v << x, y, z, rx, ry, rz;
   return v;
+}
+
+/// Standard deviation (px) that the residual grants the disparity of a keypoint with sigma 1.
+inline double disparity_sigma_px(const Camera& camera) {
+  const double disparity = camera.disparity_px(2.0);
+  const ImageMeasurement off{
+      .u_px = camera.cx_px, .v_px = camera.cy_px, .disparity_px = disparity - 1.0};
+  return 1.0 / reprojection_residual({0, 0, 2}, off, camera).z();
 }
 
 /// Some pose far from the identity.
@@ -52,13 +62,15 @@ inline std::vector<PoseObservation> observe(int count, const SE3& camera_from_wo
 }
 
 /// Gaussian noise of the stated standard deviation on every measurement.
-inline void add_noise(std::vector<PoseObservation>& observations, RandomStream stream) {
+inline void add_noise(std::vector<PoseObservation>& observations, const Camera& camera,
+                      RandomStream stream) {
   for (std::size_t i = 0; i < observations.size(); ++i) {
     PoseObservation& o = observations[i];
     const RandomStream s = stream.fork(i);
     o.u_px += o.sigma_px * s.normal(0);
     o.v_px += o.sigma_px * s.normal(1);
-    if (o.disparity_px >= 0) o.disparity_px += o.sigma_px * s.normal(2);
+    if (o.disparity_px >= 0)
+      o.disparity_px += disparity_sigma_px(camera) * o.sigma_px * s.normal(2);
   }
 }
 
