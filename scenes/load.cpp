@@ -8,6 +8,7 @@
 #include <cctype>
 #include <string_view>
 
+#include "scenes/house.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "slam/core/error.hpp"
 
@@ -18,6 +19,7 @@ Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* wa
   std::string ending = file.extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (std::ranges::find(kMeshes, ending) != kMeshes.end()) return load_mesh(file, warnings);
+  if (ending == ".yaml" || ending == ".yml") return load_house(file);
   throw InputError(fmt::format(
       "{}: unknown kind of scene: the ending must be .yaml, .ply, .obj, .glb, .gltf or .dae",
       file.string()));

@@ -28,12 +28,12 @@ Picture paint_fabric(const PaintJob& job) {
   const int w = job.width, h = job.height;
   const Field warp = fbm(w, h, round_to(w, 4) / 4, 4, 2, 0.5F, job.random.fork(0));
   const Field weft = fbm(w, h, 4, round_to(h, 4) / 4, 2, 0.5F, job.random.fork(1));
-  const Field broad = fbm(w, h, 3, 3, 5, 0.6F, job.random.fork(2));
+  const Field broad = fbm(w, h, 7, 7, 4, 0.6F, job.random.fork(2));
   const Field fuzz = white_noise(w, h, job.random.fork(3));
   return paint(job, [&](int x, int y) {
     const float slubs = ((x / 4 + y / 4) & 1) == 0 ? warp(x, y) : weft(x, y);
     return job.tone * (1.0F + job.variation * (0.22F * weave(x, y) + 0.40F * slubs +
-                                               0.16F * broad(x, y) + 0.05F * fuzz(x, y)));
+                                               0.10F * broad(x, y) + 0.05F * fuzz(x, y)));
   });
 }
 
@@ -41,7 +41,7 @@ Picture paint_knit(const PaintJob& job) {
   // Stockinette: columns of V-shaped stitches, each leg leaning towards the middle of its column.
   const int columns = std::max(2, job.width / 10), rows = std::max(2, job.height / 8);
   const Field yarn = fbm(job.width, job.height, columns, rows, 3, 0.7F, job.random.fork(0));
-  const Field broad = fbm(job.width, job.height, 3, 3, 3, 0.5F, job.random.fork(1));
+  const Field broad = fbm(job.width, job.height, 7, 7, 3, 0.5F, job.random.fork(1));
   return paint(job, [&](int x, int y) {
     const float column = (static_cast<float>(x) + 0.5F) * static_cast<float>(columns) /
                          static_cast<float>(job.width);
@@ -53,7 +53,7 @@ Picture paint_knit(const PaintJob& job) {
     const float leg = std::sin(kPi * std::abs(across));
     const float height = 0.55F * ridge + 0.6F * std::sqrt(std::max(0.0F, leg)) - 0.75F;
     return job.tone *
-           (1.0F + job.variation * (0.75F * height + 0.25F * yarn(x, y) + 0.15F * broad(x, y)));
+           (1.0F + job.variation * (0.75F * height + 0.25F * yarn(x, y) + 0.08F * broad(x, y)));
   });
 }
 

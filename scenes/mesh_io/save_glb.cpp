@@ -88,7 +88,7 @@ std::unique_ptr<aiTexture> make_texture(const Grid2d<Rgb8>& texture) {
   cv::Mat bgr;
   cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
   std::vector<unsigned char> png;
-  cv::imencode(".png", bgr, png, {cv::IMWRITE_PNG_COMPRESSION, 6});
+  cv::imencode(".png", bgr, png, {cv::IMWRITE_PNG_COMPRESSION, 3});
   auto result = std::make_unique<aiTexture>();
   result->mWidth =
       static_cast<unsigned>(png.size());  // mHeight = 0: a compressed file of mWidth bytes

@@ -8,6 +8,7 @@
 
 #include "scenes/mesh_io/labels_file.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
+#include "scenes/mesh_io/subdivide.hpp"
 #include "scenes/srgb.hpp"
 #include "slam/core/files.hpp"
 
@@ -82,8 +83,12 @@ std::string ply_content(const Scene& scene) {
 
 }  // namespace
 
-void save_scannet_ply(const Scene& scene, const fs::path& file) {
+void save_scannet_ply(const Scene& scene, const fs::path& file, float max_edge_m) {
   validate(scene);
+  if (max_edge_m > 0.0F) {
+    save_scannet_ply(subdivide(scene, max_edge_m), file, 0.0F);
+    return;
+  }
   write_atomically(file, ply_content(scene));
   save_labels(scene, labels_path(file));
 }

@@ -26,11 +26,13 @@ struct Ink {
 
   explicit Ink(RandomStream stream) : random(stream) {
     const RandomStream colours = stream.fork(1000);
-    const double brightness = colours.uniform(90, 0.55, 1.0);
     for (std::uint64_t i = 0; i < palette.size(); ++i) {
-      const auto base = static_cast<float>(colours.uniform(4 * i, 40.0, 235.0) * brightness);
+      // Light and dark take turns, so that neighbours in the palette can be told apart.
+      const bool is_light = (i + colours.below(90, 2)) % 2 == 0;
+      const double low = is_light ? 130.0 : 40.0, high = is_light ? 235.0 : 140.0;
+      const auto base = static_cast<float>(colours.uniform(4 * i, low, high));
       const auto channel = [&](std::uint64_t k) {
-        return base * static_cast<float>(colours.uniform(4 * i + k, 0.55, 1.25));
+        return base * static_cast<float>(colours.uniform(4 * i + k, 0.75, 1.15));
       };
       palette[i] = {channel(1), channel(2), channel(3)};
     }

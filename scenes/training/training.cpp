@@ -285,7 +285,7 @@ class RoomMaker {
       lamp.position_m = {dice_.uniform(0.8, width_ - 0.8), dice_.uniform(0.8, depth_ - 0.8),
                          height_ - dice_.uniform(0.15, 0.5)};
       lamp.radius_m = dice_.uniform(0.05, 0.15);
-      const float power = dice_.uniform(2.2, 4.5), warmth = dice_.uniform(0.6, 1.0);
+      const float power = dice_.uniform(4.0, 7.0), warmth = dice_.uniform(0.6, 1.0);
       lamp.colour = {power, power * (0.5F + 0.5F * warmth), power * warmth};
       scene_.lights.push_back(lamp);
     }
@@ -343,7 +343,7 @@ Scene make_training_room(std::uint64_t seed) {
 }
 
 std::vector<SE3> training_views(const Scene& scene, std::uint64_t seed, int count) {
-  constexpr float kClearance = 0.3F, kOutlook = 1.0F;
+  constexpr float kClearance = 0.3F, kOutlook = 1.3F;
   if (scene.rooms.empty()) throw InputError(fmt::format("scene {}: has no room", scene.name));
   Eigen::AlignedBox2d outline;
   for (const Eigen::Vector2d& corner : scene.rooms[0].polygon_m) outline.extend(corner);

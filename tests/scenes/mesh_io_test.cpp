@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +15,7 @@
 #include "scenes/load.hpp"
 #include "scenes/materials/materials.hpp"
 #include "scenes/mesh_io/node_name.hpp"
+#include "scenes/mesh_io/subdivide.hpp"
 #include "scenes/srgb.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -156,7 +159,7 @@ TEST_F(MeshIo, GlbReadBackIsTheSameScene) {
 
 TEST_F(MeshIo, PlyReadBackKeepsOrderLabelsAndColours) {
   const Scene scene = example_scene();
-  save_scannet_ply(scene, folder_ / "scene.ply");
+  save_scannet_ply(scene, folder_ / "scene.ply", 0.0F);
   const Scene read = load_scene(folder_ / "scene.ply");
   EXPECT_EQ(read.name, scene.name);
   ASSERT_EQ(read.triangles, scene.triangles);
@@ -189,7 +192,7 @@ TEST_F(MeshIo, PlyColourIsTextureTimesLight) {
   scene.material_of = {0};
   scene.class_of = {2};
   scene.instance_of = {0};
-  save_scannet_ply(scene, folder_ / "square.ply");
+  save_scannet_ply(scene, folder_ / "square.ply", 0.0F);
   const Scene read = load_mesh(folder_ / "square.ply");
   const auto linear = [](double level) {
     const double v = level / 255.0;
@@ -291,13 +294,13 @@ TEST_F(MeshIo, BadFilesGiveOneErrorThatNamesThem) {
 
 TEST_F(MeshIo, LabelsOfAnotherMeshAreRefused) {
   const Scene scene = example_scene();
-  save_scannet_ply(scene, folder_ / "a.ply");
+  save_scannet_ply(scene, folder_ / "a.ply", 0.0F);
   Scene smaller = scene;
   smaller.triangles.pop_back();
   smaller.material_of.pop_back();
   smaller.class_of.pop_back();
   smaller.instance_of.pop_back();
-  save_scannet_ply(smaller, folder_ / "b.ply");
+  save_scannet_ply(smaller, folder_ / "b.ply", 0.0F);
   fs::rename(folder_ / "b.labels.json", folder_ / "a.labels.json");
   EXPECT_NE(error_of(folder_ / "a.ply").find("a.labels.json"), std::string::npos);
   write("a.labels.json", "{\"format\": ");
@@ -308,6 +311,67 @@ TEST_F(MeshIo, AnUnwritableFolderLeavesNothingBehind) {
   EXPECT_THROW(save_glb(example_scene(), folder_ / "none" / "a.glb"), InputError);
   EXPECT_THROW(save_scannet_ply(example_scene(), folder_ / "none" / "a.ply"), InputError);
   EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+double area_m2(const Scene& scene, ClassId class_id) {
+  double sum = 0.0;
+  for (std::size_t f = 0; f < scene.triangles.size(); ++f) {
+    const auto& [a, b, c] = scene.triangles[f];
+    const Eigen::Vector3f ab = scene.positions_m[b] - scene.positions_m[a];
+    const Eigen::Vector3f ac = scene.positions_m[c] - scene.positions_m[a];
+    if (scene.class_of[f] == class_id) sum += 0.5 * ab.cross(ac).norm();
+  }
+  return sum;
+}
+
+TEST_F(MeshIo, ADensePlyHasTheSameSurfacesAndMoreOfTheTexture) {
+  const Scene scene = example_scene();
+  save_scannet_ply(scene, folder_ / "dense.ply");
+  const Scene read = load_mesh(folder_ / "dense.ply");
+  EXPECT_GT(read.triangles.size(), 10 * scene.triangles.size());
+  for (const ClassId id : {5, 43, 35, 2}) {
+    ASSERT_GT(area_m2(scene, id), 1.0);
+    EXPECT_NEAR(area_m2(read, id), area_m2(scene, id), 1e-3) << int{id};
+  }
+  EXPECT_EQ(read.instances.size(), scene.instances.size());
+}
+
+TEST(Subdivide, KeepsEdgesShortNeighboursJoinedAndInterpolatesLinearly) {
+  Scene scene;  // a square and an odd triangle hanging on it; light = x, uv = (y, x + y)
+  scene.positions_m = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {3, 0.4F, 0}};
+  for (const Eigen::Vector3f& p : scene.positions_m) {
+    scene.light.emplace_back(p.x(), p.x(), p.x());
+    scene.uvs.emplace_back(p.y(), p.x() + p.y());
+  }
+  scene.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 2}};
+  scene.material_of = {0, 0, 0};
+  scene.class_of = {1, 2, 3};
+  scene.instance_of = {0, 0, 0};
+  scene.materials = {{.name = "m", .texture = {}}};
+  const Scene fine = subdivide(scene, 0.1F);
+  EXPECT_NO_THROW(validate(fine));
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> faces_at_edge;
+  for (const auto& t : fine.triangles)
+    for (int i = 0; i < 3; ++i) {
+      const auto a = t[i], b = t[(i + 1) % 3];
+      EXPECT_LE((fine.positions_m[a] - fine.positions_m[b]).norm(), 0.1F + 1e-6F);
+      ++faces_at_edge[std::minmax(a, b)];
+    }
+  // A crack would show as an edge with one face that is not on the outline.
+  double outline = 0.0;
+  for (const auto& [edge, count] : faces_at_edge) {
+    EXPECT_LE(count, 2);
+    if (count == 1)
+      outline += (fine.positions_m[edge.first] - fine.positions_m[edge.second]).norm();
+  }
+  EXPECT_NEAR(outline, 3.0 + std::hypot(2.0, 0.4) + std::hypot(2.0, 0.6), 1e-4);
+  for (std::size_t v = 0; v < fine.positions_m.size(); ++v) {
+    const Eigen::Vector3f& p = fine.positions_m[v];
+    EXPECT_NEAR(fine.light[v].x(), p.x(), 1e-5F);
+    EXPECT_NEAR(fine.uvs[v].y(), p.x() + p.y(), 1e-5F);
+  }
+  for (const ClassId id : {1, 2}) EXPECT_NEAR(area_m2(fine, id), 0.5, 1e-5);
+  EXPECT_NEAR(area_m2(fine, 3), 1.0, 1e-5);
 }
 
 TEST(NodeName, RoundTrip) {
