@@ -36,8 +36,8 @@ struct Suite {
 
 /// What the command line may put in the place of a suite's own settings.
 struct SuiteOverrides {
-  std::optional<std::filesystem::path> scene;
-  std::optional<int> trials;
+  std::optional<std::filesystem::path> scene = {};
+  std::optional<int> trials = {};
 };
 
 /// Reads a suite (YAML); its paths are relative to its own folder and must exist.

@@ -15,7 +15,7 @@ struct Feed {
   std::size_t next = 0;
   bool in_trouble = false;
   std::size_t to_pass = 0;  ///< while in trouble: the furthest frame that failed
-  int restarts_here = 0;               ///< in a row, without getting past to_pass
+  int restarts_here = 0;    ///< in a row, without getting past to_pass
   bool tracking = false;
   bool mapped = false;  ///< something was tracked since the start or the last reset
 };
@@ -76,6 +76,7 @@ MappingOutcome map_sequence(System& system, std::size_t count, const FrameSource
         stream.fork(kSlam).fork(static_cast<std::uint64_t>(outcome.restarts)).fork(i);
     const StepReport report = system.track(frame, draws);
     outcome.calls.push_back({.index = i,
+                             .stamp_ns = frame.stamp_ns,
                              .restart = outcome.restarts,
                              .status = report.status,
                              .inliers = report.inliers,

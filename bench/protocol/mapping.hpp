@@ -17,7 +17,8 @@ using FrameSource = std::function<RgbdFrame(std::size_t index, RandomStream nois
 /// One track call of the mapping, in order.
 struct MappedFrame {
   std::size_t index = 0;  ///< in the sequence
-  int restart = 0;        ///< restarts so far: it keys the random streams
+  Stamp stamp_ns = 0;
+  int restart = 0;  ///< restarts so far: it keys the random streams
   TrackStatus status = TrackStatus::kLost;
   int inliers = 0;
   bool keyframe_added = false;

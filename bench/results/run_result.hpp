@@ -10,6 +10,7 @@
 #include "bench/protocol/score.hpp"
 #include "bench/systems/timed.hpp"
 #include "slam/core/trajectory.hpp"
+#include "slam/occupancy/occupancy.hpp"
 
 namespace mh {
 
@@ -19,16 +20,13 @@ struct TrajectoryScore {
   std::size_t tracked = 0;       ///< frames with a pose in the end
   double completeness = 0;       ///< tracked / offered
   double ate_rmse_m = 0;         ///< after SE(3) alignment without scale
-  double ate_unaligned_m = 0;    ///< first poses put together, nothing else
+  double ate_unaligned_m = 0;    ///< in the frame of dock_from_estimate
   double rpe_frame_rmse_m = 0;   ///< translation error per frame step
   double rpe_second_rmse_m = 0;  ///< translation error per second
   SE3 truth_from_estimate;       ///< the alignment
-};
-
-/// Depth of a keyframe, kept for the occupancy map: every second pixel of every second row.
-struct KeyframeDepth {
-  Stamp stamp_ns = 0;
-  Grid2d<float> depth_m;
+  /// The first tracked pose put onto the truth, nothing else: a robot knows where its dock stands.
+  /// The frame of the occupancy map and of the pictures.
+  SE3 dock_from_estimate;
 };
 
 /// All that one run gave.
@@ -38,10 +36,11 @@ struct RunResult {
   Trajectory estimate;
   TrajectoryScore trajectory;
   std::vector<QueryScore> held_out;
-  std::vector<QueryScore> second_tour;  ///< never pooled with held_out
-  std::uint64_t map_digest = 0;         ///< of the final trajectory and the occupancy map
-  CallTimes times;                      ///< not deterministic: never part of results.json
-  double wall_s = 0;                    ///< likewise
+  std::vector<QueryScore> second_tour;            ///< never pooled with held_out
+  std::shared_ptr<const OccupancyMapper> volume;  ///< keyframe depth at its final poses, dock frame
+  OccupancyGrid grid;                             ///< what of it stands in a robot's way
+  CallTimes times;                                ///< not deterministic: never part of results.json
+  double wall_s = 0;                              ///< likewise
 };
 
 }  // namespace mh

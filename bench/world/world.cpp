@@ -5,7 +5,6 @@
 
 #include "scenes/load.hpp"
 #include "sim/render/bake.hpp"
-#include "sim/sensors/load.hpp"
 
 namespace mh {
 namespace {
@@ -18,10 +17,19 @@ void cut(DrivenPath& path, std::optional<std::size_t> max_frames) {
 
 }  // namespace
 
+void light_scene(Scene& scene, int threads) {
+  if (scene.light.empty() && !scene.lights.empty()) bake_light(scene, {.threads = threads});
+}
+
 Scene load_lit_scene(const std::filesystem::path& file, int threads) {
   Scene scene = load_scene(file);
-  if (scene.light.empty() && !scene.lights.empty()) bake_light(scene, {.threads = threads});
+  light_scene(scene, threads);
   return scene;
+}
+
+std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene) {
+  return make_embree_renderer(scene,
+                              {.exposure = scene.light.empty() ? 1.0F : suggest_exposure(scene)});
 }
 
 World build_world(const Suite& suite, std::optional<std::size_t> max_frames, int threads,
@@ -38,7 +46,7 @@ World build_world(const Suite& suite, std::optional<std::size_t> max_frames, int
   say(fmt::format("scene {}", suite.scene.string()));
   auto scene = std::make_shared<const Scene>(load_lit_scene(suite.scene, threads));
   world.scene = scene;
-  world.renderer = make_embree_renderer(*scene);
+  world.renderer = make_scene_renderer(*scene);
 
   say(fmt::format("driving {}", mapping_tour.name));
   world.mapping = drive(*scene, world.robot, mapping_tour);

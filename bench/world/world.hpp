@@ -31,9 +31,15 @@ struct World {
 /// Told what is being done, one short line each.
 using Say = std::function<void(std::string_view)>;
 
-/// A scene ready to be looked at: loaded, and lit where it came with lamps but no baked light.
-/// @throws InputError naming file and place.
+/// Bakes the light of a scene that has lamps but no baked light.
+void light_scene(Scene& scene, int threads);
+
+/// A scene ready to be looked at: loaded and lit. @throws InputError naming file and place.
 Scene load_lit_scene(const std::filesystem::path& file, int threads);
+
+/// A renderer with the exposure that suits the scene; one that shows its own colours unlit is shown
+/// as it is.
+std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene);
 
 /// Loads scene, robot, vocabulary and levels, bakes the light, drives both tours.
 /// @param max_frames  cuts the mapping tour after so many frames (the second tour likewise)

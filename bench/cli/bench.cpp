@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bench/cli/commands.hpp"
+#include "bench/cli/progress.hpp"
+#include "bench/results/write.hpp"
+#include "bench/run.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh::cli {
+namespace {
+
+struct Options {
+  std::string suite;
+  std::string out;
+  int jobs = 1;
+  std::optional<int> trials;
+  std::optional<std::size_t> frames;
+  std::optional<std::string> scene;
+};
+
+void run(const Options& options) {
+  const auto start = std::chrono::steady_clock::now();
+  SuiteOverrides overrides;
+  overrides.trials = options.trials;
+  if (options.scene) overrides.scene = *options.scene;
+  const Suite suite = load_suite(options.suite, overrides);
+  const std::filesystem::path out = options.out.empty() ? std::filesystem::path("out") / suite.name
+                                                        : std::filesystem::path(options.out);
+  make_output_folder(out);  // before the work: a folder that cannot be written costs no minutes
+
+  Progress progress("bench");
+  const RunOptions run_options{.jobs = options.jobs,
+                               .max_frames = options.frames,
+                               .say = [&](std::string_view stage) { progress.say(stage); },
+                               .progress = [&](double share) { progress.share(share); }};
+  const World world = build_world(suite, options.frames, options.jobs, run_options.say);
+  progress.say(
+      fmt::format("{} runs of {} frames", expand(suite).size(), world.mapping.camera.size()));
+  const std::vector<RunResult> runs = run_all(suite, world, run_options);
+  const auto wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start);
+  const std::string table = write_results(out, suite, world, runs, wall.count());
+  fmt::print("{}\nresults in {} ({})\n", table, out.string(), readable_time(wall.count()));
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "bench", "Runs a suite: drives, maps, relocalizes, scores; prints the table.");
+  command->add_option("suite", options->suite, "Suite (YAML)")->required();
+  command->add_option("--out", options->out, "Folder for the results (default: out/<suite>)");
+  command->add_option("--jobs", options->jobs, "Runs at work at a time; never changes a result")
+      ->check(CLI::Range(1, 1024));
+  command->add_option("--trials", options->trials, "Repeats with seeds 0 .. N-1")
+      ->check(CLI::Range(1, 1000));
+  command
+      ->add_option("--frames", options->frames, "Cuts the tours after N frames, for a quick look")
+      ->check(CLI::Range(1, 100000000));
+  command->add_option("--scene", options->scene, "Another scene or mesh file in the suite's place");
+  command->footer(
+      "Examples:\n  modelhouse bench bench/suites/model_house.yaml --jobs 2\n"
+      "  modelhouse bench bench/suites/model_house.yaml --scene house.glb --frames 600");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace mh::cli

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace mh::cli {
+
+/// Thrown by a command that did its work and found that the check failed: exit code 1.
+struct CheckFailed {};
+
+// Each adds one subcommand; its work is done in the callback, after all of the line was parsed.
+void add_bench(CLI::App& app);
+void add_drive(CLI::App& app);
+void add_evaluate(CLI::App& app);
+void add_render(CLI::App& app);
+void add_scene(CLI::App& app);
+void add_slam(CLI::App& app);
+void add_verify(CLI::App& app);
+void add_vocabulary(CLI::App& app);
+
+}  // namespace mh::cli

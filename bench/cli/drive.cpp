@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/cli/commands.hpp"
+#include "bench/metrics/trajectory_io.hpp"
+#include "robots/model/robot.hpp"
+#include "scenes/load.hpp"
+#include "sim/motion/motion.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh::cli {
+namespace {
+
+struct Options {
+  std::string scene, tour, robot, out;
+  bool json = false;
+};
+
+void run(const Options& options) {
+  const std::filesystem::path out = options.out;
+  if (!options.out.empty()) make_output_folder(out);
+  const Robot robot = load_robot(options.robot);
+  const Tour tour = load_tour(options.tour);
+  const DrivenPath path = drive(load_scene(options.scene), robot, tour);
+  if (!options.out.empty()) {
+    write_tum(out / "camera.tum", path.camera);
+    write_tum(out / "base.tum", path.base);
+  }
+  const double seconds =
+      path.camera.empty()
+          ? 0
+          : static_cast<double>(path.camera.back().stamp_ns - path.camera.front().stamp_ns) * 1e-9;
+  const double turned_deg = path.turned_in_place_rad * 180 / std::numbers::pi;
+  if (options.json) {
+    const nlohmann::ordered_json json = {{"tour", tour.name},
+                                         {"frames", path.camera.size()},
+                                         {"duration_s", seconds},
+                                         {"length_m", path.length_m},
+                                         {"turned_in_place_deg", turned_deg},
+                                         {"contact_time_s", path.contact_time_s},
+                                         {"max_penetration_m", path.max_penetration_m}};
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print(
+      "{}: {} frames in {:.1f} s, {:.2f} m driven, {:.0f} deg turned in place, {:.2f} s in "
+      "contact (at most {:.4f} m deep)\n",
+      tour.name, path.camera.size(), seconds, path.length_m, turned_deg, path.contact_time_s,
+      path.max_penetration_m);
+}
+
+}  // namespace
+
+void add_drive(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("drive", "Drives the robot through a scene along a tour.");
+  command->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
+  command->add_option("tour", options->tour, "Tour (YAML)")->required();
+  command->add_option("--robot", options->robot, "Robot (YAML)")->required();
+  command->add_option("--out", options->out, "Folder for camera.tum and base.tum");
+  command->add_flag("--json", options->json, "Prints JSON");
+  command->footer(
+      "Example:\n  modelhouse drive scenes/model_house/house.yaml "
+      "scenes/model_house/tours/mapping.yaml --robot robots/pepper/pepper.yaml --out out/drive");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace mh::cli

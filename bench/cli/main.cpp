@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+#include <opencv2/core/utility.hpp>
+
+#include "bench/cli/commands.hpp"
+#include "slam/core/error.hpp"
+
+namespace {
+
+enum ExitCode { kGood = 0, kCheckFailed = 1, kBadInput = 2, kMachineFailed = 3 };
+
+int fail(ExitCode code, std::string message) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  fmt::print(stderr, "modelhouse: error: {}\n", message);
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Same bits at any load: OpenCV must not split its work by the number of processors.
+  cv::setNumThreads(1);
+  CLI::App app("Modelhouse: a simulation-backed test bench for object-aware visual SLAM.",
+               "modelhouse");
+  app.set_version_flag("--version", std::string("modelhouse ") + MH_VERSION);
+  app.require_subcommand(1);
+  app.footer("Example:\n  modelhouse bench bench/suites/model_house.yaml --jobs 2");
+  mh::cli::add_bench(app);
+  mh::cli::add_verify(app);
+  mh::cli::add_evaluate(app);
+  mh::cli::add_scene(app);
+  mh::cli::add_drive(app);
+  mh::cli::add_render(app);
+  mh::cli::add_slam(app);
+  mh::cli::add_vocabulary(app);
+  try {
+    app.parse(argc, argv);
+    return kGood;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return fail(kBadInput, error.what());
+  } catch (const mh::cli::CheckFailed&) {
+    return kCheckFailed;
+  } catch (const mh::InputError& error) {
+    return fail(kBadInput, error.what());
+  } catch (const std::invalid_argument& error) {
+    return fail(kBadInput, error.what());
+  } catch (const mh::MachineError& error) {
+    return fail(kMachineFailed, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(kMachineFailed, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(kMachineFailed, error.what());
+  }
+}

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+
+namespace mh::cli {
+
+/// Tells on stderr how far long work has come, with the time to go: a bar that is drawn over itself
+/// on a terminal, a plain line every tenth of the work elsewhere.
+class Progress {
+ public:
+  explicit Progress(std::string what);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void say(std::string_view stage);
+  void share(double done);  ///< in [0, 1]; the first call starts the clock
+
+ private:
+  void end_line();
+
+  std::string what_;
+  bool terminal_;
+  bool line_open_ = false;
+  bool started_ = false;
+  int last_step_ = -1;
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// "3 min 20 s"
+std::string readable_time(double seconds);
+
+}  // namespace mh::cli

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bench/cli/commands.hpp"
+#include "bench/cli/progress.hpp"
+#include "bench/recorded/tum_folder.hpp"
+#include "bench/world/world.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh::cli {
+namespace {
+
+struct Options {
+  std::string scene, tour, robot, level, out;
+  std::size_t frames = SIZE_MAX, every = 1;
+  std::uint64_t seed = 0;
+};
+
+void run(const Options& options) {
+  make_output_folder(options.out);
+  const Robot robot = load_robot(options.robot);
+  const Tour tour = load_tour(options.tour);
+  SensorConfig sensors;
+  sensors.depth_noise_on = sensors.colour_noise_on = false;
+  if (!options.level.empty()) sensors = load_sensor_config(options.level);
+  Progress progress("render");
+  progress.say(fmt::format("scene {}", options.scene));
+  const Scene scene = load_lit_scene(options.scene, 2);
+  const auto renderer = make_scene_renderer(scene);
+  const DrivenPath path = drive(scene, robot, tour);
+
+  const std::size_t last = std::min(options.frames, path.camera.size());
+  const RandomStream noise(options.seed);
+  TumWriter writer(options.out, robot.camera);
+  for (std::size_t i = 0; i < last; i += options.every) {
+    const TimedPose& pose = path.camera[i];
+    const RenderedFrame exact = renderer->render(robot.camera, pose.world_from_camera);
+    const RgbdFrame frame =
+        sense(exact, robot.camera, sensors, LabelMode::kNone, noise.fork(i), pose.stamp_ns);
+    writer.add(frame, exact, pose.world_from_camera);
+    progress.share(static_cast<double>(i + 1) / static_cast<double>(last));
+  }
+  writer.finish();
+}
+
+}  // namespace
+
+void add_render(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "render", "Writes what a robot sees along a tour in TUM's layout, with labels and poses.");
+  command->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
+  command->add_option("tour", options->tour, "Tour (YAML)")->required();
+  command->add_option("--robot", options->robot, "Robot (YAML)")->required();
+  command->add_option("--level", options->level, "Sensor level (YAML); without: no noise");
+  command->add_option("--out", options->out, "Folder to write")->required();
+  command->add_option("--frames", options->frames, "At most so many frames of the tour");
+  command->add_option("--every", options->every, "Every n-th frame only")
+      ->check(CLI::Range(1, 100000000));
+  command->add_option("--seed", options->seed, "Seed of the noise");
+  command->footer(
+      "Example:\n  modelhouse render scenes/model_house/house.yaml "
+      "scenes/model_house/tours/query.yaml --robot robots/pepper/pepper.yaml "
+      "--level sim/sensors/levels/pepper.yaml --out out/sequence --every 10");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace mh::cli

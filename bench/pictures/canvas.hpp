@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <opencv2/core/mat.hpp>
+
+#include "slam/core/rgbd_frame.hpp"
+
+namespace mh {
+
+/// A picture drawn at twice its size and scaled down in the end, so that lines and letters are
+/// smooth. All lengths are in pixels of the finished picture.
+class Canvas {
+ public:
+  Canvas(int width_px, int height_px, Rgb8 background = {255, 255, 255});
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  void fill(double x, double y, double width, double height, Rgb8 colour);
+  void line(cv::Point2d from, cv::Point2d to, Rgb8 colour, double thickness);
+  void ring(cv::Point2d centre, double radius, Rgb8 colour, double thickness);
+  void disc(cv::Point2d centre, double radius, Rgb8 colour);
+  void cross(cv::Point2d centre, double half, Rgb8 colour, double thickness);  ///< an 'x'
+  enum class Align { kLeft, kCentre, kRight };
+  /// Text with its baseline at y; `size` is the height of a capital letter.
+  void text(const std::string& text, cv::Point2d at, double size, Rgb8 colour = {40, 40, 40},
+            Align align = Align::kLeft, bool bold = false);
+  static double text_width(const std::string& text, double size, bool bold = false);
+  /// Puts a picture (8-bit BGR) into a rectangle.
+  void picture(const cv::Mat& bgr, double x, double y, double width, double height);
+
+  cv::Mat finish() const;  ///< 8-bit BGR at its real size
+
+ private:
+  int width_, height_;
+  cv::Mat large_;
+};
+
+/// Writes a PNG whole or not at all. @throws InputError if it cannot be written.
+void write_picture(const std::filesystem::path& file, const cv::Mat& bgr);
+
+}  // namespace mh

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/pictures/contact_sheet.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include "bench/pictures/canvas.hpp"
+
+namespace mh {
+namespace {
+
+constexpr double kMargin = 30, kGap = 12, kCaption = 22, kHeader = 92;
+constexpr double kTileWidth = 400;
+constexpr float kNear_m = 0.4F, kFar_m = 6.0F;  // range of the false colours
+constexpr double kEye_m = 1.45;                 // of a person who sits or a child who stands
+
+cv::Mat colour_picture(const Grid2d<Rgb8>& colour) {
+  cv::Mat picture(colour.height(), colour.width(), CV_8UC3);
+  for (int y = 0; y < colour.height(); ++y)
+    for (int x = 0; x < colour.width(); ++x) {
+      const Rgb8 c = colour(x, y);
+      picture.at<cv::Vec3b>(y, x) = {c.b, c.g, c.r};
+    }
+  return picture;
+}
+
+/// Near is red, far is blue, no return is black.
+cv::Mat depth_picture(const Grid2d<float>& depth_m) {
+  cv::Mat grey(depth_m.height(), depth_m.width(), CV_8UC1);
+  for (int y = 0; y < depth_m.height(); ++y)
+    for (int x = 0; x < depth_m.width(); ++x) {
+      const float share = (kFar_m - depth_m(x, y)) / (kFar_m - kNear_m);
+      grey.at<std::uint8_t>(y, x) =
+          static_cast<std::uint8_t>(std::clamp(share, 0.0F, 1.0F) * 255.0F);
+    }
+  cv::Mat picture;
+  cv::applyColorMap(grey, picture, cv::COLORMAP_TURBO);
+  for (int y = 0; y < depth_m.height(); ++y)
+    for (int x = 0; x < depth_m.width(); ++x)
+      if (depth_m(x, y) <= 0) picture.at<cv::Vec3b>(y, x) = {0, 0, 0};
+  return picture;
+}
+
+Rgb8 class_colour(ClassId id) {
+  const ClassInfo& info = classes()[id];
+  return {info.r, info.g, info.b};
+}
+
+cv::Mat class_picture(const Grid2d<ClassId>& labels) {
+  Grid2d<Rgb8> colours(labels.width(), labels.height());
+  for (int y = 0; y < labels.height(); ++y)
+    for (int x = 0; x < labels.width(); ++x) colours(x, y) = class_colour(labels(x, y));
+  return colour_picture(colours);
+}
+
+std::vector<ClassId> classes_seen(const std::vector<View>& views) {
+  std::vector<bool> seen(classes().size(), false);
+  for (const View& view : views)
+    for (const ClassId id : view.classes) seen[id] = true;
+  std::vector<ClassId> list;
+  for (std::size_t id = 0; id < seen.size(); ++id)
+    if (seen[id]) list.push_back(static_cast<ClassId>(id));
+  return list;
+}
+
+void draw_depth_scale(Canvas& canvas, double x, double y, double width) {
+  cv::Mat ramp(1, 256, CV_8UC1), colours;
+  for (int i = 0; i < 256; ++i) ramp.at<std::uint8_t>(0, i) = static_cast<std::uint8_t>(255 - i);
+  cv::applyColorMap(ramp, colours, cv::COLORMAP_TURBO);
+  canvas.picture(colours, x, y, width, 14);
+  canvas.text(fmt::format("{} m", kNear_m), {x, y + 32}, 9);
+  canvas.text(fmt::format("{} m and more", kFar_m), {x + width, y + 32}, 9, {40, 40, 40},
+              Canvas::Align::kRight);
+  canvas.text("black: no return", {x + width / 2, y + 32}, 9, {40, 40, 40}, Canvas::Align::kCentre);
+}
+
+constexpr int kLegendColumns = 7;
+constexpr double kLegendRow = 24;
+
+void draw_class_legend(Canvas& canvas, const std::vector<ClassId>& list, double x, double y,
+                       double width) {
+  const double column = width / kLegendColumns;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const double left = x + column * static_cast<double>(i % kLegendColumns);
+    const double top = y + kLegendRow * static_cast<double>(i / kLegendColumns);
+    canvas.fill(left, top, 16, 14, class_colour(list[i]));
+    canvas.text(std::string(classes()[list[i]].name), {left + 23, top + 12}, 9.5);
+  }
+}
+
+View shoot(std::string caption, const Renderer& renderer, const Camera& camera, const SE3& pose) {
+  RenderedFrame frame = renderer.render(camera, pose);
+  return {std::move(caption), std::move(frame.colour), std::move(frame.depth_m),
+          std::move(frame.classes)};
+}
+
+/// A wide lens (75 degrees), as a person takes pictures of rooms.
+Camera wide_camera() {
+  Camera camera;
+  camera.fx_px = camera.fy_px =
+      0.5 * camera.width_px / std::tan(0.5 * 75.0 * std::numbers::pi / 180);
+  return camera;
+}
+
+}  // namespace
+
+SE3 look_at(const Eigen::Vector3d& eye_m, const Eigen::Vector3d& target_m) {
+  const Eigen::Vector3d forward = (target_m - eye_m).normalized();
+  const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
+  Eigen::Matrix3d rotation;
+  rotation << right, forward.cross(right), forward;
+  return {rotation, eye_m};
+}
+
+std::vector<View> views_along(const Trajectory& path, const Renderer& renderer,
+                              const Camera& camera, std::size_t count) {
+  std::vector<View> views;
+  if (path.empty()) return views;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = (2 * k + 1) * path.size() / (2 * count);
+    views.push_back(shoot(fmt::format("frame {}", i), renderer, camera, path[i].world_from_camera));
+  }
+  return views;
+}
+
+std::vector<View> views_of(const Scene& scene, const Renderer& renderer) {
+  const Camera camera = wide_camera();
+  std::vector<View> views;
+  for (const Room& room : scene.rooms) {
+    Eigen::Vector2d low(1e30, 1e30), high(-1e30, -1e30);
+    for (const Eigen::Vector2d& corner : room.polygon_m) {
+      low = low.cwiseMin(corner);
+      high = high.cwiseMax(corner);
+    }
+    const Eigen::Vector2d centre = 0.5 * (low + high);
+    for (const Eigen::Vector2d& corner : {low, high}) {
+      const Eigen::Vector2d eye = centre + 0.8 * (corner - centre);
+      views.push_back(shoot(room.name, renderer, camera,
+                            look_at({eye.x(), eye.y(), kEye_m}, {centre.x(), centre.y(), 0.75})));
+    }
+  }
+  if (!views.empty()) return views;
+
+  Eigen::Vector3f low = Eigen::Vector3f::Constant(std::numeric_limits<float>::max()), high = -low;
+  for (const Eigen::Vector3f& p : scene.positions_m) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Eigen::Vector3d centre = (0.5F * (low + high)).cast<double>();
+  const Eigen::Vector3d eye(centre.x(), centre.y(), std::min<double>(low.z() + kEye_m, centre.z()));
+  for (int k = 0; k < 6; ++k) {
+    const double a = k * std::numbers::pi / 3;
+    views.push_back(shoot(fmt::format("{} deg", 60 * k), renderer, camera,
+                          look_at(eye, eye + Eigen::Vector3d(std::cos(a), std::sin(a), -0.15))));
+  }
+  return views;
+}
+
+cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& views) {
+  const double tile_height =
+      views.empty() ? 300 : kTileWidth * views[0].colour.height() / views[0].colour.width();
+  const double width = 2 * kMargin + 3 * kTileWidth + 2 * kGap;
+  const std::vector<ClassId> seen = classes_seen(views);
+  const double legend_rows =
+      std::ceil(static_cast<double>(seen.size()) / static_cast<double>(kLegendColumns));
+  const double rows_end = kHeader + static_cast<double>(views.size()) * (tile_height + kCaption);
+  const double height = rows_end + 62 + legend_rows * kLegendRow + kMargin;
+
+  Canvas canvas(static_cast<int>(width), static_cast<int>(height));
+  canvas.text(title, {kMargin, 42}, 17, {35, 38, 45}, Canvas::Align::kLeft, true);
+  const auto column = [&](int k) { return kMargin + k * (kTileWidth + kGap); };
+  const std::array<const char*, 3> headings = {"colour", "depth", "labels"};
+  for (int k = 0; k < 3; ++k)
+    canvas.text(headings[static_cast<std::size_t>(k)], {column(k), kHeader - 10}, 11);
+
+  double y = kHeader;
+  for (const View& view : views) {
+    canvas.picture(colour_picture(view.colour), column(0), y, kTileWidth, tile_height);
+    canvas.picture(depth_picture(view.depth_m), column(1), y, kTileWidth, tile_height);
+    canvas.picture(class_picture(view.classes), column(2), y, kTileWidth, tile_height);
+    canvas.text(view.caption, {column(0), y + tile_height + 14}, 8.5, {110, 115, 125});
+    y += tile_height + kCaption;
+  }
+  draw_depth_scale(canvas, column(1), rows_end + 6, kTileWidth);
+  draw_class_legend(canvas, seen, kMargin, rows_end + 58, width - 2 * kMargin);
+  return canvas.finish();
+}
+
+}  // namespace mh

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "scenes/scene.hpp"
+#include "sim/render/renderer.hpp"
+#include "slam/core/trajectory.hpp"
+
+namespace mh {
+
+/// One row of a contact sheet.
+struct View {
+  std::string caption;
+  Grid2d<Rgb8> colour;
+  Grid2d<float> depth_m;
+  Grid2d<ClassId> classes;
+};
+
+/// Rows of colour, depth in false colour and labels in class colours, with a depth scale and the
+/// names of the classes seen.
+cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& views);
+
+/// Exact pictures from a few poses spread evenly over a path.
+std::vector<View> views_along(const Trajectory& path, const Renderer& renderer,
+                              const Camera& camera, std::size_t count);
+
+/// Exact pictures that show a scene to a person: two corners of each room at eye height, or turns
+/// around the middle where the scene has no rooms.
+std::vector<View> views_of(const Scene& scene, const Renderer& renderer);
+
+/// A camera at `eye` that looks at `target`, upright.
+SE3 look_at(const Eigen::Vector3d& eye_m, const Eigen::Vector3d& target_m);
+
+}  // namespace mh

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "scenes/scene.hpp"
+
+namespace mh {
+
+/// A straight piece of a horizontal section through a scene.
+struct SliceSegment {
+  Eigen::Vector2d from_m, to_m;
+  ClassId class_id = kVoid;
+};
+
+/// Where the plane z = height cuts the scene's triangles, in face order. Vertices that lie in the
+/// plane count as above it, so that every cut triangle gives one segment.
+std::vector<SliceSegment> slice(const Scene& scene, double height_m);
+
+}  // namespace mh

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/pictures/topdown.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "bench/pictures/canvas.hpp"
+#include "bench/pictures/slice.hpp"
+
+namespace mh {
+namespace {
+
+constexpr int kWidth = 1200;
+constexpr double kMargin = 40, kHeader = 92, kFooter = 84;
+constexpr double kMaxPlanHeight = 1100;
+
+// Heights at which the house is cut: above tables and below door heads; through seats and beds.
+constexpr double kWallCut_m = 1.2, kFurnitureCut_m = 0.4;
+
+constexpr Rgb8 kInk{35, 38, 45}, kFaint{110, 115, 125}, kWall{55, 58, 66},
+    kFurniture{178, 172, 160};
+constexpr Rgb8 kMapFree{236, 241, 246}, kMapOccupied{172, 190, 208};
+constexpr Rgb8 kTruth{46, 125, 80}, kEstimate{226, 120, 30};
+constexpr Rgb8 kX{20, 70, 170}, kGood{200, 30, 90}, kBad{215, 25, 25}, kMissed{140, 140, 150};
+
+struct Bounds {
+  Eigen::Vector2d low{1e30, 1e30}, high{-1e30, -1e30};
+  void add(const Eigen::Vector2d& p) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+};
+
+/// From metres seen from above (x right, y up) to pixels.
+struct PlanView {
+  Bounds bounds;
+  double px_per_m = 1;
+  double left = kMargin;
+  cv::Point2d operator()(const Eigen::Vector2d& p) const {
+    return {left + (p.x() - bounds.low.x()) * px_per_m,
+            kHeader + (bounds.high.y() - p.y()) * px_per_m};
+  }
+};
+
+PlanView fit(const Bounds& bounds) {
+  const Eigen::Vector2d size = (bounds.high - bounds.low).cwiseMax(1.0);
+  const double room = kWidth - 2 * kMargin;
+  PlanView view{bounds, std::min(room / size.x(), kMaxPlanHeight / size.y())};
+  view.left = kMargin + 0.5 * (room - size.x() * view.px_per_m);
+  return view;
+}
+
+void draw_grid(Canvas& canvas, const PlanView& view, const OccupancyGrid& grid) {
+  const double cell = grid.resolution_m * view.px_per_m;
+  for (int y = 0; y < grid.cells.height(); ++y)
+    for (int x = 0; x < grid.cells.width(); ++x) {
+      const std::int8_t value = grid.cells(x, y);
+      if (value == kUnknown) continue;
+      const cv::Point2d centre = view(grid.centre_m(x, y));
+      canvas.fill(centre.x - cell / 2, centre.y - cell / 2, cell, cell,
+                  value == kOccupied ? kMapOccupied : kMapFree);
+    }
+}
+
+void draw_slice(Canvas& canvas, const PlanView& view, const std::vector<SliceSegment>& segments,
+                Rgb8 colour, double thickness) {
+  for (const SliceSegment& s : segments)
+    canvas.line(view(s.from_m), view(s.to_m), colour, thickness);
+}
+
+void draw_room_names(Canvas& canvas, const PlanView& view, const Scene& scene) {
+  for (const Room& room : scene.rooms) {
+    Bounds box;
+    for (const Eigen::Vector2d& corner : room.polygon_m) box.add(corner);
+    std::string label = room.name;
+    std::replace(label.begin(), label.end(), '_', ' ');
+    const cv::Point2d at = view({0.5 * (box.low.x() + box.high.x()), box.high.y()});
+    canvas.text(label, {at.x, at.y + 20}, 11, kFaint, Canvas::Align::kCentre);
+  }
+}
+
+/// A path seen from above; a gap in time breaks the line.
+void draw_path(Canvas& canvas, const PlanView& view, const Trajectory& path, const SE3& plan_from,
+               Rgb8 colour, double thickness) {
+  constexpr Stamp kGap_ns = 250'000'000;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    if (path[i].stamp_ns - path[i - 1].stamp_ns > kGap_ns) continue;
+    const Eigen::Vector3d a = plan_from * path[i - 1].world_from_camera.translation();
+    const Eigen::Vector3d b = plan_from * path[i].world_from_camera.translation();
+    canvas.line(view(a.head<2>()), view(b.head<2>()), colour, thickness);
+  }
+}
+
+void draw_queries(Canvas& canvas, const PlanView& view, const std::vector<QueryScore>& queries,
+                  const SE3& plan_from_estimate) {
+  for (const QueryScore& q : queries) {
+    const cv::Point2d truth = view(q.true_world_from_camera.translation().head<2>());
+    if (q.success) {
+      const Eigen::Vector3d p = plan_from_estimate * q.answer.world_from_camera->translation();
+      const cv::Point2d estimate = view(p.head<2>());
+      if (q.wrong) canvas.line(truth, estimate, kBad, 1);
+      canvas.ring(estimate, 6.5, q.wrong ? kBad : kGood, 1.8);
+    }
+    canvas.cross(truth, 4.5, q.success ? kX : kMissed, 1.8);
+  }
+}
+
+void draw_scale_bar(Canvas& canvas, const PlanView& view, double y) {
+  const double right = kWidth - kMargin, left = right - view.px_per_m;
+  canvas.line({left, y}, {right, y}, kInk, 2);
+  for (const double x : {left, right}) canvas.line({x, y - 5}, {x, y + 5}, kInk, 2);
+  canvas.text("1 m", {0.5 * (left + right), y - 9}, 10, kInk, Canvas::Align::kCentre);
+}
+
+/// Entries of the legend from left to right, each a symbol and a word.
+class Legend {
+ public:
+  Legend(Canvas& canvas, double y) : canvas_(canvas), y_(y) {}
+  template <class Draw>
+  void entry(const std::string& word, Draw symbol) {
+    symbol(cv::Point2d(x_ + 12, y_));
+    canvas_.text(word, {x_ + 30, y_ + 5}, 10, kInk);
+    x_ += 30 + Canvas::text_width(word, 10) + 24;
+  }
+
+ private:
+  Canvas& canvas_;
+  double x_ = kMargin, y_;
+};
+
+void draw_legend(Canvas& canvas, double y) {
+  const auto stroke = [&](Rgb8 colour, double thickness) {
+    return [&canvas, colour, thickness](cv::Point2d at) {
+      canvas.line({at.x - 11, at.y}, {at.x + 11, at.y}, colour, thickness);
+    };
+  };
+  const auto patch = [&](Rgb8 colour) {
+    return [&canvas, colour](cv::Point2d at) { canvas.fill(at.x - 9, at.y - 7, 18, 14, colour); };
+  };
+  Legend first(canvas, y);
+  first.entry("true path", stroke(kTruth, 2));
+  first.entry("estimated path", stroke(kEstimate, 2));
+  first.entry("query, true place", [&](cv::Point2d at) { canvas.cross(at, 4.5, kX, 1.8); });
+  first.entry("not answered", [&](cv::Point2d at) { canvas.cross(at, 4.5, kMissed, 1.8); });
+  first.entry("estimated place", [&](cv::Point2d at) { canvas.ring(at, 6.5, kGood, 1.8); });
+  first.entry("estimated, false", [&](cv::Point2d at) { canvas.ring(at, 6.5, kBad, 1.8); });
+  Legend second(canvas, y + 28);
+  second.entry(fmt::format("house cut at {} m", kWallCut_m), stroke(kWall, 2.5));
+  second.entry(fmt::format("furniture at {} m", kFurnitureCut_m), stroke(kFurniture, 1.5));
+  second.entry("map: free", patch(kMapFree));
+  second.entry("map: occupied", patch(kMapOccupied));
+}
+
+void draw_header(Canvas& canvas, const Suite& suite, const World& world, const RunResult& run,
+                 QuerySet set) {
+  canvas.text(fmt::format("{}: {} system{}", suite.name, name(run.spec.system),
+                          run.spec.system == SystemKind::kPlain
+                              ? ""
+                              : fmt::format(", {} labels", name(run.spec.labels))),
+              {kMargin, 38}, 17, kInk, Canvas::Align::kLeft, true);
+  const QuerySummary s = summarize(queries(run, set));
+  canvas.text(
+      fmt::format("level {}, trial {}; {} {:.0f} m driven; {} queries ({}): {:.1f} % answered, "
+                  "{:.1f} % correct; ATE {:.3f} m, completeness {:.1f} %",
+                  level_name(suite.levels[run.spec.level]), run.spec.trial, world.robot.name,
+                  world.mapping.length_m, static_cast<int>(s.queries),
+                  set == QuerySet::kHeldOut ? "held-out" : "second tour", 100 * s.success,
+                  100 * s.correct, run.trajectory.ate_rmse_m, 100 * run.trajectory.completeness),
+      {kMargin, 66}, 10.5, kFaint);
+}
+
+}  // namespace
+
+cv::Mat draw_topdown(const Suite& suite, const World& world, const RunResult& run, QuerySet set) {
+  const std::vector<SliceSegment> walls = slice(*world.scene, kWallCut_m);
+  const std::vector<SliceSegment> furniture = slice(*world.scene, kFurnitureCut_m);
+  Bounds bounds;
+  for (const SliceSegment& s : walls) {
+    bounds.add(s.from_m);
+    bounds.add(s.to_m);
+  }
+  for (const TimedPose& pose : world.mapping.camera)
+    bounds.add(pose.world_from_camera.translation().head<2>());
+
+  const PlanView view = fit(bounds);
+  const double plan_height = (bounds.high.y() - bounds.low.y()) * view.px_per_m;
+  Canvas canvas(kWidth, static_cast<int>(kHeader + plan_height + kFooter + 20));
+  draw_grid(canvas, view, run.grid);
+  draw_slice(canvas, view, furniture, kFurniture, 1.2);
+  draw_slice(canvas, view, walls, kWall, 2.2);
+  draw_room_names(canvas, view, *world.scene);
+  draw_path(canvas, view, world.mapping.camera, SE3(), kTruth, 2.2);
+  draw_path(canvas, view, run.estimate, run.trajectory.dock_from_estimate, kEstimate, 1.1);
+  draw_queries(canvas, view, queries(run, set), run.trajectory.dock_from_estimate);
+  draw_header(canvas, suite, world, run, set);
+  const double legend_y = kHeader + plan_height + 36;
+  draw_legend(canvas, legend_y);
+  draw_scale_bar(canvas, view, legend_y + 28);
+  return canvas.finish();
+}
+
+}  // namespace mh

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/recorded/tum_folder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include "bench/metrics/trajectory_io.hpp"
+#include "bench/pictures/canvas.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/yaml.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Stamp kMaxApart_ns = 20'000'000;  // as TUM's associate.py
+constexpr double kDepthPerMetre = 5000;
+
+struct Listed {
+  Stamp stamp_ns = 0;
+  fs::path file;
+};
+
+/// Reads "stamp file" lines; '#' begins a comment.
+std::vector<Listed> read_list(const fs::path& list) {
+  std::istringstream text(read_file(list));
+  std::vector<Listed> entries;
+  std::string line;
+  for (int number = 1; std::getline(text, line); ++number) {
+    std::istringstream words(line.substr(0, line.find('#')));
+    std::string stamp, file;
+    if (!(words >> stamp)) continue;
+    if (!(words >> file))
+      throw InputError(fmt::format("{}:{}: a stamp and a file are needed", list.string(), number));
+    try {
+      entries.push_back({parse_stamp(stamp), list.parent_path() / file});
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}:{}: {}", list.string(), number, error.what()));
+    }
+    if (entries.size() > 1 && entries.back().stamp_ns <= entries[entries.size() - 2].stamp_ns)
+      throw InputError(fmt::format("{}:{}: stamps must increase", list.string(), number));
+  }
+  return entries;
+}
+
+const Listed* nearest(const std::vector<Listed>& entries, Stamp stamp_ns) {
+  const Listed* best = nullptr;
+  for (const Listed& entry : entries)
+    if (best == nullptr ||
+        std::abs(entry.stamp_ns - stamp_ns) < std::abs(best->stamp_ns - stamp_ns))
+      best = &entry;
+  return best != nullptr && std::abs(best->stamp_ns - stamp_ns) <= kMaxApart_ns ? best : nullptr;
+}
+
+cv::Mat read_picture(const fs::path& file, int type, const Camera& camera) {
+  const cv::Mat picture = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
+  if (picture.empty()) throw InputError(fmt::format("{}: is missing or no picture", file.string()));
+  if (picture.type() != type)
+    throw InputError(fmt::format("{}: has the wrong number of bits or channels", file.string()));
+  if (picture.cols != camera.width_px || picture.rows != camera.height_px)
+    throw InputError(fmt::format("{}: is {} x {}, the camera has {} x {}", file.string(),
+                                 picture.cols, picture.rows, camera.width_px, camera.height_px));
+  return picture;
+}
+
+SemanticImage one_hot(const cv::Mat& ids, const fs::path& file) {
+  SemanticImage semantics;
+  semantics.index = Grid2d<std::uint8_t>(ids.cols, ids.rows);
+  for (const ClassInfo& info : classes())
+    semantics.palette.push_back(ClassDistribution::one_hot(info.id));
+  for (int y = 0; y < ids.rows; ++y)
+    for (int x = 0; x < ids.cols; ++x) {
+      const std::uint8_t id = ids.at<std::uint8_t>(y, x);
+      if (id >= semantics.palette.size())
+        throw InputError(fmt::format("{}: class {} is unknown", file.string(), id));
+      semantics.index(x, y) = id;
+    }
+  return semantics;
+}
+
+}  // namespace
+
+RecordedCamera load_recorded_camera(const fs::path& file) {
+  std::string text = read_file(file);
+  // OpenCV's own dialect begins with "%YAML:1.0", which is no YAML; its line stays, so that line
+  // numbers hold.
+  if (text.starts_with("%YAML")) text[0] = '#';
+  YamlReader yaml = YamlReader::parse(text, file.string());
+  yaml.entries();
+  RecordedCamera recorded;
+  Camera& c = recorded.camera;
+  constexpr double kMost = 1e6;
+  c.fx_px = yaml.number("Camera.fx", 1.0, kMost);
+  c.fy_px = yaml.number("Camera.fy", 1.0, kMost);
+  c.cx_px = yaml.number("Camera.cx", 0.0, kMost);
+  c.cy_px = yaml.number("Camera.cy", 0.0, kMost);
+  c.distortion = {.k1 = yaml.number_or("Camera.k1", 0),
+                  .k2 = yaml.number_or("Camera.k2", 0),
+                  .p1 = yaml.number_or("Camera.p1", 0),
+                  .p2 = yaml.number_or("Camera.p2", 0),
+                  .k3 = yaml.number_or("Camera.k3", 0)};
+  c.width_px = static_cast<int>(yaml.integer_or("Camera.width", 640, 1, 100000));
+  c.height_px = static_cast<int>(yaml.integer_or("Camera.height", 480, 1, 100000));
+  c.rate_hz = yaml.number_or("Camera.fps", 30.0, 0.001, kMost);
+  c.baseline_m = yaml.number_or("Camera.bf", c.baseline_m * c.fx_px, 1e-6, kMost) / c.fx_px;
+  recorded.depth_per_metre = yaml.number_or("DepthMapFactor", kDepthPerMetre, 1e-3, 1e9);
+  return recorded;
+}
+
+std::vector<RecordedFrame> load_tum_folder(const fs::path& folder) {
+  const std::vector<Listed> colour = read_list(folder / "rgb.txt");
+  const std::vector<Listed> depth = read_list(folder / "depth.txt");
+  std::vector<Listed> labels;
+  if (fs::exists(folder / "label.txt")) labels = read_list(folder / "label.txt");
+  std::vector<RecordedFrame> frames;
+  for (const Listed& picture : colour) {
+    const Listed* d = nearest(depth, picture.stamp_ns);
+    if (d == nullptr) continue;
+    const Listed* l = nearest(labels, picture.stamp_ns);
+    frames.push_back({picture.stamp_ns, picture.file, d->file, l ? l->file : fs::path()});
+  }
+  if (frames.empty())
+    throw InputError(
+        fmt::format("{}: no colour picture has a depth picture within 0.02 s", folder.string()));
+  return frames;
+}
+
+RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera) {
+  const cv::Mat colour = read_picture(recorded.colour, CV_8UC3, camera.camera);
+  const cv::Mat depth = read_picture(recorded.depth, CV_16UC1, camera.camera);
+  RgbdFrame frame;
+  frame.stamp_ns = recorded.stamp_ns;
+  frame.colour = Grid2d<Rgb8>(colour.cols, colour.rows);
+  frame.depth_m = Grid2d<float>(colour.cols, colour.rows);
+  for (int y = 0; y < colour.rows; ++y)
+    for (int x = 0; x < colour.cols; ++x) {
+      const cv::Vec3b bgr = colour.at<cv::Vec3b>(y, x);
+      frame.colour(x, y) = {bgr[2], bgr[1], bgr[0]};
+      frame.depth_m(x, y) =
+          static_cast<float>(depth.at<std::uint16_t>(y, x) / camera.depth_per_metre);
+    }
+  if (!recorded.classes.empty())
+    frame.semantics =
+        one_hot(read_picture(recorded.classes, CV_8UC1, camera.camera), recorded.classes);
+  return frame;
+}
+
+TumWriter::TumWriter(fs::path folder, const Camera& camera)
+    : folder_(std::move(folder)), camera_(camera) {
+  for (const char* part : {"rgb", "depth", "label", "instance"}) make_output_folder(folder_ / part);
+}
+
+void TumWriter::add(const RgbdFrame& frame, const RenderedFrame& exact,
+                    const SE3& world_from_camera) {
+  const int width = frame.colour.width(), height = frame.colour.height();
+  cv::Mat colour(height, width, CV_8UC3), depth(height, width, CV_16UC1);
+  cv::Mat label(height, width, CV_8UC1), instance(height, width, CV_16UC1);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const Rgb8 c = frame.colour(x, y);
+      colour.at<cv::Vec3b>(y, x) = {c.b, c.g, c.r};
+      const double units = std::round(kDepthPerMetre * double(frame.depth_m(x, y)));
+      depth.at<std::uint16_t>(y, x) = static_cast<std::uint16_t>(std::clamp(units, 0.0, 65535.0));
+      label.at<std::uint8_t>(y, x) = exact.classes(x, y);
+      instance.at<std::uint16_t>(y, x) = exact.instances(x, y);
+    }
+  const std::string name = format_stamp(frame.stamp_ns) + ".png";
+  write_picture(folder_ / "rgb" / name, colour);
+  write_picture(folder_ / "depth" / name, depth);
+  write_picture(folder_ / "label" / name, label);
+  write_picture(folder_ / "instance" / name, instance);
+  truth_.push_back({frame.stamp_ns, world_from_camera});
+}
+
+void TumWriter::finish() {
+  std::map<std::string, std::string> lists;
+  std::string associations;
+  for (const TimedPose& pose : truth_) {
+    const std::string stamp = format_stamp(pose.stamp_ns);
+    for (const char* part : {"rgb", "depth", "label", "instance"})
+      lists[part] += fmt::format("{} {}/{}.png\n", stamp, part, stamp);
+    associations += fmt::format("{0} rgb/{0}.png {0} depth/{0}.png\n", stamp);
+  }
+  for (const auto& [part, list] : lists)
+    write_atomically(folder_ / (part + ".txt"), "# stamp (s) file\n" + list);
+  write_atomically(folder_ / "associations.txt", associations);
+  write_tum(folder_ / "groundtruth.txt", truth_);
+  write_atomically(
+      folder_ / "camera.yaml",
+      fmt::format("# Pinhole, no distortion; pixel centres at integers. Read by ORB-SLAM too.\n"
+                  "Camera.fx: {}\nCamera.fy: {}\nCamera.cx: {}\nCamera.cy: {}\n"
+                  "Camera.k1: 0.0\nCamera.k2: 0.0\nCamera.p1: 0.0\nCamera.p2: 0.0\n"
+                  "Camera.width: {}\nCamera.height: {}\nCamera.fps: {}\nCamera.bf: {}\n"
+                  "DepthMapFactor: {}\n",
+                  camera_.fx_px, camera_.fy_px, camera_.cx_px, camera_.cy_px, camera_.width_px,
+                  camera_.height_px, camera_.rate_hz, camera_.baseline_m * camera_.fx_px,
+                  kDepthPerMetre));
+}
+
+}  // namespace mh

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sim/world/sequence.hpp"
+#include "slam/core/camera.hpp"
+#include "slam/core/rgbd_frame.hpp"
+
+namespace mh {
+
+/// What a recorded sequence needs to be read.
+struct RecordedCamera {
+  Camera camera;
+  double depth_per_metre = 5000;  ///< value of a depth pixel one metre away
+};
+
+/// Reads a calibration with ORB-SLAM's keys: Camera.fx, .fy, .cx, .cy (px, needed); Camera.k1 .k2
+/// .p1 .p2 .k3, Camera.width, .height, Camera.fps, Camera.bf (px m), DepthMapFactor. Other keys of
+/// such files (ORBextractor.*, Viewer.*, ...) are passed over. @throws InputError.
+RecordedCamera load_recorded_camera(const std::filesystem::path& file);
+
+/// One moment of a recording: colour and depth pictures that belong together.
+struct RecordedFrame {
+  Stamp stamp_ns = 0;                            ///< of the colour picture
+  std::filesystem::path colour, depth, classes;  ///< classes: empty where the recording has none
+};
+
+/// Reads a folder in TUM's layout: rgb.txt and depth.txt (or associations.txt), and label.txt where
+/// it is there. Each colour picture gets the nearest depth picture within 0.02 s, as TUM's own
+/// association does; one without is left out. @throws InputError naming file and line.
+std::vector<RecordedFrame> load_tum_folder(const std::filesystem::path& folder);
+
+/// Reads the pictures of one frame. @throws InputError naming the picture.
+RgbdFrame read_frame(const RecordedFrame& frame, const RecordedCamera& camera);
+
+/// Writes sequences in TUM's layout: rgb/ and depth/ (16 bit, 5000 per metre), label/ (class ids, 8
+/// bit) and instance/ (16 bit), their lists, associations.txt, groundtruth.txt and camera.yaml.
+/// The lists appear with finish(), so that a folder without them was not finished.
+class TumWriter {
+ public:
+  TumWriter(std::filesystem::path folder, const Camera& camera);
+  /// @param exact  of the same moment; its classes and instances are written
+  void add(const RgbdFrame& frame, const RenderedFrame& exact, const SE3& world_from_camera);
+  void finish();
+
+ private:
+  std::filesystem::path folder_;
+  Camera camera_;
+  Trajectory truth_;
+};
+
+}  // namespace mh

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/results/json.hpp"
+
+#include <cmath>
+
+#include <opencv2/core/version.hpp>
+
+#include "bench/protocol/digest.hpp"
+
+namespace mh {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json pose_json(const SE3& pose) {
+  const Eigen::Vector3d& t = pose.translation();
+  const Eigen::Quaterniond q = pose.quaternion();
+  return Json::array({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
+}
+
+Json suite_json(const Suite& suite) {
+  const SemanticConfig& s = suite.semantics;
+  const ProtocolConfig& p = suite.protocol;
+  Json levels = Json::array(), systems = Json::array(), labels = Json::array();
+  for (const auto& level : suite.levels) levels.push_back(level.generic_string());
+  for (const SystemKind system : suite.systems) systems.push_back(name(system));
+  for (const LabelMode mode : suite.labels) labels.push_back(name(mode));
+  return {{"name", suite.name},
+          {"scene", suite.scene.generic_string()},
+          {"robot", suite.robot.generic_string()},
+          {"mapping_tour", suite.mapping_tour.generic_string()},
+          {"query_tour", suite.query_tour ? Json(suite.query_tour->generic_string()) : Json()},
+          {"vocabulary", suite.vocabulary.generic_string()},
+          {"levels", levels},
+          {"systems", systems},
+          {"labels", labels},
+          {"trials", suite.trials},
+          {"seed", suite.seed},
+          {"slam",
+           {{"gamma", s.gamma},
+            {"xi", s.xi},
+            {"alpha", s.alpha},
+            {"beta", s.beta},
+            {"overlap", name(s.overlap)},
+            {"void_is_a_label", s.void_is_a_label}}},
+          {"protocol",
+           {{"test_interval", p.test_interval},
+            {"rewind_frames", p.rewind_frames},
+            {"restarts_per_frame", p.restarts_per_frame},
+            {"reset", p.reset == DropReset::kMap ? "map" : "counter"},
+            {"max_effort", p.max_effort},
+            {"query_attempts", p.query_attempts},
+            {"max_blank_frames", p.max_blank_frames},
+            {"correct_distance_m", p.correct_distance_m},
+            {"correct_angle_deg", p.correct_angle_deg}}}};
+}
+
+Json path_json(const DrivenPath& path) {
+  return {{"frames", path.camera.size()},
+          {"length_m", path.length_m},
+          {"turned_in_place_rad", path.turned_in_place_rad},
+          {"contact_time_s", path.contact_time_s},
+          {"max_penetration_m", path.max_penetration_m}};
+}
+
+Json world_json(const World& world) {
+  return {{"scene_digest", hex(digest(*world.scene))},
+          {"vocabulary_digest", hex(world.vocabulary->digest())},
+          {"vocabulary_words", world.vocabulary->size()},
+          {"robot", world.robot.name},
+          {"mapping_tour", path_json(world.mapping)},
+          {"query_tour", world.second ? path_json(*world.second) : Json()}};
+}
+
+Json matches_json(const MatchCounts& matches) {
+  Json all;
+  for (std::size_t m = 0; m < matches.size(); ++m) {
+    const MatcherCounts& c = matches[m];
+    all[std::string(name(static_cast<Matcher>(m)))] = {{"compared", c.compared},
+                                                       {"penalised", c.penalised},
+                                                       {"rejected_by_xi", c.rejected_by_xi},
+                                                       {"ratio_helped", c.ratio_helped}};
+  }
+  return all;
+}
+
+Json query_json(const QueryScore& q) {
+  Json json = {{"frame", q.answer.index},
+               {"stamp_ns", q.stamp_ns},
+               {"success", q.success},
+               {"correct", q.correct},
+               {"false", q.wrong},
+               {"stage", name(q.answer.stage)},
+               {"attempts", q.answer.attempts},
+               {"blank_frames", q.answer.blank_frames},
+               {"truth", pose_json(q.true_world_from_camera)}};
+  if (q.success) {
+    json["estimate"] = pose_json(*q.answer.world_from_camera);
+    json["distance_m"] = q.distance_m;
+    json["angle_deg"] = q.angle_deg;
+    json["aligned_distance_m"] = q.aligned_distance_m;
+  }
+  if (const auto& c = q.answer.candidates)
+    json["candidates"] = {{"keyframes", c->keyframes},
+                          {"c1", c->c1},
+                          {"c2", c->c2},
+                          {"c3", c->c3},
+                          {"final", c->final},
+                          {"label_mass", c->label_mass}};
+  return json;
+}
+
+Json trajectory_json(const TrajectoryScore& t) {
+  return {{"completeness", t.completeness},
+          {"ate_rmse_m", t.ate_rmse_m},
+          {"ate_unaligned_m", t.ate_unaligned_m},
+          {"rpe_frame_rmse_m", t.rpe_frame_rmse_m},
+          {"rpe_second_rmse_m", t.rpe_second_rmse_m}};
+}
+
+Json summary_json(const QuerySummary& s) {
+  return {{"queries", s.queries},
+          {"success", s.success},
+          {"correct", s.correct},
+          {"false", s.wrong},
+          {"distance_mean_m", s.distance_mean_m},
+          {"distance_median_m", s.distance_median_m},
+          {"aligned_distance_mean_m", s.aligned_distance_mean_m},
+          {"attempts", s.attempts},
+          {"candidates",
+           {{"keyframes", s.keyframes},
+            {"c1", s.c1},
+            {"c2", s.c2},
+            {"c3", s.c3},
+            {"final", s.final},
+            {"single", s.single_candidate},
+            {"label_mass", s.label_mass}}}};
+}
+
+Json digests_json(const RunResult& run) {
+  std::uint64_t images = 0, poses = 0;
+  const auto chain = [](std::uint64_t& sum, std::uint64_t next) {
+    sum = digest_bytes(&next, sizeof next, sum);
+  };
+  for (const MappedFrame& call : run.mapping.calls) {
+    chain(images, call.image_digest);
+    chain(poses, call.pose_digest);
+  }
+  for (const auto* set : {&run.held_out, &run.second_tour})
+    for (const QueryScore& q : *set) {
+      chain(images, q.answer.image_digest);
+      chain(poses, q.answer.pose_digest);
+    }
+  return {
+      {"images", hex(images)}, {"poses", hex(poses)}, {"trajectory", hex(digest(run.estimate))}};
+}
+
+Json run_json(const RunResult& run, const Suite& suite) {
+  Json held_out = Json::array(), second_tour = Json::array();
+  for (const QueryScore& q : run.held_out) held_out.push_back(query_json(q));
+  for (const QueryScore& q : run.second_tour) second_tour.push_back(query_json(q));
+  const MappingOutcome& m = run.mapping;
+  Json trajectory = trajectory_json(run.trajectory);
+  trajectory["offered"] = run.trajectory.offered;
+  trajectory["tracked"] = run.trajectory.tracked;
+  std::size_t keyframes = 0;
+  for (const MappedFrame& call : m.calls) keyframes += call.keyframe_added ? 1 : 0;
+  return {{"name", run.spec.name},
+          {"system", name(run.spec.system)},
+          {"labels", name(run.spec.labels)},
+          {"level", level_name(suite.levels[run.spec.level])},
+          {"seed", suite.seed + static_cast<std::uint64_t>(run.spec.trial)},
+          {"digests", digests_json(run)},
+          {"mapping",
+           {{"track_calls", m.calls.size()},
+            {"failures", m.failures},
+            {"restarts", m.restarts},
+            {"dropped", m.dropped},
+            {"before_map", m.before_map},
+            {"gave_up", m.gave_up},
+            {"keyframes_made", keyframes},
+            {"matchers", matches_json(m.matches)}}},
+          {"trajectory", trajectory},
+          {"occupancy", {{"leaves", run.volume ? run.volume->leaf_count() : 0}}},
+          {"held_out", held_out},
+          {"second_tour", second_tour}};
+}
+
+Json row_json(const Row& row, const Suite& suite) {
+  return {{"level", level_name(suite.levels[row.level])},
+          {"labels", name(row.labels)},
+          {"system", name(row.system)},
+          {"trials", row.trials.size()},
+          {"trajectory", trajectory_json(row.trajectory)},
+          {"restarts", row.restarts},
+          {"dropped", row.dropped},
+          {"held_out", summary_json(row.held_out)},
+          {"second_tour", summary_json(row.second_tour)},
+          {"matchers", matches_json(row.matches)}};
+}
+
+Json comparison_json(const Comparison& c) {
+  const Verdict v = verdict(c);
+  return {{"what", c.what},
+          {"pairs", c.pairs},
+          {"semantic_minus_plain", c.difference},
+          {"low", number(c.low)},
+          {"high", number(c.high)},
+          {"p", c.p},
+          {"p_holm", c.p_holm},
+          {"detectable", number(c.detectable)},
+          {"better", v == Verdict::kUndecided     ? Json()
+                     : v == Verdict::kFirstBetter ? Json("semantic")
+                                                  : Json("plain")}};
+}
+
+}  // namespace
+
+Json results_json(const Suite& suite, const World& world, const std::vector<RunResult>& runs) {
+  const std::vector<Row> rows = make_rows(suite, runs);
+  Json run_list = Json::array(), row_list = Json::array(), comparisons = Json::array();
+  for (const RunResult& run : runs) run_list.push_back(run_json(run, suite));
+  for (const Row& row : rows) row_list.push_back(row_json(row, suite));
+  const auto by_level = compare_systems(suite, rows);
+  for (std::size_t level = 0; level < by_level.size(); ++level)
+    for (const Comparison& c : by_level[level]) {
+      Json json = comparison_json(c);
+      json["level"] = level_name(suite.levels[level]);
+      comparisons.push_back(std::move(json));
+    }
+  return {
+      {"format", "modelhouse-results-1"},
+      {"versions", {{"modelhouse", MH_VERSION}, {"compiler", __VERSION__}, {"opencv", CV_VERSION}}},
+      {"suite", suite_json(suite)},
+      {"world", world_json(world)},
+      {"rows", row_list},
+      {"comparisons", comparisons},
+      {"runs", run_list}};
+}
+
+Json times_json(const std::vector<RunResult>& runs, double wall_s) {
+  Json list = Json::array();
+  for (const RunResult& run : runs) {
+    const TimeSummary track = summarize(run.times.track_ms);
+    const TimeSummary relocalize = summarize(run.times.relocalize_ms);
+    list.push_back(
+        {{"name", run.spec.name},
+         {"wall_s", run.wall_s},
+         {"track_ms", {{"median", track.median_ms}, {"p95", track.p95_ms}}},
+         {"relocalize_ms", {{"median", relocalize.median_ms}, {"p95", relocalize.p95_ms}}}});
+  }
+  return {{"wall_s", wall_s}, {"runs", list}};
+}
+
+}  // namespace mh

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/results/statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "slam/core/random.hpp"
+
+namespace mh {
+namespace {
+
+double mean_difference(std::span<const PairedDifference> queries,
+                       std::span<const std::size_t> chosen) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const std::size_t i : chosen) {
+    if (!queries[i].present) continue;
+    sum += queries[i].difference;
+    ++count;
+  }
+  return count == 0 ? 0.0 : sum / static_cast<double>(count);
+}
+
+std::vector<std::size_t> draw_blocks(std::size_t n, std::size_t block, RandomStream stream) {
+  std::vector<std::size_t> chosen;
+  chosen.reserve(n + block);
+  for (std::uint64_t draw = 0; chosen.size() < n; ++draw) {
+    const std::size_t start = stream.below(draw, n);
+    for (std::size_t k = 0; k < block && chosen.size() < n; ++k) chosen.push_back((start + k) % n);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+double mean(std::span<const double> values) {
+  if (values.empty()) return 0;
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+Comparison compare_paired(std::string what, std::span<const PairedDifference> queries,
+                          std::uint64_t seed, int resamples) {
+  Comparison c{.what = std::move(what)};
+  const std::size_t n = queries.size();
+  for (const PairedDifference& q : queries) c.pairs += q.present ? 1 : 0;
+  std::vector<std::size_t> all(n);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  c.difference = mean_difference(queries, all);
+  if (c.pairs < 4) {
+    c.low = -INFINITY;
+    c.high = INFINITY;
+    c.detectable = INFINITY;
+    return c;
+  }
+
+  const auto block = std::max<std::size_t>(
+      2, static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(n)))));
+  std::vector<double> means;
+  means.reserve(static_cast<std::size_t>(resamples));
+  for (int r = 0; r < resamples; ++r) {
+    const RandomStream stream = RandomStream(seed).fork(static_cast<std::uint64_t>(r));
+    means.push_back(mean_difference(queries, draw_blocks(n, block, stream)));
+  }
+  std::sort(means.begin(), means.end());
+  const auto at = [&](double share) {
+    return means[static_cast<std::size_t>(share * static_cast<double>(means.size() - 1))];
+  };
+  c.low = at(0.025);
+  c.high = at(0.975);
+
+  const double count = static_cast<double>(means.size());
+  const auto not_above =
+      static_cast<double>(std::upper_bound(means.begin(), means.end(), 0.0) - means.begin());
+  const auto below =
+      static_cast<double>(std::lower_bound(means.begin(), means.end(), 0.0) - means.begin());
+  const double one_sided = std::min(not_above, count - below);
+  c.p = std::min(1.0, 2.0 * (one_sided + 1.0) / (count + 1.0));
+
+  double variance = 0;
+  const double centre = mean(means);
+  for (const double m : means) variance += (m - centre) * (m - centre);
+  c.detectable = (1.96 + 0.84) * std::sqrt(variance / (count - 1.0));
+  return c;
+}
+
+void holm(std::span<Comparison> family) {
+  std::vector<std::size_t> order(family.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return family[a].p < family[b].p; });
+  double largest = 0;
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    const double corrected = static_cast<double>(order.size() - rank) * family[order[rank]].p;
+    largest = std::max(largest, std::min(1.0, corrected));
+    family[order[rank]].p_holm = largest;
+  }
+}
+
+Verdict verdict(const Comparison& c) {
+  if (c.p_holm >= 0.05 || (c.low <= 0 && c.high >= 0)) return Verdict::kUndecided;
+  return (c.difference > 0) == c.more_is_better ? Verdict::kFirstBetter : Verdict::kSecondBetter;
+}
+
+}  // namespace mh

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace mh {
+
+/// The middle value (mean of the two middle ones); 0 of nothing.
+double median(std::vector<double> values);
+/// 0 of nothing.
+double mean(std::span<const double> values);
+
+/// One paired observation: the difference first - second of one query, where both have a value.
+struct PairedDifference {
+  double difference = 0;
+  bool present = false;
+};
+
+/// Mean difference of two systems over the same queries.
+struct Comparison {
+  std::string what;  ///< e.g. "success, held-out, exact labels"
+  bool more_is_better = true;
+  std::size_t pairs = 0;     ///< queries where both have a value
+  double difference = 0;     ///< mean of first - second
+  double low = 0, high = 0;  ///< 95 % bootstrap interval
+  double p = 1;              ///< two-sided, from the bootstrap
+  double p_holm = 1;         ///< corrected over the family (see holm)
+  /// The true difference that would be found with 80 % power at the 5 % level: 2.8 standard errors.
+  double detectable = 0;
+};
+
+/// Circular block bootstrap (Politis and Romano, 1992) of the mean difference: neighbouring queries
+/// see the same place, so blocks of max(2, n^(1/3)) consecutive ones are drawn together.
+/// Deterministic: draws come from the seed. With fewer than 4 pairs the interval stays wide open.
+Comparison compare_paired(std::string what, std::span<const PairedDifference> queries,
+                          std::uint64_t seed, int resamples = 10000);
+
+/// Holm's correction over one family of comparisons, in place (Holm, 1979).
+void holm(std::span<Comparison> family);
+
+/// Whether the rule of DESIGN section 5 lets the word *better* be printed, and of whom.
+enum class Verdict { kUndecided, kFirstBetter, kSecondBetter };
+Verdict verdict(const Comparison& comparison);
+
+}  // namespace mh

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bench/results/run_result.hpp"
+#include "bench/results/statistics.hpp"
+
+namespace mh {
+
+/// Which test frames: never pooled with one another.
+enum class QuerySet { kHeldOut, kSecondTour };
+std::string_view name(QuerySet set);
+const std::vector<QueryScore>& queries(const RunResult& run, QuerySet set);
+
+/// The answers of one run to one set of queries, or the median of that over trials.
+struct QuerySummary {
+  double queries = 0;
+  double success = 0, correct = 0, wrong = 0;  ///< shares of all queries
+  double distance_mean_m = 0;                  ///< over the queries that were answered, local truth
+  double distance_median_m = 0;
+  double aligned_distance_mean_m = 0;  ///< the same, in the globally aligned frame
+  double attempts = 0;                 ///< mean
+  /// Candidate keyframes left after equations 3, 4, 5 and 6: mean counts over queries.
+  double keyframes = 0, c1 = 0, c2 = 0, c3 = 0, final = 0;
+  double single_candidate = 0;  ///< share of queries with exactly one left
+  double label_mass = 0;        ///< mean share of the query vector held by labels
+};
+QuerySummary summarize(std::span<const QueryScore> queries);
+
+/// One row of the results: one system under one kind of labels at one level, over all trials.
+struct Row {
+  SystemKind system = SystemKind::kSemantic;
+  LabelMode labels = LabelMode::kNone;
+  std::size_t level = 0;
+  std::vector<const RunResult*> trials;
+  TrajectoryScore trajectory;  ///< medians over trials
+  double restarts = 0, dropped = 0;
+  QuerySummary held_out, second_tour;
+  MatchCounts matches{};  ///< summed over trials, mapping and queries
+  TimeSummary track, relocalize;
+};
+
+/// One row per level, labels and system, in this order. The plain system, run once without labels,
+/// stands beside each kind of label.
+std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs);
+
+/// Semantic minus plain, for each level, label kind, query set and measure; p corrected by Holm
+/// over the family of one level. Empty where the suite lacks one of the two.
+std::vector<std::vector<Comparison>> compare_systems(const Suite& suite, std::span<const Row> rows);
+
+/// ATE over the frames that both tracked, median over trials: first, second.
+std::array<double, 2> ate_over_common_frames(const Row& first, const Row& second,
+                                             const Trajectory& truth);
+
+}  // namespace mh

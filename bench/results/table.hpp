@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "bench/results/summary.hpp"
+
+namespace mh {
+
+/// The results as text: first in the form of the paper's Table 2 beside its published numbers, then
+/// everything that DESIGN section 5 asks to be printed with them.
+std::string results_table(const Suite& suite, const std::vector<RunResult>& runs,
+                          const Trajectory& mapping_truth);
+
+}  // namespace mh

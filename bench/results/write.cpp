@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/results/write.hpp"
+
+#include <fmt/format.h>
+
+#include "bench/metrics/trajectory_io.hpp"
+#include "bench/pictures/canvas.hpp"
+#include "bench/pictures/contact_sheet.hpp"
+#include "bench/pictures/topdown.hpp"
+#include "bench/results/json.hpp"
+#include "bench/results/table.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write_run(const fs::path& folder, const Suite& suite, const World& world,
+               const RunResult& run) {
+  make_output_folder(folder);
+  write_tum(folder / "truth.tum", world.mapping.camera);
+  write_tum(folder / "estimate.tum", run.estimate);
+  write_atomically(folder / "map.bt", [&](const fs::path& file) { run.volume->save_bt(file); });
+  save_map_server(run.grid, folder / "map");
+  write_picture(folder / "topdown.png", draw_topdown(suite, world, run, QuerySet::kHeldOut));
+  if (world.second)
+    write_picture(folder / "topdown_second_tour.png",
+                  draw_topdown(suite, world, run, QuerySet::kSecondTour));
+}
+
+}  // namespace
+
+std::string write_results(const fs::path& folder, const Suite& suite, const World& world,
+                          const std::vector<RunResult>& runs, double wall_s) {
+  const std::string table = results_table(suite, runs, world.mapping.camera);
+  for (const RunResult& run : runs) write_run(folder / run.spec.name, suite, world, run);
+  write_picture(folder / "views.png",
+                draw_contact_sheet(
+                    fmt::format("{} as {} sees it", world.scene->name, world.robot.name),
+                    views_along(world.mapping.camera, *world.renderer, world.robot.camera, 6)));
+  write_atomically(folder / "times.json", times_json(runs, wall_s).dump(2) + "\n");
+  write_atomically(folder / "table.txt", table);
+  write_atomically(folder / "results.json", results_json(suite, world, runs).dump(2) + "\n");
+  return table;
+}
+
+}  // namespace mh

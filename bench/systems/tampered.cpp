@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/systems/tampered.hpp"
+
+#include <utility>
+
+namespace mh {
+namespace {
+
+class TamperedSystem : public System {
+ public:
+  TamperedSystem(std::unique_ptr<System> inner, std::function<void(std::size_t, StepReport&)> hand)
+      : inner_(std::move(inner)), hand_(std::move(hand)) {}
+
+  StepReport track(const RgbdFrame& frame, RandomStream stream) override {
+    StepReport report = inner_->track(frame, stream);
+    hand_(calls_++, report);
+    return report;
+  }
+  void rewind() override { inner_->rewind(); }
+  void reset() override { inner_->reset(); }
+  void freeze() override { inner_->freeze(); }
+  Trajectory trajectory() const override { return inner_->trajectory(); }
+  std::unique_ptr<RelocalizationSession> open_session() const override {
+    return inner_->open_session();
+  }
+
+ private:
+  std::unique_ptr<System> inner_;
+  std::function<void(std::size_t, StepReport&)> hand_;
+  std::size_t calls_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<System> make_tampered(std::unique_ptr<System> inner,
+                                      std::function<void(std::size_t, StepReport&)> hand) {
+  return std::make_unique<TamperedSystem>(std::move(inner), std::move(hand));
+}
+
+}  // namespace mh

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "bench/systems/system.hpp"
+
+namespace mh {
+
+/// A system whose answers to track() pass through a hand that may change them: what the tests of
+/// `verify` need to seed a difference. `call` counts track calls from 0.
+std::unique_ptr<System> make_tampered(std::unique_ptr<System> inner,
+                                      std::function<void(std::size_t call, StepReport&)> hand);
+
+}  // namespace mh

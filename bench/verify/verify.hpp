@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/run.hpp"
+
+namespace mh {
+
+/// Where two executions of one suite part for the first time.
+struct Difference {
+  std::string run;    ///< empty: before any run
+  std::string phase;  ///< "world", "mapping", "held_out", "second_tour" or "result"
+  std::size_t frame = 0;
+  int restart = 0;    ///< of the mapping, when the frame was shown
+  std::string stage;  ///< "scene", "path", "order", "image", "matching", "pose", "map", "scores"
+  friend bool operator==(const Difference&, const Difference&) = default;
+};
+
+/// One line: "semantic-exact-pepper-0: mapping: frame 37: image differs".
+std::string describe(const Difference& difference);
+
+/// Compares stage by stage in the order in which things happened; nullopt where every bit agrees.
+std::optional<Difference> first_difference(const World& a, const World& b);
+std::optional<Difference> first_difference(const RunResult& a, const RunResult& b);
+std::optional<Difference> first_difference(const std::vector<RunResult>& a,
+                                           const std::vector<RunResult>& b);
+
+/// Digests of one execution, to be printed side by side.
+struct ExecutionDigests {
+  std::uint64_t scene = 0, path = 0, images = 0, matching = 0, poses = 0, maps = 0, results = 0;
+  friend bool operator==(const ExecutionDigests&, const ExecutionDigests&) = default;
+};
+ExecutionDigests digests(const Suite& suite, const World& world,
+                         const std::vector<RunResult>& runs);
+
+struct Verification {
+  ExecutionDigests first, second;  ///< with 1 job and with 4
+  std::optional<Difference> difference;
+};
+
+/// Executes a suite twice from the files on, once with 1 job and once with 4, sharing nothing, and
+/// compares. `tamper` acts on the second execution only (for the tests).
+Verification verify(const Suite& suite, RunOptions options,
+                    const SystemFactory& factory = make_system);
+
+}  // namespace mh

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/results/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+namespace mh {
+namespace {
+
+std::vector<PairedDifference> all_equal_to(double value, std::size_t n) {
+  return std::vector<PairedDifference>(n, {value, true});
+}
+
+TEST(Median, IsTheMiddleOrTheMeanOfTheMiddleTwo) {
+  EXPECT_EQ(median({}), 0);
+  EXPECT_EQ(median({3, 1, 2}), 2);
+  EXPECT_EQ(median({4, 1, 2, 3}), 2.5);
+}
+
+TEST(ComparePaired, NoDifferenceIsNeverSignificant) {
+  const Comparison c = compare_paired("x", all_equal_to(0, 50), 1);
+  EXPECT_EQ(c.difference, 0);
+  EXPECT_EQ(c.p, 1);
+  EXPECT_EQ(verdict(c), Verdict::kUndecided);
+}
+
+TEST(ComparePaired, AConstantDifferenceIsFoundAndHasNoSpread) {
+  Comparison c[] = {compare_paired("x", all_equal_to(0.5, 50), 1)};
+  holm(c);
+  EXPECT_DOUBLE_EQ(c[0].low, 0.5);
+  EXPECT_DOUBLE_EQ(c[0].high, 0.5);
+  EXPECT_EQ(verdict(c[0]), Verdict::kFirstBetter);
+  c[0].more_is_better = false;
+  EXPECT_EQ(verdict(c[0]), Verdict::kSecondBetter);
+}
+
+TEST(ComparePaired, AnswersOfOneNeighbourhoodCountLessThanTheirNumber) {
+  // Runs of ten equal values: hardly more information than a tenth as many queries.
+  std::vector<PairedDifference> runs, mixed;
+  for (int i = 0; i < 200; ++i) {
+    runs.push_back({(i / 10) % 2 == 0 ? 1.0 : -0.9, true});
+    mixed.push_back({i % 2 == 0 ? 1.0 : -0.9, true});
+  }
+  const Comparison a = compare_paired("runs", runs, 1), b = compare_paired("mixed", mixed, 1);
+  EXPECT_DOUBLE_EQ(a.difference, b.difference);
+  EXPECT_GT(a.detectable, 3 * b.detectable);
+}
+
+TEST(ComparePaired, TooFewPairsDecideNothing) {
+  std::vector<PairedDifference> few = all_equal_to(1, 3);
+  few.resize(40);  // the others are absent
+  const Comparison c = compare_paired("x", few, 1);
+  EXPECT_EQ(c.pairs, 3u);
+  EXPECT_EQ(verdict(c), Verdict::kUndecided);
+}
+
+TEST(ComparePaired, IsAFunctionOfItsSeed) {
+  std::vector<PairedDifference> values;
+  for (int i = 0; i < 60; ++i) values.push_back({0.1 * (i * 37 % 11 - 4), i % 7 != 0});
+  EXPECT_EQ(compare_paired("x", values, 3).low, compare_paired("x", values, 3).low);
+  EXPECT_NE(compare_paired("x", values, 3).p, 0);
+}
+
+TEST(Holm, CorrectsByRankAndStaysMonotone) {
+  std::vector<Comparison> family(3);
+  family[0].p = 0.04;
+  family[1].p = 0.01;
+  family[2].p = 0.03;
+  holm(family);
+  EXPECT_DOUBLE_EQ(family[1].p_holm, 0.03);  // 3 * 0.01
+  EXPECT_DOUBLE_EQ(family[2].p_holm, 0.06);  // 2 * 0.03
+  EXPECT_DOUBLE_EQ(family[0].p_holm, 0.06);  // 1 * 0.04, but not below the one before
+}
+
+}  // namespace
+}  // namespace mh
