@@ -12,6 +12,7 @@
 #include "sim/render/colour.hpp"
 #include "sim/render/embree_scene.hpp"
 #include "sim/render/parallel.hpp"
+#include "sim/render/texture.hpp"
 #include "slam/core/random.hpp"
 
 namespace mh {
@@ -160,14 +161,9 @@ class Baker {
 
   void find_albedo() {
     for (const Material& material : scene_.materials) {
-      Vector3f mean = Vector3f::Ones();
-      if (!material.texture.empty()) {
-        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-        for (const Rgb8& texel : material.texture) sum += srgb_to_linear(texel).cast<double>();
-        mean = (sum / static_cast<double>(material.texture.size())).cast<float>();
-      }
-      albedo_.push_back(
-          mean.cwiseProduct(srgb_to_linear(material.base_colour)).cwiseMin(kMaxAlbedo));
+      const Vector3f albedo =
+          mean_linear(material.texture).cwiseProduct(srgb_to_linear(material.base_colour));
+      albedo_.push_back(albedo.cwiseMin(kMaxAlbedo));
     }
     if (albedo_.empty()) albedo_.push_back(Vector3f::Constant(kMaxAlbedo));
   }

@@ -2,220 +2,241 @@
 #include <immintrin.h>
 
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "sim/render/colour.hpp"
 #include "sim/render/embree_scene.hpp"
+#include "sim/render/face_record.hpp"
 #include "sim/render/parallel.hpp"
 #include "sim/render/renderer.hpp"
-#include "sim/render/texture.hpp"
 
 namespace mh {
 namespace {
 
 constexpr int kTile = 4;  // a packet is a tile of 4 x 4 pixels
 constexpr int kLanes = 16;
-
-/// All that shading needs of a face, in one cache line.
-struct alignas(64) FaceRecord {
-  std::array<float, 6> uv{};  // of its three corners
-  /// Per corner: light x vertex colour x base colour x exposure; halves, the fourth unused.
-  std::array<std::uint16_t, 12> gain{};
-  float texels = 0;  // twice its area in texels of level 0
-  std::uint16_t material = 0;
-  InstanceId instance = 0;
-  ClassId class_id = kVoid;
+constexpr int kEdgeSamples = 4;
+// A pixel lies on an edge where its inverse depth departs by this share from the mean of its two
+// neighbours'. A plane departs by nothing, the corner of a box at 2 m by 1e-3, a round leg of 5 cm
+// at 1 m by 7e-5.
+constexpr float kEdgeBend = 5e-4F;
+// Where an edge pixel is sampled, px from its centre: a square turned so that no two samples share
+// a row or a column.
+struct Offset {
+  float x, y;
 };
-static_assert(sizeof(FaceRecord) == 64);
-
-struct Surface {
-  MipTexture texture;
-  __m128 emission;  // x exposure
-};
-
-void store_halves(std::uint16_t* out, const Eigen::Vector3f& value) {
-  const __m128i halves =
-      _mm_cvtps_ph(_mm_setr_ps(value.x(), value.y(), value.z(), 0.0F), _MM_FROUND_TO_NEAREST_INT);
-  std::memcpy(out, &halves, 4 * sizeof(std::uint16_t));
-}
-
-__m128 load_halves(const std::uint16_t* in) {
-  return _mm_cvtph_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(in)));
-}
-
-FaceRecord make_record(const Scene& scene, const std::vector<Surface>& surfaces, std::size_t face,
-                       float exposure) {
-  FaceRecord record;
-  record.class_id = scene.class_of[face];
-  record.instance = scene.instance_of[face];
-  Eigen::Vector3f base = Eigen::Vector3f::Ones();
-  const MipTexture* texture = nullptr;
-  if (!scene.materials.empty()) {
-    record.material = scene.material_of[face];
-    base = srgb_to_linear(scene.materials[record.material].base_colour);
-    texture = &surfaces[record.material].texture;
-    if (scene.uvs.empty() && !texture->empty()) base = base.cwiseProduct(texture->mean());
-  }
-  const auto& corners = scene.triangles[face];
-  for (std::size_t k = 0; k < 3; ++k) {
-    Eigen::Vector3f gain = base * exposure;
-    if (!scene.colours.empty()) gain = gain.cwiseProduct(srgb_to_linear(scene.colours[corners[k]]));
-    if (!scene.light.empty()) gain = gain.cwiseProduct(scene.light[corners[k]]);
-    store_halves(record.gain.data() + 4 * k, gain);
-    if (!scene.uvs.empty()) {
-      record.uv[2 * k] = scene.uvs[corners[k]].x();
-      record.uv[2 * k + 1] = scene.uvs[corners[k]].y();
-    }
-  }
-  if (texture && !texture->empty()) {
-    const auto& t = record.uv;
-    const float twice_area_uv =
-        std::abs((t[2] - t[0]) * (t[5] - t[1]) - (t[4] - t[0]) * (t[3] - t[1]));
-    record.texels = twice_area_uv * static_cast<float>(texture->width()) *
-                    static_cast<float>(texture->height());
-  }
-  return record;
-}
-
-/// log2 to within 0.09, which is all that the choice of a mip level needs.
-float rough_log2(float x) {
-  return static_cast<float>(std::bit_cast<std::int32_t>(x)) * 0x1.0p-23F - 127.0F;
-}
+constexpr std::array<Offset, kEdgeSamples> kOffsets = {
+    {{-0.125F, -0.375F}, {0.375F, -0.125F}, {0.125F, 0.375F}, {-0.375F, 0.125F}}};
 
 /// Everything of one picture that does not change from tile to tile.
 struct View {
-  const Camera& camera;
-  Eigen::Matrix3f rotation;     // world_from_camera
-  Eigen::Vector3f origin;       // m, world
-  float inverse_focal_product;  // 1 / (fx fy)
+  View(const Camera& camera, const SE3& world_from_camera)
+      : width(camera.width_px),
+        height(camera.height_px),
+        rotation(world_from_camera.rotation().cast<float>()),
+        origin(world_from_camera.translation().cast<float>()),
+        pixel_width(static_cast<float>(1.0 / camera.fx_px)),
+        pixel_height(static_cast<float>(1.0 / camera.fy_px)) {
+    for (int x = 0; x < width; ++x)
+      column.push_back(static_cast<float>((x - camera.cx_px) / camera.fx_px));
+    for (int y = 0; y < height; ++y)
+      row.push_back(static_cast<float>((y - camera.cy_px) / camera.fy_px));
+  }
+
+  int width, height;
+  Eigen::Matrix3f rotation;         // world_from_camera
+  Eigen::Vector3f origin;           // m, world
+  float pixel_width, pixel_height;  // at unit depth
+  std::vector<float> column, row;   // where the pixels' centres lie at unit depth
 };
+
+/// Sixteen rays from the camera. Directions have camera z = 1, so that the distance along a ray is
+/// the depth.
+struct alignas(64) Packet {
+  RTCRayHit16 rays;
+  alignas(64) std::array<int, kLanes> valid;
+
+  explicit Packet(const View& view) {
+    for (int i = 0; i < kLanes; ++i) {
+      rays.ray.org_x[i] = view.origin.x();
+      rays.ray.org_y[i] = view.origin.y();
+      rays.ray.org_z[i] = view.origin.z();
+      rays.ray.tnear[i] = 0.0F;
+      rays.ray.time[i] = 0.0F;
+      rays.ray.mask[i] = kAllFaces;  // Debian's Embree tests masks: 0 would hit nothing
+      rays.ray.id[i] = 0;
+      rays.ray.flags[i] = 0;
+    }
+  }
+
+  /// Aims a lane through the point (a, b, 1) of the camera's frame.
+  void aim(const View& view, int lane, float a, float b) {
+    const Eigen::Matrix3f& r = view.rotation;
+    rays.ray.dir_x[lane] = r(0, 0) * a + r(0, 1) * b + r(0, 2);
+    rays.ray.dir_y[lane] = r(1, 0) * a + r(1, 1) * b + r(1, 2);
+    rays.ray.dir_z[lane] = r(2, 0) * a + r(2, 1) * b + r(2, 2);
+    rays.ray.tfar[lane] = std::numeric_limits<float>::infinity();
+    rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+  }
+  bool hit(int lane) const { return rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID; }
+};
+
+/// Shares of the faces' own areas (twice, m2) that one pixel sees, per lane.
+std::array<float, kLanes> footprints(const View& view, const Packet& packet) {
+  const RTCHit16& hit = packet.rays.hit;
+  const RTCRay16& ray = packet.rays.ray;
+  std::array<float, kLanes> footprint;
+  for (int i = 0; i < kLanes; ++i) {
+    const float facing =
+        hit.Ng_x[i] * ray.dir_x[i] + hit.Ng_y[i] * ray.dir_y[i] + hit.Ng_z[i] * ray.dir_z[i];
+    // A pixel cuts depth^2 / (fx fy) out of the plane z = depth; a face of unit normal n shows
+    // 1 / |n . d| of that behind it, d having camera z = 1; and Ng = n x twice the face's area.
+    const float depth = ray.tfar[i];
+    footprint[static_cast<std::size_t>(i)] =
+        depth * depth * view.pixel_width * view.pixel_height / std::abs(facing);
+  }
+  return footprint;
+}
+
+Rgb8 encode(__m128 linear) {
+  alignas(16) std::array<int, 4> index;
+  _mm_store_si128(reinterpret_cast<__m128i*>(index.data()),
+                  _mm_cvtps_epi32(_mm_mul_ps(linear, _mm_set1_ps(kSrgbTableMax))));
+  const std::uint8_t* table = srgb_table();
+  return {table[index[0]], table[index[1]], table[index[2]]};
+}
+
+/// The columns of a row, its ends apart, at which something begins or bends.
+void find_edges(const RenderedFrame& frame, int y, std::vector<int>& columns) {
+  columns.clear();
+  const int w = frame.depth_m.width();
+  if (y == 0 || y + 1 == frame.depth_m.height()) return;
+  const float* z = frame.depth_m.row(y).data();
+  const InstanceId* id = frame.instances.row(y).data();
+  // Inverse depths a, b, c are in line where 2/b = 1/a + 1/c.
+  const auto bent = [](float a, float b, float c) {
+    const float across = 2.0F * a * c, through = b * (a + c);
+    return std::abs(across - through) > kEdgeBend * through;
+  };
+  for (int x = 1; x + 1 < w; ++x) {
+    const bool other =
+        (id[x] != id[x - 1]) | (id[x] != id[x + 1]) | (id[x] != id[x - w]) | (id[x] != id[x + w]);
+    if (other | bent(z[x - 1], z[x], z[x + 1]) | bent(z[x - w], z[x], z[x + w]))
+      columns.push_back(x);
+  }
+}
 
 class EmbreeRenderer final : public Renderer {
  public:
   EmbreeRenderer(const Scene& scene, const RenderConfig& config)
-      : config_(config), bvh_(scene, config.threads, config.portable) {
-    for (const Material& material : scene.materials) {
-      const Eigen::Vector3f e = material.emission * config.exposure;
-      surfaces_.push_back({MipTexture(material.texture), _mm_setr_ps(e.x(), e.y(), e.z(), 0.0F)});
+      : config_(config),
+        bvh_(scene, config.threads, config.portable),
+        surfaces_(make_surfaces(scene, config.exposure)) {
+    const std::vector<Eigen::Vector3f> base = base_colours(scene);
+    for (const std::vector<std::uint32_t>& faces : bvh_.faces()) {
+      std::vector<FaceRecord>& records = records_.emplace_back();
+      records.reserve(faces.size());
+      for (const std::uint32_t f : faces)
+        records.push_back(make_record(scene, surfaces_, base, f, config.exposure));
     }
-    if (surfaces_.empty()) surfaces_.push_back({MipTexture(), _mm_setzero_ps()});
-    records_.reserve(scene.triangles.size());
-    for (std::size_t f = 0; f < scene.triangles.size(); ++f)
-      records_.push_back(make_record(scene, surfaces_, f, config.exposure));
-    if (scene.uvs.empty())  // the mean colours are in the records now
-      for (Surface& surface : surfaces_) surface.texture = MipTexture();
+    Eigen::Vector3f sky = Eigen::Vector3f::Zero();
     for (const Light& light : scene.lights)
-      if (light.kind == Light::Kind::kSky)
-        sky_ = {linear_to_srgb(light.colour.x() * config.exposure),
-                linear_to_srgb(light.colour.y() * config.exposure),
-                linear_to_srgb(light.colour.z() * config.exposure)};
+      if (light.kind == Light::Kind::kSky) sky += light.colour * config.exposure;
+    sky = sky.cwiseMin(1.0F);
+    sky_ = _mm_setr_ps(sky.x(), sky.y(), sky.z(), 0.0F);
   }
 
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
     const int w = camera.width_px, h = camera.height_px;
     RenderedFrame frame{Grid2d<Rgb8>(w, h), Grid2d<float>(w, h), Grid2d<ClassId>(w, h),
                         Grid2d<InstanceId>(w, h)};
-    const View view{camera, world_from_camera.rotation().cast<float>(),
-                    world_from_camera.translation().cast<float>(),
-                    static_cast<float>(1.0 / (camera.fx_px * camera.fy_px))};
+    const View view(camera, world_from_camera);
     const int tile_rows = (h + kTile - 1) / kTile;
     parallel_for(tile_rows, config_.threads, [&](int row) {
       const FlushDenormals flush;
-      for (int x = 0; x < w; x += kTile) render_tile(view, x, row * kTile, frame);
+      Packet packet(view);
+      for (int x = 0; x < w; x += kTile) render_tile(view, x, row * kTile, packet, frame);
+    });
+    if (!config_.smooth_edges) return frame;
+    parallel_for(tile_rows, config_.threads, [&](int row) {
+      const FlushDenormals flush;
+      Packet packet(view);
+      std::vector<int> columns;
+      for (int y = row * kTile; y < std::min(h, (row + 1) * kTile); ++y) {
+        find_edges(frame, y, columns);
+        for (std::size_t first = 0; first < columns.size(); first += kLanes / kEdgeSamples)
+          smooth(view, columns, first, y, packet, frame);
+      }
     });
     return frame;
   }
 
  private:
-  void render_tile(const View& view, int x0, int y0, RenderedFrame& frame) const {
-    alignas(64) std::array<int, kLanes> valid;
-    alignas(64) RTCRayHit16 packet;
-    aim(view, x0, y0, valid, packet);
-    bvh_.intersect16(valid.data(), packet, true);
-
-    alignas(64) std::array<float, kLanes> footprint;  // m2 seen by a pixel x 2 area of the face
+  void render_tile(const View& view, int x0, int y0, Packet& packet, RenderedFrame& frame) const {
     for (int i = 0; i < kLanes; ++i) {
-      const float facing = packet.hit.Ng_x[i] * packet.ray.dir_x[i] +
-                           packet.hit.Ng_y[i] * packet.ray.dir_y[i] +
-                           packet.hit.Ng_z[i] * packet.ray.dir_z[i];
-      const float depth = packet.ray.tfar[i];
-      // A pixel's cone cuts the plane z = depth in depth^2 / (fx fy); the face is tilted to that
-      // plane's rays by |n . d| with d's camera z = 1, and Ng = n x 2 area.
-      footprint[i] = depth * depth * view.inverse_focal_product / std::abs(facing);
-    }
-    for (int i = 0; i < kLanes; ++i) {
-      if (valid[i] == 0) continue;
       const int x = x0 + i % kTile, y = y0 + i / kTile;
-      if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
-        frame.colour(x, y) = sky_;
-        continue;
-      }
-      const std::uint32_t face = bvh_.face_of(packet.hit.geomID[i], packet.hit.primID[i]);
-      const FaceRecord& record = records_[face];
-      frame.depth_m(x, y) = packet.ray.tfar[i];
+      packet.valid[static_cast<std::size_t>(i)] = x < view.width && y < view.height ? -1 : 0;
+      packet.aim(view, i, view.column[static_cast<std::size_t>(std::min(x, view.width - 1))],
+                 view.row[static_cast<std::size_t>(std::min(y, view.height - 1))]);
+    }
+    bvh_.intersect16(packet.valid.data(), packet.rays, true);
+    const auto footprint = footprints(view, packet);
+    for (int i = 0; i < kLanes; ++i) {
+      if (packet.valid[static_cast<std::size_t>(i)] == 0) continue;
+      const int x = x0 + i % kTile, y = y0 + i / kTile;
+      frame.colour(x, y) = encode(radiance(packet, i, footprint[static_cast<std::size_t>(i)]));
+      if (!packet.hit(i)) continue;
+      const FaceRecord& record = record_at(packet, i);
+      frame.depth_m(x, y) = packet.rays.ray.tfar[i];
       frame.classes(x, y) = record.class_id;
       frame.instances(x, y) = record.instance;
-      frame.colour(x, y) = shade(record, packet.hit.u[i], packet.hit.v[i], footprint[i]);
     }
   }
 
-  /// Rays through the centres of a tile's pixels. Directions have camera z = 1, so that the
-  /// distance along them is the depth.
-  static void aim(const View& view, int x0, int y0, std::array<int, kLanes>& valid,
-                  RTCRayHit16& packet) {
-    const Camera& camera = view.camera;
-    const Eigen::Matrix3f& r = view.rotation;
+  /// Averages the colours of up to four edge pixels of a row over their samples, in linear light.
+  void smooth(const View& view, const std::vector<int>& columns, std::size_t first, int y,
+              Packet& packet, RenderedFrame& frame) const {
+    constexpr std::size_t kPixels = kLanes / kEdgeSamples;
+    const std::size_t count = std::min(kPixels, columns.size() - first);
     for (int i = 0; i < kLanes; ++i) {
-      const int x = x0 + i % kTile, y = y0 + i / kTile;
-      valid[i] = x < camera.width_px && y < camera.height_px ? -1 : 0;
-      const float a = static_cast<float>((x - camera.cx_px) / camera.fx_px);
-      const float b = static_cast<float>((y - camera.cy_px) / camera.fy_px);
-      packet.ray.dir_x[i] = r(0, 0) * a + r(0, 1) * b + r(0, 2);
-      packet.ray.dir_y[i] = r(1, 0) * a + r(1, 1) * b + r(1, 2);
-      packet.ray.dir_z[i] = r(2, 0) * a + r(2, 1) * b + r(2, 2);
-      packet.ray.org_x[i] = view.origin.x();
-      packet.ray.org_y[i] = view.origin.y();
-      packet.ray.org_z[i] = view.origin.z();
-      packet.ray.tnear[i] = 0.0F;
-      packet.ray.tfar[i] = std::numeric_limits<float>::infinity();
-      packet.ray.time[i] = 0.0F;
-      packet.ray.mask[i] = kAllFaces;  // Debian's Embree tests masks: 0 would hit nothing
-      packet.ray.id[i] = static_cast<unsigned>(i);
-      packet.ray.flags[i] = 0;
-      packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+      const std::size_t pixel = static_cast<std::size_t>(i) / kEdgeSamples;
+      packet.valid[static_cast<std::size_t>(i)] = pixel < count ? -1 : 0;
+      const int x = columns[first + std::min(pixel, count - 1)];
+      const Offset& offset = kOffsets[static_cast<std::size_t>(i) % kEdgeSamples];
+      packet.aim(view, i, view.column[static_cast<std::size_t>(x)] + offset.x * view.pixel_width,
+                 view.row[static_cast<std::size_t>(y)] + offset.y * view.pixel_height);
+    }
+    bvh_.intersect16(packet.valid.data(), packet.rays, true);
+    const auto footprint = footprints(view, packet);
+    for (std::size_t pixel = 0; pixel < count; ++pixel) {
+      __m128 sum = _mm_setzero_ps();
+      for (int s = 0; s < kEdgeSamples; ++s) {
+        const int lane = static_cast<int>(pixel) * kEdgeSamples + s;
+        sum = _mm_add_ps(sum, radiance(packet, lane, footprint[static_cast<std::size_t>(lane)]));
+      }
+      frame.colour(columns[first + pixel], y) =
+          encode(_mm_mul_ps(sum, _mm_set1_ps(1.0F / kEdgeSamples)));
     }
   }
 
-  Rgb8 shade(const FaceRecord& record, float u, float v, float footprint) const {
-    const Surface& surface = surfaces_[record.material];
-    const float w0 = 1.0F - u - v;
-    __m128 colour = _mm_mul_ps(_mm_set1_ps(w0), load_halves(record.gain.data()));
-    colour = _mm_add_ps(colour, _mm_mul_ps(_mm_set1_ps(u), load_halves(record.gain.data() + 4)));
-    colour = _mm_add_ps(colour, _mm_mul_ps(_mm_set1_ps(v), load_halves(record.gain.data() + 8)));
-    if (!surface.texture.empty()) {
-      const float s = w0 * record.uv[0] + u * record.uv[2] + v * record.uv[4];
-      const float t = w0 * record.uv[1] + u * record.uv[3] + v * record.uv[5];
-      const float level = 0.5F * rough_log2(footprint * record.texels);
-      colour = _mm_mul_ps(colour, _mm_mul_ps(surface.texture.sample(s, t, level),
-                                             _mm_set1_ps(1.0F / MipTexture::kScale)));
-    }
-    colour = _mm_add_ps(colour, surface.emission);
-    colour = _mm_min_ps(_mm_max_ps(colour, _mm_setzero_ps()), _mm_set1_ps(1.0F));
-    alignas(16) std::array<int, 4> index;
-    _mm_store_si128(reinterpret_cast<__m128i*>(index.data()),
-                    _mm_cvtps_epi32(_mm_mul_ps(colour, _mm_set1_ps(kSrgbTableMax))));
-    const std::uint8_t* table = srgb_table();
-    return {table[index[0]], table[index[1]], table[index[2]]};
+  const FaceRecord& record_at(const Packet& packet, int lane) const {
+    return records_[packet.rays.hit.geomID[lane]][packet.rays.hit.primID[lane]];
+  }
+
+  /// Linear, x exposure, within [0, 1].
+  __m128 radiance(const Packet& packet, int lane, float footprint) const {
+    if (!packet.hit(lane)) return sky_;
+    const FaceRecord& record = record_at(packet, lane);
+    return shade(record, surfaces_[record.surface], packet.rays.hit.u[lane],
+                 packet.rays.hit.v[lane], footprint);
   }
 
   RenderConfig config_;
   EmbreeScene bvh_;
   std::vector<Surface> surfaces_;
-  std::vector<FaceRecord> records_;
-  Rgb8 sky_;
+  std::vector<std::vector<FaceRecord>> records_;  // by geometry and primitive
+  __m128 sky_;                                    // linear x exposure
 };
 
 }  // namespace

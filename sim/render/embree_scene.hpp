@@ -50,6 +50,8 @@ class EmbreeScene {
   std::uint32_t face_of(unsigned geometry_id, unsigned primitive_id) const {
     return faces_[geometry_id][primitive_id];
   }
+  /// The same, by geometry and primitive.
+  const std::vector<std::vector<std::uint32_t>>& faces() const { return faces_; }
 
  private:
   void attach(const Scene& scene, std::vector<std::uint32_t> faces, unsigned mask);

@@ -39,7 +39,7 @@ float suggest_exposure(const Scene& scene, float median_radiance) {
   std::vector<Vector3f> albedo;
   for (const Material& material : scene.materials)
     albedo.push_back(
-        MipTexture(material.texture).mean().cwiseProduct(srgb_to_linear(material.base_colour)));
+        mean_linear(material.texture).cwiseProduct(srgb_to_linear(material.base_colour)));
   std::vector<std::pair<float, float>> radiance_and_area;
   double total = 0.0;
   for (std::size_t f = 0; f < scene.triangles.size(); ++f) {

@@ -11,7 +11,9 @@
 
 namespace mh {
 
-/// The exact picture of a moment: no noise, no lens. All grids have the camera's size.
+/// The exact picture of a moment: no noise, no lens. All grids have the camera's size. Depth, class
+/// and instance are those of the ray through the pixel's centre; so is the colour, except where a
+/// renderer smooths edges.
 struct RenderedFrame {
   Grid2d<Rgb8> colour;           ///< sRGB
   Grid2d<float> depth_m;         ///< along the optical axis; 0 = nothing hit
@@ -30,6 +32,9 @@ class Renderer {
 struct RenderConfig {
   int threads = 1;        ///< threads over tiles of one picture; never changes a bit of it
   float exposure = 1.0F;  ///< linear radiance that maps to white is 1 / exposure
+  /// Colours of pixels at edges (of objects, of depth, of a surface's slope) are averaged over four
+  /// more rays, as a sensor's cells average light; nothing else changes.
+  bool smooth_edges = true;
   bool portable = false;  ///< pin Embree to AVX2, so that pictures agree across processors
 };
 

@@ -40,12 +40,19 @@ void append_wrapped(std::vector<std::uint16_t>& texels, const Picture& picture) 
     for (int x = 0; x <= picture.width(); ++x) {
       const Eigen::Vector3f& c = picture(x % picture.width(), y % picture.height());
       for (int k = 0; k < 3; ++k)
-        texels.push_back(static_cast<std::uint16_t>(std::lround(c[k] * MipTexture::kScale)));
+        texels.push_back(static_cast<std::uint16_t>(std::lround(c[k] * 65535.0F)));
       texels.push_back(0);
     }
 }
 
 }  // namespace
+
+Eigen::Vector3f mean_linear(const Grid2d<Rgb8>& picture) {
+  if (picture.empty()) return Eigen::Vector3f::Ones();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Rgb8& texel : picture) sum += srgb_to_linear(texel).cast<double>();
+  return (sum / static_cast<double>(picture.size())).cast<float>();
+}
 
 MipTexture::MipTexture(const Grid2d<Rgb8>& picture) {
   if (picture.empty()) return;
@@ -63,9 +70,6 @@ MipTexture::MipTexture(const Grid2d<Rgb8>& picture) {
     if (last) break;
     current = halve(current);
   }
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Rgb8& texel : picture) sum += srgb_to_linear(texel).cast<double>();
-  mean_ = (sum / static_cast<double>(picture.size())).cast<float>();
 }
 
 }  // namespace mh

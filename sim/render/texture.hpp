@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -16,23 +17,30 @@
 
 namespace mh {
 
+/// Mean colour of a picture in linear light; white if it is empty.
+Eigen::Vector3f mean_linear(const Grid2d<Rgb8>& picture);
+
 /// A repeating texture with its mip pyramid, filtered in linear light. Texels are four 16-bit
 /// channels (the fourth unused). Each level has a copy of its first column and row at its end, so
 /// that the two neighbours of a lookup are always one 16-byte load apart from any wrapping.
 class MipTexture {
  public:
-  static constexpr float kScale = 65535.0F;
-
   MipTexture() = default;
   explicit MipTexture(const Grid2d<Rgb8>& picture);
 
   bool empty() const { return levels_ == 0; }
   int width() const { return levels_ ? static_cast<int>(level_[0].width) : 0; }
   int height() const { return levels_ ? static_cast<int>(level_[0].height) : 0; }
-  /// Mean colour, linear.
-  const Eigen::Vector3f& mean() const { return mean_; }
 
-  /// Trilinear lookup: linear RGB times kScale, channel 3 = 0. Texel centres lie at half-integers,
+  /// The level at which a pixel that covers so many texels of level 0 covers one: half the
+  /// logarithm to base 2, to within 0.05.
+  static float level_of(float texels) {
+    const float log2 =
+        static_cast<float>(std::bit_cast<std::int32_t>(texels)) * 0x1.0p-23F - 127.0F;
+    return 0.5F * log2;
+  }
+
+  /// Trilinear lookup: linear RGB, channel 3 = 0. Texel centres lie at half-integers,
   /// (u, v) = (0, 0) is the outer corner of the first texel. Level 0 is the full picture.
   __m128 sample(float u, float v, float level) const {
     const float clamped = std::min(std::max(level, 0.0F), static_cast<float>(levels_ - 1));
@@ -46,10 +54,13 @@ class MipTexture {
                                     bilinear_pair(level_[static_cast<std::size_t>(fine)], u, v)),
                       _mm256_mul_ps(_mm256_set1_ps(blend),
                                     bilinear_pair(level_[static_cast<std::size_t>(coarse)], u, v)));
-    return _mm_add_ps(_mm256_castps256_ps128(pair), _mm256_extractf128_ps(pair, 1));
+    return _mm_mul_ps(_mm_set1_ps(1.0F / kWhite),
+                      _mm_add_ps(_mm256_castps256_ps128(pair), _mm256_extractf128_ps(pair, 1)));
   }
 
  private:
+  static constexpr float kWhite = 65535.0F;
+
   struct Level {
     float width = 0, height = 0;
     std::uint32_t offset = 0;  // of the first texel, in texels
@@ -82,7 +93,6 @@ class MipTexture {
   std::array<Level, 16> level_{};
   int levels_ = 0;
   std::vector<std::uint16_t> texels_;
-  Eigen::Vector3f mean_ = Eigen::Vector3f::Ones();
 };
 
 }  // namespace mh
