@@ -22,6 +22,7 @@ void validate(const Camera& camera) {
   require(camera.cy_px >= 0 && camera.cy_px < camera.height_px, "cy_px", camera.cy_px);
   require(camera.rate_hz > 0, "rate_hz", camera.rate_hz);
   require(camera.baseline_m > 0, "baseline_m", camera.baseline_m);
+  require(camera.disparity_sigma_px > 0, "disparity_sigma_px", camera.disparity_sigma_px);
 }
 
 }  // namespace mh

@@ -23,6 +23,9 @@ struct Camera {
   /// Baseline of the depth sensor's triangulation; gives a depth its disparity fx * b / z and so
   /// its weight. 0.075 m: PrimeSense, Khoshelham and Elberink, Sensors 2012.
   double baseline_m = 0.075;
+  /// Standard deviation of that disparity beside a keypoint's own (1 px at octave 0, growing alike:
+  /// a keypoint out of place takes its depth from there).
+  double disparity_sigma_px = 0.25;
 
   /// Pixel (undistorted) of a point in front of the camera; its z must be positive.
   Eigen::Vector2d project(const Eigen::Vector3d& point_in_camera) const {

@@ -26,23 +26,28 @@ struct ImageMeasurement {
 /// Whitened residual (prediction - measurement) / sigma of a point in the camera's frame; its third
 /// element is 0 without depth. Valid for z >= kMinimumDepth_m.
 inline Eigen::Vector3d reprojection_residual(const Eigen::Vector3d& point_in_camera,
-                                             const ImageMeasurement& measured, const Camera& camera) {
+                                             const ImageMeasurement& measured,
+                                             const Camera& camera) {
   const double inverse_z = 1.0 / point_in_camera.z();
   const double inverse_sigma = 1.0 / measured.sigma_px;
   const double u_px = camera.fx_px * point_in_camera.x() * inverse_z + camera.cx_px;
   const double v_px = camera.fy_px * point_in_camera.y() * inverse_z + camera.cy_px;
   const double d_px = camera.fx_px * camera.baseline_m * inverse_z;
   return {(u_px - measured.u_px) * inverse_sigma, (v_px - measured.v_px) * inverse_sigma,
-          measured.has_depth() ? (d_px - measured.disparity_px) * inverse_sigma : 0.0};
+          measured.has_depth()
+              ? (d_px - measured.disparity_px) * inverse_sigma / camera.disparity_sigma_px
+              : 0.0};
 }
 
 /// Derivative of that residual by the point in the camera's frame; third row 0 without depth.
 inline Eigen::Matrix3d reprojection_jacobian(const Eigen::Vector3d& point_in_camera,
-                                             const ImageMeasurement& measured, const Camera& camera) {
+                                             const ImageMeasurement& measured,
+                                             const Camera& camera) {
   const double inverse_z = 1.0 / point_in_camera.z();
   const double a = camera.fx_px * inverse_z / measured.sigma_px;
   const double b = camera.fy_px * inverse_z / measured.sigma_px;
-  const double c = measured.has_depth() ? a * camera.baseline_m * inverse_z : 0.0;
+  const double c =
+      measured.has_depth() ? a * camera.baseline_m * inverse_z / camera.disparity_sigma_px : 0.0;
   Eigen::Matrix3d jacobian;
   jacobian << a, 0, -a * point_in_camera.x() * inverse_z,  //
       0, b, -b * point_in_camera.y() * inverse_z,          //
@@ -74,7 +79,8 @@ inline CameraFrameTerm camera_frame_term(const Eigen::Vector3d& point_in_camera,
   const double y = point_in_camera.y() * inverse_z;
   const double a = camera.fx_px * inverse_z / measured.sigma_px;
   const double b = camera.fy_px * inverse_z / measured.sigma_px;
-  const double c = measured.has_depth() ? a * camera.baseline_m * inverse_z : 0.0;
+  const double c =
+      measured.has_depth() ? a * camera.baseline_m * inverse_z / camera.disparity_sigma_px : 0.0;
   const double waa = weight * a * a;
   const double wbb = weight * b * b;
   const double war = weight * a * residual.x();

@@ -232,9 +232,9 @@ bool needs_keyframe(const TrackedPose& tracked, const Features& features, const 
                     KeyframeId reference, int frames_since_keyframe, const KeyframeConfig& config) {
   // Landmarks that have proven themselves; in a young map, all.
   const std::size_t proven = map.keyframe_count() > 2 ? 2 : 1;
-  int reference_landmarks = 0;
+  int reference_landmarks = 0; (void)proven;
   for (const LandmarkId id : map.at(reference).landmarks)
-    if (id.valid() && map.at(id).observations.size() >= proven) ++reference_landmarks;
+    if (id.valid() && map.at(id).observations.size() >= 1) ++reference_landmarks;
 
   int close_tracked = 0, close_new = 0;
   for (std::size_t i = 0; i < features.size(); ++i) {
