@@ -3,14 +3,12 @@
 # header-only package for find_package(Modelhouse).
 include(CMakePackageConfigHelpers)
 
-if(TARGET modelhouse)
-  install(TARGETS modelhouse RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-endif()
+install(TARGETS modelhouse RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
 # Data keep the layout of the sources: suites name their files relative to their own folder.
 set(data_dir ${CMAKE_INSTALL_DATADIR}/modelhouse)
 foreach(folder assets bench/suites robots/pepper scenes/model_house sim/sensors/levels)
-  install(DIRECTORY ${folder}/ DESTINATION ${data_dir}/${folder} OPTIONAL)
+  install(DIRECTORY ${folder}/ DESTINATION ${data_dir}/${folder})
 endforeach()
 install(FILES LICENSE README.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 

@@ -12,13 +12,26 @@ endfunction()
 
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${work}/made)
 file(RENAME ${work}/made ${work}/moved)
-if(EXISTS ${work}/moved/bin/modelhouse)
-  run(${work}/moved/bin/modelhouse --help)
-  file(GLOB suites ${work}/moved/share/modelhouse/bench/suites/*.yaml)
-  if(NOT suites)
-    message(FATAL_ERROR "no suite was installed")
-  endif()
+set(data ${work}/moved/share/modelhouse)
+run(${work}/moved/bin/modelhouse scene info ${data}/scenes/model_house/house.yaml)
+
+# What an installed suite names is installed, too.
+file(GLOB suites ${data}/bench/suites/*.yaml)
+set(named_files 0)
+foreach(suite IN LISTS suites)
+  file(STRINGS ${suite} lines REGEX "[.][.]/")
+  string(REGEX MATCHALL "[.][.]/[-A-Za-z0-9_./]+" names "${lines}")
+  foreach(name IN LISTS names)
+    math(EXPR named_files "${named_files} + 1")
+    if(NOT EXISTS ${data}/bench/suites/${name})
+      message(FATAL_ERROR "${suite} names ${name}, which was not installed")
+    endif()
+  endforeach()
+endforeach()
+if(named_files EQUAL 0)
+  message(FATAL_ERROR "no installed suite names a file")
 endif()
+
 run(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${work}/build -G Ninja --log-level=WARNING
     -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_PREFIX_PATH=${work}/moved
     -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF)
