@@ -157,12 +157,12 @@ void build_room(const HousePlan& house, std::size_t index, MaterialId trim, Mesh
 void build_lining(MeshBuilder& mesh, MaterialId wood, const WallFrame& wall, const Hole& h,
                   float back, bool below, const std::vector<std::pair<float, float>>& casings) {
   const float a = h.from, b = h.to;
-  board(mesh, wood, wall.at(a - 0.004F, -kProud + 0.001F, h.low), wall.at(a + kJamb, back, h.high));
-  board(mesh, wood, wall.at(b - kJamb, -kProud + 0.001F, h.low), wall.at(b + 0.004F, back, h.high));
-  board(mesh, wood, wall.at(a + kJamb, -kProud + 0.001F, h.high - kJamb),
+  board(mesh, wood, wall.at(a - 0.004F, -kProud + 0.005F, h.low), wall.at(a + kJamb, back, h.high));
+  board(mesh, wood, wall.at(b - kJamb, -kProud + 0.005F, h.low), wall.at(b + 0.004F, back, h.high));
+  board(mesh, wood, wall.at(a + kJamb, -kProud + 0.005F, h.high - kJamb),
         wall.at(b - kJamb, back, h.high + 0.004F));
   if (below)
-    board(mesh, wood, wall.at(a + kJamb, -kProud + 0.001F, h.low - 0.004F),
+    board(mesh, wood, wall.at(a + kJamb, -kProud + 0.005F, h.low - 0.004F),
           wall.at(b - kJamb, back, h.low + kJamb));
   for (const auto& [d0, d1] : casings) {
     const float foot = below ? h.low - kCasing : 0.0F;
@@ -249,33 +249,45 @@ void build_window(const HousePlan& house, const OpeningPlan& window, MaterialId 
   }
 }
 
-/// Outer faces, roof and ground slab: behind every joint of the rooms lies something dark.
-void build_hull(const HousePlan& house, MeshBuilder& mesh) {
-  const auto t = static_cast<float>(house.wall_m), top = static_cast<float>(house.height_m) + 0.1F;
+/// Outer faces, roof and ground slab of a box `inset` inside the hull's outermost one.
+void build_hull_layer(const HousePlan& house, MaterialId material, float inset, bool outwards,
+                      MeshBuilder& mesh) {
+  const float t = static_cast<float>(house.wall_m) - inset;
+  const float top = static_cast<float>(house.height_m) + 0.1F - inset, bottom = -0.12F + inset;
   FloorRect outer = house.extent;
   outer.x0 -= t, outer.y0 -= t, outer.x1 += t, outer.y1 += t;
-  const MaterialId render = mesh.material({.name = "outer_render",
-                                           .kind = "plaster",
-                                           .tone = {206, 200, 190},
-                                           .variation = 0.3,
-                                           .seed = 99});
   const auto x0 = static_cast<float>(outer.x0), x1 = static_cast<float>(outer.x1);
   const auto y0 = static_cast<float>(outer.y0), y1 = static_cast<float>(outer.y1);
-  mesh.begin_instance("house/outer_walls", class_id("wall"));
+  const auto xs = breaks(x0, x1, kHullStep), ys = breaks(y0, y1, kHullStep);
+  const std::string suffix = outwards ? "" : "_inside";
+  mesh.begin_instance("house/outer_walls" + suffix, class_id("wall"));
   for (const Side side : kSides) {
     std::vector<Hole> holes;
     for (const OpeningPlan& window : house.windows)
       if (window.side == side) holes.push_back(hole_of(window));
     const WallFrame wall = wall_frame(outer, side);
-    wall_sheet(mesh, render, wall, false, wall.along_x() ? x0 : y0, wall.along_x() ? x1 : y1,
-               -0.12F, top, holes, kHullStep);
+    wall_sheet(mesh, material, wall, !outwards, wall.along_x() ? x0 : y0, wall.along_x() ? x1 : y1,
+               bottom, top, holes, kHullStep);
   }
+  if (!outwards) return;  // floors and ceilings have nothing standing at their far side
   mesh.begin_instance("house/roof", class_id("ceiling"));
-  mesh.panel(render, {0, 0, top}, Vector3f::UnitX(), Vector3f::UnitY(), breaks(x0, x1, kHullStep),
-             breaks(y0, y1, kHullStep));
+  mesh.panel(material, {0, 0, top}, Vector3f::UnitX(), Vector3f::UnitY(), xs, ys);
   mesh.begin_instance("house/slab", class_id("otherstructure"));
-  mesh.panel(render, {0, 0, -0.12F}, Vector3f::UnitY(), Vector3f::UnitX(),
-             breaks(y0, y1, kHullStep), breaks(x0, x1, kHullStep));
+  mesh.panel(material, {0, 0, bottom}, Vector3f::UnitY(), Vector3f::UnitX(), ys, xs);
+}
+
+/// Behind every joint of the rooms lies something closed and dark. One layer would not do: light
+/// is kept per vertex for both sides, so the sun outside would make its inside shine.
+void build_hull(const HousePlan& house, MeshBuilder& mesh) {
+  const MaterialId render = mesh.material({.name = "outer_render",
+                                           .kind = "plaster",
+                                           .tone = {206, 200, 190},
+                                           .variation = 0.3,
+                                           .seed = 99});
+  const MaterialId black = mesh.material(
+      {.name = "hull_inside", .kind = "plastic", .tone = {6, 6, 6}, .variation = 0.0});
+  build_hull_layer(house, render, 0.0F, true, mesh);
+  build_hull_layer(house, black, 0.01F, false, mesh);
 }
 
 /// A glowing picture of a garden stands beyond each side that has windows, a lawn before it. They
@@ -289,9 +301,16 @@ void build_garden(const HousePlan& house, const GardenPlan& garden, MeshBuilder&
   constexpr float kGround = -0.35F;
   MaterialSpec spec = garden.material;
   spec.size_m = {12.0F, h - kGround};
-  const MaterialId view = mesh.material(spec, {0.30F * glow, 0.34F * glow, 0.34F * glow});
+  // A camera set for rooms sees the outside too bright: both are darkened. The one that the sun
+  // does not shine on may glow.
+  const MaterialId shaded = mesh.material(spec, glow * Vector3f(0.85F, 1.0F, 1.0F));
+  mesh.scene().materials[shaded].base_colour = {146, 146, 146};
+  spec.name += "_sunlit";
+  const MaterialId sunlit = mesh.material(spec);
+  mesh.scene().materials[sunlit].base_colour = {170, 170, 170};
   const MaterialId lawn = mesh.material(
       {.name = "lawn", .kind = "carpet", .tone = {96, 118, 66}, .variation = 0.6, .seed = 98});
+  mesh.scene().materials[lawn].base_colour = {88, 88, 88};
   mesh.resume_instance(0);
   FloorRect far{x0, y0, x1, y1};
   for (const Side side : kSides) {
@@ -303,7 +322,9 @@ void build_garden(const HousePlan& house, const GardenPlan& garden, MeshBuilder&
     const Vector3f axis =
         (forward ? 1.0F : -1.0F) * (wall.along_x() ? Vector3f::UnitX() : Vector3f::UnitY());
     const float from = wall.along_x() ? x0 : y0, to = wall.along_x() ? x1 : y1;
-    mesh.panel(view, origin, axis, Vector3f::UnitZ(),
+    const Vector3f normal = axis.cross(Vector3f::UnitZ());
+    const bool lit = house.sun && house.sun->direction.dot(normal) < 0.0F;
+    mesh.panel(lit ? sunlit : shaded, origin, axis, Vector3f::UnitZ(),
                breaks(forward ? from : -to, forward ? to : -from, 1.0F),
                breaks(kGround - h, 0.0F, 1.0F));
   }

@@ -16,6 +16,7 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
+constexpr float kThinnestBevelled = 0.017F;
 constexpr float kTau = 2.0F * std::numbers::pi_v<float>;
 
 /// Point k of n on the unit circle; k = n is exactly k = 0, so that rings close without a crack.
@@ -150,7 +151,9 @@ void MeshBuilder::box(MaterialId material, const Vector3f& min_m, const Vector3f
                       const BoxStyle& style) {
   const Vector3f size = max_m - min_m;
   assert(size.minCoeff() > 0.0F);
-  const float bevel = std::min(style.bevel_m, 0.25F * size.minCoeff());
+  // Thin bars are left sharp: their bevel would be far below a pixel and cost four times the
+  // points.
+  const float bevel = size.minCoeff() < kThinnestBevelled ? 0.0F : style.bevel_m;
   int grain = style.grain_axis;
   if (grain < 0) size.maxCoeff(&grain);
   // Every box is cut from another place of the stuff.

@@ -29,7 +29,7 @@ const std::array kKinds = {
     kind("bottle", "bottle", kOnPiece, "glass", 0.075F, 0.075F, 0.28F, build::bottle),
     kind("bowl", "bowl", kOnPiece, "body", 0.22F, 0.22F, 0.09F, build::bowl),
     kind("box", "box", kFloor, "body", 0.40F, 0.36F, 0.30F, build::box),
-    kind("ceiling_lamp", "lamp", kCeiling, "wood", 0.46F, 0.46F, 0.12F, build::ceiling_lamp, -0.8F),
+    kind("ceiling_lamp", "lamp", kCeiling, "wood", 0.46F, 0.46F, 0.12F, build::ceiling_lamp, -2.6F),
     kind("chair", "chair", kFloor, "wood", 0.44F, 0.46F, 0.88F, build::chair),
     kind("clock", "clock", kWall, "frame", 0.30F, 0.04F, 0.30F, build::clock),
     kind("coat_rack", "otherfurniture", kWall, "wood", 1.1F, 0.24F, 0.95F, build::coat_rack),

@@ -10,10 +10,11 @@ using Eigen::Vector3f;
 
 namespace {
 
-/// A cloth shade, open above and below, lit from inside.
+/// A cloth shade, open above and below, lit from inside. What glows is nearly black beside its own
+/// light: the lamp's source is so close that anything paler would reflect more than the sun does.
 void shade(Piece& p, float z0, float z1, float r0, float r1) {
   const MaterialId cloth =
-      p.material("shade", plain("fabric", {226, 206, 168}, 0.25, 91), {0.55F, 0.45F, 0.30F});
+      p.material("shade", plain("fabric", {40, 34, 26}, 0.4, 91), {0.74F, 0.60F, 0.40F});
   const std::array<Vector2f, 7> profile = {{{r0, z0},
                                             {0.75F * r0 + 0.25F * r1, 0.75F * z0 + 0.25F * z1},
                                             {0.5F * (r0 + r1), 0.5F * (z0 + z1)},
@@ -25,7 +26,7 @@ void shade(Piece& p, float z0, float z1, float r0, float r1) {
 }
 
 MaterialId glow(Piece& p) {
-  return p.fixed(plain("ceramic", {255, 246, 226}, 0.05, 92), {1.6F, 1.4F, 1.1F});
+  return p.fixed(plain("ceramic", {12, 12, 12}, 0.05, 92), {1.1F, 1.0F, 0.85F});
 }
 
 }  // namespace

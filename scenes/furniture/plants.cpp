@@ -42,8 +42,8 @@ void plant_tall(Piece& p) {
   const float r = 0.5F * p.size_m.x(), h = p.size_m.z();
   const float earth = pot(p, 0.42F * p.size_m.x() * 0.85F, std::min(0.32F, 0.26F * h));
   const MaterialId bark = p.fixed(plain("bark", {112, 88, 64}, 0.5, 113));
-  const float length = 0.60F * r + 0.05F, width = 0.42F * length;
-  const MaterialId leaves = foliage(p, {62, 108, 58}, length, width, 114);
+  const float length = 0.78F * r + 0.02F, width = 0.52F * length;
+  const MaterialId leaves = foliage(p, {72, 122, 62}, length, width, 114);
   MeshBuilder& m = p.mesh;
   // Two stems with leaves in a spiral, as a rubber fig has.
   for (int stem = 0; stem < 2; ++stem) {
@@ -61,7 +61,7 @@ void plant_tall(Piece& p) {
       radii.push_back(0.014F - 0.0009F * static_cast<float>(i));
     }
     m.tube(bark, points, radii, 8);
-    const int n = static_cast<int>((top - earth) / 0.040F);
+    const int n = static_cast<int>((top - earth) / 0.036F);
     for (int i = 0; i < n; ++i) {
       const auto k = static_cast<std::uint64_t>(i);
       const float t = 0.18F + 0.82F * (static_cast<float>(i) + 0.5F) / static_cast<float>(n);
@@ -76,7 +76,7 @@ void plant_tall(Piece& p) {
       const std::array<Vector3f, 2> stalk = {axis(t), root};
       m.tube(bark, stalk, 0.003F, 5);
       m.leaf(leaves, root, way, scale * length, scale * width,
-             static_cast<float>(random.uniform(4 * k + 3, 0.25, 0.55)));
+             static_cast<float>(random.uniform(4 * k + 3, 0.45, 0.95)));
     }
   }
 }
