@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMargin = 30, kGap = 12, kCaption = 22, kHeader = 92;
 constexpr double kTileWidth = 400;
-constexpr float kNear_m = 0.4F, kFar_m = 6.0F;  // range of the false colours
+constexpr float kNear_m = 0.4F, kFar_m = 8.0F;  // range of the false colours
 constexpr double kEye_m = 1.45;                 // of a person who sits or a child who stands
 
 cv::Mat colour_picture(const Grid2d<Rgb8>& colour) {

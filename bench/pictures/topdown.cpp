@@ -31,7 +31,28 @@ struct Bounds {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
+  void grow(double margin_m) {
+    low.array() -= margin_m;
+    high.array() += margin_m;
+  }
+  bool contain(const Eigen::Vector2d& p) const {
+    return (p.array() >= low.array()).all() && (p.array() <= high.array()).all();
+  }
 };
+
+/// The rooms with their outer walls; where a mesh came without rooms, what can be near the path.
+/// What lies outside (gardens, backdrops) is cut off.
+Bounds area_of_interest(const World& world) {
+  constexpr double kWalls_m = 0.35, kSight_m = 5.0;
+  Bounds bounds;
+  for (const Room& room : world.scene->rooms)
+    for (const Eigen::Vector2d& corner : room.polygon_m) bounds.add(corner);
+  const bool rooms = !world.scene->rooms.empty();
+  for (const TimedPose& pose : world.mapping.camera)
+    bounds.add(pose.world_from_camera.translation().head<2>());
+  bounds.grow(rooms ? kWalls_m : kSight_m);
+  return bounds;
+}
 
 /// From metres seen from above (x right, y up) to pixels.
 struct PlanView {
@@ -57,7 +78,7 @@ void draw_grid(Canvas& canvas, const PlanView& view, const OccupancyGrid& grid) 
   for (int y = 0; y < grid.cells.height(); ++y)
     for (int x = 0; x < grid.cells.width(); ++x) {
       const std::int8_t value = grid.cells(x, y);
-      if (value == kUnknown) continue;
+      if (value == kUnknown || !view.bounds.contain(grid.centre_m(x, y))) continue;
       const cv::Point2d centre = view(grid.centre_m(x, y));
       canvas.fill(centre.x - cell / 2, centre.y - cell / 2, cell, cell,
                   value == kOccupied ? kMapOccupied : kMapFree);
@@ -67,7 +88,8 @@ void draw_grid(Canvas& canvas, const PlanView& view, const OccupancyGrid& grid) 
 void draw_slice(Canvas& canvas, const PlanView& view, const std::vector<SliceSegment>& segments,
                 Rgb8 colour, double thickness) {
   for (const SliceSegment& s : segments)
-    canvas.line(view(s.from_m), view(s.to_m), colour, thickness);
+    if (view.bounds.contain(s.from_m) && view.bounds.contain(s.to_m))
+      canvas.line(view(s.from_m), view(s.to_m), colour, thickness);
 }
 
 void draw_room_names(Canvas& canvas, const PlanView& view, const Scene& scene) {
@@ -174,16 +196,9 @@ void draw_header(Canvas& canvas, const Suite& suite, const World& world, const R
 }  // namespace
 
 cv::Mat draw_topdown(const Suite& suite, const World& world, const RunResult& run, QuerySet set) {
+  const Bounds bounds = area_of_interest(world);
   const std::vector<SliceSegment> walls = slice(*world.scene, kWallCut_m);
   const std::vector<SliceSegment> furniture = slice(*world.scene, kFurnitureCut_m);
-  Bounds bounds;
-  for (const SliceSegment& s : walls) {
-    bounds.add(s.from_m);
-    bounds.add(s.to_m);
-  }
-  for (const TimedPose& pose : world.mapping.camera)
-    bounds.add(pose.world_from_camera.translation().head<2>());
-
   const PlanView view = fit(bounds);
   const double plan_height = (bounds.high.y() - bounds.low.y()) * view.px_per_m;
   Canvas canvas(kWidth, static_cast<int>(kHeader + plan_height + kFooter + 20));

@@ -46,7 +46,7 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-Comparison compare_paired(std::string what, std::span<const PairedDifference> queries,
+Comparison compare_paired(std::string what, std::span<const PairedDifference> queries, bool shares,
                           std::uint64_t seed, int resamples) {
   Comparison c{.what = std::move(what)};
   const std::size_t n = queries.size();
@@ -88,6 +88,7 @@ Comparison compare_paired(std::string what, std::span<const PairedDifference> qu
   const double centre = mean(means);
   for (const double m : means) variance += (m - centre) * (m - centre);
   c.detectable = (1.96 + 0.84) * std::sqrt(variance / (count - 1.0));
+  if (shares) c.detectable = std::max(c.detectable, 3.0 / static_cast<double>(c.pairs));
   return c;
 }
 

@@ -28,14 +28,16 @@ struct Comparison {
   double low = 0, high = 0;  ///< 95 % bootstrap interval
   double p = 1;              ///< two-sided, from the bootstrap
   double p_holm = 1;         ///< corrected over the family (see holm)
-  /// The true difference that would be found with 80 % power at the 5 % level: 2.8 standard errors.
+  /// The true difference that would be found with 80 % power at the 5 % level: 2.8 standard errors;
+  /// for shares at least 3 / pairs, since differences of which none was seen may still be there.
   double detectable = 0;
 };
 
 /// Circular block bootstrap (Politis and Romano, 1992) of the mean difference: neighbouring queries
 /// see the same place, so blocks of max(2, n^(1/3)) consecutive ones are drawn together.
 /// Deterministic: draws come from the seed. With fewer than 4 pairs the interval stays wide open.
-Comparison compare_paired(std::string what, std::span<const PairedDifference> queries,
+/// @param shares  whether the observations are yes or no
+Comparison compare_paired(std::string what, std::span<const PairedDifference> queries, bool shares,
                           std::uint64_t seed, int resamples = 10000);
 
 /// Holm's correction over one family of comparisons, in place (Holm, 1979).

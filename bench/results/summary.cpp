@@ -122,11 +122,11 @@ std::vector<Comparison> compare_rows(const Row& semantic, const Row& plain, std:
       return q.success ? std::optional(q.distance_m) : std::nullopt;
     };
     comparisons.push_back(
-        compare_paired(label("success"), differences(semantic, plain, set, success), seed));
+        compare_paired(label("success"), differences(semantic, plain, set, success), true, seed));
     comparisons.push_back(
-        compare_paired(label("correct"), differences(semantic, plain, set, correct), seed));
-    comparisons.push_back(compare_paired(label("distance where both answer (m)"),
-                                         differences(semantic, plain, set, distance), seed));
+        compare_paired(label("correct"), differences(semantic, plain, set, correct), true, seed));
+    comparisons.push_back(compare_paired(label("distance where both answer, m"),
+                                         differences(semantic, plain, set, distance), false, seed));
     comparisons.back().more_is_better = false;
   }
   return comparisons;

@@ -53,22 +53,35 @@ std::string table_2(const Block& block) {
 }
 
 std::string query_details(const Block& block, QuerySet set) {
-  std::string text = fmt::format("  {:<10}{:>9}{:>9}{:>8}{:>11}{:>11}{:>11}{:>10}  {}\n",
-                                 set == QuerySet::kHeldOut ? "held-out" : "2nd tour", "success",
-                                 "correct", "false", "mean m", "median m", "aligned m", "attempts",
-                                 "candidates after eq. 3 / 4 / 5 / 6 of keyframes");
+  const char* heading = set == QuerySet::kHeldOut ? "held-out" : "2nd tour";
+  std::string text =
+      fmt::format("  {:<10}{:>9}{:>10}{:>9}{:>10}{:>11}{:>12}{:>10}\n", heading, "success",
+                  "correct", "false", "mean m", "median m", "aligned m", "attempts");
   for (const Row* row : block) {
     const QuerySummary& s = summary(*row, set);
-    const double all = std::max(1.0, s.keyframes);
-    text += fmt::format(
-        "  {:<10}{:>8.2f}%{:>8.2f}%{:>7.2f}%{:>11}{:>11}{:>11}{:>10.2f}  "
-        "{:.1f} / {:.1f} / {:.1f} / {:.2f} of {:.0f} ({:.2f}% / {:.2f}% / {:.2f}% / {:.2f}%); "
-        "one alone {:.1f}%; labels hold {:.1f}% of the vector\n",
-        name(row->system), 100 * s.success, 100 * s.correct, 100 * s.wrong,
-        metres(s.distance_mean_m, s.success > 0), metres(s.distance_median_m, s.success > 0),
-        metres(s.aligned_distance_mean_m, s.success > 0), s.attempts, s.c1, s.c2, s.c3, s.final,
-        s.keyframes, 100 * s.c1 / all, 100 * s.c2 / all, 100 * s.c3 / all, 100 * s.final / all,
-        100 * s.single_candidate, 100 * s.label_mass);
+    text += fmt::format("  {:<10}{:>8.2f}%{:>9.2f}%{:>8.2f}%{:>10}{:>11}{:>12}{:>10.2f}\n",
+                        name(row->system), 100 * s.success, 100 * s.correct, 100 * s.wrong,
+                        metres(s.distance_mean_m, s.success > 0),
+                        metres(s.distance_median_m, s.success > 0),
+                        metres(s.aligned_distance_mean_m, s.success > 0), s.attempts);
+  }
+  return text;
+}
+
+/// Keyframes left after the steps of Algorithm 1, as counts and as shares of the map.
+std::string candidate_details(const Block& block, QuerySet set) {
+  const char* heading = set == QuerySet::kHeldOut ? "held-out" : "2nd tour";
+  std::string text = fmt::format("  {:<10}{:>10}{:>18}{:>18}{:>18}{:>18}{:>11}{:>13}\n", heading,
+                                 "keyframes", "after eq. 3", "after eq. 4", "after eq. 5",
+                                 "after eq. 6", "one left", "label mass");
+  for (const Row* row : block) {
+    const QuerySummary& s = summary(*row, set);
+    const auto left = [&](double count) {
+      return fmt::format("{:.2f} ({:.2f}%)", count, 100 * count / std::max(1.0, s.keyframes));
+    };
+    text += fmt::format("  {:<10}{:>10.0f}{:>18}{:>18}{:>18}{:>18}{:>10.1f}%{:>12.1f}%\n",
+                        name(row->system), s.keyframes, left(s.c1), left(s.c2), left(s.c3),
+                        left(s.final), 100 * s.single_candidate, 100 * s.label_mass);
   }
   return text;
 }
@@ -141,7 +154,7 @@ std::string comparison_line(const Comparison& c) {
       : std::isfinite(c.detectable)
           ? fmt::format("undecided; smallest detectable difference {:.4f}", c.detectable)
           : std::string("undecided; too few queries");
-  return fmt::format("  {:<52}{:+.4f} [{:+.4f}, {:+.4f}]  p = {:.4f} (Holm {:.4f})  {}\n", c.what,
+  return fmt::format("  {:<62}{:+.4f} [{:+.4f}, {:+.4f}]  p = {:.4f} (Holm {:.4f})  {}\n", c.what,
                      c.difference, c.low, c.high, c.p, c.p_holm, word);
 }
 
@@ -163,7 +176,8 @@ std::string results_table(const Suite& suite, const std::vector<RunResult>& runs
                           suite.trials == 1 ? "" : "s (medians)");
       text += rule(90) + table_2(block) + rule(90);
       for (const QuerySet set : {QuerySet::kHeldOut, QuerySet::kSecondTour})
-        if (summary(*block.front(), set).queries > 0) text += query_details(block, set);
+        if (summary(*block.front(), set).queries > 0)
+          text += query_details(block, set) + candidate_details(block, set);
       text += failing_stages(block) + mapping_details(block) + common_ate(block, mapping_truth) +
               penalties(block);
     }

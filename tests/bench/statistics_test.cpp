@@ -17,14 +17,15 @@ TEST(Median, IsTheMiddleOrTheMeanOfTheMiddleTwo) {
 }
 
 TEST(ComparePaired, NoDifferenceIsNeverSignificant) {
-  const Comparison c = compare_paired("x", all_equal_to(0, 50), 1);
+  const Comparison c = compare_paired("x", all_equal_to(0, 50), true, 1);
   EXPECT_EQ(c.difference, 0);
   EXPECT_EQ(c.p, 1);
+  EXPECT_DOUBLE_EQ(c.detectable, 3.0 / 50);  // the rule of three
   EXPECT_EQ(verdict(c), Verdict::kUndecided);
 }
 
 TEST(ComparePaired, AConstantDifferenceIsFoundAndHasNoSpread) {
-  Comparison c[] = {compare_paired("x", all_equal_to(0.5, 50), 1)};
+  Comparison c[] = {compare_paired("x", all_equal_to(0.5, 50), false, 1)};
   holm(c);
   EXPECT_DOUBLE_EQ(c[0].low, 0.5);
   EXPECT_DOUBLE_EQ(c[0].high, 0.5);
@@ -40,7 +41,8 @@ TEST(ComparePaired, AnswersOfOneNeighbourhoodCountLessThanTheirNumber) {
     runs.push_back({(i / 10) % 2 == 0 ? 1.0 : -0.9, true});
     mixed.push_back({i % 2 == 0 ? 1.0 : -0.9, true});
   }
-  const Comparison a = compare_paired("runs", runs, 1), b = compare_paired("mixed", mixed, 1);
+  const Comparison a = compare_paired("runs", runs, false, 1),
+                   b = compare_paired("mixed", mixed, false, 1);
   EXPECT_DOUBLE_EQ(a.difference, b.difference);
   EXPECT_GT(a.detectable, 3 * b.detectable);
 }
@@ -48,7 +50,7 @@ TEST(ComparePaired, AnswersOfOneNeighbourhoodCountLessThanTheirNumber) {
 TEST(ComparePaired, TooFewPairsDecideNothing) {
   std::vector<PairedDifference> few = all_equal_to(1, 3);
   few.resize(40);  // the others are absent
-  const Comparison c = compare_paired("x", few, 1);
+  const Comparison c = compare_paired("x", few, true, 1);
   EXPECT_EQ(c.pairs, 3u);
   EXPECT_EQ(verdict(c), Verdict::kUndecided);
 }
@@ -56,8 +58,8 @@ TEST(ComparePaired, TooFewPairsDecideNothing) {
 TEST(ComparePaired, IsAFunctionOfItsSeed) {
   std::vector<PairedDifference> values;
   for (int i = 0; i < 60; ++i) values.push_back({0.1 * (i * 37 % 11 - 4), i % 7 != 0});
-  EXPECT_EQ(compare_paired("x", values, 3).low, compare_paired("x", values, 3).low);
-  EXPECT_NE(compare_paired("x", values, 3).p, 0);
+  EXPECT_EQ(compare_paired("x", values, false, 3).low, compare_paired("x", values, false, 3).low);
+  EXPECT_NE(compare_paired("x", values, false, 3).p, 0);
 }
 
 TEST(Holm, CorrectsByRankAndStaysMonotone) {
