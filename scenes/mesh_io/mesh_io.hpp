@@ -39,7 +39,7 @@ Scene load_mesh(const std::filesystem::path& file, std::vector<std::string>* war
 /// class name], ...] over the faces in file order, "rooms": [[name, [[x, y], ...]], ...]}.
 /// @throws InputError if a file cannot be written.
 void save_scannet_ply(const Scene& scene, const std::filesystem::path& file,
-                      float max_edge_m = 0.02F);
+                      float max_edge_m = 0.04F);
 
 /// Writes a binary glTF 2.0 with embedded PNG textures, y-up as glTF wants it, one node per
 /// instance (and class) named `name#class=CLASS#instance=ID`, and baked light times vertex colour

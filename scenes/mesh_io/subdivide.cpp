@@ -77,11 +77,15 @@ void split(EdgeSplitter& edges, Triangle t, std::vector<Triangle>& pieces) {
 /// One round over all faces; false if there was nothing to split.
 bool split_all(Scene& scene, float max_edge_m) {
   EdgeSplitter edges(scene, max_edge_m);
+  const bool keep_backdrop = !scene.instances.empty();
   Scene out;  // only its per-face arrays are used
   std::vector<Triangle> pieces;
   for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
     pieces.clear();
-    split(edges, scene.triangles[face], pieces);
+    if (keep_backdrop && scene.instance_of[face] == 0)
+      pieces.push_back(scene.triangles[face]);
+    else
+      split(edges, scene.triangles[face], pieces);
     for (const Triangle& piece : pieces) {
       out.triangles.push_back(piece);
       out.material_of.push_back(scene.material_of[face]);

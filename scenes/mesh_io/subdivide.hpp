@@ -8,7 +8,8 @@ namespace mh {
 /// The same surfaces in smaller triangles: no edge is longer than max_edge_m. Whether an edge is
 /// split follows from its end points alone, so that neighbours stay joined without cracks. Texture
 /// coordinates, vertex colours and light are interpolated; faces stay in order, each replaced by
-/// its pieces. @pre max_edge_m > 0.
+/// its pieces. In a scene that knows objects, faces of none (the view outside the windows) are left
+/// alone: they are large and seen from afar. @pre max_edge_m > 0.
 Scene subdivide(Scene scene, float max_edge_m);
 
 }  // namespace mh
