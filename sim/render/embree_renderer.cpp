@@ -16,18 +16,17 @@ namespace {
 
 constexpr int kTile = 4;  // a packet is a tile of 4 x 4 pixels
 constexpr int kLanes = 16;
-constexpr int kEdgeSamples = 4;
+constexpr int kEdgeSamples = 2;  // beside the centre
 // A pixel lies on an edge where its inverse depth departs by this share from the mean of its two
-// neighbours'. A plane departs by nothing, the corner of a box at 2 m by 1e-3, a round leg of 5 cm
-// at 1 m by 7e-5.
-constexpr float kEdgeBend = 5e-4F;
-// Where an edge pixel is sampled, px from its centre: a square turned so that no two samples share
-// a row or a column.
+// neighbours'. A plane departs by nothing, the corner of a box at 2 m by 1e-3: edges within an
+// object count where its depth jumps, not where its surface bends.
+constexpr float kEdgeBend = 5e-3F;
+// Where an edge pixel is sampled beside its centre, px: a third of it each, in columns and rows.
 struct Offset {
   float x, y;
 };
 constexpr std::array<Offset, kEdgeSamples> kOffsets = {
-    {{-0.125F, -0.375F}, {0.375F, -0.125F}, {0.125F, 0.375F}, {-0.375F, 0.125F}}};
+    {{1.0F / 3.0F, -1.0F / 3.0F}, {-1.0F / 3.0F, 1.0F / 3.0F}}};
 
 /// Everything of one picture that does not change from tile to tile.
 struct View {
@@ -107,24 +106,31 @@ Rgb8 encode(__m128 linear) {
   return {table[index[0]], table[index[1]], table[index[2]]};
 }
 
-/// The columns of a row, its ends apart, at which something begins or bends.
-void find_edges(const RenderedFrame& frame, int y, std::vector<int>& columns) {
-  columns.clear();
-  const int w = frame.depth_m.width();
-  if (y == 0 || y + 1 == frame.depth_m.height()) return;
-  const float* z = frame.depth_m.row(y).data();
-  const InstanceId* id = frame.instances.row(y).data();
+struct Pixel {
+  int x, y;
+};
+
+/// The pixels of a band of rows at which something begins, tile by tile, so that those traced
+/// together lie together; the picture's rim is left out.
+void find_edges(const RenderedFrame& frame, int y0, std::vector<Pixel>& edges) {
+  edges.clear();
+  const int w = frame.depth_m.width(), h = frame.depth_m.height();
   // Inverse depths a, b, c are in line where 2/b = 1/a + 1/c.
   const auto bent = [](float a, float b, float c) {
     const float across = 2.0F * a * c, through = b * (a + c);
     return std::abs(across - through) > kEdgeBend * through;
   };
-  for (int x = 1; x + 1 < w; ++x) {
-    const bool other =
-        (id[x] != id[x - 1]) | (id[x] != id[x + 1]) | (id[x] != id[x - w]) | (id[x] != id[x + w]);
-    if (other | bent(z[x - 1], z[x], z[x + 1]) | bent(z[x - w], z[x], z[x + w]))
-      columns.push_back(x);
-  }
+  for (int x0 = 0; x0 < w; x0 += kTile)
+    for (int y = std::max(1, y0); y < std::min(h - 1, y0 + kTile); ++y) {
+      const float* z = frame.depth_m.row(y).data();
+      const InstanceId* id = frame.instances.row(y).data();
+      for (int x = std::max(1, x0); x < std::min(w - 1, x0 + kTile); ++x) {
+        const bool other = (id[x] != id[x - 1]) | (id[x] != id[x + 1]) | (id[x] != id[x - w]) |
+                           (id[x] != id[x + w]);
+        if (other | bent(z[x - 1], z[x], z[x + 1]) | bent(z[x - w], z[x], z[x + w]))
+          edges.push_back({x, y});
+      }
+    }
 }
 
 class EmbreeRenderer final : public Renderer {
@@ -162,12 +168,10 @@ class EmbreeRenderer final : public Renderer {
     parallel_for(tile_rows, config_.threads, [&](int row) {
       const FlushDenormals flush;
       Packet packet(view);
-      std::vector<int> columns;
-      for (int y = row * kTile; y < std::min(h, (row + 1) * kTile); ++y) {
-        find_edges(frame, y, columns);
-        for (std::size_t first = 0; first < columns.size(); first += kLanes / kEdgeSamples)
-          smooth(view, columns, first, y, packet, frame);
-      }
+      std::vector<Pixel> edges;
+      find_edges(frame, row * kTile, edges);
+      for (std::size_t first = 0; first < edges.size(); first += kLanes / kEdgeSamples)
+        smooth(view, edges, first, packet, frame);
     });
     return frame;
   }
@@ -194,15 +198,15 @@ class EmbreeRenderer final : public Renderer {
     }
   }
 
-  /// Averages the colours of up to four edge pixels of a row over their samples, in linear light.
-  void smooth(const View& view, const std::vector<int>& columns, std::size_t first, int y,
-              Packet& packet, RenderedFrame& frame) const {
+  /// Averages the colours of a packet's edge pixels over their samples, in linear light.
+  void smooth(const View& view, const std::vector<Pixel>& edges, std::size_t first, Packet& packet,
+              RenderedFrame& frame) const {
     constexpr std::size_t kPixels = kLanes / kEdgeSamples;
-    const std::size_t count = std::min(kPixels, columns.size() - first);
+    const std::size_t count = std::min(kPixels, edges.size() - first);
     for (int i = 0; i < kLanes; ++i) {
       const std::size_t pixel = static_cast<std::size_t>(i) / kEdgeSamples;
       packet.valid[static_cast<std::size_t>(i)] = pixel < count ? -1 : 0;
-      const int x = columns[first + std::min(pixel, count - 1)];
+      const auto [x, y] = edges[first + std::min(pixel, count - 1)];
       const Offset& offset = kOffsets[static_cast<std::size_t>(i) % kEdgeSamples];
       packet.aim(view, i, view.column[static_cast<std::size_t>(x)] + offset.x * view.pixel_width,
                  view.row[static_cast<std::size_t>(y)] + offset.y * view.pixel_height);
@@ -210,13 +214,14 @@ class EmbreeRenderer final : public Renderer {
     bvh_.intersect16(packet.valid.data(), packet.rays, true);
     const auto footprint = footprints(view, packet);
     for (std::size_t pixel = 0; pixel < count; ++pixel) {
-      __m128 sum = _mm_setzero_ps();
+      Rgb8& colour = frame.colour(edges[first + pixel].x, edges[first + pixel].y);
+      __m128 sum = _mm_setr_ps(srgb_to_linear(colour.r), srgb_to_linear(colour.g),
+                               srgb_to_linear(colour.b), 0.0F);
       for (int s = 0; s < kEdgeSamples; ++s) {
         const int lane = static_cast<int>(pixel) * kEdgeSamples + s;
         sum = _mm_add_ps(sum, radiance(packet, lane, footprint[static_cast<std::size_t>(lane)]));
       }
-      frame.colour(columns[first + pixel], y) =
-          encode(_mm_mul_ps(sum, _mm_set1_ps(1.0F / kEdgeSamples)));
+      colour = encode(_mm_mul_ps(sum, _mm_set1_ps(1.0F / (kEdgeSamples + 1))));
     }
   }
 

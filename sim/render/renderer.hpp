@@ -32,7 +32,7 @@ class Renderer {
 struct RenderConfig {
   int threads = 1;        ///< threads over tiles of one picture; never changes a bit of it
   float exposure = 1.0F;  ///< linear radiance that maps to white is 1 / exposure
-  /// Colours of pixels at edges (of objects, of depth, of a surface's slope) are averaged over four
+  /// Colours of pixels at edges (of objects and of depth) are averaged over two
   /// more rays, as a sensor's cells average light; nothing else changes.
   bool smooth_edges = true;
   bool portable = false;  ///< pin Embree to AVX2, so that pictures agree across processors

@@ -223,6 +223,29 @@ TEST(EmbreeRenderer, OutputIsAlbedoTimesLightTimesExposurePlusEmission) {
   EXPECT_NEAR(seen.b, linear_to_srgb(1.5F * 0.05F), 1);
 }
 
+TEST(EmbreeRenderer, SmoothEdgesMixLightAndLeaveTheRestAlone) {
+  Scene scene = plain_scene();
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].base_colour = {0, 0, 0};
+  add_quad(scene, {-5, -5, 2}, {5, 0, 0}, {0, 10, 0}, 1, 1, 0);  // white left of the axis
+  add_quad(scene, {0, -5, 2}, {5, 0, 0}, {0, 10, 0}, 2, 2, 1);   // black right of it
+  Camera camera;
+  camera.cx_px = 319.8;  // pixel 320 sees the edge 0.2 px left of its centre
+  const RenderedFrame sharp =
+      make_embree_renderer(scene, {.smooth_edges = false})->render(camera, kIdentity);
+  const RenderedFrame smooth = make_embree_renderer(scene)->render(camera, kIdentity);
+  EXPECT_EQ(sharp.depth_m, smooth.depth_m);
+  EXPECT_EQ(sharp.classes, smooth.classes);
+  EXPECT_EQ(sharp.instances, smooth.instances);
+  // One sample of three is white.
+  EXPECT_NEAR(smooth.colour(320, 240).g, linear_to_srgb(1.0F / 3.0F), 1);
+  EXPECT_EQ(sharp.colour(320, 240).g, 0);
+  for (int x = 0; x < camera.width_px; ++x)
+    if (x != 320) {
+      EXPECT_EQ(smooth.colour(x, 240), sharp.colour(x, 240)) << x;
+    }
+}
+
 TEST(EmbreeRenderer, ThreadsAndPicturesNotMultiplesOfATileChangeNoBit) {
   Scene scene = plain_scene();
   scene.materials[0].texture = smooth_picture(33, 17);
