@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/vocabulary_training.hpp"
 
+#include <exception>
 #include <mutex>
 #include <vector>
 
@@ -59,14 +60,21 @@ Vocabulary train_vocabulary(const VocabularyTraining& config,
 
   // Rooms in any order, results in theirs.
   std::vector<std::vector<std::vector<Descriptor>>> rooms(static_cast<std::size_t>(config.rooms));
+  std::vector<std::exception_ptr> faults(rooms.size());
   std::mutex mutex;
   int done = 0;
   parallel_for(config.rooms, config.threads, [&](int room) {
     const auto index = static_cast<std::size_t>(room);
-    rooms[index] = descriptors_of_room(config, index);
-    const std::scoped_lock lock(mutex);
-    if (progress) progress(++done, config.rooms);
+    try {
+      rooms[index] = descriptors_of_room(config, index);
+      const std::scoped_lock lock(mutex);
+      if (progress) progress(++done, config.rooms);
+    } catch (...) {  // must not leave a thread
+      faults[index] = std::current_exception();
+    }
   });
+  for (const std::exception_ptr& fault : faults)
+    if (fault) std::rethrow_exception(fault);
 
   std::vector<std::vector<Descriptor>> images;
   for (auto& room : rooms)

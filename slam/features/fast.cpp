@@ -125,7 +125,7 @@ void collect(const std::vector<Byte>& marks, const Rows& contrast, int left, int
 }  // namespace
 
 std::vector<Corner> fast_corners(const cv::Mat& image, int edge_px, int threshold) {
-  assert(edge_px >= 4 && threshold >= 0 && threshold < 255 && image.type() == CV_8U);
+  assert(edge_px >= 4 && threshold >= 0 && threshold <= 255 && image.type() == CV_8U);
   const int width = image.cols - 2 * edge_px;
   const int height = image.rows - 2 * edge_px;
   if (width <= 0 || height <= 0) return {};

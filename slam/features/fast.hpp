@@ -32,7 +32,7 @@ inline bool stronger(const Corner& a, const Corner& b) {
 /// Reprojected through rendered rooms, that takes the error of matched level-0 corners from 0.71 to
 /// 0.45 px.
 /// @param edge_px    corners keep that distance from the border; at least 4.
-/// @param threshold  grey levels, 0 to 254.
+/// @param threshold  grey levels, 0 to 255 (which nothing exceeds).
 /// @returns corners in the order of rows, then columns.
 std::vector<Corner> fast_corners(const cv::Mat& image, int edge_px, int threshold);
 

@@ -43,7 +43,15 @@ struct FeatureConfig {
   double max_depth_m = 8.0;    ///< depth beyond is dropped
 };
 
-/// ORB keypoints spread evenly over image and pyramid, with descriptors, depth and labels.
+/// ORB (Rublee et al., ICCV 2011): FAST-9 corners on an image pyramid, spread evenly over image and
+/// levels, each with its orientation, rotated BRIEF, depth and label. Descriptors equal cv::ORB's
+/// bit for bit at the same pixel and angle; the rest departs from it: corners lie between pixels,
+/// levels are mapped centre to centre (cv::ORB is off by up to 1.3 px at scale 3.6), thresholds are
+/// lowered where nothing is found. Depth and label are those of the nearest pixel of the picture as
+/// it was taken, before undistortion. Ordered by octave, then strength.
+/// @param frame  depth and semantics may be empty. Depth that is NaN, infinite, not positive or
+///               beyond config.max_depth_m counts as none.
+/// @returns config.count keypoints, fewer where the picture shows fewer corners.
 /// @throws InputError if the frame's size is not the camera's.
 Features extract(const RgbdFrame& frame, const Camera& camera, const FeatureConfig& config);
 

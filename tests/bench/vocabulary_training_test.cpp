@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/vocabulary_training.hpp"
 
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 
 #include "slam/core/error.hpp"
@@ -31,6 +33,11 @@ TEST(TrainVocabulary, IsTheSameAtAnyThreadCountAndOtherForOtherSeeds) {
   EXPECT_EQ(train_vocabulary(config).digest(), one.digest());
   config.seed = 2;
   EXPECT_NE(train_vocabulary(config).digest(), one.digest());
+}
+
+TEST(TrainVocabulary, FailuresInARoomReachTheCaller) {
+  const auto stop = [](int, int) { throw std::runtime_error("stop"); };
+  EXPECT_THROW(train_vocabulary(small(), stop), std::runtime_error);
 }
 
 TEST(TrainVocabulary, RefusesNonsense) {
