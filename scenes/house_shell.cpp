@@ -307,7 +307,7 @@ void build_garden(const HousePlan& house, const GardenPlan& garden, MeshBuilder&
   mesh.scene().materials[shaded].base_colour = {146, 146, 146};
   spec.name += "_sunlit";
   const MaterialId sunlit = mesh.material(spec);
-  mesh.scene().materials[sunlit].base_colour = {170, 170, 170};
+  mesh.scene().materials[sunlit].base_colour = {124, 124, 124};
   const MaterialId lawn = mesh.material(
       {.name = "lawn", .kind = "carpet", .tone = {96, 118, 66}, .variation = 0.6, .seed = 98});
   mesh.scene().materials[lawn].base_colour = {88, 88, 88};

@@ -130,9 +130,8 @@ void coat_rack(Piece& p) {
   const std::array<MaterialSpec, 3> stuffs = {plain("fabric", {58, 70, 92}, 0.5, 101),
                                               plain("knit", {150, 66, 52}, 0.6, 102),
                                               plain("fabric", {126, 118, 92}, 0.5, 103)};
-  const float spacing = 1.0F / static_cast<float>(hooks);
   for (int i = 0; i < 3; ++i) {
-    const float x = -w / 2 + w * spacing * (0.5F + static_cast<float>(i == 2 ? hooks - 1 : 2 * i));
+    const float x = 0.5F * (w - 0.46F) * static_cast<float>(i - 1);
     p.part(fmt::format("coat_{}", i + 1), "clothes");
     m.push(translation(0, y - 0.105F, 0));
     garment(p, p.fixed(stuffs[static_cast<std::size_t>(i)]), x, z + 0.055F,

@@ -42,7 +42,7 @@ void plant_tall(Piece& p) {
   const float r = 0.5F * p.size_m.x(), h = p.size_m.z();
   const float earth = pot(p, 0.42F * p.size_m.x() * 0.85F, std::min(0.32F, 0.26F * h));
   const MaterialId bark = p.fixed(plain("bark", {112, 88, 64}, 0.5, 113));
-  const float length = 0.78F * r + 0.02F, width = 0.52F * length;
+  const float length = 0.72F * r + 0.015F, width = 0.52F * length;
   const MaterialId leaves = foliage(p, {72, 122, 62}, length, width, 114);
   MeshBuilder& m = p.mesh;
   // Two stems with leaves in a spiral, as a rubber fig has.

@@ -210,7 +210,7 @@ void open_shelf(Piece& p) {
         m.box(basket, {x, -d / 2 + 0.04F, zz}, {x + 0.24F, d / 2 - 0.04F, zz + 0.17F},
               {.bevel_m = 0.012F});
         x += 0.28F;
-      } else if (what == 1) {
+      } else if (what == 1 || room < 0.18F) {
         p.part("bottle_" + number, "bottle");
         const MaterialId jar = p.fixed(plain("ceramic", tone, 0.3, 12));
         const float rr = 0.045F, tall = static_cast<float>(r.uniform(2, 0.14, 0.22));
