@@ -104,6 +104,7 @@ class Baker {
         bvh_(scene, config.threads, false),
         points_(scene),
         hemisphere_(whole_packets(config.samples)),
+        rough_(whole_packets((config.samples + 1) / 2)),
         shadow_(whole_packets(std::max(1, config.sun_samples))) {
     valid_.fill(-1);
     for (const Light& light : scene.lights)
@@ -262,16 +263,18 @@ class Baker {
   /// faces and faces that reflect `leaving_`: irradiance / pi.
   Gathered gather(std::size_t v, float side, int round) const {
     const Vector3f normal = side * points_.normal(v);
+    // What earlier rounds miss is averaged over many faces by the last one.
+    const DiscPattern& pattern = round < config_.bounces ? rough_ : hemisphere_;
     Vector3f a, b;
     make_frame(normal, a, b);
     const Turn turn =
         random_turn(RandomStream(config_.seed).fork(static_cast<std::uint64_t>(round)), v);
     Vector3f sum = Vector3f::Zero();
     int backs = 0;
-    for (int first = 0; first < hemisphere_.size(); first += kLanes) {
+    for (int first = 0; first < pattern.size(); first += kLanes) {
       alignas(64) RTCRayHit16 packet;
       for (int i = 0; i < kLanes; ++i) {
-        const Vector2f p = hemisphere_.at(first + i, turn.rotation, turn.shift);
+        const Vector2f p = pattern.at(first + i, turn.rotation, turn.shift);
         const float up = std::sqrt(std::max(0.0F, 1.0F - p.squaredNorm()));
         set_ray(packet.ray, i, points_.origin_m(v, first + i, turn.shift, side),
                 p.x() * a + p.y() * b + up * normal, kInfinity, kAllFaces);
@@ -290,7 +293,7 @@ class Baker {
                  0.0F;
       }
     }
-    const auto rays = static_cast<float>(hemisphere_.size());
+    const auto rays = static_cast<float>(pattern.size());
     return {sum / rays, static_cast<float>(backs) > kInsideShare * rays};
   }
 
@@ -368,7 +371,7 @@ class Baker {
   EmbreeScene bvh_;
   BakePoints points_;
   VertexNeighbours neighbours_{scene_};
-  DiscPattern hemisphere_, shadow_;
+  DiscPattern hemisphere_, rough_, shadow_;
   alignas(64) std::array<int, kLanes> valid_{};
   Colours albedo_;  // by material
   Colours glow_;    // by face

@@ -33,9 +33,10 @@ struct BakeConfig {
 /// @throws std::invalid_argument if a count is negative or samples is 0.
 void bake_light(Scene& scene, const BakeConfig& config = {});
 
-/// The exposure (see RenderConfig) under which the median surface of the rooms comes out as
-/// `median_radiance` (linear; 0.2 is sRGB 124). Surfaces are weighted by area; where the scene
-/// knows its rooms, only what shows into them counts. 1 for an empty or black scene.
+/// The exposure (see RenderConfig) under which the median of what is seen comes out as
+/// `median_radiance` (linear; 0.2 is sRGB 124). Measured with rays from places in the rooms at the
+/// height of a robot's camera, up to 34 deg up and down, or from anywhere in a scene without a
+/// plan. 1 for an empty or black scene.
 float suggest_exposure(const Scene& scene, float median_radiance = 0.2F);
 
 }  // namespace mh

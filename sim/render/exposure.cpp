@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <utility>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include "sim/render/bake.hpp"
 #include "sim/render/colour.hpp"
+#include "sim/render/embree_scene.hpp"
 #include "sim/render/texture.hpp"
+#include "slam/core/random.hpp"
 
 namespace mh {
 namespace {
@@ -24,47 +29,120 @@ bool inside(const Room& room, double x, double y) {
   return odd;
 }
 
-/// Whether a point just before a face's front lies in a room (or the scene has no plan).
-bool shows_into_a_room(const Scene& scene, const Vector3f& centre, const Vector3f& normal) {
-  constexpr float kBeforeM = 0.05F;
-  const Vector3f p = centre + kBeforeM * normal;
-  return scene.rooms.empty() || std::any_of(scene.rooms.begin(), scene.rooms.end(),
-                                            [&](const Room& r) { return inside(r, p.x(), p.y()); });
+constexpr int kLanes = 16;
+constexpr int kViewpoints = 64;  // per room
+constexpr float kEyeM = 1.1F;    // the height of a robot's camera
+constexpr float kElevationRad = 0.6F;
+
+struct Bounds {
+  Eigen::AlignedBox3f box;
+  const Room* room = nullptr;  // null: the whole box
+};
+
+/// Where viewpoints are looked for: the rooms, or without a plan all of the scene.
+std::vector<Bounds> places(const Scene& scene) {
+  std::vector<Bounds> places;
+  for (const Room& room : scene.rooms) {
+    Bounds bounds{{}, &room};
+    for (const Eigen::Vector2d& p : room.polygon_m)
+      bounds.box.extend(Vector3f(static_cast<float>(p.x()), static_cast<float>(p.y()), kEyeM));
+    places.push_back(bounds);
+  }
+  if (!places.empty()) return places;
+  Bounds all;
+  for (const Vector3f& p : scene.positions_m) all.box.extend(p);
+  return {all};
+}
+
+/// Luminance of what leaves a face at a hit.
+class Meter {
+ public:
+  explicit Meter(const Scene& scene) : scene_(scene) {
+    for (const Material& material : scene.materials)
+      albedo_.push_back(
+          mean_linear(material.texture).cwiseProduct(srgb_to_linear(material.base_colour)));
+  }
+
+  float at(std::uint32_t face, float u, float v) const {
+    const auto& t = scene_.triangles[face];
+    const std::array<float, 3> share = {1.0F - u - v, u, v};
+    Vector3f out = Vector3f::Zero();
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vector3f corner = Vector3f::Ones();
+      if (!scene_.light.empty()) corner = corner.cwiseProduct(scene_.light[t[k]]);
+      if (!scene_.colours.empty())
+        corner = corner.cwiseProduct(srgb_to_linear(scene_.colours[t[k]]));
+      out += share[k] * corner;
+    }
+    if (!albedo_.empty()) {
+      const std::uint16_t material = scene_.material_of[face];
+      out = out.cwiseProduct(albedo_[material]) + scene_.materials[material].emission;
+    }
+    return luminance(out);
+  }
+
+ private:
+  const Scene& scene_;
+  std::vector<Vector3f> albedo_;
+};
+
+/// Appends what sixteen rays from a point see; nothing if the point is inside something, as most
+/// rays then meet backs of faces.
+void look_around(const EmbreeScene& bvh, const Meter& meter, const Vector3f& eye,
+                 const RandomStream& stream, std::vector<float>& seen) {
+  alignas(64) RTCRayHit16 packet;
+  alignas(64) std::array<int, kLanes> valid;
+  valid.fill(-1);
+  for (int i = 0; i < kLanes; ++i) {
+    const auto index = static_cast<std::uint64_t>(2 * i);
+    const double heading = 2.0 * std::numbers::pi * (i + stream.uniform(index)) / kLanes;
+    const double rise = stream.uniform(index + 1, -kElevationRad, kElevationRad);
+    packet.ray.org_x[i] = eye.x(), packet.ray.org_y[i] = eye.y(), packet.ray.org_z[i] = eye.z();
+    packet.ray.dir_x[i] = static_cast<float>(std::cos(rise) * std::cos(heading));
+    packet.ray.dir_y[i] = static_cast<float>(std::cos(rise) * std::sin(heading));
+    packet.ray.dir_z[i] = static_cast<float>(std::sin(rise));
+    packet.ray.tnear[i] = 0.0F, packet.ray.tfar[i] = std::numeric_limits<float>::infinity();
+    packet.ray.time[i] = 0.0F, packet.ray.mask[i] = kAllFaces;
+    packet.ray.id[i] = 0, packet.ray.flags[i] = 0;
+    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  bvh.intersect16(valid.data(), packet, false);
+  int backs = 0;
+  std::vector<float> found;
+  for (int i = 0; i < kLanes; ++i) {
+    if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+    backs += packet.hit.Ng_x[i] * packet.ray.dir_x[i] + packet.hit.Ng_y[i] * packet.ray.dir_y[i] +
+                 packet.hit.Ng_z[i] * packet.ray.dir_z[i] >
+             0.0F;
+    found.push_back(meter.at(bvh.face_of(packet.hit.geomID[i], packet.hit.primID[i]),
+                             packet.hit.u[i], packet.hit.v[i]));
+  }
+  if (2 * backs <= kLanes) seen.insert(seen.end(), found.begin(), found.end());
 }
 
 }  // namespace
 
 float suggest_exposure(const Scene& scene, float median_radiance) {
-  Vector3f one = Vector3f::Ones();
-  std::vector<Vector3f> albedo;
-  for (const Material& material : scene.materials)
-    albedo.push_back(
-        mean_linear(material.texture).cwiseProduct(srgb_to_linear(material.base_colour)));
-  std::vector<std::pair<float, float>> radiance_and_area;
-  double total = 0.0;
-  for (std::size_t f = 0; f < scene.triangles.size(); ++f) {
-    const auto& t = scene.triangles[f];
-    const Vector3f &a = scene.positions_m[t[0]], &b = scene.positions_m[t[1]],
-                   &c = scene.positions_m[t[2]];
-    const Vector3f n = (b - a).cross(c - a);
-    const float area = 0.5F * n.norm();
-    if (area <= 0.0F || !shows_into_a_room(scene, (a + b + c) / 3.0F, n.normalized())) continue;
-    Vector3f out = Vector3f::Zero();
-    for (const std::uint32_t v : t)
-      out += (scene.light.empty() ? one : scene.light[v])
-                 .cwiseProduct(scene.colours.empty() ? one : srgb_to_linear(scene.colours[v])) /
-             3.0F;
-    if (!albedo.empty()) out = out.cwiseProduct(albedo[scene.material_of[f]]);
-    radiance_and_area.emplace_back(luminance(out), area);
-    total += area;
-  }
-  std::sort(radiance_and_area.begin(), radiance_and_area.end());
-  double passed = 0.0;
-  for (const auto& [radiance, area] : radiance_and_area) {
-    passed += area;
-    if (passed >= 0.5 * total) return radiance > 0.0F ? median_radiance / radiance : 1.0F;
-  }
-  return 1.0F;
+  if (scene.triangles.empty()) return 1.0F;
+  const FlushDenormals flush;
+  const EmbreeScene bvh(scene, 1, false);
+  const Meter meter(scene);
+  std::vector<float> seen;
+  std::uint64_t name = 0;
+  for (const Bounds& place : places(scene))
+    for (int i = 0; i < kViewpoints; ++i) {
+      const RandomStream stream = RandomStream(0).fork(name++);
+      const Vector3f share(static_cast<float>(stream.uniform(100)),
+                           static_cast<float>(stream.uniform(101)),
+                           static_cast<float>(stream.uniform(102)));
+      const Vector3f eye = place.box.min() + share.cwiseProduct(place.box.sizes());
+      if (place.room == nullptr || inside(*place.room, eye.x(), eye.y()))
+        look_around(bvh, meter, eye, stream, seen);
+    }
+  if (seen.empty()) return 1.0F;
+  const auto middle = seen.begin() + static_cast<std::ptrdiff_t>(seen.size() / 2);
+  std::nth_element(seen.begin(), middle, seen.end());
+  return *middle > 0.0F ? median_radiance / *middle : 1.0F;
 }
 
 }  // namespace mh

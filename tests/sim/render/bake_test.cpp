@@ -118,7 +118,8 @@ TEST(BakeLight, ColourOfATextureBleedsByItsMean) {
 
 TEST(BakeLight, RoomsAreDarkWithoutLightEvenUnderABrightSky) {
   Scene scene = plain_scene();
-  add_box(scene, {0, 0, 0}, {3, 3, 2.5F}, true, 1, 1, 0, 10);  // single sheets: the sky is right behind
+  add_box(scene, {0, 0, 0}, {3, 3, 2.5F}, true, 1, 1, 0,
+          10);  // single sheets: the sky is right behind
   scene.lights.push_back({.kind = Light::Kind::kSky, .colour = {9, 9, 9}});
   scene.lights.push_back(sphere_lamp({1.5F, 1.5F, 2.0F}, 1.0F));
   bake_light(scene);
@@ -169,17 +170,18 @@ TEST(BakeLight, ThreadsChangeNoBitAndSeedsDo) {
   EXPECT_NE(one, baked(1, 4));
 }
 
-TEST(SuggestExposure, BringsTheMedianSurfaceToTheStatedRadiance) {
+TEST(SuggestExposure, BringsWhatIsSeenToTheStatedRadiance) {
   Scene scene = plain_scene({188, 188, 188});
-  add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 1, 0, 8);
+  add_box(scene, {0, 0, 0}, {4, 3, 2.5F}, true, 1, 1);
   scene.light.assign(scene.positions_m.size(), Vector3f::Constant(0.1F));
   const float albedo = srgb_to_linear(std::uint8_t{188});
   EXPECT_NEAR(suggest_exposure(scene) * 0.1F * albedo, 0.2F, 1e-5);
-  // What looks at no room does not count: a bright outer side under the floor.
-  scene.rooms.push_back({"room", {{0, 0}, {1, 0}, {1, 1}, {0, 1}}});
-  add_quad(scene, {5, 0, 0}, {9, 0, 0}, {0, 9, 0}, 2, 1, 0, 1);
+  // What no one in the rooms can see does not count: a large bright floor outside.
+  scene.rooms.push_back({"room", {{0, 0}, {4, 0}, {4, 3}, {0, 3}}});
+  add_quad(scene, {5, 0, 0}, {9, 0, 0}, {0, 9, 0}, 2, 1, 0, 4);
   scene.light.resize(scene.positions_m.size(), Vector3f::Constant(7.0F));
   EXPECT_NEAR(suggest_exposure(scene) * 0.1F * albedo, 0.2F, 1e-5);
+  EXPECT_NEAR(suggest_exposure(scene, 0.1F), 0.5F * suggest_exposure(scene), 1e-5);
   EXPECT_EQ(suggest_exposure(Scene{}), 1.0F);
 }
 
