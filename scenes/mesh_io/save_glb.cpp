@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <assimp/scene.h>
 #include <fmt/format.h>
+
+#include <Eigen/Geometry>
 #include <assimp/Exporter.hpp>
 
 #include <cstdio>
@@ -42,9 +44,25 @@ Eigen::Vector3f vertex_factor(const Scene& scene, std::uint32_t vertex) {
   return factor.matrix();
 }
 
+/// Normals of the scene's vertices, area-weighted over their faces. The exporter joins vertices
+/// that differ in colour alone; normals keep the two sides of an edge, and so their light, apart.
+std::vector<Eigen::Vector3f> vertex_normals(const Scene& scene) {
+  std::vector<Eigen::Vector3f> normals(scene.positions_m.size(), Eigen::Vector3f::Zero());
+  for (const auto& [a, b, c] : scene.triangles) {
+    const Eigen::Vector3f ab = scene.positions_m[b] - scene.positions_m[a];
+    const Eigen::Vector3f ac = scene.positions_m[c] - scene.positions_m[a];
+    const Eigen::Vector3f doubled_area = ab.cross(ac);
+    for (const std::uint32_t vertex : {a, b, c}) normals[vertex] += doubled_area;
+  }
+  for (Eigen::Vector3f& normal : normals)
+    normal = normal.squaredNorm() > 0.0F ? normal.normalized() : Eigen::Vector3f::UnitZ().eval();
+  return normals;
+}
+
 /// The faces as one mesh with its own vertices, in the order in which the faces first use them.
-std::unique_ptr<aiMesh> make_mesh(const Scene& scene, const std::vector<std::size_t>& faces,
-                                  std::uint16_t material, const std::string& name) {
+std::unique_ptr<aiMesh> make_mesh(const Scene& scene, const std::vector<Eigen::Vector3f>& normals,
+                                  const std::vector<std::size_t>& faces, std::uint16_t material,
+                                  const std::string& name) {
   std::map<std::uint32_t, unsigned> own_index;
   std::vector<std::uint32_t> vertices;
   auto mesh = std::make_unique<aiMesh>();
@@ -66,6 +84,7 @@ std::unique_ptr<aiMesh> make_mesh(const Scene& scene, const std::vector<std::siz
   }
   mesh->mNumVertices = static_cast<unsigned>(vertices.size());
   mesh->mVertices = new aiVector3D[vertices.size()];
+  mesh->mNormals = new aiVector3D[vertices.size()];
   mesh->mColors[0] = new aiColor4D[vertices.size()];
   const bool textured = !scene.uvs.empty();
   if (textured) {
@@ -74,6 +93,7 @@ std::unique_ptr<aiMesh> make_mesh(const Scene& scene, const std::vector<std::siz
   }
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     mesh->mVertices[i] = y_up(scene.positions_m[vertices[i]]);
+    mesh->mNormals[i] = y_up(normals[vertices[i]]);
     mesh->mColors[0][i] = colour4(vertex_factor(scene, vertices[i]));
     if (textured) {
       const Eigen::Vector2f& uv = scene.uvs[vertices[i]];
@@ -139,6 +159,7 @@ void add_nodes(const Scene& scene, aiScene& out) {
   for (std::size_t i = 0; i < scene.triangles.size(); ++i)
     nodes[{scene.instance_of[i], scene.class_of[i]}][scene.material_of[i]].push_back(i);
 
+  const std::vector<Eigen::Vector3f> normals = vertex_normals(scene);
   std::vector<aiMesh*> meshes;
   out.mRootNode = new aiNode("scene");
   out.mRootNode->mNumChildren = static_cast<unsigned>(nodes.size());
@@ -153,7 +174,8 @@ void add_nodes(const Scene& scene, aiScene& out) {
     std::size_t slot = 0;
     for (const auto& [material, faces] : faces_by_material) {
       node->mMeshes[slot++] = static_cast<unsigned>(meshes.size());
-      meshes.push_back(make_mesh(scene, faces, material, names.at(key.instance)).release());
+      meshes.push_back(
+          make_mesh(scene, normals, faces, material, names.at(key.instance)).release());
     }
   }
   out.mNumMeshes = static_cast<unsigned>(meshes.size());
