@@ -228,7 +228,7 @@ void build_window(const HousePlan& house, const OpeningPlan& window, MaterialId 
   build_lining(mesh, frame, wall, h, thick + 0.01F, true,
                {{-kProud, 0.002F}, {thick - 0.002F, thick + kProud}});
   // Inner sill.
-  board(mesh, frame, wall.at(h.from - kCasing - 0.01F, -0.05F, h.low - 0.001F),
+  board(mesh, frame, wall.at(h.from - kCasing - 0.01F, -0.028F, h.low - 0.001F),
         wall.at(h.to + kCasing + 0.01F, 0.004F, h.low + kJamb + 0.004F), 0.005F);
   // Sashes: each pane has a frame of its own and a bar across.
   const float a = h.from + kJamb, b = h.to - kJamb, low = h.low + kJamb, high = h.high - kJamb;

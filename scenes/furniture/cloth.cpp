@@ -131,11 +131,11 @@ void coat_rack(Piece& p) {
                                               plain("knit", {150, 66, 52}, 0.6, 102),
                                               plain("fabric", {126, 118, 92}, 0.5, 103)};
   for (int i = 0; i < 3; ++i) {
-    const float x = 0.5F * (w - 0.46F) * static_cast<float>(i - 1);
+    const float x = 0.5F * (w - 0.40F) * static_cast<float>(i - 1);
     p.part(fmt::format("coat_{}", i + 1), "clothes");
     m.push(translation(0, y - 0.105F, 0));
     garment(p, p.fixed(stuffs[static_cast<std::size_t>(i)]), x, z + 0.055F,
-            std::min(0.78F, z - 0.02F), i == 1 ? 0.34F : 0.38F, 0.17F, i != 1);
+            std::min(0.78F, z - 0.02F), i == 1 ? 0.26F : 0.28F, 0.17F, i != 1);
     m.pop();
   }
   p.part("hat", "clothes");

@@ -50,7 +50,7 @@ void table_lamp(Piece& p) {
   const float r = 0.5F * p.size_m.x(), h = p.size_m.z();
   const MaterialId base = p.material("base", plain("ceramic", {176, 152, 118}, 0.4, 94));
   MeshBuilder& m = p.mesh;
-  const float f = 0.58F * h;
+  const float f = 0.52F * h;
   m.lathe(base, {0, 0, 0},
           std::array<Vector2f, 9>{{{0.001F, 0},
                                    {0.50F * r, 0},
