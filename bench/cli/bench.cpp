@@ -6,6 +6,7 @@
 
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/results/json.hpp"
 #include "bench/results/write.hpp"
 #include "bench/run.hpp"
 #include "slam/core/files.hpp"
@@ -20,6 +21,7 @@ struct Options {
   std::optional<int> trials;
   std::optional<std::size_t> frames;
   std::optional<std::string> scene;
+  bool json = false;
 };
 
 void run(const Options& options) {
@@ -43,6 +45,10 @@ void run(const Options& options) {
   const std::vector<RunResult> runs = run_all(suite, world, run_options);
   const auto wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start);
   const std::string table = write_results(out, suite, world, runs, wall.count());
+  if (options.json) {
+    fmt::print("{}\n", results_json(suite, world, runs).dump(2));
+    return;
+  }
   fmt::print("{}\nresults in {} ({})\n", table, out.string(), readable_time(wall.count()));
 }
 
@@ -62,6 +68,7 @@ void add_bench(CLI::App& app) {
       ->add_option("--frames", options->frames, "Cuts the tours after N frames, for a quick look")
       ->check(CLI::Range(1, 100000000));
   command->add_option("--scene", options->scene, "Another scene or mesh file in the suite's place");
+  command->add_flag("--json", options->json, "Prints results.json instead of the table");
   command->footer(
       "Examples:\n  modelhouse bench bench/suites/model_house.yaml --jobs 2\n"
       "  modelhouse bench bench/suites/model_house.yaml --scene house.glb --frames 600");

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
@@ -14,6 +15,7 @@ namespace {
 struct Options {
   std::string suite;
   std::optional<std::size_t> frames;
+  bool json = false;
 };
 
 void print_row(const char* what, std::uint64_t first, std::uint64_t second) {
@@ -21,12 +23,23 @@ void print_row(const char* what, std::uint64_t first, std::uint64_t second) {
              first == second ? "equal" : "DIFFERS");
 }
 
-void run(const Options& options) {
-  const Suite suite = load_suite(options.suite);
-  Progress progress("verify");
-  const Verification v = verify(suite, {.max_frames = options.frames,
-                                        .say = [&](std::string_view stage) { progress.say(stage); },
-                                        .progress = [&](double share) { progress.share(share); }});
+nlohmann::ordered_json to_json(const ExecutionDigests& d) {
+  return {{"scene", hex(d.scene)},       {"path", hex(d.path)},   {"images", hex(d.images)},
+          {"matching", hex(d.matching)}, {"poses", hex(d.poses)}, {"maps", hex(d.maps)},
+          {"results", hex(d.results)}};
+}
+
+void print_json(const Verification& v) {
+  const nlohmann::ordered_json json = {
+      {"jobs_1", to_json(v.first)},
+      {"jobs_4", to_json(v.second)},
+      {"equal", !v.difference},
+      {"first_difference",
+       v.difference ? nlohmann::ordered_json(describe(*v.difference)) : nlohmann::ordered_json()}};
+  fmt::print("{}\n", json.dump(2));
+}
+
+void print_table(const Verification& v) {
   fmt::print("{:<12}{:>20}{:>20}\n", "digest of", "run 1, 1 job", "run 2, 4 jobs");
   print_row("scene", v.first.scene, v.second.scene);
   print_row("path", v.first.path, v.second.path);
@@ -35,12 +48,20 @@ void run(const Options& options) {
   print_row("poses", v.first.poses, v.second.poses);
   print_row("maps", v.first.maps, v.second.maps);
   print_row("results", v.first.results, v.second.results);
-  if (!v.difference) {
-    fmt::print("same input, same bits\n");
-    return;
-  }
-  fmt::print("first difference: {}\n", describe(*v.difference));
-  throw CheckFailed();
+  fmt::print("{}\n", v.difference ? "first difference: " + describe(*v.difference)
+                                  : std::string("same input, same bits"));
+}
+
+void run(const Options& options) {
+  const Suite suite = load_suite(options.suite);
+  Progress progress("verify");
+  RunOptions run_options;
+  run_options.max_frames = options.frames;
+  run_options.say = [&](std::string_view stage) { progress.say(stage); };
+  run_options.progress = [&](double share) { progress.share(share); };
+  const Verification v = verify(suite, run_options);
+  options.json ? print_json(v) : print_table(v);
+  if (v.difference) throw CheckFailed();
 }
 
 }  // namespace
@@ -52,6 +73,7 @@ void add_verify(CLI::App& app) {
   command->add_option("suite", options->suite, "Suite (YAML)")->required();
   command->add_option("--frames", options->frames, "Cuts the tours after N frames")
       ->check(CLI::Range(1, 100000000));
+  command->add_flag("--json", options->json, "Prints JSON");
   command->footer(
       "Example:\n  modelhouse verify bench/suites/model_house.yaml --frames 600\n"
       "Exit code 1 where a bit differs; the first frame and stage are named.");

@@ -100,6 +100,17 @@ View shoot(std::string caption, const Renderer& renderer, const Camera& camera, 
           std::move(frame.classes)};
 }
 
+/// The depth (m) that nine tenths of a view exceed: next to nothing where something is in the way.
+float openness(const View& view) {
+  std::vector<float> depths;
+  for (const float depth : view.depth_m)
+    if (depth > 0) depths.push_back(depth);
+  if (depths.empty()) return 0;
+  const auto tenth = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 10);
+  std::nth_element(depths.begin(), tenth, depths.end());
+  return *tenth;
+}
+
 /// A wide lens (75 degrees), as a person takes pictures of rooms.
 Camera wide_camera() {
   Camera camera;
@@ -139,11 +150,18 @@ std::vector<View> views_of(const Scene& scene, const Renderer& renderer) {
       high = high.cwiseMax(corner);
     }
     const Eigen::Vector2d centre = 0.5 * (low + high);
-    for (const Eigen::Vector2d& corner : {low, high}) {
+    std::vector<View> corners;
+    for (const Eigen::Vector2d& corner :
+         {low, Eigen::Vector2d(high.x(), low.y()), high, Eigen::Vector2d(low.x(), high.y())}) {
       const Eigen::Vector2d eye = centre + 0.8 * (corner - centre);
-      views.push_back(shoot(room.name, renderer, camera,
-                            look_at({eye.x(), eye.y(), kEye_m}, {centre.x(), centre.y(), 0.75})));
+      corners.push_back(shoot(room.name, renderer, camera,
+                              look_at({eye.x(), eye.y(), kEye_m}, {centre.x(), centre.y(), 0.75})));
     }
+    // Furniture may stand in a corner: the two that see farthest show the room.
+    std::stable_sort(corners.begin(), corners.end(),
+                     [](const View& a, const View& b) { return openness(a) > openness(b); });
+    views.push_back(std::move(corners[0]));
+    views.push_back(std::move(corners[1]));
   }
   if (!views.empty()) return views;
 

@@ -28,8 +28,8 @@ cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& vi
 std::vector<View> views_along(const Trajectory& path, const Renderer& renderer,
                               const Camera& camera, std::size_t count);
 
-/// Exact pictures that show a scene to a person: two corners of each room at eye height, or turns
-/// around the middle where the scene has no rooms.
+/// Exact pictures that show a scene to a person: each room from its two most open corners at eye
+/// height, or turns around the middle where the scene has no rooms.
 std::vector<View> views_of(const Scene& scene, const Renderer& renderer);
 
 /// A camera at `eye` that looks at `target`, upright.

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "bench/metrics/trajectory_io.hpp"
+#include "bench/pictures/slice.hpp"
+#include "bench/recorded/tum_folder.hpp"
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TumFolder : public testing::Test {
+ protected:
+  TumFolder() : folder_(fs::temp_directory_path() / ("mh_tum_" + std::to_string(getpid()))) {
+    fs::remove_all(folder_);
+    camera_.width_px = 8;
+    camera_.height_px = 6;
+    camera_.cx_px = 3.5;
+    camera_.cy_px = 2.5;
+  }
+  ~TumFolder() override { fs::remove_all(folder_); }
+
+  RgbdFrame frame(Stamp stamp_ns) const {
+    RgbdFrame f;
+    f.stamp_ns = stamp_ns;
+    f.colour = Grid2d<Rgb8>(8, 6, Rgb8{1, 2, 3});
+    f.colour(7, 5) = {200, 100, 50};
+    f.depth_m = Grid2d<float>(8, 6, 1.25F);
+    f.depth_m(0, 0) = 0;
+    return f;
+  }
+  RenderedFrame exact() const {
+    RenderedFrame f;
+    f.classes = Grid2d<ClassId>(8, 6, ClassId{5});
+    f.classes(2, 1) = 0;
+    f.instances = Grid2d<InstanceId>(8, 6, InstanceId{700});
+    return f;
+  }
+
+  fs::path folder_;
+  Camera camera_;
+};
+
+TEST_F(TumFolder, ReadsBackWhatItWrote) {
+  TumWriter writer(folder_, camera_);
+  const SE3 pose(Eigen::Matrix3d::Identity(), {1, 2, 3});
+  writer.add(frame(0), exact(), pose);
+  writer.add(frame(33'333'333), exact(), pose);
+  EXPECT_FALSE(fs::exists(folder_ / "rgb.txt")) << "an unfinished folder looks finished";
+  writer.finish();
+
+  const RecordedCamera camera = load_recorded_camera(folder_ / "camera.yaml");
+  EXPECT_EQ(camera.camera, camera_);
+  EXPECT_EQ(camera.depth_per_metre, 5000);
+  const std::vector<RecordedFrame> frames = load_tum_folder(folder_);
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_EQ(frames[1].stamp_ns, 33'333'333);
+  const RgbdFrame read = read_frame(frames[1], camera);
+  EXPECT_EQ(read.colour, frame(0).colour);
+  EXPECT_EQ(read.depth_m, frame(0).depth_m);  // 1.25 m is a whole number of units
+  EXPECT_EQ(read.semantics.at(0, 0).most_probable(), 5);
+  EXPECT_EQ(read.semantics.at(2, 1).most_probable(), kVoid);
+  EXPECT_EQ(read_tum(folder_ / "groundtruth.txt").size(), 2u);
+}
+
+TEST_F(TumFolder, NamesWhatIsWrong) {
+  fs::create_directories(folder_);
+  EXPECT_THROW(load_tum_folder(folder_), InputError);
+  std::ofstream(folder_ / "rgb.txt") << "# comment\n0.1 a.png\n0.2\n";
+  std::ofstream(folder_ / "depth.txt") << "0.1 a.png\n";
+  try {
+    load_tum_folder(folder_);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("rgb.txt:3"), std::string::npos) << error.what();
+  }
+  std::ofstream(folder_ / "rgb.txt") << "0.1 a.png\n0.9 b.png\n";
+  const auto frames = load_tum_folder(folder_);
+  ASSERT_EQ(frames.size(), 1u);  // nothing was seen near 0.9 s
+  EXPECT_THROW(read_frame(frames[0], {camera_, 5000}), InputError);
+}
+
+TEST_F(TumFolder, ReadsOrbSlamsOwnCalibration) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "TUM1.yaml")
+      << "%YAML:1.0\n\nCamera.fx: 517.3\nCamera.fy: 516.5\nCamera.cx: 318.6\nCamera.cy: 255.3\n"
+      << "Camera.k1: 0.2624\nCamera.bf: 40.0\nDepthMapFactor: 5000.0\nORBextractor.nFeatures: "
+         "1000\n";
+  const RecordedCamera camera = load_recorded_camera(folder_ / "TUM1.yaml");
+  EXPECT_DOUBLE_EQ(camera.camera.fx_px, 517.3);
+  EXPECT_DOUBLE_EQ(camera.camera.distortion.k1, 0.2624);
+  EXPECT_NEAR(camera.camera.baseline_m, 40.0 / 517.3, 1e-12);
+  std::ofstream(folder_ / "bad.yaml") << "Camera.fx: 517.3\n";
+  EXPECT_THROW(load_recorded_camera(folder_ / "bad.yaml"), InputError);
+}
+
+TEST(Slice, CutsATentIntoItsOutlineAtThatHeight) {
+  // A tent 2 m long over y, 2 m wide and 1 m high: at height h each side is cut at |x| = 1 - h.
+  Scene scene;
+  scene.positions_m = {{-1, 0, 0}, {-1, 2, 0}, {0, 0, 1}, {0, 2, 1}, {1, 0, 0}, {1, 2, 0}};
+  scene.triangles = {{0, 1, 2}, {1, 3, 2}, {4, 2, 5}, {5, 2, 3}};
+  scene.class_of = {1, 1, 2, 2};
+  const std::vector<SliceSegment> segments = slice(scene, 0.25);
+  ASSERT_EQ(segments.size(), 4u);
+  double length = 0;
+  for (const SliceSegment& s : segments) {
+    EXPECT_NEAR(std::abs(s.from_m.x()), 0.75, 1e-6);
+    EXPECT_NEAR(std::abs(s.to_m.x()), 0.75, 1e-6);
+    length += (s.from_m - s.to_m).norm();
+  }
+  EXPECT_NEAR(length, 4.0, 1e-6);
+  EXPECT_EQ(segments[0].class_id, 1);
+  EXPECT_TRUE(slice(scene, 1.5).empty());
+}
+
+}  // namespace
+}  // namespace mh
