@@ -19,11 +19,11 @@ constexpr double kMaxPlanHeight = 1100;
 // Heights at which the house is cut: above tables and below door heads; through seats and beds.
 constexpr double kWallCut_m = 1.2, kFurnitureCut_m = 0.4;
 
-constexpr Rgb8 kInk{35, 38, 45}, kFaint{110, 115, 125}, kWall{55, 58, 66},
+constexpr Rgb8 kInk{35, 38, 45}, kFaint{110, 115, 125}, kRoomName{140, 150, 165}, kWall{55, 58, 66},
     kFurniture{178, 172, 160};
 constexpr Rgb8 kMapFree{236, 241, 246}, kMapOccupied{172, 190, 208};
 constexpr Rgb8 kTruth{46, 125, 80}, kEstimate{226, 120, 30};
-constexpr Rgb8 kX{20, 70, 170}, kGood{200, 30, 90}, kBad{215, 25, 25}, kMissed{140, 140, 150};
+constexpr Rgb8 kX{20, 70, 170}, kGood{165, 45, 165}, kBad{215, 25, 25}, kMissed{140, 140, 150};
 
 struct Bounds {
   Eigen::Vector2d low{1e30, 1e30}, high{-1e30, -1e30};
@@ -98,8 +98,7 @@ void draw_room_names(Canvas& canvas, const PlanView& view, const Scene& scene) {
     for (const Eigen::Vector2d& corner : room.polygon_m) box.add(corner);
     std::string label = room.name;
     std::replace(label.begin(), label.end(), '_', ' ');
-    const cv::Point2d at = view({0.5 * (box.low.x() + box.high.x()), box.high.y()});
-    canvas.text(label, {at.x, at.y + 20}, 11, kFaint, Canvas::Align::kCentre);
+    canvas.text(label, view(0.5 * (box.low + box.high)), 14, kRoomName, Canvas::Align::kCentre);
   }
 }
 

@@ -186,6 +186,8 @@ std::string results_table(const Suite& suite, const std::vector<RunResult>& runs
         "\nsemantic minus plain, level {}: blocks of queries resampled, 95 % intervals, Holm over "
         "these {} comparisons\n",
         level_name(suite.levels[level]), comparisons[level].size());
+    if (suite.trials == 1)
+      text += "  one trial: this holds for these maps; other seeds draw other maps (--trials 10)\n";
     for (const Comparison& c : comparisons[level]) text += comparison_line(c);
   }
   return text;
