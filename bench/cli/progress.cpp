@@ -49,7 +49,7 @@ void Progress::share(double done) {
   const double elapsed =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const std::string to_go =
-      done > 0.005 ? ", " + readable_time(elapsed * (1 - done) / done) + " to go" : "";
+      done > 0.005 && done < 1 ? ", " + readable_time(elapsed * (1 - done) / done) + " to go" : "";
   if (terminal_) {
     constexpr int kBar = 40;
     const int full = static_cast<int>(done * kBar);
