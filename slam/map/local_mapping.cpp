@@ -93,6 +93,19 @@ std::optional<Eigen::Vector3d> triangulate(const Keyframe& a, const Keypoint& ka
   return point;
 }
 
+/// All landmarks that these keyframes see, each once.
+std::vector<LandmarkId> landmarks_of(const Map& map, const std::vector<KeyframeId>& keyframes) {
+  std::vector<std::uint8_t> seen(map.landmarks().size(), 0);
+  std::vector<LandmarkId> result;
+  for (const KeyframeId id : keyframes)
+    for (const LandmarkId l : map.at(id).landmarks)
+      if (l.valid() && seen[l.value] == 0) {
+        seen[l.value] = 1;
+        result.push_back(l);
+      }
+  return result;
+}
+
 void refresh_keyframe(Map& map, KeyframeId keyframe, const MappingContext& context) {
   for (const LandmarkId id : std::vector(map.at(keyframe).landmarks))
     if (id.valid()) map.refresh(id, context.features);
@@ -234,47 +247,22 @@ void fuse_with_neighbours(Map& map, KeyframeId keyframe, const MappingContext& c
   fuse_into(map, keyframe, theirs, context, counts);
 }
 
-void adjust_neighbourhood(Map& map, KeyframeId keyframe, const MappingContext& context) {
-  // Free: the keyframe and its best neighbours, but never the first keyframe, which is the origin.
-  std::vector<KeyframeId> free;
-  if (keyframe.value != 0) free.push_back(keyframe);
-  for (const KeyframeId id : best_neighbours(map, keyframe, kAdjustedNeighbours))
-    if (id.value != 0) free.push_back(id);
-  if (free.empty()) return;
+namespace {
 
+/// Adjusts the free keyframes and all landmarks they see; the fixed ones hold the frame of reference.
+void adjust_keyframes(Map& map, const std::vector<KeyframeId>& free,
+                      const std::vector<KeyframeId>& fixed, const MappingContext& context) {
   std::vector<std::int32_t> pose_of(map.keyframes().size(), -1);
   BundleProblem problem;
   problem.free_poses = static_cast<std::uint32_t>(free.size());
-  for (const KeyframeId id : free) {
+  const auto add_pose = [&](KeyframeId id) {
     pose_of[id.value] = static_cast<std::int32_t>(problem.camera_from_world.size());
     problem.camera_from_world.push_back(map.at(id).camera_from_world);
-  }
-  std::vector<std::uint8_t> seen(map.landmarks().size(), 0);
-  std::vector<LandmarkId> points;
-  for (const KeyframeId id : free)
-    for (const LandmarkId l : map.at(id).landmarks)
-      if (l.valid() && seen[l.value] == 0) {
-        seen[l.value] = 1;
-        points.push_back(l);
-      }
+  };
+  for (const KeyframeId id : free) add_pose(id);
+  for (const KeyframeId id : fixed) add_pose(id);
 
-  // Fixed: the others that see these points, those that see most of them.
-  std::vector<std::int32_t> sees(map.keyframes().size(), 0);
-  for (const LandmarkId l : points)
-    for (const Observation& o : map.at(l).observations)
-      if (pose_of[o.keyframe.value] < 0) ++sees[o.keyframe.value];
-  std::vector<KeyframeId> fixed;
-  for (const Keyframe& k : map.keyframes())
-    if (sees[k.id.value] > 0) fixed.push_back(k.id);
-  std::stable_sort(fixed.begin(), fixed.end(),
-                   [&](KeyframeId a, KeyframeId b) { return sees[a.value] > sees[b.value]; });
-  if (fixed.size() > kFixedKeyframes) fixed.resize(kFixedKeyframes);
-  if (fixed.empty()) return;  // nothing holds the frame of reference
-  for (const KeyframeId id : fixed) {
-    pose_of[id.value] = static_cast<std::int32_t>(problem.camera_from_world.size());
-    problem.camera_from_world.push_back(map.at(id).camera_from_world);
-  }
-
+  const std::vector<LandmarkId> points = landmarks_of(map, free);
   std::vector<Observation> observation_of;
   for (std::uint32_t p = 0; p < points.size(); ++p) {
     const Landmark& l = map.at(points[p]);
@@ -304,6 +292,38 @@ void adjust_neighbourhood(Map& map, KeyframeId keyframe, const MappingContext& c
     if (result.outlier[j] != 0)
       map.erase_observation(points[problem.observations[j].point], observation_of[j].keyframe);
   for (const LandmarkId l : points) map.refresh(l, context.features);
+}
+
+}  // namespace
+
+void adjust_neighbourhood(Map& map, KeyframeId keyframe, const MappingContext& context) {
+  // Free: the keyframe and its best neighbours, but never the first keyframe, which is the origin.
+  std::vector<KeyframeId> free;
+  if (keyframe.value != 0) free.push_back(keyframe);
+  for (const KeyframeId id : best_neighbours(map, keyframe, kAdjustedNeighbours))
+    if (id.value != 0) free.push_back(id);
+  if (free.empty()) return;
+
+  // Fixed: the others that see the same landmarks, those that see most of them.
+  std::vector<std::int32_t> sees(map.keyframes().size(), 0);
+  for (const LandmarkId l : landmarks_of(map, free))
+    for (const Observation& o : map.at(l).observations) ++sees[o.keyframe.value];
+  for (const KeyframeId id : free) sees[id.value] = 0;
+  std::vector<KeyframeId> fixed;
+  for (const Keyframe& k : map.keyframes())
+    if (sees[k.id.value] > 0) fixed.push_back(k.id);
+  if (fixed.empty()) return;  // nothing holds the frame of reference
+  std::stable_sort(fixed.begin(), fixed.end(),
+                   [&](KeyframeId a, KeyframeId b) { return sees[a.value] > sees[b.value]; });
+  if (fixed.size() > kFixedKeyframes) fixed.resize(kFixedKeyframes);
+  adjust_keyframes(map, free, fixed, context);
+}
+
+void adjust_all(Map& map, const MappingContext& context) {
+  std::vector<KeyframeId> free;
+  for (const Keyframe& k : map.keyframes())
+    if (!k.erased && k.id.value != 0) free.push_back(k.id);
+  adjust_keyframes(map, free, {KeyframeId{0}}, context);
 }
 
 void cull_redundant_keyframes(Map& map, KeyframeId newest, const MappingContext& context) {

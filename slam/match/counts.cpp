@@ -12,6 +12,7 @@ std::string_view name(Matcher matcher) {
     case Matcher::kFusion: return "fusion";
     case Matcher::kRelocalizationWords: return "relocalization_words";
     case Matcher::kRelocalizationProjection: return "relocalization_projection";
+    case Matcher::kLoop: return "loop";
     case Matcher::kCount: break;
   }
   return "?";

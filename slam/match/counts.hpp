@@ -16,6 +16,7 @@ enum class Matcher {
   kFusion,
   kRelocalizationWords,
   kRelocalizationProjection,
+  kLoop,
   kCount
 };
 std::string_view name(Matcher matcher);

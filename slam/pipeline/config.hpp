@@ -2,6 +2,7 @@
 #pragma once
 
 #include "slam/features/features.hpp"
+#include "slam/loop/loop.hpp"
 #include "slam/match/config.hpp"
 #include "slam/optimize/bundle.hpp"
 #include "slam/optimize/pose.hpp"
@@ -20,6 +21,7 @@ struct SlamConfig {
   KeyframeConfig keyframe;
   TrackConfig track;
   RelocalizeConfig relocalize;
+  LoopConfig loop;
 };
 
 /// @throws InputError naming field and value.

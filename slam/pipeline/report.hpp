@@ -20,6 +20,7 @@ struct StepReport {
   int keypoints = 0;
   int inliers = 0;
   bool keyframe_added = false;
+  bool loop_closed = false;
   RelocalizationStage relocalization = RelocalizationStage::kNone;
   std::optional<CandidateCounts> candidates;  ///< when relocalization was tried
   MatchCounts matches{};

@@ -30,6 +30,7 @@ struct SlamState {
   std::shared_ptr<const Vocabulary> vocabulary;  // shared: large, immutable
   Map map;
   Tracker tracker;
+  LoopMemory loop_memory;
   std::map<Stamp, TrackedFrame> tracked_frames;  ///< the last attempt at each stamp, if it held
   std::optional<Stamp> last_stamp_ns;            ///< of the last frame fed
 };

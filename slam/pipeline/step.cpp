@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
+#include "slam/loop/loop.hpp"
 #include "slam/map/local_mapping.hpp"
 #include "slam/pipeline/slam.hpp"
 #include "slam/track/track.hpp"
@@ -111,22 +112,26 @@ std::optional<Located> locate(const SlamState& state, const Tracker& tracker, Pr
   return Located{std::move(refined->tracked), std::move(local), std::move(refined->expected)};
 }
 
+/// How the camera moved since the last frame. Taken before mapping, which may move the world.
+void update_velocity(Tracker& tracker, Stamp stamp_ns, const SE3& camera_from_world) {
+  tracker.velocity_per_s.reset();
+  if (!tracker.last || stamp_ns <= tracker.last->stamp_ns) return;
+  const double elapsed_s = static_cast<double>(stamp_ns - tracker.last->stamp_ns) / kSecond_ns;
+  tracker.velocity_per_s =
+      (camera_from_world * tracker.last->camera_from_world.inverse()).log() / elapsed_s;
+}
+
 /// What the next frame is matched against.
 void remember(Tracker& tracker, PreparedFrame&& frame, const SE3& camera_from_world,
               std::vector<LandmarkId> landmarks, KeyframeId reference) {
-  tracker.velocity_per_s.reset();
-  if (tracker.last && frame.stamp_ns > tracker.last->stamp_ns) {
-    const double elapsed_s = static_cast<double>(frame.stamp_ns - tracker.last->stamp_ns) / kSecond_ns;
-    tracker.velocity_per_s =
-        (camera_from_world * tracker.last->camera_from_world.inverse()).log() / elapsed_s;
-  }
   tracker.last = LastFrame{frame.stamp_ns, camera_from_world, std::move(frame.features),
                            std::move(landmarks)};
   tracker.reference = reference;
 }
 
 KeyframeId insert_keyframe(SlamState& state, PreparedFrame& frame, const SE3& camera_from_world,
-                           const std::vector<LandmarkId>& landmarks, MatchCounts& counts) {
+                           const std::vector<LandmarkId>& landmarks, RandomStream stream,
+                           StepReport& report) {
   const SlamConfig& config = state.config;
   const MappingContext context{state.camera, config.features, config.semantics,
                                config.match, config.bundle,   config.keyframe};
@@ -143,7 +148,14 @@ KeyframeId insert_keyframe(SlamState& state, PreparedFrame& frame, const SE3& ca
       state.map.refresh(landmarks[i], config.features);
     }
   add_landmarks_from_depth(state.map, id, context);
-  if (state.map.keyframe_count() > 1) map_keyframe(state.map, id, context, counts);
+  if (state.map.keyframe_count() > 1) map_keyframe(state.map, id, context, report.matches);
+  if (config.loop.enabled)
+    if (const auto loop = detect_loop(state.map, id, state.loop_memory, context, config.relocalize,
+                                      config.loop, stream, report.matches)) {
+      close_loop(state.map, *loop, context, config.loop, report.matches);
+      report.loop_closed = true;
+    }
+  report.keyframe_added = true;
   state.tracker.frames_since_keyframe = 0;
   return id;
 }
@@ -153,11 +165,10 @@ StepReport initialize(SlamState& state, PreparedFrame frame, StepReport report) 
                                         [](const Keypoint& k) { return k.depth_m > 0; });
   if (with_depth < kMinInitialPoints) return report;
   const std::vector<LandmarkId> none(frame.features.size());
-  const KeyframeId id = insert_keyframe(state, frame, SE3(), none, report.matches);
+  const KeyframeId id = insert_keyframe(state, frame, SE3(), none, RandomStream(), report);
   state.tracked_frames[frame.stamp_ns] = {id, SE3()};
   report.status = TrackStatus::kInitialized;
   report.world_from_camera = SE3();
-  report.keyframe_added = true;
   report.inliers = static_cast<int>(with_depth);
   remember(state.tracker, std::move(frame), SE3(), state.map.at(id).landmarks, id);
   return report;
@@ -200,6 +211,7 @@ StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream) {
   for (const LandmarkId id : located->tracked.landmarks)
     if (id.valid()) state.map.count_found(id);
 
+  update_velocity(state.tracker, frame.stamp_ns, located->tracked.camera_from_world);
   ++state.tracker.frames_since_keyframe;
   KeyframeId reference = located->local.reference;
   SE3 camera_from_world = located->tracked.camera_from_world;
@@ -207,10 +219,9 @@ StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream) {
   report.inliers = located->tracked.inliers;
   if (needs_keyframe({camera_from_world, landmarks, report.inliers}, prepared.features, state.map,
                      reference, state.tracker.frames_since_keyframe, state.config.keyframe)) {
-    reference = insert_keyframe(state, prepared, camera_from_world, landmarks, report.matches);
+    reference = insert_keyframe(state, prepared, camera_from_world, landmarks, stream.fork(1), report);
     camera_from_world = state.map.at(reference).camera_from_world;
     landmarks = state.map.at(reference).landmarks;
-    report.keyframe_added = true;
   }
 
   report.world_from_camera = camera_from_world.inverse();
@@ -236,6 +247,7 @@ StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& 
     return report;
   }
   report.inliers = located->tracked.inliers;
+  update_velocity(tracker, frame.stamp_ns, located->tracked.camera_from_world);
   report.world_from_camera = located->tracked.camera_from_world.inverse();
   remember(tracker, std::move(prepared), located->tracked.camera_from_world,
            std::move(located->tracked.landmarks), located->local.reference);

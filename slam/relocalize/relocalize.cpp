@@ -41,9 +41,10 @@ class CandidateTrial {
  public:
   CandidateTrial(const Query& query, const Map& map, const Camera& camera,
                  const FeatureConfig& features, const SemanticConfig& semantics,
-                 const MatchConfig& match, const RelocalizeConfig& config, MatchCounts& counts)
+                 const MatchConfig& match, const RelocalizeConfig& config, MatchCounts& counts,
+                 PlaceMatchers matchers)
       : query_(query), map_(map), camera_(camera), features_(features), semantics_(semantics),
-        match_(match), config_(config), counts_(counts) {}
+        match_(match), config_(config), counts_(counts), matchers_(matchers) {}
 
   Attempt run(KeyframeId candidate, RandomStream stream) {
     Attempt attempt;
@@ -80,7 +81,7 @@ class CandidateTrial {
     const auto matches = match_by_words(
         keyframe.features, keyframe.words, with_landmark, query_.features, query_.words, all,
         static_cast<float>(match_.max_distance), static_cast<float>(match_.ratio),
-        SemanticMatcher(semantics_, at(counts_, Matcher::kRelocalizationWords)));
+        SemanticMatcher(semantics_, at(counts_, matchers_.words)));
     std::vector<LandmarkId> landmarks(query_.features.size());
     for (const FeatureMatch& m : matches) landmarks[m.b] = keyframe.landmarks[m.a];
     count = static_cast<int>(matches.size());
@@ -142,7 +143,7 @@ class CandidateTrial {
     const auto found = match_by_projection(
         targets, query_.features, query_.grid, taken,
         {.max_distance = max_distance, .check_angle = true},
-        SemanticMatcher(semantics_, at(counts_, Matcher::kRelocalizationProjection)));
+        SemanticMatcher(semantics_, at(counts_, matchers_.projection)));
     for (std::size_t t = 0; t < found.size(); ++t)
       if (found[t] >= 0) attempt.landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
   }
@@ -155,6 +156,7 @@ class CandidateTrial {
   const MatchConfig& match_;
   const RelocalizeConfig& config_;
   MatchCounts& counts_;
+  PlaceMatchers matchers_;
 };
 
 }  // namespace
@@ -191,29 +193,42 @@ CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedV
       config.alpha, config.beta);
 }
 
-RelocalizationResult relocalize(const Query& query, const Map& map, const Camera& camera,
-                                const FeatureConfig& features, const SemanticConfig& semantics,
-                                const MatchConfig& match, const RelocalizeConfig& config,
-                                RandomStream stream, MatchCounts& counts) {
+RelocalizationResult try_candidates(const Query& query, std::span<const KeyframeId> candidates,
+                                    const Map& map, const Camera& camera,
+                                    const FeatureConfig& features, const SemanticConfig& semantics,
+                                    const MatchConfig& match, const RelocalizeConfig& config,
+                                    RandomStream stream, MatchCounts& counts,
+                                    PlaceMatchers matchers) {
   RelocalizationResult result;
-  const auto selection = select_keyframes(map, query.words.vector, semantics);
-  result.candidates = {.keyframes = map.keyframe_count(),
-                       .c1 = selection.c1,
-                       .c2 = selection.c2,
-                       .c3 = selection.c3,
-                       .final = static_cast<int>(selection.candidates.size()),
-                       .label_mass = query.words.vector.label_mass()};
-  CandidateTrial trial(query, map, camera, features, semantics, match, config, counts);
-  for (const auto& candidate : selection.candidates) {
-    Attempt attempt = trial.run(candidate.keyframe, stream.fork(candidate.keyframe.value));
+  CandidateTrial trial(query, map, camera, features, semantics, match, config, counts, matchers);
+  for (const KeyframeId candidate : candidates) {
+    Attempt attempt = trial.run(candidate, stream.fork(candidate.value));
     result.stage = std::max(result.stage, attempt.stage);
     if (attempt.stage != RelocalizationStage::kVerified) continue;
     result.camera_from_world = attempt.camera_from_world;
     result.landmarks = std::move(attempt.landmarks);
     result.inliers = attempt.inliers;
-    result.keyframe = candidate.keyframe;
+    result.keyframe = candidate;
     break;
   }
+  return result;
+}
+
+RelocalizationResult relocalize(const Query& query, const Map& map, const Camera& camera,
+                                const FeatureConfig& features, const SemanticConfig& semantics,
+                                const MatchConfig& match, const RelocalizeConfig& config,
+                                RandomStream stream, MatchCounts& counts) {
+  const auto selection = select_keyframes(map, query.words.vector, semantics);
+  std::vector<KeyframeId> candidates;
+  for (const auto& candidate : selection.candidates) candidates.push_back(candidate.keyframe);
+  RelocalizationResult result = try_candidates(query, candidates, map, camera, features, semantics,
+                                               match, config, stream, counts);
+  result.candidates = {.keyframes = map.keyframe_count(),
+                       .c1 = selection.c1,
+                       .c2 = selection.c2,
+                       .c3 = selection.c3,
+                       .final = static_cast<int>(candidates.size()),
+                       .label_mass = query.words.vector.label_mass()};
   return result;
 }
 

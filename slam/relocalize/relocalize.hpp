@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -54,8 +55,23 @@ struct RelocalizationResult {
 CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedVector& query,
                                                 const SemanticConfig& config);
 
-/// Finds the camera in the map without any guess: candidate keyframes, matches by words, PnP with
-/// RANSAC, refinement, guided search. The first candidate (in order of score) that holds wins.
+/// Which matchers a search reports under: relocalization and loop closing count apart.
+struct PlaceMatchers {
+  Matcher words = Matcher::kRelocalizationWords;
+  Matcher projection = Matcher::kRelocalizationProjection;
+};
+
+/// Tries candidate keyframes in order: matches by words, PnP with RANSAC, refinement, guided search.
+/// The first that holds wins; `candidates` of the result stays empty.
+RelocalizationResult try_candidates(const Query& query, std::span<const KeyframeId> candidates,
+                                    const Map& map, const Camera& camera,
+                                    const FeatureConfig& features, const SemanticConfig& semantics,
+                                    const MatchConfig& match, const RelocalizeConfig& config,
+                                    RandomStream stream, MatchCounts& counts,
+                                    PlaceMatchers matchers = {});
+
+/// Finds the camera in the map without any guess: Algorithm 1 chooses the candidates, in order of
+/// score.
 RelocalizationResult relocalize(const Query& query, const Map& map, const Camera& camera,
                                 const FeatureConfig& features, const SemanticConfig& semantics,
                                 const MatchConfig& match, const RelocalizeConfig& config,

@@ -94,6 +94,16 @@ AugmentedVector augmented_vector(std::span<const Label> labels, std::span<const 
   return vector;
 }
 
+/// The same frame without its labels: words alone, normalised anew.
+inline AugmentedVector words_alone(const AugmentedVector& vector) {
+  AugmentedVector plain;
+  plain.words = vector.words;
+  double sum = 0;
+  for (const WeightedMember& member : plain.words) sum += member.weight;
+  for (WeightedMember& member : plain.words) member.weight /= sum;
+  return plain;
+}
+
 /// ||f, k||_1 of the paper as a similarity: 1 - |f - k|_1 / 2 over normalised vectors, in [0, 1];
 /// 1 for equal vectors, 0 where nothing is shared (Nister and Stewenius, CVPR 2006). Summed over
 /// the shared members alone: |f - k|_1 = 2 - sum(|f| + |k| - |f - k|), so 1 - |f - k|_1 / 2 is the

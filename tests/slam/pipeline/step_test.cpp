@@ -12,14 +12,14 @@ namespace {
 
 using testing_support::BoxRoom;
 
-constexpr int kTurnFrames = 120;
+constexpr int kTurnFrames = 240;
 constexpr Stamp kFrame_ns = 33333333;
 
 std::shared_ptr<const Vocabulary> vocabulary() {
   static const auto trained = [] {
     std::vector<std::vector<Descriptor>> images;
     for (int i = 0; i < 12; ++i)
-      images.push_back(extract(BoxRoom::render(BoxRoom::round_trip(10 * i + 5, kTurnFrames), 0),
+      images.push_back(extract(BoxRoom::render(BoxRoom::round_trip(20 * i + 5, kTurnFrames), 0),
                                BoxRoom::camera(), {.count = 500}).descriptors);
     return std::make_shared<const Vocabulary>(
         Vocabulary::train(images, {.branching = 10, .depth = 3}));
@@ -59,7 +59,7 @@ Drive run(const SemanticConfig& semantics, int frames, bool labels = true) {
 
 /// One and a quarter turns with labels on: shared by the tests that only look.
 const Drive& mapped() {
-  static const Drive result = run(SemanticConfig{}, 150);
+  static const Drive result = run(SemanticConfig{}, 300);
   return result;
 }
 
@@ -67,24 +67,32 @@ TEST(Step, TracksANoiseFreeRoomToMillimetres) {
   const Drive& r = mapped();
   r.state.map.check_invariants();
   const Trajectory estimate = trajectory(r.state);
-  ASSERT_EQ(estimate.size(), 150U);
+  ASSERT_EQ(estimate.size(), 300U);
   const SE3 world_from_origin = BoxRoom::round_trip(0, kTurnFrames);
   double sum2 = 0;
-  for (int i = 0; i < 150; ++i) {
+  for (int i = 0; i < 300; ++i) {
     EXPECT_EQ(estimate[static_cast<std::size_t>(i)].stamp_ns, i * kFrame_ns);
     const SE3 error = (world_from_origin * estimate[static_cast<std::size_t>(i)].world_from_camera).inverse() *
                       BoxRoom::round_trip(i, kTurnFrames);
     sum2 += error.translation().squaredNorm();
   }
-  // Depth is exact and corners are found to a fraction of a pixel: at 2 m and f = 288 px a tenth of
-  // a pixel is 0.7 mm; frames average over hundreds of corners but drift adds up over a turn.
-  EXPECT_LT(std::sqrt(sum2 / 150), 0.005);
+  // Corners at f = 288 px are found to some 0.4 px, 3 mm at 2 m; hundreds of them average that out
+  // within a frame, but not what drifts over a turn of 240 frames until it closes on itself.
+  EXPECT_LT(std::sqrt(sum2 / 300), 0.015);
 }
 
 TEST(Step, EveryMatcherMeetsLabelsThatDisagree) {
-  Drive r = run(SemanticConfig{}, 30);
+  // Without depth on one side, landmarks there can only come from triangulation.
+  Drive r{make_slam(BoxRoom::camera(), settings(SemanticConfig{}), vocabulary()), {}, {}};
+  for (int i = 0; i < 60; ++i) {
+    RgbdFrame half = frame(i);
+    for (int y = 0; y < half.depth_m.height(); ++y)
+      for (int x = 0; x < half.depth_m.width() / 2; ++x) half.depth_m(x, y) = 0;
+    const StepReport report = step(r.state, half, RandomStream(7).fork(i));
+    for (std::size_t m = 0; m < r.counts.size(); ++m) r.counts[m] += report.matches[m];
+  }
   // Tracking by the reference keyframe happens when the motion model fails: make it fail.
-  RgbdFrame jump = BoxRoom::render(BoxRoom::round_trip(34, kTurnFrames), 31 * kFrame_ns);
+  RgbdFrame jump = BoxRoom::render(BoxRoom::round_trip(66, kTurnFrames), 61 * kFrame_ns);
   r.state.tracker.velocity_per_s = Vector6d::Constant(40.0);
   const StepReport report = step(r.state, jump, RandomStream(7));
   for (std::size_t m = 0; m < r.counts.size(); ++m) r.counts[m] += report.matches[m];
@@ -96,6 +104,37 @@ TEST(Step, EveryMatcherMeetsLabelsThatDisagree) {
   for (const Matcher m : {Matcher::kMotionModel, Matcher::kReferenceKeyframe, Matcher::kLocalMap,
                           Matcher::kTriangulation, Matcher::kFusion, Matcher::kRelocalizationWords})
     EXPECT_GT(at(r.counts, m).penalised, 0) << name(m);
+}
+
+// A whole turn without the local map's look around: what comes back into view is a loop.
+TEST(Loop, IsFoundAndClosedWhereTheTurnMeetsItsBeginning) {
+  SlamConfig config = settings(SemanticConfig{});
+  config.track.near_distance_m = 0;
+  SlamState state = make_slam(BoxRoom::camera(), config, vocabulary());
+  const SE3 world_from_origin = BoxRoom::round_trip(0, kTurnFrames);
+  const auto error_m = [&](int i) {
+    const Trajectory estimate = trajectory(state);
+    return (world_from_origin * estimate[static_cast<std::size_t>(i)].world_from_camera.translation() -
+            BoxRoom::round_trip(i, kTurnFrames).translation()).norm();
+  };
+  int closed_at = -1;
+  double before_m = 0, after_m = 0;
+  std::int64_t penalised = 0;
+  for (int i = 0; i < 300 && closed_at < 0; ++i) {
+    if (i > 0) before_m = error_m(i - 1);
+    const StepReport report = step(state, frame(i), RandomStream(7).fork(i));
+    ASSERT_NE(report.status, TrackStatus::kLost) << i;
+    penalised += report.matches[static_cast<std::size_t>(Matcher::kLoop)].penalised;
+    if (report.loop_closed) {
+      closed_at = i;
+      after_m = error_m(i);
+    }
+  }
+  state.map.check_invariants();
+  EXPECT_GT(closed_at, 180) << "a loop was seen where there is none, or never";
+  EXPECT_GT(penalised, 0);
+  EXPECT_LT(after_m, 0.01) << "before: " << before_m;
+  EXPECT_LE(after_m, before_m);
 }
 
 TEST(Step, SameInputSameBits) {
@@ -147,14 +186,14 @@ TEST(Localize, FindsFramesThatWereNeverMappedAndChangesNothing) {
   const Drive& r = mapped();
   const std::uint64_t digest = r.state.map.digest();
   const SE3 world_from_origin = BoxRoom::round_trip(0, kTurnFrames);
-  for (const double i : {7.5, 40.5, 99.5}) {
+  for (const double i : {7.5, 40.5, 199.5}) {
     const SE3 truth = BoxRoom::pose(3 + 0.8 * std::cos(2 * M_PI * i / kTurnFrames),
                                     2.5 + 0.7 * std::sin(2 * M_PI * i / kTurnFrames),
                                     2 * M_PI * i / kTurnFrames);
     Tracker tracker;
     const StepReport report = localize(r.state, tracker, BoxRoom::render(truth, 0), RandomStream(5));
     ASSERT_EQ(report.status, TrackStatus::kRelocalized) << name(report.relocalization);
-    EXPECT_LT((world_from_origin * *report.world_from_camera * truth.inverse()).log().norm(), 0.02);
+    EXPECT_LT((world_from_origin * *report.world_from_camera * truth.inverse()).log().norm(), 0.04);
     EXPECT_TRUE(tracker.tracking());
   }
   EXPECT_EQ(r.state.map.digest(), digest);

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "slam/map/local_mapping.hpp"
+#include "slam/relocalize/relocalize.hpp"
+
+namespace mh {
+
+struct LoopConfig {
+  bool enabled = true;
+  bool augmented = false;      ///< candidates by equation 1 with labels; else by words alone
+  int min_gap = 10;            ///< keyframes between the two ends, at least
+  int consecutive = 2;         ///< keyframes in a row that must tell of the same drift
+  double same_drift_m = 0.10;  ///< what counts as the same
+  double same_drift_rad = 0.05;
+  double negligible_m = 0.01;  ///< below, landmarks are joined but poses stay
+  double negligible_rad = 0.003;
+};
+
+/// What loop detection remembers between keyframes.
+struct LoopMemory {
+  std::optional<SE3>
+      drift;       ///< world_from_world: where the last loop put the camera, from where it was
+  int streak = 0;  ///< keyframes in a row that agreed on it
+};
+
+/// A place recognised: the keyframe as seen by a part of the map that it shares nothing with.
+struct Loop {
+  KeyframeId keyframe;                ///< the newest
+  KeyframeId old_keyframe;            ///< where it was recognised
+  SE3 camera_from_world;              ///< the newest keyframe's pose by the old landmarks
+  std::vector<LandmarkId> landmarks;  ///< old landmarks per feature of the newest keyframe
+};
+
+/// Looks for the newest keyframe among those that share nothing with it: candidates by words
+/// (equations 3 to 6), geometric check as in relocalization, agreement over consecutive keyframes.
+std::optional<Loop> detect_loop(const Map& map, KeyframeId newest, LoopMemory& memory,
+                                const MappingContext& context, const RelocalizeConfig& relocalize,
+                                const LoopConfig& config, RandomStream stream, MatchCounts& counts);
+
+/// Closes a loop: the drift is spread over the graph of keyframes, landmarks move along, the two
+/// ends' landmarks become one, everything is adjusted together.
+void close_loop(Map& map, const Loop& loop, const MappingContext& context, const LoopConfig& config,
+                MatchCounts& counts);
+
+}  // namespace mh
