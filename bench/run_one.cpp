@@ -14,9 +14,10 @@ namespace {
 enum StreamName : std::uint64_t { kMapping = 1, kHeldOut = 2, kSecondTour = 3 };
 
 /// Frames of one path as one run sees them.
-FrameSource source(FrameStudio& studio, const RunSpec& spec, const RunTamper& tamper) {
-  return [&studio, &spec, &tamper](std::size_t index, RandomStream noise) {
-    RgbdFrame frame = studio.frame(index, noise, spec.labels);
+FrameSource source(FrameStudio& studio, const RunSpec& spec, const RunTamper& tamper,
+                   FrameStudio::Following following = {}) {
+  return [&studio, &spec, &tamper, following](std::size_t index, RandomStream noise) {
+    RgbdFrame frame = studio.frame(index, noise, spec.labels, following);
     if (tamper.frame) tamper.frame(spec, index, frame);
     return frame;
   };
@@ -54,12 +55,17 @@ RunResult run_one(const RunSpec& spec, const Suite& suite, std::unique_ptr<Syste
   run.spec = spec;
 
   const FrameSource frames = source(place.mapping, spec, tamper);
+  const FrameSource mapped_frames = source(place.mapping, spec, tamper, [&](std::size_t index) {
+    do ++index;
+    while (is_test_frame(index, suite.protocol));
+    return index;
+  });
   KeyframeDepths depths;
   run.mapping = map_sequence(
       system, place.mapping.size(),
       [&](std::size_t index, RandomStream noise) {
         advance(index);
-        return frames(index, noise);
+        return mapped_frames(index, noise);
       },
       suite.protocol, stream.fork(kMapping),
       [&](const MappedFrame& call, const RgbdFrame& frame, const StepReport&) {

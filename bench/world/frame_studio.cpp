@@ -2,8 +2,17 @@
 #include "bench/world/frame_studio.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 namespace mh {
+namespace {
+
+template <class Future>
+bool ready(const Future& future) {
+  return future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+}  // namespace
 
 FrameStudio::FrameStudio(std::shared_ptr<const Renderer> renderer, Camera camera,
                          std::vector<TimedPose> world_from_camera, SensorConfig sensors,
@@ -14,39 +23,50 @@ FrameStudio::FrameStudio(std::shared_ptr<const Renderer> renderer, Camera camera
       sensors_(sensors),
       kept_(kept) {}
 
-RgbdFrame FrameStudio::frame(std::size_t index, RandomStream noise, LabelMode labels) {
-  const std::shared_ptr<const Shot> picture = shot(index, noise);
+RgbdFrame FrameStudio::frame(std::size_t index, RandomStream noise, LabelMode labels,
+                             const Following& following) {
+  Claim claimed = claim(index, noise);
+  if (claimed.to_make) {
+    make(std::move(*claimed.to_make), index, noise);
+  } else if (following) {
+    constexpr int kAhead = 4;
+    std::size_t next = following(index);
+    for (int k = 0; k < kAhead && next < size() && !ready(claimed.shot); ++k) {
+      Claim ahead = claim(next, noise);
+      if (ahead.to_make) make(std::move(*ahead.to_make), next, noise);
+      next = following(next);
+    }
+  }
+  const std::shared_ptr<const Shot> picture = claimed.shot.get();
   RgbdFrame frame = picture->unlabelled;
   if (labels != LabelMode::kNone) frame.semantics = label_image(picture->truth, labels);
   return frame;
 }
 
-std::shared_ptr<const FrameStudio::Shot> FrameStudio::shot(std::size_t index, RandomStream noise) {
+FrameStudio::Claim FrameStudio::claim(std::size_t index, RandomStream noise) {
   const Key key{index, noise.key()};
+  const std::lock_guard lock(mutex_);
+  const auto found = std::find_if(shots_.begin(), shots_.end(),
+                                  [&](const auto& entry) { return entry.first == key; });
+  if (found != shots_.end()) return {found->second, std::nullopt};
   std::promise<std::shared_ptr<const Shot>> promise;
-  {
-    std::unique_lock lock(mutex_);
-    const auto found = std::find_if(shots_.begin(), shots_.end(),
-                                    [&](const auto& entry) { return entry.first == key; });
-    if (found != shots_.end()) {
-      const SharedShot known = found->second;
-      lock.unlock();
-      return known.get();
-    }
-    shots_.emplace_back(key, promise.get_future().share());
-    if (shots_.size() > kept_) shots_.pop_front();
-  }
+  SharedShot shot = promise.get_future().share();
+  shots_.emplace_back(key, shot);
+  if (shots_.size() > kept_) shots_.pop_front();
+  return {std::move(shot), std::move(promise)};
+}
+
+void FrameStudio::make(std::promise<std::shared_ptr<const Shot>> promise, std::size_t index,
+                       RandomStream noise) const {
   try {
     auto made = std::make_shared<Shot>();
     const TimedPose& pose = path_[index];
     made->truth = renderer_->render(camera_, pose.world_from_camera);
     made->unlabelled =
         sense(made->truth, camera_, sensors_, LabelMode::kNone, noise.fork(index), pose.stamp_ns);
-    promise.set_value(made);
-    return made;
+    promise.set_value(std::move(made));
   } catch (...) {
-    promise.set_exception(std::current_exception());
-    throw;
+    promise.set_exception(std::current_exception());  // reaches everybody who waits for it
   }
 }
 

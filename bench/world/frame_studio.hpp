@@ -2,9 +2,11 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <future>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -29,7 +31,13 @@ class FrameStudio {
   const Camera& camera() const { return camera_; }
   const std::vector<TimedPose>& path() const { return path_; }
 
-  RgbdFrame frame(std::size_t index, RandomStream noise, LabelMode labels);
+  /// The frame after a given one in the order in which they are asked for; size() or more: none.
+  using Following = std::function<std::size_t(std::size_t)>;
+
+  /// @param following  lets a caller who would wait while another makes this very picture make one
+  ///                   of the next ones instead; empty: it waits
+  RgbdFrame frame(std::size_t index, RandomStream noise, LabelMode labels,
+                  const Following& following = {});
 
  private:
   struct Shot {
@@ -39,7 +47,14 @@ class FrameStudio {
   using Key = std::pair<std::size_t, std::uint64_t>;
   using SharedShot = std::shared_future<std::shared_ptr<const Shot>>;
 
-  std::shared_ptr<const Shot> shot(std::size_t index, RandomStream noise);
+  /// The picture's future, and the promise to keep where the caller is to make it.
+  struct Claim {
+    SharedShot shot;
+    std::optional<std::promise<std::shared_ptr<const Shot>>> to_make;
+  };
+  Claim claim(std::size_t index, RandomStream noise);
+  void make(std::promise<std::shared_ptr<const Shot>> promise, std::size_t index,
+            RandomStream noise) const;
 
   std::shared_ptr<const Renderer> renderer_;  // shared: one BVH serves every path of a scene
   Camera camera_;
