@@ -45,6 +45,8 @@ int main(int argc, char** argv) {
     return kGood;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty())
+      return fail(kBadInput, fmt::format("'{}' is no subcommand; see modelhouse --help", argv[1]));
     return fail(kBadInput, error.what());
   } catch (const mh::cli::CheckFailed&) {
     return kCheckFailed;

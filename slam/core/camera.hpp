@@ -24,8 +24,8 @@ struct Camera {
   /// its weight. 0.075 m: PrimeSense, Khoshelham and Elberink, Sensors 2012.
   double baseline_m = 0.075;
   /// Standard deviation of that disparity beside a keypoint's own (1 px at octave 0, growing alike:
-  /// a keypoint out of place takes its depth from there). 0.1 px: an Xtion's 0.0019 z^2 m, Nguyen et al.,
-  /// 3DIMPVT 2012, at fx = 577 px.
+  /// a keypoint out of place takes its depth from there). 0.1 px: an Xtion's 0.0019 z^2 m, Nguyen
+  /// et al., 3DIMPVT 2012, at fx = 577 px.
   double disparity_sigma_px = 0.1;
 
   /// Pixel (undistorted) of a point in front of the camera; its z must be positive.

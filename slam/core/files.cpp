@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <fstream>
 #include <sstream>
 #include <system_error>
@@ -30,16 +31,16 @@ void make_output_folder(const fs::path& folder) {
 }
 
 void write_atomically(const fs::path& file, const std::function<void(const fs::path&)>& write) {
-  const fs::path temporary =
-      file.parent_path() /
-      fmt::format(".{}.{}.tmp{}", file.stem().string(), getpid(), file.extension().string());
+  const fs::path temporary = file.parent_path() / fmt::format(".{}.{}.tmp{}", file.stem().string(),
+                                                              getpid(), file.extension().string());
   std::error_code error;
   try {
     write(temporary);
     if (!fs::exists(temporary, error))
       throw InputError(fmt::format("{}: cannot be written", file.string()));
     fs::rename(temporary, file, error);
-    if (error) throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
+    if (error)
+      throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
   } catch (...) {
     fs::remove(temporary, error);
     throw;
@@ -50,7 +51,12 @@ void write_atomically(const fs::path& file, std::string_view content) {
   write_atomically(file, [&](const fs::path& temporary) {
     std::ofstream out(temporary, std::ios::binary);
     out.write(content.data(), static_cast<std::streamsize>(content.size()));
-    if (!out.flush()) throw InputError(fmt::format("{}: cannot be written", file.string()));
+    if (!out.flush()) {
+      if (errno == ENOSPC)
+        throw MachineError(
+            fmt::format("{}: the disk is full: make room and run again", file.string()));
+      throw InputError(fmt::format("{}: cannot be written", file.string()));
+    }
   });
 }
 

@@ -14,7 +14,8 @@ void make_output_folder(const std::filesystem::path& folder);
 
 /// Calls `write` with a temporary path beside `file`, then renames it into place: readers see the
 /// old file or the whole new one. The temporary is removed on any failure, and keeps the ending of
-/// `file` (image writers choose the format by it). @throws InputError if it cannot be written.
+/// `file` (image writers choose the format by it). @throws InputError if it cannot be written;
+/// MachineError if the disk is full.
 void write_atomically(const std::filesystem::path& file,
                       const std::function<void(const std::filesystem::path&)>& write);
 void write_atomically(const std::filesystem::path& file, std::string_view content);

@@ -15,7 +15,8 @@ class Grid2d {
  public:
   Grid2d() = default;
   Grid2d(int width, int height, T fill = T{})
-      : width_(width), height_(height),
+      : width_(width),
+        height_(height),
         data_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill) {
     assert(width >= 0 && height >= 0);
   }

@@ -67,13 +67,22 @@ constexpr std::array kClasses = {
 };
 
 constexpr std::array<std::pair<std::string_view, ClassId>, 9> kSynonyms = {{
-    {"tv", 25}, {"refrigerator", 24}, {"fridge", 24}, {"couch", 6}, {"dining table", 7},
-    {"book", 23}, {"plant", 43}, {"shelf", 15}, {"backpack", 37},
+    {"tv", 25},
+    {"refrigerator", 24},
+    {"fridge", 24},
+    {"couch", 6},
+    {"dining table", 7},
+    {"book", 23},
+    {"plant", 43},
+    {"shelf", 15},
+    {"backpack", 37},
 }};
 
 }  // namespace
 
-std::span<const ClassInfo> classes() { return kClasses; }
+std::span<const ClassInfo> classes() {
+  return kClasses;
+}
 
 std::optional<ClassId> class_by_name(std::string_view name) {
   for (const ClassInfo& info : kClasses)

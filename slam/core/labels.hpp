@@ -19,9 +19,9 @@ inline constexpr ClassId kBackground = 41;
 
 struct ClassInfo {
   ClassId id = kVoid;
-  std::string_view name;      ///< lower case, as in NYU40 or COCO
-  ClassId nyu40 = kVoid;      ///< the NYU40 id that stands for it in NYU40/ScanNet files
-  int coco80 = -1;            ///< index among the 80 COCO detection classes, -1 = none
+  std::string_view name;             ///< lower case, as in NYU40 or COCO
+  ClassId nyu40 = kVoid;             ///< the NYU40 id that stands for it in NYU40/ScanNet files
+  int coco80 = -1;                   ///< index among the 80 COCO detection classes, -1 = none
   std::uint8_t r = 0, g = 0, b = 0;  ///< drawing colour
 };
 

@@ -14,8 +14,7 @@ constexpr double kSmallAngle_rad = 1e-5;
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi) {
   const double angle = phi.norm();
   const Eigen::Matrix3d skew = hat(phi);
-  if (angle < kSmallAngle_rad)
-    return Eigen::Matrix3d::Identity() + 0.5 * skew + skew * skew / 6.0;
+  if (angle < kSmallAngle_rad) return Eigen::Matrix3d::Identity() + 0.5 * skew + skew * skew / 6.0;
   const double a2 = angle * angle;
   return Eigen::Matrix3d::Identity() + (1.0 - std::cos(angle)) / a2 * skew +
          (angle - std::sin(angle)) / (a2 * angle) * skew * skew;

@@ -16,9 +16,9 @@ Eigen::Matrix3d so3_exp(const Eigen::Vector3d& rotation_vector_rad);
 /// Rotation vector (rad, norm at most pi) of a rotation matrix.
 Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation);
 
-/// A rigid transform, named target_from_source: point_in_target = target_from_source * point_in_source.
-/// Tangent vectors are (translation part rho, rotation part phi), Barfoot, "State Estimation for
-/// Robotics", section 7.1.
+/// A rigid transform, named target_from_source: point_in_target = target_from_source *
+/// point_in_source. Tangent vectors are (translation part rho, rotation part phi), Barfoot, "State
+/// Estimation for Robotics", section 7.1.
 class SE3 {
  public:
   SE3() : rotation_(Eigen::Matrix3d::Identity()), translation_(Eigen::Vector3d::Zero()) {}
@@ -31,9 +31,7 @@ class SE3 {
   static SE3 exp(const Vector6d& tangent);
   Vector6d log() const;
 
-  SE3 inverse() const {
-    return {rotation_.transpose(), -(rotation_.transpose() * translation_)};
-  }
+  SE3 inverse() const { return {rotation_.transpose(), -(rotation_.transpose() * translation_)}; }
   /// This transform with its rotation made orthonormal again (after long products).
   SE3 normalized() const { return {Eigen::Quaterniond(rotation_), translation_}; }
 

@@ -15,8 +15,8 @@ void check_no_duplicate_keys(const YAML::Node& node, const std::string& file) {
     std::set<std::string> seen;
     for (const auto& entry : node) {
       if (!entry.first.IsScalar())
-        throw InputError(fmt::format("{}:{}: a key must be a plain word", file,
-                                     entry.first.Mark().line + 1));
+        throw InputError(
+            fmt::format("{}:{}: a key must be a plain word", file, entry.first.Mark().line + 1));
       if (!seen.insert(entry.first.Scalar()).second)
         throw InputError(fmt::format("{}:{}: key '{}' stands twice", file,
                                      entry.first.Mark().line + 1, entry.first.Scalar()));
@@ -51,14 +51,18 @@ YamlReader YamlReader::parse(const std::string& text, const std::string& name) {
   }
 }
 
-int YamlReader::line() const { return node_.Mark().line + 1; }
+int YamlReader::line() const {
+  return node_.Mark().line + 1;
+}
 
 void YamlReader::fail(const std::string& what) const {
   const std::string where = place_.empty() ? "" : place_ + ": ";
   throw InputError(fmt::format("{}:{}: {}{}", file_, line(), where, what));
 }
 
-bool YamlReader::has(const std::string& key) const { return node_.IsMap() && node_[key].IsDefined(); }
+bool YamlReader::has(const std::string& key) const {
+  return node_.IsMap() && node_[key].IsDefined();
+}
 
 std::optional<YamlReader> YamlReader::find(const std::string& key) {
   if (!node_.IsMap()) fail("must be a mapping");
@@ -88,7 +92,8 @@ std::vector<std::pair<std::string, YamlReader>> YamlReader::entries() {
   for (const auto& entry : node_) {
     const std::string& key = entry.first.Scalar();
     read_.insert(key);
-    result.emplace_back(key, YamlReader{entry.second, file_, place_.empty() ? key : place_ + "." + key});
+    result.emplace_back(key,
+                        YamlReader{entry.second, file_, place_.empty() ? key : place_ + "." + key});
   }
   return result;
 }

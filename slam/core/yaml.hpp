@@ -32,7 +32,8 @@ class YamlReader {
   std::optional<YamlReader> find(const std::string& key);
   /// The elements of this sequence. @throws InputError if it is none.
   std::vector<YamlReader> items() const;
-  /// The entries of this mapping in file order, all counted as read. @throws InputError if it is none.
+  /// The entries of this mapping in file order, all counted as read. @throws InputError if it is
+  /// none.
   std::vector<std::pair<std::string, YamlReader>> entries();
 
   bool is_scalar() const { return node_.IsScalar(); }

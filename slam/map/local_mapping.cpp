@@ -17,10 +17,10 @@ constexpr std::size_t kTriangulationNeighbours = 8;
 constexpr std::size_t kFusionNeighbours = 10;
 constexpr std::size_t kAdjustedNeighbours = 10;
 constexpr std::size_t kFixedKeyframes = 20;
-constexpr double kFoundShare = 0.25;     // of the frames in which a young landmark was expected
+constexpr double kFoundShare = 0.25;  // of the frames in which a young landmark was expected
 constexpr double kMinParallaxCosine = 0.9998;  // about 1.1 degrees between the two rays
-constexpr double kChi2Line = 3.84;       // 95 % of chi-square, 1 degree of freedom
-constexpr double kChi2Point = 5.991;     // and 2
+constexpr double kChi2Line = 3.84;             // 95 % of chi-square, 1 degree of freedom
+constexpr double kChi2Point = 5.991;           // and 2
 
 std::vector<KeyframeId> best_neighbours(const Map& map, KeyframeId id, std::size_t count) {
   std::vector<KeyframeId> result;
@@ -57,7 +57,8 @@ bool reprojects(const Eigen::Vector3d& point_in_world, const Keyframe& keyframe,
 
 /// The point where two rays pass each other closest, midway (world frame).
 std::optional<Eigen::Vector3d> midpoint(const SE3& world_from_a, const SE3& world_from_b,
-                                        const Eigen::Vector3d& ray_a, const Eigen::Vector3d& ray_b) {
+                                        const Eigen::Vector3d& ray_a,
+                                        const Eigen::Vector3d& ray_b) {
   const Eigen::Vector3d da = (world_from_a.rotation() * ray_a).normalized();
   const Eigen::Vector3d db = (world_from_b.rotation() * ray_b).normalized();
   const Eigen::Vector3d between = world_from_b.translation() - world_from_a.translation();
@@ -77,8 +78,9 @@ std::optional<Eigen::Vector3d> triangulate(const Keyframe& a, const Keypoint& ka
   const SE3 world_from_a = a.camera_from_world.inverse();
   const SE3 world_from_b = b.camera_from_world.inverse();
   const Eigen::Vector3d ray_a = bearing(ka, context.camera), ray_b = bearing(kb, context.camera);
-  const double cosine = (world_from_a.rotation() * ray_a).normalized().dot(
-      (world_from_b.rotation() * ray_b).normalized());
+  const double cosine = (world_from_a.rotation() * ray_a)
+                            .normalized()
+                            .dot((world_from_b.rotation() * ray_b).normalized());
   std::optional<Eigen::Vector3d> point;
   if (cosine < kMinParallaxCosine) {
     point = midpoint(world_from_a, world_from_b, ray_a, ray_b);
@@ -165,10 +167,9 @@ void triangulate_with_neighbours(Map& map, KeyframeId keyframe, const MappingCon
       return epipolar_distance2(a.features.keypoints[fa], kb, essential, context.camera) <
              kChi2Line * sigma * sigma;
     };
-    const auto matches = match_by_words(
-        a.features, a.words, unmapped(a), b.features, b.words, unmapped(b),
-        static_cast<float>(context.match.max_distance), 1.0F,
-        SemanticMatcher(context.semantics, counts), on_line);
+    const auto matches = match_by_words(a.features, a.words, unmapped(a), b.features, b.words,
+                                        unmapped(b), static_cast<float>(context.match.max_distance),
+                                        1.0F, SemanticMatcher(context.semantics, counts), on_line);
     for (const FeatureMatch& m : matches) {
       const auto point = triangulate(map.at(keyframe), map.at(keyframe).features.keypoints[m.a],
                                      map.at(other), map.at(other).features.keypoints[m.b], context);
@@ -205,10 +206,10 @@ void fuse_into(Map& map, KeyframeId keyframe, const std::vector<LandmarkId>& lan
     target_landmark.push_back(id);
   }
   const std::vector<std::uint8_t> taken(k.features.size(), 0);
-  const auto found = match_by_projection(
-      targets, k.features, k.grid, taken,
-      {.max_distance = static_cast<float>(context.match.max_distance)},
-      SemanticMatcher(context.semantics, counts));
+  const auto found =
+      match_by_projection(targets, k.features, k.grid, taken,
+                          {.max_distance = static_cast<float>(context.match.max_distance)},
+                          SemanticMatcher(context.semantics, counts));
   for (std::size_t t = 0; t < found.size(); ++t) {
     if (found[t] < 0) continue;
     const auto feature = static_cast<std::uint32_t>(found[t]);
@@ -243,13 +244,15 @@ void fuse_with_neighbours(Map& map, KeyframeId keyframe, const MappingContext& c
     fuse_into(map, neighbour, std::vector(map.at(keyframe).landmarks), context, counts);
   std::vector<LandmarkId> theirs;
   for (const KeyframeId neighbour : neighbours)
-    theirs.insert(theirs.end(), map.at(neighbour).landmarks.begin(), map.at(neighbour).landmarks.end());
+    theirs.insert(theirs.end(), map.at(neighbour).landmarks.begin(),
+                  map.at(neighbour).landmarks.end());
   fuse_into(map, keyframe, theirs, context, counts);
 }
 
 namespace {
 
-/// Adjusts the free keyframes and all landmarks they see; the fixed ones hold the frame of reference.
+/// Adjusts the free keyframes and all landmarks they see; the fixed ones hold the frame of
+/// reference.
 void adjust_keyframes(Map& map, const std::vector<KeyframeId>& free,
                       const std::vector<KeyframeId>& fixed, const MappingContext& context) {
   std::vector<std::int32_t> pose_of(map.keyframes().size(), -1);
@@ -348,7 +351,8 @@ void cull_redundant_keyframes(Map& map, KeyframeId newest, const MappingContext&
   }
 }
 
-void map_keyframe(Map& map, KeyframeId keyframe, const MappingContext& context, MatchCounts& counts) {
+void map_keyframe(Map& map, KeyframeId keyframe, const MappingContext& context,
+                  MatchCounts& counts) {
   cull_young_landmarks(map, keyframe);
   map.update_covisibility(keyframe);
   triangulate_with_neighbours(map, keyframe, context, at(counts, Matcher::kTriangulation));

@@ -26,7 +26,8 @@ void add_landmarks_from_depth(Map& map, KeyframeId keyframe, const MappingContex
 /// All that a new keyframe sets off, in order: young landmarks that did not prove themselves go,
 /// new ones are triangulated with neighbours, doubles are fused, the neighbourhood is adjusted,
 /// redundant keyframes go.
-void map_keyframe(Map& map, KeyframeId keyframe, const MappingContext& context, MatchCounts& counts);
+void map_keyframe(Map& map, KeyframeId keyframe, const MappingContext& context,
+                  MatchCounts& counts);
 
 // The stages of map_keyframe, each on its own for tests.
 void cull_young_landmarks(Map& map, KeyframeId newest);

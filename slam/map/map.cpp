@@ -13,7 +13,8 @@
 namespace mh {
 namespace {
 
-/// Index of the descriptor with the least median Hamming distance to the others; the first of equals.
+/// Index of the descriptor with the least median Hamming distance to the others; the first of
+/// equals.
 std::size_t most_central(const std::vector<const Descriptor*>& descriptors) {
   const std::size_t n = descriptors.size();
   if (n <= 2) return 0;
@@ -63,9 +64,9 @@ bool Map::add_observation(LandmarkId landmark, KeyframeId keyframe, std::uint32_
   Landmark& l = mutable_at(landmark);
   Keyframe& k = mutable_at(keyframe);
   if (l.erased || k.erased || k.landmarks[feature].valid()) return false;
-  const auto place = std::lower_bound(
-      l.observations.begin(), l.observations.end(), keyframe,
-      [](const Observation& o, KeyframeId wanted) { return o.keyframe < wanted; });
+  const auto place =
+      std::lower_bound(l.observations.begin(), l.observations.end(), keyframe,
+                       [](const Observation& o, KeyframeId wanted) { return o.keyframe < wanted; });
   if (place != l.observations.end() && place->keyframe == keyframe) return false;
   l.observations.insert(place, {keyframe, feature});
   k.landmarks[feature] = landmark;
@@ -85,7 +86,8 @@ void Map::erase_observation(LandmarkId landmark, KeyframeId keyframe) {
 void Map::erase(LandmarkId landmark) {
   Landmark& l = mutable_at(landmark);
   if (l.erased) return;
-  for (const Observation& o : l.observations) mutable_at(o.keyframe).landmarks[o.feature] = LandmarkId{};
+  for (const Observation& o : l.observations)
+    mutable_at(o.keyframe).landmarks[o.feature] = LandmarkId{};
   l.observations.clear();
   l.erased = true;
   --landmark_count_;
@@ -136,7 +138,9 @@ void Map::refresh(LandmarkId id, const FeatureConfig& config) {
   }
   const std::size_t central = most_central(descriptors);
   l.descriptor = *descriptors[central];
-  l.label = at(l.observations[central].keyframe).features.keypoints[l.observations[central].feature].label;
+  l.label = at(l.observations[central].keyframe)
+                .features.keypoints[l.observations[central].feature]
+                .label;
   l.mean_direction = direction.norm() > 1e-9 ? Eigen::Vector3d(direction.normalized())
                                              : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
 
@@ -154,9 +158,10 @@ void Map::set_neighbour(KeyframeId of, KeyframeId neighbour, int shared) {
   auto& covisible = mutable_at(of).covisible;
   std::erase_if(covisible, [&](const Keyframe::Neighbour& n) { return n.id == neighbour; });
   if (shared < kMinShared) return;
-  const auto place = std::find_if(covisible.begin(), covisible.end(), [&](const Keyframe::Neighbour& n) {
-    return n.shared != shared ? n.shared < shared : neighbour < n.id;
-  });
+  const auto place =
+      std::find_if(covisible.begin(), covisible.end(), [&](const Keyframe::Neighbour& n) {
+        return n.shared != shared ? n.shared < shared : neighbour < n.id;
+      });
   covisible.insert(place, {neighbour, shared});
 }
 
@@ -195,7 +200,8 @@ void Map::check_invariants() const {
   };
   for (const Keyframe& k : keyframes_) {
     if (k.erased) {
-      require(k.covisible.empty() && k.landmarks.empty(), "an erased keyframe holds on", k.id.value);
+      require(k.covisible.empty() && k.landmarks.empty(), "an erased keyframe holds on",
+              k.id.value);
       continue;
     }
     for (std::uint32_t i = 0; i < k.landmarks.size(); ++i) {

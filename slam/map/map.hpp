@@ -10,8 +10,8 @@
 #include "slam/core/ids.hpp"
 #include "slam/core/rgbd_frame.hpp"
 #include "slam/core/se3.hpp"
-#include "slam/features/features.hpp"
 #include "slam/features/feature_grid.hpp"
+#include "slam/features/features.hpp"
 #include "slam/semantics/augmented_vector.hpp"
 
 namespace mh {
@@ -55,8 +55,8 @@ struct Landmark {
   std::vector<Observation> observations;  ///< ordered by keyframe, one per keyframe
 
   // Derived from the observations by Map::refresh().
-  Descriptor descriptor{};    ///< the observed one with the least median distance to the others
-  ClassId label = kVoid;      ///< of the observation that supplies the descriptor
+  Descriptor descriptor{};  ///< the observed one with the least median distance to the others
+  ClassId label = kVoid;    ///< of the observation that supplies the descriptor
   Eigen::Vector3d mean_direction = Eigen::Vector3d::UnitZ();  ///< from cameras to the landmark
   double min_distance_m = 0, max_distance_m = 0;  ///< range in which the pyramid can match it
 

@@ -23,10 +23,10 @@ struct SemanticConfig {
 };
 
 struct MatchConfig {
-  int max_distance = 50;         ///< bits; tight gate (appearance alone, fusion)
-  int max_distance_loose = 100;  ///< bits; where geometry already restricts the search
-  double ratio = 0.75;           ///< best over second best, appearance alone
-  double ratio_projection = 0.8; ///< the same where geometry already restricts the search
+  int max_distance = 50;          ///< bits; tight gate (appearance alone, fusion)
+  int max_distance_loose = 100;   ///< bits; where geometry already restricts the search
+  double ratio = 0.75;            ///< best over second best, appearance alone
+  double ratio_projection = 0.8;  ///< the same where geometry already restricts the search
 };
 
 }  // namespace mh

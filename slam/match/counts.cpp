@@ -5,15 +5,24 @@ namespace mh {
 
 std::string_view name(Matcher matcher) {
   switch (matcher) {
-    case Matcher::kMotionModel: return "motion_model";
-    case Matcher::kReferenceKeyframe: return "reference_keyframe";
-    case Matcher::kLocalMap: return "local_map";
-    case Matcher::kTriangulation: return "triangulation";
-    case Matcher::kFusion: return "fusion";
-    case Matcher::kRelocalizationWords: return "relocalization_words";
-    case Matcher::kRelocalizationProjection: return "relocalization_projection";
-    case Matcher::kLoop: return "loop";
-    case Matcher::kCount: break;
+    case Matcher::kMotionModel:
+      return "motion_model";
+    case Matcher::kReferenceKeyframe:
+      return "reference_keyframe";
+    case Matcher::kLocalMap:
+      return "local_map";
+    case Matcher::kTriangulation:
+      return "triangulation";
+    case Matcher::kFusion:
+      return "fusion";
+    case Matcher::kRelocalizationWords:
+      return "relocalization_words";
+    case Matcher::kRelocalizationProjection:
+      return "relocalization_projection";
+    case Matcher::kLoop:
+      return "loop";
+    case Matcher::kCount:
+      break;
   }
   return "?";
 }

@@ -26,7 +26,8 @@ struct MatcherCounts {
   std::int64_t compared = 0;        ///< descriptor pairs
   std::int64_t penalised = 0;       ///< of them, labels known and different: distance times xi
   std::int64_t rejected_by_xi = 0;  ///< best pairs under the threshold before xi, over it after
-  std::int64_t ratio_helped = 0;    ///< pairs that pass the ratio test only because xi inflated the second best
+  std::int64_t ratio_helped =
+      0;  ///< pairs that pass the ratio test only because xi inflated the second best
   MatcherCounts& operator+=(const MatcherCounts& other);
 };
 using MatchCounts = std::array<MatcherCounts, static_cast<std::size_t>(Matcher::kCount)>;

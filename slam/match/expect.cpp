@@ -31,8 +31,9 @@ std::optional<ProjectionTarget> expect(const Landmark& landmark, const SE3& came
   if (ray.dot(landmark.mean_direction) < kMinViewCosine * distance) return std::nullopt;
 
   const double ratio = landmark.max_distance_m / distance;
-  const int octave = std::clamp(static_cast<int>(std::lround(std::log(ratio) / std::log(features.scale))),
-                                0, features.levels - 1);
+  const int octave =
+      std::clamp(static_cast<int>(std::lround(std::log(ratio) / std::log(features.scale))), 0,
+                 features.levels - 1);
   return ProjectionTarget{
       .u_px = static_cast<float>(pixel.x()),
       .v_px = static_cast<float>(pixel.y()),
@@ -53,7 +54,8 @@ PoseObservation observe(const Eigen::Vector3d& point_in_world, const Keypoint& k
           .sigma_px = octave_scale(features, keypoint.octave)};
 }
 
-Eigen::Vector3d unproject(const Keypoint& keypoint, const Camera& camera, const SE3& world_from_camera) {
+Eigen::Vector3d unproject(const Keypoint& keypoint, const Camera& camera,
+                          const SE3& world_from_camera) {
   return world_from_camera * camera.unproject(keypoint.u_px, keypoint.v_px, keypoint.depth_m);
 }
 

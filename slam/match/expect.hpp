@@ -26,6 +26,7 @@ PoseObservation observe(const Eigen::Vector3d& point_in_world, const Keypoint& k
                         const Camera& camera, const FeatureConfig& features);
 
 /// Point (m, world) behind a keypoint with depth.
-Eigen::Vector3d unproject(const Keypoint& keypoint, const Camera& camera, const SE3& world_from_camera);
+Eigen::Vector3d unproject(const Keypoint& keypoint, const Camera& camera,
+                          const SE3& world_from_camera);
 
 }  // namespace mh

@@ -126,8 +126,9 @@ std::vector<FeatureMatch> match_by_words(
       for (std::size_t n = j; n < end_b; ++n) {
         const std::uint32_t fb = by_b[n].second;
         if (use_b[fb] == 0 || (compatible && !compatible(fa, fb))) continue;
-        best.offer(fb, matcher({a.descriptors[fa], a.keypoints[fa].label},
-                               {b.descriptors[fb], b.keypoints[fb].label}),
+        best.offer(fb,
+                   matcher({a.descriptors[fa], a.keypoints[fa].label},
+                           {b.descriptors[fb], b.keypoints[fb].label}),
                    0);
       }
       if (!matcher.accept(best, max_distance, ratio)) continue;
@@ -141,12 +142,14 @@ std::vector<FeatureMatch> match_by_words(
   RotationHistogram histogram;
   for (std::uint32_t fb = 0; fb < owner.size(); ++fb)
     if (owner[fb] >= 0)
-      histogram.add(a.keypoints[static_cast<std::size_t>(owner[fb])].angle_rad, b.keypoints[fb].angle_rad);
+      histogram.add(a.keypoints[static_cast<std::size_t>(owner[fb])].angle_rad,
+                    b.keypoints[fb].angle_rad);
   histogram.find_dominant();
   std::vector<FeatureMatch> matches;
   for (std::uint32_t fb = 0; fb < owner.size(); ++fb)
-    if (owner[fb] >= 0 && histogram.keeps(a.keypoints[static_cast<std::size_t>(owner[fb])].angle_rad,
-                                          b.keypoints[fb].angle_rad))
+    if (owner[fb] >= 0 &&
+        histogram.keeps(a.keypoints[static_cast<std::size_t>(owner[fb])].angle_rad,
+                        b.keypoints[fb].angle_rad))
       matches.push_back({static_cast<std::uint32_t>(owner[fb]), fb});
   return matches;
 }

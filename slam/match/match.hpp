@@ -9,9 +9,9 @@
 
 #include <Eigen/Core>
 
+#include "slam/features/feature_grid.hpp"
 #include "slam/features/features.hpp"
 #include "slam/map/map.hpp"
-#include "slam/features/feature_grid.hpp"
 #include "slam/match/config.hpp"
 #include "slam/match/counts.hpp"
 
@@ -72,12 +72,12 @@ class SemanticMatcher {
 /// Something with a place in the image, looked for among a frame's features.
 struct ProjectionTarget {
   float u_px = 0, v_px = 0;
-  float disparity_px = -1;       ///< negative = not compared
+  float disparity_px = -1;  ///< negative = not compared
   float radius_px = 0;
   int min_octave = 0, max_octave = 0;
   const Descriptor* descriptor = nullptr;
   ClassId label = kVoid;
-  float angle_rad = -1;          ///< orientation to agree with; negative = none
+  float angle_rad = -1;  ///< orientation to agree with; negative = none
 };
 
 struct ProjectionGate {

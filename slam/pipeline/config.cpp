@@ -10,7 +10,8 @@
 namespace mh {
 
 void validate(const SlamConfig& config) {
-  const auto require = [](const char* field, double value, double min, double max, bool open = false) {
+  const auto require = [](const char* field, double value, double min, double max,
+                          bool open = false) {
     if (!std::isfinite(value) || value < min || value > max || (open && value == max))
       throw InputError(fmt::format("slam settings: {} = {} is outside [{}, {}{}", field, value, min,
                                    max, open ? ")" : "]"));
@@ -40,6 +41,8 @@ void validate(const SlamConfig& config) {
   require("track.local_radius_px", config.track.local_radius_px, 1, 1000);
   require("track.local_keyframes", config.track.local_keyframes, 1, kMany);
   require("relocalize.min_word_matches", config.relocalize.min_word_matches, 4, kMany);
+  require("loop.min_gap", config.loop.min_gap, 1, kMany);
+  require("loop.consecutive", config.loop.consecutive, 1, kMany);
   require("relocalize.min_inliers", config.relocalize.min_inliers, 4, kMany);
 }
 

@@ -5,10 +5,14 @@ namespace mh {
 
 std::string_view name(TrackStatus status) {
   switch (status) {
-    case TrackStatus::kInitialized: return "initialized";
-    case TrackStatus::kTracked: return "tracked";
-    case TrackStatus::kRelocalized: return "relocalized";
-    case TrackStatus::kLost: return "lost";
+    case TrackStatus::kInitialized:
+      return "initialized";
+    case TrackStatus::kTracked:
+      return "tracked";
+    case TrackStatus::kRelocalized:
+      return "relocalized";
+    case TrackStatus::kLost:
+      return "lost";
   }
   return "?";
 }

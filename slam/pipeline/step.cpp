@@ -80,13 +80,19 @@ std::optional<Located> locate(const SlamState& state, const Tracker& tracker, Pr
                              config.match, config.pose,  config.track};
   std::optional<TrackedPose> tracked;
   if (tracker.tracking()) {
-    const SE3 guess = predict(tracker, frame.stamp_ns);
-    tracked = track_motion(without_words(frame), *tracker.last, guess, context,
-                           at(report.matches, Matcher::kMotionModel));
-    if (!tracked)
-      tracked = track_reference(with_words(frame, state), state.map.standing(tracker.reference),
-                                tracker.last->camera_from_world, context,
-                                at(report.matches, Matcher::kReferenceKeyframe));
+    const auto by_motion = [&] {
+      return track_motion(without_words(frame), *tracker.last, predict(tracker, frame.stamp_ns),
+                          context, at(report.matches, Matcher::kMotionModel));
+    };
+    const auto by_reference = [&] {
+      return track_reference(with_words(frame, state), state.map.standing(tracker.reference),
+                             tracker.last->camera_from_world, context,
+                             at(report.matches, Matcher::kReferenceKeyframe));
+    };
+    // Where the motion is not known yet, appearance needs no guess.
+    const bool moving = tracker.velocity_per_s.has_value();
+    tracked = moving ? by_motion() : by_reference();
+    if (!tracked) tracked = moving ? by_reference() : by_motion();
   }
   const bool relocalizing = !tracked;
   if (relocalizing) {
@@ -124,8 +130,8 @@ void update_velocity(Tracker& tracker, Stamp stamp_ns, const SE3& camera_from_wo
 /// What the next frame is matched against.
 void remember(Tracker& tracker, PreparedFrame&& frame, const SE3& camera_from_world,
               std::vector<LandmarkId> landmarks, KeyframeId reference) {
-  tracker.last = LastFrame{frame.stamp_ns, camera_from_world, std::move(frame.features),
-                           std::move(landmarks)};
+  tracker.last =
+      LastFrame{frame.stamp_ns, camera_from_world, std::move(frame.features), std::move(landmarks)};
   tracker.reference = reference;
 }
 
@@ -161,8 +167,9 @@ KeyframeId insert_keyframe(SlamState& state, PreparedFrame& frame, const SE3& ca
 }
 
 StepReport initialize(SlamState& state, PreparedFrame frame, StepReport report) {
-  const auto with_depth = std::count_if(frame.features.keypoints.begin(), frame.features.keypoints.end(),
-                                        [](const Keypoint& k) { return k.depth_m > 0; });
+  const auto with_depth =
+      std::count_if(frame.features.keypoints.begin(), frame.features.keypoints.end(),
+                    [](const Keypoint& k) { return k.depth_m > 0; });
   if (with_depth < kMinInitialPoints) return report;
   const std::vector<LandmarkId> none(frame.features.size());
   const KeyframeId id = insert_keyframe(state, frame, SE3(), none, RandomStream(), report);
@@ -219,7 +226,8 @@ StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream) {
   report.inliers = located->tracked.inliers;
   if (needs_keyframe({camera_from_world, landmarks, report.inliers}, prepared.features, state.map,
                      reference, state.tracker.frames_since_keyframe, state.config.keyframe)) {
-    reference = insert_keyframe(state, prepared, camera_from_world, landmarks, stream.fork(1), report);
+    reference =
+        insert_keyframe(state, prepared, camera_from_world, landmarks, stream.fork(1), report);
     camera_from_world = state.map.at(reference).camera_from_world;
     landmarks = state.map.at(reference).landmarks;
   }
@@ -257,8 +265,9 @@ StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& 
 Trajectory trajectory(const SlamState& state) {
   Trajectory poses;
   for (const auto& [stamp_ns, frame] : state.tracked_frames)
-    poses.push_back({stamp_ns, (frame.camera_from_reference *
-                                state.map.camera_from_world(frame.reference)).inverse()});
+    poses.push_back(
+        {stamp_ns,
+         (frame.camera_from_reference * state.map.camera_from_world(frame.reference)).inverse()});
   return poses;
 }
 

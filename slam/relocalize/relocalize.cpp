@@ -22,9 +22,12 @@ std::vector<KeyframeId> neighbourhood(const Map& map, KeyframeId k) {
 
 int overlap(const AugmentedVector& f, const AugmentedVector& k, Overlap what) {
   switch (what) {
-    case Overlap::kLabels: return shared_labels(f, k);
-    case Overlap::kAugmented: return shared_labels(f, k) + shared_words(f, k);
-    case Overlap::kWords: break;
+    case Overlap::kLabels:
+      return shared_labels(f, k);
+    case Overlap::kAugmented:
+      return shared_labels(f, k) + shared_words(f, k);
+    case Overlap::kWords:
+      break;
   }
   return shared_words(f, k);
 }
@@ -43,8 +46,15 @@ class CandidateTrial {
                  const FeatureConfig& features, const SemanticConfig& semantics,
                  const MatchConfig& match, const RelocalizeConfig& config, MatchCounts& counts,
                  PlaceMatchers matchers)
-      : query_(query), map_(map), camera_(camera), features_(features), semantics_(semantics),
-        match_(match), config_(config), counts_(counts), matchers_(matchers) {}
+      : query_(query),
+        map_(map),
+        camera_(camera),
+        features_(features),
+        semantics_(semantics),
+        match_(match),
+        config_(config),
+        counts_(counts),
+        matchers_(matchers) {}
 
   Attempt run(KeyframeId candidate, RandomStream stream) {
     Attempt attempt;
@@ -62,9 +72,11 @@ class CandidateTrial {
     // pose says, first widely, then narrowly around the better pose.
     attempt.stage = RelocalizationStage::kInliers;
     refine(attempt);
-    for (const auto& [radius_px, max_distance] : {std::pair{10.0F, match_.max_distance_loose},
-                                                  std::pair{4.0F, 2 * match_.max_distance_loose / 3}}) {
-      if (attempt.inliers >= config_.min_inliers || attempt.inliers < config_.ransac.min_inliers) break;
+    for (const auto& [radius_px, max_distance] :
+         {std::pair{10.0F, match_.max_distance_loose},
+          std::pair{4.0F, 2 * match_.max_distance_loose / 3}}) {
+      if (attempt.inliers >= config_.min_inliers || attempt.inliers < config_.ransac.min_inliers)
+        break;
       search_by_pose(map_.at(candidate), radius_px, static_cast<float>(max_distance), attempt);
       refine(attempt);
     }
@@ -118,7 +130,8 @@ class CandidateTrial {
       attempt.inliers = 0;
   }
 
-  void search_by_pose(const Keyframe& keyframe, float radius_px, float max_distance, Attempt& attempt) {
+  void search_by_pose(const Keyframe& keyframe, float radius_px, float max_distance,
+                      Attempt& attempt) {
     std::vector<std::uint8_t> taken(query_.features.size(), 0);
     std::vector<LandmarkId> known;
     for (std::size_t i = 0; i < taken.size(); ++i)
@@ -140,10 +153,10 @@ class CandidateTrial {
       targets.push_back(*target);
       target_landmark.push_back(id);
     }
-    const auto found = match_by_projection(
-        targets, query_.features, query_.grid, taken,
-        {.max_distance = max_distance, .check_angle = true},
-        SemanticMatcher(semantics_, at(counts_, matchers_.projection)));
+    const auto found =
+        match_by_projection(targets, query_.features, query_.grid, taken,
+                            {.max_distance = max_distance, .check_angle = true},
+                            SemanticMatcher(semantics_, at(counts_, matchers_.projection)));
     for (std::size_t t = 0; t < found.size(); ++t)
       if (found[t] >= 0) attempt.landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
   }
@@ -163,12 +176,18 @@ class CandidateTrial {
 
 std::string_view name(RelocalizationStage stage) {
   switch (stage) {
-    case RelocalizationStage::kNone: return "none";
-    case RelocalizationStage::kNoCandidate: return "no_candidate";
-    case RelocalizationStage::kMatches: return "matches";
-    case RelocalizationStage::kPnp: return "pnp";
-    case RelocalizationStage::kInliers: return "inliers";
-    case RelocalizationStage::kVerified: return "verified";
+    case RelocalizationStage::kNone:
+      return "none";
+    case RelocalizationStage::kNoCandidate:
+      return "no_candidate";
+    case RelocalizationStage::kMatches:
+      return "matches";
+    case RelocalizationStage::kPnp:
+      return "pnp";
+    case RelocalizationStage::kInliers:
+      return "inliers";
+    case RelocalizationStage::kVerified:
+      return "verified";
   }
   return "?";
 }

@@ -48,7 +48,7 @@ struct RelocalizationResult {
   std::optional<SE3> camera_from_world;
   std::vector<LandmarkId> landmarks;  ///< per feature; inliers of the pose
   int inliers = 0;
-  KeyframeId keyframe;                ///< the candidate that led to the pose
+  KeyframeId keyframe;  ///< the candidate that led to the pose
 };
 
 /// Algorithm 1 over the whole map. Where the query has no label member, words are counted.
@@ -61,8 +61,8 @@ struct PlaceMatchers {
   Matcher projection = Matcher::kRelocalizationProjection;
 };
 
-/// Tries candidate keyframes in order: matches by words, PnP with RANSAC, refinement, guided search.
-/// The first that holds wins; `candidates` of the result stays empty.
+/// Tries candidate keyframes in order: matches by words, PnP with RANSAC, refinement, guided
+/// search. The first that holds wins; `candidates` of the result stays empty.
 RelocalizationResult try_candidates(const Query& query, std::span<const KeyframeId> candidates,
                                     const Map& map, const Camera& camera,
                                     const FeatureConfig& features, const SemanticConfig& semantics,

@@ -72,8 +72,9 @@ void for_each_common(std::span<const WeightedMember> a, std::span<const Weighted
 /// @param gamma   factor of labels, >= 0.
 /// @param eta     eta(word) >= 0: the word's factor, e.g. its inverse document frequency.
 template <class Eta>
-AugmentedVector augmented_vector(std::span<const Label> labels, std::span<const std::uint32_t> words,
-                                 double gamma, Eta eta, VoidPolicy policy = VoidPolicy::kUnknown) {
+AugmentedVector augmented_vector(std::span<const Label> labels,
+                                 std::span<const std::uint32_t> words, double gamma, Eta eta,
+                                 VoidPolicy policy = VoidPolicy::kUnknown) {
   AugmentedVector vector;
   std::vector<std::uint32_t> known;
   for (const Label label : labels)

@@ -83,7 +83,8 @@ CandidateSelection<Key> select_candidates(std::span<const Key> keyframes, Overla
   selection.c3 = static_cast<int>(c3.size());
 
   // Equation (6)
-  std::stable_sort(c3.begin(), c3.end(), [](const auto& x, const auto& y) { return x.score > y.score; });
+  std::stable_sort(c3.begin(), c3.end(),
+                   [](const auto& x, const auto& y) { return x.score > y.score; });
   for (const Candidate<Key>& candidate : c3)
     if (candidate.score > beta * c3.front().score) selection.candidates.push_back(candidate);
   return selection;

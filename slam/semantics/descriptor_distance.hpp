@@ -23,9 +23,11 @@ constexpr bool labels_disagree(Label p, Label q, VoidPolicy policy = VoidPolicy:
   return p != q && (policy == VoidPolicy::kIsALabel || (p != kNoLabel && q != kNoLabel));
 }
 
-/// Equation 2: dist(p, q) = delta_pq * ||p, q||, with delta_pq = xi where the labels disagree, else 1.
+/// Equation 2: dist(p, q) = delta_pq * ||p, q||, with delta_pq = xi where the labels disagree,
+/// else 1.
 /// @param distance  ||p, q|| in any unit, e.g. the Hamming distance in bits.
-/// @param xi        penalty factor, >= 1; with xi = 1 the result is the distance itself, bit for bit.
+/// @param xi        penalty factor, >= 1; with xi = 1 the result is the distance itself, bit for
+/// bit.
 constexpr float semantic_distance(float distance, bool disagree, float xi) {
   return disagree ? xi * distance : distance;
 }

@@ -36,8 +36,8 @@ std::optional<TrackedPose> optimise_matches(const Query& query,
   std::vector<std::uint32_t> feature_of;
   for (std::uint32_t i = 0; i < landmarks.size(); ++i) {
     if (!landmarks[i].valid()) continue;
-    observations.push_back(
-        observe(map.at(landmarks[i]).position_in_world, query.features.keypoints[i], camera, features));
+    observations.push_back(observe(map.at(landmarks[i]).position_in_world,
+                                   query.features.keypoints[i], camera, features));
     feature_of.push_back(i);
   }
   const auto estimate = estimate_pose(observations, guess, camera, pose);
@@ -107,11 +107,12 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
   const auto estimate = estimate_pose(observations, guess, camera, pose);
   if (!estimate || estimate->inlier_count < config.min_inliers_frame) return std::nullopt;
 
-  TrackedPose tracked{estimate->camera_from_world,
-                      std::vector<LandmarkId>(query.features.size()), estimate->inlier_count};
+  TrackedPose tracked{estimate->camera_from_world, std::vector<LandmarkId>(query.features.size()),
+                      estimate->inlier_count};
   for (std::size_t j = 0; j < source_of.size(); ++j)
     if (estimate->inlier[j] != 0)
-      tracked.landmarks[static_cast<std::size_t>(found[source_of[j]])] = sources[source_of[j]].landmark;
+      tracked.landmarks[static_cast<std::size_t>(found[source_of[j]])] =
+          sources[source_of[j]].landmark;
   return tracked;
 }
 
@@ -120,7 +121,8 @@ std::optional<TrackedPose> track_reference(const Query& query, KeyframeId refere
                                            MatcherCounts& counts) {
   const Keyframe& keyframe = context.map.at(reference);
   std::vector<std::uint8_t> with_landmark(keyframe.features.size());
-  for (std::size_t i = 0; i < with_landmark.size(); ++i) with_landmark[i] = keyframe.landmarks[i].valid();
+  for (std::size_t i = 0; i < with_landmark.size(); ++i)
+    with_landmark[i] = keyframe.landmarks[i].valid();
   const std::vector<std::uint8_t> all(query.features.size(), 1);
   const auto matches = match_by_words(
       keyframe.features, keyframe.words, with_landmark, query.features, query.words, all,
@@ -162,9 +164,11 @@ LocalMap local_map(const TrackedPose& tracked, const TrackContext& context) {
   for (const Keyframe& keyframe : map.keyframes()) {
     if (keyframe.erased) continue;
     const SE3 world_from_keyframe = keyframe.camera_from_world.inverse();
-    const double distance = (world_from_keyframe.translation() - world_from_camera.translation()).norm();
+    const double distance =
+        (world_from_keyframe.translation() - world_from_camera.translation()).norm();
     if (distance > context.config.near_distance_m) continue;
-    const double cosine = world_from_keyframe.rotation().col(2).dot(world_from_camera.rotation().col(2));
+    const double cosine =
+        world_from_keyframe.rotation().col(2).dot(world_from_camera.rotation().col(2));
     if (cosine < std::cos(context.config.near_angle_rad)) continue;
     near.emplace_back(distance, keyframe.id);
   }
@@ -213,11 +217,11 @@ std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedP
     target_landmark.push_back(id);
     result.expected.push_back(id);
   }
-  const auto found = match_by_projection(
-      targets, query.features, query.grid, taken,
-      {.max_distance = static_cast<float>(context.match.max_distance_loose),
-       .ratio = static_cast<float>(context.match.ratio_projection)},
-      SemanticMatcher(context.semantics, counts));
+  const auto found =
+      match_by_projection(targets, query.features, query.grid, taken,
+                          {.max_distance = static_cast<float>(context.match.max_distance_loose),
+                           .ratio = static_cast<float>(context.match.ratio_projection)},
+                          SemanticMatcher(context.semantics, counts));
   for (std::size_t t = 0; t < found.size(); ++t)
     if (found[t] >= 0) landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
 
@@ -232,7 +236,8 @@ bool needs_keyframe(const TrackedPose& tracked, const Features& features, const 
                     KeyframeId reference, int frames_since_keyframe, const KeyframeConfig& config) {
   // Landmarks that have proven themselves; in a young map, all.
   const std::size_t proven = map.keyframe_count() > 2 ? 2 : 1;
-  int reference_landmarks = 0; (void)proven;
+  int reference_landmarks = 0;
+  (void)proven;
   for (const LandmarkId id : map.at(reference).landmarks)
     if (id.valid() && map.at(id).observations.size() >= 1) ++reference_landmarks;
 

@@ -99,7 +99,7 @@ TEST_F(CommandLine, EveryCommandHasHelpWithAnExample) {
 
 TEST_F(CommandLine, BadUsageIsRefused) {
   expect_refused("", "A subcommand is required");
-  expect_refused("dance", "A subcommand is required");
+  expect_refused("dance", "'dance' is no subcommand");
   expect_refused("bench", "suite");
   expect_refused("bench x.yaml --jobs 0", "--jobs");
 }

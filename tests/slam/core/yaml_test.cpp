@@ -16,8 +16,9 @@ std::string error_of(const std::function<void()>& run) {
 }
 
 TEST(YamlReader, NamesFileLinePlaceAndValue) {
-  EXPECT_EQ(error_of([] { YamlReader::parse("a:\n  b: -3\n", "f.yaml").at("a").number("b", 0, 5); }),
-            "f.yaml:2: a.b: -3 is outside [0, 5]");
+  EXPECT_EQ(
+      error_of([] { YamlReader::parse("a:\n  b: -3\n", "f.yaml").at("a").number("b", 0, 5); }),
+      "f.yaml:2: a.b: -3 is outside [0, 5]");
   EXPECT_EQ(error_of([] { YamlReader::parse("a: x\n", "f.yaml").number("a"); }),
             "f.yaml:1: a: 'x' is not a number");
   EXPECT_EQ(error_of([] { YamlReader::parse("a: .nan\n", "f.yaml").number("a"); }),

@@ -75,13 +75,20 @@ TEST(Map, RandomOperationsKeepInvariants) {
   Map map = chain();
   for (std::uint64_t i = 0; i < 300; ++i) {
     const RandomStream draw = random.fork(i);
-    const auto landmark = LandmarkId{static_cast<std::uint32_t>(draw.below(0, map.landmarks().size()))};
-    const auto other = LandmarkId{static_cast<std::uint32_t>(draw.below(1, map.landmarks().size()))};
-    const auto keyframe = KeyframeId{static_cast<std::uint32_t>(draw.below(2, map.keyframes().size()))};
+    const auto landmark =
+        LandmarkId{static_cast<std::uint32_t>(draw.below(0, map.landmarks().size()))};
+    const auto other =
+        LandmarkId{static_cast<std::uint32_t>(draw.below(1, map.landmarks().size()))};
+    const auto keyframe =
+        KeyframeId{static_cast<std::uint32_t>(draw.below(2, map.keyframes().size()))};
     const auto feature = static_cast<std::uint32_t>(draw.below(3, 40));
     switch (draw.below(4, 6)) {
-      case 0: map.fuse(landmark, other); break;
-      case 1: map.erase_observation(landmark, keyframe); break;
+      case 0:
+        map.fuse(landmark, other);
+        break;
+      case 1:
+        map.erase_observation(landmark, keyframe);
+        break;
       case 2:
         if (!map.at(keyframe).erased && !map.at(keyframe).landmarks[feature].valid())
           map.add_landmark({0, 0, 1}, keyframe, feature);
@@ -89,7 +96,9 @@ TEST(Map, RandomOperationsKeepInvariants) {
       case 3:
         if (!map.at(keyframe).erased) map.add_observation(landmark, keyframe, feature);
         break;
-      case 4: map.update_covisibility(keyframe); break;
+      case 4:
+        map.update_covisibility(keyframe);
+        break;
       default:
         map.add(keyframe_with(40));
         if (i % 20 == 0) map.erase(keyframe);

@@ -16,7 +16,8 @@ Descriptor flipped(Descriptor base, int n) {
 
 struct Frame {
   Features features;
-  void add(float u, float v, Descriptor d, ClassId label = kVoid, int octave = 0, float angle = 1.0F) {
+  void add(float u, float v, Descriptor d, ClassId label = kVoid, int octave = 0,
+           float angle = 1.0F) {
     features.keypoints.push_back(
         {.u_px = u, .v_px = v, .angle_rad = angle, .octave = octave, .label = label});
     features.descriptors.push_back(d);
@@ -31,8 +32,13 @@ TEST(MatchByProjection, PenalisesDisagreeingLabelsAndCounts) {
   frame.add(103, 100, flipped(kBase, 25), ClassId{7});  // a table, like the target
   const FeatureGrid grid(frame.features.keypoints, Camera{});
   const std::vector<std::uint8_t> taken(2, 0);
-  const ProjectionTarget target{.u_px = 101, .v_px = 100, .radius_px = 10, .min_octave = 0,
-                                .max_octave = 0, .descriptor = &kBase, .label = ClassId{7}};
+  const ProjectionTarget target{.u_px = 101,
+                                .v_px = 100,
+                                .radius_px = 10,
+                                .min_octave = 0,
+                                .max_octave = 0,
+                                .descriptor = &kBase,
+                                .label = ClassId{7}};
   const auto match = [&](double xi, MatcherCounts& counts) {
     const SemanticConfig config{.xi = xi};
     return match_by_projection({&target, 1}, frame.features, grid, taken, {},
@@ -72,8 +78,9 @@ TEST(MatchByProjection, AFeatureGoesToTheNearestTarget) {
       {.u_px = 102, .v_px = 100, .radius_px = 5, .descriptor = &near},
       {.u_px = 101, .v_px = 100, .radius_px = 5, .descriptor = &far}};
   MatcherCounts counts;
-  const auto match = match_by_projection(targets, frame.features, grid, std::vector<std::uint8_t>(1, 0),
-                                         {}, SemanticMatcher(SemanticConfig{}, counts));
+  const auto match =
+      match_by_projection(targets, frame.features, grid, std::vector<std::uint8_t>(1, 0), {},
+                          SemanticMatcher(SemanticConfig{}, counts));
   EXPECT_EQ(match, (std::vector<std::int32_t>{-1, 0, -1}));
 }
 
@@ -83,14 +90,20 @@ TEST(MatchByProjection, RespectsRadiusOctaveAndTaken) {
   frame.add(140, 100, kBase, kVoid, 0);
   frame.add(101, 101, kBase, kVoid, 0);
   const FeatureGrid grid(frame.features.keypoints, Camera{});
-  const ProjectionTarget target{.u_px = 100, .v_px = 100, .radius_px = 10, .min_octave = 0,
-                                .max_octave = 1, .descriptor = &kBase};
+  const ProjectionTarget target{.u_px = 100,
+                                .v_px = 100,
+                                .radius_px = 10,
+                                .min_octave = 0,
+                                .max_octave = 1,
+                                .descriptor = &kBase};
   MatcherCounts counts;
   const SemanticMatcher matcher(SemanticConfig{}, counts);
   EXPECT_EQ(match_by_projection({&target, 1}, frame.features, grid,
-                                std::vector<std::uint8_t>{0, 0, 0}, {}, matcher)[0], 2);
+                                std::vector<std::uint8_t>{0, 0, 0}, {}, matcher)[0],
+            2);
   EXPECT_EQ(match_by_projection({&target, 1}, frame.features, grid,
-                                std::vector<std::uint8_t>{0, 0, 1}, {}, matcher)[0], -1);
+                                std::vector<std::uint8_t>{0, 0, 1}, {}, matcher)[0],
+            -1);
 }
 
 TEST(FeatureGrid, FindsWhatAScanFinds) {
@@ -104,7 +117,8 @@ TEST(FeatureGrid, FindsWhatAScanFinds) {
     for (const auto& [u, v] : {std::pair{5.0F, 470.0F}, {320.0F, 240.0F}, {-10.0F, 900.0F}}) {
       std::vector<std::uint32_t> found, scanned;
       const auto within = [&, u = u, v = v](std::uint32_t i) {
-        return std::abs(keypoints[i].u_px - u) <= radius && std::abs(keypoints[i].v_px - v) <= radius;
+        return std::abs(keypoints[i].u_px - u) <= radius &&
+               std::abs(keypoints[i].v_px - v) <= radius;
       };
       grid.for_each_near(u, v, radius, [&](std::uint32_t i) {
         if (within(i)) found.push_back(i);

@@ -47,8 +47,10 @@ class BoxRoom {
 
   static RgbdFrame render(const SE3& world_from_camera, Stamp stamp_ns, bool labels = true) {
     const Camera c = camera();
-    RgbdFrame frame{stamp_ns, Grid2d<Rgb8>(c.width_px, c.height_px),
-                    Grid2d<float>(c.width_px, c.height_px), {}};
+    RgbdFrame frame{stamp_ns,
+                    Grid2d<Rgb8>(c.width_px, c.height_px),
+                    Grid2d<float>(c.width_px, c.height_px),
+                    {}};
     if (labels) {
       frame.semantics.index = Grid2d<std::uint8_t>(c.width_px, c.height_px);
       for (int i = 0; i < 13; ++i)
@@ -64,7 +66,8 @@ class BoxRoom {
         for (int axis = 0; axis < 3; ++axis) {
           if (ray[axis] == 0) continue;
           const bool far = ray[axis] > 0;
-          const double t = ((far ? size[static_cast<std::size_t>(axis)] : 0.0) - origin[axis]) / ray[axis];
+          const double t =
+              ((far ? size[static_cast<std::size_t>(axis)] : 0.0) - origin[axis]) / ray[axis];
           if (t > 0 && t < depth) {
             depth = t;
             side = 2 * axis + far;
@@ -96,7 +99,8 @@ class BoxRoom {
     const auto at = [&](double i, double j) {
       return static_cast<double>(mix(mix(static_cast<std::uint64_t>(name) * 7919 +
                                          static_cast<std::uint64_t>(static_cast<std::int64_t>(i))) ^
-                                     static_cast<std::uint64_t>(static_cast<std::int64_t>(j))) >> 56);
+                                     static_cast<std::uint64_t>(static_cast<std::int64_t>(j))) >>
+                                 56);
     };
     const auto blend = [&](double t) { return std::clamp((t - (1.0 - edge)) / edge, 0.0, 1.0); };
     const double a = blend(u - fu), b = blend(v - fv);

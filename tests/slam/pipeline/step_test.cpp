@@ -20,7 +20,8 @@ std::shared_ptr<const Vocabulary> vocabulary() {
     std::vector<std::vector<Descriptor>> images;
     for (int i = 0; i < 12; ++i)
       images.push_back(extract(BoxRoom::render(BoxRoom::round_trip(20 * i + 5, kTurnFrames), 0),
-                               BoxRoom::camera(), {.count = 500}).descriptors);
+                               BoxRoom::camera(), {.count = 500})
+                           .descriptors);
     return std::make_shared<const Vocabulary>(
         Vocabulary::train(images, {.branching = 10, .depth = 3}));
   }();
@@ -72,8 +73,9 @@ TEST(Step, TracksANoiseFreeRoomToMillimetres) {
   double sum2 = 0;
   for (int i = 0; i < 300; ++i) {
     EXPECT_EQ(estimate[static_cast<std::size_t>(i)].stamp_ns, i * kFrame_ns);
-    const SE3 error = (world_from_origin * estimate[static_cast<std::size_t>(i)].world_from_camera).inverse() *
-                      BoxRoom::round_trip(i, kTurnFrames);
+    const SE3 error =
+        (world_from_origin * estimate[static_cast<std::size_t>(i)].world_from_camera).inverse() *
+        BoxRoom::round_trip(i, kTurnFrames);
     sum2 += error.translation().squaredNorm();
   }
   // Corners at f = 288 px are found to some 0.4 px, 3 mm at 2 m; hundreds of them average that out
@@ -114,8 +116,10 @@ TEST(Loop, IsFoundAndClosedWhereTheTurnMeetsItsBeginning) {
   const SE3 world_from_origin = BoxRoom::round_trip(0, kTurnFrames);
   const auto error_m = [&](int i) {
     const Trajectory estimate = trajectory(state);
-    return (world_from_origin * estimate[static_cast<std::size_t>(i)].world_from_camera.translation() -
-            BoxRoom::round_trip(i, kTurnFrames).translation()).norm();
+    return (world_from_origin *
+                estimate[static_cast<std::size_t>(i)].world_from_camera.translation() -
+            BoxRoom::round_trip(i, kTurnFrames).translation())
+        .norm();
   };
   int closed_at = -1;
   double before_m = 0, after_m = 0;
@@ -187,11 +191,12 @@ TEST(Localize, FindsFramesThatWereNeverMappedAndChangesNothing) {
   const std::uint64_t digest = r.state.map.digest();
   const SE3 world_from_origin = BoxRoom::round_trip(0, kTurnFrames);
   for (const double i : {7.5, 40.5, 199.5}) {
-    const SE3 truth = BoxRoom::pose(3 + 0.8 * std::cos(2 * M_PI * i / kTurnFrames),
-                                    2.5 + 0.7 * std::sin(2 * M_PI * i / kTurnFrames),
-                                    2 * M_PI * i / kTurnFrames);
+    const SE3 truth =
+        BoxRoom::pose(3 + 0.8 * std::cos(2 * M_PI * i / kTurnFrames),
+                      2.5 + 0.7 * std::sin(2 * M_PI * i / kTurnFrames), 2 * M_PI * i / kTurnFrames);
     Tracker tracker;
-    const StepReport report = localize(r.state, tracker, BoxRoom::render(truth, 0), RandomStream(5));
+    const StepReport report =
+        localize(r.state, tracker, BoxRoom::render(truth, 0), RandomStream(5));
     ASSERT_EQ(report.status, TrackStatus::kRelocalized) << name(report.relocalization);
     EXPECT_LT((world_from_origin * *report.world_from_camera * truth.inverse()).log().norm(), 0.04);
     EXPECT_TRUE(tracker.tracking());
@@ -202,10 +207,13 @@ TEST(Localize, FindsFramesThatWereNeverMappedAndChangesNothing) {
 TEST(Localize, ABlankFrameIsLostAndLeavesTheTrackerLost) {
   const Drive& r = mapped();
   Tracker tracker;
-  ASSERT_EQ(localize(r.state, tracker, frame(20), RandomStream(1)).status, TrackStatus::kRelocalized);
+  ASSERT_EQ(localize(r.state, tracker, frame(20), RandomStream(1)).status,
+            TrackStatus::kRelocalized);
   const Camera camera = BoxRoom::camera();
-  const RgbdFrame blank{kFrame_ns * 21, Grid2d<Rgb8>(camera.width_px, camera.height_px),
-                        Grid2d<float>(camera.width_px, camera.height_px), {}};
+  const RgbdFrame blank{kFrame_ns * 21,
+                        Grid2d<Rgb8>(camera.width_px, camera.height_px),
+                        Grid2d<float>(camera.width_px, camera.height_px),
+                        {}};
   const StepReport report = localize(r.state, tracker, blank, RandomStream(1));
   EXPECT_EQ(report.status, TrackStatus::kLost);
   EXPECT_EQ(report.relocalization, RelocalizationStage::kNoCandidate);

@@ -13,13 +13,14 @@ namespace {
 
 constexpr auto kUnitEta = [](std::uint32_t) { return 1.0; };
 
-AugmentedVector vector_of(std::vector<Label> labels, std::vector<std::uint32_t> words, double gamma) {
-  return augmented_vector(std::span<const Label>(labels), std::span<const std::uint32_t>(words), gamma,
-                          kUnitEta);
+AugmentedVector vector_of(std::vector<Label> labels, std::vector<std::uint32_t> words,
+                          double gamma) {
+  return augmented_vector(std::span<const Label>(labels), std::span<const std::uint32_t>(words),
+                          gamma, kUnitEta);
 }
 
-// Worked by hand: labels {2, 2, void, 7} and words {5, 5, 9, 9} with gamma 0.5 and eta 1 for word 5,
-// 3 for word 9. Weights: label 2: 0.5 * 2 = 1, label 7: 0.5, word 5: 2, word 9: 6; sum 9.5.
+// Worked by hand: labels {2, 2, void, 7} and words {5, 5, 9, 9} with gamma 0.5 and eta 1 for word
+// 5, 3 for word 9. Weights: label 2: 0.5 * 2 = 1, label 7: 0.5, word 5: 2, word 9: 6; sum 9.5.
 TEST(AugmentedVector, IsEquationOne) {
   const std::vector<Label> labels{2, 2, kNoLabel, 7};
   const std::vector<std::uint32_t> words{5, 9, 5, 9};
