@@ -290,8 +290,9 @@ void build_hull(const HousePlan& house, MeshBuilder& mesh) {
   build_hull_layer(house, black, 0.01F, false, mesh);
 }
 
-/// A glowing picture of a garden stands beyond each side that has windows, a lawn before it. They
-/// are nothing that a map of the house should hold: class void, no object.
+/// A glowing picture of a garden stands beyond each side that has windows, a lawn before it. Each
+/// side has its own, as wide as the side: no window shows what another does. They are nothing that
+/// a map of the house should hold: class void, no object.
 void build_garden(const HousePlan& house, const GardenPlan& garden, MeshBuilder& mesh) {
   const auto d = static_cast<float>(garden.distance_m), h = static_cast<float>(garden.height_m);
   const auto glow = static_cast<float>(garden.glow);
@@ -299,15 +300,19 @@ void build_garden(const HousePlan& house, const GardenPlan& garden, MeshBuilder&
   const auto x0 = static_cast<float>(e.x0) - d, x1 = static_cast<float>(e.x1) + d;
   const auto y0 = static_cast<float>(e.y0) - d, y1 = static_cast<float>(e.y1) + d;
   constexpr float kGround = -0.35F;
-  MaterialSpec spec = garden.material;
-  spec.size_m = {12.0F, h - kGround};
-  // A camera set for rooms sees the outside too bright: both are darkened. The one that the sun
-  // does not shine on may glow.
-  const MaterialId shaded = mesh.material(spec, glow * Vector3f(0.85F, 1.0F, 1.0F));
-  mesh.scene().materials[shaded].base_colour = {146, 146, 146};
-  spec.name += "_sunlit";
-  const MaterialId sunlit = mesh.material(spec);
-  mesh.scene().materials[sunlit].base_colour = {124, 124, 124};
+  // A camera set for rooms sees the outside too bright: all are darkened. Those that the sun does
+  // not shine on may glow.
+  const auto picture = [&](Side side, float width_m, bool sunlit) {
+    MaterialSpec spec = garden.material;
+    spec.name = fmt::format("{}_{}", spec.name, side_name(side));
+    spec.seed += static_cast<std::uint64_t>(side);
+    spec.size_m = {width_m, h - kGround};
+    const MaterialId id =
+        sunlit ? mesh.material(spec) : mesh.material(spec, glow * Vector3f(0.85F, 1.0F, 1.0F));
+    const std::uint8_t tone = sunlit ? 124 : 146;
+    mesh.scene().materials[id].base_colour = {tone, tone, tone};
+    return id;
+  };
   const MaterialId lawn = mesh.material(
       {.name = "lawn", .kind = "carpet", .tone = {96, 118, 66}, .variation = 0.6, .seed = 98});
   mesh.scene().materials[lawn].base_colour = {88, 88, 88};
@@ -324,7 +329,7 @@ void build_garden(const HousePlan& house, const GardenPlan& garden, MeshBuilder&
     const float from = wall.along_x() ? x0 : y0, to = wall.along_x() ? x1 : y1;
     const Vector3f normal = axis.cross(Vector3f::UnitZ());
     const bool lit = house.sun && house.sun->direction.dot(normal) < 0.0F;
-    mesh.panel(lit ? sunlit : shaded, origin, axis, Vector3f::UnitZ(),
+    mesh.panel(picture(side, to - from, lit), origin, axis, Vector3f::UnitZ(),
                breaks(forward ? from : -to, forward ? to : -from, 1.0F),
                breaks(kGround - h, 0.0F, 1.0F));
   }

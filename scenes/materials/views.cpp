@@ -69,10 +69,11 @@ Picture paint_painting(const PaintJob& job) {
 
 Picture paint_garden(const PaintJob& job) {
   const int w = job.width, h = job.height;
-  const Field clouds = fbm(w, h, 3, 5, 5, 0.55F, job.random.fork(0));
-  const Field crowns = fbm(w, h, 5, 5, 6, 0.6F, job.random.fork(1));
+  const int widths = std::max(1, w / (2 * h));  // a wide picture shows more, not wider things
+  const Field clouds = fbm(w, h, 3 * widths, 5, 5, 0.55F, job.random.fork(0));
+  const Field crowns = fbm(w, h, 5 * widths, 5, 6, 0.6F, job.random.fork(1));
   const Field leaves = fbm(w, h, w / 7, h / 7, 3, 0.8F, job.random.fork(2));
-  const Field tops = fbm(w, 16, 4, 1, 5, 0.55F, job.random.fork(3));
+  const Field tops = fbm(w, 16, 4 * widths, 1, 5, 0.55F, job.random.fork(3));
   const Field grass = fbm(w, h, w / 3, h / 9, 2, 0.8F, job.random.fork(4));
   const Voronoi hedge =
       voronoi(w, h, std::max(3, w / 6), std::max(3, h / 6), 1.0F, job.random.fork(5));
@@ -96,20 +97,24 @@ Picture paint_garden(const PaintJob& job) {
     return sky_tint(1.0F - 1.6F * v, clouds(x, y) + 0.05F);
   });
   Canvas canvas(picture);
-  const RandomStream random = job.random.fork(6);
   const auto height = static_cast<float>(h);
-  const float x = static_cast<float>(random.uniform(0, 0.15, 0.85)) * static_cast<float>(w);
-  canvas.line(x, 0.76F * height, x + 0.02F * height, 0.2F * height, 0.035F * height,
-              Tint(82, 66, 52));
-  canvas.line(x + 0.01F * height, 0.45F * height, x + 0.14F * height, 0.2F * height,
-              0.015F * height, Tint(74, 60, 48));
-  for (std::uint64_t i = 0; i < 260; ++i) {  // its crown and the flowers on the lawn
-    const auto turn = static_cast<float>(random.uniform(10 + 4 * i, 0.0, 6.28));
-    const auto reach = static_cast<float>(std::sqrt(random.uniform(11 + 4 * i))) * 0.24F * height;
-    const auto shade = static_cast<float>(random.uniform(12 + 4 * i, 0.6, 1.35));
-    canvas.ellipse(x + 0.03F * height + 1.3F * reach * std::cos(turn),
-                   0.14F * height + 0.8F * reach * std::sin(turn), 0.016F * height, 0.010F * height,
-                   turn, green * shade);
+  for (int tree = 0; tree < widths; ++tree) {
+    const RandomStream random = job.random.fork(6).fork(static_cast<std::uint64_t>(tree));
+    const float place =
+        static_cast<float>(tree) + static_cast<float>(random.uniform(0, 0.15, 0.85));
+    const float x = place / static_cast<float>(widths) * static_cast<float>(w);
+    canvas.line(x, 0.76F * height, x + 0.02F * height, 0.2F * height, 0.035F * height,
+                Tint(82, 66, 52));
+    canvas.line(x + 0.01F * height, 0.45F * height, x + 0.14F * height, 0.2F * height,
+                0.015F * height, Tint(74, 60, 48));
+    for (std::uint64_t i = 0; i < 260; ++i) {  // its crown
+      const auto turn = static_cast<float>(random.uniform(10 + 4 * i, 0.0, 6.28));
+      const auto reach = static_cast<float>(std::sqrt(random.uniform(11 + 4 * i))) * 0.24F * height;
+      const auto shade = static_cast<float>(random.uniform(12 + 4 * i, 0.6, 1.35));
+      canvas.ellipse(x + 0.03F * height + 1.3F * reach * std::cos(turn),
+                     0.14F * height + 0.8F * reach * std::sin(turn), 0.016F * height,
+                     0.010F * height, turn, green * shade);
+    }
   }
   return picture;
 }
