@@ -19,7 +19,16 @@ struct SemanticConfig {
   Overlap overlap = Overlap::kAugmented;
   bool void_is_a_label = false;
 
-  static SemanticConfig neutral() { return {.gamma = 0.0, .xi = 1.0, .overlap = Overlap::kWords}; }
+  /// These settings with the method switched off: the plain system. What is not of the method
+  /// (alpha, beta) stays.
+  SemanticConfig neutralised() const {
+    SemanticConfig plain = *this;
+    plain.gamma = 0.0;
+    plain.xi = 1.0;
+    plain.overlap = Overlap::kWords;
+    return plain;
+  }
+  static SemanticConfig neutral() { return SemanticConfig{}.neutralised(); }
 };
 
 struct MatchConfig {

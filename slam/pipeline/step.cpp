@@ -67,7 +67,7 @@ SE3 predict(const Tracker& tracker, Stamp stamp_ns) {
 
 struct Located {
   TrackedPose tracked;
-  LocalMap local;
+  KeyframeId reference;
   std::vector<LandmarkId> expected;
 };
 
@@ -105,7 +105,7 @@ std::optional<Located> locate(const SlamState& state, const Tracker& tracker, Pr
     tracked = TrackedPose{*found.camera_from_world, std::move(found.landmarks), found.inliers};
   }
 
-  LocalMap local = local_map(*tracked, context);
+  const LocalMap local = local_map(*tracked, context);
   auto refined = track_local_map(without_words(frame), *tracked, local,
                                  static_cast<float>(config.track.local_radius_px), context,
                                  at(report.matches, Matcher::kLocalMap));
@@ -115,7 +115,8 @@ std::optional<Located> locate(const SlamState& state, const Tracker& tracker, Pr
     return std::nullopt;
   }
   report.status = relocalizing ? TrackStatus::kRelocalized : TrackStatus::kTracked;
-  return Located{std::move(refined->tracked), std::move(local), std::move(refined->expected)};
+  const KeyframeId reference = reference_of(refined->tracked, state.map);
+  return Located{std::move(refined->tracked), reference, std::move(refined->expected)};
 }
 
 /// How the camera moved since the last frame. Taken before mapping, which may move the world.
@@ -220,7 +221,7 @@ StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream) {
 
   update_velocity(state.tracker, frame.stamp_ns, located->tracked.camera_from_world);
   ++state.tracker.frames_since_keyframe;
-  KeyframeId reference = located->local.reference;
+  KeyframeId reference = located->reference;
   SE3 camera_from_world = located->tracked.camera_from_world;
   std::vector<LandmarkId> landmarks = std::move(located->tracked.landmarks);
   report.inliers = located->tracked.inliers;
@@ -258,7 +259,7 @@ StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& 
   update_velocity(tracker, frame.stamp_ns, located->tracked.camera_from_world);
   report.world_from_camera = located->tracked.camera_from_world.inverse();
   remember(tracker, std::move(prepared), located->tracked.camera_from_world,
-           std::move(located->tracked.landmarks), located->local.reference);
+           std::move(located->tracked.landmarks), located->reference);
   return report;
 }
 

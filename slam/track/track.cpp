@@ -26,7 +26,25 @@ ProjectionTarget target_of(const Eigen::Vector3d& point_in_camera, const Keypoin
           .angle_rad = from.angle_rad};
 }
 
+/// Keyframes with the number of landmarks they share with the frame, most first, then earliest.
+std::vector<std::pair<KeyframeId, int>> by_shared_landmarks(const TrackedPose& tracked,
+                                                            const Map& map) {
+  std::map<KeyframeId, int> votes;
+  for (const LandmarkId landmark : tracked.landmarks)
+    if (landmark.valid())
+      for (const Observation& o : map.at(landmark).observations) ++votes[o.keyframe];
+  std::vector<std::pair<KeyframeId, int>> voted(votes.begin(), votes.end());
+  std::stable_sort(voted.begin(), voted.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  return voted;
+}
+
 }  // namespace
+
+KeyframeId reference_of(const TrackedPose& tracked, const Map& map) {
+  const auto voted = by_shared_landmarks(tracked, map);
+  return voted.empty() ? KeyframeId{} : voted.front().first;
+}
 
 std::optional<TrackedPose> optimise_matches(const Query& query,
                                             const std::vector<LandmarkId>& landmarks,
@@ -138,13 +156,7 @@ std::optional<TrackedPose> track_reference(const Query& query, KeyframeId refere
 
 LocalMap local_map(const TrackedPose& tracked, const TrackContext& context) {
   const Map& map = context.map;
-  std::map<KeyframeId, int> votes;
-  for (const LandmarkId landmark : tracked.landmarks)
-    if (landmark.valid())
-      for (const Observation& o : map.at(landmark).observations) ++votes[o.keyframe];
-  std::vector<std::pair<KeyframeId, int>> voted(votes.begin(), votes.end());
-  std::stable_sort(voted.begin(), voted.end(),
-                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  const auto voted = by_shared_landmarks(tracked, map);
 
   LocalMap local;
   std::vector<std::uint8_t> has(map.keyframes().size(), 0);
@@ -154,7 +166,6 @@ LocalMap local_map(const TrackedPose& tracked, const TrackContext& context) {
     has[id.value] = 1;
     local.keyframes.push_back(id);
   };
-  if (!voted.empty()) local.reference = voted.front().first;
   for (const auto& [id, count] : voted)
     if (local.keyframes.size() < limit / 2) take(id);
 
@@ -234,13 +245,9 @@ std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedP
 
 bool needs_keyframe(const TrackedPose& tracked, const Features& features, const Map& map,
                     KeyframeId reference, int frames_since_keyframe, const KeyframeConfig& config) {
-  // Landmarks that have proven themselves; in a young map, all.
-  const std::size_t proven = map.keyframe_count() > 2 ? 2 : 1;
-  int reference_landmarks = 0;
-  (void)proven;
-  for (const LandmarkId id : map.at(reference).landmarks)
-    if (id.valid() && map.at(id).observations.size() >= 1) ++reference_landmarks;
-
+  const auto& of_reference = map.at(reference).landmarks;
+  const auto reference_landmarks = std::count_if(of_reference.begin(), of_reference.end(),
+                                                 [](LandmarkId id) { return id.valid(); });
   int close_tracked = 0, close_new = 0;
   for (std::size_t i = 0; i < features.size(); ++i) {
     const float depth = features.keypoints[i].depth_m;
@@ -248,7 +255,8 @@ bool needs_keyframe(const TrackedPose& tracked, const Features& features, const 
     ++(tracked.landmarks[i].valid() ? close_tracked : close_new);
   }
   const bool thin = close_tracked < config.min_close_tracked && close_new > config.min_close_new;
-  const bool drifted = tracked.inliers < config.min_tracked_share * reference_landmarks;
+  const bool drifted =
+      tracked.inliers < config.min_tracked_share * static_cast<double>(reference_landmarks);
   const bool old = frames_since_keyframe >= config.max_interval && close_new > config.min_close_new;
   return thin || drifted || old;
 }

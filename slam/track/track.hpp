@@ -48,8 +48,11 @@ std::optional<TrackedPose> track_reference(const Query& query, KeyframeId refere
 struct LocalMap {
   std::vector<KeyframeId> keyframes;
   std::vector<LandmarkId> landmarks;
-  KeyframeId reference;  ///< shares most landmarks with the frame
 };
+
+/// The keyframe that shares most landmarks with the frame, the earliest of equals; invalid if none
+/// does.
+KeyframeId reference_of(const TrackedPose& tracked, const Map& map);
 
 /// Keyframes that share landmarks with the frame, their neighbours, and those that stand near and
 /// look alike, whatever they share: so a place seen long ago is found again without a detour.
