@@ -241,6 +241,22 @@ void find_boxes(Scene& scene) {
     if (!instance.min_m.allFinite()) instance.min_m = instance.max_m = Eigen::Vector3f::Zero();
 }
 
+/// A mesh that came without a plan: the box of each floor is a room, so that those who ask where
+/// people stand (metering, previews, plans) find an answer.
+void rooms_from_floors(Scene& scene) {
+  constexpr float kLeastRoom_m2 = 1.0F;
+  const std::optional<ClassId> floor = class_by_name("floor");
+  for (const Instance& instance : scene.instances) {
+    const Eigen::Vector3f size = instance.max_m - instance.min_m;
+    if (instance.class_id != floor || size.x() * size.y() < kLeastRoom_m2) continue;
+    const Eigen::Vector3d low = instance.min_m.cast<double>(), high = instance.max_m.cast<double>();
+    scene.rooms.push_back(
+        {.name = instance.name.substr(0, instance.name.find('/')),
+         .polygon_m = {
+             {low.x(), low.y()}, {high.x(), low.y()}, {high.x(), high.y()}, {low.x(), high.y()}}});
+  }
+}
+
 }  // namespace
 
 Scene load_mesh(const fs::path& file, std::vector<std::string>* warnings) {
@@ -258,6 +274,7 @@ Scene load_mesh(const fs::path& file, std::vector<std::string>* warnings) {
     for (Material& material : scene.materials) material.texture = {};
   if (format.ply && fs::exists(labels_path(file))) load_labels(scene, labels_path(file));
   find_boxes(scene);
+  if (scene.rooms.empty()) rooms_from_floors(scene);
   validate(scene);
   return scene;
 }

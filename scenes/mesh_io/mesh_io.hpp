@@ -43,8 +43,8 @@ void save_scannet_ply(const Scene& scene, const std::filesystem::path& file,
 
 /// Writes a binary glTF 2.0 with embedded PNG textures, y-up as glTF wants it, one node per
 /// instance (and class) named `name#class=CLASS#instance=ID`, and baked light times vertex colour
-/// as linear vertex colours (they may exceed 1) of unlit materials. Lamps, rooms and tile sizes are
-/// not kept.
+/// as linear vertex colours (they may exceed 1) of unlit materials. Lamps and tile sizes are
+/// not kept; rooms come back as the boxes of the floors.
 /// @throws InputError if the file cannot be written.
 void save_glb(const Scene& scene, const std::filesystem::path& file);
 

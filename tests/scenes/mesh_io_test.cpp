@@ -157,6 +157,18 @@ TEST_F(MeshIo, GlbReadBackIsTheSameScene) {
   }
 }
 
+TEST_F(MeshIo, WithoutAPlanEachFloorIsARoom) {
+  Scene scene = example_scene();
+  scene.instances[0] = {.id = 1, .class_id = 2, .name = "hall/floor"};
+  for (std::size_t face = 0; face < scene.triangles.size(); ++face)
+    if (scene.instance_of[face] == 1) scene.class_of[face] = 2;
+  save_glb(scene, folder_ / "hall.glb");
+  const Scene read = load_mesh(folder_ / "hall.glb");
+  ASSERT_EQ(read.rooms.size(), 1U);
+  EXPECT_EQ(read.rooms[0].name, "hall");
+  EXPECT_NEAR(read.floor_area_m2(), 1.0 * 3.0, 1e-4);  // the piece's box, 1 m by 3 m
+}
+
 TEST_F(MeshIo, PlyReadBackKeepsOrderLabelsAndColours) {
   const Scene scene = example_scene();
   save_scannet_ply(scene, folder_ / "scene.ply", 0.0F);
