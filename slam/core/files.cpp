@@ -61,10 +61,15 @@ void write_atomically(const fs::path& file, std::string_view content) {
 }
 
 std::string read_file(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
   std::error_code error;
-  if (!in || fs::is_directory(file, error))
-    throw InputError(fmt::format("{}: cannot be read: no such file", file.string()));
+  if (fs::is_directory(file, error))
+    throw InputError(fmt::format("{}: cannot be read: it is a folder", file.string()));
+  std::ifstream in(file, std::ios::binary);
+  if (!in) {
+    const bool there = fs::exists(file, error);
+    throw InputError(fmt::format("{}: cannot be read: {}", file.string(),
+                                 there ? "no permission" : "no such file"));
+  }
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();

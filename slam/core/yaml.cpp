@@ -2,10 +2,10 @@
 #include "slam/core/yaml.hpp"
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include <fmt/format.h>
+
+#include "slam/core/files.hpp"
 
 namespace mh {
 namespace {
@@ -33,12 +33,7 @@ YamlReader::YamlReader(YAML::Node node, std::string file, std::string place)
     : node_(std::move(node)), file_(std::move(file)), place_(std::move(place)) {}
 
 YamlReader YamlReader::load(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in || std::filesystem::is_directory(file))
-    throw InputError(fmt::format("{}: cannot be read: no such file", file.string()));
-  std::ostringstream text;
-  text << in.rdbuf();
-  return parse(text.str(), file.string());
+  return parse(read_file(file), file.string());
 }
 
 YamlReader YamlReader::parse(const std::string& text, const std::string& name) {

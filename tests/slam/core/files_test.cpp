@@ -27,6 +27,19 @@ TEST(WriteAtomically, KeepsTheOldFileWhenWritingFails) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << "a temporary was left behind";
 }
 
+TEST(ReadFile, SaysWhetherItIsMissingOrAFolder) {
+  const auto error_of = [](const fs::path& file) -> std::string {
+    try {
+      read_file(file);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(error_of("/nowhere/a"), "/nowhere/a: cannot be read: no such file");
+  EXPECT_EQ(error_of(testing::TempDir()), testing::TempDir() + ": cannot be read: it is a folder");
+}
+
 TEST(MakeOutputFolder, RefusesAPathThatIsAFile) {
   const fs::path file = fs::path(testing::TempDir()) / "a_file";
   std::ofstream(file) << "x";
