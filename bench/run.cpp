@@ -114,8 +114,8 @@ void run_group(const Group& group, const std::vector<RunSpec>& specs, const Suit
 
 std::unique_ptr<System> make_system(const RunSpec& spec, const Suite& suite, const World& world) {
   SlamConfig config;
-  config.semantics =
-      spec.system == SystemKind::kPlain ? SemanticConfig::neutral() : suite.semantics;
+  config.semantics = suite.semantics;
+  if (spec.system == SystemKind::kPlain) config.semantics = config.semantics.neutralised();
   return make_our_system(world.robot.camera, config, world.vocabulary);
 }
 

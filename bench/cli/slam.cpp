@@ -34,7 +34,7 @@ void run(const Options& options) {
   SlamConfig config;
   config.semantics.gamma = options.gamma;
   config.semantics.xi = options.xi;
-  if (options.plain) config.semantics = SemanticConfig::neutral();
+  if (options.plain) config.semantics = config.semantics.neutralised();
   TimedSystem system(make_our_system(camera.camera, config, vocabulary));
   Progress progress("slam");
   const RandomStream stream(options.seed);
