@@ -32,6 +32,7 @@ std::string delta_name(const RpeDelta& delta) {
 }
 
 nlohmann::ordered_json to_json(const ErrorStatistics& s) {
+  if (s.count == 0) return nullptr;  // unknown, not 0
   return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"std", s.std},
           {"min", s.min},   {"max", s.max},   {"sse", s.sse},       {"count", s.count}};
 }
@@ -55,6 +56,11 @@ nlohmann::ordered_json to_json(const Evaluation& e, const std::string& align) {
 }
 
 void print_row(const std::string& what, const ErrorStatistics& s) {
+  if (s.count == 0) {
+    fmt::print("{:<30}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}\n", what, "-", "-", "-", "-", "-",
+               "-", 0);
+    return;
+  }
   fmt::print("{:<30}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}{:>9}\n", what, s.rmse,
              s.mean, s.median, s.std, s.min, s.max, s.count);
 }

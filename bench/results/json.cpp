@@ -16,6 +16,10 @@ Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+Json number(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
 Json pose_json(const SE3& pose) {
   const Eigen::Vector3d& t = pose.translation();
   const Eigen::Quaterniond q = pose.quaternion();
@@ -116,20 +120,21 @@ Json query_json(const QueryScore& q) {
 
 Json trajectory_json(const TrajectoryScore& t) {
   return {{"completeness", t.completeness},
-          {"ate_rmse_m", t.ate_rmse_m},
-          {"ate_unaligned_m", t.ate_unaligned_m},
-          {"rpe_frame_rmse_m", t.rpe_frame_rmse_m},
-          {"rpe_second_rmse_m", t.rpe_second_rmse_m}};
+          {"ate_rmse_m", number(t.ate_rmse_m)},
+          {"ate_first_pose_m", number(t.ate_first_pose_m)},
+          {"rpe_frame_rmse_m", number(t.rpe_frame_rmse_m)},
+          {"rpe_second_rmse_m", number(t.rpe_second_rmse_m)}};
 }
 
 Json summary_json(const QuerySummary& s) {
+  if (s.queries == 0) return nullptr;  // nothing was asked
   return {{"queries", s.queries},
           {"success", s.success},
           {"correct", s.correct},
           {"false", s.wrong},
-          {"distance_mean_m", s.distance_mean_m},
-          {"distance_median_m", s.distance_median_m},
-          {"aligned_distance_mean_m", s.aligned_distance_mean_m},
+          {"distance_mean_m", number(s.distance_mean_m)},
+          {"distance_median_m", number(s.distance_median_m)},
+          {"aligned_distance_mean_m", number(s.aligned_distance_mean_m)},
           {"attempts", s.attempts},
           {"candidates",
            {{"keyframes", s.keyframes},

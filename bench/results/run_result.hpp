@@ -17,13 +17,14 @@ namespace mh {
 /// How good the mapping tour's trajectory is.
 struct TrajectoryScore {
   std::size_t offered = 0;
-  std::size_t tracked = 0;       ///< frames with a pose in the end
-  double completeness = 0;       ///< tracked / offered
-  double ate_rmse_m = 0;         ///< after SE(3) alignment without scale
-  double ate_unaligned_m = 0;    ///< in the frame of dock_from_estimate
-  double rpe_frame_rmse_m = 0;   ///< translation error per frame step
-  double rpe_second_rmse_m = 0;  ///< translation error per second
-  SE3 truth_from_estimate;       ///< the alignment
+  std::size_t tracked = 0;  ///< frames with a pose in the end
+  double completeness = 0;  ///< tracked / offered
+  // Absent where the path does not determine them: too short, or on a line.
+  std::optional<double> ate_rmse_m;         ///< after SE(3) alignment without scale
+  std::optional<double> ate_first_pose_m;   ///< in the frame of dock_from_estimate
+  std::optional<double> rpe_frame_rmse_m;   ///< translation error per frame step
+  std::optional<double> rpe_second_rmse_m;  ///< translation error per second
+  SE3 truth_from_estimate;                  ///< the alignment
   /// The first tracked pose put onto the truth, nothing else: a robot knows where its dock stands.
   /// The frame of the occupancy map and of the pictures.
   SE3 dock_from_estimate;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +11,8 @@ namespace mh {
 
 /// The middle value (mean of the two middle ones); 0 of nothing.
 double median(std::vector<double> values);
+/// The median of those that are known; absent if none is.
+std::optional<double> median_of_known(std::span<const std::optional<double>> values);
 /// 0 of nothing.
 double mean(std::span<const double> values);
 

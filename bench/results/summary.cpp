@@ -24,13 +24,19 @@ QuerySummary median_summary(const std::vector<const RunResult*>& trials, QuerySe
   QuerySummary m;
   for (double QuerySummary::*field :
        {&QuerySummary::queries, &QuerySummary::success, &QuerySummary::correct,
-        &QuerySummary::wrong, &QuerySummary::distance_mean_m, &QuerySummary::distance_median_m,
-        &QuerySummary::aligned_distance_mean_m, &QuerySummary::attempts, &QuerySummary::keyframes,
-        &QuerySummary::c1, &QuerySummary::c2, &QuerySummary::c3, &QuerySummary::final,
-        &QuerySummary::single_candidate, &QuerySummary::label_mass}) {
+        &QuerySummary::wrong, &QuerySummary::attempts, &QuerySummary::keyframes, &QuerySummary::c1,
+        &QuerySummary::c2, &QuerySummary::c3, &QuerySummary::final, &QuerySummary::single_candidate,
+        &QuerySummary::label_mass}) {
     std::vector<double> values;
     for (const QuerySummary& s : all) values.push_back(s.*field);
     m.*field = median(std::move(values));
+  }
+  for (std::optional<double> QuerySummary::*field :
+       {&QuerySummary::distance_mean_m, &QuerySummary::distance_median_m,
+        &QuerySummary::aligned_distance_mean_m}) {
+    std::vector<std::optional<double>> values;
+    for (const QuerySummary& s : all) values.push_back(s.*field);
+    m.*field = median_of_known(values);
   }
   return m;
 }
@@ -46,12 +52,15 @@ Row make_row(SystemKind system, LabelMode labels, std::size_t level,
   row.labels = labels;
   row.level = level;
   row.trials = std::move(trials);
-  for (double TrajectoryScore::*field :
-       {&TrajectoryScore::completeness, &TrajectoryScore::ate_rmse_m,
-        &TrajectoryScore::ate_unaligned_m, &TrajectoryScore::rpe_frame_rmse_m,
-        &TrajectoryScore::rpe_second_rmse_m})
-    row.trajectory.*field =
-        median_over(row.trials, [&](const RunResult& run) { return run.trajectory.*field; });
+  row.trajectory.completeness =
+      median_over(row.trials, [](const RunResult& run) { return run.trajectory.completeness; });
+  for (std::optional<double> TrajectoryScore::*field :
+       {&TrajectoryScore::ate_rmse_m, &TrajectoryScore::ate_first_pose_m,
+        &TrajectoryScore::rpe_frame_rmse_m, &TrajectoryScore::rpe_second_rmse_m}) {
+    std::vector<std::optional<double>> values;
+    for (const RunResult* run : row.trials) values.push_back(run->trajectory.*field);
+    row.trajectory.*field = median_of_known(values);
+  }
   row.restarts = median_over(row.trials, [](const RunResult& r) { return r.mapping.restarts; });
   row.dropped =
       median_over(row.trials, [](const RunResult& r) { return r.mapping.dropped.size(); });
@@ -173,6 +182,7 @@ QuerySummary summarize(std::span<const QueryScore> queries) {
     for (double* m :
          {&s.keyframes, &s.c1, &s.c2, &s.c3, &s.final, &s.single_candidate, &s.label_mass})
       *m /= with_candidates;
+  if (distances.empty()) return s;
   s.distance_mean_m = mean(distances);
   s.aligned_distance_mean_m = mean(aligned);
   s.distance_median_m = median(std::move(distances));
@@ -212,9 +222,9 @@ std::vector<std::vector<Comparison>> compare_systems(const Suite& suite,
   return by_level;
 }
 
-std::array<double, 2> ate_over_common_frames(const Row& first, const Row& second,
-                                             const Trajectory& truth) {
-  std::vector<double> a, b;
+std::array<std::optional<double>, 2> ate_over_common_frames(const Row& first, const Row& second,
+                                                            const Trajectory& truth) {
+  std::vector<std::optional<double>> a, b;
   const std::size_t trials = std::min(first.trials.size(), second.trials.size());
   for (std::size_t t = 0; t < trials; ++t) {
     const Trajectory& x = first.trials[t]->estimate;
@@ -231,7 +241,7 @@ std::array<double, 2> ate_over_common_frames(const Row& first, const Row& second
     a.push_back(score_trajectory(common_x, truth, common_x.size()).ate_rmse_m);
     b.push_back(score_trajectory(common_y, truth, common_y.size()).ate_rmse_m);
   }
-  return {median(std::move(a)), median(std::move(b))};
+  return {median_of_known(a), median_of_known(b)};
 }
 
 }  // namespace mh

@@ -20,10 +20,10 @@ const std::vector<QueryScore>& queries(const RunResult& run, QuerySet set);
 struct QuerySummary {
   double queries = 0;
   double success = 0, correct = 0, wrong = 0;  ///< shares of all queries
-  double distance_mean_m = 0;                  ///< over the queries that were answered, local truth
-  double distance_median_m = 0;
-  double aligned_distance_mean_m = 0;  ///< the same, in the globally aligned frame
-  double attempts = 0;                 ///< mean
+  /// Over the queries that were answered, local truth; absent where none was.
+  std::optional<double> distance_mean_m, distance_median_m;
+  std::optional<double> aligned_distance_mean_m;  ///< the same, in the globally aligned frame
+  double attempts = 0;                            ///< mean
   /// Candidate keyframes left after equations 3, 4, 5 and 6: mean counts over queries.
   double keyframes = 0, c1 = 0, c2 = 0, c3 = 0, final = 0;
   double single_candidate = 0;  ///< share of queries with exactly one left
@@ -37,7 +37,7 @@ struct Row {
   LabelMode labels = LabelMode::kNone;
   std::size_t level = 0;
   std::vector<const RunResult*> trials;
-  TrajectoryScore trajectory;  ///< medians over trials
+  TrajectoryScore trajectory;  ///< medians over the trials that have the score
   double restarts = 0, dropped = 0;
   QuerySummary held_out, second_tour;
   MatchCounts matches{};  ///< summed over trials, mapping and queries
@@ -52,8 +52,8 @@ std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs);
 /// over the family of one level. Empty where the suite lacks one of the two.
 std::vector<std::vector<Comparison>> compare_systems(const Suite& suite, std::span<const Row> rows);
 
-/// ATE over the frames that both tracked, median over trials: first, second.
-std::array<double, 2> ate_over_common_frames(const Row& first, const Row& second,
-                                             const Trajectory& truth);
+/// ATE over the frames that both tracked, median over the trials that have one: first, second.
+std::array<std::optional<double>, 2> ate_over_common_frames(const Row& first, const Row& second,
+                                                            const Trajectory& truth);
 
 }  // namespace mh

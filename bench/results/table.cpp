@@ -21,8 +21,8 @@ std::string title(QuerySet set) {
   return set == QuerySet::kHeldOut ? "held-out frames (the paper's way)" : "second tour";
 }
 
-std::string metres(double value, bool known) {
-  return known ? fmt::format("{:.4f}", value) : std::string("-");
+std::string metres(const std::optional<double>& value, int digits = 4) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : std::string("-");
 }
 
 std::string rule(std::size_t width) {
@@ -41,9 +41,8 @@ std::string table_2(const Block& block) {
     for (const Row* row : block) {
       const QuerySummary& s = summary(*row, set);
       const bool saturated = row->system == SystemKind::kPlain && s.success > kSaturated;
-      text +=
-          fmt::format("    {:<42}{:>22.2f}{:>22}{}\n", name(row->system), 100 * s.success,
-                      metres(s.distance_mean_m, s.success > 0), saturated ? "   saturated" : "");
+      text += fmt::format("    {:<42}{:>22.2f}{:>22}{}\n", name(row->system), 100 * s.success,
+                          metres(s.distance_mean_m), saturated ? "   saturated" : "");
     }
   }
   text += "  published, other data (the paper's Table 2: a real house of 60 m2, YOLOv3 boxes)\n";
@@ -61,9 +60,8 @@ std::string query_details(const Block& block, QuerySet set) {
     const QuerySummary& s = summary(*row, set);
     text += fmt::format("  {:<10}{:>8.2f}%{:>9.2f}%{:>8.2f}%{:>10}{:>11}{:>12}{:>10.2f}\n",
                         name(row->system), 100 * s.success, 100 * s.correct, 100 * s.wrong,
-                        metres(s.distance_mean_m, s.success > 0),
-                        metres(s.distance_median_m, s.success > 0),
-                        metres(s.aligned_distance_mean_m, s.success > 0), s.attempts);
+                        metres(s.distance_mean_m), metres(s.distance_median_m),
+                        metres(s.aligned_distance_mean_m), s.attempts);
   }
   return text;
 }
@@ -105,14 +103,15 @@ std::string failing_stages(const Block& block) {
 std::string mapping_details(const Block& block) {
   std::string text =
       fmt::format("  {:<10}{:>10}{:>14}{:>11}{:>12}{:>11}{:>10}{:>9}{:>18}{:>18}\n", "mapping",
-                  "ATE m", "unaligned m", "RPE m/fr", "RPE m/s", "complete", "restarts", "dropped",
+                  "ATE m", "first pose m", "RPE m/fr", "RPE m/s", "complete", "restarts", "dropped",
                   "track ms (p95)", "reloc ms (p95)");
   for (const Row* row : block) {
     const TrajectoryScore& t = row->trajectory;
     text += fmt::format(
-        "  {:<10}{:>10.4f}{:>14.4f}{:>11.5f}{:>12.5f}{:>10.2f}%{:>10.0f}{:>9.0f}{:>18}{:>18}\n",
-        name(row->system), t.ate_rmse_m, t.ate_unaligned_m, t.rpe_frame_rmse_m, t.rpe_second_rmse_m,
-        100 * t.completeness, row->restarts, row->dropped,
+        "  {:<10}{:>10}{:>14}{:>11}{:>12}{:>10.2f}%{:>10.0f}{:>9.0f}{:>18}{:>18}\n",
+        name(row->system), metres(t.ate_rmse_m), metres(t.ate_first_pose_m),
+        metres(t.rpe_frame_rmse_m, 5), metres(t.rpe_second_rmse_m, 5), 100 * t.completeness,
+        row->restarts, row->dropped,
         fmt::format("{:.1f} ({:.1f})", row->track.median_ms, row->track.p95_ms),
         fmt::format("{:.1f} ({:.1f})", row->relocalize.median_ms, row->relocalize.p95_ms));
   }
@@ -142,8 +141,8 @@ std::string common_ate(const Block& block, const Trajectory& truth) {
   for (const Row* row : block) (row->system == SystemKind::kPlain ? plain : semantic) = row;
   if (semantic == nullptr || plain == nullptr) return "";
   const auto [a, b] = ate_over_common_frames(*semantic, *plain, truth);
-  return fmt::format("  ATE over the frames that both tracked: semantic {:.4f} m, plain {:.4f} m\n",
-                     a, b);
+  return fmt::format("  ATE over the frames that both tracked: semantic {} m, plain {} m\n",
+                     metres(a), metres(b));
 }
 
 std::string comparison_line(const Comparison& c) {

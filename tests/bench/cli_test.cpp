@@ -159,6 +159,17 @@ TEST_F(CommandLine, ATourThatCannotBeDriven) {
   EXPECT_EQ(files_left(), 1u);  // tour.yaml itself
 }
 
+TEST_F(CommandLine, AnUndeterminedErrorIsNotZero) {
+  const fs::path line = write("line.tum", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n");
+  const std::string command = "evaluate " + line.string() + " " + line.string();
+  EXPECT_EQ(run(command + " --json"), 0) << err_;
+  EXPECT_NE(out_.find("\"ape_translation_m\": null"), std::string::npos) << out_;
+  EXPECT_EQ(run(command), 0) << err_;
+  const auto row = out_.find("absolute, position");
+  ASSERT_NE(row, std::string::npos) << out_;
+  EXPECT_EQ(out_.substr(row, out_.find('\n', row) - row).find("0.0"), std::string::npos) << out_;
+}
+
 TEST_F(CommandLine, EvaluatesATrajectoryAgainstItself) {
   const fs::path poses = write("poses.tum",
                                "0 0 0 0 0 0 0 1\n0.1 1 0 0 0 0 0 1\n0.2 1 1 0 0 0 0 1\n"

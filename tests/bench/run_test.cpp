@@ -237,6 +237,17 @@ TEST(Verify, SeesAnotherPath) {
   EXPECT_EQ(describe(*difference), "world: path differs");
 }
 
+TEST(Results, WhatIsUndeterminedIsNull) {
+  const Place place;  // its path is straight: no alignment by SE(3)
+  const std::vector<RunResult> runs = place.run(1);
+  const auto row = results_json(place.suite, place.world, runs)["rows"][0];
+  EXPECT_TRUE(row["trajectory"]["ate_rmse_m"].is_null());
+  EXPECT_TRUE(row["trajectory"]["ate_first_pose_m"].is_number());
+  EXPECT_TRUE(row["held_out"]["distance_mean_m"].is_number());
+  const std::vector<QueryScore> unanswered(3);
+  EXPECT_FALSE(summarize(unanswered).distance_mean_m);
+}
+
 TEST(ResultsTable, HasThePapersFormAndMarksASaturatedTable) {
   const Place place;
   const std::string table = results_table(place.suite, place.run(1), place.world.mapping.camera);

@@ -16,6 +16,13 @@ TEST(Median, IsTheMiddleOrTheMeanOfTheMiddleTwo) {
   EXPECT_EQ(median({4, 1, 2, 3}), 2.5);
 }
 
+TEST(Median, LeavesOutWhatIsUnknown) {
+  EXPECT_EQ(median_of_known({}), std::nullopt);
+  EXPECT_EQ(median_of_known(std::vector<std::optional<double>>{std::nullopt, 3, 1, std::nullopt}),
+            2);
+  EXPECT_EQ(median_of_known(std::vector<std::optional<double>>(2)), std::nullopt);
+}
+
 TEST(ComparePaired, NoDifferenceIsNeverSignificant) {
   const Comparison c = compare_paired("x", all_equal_to(0, 50), true, 1);
   EXPECT_EQ(c.difference, 0);
