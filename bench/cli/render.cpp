@@ -7,6 +7,7 @@
 #include "bench/cli/progress.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "bench/world/world.hpp"
+#include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh::cli {
@@ -18,7 +19,16 @@ struct Options {
   std::uint64_t seed = 0;
 };
 
+/// Pictures of two tours in one folder would be taken for one sequence.
+void refuse_older_sequence(const std::filesystem::path& folder) {
+  for (const char* part : {"rgb", "rgb.txt"})
+    if (std::filesystem::exists(folder / part))
+      throw InputError(
+          fmt::format("{}: holds a sequence already; name another folder", folder.string()));
+}
+
 void run(const Options& options) {
+  refuse_older_sequence(options.out);
   make_output_folder(options.out);
   const Robot robot = load_robot(options.robot);
   const Tour tour = load_tour(options.tour);
@@ -56,7 +66,8 @@ void add_render(CLI::App& app) {
   command->add_option("--robot", options->robot, "Robot (YAML)")->required();
   command->add_option("--level", options->level, "Sensor level (YAML); without: no noise");
   command->add_option("--out", options->out, "Folder to write")->required();
-  command->add_option("--frames", options->frames, "At most so many frames of the tour");
+  command->add_option("--frames", options->frames, "At most so many frames of the tour")
+      ->check(CLI::Range(1, 100000000));
   command->add_option("--every", options->every, "Every n-th frame only")
       ->check(CLI::Range(1, 100000000));
   command->add_option("--seed", options->seed, "Seed of the noise");

@@ -75,6 +75,8 @@ void need_folder_of(const fs::path& file) {
 }
 
 void preview(const Options& options) {
+  if (fs::path(options.out).extension() != ".png" || fs::is_directory(options.out))
+    throw InputError(fmt::format("{}: must name a file that ends in .png", options.out));
   need_folder_of(options.out);
   Scene scene = load(options.scene);
   light_scene(scene, kThreads);

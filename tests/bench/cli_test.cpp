@@ -149,6 +149,15 @@ TEST_F(CommandLine, AnOutputFolderThatCannotBeWrittenIsFoundBeforeTheWork) {
   EXPECT_EQ(content(file), "x");
 }
 
+TEST_F(CommandLine, PicturesAndSequencesGoWhereTheyCanBeRead) {
+  expect_refused("scene preview " + house_ + " --out " + folder_.string(), folder_.string());
+  const std::string render = "render " + house_ + " t.yaml --robot " + robot_ + " --out ";
+  expect_refused(render + folder_.string() + " --frames 0", "--frames");
+  expect_refused(render + folder_.string() + " --frames -1", "--frames");
+  write("rgb.txt", "");
+  expect_refused(render + folder_.string(), "holds a sequence already");
+}
+
 TEST_F(CommandLine, ATourThatCannotBeDriven) {
   const fs::path tour = write("tour.yaml",
                               "name: through_the_wall\nstart: {position: [2, 2], heading_deg: 0}\n"
