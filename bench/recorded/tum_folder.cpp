@@ -29,8 +29,8 @@ struct Listed {
   fs::path file;
 };
 
-/// Reads "stamp file" lines; '#' begins a comment.
-std::vector<Listed> read_list(const fs::path& list) {
+/// Reads "stamp file" lines, after so many words to skip; '#' begins a comment.
+std::vector<Listed> read_list(const fs::path& list, int skip = 0) {
   std::istringstream text(read_file(list));
   std::vector<Listed> entries;
   std::string line;
@@ -38,6 +38,8 @@ std::vector<Listed> read_list(const fs::path& list) {
     std::istringstream words(line.substr(0, line.find('#')));
     std::string stamp, file;
     if (!(words >> stamp)) continue;
+    for (int k = 0; k < skip; ++k)
+      if (!(words >> stamp)) stamp.clear();
     if (!(words >> file))
       throw InputError(fmt::format("{}:{}: a stamp and a file are needed", list.string(), number));
     try {
@@ -116,8 +118,11 @@ RecordedCamera load_recorded_camera(const fs::path& file) {
 }
 
 std::vector<RecordedFrame> load_tum_folder(const fs::path& folder) {
-  const std::vector<Listed> colour = read_list(folder / "rgb.txt");
-  const std::vector<Listed> depth = read_list(folder / "depth.txt");
+  const fs::path both = folder / "associations.txt";
+  const bool associated = !fs::exists(folder / "rgb.txt") && fs::exists(both);
+  const std::vector<Listed> colour = read_list(associated ? both : folder / "rgb.txt");
+  const std::vector<Listed> depth =
+      associated ? read_list(both, 2) : read_list(folder / "depth.txt");
   std::vector<Listed> labels;
   if (fs::exists(folder / "label.txt")) labels = read_list(folder / "label.txt");
   std::vector<RecordedFrame> frames;

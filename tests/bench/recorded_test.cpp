@@ -87,6 +87,17 @@ TEST_F(TumFolder, NamesWhatIsWrong) {
   EXPECT_THROW(read_frame(frames[0], {camera_, 5000}), InputError);
 }
 
+TEST_F(TumFolder, ReadsAssociationsWhereTheListsAreMissing) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "associations.txt") << "0.1 a.png 0.11 b.png\n0.2 c.png 0.21 d.png\n";
+  const auto frames = load_tum_folder(folder_);
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_EQ(frames[1].colour, folder_ / "c.png");
+  EXPECT_EQ(frames[1].depth, folder_ / "d.png");
+  std::ofstream(folder_ / "associations.txt") << "0.1 a.png\n";
+  EXPECT_THROW(load_tum_folder(folder_), InputError);
+}
+
 TEST_F(TumFolder, ReadsOrbSlamsOwnCalibration) {
   fs::create_directories(folder_);
   std::ofstream(folder_ / "TUM1.yaml")
