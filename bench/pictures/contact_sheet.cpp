@@ -192,6 +192,8 @@ cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& vi
 
   Canvas canvas(static_cast<int>(width), static_cast<int>(height));
   canvas.text(title, {kMargin, 42}, 17, {35, 38, 45}, Canvas::Align::kLeft, true);
+  canvas.text("without sensor noise", {width - kMargin, 42}, 9, {110, 115, 125},
+              Canvas::Align::kRight);
   const auto column = [&](int k) { return kMargin + k * (kTileWidth + kGap); };
   const std::array<const char*, 3> headings = {"colour", "depth", "labels"};
   for (int k = 0; k < 3; ++k)

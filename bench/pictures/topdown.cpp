@@ -184,10 +184,11 @@ void draw_header(Canvas& canvas, const Suite& suite, const World& world, const R
   const QuerySummary s = summarize(queries(run, set));
   const std::optional<double>& ate = run.trajectory.ate_rmse_m;
   canvas.text(
-      fmt::format("level {}, trial {}; {} {:.0f} m driven; {} queries ({}): {:.1f} % answered, "
+      fmt::format("level {}, trial {}{}; {} {:.1f} m driven; {} queries ({}): {:.1f} % answered, "
                   "{:.1f} % correct; ATE {}, completeness {:.1f} %",
-                  level_name(suite.levels[run.spec.level]), run.spec.trial, world.robot.name,
-                  world.mapping.length_m, static_cast<int>(s.queries),
+                  level_name(suite.levels[run.spec.level]), run.spec.trial,
+                  world.frames ? fmt::format(", first {} frames", *world.frames) : "",
+                  world.robot.name, world.mapping.length_m, static_cast<int>(s.queries),
                   set == QuerySet::kHeldOut ? "held-out" : "second tour", 100 * s.success,
                   100 * s.correct, ate ? fmt::format("{:.3f} m", *ate) : "undetermined",
                   100 * run.trajectory.completeness),

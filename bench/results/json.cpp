@@ -6,6 +6,7 @@
 #include <opencv2/core/version.hpp>
 
 #include "bench/protocol/digest.hpp"
+#include "bench/results/fingerprint.hpp"
 
 namespace mh {
 namespace {
@@ -26,23 +27,31 @@ Json pose_json(const SE3& pose) {
   return Json::array({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
 }
 
-Json suite_json(const Suite& suite) {
+/// A path relative to the suite's folder, however the suite itself was named.
+std::string from_suite(const Suite& suite, const std::filesystem::path& file) {
+  const auto here = std::filesystem::current_path();
+  const auto folder = (here / suite.file).parent_path().lexically_normal();
+  return (here / file).lexically_normal().lexically_relative(folder).generic_string();
+}
+
+Json suite_json(const Suite& suite, const World& world) {
   const SemanticConfig& s = suite.semantics;
   const ProtocolConfig& p = suite.protocol;
   Json levels = Json::array(), systems = Json::array(), labels = Json::array();
-  for (const auto& level : suite.levels) levels.push_back(level.generic_string());
+  for (const auto& level : suite.levels) levels.push_back(from_suite(suite, level));
   for (const SystemKind system : suite.systems) systems.push_back(name(system));
   for (const LabelMode mode : suite.labels) labels.push_back(name(mode));
   return {{"name", suite.name},
-          {"scene", suite.scene.generic_string()},
-          {"robot", suite.robot.generic_string()},
-          {"mapping_tour", suite.mapping_tour.generic_string()},
-          {"query_tour", suite.query_tour ? Json(suite.query_tour->generic_string()) : Json()},
-          {"vocabulary", suite.vocabulary.generic_string()},
+          {"scene", from_suite(suite, suite.scene)},
+          {"robot", from_suite(suite, suite.robot)},
+          {"mapping_tour", from_suite(suite, suite.mapping_tour)},
+          {"query_tour", suite.query_tour ? Json(from_suite(suite, *suite.query_tour)) : Json()},
+          {"vocabulary", from_suite(suite, suite.vocabulary)},
           {"levels", levels},
           {"systems", systems},
           {"labels", labels},
           {"trials", suite.trials},
+          {"frames", world.frames ? Json(*world.frames) : Json()},
           {"seed", suite.seed},
           {"slam",
            {{"gamma", s.gamma},
@@ -66,9 +75,9 @@ Json suite_json(const Suite& suite) {
 Json path_json(const DrivenPath& path) {
   return {{"frames", path.camera.size()},
           {"length_m", path.length_m},
-          {"turned_in_place_rad", path.turned_in_place_rad},
-          {"contact_time_s", path.contact_time_s},
-          {"max_penetration_m", path.max_penetration_m}};
+          {"turned_in_place_rad", number(path.turned_in_place_rad)},
+          {"contact_time_s", number(path.contact_time_s)},
+          {"max_penetration_m", number(path.max_penetration_m)}};
 }
 
 Json world_json(const World& world) {
@@ -78,6 +87,12 @@ Json world_json(const World& world) {
           {"robot", world.robot.name},
           {"mapping_tour", path_json(world.mapping)},
           {"query_tour", world.second ? path_json(*world.second) : Json()}};
+}
+
+Json inputs_json(const World& world) {
+  Json json = Json::object();
+  for (const InputDigest& input : world.inputs) json[input.name] = hex(input.digest);
+  return json;
 }
 
 Json matches_json(const MatchCounts& matches) {
@@ -238,9 +253,10 @@ Json results_json(const Suite& suite, const World& world, const std::vector<RunR
       comparisons.push_back(std::move(json));
     }
   return {
-      {"format", "modelhouse-results-1"},
+      {"format", kResultsFormat},
       {"versions", {{"modelhouse", MH_VERSION}, {"compiler", __VERSION__}, {"opencv", CV_VERSION}}},
-      {"suite", suite_json(suite)},
+      {"suite", suite_json(suite, world)},
+      {"inputs", inputs_json(world)},
       {"world", world_json(world)},
       {"rows", row_list},
       {"comparisons", comparisons},
@@ -258,7 +274,7 @@ Json times_json(const std::vector<RunResult>& runs, double wall_s) {
          {"track_ms", {{"median", track.median_ms}, {"p95", track.p95_ms}}},
          {"relocalize_ms", {{"median", relocalize.median_ms}, {"p95", relocalize.p95_ms}}}});
   }
-  return {{"wall_s", wall_s}, {"runs", list}};
+  return {{"fingerprint", fingerprint_json()}, {"wall_s", wall_s}, {"runs", list}};
 }
 
 }  // namespace mh

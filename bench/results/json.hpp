@@ -8,6 +8,8 @@
 
 namespace mh {
 
+inline constexpr const char* kResultsFormat = "modelhouse-results-1";
+
 /// Everything about a suite's results that is a function of suite, binary and seeds: the resolved
 /// settings, digests, one entry per run with its queries, the rows of the table, the comparisons.
 nlohmann::ordered_json results_json(const Suite& suite, const World& world,

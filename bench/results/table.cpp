@@ -159,8 +159,8 @@ std::string comparison_line(const Comparison& c) {
 
 }  // namespace
 
-std::string results_table(const Suite& suite, const std::vector<RunResult>& runs,
-                          const Trajectory& mapping_truth) {
+std::string results_table(const Suite& suite, const World& world,
+                          const std::vector<RunResult>& runs) {
   const std::vector<Row> rows = make_rows(suite, runs);
   const auto comparisons = compare_systems(suite, rows);
   std::string text;
@@ -170,15 +170,16 @@ std::string results_table(const Suite& suite, const std::vector<RunResult>& runs
       for (const Row& row : rows)
         if (row.level == level && row.labels == labels) block.push_back(&row);
       if (block.empty()) continue;
-      text += fmt::format("\n{}, level {}, {} labels, {} trial{}\n", suite.name,
+      text += fmt::format("\n{}, level {}, {} labels, {} trial{}{}\n", suite.name,
                           level_name(suite.levels[level]), name(labels), suite.trials,
-                          suite.trials == 1 ? "" : "s (medians)");
+                          suite.trials == 1 ? "" : "s (medians)",
+                          world.frames ? fmt::format(", first {} frames", *world.frames) : "");
       text += rule(90) + table_2(block) + rule(90);
       for (const QuerySet set : {QuerySet::kHeldOut, QuerySet::kSecondTour})
         if (summary(*block.front(), set).queries > 0)
           text += query_details(block, set) + candidate_details(block, set);
-      text += failing_stages(block) + mapping_details(block) + common_ate(block, mapping_truth) +
-              penalties(block);
+      text += failing_stages(block) + mapping_details(block) +
+              common_ate(block, world.mapping.camera) + penalties(block);
     }
     if (comparisons[level].empty()) continue;
     text += fmt::format(

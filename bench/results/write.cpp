@@ -16,6 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kRunFiles[] = {
+    "truth.tum",   "estimate.tum",           "map.bt", "map.pgm", "map.yaml",
+    "topdown.png", "topdown_second_tour.png"};
+
 void write_run(const fs::path& folder, const Suite& suite, const World& world,
                const RunResult& run) {
   make_output_folder(folder);
@@ -31,13 +35,29 @@ void write_run(const fs::path& folder, const Suite& suite, const World& world,
 
 }  // namespace
 
+void remove_older_results(const fs::path& folder) {
+  const fs::path results = folder / "results.json";
+  if (!fs::is_regular_file(results)) return;
+  const auto json = nlohmann::json::parse(read_file(results), nullptr, false);
+  if (!json.is_object() || json.value("format", "") != kResultsFormat) return;
+  std::error_code kept;  // what cannot be removed stays
+  fs::remove(results, kept);
+  for (const auto& run : json.value("runs", nlohmann::json::array())) {
+    const fs::path name = run.value("name", "");
+    if (name.empty() || name != name.filename() || name.string().starts_with('.')) continue;
+    for (const char* file : kRunFiles) fs::remove(folder / name / file, kept);
+    fs::remove(folder / name, kept);  // only where nothing else lies in it
+  }
+}
+
 std::string write_results(const fs::path& folder, const Suite& suite, const World& world,
                           const std::vector<RunResult>& runs, double wall_s) {
-  const std::string table = results_table(suite, runs, world.mapping.camera);
+  const std::string table = results_table(suite, world, runs);
+  remove_older_results(folder);
   for (const RunResult& run : runs) write_run(folder / run.spec.name, suite, world, run);
   write_picture(folder / "views.png",
                 draw_contact_sheet(
-                    fmt::format("{} as {} sees it", world.scene->name, world.robot.name),
+                    fmt::format("{}, along the mapping tour", world.scene->name),
                     views_along(world.mapping.camera, *world.renderer, world.robot.camera, 6)));
   write_atomically(folder / "times.json", times_json(runs, wall_s).dump(2) + "\n");
   write_atomically(folder / "table.txt", table);

@@ -9,6 +9,10 @@
 
 namespace mh {
 
+/// Removes results.json of an earlier execution and the files of the runs that it names, so that
+/// none is taken for a new one. Nothing else in the folder is touched.
+void remove_older_results(const std::filesystem::path& folder);
+
 /// Writes a suite's results into a folder that exists: results.json, times.json, table.txt,
 /// views.png (the contact sheet), and one folder per run with truth.tum, estimate.tum, map.bt,
 /// map.pgm, map.yaml and topdown.png. Each file appears whole or not at all.

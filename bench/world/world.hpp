@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,6 +18,12 @@
 
 namespace mh {
 
+/// xxh3-64 of the content of a file that the results depend on.
+struct InputDigest {
+  std::string name;  ///< suite, scene, robot, ..., `level pepper`
+  std::uint64_t digest = 0;
+};
+
 /// What every run of a suite shares, built once and then only read.
 struct World {
   std::shared_ptr<const Scene> scene;
@@ -25,11 +32,17 @@ struct World {
   DrivenPath mapping;
   std::optional<DrivenPath> second;  ///< the second tour, where the suite has one
   std::shared_ptr<const Vocabulary> vocabulary;
-  std::vector<SensorConfig> levels;  ///< as Suite::levels
+  std::vector<SensorConfig> levels;   ///< as Suite::levels
+  std::optional<std::size_t> frames;  ///< where the tours were cut to so many frames
+  std::vector<InputDigest> inputs;
 };
 
 /// Told what is being done, one short line each.
 using Say = std::function<void(std::string_view)>;
+
+/// Keeps the first frames of a path with their length; the other measures, which need the whole
+/// drive, become NaN. @returns whether anything was cut off
+bool cut(DrivenPath& path, std::size_t max_frames);
 
 /// Bakes the light of a scene that has lamps but no baked light.
 void light_scene(Scene& scene, int threads);

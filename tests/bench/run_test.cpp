@@ -2,13 +2,18 @@
 // The bench around a scripted system in a small make-believe world: no SLAM, no ray tracing.
 #include "bench/run.hpp"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
 #include "bench/results/json.hpp"
 #include "bench/results/table.hpp"
+#include "bench/results/write.hpp"
 #include "bench/verify/verify.hpp"
 #include "slam/core/error.hpp"
 
@@ -248,9 +253,55 @@ TEST(Results, WhatIsUndeterminedIsNull) {
   EXPECT_FALSE(summarize(unanswered).distance_mean_m);
 }
 
+TEST(Results, ACutRunSaysSo) {
+  Place place;
+  place.world.mapping.base = place.world.mapping.camera;
+  place.world.mapping.length_m = 63;
+  EXPECT_FALSE(cut(place.world.mapping, 150));
+  EXPECT_EQ(place.world.mapping.length_m, 63);
+  ASSERT_TRUE(cut(place.world.mapping, 101));
+  EXPECT_NEAR(place.world.mapping.length_m, 1.0, 1e-9);  // 100 steps of 1 cm
+  const std::vector<RunResult> runs = place.run(1);
+  EXPECT_TRUE(results_json(place.suite, place.world, runs)["suite"]["frames"].is_null());
+  place.world.frames = 101;
+  const auto json = results_json(place.suite, place.world, runs);
+  EXPECT_EQ(json["suite"]["frames"], 101);
+  EXPECT_TRUE(json["world"]["mapping_tour"]["contact_time_s"].is_null());
+  EXPECT_NE(results_table(place.suite, place.world, runs).find("first 101 frames"),
+            std::string::npos);
+}
+
+TEST(Results, PathsDoNotDependOnTheSuitesSpelling) {
+  const std::vector<RunResult> runs = Place().run(1);
+  const auto scene = [&](const std::filesystem::path& folder) {
+    Place place;
+    place.suite.file = folder / "suite.yaml";
+    place.suite.scene = (folder / "../scenes/house.yaml").lexically_normal();
+    return results_json(place.suite, place.world, runs)["suite"]["scene"];
+  };
+  for (const char* folder : {"", ".", "suites", "../suites", "/suites"})
+    EXPECT_EQ(scene(folder), "../scenes/house.yaml") << folder;
+}
+
+TEST(Results, OlderRunsAreRemovedAndNothingElse) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::temp_directory_path() / ("mh_older_" + std::to_string(getpid()));
+  fs::create_directories(folder / "old");
+  fs::create_directories(folder / "mine");
+  for (const char* file : {"old/truth.tum", "old/topdown.png", "mine/truth.tum"})
+    std::ofstream(folder / file) << "x";
+  std::ofstream(folder / "results.json")
+      << R"({"format": "modelhouse-results-1", "runs": [{"name": "old"}, {"name": "../mine"}]})";
+  remove_older_results(folder);
+  EXPECT_FALSE(fs::exists(folder / "old"));
+  EXPECT_FALSE(fs::exists(folder / "results.json"));
+  EXPECT_TRUE(fs::exists(folder / "mine/truth.tum"));
+  fs::remove_all(folder);
+}
+
 TEST(ResultsTable, HasThePapersFormAndMarksASaturatedTable) {
   const Place place;
-  const std::string table = results_table(place.suite, place.run(1), place.world.mapping.camera);
+  const std::string table = results_table(place.suite, place.world, place.run(1));
   for (const char* part :
        {"Reloc. success (%)", "Average distance (m)", "published, other data", "79.25", "0.0512",
         "71.43", "0.0945", "exact labels", "boxes labels", "held-out frames", "second tour",

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/results/fingerprint.hpp"
+
+#include <fstream>
+#include <string>
+
+#include <ceres/version.h>
+#include <embree3/rtcore_config.h>
+#include <fmt/format.h>
+#include <Eigen/Core>
+#include <opencv2/core/version.hpp>
+
+namespace mh {
+namespace {
+
+/// As Linux names it; "unknown" elsewhere.
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  std::string line;
+  while (std::getline(file, line))
+    if (line.starts_with("model name"))
+      if (const auto colon = line.find(": "); colon != std::string::npos)
+        return line.substr(colon + 2);
+  return "unknown";
+}
+
+}  // namespace
+
+nlohmann::ordered_json fingerprint_json() {
+  return {{"modelhouse", MH_VERSION},
+          {"processor", processor()},
+          {"compiler", __VERSION__},
+          {"build_type", MH_BUILD_TYPE},
+          {"embree", RTC_VERSION_STRING},
+          {"opencv", CV_VERSION},
+          {"eigen",
+           fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+          {"ceres", CERES_VERSION_STRING}};
+}
+
+}  // namespace mh
