@@ -141,7 +141,7 @@ std::string common_ate(const Block& block, const Trajectory& truth) {
   for (const Row* row : block) (row->system == SystemKind::kPlain ? plain : semantic) = row;
   if (semantic == nullptr || plain == nullptr) return "";
   const auto [a, b] = ate_over_common_frames(*semantic, *plain, truth);
-  return fmt::format("  ATE over the frames that both tracked: semantic {} m, plain {} m\n",
+  return fmt::format("  ATE over the frames that both tracked, m: semantic {}, plain {}\n",
                      metres(a), metres(b));
 }
 

@@ -34,7 +34,9 @@ TrajectoryScore score_trajectory(const Trajectory& estimate, const Trajectory& t
   score.rpe_frame_rmse_m = rmse(e.rpe[0].translation_m);
   score.rpe_second_rmse_m = rmse(e.rpe[1].translation_m);
   score.dock_from_estimate = dock(match_by_stamp(truth, estimate));
-  score.ate_first_pose_m = rmse(ape_translation(truth, estimate, Alignment::kOrigin));
+  // One pose laid over itself has no error to tell of.
+  if (e.pairs > 1)
+    score.ate_first_pose_m = rmse(ape_translation(truth, estimate, Alignment::kOrigin));
   // A path that determines no alignment (too short, on a line) is laid over by its first pose.
   score.truth_from_estimate = e.truth_from_estimate ? SE3(e.truth_from_estimate->rotation,
                                                           e.truth_from_estimate->translation_m)

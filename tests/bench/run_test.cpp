@@ -13,6 +13,7 @@
 
 #include "bench/results/json.hpp"
 #include "bench/results/table.hpp"
+#include "bench/results/trajectory_score.hpp"
 #include "bench/results/write.hpp"
 #include "bench/verify/verify.hpp"
 #include "slam/core/error.hpp"
@@ -249,6 +250,8 @@ TEST(Results, WhatIsUndeterminedIsNull) {
   EXPECT_TRUE(row["trajectory"]["ate_rmse_m"].is_null());
   EXPECT_TRUE(row["trajectory"]["ate_first_pose_m"].is_number());
   EXPECT_TRUE(row["held_out"]["distance_mean_m"].is_number());
+  const Trajectory one = straight_path(1);
+  EXPECT_FALSE(score_trajectory(one, one, 1).ate_first_pose_m);
   const std::vector<QueryScore> unanswered(3);
   EXPECT_FALSE(summarize(unanswered).distance_mean_m);
 }
