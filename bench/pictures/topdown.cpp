@@ -176,21 +176,21 @@ void draw_legend(Canvas& canvas, double y) {
 
 void draw_header(Canvas& canvas, const Suite& suite, const World& world, const RunResult& run,
                  QuerySet set) {
-  canvas.text(fmt::format("{}: {} system{}", suite.name, name(run.spec.system),
+  canvas.text(fmt::format("{}: {} system{}{}", suite.name, name(run.spec.system),
                           run.spec.system == SystemKind::kPlain
                               ? ""
-                              : fmt::format(", {} labels", name(run.spec.labels))),
+                              : fmt::format(", {} labels", name(run.spec.labels)),
+                          world.frames ? fmt::format(", first {} frames", *world.frames) : ""),
               {kMargin, 38}, 17, kInk, Canvas::Align::kLeft, true);
   const QuerySummary s = summarize(queries(run, set));
   const std::optional<double>& ate = run.trajectory.ate_rmse_m;
   canvas.text(
-      fmt::format("level {}, trial {}{}; {} {:.1f} m driven; {} queries ({}): {:.1f} % answered, "
+      fmt::format("level {}, trial {}; {} {:.1f} m driven; {} queries ({}): {:.1f} % answered, "
                   "{:.1f} % correct; ATE {}, completeness {:.1f} %",
-                  level_name(suite.levels[run.spec.level]), run.spec.trial,
-                  world.frames ? fmt::format(", first {} frames", *world.frames) : "",
-                  world.robot.name, world.mapping.length_m, static_cast<int>(s.queries),
+                  level_name(suite.levels[run.spec.level]), run.spec.trial, world.robot.name,
+                  world.mapping.length_m, static_cast<int>(s.queries),
                   set == QuerySet::kHeldOut ? "held-out" : "second tour", 100 * s.success,
-                  100 * s.correct, ate ? fmt::format("{:.3f} m", *ate) : "undetermined",
+                  100 * s.correct, ate ? fmt::format("{:.3f} m", *ate) : "-",
                   100 * run.trajectory.completeness),
       {kMargin, 66}, 10.5, kFaint);
 }
