@@ -154,4 +154,19 @@ std::vector<FeatureMatch> match_by_words(
   return matches;
 }
 
+std::vector<LandmarkId> match_landmarks(const Keyframe& keyframe, const Features& features,
+                                        const WordIndex& words, const MatchConfig& config,
+                                        SemanticMatcher matcher) {
+  std::vector<std::uint8_t> with_landmark(keyframe.features.size());
+  for (std::size_t i = 0; i < with_landmark.size(); ++i)
+    with_landmark[i] = keyframe.landmarks[i].valid();
+  const std::vector<std::uint8_t> all(features.size(), 1);
+  const auto matches = match_by_words(keyframe.features, keyframe.words, with_landmark, features,
+                                      words, all, static_cast<float>(config.max_distance),
+                                      static_cast<float>(config.ratio), matcher);
+  std::vector<LandmarkId> landmarks(features.size());
+  for (const FeatureMatch& m : matches) landmarks[m.b] = keyframe.landmarks[m.a];
+  return landmarks;
+}
+
 }  // namespace mh

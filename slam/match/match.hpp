@@ -107,4 +107,10 @@ std::vector<FeatureMatch> match_by_words(
     float max_distance, float ratio, SemanticMatcher matcher,
     const std::function<bool(std::uint32_t, std::uint32_t)>& compatible = {});
 
+/// The landmarks that a keyframe sees, matched to a frame by appearance alone (words, tight gate,
+/// ratio test): one per feature of the frame, invalid = none.
+std::vector<LandmarkId> match_landmarks(const Keyframe& keyframe, const Features& features,
+                                        const WordIndex& words, const MatchConfig& config,
+                                        SemanticMatcher matcher);
+
 }  // namespace mh

@@ -58,7 +58,11 @@ class CandidateTrial {
 
   Attempt run(KeyframeId candidate, RandomStream stream) {
     Attempt attempt;
-    attempt.landmarks = match_appearance(map_.at(candidate), attempt.inliers);
+    attempt.landmarks = match_landmarks(map_.at(candidate), query_.features, query_.words, match_,
+                                        SemanticMatcher(semantics_, at(counts_, matchers_.words)));
+    attempt.inliers =
+        static_cast<int>(std::count_if(attempt.landmarks.begin(), attempt.landmarks.end(),
+                                       [](LandmarkId id) { return id.valid(); }));
     if (attempt.inliers < config_.min_word_matches) return attempt;
 
     attempt.stage = RelocalizationStage::kPnp;
@@ -85,21 +89,6 @@ class CandidateTrial {
   }
 
  private:
-  std::vector<LandmarkId> match_appearance(const Keyframe& keyframe, int& count) {
-    std::vector<std::uint8_t> with_landmark(keyframe.features.size());
-    for (std::size_t i = 0; i < with_landmark.size(); ++i)
-      with_landmark[i] = keyframe.landmarks[i].valid();
-    const std::vector<std::uint8_t> all(query_.features.size(), 1);
-    const auto matches = match_by_words(
-        keyframe.features, keyframe.words, with_landmark, query_.features, query_.words, all,
-        static_cast<float>(match_.max_distance), static_cast<float>(match_.ratio),
-        SemanticMatcher(semantics_, at(counts_, matchers_.words)));
-    std::vector<LandmarkId> landmarks(query_.features.size());
-    for (const FeatureMatch& m : matches) landmarks[m.b] = keyframe.landmarks[m.a];
-    count = static_cast<int>(matches.size());
-    return landmarks;
-  }
-
   std::vector<PoseObservation> observe_all(const std::vector<LandmarkId>& landmarks,
                                            std::vector<std::uint32_t>& feature_of) const {
     std::vector<PoseObservation> observations;

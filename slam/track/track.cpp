@@ -137,17 +137,9 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
 std::optional<TrackedPose> track_reference(const Query& query, KeyframeId reference,
                                            const SE3& guess, const TrackContext& context,
                                            MatcherCounts& counts) {
-  const Keyframe& keyframe = context.map.at(reference);
-  std::vector<std::uint8_t> with_landmark(keyframe.features.size());
-  for (std::size_t i = 0; i < with_landmark.size(); ++i)
-    with_landmark[i] = keyframe.landmarks[i].valid();
-  const std::vector<std::uint8_t> all(query.features.size(), 1);
-  const auto matches = match_by_words(
-      keyframe.features, keyframe.words, with_landmark, query.features, query.words, all,
-      static_cast<float>(context.match.max_distance), static_cast<float>(context.match.ratio),
-      SemanticMatcher(context.semantics, counts));
-  std::vector<LandmarkId> landmarks(query.features.size());
-  for (const FeatureMatch& m : matches) landmarks[m.b] = keyframe.landmarks[m.a];
+  const std::vector<LandmarkId> landmarks =
+      match_landmarks(context.map.at(reference), query.features, query.words, context.match,
+                      SemanticMatcher(context.semantics, counts));
   auto tracked = optimise_matches(query, landmarks, guess, context.map, context.camera,
                                   context.features, context.pose);
   if (!tracked || tracked->inliers < context.config.min_inliers_frame) return std::nullopt;
