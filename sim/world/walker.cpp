@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/world/walker.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "scenes/mesh_builder.hpp"
+#include "slam/core/yaml.hpp"
+
+namespace mh {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector2f;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+double length_m(const Walk& walk) {
+  double sum = 0;
+  for (std::size_t i = 1; i < walk.path_m.size(); ++i)
+    sum += (walk.path_m[i] - walk.path_m[i - 1]).norm();
+  return sum;
+}
+
+/// How far along the line the walker is (m), and whether he is on his way back.
+std::pair<double, bool> progress(const Walk& walk, Stamp stamp_ns) {
+  const double walked_s = std::max(0.0, 1e-9 * static_cast<double>(stamp_ns) - walk.start_s);
+  const double length = length_m(walk);
+  const double s = std::fmod(walk.speed_m_per_s * walked_s, 2 * length);
+  return s <= length ? std::pair{s, false} : std::pair{2 * length - s, true};
+}
+
+/// Light that reaches a person in a room: more from above than from below.
+void light_from_above(Scene& scene, const Vector3f& light) {
+  std::vector<Vector3f> normal(scene.positions_m.size(), Vector3f::Zero());
+  for (const auto& [a, b, c] : scene.triangles) {
+    const Vector3f &pa = scene.positions_m[a], &pb = scene.positions_m[b],
+                   &pc = scene.positions_m[c];
+    const Vector3f across = (pb - pa).cross(pc - pa);
+    for (const std::uint32_t corner : {a, b, c}) normal[corner] += across;
+  }
+  scene.light.clear();
+  for (const Vector3f& n : normal)
+    scene.light.push_back(light * (1.0F + 0.4F * n.normalized().z()));
+}
+
+Vector3f mean_light(const Scene& scene) {
+  if (scene.light.empty()) return Vector3f::Ones();
+  Vector3d sum = Vector3d::Zero();
+  for (const Vector3f& light : scene.light) sum += light.cast<double>();
+  return (sum / static_cast<double>(scene.light.size())).cast<float>();
+}
+
+void merge(RenderedFrame& picture, const RenderedFrame& walker, InstanceId instance) {
+  for (std::size_t i = 0; i < picture.depth_m.size(); ++i) {
+    const float near = walker.depth_m.data()[i];
+    float& depth = picture.depth_m.data()[i];
+    if (near <= 0 || (depth > 0 && depth <= near)) continue;
+    depth = near;
+    picture.colour.data()[i] = walker.colour.data()[i];
+    picture.classes.data()[i] = walker.classes.data()[i];
+    picture.instances.data()[i] = instance;
+  }
+}
+
+class Moment : public Renderer {
+ public:
+  Moment(const Renderer& scene, const Renderer& walker, InstanceId instance,
+         const SE3& world_from_walker)
+      : scene_(scene),
+        walker_(walker),
+        instance_(instance),
+        walker_from_world_(world_from_walker.inverse()) {}
+
+  RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
+    RenderedFrame picture = scene_.render(camera, world_from_camera);
+    merge(picture, walker_.render(camera, walker_from_world_ * world_from_camera), instance_);
+    return picture;
+  }
+
+ private:
+  const Renderer& scene_;
+  const Renderer& walker_;
+  InstanceId instance_;
+  SE3 walker_from_world_;
+};
+
+}  // namespace
+
+Walk load_walk(const std::filesystem::path& file) {
+  YamlReader yaml = YamlReader::load(file);
+  Walk walk;
+  const YamlReader path = yaml.at("path");
+  for (const YamlReader& place : path.items()) {
+    const std::vector<double> xy = place.as_numbers(2);
+    walk.path_m.emplace_back(xy[0], xy[1]);
+    if (walk.path_m.size() > 1 && walk.path_m.back() == walk.path_m[walk.path_m.size() - 2])
+      place.fail("is the place before it again");
+  }
+  if (walk.path_m.size() < 2) path.fail("a walk needs two places or more");
+  walk.speed_m_per_s = yaml.number_or("speed_m_per_s", walk.speed_m_per_s, 0.01, 10.0);
+  walk.start_s = yaml.number_or("start_s", walk.start_s, 0.0, 1e6);
+  yaml.finish();
+  return walk;
+}
+
+SE3 world_from_walker(const Walk& walk, Stamp stamp_ns) {
+  assert(walk.path_m.size() >= 2);
+  auto [left_m, back] = progress(walk, stamp_ns);
+  std::size_t leg = 1;
+  const auto leg_m = [&] { return (walk.path_m[leg] - walk.path_m[leg - 1]).norm(); };
+  while (leg + 1 < walk.path_m.size() && left_m > leg_m()) left_m -= leg_m(), ++leg;
+  const Vector2d way = (walk.path_m[leg] - walk.path_m[leg - 1]) / leg_m();
+  const Vector2d place = walk.path_m[leg - 1] + std::min(left_m, leg_m()) * way;
+  const Vector2d forward = back ? Vector2d(-way) : way;
+  const Eigen::Matrix3d rotation =
+      Eigen::AngleAxisd(std::atan2(forward.y(), forward.x()), Vector3d::UnitZ()).toRotationMatrix();
+  return {rotation, {place.x(), place.y(), 0.0}};
+}
+
+Scene build_walker(const Vector3f& light) {
+  MeshBuilder mesh;
+  mesh.scene().name = "walker";
+  const auto person = class_by_name("person");
+  assert(person);
+  mesh.begin_instance("walker", *person);
+  const MaterialId trousers = mesh.material(
+      {.name = "trousers", .kind = "fabric", .tone = {58, 66, 88}, .variation = 0.6, .seed = 901});
+  const MaterialId pullover = mesh.material(
+      {.name = "pullover", .kind = "knit", .tone = {150, 74, 60}, .variation = 0.7, .seed = 902});
+  const MaterialId skin = mesh.material(
+      {.name = "skin", .kind = "leather", .tone = {204, 160, 132}, .variation = 0.2, .seed = 903});
+  // Broad from side to side, less so from front to back.
+  Eigen::Isometry3f flat = Eigen::Isometry3f::Identity();
+  flat.linear() = Vector3f(0.65F, 1.0F, 1.0F).asDiagonal();
+  mesh.push(flat);
+  constexpr auto kRadius = static_cast<float>(kWalkerRadius_m);
+  const std::array legs = {Vector2f(0.0F, 0.0F), Vector2f(0.15F, 0.0F), Vector2f(0.16F, 0.40F),
+                           Vector2f(0.19F, 0.85F)};
+  mesh.lathe(trousers, Vector3f::Zero(), legs);
+  const std::array trunk = {Vector2f(0.19F, 0.85F), Vector2f(0.20F, 1.10F),
+                            Vector2f(kRadius, 1.34F), Vector2f(0.17F, 1.43F),
+                            Vector2f(0.07F, 1.48F)};
+  mesh.lathe(pullover, Vector3f::Zero(), trunk);
+  mesh.pop();
+  std::vector<Vector2f> head;
+  for (int i = 0; i <= 12; ++i) {  // an upright ellipsoid from the neck to the crown
+    const float a = static_cast<float>(M_PI) * (static_cast<float>(i) / 12.0F - 0.5F);
+    head.emplace_back(0.095F * std::cos(a), 1.58F + 0.14F * std::sin(a));
+  }
+  mesh.lathe(skin, Vector3f::Zero(), head);
+  Scene scene = mesh.finish();
+  light_from_above(scene, light);
+  return scene;
+}
+
+WalkedScene::WalkedScene(const Scene& scene, std::shared_ptr<const Renderer> renderer,
+                         float exposure, Walk walk)
+    : scene_(std::move(renderer)), walk_(std::move(walk)) {
+  assert(scene_ != nullptr);
+  // Smoothed edges would mix the void around him into his outline.
+  walker_ = make_embree_renderer(build_walker(mean_light(scene)),
+                                 {.exposure = exposure, .smooth_edges = false});
+  const int last = scene.instances.empty() ? 0 : scene.instances.back().id;
+  assert(last < std::numeric_limits<InstanceId>::max());
+  instance_ = static_cast<InstanceId>(last + 1);
+}
+
+WalkedScene::~WalkedScene() = default;
+
+std::shared_ptr<const Renderer> WalkedScene::at(Stamp stamp_ns) const {
+  return std::make_shared<Moment>(*scene_, *walker_, instance_, world_from_walker(walk_, stamp_ns));
+}
+
+}  // namespace mh
