@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "slam/map/id_set.hpp"
 #include "slam/match/expect.hpp"
 #include "slam/optimize/pose_graph.hpp"
 
@@ -12,22 +13,28 @@ namespace {
 /// Covisible keyframes that share this many landmarks hold each other's relative pose well.
 constexpr int kStrongEdge = 100;
 
-/// Keyframes that share nothing with the newest, nor do their neighbours.
-std::vector<KeyframeId> unrelated(const Map& map, KeyframeId newest, int min_gap) {
-  std::vector<std::uint8_t> related(map.keyframes().size(), 0);
-  related[newest.value] = 1;
-  for (const Keyframe::Neighbour& n : map.at(newest).covisible) related[n.id.value] = 1;
-  std::vector<KeyframeId> result;
-  for (const Keyframe& k : map.keyframes())
-    if (!k.erased && related[k.id.value] == 0 &&
-        k.id.value + static_cast<std::uint32_t>(min_gap) <= newest.value)
-      result.push_back(k.id);
-  return result;
-}
+/// Tells the keyframes that share nothing with the newest, nor do their neighbours.
+class Unrelated {
+ public:
+  Unrelated(const Map& map, KeyframeId newest, int min_gap)
+      : map_(map), newest_(newest), min_gap_(static_cast<std::uint32_t>(min_gap)) {
+    related_.insert(newest);
+    for (const Keyframe::Neighbour& n : map.at(newest).covisible) related_.insert(n.id);
+  }
+  bool operator()(KeyframeId id) const {
+    return id.value + min_gap_ <= newest_.value && !map_.at(id).erased && !related_.contains(id);
+  }
+
+ private:
+  const Map& map_;
+  KeyframeId newest_;
+  std::uint32_t min_gap_;
+  IdSet<KeyframeId> related_;
+};
 
 std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest,
                                    const SemanticConfig& semantics, const LoopConfig& config) {
-  const std::vector<KeyframeId> old = unrelated(map, newest, config.min_gap);
+  const Unrelated is_old(map, newest, config.min_gap);
   const auto view = [&](KeyframeId k) {
     return config.augmented ? map.at(k).words.vector : words_alone(map.at(k).words.vector);
   };
@@ -38,27 +45,32 @@ std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest,
   for (const Keyframe::Neighbour& n : map.at(newest).covisible)
     if (n.shared >= kStrongEdge) least = std::min(least, l1_similarity(query, view(n.id)));
 
-  std::vector<double> similarity(map.keyframes().size(), 0.0);
+  std::vector<KeyframeId> old;
   std::vector<int> shared(map.keyframes().size(), 0);
-  std::vector<std::uint8_t> is_old(map.keyframes().size(), 0);
-  for (const KeyframeId k : old) {
-    const AugmentedVector other = view(k);
-    similarity[k.value] = l1_similarity(query, other);
-    shared[k.value] = shared_words(query, other) + shared_labels(query, other);
-    is_old[k.value] = 1;
-  }
+  for (const SharedMembers& s : map.sharing(query))
+    if (is_old(s.keyframe)) {
+      old.push_back(s.keyframe);
+      shared[s.keyframe.value] = s.words + s.labels;
+    }
+  // A keyframe is asked for once per neighbourhood that it belongs to.
+  std::vector<double> known(map.keyframes().size(), -1.0);
+  const auto similarity = [&](KeyframeId k) {
+    double& s = known[k.value];
+    if (s < 0) s = l1_similarity(query, view(k));
+    return s;
+  };
   const auto selection = select_candidates(
       std::span<const KeyframeId>(old), [&](KeyframeId k) { return shared[k.value]; },
       [&](KeyframeId k) {
         std::vector<KeyframeId> group{k};
         for (const Keyframe::Neighbour& n : map.at(k).covisible)
-          if (group.size() <= 10 && is_old[n.id.value] != 0) group.push_back(n.id);
+          if (group.size() <= 10 && is_old(n.id)) group.push_back(n.id);
         return group;
       },
-      [&](KeyframeId k) { return similarity[k.value]; }, semantics.alpha, semantics.beta);
+      similarity, semantics.alpha, semantics.beta);
   std::vector<KeyframeId> result;
   for (const auto& candidate : selection.candidates)
-    if (similarity[candidate.keyframe.value] >= 0.8 * least) result.push_back(candidate.keyframe);
+    if (similarity(candidate.keyframe) >= 0.8 * least) result.push_back(candidate.keyframe);
   return result;
 }
 

@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include "slam/map/id_set.hpp"
 #include "slam/match/expect.hpp"
 #include "slam/match/match.hpp"
 
@@ -97,14 +98,11 @@ std::optional<Eigen::Vector3d> triangulate(const Keyframe& a, const Keypoint& ka
 
 /// All landmarks that these keyframes see, each once.
 std::vector<LandmarkId> landmarks_of(const Map& map, const std::vector<KeyframeId>& keyframes) {
-  std::vector<std::uint8_t> seen(map.landmarks().size(), 0);
+  IdSet<LandmarkId> seen;
   std::vector<LandmarkId> result;
   for (const KeyframeId id : keyframes)
     for (const LandmarkId l : map.at(id).landmarks)
-      if (l.valid() && seen[l.value] == 0) {
-        seen[l.value] = 1;
-        result.push_back(l);
-      }
+      if (l.valid() && seen.insert(l)) result.push_back(l);
   return result;
 }
 
@@ -190,15 +188,14 @@ void fuse_into(Map& map, KeyframeId keyframe, const std::vector<LandmarkId>& lan
   constexpr float kRadius_px = 3.0F;
   const Keyframe& k = map.at(keyframe);
   const Eigen::Vector3d camera_in_world = k.camera_from_world.inverse().translation();
-  std::vector<std::uint8_t> seen(map.landmarks().size(), 0);
+  IdSet<LandmarkId> seen;
   for (const LandmarkId id : k.landmarks)
-    if (id.valid()) seen[id.value] = 1;
+    if (id.valid()) seen.insert(id);
 
   std::vector<ProjectionTarget> targets;
   std::vector<LandmarkId> target_landmark;
   for (const LandmarkId id : landmarks) {
-    if (!id.valid() || seen[id.value] != 0 || map.at(id).erased) continue;
-    seen[id.value] = 1;
+    if (!id.valid() || map.at(id).erased || !seen.insert(id)) continue;
     const auto target = expect(map.at(id), k.camera_from_world, camera_in_world, context.camera,
                                context.features, kRadius_px);
     if (!target) continue;
@@ -313,8 +310,8 @@ void adjust_neighbourhood(Map& map, KeyframeId keyframe, const MappingContext& c
     for (const Observation& o : map.at(l).observations) ++sees[o.keyframe.value];
   for (const KeyframeId id : free) sees[id.value] = 0;
   std::vector<KeyframeId> fixed;
-  for (const Keyframe& k : map.keyframes())
-    if (sees[k.id.value] > 0) fixed.push_back(k.id);
+  for (std::uint32_t i = 0; i < sees.size(); ++i)
+    if (sees[i] > 0) fixed.push_back(KeyframeId{i});
   if (fixed.empty()) return;  // nothing holds the frame of reference
   std::stable_sort(fixed.begin(), fixed.end(),
                    [&](KeyframeId a, KeyframeId b) { return sees[a.value] > sees[b.value]; });

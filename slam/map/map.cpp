@@ -41,6 +41,8 @@ KeyframeId Map::add(Keyframe keyframe) {
   keyframe.id = KeyframeId{static_cast<std::uint32_t>(keyframes_.size())};
   keyframe.landmarks.assign(keyframe.features.size(), LandmarkId{});
   keyframe.covisible.clear();
+  inverted_index_.add(keyframe.id, keyframe.words.vector);
+  position_index_.add(keyframe.id, keyframe.camera_from_world.inverse().translation());
   keyframes_.push_back(std::move(keyframe));
   ++keyframe_count_;
   return keyframes_.back().id;
@@ -119,11 +121,21 @@ void Map::erase(KeyframeId keyframe) {
   k.parent = parent;
   k.camera_from_parent = k.camera_from_world * at(parent).camera_from_world.inverse();
   k.erased = true;
+  inverted_index_.remove(keyframe, k.words.vector);
+  position_index_.remove(keyframe, k.camera_from_world.inverse().translation());
   k.features = {};  // nobody will ask again: a long run must not grow
   k.grid = {};
   k.words = {};
   k.landmarks = {};
   --keyframe_count_;
+}
+
+void Map::set_pose(KeyframeId id, const SE3& camera_from_world) {
+  Keyframe& k = mutable_at(id);
+  assert(!k.erased);
+  position_index_.remove(id, k.camera_from_world.inverse().translation());
+  position_index_.add(id, camera_from_world.inverse().translation());
+  k.camera_from_world = camera_from_world;
 }
 
 void Map::refresh(LandmarkId id, const FeatureConfig& config) {
@@ -204,6 +216,9 @@ void Map::check_invariants() const {
               k.id.value);
       continue;
     }
+    const auto near = keyframes_near(k.camera_from_world.inverse().translation(), 0.0);
+    require(std::binary_search(near.begin(), near.end(), k.id),
+            "a keyframe is not found where it stands", k.id.value);
     for (std::uint32_t i = 0; i < k.landmarks.size(); ++i) {
       if (!k.landmarks[i].valid()) continue;
       const Landmark& l = at(k.landmarks[i]);

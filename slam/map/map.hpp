@@ -12,6 +12,8 @@
 #include "slam/core/se3.hpp"
 #include "slam/features/feature_grid.hpp"
 #include "slam/features/features.hpp"
+#include "slam/map/inverted_index.hpp"
+#include "slam/map/position_index.hpp"
 #include "slam/semantics/augmented_vector.hpp"
 
 namespace mh {
@@ -98,9 +100,7 @@ class Map {
   /// Erases a keyframe; its pose hangs on its best neighbour from then on. The last one stays.
   void erase(KeyframeId keyframe);
 
-  void set_pose(KeyframeId id, const SE3& camera_from_world) {
-    keyframes_[id.value].camera_from_world = camera_from_world;
-  }
+  void set_pose(KeyframeId id, const SE3& camera_from_world);
   void set_position(LandmarkId id, const Eigen::Vector3d& position_in_world) {
     landmarks_[id.value].position_in_world = position_in_world;
   }
@@ -111,6 +111,16 @@ class Map {
   void refresh(LandmarkId id, const FeatureConfig& config);
   /// Counts anew which keyframes share landmarks with this one, on both sides.
   void update_covisibility(KeyframeId id);
+
+  /// Standing keyframes that share labels or words with a view, by id.
+  std::vector<SharedMembers> sharing(const AugmentedVector& view) const {
+    return inverted_index_.shared(view);
+  }
+  /// Standing keyframes whose cameras may be within a distance of a place (a superset), by id.
+  std::vector<KeyframeId> keyframes_near(const Eigen::Vector3d& place_in_world,
+                                         double distance_m) const {
+    return position_index_.near(place_in_world, distance_m);
+  }
 
   /// Pose of any keyframe ever added, through its parents if it was erased.
   SE3 camera_from_world(KeyframeId id) const;
@@ -129,6 +139,8 @@ class Map {
 
   std::vector<Keyframe> keyframes_;
   std::vector<Landmark> landmarks_;
+  InvertedIndex inverted_index_;
+  PositionIndex position_index_;
   int keyframe_count_ = 0;
   int landmark_count_ = 0;
 };

@@ -44,6 +44,11 @@ SlamState make_slam(const Camera& camera, const SlamConfig& config,
 /// @throws InputError if the frame does not fit the camera or its stamp does not grow.
 StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream);
 
+/// The same from features that are at hand already: a cache, a synthetic world. step(state, frame,
+/// stream) is this after extract().
+/// @throws InputError if the stamp does not grow or there are not as many descriptors as keypoints.
+StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStream stream);
+
 /// The feed goes back: tracking counts as lost and earlier stamps are accepted; the map stays.
 void rewind(SlamState& state);
 

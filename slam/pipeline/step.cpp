@@ -23,10 +23,9 @@ struct PreparedFrame {
   std::optional<WordIndex> words;
 };
 
-PreparedFrame prepare(const RgbdFrame& frame, const SlamState& state) {
-  Features features = extract(frame, state.camera, state.config.features);
-  FeatureGrid grid(features.keypoints, state.camera);
-  return {frame.stamp_ns, std::move(features), std::move(grid), std::nullopt};
+PreparedFrame prepare(Stamp stamp_ns, Features features, const Camera& camera) {
+  FeatureGrid grid(features.keypoints, camera);
+  return {stamp_ns, std::move(features), std::move(grid), std::nullopt};
 }
 
 WordIndex index_words(const Features& features, const Vocabulary& vocabulary,
@@ -182,10 +181,10 @@ StepReport initialize(SlamState& state, PreparedFrame frame, StepReport report) 
   return report;
 }
 
-void check(const SlamState& state, const RgbdFrame& frame) {
-  if (state.last_stamp_ns && frame.stamp_ns <= *state.last_stamp_ns)
-    throw InputError(fmt::format("frame at {} ns: stamps must grow, the last was {} ns",
-                                 frame.stamp_ns, *state.last_stamp_ns));
+void check_stamp(const SlamState& state, Stamp stamp_ns) {
+  if (state.last_stamp_ns && stamp_ns <= *state.last_stamp_ns)
+    throw InputError(fmt::format("frame at {} ns: stamps must grow, the last was {} ns", stamp_ns,
+                                 *state.last_stamp_ns));
 }
 
 }  // namespace
@@ -202,12 +201,20 @@ SlamState make_slam(const Camera& camera, const SlamConfig& config,
 }
 
 StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream) {
-  check(state, frame);
-  state.last_stamp_ns = frame.stamp_ns;
-  PreparedFrame prepared = prepare(frame, state);
+  check_stamp(state, frame.stamp_ns);
+  return step(state, frame.stamp_ns, extract(frame, state.camera, state.config.features), stream);
+}
+
+StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStream stream) {
+  check_stamp(state, stamp_ns);
+  if (features.descriptors.size() != features.keypoints.size())
+    throw InputError(fmt::format("frame at {} ns: {} keypoints, but {} descriptors", stamp_ns,
+                                 features.keypoints.size(), features.descriptors.size()));
+  state.last_stamp_ns = stamp_ns;
+  PreparedFrame prepared = prepare(stamp_ns, std::move(features), state.camera);
   StepReport report;
   report.keypoints = static_cast<int>(prepared.features.size());
-  state.tracked_frames.erase(frame.stamp_ns);
+  state.tracked_frames.erase(stamp_ns);
   if (state.map.empty()) return initialize(state, std::move(prepared), report);
 
   auto located = locate(state, state.tracker, prepared, stream, report);
@@ -219,7 +226,7 @@ StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream) {
   for (const LandmarkId id : located->tracked.landmarks)
     if (id.valid()) state.map.count_found(id);
 
-  update_velocity(state.tracker, frame.stamp_ns, located->tracked.camera_from_world);
+  update_velocity(state.tracker, stamp_ns, located->tracked.camera_from_world);
   ++state.tracker.frames_since_keyframe;
   KeyframeId reference = located->reference;
   SE3 camera_from_world = located->tracked.camera_from_world;
@@ -231,10 +238,13 @@ StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream) {
         insert_keyframe(state, prepared, camera_from_world, landmarks, stream.fork(1), report);
     camera_from_world = state.map.at(reference).camera_from_world;
     landmarks = state.map.at(reference).landmarks;
+#ifndef NDEBUG
+    state.map.check_invariants();
+#endif
   }
 
   report.world_from_camera = camera_from_world.inverse();
-  state.tracked_frames[frame.stamp_ns] = {
+  state.tracked_frames[stamp_ns] = {
       reference, camera_from_world * state.map.camera_from_world(reference).inverse()};
   remember(state.tracker, std::move(prepared), camera_from_world, std::move(landmarks), reference);
   return report;
@@ -247,7 +257,8 @@ void rewind(SlamState& state) {
 
 StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& frame,
                     RandomStream stream) {
-  PreparedFrame prepared = prepare(frame, frozen);
+  PreparedFrame prepared =
+      prepare(frame.stamp_ns, extract(frame, frozen.camera, frozen.config.features), frozen.camera);
   StepReport report;
   report.keypoints = static_cast<int>(prepared.features.size());
   auto located = locate(frozen, tracker, prepared, stream, report);

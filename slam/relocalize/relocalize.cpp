@@ -20,16 +20,16 @@ std::vector<KeyframeId> neighbourhood(const Map& map, KeyframeId k) {
   return result;
 }
 
-int overlap(const AugmentedVector& f, const AugmentedVector& k, Overlap what) {
+int overlap(const SharedMembers& shared, Overlap what) {
   switch (what) {
     case Overlap::kLabels:
-      return shared_labels(f, k);
+      return shared.labels;
     case Overlap::kAugmented:
-      return shared_labels(f, k) + shared_words(f, k);
+      return shared.labels + shared.words;
     case Overlap::kWords:
       break;
   }
-  return shared_words(f, k);
+  return shared.words;
 }
 
 struct Attempt {
@@ -183,15 +183,18 @@ std::string_view name(RelocalizationStage stage) {
 
 CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedVector& query,
                                                 const SemanticConfig& config) {
+  // Keyframes that share nothing fail equation 3: they need not be asked.
   std::vector<KeyframeId> keyframes;
-  for (const Keyframe& keyframe : map.keyframes())
-    if (!keyframe.erased) keyframes.push_back(keyframe.id);
+  std::vector<int> n(map.keyframes().size(), 0);
   const Overlap what = query.labels.empty() ? Overlap::kWords : config.overlap;
+  for (const SharedMembers& shared : map.sharing(query)) {
+    keyframes.push_back(shared.keyframe);
+    n[shared.keyframe.value] = overlap(shared, what);
+  }
   // A keyframe is asked for once per neighbourhood that it belongs to.
   std::vector<double> similarity(map.keyframes().size(), -1.0);
   return select_candidates(
-      std::span<const KeyframeId>(keyframes),
-      [&](KeyframeId k) { return overlap(query, map.at(k).words.vector, what); },
+      std::span<const KeyframeId>(keyframes), [&](KeyframeId k) { return n[k.value]; },
       [&](KeyframeId k) { return neighbourhood(map, k); },
       [&](KeyframeId k) {
         double& s = similarity[k.value];

@@ -2,8 +2,8 @@
 #include "slam/track/track.hpp"
 
 #include <algorithm>
-#include <map>
 
+#include "slam/map/id_set.hpp"
 #include "slam/match/expect.hpp"
 #include "slam/match/match.hpp"
 
@@ -29,11 +29,13 @@ ProjectionTarget target_of(const Eigen::Vector3d& point_in_camera, const Keypoin
 /// Keyframes with the number of landmarks they share with the frame, most first, then earliest.
 std::vector<std::pair<KeyframeId, int>> by_shared_landmarks(const TrackedPose& tracked,
                                                             const Map& map) {
-  std::map<KeyframeId, int> votes;
+  std::vector<int> votes(map.keyframes().size(), 0);
   for (const LandmarkId landmark : tracked.landmarks)
     if (landmark.valid())
-      for (const Observation& o : map.at(landmark).observations) ++votes[o.keyframe];
-  std::vector<std::pair<KeyframeId, int>> voted(votes.begin(), votes.end());
+      for (const Observation& o : map.at(landmark).observations) ++votes[o.keyframe.value];
+  std::vector<std::pair<KeyframeId, int>> voted;
+  for (std::uint32_t i = 0; i < votes.size(); ++i)
+    if (votes[i] > 0) voted.emplace_back(KeyframeId{i}, votes[i]);
   std::stable_sort(voted.begin(), voted.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   return voted;
@@ -151,12 +153,10 @@ LocalMap local_map(const TrackedPose& tracked, const TrackContext& context) {
   const auto voted = by_shared_landmarks(tracked, map);
 
   LocalMap local;
-  std::vector<std::uint8_t> has(map.keyframes().size(), 0);
+  IdSet<KeyframeId> has;
   const auto limit = static_cast<std::size_t>(context.config.local_keyframes);
   const auto take = [&](KeyframeId id) {
-    if (has[id.value] != 0 || map.at(id).erased) return;
-    has[id.value] = 1;
-    local.keyframes.push_back(id);
+    if (!map.at(id).erased && has.insert(id)) local.keyframes.push_back(id);
   };
   for (const auto& [id, count] : voted)
     if (local.keyframes.size() < limit / 2) take(id);
@@ -164,16 +164,16 @@ LocalMap local_map(const TrackedPose& tracked, const TrackContext& context) {
   // Near and alike, nearest first.
   const SE3 world_from_camera = tracked.camera_from_world.inverse();
   std::vector<std::pair<double, KeyframeId>> near;
-  for (const Keyframe& keyframe : map.keyframes()) {
-    if (keyframe.erased) continue;
-    const SE3 world_from_keyframe = keyframe.camera_from_world.inverse();
+  for (const KeyframeId id :
+       map.keyframes_near(world_from_camera.translation(), context.config.near_distance_m)) {
+    const SE3 world_from_keyframe = map.at(id).camera_from_world.inverse();
     const double distance =
         (world_from_keyframe.translation() - world_from_camera.translation()).norm();
     if (distance > context.config.near_distance_m) continue;
     const double cosine =
         world_from_keyframe.rotation().col(2).dot(world_from_camera.rotation().col(2));
     if (cosine < std::cos(context.config.near_angle_rad)) continue;
-    near.emplace_back(distance, keyframe.id);
+    near.emplace_back(distance, id);
   }
   std::sort(near.begin(), near.end());
   for (const auto& [distance, id] : near)
@@ -183,13 +183,10 @@ LocalMap local_map(const TrackedPose& tracked, const TrackContext& context) {
     for (const Keyframe::Neighbour& n : map.at(voted[i].first).covisible)
       if (local.keyframes.size() < limit) take(n.id);
 
-  std::vector<std::uint8_t> seen(map.landmarks().size(), 0);
+  IdSet<LandmarkId> seen;
   for (const KeyframeId id : local.keyframes)
-    for (const LandmarkId landmark : map.at(id).landmarks) {
-      if (!landmark.valid() || seen[landmark.value] != 0) continue;
-      seen[landmark.value] = 1;
-      local.landmarks.push_back(landmark);
-    }
+    for (const LandmarkId landmark : map.at(id).landmarks)
+      if (landmark.valid() && seen.insert(landmark)) local.landmarks.push_back(landmark);
   return local;
 }
 
@@ -197,13 +194,13 @@ std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedP
                                               const LocalMap& local, float radius_px,
                                               const TrackContext& context, MatcherCounts& counts) {
   const Map& map = context.map;
-  std::vector<std::uint8_t> matched(map.landmarks().size(), 0);
+  IdSet<LandmarkId> matched;
   std::vector<std::uint8_t> taken(query.features.size(), 0);
   std::vector<LandmarkId> landmarks = tracked.landmarks;
   LocalMapResult result;
   for (std::size_t i = 0; i < landmarks.size(); ++i)
     if (landmarks[i].valid()) {
-      matched[landmarks[i].value] = 1;
+      matched.insert(landmarks[i]);
       taken[i] = 1;
       result.expected.push_back(landmarks[i]);
     }
@@ -212,7 +209,7 @@ std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedP
   std::vector<ProjectionTarget> targets;
   std::vector<LandmarkId> target_landmark;
   for (const LandmarkId id : local.landmarks) {
-    if (matched[id.value] != 0) continue;
+    if (matched.contains(id)) continue;
     const auto target = expect(map.at(id), tracked.camera_from_world, camera_in_world,
                                context.camera, context.features, radius_px);
     if (!target) continue;

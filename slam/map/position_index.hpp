@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "slam/core/ids.hpp"
+
+namespace mh {
+
+/// Keyframes by where their cameras stood, in cubes of kCell_m: those near a place are found
+/// without a look at the others.
+class PositionIndex {
+ public:
+  void add(KeyframeId keyframe, const Eigen::Vector3d& position_in_world);
+  /// @param position_in_world  the one that it was added with.
+  void remove(KeyframeId keyframe, const Eigen::Vector3d& position_in_world);
+  /// All keyframes in cubes that a ball touches (a superset of those within it), by id.
+  std::vector<KeyframeId> near(const Eigen::Vector3d& centre_in_world, double radius_m) const;
+
+ private:
+  static constexpr double kCell_m = 2.5;
+  using Cell = std::array<int, 3>;
+  static Cell cell_of(const Eigen::Vector3d& position_in_world);
+
+  std::map<Cell, std::vector<KeyframeId>> cells_;  // none is empty
+};
+
+}  // namespace mh
