@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <map>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -22,7 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Stamp kMaxApart_ns = 20'000'000;  // as TUM's associate.py
-constexpr double kDepthPerMetre = 5000;
 
 struct Listed {
   Stamp stamp_ns = 0;
@@ -160,54 +158,62 @@ RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera
 
 TumWriter::TumWriter(fs::path folder, const Camera& camera)
     : folder_(std::move(folder)), camera_(camera) {
-  for (const char* part : {"rgb", "depth", "label", "instance"}) make_output_folder(folder_ / part);
+  for (const char* part : {"rgb", "depth", "label"}) {
+    make_output_folder(folder_ / part);
+    lists_[part];
+  }
 }
 
-void TumWriter::add(const RgbdFrame& frame, const RenderedFrame& exact,
-                    const SE3& world_from_camera) {
+void TumWriter::write(const char* part, Stamp stamp_ns, const cv::Mat& picture) {
+  const std::string name = format_stamp(stamp_ns);
+  write_picture(folder_ / part / (name + ".png"), picture);
+  lists_[part] += fmt::format("{0} {1}/{0}.png\n", name, part);
+}
+
+void TumWriter::add_pictures(const RgbdFrame& frame) {
   const int width = frame.colour.width(), height = frame.colour.height();
   cv::Mat colour(height, width, CV_8UC3), depth(height, width, CV_16UC1);
-  cv::Mat label(height, width, CV_8UC1), instance(height, width, CV_16UC1);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const Rgb8 c = frame.colour(x, y);
       colour.at<cv::Vec3b>(y, x) = {c.b, c.g, c.r};
-      const double units = std::round(kDepthPerMetre * double(frame.depth_m(x, y)));
-      depth.at<std::uint16_t>(y, x) = static_cast<std::uint16_t>(std::clamp(units, 0.0, 65535.0));
-      label.at<std::uint8_t>(y, x) = exact.classes(x, y);
-      instance.at<std::uint16_t>(y, x) = exact.instances(x, y);
+      depth.at<std::uint16_t>(y, x) = depth_units(frame.depth_m(x, y));
     }
-  const std::string name = format_stamp(frame.stamp_ns) + ".png";
-  write_picture(folder_ / "rgb" / name, colour);
-  write_picture(folder_ / "depth" / name, depth);
-  write_picture(folder_ / "label" / name, label);
-  write_picture(folder_ / "instance" / name, instance);
+  write("rgb", frame.stamp_ns, colour);
+  write("depth", frame.stamp_ns, depth);
+  const std::string name = format_stamp(frame.stamp_ns);
+  associations_ += fmt::format("{0} rgb/{0}.png {0} depth/{0}.png\n", name);
+}
+
+void TumWriter::add_labels(Stamp stamp_ns, const Grid2d<ClassId>& classes) {
+  cv::Mat label(classes.height(), classes.width(), CV_8UC1);
+  std::copy(classes.begin(), classes.end(), label.begin<std::uint8_t>());
+  write("label", stamp_ns, label);
+}
+
+void TumWriter::add(const RgbdFrame& frame) {
+  add_pictures(frame);
+  if (!frame.semantics.index.empty()) add_labels(frame.stamp_ns, class_image(frame.semantics));
+}
+
+void TumWriter::add(const RgbdFrame& frame, const RenderedFrame& exact,
+                    const SE3& world_from_camera) {
+  if (truth_.empty()) make_output_folder(folder_ / "instance");
+  add_pictures(frame);
+  add_labels(frame.stamp_ns, exact.classes);
+  const Grid2d<InstanceId>& instances = exact.instances;
+  cv::Mat instance(instances.height(), instances.width(), CV_16UC1);
+  std::copy(instances.begin(), instances.end(), instance.begin<std::uint16_t>());
+  write("instance", frame.stamp_ns, instance);
   truth_.push_back({frame.stamp_ns, world_from_camera});
 }
 
 void TumWriter::finish() {
-  std::map<std::string, std::string> lists;
-  std::string associations;
-  for (const TimedPose& pose : truth_) {
-    const std::string stamp = format_stamp(pose.stamp_ns);
-    for (const char* part : {"rgb", "depth", "label", "instance"})
-      lists[part] += fmt::format("{} {}/{}.png\n", stamp, part, stamp);
-    associations += fmt::format("{0} rgb/{0}.png {0} depth/{0}.png\n", stamp);
-  }
-  for (const auto& [part, list] : lists)
+  for (const auto& [part, list] : lists_)
     write_atomically(folder_ / (part + ".txt"), "# stamp (s) file\n" + list);
-  write_atomically(folder_ / "associations.txt", associations);
-  write_tum(folder_ / "groundtruth.txt", truth_);
-  write_atomically(
-      folder_ / "camera.yaml",
-      fmt::format("# Pinhole, no distortion; pixel centres at integers. Read by ORB-SLAM too.\n"
-                  "Camera.fx: {}\nCamera.fy: {}\nCamera.cx: {}\nCamera.cy: {}\n"
-                  "Camera.k1: 0.0\nCamera.k2: 0.0\nCamera.p1: 0.0\nCamera.p2: 0.0\n"
-                  "Camera.width: {}\nCamera.height: {}\nCamera.fps: {}\nCamera.bf: {}\n"
-                  "DepthMapFactor: {}\n",
-                  camera_.fx_px, camera_.fy_px, camera_.cx_px, camera_.cy_px, camera_.width_px,
-                  camera_.height_px, camera_.rate_hz, camera_.baseline_m * camera_.fx_px,
-                  kDepthPerMetre));
+  write_atomically(folder_ / "associations.txt", associations_);
+  if (!truth_.empty()) write_tum(folder_ / "groundtruth.txt", truth_);
+  write_atomically(folder_ / "camera.yaml", settings_text(camera_));
 }
 
 }  // namespace mh

@@ -2,9 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
+#include <opencv2/core/mat.hpp>
+
+#include "bench/recorded/frame_files.hpp"
 #include "sim/world/sequence.hpp"
 #include "slam/core/camera.hpp"
 #include "slam/core/rgbd_frame.hpp"
@@ -14,7 +18,7 @@ namespace mh {
 /// What a recorded sequence needs to be read.
 struct RecordedCamera {
   Camera camera;
-  double depth_per_metre = 5000;  ///< value of a depth pixel one metre away
+  double depth_per_metre = kDepthPerMetre;  ///< value of a depth pixel one metre away
 };
 
 /// Reads a calibration with ORB-SLAM's keys: Camera.fx, .fy, .cx, .cy (px, needed); Camera.k1 .k2
@@ -37,18 +41,27 @@ std::vector<RecordedFrame> load_tum_folder(const std::filesystem::path& folder);
 RgbdFrame read_frame(const RecordedFrame& frame, const RecordedCamera& camera);
 
 /// Writes sequences in TUM's layout: rgb/ and depth/ (16 bit, 5000 per metre), label/ (class ids, 8
-/// bit) and instance/ (16 bit), their lists, associations.txt, groundtruth.txt and camera.yaml.
-/// The lists appear with finish(), so that a folder without them was not finished.
+/// bit), their lists, associations.txt and camera.yaml; with truth also instance/ (16 bit), its
+/// list and groundtruth.txt. The lists appear with finish(), so that a folder without them was not
+/// finished.
 class TumWriter {
  public:
   TumWriter(std::filesystem::path folder, const Camera& camera);
-  /// @param exact  of the same moment; its classes and instances are written
+  /// What a system may see and nothing else. label.txt lists the frames that have labels.
+  void add(const RgbdFrame& frame);
+  /// With the truth. @param exact  of the same moment; its classes and instances are written
   void add(const RgbdFrame& frame, const RenderedFrame& exact, const SE3& world_from_camera);
   void finish();
 
  private:
+  void write(const char* part, Stamp stamp_ns, const cv::Mat& picture);
+  void add_pictures(const RgbdFrame& frame);
+  void add_labels(Stamp stamp_ns, const Grid2d<ClassId>& classes);
+
   std::filesystem::path folder_;
   Camera camera_;
+  std::map<std::string, std::string> lists_;  ///< by part: the lines of rgb.txt, ...
+  std::string associations_;
   Trajectory truth_;
 };
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "slam/core/error.hpp"
+
+namespace mh {
+
+/// An outside program failed its run: the message names the program, its command and what it did.
+/// A MachineError, so that a crash of somebody's program never looks like a regression.
+struct OutsideError : MachineError {
+  using MachineError::MachineError;
+};
+
+/// How the bench works with a program that is not ours.
+enum class OutsideMode {
+  kTrajectory,    ///< is given a recorded folder, writes a trajectory
+  kConversation,  ///< is shown frame after frame over standard input and output
+};
+
+/// A SLAM system that a suite names by its command line (docs/outside_systems.md).
+struct OutsideProgram {
+  std::string name;     ///< in tables and messages
+  std::string command;  ///< for /bin/sh, with placeholders such as {dataset}
+  OutsideMode mode = OutsideMode::kTrajectory;
+  std::filesystem::path folder = ".";  ///< where the command runs
+  double run_limit_s = 3600;           ///< wall time of a whole run in trajectory mode, > 0
+  double answer_limit_s = 60;          ///< wall time of one answer in a conversation, > 0
+  double memory_limit_mb = 0;  ///< resident, the program and its children together; 0 = none
+};
+
+/// Refuses an empty command, limits out of range, an unknown placeholder and a trajectory command
+/// without {trajectory}. Known are {dataset} {associations} {settings} {labels} {trajectory} {seed}
+/// in trajectory mode, {settings} {seed} in a conversation; `${NAME}` is left to the shell.
+/// @throws InputError naming the value.
+void validate(const OutsideProgram& program);
+
+/// The command with its placeholders replaced by values quoted for the shell.
+/// @pre validate() passed and every placeholder of the command has a value.
+std::string expand_command(
+    std::string_view command,
+    const std::vector<std::pair<std::string_view, std::string>>& placeholders);
+
+}  // namespace mh

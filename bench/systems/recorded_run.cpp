@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/systems/recorded_run.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <sstream>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "bench/metrics/trajectory_io.hpp"
+#include "bench/recorded/tum_folder.hpp"
+#include "bench/systems/child_process.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The frame that a stamp means; nullopt if there is none within the tolerance.
+std::optional<Stamp> frame_of(Stamp stamp_ns, std::span<const Stamp> frames) {
+  const auto next = std::lower_bound(frames.begin(), frames.end(), stamp_ns - kStampTolerance_ns);
+  std::optional<Stamp> best;
+  for (auto it = next; it != frames.end() && *it <= stamp_ns + kStampTolerance_ns; ++it)
+    if (!best || std::abs(*it - stamp_ns) < std::abs(*best - stamp_ns)) best = *it;
+  return best;
+}
+
+/// A file without poses is an answer too: completeness 0.
+bool tracked_nothing(const fs::path& trajectory) {
+  std::istringstream lines(read_file(trajectory));
+  for (std::string line; std::getline(lines, line);)
+    if (line.find_first_not_of(" \t\r") < line.find('#')) return false;
+  return true;
+}
+
+/// The poses with the stamps of the frames that they belong to.
+Trajectory with_frame_stamps(Trajectory trajectory, std::span<const Stamp> frames,
+                             ChildProcess& child) {
+  std::size_t strange = 0;
+  std::optional<Stamp> first_strange;
+  for (TimedPose& pose : trajectory) {
+    const std::optional<Stamp> frame = frame_of(pose.stamp_ns, frames);
+    if (!frame && ++strange == 1) first_strange = pose.stamp_ns;
+    if (frame) pose.stamp_ns = *frame;
+  }
+  if (first_strange)
+    child.fail(fmt::format("wrote {} of {} poses at stamps of no frame, the first at {}", strange,
+                           trajectory.size(), format_stamp(*first_strange)));
+  for (std::size_t i = 1; i < trajectory.size(); ++i)
+    if (trajectory[i].stamp_ns == trajectory[i - 1].stamp_ns)
+      child.fail(
+          fmt::format("wrote two poses for the frame at {}", format_stamp(trajectory[i].stamp_ns)));
+  return trajectory;
+}
+
+}  // namespace
+
+std::vector<Stamp> write_dataset(const fs::path& folder, const Camera& camera, std::size_t count,
+                                 const std::function<RgbdFrame(std::size_t)>& frame) {
+  std::vector<Stamp> stamps;
+  TumWriter writer(folder, camera);
+  for (std::size_t i = 0; i < count; ++i) {
+    const RgbdFrame seen = frame(i);
+    writer.add(seen);
+    stamps.push_back(seen.stamp_ns);
+  }
+  writer.finish();
+  return stamps;
+}
+
+Trajectory run_on_dataset(const OutsideProgram& program, const fs::path& dataset,
+                          std::span<const Stamp> stamps, std::uint64_t seed, const fs::path& out) {
+  validate(program);
+  make_output_folder(out);
+  const fs::path folder = fs::absolute(dataset);
+  const fs::path trajectory = fs::absolute(out) / "trajectory.txt";
+  fs::remove(trajectory);  // of an older run
+  const std::string command =
+      expand_command(program.command, {{"dataset", folder.string()},
+                                       {"associations", (folder / "associations.txt").string()},
+                                       {"settings", (folder / "camera.yaml").string()},
+                                       {"labels", (folder / "label.txt").string()},
+                                       {"trajectory", trajectory.string()},
+                                       {"seed", std::to_string(seed)}});
+  ChildProcess child(program, command, ChildProcess::Talk::kNo, fs::absolute(out) / "outside.log");
+  child.wait_for_success(program.run_limit_s);
+  if (!fs::exists(trajectory)) child.fail("ended well but wrote no trajectory");
+  try {
+    if (tracked_nothing(trajectory)) return {};
+    return with_frame_stamps(read_tum(trajectory), stamps, child);
+  } catch (const InputError& error) {
+    child.fail(fmt::format("wrote a bad trajectory: {}", error.what()));
+  }
+}
+
+}  // namespace mh

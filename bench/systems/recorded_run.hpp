@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <span>
+
+#include "bench/systems/outside_program.hpp"
+#include "slam/core/camera.hpp"
+#include "slam/core/trajectory.hpp"
+
+namespace mh {
+
+/// Stamps of a program's poses may be off by this much (programs print them with few digits).
+inline constexpr Stamp kStampTolerance_ns = 1'000'000;
+
+/// A folder in TUM's layout for an outside program: pictures, lists, labels where the frames have
+/// some, calibration. The truth is not in it. @returns the stamps, in order.
+/// @param frame  delivers frame i of the list
+std::vector<Stamp> write_dataset(const std::filesystem::path& folder, const Camera& camera,
+                                 std::size_t count,
+                                 const std::function<RgbdFrame(std::size_t)>& frame);
+
+/// Runs an outside program in trajectory mode over write_dataset()'s folder, under its limits.
+/// @param stamps  of the dataset's frames, increasing
+/// @param out     folder for trajectory.txt and outside.log
+/// @returns the program's trajectory with the frames' own stamps
+/// @throws InputError if validate(program) does; OutsideError if the program fails, or its
+///         trajectory is missing, malformed, holds a number that is not finite, a stamp of no frame
+///         or two poses for one.
+Trajectory run_on_dataset(const OutsideProgram& program, const std::filesystem::path& dataset,
+                          std::span<const Stamp> stamps, std::uint64_t seed,
+                          const std::filesystem::path& out);
+
+}  // namespace mh

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Conversation mode: a line of JSON in, a line of JSON out (docs/outside_systems.md). This file is
+// all that a system needs to take part; OpenCV parses the requests.
+#include <unistd.h>
+
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "odometry.hpp"
+
+namespace {
+
+/// The conversation's own way out. What libraries print to standard output goes to the log.
+FILE* open_answers() {
+  FILE* answers = fdopen(dup(STDOUT_FILENO), "w");
+  dup2(STDERR_FILENO, STDOUT_FILENO);
+  return answers;
+}
+
+std::string about(const example::Found& found) {
+  const auto& pose = found.world_from_camera;
+  return ",\"pose\":" + (pose ? "[" + example::pose_numbers(*pose, ',') + "]" : "null") +
+         ",\"inliers\":" + std::to_string(found.inliers) +
+         ",\"keyframe\":" + (found.keyframe_added ? "true" : "false") +
+         (found.candidates == 0
+              ? ""
+              : ",\"candidates\":{\"keyframes\":" + std::to_string(found.keyframes) +
+                    ",\"final\":" + std::to_string(found.candidates) + "}");
+}
+
+}  // namespace
+
+int main() try {
+  FILE* answers = open_answers();
+  std::unique_ptr<example::VisualOdometry> odometry;
+  std::string line;
+  while (std::getline(std::cin, line)) {
+    const cv::FileStorage request(
+        line, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_JSON);
+    const std::string what = request["do"].string();
+    cv::Mat colour, depth;
+    if (!request["colour"].empty()) {
+      colour = cv::imread(request["colour"].string());
+      depth = cv::imread(request["depth"].string(), cv::IMREAD_UNCHANGED);
+    }
+    std::string answer;
+    if (what == "hello") {
+      odometry = std::make_unique<example::VisualOdometry>(
+          example::read_settings(request["settings"].string()));
+      answer = R"(,"protocol":1,"name":"visual odometry")";
+    } else if (!odometry) {
+      answer = R"(,"error":"hello comes first")";
+    } else if (what == "track") {
+      answer = about(odometry->track(colour, depth));
+    } else if (what == "rewind") {
+      odometry->lose();
+    } else if (what == "reset") {
+      odometry->forget_map();
+    } else if (what == "freeze") {
+      // The map is a list of keyframes that relocalize() only reads: it stays as it is.
+    } else if (what == "blank") {
+      answer = R"(,"pose":null)";  // relocalize() starts from nothing: there is nothing to lose
+    } else if (what == "relocalize") {
+      answer = about(odometry->relocalize(colour, depth));
+    } else {
+      answer = R"(,"error":"unknown request ')" + what + "'\"";
+    }
+    const auto id = static_cast<int>(request["id"]);
+    std::fprintf(answers, "{\"id\":%d%s}\n", id, answer.c_str());
+    std::fflush(answers);
+  }
+  return 0;
+} catch (const std::exception& error) {
+  std::cerr << error.what() << '\n';
+  return 1;
+}

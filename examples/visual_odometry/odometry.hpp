@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+#include <opencv2/core/affine.hpp>
+#include <opencv2/features2d.hpp>
+
+/// A small RGB-D visual odometry: each frame is matched to a keyframe (ORB, ratio test) and placed
+/// by PnP. No bundle adjustment, no loops: an example of somebody's own system, not a rival.
+namespace example {
+
+struct Camera {
+  cv::Matx33d matrix = cv::Matx33d::eye();
+  std::vector<double> distortion;  ///< k1 k2 p1 p2 k3
+  double depth_per_metre = 5000;
+};
+
+/// Reads Camera.fx, ... from a settings file. @throws cv::Exception if it cannot be read.
+Camera read_settings(const std::string& file);
+
+/// "x y z qx qy qz qw" with another separator.
+std::string pose_numbers(const cv::Affine3d& pose, char separator);
+
+/// What a picture offers: keypoints with depth, as points in its camera's frame.
+struct View {
+  std::vector<cv::Point2f> pixels;
+  std::vector<cv::Point3f> points_in_camera;
+  cv::Mat descriptors;
+};
+
+struct Keyframe {
+  View view;
+  cv::Affine3d world_from_camera;
+};
+
+struct Found {
+  std::optional<cv::Affine3d> world_from_camera;
+  int inliers = 0;
+  int keyframes = 0;   ///< in the map
+  int candidates = 0;  ///< keyframes that a pose was sought against
+  bool keyframe_added = false;
+};
+
+class VisualOdometry {
+ public:
+  explicit VisualOdometry(Camera camera);
+
+  /// Places the next frame and extends the map. The first frame is the origin.
+  Found track(const cv::Mat& bgr, const cv::Mat& depth);
+  /// Finds a frame in the map from nothing. Changes nothing, so that the answer depends on the map
+  /// and the frame alone.
+  Found relocalize(const cv::Mat& bgr, const cv::Mat& depth) const;
+  /// Tracking counts as lost; the map stays.
+  void lose() { reference_.reset(); }
+  void forget_map();
+
+ private:
+  View look(const cv::Mat& bgr, const cv::Mat& depth) const;
+  Found place(const View& view, const Keyframe& keyframe, int needed) const;
+  Found find(const View& view) const;
+  void add_keyframe(View view, const cv::Affine3d& world_from_camera);
+
+  Camera camera_;
+  cv::Ptr<cv::ORB> orb_;
+  std::vector<Keyframe> keyframes_;
+  std::optional<std::size_t> reference_;  ///< the keyframe being tracked against; none: lost
+};
+
+}  // namespace example

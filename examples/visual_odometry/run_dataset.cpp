@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Trajectory mode: reads a folder in TUM's layout, writes a trajectory.
+#include <fstream>
+#include <iostream>
+#include <sstream>
+#include <string>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "odometry.hpp"
+
+int main(int argc, char** argv) try {
+  if (argc != 5) {
+    std::cerr << "usage: vo_run_dataset DATASET ASSOCIATIONS SETTINGS TRAJECTORY\n";
+    return 2;
+  }
+  const std::string dataset = argv[1];
+  std::ifstream associations(argv[2]);
+  std::ofstream trajectory(argv[4]);
+  if (!associations || !trajectory) {
+    std::cerr << argv[2] << " or " << argv[4] << " cannot be opened\n";
+    return 2;
+  }
+  example::VisualOdometry odometry(example::read_settings(argv[3]));
+  std::string line, stamp, colour_file, depth_stamp, depth_file;
+  while (std::getline(associations, line)) {
+    if (!(std::istringstream(line) >> stamp >> colour_file >> depth_stamp >> depth_file)) continue;
+    const cv::Mat colour = cv::imread(dataset + "/" + colour_file);
+    const cv::Mat depth = cv::imread(dataset + "/" + depth_file, cv::IMREAD_UNCHANGED);
+    if (colour.empty() || depth.type() != CV_16UC1) {
+      std::cerr << colour_file << " or " << depth_file << " is no picture of its kind\n";
+      return 2;
+    }
+    const example::Found found = odometry.track(colour, depth);
+    if (found.world_from_camera)
+      trajectory << stamp << ' ' << example::pose_numbers(*found.world_from_camera, ' ') << '\n';
+  }
+  return trajectory.flush() ? 0 : 1;
+} catch (const std::exception& error) {
+  std::cerr << error.what() << '\n';
+  return 1;
+}

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+// Outside programs that misbehave, as shell scripts: each fault is one OutsideError that names the
+// program, its command and what it did, and never the end of the bench.
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "bench/systems/conversation.hpp"
+#include "bench/systems/recorded_run.hpp"
+#include "slam/core/files.hpp"
+#include "tests/bench/fake_system.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OutsideFaults : public testing::Test {
+ protected:
+  OutsideFaults() : folder_(fs::temp_directory_path() / ("mh_faults_" + std::to_string(getpid()))) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "data");
+    camera_.width_px = camera_.height_px = 2;
+    camera_.cx_px = camera_.cy_px = 0.5;
+  }
+  ~OutsideFaults() override { fs::remove_all(folder_); }
+
+  OutsideProgram program(OutsideMode mode, const std::string& command) const {
+    OutsideProgram p{.name = "theirs", .command = command, .mode = mode};
+    p.run_limit_s = p.answer_limit_s = 10;
+    return p;
+  }
+
+  /// The OutsideError of an action; it must name program and command.
+  std::string error_of(const OutsideProgram& program, const std::function<void()>& action) {
+    try {
+      action();
+    } catch (const OutsideError& error) {
+      const std::string what = error.what();
+      EXPECT_NE(what.find("outside program 'theirs' ("), std::string::npos) << what;
+      EXPECT_NE(what.find(program.command.substr(0, 4)), std::string::npos) << what;
+      EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+      return what;
+    } catch (const std::exception& error) {
+      return std::string("another kind of error: ") + error.what();
+    }
+    return "no error";
+  }
+
+  // Trajectory mode over three frames at 1, 2 and 3 s.
+  std::string trajectory_error(OutsideProgram p) {
+    return error_of(p, [&] { run(p); });
+  }
+  Trajectory run(const OutsideProgram& p) {
+    const std::vector<Stamp> stamps = {1'000'000'000, 2'000'000'000, 3'000'000'000};
+    return run_on_dataset(p, folder_ / "data", stamps, 0, folder_ / "out");
+  }
+  OutsideProgram writes(const std::string& poses) const {
+    return program(OutsideMode::kTrajectory, "printf '" + poses + "' > {trajectory}");
+  }
+
+  // Conversation: `after_hello` runs once the greeting is over, with the request in $line.
+  OutsideProgram says(const std::string& after_hello) const {
+    return program(OutsideMode::kConversation,
+                   R"(read -r line; echo '{"id":1,"protocol":1}'; read -r line; )" + after_hello);
+  }
+  std::string track_error(const OutsideProgram& p) {
+    return error_of(p, [&] {
+      const auto system = make_conversation_system(p, camera_, 0, folder_ / "log");
+      system->track(fake_frame(7, RandomStream(1)), RandomStream(2));
+    });
+  }
+  std::string hello_error(const std::string& command) {
+    const OutsideProgram p = program(OutsideMode::kConversation, command);
+    return error_of(p, [&] { make_conversation_system(p, camera_, 0, folder_ / "log"); });
+  }
+
+  fs::path folder_;
+  Camera camera_;
+};
+
+#define EXPECT_HOLDS(text, part)                                       \
+  do {                                                                 \
+    const std::string holds_text = text;                               \
+    EXPECT_NE(holds_text.find(part), std::string::npos) << holds_text; \
+  } while (false)
+
+TEST_F(OutsideFaults, TrajectoryProgramsThatFail) {
+  const auto fails = [&](const std::string& command, const std::string& part) {
+    EXPECT_HOLDS(trajectory_error(program(OutsideMode::kTrajectory, command)), part);
+  };
+  fails("exit 3; : {trajectory}", "exited with code 3");
+  fails("echo no vocabulary >&2; exit 1; : {trajectory}", "it last wrote: no vocabulary");
+  fails("/nowhere/slam {trajectory}", "exited with code 127");
+  fails("kill -SEGV $$; : {trajectory}", "was killed by signal 11");
+  fails("exit 0; : {trajectory}", "ended well but wrote no trajectory");
+  OutsideProgram elsewhere = writes("");
+  elsewhere.folder = "/nowhere";
+  EXPECT_HOLDS(trajectory_error(elsewhere), "its folder cannot be entered");
+}
+
+TEST_F(OutsideFaults, ATrajectoryThatIsNone) {
+  EXPECT_HOLDS(trajectory_error(writes("what is this\\n")),
+               "trajectory.txt:1: pose: 3 values, expected 8");
+  EXPECT_HOLDS(trajectory_error(writes("1 0 0 0 0 0 0 1\\n2 nan 0 0 0 0 0 1\\n")),
+               "trajectory.txt:2: tx: 'nan' is not finite");
+  EXPECT_HOLDS(trajectory_error(writes("1 0 0 0 0 0 0 1\\n2.5 0 0 0 0 0 0 1\\n")),
+               "wrote 1 of 2 poses at stamps of no frame, the first at 2.500000000");
+  EXPECT_HOLDS(trajectory_error(writes("2.9995 0 0 0 0 0 0 1\\n3 0 0 0 0 0 0 1\\n")),
+               "wrote two poses for the frame at 3.000000000");
+}
+
+TEST_F(OutsideFaults, StampsOfFewDigitsAreTheFramesOwn) {
+  const Trajectory trajectory = run(writes("1.0001 0 0 0 0 0 0 1\\n2.9995 5 0 0 0 0 0 1\\n"));
+  ASSERT_EQ(trajectory.size(), 2u);
+  EXPECT_EQ(trajectory[0].stamp_ns, 1'000'000'000);
+  EXPECT_EQ(trajectory[1].stamp_ns, 3'000'000'000);
+  EXPECT_EQ(trajectory[1].world_from_camera.translation().x(), 5.0);
+}
+
+TEST_F(OutsideFaults, AProgramThatTrackedNothingHasAnEmptyTrajectory) {
+  EXPECT_TRUE(run(writes("# nothing held\\n")).empty());
+}
+
+TEST_F(OutsideFaults, ATrajectoryOfAnOlderRunIsNotTakenForThisOne) {
+  EXPECT_EQ(run(writes("1 0 0 0 0 0 0 1\\n")).size(), 1u);
+  EXPECT_HOLDS(trajectory_error(program(OutsideMode::kTrajectory, "exit 0; : {trajectory}")),
+               "wrote no trajectory");
+}
+
+TEST_F(OutsideFaults, TimeAndMemoryAreLimited) {
+  OutsideProgram sleeper = program(OutsideMode::kTrajectory, "sleep 60; : {trajectory}");
+  sleeper.run_limit_s = 0.3;
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_HOLDS(trajectory_error(sleeper), "was still running after 0.3 s");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+
+  // tail keeps the one line that never ends.
+  OutsideProgram glutton = program(OutsideMode::kTrajectory, "tail /dev/zero; : {trajectory}");
+  glutton.memory_limit_mb = 50;
+  EXPECT_HOLDS(trajectory_error(glutton), "its limit is 50 MB");
+}
+
+TEST_F(OutsideFaults, WhatAProgramLeavesBehindIsEndedToo) {
+  const fs::path note = folder_ / "pid";
+  run(program(OutsideMode::kTrajectory,
+              "sleep 60 & echo $! > " + note.string() + "; echo 1 0 0 0 0 0 0 1 > {trajectory}"));
+  const pid_t left = std::stoi(read_file(note));
+  bool gone = false;
+  for (int i = 0; i < 200 && !gone; ++i) {
+    // Gone, or a zombie that some init has yet to bury.
+    std::string stat;
+    std::getline(std::ifstream("/proc/" + std::to_string(left) + "/stat"), stat);
+    gone = stat.empty() || stat.find(") Z") != std::string::npos;
+    if (!gone) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_TRUE(gone);
+}
+
+TEST_F(OutsideFaults, ConversationsThatDoNotBegin) {
+  EXPECT_HOLDS(hello_error("exit 4"), "exited with code 4");
+  EXPECT_HOLDS(hello_error("echo Welcome to my SLAM; sleep 60"),
+               "wrote what is no line of JSON: 'Welcome to my SLAM', answering hello (request 1)");
+  EXPECT_HOLDS(hello_error(R"(echo '{"id":1}'; sleep 60)"), "does not speak protocol 1");
+  EXPECT_HOLDS(hello_error(R"(echo '{"id":1,"protocol":2}'; sleep 60)"),
+               "does not speak protocol 1");
+  EXPECT_HOLDS(hello_error(R"(echo '[1]'; sleep 60)"), "wrote no JSON object");
+}
+
+TEST_F(OutsideFaults, ConversationsThatBreakOff) {
+  EXPECT_HOLDS(track_error(says("exit 3")), "exited with code 3 during track (request 2)");
+  EXPECT_HOLDS(track_error(says("echo out of luck >&2; exit 3")), "it last wrote: out of luck");
+  EXPECT_HOLDS(track_error(says("kill -9 $$")), "was killed by signal 9 during track");
+  EXPECT_HOLDS(track_error(says("exec >&-; sleep 60")), "closed its pipe during track");
+  OutsideProgram silent = says("sleep 60");
+  silent.answer_limit_s = 0.3;
+  EXPECT_HOLDS(track_error(silent), "did not answer track (request 2) within 0.3 s");
+  // Gone before it is asked: writing to it must not kill the bench by SIGPIPE.
+  const OutsideProgram short_lived =
+      program(OutsideMode::kConversation, R"(read -r line; echo '{"id":1,"protocol":1}'; exit 0)");
+  EXPECT_HOLDS(track_error(short_lived), "exited with code 0");
+}
+
+TEST_F(OutsideFaults, AnswersThatAreNone) {
+  const auto answers = [&](const std::string& json) {
+    return track_error(says("echo '" + json + "'; sleep 60"));
+  };
+  EXPECT_HOLDS(answers("garbage"), "wrote what is no line of JSON: 'garbage'");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[NaN,0,0,0,0,0,1]})"), "a number that is not finite");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[1e999,0,0,0,0,0,1]})"), "JSON");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[null,0,0,0,0,0,1]})"), "gave a pose that is not finite");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,0,0,0,0,0]})"), "expected [x, y, z, qx, qy, qz, qw]");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,0,0,0,0,0,2]})"), "quaternion has norm 2");
+  EXPECT_HOLDS(answers(R"({"id":2})"), "neither a pose nor");
+  EXPECT_HOLDS(answers(R"({"id":3,"pose":null})"), "answered request 3, which was not asked");
+  EXPECT_HOLDS(answers(R"({"pose":null})"), "gave no request number");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"mood":"good"})"), "unknown key 'mood'");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"inliers":-1})"), "expected a count");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"candidates":{"c4":1}})"), "'candidates.c4'");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"stage":"lunch"})"), "unknown stage");
+  EXPECT_HOLDS(answers(R"({"id":2,"error":"no memory"})"), "reported an error: \"no memory\"");
+}
+
+TEST_F(OutsideFaults, AFinalTrajectoryHoldsShownFramesOnly) {
+  const auto freeze_error = [&](const std::string& trajectory) {
+    const OutsideProgram p = says(
+        R"(echo '{"id":2,"pose":[0,0,0,0,0,0,1]}'; read -r line; echo '{"id":3,"trajectory":)" +
+        trajectory + "}'; sleep 60");
+    return error_of(p, [&] {
+      const auto system = make_conversation_system(p, camera_, 0, folder_ / "log");
+      system->track(fake_frame(7, RandomStream(1)), RandomStream(2));
+      system->freeze();
+      const Trajectory t = system->trajectory();
+      ASSERT_EQ(t.size(), 1u);
+      EXPECT_EQ(t[0].stamp_ns, 7);
+      EXPECT_EQ(t[0].world_from_camera.translation().x(), 4.0);
+    });
+  };
+  EXPECT_EQ(freeze_error(R"(["0.000000007 4 0 0 0 0 0 1"])"), "no error");
+  EXPECT_HOLDS(freeze_error(R"(["0.000000008 4 0 0 0 0 0 1"])"),
+               "gave a pose at 0.000000008 in its trajectory, a frame that it never saw");
+  EXPECT_HOLDS(freeze_error(R"(["0.000000007 nan 0 0 0 0 0 1"])"), "trajectory:1: tx: 'nan'");
+  EXPECT_HOLDS(freeze_error("7"), "no list of lines");
+}
+
+TEST_F(OutsideFaults, CommandsAreCheckedBeforeTheyRun) {
+  const auto refused = [&](OutsideMode mode, const std::string& command) -> std::string {
+    try {
+      validate(program(mode, command));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_HOLDS(refused(OutsideMode::kTrajectory, " "), "theirs: command: is empty");
+  EXPECT_HOLDS(refused(OutsideMode::kTrajectory, "slam {dataset}"), "{trajectory} is missing");
+  EXPECT_HOLDS(refused(OutsideMode::kTrajectory, "slam {datset} {trajectory}"),
+               "'{datset}' is none of {dataset}");
+  EXPECT_HOLDS(refused(OutsideMode::kConversation, "slam {dataset}"), "'{dataset}' is none of");
+  EXPECT_EQ(refused(OutsideMode::kTrajectory, "a={b,c}; slam ${HOME} {trajectory}"), "no error");
+  EXPECT_EQ(refused(OutsideMode::kConversation, "slam {settings} {seed}"), "no error");
+  OutsideProgram p = program(OutsideMode::kConversation, "slam");
+  p.answer_limit_s = 0;
+  EXPECT_THROW(validate(p), InputError);
+}
+
+TEST(ExpandCommand, QuotesForTheShell) {
+  EXPECT_EQ(expand_command("slam {dataset} ${HOME} {", {{"dataset", "/a b/it's"}}),
+            "slam '/a b/it'\\''s' ${HOME} {");
+}
+
+}  // namespace
+}  // namespace mh
