@@ -47,10 +47,10 @@ std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest,
 
   std::vector<KeyframeId> old;
   std::vector<int> shared(map.keyframes().size(), 0);
-  for (const SharedMembers& s : map.sharing(query))
+  for (const InvertedIndex::Score& s : map.sharing(query))
     if (is_old(s.keyframe)) {
       old.push_back(s.keyframe);
-      shared[s.keyframe.value] = s.words + s.labels;
+      shared[s.keyframe.value] = s.shared_words + s.shared_labels;
     }
   // A keyframe is asked for once per neighbourhood that it belongs to.
   std::vector<double> known(map.keyframes().size(), -1.0);

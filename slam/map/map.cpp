@@ -121,7 +121,7 @@ void Map::erase(KeyframeId keyframe) {
   k.parent = parent;
   k.camera_from_parent = k.camera_from_world * at(parent).camera_from_world.inverse();
   k.erased = true;
-  inverted_index_.remove(keyframe, k.words.vector);
+  inverted_index_.erase(keyframe, k.words.vector);
   position_index_.remove(keyframe, k.camera_from_world.inverse().translation());
   k.features = {};  // nobody will ask again: a long run must not grow
   k.grid = {};

@@ -12,9 +12,9 @@
 #include "slam/core/se3.hpp"
 #include "slam/features/feature_grid.hpp"
 #include "slam/features/features.hpp"
-#include "slam/map/inverted_index.hpp"
 #include "slam/map/position_index.hpp"
 #include "slam/semantics/augmented_vector.hpp"
+#include "slam/vocabulary/inverted_index.hpp"
 
 namespace mh {
 
@@ -113,8 +113,8 @@ class Map {
   void update_covisibility(KeyframeId id);
 
   /// Standing keyframes that share labels or words with a view, by id.
-  std::vector<SharedMembers> sharing(const AugmentedVector& view) const {
-    return inverted_index_.shared(view);
+  std::vector<InvertedIndex::Score> sharing(const AugmentedVector& view) const {
+    return inverted_index_.query(view);
   }
   /// Standing keyframes whose cameras may be within a distance of a place (a superset), by id.
   std::vector<KeyframeId> keyframes_near(const Eigen::Vector3d& place_in_world,

@@ -20,16 +20,16 @@ std::vector<KeyframeId> neighbourhood(const Map& map, KeyframeId k) {
   return result;
 }
 
-int overlap(const SharedMembers& shared, Overlap what) {
+int overlap(const InvertedIndex::Score& score, Overlap what) {
   switch (what) {
     case Overlap::kLabels:
-      return shared.labels;
+      return score.shared_labels;
     case Overlap::kAugmented:
-      return shared.labels + shared.words;
+      return score.shared_labels + score.shared_words;
     case Overlap::kWords:
       break;
   }
-  return shared.words;
+  return score.shared_words;
 }
 
 struct Attempt {
@@ -184,24 +184,20 @@ std::string_view name(RelocalizationStage stage) {
 CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedVector& query,
                                                 const SemanticConfig& config) {
   // Keyframes that share nothing fail equation 3: they need not be asked.
-  std::vector<KeyframeId> keyframes;
-  std::vector<int> n(map.keyframes().size(), 0);
+  const std::vector<InvertedIndex::Score> scores = map.sharing(query);
   const Overlap what = query.labels.empty() ? Overlap::kWords : config.overlap;
-  for (const SharedMembers& shared : map.sharing(query)) {
-    keyframes.push_back(shared.keyframe);
-    n[shared.keyframe.value] = overlap(shared, what);
+  std::vector<KeyframeId> keyframes;
+  std::vector<const InvertedIndex::Score*> of(map.keyframes().size(), nullptr);
+  for (const InvertedIndex::Score& score : scores) {
+    keyframes.push_back(score.keyframe);
+    of[score.keyframe.value] = &score;
   }
-  // A keyframe is asked for once per neighbourhood that it belongs to.
-  std::vector<double> similarity(map.keyframes().size(), -1.0);
   return select_candidates(
-      std::span<const KeyframeId>(keyframes), [&](KeyframeId k) { return n[k.value]; },
+      std::span<const KeyframeId>(keyframes),
+      [&](KeyframeId k) { return overlap(*of[k.value], what); },
       [&](KeyframeId k) { return neighbourhood(map, k); },
-      [&](KeyframeId k) {
-        double& s = similarity[k.value];
-        if (s < 0) s = l1_similarity(query, map.at(k).words.vector);
-        return s;
-      },
-      config.alpha, config.beta);
+      [&](KeyframeId k) { return of[k.value] ? of[k.value]->similarity : 0.0; }, config.alpha,
+      config.beta);
 }
 
 RelocalizationResult try_candidates(const Query& query, std::span<const KeyframeId> candidates,

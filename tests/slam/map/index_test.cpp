@@ -5,7 +5,6 @@
 
 #include "slam/core/random.hpp"
 #include "slam/map/id_set.hpp"
-#include "slam/map/inverted_index.hpp"
 #include "slam/map/map.hpp"
 #include "slam/map/position_index.hpp"
 
@@ -35,25 +34,6 @@ TEST(IdSet, HoldsWhatAStandardSetHolds) {
   for (std::uint32_t id = 0; id < 8000; ++id)
     ASSERT_EQ(ours.contains(LandmarkId{id}), standard.contains(id)) << id;
   EXPECT_FALSE(ours.contains(LandmarkId{5000000}));
-}
-
-TEST(InvertedIndex, CountsWhatADirectComparisonCounts) {
-  InvertedIndex index;
-  std::vector<AugmentedVector> views;
-  for (std::uint32_t i = 0; i < 40; ++i) views.push_back(random_view(RandomStream(i)));
-  for (std::uint32_t i = 0; i < 40; ++i) index.add(KeyframeId{i}, views[i]);
-  for (std::uint32_t i = 0; i < 40; i += 3) index.remove(KeyframeId{i}, views[i]);
-
-  const AugmentedVector query = random_view(RandomStream(1000));
-  std::vector<SharedMembers> expected;
-  for (std::uint32_t i = 0; i < 40; ++i) {
-    const SharedMembers s{KeyframeId{i}, shared_labels(query, views[i]),
-                          shared_words(query, views[i])};
-    if (i % 3 != 0 && (s.labels != 0 || s.words != 0)) expected.push_back(s);
-  }
-  ASSERT_GT(expected.size(), 20U);
-  EXPECT_EQ(index.shared(query), expected);
-  EXPECT_TRUE(index.shared(AugmentedVector{}).empty());
 }
 
 TEST(PositionIndex, FindsAllThatIsNearAndLittleElse) {
