@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/check/baseline.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json run_json(const RunFigures& run) {
+  Json values = Json::object();
+  for (const auto& [name, value] : run.values)
+    values[name] = value && std::isfinite(*value) ? Json(*value) : Json();
+  return {{"scenario", run.scenario},
+          {"system", run.system},
+          {"seed", run.seed},
+          {"digest", run.digest},
+          {"values", values}};
+}
+
+RunFigures read_run(const Json& json) {
+  RunFigures run{.scenario = json.at("scenario").get<std::string>(),
+                 .system = json.at("system").get<std::string>(),
+                 .seed = json.at("seed").get<std::uint64_t>(),
+                 .digest = json.at("digest").get<std::string>()};
+  for (const auto& [name, value] : json.at("values").items())
+    run.values[name] = value.is_null() ? std::nullopt : std::optional(value.get<double>());
+  return run;
+}
+
+Baseline read(const Json& json) {
+  Baseline baseline{.suite = json.at("suite").get<std::string>(),
+                    .suite_digest = json.at("suite_digest").get<std::string>(),
+                    .origin = json.at("origin")};
+  for (const Json& run : json.at("runs")) baseline.runs.push_back(read_run(run));
+  return baseline;
+}
+
+}  // namespace
+
+std::string to_text(const Baseline& baseline) {
+  std::string text = fmt::format(
+      "{{\n\"format\": \"{}\",\n\"suite\": {},\n\"suite_digest\": {},\n\"origin\": {},\n"
+      "\"runs\": [",
+      kBaselineFormat, Json(baseline.suite).dump(), Json(baseline.suite_digest).dump(),
+      baseline.origin.dump(2));
+  for (std::size_t i = 0; i < baseline.runs.size(); ++i)
+    text += (i == 0 ? "\n" : ",\n") + run_json(baseline.runs[i]).dump();
+  return text + "\n]\n}\n";
+}
+
+void save_baseline(const Baseline& baseline, const std::filesystem::path& file) {
+  write_atomically(file, to_text(baseline));
+}
+
+Baseline load_baseline(const std::filesystem::path& file) {
+  const Json json = Json::parse(read_file(file), nullptr, false);
+  if (!json.is_object() || !json.contains("format") || !json["format"].is_string())
+    throw InputError(
+        fmt::format("{}: is no baseline: it should be JSON as `modelhouse check "
+                    "--update` writes it",
+                    file.string()));
+  const auto format = json["format"].get<std::string>();
+  if (format != kBaselineFormat)
+    throw InputError(fmt::format("{}: format: '{}' is not '{}', which this program reads",
+                                 file.string(), format, kBaselineFormat));
+  try {
+    return read(json);
+  } catch (const Json::exception& e) {
+    throw InputError(fmt::format("{}: is damaged: {}", file.string(), e.what()));
+  }
+}
+
+void check_suite(const Baseline& baseline, const std::filesystem::path& file,
+                 const std::string& suite, const std::string& suite_digest) {
+  if (baseline.suite != suite)
+    throw InputError(fmt::format("{}: suite: is a baseline of the suite '{}', not of '{}'",
+                                 file.string(), baseline.suite, suite));
+  if (baseline.suite_digest != suite_digest)
+    throw InputError(fmt::format(
+        "{}: suite_digest: '{}' was made before the suite's scenes, tours, systems, seeds or "
+        "protocol changed (now '{}'): look at the change, then run with --update",
+        file.string(), baseline.suite_digest, suite_digest));
+}
+
+}  // namespace mh

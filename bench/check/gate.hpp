@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/check/figures.hpp"
+
+namespace mh {
+
+/// How far a measure may get worse: the greater of the two. Both 0: not at all.
+struct Tolerance {
+  double absolute = 0;  ///< in the measure's unit
+  double relative = 0;  ///< of the baseline's median
+  double of(double baseline_median) const;
+};
+
+/// By measure; a measure without a tolerance is reported nowhere and judged never.
+using Tolerances = std::map<std::string, Tolerance, std::less<>>;
+
+struct GateConfig {
+  Tolerances tolerances;
+  std::map<std::string, Tolerances, std::less<>> of_scenario;  ///< in the place of those above
+};
+
+/// What became of one measure of one system in one scenario.
+enum class ChangeVerdict { kSame, kWithin, kBetter, kWorse };
+std::string_view name(ChangeVerdict verdict);
+
+struct Change {
+  std::string scenario, system;
+  const Measure* measure = nullptr;
+  std::size_t pairs = 0;                          ///< seeds
+  std::optional<double> before = {}, after = {};  ///< medians over the seeds that have the figure
+  /// Median over the seeds of after - before. Infinite where most seeds lost or gained the figure:
+  /// a figure that is lost counts as the worst there is.
+  double change = 0;
+  double tolerance = 0;
+  /// A true worsening of this size is found with 80 % power: tolerance + 0.84 standard errors of
+  /// the median paired change. That error is what chance alone would make of it if the program
+  /// were another but no worse: draws of before and after independent, spread as over the
+  /// baseline's seeds, so 1.2533 sqrt(2) s / sqrt(seeds). For shares at least the next step of
+  /// 1 / queries above the tolerance.
+  double detectable = 0;
+  ChangeVerdict verdict = ChangeVerdict::kSame;
+};
+
+struct GateResult {
+  std::vector<Change> changes;  ///< by scenario and system in the baseline's order, then measure
+  std::size_t runs = 0;
+  std::size_t identical = 0;              ///< runs whose digest is the baseline's
+  std::vector<std::string> unrepeatable;  ///< runs that differ though program and machine do not
+  bool same_origin = false;               ///< program and machine are those of the baseline
+
+  std::size_t worse() const;
+  std::size_t better() const;
+  bool passed() const { return worse() == 0 && unrepeatable.empty(); }
+};
+
+/// Pairs the runs by scenario, system and seed and judges each median paired change.
+/// @param same_origin  the baseline was made by this very program on this kind of machine, so that
+///                     each digest must be the same
+/// @throws InputError if the two hold different runs.
+GateResult compare(std::span<const RunFigures> baseline, std::span<const RunFigures> current,
+                   const GateConfig& config, bool same_origin);
+
+/// "blank_corridor semantic-exact-pepper 3"
+std::string run_name(const RunFigures& run);
+
+}  // namespace mh

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/check/report.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace mh {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string shown(const std::optional<double>& value) {
+  return value ? fmt::format("{:.4f}", *value) : "-";
+}
+
+std::string shown_change(double change) {
+  if (std::isinf(change)) return "lost or gained";
+  return fmt::format("{:+.4f}", change);
+}
+
+/// "blank_corridor, semantic-exact-pepper: completeness fell by 0.4600 (0.9800 -> 0.5200; ...)"
+std::string sentence(const Change& c) {
+  if (std::isinf(c.change))
+    return fmt::format(
+        "{}, {}: {} {} in most runs ({} -> {})", c.scenario, c.system, c.measure->name,
+        c.verdict == ChangeVerdict::kWorse ? "is undetermined now" : "is determined now",
+        shown(c.before), shown(c.after));
+  return fmt::format("{}, {}: {} {} by {:.4f}{}{} ({} -> {}; tolerance {:.4f}, {} seeds)",
+                     c.scenario, c.system, c.measure->name, c.change > 0 ? "rose" : "fell",
+                     std::abs(c.change), c.measure->unit.empty() ? "" : " ", c.measure->unit,
+                     shown(c.before), shown(c.after), c.tolerance, c.pairs);
+}
+
+std::string list(const GateResult& result, ChangeVerdict verdict, const std::string& heading) {
+  std::string text;
+  for (const Change& c : result.changes)
+    if (c.verdict == verdict) text += "  " + sentence(c) + "\n";
+  return text.empty() ? text : heading + "\n" + text;
+}
+
+std::string table(const GateResult& result) {
+  std::string text =
+      fmt::format("{:<31}{:>9}{:>9}{:>16}{:>11}{:>10}  {}\n", "scenario, system, measure", "before",
+                  "after", "median change", "tolerance", "would see", "");
+  std::string head;
+  for (const Change& c : result.changes) {
+    const std::string group = fmt::format("{}, {}", c.scenario, c.system);
+    if (group != head) text += group + "\n";
+    head = group;
+    text += fmt::format("  {:<29}{:>9}{:>9}{:>16}{:>11.4f}{:>10.4f}  {}\n", c.measure->name,
+                        shown(c.before), shown(c.after), shown_change(c.change), c.tolerance,
+                        c.detectable, name(c.verdict));
+  }
+  return text;
+}
+
+std::string origin_line(const GateResult& result) {
+  return fmt::format("{} of {} runs are equal to the baseline bit for bit{}\n", result.identical,
+                     result.runs,
+                     result.same_origin ? ", and all must be: same program, same kind of machine"
+                                        : "; they need not be: another program or machine made it");
+}
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        if (static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t') out += c;
+    }
+  return out;
+}
+
+std::string junit_case(const std::string& classname, const std::string& name,
+                       const std::string& failure) {
+  const std::string head =
+      fmt::format("    <testcase classname=\"{}\" name=\"{}\"", escaped(classname), escaped(name));
+  if (failure.empty()) return head + "/>\n";
+  return head +
+         fmt::format(">\n      <failure message=\"{}\"/>\n    </testcase>\n", escaped(failure));
+}
+
+struct JunitSuite {
+  std::string cases;
+  int tests = 0, failures = 0;
+  void add(const std::string& classname, const std::string& name, const std::string& failure) {
+    cases += junit_case(classname, name, failure);
+    ++tests;
+    failures += failure.empty() ? 0 : 1;
+  }
+};
+
+}  // namespace
+
+std::string gate_report(const GateResult& result, const std::string& suite) {
+  std::string text = table(result) + "\n" + origin_line(result);
+  text +=
+      "would see: a true worsening of this size fails the gate with 80 % power; chance alone as it "
+      "shows between the baseline's seeds\n\n";
+  text += list(result, ChangeVerdict::kBetter,
+               "better than the baseline (keep it with --update, or later loss goes unseen):");
+  text += list(result, ChangeVerdict::kWorse, "worse than the baseline:");
+  if (!result.unrepeatable.empty()) {
+    text += "not repeatable: same program, same machine, other bits:\n";
+    for (const std::string& run : result.unrepeatable) text += "  " + run + "\n";
+  }
+  text += fmt::format("{}: {}: {} of {} measures worse, {} better\n", suite,
+                      result.passed() ? "passed" : "FAILED", result.worse(), result.changes.size(),
+                      result.better());
+  return text;
+}
+
+Json gate_json(const GateResult& result, const std::string& suite) {
+  const auto number = [](const std::optional<double>& value) {
+    return value && std::isfinite(*value) ? Json(*value) : Json();
+  };
+  Json changes = Json::array();
+  for (const Change& c : result.changes)
+    changes.push_back({{"scenario", c.scenario},
+                       {"system", c.system},
+                       {"measure", c.measure->name},
+                       {"seeds", c.pairs},
+                       {"before", number(c.before)},
+                       {"after", number(c.after)},
+                       {"change", number(c.change)},
+                       {"tolerance", c.tolerance},
+                       {"detectable", c.detectable},
+                       {"verdict", name(c.verdict)}});
+  return {{"suite", suite},
+          {"passed", result.passed()},
+          {"runs", result.runs},
+          {"identical", result.identical},
+          {"same_origin", result.same_origin},
+          {"unrepeatable", result.unrepeatable},
+          {"changes", changes}};
+}
+
+std::string gate_junit(const GateResult& result, const std::string& suite) {
+  std::vector<std::pair<std::string, JunitSuite>> suites;
+  const auto of = [&](const std::string& scenario) -> JunitSuite& {
+    for (auto& [name, s] : suites)
+      if (name == scenario) return s;
+    return suites.emplace_back(scenario, JunitSuite{}).second;
+  };
+  for (const Change& c : result.changes)
+    of(c.scenario)
+        .add(suite + "." + c.scenario, fmt::format("{} {}", c.system, c.measure->name),
+             c.verdict == ChangeVerdict::kWorse ? sentence(c) : "");
+  if (result.same_origin) {
+    std::string differing;
+    for (const std::string& run : result.unrepeatable)
+      differing += (differing.empty() ? "" : "; ") + run;
+    of("repeatability").add(suite + ".repeatability", "same bits", differing);
+  }
+  int tests = 0, failures = 0;
+  std::string body;
+  for (const auto& [name, s] : suites) {
+    tests += s.tests, failures += s.failures;
+    body +=
+        fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\">\n{}  </testsuite>\n",
+                    escaped(name), s.tests, s.failures, s.cases);
+  }
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"{}\" tests=\"{}\" "
+      "failures=\"{}\">\n{}</testsuites>\n",
+      escaped(suite), tests, failures, body);
+}
+
+}  // namespace mh

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/check/gate.hpp"
+
+namespace mh {
+
+/// The gate's findings as text: each judged measure with its change, its tolerance and the smallest
+/// change that could have been seen; then what moved, by how much and where.
+std::string gate_report(const GateResult& result, const std::string& suite);
+
+/// The same as JSON.
+nlohmann::ordered_json gate_json(const GateResult& result, const std::string& suite);
+
+/// The same as JUnit XML: a suite per scenario, a case per system and measure, and a case for the
+/// digests where they had to be equal.
+std::string gate_junit(const GateResult& result, const std::string& suite);
+
+}  // namespace mh
