@@ -45,11 +45,10 @@ EmbreeScene::EmbreeScene(const Scene& scene, int build_threads, bool portable) {
         !scene.materials.empty() && !scene.materials[scene.material_of[f]].emission.isZero();
     (emits ? luminous : opaque).push_back(f);
   }
-  attach(scene, std::move(opaque), kOpaqueFaces);
-  attach(scene, std::move(luminous), kLuminousFaces);
-  // Watertight edges: without it single rays slip between faces that share an edge (ten pixels of
-  // the sphere in the tests). Costs an eighth of the tracing time.
-  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+  attach(scene, opaque, kOpaqueFaces);
+  attach(scene, luminous, kLuminousFaces);
+  // Not RTC_SCENE_FLAG_ROBUST: it costs a fifth of the tracing time, and without it one ray in two
+  // million slips between two faces that share an edge (docs/rendering.md).
   rtcCommitScene(scene_);
   check(device_, "build the hierarchy");
 }
@@ -59,8 +58,8 @@ EmbreeScene::~EmbreeScene() {
   rtcReleaseDevice(device_);
 }
 
-void EmbreeScene::attach(const Scene& scene, std::vector<std::uint32_t> faces, unsigned mask) {
-  const unsigned id = static_cast<unsigned>(faces_.size());
+void EmbreeScene::attach(const Scene& scene, const std::vector<std::uint32_t>& faces,
+                         unsigned mask) {
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   // Embree allocates the buffers: it reads 16 bytes past a vertex buffer's end.
   auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
@@ -76,9 +75,10 @@ void EmbreeScene::attach(const Scene& scene, std::vector<std::uint32_t> faces, u
     std::memcpy(indices + 3 * i, scene.triangles[faces[i]].data(), 3 * sizeof(std::uint32_t));
   rtcSetGeometryMask(geometry, mask);
   rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(scene_, geometry, id);
+  rtcAttachGeometryByID(scene_, geometry, geometries_);
   rtcReleaseGeometry(geometry);
-  faces_.push_back(std::move(faces));
+  first_[geometries_++] = static_cast<std::uint32_t>(faces_.size());
+  faces_.insert(faces_.end(), faces.begin(), faces.end());
 }
 
 #if RTC_VERSION_MAJOR >= 4

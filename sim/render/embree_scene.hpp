@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <vector>
 
 #if __has_include(<embree4/rtcore.h>)
@@ -48,17 +49,20 @@ class EmbreeScene {
 
   /// Index in Scene::triangles of a hit.
   std::uint32_t face_of(unsigned geometry_id, unsigned primitive_id) const {
-    return faces_[geometry_id][primitive_id];
+    return faces_[first_[geometry_id] + primitive_id];
   }
-  /// The same, by geometry and primitive.
-  const std::vector<std::vector<std::uint32_t>>& faces() const { return faces_; }
+  /// The same, as a list: faces()[first_faces()[geometry] + primitive].
+  const std::vector<std::uint32_t>& faces() const { return faces_; }
+  const std::array<std::uint32_t, 8>& first_faces() const { return first_; }
 
  private:
-  void attach(const Scene& scene, std::vector<std::uint32_t> faces, unsigned mask);
+  void attach(const Scene& scene, const std::vector<std::uint32_t>& faces, unsigned mask);
 
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
-  std::vector<std::vector<std::uint32_t>> faces_;  // by geometry id
+  std::vector<std::uint32_t> faces_;      // one geometry after another
+  std::array<std::uint32_t, 8> first_{};  // in faces_, by geometry id
+  unsigned geometries_ = 0;
 };
 
 }  // namespace mh

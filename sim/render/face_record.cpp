@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/render/face_record.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -9,62 +10,89 @@
 namespace mh {
 namespace {
 
-void store_halves(std::uint16_t* out, const Eigen::Vector3f& value) {
+using Eigen::Vector3f;
+
+template <std::size_t N>
+void store_halves(std::array<std::uint16_t, N>& out, const Vector3f& value) {
   const __m128i halves =
       _mm_cvtps_ph(_mm_setr_ps(value.x(), value.y(), value.z(), 0.0F), _MM_FROUND_TO_NEAREST_INT);
-  std::memcpy(out, &halves, 4 * sizeof(std::uint16_t));
+  std::memcpy(out.data(), &halves, N * sizeof(std::uint16_t));
 }
 
-Eigen::Vector3f base_colour(const Scene& scene, std::uint16_t material) {
-  const Eigen::Vector3f base = srgb_to_linear(scene.materials[material].base_colour);
-  const bool by_mean = scene.uvs.empty() && !scene.materials[material].texture.empty();
-  return by_mean
-             ? Eigen::Vector3f(base.cwiseProduct(mean_linear(scene.materials[material].texture)))
-             : base;
+/// What the faces of a material share.
+struct Surface {
+  std::uint32_t texture = TextureTable::kWhite;
+  float texels = 0.0F;                   // of level 0
+  Vector3f base = Vector3f::Ones();      // linear
+  Vector3f emission = Vector3f::Zero();  // linear x exposure
+};
+
+/// One per material, at least one. Without texture coordinates the textures are left out: their
+/// mean colours go into the faces' records.
+std::vector<Surface> make_surfaces(const Scene& scene, float exposure, TextureTable& textures) {
+  std::vector<Surface> surfaces;
+  for (const Material& material : scene.materials) {
+    Surface& surface = surfaces.emplace_back();
+    surface.base = srgb_to_linear(material.base_colour);
+    surface.emission = material.emission * exposure;
+    if (material.texture.empty()) continue;
+    if (scene.uvs.empty()) {
+      surface.base = surface.base.cwiseProduct(mean_linear(material.texture));
+    } else {
+      surface.texture = textures.add(material.texture);
+      surface.texels = static_cast<float>(material.texture.size());
+    }
+  }
+  if (surfaces.empty()) surfaces.emplace_back();
+  return surfaces;
+}
+
+FaceRecord make_record(const Scene& scene, const Surface& surface, std::size_t face,
+                       float exposure) {
+  FaceRecord record;
+  record.class_id = scene.class_of[face];
+  record.instance = scene.instance_of[face];
+  record.texture = surface.texture;
+  store_halves(record.emission, surface.emission);
+  const auto& corners = scene.triangles[face];
+  std::array<Vector3f, 3> gain;
+  for (std::size_t k = 0; k < 3; ++k) {
+    gain[k] = surface.base * exposure;
+    if (!scene.colours.empty())
+      gain[k] = gain[k].cwiseProduct(srgb_to_linear(scene.colours[corners[k]]));
+    if (!scene.light.empty()) gain[k] = gain[k].cwiseProduct(scene.light[corners[k]]);
+  }
+  store_halves(record.gain, gain[0]);
+  store_halves(record.gain_step1, gain[1] - gain[0]);
+  store_halves(record.gain_step2, gain[2] - gain[0]);
+  if (surface.texture == TextureTable::kWhite) return record;
+  const Eigen::Vector2f& first = scene.uvs[corners[0]];
+  const Eigen::Vector2f at = first - first.array().floor().matrix();  // it repeats: keep it small
+  const Eigen::Vector2f step1 = scene.uvs[corners[1]] - first;
+  const Eigen::Vector2f step2 = scene.uvs[corners[2]] - first;
+  record.u = at.x(), record.v = at.y();
+  record.du1 = step1.x(), record.dv1 = step1.y();
+  record.du2 = step2.x(), record.dv2 = step2.y();
+  record.texels = std::abs(step1.x() * step2.y() - step2.x() * step1.y()) * surface.texels;
+  return record;
 }
 
 }  // namespace
 
-std::vector<Surface> make_surfaces(const Scene& scene, float exposure) {
-  std::vector<Surface> surfaces;
-  for (const Material& material : scene.materials) {
-    const Eigen::Vector3f e = material.emission * exposure;
-    surfaces.push_back({scene.uvs.empty() ? MipTexture() : MipTexture(material.texture),
-                        _mm_setr_ps(e.x(), e.y(), e.z(), 0.0F)});
+FaceRecords::FaceRecords(const Scene& scene, const std::vector<std::uint32_t>& order,
+                         float exposure) {
+  const std::vector<Surface> surfaces = make_surfaces(scene, exposure, textures_);
+  records_.reserve(order.size() + 1);
+  for (const std::uint32_t face : order) {
+    const std::size_t material = scene.materials.empty() ? 0 : scene.material_of[face];
+    records_.push_back(make_record(scene, surfaces[material], face, exposure));
   }
-  if (surfaces.empty()) surfaces.push_back({MipTexture(), _mm_setzero_ps()});
-  return surfaces;
-}
-
-std::vector<Eigen::Vector3f> base_colours(const Scene& scene) {
-  std::vector<Eigen::Vector3f> colours;
-  for (std::size_t m = 0; m < scene.materials.size(); ++m)
-    colours.push_back(base_colour(scene, static_cast<std::uint16_t>(m)));
-  if (colours.empty()) colours.push_back(Eigen::Vector3f::Ones());
-  return colours;
-}
-
-FaceRecord make_record(const Scene& scene, const std::vector<Surface>& surfaces,
-                       const std::vector<Eigen::Vector3f>& base, std::size_t face, float exposure) {
-  FaceRecord record;
-  record.class_id = scene.class_of[face];
-  record.instance = scene.instance_of[face];
-  record.surface = scene.materials.empty() ? std::uint16_t{0} : scene.material_of[face];
-  const auto& corners = scene.triangles[face];
-  for (std::size_t k = 0; k < 3; ++k) {
-    Eigen::Vector3f gain = base[record.surface] * exposure;
-    if (!scene.colours.empty()) gain = gain.cwiseProduct(srgb_to_linear(scene.colours[corners[k]]));
-    if (!scene.light.empty()) gain = gain.cwiseProduct(scene.light[corners[k]]);
-    store_halves(record.gain.data() + 4 * k, gain);
-    if (scene.uvs.empty()) continue;
-    record.uv[2 * k] = scene.uvs[corners[k]].x();
-    record.uv[2 * k + 1] = scene.uvs[corners[k]].y();
-  }
-  const auto& t = record.uv;
-  const MipTexture& texture = surfaces[record.surface].texture;
-  record.texels = std::abs((t[2] - t[0]) * (t[5] - t[1]) - (t[4] - t[0]) * (t[3] - t[1])) *
-                  static_cast<float>(texture.width()) * static_cast<float>(texture.height());
-  return record;
+  Vector3f sky = Vector3f::Zero();
+  for (const Light& light : scene.lights)
+    if (light.kind == Light::Kind::kSky) sky += light.colour * exposure;
+  FaceRecord nothing;
+  store_halves(nothing.emission, sky.cwiseMin(1.0F));
+  records_.push_back(nothing);
 }
 
 }  // namespace mh

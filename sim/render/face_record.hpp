@@ -12,54 +12,50 @@
 
 namespace mh {
 
-/// A material, ready to shade with.
-struct Surface {
-  MipTexture texture;
-  __m128 emission;  ///< linear RGB x exposure
-};
-
-/// One per material, at least one. Without texture coordinates the textures are left out: their
-/// mean colours go into the faces' records.
-std::vector<Surface> make_surfaces(const Scene& scene, float exposure);
-
-/// All that shading needs of a face, in one cache line.
+/// All that shading needs of a face, in one cache line; what changes over the face is kept as its
+/// value at corner 0 and its steps to corners 1 and 2.
 struct alignas(64) FaceRecord {
-  std::array<float, 6> uv{};  ///< of its three corners
-  /// Per corner: light x vertex colour x base colour x exposure; halves, the fourth unused.
-  std::array<std::uint16_t, 12> gain{};
+  float u = 0, v = 0, du1 = 0, dv1 = 0;  // texture coordinates
+  float du2 = 0, dv2 = 0;
   float texels = 0;  ///< twice its area in texels of level 0
-  std::uint16_t surface = 0;
+  std::uint32_t texture = TextureTable::kWhite;
+  /// Light x vertex colour x base colour x exposure; half floats, as are the next three.
+  std::array<std::uint16_t, 3> gain{};
   InstanceId instance = 0;
-  ClassId class_id = kVoid;
+  std::array<std::uint16_t, 3> gain_step1{};
+  std::uint16_t class_id = kVoid;
+  std::array<std::uint16_t, 4> gain_step2{};
+  std::array<std::uint16_t, 4> emission{};  ///< linear RGB x exposure
 };
 static_assert(sizeof(FaceRecord) == 64);
 
-/// Linear base colour of each material (at least one); see make_surfaces.
-std::vector<Eigen::Vector3f> base_colours(const Scene& scene);
+/// Records of the faces of a scene, and the pictures that they refer to.
+class FaceRecords {
+ public:
+  /// @param order  faces in the order in which their records are wanted
+  FaceRecords(const Scene& scene, const std::vector<std::uint32_t>& order, float exposure);
 
-FaceRecord make_record(const Scene& scene, const std::vector<Surface>& surfaces,
-                       const std::vector<Eigen::Vector3f>& base, std::size_t face, float exposure);
+  /// By place in `order`; one more at the end is what a ray sees that hits nothing: the sky's
+  /// light, class void, instance 0.
+  const FaceRecord* data() const { return records_.data(); }
+  int nothing() const { return static_cast<int>(records_.size()) - 1; }
+  const TextureTable& textures() const { return textures_; }
 
-/// Linear RGB (channel 3 unused) that leaves a face at the barycentric place (u, v), within [0, 1].
-/// @param footprint  area that one pixel sees of the face (m2) over twice the face's area
-inline __m128 shade(const FaceRecord& record, const Surface& surface, float u, float v,
-                    float footprint) {
-  const auto gain = [&](std::size_t corner) {
-    const std::uint16_t* halves = record.gain.data() + 4 * corner;
-    return _mm_cvtph_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(halves)));
-  };
-  const float w = 1.0F - u - v;
-  __m128 colour = _mm_mul_ps(_mm_set1_ps(w), gain(0));
-  colour = _mm_add_ps(colour, _mm_mul_ps(_mm_set1_ps(u), gain(1)));
-  colour = _mm_add_ps(colour, _mm_mul_ps(_mm_set1_ps(v), gain(2)));
-  if (!surface.texture.empty()) {
-    const float s = w * record.uv[0] + u * record.uv[2] + v * record.uv[4];
-    const float t = w * record.uv[1] + u * record.uv[3] + v * record.uv[5];
-    const float level = MipTexture::level_of(footprint * record.texels);
-    colour = _mm_mul_ps(colour, surface.texture.sample(s, t, level));
-  }
-  colour = _mm_add_ps(colour, surface.emission);
-  return _mm_min_ps(_mm_max_ps(colour, _mm_setzero_ps()), _mm_set1_ps(1.0F));
+ private:
+  std::vector<FaceRecord> records_;
+  TextureTable textures_;
+};
+
+/// Four half floats (the fourth may be anything) as floats.
+inline __m128 load_halves(const std::uint16_t* from) {
+  return _mm_cvtph_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from)));
+}
+
+/// Linear RGB that a face reflects of what a white texture would (channel 3 is noise).
+inline __m128 gain_at(const FaceRecord& record, float u, float v) {
+  const __m128 along1 = _mm_mul_ps(_mm_set1_ps(u), load_halves(record.gain_step1.data()));
+  const __m128 along2 = _mm_mul_ps(_mm_set1_ps(v), load_halves(record.gain_step2.data()));
+  return _mm_add_ps(_mm_add_ps(load_halves(record.gain.data()), along1), along2);
 }
 
 }  // namespace mh

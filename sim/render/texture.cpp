@@ -54,22 +54,87 @@ Eigen::Vector3f mean_linear(const Grid2d<Rgb8>& picture) {
   return (sum / static_cast<double>(picture.size())).cast<float>();
 }
 
-MipTexture::MipTexture(const Grid2d<Rgb8>& picture) {
-  if (picture.empty()) return;
-  Picture current(picture.width(), picture.height(), Eigen::Vector3f::Zero());
+std::vector<Grid2d<Eigen::Vector3f>> mip_pyramid(const Grid2d<Rgb8>& picture) {
+  std::vector<Picture> levels;
+  if (picture.empty()) return levels;
+  levels.emplace_back(picture.width(), picture.height(), Eigen::Vector3f::Zero());
   for (int y = 0; y < picture.height(); ++y)
-    for (int x = 0; x < picture.width(); ++x) current(x, y) = srgb_to_linear(picture(x, y));
-  while (true) {
-    Level& level = level_[static_cast<std::size_t>(levels_++)];
-    level.width = static_cast<float>(current.width());
-    level.height = static_cast<float>(current.height());
-    level.offset = static_cast<std::uint32_t>(texels_.size() / 4);
-    level.stride = static_cast<std::uint32_t>(current.width() + 1);
-    append_wrapped(texels_, current);
-    const bool last = (current.width() == 1 && current.height() == 1) || levels_ == 16;
-    if (last) break;
-    current = halve(current);
+    for (int x = 0; x < picture.width(); ++x) levels[0](x, y) = srgb_to_linear(picture(x, y));
+  while (levels.back().size() > 1 && levels.size() < kMipLevels)
+    levels.push_back(halve(levels.back()));
+  return levels;
+}
+
+std::uint32_t TextureTable::add(const Grid2d<Rgb8>& picture) {
+  const auto first = static_cast<std::uint32_t>(levels_.size());
+  for (const Picture& level : mip_pyramid(picture)) {
+    levels_.push_back({static_cast<float>(level.width()), static_cast<float>(level.height()),
+                       static_cast<std::int32_t>(texels_.size() / 4), level.width() + 1});
+    append_wrapped(texels_, level);
   }
+  levels_.resize(first + kMipLevels + 1, levels_.back());
+  return first;
+}
+
+TextureTable::Lookup TextureTable::look_up(Float8 first, Float8 u, Float8 v, Float8 texels) const {
+  // Read as an integer, a float is its logarithm to base 2, near enough.
+  const Float8 logarithm = to_float((Int8)texels) * 0x1.0p-23F - 127.0F;
+  const Float8 level = clamp8(0.5F * logarithm, 0.0F, kMipLevels - 1);
+  const Int8 whole = to_int(level);
+  const Float8 blend = level - to_float(whole);
+  alignas(32) std::array<int, 8> at;
+  store8(at.data(), (Int8)first + whole);
+  std::array<const float*, 8> fine_levels, coarse_levels;
+  for (std::size_t i = 0; i < 8; ++i) {
+    fine_levels[i] = &levels_[static_cast<std::size_t>(at[i])].width;
+    coarse_levels[i] = &levels_[static_cast<std::size_t>(at[i]) + 1].width;
+  }
+  u -= floor8(u);
+  v -= floor8(v);
+
+  struct Place {
+    Int8 texel, stride;
+    Float8 right, down;  // shares of the neighbours
+  };
+  const auto place = [&](const std::array<const float*, 8>& of) {
+    const auto [width, height, offset, stride] = load_fields(of);
+    Float8 x = u * width - 0.5F, y = v * height - 0.5F;
+    x = x < 0.0F ? x + width : x;
+    y = y < 0.0F ? y + height : y;
+    const Int8 x0 = to_int(x), y0 = to_int(y);
+    return Place{(Int8)offset + y0 * (Int8)stride + x0, (Int8)stride, x - to_float(x0),
+                 y - to_float(y0)};
+  };
+  const Place fine = place(fine_levels), coarse = place(coarse_levels);
+  // Cut towards zero, so that four shares of one never sum to more than it.
+  const auto share = [](Float8 part) { return to_int(part * kOne); };
+  const auto two = [](Int8 low, Int8 high) { return low | high << 16; };
+  const auto store = [](std::array<std::uint64_t, 8>& to, Int8 low, Int8 high) {
+    const __m256i even = _mm256_unpacklo_epi32((__m256i)low, (__m256i)high);
+    const __m256i odd = _mm256_unpackhi_epi32((__m256i)low, (__m256i)high);
+    auto* out = reinterpret_cast<__m256i*>(to.data());
+    _mm256_store_si256(out, _mm256_permute2x128_si256(even, odd, 0x20));
+    _mm256_store_si256(out + 1, _mm256_permute2x128_si256(even, odd, 0x31));
+  };
+  Lookup lookup;
+  store8(lookup.fine.data(), fine.texel);
+  store8(lookup.coarse.data(), coarse.texel);
+  store8(lookup.fine_stride.data(), fine.stride);
+  store8(lookup.coarse_stride.data(), coarse.stride);
+  const Float8 of_fine = 1.0F - blend;
+  store(lookup.across, two(share(of_fine * (1.0F - fine.right)), share(of_fine * fine.right)),
+        two(share(blend * (1.0F - coarse.right)), share(blend * coarse.right)));
+  store(lookup.down, two(share(1.0F - fine.down), share(fine.down)),
+        two(share(1.0F - coarse.down), share(coarse.down)));
+  for (std::size_t i = 0; i < 8; ++i) {
+    const std::uint16_t* f = texel(lookup.fine[i]);
+    const std::uint16_t* c = texel(lookup.coarse[i]);
+    _mm_prefetch(reinterpret_cast<const char*>(f), _MM_HINT_T0);
+    _mm_prefetch(reinterpret_cast<const char*>(f + 4 * lookup.fine_stride[i]), _MM_HINT_T0);
+    _mm_prefetch(reinterpret_cast<const char*>(c), _MM_HINT_T0);
+    _mm_prefetch(reinterpret_cast<const char*>(c + 4 * lookup.coarse_stride[i]), _MM_HINT_T0);
+  }
+  return lookup;
 }
 
 }  // namespace mh

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <immintrin.h>
-
-#include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "sim/render/simd.hpp"
 #include "slam/core/grid2d.hpp"
 #include "slam/core/rgbd_frame.hpp"
 
@@ -20,78 +16,89 @@ namespace mh {
 /// Mean colour of a picture in linear light; white if it is empty.
 Eigen::Vector3f mean_linear(const Grid2d<Rgb8>& picture);
 
-/// A repeating texture with its mip pyramid, filtered in linear light. Texels are four 16-bit
-/// channels (the fourth unused). Each level has a copy of its first column and row at its end, so
-/// that the two neighbours of a lookup are always one 16-byte load apart from any wrapping.
-class MipTexture {
+/// The same picture at full size, half, a quarter, ... down to one texel (at most kMipLevels of
+/// them), averaged over areas in linear light.
+inline constexpr int kMipLevels = 16;
+std::vector<Grid2d<Eigen::Vector3f>> mip_pyramid(const Grid2d<Rgb8>& picture);
+
+/// The pictures of a scene with their mip pyramids, filtered in linear light. They repeat. Texel
+/// centres lie at half-integers, (u, v) = (0, 0) is the outer corner of the first texel.
+///
+/// Laid out for lookups without branches: texels are four 16-bit channels (the fourth unused), each
+/// level has a copy of its first column and row at its end, so that the neighbours of a lookup are
+/// a 16-byte load each, and the last level is repeated, so that the next coarser one always exists.
+class TextureTable {
  public:
-  MipTexture() = default;
-  explicit MipTexture(const Grid2d<Rgb8>& picture);
+  /// A texture of one white texel, which every table has.
+  static constexpr std::uint32_t kWhite = 0;
 
-  bool empty() const { return levels_ == 0; }
-  int width() const { return levels_ ? static_cast<int>(level_[0].width) : 0; }
-  int height() const { return levels_ ? static_cast<int>(level_[0].height) : 0; }
+  TextureTable() { add(Grid2d<Rgb8>(1, 1, {255, 255, 255})); }
 
-  /// The level at which a pixel that covers so many texels of level 0 covers one: half the
-  /// logarithm to base 2, to within 0.05.
-  static float level_of(float texels) {
-    const float log2 =
-        static_cast<float>(std::bit_cast<std::int32_t>(texels)) * 0x1.0p-23F - 127.0F;
-    return 0.5F * log2;
-  }
+  /// @returns where the picture's level 0 is in the table.
+  std::uint32_t add(const Grid2d<Rgb8>& picture);
 
-  /// Trilinear lookup: linear RGB, channel 3 = 0. Texel centres lie at half-integers,
-  /// (u, v) = (0, 0) is the outer corner of the first texel. Level 0 is the full picture.
-  __m128 sample(float u, float v, float level) const {
-    const float clamped = std::min(std::max(level, 0.0F), static_cast<float>(levels_ - 1));
-    const int fine = static_cast<int>(clamped);
-    const int coarse = std::min(fine + 1, levels_ - 1);
-    const float blend = clamped - static_cast<float>(fine);
-    u -= std::floor(u);
-    v -= std::floor(v);
-    const __m256 pair =
-        _mm256_add_ps(_mm256_mul_ps(_mm256_set1_ps(1.0F - blend),
-                                    bilinear_pair(level_[static_cast<std::size_t>(fine)], u, v)),
-                      _mm256_mul_ps(_mm256_set1_ps(blend),
-                                    bilinear_pair(level_[static_cast<std::size_t>(coarse)], u, v)));
-    return _mm_mul_ps(_mm_set1_ps(1.0F / kWhite),
-                      _mm_add_ps(_mm256_castps256_ps128(pair), _mm256_extractf128_ps(pair, 1)));
+  /// What eight lanes are to read.
+  struct Lookup {
+    alignas(32) std::array<int, 8> fine, coarse;  // first texel
+    alignas(32) std::array<int, 8> fine_stride, coarse_stride;
+    /// Shares of 65536, four of 16 bits per lane. Across: fine left and right, coarse left and
+    /// right, which sum to one; down: fine upper and lower, coarse upper and lower.
+    alignas(32) std::array<std::uint64_t, 8> across, down;
+  };
+
+  /// Trilinear lookup at (u, v).
+  /// @param first   add's results, as bits
+  /// @param texels  of level 0 that a pixel covers; the level at which it would cover one is read:
+  ///                half the logarithm to base 2, to within 0.05.
+  Lookup look_up(Float8 first, Float8 u, Float8 v, Float8 texels) const;
+
+  /// The filtered colour of a lane: linear RGB, channel 3 = 0.
+  __m128 filter(const Lookup& lookup, std::size_t lane) const {
+    const std::uint16_t* fine = texel(lookup.fine[lane]);
+    const std::uint16_t* coarse = texel(lookup.coarse[lane]);
+    const __m256i upper = pairs(fine, coarse);
+    const __m256i lower =
+        pairs(fine + 4 * lookup.fine_stride[lane], coarse + 4 * lookup.coarse_stride[lane]);
+    const __m256i down = _mm256_set1_epi64x(static_cast<std::int64_t>(lookup.down[lane]));
+    const __m256i across = _mm256_set1_epi64x(static_cast<std::int64_t>(lookup.across[lane]));
+    const __m256i column =
+        _mm256_add_epi16(_mm256_mulhi_epu16(upper, _mm256_shuffle_epi8(down, spread(0, 0, 4, 4))),
+                         _mm256_mulhi_epu16(lower, _mm256_shuffle_epi8(down, spread(2, 2, 6, 6))));
+    const __m256i shares =
+        _mm256_mulhi_epu16(column, _mm256_shuffle_epi8(across, spread(0, 2, 4, 6)));
+    const __m128i left_right =
+        _mm_add_epi16(_mm256_castsi256_si128(shares), _mm256_extracti128_si256(shares, 1));
+    const __m128i sum = _mm_add_epi16(left_right, _mm_srli_si128(left_right, 8));
+    return _mm_mul_ps(_mm_set1_ps(1.0F / kOne), _mm_cvtepi32_ps(_mm_cvtepu16_epi32(sum)));
   }
 
  private:
-  static constexpr float kWhite = 65535.0F;
+  static constexpr float kOne = 65535.0F;
 
   struct Level {
     float width = 0, height = 0;
-    std::uint32_t offset = 0;  // of the first texel, in texels
-    std::uint32_t stride = 0;  // texels per row
+    std::int32_t offset = 0;  // of the first texel, in texels
+    std::int32_t stride = 0;  // texels per row
   };
 
-  /// The weighted left and right column of a 2x2 lookup; their sum is the bilinear value.
-  __m256 bilinear_pair(const Level& level, float u, float v) const {
-    float x = u * level.width - 0.5F;
-    float y = v * level.height - 0.5F;
-    x = x < 0.0F ? x + level.width : x;
-    y = y < 0.0F ? y + level.height : y;
-    const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
-    const float fx = x - static_cast<float>(x0), fy = y - static_cast<float>(y0);
-    const std::uint16_t* upper =
-        texels_.data() + 4 * (level.offset + static_cast<std::uint32_t>(y0) * level.stride +
-                              static_cast<std::uint32_t>(x0));
-    const std::uint16_t* lower = upper + 4 * level.stride;
-    const __m256 a = load_pair(upper), b = load_pair(lower);
-    const __m256 column = _mm256_add_ps(a, _mm256_mul_ps(_mm256_set1_ps(fy), _mm256_sub_ps(b, a)));
-    const __m256 weight = _mm256_set_m128(_mm_set1_ps(fx), _mm_set1_ps(1.0F - fx));
-    return _mm256_mul_ps(weight, column);
+  const std::uint16_t* texel(int index) const {
+    return texels_.data() + 4 * static_cast<std::size_t>(index);
+  }
+  /// Two neighbouring texels at each of two places.
+  static __m256i pairs(const std::uint16_t* a, const std::uint16_t* b) {
+    return _mm256_inserti128_si256(
+        _mm256_castsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(a))),
+        _mm_loadu_si128(reinterpret_cast<const __m128i*>(b)), 1);
+  }
+  /// Picks the 16-bit number at byte a, b, c, d for the four channels of each of four texels.
+  static __m256i spread(int a, int b, int c, int d) {
+    const auto twice = [](int at) { return static_cast<short>(at | (at + 1) << 8); };
+    return _mm256_setr_epi16(twice(a), twice(a), twice(a), twice(a), twice(b), twice(b), twice(b),
+                             twice(b), twice(c), twice(c), twice(c), twice(c), twice(d), twice(d),
+                             twice(d), twice(d));
   }
 
-  static __m256 load_pair(const std::uint16_t* texel) {
-    const __m128i raw = _mm_loadu_si128(reinterpret_cast<const __m128i*>(texel));
-    return _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(raw));
-  }
-
-  std::array<Level, 16> level_{};
-  int levels_ = 0;
+  std::vector<Level> levels_;
   std::vector<std::uint16_t> texels_;
 };
 
