@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 namespace mh {
 namespace {
@@ -36,6 +35,24 @@ std::size_t most_central(const std::vector<const Descriptor*>& descriptors) {
 }
 
 }  // namespace
+
+Map Map::restore(std::vector<Keyframe> keyframes, std::vector<Landmark> landmarks) {
+  Map map;
+  map.keyframes_ = std::move(keyframes);
+  map.landmarks_ = std::move(landmarks);
+  for (const Keyframe& k : map.keyframes_)
+    if (!k.erased) {
+      map.inverted_index_.add(k.id, k.words.vector);
+      map.position_index_.add(k.id, k.camera_from_world.inverse().translation());
+    }
+  const auto standing = [](const auto& entity) { return !entity.erased; };
+  map.keyframe_count_ =
+      static_cast<int>(std::count_if(map.keyframes_.begin(), map.keyframes_.end(), standing));
+  map.landmark_count_ =
+      static_cast<int>(std::count_if(map.landmarks_.begin(), map.landmarks_.end(), standing));
+  map.check_invariants();
+  return map;
+}
 
 KeyframeId Map::add(Keyframe keyframe) {
   keyframe.id = KeyframeId{static_cast<std::uint32_t>(keyframes_.size())};
@@ -240,30 +257,6 @@ void Map::check_invariants() const {
       require(!at(o.keyframe).erased && at(o.keyframe).landmarks[o.feature] == l.id,
               "a keyframe does not know its landmark", l.id.value);
   }
-}
-
-std::uint64_t Map::digest() const {
-  XXH3_state_t* state = XXH3_createState();
-  XXH3_64bits_reset(state);
-  const auto feed = [&](const auto& value) { XXH3_64bits_update(state, &value, sizeof(value)); };
-  for (const Keyframe& k : keyframes_) {
-    feed(k.stamp_ns);
-    feed(k.erased);
-    for (int i = 0; i < 9; ++i) feed(k.camera_from_world.rotation().data()[i]);
-    for (int i = 0; i < 3; ++i) feed(k.camera_from_world.translation().data()[i]);
-  }
-  for (const Landmark& l : landmarks_) {
-    feed(l.erased);
-    feed(l.label);
-    for (int i = 0; i < 3; ++i) feed(l.position_in_world.data()[i]);
-    for (const Observation& o : l.observations) {
-      feed(o.keyframe.value);
-      feed(o.feature);
-    }
-  }
-  const std::uint64_t digest = XXH3_64bits_digest(state);
-  XXH3_freeState(state);
-  return digest;
 }
 
 }  // namespace mh

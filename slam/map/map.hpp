@@ -85,6 +85,10 @@ class Map {
   int landmark_count() const { return landmark_count_; }
   bool empty() const { return keyframe_count_ == 0; }
 
+  /// A map of these parts, as keyframes() and landmarks() gave them; ids within range are taken for
+  /// granted. @throws std::logic_error naming the invariant that they break.
+  static Map restore(std::vector<Keyframe> keyframes, std::vector<Landmark> landmarks);
+
   /// Takes over a keyframe without landmarks; gives it its id.
   KeyframeId add(Keyframe keyframe);
   LandmarkId add_landmark(const Eigen::Vector3d& position_in_world, KeyframeId keyframe,
@@ -129,7 +133,7 @@ class Map {
 
   /// @throws std::logic_error naming the broken invariant.
   void check_invariants() const;
-  /// xxh3-64 over poses, positions and observations.
+  /// xxh3-64 over everything that a map file holds of the map: equal digests, equal maps.
   std::uint64_t digest() const;
 
  private:

@@ -5,38 +5,26 @@
 
 #include "slam/core/error.hpp"
 #include "slam/pipeline/slam.hpp"
-#include "tests/slam/pipeline/box_room.hpp"
+#include "tests/slam/pipeline/box_room_slam.hpp"
 
 namespace mh {
 namespace {
 
 using testing_support::BoxRoom;
-
-constexpr int kTurnFrames = 240;
-constexpr Stamp kFrame_ns = 33333333;
+using testing_support::kFrame_ns;
+using testing_support::kTurnFrames;
 
 std::shared_ptr<const Vocabulary> vocabulary() {
-  static const auto trained = [] {
-    std::vector<std::vector<Descriptor>> images;
-    for (int i = 0; i < 12; ++i)
-      images.push_back(extract(BoxRoom::render(BoxRoom::round_trip(20 * i + 5, kTurnFrames), 0),
-                               BoxRoom::camera(), {.count = 500})
-                           .descriptors);
-    return std::make_shared<const Vocabulary>(
-        Vocabulary::train(images, {.branching = 10, .depth = 3}));
-  }();
+  static const auto trained = testing_support::box_room_vocabulary();
   return trained;
 }
 
 SlamConfig settings(const SemanticConfig& semantics) {
-  SlamConfig config;
-  config.features.count = 500;  // the pictures are a quarter of the usual size
-  config.semantics = semantics;
-  return config;
+  return testing_support::box_room_settings(semantics);
 }
 
 RgbdFrame frame(int i, bool labels = true) {
-  return BoxRoom::render(BoxRoom::round_trip(i, kTurnFrames), i * kFrame_ns, labels);
+  return testing_support::box_room_frame(i, labels);
 }
 
 struct Drive {

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// How a map and what belongs to it become bytes and back. One list of fields per type serves both
+// directions; its brackets name every field, so that it does not compile once one is added that has
+// no place here.
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "slam/core/camera.hpp"
+#include "slam/core/ids.hpp"
+#include "slam/core/se3.hpp"
+#include "slam/map/map.hpp"
+
+namespace mh::archive {
+
+static_assert(std::endian::native == std::endian::little, "numbers are stored as they lie");
+
+template <class T, class U>
+concept Either = std::same_as<std::remove_const_t<T>, U>;
+template <class T>
+concept Number = std::is_arithmetic_v<T>;
+template <class T>
+inline constexpr bool kIsVector = false;
+template <class T>
+inline constexpr bool kIsVector<std::vector<T>> = true;
+template <class T>
+inline constexpr bool kIsOptional = false;
+template <class T>
+inline constexpr bool kIsOptional<std::optional<T>> = true;
+
+/// Appends values to a string of bytes.
+class Writer {
+ public:
+  static constexpr bool kReads = false;
+  void bytes(const void* data, std::size_t size) {
+    bytes_.append(static_cast<const char*>(data), size);
+  }
+  std::string take() { return std::move(bytes_); }
+
+  template <class... T>
+  void operator()(const T&... values) {
+    (put(values), ...);
+  }
+
+ private:
+  template <class T>
+  void put(const T& value) {
+    if constexpr (std::is_same_v<T, bool>) {
+      put(static_cast<std::uint8_t>(value));
+    } else if constexpr (Number<T> || std::is_same_v<T, Descriptor>) {
+      bytes(&value, sizeof value);
+    } else if constexpr (kIsVector<T> || std::is_same_v<T, std::string>) {
+      put(static_cast<std::uint64_t>(value.size()));
+      for (const auto& element : value) put(element);
+    } else if constexpr (kIsOptional<T>) {
+      put(value.has_value());
+      if (value) put(*value);
+    } else {
+      fields(*this, value);
+    }
+  }
+
+  std::string bytes_;
+};
+
+/// Takes values from the front of a string of bytes. @throws InputError naming the file where it
+/// ends too soon or a value cannot be.
+class Reader {
+ public:
+  static constexpr bool kReads = true;
+  Reader(std::string_view bytes, std::string name) : bytes_(bytes), name_(std::move(name)) {}
+  bool at_end() const { return bytes_.empty(); }
+  [[noreturn]] void fail(std::string_view what) const;
+  void require(bool good, std::string_view what) const {
+    if (!good) fail(what);
+  }
+
+  template <class... T>
+  void operator()(T&... values) {
+    (get(values), ...);
+  }
+
+ private:
+  void bytes(void* data, std::size_t size);
+
+  template <class T>
+  void get(T& value) {
+    if constexpr (std::is_same_v<T, bool>) {
+      std::uint8_t byte = 0;
+      get(byte);
+      require(byte <= 1, "a yes or no is neither");
+      value = byte == 1;
+    } else if constexpr (Number<T> || std::is_same_v<T, Descriptor>) {
+      bytes(&value, sizeof value);
+      if constexpr (std::is_floating_point_v<T>)
+        require(std::isfinite(value), "a number is not finite");
+    } else if constexpr (kIsVector<T> || std::is_same_v<T, std::string>) {
+      std::uint64_t size = 0;
+      get(size);
+      // One by one: a size that lies runs out of bytes before it runs out of memory.
+      value.clear();
+      for (std::uint64_t i = 0; i < size; ++i) {
+        typename T::value_type element{};
+        get(element);
+        value.push_back(std::move(element));
+      }
+      value.shrink_to_fit();
+    } else if constexpr (kIsOptional<T>) {
+      bool there = false;
+      get(there);
+      if (there) get(value.emplace());
+    } else {
+      fields(*this, value);
+    }
+  }
+
+  std::string_view bytes_;
+  std::string name_;
+};
+
+template <class A, class Tag>
+void fields(A& a, Id<Tag>& id) {
+  a(id.value);
+}
+template <class A, class Tag>
+void fields(A& a, const Id<Tag>& id) {
+  a(id.value);
+}
+template <class A, Either<Eigen::Vector3d> T>
+void fields(A& a, T& v) {
+  a(v.x(), v.y(), v.z());
+}
+template <class A, Either<Vector6d> T>
+void fields(A& a, T& v) {
+  for (int i = 0; i < 6; ++i) a(v[i]);
+}
+template <class A, Either<SE3> T>
+void fields(A& a, T& pose) {
+  Eigen::Matrix3d rotation = pose.rotation();
+  Eigen::Vector3d translation = pose.translation();
+  for (int i = 0; i < 9; ++i) a(rotation.data()[i]);
+  a(translation);
+  if constexpr (A::kReads) {
+    const Eigen::Matrix3d off = rotation * rotation.transpose() - Eigen::Matrix3d::Identity();
+    // Far above what products of rotations lose, far below any rotation that is none.
+    a.require(off.norm() < 1e-3 && rotation.determinant() > 0, "a rotation is none");
+    pose = SE3(rotation, translation);
+  }
+}
+template <class A, Either<std::pair<std::uint32_t, std::uint32_t>> T>
+void fields(A& a, T& pair) {
+  a(pair.first, pair.second);
+}
+template <class A, Either<Keypoint> T>
+void fields(A& a, T& keypoint) {
+  auto& [u_px, v_px, depth_m, angle_rad, octave, label] = keypoint;
+  a(u_px, v_px, depth_m, angle_rad, octave, label);
+}
+template <class A, Either<Features> T>
+void fields(A& a, T& features) {
+  auto& [keypoints, descriptors] = features;
+  a(keypoints, descriptors);
+  if constexpr (A::kReads)
+    a.require(keypoints.size() == descriptors.size(), "keypoints and descriptors differ in number");
+}
+template <class A, Either<WeightedMember> T>
+void fields(A& a, T& member) {
+  auto& [id, weight] = member;
+  a(id, weight);
+}
+template <class A, Either<AugmentedVector> T>
+void fields(A& a, T& vector) {
+  auto& [labels, words] = vector;
+  a(labels, words);
+}
+template <class A, Either<WordIndex> T>
+void fields(A& a, T& index) {
+  auto& [vector, by_node] = index;
+  a(vector, by_node);
+}
+template <class A, Either<Keyframe::Neighbour> T>
+void fields(A& a, T& neighbour) {
+  auto& [id, shared] = neighbour;
+  a(id, shared);
+}
+template <class A, Either<Keyframe> T>
+void fields(A& a, T& keyframe) {
+  // The grid is made anew from the keypoints.
+  auto& [id, stamp_ns, camera_from_world, features, grid, words, landmarks, covisible, erased,
+         parent, camera_from_parent] = keyframe;
+  a(id, stamp_ns, camera_from_world, features, words, landmarks, covisible, erased, parent,
+    camera_from_parent);
+}
+template <class A, Either<Observation> T>
+void fields(A& a, T& observation) {
+  auto& [keyframe, feature] = observation;
+  a(keyframe, feature);
+}
+template <class A, Either<Landmark> T>
+void fields(A& a, T& landmark) {
+  auto& [id, position_in_world, observations, descriptor, label, mean_direction, min_distance_m,
+         max_distance_m, first_keyframe, visible, found, erased] = landmark;
+  a(id, position_in_world, observations, descriptor, label, mean_direction, min_distance_m,
+    max_distance_m, first_keyframe, visible, found, erased);
+}
+template <class A, Either<Distortion> T>
+void fields(A& a, T& distortion) {
+  auto& [k1, k2, p1, p2, k3] = distortion;
+  a(k1, k2, p1, p2, k3);
+}
+template <class A, Either<Camera> T>
+void fields(A& a, T& camera) {
+  auto& [width_px, height_px, fx_px, fy_px, cx_px, cy_px, distortion, rate_hz, baseline_m,
+         disparity_sigma_px] = camera;
+  a(width_px, height_px, fx_px, fy_px, cx_px, cy_px, distortion, rate_hz, baseline_m,
+    disparity_sigma_px);
+}
+
+/// The map's own bytes.
+void write_map(Writer& writer, const Map& map);
+/// @param levels  of the pyramid its keypoints come from.
+/// @param words   of the vocabulary.
+/// @throws InputError where the bytes are no map whose parts fit together.
+Map read_map(Reader& reader, const Camera& camera, int levels, std::size_t words);
+
+}  // namespace mh::archive

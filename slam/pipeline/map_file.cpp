@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// The map file, little-endian:
+//   8 bytes  magic "MHMAP\n\0\0"
+//   u32      version
+//   u64      digest of the vocabulary
+//   u64      size of the content
+//   content  settings (YAML), camera, keyframes, landmarks, tracking's and loop closing's memory,
+//            tracked frames; lists begin with their length (u64), see slam/map/archive.hpp
+//   u64      xxh3-64 of all bytes before
+#include "slam/pipeline/map_file.hpp"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/map/archive.hpp"
+#include "slam/pipeline/settings.hpp"
+
+namespace mh {
+namespace archive {
+
+template <class A, Either<LastFrame> T>
+void fields(A& a, T& last) {
+  auto& [stamp_ns, camera_from_world, features, landmarks] = last;
+  a(stamp_ns, camera_from_world, features, landmarks);
+}
+template <class A, Either<Tracker> T>
+void fields(A& a, T& tracker) {
+  auto& [last, velocity_per_s, reference, frames_since_keyframe] = tracker;
+  a(last, velocity_per_s, reference, frames_since_keyframe);
+}
+template <class A, Either<LoopMemory> T>
+void fields(A& a, T& memory) {
+  auto& [drift, streak] = memory;
+  a(drift, streak);
+}
+template <class A, Either<TrackedFrame> T>
+void fields(A& a, T& frame) {
+  auto& [reference, camera_from_reference] = frame;
+  a(reference, camera_from_reference);
+}
+
+namespace {
+
+using TrackedFrames = std::map<Stamp, TrackedFrame>;
+
+void write_tracked_frames(Writer& writer, const TrackedFrames& frames) {
+  writer(static_cast<std::uint64_t>(frames.size()));
+  for (const auto& [stamp_ns, frame] : frames) writer(stamp_ns, frame);
+}
+
+TrackedFrames read_tracked_frames(Reader& reader, const Map& map) {
+  std::uint64_t size = 0;
+  reader(size);
+  TrackedFrames frames;
+  for (std::uint64_t i = 0; i < size; ++i) {
+    Stamp stamp_ns = 0;
+    TrackedFrame frame;
+    reader(stamp_ns, frame);
+    reader.require(frame.reference.value < map.keyframes().size(), "a tracked frame's keyframe");
+    reader.require(frames.empty() || frames.rbegin()->first < stamp_ns, "the order of frames");
+    frames.emplace_hint(frames.end(), stamp_ns, std::move(frame));
+  }
+  return frames;
+}
+
+void check(const Reader& reader, const Tracker& tracker, const Map& map) {
+  if (!tracker.last) return;
+  reader.require(tracker.last->landmarks.size() == tracker.last->features.size(),
+                 "the last frame's number of landmarks");
+  for (const LandmarkId id : tracker.last->landmarks)
+    reader.require(!id.valid() || id.value < map.landmarks().size(), "the last frame's landmark");
+  reader.require(tracker.reference.value < map.keyframes().size(), "the reference keyframe");
+}
+
+/// Version and digest of the vocabulary stand before the checksum is known to hold, so that an
+/// older program can still say what it was given.
+constexpr std::string_view kMagic{"MHMAP\n\0\0", 8};
+constexpr std::size_t kHeaderSize = kMagic.size() + 4 + 8 + 8;
+
+/// The content of a map file whose frame is whole.
+std::string_view checked_content(std::string_view bytes, const std::string& name,
+                                 std::uint64_t vocabulary_digest) {
+  const std::string_view start = bytes.substr(0, kMagic.size());
+  if (start.empty() || start != kMagic.substr(0, start.size()))
+    throw InputError(fmt::format("{}: is no map of Modelhouse's", name));
+  const auto cut_short = [&](std::uint64_t needed) {
+    throw InputError(fmt::format("{}: is {}: has {} bytes, needs {}", name,
+                                 bytes.size() < needed ? "cut short" : "too long", bytes.size(),
+                                 needed));
+  };
+  if (bytes.size() < kHeaderSize) cut_short(kHeaderSize);
+  Reader header(bytes.substr(kMagic.size()), name);
+  std::uint32_t version = 0;
+  std::uint64_t vocabulary = 0, size = 0, stored = 0;
+  header(version, vocabulary, size);
+  if (version != kMapFileVersion)
+    throw InputError(fmt::format("{}: is a map of version {}, but this program reads {}", name,
+                                 version, kMapFileVersion));
+  const std::uint64_t all = bytes.size() - kHeaderSize;  // no sum of what the file says: it may lie
+  if (all < sizeof stored || size != all - sizeof stored)
+    cut_short(size > (UINT64_MAX >> 1) ? size : kHeaderSize + size + sizeof stored);
+  const std::string_view before = bytes.substr(0, bytes.size() - sizeof stored);
+  Reader end(bytes.substr(before.size()), name);
+  end(stored);
+  if (const std::uint64_t actual = XXH3_64bits(before.data(), before.size()); actual != stored)
+    throw InputError(
+        fmt::format("{}: is damaged: checksum {:016x} instead of {:016x}", name, actual, stored));
+  if (vocabulary != vocabulary_digest)
+    throw InputError(
+        fmt::format("{}: was made with another vocabulary: digest {:016x}, this one has {:016x}",
+                    name, vocabulary, vocabulary_digest));
+  return before.substr(kHeaderSize);
+}
+
+SlamConfig parse_config(const std::string& text, const std::string& name) {
+  YamlReader yaml = YamlReader::parse(text, name + ": settings");
+  const SlamConfig config = read_slam_config(yaml);
+  yaml.finish();
+  return config;
+}
+
+}  // namespace
+}  // namespace archive
+
+std::string encode_slam(const SlamState& state) {
+  using namespace archive;
+  const auto& [camera, config, vocabulary, map, tracker, loop_memory, tracked_frames,
+               last_stamp_ns] = state;
+  Writer content;
+  content(format_slam_config(config), camera);
+  write_map(content, map);
+  content(tracker, loop_memory);
+  write_tracked_frames(content, tracked_frames);
+  content(last_stamp_ns);
+  const std::string body = content.take();
+
+  Writer whole;
+  whole.bytes(kMagic.data(), kMagic.size());
+  whole(kMapFileVersion, vocabulary->digest(), static_cast<std::uint64_t>(body.size()));
+  whole.bytes(body.data(), body.size());
+  std::string bytes = whole.take();
+  const std::uint64_t checksum = XXH3_64bits(bytes.data(), bytes.size());
+  bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
+  return bytes;
+}
+
+SlamState decode_slam(const std::string& bytes, const std::string& name,
+                      std::shared_ptr<const Vocabulary> vocabulary) {
+  using namespace archive;
+  Reader content(checked_content(bytes, name, vocabulary->digest()), name);
+  std::string settings;
+  Camera camera;
+  content(settings, camera);
+  SlamState state = make_slam(camera, parse_config(settings, name), std::move(vocabulary));
+  state.map = read_map(content, camera, state.config.features.levels, state.vocabulary->size());
+  content(state.tracker, state.loop_memory);
+  check(content, state.tracker, state.map);
+  state.tracked_frames = read_tracked_frames(content, state.map);
+  content(state.last_stamp_ns);
+  content.require(content.at_end(), "it goes on after its end");
+  return state;
+}
+
+void save_slam(const std::filesystem::path& file, const SlamState& state) {
+  write_atomically(file, encode_slam(state));
+}
+
+SlamState load_slam(const std::filesystem::path& file,
+                    std::shared_ptr<const Vocabulary> vocabulary) {
+  return decode_slam(read_file(file), file.string(), std::move(vocabulary));
+}
+
+}  // namespace mh

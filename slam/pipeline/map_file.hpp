@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "slam/pipeline/slam.hpp"
+
+namespace mh {
+
+inline constexpr std::uint32_t kMapFileVersion = 1;
+
+/// A map file holds all of a SlamState but the vocabulary, which it names by its digest: a run that
+/// is saved and loaded in between goes on with the same bits as one that was not. Equal states
+/// give equal bytes, and loading changes nothing.
+std::string encode_slam(const SlamState& state);
+/// @param name  stands for the file in messages.
+/// @throws InputError naming the fault: not a map file, another version, cut short, checksum wrong,
+/// made with another vocabulary, or parts that do not fit together.
+SlamState decode_slam(const std::string& bytes, const std::string& name,
+                      std::shared_ptr<const Vocabulary> vocabulary);
+
+/// The same to and from a file; it is written whole or not at all.
+void save_slam(const std::filesystem::path& file, const SlamState& state);
+SlamState load_slam(const std::filesystem::path& file,
+                    std::shared_ptr<const Vocabulary> vocabulary);
+
+}  // namespace mh

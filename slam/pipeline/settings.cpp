@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/pipeline/settings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/pipeline/settings_fields.hpp"
+
+namespace mh {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, Overlap>, 3> kOverlaps{
+    {{"labels", Overlap::kLabels}, {"augmented", Overlap::kAugmented}, {"words", Overlap::kWords}}};
+
+constexpr double kMost = 1e6;
+
+std::string_view name_of(Overlap overlap) {
+  return std::find_if(kOverlaps.begin(), kOverlaps.end(),
+                      [&](const auto& entry) { return entry.second == overlap; })
+      ->first;
+}
+
+class Write {
+ public:
+  explicit Write(bool notes) : notes_(notes) {}
+  void section(const char* name) { text += fmt::format("{}:\n", name); }
+  template <class T>
+  void operator()(const char* key, const T& value, const SettingRange& range, const char* note) {
+    std::string line;
+    if constexpr (std::is_same_v<T, Overlap>)
+      line = fmt::format("  {}: {}", key, name_of(value));
+    else
+      line = fmt::format("  {}: {}", key, value);  // doubles: the shortest that reads back equal
+    if (!notes_) {
+      text += line + "\n";
+      return;
+    }
+    std::string comment = note;
+    if constexpr (!std::is_same_v<T, Overlap> && !std::is_same_v<T, bool>)
+      comment = fmt::format("[{}, {}{}{}{}", range.min, range.max, range.open ? ")" : "]",
+                            comment.empty() ? "" : "  ", comment);
+    text += fmt::format("{:<30} # {}\n", line, comment);
+  }
+  std::string text;
+
+ private:
+  bool notes_;
+};
+
+class Read {
+ public:
+  explicit Read(YamlReader& yaml) : yaml_(yaml) {}
+  void section(const char* name) {
+    finish();
+    part_ = yaml_.find(name);
+  }
+  void finish() const {
+    if (part_) part_->finish();
+  }
+  void operator()(const char* key, int& value, const SettingRange& range, const char*) {
+    if (part_)
+      value = static_cast<int>(part_->integer_or(key, value, static_cast<std::int64_t>(range.min),
+                                                 static_cast<std::int64_t>(range.max)));
+  }
+  void operator()(const char* key, double& value, const SettingRange& range, const char*) {
+    const auto node = part_ ? part_->find(key) : std::nullopt;
+    if (!node) return;
+    value = node->as_double(range.min, range.max);
+    if (range.open && value == range.max)
+      node->fail(fmt::format("{} is outside [{}, {})", value, range.min, range.max));
+  }
+  void operator()(const char* key, bool& value, const SettingRange&, const char*) {
+    if (part_) value = part_->boolean(key, value);
+  }
+  void operator()(const char* key, Overlap& value, const SettingRange&, const char*) {
+    const auto node = part_ ? part_->find(key) : std::nullopt;
+    if (!node) return;
+    const std::string word = node->as_string();
+    const auto* known = std::find_if(kOverlaps.begin(), kOverlaps.end(),
+                                     [&](const auto& entry) { return entry.first == word; });
+    if (known == kOverlaps.end())
+      node->fail(fmt::format("'{}' is none of labels, augmented, words", word));
+    value = known->second;
+  }
+
+ private:
+  YamlReader& yaml_;
+  std::optional<YamlReader> part_;
+};
+
+/// The intrinsics, by whatever names a dialect gives them.
+void read_distortion(YamlReader& yaml, const std::string& prefix, Camera& camera) {
+  camera.distortion = {.k1 = yaml.number_or(prefix + "k1", 0, -kMost, kMost),
+                       .k2 = yaml.number_or(prefix + "k2", 0, -kMost, kMost),
+                       .p1 = yaml.number_or(prefix + "p1", 0, -kMost, kMost),
+                       .p2 = yaml.number_or(prefix + "p2", 0, -kMost, kMost),
+                       .k3 = yaml.number_or(prefix + "k3", 0, -kMost, kMost)};
+}
+
+void check_camera(const Camera& camera, const std::string& file) {
+  try {
+    validate(camera);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", file, error.what()));
+  }
+}
+
+Settings read_own(YamlReader yaml) {
+  Settings settings;
+  Camera& c = settings.camera;
+  YamlReader camera = yaml.at("camera");
+  c.width_px = static_cast<int>(camera.integer_or("width_px", c.width_px, 1, 100000));
+  c.height_px = static_cast<int>(camera.integer_or("height_px", c.height_px, 1, 100000));
+  c.fx_px = camera.number("fx_px", 1, kMost);
+  c.fy_px = camera.number("fy_px", 1, kMost);
+  c.cx_px = camera.number("cx_px", 0, kMost);
+  c.cy_px = camera.number("cy_px", 0, kMost);
+  c.rate_hz = camera.number_or("rate_hz", c.rate_hz, 1e-3, kMost);
+  c.baseline_m = camera.number_or("baseline_m", c.baseline_m, 1e-6, kMost);
+  c.disparity_sigma_px = camera.number_or("disparity_sigma_px", c.disparity_sigma_px, 1e-6, kMost);
+  if (auto distortion = camera.find("distortion")) {
+    read_distortion(*distortion, "", c);
+    distortion->finish();
+  }
+  camera.finish();
+  if (auto pictures = yaml.find("pictures")) {
+    settings.depth_per_metre =
+        pictures->number_or("depth_per_metre", settings.depth_per_metre, 1e-3, 1e9);
+    settings.exchange_red_blue = pictures->boolean("exchange_red_blue", false);
+    pictures->finish();
+  }
+  settings.slam = read_slam_config(yaml, settings.slam);
+  yaml.finish();
+  check_camera(c, yaml.file());
+  return settings;
+}
+
+/// What is read of ORB-SLAM2's files; the rest is for its window, or of other sensors.
+constexpr std::array<std::string_view, 21> kOrbSlamKeys{"Camera.fx",
+                                                        "Camera.fy",
+                                                        "Camera.cx",
+                                                        "Camera.cy",
+                                                        "Camera.k1",
+                                                        "Camera.k2",
+                                                        "Camera.p1",
+                                                        "Camera.p2",
+                                                        "Camera.k3",
+                                                        "Camera.width",
+                                                        "Camera.height",
+                                                        "Camera.fps",
+                                                        "Camera.bf",
+                                                        "Camera.RGB",
+                                                        "ThDepth",
+                                                        "DepthMapFactor",
+                                                        "ORBextractor.nFeatures",
+                                                        "ORBextractor.scaleFactor",
+                                                        "ORBextractor.nLevels",
+                                                        "ORBextractor.iniThFAST",
+                                                        "ORBextractor.minThFAST"};
+
+/// "Camera.x, Viewer.*": keys that nobody reads, those of the viewer as one.
+std::string unread_keys(YamlReader yaml) {
+  std::string list;
+  const auto add = [&](const std::string& name) { list += (list.empty() ? "" : ", ") + name; };
+  bool viewer = false;
+  for (const auto& [key, node] : yaml.entries()) {
+    if (key.starts_with("Viewer."))
+      viewer = true;
+    else if (std::find(kOrbSlamKeys.begin(), kOrbSlamKeys.end(), key) == kOrbSlamKeys.end())
+      add(key);
+  }
+  if (viewer) add("Viewer.*");
+  return list;
+}
+
+Settings read_orb_slam(YamlReader yaml) {
+  Settings settings;
+  Camera& c = settings.camera;
+  c.fx_px = yaml.number("Camera.fx", 1, kMost);
+  c.fy_px = yaml.number("Camera.fy", 1, kMost);
+  c.cx_px = yaml.number("Camera.cx", 0, kMost);
+  c.cy_px = yaml.number("Camera.cy", 0, kMost);
+  read_distortion(yaml, "Camera.", c);
+  c.width_px = static_cast<int>(yaml.integer_or("Camera.width", c.width_px, 1, 100000));
+  c.height_px = static_cast<int>(yaml.integer_or("Camera.height", c.height_px, 1, 100000));
+  c.rate_hz = yaml.number_or("Camera.fps", c.rate_hz, 1e-3, kMost);
+  c.baseline_m = yaml.number_or("Camera.bf", c.baseline_m * c.fx_px, 1e-6, kMost) / c.fx_px;
+  settings.depth_per_metre = yaml.number_or("DepthMapFactor", settings.depth_per_metre, 1e-3, 1e9);
+  settings.exchange_red_blue = yaml.integer_or("Camera.RGB", 0, 0, 1) == 1;
+  if (settings.exchange_red_blue)
+    settings.notes.push_back(fmt::format(
+        "{}: Camera.RGB: 1: the first channel is taken for red where OpenCV reads blue, as "
+        "ORB-SLAM2 does; write 0 if colours matter and the files are ordinary ones",
+        yaml.file()));
+
+  FeatureConfig& f = settings.slam.features;
+  f.count = static_cast<int>(yaml.integer_or("ORBextractor.nFeatures", f.count, 10, 20000));
+  f.scale = yaml.number_or("ORBextractor.scaleFactor", f.scale, 1.01, 2);
+  f.levels = static_cast<int>(yaml.integer_or("ORBextractor.nLevels", f.levels, 1, 16));
+  f.fast_threshold =
+      static_cast<int>(yaml.integer_or("ORBextractor.iniThFAST", f.fast_threshold, 1, 255));
+  f.fast_threshold_low =
+      static_cast<int>(yaml.integer_or("ORBextractor.minThFAST", f.fast_threshold_low, 1, 255));
+  // Close is what lies within so many baselines.
+  if (const auto close = yaml.find("ThDepth"))
+    settings.slam.keyframe.close_depth_m =
+        std::clamp(close->as_double(1e-3, kMost) * c.baseline_m, 0.1, 1000.0);
+
+  const std::string passed_over = unread_keys(yaml);
+  if (!passed_over.empty())
+    settings.notes.push_back(fmt::format("{}: passed over: {}", yaml.file(), passed_over));
+  check_camera(c, yaml.file());
+  return settings;
+}
+
+}  // namespace
+
+std::string format_slam_config(const SlamConfig& config, bool notes) {
+  Write write(notes);
+  for_each_setting(config, write);
+  return write.text;
+}
+
+SlamConfig read_slam_config(YamlReader& yaml, SlamConfig config) {
+  Read read(yaml);
+  for_each_setting(config, read);
+  read.finish();
+  return config;
+}
+
+Settings parse_settings(std::string text, const std::string& name) {
+  // OpenCV's own dialect begins with "%YAML:1.0", which is no YAML; its line stays, so that line
+  // numbers hold.
+  if (text.starts_with("%YAML:")) text[0] = '#';
+  YamlReader yaml = YamlReader::parse(text, name);
+  bool orb_slam = false;
+  for (const auto& [key, node] : YamlReader(yaml).entries())
+    orb_slam = orb_slam || key.starts_with("Camera.");
+  return orb_slam ? read_orb_slam(std::move(yaml)) : read_own(std::move(yaml));
+}
+
+Settings load_settings(const std::filesystem::path& file) {
+  return parse_settings(read_file(file), file.string());
+}
+
+}  // namespace mh

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "slam/core/camera.hpp"
+#include "slam/core/yaml.hpp"
+#include "slam/pipeline/config.hpp"
+
+namespace mh {
+
+/// What a settings file says: the camera, how its pictures are stored, and SLAM's parameters.
+struct Settings {
+  Camera camera;
+  double depth_per_metre = 5000;  ///< value of a depth pixel one metre away
+  bool exchange_red_blue = false;
+  SlamConfig slam;
+  std::vector<std::string> notes;  ///< what was passed over or needs telling, one line each
+};
+
+/// Reads our own settings (sections camera, pictures and those of SlamConfig; all optional but the
+/// camera's focal lengths and centre) or a settings file of ORB-SLAM2 (`Camera.fx: ...`), which is
+/// told by its keys. @throws InputError "file:line: place: value".
+Settings load_settings(const std::filesystem::path& file);
+Settings parse_settings(std::string text, const std::string& name);
+
+/// Every setting of SLAM with its value, as YAML that read_slam_config takes back bit for bit; with
+/// notes each line ends in a comment that says what it means and which values it may take.
+std::string format_slam_config(const SlamConfig& config, bool notes = false);
+/// Reads sections of SLAM settings; what is absent keeps its value in `config`. Leaves keys that
+/// are no section of SLAM's to the caller, who calls yaml.finish(). @throws InputError.
+SlamConfig read_slam_config(YamlReader& yaml, SlamConfig config = {});
+
+}  // namespace mh

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "slam/core/error.hpp"
+#include "slam/pipeline/settings.hpp"
+
+namespace mh {
+namespace {
+
+constexpr const char* kCamera =
+    "camera: {width_px: 320, height_px: 240, fx_px: 288, fy_px: 289, cx_px: 159.5, cy_px: 119.5,\n"
+    "         baseline_m: 0.06, distortion: {k1: 0.1, p2: -0.2}}\n";
+
+SlamConfig unusual() {
+  SlamConfig c;
+  c.features.count = 777;
+  c.features.scale = 1.0 + 1.0 / 3.0;
+  c.semantics.overlap = Overlap::kWords;
+  c.semantics.void_is_a_label = true;
+  c.relocalize.ransac.confidence = 0.123456789012345;
+  c.loop.enabled = false;
+  c.loop.same_drift_rad = 1e-3;
+  c.track.near_angle_rad = 0.7;
+  return c;
+}
+
+std::string complaint(const std::string& text) {
+  try {
+    parse_settings(text, "s.yaml");
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST(Settings, WhatIsWrittenReadsBackBitForBit) {
+  for (const bool notes : {false, true}) {
+    const std::string text = format_slam_config(unusual(), notes);
+    const SlamConfig read = parse_settings(kCamera + text, "s.yaml").slam;
+    EXPECT_EQ(format_slam_config(read), format_slam_config(unusual()));
+    EXPECT_EQ(read.relocalize.ransac.confidence, unusual().relocalize.ransac.confidence);
+    EXPECT_EQ(read.features.scale, unusual().features.scale);
+  }
+  EXPECT_NE(format_slam_config(unusual()), format_slam_config({}));
+}
+
+TEST(Settings, TellsTheCameraAndLeavesTheRestAsItIs) {
+  const Settings s = parse_settings(std::string(kCamera) +
+                                        "pictures: {depth_per_metre: 1000, exchange_red_blue: "
+                                        "true}\nsemantics: {gamma: 2.5}\n",
+                                    "s.yaml");
+  EXPECT_EQ(s.camera.width_px, 320);
+  EXPECT_EQ(s.camera.fy_px, 289);
+  EXPECT_EQ(s.camera.baseline_m, 0.06);
+  EXPECT_EQ(s.camera.distortion, (Distortion{.k1 = 0.1, .p2 = -0.2}));
+  EXPECT_EQ(s.depth_per_metre, 1000);
+  EXPECT_TRUE(s.exchange_red_blue);
+  SlamConfig expected;
+  expected.semantics.gamma = 2.5;
+  EXPECT_EQ(format_slam_config(s.slam), format_slam_config(expected));
+}
+
+TEST(Settings, NamesFileLinePlaceAndValue) {
+  EXPECT_EQ(complaint(std::string(kCamera) + "track:\n  min_inliers: 3\n"),
+            "s.yaml:4: track.min_inliers: 3 is outside [4, 1000000]");
+  EXPECT_NE(
+      complaint(std::string(kCamera) + "track:\n  min_inlier: 30\n").find("s.yaml:4: unknown"),
+      std::string::npos);
+  EXPECT_NE(complaint(std::string(kCamera) + "tracks: {}\n").find("unknown key 'tracks'"),
+            std::string::npos);
+  EXPECT_NE(complaint(std::string(kCamera) + "semantics: {alpha: 1}").find("[0, 1)"),
+            std::string::npos);
+  EXPECT_NE(complaint(std::string(kCamera) + "semantics: {overlap: all}").find("'all' is none"),
+            std::string::npos);
+  EXPECT_NE(complaint("track: {}\n").find("'camera' is missing"), std::string::npos);
+  EXPECT_NE(complaint("").find("must be a mapping"), std::string::npos);
+  EXPECT_NE(
+      complaint("camera: {fx_px: 500, fy_px: 500, cx_px: 700, cy_px: 200}").find("cx_px = 700"),
+      std::string::npos)
+      << "a principal point outside the image";
+}
+
+// As it stands in the original's Examples/RGB-D folder, but for its comments.
+constexpr const char* kTum1 = R"(%YAML:1.0
+
+Camera.fx: 517.306408
+Camera.fy: 516.469215
+Camera.cx: 318.643040
+Camera.cy: 255.313989
+
+Camera.k1: 0.262383
+Camera.k2: -0.953104
+Camera.p1: -0.005358
+Camera.p2: 0.002628
+Camera.k3: 1.163314
+
+Camera.width: 640
+Camera.height: 480
+Camera.fps: 30.0
+Camera.bf: 40.0
+Camera.RGB: 1
+ThDepth: 40.0
+DepthMapFactor: 5000.0
+
+ORBextractor.nFeatures: 1500
+ORBextractor.scaleFactor: 1.3
+ORBextractor.nLevels: 7
+ORBextractor.iniThFAST: 21
+ORBextractor.minThFAST: 8
+
+Viewer.KeyFrameSize: 0.05
+Viewer.ViewpointF: 500
+Somebody.Else: 3
+)";
+
+TEST(Settings, TakesOrbSlamsFilesAsTheyAre) {
+  const Settings s = parse_settings(kTum1, "TUM1.yaml");
+  EXPECT_EQ(s.camera.fx_px, 517.306408);
+  EXPECT_EQ(s.camera.distortion.k3, 1.163314);
+  EXPECT_NEAR(s.camera.baseline_m, 40.0 / 517.306408, 1e-12);
+  EXPECT_EQ(s.slam.features.count, 1500);
+  EXPECT_EQ(s.slam.features.scale, 1.3);
+  EXPECT_EQ(s.slam.features.levels, 7);
+  EXPECT_EQ(s.slam.features.fast_threshold, 21);
+  EXPECT_EQ(s.slam.features.fast_threshold_low, 8);
+  EXPECT_NEAR(s.slam.keyframe.close_depth_m, 40 * 40.0 / 517.306408, 1e-12);
+  EXPECT_EQ(s.depth_per_metre, 5000);
+  EXPECT_TRUE(s.exchange_red_blue);
+  ASSERT_EQ(s.notes.size(), 2U);
+  EXPECT_EQ(s.notes[1], "TUM1.yaml: passed over: Somebody.Else, Viewer.*");
+}
+
+TEST(Settings, OrbSlamsFilesAreCheckedToo) {
+  std::string bad = kTum1;
+  bad.replace(bad.find("517.306408"), 10, "-5");
+  EXPECT_EQ(complaint(bad), "s.yaml:3: Camera.fx: -5 is outside [1, 1000000]");
+  EXPECT_NE(complaint("Camera.fx: 500\n").find("'Camera.fy' is missing"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace mh
