@@ -43,7 +43,7 @@ std::vector<std::vector<Descriptor>> descriptors_of_room(const VocabularyTrainin
   for (const SE3& world_from_camera :
        training_views(scene, random.fork(kViews).bits(room), config.views)) {
     const RgbdFrame frame = sense(renderer->render(config.camera, world_from_camera), config.camera,
-                                  SensorConfig{}, LabelMode::kNone, noise.fork(images.size()), 0);
+                                  SensorConfig{}, noise.fork(images.size()), 0);
     images.push_back(extract(frame, config.camera, config.features).descriptors);
   }
   return images;

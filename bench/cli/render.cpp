@@ -7,6 +7,7 @@
 #include "bench/cli/progress.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "bench/world/world.hpp"
+#include "sim/sensors/shutter.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -38,18 +39,19 @@ void run(const Options& options) {
   Progress progress("render");
   progress.say(fmt::format("scene {}", options.scene));
   const Scene scene = load_lit_scene(options.scene, 2);
-  const auto renderer = make_scene_renderer(scene);
+  const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene);
   const DrivenPath path = drive(scene, robot, tour);
 
   const std::size_t last = std::min(options.frames, path.camera.size());
   const RandomStream noise(options.seed);
-  TumWriter writer(options.out, robot.camera);
+  const Shutter shutter(renderer, robot.camera, path.camera, sensors);
+  TumWriter writer(options.out, shutter.camera());
   for (std::size_t i = 0; i < last; i += options.every) {
     const TimedPose& pose = path.camera[i];
-    const RenderedFrame exact = renderer->render(robot.camera, pose.world_from_camera);
+    const Shutter::Exposed exposed = shutter.expose(i);
     const RgbdFrame frame =
-        sense(exact, robot.camera, sensors, LabelMode::kNone, noise.fork(i), pose.stamp_ns);
-    writer.add(frame, exact, pose.world_from_camera);
+        sense(exposed.seen, shutter.camera(), sensors, noise.fork(i), pose.stamp_ns, exposed.gain);
+    writer.add(frame, exposed.seen, pose.world_from_camera);
     progress.share(static_cast<double>(i + 1) / static_cast<double>(last));
   }
   writer.finish();

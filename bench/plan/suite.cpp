@@ -19,8 +19,10 @@ using Names = std::array<std::pair<std::string_view, T>, N>;
 
 constexpr Names<SystemKind, 2> kSystems{
     {{"semantic", SystemKind::kSemantic}, {"plain", SystemKind::kPlain}}};
-constexpr Names<LabelMode, 3> kLabels{
-    {{"exact", LabelMode::kExact}, {"boxes", LabelMode::kBoxes}, {"none", LabelMode::kNone}}};
+constexpr Names<LabelMode, 4> kLabels{{{"exact", LabelMode::kExact},
+                                       {"boxes", LabelMode::kBoxes},
+                                       {"detector", LabelMode::kDetector},
+                                       {"none", LabelMode::kNone}}};
 constexpr Names<Overlap, 3> kOverlaps{
     {{"labels", Overlap::kLabels}, {"augmented", Overlap::kAugmented}, {"words", Overlap::kWords}}};
 constexpr Names<DropReset, 2> kResets{{{"counter", DropReset::kCounter}, {"map", DropReset::kMap}}};

@@ -17,9 +17,7 @@ bool ready(const Future& future) {
 FrameStudio::FrameStudio(std::shared_ptr<const Renderer> renderer, Camera camera,
                          std::vector<TimedPose> world_from_camera, SensorConfig sensors,
                          std::size_t kept)
-    : renderer_(std::move(renderer)),
-      camera_(camera),
-      path_(std::move(world_from_camera)),
+    : shutter_(std::move(renderer), camera, std::move(world_from_camera), sensors),
       sensors_(sensors),
       kept_(kept) {}
 
@@ -39,7 +37,9 @@ RgbdFrame FrameStudio::frame(std::size_t index, RandomStream noise, LabelMode la
   }
   const std::shared_ptr<const Shot> picture = claimed.shot.get();
   RgbdFrame frame = picture->unlabelled;
-  if (labels != LabelMode::kNone) frame.semantics = label_image(picture->truth, labels);
+  if (labels != LabelMode::kNone)
+    frame.semantics = sense_labels(picture->truth, labels, sensors_,
+                                   path()[index].world_from_camera, noise.fork(index));
   return frame;
 }
 
@@ -60,10 +60,10 @@ void FrameStudio::make(std::promise<std::shared_ptr<const Shot>> promise, std::s
                        RandomStream noise) const {
   try {
     auto made = std::make_shared<Shot>();
-    const TimedPose& pose = path_[index];
-    made->truth = renderer_->render(camera_, pose.world_from_camera);
-    made->unlabelled =
-        sense(made->truth, camera_, sensors_, LabelMode::kNone, noise.fork(index), pose.stamp_ns);
+    Shutter::Exposed exposed = shutter_.expose(index);
+    made->unlabelled = sense(exposed.seen, camera(), sensors_, noise.fork(index),
+                             path()[index].stamp_ns, exposed.gain);
+    made->truth = std::move(exposed.seen);
     promise.set_value(std::move(made));
   } catch (...) {
     promise.set_exception(std::current_exception());  // reaches everybody who waits for it

@@ -10,8 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/render/renderer.hpp"
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/shutter.hpp"
 #include "slam/core/trajectory.hpp"
 
 namespace mh {
@@ -27,9 +26,9 @@ class FrameStudio {
               std::vector<TimedPose> world_from_camera, SensorConfig sensors,
               std::size_t kept = 24);
 
-  std::size_t size() const { return path_.size(); }
-  const Camera& camera() const { return camera_; }
-  const std::vector<TimedPose>& path() const { return path_; }
+  std::size_t size() const { return path().size(); }
+  const Camera& camera() const { return shutter_.camera(); }
+  const std::vector<TimedPose>& path() const { return shutter_.path(); }
 
   /// The frame after a given one in the order in which they are asked for; size() or more: none.
   using Following = std::function<std::size_t(std::size_t)>;
@@ -56,9 +55,7 @@ class FrameStudio {
   void make(std::promise<std::shared_ptr<const Shot>> promise, std::size_t index,
             RandomStream noise) const;
 
-  std::shared_ptr<const Renderer> renderer_;  // shared: one BVH serves every path of a scene
-  Camera camera_;
-  std::vector<TimedPose> path_;
+  Shutter shutter_;
   SensorConfig sensors_;
   std::size_t kept_;
   std::mutex mutex_;

@@ -114,6 +114,7 @@ class DepthSensor {
   void read_row(int y, std::span<float> depth) {
     look(y, depth);
     if (config_.grazing_holes) punch_holes(depth);
+    if (config_.projector_shadow) cast_shadow(y, depth);
     if (config_.axial) add_axial_noise(depth);
     if (config_.quantisation) quantise(depth);
     const auto nearest = static_cast<float>(config_.min_range_m);
@@ -171,6 +172,34 @@ class DepthSensor {
       depth[x] = row_[x].cosine < least ? 0.0F : depth[x];
   }
 
+  /// What the projector sees of a row, nearest first: a pixel with disparity d lies at column x - d
+  /// of its picture. Pixels that lie behind another's are in its shadow.
+  void cast_shadow(int y, std::span<float> depth) {
+    constexpr float kNothing = 0.0F;
+    constexpr float kStep = 1.0F;  // px of disparity; a smooth surface does not shade itself
+    const float focal_base = steps_per_inverse_depth_ / static_cast<float>(kDisparityStepsPerPx);
+    const int w = depth_m_.width();
+    const Surface* row = surfaces_.row(y).data();
+    const auto column = [&](int x) {
+      return static_cast<float>(x) - focal_base * row[x].inverse_depth;
+    };
+    // Columns left of the picture matter too: the projector's picture begins at 1 - w.
+    nearest_.assign(2 * static_cast<std::size_t>(w), kNothing);
+    const auto cell = [&](int u) { return &nearest_[static_cast<std::size_t>(u + w)]; };
+    for (int x = 0; x < w; ++x) {
+      if (row[x].inverse_depth <= 0.0F) continue;
+      const int u = static_cast<int>(std::floor(column(x)));
+      if (u < -w) continue;
+      for (int k = u; k <= std::min(u + 1, w - 1); ++k)
+        *cell(k) = std::max(*cell(k), focal_base * row[x].inverse_depth);
+    }
+    for (int x = 0; x < w; ++x) {
+      const int u = static_cast<int>(std::floor(column(x) + 0.5F));
+      if (u >= -w && *cell(u) > focal_base * row[x].inverse_depth + kStep)
+        depth[static_cast<std::size_t>(x)] = 0.0F;
+    }
+  }
+
   void add_axial_noise(std::span<float> depth) const {
     for (std::size_t x = 0; x < depth.size(); ++x) {
       const float away = depth[x] - static_cast<float>(kAxialNearest);
@@ -196,6 +225,7 @@ class DepthSensor {
   RandomStream stream_;
   float steps_per_inverse_depth_;
   std::vector<Draw> row_;
+  std::vector<float> nearest_;  // disparity of what the projector sees, px
   const std::array<float, 1 << kNormalBits>& normals_ = normal_table();
   const IncidenceTable incidence_;
 };

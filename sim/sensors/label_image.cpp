@@ -3,7 +3,9 @@
 #include <tuple>
 #include <vector>
 
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/label_faults.hpp"
+#include "sim/sensors/labels.hpp"
+#include "sim/sensors/visible_objects.hpp"
 
 namespace mh {
 namespace {
@@ -15,55 +17,100 @@ std::vector<ClassDistribution> one_hot_palette() {
   return palette;
 }
 
-/// A box of pixels, all bounds included.
-struct Box {
-  int left = 0, top = 0, right = 0, bottom = 0;
-  ClassId class_id = kVoid;
-  InstanceId instance = 0;
-  int pixels = 0;  ///< visible ones
+template <class Box>
+void fill(Grid2d<std::uint8_t>& index, const Box& box, std::uint8_t value) {
+  for (int y = box.top; y <= box.bottom; ++y)
+    std::fill_n(&index(box.left, y), box.right - box.left + 1, value);
+}
 
-  void include(int x, int y) {
-    left = pixels ? std::min(left, x) : x;
-    right = pixels ? std::max(right, x) : x;
-    top = pixels ? std::min(top, y) : y;
-    bottom = pixels ? std::max(bottom, y) : y;
-    ++pixels;
-  }
-  std::int64_t area() const {
-    return static_cast<std::int64_t>(right - left + 1) * (bottom - top + 1);
-  }
-};
-
-/// The boxes that a perfect detector of the COCO classes would draw, largest first.
-std::vector<Box> visible_boxes(const RenderedFrame& truth) {
-  std::vector<Box> boxes;  // by instance
-  for (int y = 0; y < truth.classes.height(); ++y)
-    for (int x = 0; x < truth.classes.width(); ++x) {
-      const ClassId class_id = truth.classes(x, y);
-      const InstanceId instance = truth.instances(x, y);
-      if (instance == 0 || classes()[class_id].coco80 < 0) continue;
-      if (instance >= boxes.size()) boxes.resize(instance + 1U);
-      boxes[instance].class_id = class_id;
-      boxes[instance].instance = instance;
-      boxes[instance].include(x, y);
-    }
-  std::erase_if(boxes, [](const Box& box) { return box.pixels < kMinBoxPixels; });
-  std::sort(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) {
-    return std::tuple(-a.area(), a.instance) < std::tuple(-b.area(), b.instance);
+SemanticImage boxes_image(const RenderedFrame& truth, std::vector<VisibleObject> objects) {
+  std::erase_if(objects, [](const VisibleObject& object) {
+    return object.pixels < kMinBoxPixels || !is_coco(object.class_id);
   });
-  return boxes;
+  sort_for_painting(objects);
+  SemanticImage image{{truth.classes.width(), truth.classes.height(), kBackground},
+                      one_hot_palette()};
+  for (const VisibleObject& box : objects) fill(image.index, box, box.class_id);
+  return image;
+}
+
+/// Each pixel's class, or that which its instance is given; instances that are given none are void.
+SemanticImage exact_image(const RenderedFrame& truth, const std::vector<VisibleObject>& before,
+                          const std::vector<VisibleObject>& after) {
+  SemanticImage image{truth.classes, one_hot_palette()};
+  std::vector<ClassId> given, was;  // by instance
+  for (const VisibleObject& object : before) {
+    was.resize(object.instance + 1U, kVoid);
+    was[object.instance] = object.class_id;
+  }
+  given.resize(was.size(), kVoid);
+  for (const VisibleObject& object : after) given[object.instance] = object.class_id;
+  if (was == given) return image;
+  for (std::size_t i = 0; i < image.index.size(); ++i) {
+    const InstanceId instance = truth.instances.data()[i];
+    if (instance < was.size() && was[instance] != given[instance])
+      image.index.data()[i] = given[instance];
+  }
+  return image;
+}
+
+SemanticImage detector_image(const RenderedFrame& truth, const std::vector<Detection>& found) {
+  constexpr std::uint8_t kBackgroundIndex = 1;
+  SemanticImage image{{truth.classes.width(), truth.classes.height(), kBackgroundIndex},
+                      {ClassDistribution{}, ClassDistribution::one_hot(kBackground)}};
+  for (const Detection& box : found) {
+    fill(image.index, box, static_cast<std::uint8_t>(image.palette.size()));
+    image.palette.push_back(box.classes);
+  }
+  return image;
 }
 
 }  // namespace
 
+std::vector<VisibleObject> visible_objects(const RenderedFrame& truth) {
+  std::vector<VisibleObject> objects;  // by instance
+  for (int y = 0; y < truth.classes.height(); ++y)
+    for (int x = 0; x < truth.classes.width(); ++x) {
+      const InstanceId instance = truth.instances(x, y);
+      if (instance == 0 || truth.classes(x, y) == kVoid) continue;
+      if (instance >= objects.size()) objects.resize(instance + 1U);
+      objects[instance].class_id = truth.classes(x, y);
+      objects[instance].instance = instance;
+      objects[instance].include(x, y);
+    }
+  std::erase_if(objects, [](const VisibleObject& object) { return object.pixels == 0; });
+  return objects;
+}
+
+void sort_for_painting(std::vector<VisibleObject>& objects) {
+  std::sort(objects.begin(), objects.end(), [](const VisibleObject& a, const VisibleObject& b) {
+    return std::tuple(-a.area(), a.instance) < std::tuple(-b.area(), b.instance);
+  });
+}
+
 SemanticImage label_image(const RenderedFrame& truth, LabelMode mode) {
   if (mode == LabelMode::kNone) return {};
-  SemanticImage image{truth.classes, one_hot_palette()};
-  if (mode == LabelMode::kExact) return image;
-  std::fill(image.index.begin(), image.index.end(), kBackground);
-  for (const Box& box : visible_boxes(truth))
-    for (int y = box.top; y <= box.bottom; ++y)
-      std::fill_n(&image.index(box.left, y), box.right - box.left + 1, box.class_id);
+  if (mode == LabelMode::kExact) return {truth.classes, one_hot_palette()};
+  return boxes_image(truth, visible_objects(truth));
+}
+
+SemanticImage label_image(const RenderedFrame& truth, LabelMode mode, const LabelConfig& config,
+                          const SE3& world_from_camera, RandomStream stream) {
+  if (mode == LabelMode::kNone) return {};
+  SemanticImage image;
+  const LabelNoiseConfig& noise = config.noise;
+  if (mode == LabelMode::kDetector) {
+    image = detector_image(truth, detect(truth, config, world_from_camera, stream));
+  } else if (noise.confusion == 0.0 && noise.swap == 0.0 && noise.dropout == 0.0) {
+    image = label_image(truth, mode);
+  } else {
+    const std::vector<VisibleObject> objects = visible_objects(truth);
+    const std::vector<VisibleObject> faulty =
+        with_faults(objects, noise, FaultDraws(config, world_from_camera, stream));
+    image = mode == LabelMode::kBoxes ? boxes_image(truth, faulty)
+                                      : exact_image(truth, objects, faulty);
+  }
+  erode(image.index, noise.erosion_px);
   return image;
 }
 

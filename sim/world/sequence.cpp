@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/world/sequence.hpp"
 
-#include <cassert>
 #include <utility>
 
 namespace mh {
@@ -9,20 +8,18 @@ namespace mh {
 SimulatedSequence::SimulatedSequence(std::shared_ptr<const Renderer> renderer, Camera camera,
                                      std::vector<TimedPose> world_from_camera, SensorConfig sensors,
                                      LabelMode labels)
-    : renderer_(std::move(renderer)),
-      camera_(camera),
-      path_(std::move(world_from_camera)),
+    : shutter_(std::move(renderer), camera, std::move(world_from_camera), sensors),
       sensors_(sensors),
-      labels_(labels) {
-  assert(renderer_ != nullptr);
-}
+      labels_(labels) {}
 
 SimulatedFrame SimulatedSequence::at(std::size_t i, RandomStream attempt) const {
-  assert(i < path_.size());
-  const TimedPose& moment = path_[i];
-  const RenderedFrame picture = renderer_->render(camera_, moment.world_from_camera);
-  return {sense(picture, camera_, sensors_, labels_, attempt.fork(i), moment.stamp_ns),
-          {moment.stamp_ns, moment.world_from_camera}};
+  const TimedPose& moment = path()[i];
+  const Shutter::Exposed exposed = shutter_.expose(i);
+  RgbdFrame frame =
+      sense(exposed.seen, camera(), sensors_, attempt.fork(i), moment.stamp_ns, exposed.gain);
+  frame.semantics =
+      sense_labels(exposed.seen, labels_, sensors_, moment.world_from_camera, attempt.fork(i));
+  return {std::move(frame), {moment.stamp_ns, moment.world_from_camera}};
 }
 
 }  // namespace mh

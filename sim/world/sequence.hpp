@@ -4,8 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "sim/render/renderer.hpp"
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/shutter.hpp"
 #include "slam/core/trajectory.hpp"
 
 namespace mh {
@@ -29,16 +28,14 @@ class SimulatedSequence {
                     std::vector<TimedPose> world_from_camera, SensorConfig sensors,
                     LabelMode labels);
 
-  std::size_t size() const { return path_.size(); }
-  const Camera& camera() const { return camera_; }
-  const std::vector<TimedPose>& path() const { return path_; }
+  std::size_t size() const { return path().size(); }
+  const Camera& camera() const { return shutter_.camera(); }
+  const std::vector<TimedPose>& path() const { return shutter_.path(); }
   /// Sensor noise is keyed by (attempt, i, pixel).
   SimulatedFrame at(std::size_t i, RandomStream attempt) const;
 
  private:
-  std::shared_ptr<const Renderer> renderer_;  // shared: one BVH serves every run of a scene
-  Camera camera_;
-  std::vector<TimedPose> path_;
+  Shutter shutter_;
   SensorConfig sensors_;
   LabelMode labels_;
 };

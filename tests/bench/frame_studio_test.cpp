@@ -56,8 +56,9 @@ TEST(FrameStudio, ASharedPictureWithLabelsIsTheFrameThatTheSensorWouldGive) {
   FrameStudio studio(renderer, camera, path(5), {});
   const RandomStream noise(3);
   for (const LabelMode mode : {LabelMode::kNone, LabelMode::kExact, LabelMode::kBoxes}) {
-    const RgbdFrame direct = sense(renderer->render(camera, studio.path()[2].world_from_camera),
-                                   camera, {}, mode, noise.fork(2), studio.path()[2].stamp_ns);
+    const RenderedFrame exact = renderer->render(camera, studio.path()[2].world_from_camera);
+    RgbdFrame direct = sense(exact, camera, {}, noise.fork(2), studio.path()[2].stamp_ns);
+    direct.semantics = label_image(exact, mode);
     EXPECT_EQ(digest(studio.frame(2, noise, mode)), digest(direct)) << static_cast<int>(mode);
   }
   EXPECT_NE(digest(studio.frame(2, noise, LabelMode::kExact)),

@@ -54,7 +54,7 @@ SensorConfig no_noise() {
 }
 
 RgbdFrame sensed(const RenderedFrame& truth, const SensorConfig& config, std::uint64_t seed = 1) {
-  return sense(truth, kCamera, config, LabelMode::kNone, RandomStream(seed), 5);
+  return sense(truth, kCamera, config, RandomStream(seed), 5);
 }
 
 struct Moments {
@@ -182,6 +182,38 @@ TEST(DepthNoise, GrazingSurfacesGiveNoReturn) {
   EXPECT_GT(kept, 200);
 }
 
+TEST(DepthNoise, TheProjectorsShadowLiesLeftOfWhatStandsInFront) {
+  SensorConfig config = no_noise();
+  config.depth_noise.projector_shadow = true;
+  RenderedFrame truth = blank_frame(3.0F);
+  for (int y = 100; y < 300; ++y)
+    for (int x = 300; x < 400; ++x) truth.depth_m(x, y) = 1.0F;
+  const RgbdFrame frame = sensed(truth, config);
+  // Khoshelham and Elberink, figure 1: f b (1 / z_front - 1 / z_back) px wide.
+  const double width = 525.0 * 0.075 * (1.0 / 1.0 - 1.0 / 3.0);
+  for (int y = 0; y < kCamera.height_px; ++y) {
+    int holes = 0;
+    for (int x = 0; x < kCamera.width_px; ++x) {
+      if (frame.depth_m(x, y) > 0.0F) continue;
+      ++holes;
+      ASSERT_TRUE(x >= 300 - width - 2 && x < 300) << x;
+    }
+    ASSERT_NEAR(holes, y >= 100 && y < 300 ? width : 0.0, 1.6) << y;
+  }
+  // A pole throws its own width: right of the shadow the wall is lit again.
+  for (float& z : truth.depth_m) z = 3.0F;
+  for (int y = 0; y < kCamera.height_px; ++y)
+    for (int x = 300; x < 306; ++x) truth.depth_m(x, y) = 1.0F;
+  const RgbdFrame pole = sensed(truth, config);
+  int holes = 0;
+  for (const float depth : pole.depth_m.row(50)) holes += depth == 0.0F;
+  EXPECT_NEAR(holes, 6, 1.6);
+  EXPECT_GT(pole.depth_m(295, 50), 0.0F);
+  // A slope, however steep, shades nothing of itself.
+  const RgbdFrame slope = sensed(leaning_plane(2.0, 1.2), config);
+  EXPECT_EQ(slope.depth_m, leaning_plane(2.0, 1.2).depth_m);
+}
+
 TEST(DepthNoise, NothingIsSeenOutOfRange) {
   SensorConfig config = no_noise();
   config.depth_noise.min_range_m = 0.4;
@@ -235,11 +267,10 @@ TEST(Sense, SameKeySameBitsOtherKeyOtherNoise) {
   EXPECT_EQ(a.colour, b.colour);
   EXPECT_NE(a.depth_m, c.depth_m);
   EXPECT_NE(a.colour, c.colour);
-  // Labels and depth noise do not touch the colour's stream.
+  // Depth noise does not touch the colour's stream.
   SensorConfig colour_only;
   colour_only.depth_noise_on = false;
-  EXPECT_EQ(sense(truth, kCamera, colour_only, LabelMode::kBoxes, RandomStream(1), 5).colour,
-            a.colour);
+  EXPECT_EQ(sensed(truth, colour_only).colour, a.colour);
 }
 
 void paint(RenderedFrame& frame, int left, int top, int right, int bottom, ClassId class_id,

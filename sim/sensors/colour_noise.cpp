@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/sensors/colour_noise.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "sim/render/colour.hpp"
+#include "sim/sensors/normal_table.hpp"
+
+namespace mh {
+namespace {
+
+enum StreamName : std::uint64_t { kShot = 1 };
+
+/// Linear light of an 8-bit value, and the standard deviation of its noise.
+struct Signal {
+  float light, sigma;
+};
+
+std::array<Signal, 256> signal_table(const SensorConfig& config) {
+  const double well_e = config.shot_noise.well_e / config.shot_noise.gain;
+  std::array<Signal, 256> table{};
+  for (std::size_t v = 0; v < table.size(); ++v) {
+    const double light = srgb_to_linear(static_cast<std::uint8_t>(v));
+    const double read = config.shot_noise.read_noise_e / well_e;
+    const double sigma = config.shot_noise_on ? std::sqrt(light / well_e + read * read) : 0.0;
+    table[v] = {static_cast<float>(light), static_cast<float>(sigma)};
+  }
+  return table;
+}
+
+/// What share of the light reaches each pixel of row y.
+void fall_off(const Camera& camera, double strength, int y, std::vector<float>& share) {
+  const auto b = static_cast<float>((y - camera.cy_px) / camera.fy_px);
+  const auto s = static_cast<float>(strength);
+  for (std::size_t x = 0; x < share.size(); ++x) {
+    const auto a = static_cast<float>((static_cast<double>(x) - camera.cx_px) / camera.fx_px);
+    const float cosine_squared = 1.0F / (1.0F + a * a + b * b);
+    share[x] = 1.0F - s * (1.0F - cosine_squared * cosine_squared);
+  }
+}
+
+void expose(Grid2d<Rgb8>& colour, const Camera& camera, const SensorConfig& config, double gain,
+            RandomStream stream) {
+  const std::array<Signal, 256> signals = signal_table(config);
+  const auto& normals = normal_table();
+  const std::uint8_t* encode = srgb_table();
+  const auto scale = static_cast<float>(gain * kSrgbTableMax);
+  std::vector<float> share(static_cast<std::size_t>(colour.width()), 1.0F);
+  std::uint64_t pixel = 0;
+  for (int y = 0; y < colour.height(); ++y) {
+    if (config.vignetting_on) fall_off(camera, config.vignetting.strength, y, share);
+    const float* lit = share.data();
+    for (Rgb8& c : colour.row(y)) {
+      const std::uint64_t bits = stream.bits(pixel++);
+      // Less light through the lens has less noise: sigma goes with the root of the share.
+      const float factor = scale * *lit, noise_factor = scale * std::sqrt(*lit);
+      ++lit;
+      const auto read = [&](std::uint8_t value, int k) {
+        const Signal& s = signals[value];
+        const float normal = normals[(bits >> (kNormalBits * k)) & kNormalMask];
+        const float level = factor * s.light + noise_factor * s.sigma * normal + 0.5F;
+        return encode[static_cast<std::size_t>(
+            std::clamp(level, 0.0F, static_cast<float>(kSrgbTableMax)))];
+      };
+      c = {read(c.r, 0), read(c.g, 1), read(c.b, 2)};
+    }
+  }
+}
+
+void add_grey_noise(Grid2d<Rgb8>& colour, double sigma, RandomStream stream) {
+  // Grey levels in 1/256: one table entry per equally probable normal number.
+  std::array<int, 1 << kNormalBits> noise;
+  std::transform(normal_table().begin(), normal_table().end(), noise.begin(), [&](float normal) {
+    return static_cast<int>(std::lrint(256.0 * 255.0 * sigma * normal));
+  });
+  const auto add = [&](std::uint8_t value, std::uint64_t bits) {
+    const int sum = (256 * value + noise[bits & kNormalMask] + 128) >> 8;
+    return static_cast<std::uint8_t>(std::clamp(sum, 0, 255));
+  };
+  for (std::size_t i = 0; i < colour.size(); ++i) {
+    const std::uint64_t bits = stream.bits(i);
+    Rgb8& c = colour.data()[i];
+    c = {add(c.r, bits), add(c.g, bits >> kNormalBits), add(c.b, bits >> (2 * kNormalBits))};
+  }
+}
+
+}  // namespace
+
+void develop(Grid2d<Rgb8>& colour, const Camera& camera, const SensorConfig& config, double gain,
+             RandomStream stream) {
+  if (config.shot_noise_on || config.vignetting_on || gain != 1.0)
+    expose(colour, camera, config, gain, stream.fork(kShot));
+  if (config.colour_noise_on) add_grey_noise(colour, config.colour_noise.sigma, stream);
+}
+
+}  // namespace mh

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "sim/sensors/sensors.hpp"
+
+namespace mh {
+
+/// Turns light into the 8-bit picture of a sensor: exposure gain, vignetting, shot and read noise
+/// in linear light, then Gaussian noise in grey levels (see SensorConfig).
+void develop(Grid2d<Rgb8>& colour, const Camera& camera, const SensorConfig& config, double gain,
+             RandomStream stream);
+
+}  // namespace mh

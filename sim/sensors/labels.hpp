@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/render/renderer.hpp"
+#include "slam/core/random.hpp"
+
+namespace mh {
+
+/// How labels come to the frame. kExact: one-hot class per pixel. kBoxes: the exact bounding box of
+/// the visible pixels of each instance of a COCO class is filled with its class, all else is
+/// background. kDetector: as a network would draw those boxes, see DetectorConfig. kNone: none.
+enum class LabelMode { kNone, kExact, kBoxes, kDetector };
+
+/// A detector needs to see this much of an object before its box counts.
+inline constexpr int kMinBoxPixels = 100;
+
+/// COCO's classes of size (Lin et al., ECCV 2014): by visible pixels.
+inline constexpr int kMediumPixels = 32 * 32, kLargePixels = 96 * 96;
+
+/// A YOLOv3-like detector. Sources: [A] Redmon and Farhadi, "YOLOv3: an incremental improvement",
+/// arXiv 1804.02767, table 3 (608 px, COCO test-dev): AP 33.0, AP50 57.9, AP75 34.4, and by size
+/// 18.3, 35.4, 41.9. [B] AlexeyAB/darknet issue 6670, the original weights at confidence 0.25 on
+/// COCO val2017: 9571 true and 4112 false detections of its first four classes, so a precision of
+/// 0.70. [C] Redmon et al., "You only look once", CVPR 2016, figure 4: of a YOLO's false detections
+/// 55 % are badly placed, 31 % of the wrong class, 14 % on background.
+struct DetectorConfig {
+  // Recall at IoU 0.5 by size: [A] AP by size times AP50 / AP. AP50 stands for the recall where the
+  // detector works; that of all its guesses is higher (0.41, 0.75, 0.97 by the AR of
+  // ultralytics/yolov3 issue 9).
+  double recall_small = 0.321, recall_medium = 0.621, recall_large = 0.735;
+  /// Share of an object's detections with the wrong class: 31 % of the 30 % that are false [B, C],
+  /// over all detections of objects.
+  double confusion = 0.097;
+  /// Expected detections of nothing per picture: 14 % of the 30 % that are false, beside the 4.3
+  /// right ones per picture of 36,781 / 5,000 objects at a recall of 0.58 [A, B, C].
+  double false_alarms = 0.26;
+  /// Each side of a box strays by this share of the box's width or height, standard deviation: so
+  /// that of boxes with an IoU above 0.5 those above 0.75 are 34.4 / 57.9 [A].
+  double box_sigma = 0.087;
+};
+
+/// Faults of one's choice on top of any kind of labels, for dose-response studies: 0 is none.
+struct LabelNoiseConfig {
+  double confusion = 0.0;  ///< share of instances that carry a wrong class
+  double swap = 0.0;       ///< share of instances that begin an exchange of classes with their
+                           ///< nearest neighbour in the picture
+  double dropout = 0.0;    ///< share of instances that carry no label (no box, in those modes)
+  int erosion_px = 0;      ///< pixels within so many px of a border between labels become void
+};
+
+/// Labels' faults depend on what is looked at and from where, as a network's do: each is decided by
+/// a standard normal number that is the sum of a part that an instance keeps for ever, a part that
+/// changes smoothly with the view (over some 1 m and 30 degrees; equal for equal views, whenever
+/// they are seen) and a part drawn afresh in each frame. Nothing published gives their shares: they
+/// are a choice.
+struct LabelConfig {
+  LabelNoiseConfig noise = {};
+  DetectorConfig detector = {};
+  double persistent_share = 0.4;  ///< of the variance, 0 to 1
+  double frame_share = 0.1;       ///< likewise; the two sum to at most 1, the rest is the view's
+  std::uint64_t seed = 0;         ///< another seed is another network
+};
+
+/// Labels without faults; kDetector gives those of kBoxes. kNone: an empty image. Of boxes, smaller
+/// ones lie over larger ones, higher instance ids over lower where equal.
+SemanticImage label_image(const RenderedFrame& truth, LabelMode mode);
+
+/// The same with the faults of `config`.
+/// @param world_from_camera  the view that errors are tied to
+/// @param stream             of this frame, for what is drawn afresh
+SemanticImage label_image(const RenderedFrame& truth, LabelMode mode, const LabelConfig& config,
+                          const SE3& world_from_camera, RandomStream stream);
+
+/// One box of a detector, all bounds included.
+struct Detection {
+  int left = 0, top = 0, right = 0, bottom = 0;
+  ClassDistribution classes;
+  InstanceId instance = 0;  ///< what it was drawn around; never told to SLAM
+};
+
+/// What a detector with these faults finds, in the order of painting.
+std::vector<Detection> detect(const RenderedFrame& truth, const LabelConfig& config,
+                              const SE3& world_from_camera, RandomStream stream);
+
+}  // namespace mh

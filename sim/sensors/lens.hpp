@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "sim/render/renderer.hpp"
+
+namespace mh {
+
+/// Bends pinhole pictures as a camera's lens does (Brown-Conrady). Colour is blended in linear
+/// light; depth, class and instance are those of the nearest pixel.
+class Lens {
+ public:
+  explicit Lens(const Camera& camera);
+  /// The pinhole camera whose pictures it needs: wide enough for what the lens draws in.
+  const Camera& pinhole() const { return pinhole_; }
+  /// The picture behind the lens; the same where there is no distortion.
+  RenderedFrame bend(RenderedFrame picture) const;
+
+ private:
+  struct Source {
+    float x, y;  // in the pinhole picture, px
+  };
+  int width_, height_;
+  Camera pinhole_;
+  std::vector<Source> source_;  // by pixel; empty without distortion
+};
+
+/// Where a distorted pixel lies at unit depth: the inverse of the distortion, by Newton's method.
+/// NaN where the lens maps nothing there.
+Eigen::Vector2d undistort_px(const Camera& camera, const Eigen::Vector2d& pixel);
+/// The pixel of a point at unit depth, seen through the lens.
+Eigen::Vector2d distort_px(const Camera& camera, const Eigen::Vector2d& at_unit_depth);
+
+}  // namespace mh

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/sensors/shutter.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "sim/render/colour.hpp"
+
+namespace mh {
+namespace {
+
+enum StreamName : std::uint64_t { kDropped = 1 };
+
+double seconds_between(const TimedPose& a, const TimedPose& b) {
+  return static_cast<double>(b.stamp_ns - a.stamp_ns) * 1e-9;
+}
+
+/// How far (px) what stands in the picture moves between two poses at most, judged by a grid of
+/// its pixels.
+double farthest_motion_px(const Camera& camera, const Grid2d<float>& depth_m, const SE3& seen_from,
+                          const SE3& first, const SE3& last) {
+  constexpr int kGrid = 9;
+  constexpr double kNothingM = 10.0;  // what is not there moves as if it were so far
+  constexpr double kNearestM = 0.05;
+  const SE3 first_from_seen = first.inverse() * seen_from,
+            last_from_seen = last.inverse() * seen_from;
+  double farthest = 0.0;
+  for (int j = 0; j < kGrid; ++j)
+    for (int i = 0; i < kGrid; ++i) {
+      const int x = i * (camera.width_px - 1) / (kGrid - 1);
+      const int y = j * (camera.height_px - 1) / (kGrid - 1);
+      const double z = depth_m(x, y) > 0.0F ? depth_m(x, y) : kNothingM;
+      const Eigen::Vector3d point = camera.unproject(x, y, z);
+      const Eigen::Vector3d a = first_from_seen * point, b = last_from_seen * point;
+      if (a.z() < kNearestM || b.z() < kNearestM) continue;
+      farthest = std::max(farthest, (camera.project(a) - camera.project(b)).norm());
+    }
+  return farthest;
+}
+
+/// The times within a frame at which rows collect light.
+class Rows {
+ public:
+  /// @param pictures  over all of the time in which any row collects
+  Rows(const ShutterConfig& config, int height, int pictures)
+      : height_(height),
+        pictures_(pictures),
+        readout_s_(config.rolling_shutter_on ? config.readout_s : 0.0),
+        exposure_s_(config.motion_blur_on ? config.exposure_s : 0.0),
+        step_s_(duration_s(config) / pictures) {
+    // Between two pictures an instantaneous row blends them.
+    exposure_s_ = std::max(exposure_s_, step_s_);
+  }
+
+  static double duration_s(const ShutterConfig& config) {
+    return (config.rolling_shutter_on ? config.readout_s : 0.0) +
+           (config.motion_blur_on ? config.exposure_s : 0.0);
+  }
+  /// The middle of picture k's share of the time, s after the stamp.
+  double time_s(int k) const { return (k + 0.5 - 0.5 * pictures_) * step_s_; }
+  /// What part of row y's light picture k stands for, as seconds.
+  double overlap_s(int k, int y) const {
+    const double middle = ((y + 0.5) / height_ - 0.5) * readout_s_;
+    const double begin = std::max(middle - 0.5 * exposure_s_, time_s(k) - 0.5 * step_s_);
+    const double end = std::min(middle + 0.5 * exposure_s_, time_s(k) + 0.5 * step_s_);
+    return std::max(0.0, end - begin);
+  }
+  double weight(int k, int y) const {
+    double sum = 0.0;
+    for (int j = 0; j < pictures_; ++j) sum += overlap_s(j, y);
+    return overlap_s(k, y) / sum;
+  }
+
+ private:
+  int height_, pictures_;
+  double readout_s_, exposure_s_, step_s_;
+};
+
+/// Sums pictures of rows in linear light.
+class LightSum {
+ public:
+  explicit LightSum(const Grid2d<Rgb8>& like)
+      : width_(like.width()), light_(3 * like.size(), 0.0F) {}
+
+  void add_row(int y, std::span<const Rgb8> colour, float weight) {
+    float* out =
+        light_.data() + 3U * static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+    for (const Rgb8& c : colour) {
+      *out++ += weight * srgb_to_linear(c.r);
+      *out++ += weight * srgb_to_linear(c.g);
+      *out++ += weight * srgb_to_linear(c.b);
+    }
+  }
+  void write(Grid2d<Rgb8>& colour) const {
+    const float* in = light_.data();
+    for (Rgb8& c : colour) {
+      c = {linear_to_srgb(in[0]), linear_to_srgb(in[1]), linear_to_srgb(in[2])};
+      in += 3;
+    }
+  }
+
+ private:
+  int width_;
+  std::vector<float> light_;
+};
+
+}  // namespace
+
+SE3 pose_at(const Trajectory& path, std::size_t i, double after_s) {
+  assert(i < path.size());
+  while (after_s > 0.0 && i + 1 < path.size() && after_s > seconds_between(path[i], path[i + 1])) {
+    after_s -= seconds_between(path[i], path[i + 1]);
+    ++i;
+  }
+  while (after_s < 0.0 && i > 0) {
+    --i;
+    after_s += seconds_between(path[i], path[i + 1]);
+  }
+  if (after_s <= 0.0 || i + 1 >= path.size()) return path[i].world_from_camera;
+  const SE3 &from = path[i].world_from_camera, &to = path[i + 1].world_from_camera;
+  const double share = after_s / seconds_between(path[i], path[i + 1]);
+  return from * SE3::exp(share * (from.inverse() * to).log());
+}
+
+Trajectory arriving_frames(const Trajectory& path, const SensorConfig& config,
+                           RandomStream stream) {
+  Trajectory arriving;
+  for (std::size_t i = 0; i < path.size(); ++i)
+    if (stream.fork(kDropped).uniform(i) >= config.dropped_share) arriving.push_back(path[i]);
+  if (arriving.empty()) arriving.push_back(path.front());
+  return arriving;
+}
+
+Camera with_lens(Camera camera, const SensorConfig& config) {
+  if (config.lens_distortion_on) camera.distortion = config.lens_distortion;
+  return camera;
+}
+
+Shutter::Shutter(std::shared_ptr<const Renderer> renderer, const Camera& camera, Trajectory path,
+                 const SensorConfig& config)
+    : renderer_(std::move(renderer)),
+      camera_(with_lens(camera, config)),
+      lens_(camera_),
+      path_(std::move(path)),
+      config_(config) {
+  assert(renderer_ != nullptr && !path_.empty());
+  if (config_.auto_exposure_on) gains_ = exposure_gains();
+}
+
+Shutter::Exposed Shutter::expose(std::size_t i) const {
+  assert(i < path_.size());
+  RenderedFrame picture = render(path_[i].world_from_camera);
+  blur(picture, i);
+  if (config_.depth_offset_s != 0.0)
+    picture.depth_m = render(pose_at(path_, i, config_.depth_offset_s)).depth_m;
+  return {lens_.bend(std::move(picture)), gains_.empty() ? 1.0 : gains_[i]};
+}
+
+RenderedFrame Shutter::render(const SE3& world_from_camera) const {
+  return renderer_->render(lens_.pinhole(), world_from_camera);
+}
+
+void Shutter::blur(RenderedFrame& picture, std::size_t i) const {
+  const ShutterConfig& config = config_.shutter;
+  const double duration_s = Rows::duration_s(config);
+  if (duration_s <= 0.0) return;
+  const Camera& camera = lens_.pinhole();
+  const double motion_px =
+      farthest_motion_px(camera, picture.depth_m, path_[i].world_from_camera,
+                         pose_at(path_, i, -0.5 * duration_s), pose_at(path_, i, 0.5 * duration_s));
+  int pictures = static_cast<int>(std::ceil(motion_px / config.step_px));
+  if (pictures <= 1) return;
+  // An odd number of them has the picture that is there already in its middle.
+  pictures = std::min(pictures | 1, config.max_pictures | 1);
+
+  const Rows rows(config, camera.height_px, pictures);
+  LightSum sum(picture.colour);
+  for (int k = 0; k < pictures; ++k) {
+    int first = 0, last = camera.height_px;
+    while (first < last && rows.overlap_s(k, first) <= 0.0) ++first;
+    while (last > first && rows.overlap_s(k, last - 1) <= 0.0) --last;
+    if (first == last) continue;
+    const bool middle = k == pictures / 2;
+    Camera strip = camera;
+    strip.height_px = last - first;
+    strip.cy_px -= first;
+    Grid2d<Rgb8> colour;
+    if (!middle) colour = renderer_->render(strip, pose_at(path_, i, rows.time_s(k))).colour;
+    for (int y = first; y < last; ++y)
+      sum.add_row(y, middle ? picture.colour.row(y) : std::as_const(colour).row(y - first),
+                  static_cast<float>(rows.weight(k, y)));
+  }
+  sum.write(picture.colour);
+}
+
+std::vector<double> Shutter::exposure_gains() const {
+  // A light meter needs no detail.
+  constexpr int kWidth = 40, kHeight = 30;
+  Camera meter = camera_;
+  meter.width_px = kWidth, meter.height_px = kHeight;
+  meter.fx_px *= static_cast<double>(kWidth) / camera_.width_px;
+  meter.cx_px = (camera_.cx_px + 0.5) * kWidth / camera_.width_px - 0.5;
+  meter.fy_px *= static_cast<double>(kHeight) / camera_.height_px;
+  meter.cy_px = (camera_.cy_px + 0.5) * kHeight / camera_.height_px - 0.5;
+  const AutoExposureConfig& config = config_.auto_exposure;
+  const double limit = std::log(config.max_gain);
+  std::vector<double> gains;
+  double log_gain = 0.0;
+  for (std::size_t i = 0; i < path_.size(); ++i) {
+    double mean = 0.0;
+    for (const Rgb8& c : renderer_->render(meter, path_[i].world_from_camera).colour)
+      mean += luminance(srgb_to_linear(c)) / (kWidth * kHeight);
+    const double wanted = std::clamp(std::log(config.target / std::max(mean, 1e-6)), -limit, limit);
+    // The first frame finds the control at rest.
+    const double share =
+        i == 0 || config.time_constant_s <= 0.0
+            ? 1.0
+            : 1.0 - std::exp(-seconds_between(path_[i - 1], path_[i]) / config.time_constant_s);
+    log_gain += share * (wanted - log_gain);
+    gains.push_back(std::exp(log_gain));
+  }
+  return gains;
+}
+
+}  // namespace mh

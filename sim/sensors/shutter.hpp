@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sim/render/renderer.hpp"
+#include "sim/sensors/lens.hpp"
+#include "sim/sensors/sensors.hpp"
+#include "slam/core/trajectory.hpp"
+
+namespace mh {
+
+/// Where the camera was a moment after (or before) a stamp of its path: between two poses it moves
+/// by a constant twist; before the first and after the last it rests.
+SE3 pose_at(const Trajectory& path, std::size_t i, double after_s);
+
+/// The frames of a path that arrive. Draws are keyed by the frame's index.
+Trajectory arriving_frames(const Trajectory& path, const SensorConfig& config, RandomStream stream);
+
+/// Takes the pictures along a path: what falls on the sensors during each frame, before their
+/// noise. Frame i is a pure function of i. Safe to use from several threads.
+class Shutter {
+ public:
+  /// @param renderer  of the scene; shared, one serves every path
+  /// @param path      world_from_camera, at least one pose
+  Shutter(std::shared_ptr<const Renderer> renderer, const Camera& camera, Trajectory path,
+          const SensorConfig& config);
+
+  struct Exposed {
+    RenderedFrame seen;  ///< depth, classes and instances of the stamp (depth: plus its offset)
+    double gain = 1.0;   ///< of the exposure control, not yet applied
+  };
+  Exposed expose(std::size_t i) const;
+
+  const Trajectory& path() const { return path_; }
+  /// The camera as SLAM should know it: with the lens that the level puts before it.
+  const Camera& camera() const { return camera_; }
+
+ private:
+  RenderedFrame render(const SE3& world_from_camera) const;
+  void blur(RenderedFrame& picture, std::size_t i) const;
+  std::vector<double> exposure_gains() const;
+
+  std::shared_ptr<const Renderer> renderer_;  // shared: one BVH serves every path of a scene
+  Camera camera_;
+  Lens lens_;
+  Trajectory path_;
+  SensorConfig config_;
+  std::vector<double> gains_;  // by frame; empty without exposure control
+};
+
+/// The camera with the distortion that a level puts before it.
+Camera with_lens(Camera camera, const SensorConfig& config);
+
+}  // namespace mh

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/render/colour.hpp"
+#include "sim/sensors/lens.hpp"
+#include "sim/sensors/sensors.hpp"
+
+namespace mh {
+namespace {
+
+RenderedFrame grey_frame(std::uint8_t grey, const Camera& camera = {}) {
+  const int w = camera.width_px, h = camera.height_px;
+  return {{w, h, {grey, grey, grey}}, {w, h, 2.0F}, {w, h, 1}, {w, h, 1}};
+}
+
+SensorConfig nothing() {
+  SensorConfig config;
+  config.depth_noise_on = config.colour_noise_on = false;
+  return config;
+}
+
+struct Moments {
+  double n = 0, sum = 0, square = 0;
+  void add(double x) { n += 1, sum += x, square += x * x; }
+  double mean() const { return sum / n; }
+  double sigma() const { return std::sqrt(square / n - mean() * mean()); }
+};
+
+Moments light_of(const Grid2d<Rgb8>& colour) {
+  Moments moments;
+  for (const Rgb8& c : colour) moments.add(srgb_to_linear(c.g));
+  return moments;
+}
+
+TEST(ShotNoise, SignalToNoiseIsThatOfTheElectrons) {
+  for (const double gain : {1.0, 8.0})
+    for (const int grey : {60, 118, 188}) {
+      SensorConfig config = nothing();
+      config.shot_noise_on = true;
+      config.shot_noise.gain = gain;
+      const RenderedFrame truth = grey_frame(static_cast<std::uint8_t>(grey));
+      const Moments seen = light_of(sense(truth, {}, config, RandomStream(1), 0).colour);
+      const double light = srgb_to_linear(static_cast<std::uint8_t>(grey));
+      const double well = 3981.0 / gain, electrons = light * well;
+      const double sigma = std::sqrt(electrons + 1.6 * 1.6) / well;
+      // Rounding to 8 bits adds a twelfth of a squared grey level.
+      const double level = srgb_to_linear(static_cast<std::uint8_t>(grey + 1)) - light;
+      const double rounded = std::sqrt(sigma * sigma + level * level / 12.0);
+      EXPECT_NEAR(seen.sigma(), rounded, 0.02 * rounded) << grey << " at gain " << gain;
+      EXPECT_NEAR(seen.mean(), light, 0.01 * light) << grey << " at gain " << gain;
+    }
+  // The published figures: 36 dB at a full well, 68 dB between a full well and the read noise.
+  const ShotNoiseConfig published;
+  EXPECT_NEAR(20.0 * std::log10(std::sqrt(published.well_e)), 36.0, 0.05);
+  EXPECT_NEAR(20.0 * std::log10(published.well_e / published.read_noise_e), 68.0, 0.2);
+}
+
+TEST(Vignetting, FallsOffWithTheFourthPowerOfTheCosine) {
+  SensorConfig config = nothing();
+  config.vignetting_on = true;
+  const Camera camera;
+  const RgbdFrame frame = sense(grey_frame(200), camera, config, RandomStream(1), 0);
+  const double light = srgb_to_linear(200);
+  for (const auto& [x, y] : {std::pair(319, 239), std::pair(0, 0), std::pair(600, 100)}) {
+    const double cosine = camera.unproject(x, y, 1.0).normalized().z();
+    const double expected = light * std::pow(cosine, 4);
+    EXPECT_NEAR(srgb_to_linear(frame.colour(x, y).r), expected, 0.006) << x << " " << y;
+  }
+  config.vignetting.strength = 0.0;
+  EXPECT_EQ(sense(grey_frame(200), camera, config, RandomStream(1), 0).colour(0, 0),
+            (Rgb8{200, 200, 200}));
+}
+
+TEST(Gain, MultipliesLinearLight) {
+  const RgbdFrame frame = sense(grey_frame(100), {}, nothing(), RandomStream(1), 0, 2.0);
+  EXPECT_NEAR(srgb_to_linear(frame.colour(5, 5).g), 2.0 * srgb_to_linear(100), 0.004);
+  EXPECT_EQ(sense(grey_frame(250), {}, nothing(), RandomStream(1), 0, 2.0).colour(5, 5).g, 255);
+}
+
+Camera pepper_top() {
+  Camera camera;  // naoqi_driver's calibration of Pepper's upper camera
+  camera.fx_px = 556.845, camera.fy_px = 555.899;
+  camera.cx_px = 309.367, camera.cy_px = 230.592;
+  camera.distortion = {-0.05452, 0.06920, -0.00241, -0.00112, 0.0};
+  return camera;
+}
+
+TEST(Lens, UndistortingIsTheInverseOfDistorting) {
+  Camera strong = pepper_top();
+  strong.distortion = {-0.3, 0.1, 0.002, -0.001, -0.01};
+  for (const Camera& camera : {pepper_top(), strong})
+    for (int y = 0; y < 480; y += 60)
+      for (int x = 0; x < 640; x += 60) {
+        const Eigen::Vector2d back = distort_px(camera, undistort_px(camera, {x, y}));
+        ASSERT_NEAR(back.x(), x, 1e-6);
+        ASSERT_NEAR(back.y(), y, 1e-6);
+      }
+}
+
+TEST(Lens, EveryPixelShowsWhatItsRayMeets) {
+  Camera camera = pepper_top();
+  camera.distortion = {-0.25, 0.05, 0.001, -0.002, 0.0};
+  const Lens lens(camera);
+  const Camera& wide = lens.pinhole();
+  EXPECT_GT(wide.width_px, camera.width_px);  // a barrel draws in what lies outside
+  // A picture that tells where its rays went.
+  RenderedFrame picture = grey_frame(0, wide);
+  for (int y = 0; y < wide.height_px; ++y)
+    for (int x = 0; x < wide.width_px; ++x) {
+      picture.depth_m(x, y) = static_cast<float>(3.0 + wide.unproject(x, y, 1.0).x());
+      picture.colour(x, y).g = static_cast<std::uint8_t>(128 + 90 * wide.unproject(x, y, 1.0).y());
+    }
+  const RenderedFrame bent = lens.bend(picture);
+  ASSERT_EQ(bent.colour.width(), camera.width_px);
+  for (int y = 0; y < 480; y += 7)
+    for (int x = 0; x < 640; x += 7) {
+      const Eigen::Vector2d ray = undistort_px(camera, {x, y});
+      ASSERT_NEAR(bent.depth_m(x, y), 3.0 + ray.x(), 0.51 / camera.fx_px + 1e-5);
+      ASSERT_NEAR(bent.colour(x, y).g, 128 + 90 * ray.y(), 1.1);
+    }
+}
+
+TEST(Lens, WithoutDistortionNothingChanges) {
+  const Lens lens{Camera{}};
+  EXPECT_EQ(lens.pinhole(), Camera{});
+  const RenderedFrame picture = grey_frame(77);
+  EXPECT_EQ(lens.bend(picture).colour, picture.colour);
+}
+
+TEST(BlankFrames, ComeAtTheirRateWithoutDepthColourAndLabels) {
+  Camera small;
+  small.width_px = 32, small.height_px = 24, small.cx_px = 15.5, small.cy_px = 11.5;
+  SensorConfig config = nothing();
+  config.blank_share = 0.25;
+  const RenderedFrame truth = grey_frame(120, small);
+  int blank = 0;
+  for (std::uint64_t i = 0; i < 4000; ++i) {
+    const RandomStream stream = RandomStream(1).fork(i);
+    const RgbdFrame frame = sense(truth, small, config, stream, 0);
+    const SemanticImage labels = sense_labels(truth, LabelMode::kExact, config, SE3(), stream);
+    const bool dark = frame.colour(3, 3) == Rgb8{};
+    ASSERT_EQ(dark, frame.depth_m(3, 3) == 0.0F);
+    ASSERT_EQ(dark, labels.index.empty());
+    blank += dark;
+  }
+  EXPECT_NEAR(blank, 1000, 4.0 * std::sqrt(4000 * 0.25 * 0.75));
+}
+
+}  // namespace
+}  // namespace mh

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/sensors/shutter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/render/colour.hpp"
+
+namespace mh {
+namespace {
+
+constexpr double kDepthM = 2.0;
+
+Camera small_camera() {
+  Camera camera;
+  camera.width_px = 160, camera.height_px = 120;
+  camera.fx_px = camera.fy_px = 130.0;
+  camera.cx_px = 79.5, camera.cy_px = 59.5;
+  return camera;
+}
+
+/// A wall at a depth of 2 m, white where world x < 0 and black beyond, smooth over one pixel. The
+/// depth tells the camera's world y. Counts the rows that it renders.
+class Edge : public Renderer {
+ public:
+  RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
+    const int w = camera.width_px, h = camera.height_px;
+    RenderedFrame frame{{w, h}, {w, h, static_cast<float>(kDepthM)}, {w, h, 1}, {w, h, 1}};
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x) {
+        const Eigen::Vector3d p = world_from_camera * camera.unproject(x, y, kDepthM);
+        const double white = 0.5 - p.x() / kDepthM * camera.fx_px;
+        const std::uint8_t grey = linear_to_srgb(static_cast<float>(white));
+        frame.colour(x, y) = {grey, grey, grey};
+        frame.depth_m(x, y) = static_cast<float>(kDepthM + world_from_camera.translation().y());
+      }
+    rows += h;
+    return frame;
+  }
+  mutable long rows = 0;
+};
+
+/// Frames at 30 Hz with the camera moving along x.
+Trajectory sliding(double speed_m_per_s, int frames = 5) {
+  Trajectory path;
+  for (int i = 0; i < frames; ++i) {
+    const Stamp stamp = i * Stamp{33'333'333};
+    path.push_back(
+        {stamp, SE3(Eigen::Matrix3d::Identity(),
+                    {speed_m_per_s * (static_cast<double>(stamp) * 1e-9 - 0.066666666), 0, 0})});
+  }
+  return path;
+}
+
+SensorConfig blurring(double exposure_s) {
+  SensorConfig config;
+  config.shutter.motion_blur_on = true;
+  config.shutter.exposure_s = exposure_s;
+  config.shutter.step_px = 0.25;
+  config.shutter.max_pictures = 301;
+  return config;
+}
+
+/// The width over which an edge was smeared: a uniform smear has a variance of width^2 / 12, to
+/// which a pixel's area and the sampling by pixels add 1/12 each.
+double smear_px(const Grid2d<Rgb8>& colour, int y) {
+  double mean = 0.0, square = 0.0;
+  for (int x = 0; x + 1 < colour.width(); ++x) {
+    const double drop = srgb_to_linear(colour(x, y).r) - srgb_to_linear(colour(x + 1, y).r);
+    mean += drop * x;
+    square += drop * x * x;
+  }
+  return std::sqrt(std::max(0.0, 12.0 * (square - mean * mean) - 2.0));
+}
+
+/// Where the edge stands in a row: as many pixels as there is light.
+double edge_px(const Grid2d<Rgb8>& colour, int y) {
+  double light = 0.0;
+  for (const Rgb8& c : colour.row(y)) light += srgb_to_linear(c.r);
+  return light;
+}
+
+TEST(MotionBlur, LengthIsFocalLengthTimesSpeedTimesExposureOverDepth) {
+  const auto scene = std::make_shared<Edge>();
+  for (const double speed : {0.3, 0.55, 2.0})
+    for (const double exposure_s : {0.010, 0.033}) {
+      const Shutter shutter(scene, small_camera(), sliding(speed), blurring(exposure_s));
+      const double expected = 130.0 * speed * exposure_s / kDepthM;
+      EXPECT_NEAR(smear_px(shutter.expose(2).seen.colour, 60), expected, 0.1 + 0.02 * expected)
+          << speed << " m/s, " << exposure_s << " s";
+    }
+}
+
+TEST(MotionBlur, IsTheMeanInLinearLight) {
+  // Half of the exposure on white, half on black: sRGB 188, not 128.
+  const Shutter shutter(std::make_shared<Edge>(), small_camera(), sliding(2.0), blurring(0.030));
+  const Grid2d<Rgb8> colour = shutter.expose(2).seen.colour;
+  EXPECT_EQ(colour(20, 60).r, 255);
+  EXPECT_EQ(colour(140, 60).r, 0);
+  EXPECT_NEAR((colour(79, 60).r + colour(80, 60).r) / 2.0, 188, 6);
+}
+
+TEST(MotionBlur, ACameraAtRestSeesTheExactPictureAndRendersItOnce) {
+  const auto scene = std::make_shared<Edge>();
+  SensorConfig config = blurring(0.033);
+  config.shutter.rolling_shutter_on = true;
+  const Shutter shutter(scene, small_camera(), sliding(0.0), config);
+  const RenderedFrame seen = shutter.expose(2).seen;
+  EXPECT_EQ(scene->rows, 120);
+  EXPECT_EQ(seen.colour, scene->render(small_camera(), SE3()).colour);
+}
+
+TEST(MotionBlur, LeavesDepthClassesAndInstancesAtTheStamp) {
+  const auto scene = std::make_shared<Edge>();
+  const Trajectory path = sliding(2.0);
+  const RenderedFrame seen = Shutter(scene, small_camera(), path, blurring(0.033)).expose(1).seen;
+  const RenderedFrame exact = scene->render(small_camera(), path[1].world_from_camera);
+  EXPECT_EQ(seen.depth_m, exact.depth_m);
+  EXPECT_EQ(seen.classes, exact.classes);
+  EXPECT_NE(seen.colour, exact.colour);
+}
+
+TEST(RollingShutter, SlantsAnUprightEdgeBySpeedTimesReadout) {
+  SensorConfig config;
+  config.shutter.rolling_shutter_on = true;
+  config.shutter.readout_s = 0.030;
+  config.shutter.step_px = 0.25;
+  config.shutter.max_pictures = 301;
+  const auto scene = std::make_shared<Edge>();
+  for (const double speed : {-1.5, 0.8, 1.5}) {
+    const Shutter shutter(scene, small_camera(), sliding(speed), config);
+    const Grid2d<Rgb8> colour = shutter.expose(2).seen.colour;
+    // The camera moves to the right, so what stands still moves to the left, row after row.
+    const double expected = -130.0 * speed * 0.030 / kDepthM * 119.0 / 120.0;
+    EXPECT_NEAR(edge_px(colour, 119) - edge_px(colour, 0), expected, 0.5) << speed;
+    EXPECT_NEAR(edge_px(colour, 60), 80.0, 0.6) << speed;  // the middle row is that of the stamp
+    for (int y = 0; y < 120; ++y) ASSERT_LT(smear_px(colour, y), 1.2);  // sharp in each row
+  }
+}
+
+TEST(RollingShutter, AloneCostsAboutOnePictureMore) {
+  const auto scene = std::make_shared<Edge>();
+  SensorConfig config;
+  config.shutter.rolling_shutter_on = true;
+  config.shutter.step_px = 0.5;
+  const Shutter shutter(scene, small_camera(), sliding(2.0), config);
+  shutter.expose(2);
+  EXPECT_LE(scene->rows, 120 * 4);  // the exact one, and each row of the others about twice
+  EXPECT_GE(scene->rows, 120 * 2);
+}
+
+TEST(Shutter, IsAPureFunctionOfTheFrame) {
+  SensorConfig config = blurring(0.02);
+  config.auto_exposure_on = true;
+  const Shutter shutter(std::make_shared<Edge>(), small_camera(), sliding(1.0, 9), config);
+  const auto first = shutter.expose(5);
+  shutter.expose(1);
+  const auto again = shutter.expose(5);
+  EXPECT_EQ(first.seen.colour, again.seen.colour);
+  EXPECT_EQ(first.gain, again.gain);
+}
+
+TEST(Shutter, PosesBetweenFramesLieOnAConstantTwist) {
+  Trajectory path = sliding(1.0, 3);
+  path[2].world_from_camera =
+      path[1].world_from_camera *
+      SE3(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitY()).toRotationMatrix(), {0.1, 0, 0});
+  EXPECT_NEAR(pose_at(path, 1, 0.0).translation().x(), path[1].world_from_camera.translation().x(),
+              1e-15);
+  EXPECT_NEAR(pose_at(path, 0, 0.010).translation().x(), -0.066666666 + 0.010, 1e-9);
+  EXPECT_NEAR(pose_at(path, 2, -0.0166666665).rotation()(0, 2), std::sin(0.2), 1e-6);
+  EXPECT_NEAR(
+      angle_between_rad(pose_at(path, 0, 0.0333333333 + 0.00833333), path[1].world_from_camera),
+      0.1, 1e-5);
+  // Beyond the ends it rests.
+  EXPECT_EQ(pose_at(path, 0, -1.0).translation(), path[0].world_from_camera.translation());
+  EXPECT_EQ(pose_at(path, 2, 1.0).translation(), path[2].world_from_camera.translation());
+}
+
+TEST(DepthOffset, DepthIsThatOfAnotherMomentAndColourIsNot) {
+  Trajectory path = sliding(0.0, 5);
+  for (std::size_t i = 0; i < path.size(); ++i)
+    path[i].world_from_camera =
+        SE3(Eigen::Matrix3d::Identity(), {0, 0.3 * static_cast<double>(i), 0});
+  SensorConfig config;
+  config.depth_offset_s = 0.010;
+  const RenderedFrame seen =
+      Shutter(std::make_shared<Edge>(), small_camera(), path, config).expose(1).seen;
+  EXPECT_NEAR(seen.depth_m(5, 5), kDepthM + 0.3 + 0.3 * 0.3, 1e-4);
+  EXPECT_EQ(seen.colour, Edge().render(small_camera(), path[1].world_from_camera).colour);
+}
+
+/// Everything has one grey, lighter where the camera has gone beyond x = 0.
+class Lamp : public Renderer {
+ public:
+  RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
+    const int w = camera.width_px, h = camera.height_px;
+    const std::uint8_t grey = linear_to_srgb(world_from_camera.translation().x() < 0 ? 0.1F : 0.3F);
+    return {{w, h, {grey, grey, grey}}, {w, h, 2.0F}, {w, h, 1}, {w, h, 1}};
+  }
+};
+
+TEST(AutoExposure, TheGainNearsItsGoalExponentially) {
+  SensorConfig config;
+  config.auto_exposure_on = true;
+  config.auto_exposure.target = 0.15;
+  config.auto_exposure.time_constant_s = 0.2;
+  const Trajectory path = sliding(1.0, 40);  // frame 2 stands at x = 0, or a hair beside it
+  const Shutter shutter(std::make_shared<Lamp>(), small_camera(), path, config);
+  EXPECT_NEAR(shutter.expose(0).gain, 1.5, 0.02);
+  EXPECT_NEAR(shutter.expose(39).gain, 0.5, 0.02);
+  std::size_t first_bright = 0;
+  while (path[first_bright].world_from_camera.translation().x() < 0) ++first_bright;
+  for (const std::size_t later : {0U, 3U, 6U, 12U}) {
+    const double elapsed_s = (static_cast<double>(later) + 1.0) / 30.0;
+    const double expected = 0.5 * std::pow(3.0, std::exp(-elapsed_s / 0.2));
+    EXPECT_NEAR(shutter.expose(first_bright + later).gain, expected, 0.02) << later;
+  }
+}
+
+TEST(AutoExposure, StaysWithinItsLimits) {
+  SensorConfig config;
+  config.auto_exposure_on = true;
+  config.auto_exposure.target = 0.9;
+  config.auto_exposure.max_gain = 2.0;
+  const Shutter shutter(std::make_shared<Lamp>(), small_camera(), sliding(0.0), config);
+  EXPECT_NEAR(shutter.expose(0).gain, 2.0, 1e-9);
+}
+
+TEST(DroppedFrames, GoMissingAtTheirRateAndTheSameOnesEachTime) {
+  const Trajectory path = sliding(0.0, 4000);
+  SensorConfig config;
+  EXPECT_EQ(arriving_frames(path, config, RandomStream(1)).size(), 4000U);
+  config.dropped_share = 0.2;
+  const Trajectory arrived = arriving_frames(path, config, RandomStream(1));
+  EXPECT_NEAR(static_cast<double>(arrived.size()), 3200.0, 4.0 * std::sqrt(4000 * 0.16));
+  for (std::size_t i = 1; i < arrived.size(); ++i)
+    ASSERT_LT(arrived[i - 1].stamp_ns, arrived[i].stamp_ns);
+  EXPECT_EQ(arriving_frames(path, config, RandomStream(1)).size(), arrived.size());
+  config.dropped_share = 1.0;
+  EXPECT_EQ(arriving_frames(path, config, RandomStream(1)).size(), 1U);  // never nothing at all
+}
+
+}  // namespace
+}  // namespace mh
