@@ -55,8 +55,10 @@ class OutsideOdometry : public testing::Test {
     return c;
   }
   static RgbdFrame frame(std::size_t index, RandomStream noise) {
-    return sense(renderer_->render(camera(), path_[index].world_from_camera), camera(), {},
-                 LabelMode::kExact, noise.fork(index), path_[index].stamp_ns);
+    const RenderedFrame exact = renderer_->render(camera(), path_[index].world_from_camera);
+    RgbdFrame seen = sense(exact, camera(), {}, noise.fork(index), path_[index].stamp_ns);
+    seen.semantics = label_image(exact, LabelMode::kExact);
+    return seen;
   }
   std::unique_ptr<System> converse() const {
     return make_conversation_system({.name = "vo",
