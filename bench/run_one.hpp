@@ -1,33 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <functional>
+#include <memory>
 
 #include "bench/results/run_result.hpp"
-#include "bench/world/frame_studio.hpp"
-#include "robots/model/robot.hpp"
+#include "bench/systems/system.hpp"
+#include "bench/world/world.hpp"
 
 namespace mh {
-
-/// Where one run's frames come from, and what else it needs to know of its place.
-struct RunPlace {
-  FrameStudio& mapping;
-  FrameStudio* second_tour = nullptr;  ///< may be null
-  const Robot& robot;
-};
 
 /// Seam for the test of `verify`: may change a frame before the system sees it, or an answer before
 /// anybody else does. Empty in every real run.
 struct RunTamper {
-  std::function<void(const RunSpec&, std::size_t index, RgbdFrame&)> frame;
-  std::function<void(const RunSpec&, std::size_t index, StepReport&)> report;
+  std::function<void(std::size_t index, RgbdFrame&)> frame;
+  std::function<void(std::size_t call, StepReport&)> report;  ///< of track calls
+};
+
+/// The system of a run: our own SLAM with the run's settings, or an outside program in
+/// conversation; null for one that is run over a recorded folder instead.
+/// @param folder  for the log of an outside program
+/// @throws InputError if settings are out of range; OutsideError if the program does not start.
+std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
+                                    const std::filesystem::path& folder);
+
+/// What a run is given beside its spec and world; none of it changes a result.
+struct RunTools {
+  std::filesystem::path folder = ".";  ///< exists; an outside program's files go there
+  /// Told how much of the work is done, in [0, 1]; a rewind takes nothing back.
+  std::function<void(double)> progress = [](double) {};
+  /// Makes the system in make_system()'s place: for tests.
+  std::function<std::unique_ptr<System>(const RunSpec&, const World&)> system = {};
+  RunTamper tamper = {};
 };
 
 /// One run from the first frame to the last query: map the tour, freeze, score the trajectory, put
-/// the queries, build the occupancy map.
-/// @param advance  called before each frame with the number of the piece of work
-RunResult run_one(const RunSpec& spec, const Suite& suite, std::unique_ptr<System> system,
-                  const RunPlace& place, const std::function<void(std::size_t)>& advance,
-                  const RunTamper& tamper = {});
+/// the queries under each parameter point, build the occupancy map.
+RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools);
 
 }  // namespace mh

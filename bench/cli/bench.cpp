@@ -7,6 +7,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/results/json.hpp"
+#include "bench/results/table.hpp"
 #include "bench/results/write.hpp"
 #include "bench/run.hpp"
 #include "slam/core/files.hpp"
@@ -28,28 +29,34 @@ void run(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   SuiteOverrides overrides;
   overrides.trials = options.trials;
+  overrides.max_frames = options.frames;
   if (options.scene) overrides.scene = *options.scene;
   const Suite suite = load_suite(options.suite, overrides);
   const std::filesystem::path out = options.out.empty() ? std::filesystem::path("out") / suite.name
                                                         : std::filesystem::path(options.out);
   make_output_folder(out);  // before the work: a folder that cannot be written costs no minutes
+  remove_older_results(out);
 
   Progress progress("bench");
   const RunOptions run_options{.jobs = options.jobs,
-                               .max_frames = options.frames,
                                .say = [&](std::string_view stage) { progress.say(stage); },
-                               .progress = [&](double share) { progress.share(share); }};
-  const World world = build_world(suite, options.frames, options.jobs, run_options.say);
-  progress.say(
-      fmt::format("{} runs of {} frames", expand(suite).size(), world.mapping.camera.size()));
-  const std::vector<RunResult> runs = run_all(suite, world, run_options);
+                               .progress = [&](double share) { progress.share(share); },
+                               .finished =
+                                   [&](const World& world, RunResult& run) {
+                                     write_run(out / run.spec.name, world, run);
+                                     const auto views = out / "views.png";
+                                     if (!exists(views)) write_views(views, world);
+                                     run.volume.reset();
+                                   }};
+  const std::vector<RunResult> runs = run_all(suite, run_options);
   const auto wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start);
-  const std::string table = write_results(out, suite, world, runs, wall.count());
+  const std::string table = write_results(out, suite, runs, wall.count());
   if (options.json) {
-    fmt::print("{}\n", results_json(suite, world, runs).dump(2));
+    fmt::print("{}\n", results_json(suite, runs).dump(2));
     return;
   }
-  fmt::print("{}\nresults in {} ({})\n", table, out.string(), readable_time(wall.count()));
+  fmt::print("{}\n{}\nresults in {} ({})\n", table, times_table(suite, runs), out.string(),
+             readable_time(wall.count()));
 }
 
 }  // namespace

@@ -53,10 +53,11 @@ void print_table(const Verification& v) {
 }
 
 void run(const Options& options) {
-  const Suite suite = load_suite(options.suite);
+  SuiteOverrides overrides;
+  overrides.max_frames = options.frames;
+  const Suite suite = load_suite(options.suite, overrides);
   Progress progress("verify");
   RunOptions run_options;
-  run_options.max_frames = options.frames;
   run_options.say = [&](std::string_view stage) { progress.say(stage); };
   run_options.progress = [&](double share) { progress.share(share); };
   const Verification v = verify(suite, run_options);

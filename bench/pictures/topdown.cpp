@@ -174,20 +174,19 @@ void draw_legend(Canvas& canvas, double y) {
   second.entry("map: occupied", patch(kMapOccupied));
 }
 
-void draw_header(Canvas& canvas, const Suite& suite, const World& world, const RunResult& run,
-                 QuerySet set) {
-  canvas.text(fmt::format("{}: {} system{}{}", suite.name, name(run.spec.system),
-                          run.spec.system == SystemKind::kPlain
+void draw_header(Canvas& canvas, const World& world, const RunResult& run, QuerySet set) {
+  canvas.text(fmt::format("{}: {} system{}{}", run.spec.environment.name, run.spec.system.name,
+                          run.spec.system.kind == SystemKind::kPlain
                               ? ""
                               : fmt::format(", {} labels", name(run.spec.labels)),
-                          world.frames ? fmt::format(", first {} frames", *world.frames) : ""),
+                          world.cut ? fmt::format(", first {} frames", *run.spec.max_frames) : ""),
               {kMargin, 38}, 17, kInk, Canvas::Align::kLeft, true);
-  const QuerySummary s = summarize(queries(run, set));
+  const QuerySummary s = summarize(queries(run.points.front(), set));
   const std::optional<double>& ate = run.trajectory.ate_rmse_m;
   canvas.text(
       fmt::format("level {}, trial {}; {} {:.1f} m driven; {} queries ({}): {:.1f} % answered, "
                   "{:.1f} % correct; ATE {}, completeness {:.1f} %",
-                  level_name(suite.levels[run.spec.level]), run.spec.trial, world.robot.name,
+                  level_name(run.spec.level), run.spec.trial, world.robot.name,
                   world.mapping.length_m, static_cast<int>(s.queries),
                   set == QuerySet::kHeldOut ? "held-out" : "second tour", 100 * s.success,
                   100 * s.correct, ate ? fmt::format("{:.3f} m", *ate) : "-",
@@ -197,7 +196,7 @@ void draw_header(Canvas& canvas, const Suite& suite, const World& world, const R
 
 }  // namespace
 
-cv::Mat draw_topdown(const Suite& suite, const World& world, const RunResult& run, QuerySet set) {
+cv::Mat draw_topdown(const World& world, const RunResult& run, QuerySet set) {
   const Bounds bounds = area_of_interest(world);
   const std::vector<SliceSegment> walls = slice(*world.scene, kWallCut_m);
   const std::vector<SliceSegment> furniture = slice(*world.scene, kFurnitureCut_m);
@@ -210,8 +209,8 @@ cv::Mat draw_topdown(const Suite& suite, const World& world, const RunResult& ru
   draw_room_names(canvas, view, *world.scene);
   draw_path(canvas, view, world.mapping.camera, SE3(), kTruth, 2.2);
   draw_path(canvas, view, run.estimate, run.trajectory.dock_from_estimate, kEstimate, 1.1);
-  draw_queries(canvas, view, queries(run, set), run.trajectory.dock_from_estimate);
-  draw_header(canvas, suite, world, run, set);
+  draw_queries(canvas, view, queries(run.points.front(), set), run.trajectory.dock_from_estimate);
+  draw_header(canvas, world, run, set);
   const double legend_y = kHeader + plan_height + 36;
   draw_legend(canvas, legend_y);
   draw_scale_bar(canvas, view, legend_y + 28);

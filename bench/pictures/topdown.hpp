@@ -11,7 +11,8 @@ namespace mh {
 
 /// The house from above as in the paper's Figure 5c: floor plan, occupancy map of the run beneath,
 /// true and estimated path, and for each query an 'x' where the camera was and an 'o' where the
-/// system believed it to be. Estimates are drawn in the frame of the dock: drift shows.
-cv::Mat draw_topdown(const Suite& suite, const World& world, const RunResult& run, QuerySet set);
+/// system believed it to be. Estimates are drawn in the frame of the dock: drift shows. Queries are
+/// those of the run's first parameter point.
+cv::Mat draw_topdown(const World& world, const RunResult& run, QuerySet set);
 
 }  // namespace mh

@@ -1,28 +1,87 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/plan/runs.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace mh {
 
+SemanticConfig settings_of(const SystemSpec& system, const SemanticConfig& settings) {
+  switch (system.kind) {
+    case SystemKind::kSemantic:
+      return settings;
+    case SystemKind::kPlain:
+      return settings.neutralised();
+    case SystemKind::kOutside:
+      return SemanticConfig::neutral();
+  }
+  return settings;
+}
+
+std::vector<SemanticConfig> parameter_points(const Suite& suite) {
+  return suite.sweep.points.empty() ? std::vector{suite.semantics} : suite.sweep.points;
+}
+
+namespace {
+
+/// The points of the suite that differ for a system, in order.
+std::vector<SemanticConfig> points_of(const SystemSpec& system, const Suite& suite) {
+  std::vector<SemanticConfig> points;
+  for (const SemanticConfig& point : parameter_points(suite)) {
+    const SemanticConfig seen = settings_of(system, point);
+    if (std::find(points.begin(), points.end(), seen) == points.end()) points.push_back(seen);
+  }
+  return points;
+}
+
+/// What a system maps with, and the points that it answers with on that map.
+struct Study {
+  SemanticConfig mapping;
+  std::vector<SemanticConfig> points;
+};
+
+std::vector<Study> studies_of(const SystemSpec& system, const Suite& suite) {
+  std::vector<SemanticConfig> points = points_of(system, suite);
+  if (suite.sweep.map == SweepMap::kFixed)
+    return {{settings_of(system, suite.semantics), std::move(points)}};
+  std::vector<Study> studies;
+  for (const SemanticConfig& point : points) studies.push_back({point, {point}});
+  return studies;
+}
+
+}  // namespace
+
 std::vector<RunSpec> expand(const Suite& suite) {
   std::vector<RunSpec> runs;
-  const auto add = [&](SystemKind system, LabelMode labels, std::size_t level, int trial) {
-    const std::string what = system == SystemKind::kPlain
-                                 ? std::string(name(system))
-                                 : fmt::format("{}-{}", name(system), name(labels));
-    runs.push_back({system, labels, level, trial,
-                    fmt::format("{}-{}-{}", what, level_name(suite.levels[level]), trial)});
-  };
-  for (std::size_t level = 0; level < suite.levels.size(); ++level)
-    for (int trial = 0; trial < suite.trials; ++trial)
-      for (const SystemKind system : suite.systems) {
-        if (system == SystemKind::kPlain) {
-          add(system, LabelMode::kNone, level, trial);
-          continue;
+  for (const Environment& environment : suite.environments)
+    for (const auto& level : suite.levels)
+      for (int trial = 0; trial < suite.trials; ++trial)
+        for (const SystemSpec& system : suite.systems) {
+          const std::vector<Study> studies = studies_of(system, suite);
+          const std::vector<LabelMode> labels =
+              system.kind == SystemKind::kPlain ? std::vector{LabelMode::kNone} : suite.labels;
+          for (std::size_t s = 0; s < studies.size(); ++s)
+            for (const LabelMode mode : labels) {
+              std::string run = suite.environments.size() > 1 ? environment.name + "-" : "";
+              run += system.name;
+              if (system.kind != SystemKind::kPlain) run += fmt::format("-{}", name(mode));
+              run += fmt::format("-{}", level_name(level));
+              if (studies.size() > 1) run += fmt::format("-p{:02}", s);
+              runs.push_back({.name = run + fmt::format("-{}", trial),
+                              .environment = environment,
+                              .level = level,
+                              .vocabulary = suite.vocabulary,
+                              .system = system,
+                              .labels = mode,
+                              .trial = trial,
+                              .seed = suite.seed + static_cast<std::uint64_t>(trial),
+                              .mapping = studies[s].mapping,
+                              .points = studies[s].points,
+                              .protocol = suite.protocol,
+                              .max_frames = suite.max_frames});
+            }
         }
-        for (const LabelMode labels : suite.labels) add(system, labels, level, trial);
-      }
   return runs;
 }
 

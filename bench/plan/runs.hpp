@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,17 +11,34 @@
 
 namespace mh {
 
-/// One run of a suite: a system maps the tour once and answers the queries.
+/// One run: a system maps an environment once and answers the queries. Whole by itself: everything
+/// that decides the result stands here or in the files that it names.
 struct RunSpec {
-  SystemKind system = SystemKind::kSemantic;
-  LabelMode labels = LabelMode::kNone;
-  std::size_t level = 0;  ///< index into Suite::levels
-  int trial = 0;
   std::string name;  ///< unique in the suite, fit for a folder: "semantic-exact-pepper-0"
+  Environment environment;
+  std::filesystem::path level, vocabulary;
+  SystemSpec system;
+  LabelMode labels = LabelMode::kNone;
+  int trial = 0;
+  std::uint64_t seed = 0;  ///< of the trial
+  SemanticConfig mapping;  ///< settings while mapping; the plain system's are neutral
+  /// Settings of the queries: one pass over all queries for each, on the same map. At least one.
+  std::vector<SemanticConfig> points;
+  ProtocolConfig protocol;
+  std::optional<std::size_t> max_frames;
 };
 
-/// Every run, ordered by level, trial, system, labels. The plain system never looks at labels (a
-/// law with its own test), so it runs once and stands beside each kind of label.
+/// Settings as a system sees them: the plain one with the method at neutral, an outside program
+/// none.
+SemanticConfig settings_of(const SystemSpec& system, const SemanticConfig& settings);
+
+/// The parameter points of a suite: those of its sweep, else its own settings alone.
+std::vector<SemanticConfig> parameter_points(const Suite& suite);
+
+/// Every run, ordered by environment, level, trial, parameters, system, labels. The plain system
+/// never looks at labels (a law with its own test), so it runs once and stands beside each kind of
+/// label. A parameter that a system does not look at makes no more runs and no more points of it:
+/// of a sweep the plain system takes those that differ in alpha or beta, an outside program none.
 std::vector<RunSpec> expand(const Suite& suite);
 
 }  // namespace mh

@@ -8,36 +8,44 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/plan/environment.hpp"
+#include "bench/plan/parameters.hpp"
+#include "bench/plan/system_spec.hpp"
 #include "bench/protocol/config.hpp"
 #include "sim/sensors/sensors.hpp"
 #include "slam/pipeline/config.hpp"
 
 namespace mh {
 
-enum class SystemKind { kSemantic, kPlain };
-std::string_view name(SystemKind system);
 std::string_view name(LabelMode labels);
 std::string_view name(Overlap overlap);
+std::string_view name(DropReset reset);
 
-/// A benchmark as data: one place, one robot, its tours, and the grid of runs over it.
+/// A benchmark as data: the grid environments x systems x labels x levels x parameters x trials.
 struct Suite {
   std::string name;
   std::filesystem::path file;
-  std::filesystem::path scene, robot, mapping_tour, vocabulary;
-  std::optional<std::filesystem::path> query_tour;  ///< the second tour; none: held-out frames only
+  std::vector<Environment> environments;
+  std::filesystem::path vocabulary;
   std::vector<std::filesystem::path> levels;  ///< sensor settings; a level is named by its file
-  std::vector<SystemKind> systems;
+  std::vector<SystemSpec> systems;
   std::vector<LabelMode> labels;
   int trials = 1;
   std::uint64_t seed = 0;  ///< trial t uses seed + t
   SemanticConfig semantics;
+  Sweep sweep;
   ProtocolConfig protocol;
+  /// The semantic system counts as not inferior where the interval of its success minus the plain
+  /// one's stays above -margin. Stated in the suite, before anything is measured.
+  std::optional<double> non_inferiority_margin;
+  std::optional<std::size_t> max_frames;  ///< cuts the tours: for a quick look
 };
 
 /// What the command line may put in the place of a suite's own settings.
 struct SuiteOverrides {
   std::optional<std::filesystem::path> scene = {};
   std::optional<int> trials = {};
+  std::optional<std::size_t> max_frames = {};
 };
 
 /// Reads a suite (YAML); its paths are relative to its own folder and must exist.

@@ -34,37 +34,65 @@ std::string from_suite(const Suite& suite, const std::filesystem::path& file) {
   return (here / file).lexically_normal().lexically_relative(folder).generic_string();
 }
 
-Json suite_json(const Suite& suite, const World& world) {
-  const SemanticConfig& s = suite.semantics;
+Json settings_json(const SemanticConfig& s) {
+  return {{"gamma", s.gamma},           {"xi", s.xi},
+          {"alpha", s.alpha},           {"beta", s.beta},
+          {"overlap", name(s.overlap)}, {"void_is_a_label", s.void_is_a_label}};
+}
+
+Json source_json(const Suite& suite, const std::filesystem::path& source) {
+  return is_generated(source) ? source.string() : from_suite(suite, source);
+}
+
+Json environment_json(const Suite& suite, const Environment& e) {
+  return {{"name", e.name},
+          {"category", e.category},
+          {"scene", source_json(suite, e.scene)},
+          {"robot", from_suite(suite, e.robot)},
+          {"mapping_tour", source_json(suite, e.mapping_tour)},
+          {"query_tour", e.query_tour ? source_json(suite, *e.query_tour) : Json()}};
+}
+
+Json system_json(const SystemSpec& system) {
+  if (system.kind != SystemKind::kOutside) return system.name;
+  return {{"name", system.name},
+          {"command", system.outside.command},
+          {"protocol", name(system.outside.mode)}};
+}
+
+Json sweep_json(const Sweep& sweep) {
+  if (sweep.points.empty()) return nullptr;
+  Json points = Json::array();
+  for (const SemanticConfig& point : sweep.points) points.push_back(settings_json(point));
+  return {{"map", name(sweep.map)}, {"varied", sweep.varied}, {"points", points}};
+}
+
+Json suite_json(const Suite& suite) {
   const ProtocolConfig& p = suite.protocol;
   Json levels = Json::array(), systems = Json::array(), labels = Json::array();
+  Json environments = Json::array();
+  for (const Environment& e : suite.environments)
+    environments.push_back(environment_json(suite, e));
   for (const auto& level : suite.levels) levels.push_back(from_suite(suite, level));
-  for (const SystemKind system : suite.systems) systems.push_back(name(system));
+  for (const SystemSpec& system : suite.systems) systems.push_back(system_json(system));
   for (const LabelMode mode : suite.labels) labels.push_back(name(mode));
   return {{"name", suite.name},
-          {"scene", from_suite(suite, suite.scene)},
-          {"robot", from_suite(suite, suite.robot)},
-          {"mapping_tour", from_suite(suite, suite.mapping_tour)},
-          {"query_tour", suite.query_tour ? Json(from_suite(suite, *suite.query_tour)) : Json()},
+          {"environments", environments},
           {"vocabulary", from_suite(suite, suite.vocabulary)},
           {"levels", levels},
           {"systems", systems},
           {"labels", labels},
           {"trials", suite.trials},
-          {"frames", world.frames ? Json(*world.frames) : Json()},
+          {"frames", suite.max_frames ? Json(*suite.max_frames) : Json()},
           {"seed", suite.seed},
-          {"slam",
-           {{"gamma", s.gamma},
-            {"xi", s.xi},
-            {"alpha", s.alpha},
-            {"beta", s.beta},
-            {"overlap", name(s.overlap)},
-            {"void_is_a_label", s.void_is_a_label}}},
+          {"slam", settings_json(suite.semantics)},
+          {"parameters", sweep_json(suite.sweep)},
+          {"non_inferiority_margin", number(suite.non_inferiority_margin)},
           {"protocol",
            {{"test_interval", p.test_interval},
             {"rewind_frames", p.rewind_frames},
             {"restarts_per_frame", p.restarts_per_frame},
-            {"reset", p.reset == DropReset::kMap ? "map" : "counter"},
+            {"reset", name(p.reset)},
             {"max_effort", p.max_effort},
             {"query_attempts", p.query_attempts},
             {"max_blank_frames", p.max_blank_frames},
@@ -72,27 +100,25 @@ Json suite_json(const Suite& suite, const World& world) {
             {"correct_angle_deg", p.correct_angle_deg}}}};
 }
 
-Json path_json(const DrivenPath& path) {
-  return {{"frames", path.camera.size()},
+Json path_json(const PathFacts& path) {
+  return {{"frames", path.frames},
           {"length_m", path.length_m},
           {"turned_in_place_rad", number(path.turned_in_place_rad)},
           {"contact_time_s", number(path.contact_time_s)},
           {"max_penetration_m", number(path.max_penetration_m)}};
 }
 
-Json world_json(const World& world) {
-  return {{"scene_digest", hex(digest(*world.scene))},
-          {"vocabulary_digest", hex(world.vocabulary->digest())},
-          {"vocabulary_words", world.vocabulary->size()},
-          {"robot", world.robot.name},
-          {"mapping_tour", path_json(world.mapping)},
-          {"query_tour", world.second ? path_json(*world.second) : Json()}};
-}
-
-Json inputs_json(const World& world) {
-  Json json = Json::object();
-  for (const InputDigest& input : world.inputs) json[input.name] = hex(input.digest);
-  return json;
+Json place_json(const PlaceFacts& place) {
+  Json inputs = Json::object();
+  for (const InputDigest& input : place.inputs) inputs[input.name] = hex(input.digest);
+  return {{"scene", place.scene},
+          {"scene_digest", hex(place.scene_digest)},
+          {"vocabulary_digest", hex(place.vocabulary_digest)},
+          {"vocabulary_words", place.vocabulary_words},
+          {"robot", place.robot},
+          {"mapping_tour", path_json(place.mapping)},
+          {"query_tour", place.second ? path_json(*place.second) : Json()},
+          {"inputs", inputs}};
 }
 
 Json matches_json(const MatchCounts& matches) {
@@ -170,19 +196,31 @@ Json digests_json(const RunResult& run) {
     chain(images, call.image_digest);
     chain(poses, call.pose_digest);
   }
-  for (const auto* set : {&run.held_out, &run.second_tour})
-    for (const QueryScore& q : *set) {
-      chain(images, q.answer.image_digest);
-      chain(poses, q.answer.pose_digest);
-    }
+  for (const PointResult& point : run.points)
+    for (const QuerySet set : kQuerySets)
+      for (const QueryScore& q : queries(point, set)) {
+        chain(images, q.answer.image_digest);
+        chain(poses, q.answer.pose_digest);
+      }
   return {
       {"images", hex(images)}, {"poses", hex(poses)}, {"trajectory", hex(digest(run.estimate))}};
 }
 
-Json run_json(const RunResult& run, const Suite& suite) {
-  Json held_out = Json::array(), second_tour = Json::array();
-  for (const QueryScore& q : run.held_out) held_out.push_back(query_json(q));
-  for (const QueryScore& q : run.second_tour) second_tour.push_back(query_json(q));
+Json points_json(const RunResult& run) {
+  Json points = Json::array();
+  for (std::size_t i = 0; i < run.points.size(); ++i) {
+    Json point = {{"settings", settings_json(run.spec.points[i])}};
+    for (const QuerySet set : kQuerySets) {
+      Json list = Json::array();
+      for (const QueryScore& q : queries(run.points[i], set)) list.push_back(query_json(q));
+      point[std::string(name(set))] = std::move(list);
+    }
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
+Json run_json(const RunResult& run) {
   const MappingOutcome& m = run.mapping;
   Json trajectory = trajectory_json(run.trajectory);
   trajectory["offered"] = run.trajectory.offered;
@@ -190,13 +228,17 @@ Json run_json(const RunResult& run, const Suite& suite) {
   std::size_t keyframes = 0;
   for (const MappedFrame& call : m.calls) keyframes += call.keyframe_added ? 1 : 0;
   return {{"name", run.spec.name},
-          {"system", name(run.spec.system)},
+          {"environment", run.spec.environment.name},
+          {"system", run.spec.system.name},
           {"labels", name(run.spec.labels)},
-          {"level", level_name(suite.levels[run.spec.level])},
-          {"seed", suite.seed + static_cast<std::uint64_t>(run.spec.trial)},
+          {"level", level_name(run.spec.level)},
+          {"trial", run.spec.trial},
+          {"seed", run.spec.seed},
+          {"place", place_json(run.place)},
           {"digests", digests_json(run)},
           {"mapping",
-           {{"track_calls", m.calls.size()},
+           {{"settings", settings_json(run.spec.mapping)},
+            {"track_calls", m.calls.size()},
             {"failures", m.failures},
             {"restarts", m.restarts},
             {"dropped", m.dropped},
@@ -205,15 +247,16 @@ Json run_json(const RunResult& run, const Suite& suite) {
             {"keyframes_made", keyframes},
             {"matchers", matches_json(m.matches)}}},
           {"trajectory", trajectory},
-          {"occupancy", {{"leaves", run.volume ? run.volume->leaf_count() : 0}}},
-          {"held_out", held_out},
-          {"second_tour", second_tour}};
+          {"points", points_json(run)}};
 }
 
 Json row_json(const Row& row, const Suite& suite) {
-  return {{"level", level_name(suite.levels[row.level])},
+  return {{"environment", suite.environments[row.environment].name},
+          {"category", suite.environments[row.environment].category},
+          {"level", level_name(suite.levels[row.level])},
           {"labels", name(row.labels)},
-          {"system", name(row.system)},
+          {"parameters", row.parameters},
+          {"system", suite.systems[row.system].name},
           {"trials", row.trials.size()},
           {"trajectory", trajectory_json(row.trajectory)},
           {"restarts", row.restarts},
@@ -240,30 +283,28 @@ Json comparison_json(const Comparison& c) {
 
 }  // namespace
 
-Json results_json(const Suite& suite, const World& world, const std::vector<RunResult>& runs) {
+Json results_json(const Suite& suite, std::span<const RunResult> runs) {
   const std::vector<Row> rows = make_rows(suite, runs);
   Json run_list = Json::array(), row_list = Json::array(), comparisons = Json::array();
-  for (const RunResult& run : runs) run_list.push_back(run_json(run, suite));
+  for (const RunResult& run : runs) run_list.push_back(run_json(run));
   for (const Row& row : rows) row_list.push_back(row_json(row, suite));
-  const auto by_level = compare_systems(suite, rows);
-  for (std::size_t level = 0; level < by_level.size(); ++level)
-    for (const Comparison& c : by_level[level]) {
+  for (const Family& family : compare_systems(suite, rows))
+    for (const Comparison& c : family.comparisons) {
       Json json = comparison_json(c);
-      json["level"] = level_name(suite.levels[level]);
+      json["environment"] = suite.environments[family.environment].name;
+      json["level"] = level_name(suite.levels[family.level]);
       comparisons.push_back(std::move(json));
     }
   return {
       {"format", kResultsFormat},
       {"versions", {{"modelhouse", MH_VERSION}, {"compiler", __VERSION__}, {"opencv", CV_VERSION}}},
-      {"suite", suite_json(suite, world)},
-      {"inputs", inputs_json(world)},
-      {"world", world_json(world)},
+      {"suite", suite_json(suite)},
       {"rows", row_list},
       {"comparisons", comparisons},
       {"runs", run_list}};
 }
 
-Json times_json(const std::vector<RunResult>& runs, double wall_s) {
+Json times_json(std::span<const RunResult> runs, double wall_s) {
   Json list = Json::array();
   for (const RunResult& run : runs) {
     const TimeSummary track = summarize(run.times.track_ms);

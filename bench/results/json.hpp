@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+
 #include <nlohmann/json.hpp>
 
 #include "bench/results/summary.hpp"
-#include "bench/world/world.hpp"
 
 namespace mh {
 
-inline constexpr const char* kResultsFormat = "modelhouse-results-1";
+inline constexpr const char* kResultsFormat = "modelhouse-results-2";
 
 /// Everything about a suite's results that is a function of suite, binary and seeds: the resolved
 /// settings, digests, one entry per run with its queries, the rows of the table, the comparisons.
-nlohmann::ordered_json results_json(const Suite& suite, const World& world,
-                                    const std::vector<RunResult>& runs);
+nlohmann::ordered_json results_json(const Suite& suite, std::span<const RunResult> runs);
 
 /// What differs from one execution to the next: wall time, time per frame.
-nlohmann::ordered_json times_json(const std::vector<RunResult>& runs, double wall_s);
+nlohmann::ordered_json times_json(std::span<const RunResult> runs, double wall_s);
 
 }  // namespace mh

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "bench/plan/runs.hpp"
@@ -13,6 +14,30 @@
 #include "slam/occupancy/occupancy.hpp"
 
 namespace mh {
+
+/// xxh3-64 of the content of a file that the results depend on.
+struct InputDigest {
+  std::string name;  ///< scene, robot, mapping_tour, query_tour, vocabulary, level
+  std::uint64_t digest = 0;
+  friend bool operator==(const InputDigest&, const InputDigest&) = default;
+};
+
+/// What is told of a driven path. NaN: unknown, since the path was cut.
+struct PathFacts {
+  std::size_t frames = 0;
+  double length_m = 0, turned_in_place_rad = 0, contact_time_s = 0, max_penetration_m = 0;
+};
+
+/// What a run says of its surroundings, so that results need no world beside them.
+struct PlaceFacts {
+  std::string scene, robot;  ///< their names
+  std::uint64_t scene_digest = 0, path_digest = 0, vocabulary_digest = 0;
+  std::size_t vocabulary_words = 0;
+  PathFacts mapping;
+  std::optional<PathFacts> second;
+  bool cut = false;  ///< the tours were cut after RunSpec::max_frames
+  std::vector<InputDigest> inputs;
+};
 
 /// How good the mapping tour's trajectory is.
 struct TrajectoryScore {
@@ -30,18 +55,35 @@ struct TrajectoryScore {
   SE3 dock_from_estimate;
 };
 
+/// The answers under one of the run's parameter points.
+struct PointResult {
+  std::vector<QueryScore> held_out;
+  std::vector<QueryScore> second_tour;  ///< never pooled with held_out
+};
+
 /// All that one run gave.
 struct RunResult {
   RunSpec spec;
+  PlaceFacts place;
+  Trajectory truth;  ///< of every frame of the mapping tour
   MappingOutcome mapping;
   Trajectory estimate;
   TrajectoryScore trajectory;
-  std::vector<QueryScore> held_out;
-  std::vector<QueryScore> second_tour;            ///< never pooled with held_out
+  std::vector<PointResult> points;                ///< as spec.points
   std::shared_ptr<const OccupancyMapper> volume;  ///< keyframe depth at its final poses, dock frame
   OccupancyGrid grid;                             ///< what of it stands in a robot's way
+  std::uint64_t map_digest = 0;                   ///< of trajectory and grid
   CallTimes times;                                ///< not deterministic: never part of results.json
   double wall_s = 0;                              ///< likewise
 };
+
+/// Which test frames: never pooled with one another.
+enum class QuerySet { kHeldOut, kSecondTour };
+std::string_view name(QuerySet set);
+inline constexpr QuerySet kQuerySets[] = {QuerySet::kHeldOut, QuerySet::kSecondTour};
+
+inline const std::vector<QueryScore>& queries(const PointResult& point, QuerySet set) {
+  return set == QuerySet::kHeldOut ? point.held_out : point.second_tour;
+}
 
 }  // namespace mh

@@ -12,15 +12,15 @@ namespace mh {
 namespace {
 
 template <class Get>
-double median_over(const std::vector<const RunResult*>& trials, Get get) {
+double median_over(const std::vector<Trial>& trials, Get get) {
   std::vector<double> values;
-  for (const RunResult* run : trials) values.push_back(static_cast<double>(get(*run)));
+  for (const Trial& trial : trials) values.push_back(static_cast<double>(get(*trial.run)));
   return median(std::move(values));
 }
 
-QuerySummary median_summary(const std::vector<const RunResult*>& trials, QuerySet set) {
+QuerySummary median_summary(const std::vector<Trial>& trials, QuerySet set) {
   std::vector<QuerySummary> all;
-  for (const RunResult* run : trials) all.push_back(summarize(queries(*run, set)));
+  for (const Trial& trial : trials) all.push_back(summarize(queries(*trial.point, set)));
   QuerySummary m;
   for (double QuerySummary::*field :
        {&QuerySummary::queries, &QuerySummary::success, &QuerySummary::correct,
@@ -45,20 +45,15 @@ void add(MatchCounts& sum, const MatchCounts& counts) {
   for (std::size_t m = 0; m < sum.size(); ++m) sum[m] += counts[m];
 }
 
-Row make_row(SystemKind system, LabelMode labels, std::size_t level,
-             std::vector<const RunResult*> trials) {
-  Row row;
-  row.system = system;
-  row.labels = labels;
-  row.level = level;
-  row.trials = std::move(trials);
+/// Fills in what follows from the trials.
+Row fill_in(Row row) {
   row.trajectory.completeness =
       median_over(row.trials, [](const RunResult& run) { return run.trajectory.completeness; });
   for (std::optional<double> TrajectoryScore::*field :
        {&TrajectoryScore::ate_rmse_m, &TrajectoryScore::ate_first_pose_m,
         &TrajectoryScore::rpe_frame_rmse_m, &TrajectoryScore::rpe_second_rmse_m}) {
     std::vector<std::optional<double>> values;
-    for (const RunResult* run : row.trials) values.push_back(run->trajectory.*field);
+    for (const Trial& trial : row.trials) values.push_back(trial.run->trajectory.*field);
     row.trajectory.*field = median_of_known(values);
   }
   row.restarts = median_over(row.trials, [](const RunResult& r) { return r.mapping.restarts; });
@@ -68,11 +63,11 @@ Row make_row(SystemKind system, LabelMode labels, std::size_t level,
   row.second_tour = median_summary(row.trials, QuerySet::kSecondTour);
 
   std::vector<double> track_ms, relocalize_ms;
-  for (const RunResult* run : row.trials) {
-    add(row.matches, run->mapping.matches);
-    for (const auto* set : {&run->held_out, &run->second_tour})
-      for (const QueryScore& q : *set) add(row.matches, q.answer.matches);
-    const CallTimes& times = run->times;
+  for (const Trial& trial : row.trials) {
+    add(row.matches, trial.run->mapping.matches);
+    for (const QuerySet set : kQuerySets)
+      for (const QueryScore& q : queries(*trial.point, set)) add(row.matches, q.answer.matches);
+    const CallTimes& times = trial.run->times;
     track_ms.insert(track_ms.end(), times.track_ms.begin(), times.track_ms.end());
     relocalize_ms.insert(relocalize_ms.end(), times.relocalize_ms.begin(),
                          times.relocalize_ms.end());
@@ -86,8 +81,8 @@ Row make_row(SystemKind system, LabelMode labels, std::size_t level,
 template <class Get>
 std::vector<PairedDifference> per_query(const Row& row, QuerySet set, Get get) {
   std::map<std::size_t, std::vector<double>> values;
-  for (const RunResult* run : row.trials)
-    for (const QueryScore& q : queries(*run, set)) {
+  for (const Trial& trial : row.trials)
+    for (const QueryScore& q : queries(*trial.point, set)) {
       auto& of_query = values[q.answer.index];
       if (const std::optional<double> value = get(q)) of_query.push_back(*value);
     }
@@ -111,17 +106,10 @@ std::vector<PairedDifference> differences(const Row& first, const Row& second, Q
   return result;
 }
 
-const Row* find_row(std::span<const Row> rows, std::size_t level, LabelMode labels,
-                    SystemKind system) {
-  for (const Row& row : rows)
-    if (row.level == level && row.labels == labels && row.system == system) return &row;
-  return nullptr;
-}
-
 std::vector<Comparison> compare_rows(const Row& semantic, const Row& plain, std::uint64_t seed) {
   std::vector<Comparison> comparisons;
-  for (const QuerySet set : {QuerySet::kHeldOut, QuerySet::kSecondTour}) {
-    if (queries(*semantic.trials.front(), set).empty()) continue;
+  for (const QuerySet set : kQuerySets) {
+    if (summary(semantic, set).queries == 0) continue;
     const auto label = [&](const char* what) {
       return fmt::format("{}, {}, {} labels", what, name(set), name(semantic.labels));
     };
@@ -141,14 +129,24 @@ std::vector<Comparison> compare_rows(const Row& semantic, const Row& plain, std:
   return comparisons;
 }
 
+/// Whether a run is of the row's environment, level, system and labels.
+bool belongs(const RunSpec& spec, const Suite& suite, const Row& row) {
+  const SystemSpec& system = suite.systems[row.system];
+  return spec.environment.name == suite.environments[row.environment].name &&
+         spec.level == suite.levels[row.level] && spec.system.name == system.name &&
+         (system.kind == SystemKind::kPlain || spec.labels == row.labels);
+}
+
+const PointResult* find_point(const RunResult& run, const SemanticConfig& settings) {
+  for (std::size_t i = 0; i < run.points.size(); ++i)
+    if (run.spec.points[i] == settings) return &run.points[i];
+  return nullptr;
+}
+
 }  // namespace
 
 std::string_view name(QuerySet set) {
   return set == QuerySet::kHeldOut ? "held_out" : "second_tour";
-}
-
-const std::vector<QueryScore>& queries(const RunResult& run, QuerySet set) {
-  return set == QuerySet::kHeldOut ? run.held_out : run.second_tour;
 }
 
 QuerySummary summarize(std::span<const QueryScore> queries) {
@@ -190,45 +188,57 @@ QuerySummary summarize(std::span<const QueryScore> queries) {
 }
 
 std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs) {
+  const std::vector<SemanticConfig> points = parameter_points(suite);
   std::vector<Row> rows;
-  for (std::size_t level = 0; level < suite.levels.size(); ++level)
-    for (const LabelMode labels : suite.labels)
-      for (const SystemKind system : suite.systems) {
-        std::vector<const RunResult*> trials;
-        for (const RunResult& run : runs)
-          if (run.spec.level == level && run.spec.system == system &&
-              (system == SystemKind::kPlain || run.spec.labels == labels))
-            trials.push_back(&run);
-        if (!trials.empty()) rows.push_back(make_row(system, labels, level, std::move(trials)));
-      }
+  for (std::size_t e = 0; e < suite.environments.size(); ++e)
+    for (std::size_t level = 0; level < suite.levels.size(); ++level)
+      for (const LabelMode labels : suite.labels)
+        for (std::size_t p = 0; p < points.size(); ++p)
+          for (std::size_t s = 0; s < suite.systems.size(); ++s) {
+            Row row;
+            row.environment = e;
+            row.level = level;
+            row.system = s;
+            row.labels = labels;
+            row.parameters = p;
+            const SemanticConfig seen = settings_of(suite.systems[s], points[p]);
+            for (const RunResult& run : runs)
+              if (belongs(run.spec, suite, row))
+                if (const PointResult* point = find_point(run, seen))
+                  row.trials.push_back({&run, point});
+            if (!row.trials.empty()) rows.push_back(fill_in(std::move(row)));
+          }
   return rows;
 }
 
-std::vector<std::vector<Comparison>> compare_systems(const Suite& suite,
-                                                     std::span<const Row> rows) {
-  std::vector<std::vector<Comparison>> by_level;
-  for (std::size_t level = 0; level < suite.levels.size(); ++level) {
-    std::vector<Comparison> family;
-    for (const LabelMode labels : suite.labels) {
-      const Row* semantic = find_row(rows, level, labels, SystemKind::kSemantic);
-      const Row* plain = find_row(rows, level, labels, SystemKind::kPlain);
-      if (semantic == nullptr || plain == nullptr) continue;
-      for (Comparison& c : compare_rows(*semantic, *plain, suite.seed))
-        family.push_back(std::move(c));
-    }
-    holm(family);
-    by_level.push_back(std::move(family));
+std::vector<Family> compare_systems(const Suite& suite, std::span<const Row> rows) {
+  std::vector<Family> families;
+  for (const Row& semantic : rows) {
+    if (suite.systems[semantic.system].kind != SystemKind::kSemantic || semantic.parameters != 0)
+      continue;
+    const auto plain = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
+      return suite.systems[row.system].kind == SystemKind::kPlain &&
+             row.environment == semantic.environment && row.level == semantic.level &&
+             row.labels == semantic.labels && row.parameters == semantic.parameters;
+    });
+    if (plain == rows.end()) continue;
+    if (families.empty() || families.back().environment != semantic.environment ||
+        families.back().level != semantic.level)
+      families.push_back({semantic.environment, semantic.level, {}});
+    for (Comparison& c : compare_rows(semantic, *plain, suite.seed))
+      families.back().comparisons.push_back(std::move(c));
   }
-  return by_level;
+  for (Family& family : families) holm(family.comparisons);
+  return families;
 }
 
-std::array<std::optional<double>, 2> ate_over_common_frames(const Row& first, const Row& second,
-                                                            const Trajectory& truth) {
+std::array<std::optional<double>, 2> ate_over_common_frames(const Row& first, const Row& second) {
   std::vector<std::optional<double>> a, b;
   const std::size_t trials = std::min(first.trials.size(), second.trials.size());
   for (std::size_t t = 0; t < trials; ++t) {
-    const Trajectory& x = first.trials[t]->estimate;
-    const Trajectory& y = second.trials[t]->estimate;
+    const Trajectory& truth = first.trials[t].run->truth;
+    const Trajectory& x = first.trials[t].run->estimate;
+    const Trajectory& y = second.trials[t].run->estimate;
     Trajectory common_x, common_y;
     for (std::size_t i = 0, j = 0; i < x.size() && j < y.size();) {
       if (x[i].stamp_ns == y[j].stamp_ns) {

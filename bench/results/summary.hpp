@@ -11,11 +11,6 @@
 
 namespace mh {
 
-/// Which test frames: never pooled with one another.
-enum class QuerySet { kHeldOut, kSecondTour };
-std::string_view name(QuerySet set);
-const std::vector<QueryScore>& queries(const RunResult& run, QuerySet set);
-
 /// The answers of one run to one set of queries, or the median of that over trials.
 struct QuerySummary {
   double queries = 0;
@@ -31,29 +26,45 @@ struct QuerySummary {
 };
 QuerySummary summarize(std::span<const QueryScore> queries);
 
-/// One row of the results: one system under one kind of labels at one level, over all trials.
+/// A run and one of its parameter points.
+struct Trial {
+  const RunResult* run = nullptr;
+  const PointResult* point = nullptr;
+};
+
+/// One row of the results: one system in one environment under one kind of labels at one level and
+/// one parameter point, over all trials.
 struct Row {
-  SystemKind system = SystemKind::kSemantic;
+  std::size_t environment = 0, level = 0, system = 0;  ///< indices into the suite's lists
   LabelMode labels = LabelMode::kNone;
-  std::size_t level = 0;
-  std::vector<const RunResult*> trials;
+  std::size_t parameters = 0;  ///< index into parameter_points(suite)
+  std::vector<Trial> trials;
   TrajectoryScore trajectory;  ///< medians over the trials that have the score
   double restarts = 0, dropped = 0;
   QuerySummary held_out, second_tour;
   MatchCounts matches{};  ///< summed over trials, mapping and queries
   TimeSummary track, relocalize;
 };
+inline const QuerySummary& summary(const Row& row, QuerySet set) {
+  return set == QuerySet::kHeldOut ? row.held_out : row.second_tour;
+}
 
-/// One row per level, labels and system, in this order. The plain system, run once without labels,
-/// stands beside each kind of label.
+/// One row per environment, level, labels, parameter point and system, in this order, where there
+/// is a run of it. The plain system, run once without labels, stands beside each kind of label.
 std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs);
 
-/// Semantic minus plain, for each level, label kind, query set and measure; p corrected by Holm
-/// over the family of one level. Empty where the suite lacks one of the two.
-std::vector<std::vector<Comparison>> compare_systems(const Suite& suite, std::span<const Row> rows);
+/// What is compared: rows that differ in nothing but the system.
+struct Family {
+  std::size_t environment = 0, level = 0;
+  std::vector<Comparison> comparisons;
+};
+
+/// Semantic minus plain at the suite's first parameter point, for each environment, level, label
+/// kind, query set and measure; p corrected by Holm over the family of one environment and level.
+/// Empty where the suite lacks one of the two.
+std::vector<Family> compare_systems(const Suite& suite, std::span<const Row> rows);
 
 /// ATE over the frames that both tracked, median over the trials that have one: first, second.
-std::array<std::optional<double>, 2> ate_over_common_frames(const Row& first, const Row& second,
-                                                            const Trajectory& truth);
+std::array<std::optional<double>, 2> ate_over_common_frames(const Row& first, const Row& second);
 
 }  // namespace mh

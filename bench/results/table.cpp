@@ -13,10 +13,6 @@ namespace {
 // Above this share of successes of the plain system nothing is left to be gained.
 constexpr double kSaturated = 0.97;
 
-const QuerySummary& summary(const Row& row, QuerySet set) {
-  return set == QuerySet::kHeldOut ? row.held_out : row.second_tour;
-}
-
 std::string title(QuerySet set) {
   return set == QuerySet::kHeldOut ? "held-out frames (the paper's way)" : "second tour";
 }
@@ -29,19 +25,24 @@ std::string rule(std::size_t width) {
   return std::string(width, '-') + "\n";
 }
 
-/// Rows of one level and one kind of labels.
-using Block = std::vector<const Row*>;
+/// Rows that differ in nothing but the system.
+struct Block {
+  const Suite& suite;
+  std::vector<const Row*> rows;
+  const SystemSpec& system(const Row* row) const { return suite.systems[row->system]; }
+};
 
 std::string table_2(const Block& block) {
   std::string text =
       fmt::format("  {:<44}{:>22}{:>22}\n", "", "Reloc. success (%)", "Average distance (m)");
-  for (const QuerySet set : {QuerySet::kHeldOut, QuerySet::kSecondTour}) {
-    if (summary(*block.front(), set).queries == 0) continue;
-    text += fmt::format("  {}, {:.0f} queries\n", title(set), summary(*block.front(), set).queries);
-    for (const Row* row : block) {
+  for (const QuerySet set : kQuerySets) {
+    if (summary(*block.rows.front(), set).queries == 0) continue;
+    text += fmt::format("  {}, {:.0f} queries\n", title(set),
+                        summary(*block.rows.front(), set).queries);
+    for (const Row* row : block.rows) {
       const QuerySummary& s = summary(*row, set);
-      const bool saturated = row->system == SystemKind::kPlain && s.success > kSaturated;
-      text += fmt::format("    {:<42}{:>22.2f}{:>22}{}\n", name(row->system), 100 * s.success,
+      const bool saturated = block.system(row).kind == SystemKind::kPlain && s.success > kSaturated;
+      text += fmt::format("    {:<42}{:>22.2f}{:>22}{}\n", block.system(row).name, 100 * s.success,
                           metres(s.distance_mean_m), saturated ? "   saturated" : "");
     }
   }
@@ -56,10 +57,10 @@ std::string query_details(const Block& block, QuerySet set) {
   std::string text =
       fmt::format("  {:<10}{:>9}{:>10}{:>9}{:>10}{:>11}{:>12}{:>10}\n", heading, "success",
                   "correct", "false", "mean m", "median m", "aligned m", "attempts");
-  for (const Row* row : block) {
+  for (const Row* row : block.rows) {
     const QuerySummary& s = summary(*row, set);
     text += fmt::format("  {:<10}{:>8.2f}%{:>9.2f}%{:>8.2f}%{:>10}{:>11}{:>12}{:>10.2f}\n",
-                        name(row->system), 100 * s.success, 100 * s.correct, 100 * s.wrong,
+                        block.system(row).name, 100 * s.success, 100 * s.correct, 100 * s.wrong,
                         metres(s.distance_mean_m), metres(s.distance_median_m),
                         metres(s.aligned_distance_mean_m), s.attempts);
   }
@@ -72,13 +73,13 @@ std::string candidate_details(const Block& block, QuerySet set) {
   std::string text = fmt::format("  {:<10}{:>10}{:>18}{:>18}{:>18}{:>18}{:>11}{:>13}\n", heading,
                                  "keyframes", "after eq. 3", "after eq. 4", "after eq. 5",
                                  "after eq. 6", "one left", "label mass");
-  for (const Row* row : block) {
+  for (const Row* row : block.rows) {
     const QuerySummary& s = summary(*row, set);
     const auto left = [&](double count) {
       return fmt::format("{:.2f} ({:.2f}%)", count, 100 * count / std::max(1.0, s.keyframes));
     };
     text += fmt::format("  {:<10}{:>10.0f}{:>18}{:>18}{:>18}{:>18}{:>10.1f}%{:>12.1f}%\n",
-                        name(row->system), s.keyframes, left(s.c1), left(s.c2), left(s.c3),
+                        block.system(row).name, s.keyframes, left(s.c1), left(s.c2), left(s.c3),
                         left(s.final), 100 * s.single_candidate, 100 * s.label_mass);
   }
   return text;
@@ -86,14 +87,14 @@ std::string candidate_details(const Block& block, QuerySet set) {
 
 std::string failing_stages(const Block& block) {
   std::string text;
-  for (const Row* row : block)
-    for (const QuerySet set : {QuerySet::kHeldOut, QuerySet::kSecondTour}) {
+  for (const Row* row : block.rows)
+    for (const QuerySet set : kQuerySets) {
       std::map<RelocalizationStage, int> stages;
-      for (const RunResult* run : row->trials)
-        for (const QueryScore& q : queries(*run, set))
+      for (const Trial& trial : row->trials)
+        for (const QueryScore& q : queries(*trial.point, set))
           if (!q.success) ++stages[q.answer.stage];
       if (stages.empty()) continue;
-      text += fmt::format("  {}, {}: failed at", name(row->system), name(set));
+      text += fmt::format("  {}, {}: failed at", block.system(row).name, name(set));
       for (const auto& [stage, count] : stages) text += fmt::format(" {} {}", name(stage), count);
       text += "\n";
     }
@@ -102,26 +103,22 @@ std::string failing_stages(const Block& block) {
 
 std::string mapping_details(const Block& block) {
   std::string text =
-      fmt::format("  {:<10}{:>10}{:>14}{:>11}{:>12}{:>11}{:>10}{:>9}{:>18}{:>18}\n", "mapping",
-                  "ATE m", "first pose m", "RPE m/fr", "RPE m/s", "complete", "restarts", "dropped",
-                  "track ms (p95)", "reloc ms (p95)");
-  for (const Row* row : block) {
+      fmt::format("  {:<10}{:>10}{:>14}{:>11}{:>12}{:>11}{:>10}{:>9}\n", "mapping", "ATE m",
+                  "first pose m", "RPE m/fr", "RPE m/s", "complete", "restarts", "dropped");
+  for (const Row* row : block.rows) {
     const TrajectoryScore& t = row->trajectory;
-    text += fmt::format(
-        "  {:<10}{:>10}{:>14}{:>11}{:>12}{:>10.2f}%{:>10.0f}{:>9.0f}{:>18}{:>18}\n",
-        name(row->system), metres(t.ate_rmse_m), metres(t.ate_first_pose_m),
-        metres(t.rpe_frame_rmse_m, 5), metres(t.rpe_second_rmse_m, 5), 100 * t.completeness,
-        row->restarts, row->dropped,
-        fmt::format("{:.1f} ({:.1f})", row->track.median_ms, row->track.p95_ms),
-        fmt::format("{:.1f} ({:.1f})", row->relocalize.median_ms, row->relocalize.p95_ms));
+    text += fmt::format("  {:<10}{:>10}{:>14}{:>11}{:>12}{:>10.2f}%{:>10.0f}{:>9.0f}\n",
+                        block.system(row).name, metres(t.ate_rmse_m), metres(t.ate_first_pose_m),
+                        metres(t.rpe_frame_rmse_m, 5), metres(t.rpe_second_rmse_m, 5),
+                        100 * t.completeness, row->restarts, row->dropped);
   }
   return text;
 }
 
 std::string penalties(const Block& block) {
   std::string text;
-  for (const Row* row : block) {
-    if (row->system == SystemKind::kPlain) continue;
+  for (const Row* row : block.rows) {
+    if (block.system(row).kind == SystemKind::kPlain) continue;
     text += "  pairs penalised by xi (of those compared; rejected by it; ratio tests it helped)\n";
     for (std::size_t m = 0; m < row->matches.size(); ++m) {
       const MatcherCounts& c = row->matches[m];
@@ -136,11 +133,14 @@ std::string penalties(const Block& block) {
   return text;
 }
 
-std::string common_ate(const Block& block, const Trajectory& truth) {
+std::string common_ate(const Block& block) {
   const Row *semantic = nullptr, *plain = nullptr;
-  for (const Row* row : block) (row->system == SystemKind::kPlain ? plain : semantic) = row;
+  for (const Row* row : block.rows) {
+    if (block.system(row).kind == SystemKind::kSemantic) semantic = row;
+    if (block.system(row).kind == SystemKind::kPlain) plain = row;
+  }
   if (semantic == nullptr || plain == nullptr) return "";
-  const auto [a, b] = ate_over_common_frames(*semantic, *plain, truth);
+  const auto [a, b] = ate_over_common_frames(*semantic, *plain);
   return fmt::format("  ATE over the frames that both tracked, m: semantic {}, plain {}\n",
                      metres(a), metres(b));
 }
@@ -157,38 +157,65 @@ std::string comparison_line(const Comparison& c) {
                      c.difference, c.low, c.high, c.p, c.p_holm, word);
 }
 
+std::string block_text(const Block& block) {
+  const Suite& suite = block.suite;
+  const Row& row = *block.rows.front();
+  std::string text = fmt::format(
+      "\n{}, level {}, {} labels, {} trial{}{}\n",
+      suite.environments.size() > 1 ? suite.environments[row.environment].name : suite.name,
+      level_name(suite.levels[row.level]), name(row.labels), suite.trials,
+      suite.trials == 1 ? "" : "s (medians)",
+      row.trials.front().run->place.cut ? fmt::format(", first {} frames", *suite.max_frames) : "");
+  text += rule(90) + table_2(block) + rule(90);
+  for (const QuerySet set : kQuerySets)
+    if (summary(row, set).queries > 0)
+      text += query_details(block, set) + candidate_details(block, set);
+  return text + failing_stages(block) + mapping_details(block) + common_ate(block) +
+         penalties(block);
+}
+
+std::string family_text(const Suite& suite, const Family& family) {
+  std::string text = fmt::format(
+      "\nsemantic minus plain, level {}: blocks of queries resampled, 95 % intervals, Holm over "
+      "these {} comparisons\n",
+      level_name(suite.levels[family.level]), family.comparisons.size());
+  if (suite.trials == 1)
+    text += "  one trial: this holds for these maps; other seeds draw other maps (--trials 10)\n";
+  for (const Comparison& c : family.comparisons) text += comparison_line(c);
+  return text;
+}
+
 }  // namespace
 
-std::string results_table(const Suite& suite, const World& world,
-                          const std::vector<RunResult>& runs) {
+std::string results_table(const Suite& suite, std::span<const RunResult> runs) {
   const std::vector<Row> rows = make_rows(suite, runs);
-  const auto comparisons = compare_systems(suite, rows);
   std::string text;
-  for (std::size_t level = 0; level < suite.levels.size(); ++level) {
-    for (const LabelMode labels : suite.labels) {
-      Block block;
-      for (const Row& row : rows)
-        if (row.level == level && row.labels == labels) block.push_back(&row);
-      if (block.empty()) continue;
-      text += fmt::format("\n{}, level {}, {} labels, {} trial{}{}\n", suite.name,
-                          level_name(suite.levels[level]), name(labels), suite.trials,
-                          suite.trials == 1 ? "" : "s (medians)",
-                          world.frames ? fmt::format(", first {} frames", *world.frames) : "");
-      text += rule(90) + table_2(block) + rule(90);
-      for (const QuerySet set : {QuerySet::kHeldOut, QuerySet::kSecondTour})
-        if (summary(*block.front(), set).queries > 0)
-          text += query_details(block, set) + candidate_details(block, set);
-      text += failing_stages(block) + mapping_details(block) +
-              common_ate(block, world.mapping.camera) + penalties(block);
-    }
-    if (comparisons[level].empty()) continue;
-    text += fmt::format(
-        "\nsemantic minus plain, level {}: blocks of queries resampled, 95 % intervals, Holm over "
-        "these {} comparisons\n",
-        level_name(suite.levels[level]), comparisons[level].size());
-    if (suite.trials == 1)
-      text += "  one trial: this holds for these maps; other seeds draw other maps (--trials 10)\n";
-    for (const Comparison& c : comparisons[level]) text += comparison_line(c);
+  for (auto first = rows.begin(); first != rows.end();) {
+    Block block{suite, {}};
+    const auto same = [&](const Row& row) {
+      return row.environment == first->environment && row.level == first->level &&
+             row.labels == first->labels && row.parameters == first->parameters;
+    };
+    auto end = first;
+    for (; end != rows.end() && same(*end); ++end) block.rows.push_back(&*end);
+    text += block_text(block);
+    first = end;
+  }
+  for (const Family& family : compare_systems(suite, rows)) text += family_text(suite, family);
+  return text;
+}
+
+std::string times_table(const Suite& suite, std::span<const RunResult> runs) {
+  std::string text =
+      fmt::format("  {:<44}{:>18}{:>18}\n", "ms per call, median (p95)", "track", "relocalize");
+  for (const Row& row : make_rows(suite, runs)) {
+    const auto cell = [](const TimeSummary& t) {
+      return fmt::format("{:.1f} ({:.1f})", t.median_ms, t.p95_ms);
+    };
+    text += fmt::format("  {:<44}{:>18}{:>18}\n",
+                        fmt::format("{}, {}, {} labels", suite.environments[row.environment].name,
+                                    suite.systems[row.system].name, name(row.labels)),
+                        cell(row.track), cell(row.relocalize));
   }
   return text;
 }

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "bench/results/summary.hpp"
-#include "bench/world/world.hpp"
 
 namespace mh {
 
 /// The results as text: first in the form of the paper's Table 2 beside its published numbers, then
 /// everything that DESIGN section 5 asks to be printed with them.
-std::string results_table(const Suite& suite, const World& world,
-                          const std::vector<RunResult>& runs);
+/// A function of suite, seeds and binary: times stand in a table of their own.
+std::string results_table(const Suite& suite, std::span<const RunResult> runs);
+
+/// How long the systems took.
+std::string times_table(const Suite& suite, std::span<const RunResult> runs);
 
 }  // namespace mh

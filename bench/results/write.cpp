@@ -20,26 +20,32 @@ constexpr const char* kRunFiles[] = {
     "truth.tum",   "estimate.tum",           "map.bt", "map.pgm", "map.yaml",
     "topdown.png", "topdown_second_tour.png"};
 
-void write_run(const fs::path& folder, const Suite& suite, const World& world,
-               const RunResult& run) {
+}  // namespace
+
+void write_run(const fs::path& folder, const World& world, const RunResult& run) {
   make_output_folder(folder);
   write_tum(folder / "truth.tum", world.mapping.camera);
   write_tum(folder / "estimate.tum", run.estimate);
   write_atomically(folder / "map.bt", [&](const fs::path& file) { run.volume->save_bt(file); });
   save_map_server(run.grid, folder / "map");
-  write_picture(folder / "topdown.png", draw_topdown(suite, world, run, QuerySet::kHeldOut));
+  write_picture(folder / "topdown.png", draw_topdown(world, run, QuerySet::kHeldOut));
   if (world.second)
     write_picture(folder / "topdown_second_tour.png",
-                  draw_topdown(suite, world, run, QuerySet::kSecondTour));
+                  draw_topdown(world, run, QuerySet::kSecondTour));
 }
 
-}  // namespace
+void write_views(const fs::path& file, const World& world) {
+  write_picture(file,
+                draw_contact_sheet(
+                    fmt::format("{}, along the mapping tour", world.scene->name),
+                    views_along(world.mapping.camera, *world.renderer, world.robot.camera, 6)));
+}
 
 void remove_older_results(const fs::path& folder) {
   const fs::path results = folder / "results.json";
   if (!fs::is_regular_file(results)) return;
   const auto json = nlohmann::json::parse(read_file(results), nullptr, false);
-  if (!json.is_object() || json.value("format", "") != kResultsFormat) return;
+  if (!json.is_object() || !json.value("format", "").starts_with("modelhouse-results-")) return;
   std::error_code kept;  // what cannot be removed stays
   fs::remove(results, kept);
   for (const auto& run : json.value("runs", nlohmann::json::array())) {
@@ -50,18 +56,13 @@ void remove_older_results(const fs::path& folder) {
   }
 }
 
-std::string write_results(const fs::path& folder, const Suite& suite, const World& world,
-                          const std::vector<RunResult>& runs, double wall_s) {
-  const std::string table = results_table(suite, world, runs);
-  remove_older_results(folder);
-  for (const RunResult& run : runs) write_run(folder / run.spec.name, suite, world, run);
-  write_picture(folder / "views.png",
-                draw_contact_sheet(
-                    fmt::format("{}, along the mapping tour", world.scene->name),
-                    views_along(world.mapping.camera, *world.renderer, world.robot.camera, 6)));
+std::string write_results(const fs::path& folder, const Suite& suite,
+                          std::span<const RunResult> runs, double wall_s) {
+  const std::string table = results_table(suite, runs);
   write_atomically(folder / "times.json", times_json(runs, wall_s).dump(2) + "\n");
+  write_atomically(folder / "times.txt", times_table(suite, runs));
   write_atomically(folder / "table.txt", table);
-  write_atomically(folder / "results.json", results_json(suite, world, runs).dump(2) + "\n");
+  write_atomically(folder / "results.json", results_json(suite, runs).dump(2) + "\n");
   return table;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "bench/results/run_result.hpp"
@@ -13,11 +14,16 @@ namespace mh {
 /// none is taken for a new one. Nothing else in the folder is touched.
 void remove_older_results(const std::filesystem::path& folder);
 
-/// Writes a suite's results into a folder that exists: results.json, times.json, table.txt,
-/// views.png (the contact sheet), and one folder per run with truth.tum, estimate.tum, map.bt,
-/// map.pgm, map.yaml and topdown.png. Each file appears whole or not at all.
+/// Writes what is large about a run into its folder: truth.tum, estimate.tum, map.bt, map.pgm,
+/// map.yaml and topdown.png. Each file appears whole or not at all.
+void write_run(const std::filesystem::path& folder, const World& world, const RunResult& run);
+
+/// The contact sheet of an environment.
+void write_views(const std::filesystem::path& file, const World& world);
+
+/// Writes what a suite's runs gave together: results.json, times.json, table.txt, times.txt.
 /// @returns the printed table.
 std::string write_results(const std::filesystem::path& folder, const Suite& suite,
-                          const World& world, const std::vector<RunResult>& runs, double wall_s);
+                          std::span<const RunResult> runs, double wall_s);
 
 }  // namespace mh

@@ -32,6 +32,10 @@ class OurSystem : public System {
   void rewind() override { mh::rewind(state_); }
   void reset() override { state_ = make_slam(state_.camera, state_.config, state_.vocabulary); }
   void freeze() override { frozen_ = true; }
+  void set_query_settings(const SemanticConfig& settings) override {
+    assert(frozen_);
+    mh::set_query_settings(state_, settings);
+  }
   Trajectory trajectory() const override { return mh::trajectory(state_); }
   std::unique_ptr<RelocalizationSession> open_session() const override {
     assert(frozen_);

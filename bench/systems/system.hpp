@@ -6,6 +6,7 @@
 #include "slam/core/random.hpp"
 #include "slam/core/rgbd_frame.hpp"
 #include "slam/core/trajectory.hpp"
+#include "slam/match/config.hpp"
 #include "slam/pipeline/report.hpp"
 
 namespace mh {
@@ -32,6 +33,9 @@ class System {
   virtual void reset() = 0;
   /// Ends the mapping. track, rewind and reset must not be called afterwards.
   virtual void freeze() = 0;
+  /// Answers queries with other settings of the method than those it mapped with, from the next
+  /// session on. Call freeze() first. A system that has no such settings passes it over.
+  virtual void set_query_settings(const SemanticConfig&) {}
   /// Each tracked frame once, ordered by stamp, as world_from_camera in the system's own world.
   virtual Trajectory trajectory() const = 0;
   /// A new session that starts lost. Call freeze() first.

@@ -24,6 +24,9 @@ class TimedSystem : public System {
   void rewind() override { inner_->rewind(); }
   void reset() override { inner_->reset(); }
   void freeze() override { inner_->freeze(); }
+  void set_query_settings(const SemanticConfig& settings) override {
+    inner_->set_query_settings(settings);
+  }
   Trajectory trajectory() const override { return inner_->trajectory(); }
   std::unique_ptr<RelocalizationSession> open_session() const override;
 

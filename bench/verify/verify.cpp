@@ -18,17 +18,6 @@ std::uint64_t chain(std::uint64_t sum, std::uint64_t next) {
   return digest_bytes(&next, sizeof next, sum);
 }
 
-std::uint64_t digest_paths(const World& world) {
-  const std::uint64_t mapping = digest(world.mapping.camera);
-  return world.second ? chain(mapping, digest(world.second->camera)) : mapping;
-}
-
-std::uint64_t digest_map(const RunResult& run) {
-  const std::uint64_t grid =
-      digest_bytes(run.grid.cells.data(), run.grid.cells.size(), digest(run.estimate));
-  return chain(grid, run.volume ? run.volume->leaf_count() : 0);
-}
-
 /// The stage at which one showing of a frame differs; empty if none does.
 template <class Shown>
 std::string stage_of_difference(const Shown& a, const Shown& b) {
@@ -46,8 +35,9 @@ std::size_t frame_of(const RunResult& run, Stamp stamp_ns) {
 }
 
 std::optional<Difference> difference_of_queries(const RunResult& a, const RunResult& b,
-                                                QuerySet set) {
-  const std::vector<QueryScore>&x = queries(a, set), &y = queries(b, set);
+                                                std::size_t point, QuerySet set) {
+  const std::vector<QueryScore>&x = queries(a.points[point], set),
+        &y = queries(b.points[point], set);
   const std::string phase(name(set));
   for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
     const std::string stage = stage_of_difference(x[i].answer, y[i].answer);
@@ -68,13 +58,11 @@ std::string describe(const Difference& d) {
   return text + ": " + d.stage + " differs";
 }
 
-std::optional<Difference> first_difference(const World& a, const World& b) {
-  if (digest(*a.scene) != digest(*b.scene)) return Difference{"", "world", 0, 0, "scene"};
-  if (digest_paths(a) != digest_paths(b)) return Difference{"", "world", 0, 0, "path"};
-  return std::nullopt;
-}
-
 std::optional<Difference> first_difference(const RunResult& a, const RunResult& b) {
+  if (a.place.scene_digest != b.place.scene_digest)
+    return Difference{a.spec.name, "world", 0, 0, "scene"};
+  if (a.place.path_digest != b.place.path_digest)
+    return Difference{a.spec.name, "world", 0, 0, "path"};
   const std::vector<MappedFrame>&x = a.mapping.calls, &y = b.mapping.calls;
   for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
     const std::string stage = stage_of_difference(x[i], y[i]);
@@ -85,40 +73,42 @@ std::optional<Difference> first_difference(const RunResult& a, const RunResult& 
   for (std::size_t i = 0; i < std::min(a.estimate.size(), b.estimate.size()); ++i)
     if (digest(Trajectory{a.estimate[i]}) != digest(Trajectory{b.estimate[i]}))
       return Difference{a.spec.name, "result", frame_of(a, a.estimate[i].stamp_ns), 0, "map"};
-  for (const QuerySet set : {QuerySet::kHeldOut, QuerySet::kSecondTour})
-    if (const auto difference = difference_of_queries(a, b, set)) return difference;
-  if (digest_map(a) != digest_map(b)) return Difference{a.spec.name, "result", 0, 0, "map"};
+  for (std::size_t p = 0; p < std::min(a.points.size(), b.points.size()); ++p)
+    for (const QuerySet set : kQuerySets)
+      if (const auto difference = difference_of_queries(a, b, p, set)) return difference;
+  if (a.map_digest != b.map_digest) return Difference{a.spec.name, "result", 0, 0, "map"};
   return std::nullopt;
 }
 
-std::optional<Difference> first_difference(const std::vector<RunResult>& a,
-                                           const std::vector<RunResult>& b) {
+std::optional<Difference> first_difference(std::span<const RunResult> a,
+                                           std::span<const RunResult> b) {
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
     if (const auto difference = first_difference(a[i], b[i])) return difference;
   return std::nullopt;
 }
 
-ExecutionDigests digests(const Suite& suite, const World& world,
-                         const std::vector<RunResult>& runs) {
-  ExecutionDigests d{.scene = digest(*world.scene), .path = digest_paths(world)};
+ExecutionDigests digests(const Suite& suite, std::span<const RunResult> runs) {
+  ExecutionDigests d;
   const auto take = [&](const auto& shown) {
     d.images = chain(d.images, shown.image_digest);
     d.matching = chain(d.matching, shown.matching_digest);
     d.poses = chain(d.poses, shown.pose_digest);
   };
   for (const RunResult& run : runs) {
+    d.scene = chain(d.scene, run.place.scene_digest);
+    d.path = chain(d.path, run.place.path_digest);
     for (const MappedFrame& call : run.mapping.calls) take(call);
-    for (const QueryScore& q : run.held_out) take(q.answer);
-    for (const QueryScore& q : run.second_tour) take(q.answer);
-    d.maps = chain(d.maps, digest_map(run));
+    for (const PointResult& point : run.points)
+      for (const QuerySet set : kQuerySets)
+        for (const QueryScore& q : queries(point, set)) take(q.answer);
+    d.maps = chain(d.maps, run.map_digest);
   }
-  const std::string text = results_json(suite, world, runs).dump();
+  const std::string text = results_json(suite, runs).dump();
   d.results = digest_bytes(text.data(), text.size());
   return d;
 }
 
-Verification verify(const Suite& suite, RunOptions options, const SystemFactory& factory) {
-  const RunTamper tamper = std::exchange(options.tamper, {});
+Verification verify(const Suite& suite, RunOptions options) {
   const auto tell = std::exchange(options.progress, {});
   const auto execute = [&](int jobs, double share_before) {
     options.say(fmt::format("executing with {} job{}", jobs, jobs == 1 ? "" : "s"));
@@ -126,19 +116,15 @@ Verification verify(const Suite& suite, RunOptions options, const SystemFactory&
     options.progress = [&tell, share_before](double share) {
       if (tell) tell(share_before + 0.5 * share);
     };
-    World world = build_world(suite, options.max_frames, jobs, options.say);
-    std::vector<RunResult> runs = run_all(suite, world, options, factory);
-    return std::pair(std::move(world), std::move(runs));
+    return run_all(suite, options);
   };
-  const auto [first_world, first_runs] = execute(kFewJobs, 0.0);
-  options.tamper = tamper;
-  const auto [second_world, second_runs] = execute(kManyJobs, 0.5);
+  const std::vector<RunResult> first = execute(kFewJobs, 0.0);
+  const std::vector<RunResult> second = execute(kManyJobs, 0.5);
 
   Verification v;
-  v.first = digests(suite, first_world, first_runs);
-  v.second = digests(suite, second_world, second_runs);
-  v.difference = first_difference(first_world, second_world);
-  if (!v.difference) v.difference = first_difference(first_runs, second_runs);
+  v.first = digests(suite, first);
+  v.second = digests(suite, second);
+  v.difference = first_difference(first, second);
   if (!v.difference && v.first != v.second) v.difference = Difference{"", "result", 0, 0, "scores"};
   return v;
 }

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
-#include <vector>
 
 #include "bench/run.hpp"
 
@@ -23,18 +23,16 @@ struct Difference {
 std::string describe(const Difference& difference);
 
 /// Compares stage by stage in the order in which things happened; nullopt where every bit agrees.
-std::optional<Difference> first_difference(const World& a, const World& b);
 std::optional<Difference> first_difference(const RunResult& a, const RunResult& b);
-std::optional<Difference> first_difference(const std::vector<RunResult>& a,
-                                           const std::vector<RunResult>& b);
+std::optional<Difference> first_difference(std::span<const RunResult> a,
+                                           std::span<const RunResult> b);
 
 /// Digests of one execution, to be printed side by side.
 struct ExecutionDigests {
   std::uint64_t scene = 0, path = 0, images = 0, matching = 0, poses = 0, maps = 0, results = 0;
   friend bool operator==(const ExecutionDigests&, const ExecutionDigests&) = default;
 };
-ExecutionDigests digests(const Suite& suite, const World& world,
-                         const std::vector<RunResult>& runs);
+ExecutionDigests digests(const Suite& suite, std::span<const RunResult> runs);
 
 struct Verification {
   ExecutionDigests first, second;  ///< with 1 job and with 4
@@ -42,8 +40,7 @@ struct Verification {
 };
 
 /// Executes a suite twice from the files on, once with 1 job and once with 4, sharing nothing, and
-/// compares. `tamper` acts on the second execution only (for the tests).
-Verification verify(const Suite& suite, RunOptions options,
-                    const SystemFactory& factory = make_system);
+/// compares.
+Verification verify(const Suite& suite, RunOptions options);
 
 }  // namespace mh

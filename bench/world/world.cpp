@@ -9,25 +9,40 @@
 #include "bench/protocol/digest.hpp"
 #include "scenes/load.hpp"
 #include "sim/render/bake.hpp"
+#include "sim/sensors/shutter.hpp"
+#include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
 namespace {
 
-std::vector<InputDigest> digest_inputs(const Suite& suite) {
+std::vector<InputDigest> digest_inputs(const RunSpec& spec) {
   std::vector<InputDigest> inputs;
-  const auto add = [&](std::string name, const std::filesystem::path& file) {
-    const std::string content = read_file(file);
+  const auto add = [&](std::string name, const std::filesystem::path& source) {
+    const std::string content = is_generated(source) ? source.string() : read_file(source);
     inputs.push_back({std::move(name), digest_bytes(content.data(), content.size())});
   };
-  add("suite", suite.file);
-  add("scene", suite.scene);
-  add("robot", suite.robot);
-  add("mapping_tour", suite.mapping_tour);
-  if (suite.query_tour) add("query_tour", *suite.query_tour);
-  add("vocabulary", suite.vocabulary);
-  for (const auto& level : suite.levels) add("level " + level_name(level), level);
+  add("scene", spec.environment.scene);
+  add("robot", spec.environment.robot);
+  add("mapping_tour", spec.environment.mapping_tour);
+  if (spec.environment.query_tour) add("query_tour", *spec.environment.query_tour);
+  add("vocabulary", spec.vocabulary);
+  add("level", spec.level);
   return inputs;
+}
+
+/// @throws InputError where the source is one that no code makes yet.
+void check_available(const std::filesystem::path& source, const char* what) {
+  if (is_generated(source))
+    throw InputError(
+        fmt::format("{} '{}' is not available yet: generated environments come with a "
+                    "later version",
+                    what, source.string()));
+}
+
+PathFacts facts(const DrivenPath& path) {
+  return {path.camera.size(), path.length_m, path.turned_in_place_rad, path.contact_time_s,
+          path.max_penetration_m};
 }
 
 }  // namespace
@@ -57,23 +72,46 @@ std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene) {
                               {.exposure = scene.light.empty() ? 1.0F : suggest_exposure(scene)});
 }
 
-World build_world(const Suite& suite, std::optional<std::size_t> max_frames, int threads,
-                  const Say& say) {
-  // What is cheap to check comes first, so that a slip is told within a second.
-  World world;
-  world.inputs = digest_inputs(suite);
-  const auto shorten = [&](DrivenPath& path) {
-    if (max_frames && cut(path, *max_frames)) world.frames = max_frames;
-  };
-  world.robot = load_robot(suite.robot);
-  world.vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(suite.vocabulary));
-  for (const auto& level : suite.levels) world.levels.push_back(load_sensor_config(level));
-  const Tour mapping_tour = load_tour(suite.mapping_tour);
-  std::optional<Tour> query_tour;
-  if (suite.query_tour) query_tour = load_tour(*suite.query_tour);
+PlaceFacts facts(const World& world) {
+  PlaceFacts f{.scene = world.scene->name,
+               .robot = world.robot.name,
+               .scene_digest = digest(*world.scene),
+               .path_digest = digest(world.mapping.camera),
+               .vocabulary_digest = world.vocabulary->digest(),
+               .vocabulary_words = world.vocabulary->size(),
+               .mapping = facts(world.mapping),
+               .second = {},
+               .cut = world.cut,
+               .inputs = world.inputs};
+  if (world.second) {
+    f.second = facts(*world.second);
+    const std::uint64_t second = digest(world.second->camera);
+    f.path_digest = digest_bytes(&second, sizeof second, f.path_digest);
+  }
+  return f;
+}
 
-  say(fmt::format("scene {}", suite.scene.string()));
-  auto scene = std::make_shared<const Scene>(load_lit_scene(suite.scene, threads));
+World build_world(const RunSpec& spec, int threads, const Say& say) {
+  // What is cheap to check comes first, so that a slip is told within a second.
+  const Environment& environment = spec.environment;
+  check_available(environment.scene, "scene");
+  check_available(environment.mapping_tour, "tour");
+  if (environment.query_tour) check_available(*environment.query_tour, "tour");
+  World world;
+  world.inputs = digest_inputs(spec);
+  const auto shorten = [&](DrivenPath& path) {
+    if (spec.max_frames && cut(path, *spec.max_frames)) world.cut = true;
+  };
+  world.robot = load_robot(environment.robot);
+  world.vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(spec.vocabulary));
+  world.sensors = load_sensor_config(spec.level);
+  world.robot.camera = with_lens(world.robot.camera, world.sensors);
+  const Tour mapping_tour = load_tour(environment.mapping_tour);
+  std::optional<Tour> query_tour;
+  if (environment.query_tour) query_tour = load_tour(*environment.query_tour);
+
+  say(fmt::format("scene {}", environment.scene.string()));
+  auto scene = std::make_shared<const Scene>(load_lit_scene(environment.scene, threads));
   world.scene = scene;
   world.renderer = make_scene_renderer(*scene);
 

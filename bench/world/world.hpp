@@ -8,7 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/plan/suite.hpp"
+#include "bench/plan/runs.hpp"
+#include "bench/results/run_result.hpp"
 #include "robots/model/robot.hpp"
 #include "scenes/scene.hpp"
 #include "sim/motion/motion.hpp"
@@ -18,24 +19,21 @@
 
 namespace mh {
 
-/// xxh3-64 of the content of a file that the results depend on.
-struct InputDigest {
-  std::string name;  ///< suite, scene, robot, ..., `level pepper`
-  std::uint64_t digest = 0;
-};
-
-/// What every run of a suite shares, built once and then only read.
+/// Where one run takes place, built once and then only read.
 struct World {
   std::shared_ptr<const Scene> scene;
   std::shared_ptr<const Renderer> renderer;
   Robot robot;
   DrivenPath mapping;
-  std::optional<DrivenPath> second;  ///< the second tour, where the suite has one
+  std::optional<DrivenPath> second;  ///< the second tour, where the environment has one
   std::shared_ptr<const Vocabulary> vocabulary;
-  std::vector<SensorConfig> levels;   ///< as Suite::levels
-  std::optional<std::size_t> frames;  ///< where the tours were cut to so many frames
+  SensorConfig sensors;  ///< the level
+  bool cut = false;      ///< the tours were cut after RunSpec::max_frames
   std::vector<InputDigest> inputs;
 };
+
+/// What results tell of it.
+PlaceFacts facts(const World& world);
 
 /// Told what is being done, one short line each.
 using Say = std::function<void(std::string_view)>;
@@ -54,10 +52,8 @@ Scene load_lit_scene(const std::filesystem::path& file, int threads);
 /// as it is.
 std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene);
 
-/// Loads scene, robot, vocabulary and levels, bakes the light, drives both tours.
-/// @param max_frames  cuts the mapping tour after so many frames (the second tour likewise)
+/// Loads scene, robot, vocabulary and level of a run, bakes the light, drives both tours.
 /// @throws InputError if a file is bad or a tour cannot be driven.
-World build_world(const Suite& suite, std::optional<std::size_t> max_frames, int threads,
-                  const Say& say);
+World build_world(const RunSpec& spec, int threads, const Say& say);
 
 }  // namespace mh

@@ -65,6 +65,14 @@ KeyframeId Map::add(Keyframe keyframe) {
   return keyframes_.back().id;
 }
 
+void Map::set_words(KeyframeId id, WordIndex words) {
+  Keyframe& keyframe = mutable_at(id);
+  assert(!keyframe.erased);
+  inverted_index_.erase(id, keyframe.words.vector);
+  keyframe.words = std::move(words);
+  inverted_index_.add(id, keyframe.words.vector);
+}
+
 LandmarkId Map::add_landmark(const Eigen::Vector3d& position_in_world, KeyframeId keyframe,
                              std::uint32_t feature) {
   Landmark landmark;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -108,6 +109,8 @@ class Map {
   void set_position(LandmarkId id, const Eigen::Vector3d& position_in_world) {
     landmarks_[id.value].position_in_world = position_in_world;
   }
+  /// Describes a standing keyframe's view anew.
+  void set_words(KeyframeId id, WordIndex words);
   void count_visible(LandmarkId id) { ++landmarks_[id.value].visible; }
   void count_found(LandmarkId id) { ++landmarks_[id.value].found; }
 

@@ -29,6 +29,7 @@ struct SemanticConfig {
     return plain;
   }
   static SemanticConfig neutral() { return SemanticConfig{}.neutralised(); }
+  friend bool operator==(const SemanticConfig&, const SemanticConfig&) = default;
 };
 
 struct MatchConfig {

@@ -274,6 +274,19 @@ StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& 
   return report;
 }
 
+void set_query_settings(SlamState& frozen, const SemanticConfig& settings) {
+  SemanticConfig& own = frozen.config.semantics;
+  const bool same_vectors =
+      settings.gamma == own.gamma && settings.void_is_a_label == own.void_is_a_label;
+  own = settings;
+  validate(frozen.config);
+  if (same_vectors) return;
+  for (const Keyframe& keyframe : frozen.map.keyframes())
+    if (!keyframe.erased)
+      frozen.map.set_words(keyframe.id,
+                           index_words(keyframe.features, *frozen.vocabulary, settings));
+}
+
 Trajectory trajectory(const SlamState& state) {
   Trajectory poses;
   for (const auto& [stamp_ns, frame] : state.tracked_frames)

@@ -65,7 +65,8 @@ class CommandLine : public testing::Test {
     std::istringstream lines(content(root + "/bench/suites/model_house.yaml"));
     std::string text, line;
     while (std::getline(lines, line)) {
-      if (line.starts_with(key + ":")) line = key + ": " + value;
+      const auto at_key = line.find(key + ":");
+      if (at_key == line.find_first_not_of(' ')) line = line.substr(0, at_key) + key + ": " + value;
       for (auto at = line.find("../../"); at != std::string::npos; at = line.find("../../"))
         line.replace(at, 6, root + "/");
       text += line + "\n";
@@ -109,7 +110,7 @@ TEST_F(CommandLine, MissingSceneFile) {
   expect_refused("scene convert nowhere.ply --out " + (folder_ / "a.glb").string(), "nowhere.ply");
   const fs::path suite = suite_with("scene", "nowhere.yaml");
   expect_refused("bench " + suite.string() + " --out " + (folder_ / "out").string(),
-                 "suite.yaml:5: scene: ");
+                 "suite.yaml:7: environments[0].scene: ");
   EXPECT_EQ(files_left(), 0u);
 }
 

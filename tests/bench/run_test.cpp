@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bench around a scripted system in a small make-believe world: no SLAM, no ray tracing.
-#include "bench/run.hpp"
+#include "bench/run_one.hpp"
 
 #include <unistd.h>
 
-#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -25,7 +24,6 @@ namespace {
 class FakeRenderer : public Renderer {
  public:
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
-    ++pictures;
     RenderedFrame frame;
     const auto shade = static_cast<std::uint8_t>(
         static_cast<int>(1e4 * std::abs(world_from_camera.translation().x())) % 251);
@@ -35,7 +33,6 @@ class FakeRenderer : public Renderer {
     frame.instances = Grid2d<InstanceId>(camera.width_px, camera.height_px, InstanceId{1});
     return frame;
   }
-  mutable std::atomic<int> pictures = 0;
 };
 
 /// Reports poses that depend on every pixel it has seen and on its draws, and fails at one frame
@@ -101,10 +98,6 @@ class MixingSystem : public System {
   std::map<Stamp, SE3> poses_;
 };
 
-std::unique_ptr<System> fake_factory(const RunSpec& spec, const Suite&, const World&) {
-  return std::make_unique<MixingSystem>(spec.system == SystemKind::kSemantic, 2);
-}
-
 Trajectory straight_path(std::size_t frames) {
   Trajectory path;
   for (std::size_t i = 0; i < frames; ++i)
@@ -114,19 +107,25 @@ Trajectory straight_path(std::size_t frames) {
   return path;
 }
 
+/// Changes what one run sees or says.
+using TamperRun = std::function<RunTamper(const RunSpec&)>;
+
 struct Place {
   Suite suite;
   World world;
-  const FakeRenderer* renderer = nullptr;
 
   Place() {
     suite.name = "fake";
+    suite.environments = {{.name = "fake",
+                           .category = "fake",
+                           .scene = "house.yaml",
+                           .robot = "robot.yaml",
+                           .mapping_tour = "tour.yaml",
+                           .query_tour = "tour.yaml"}};
     suite.levels = {"fake.yaml"};
-    suite.systems = {SystemKind::kSemantic, SystemKind::kPlain};
+    suite.systems = {{SystemKind::kSemantic, "semantic", {}}, {SystemKind::kPlain, "plain", {}}};
     suite.labels = {LabelMode::kExact, LabelMode::kBoxes};
-    auto r = std::make_shared<FakeRenderer>();
-    renderer = r.get();
-    world.renderer = r;
+    world.renderer = std::make_shared<FakeRenderer>();
     world.scene = std::make_shared<const Scene>();
     world.vocabulary = std::make_shared<const Vocabulary>();
     world.robot.camera.width_px = 16;
@@ -137,48 +136,50 @@ struct Place {
     world.mapping.camera = straight_path(150);
     world.second = DrivenPath{};
     world.second->camera = straight_path(90);
-    world.levels = {SensorConfig{}};
   }
-  std::vector<RunResult> run(int jobs, RunTamper tamper = {}) const {
-    RunOptions options;
-    options.jobs = jobs;
-    options.tamper = std::move(tamper);
-    return run_all(suite, world, options, fake_factory);
+  std::vector<RunResult> run(const TamperRun& tamper = {}) const {
+    std::vector<RunResult> results;
+    for (const RunSpec& spec : expand(suite))
+      results.push_back(run_one(spec, world,
+                                {.system =
+                                     [](const RunSpec& s, const World&) {
+                                       return std::make_unique<MixingSystem>(
+                                           s.system.kind == SystemKind::kSemantic, 2);
+                                     },
+                                 .tamper = tamper ? tamper(spec) : RunTamper{}}));
+    return results;
   }
 };
 
-TEST(RunAll, GivesTheSameBitsAtAnyNumberOfJobs) {
+TEST(RunOne, IsAFunctionOfItsSpecAndWorld) {
   const Place place;
-  const auto one = place.run(1), four = place.run(4);
-  ASSERT_EQ(one.size(), 3u);
-  EXPECT_FALSE(first_difference(one, four));
-  EXPECT_EQ(digests(place.suite, place.world, one), digests(place.suite, place.world, four));
-  EXPECT_EQ(results_json(place.suite, place.world, one).dump(),
-            results_json(place.suite, place.world, four).dump());
+  const auto once = place.run(), again = place.run();
+  ASSERT_EQ(once.size(), 3u);
+  EXPECT_FALSE(first_difference(once, again));
+  EXPECT_EQ(digests(place.suite, once), digests(place.suite, again));
+  EXPECT_EQ(results_json(place.suite, once).dump(), results_json(place.suite, again).dump());
 }
 
-TEST(RunAll, RunsThatSeeTheSameNoiseShareTheirPictures) {
-  const Place place;
-  const auto runs = run_all(place.suite, place.world, {.jobs = 2},
-                            [](const RunSpec&, const Suite&, const World&) {
-                              return std::make_unique<MixingSystem>(false, 0);
-                            });
-  std::size_t shown = 0, of_one = runs[0].mapping.calls.size();
-  for (const RunResult& run : runs) shown += run.mapping.calls.size();
-  ASSERT_EQ(shown, 3 * of_one);
-  // Held-out and second-tour queries are answered at the first attempt: 5 + 3 pictures.
-  EXPECT_EQ(static_cast<std::size_t>(place.renderer->pictures.load()), of_one + 8);
+TEST(RunOne, PutsTheQueriesUnderEachPoint) {
+  Place place;
+  for (const double alpha : {0.5, 0.6, 0.7}) {
+    place.suite.sweep.points.push_back(place.suite.semantics);
+    place.suite.sweep.points.back().alpha = alpha;
+  }
+  const auto runs = place.run();
+  ASSERT_EQ(runs[0].points.size(), 3u);
+  for (const PointResult& point : runs[0].points) EXPECT_EQ(point.held_out.size(), 5u);
 }
 
-TEST(RunAll, CountsWhatHappened) {
+TEST(RunOne, CountsWhatHappened) {
   const Place place;
-  const RunResult run = place.run(1)[0];
+  const RunResult run = place.run()[0];
   EXPECT_EQ(run.mapping.offered, 145u);
   EXPECT_EQ(run.mapping.restarts, 2);
   EXPECT_EQ(run.trajectory.completeness, 1.0);
-  EXPECT_EQ(run.held_out.size(), 5u);
-  EXPECT_EQ(run.second_tour.size(), 3u);
-  for (const QueryScore& q : run.held_out) {
+  EXPECT_EQ(run.points[0].held_out.size(), 5u);
+  EXPECT_EQ(run.points[0].second_tour.size(), 3u);
+  for (const QueryScore& q : run.points[0].held_out) {
     EXPECT_TRUE(q.success && q.correct);
     EXPECT_LT(q.distance_m, 0.01);
     EXPECT_GT(q.distance_m, 0.0);
@@ -186,23 +187,17 @@ TEST(RunAll, CountsWhatHappened) {
   EXPECT_GT(run.volume->leaf_count(), 0u);
 }
 
-TEST(RunAll, AnErrorInOneRunReachesTheCaller) {
-  const Place place;
-  const auto broken = [](const RunSpec& spec, const Suite& suite,
-                         const World& world) -> std::unique_ptr<System> {
-    if (spec.system == SystemKind::kPlain) throw InputError("no such system");
-    return fake_factory(spec, suite, world);
-  };
-  EXPECT_THROW(run_all(place.suite, place.world, {.jobs = 2}, broken), InputError);
-}
-
 TEST(Verify, FindsOnePixelOfOneFrameAndNamesIt) {
   const Place place;
-  RunTamper tamper;
-  tamper.frame = [](const RunSpec& spec, std::size_t index, RgbdFrame& frame) {
-    if (spec.name == "semantic-boxes-fake-0" && index == 97) frame.colour(3, 4).g ^= 1;
+  const auto flip = [](const RunSpec& spec) {
+    RunTamper tamper;
+    if (spec.name == "semantic-boxes-fake-0")
+      tamper.frame = [](std::size_t index, RgbdFrame& frame) {
+        if (index == 97) frame.colour(3, 4).g ^= 1;
+      };
+    return tamper;
   };
-  const auto difference = first_difference(place.run(1), place.run(4, tamper));
+  const auto difference = first_difference(place.run(), place.run(flip));
   ASSERT_TRUE(difference);
   EXPECT_EQ(*difference, (Difference{"semantic-boxes-fake-0", "mapping", 97, 2, "image"}));
   EXPECT_EQ(describe(*difference),
@@ -211,14 +206,18 @@ TEST(Verify, FindsOnePixelOfOneFrameAndNamesIt) {
 
 TEST(Verify, FindsOnePoseAndNamesIt) {
   const Place place;
-  RunTamper tamper;
-  tamper.report = [](const RunSpec& spec, std::size_t call, StepReport& report) {
-    if (spec.system == SystemKind::kPlain && call == 41)
-      report.world_from_camera =
-          *report.world_from_camera * SE3(Eigen::Matrix3d::Identity(), {0, 0, 1e-15});
+  const auto shift = [](const RunSpec& spec) {
+    RunTamper tamper;
+    if (spec.system.kind == SystemKind::kPlain)
+      tamper.report = [](std::size_t call, StepReport& report) {
+        if (call == 41)
+          report.world_from_camera =
+              *report.world_from_camera * SE3(Eigen::Matrix3d::Identity(), {0, 0, 1e-15});
+      };
+    return tamper;
   };
-  const auto clean = place.run(1);
-  const auto difference = first_difference(clean, place.run(4, tamper));
+  const auto clean = place.run();
+  const auto difference = first_difference(clean, place.run(shift));
   ASSERT_TRUE(difference);
   const std::size_t frame = clean[2].mapping.calls[41].index;
   EXPECT_EQ(*difference, (Difference{"plain-fake-0", "mapping", frame, 0, "pose"}));
@@ -226,11 +225,14 @@ TEST(Verify, FindsOnePoseAndNamesIt) {
 
 TEST(Verify, FindsAPixelOfAQuery) {
   const Place place;
-  RunTamper tamper;
-  tamper.frame = [](const RunSpec&, std::size_t index, RgbdFrame& frame) {
-    if (index == 119) frame.depth_m(1, 1) += 1e-6F;
+  const auto nudge = [](const RunSpec&) {
+    RunTamper tamper;
+    tamper.frame = [](std::size_t index, RgbdFrame& frame) {
+      if (index == 119) frame.depth_m(1, 1) += 1e-6F;
+    };
+    return tamper;
   };
-  const auto difference = first_difference(place.run(1), place.run(1, tamper));
+  const auto difference = first_difference(place.run(), place.run(nudge));
   ASSERT_TRUE(difference);
   EXPECT_EQ(*difference, (Difference{"semantic-exact-fake-0", "held_out", 119, 0, "image"}));
 }
@@ -238,15 +240,15 @@ TEST(Verify, FindsAPixelOfAQuery) {
 TEST(Verify, SeesAnotherPath) {
   Place a, b;
   b.world.second->camera.back().stamp_ns += 1;
-  const auto difference = first_difference(a.world, b.world);
+  const auto difference = first_difference(a.run(), b.run());
   ASSERT_TRUE(difference);
-  EXPECT_EQ(describe(*difference), "world: path differs");
+  EXPECT_EQ(describe(*difference), "semantic-exact-fake-0: world: path differs");
 }
 
 TEST(Results, WhatIsUndeterminedIsNull) {
   const Place place;  // its path is straight: no alignment by SE(3)
-  const std::vector<RunResult> runs = place.run(1);
-  const auto row = results_json(place.suite, place.world, runs)["rows"][0];
+  const std::vector<RunResult> runs = place.run();
+  const auto row = results_json(place.suite, runs)["rows"][0];
   EXPECT_TRUE(row["trajectory"]["ate_rmse_m"].is_null());
   EXPECT_TRUE(row["trajectory"]["ate_first_pose_m"].is_number());
   EXPECT_TRUE(row["held_out"]["distance_mean_m"].is_number());
@@ -264,23 +266,23 @@ TEST(Results, ACutRunSaysSo) {
   EXPECT_EQ(place.world.mapping.length_m, 63);
   ASSERT_TRUE(cut(place.world.mapping, 101));
   EXPECT_NEAR(place.world.mapping.length_m, 1.0, 1e-9);  // 100 steps of 1 cm
-  const std::vector<RunResult> runs = place.run(1);
-  EXPECT_TRUE(results_json(place.suite, place.world, runs)["suite"]["frames"].is_null());
-  place.world.frames = 101;
-  const auto json = results_json(place.suite, place.world, runs);
+  EXPECT_TRUE(results_json(place.suite, place.run())["suite"]["frames"].is_null());
+  place.suite.max_frames = 101;
+  place.world.cut = true;
+  const std::vector<RunResult> runs = place.run();
+  const auto json = results_json(place.suite, runs);
   EXPECT_EQ(json["suite"]["frames"], 101);
-  EXPECT_TRUE(json["world"]["mapping_tour"]["contact_time_s"].is_null());
-  EXPECT_NE(results_table(place.suite, place.world, runs).find("first 101 frames"),
-            std::string::npos);
+  EXPECT_TRUE(json["runs"][0]["place"]["mapping_tour"]["contact_time_s"].is_null());
+  EXPECT_NE(results_table(place.suite, runs).find("first 101 frames"), std::string::npos);
 }
 
 TEST(Results, PathsDoNotDependOnTheSuitesSpelling) {
-  const std::vector<RunResult> runs = Place().run(1);
+  const std::vector<RunResult> runs = Place().run();
   const auto scene = [&](const std::filesystem::path& folder) {
     Place place;
     place.suite.file = folder / "suite.yaml";
-    place.suite.scene = (folder / "../scenes/house.yaml").lexically_normal();
-    return results_json(place.suite, place.world, runs)["suite"]["scene"];
+    place.suite.environments[0].scene = (folder / "../scenes/house.yaml").lexically_normal();
+    return results_json(place.suite, runs)["suite"]["environments"][0]["scene"];
   };
   for (const char* folder : {"", ".", "suites", "../suites", "/suites"})
     EXPECT_EQ(scene(folder), "../scenes/house.yaml") << folder;
@@ -304,7 +306,7 @@ TEST(Results, OlderRunsAreRemovedAndNothingElse) {
 
 TEST(ResultsTable, HasThePapersFormAndMarksASaturatedTable) {
   const Place place;
-  const std::string table = results_table(place.suite, place.world, place.run(1));
+  const std::string table = results_table(place.suite, place.run());
   for (const char* part :
        {"Reloc. success (%)", "Average distance (m)", "published, other data", "79.25", "0.0512",
         "71.43", "0.0945", "exact labels", "boxes labels", "held-out frames", "second tour",

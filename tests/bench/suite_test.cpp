@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -29,7 +30,8 @@ class SuiteFile : public testing::Test {
   Suite load(const std::string& extra, const std::string& levels = "[pepper.yaml]",
              const std::string& labels = "[exact, boxes]") {
     std::ofstream(folder_ / "suite.yaml")
-        << "scene: house.yaml\nrobot: robot.yaml\nmapping_tour: tour.yaml\nvocabulary: words\n"
+        << "environments:\n- {category: house, scene: house.yaml, mapping_tour: tour.yaml}\n"
+        << "robot: robot.yaml\nvocabulary: words\n"
         << "levels: " << levels << "\nsystems: [semantic, plain]\nlabels: " << labels << "\n"
         << extra;
     return load_suite(folder_ / "suite.yaml");
@@ -52,7 +54,11 @@ TEST_F(SuiteFile, ReadsWhatStandsThere) {
       "slam: {gamma: 0.5, xi: 2, overlap: labels}\n"
       "protocol: {test_interval: 10, reset: map}\ntrials: 3\nseed: 7\n");
   EXPECT_EQ(suite.name, "suite");
-  EXPECT_EQ(suite.scene, folder_ / "house.yaml");
+  ASSERT_EQ(suite.environments.size(), 1u);
+  EXPECT_EQ(suite.environments[0].name, "house");
+  EXPECT_EQ(suite.environments[0].scene, folder_ / "house.yaml");
+  EXPECT_EQ(suite.environments[0].robot, folder_ / "robot.yaml");
+  EXPECT_FALSE(suite.environments[0].query_tour);
   EXPECT_EQ(suite.semantics.gamma, 0.5);
   EXPECT_EQ(suite.semantics.xi, 2.0);
   EXPECT_EQ(suite.semantics.alpha, SemanticConfig{}.alpha);
@@ -61,7 +67,6 @@ TEST_F(SuiteFile, ReadsWhatStandsThere) {
   EXPECT_EQ(suite.protocol.reset, DropReset::kMap);
   EXPECT_EQ(suite.trials, 3);
   EXPECT_EQ(suite.seed, 7u);
-  EXPECT_FALSE(suite.query_tour);
 }
 
 TEST_F(SuiteFile, ExpandsToOneRunPerSystemLabelsLevelTrialAndThePlainOnce) {
@@ -102,9 +107,24 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"slam: {overlap: both}\n", "'both' is none of labels, augmented, words"},
         BadLine{"slam: {delta: 1}\n", "unknown key 'slam.delta'"},
         BadLine{"slam: 3\n", "must be a mapping"},
+        BadLine{"parameters: {map: fixed}\n", "varies nothing"},
+        BadLine{"parameters: {alpha: [0.5]}\n", "key 'map' is missing"},
+        BadLine{"parameters: {map: new, alpha: [0.5]}\n", "'new' is none of fixed, rebuilt"},
+        BadLine{"parameters: {map: fixed, alpha: [0.5, 1.2]}\n",
+                "parameters.alpha[1]: 1.2 is outside [0, 1)"},
+        BadLine{"parameters: {map: fixed, xi: [0.5]}\n", "parameters.xi[0]: 0.5 is outside"},
+        BadLine{"parameters: {map: fixed, gamma: [-1]}\n", "parameters.gamma[0]: -1 is outside"},
+        BadLine{"parameters: {map: fixed, gamma: [1, 1]}\n", "'1' stands twice"},
+        BadLine{"parameters: {map: fixed, gamma: []}\n", "is empty"},
+        BadLine{"parameters: {map: fixed, delta: [1]}\n", "unknown key 'parameters.delta'"},
+        BadLine{"parameters: {map: fixed, sobol: {points: 4, ranges: {xi: [2, 1]}}}\n",
+                "2 is not below 1"},
+        BadLine{"parameters: {map: fixed, sobol: {points: 4, ranges: {alpha: [0, 1.2]}}}\n",
+                "1.2 is outside [0, 1)"},
+        BadLine{"parameters: {map: fixed, sobol: {points: 4, ranges: {}}}\n", "names no parameter"},
+        BadLine{"non_inferiority_margin: 2\n", "2 is outside [0, 1]"},
         BadLine{"protocol: {test_interval: 1}\n", "protocol.test_interval: 1 is outside"},
         BadLine{"protocol: {reset: all}\n", "'all' is none of counter, map"},
-        BadLine{"query_tour: nowhere.yaml\n", "no such file"},
         BadLine{"trials: 0\n", "trials: 0 is outside"},
         BadLine{"trials: 1.5\n", "trials: '1.5' is not a whole number"},
         BadLine{"name: a/b\n", "'a/b' cannot name a folder"},
@@ -118,11 +138,119 @@ TEST_F(SuiteFile, RefusesEmptyAndDoubledLists) {
   EXPECT_NE(error("", "[pepper.yaml]", "exact").find("labels: must be a list"), std::string::npos);
 }
 
+TEST_F(SuiteFile, EnvironmentsAreListedCountedOrFoundInFiles) {
+  std::ofstream(folder_ / "b.env.yaml")
+      << "{category: office, name: second, scene: house.yaml, mapping_tour: tour.yaml}";
+  std::ofstream(folder_ / "a.env.yaml")
+      << "{category: office, name: first, scene: house.yaml, mapping_tour: tour.yaml,\n"
+         " query_tour: tour.yaml}";
+  std::ofstream(folder_ / "suite.yaml")
+      << "environments:\n- files: '*.env.yaml'\n"
+         "- {category: hall, count: 3, scene: 'generated:hall:{i}', mapping_tour: tour.yaml}\n"
+         "robot: robot.yaml\nvocabulary: words\nlevels: [pepper.yaml]\nsystems: [plain]\n"
+         "labels: [exact]\n";
+  const Suite suite = load_suite(folder_ / "suite.yaml");
+  std::vector<std::string> names;
+  for (const Environment& e : suite.environments) names.push_back(e.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"first", "second", "hall-0", "hall-1", "hall-2"}));
+  EXPECT_TRUE(suite.environments[0].query_tour);
+  EXPECT_EQ(suite.environments[3].scene, "generated:hall:1");
+  EXPECT_TRUE(is_generated(suite.environments[3].scene));
+  EXPECT_EQ(expand(suite)[3].name, "hall-1-plain-pepper-0");
+}
+
+TEST_F(SuiteFile, RefusesEnvironmentsThatAreNone) {
+  const auto message = [&](const std::string& list) -> std::string {
+    std::ofstream(folder_ / "suite.yaml") << "environments: " << list << "\nvocabulary: words\n";
+    try {
+      load_suite(folder_ / "suite.yaml");
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const std::string rest = "scene: house.yaml, robot: robot.yaml, mapping_tour: tour.yaml";
+  EXPECT_NE(message("[]").find("suite.yaml:1: environments: is empty"), std::string::npos);
+  EXPECT_NE(message("[{category: a, " + rest + "}, {category: a, " + rest + "}]")
+                .find("two environments are named 'a'"),
+            std::string::npos);
+  EXPECT_NE(message("[{category: a, scene: none.yaml, robot: robot.yaml, mapping_tour: t}]")
+                .find("environments[0].scene: '"),
+            std::string::npos);
+  EXPECT_NE(message("[{category: a, colour: 3, " + rest + "}]").find("unknown key"),
+            std::string::npos);
+  EXPECT_NE(message("[{category: a, scene: house.yaml, mapping_tour: tour.yaml}]")
+                .find("key 'robot' is missing"),
+            std::string::npos);
+  EXPECT_NE(message("[{files: '*.nothing'}]").find("no file matches"), std::string::npos);
+}
+
+TEST_F(SuiteFile, AGridHasEveryCombinationAndOneRunForAFixedMap) {
+  const Suite suite = load("parameters: {map: fixed, xi: [1, 2], alpha: [0.5, 0.6, 0.7]}\n");
+  ASSERT_EQ(suite.sweep.points.size(), 6u);
+  EXPECT_EQ(suite.sweep.points[4].xi, 2.0);
+  EXPECT_EQ(suite.sweep.points[4].alpha, 0.6);
+  EXPECT_EQ(suite.sweep.points[4].beta, suite.semantics.beta);
+  const std::vector<RunSpec> runs = expand(suite);
+  ASSERT_EQ(runs.size(), 3u);
+  EXPECT_EQ(runs[0].points.size(), 6u);
+  EXPECT_EQ(runs[2].points.size(), 3u) << "the plain system knows no xi";
+  EXPECT_EQ(runs[0].mapping, suite.semantics);
+}
+
+TEST_F(SuiteFile, ARebuiltMapMakesARunForEachPoint) {
+  const Suite suite = load("parameters: {map: rebuilt, xi: [1, 2], alpha: [0.5, 0.6]}\n");
+  const std::vector<RunSpec> runs = expand(suite);
+  ASSERT_EQ(runs.size(), 4u * 2u + 2u);
+  for (const RunSpec& run : runs) {
+    ASSERT_EQ(run.points.size(), 1u);
+    EXPECT_EQ(run.points[0], run.mapping);
+  }
+  EXPECT_EQ(runs[2].name, "semantic-exact-pepper-p01-0");
+}
+
+TEST_F(SuiteFile, NamesAnOutsideProgram) {
+  std::ofstream(folder_ / "suite.yaml")
+      << "environments:\n- {category: house, scene: house.yaml, mapping_tour: tour.yaml}\n"
+         "robot: robot.yaml\nvocabulary: words\nlevels: [pepper.yaml]\nlabels: [exact]\n"
+         "systems: [plain, {name: vo, command: 'run {dataset} {trajectory}', protocol: "
+         "trajectory}]\n"
+         "parameters: {map: rebuilt, xi: [1, 2]}\n";
+  const Suite suite = load_suite(folder_ / "suite.yaml");
+  EXPECT_EQ(suite.systems[1].outside.mode, OutsideMode::kTrajectory);
+  const std::vector<RunSpec> runs = expand(suite);
+  ASSERT_EQ(runs.size(), 2u) << "neither looks at xi";
+  EXPECT_EQ(runs[1].name, "vo-exact-pepper-0");
+}
+
+TEST(Sobol, EachDyadicIntervalHoldsItsShare) {
+  for (const std::uint64_t seed : {0u, 1u, 2u})
+    for (const std::uint32_t count : {16u, 64u})
+      for (std::size_t d = 0; d < 4; ++d) {
+        std::vector<int> in(count);
+        for (std::uint32_t i = 0; i < count; ++i)
+          ++in[static_cast<std::size_t>(sobol_point(i, seed)[d] * count)];
+        EXPECT_EQ(in, std::vector<int>(count, 1)) << "dimension " << d << ", seed " << seed;
+      }
+}
+
+TEST(Sobol, TheFirstTwoDimensionsAreANet) {
+  // A (0, 6, 2)-net: each of the 64 boxes of 8 x 8 holds one of 64 points.
+  std::vector<int> in(64);
+  for (std::uint32_t i = 0; i < 64; ++i) {
+    const auto p = sobol_point(i, 7);
+    ++in[static_cast<std::size_t>(p[0] * 8) * 8 + static_cast<std::size_t>(p[1] * 8)];
+  }
+  EXPECT_EQ(in, std::vector<int>(64, 1));
+}
+
 TEST(ShippedSuites, AreWellFormed) {
-  for (const char* file : {"model_house.yaml", "model_house_ideal.yaml"}) {
-    const Suite suite = load_suite(fs::path(MH_SOURCE_DIR) / "bench/suites" / file);
-    EXPECT_EQ(suite.systems.size(), 2u) << file;
-    EXPECT_EQ(suite.labels.size(), 2u) << file;
+  for (const auto& entry : fs::directory_iterator(fs::path(MH_SOURCE_DIR) / "bench/suites")) {
+    if (entry.path().extension() != ".yaml") continue;
+    const Suite suite = load_suite(entry.path());
+    EXPECT_GE(suite.systems.size(), 1u) << entry.path();
+    std::set<std::string> names;
+    for (const RunSpec& run : expand(suite)) EXPECT_TRUE(names.insert(run.name).second) << run.name;
   }
 }
 

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/plan/environment.hpp"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "bench/plan/names.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string with_index(std::string text, int index) {
+  const std::string mark = "{i}", number = std::to_string(index);
+  for (auto at = text.find(mark); at != std::string::npos; at = text.find(mark, at + number.size()))
+    text.replace(at, mark.size(), number);
+  return text;
+}
+
+/// A file, or something that code makes. `index` replaces {i}.
+fs::path read_source(const YamlReader& node, const fs::path& folder, int index) {
+  const std::string text = with_index(node.as_string(), index);
+  if (is_generated(text)) return text;
+  const fs::path file = (folder / text).lexically_normal();
+  if (!fs::is_regular_file(file))
+    node.fail(fmt::format("'{}' cannot be read: no such file", file.string()));
+  return file;
+}
+
+std::vector<Environment> read_entry(YamlReader node, const fs::path& folder,
+                                    const std::optional<fs::path>& default_robot) {
+  const auto count = static_cast<int>(node.integer_or("count", 1, 1, 100000));
+  const std::string category = node.string("category");
+  check_folder_name(node.at("category"), category);
+  const std::string name = node.string("name", node.has("count") ? category + "-{i}" : category);
+  if (count > 1 && name.find("{i}") == std::string::npos)
+    node.at("name").fail(fmt::format("'{}' needs an {{i}}: there are {} of it", name, count));
+  const YamlReader scene = node.at("scene"), tour = node.at("mapping_tour");
+  const auto query_tour = node.find("query_tour");
+  const auto robot = node.find("robot");
+  if (!robot && !default_robot) node.at("robot");  // tells that it is missing
+  node.finish();
+
+  std::vector<Environment> environments;
+  for (int i = 0; i < count; ++i) {
+    Environment e{.name = with_index(name, i),
+                  .category = category,
+                  .scene = read_source(scene, folder, i),
+                  .robot = robot ? existing_file(*robot, folder) : *default_robot,
+                  .mapping_tour = read_source(tour, folder, i),
+                  .query_tour = {}};
+    check_folder_name(node, e.name);
+    if (query_tour) e.query_tour = read_source(*query_tour, folder, i);
+    environments.push_back(std::move(e));
+  }
+  return environments;
+}
+
+std::vector<fs::path> matching_files(const YamlReader& pattern, const fs::path& folder) {
+  const fs::path path = (folder / pattern.as_string()).lexically_normal();
+  const fs::path parent = path.parent_path().empty() ? fs::path(".") : path.parent_path();
+  std::vector<fs::path> files;
+  if (fs::is_directory(parent))
+    for (const auto& entry : fs::directory_iterator(parent))
+      if (entry.is_regular_file() &&
+          fnmatch(path.filename().c_str(), entry.path().filename().c_str(), FNM_PERIOD) == 0)
+        files.push_back(path.parent_path() / entry.path().filename());
+  if (files.empty()) pattern.fail(fmt::format("no file matches '{}'", path.string()));
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+bool is_generated(const fs::path& source) {
+  return source.string().starts_with("generated:");
+}
+
+fs::path existing_file(const YamlReader& node, const fs::path& folder) {
+  const fs::path file = (folder / node.as_string()).lexically_normal();
+  if (!fs::is_regular_file(file))
+    node.fail(fmt::format("'{}' cannot be read: no such file", file.string()));
+  return file;
+}
+
+std::vector<Environment> read_environments(const YamlReader& list, const fs::path& folder,
+                                           const std::optional<fs::path>& default_robot) {
+  std::vector<Environment> all;
+  std::set<std::string> names;
+  const auto add = [&](std::vector<Environment> some, const YamlReader& node) {
+    for (Environment& e : some) {
+      if (!names.insert(e.name).second)
+        node.fail(fmt::format("two environments are named '{}'", e.name));
+      all.push_back(std::move(e));
+    }
+  };
+  for (YamlReader entry : items_of(list)) {
+    const auto pattern = entry.find("files");
+    if (!pattern) {
+      add(read_entry(entry, folder, default_robot), entry);
+      continue;
+    }
+    entry.finish();
+    for (const fs::path& file : matching_files(*pattern, folder)) {
+      const YamlReader node = YamlReader::load(file);
+      add(read_entry(node, file.parent_path(), default_robot), node);
+    }
+  }
+  return all;
+}
+
+}  // namespace mh

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "slam/core/yaml.hpp"
+
+namespace mh {
+
+/// A place to be mapped and asked about, as data: a scene and how it is walked through. `scene` and
+/// the tours are files, or made by code: "generated:KIND:SEED" (see is_generated).
+struct Environment {
+  std::string name;      ///< unique in its suite, fit for a folder
+  std::string category;  ///< over which means are taken: "bathroom"
+  std::filesystem::path scene, robot, mapping_tour;
+  std::optional<std::filesystem::path> query_tour;  ///< the second tour; none: held-out frames only
+};
+
+/// Whether a source names something that code makes ("generated:bathroom:0") instead of a file.
+bool is_generated(const std::filesystem::path& source);
+
+/// Reads the list `environments` of a suite. Each entry is a mapping with the fields of
+/// Environment, and one of these more:
+/// - `count: N` makes N of it, with {i} = 0 .. N-1 put into name, scene and tours; the name
+/// defaults
+///   to CATEGORY-{i}.
+/// - `files: PATTERN` stands alone: every file that matches (* and ? in the last part of the path),
+///   in the order of names, holds one such mapping, its paths relative to its own folder.
+/// Names default to the category; `robot` to the one given.
+/// @throws InputError naming file, line, field and value: an empty list, two environments of one
+/// name, a file that is missing.
+std::vector<Environment> read_environments(
+    const YamlReader& list, const std::filesystem::path& folder,
+    const std::optional<std::filesystem::path>& default_robot);
+
+/// A path relative to `folder` that must name a file. @throws InputError at this place.
+std::filesystem::path existing_file(const YamlReader& node, const std::filesystem::path& folder);
+
+}  // namespace mh

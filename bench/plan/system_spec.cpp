@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/plan/system_spec.hpp"
+
+#include "bench/plan/names.hpp"
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+
+constexpr Names<SystemKind, 2> kOurs{
+    {{"semantic", SystemKind::kSemantic}, {"plain", SystemKind::kPlain}}};
+constexpr Names<OutsideMode, 2> kModes{
+    {{"trajectory", OutsideMode::kTrajectory}, {"conversation", OutsideMode::kConversation}}};
+constexpr double kLongest_s = 1e7;
+
+}  // namespace
+
+std::string_view name(SystemKind kind) {
+  return kind == SystemKind::kOutside ? "outside" : name_of(kind, kOurs);
+}
+std::string_view name(OutsideMode mode) {
+  return name_of(mode, kModes);
+}
+
+SystemSpec read_system(YamlReader node, const std::filesystem::path& folder) {
+  SystemSpec spec;
+  if (!node.is_map()) {
+    spec.kind = one_of(node, kOurs);
+    spec.name = name(spec.kind);
+    return spec;
+  }
+  spec.kind = SystemKind::kOutside;
+  spec.name = node.string("name");
+  check_folder_name(node.at("name"), spec.name);
+  if (value_of(spec.name, kOurs))
+    node.at("name").fail("'" + spec.name + "' is one of Modelhouse's own systems");
+  OutsideProgram& program = spec.outside;
+  program.name = spec.name;
+  program.folder = folder.empty() ? "." : folder;
+  program.command = node.string("command");
+  program.mode = one_of(node.at("protocol"), kModes);
+  program.run_limit_s = node.number_or("run_limit_s", program.run_limit_s, 0.01, kLongest_s);
+  program.answer_limit_s =
+      node.number_or("answer_limit_s", program.answer_limit_s, 0.01, kLongest_s);
+  program.memory_limit_mb = node.number_or("memory_limit_mb", program.memory_limit_mb, 0.0, 1e9);
+  node.finish();
+  try {
+    validate(program);
+  } catch (const InputError& error) {
+    node.at("command").fail(error.what());
+  }
+  return spec;
+}
+
+}  // namespace mh

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "bench/systems/outside_program.hpp"
+#include "slam/core/yaml.hpp"
+
+namespace mh {
+
+enum class SystemKind { kSemantic, kPlain, kOutside };
+std::string_view name(SystemKind kind);
+
+/// The words of a suite for how an outside program is spoken to: trajectory, conversation.
+std::string_view name(OutsideMode mode);
+
+/// A system under test, as a suite names it.
+struct SystemSpec {
+  SystemKind kind = SystemKind::kSemantic;
+  std::string name = "semantic";
+  OutsideProgram outside;  ///< of an outside program alone
+};
+
+/// `semantic`, `plain`, or a mapping {name, command, protocol: trajectory |
+/// conversation} with `run_limit_s`, `answer_limit_s`, `memory_limit_mb` where the defaults do not
+/// do. The command runs in the suite's folder.
+/// @throws InputError naming file, line, field and value.
+SystemSpec read_system(YamlReader node, const std::filesystem::path& folder);
+
+}  // namespace mh
