@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/features/corners.hpp"
 
+#include <immintrin.h>
+
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
-#include <cstdlib>
+#include <cstdint>
 
 namespace mh {
 namespace {
@@ -52,17 +55,19 @@ class SpacedPicker {
 
   std::vector<Corner> pick(int spacing, std::size_t count) {
     // Cells as large as the spacing hold one taken corner at most. A rim of empty cells saves
-    // asking for bounds.
+    // asking for bounds; four more are read with the last but never looked at.
     const int columns = width_ / spacing + 3;
     const int rows = height_ / spacing + 3;
-    taken_.assign(static_cast<std::size_t>(columns) * rows, kNone);
+    taken_.assign(static_cast<std::size_t>(columns) * rows + 4, kNone);
+    const std::vector<int> cell_of = cells_of_coordinates(spacing);
     std::vector<Corner> picked;
     picked.reserve(count);
     for (const Corner& c : corners_) {
-      Corner* cell =
-          &taken_[static_cast<std::size_t>(c.y / spacing + 1) * columns + c.x / spacing + 1];
-      if (!is_free(c, cell, columns, spacing)) continue;
-      *cell = c;
+      Place* cell =
+          &taken_[static_cast<std::size_t>(cell_of[static_cast<std::size_t>(c.y)]) * columns +
+                  cell_of[static_cast<std::size_t>(c.x)]];
+      if (!is_free({c.x, c.y}, cell, columns, spacing)) continue;
+      *cell = {c.x, c.y};
       picked.push_back(c);
       if (picked.size() == count) break;
     }
@@ -80,21 +85,43 @@ class SpacedPicker {
   }
 
  private:
-  static constexpr Corner kNone{-20000, -20000, 0, 0,
-                                0};  // farther from any corner than any spacing
+  struct Place {
+    std::int16_t x, y;
+  };
+  static constexpr Place kNone{-20000, -20000};  // farther from any corner than any spacing
 
-  static bool is_free(const Corner& c, const Corner* cell, int columns, int spacing) {
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) {
-        const Corner& other = cell[dy * columns + dx];
-        if (std::abs(other.x - c.x) < spacing && std::abs(other.y - c.y) < spacing) return false;
+  // 1 + i / spacing for all coordinates i: a division for each of them, not for each corner.
+  std::vector<int> cells_of_coordinates(int spacing) const {
+    std::vector<int> cells(static_cast<std::size_t>(std::max(width_, height_)));
+    for (std::size_t i = 0, cell = 1, next = 0; i < cells.size(); ++i) {
+      if (next == static_cast<std::size_t>(spacing)) {
+        ++cell;
+        next = 0;
       }
-    return true;
+      ++next;
+      cells[i] = static_cast<int>(cell);
+    }
+    return cells;
+  }
+
+  // Compares with the corners taken in three rows of three cells, a row (and one cell more) at
+  // once.
+  static bool is_free(Place c, const Place* cell, int columns, int spacing) {
+    const __m128i here = _mm_set1_epi32(std::bit_cast<std::int32_t>(c));
+    const __m128i limit = _mm_set1_epi16(static_cast<std::int16_t>(spacing));
+    __m128i near = _mm_setzero_si128();
+    for (int row = -1; row <= 1; ++row) {
+      const auto* from = reinterpret_cast<const __m128i*>(cell + row * columns - 1);
+      const __m128i distance = _mm_abs_epi16(_mm_sub_epi16(_mm_loadu_si128(from), here));
+      const __m128i below = _mm_cmpgt_epi16(limit, distance);
+      near = _mm_or_si128(near, _mm_cmpeq_epi32(below, _mm_set1_epi32(-1)));
+    }
+    return (_mm_movemask_ps(_mm_castsi128_ps(near)) & 7) == 0;
   }
 
   const std::vector<Corner>& corners_;
   int width_ = 1, height_ = 1;
-  std::vector<Corner> taken_;
+  std::vector<Place> taken_;
 };
 
 }  // namespace

@@ -95,13 +95,13 @@ Descriptor describe(const cv::Mat& blurred, int x, int y, float angle_rad) {
   assert(has_patch(blurred, x, y));
   const auto cosine = static_cast<float>(std::cos(static_cast<double>(angle_rad)));
   const auto sine = static_cast<float>(std::sin(static_cast<double>(angle_rad)));
-  const auto step = static_cast<int>(blurred.step);
+  const auto step = static_cast<float>(blurred.step);
 
   alignas(32) std::int32_t offset[512];
   for (int i = 0; i < 512; ++i) {
     const float u = std::nearbyint(kPattern.x[i] * cosine - kPattern.y[i] * sine);
     const float v = std::nearbyint(kPattern.x[i] * sine + kPattern.y[i] * cosine);
-    offset[i] = static_cast<int>(v) * step + static_cast<int>(u);
+    offset[i] = static_cast<int>(v * step + u);  // whole numbers below 2^24: exact
   }
 
   const std::uint8_t* centre = blurred.ptr<std::uint8_t>(y) + x;

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/features/fast.hpp"
 
+#include <immintrin.h>
+
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cstring>
+#include <type_traits>
 
 namespace mh {
 namespace {
@@ -12,11 +16,54 @@ namespace {
 using Byte = std::uint8_t;
 constexpr int kChunk = 32;  // pixels judged side by side: one SIMD register
 
+// As many bytes side by side. What follows is written once for a byte and for these.
+struct Bytes {
+  __m256i v;
+};
+
+template <class T>
+T load(const Byte* from) {
+  if constexpr (std::is_same_v<T, Byte>)
+    return *from;
+  else
+    return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from))};
+}
+void store(Byte* to, Byte value) {
+  *to = value;
+}
+void store(Byte* to, Bytes value) {
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), value.v);
+}
 Byte low(Byte a, Byte b) {
   return a < b ? a : b;
 }
+Bytes low(Bytes a, Bytes b) {
+  return {_mm256_min_epu8(a.v, b.v)};
+}
 Byte high(Byte a, Byte b) {
   return a > b ? a : b;
+}
+Bytes high(Bytes a, Bytes b) {
+  return {_mm256_max_epu8(a.v, b.v)};
+}
+// a - b, 0 where b is larger.
+Byte excess(Byte a, Byte b) {
+  return static_cast<Byte>(high(a, b) - b);
+}
+Bytes excess(Bytes a, Bytes b) {
+  return {_mm256_subs_epu8(a.v, b.v)};
+}
+
+// Calls work.operator()<T>(x) so that it covers [0, count): T = Bytes covers kChunk, the last of
+// them overlapping the one before; where there are fewer T = Byte covers one.
+template <class Work>
+void for_all(int count, Work work) {
+  if (count < kChunk) {
+    for (int x = 0; x < count; ++x) work.template operator()<Byte>(x);
+    return;
+  }
+  for (int x = 0; x + kChunk < count; x += kChunk) work.template operator()<Bytes>(x);
+  work.template operator()<Bytes>(count - kChunk);
 }
 
 // The circle of radius 3, clockwise from the top.
@@ -40,19 +87,32 @@ constexpr std::array<Offset, 16> kCircle = {{{0, -3},
                                              {-2, -2},
                                              {-1, -3}}};
 
+struct Low {
+  template <class T>
+  static T of(T a, T b) {
+    return low(a, b);
+  }
+};
+struct High {
+  template <class T>
+  static T of(T a, T b) {
+    return high(a, b);
+  }
+};
+
 // The best arc of 9 contiguous pixels on the circle: the largest over arcs of the smallest value on
-// the arc. Swapping low and high (`worse`, `better`) gives the counterpart for darker arcs. Two
+// the arc. Swapping Low and High (`Worse`, `Better`) gives the counterpart for darker arcs. Two
 // arcs that start at k and k + 1 share 8 pixels: min(shared, max(first, last)) serves both.
-template <Byte (*worse)(Byte, Byte), Byte (*better)(Byte, Byte)>
-Byte best_arc(const std::array<Byte, 16>& p) {
-  std::array<Byte, 8> pair, four;
-  for (int i = 0; i < 8; ++i) pair[i] = worse(p[2 * i + 1], p[(2 * i + 2) % 16]);
-  for (int i = 0; i < 8; ++i) four[i] = worse(pair[i], pair[(i + 1) % 8]);
-  Byte best = 0;
-  for (int i = 0; i < 8; ++i) {
-    const Byte shared = worse(four[i], four[(i + 2) % 8]);  // p[2 i + 1] to p[2 i + 8]
-    const Byte arc = worse(shared, better(p[2 * i], p[(2 * i + 9) % 16]));
-    best = i == 0 ? arc : better(best, arc);
+template <class Worse, class Better, class T>
+T best_arc(const std::array<T, 16>& p) {
+  std::array<T, 8> pair, four;
+  for (std::size_t i = 0; i < 8; ++i) pair[i] = Worse::of(p[2 * i + 1], p[(2 * i + 2) % 16]);
+  for (std::size_t i = 0; i < 8; ++i) four[i] = Worse::of(pair[i], pair[(i + 1) % 8]);
+  T best{};
+  for (std::size_t i = 0; i < 8; ++i) {
+    const T shared = Worse::of(four[i], four[(i + 2) % 8]);  // p[2 i + 1] to p[2 i + 8]
+    const T arc = Worse::of(shared, Better::of(p[2 * i], p[(2 * i + 9) % 16]));
+    best = i == 0 ? arc : Better::of(best, arc);
   }
   return best;
 }
@@ -62,16 +122,12 @@ Byte best_arc(const std::array<Byte, 16>& p) {
 void contrast_of_row(const Byte* centre, std::ptrdiff_t step, int count, Byte* contrast) {
   std::array<const Byte*, 16> circle;
   for (std::size_t i = 0; i < 16; ++i) circle[i] = centre + kCircle[i].y * step + kCircle[i].x;
-  for (int x = 0; x < count; ++x) {
-    std::array<Byte, 16> p;
-    for (std::size_t i = 0; i < 16; ++i) p[i] = circle[i][x];
-    const Byte bright = best_arc<low, high>(p);
-    const Byte dark = best_arc<high, low>(p);
-    const Byte c = centre[x];
-    const auto brighter = static_cast<Byte>(high(bright, c) - c);
-    const auto darker = static_cast<Byte>(c - low(dark, c));
-    contrast[x] = high(brighter, darker);
-  }
+  for_all(count, [&]<class T>(int x) {
+    std::array<T, 16> p;
+    for (std::size_t i = 0; i < 16; ++i) p[i] = load<T>(circle[i] + x);
+    const T c = load<T>(centre + x);
+    store(contrast + x, high(excess(best_arc<Low, High>(p), c), excess(c, best_arc<High, Low>(p))));
+  });
 }
 
 // Three rows of contrast around a row under search.
@@ -81,16 +137,19 @@ struct Rows {
   const Byte* below;
 };
 
-// Marks local maxima above the threshold among `count` pixels; rows have one more on either side.
+// Marks local maxima above the threshold among `count` pixels by something else than 0; rows have
+// one more pixel on either side.
 void mark_maxima(const Rows& contrast, int count, Byte threshold, Byte* marks) {
-  const auto [above, row, below] = contrast;
-  for (int x = 0; x < count; ++x) {
-    const Byte sides = high(row[x - 1], row[x + 1]);
-    const Byte up = high(above[x], high(above[x - 1], above[x + 1]));
-    const Byte down = high(below[x], high(below[x - 1], below[x + 1]));
-    const Byte beat = high(high(threshold, sides), high(up, down));
-    marks[x] = row[x] > beat ? 1 : 0;
-  }
+  for_all(count, [&]<class T>(int x) {
+    const Byte *above = contrast.above + x, *row = contrast.row + x, *below = contrast.below + x;
+    const auto at = [](const Byte* p) { return load<T>(p); };
+    const T sides = high(at(row - 1), at(row + 1));
+    const T up = high(at(above), high(at(above - 1), at(above + 1)));
+    const T down = high(at(below), high(at(below - 1), at(below + 1)));
+    T limit;
+    std::memset(&limit, threshold, sizeof limit);
+    store(marks + x, excess(at(row), high(high(limit, sides), high(up, down))));
+  });
 }
 
 // Where the parabola through three values at -1, 0, 1 peaks; less than half a pixel, so that the
@@ -113,12 +172,13 @@ Corner corner_at(const Rows& c, std::size_t i, int x, int y) {
 
 void collect(const std::vector<Byte>& marks, const Rows& contrast, int left, int y,
              std::vector<Corner>& corners) {
-  for (std::size_t x = 0; x < marks.size(); x += 8) {
-    std::uint64_t eight = 0;
-    std::memcpy(&eight, &marks[x], 8);
-    if (eight == 0) continue;
-    for (std::size_t i = x; i < x + 8; ++i)
-      if (marks[i]) corners.push_back(corner_at(contrast, i, left + static_cast<int>(i), y));
+  for (std::size_t x = 0; x < marks.size(); x += kChunk) {
+    const __m256i unmarked = _mm256_cmpeq_epi8(load<Bytes>(&marks[x]).v, _mm256_setzero_si256());
+    for (auto left_over = ~static_cast<std::uint32_t>(_mm256_movemask_epi8(unmarked));
+         left_over != 0; left_over &= left_over - 1) {
+      const std::size_t i = x + static_cast<std::size_t>(std::countr_zero(left_over));
+      corners.push_back(corner_at(contrast, i, left + static_cast<int>(i), y));
+    }
   }
 }
 

@@ -6,6 +6,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "slam/features/resize.hpp"
+
 namespace mh {
 namespace {
 
@@ -49,7 +51,7 @@ std::vector<PyramidLevel> make_pyramid(const Grid2d<Rgb8>& colour, const Feature
     if (l == 0)
       cv::cvtColor(view(colour), level.image, cv::COLOR_RGB2GRAY);
     else
-      cv::resize(levels.back().image, level.image, size, 0, 0, cv::INTER_LINEAR_EXACT);
+      resize_exactly(levels.back().image, level.image);
     mirror_margin(level.image);
     cv::GaussianBlur(level.image, level.blurred, {2 * kBlurRadius_px + 1, 2 * kBlurRadius_px + 1},
                      kBlurSigma_px, kBlurSigma_px, cv::BORDER_REFLECT_101);
