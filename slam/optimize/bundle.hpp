@@ -30,7 +30,7 @@ struct BundleProblem {
 struct BundleConfig {
   int iterations = 5;               ///< with Huber; then outliers are dropped and
   int refine_iterations = 10;       ///< more follow without
-  double relative_decrease = 1e-6;  ///< of the cost: a step that gains less ends its phase
+  double relative_decrease = 1e-3;  ///< of the cost: a step that gains less ends its phase
   double chi2_mono = 5.991;         ///< 95 % of chi-square, 2 degrees of freedom
   double chi2_stereo = 7.815;       ///< 95 % of chi-square, 3 degrees of freedom
 };
