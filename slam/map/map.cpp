@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "slam/features/scale.hpp"
+
 namespace mh {
 namespace {
 
@@ -18,18 +20,20 @@ std::size_t most_central(const std::vector<const Descriptor*>& descriptors) {
   const std::size_t n = descriptors.size();
   if (n <= 2) return 0;
   std::vector<int> distances(n);
+  // The distance 0 to itself sorts first; the median of the others follows.
+  const std::size_t median = 1 + (n - 1) / 2;
   std::size_t best = 0;
   int best_median = INT32_MAX;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) distances[j] = hamming(*descriptors[i], *descriptors[j]);
-    // The distance 0 to itself sorts first; the median of the others follows.
-    const std::size_t median = 1 + (n - 1) / 2;
+    // Sorting tells the median; counting tells, faster, whether it is below the best.
+    const auto below = std::count_if(distances.begin(), distances.end(),
+                                     [&](int distance) { return distance < best_median; });
+    if (static_cast<std::size_t>(below) <= median) continue;
     std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(median),
                      distances.end());
-    if (distances[median] < best_median) {
-      best_median = distances[median];
-      best = i;
-    }
+    best_median = distances[median];
+    best = i;
   }
   return best;
 }
@@ -187,8 +191,8 @@ void Map::refresh(LandmarkId id, const FeatureConfig& config) {
   const Keyframe& k = at(reference.keyframe);
   const double distance = (k.camera_from_world * l.position_in_world).norm();
   const int octave = k.features.keypoints[reference.feature].octave;
-  l.max_distance_m = distance * std::pow(config.scale, octave);
-  l.min_distance_m = l.max_distance_m / std::pow(config.scale, config.levels - 1);
+  l.max_distance_m = distance * level_scale(config, octave);
+  l.min_distance_m = l.max_distance_m / level_scale(config, config.levels - 1);
 }
 
 void Map::set_neighbour(KeyframeId of, KeyframeId neighbour, int shared) {

@@ -2,8 +2,9 @@
 #include "slam/match/expect.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "slam/features/scale.hpp"
 
 namespace mh {
 namespace {
@@ -14,18 +15,7 @@ constexpr double kDistanceSlack = 1.2;
 }  // namespace
 
 float octave_scale(const FeatureConfig& config, int octave) {
-  // Asked for thousands of times per frame, always with one scale: its powers are remembered.
-  constexpr int kRemembered = 16;
-  thread_local double scale = 0;
-  thread_local std::array<float, kRemembered> power{};
-  if (octave < 0 || octave >= kRemembered)
-    return static_cast<float>(std::pow(config.scale, octave));
-  if (scale != config.scale) {
-    scale = config.scale;
-    for (int i = 0; i < kRemembered; ++i)
-      power[static_cast<std::size_t>(i)] = static_cast<float>(std::pow(scale, i));
-  }
-  return power[static_cast<std::size_t>(octave)];
+  return static_cast<float>(level_scale(config, octave));
 }
 
 std::optional<ProjectionTarget> expect(const Landmark& landmark, const SE3& camera_from_world,

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "slam/features/features.hpp"
+
+namespace mh {
+
+/// config.scale^octave: how much coarser the pixels of a pyramid level are than the picture's.
+double level_scale(const FeatureConfig& config, int octave);
+
+}  // namespace mh
