@@ -13,13 +13,14 @@ namespace {
 /// Covisible keyframes that share this many landmarks hold each other's relative pose well.
 constexpr int kStrongEdge = 100;
 
-/// Tells the keyframes that share nothing with the newest, nor do their neighbours.
+/// Tells the keyframes that may be the newest one's other end of a loop.
 class Unrelated {
  public:
-  Unrelated(const Map& map, KeyframeId newest, int min_gap)
-      : map_(map), newest_(newest), min_gap_(static_cast<std::uint32_t>(min_gap)) {
+  Unrelated(const Map& map, KeyframeId newest, const LoopConfig& config)
+      : map_(map), newest_(newest), min_gap_(static_cast<std::uint32_t>(config.min_gap)) {
     related_.insert(newest);
-    for (const Keyframe::Neighbour& n : map.at(newest).covisible) related_.insert(n.id);
+    for (const Keyframe::Neighbour& n : map.at(newest).covisible)
+      if (n.shared >= config.loosely_shared) related_.insert(n.id);
   }
   bool operator()(KeyframeId id) const {
     return id.value + min_gap_ <= newest_.value && !map_.at(id).erased && !related_.contains(id);
@@ -34,13 +35,13 @@ class Unrelated {
 
 std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest,
                                    const SemanticConfig& semantics, const LoopConfig& config) {
-  const Unrelated is_old(map, newest, config.min_gap);
+  const Unrelated is_old(map, newest, config);
   const auto view = [&](KeyframeId k) {
     return config.augmented ? map.at(k).words.vector : words_alone(map.at(k).words.vector);
   };
   const AugmentedVector query = view(newest);
 
-  // No candidate may be less alike than the neighbours that are known to see the same.
+  // No candidate may be much less alike than the neighbours that are known to see the same.
   double least = 1.0;
   for (const Keyframe::Neighbour& n : map.at(newest).covisible)
     if (n.shared >= kStrongEdge) least = std::min(least, l1_similarity(query, view(n.id)));
@@ -70,7 +71,8 @@ std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest,
       similarity, semantics.alpha, semantics.beta);
   std::vector<KeyframeId> result;
   for (const auto& candidate : selection.candidates)
-    if (similarity(candidate.keyframe) >= 0.8 * least) result.push_back(candidate.keyframe);
+    if (similarity(candidate.keyframe) >= config.min_similarity_share * least)
+      result.push_back(candidate.keyframe);
   return result;
 }
 
@@ -150,18 +152,15 @@ std::optional<Loop> detect_loop(const Map& map, KeyframeId newest, LoopMemory& m
                      candidates(map, newest, context.semantics, config), map, context.camera,
                      context.features, context.semantics, context.match, relocalize, stream, counts,
                      {.words = Matcher::kLoop, .projection = Matcher::kLoop});
-  if (!found.camera_from_world) {
-    memory = {};
-    return std::nullopt;
-  }
+  if (!found.camera_from_world) return std::nullopt;
   const SE3 drift = found.camera_from_world->inverse() * keyframe.camera_from_world;
   const bool agrees =
       memory.drift &&
+      newest.value - memory.keyframe.value <= static_cast<std::uint32_t>(config.patience) &&
       (memory.drift->translation() - drift.translation()).norm() < config.same_drift_m &&
       angle_between_rad(*memory.drift, drift) < config.same_drift_rad;
-  memory.streak = agrees ? memory.streak + 1 : 1;
-  memory.drift = drift;
-  if (memory.streak < config.consecutive) return std::nullopt;
+  memory = {.drift = drift, .keyframe = newest, .agreeing = agrees ? memory.agreeing + 1 : 1};
+  if (memory.agreeing < config.agreeing) return std::nullopt;
   memory = {};
   return Loop{newest, found.keyframe, *found.camera_from_world, found.landmarks};
 }

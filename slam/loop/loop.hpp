@@ -10,9 +10,15 @@ namespace mh {
 
 struct LoopConfig {
   bool enabled = true;
-  bool augmented = false;      ///< candidates by equation 1 with labels; else by words alone
-  int min_gap = 10;            ///< keyframes between the two ends, at least
-  int consecutive = 2;         ///< keyframes in a row that must tell of the same drift
+  bool augmented = false;  ///< candidates by equation 1 with labels; else by words alone
+  int min_gap = 10;        ///< keyframes between the two ends, at least
+  /// The ends share fewer landmarks than this: chance matches across a drift of some centimetres
+  /// tie them too loosely to undo it.
+  int loosely_shared = 60;
+  /// A candidate's similarity, at least, as a share of that of the least alike strong neighbour.
+  double min_similarity_share = 0.5;
+  int agreeing = 2;            ///< keyframes that must tell of the same drift,
+  int patience = 5;            ///< each at most so many keyframes after the one before
   double same_drift_m = 0.10;  ///< what counts as the same
   double same_drift_rad = 0.05;
   double negligible_m = 0.01;  ///< below, landmarks are joined but poses stay
@@ -21,12 +27,14 @@ struct LoopConfig {
 
 /// What loop detection remembers between keyframes.
 struct LoopMemory {
-  std::optional<SE3>
-      drift;       ///< world_from_world: where the last loop put the camera, from where it was
-  int streak = 0;  ///< keyframes in a row that agreed on it
+  /// world_from_world: where the last keyframe that recognised a place would put the camera, from
+  /// where it is.
+  std::optional<SE3> drift;
+  KeyframeId keyframe;  ///< that keyframe
+  int agreeing = 0;     ///< keyframes that agreed on the drift so far
 };
 
-/// A place recognised: the keyframe as seen by a part of the map that it shares nothing with.
+/// A place recognised: the keyframe as seen by a part of the map that it shares little with.
 struct Loop {
   KeyframeId keyframe;                ///< the newest
   KeyframeId old_keyframe;            ///< where it was recognised
@@ -34,8 +42,8 @@ struct Loop {
   std::vector<LandmarkId> landmarks;  ///< old landmarks per feature of the newest keyframe
 };
 
-/// Looks for the newest keyframe among those that share nothing with it: candidates by words
-/// (equations 3 to 6), geometric check as in relocalization, agreement over consecutive keyframes.
+/// Looks for the newest keyframe among those that share little with it: candidates by words
+/// (equations 3 to 6), geometric check as in relocalization, agreement of several keyframes.
 std::optional<Loop> detect_loop(const Map& map, KeyframeId newest, LoopMemory& memory,
                                 const MappingContext& context, const RelocalizeConfig& relocalize,
                                 const LoopConfig& config, RandomStream stream, MatchCounts& counts);

@@ -32,8 +32,8 @@ void fields(A& a, T& tracker) {
 }
 template <class A, Either<LoopMemory> T>
 void fields(A& a, T& memory) {
-  auto& [drift, streak] = memory;
-  a(drift, streak);
+  auto& [drift, keyframe, agreeing] = memory;
+  a(drift, keyframe, agreeing);
 }
 template <class A, Either<TrackedFrame> T>
 void fields(A& a, T& frame) {

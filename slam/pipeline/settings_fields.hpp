@@ -122,12 +122,15 @@ void fields(C& c, Visit& v) {
 
 template <Either<LoopConfig> C, class Visit>
 void fields(C& c, Visit& v) {
-  auto& [enabled, augmented, min_gap, consecutive, same_drift_m, same_drift_rad, negligible_m,
-         negligible_rad] = c;
+  auto& [enabled, augmented, min_gap, loosely_shared, min_similarity_share, agreeing, patience,
+         same_drift_m, same_drift_rad, negligible_m, negligible_rad] = c;
   v("enabled", enabled, kSwitch, "whether loops are looked for");
   v("augmented", augmented, kSwitch, "candidates by equation 1 with labels; else by words alone");
   v("min_gap", min_gap, kCount, "keyframes between the two ends");
-  v("consecutive", consecutive, kCount, "keyframes in a row that must tell of the same drift");
+  v("loosely_shared", loosely_shared, kCount, "landmarks: the two ends share fewer");
+  v("min_similarity_share", min_similarity_share, kShare, "of the least alike strong neighbour's");
+  v("agreeing", agreeing, kCount, "keyframes that must tell of the same drift,");
+  v("patience", patience, kCount, "each at most so many keyframes after the one before");
   v("same_drift_m", same_drift_m, kLength_m, "what counts as the same");
   v("same_drift_rad", same_drift_rad, kAngle_rad, "");
   v("negligible_m", negligible_m, kLength_m, "below, landmarks are joined but poses stay");
