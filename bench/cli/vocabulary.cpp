@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <chrono>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include <fmt/format.h>
@@ -8,20 +10,38 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/protocol/digest.hpp"
+#include "bench/vocabulary_score.hpp"
 #include "bench/vocabulary_training.hpp"
+#include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh::cli {
 namespace {
 
 struct Options {
-  std::string file;
+  std::string file, list, out;
+  std::string frames, queries, settings;  ///< of info
   VocabularyTraining training;
+  VocabularyScoreConfig score;
 };
 
-void train(const Options& options) {
-  const std::filesystem::path out = options.file;
-  make_output_folder(out.has_parent_path() ? out.parent_path() : std::filesystem::path("."));
+void make_folder_of(const std::filesystem::path& file) {
+  make_output_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."));
+}
+
+/// Loads a vocabulary and says how long that took.
+Vocabulary load_timed(const std::string& file) {
+  const auto start = std::chrono::steady_clock::now();
+  Vocabulary vocabulary = Vocabulary::load(file);
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+  fmt::print("{}: {} words, ready in {:.1f} ms\n", file, vocabulary.size(), took.count());
+  return vocabulary;
+}
+
+void train(Options& options) {
+  const std::filesystem::path out = options.out;
+  make_folder_of(out);
+  if (!options.list.empty()) options.training.pictures = load_picture_list(options.list);
   Progress progress("vocabulary");
   const Vocabulary vocabulary = train_vocabulary(options.training, [&](int done, int total) {
     progress.share(static_cast<double>(done) / total);
@@ -31,16 +51,59 @@ void train(const Options& options) {
              hex(vocabulary.digest()));
 }
 
+void convert(const Options& options) {
+  make_folder_of(options.out);
+  const Vocabulary vocabulary = load_timed(options.file);
+  vocabulary.save(options.out);
+  load_timed(options.out);
+}
+
+std::string or_unknown(std::uint64_t count) {
+  return count == 0 ? "not known" : fmt::format("{}", count);
+}
+
+/// The folder of "tum:FOLDER".
+std::filesystem::path folder_of(const std::string& source) {
+  constexpr std::string_view kTum = "tum:";
+  if (!source.starts_with(kTum)) throw InputError(fmt::format("'{}' must be tum:FOLDER", source));
+  return source.substr(kTum.size());
+}
+
+/// What the words are worth on pictures whose poses are known.
+void print_score(const Vocabulary& vocabulary, const Options& options) {
+  const RecordedCamera camera = load_recorded_camera(options.settings);
+  const auto views = load_placed_views(folder_of(options.frames), camera, options.score);
+  std::vector<PlacedView> queries;
+  if (!options.queries.empty())
+    queries = load_placed_views(folder_of(options.queries), camera, options.score);
+  const VocabularyScore score =
+      score_vocabulary(vocabulary, views, queries, camera.camera, options.score);
+  fmt::print("  frames  {} views, {} queries, {:.0f} different words in each\n", score.views,
+             score.queries, score.words_per_view);
+  if (score.label_mass)
+    fmt::print("  labels  hold {:.1f} % of a frame's mass at gamma = 1\n", 100 * *score.label_mass);
+  fmt::print(
+      "  finds   {:.1f} % of the most alike views overlap by {:.0f} % or more (by chance "
+      "{:.1f} %); mean average precision {:.3f}\n",
+      100 * score.precision, 100 * options.score.min_overlap, 100 * score.chance,
+      score.average_precision);
+}
+
 void info(const Options& options) {
-  const Vocabulary vocabulary = Vocabulary::load(options.file);
-  std::vector<float> idf;
+  const Vocabulary vocabulary = load_timed(options.file);
+  std::vector<double> idf;
   for (WordId word = 0; word < vocabulary.size(); ++word) idf.push_back(vocabulary.idf(word));
   std::sort(idf.begin(), idf.end());
-  fmt::print("{}\n  words   {}\n  digest  {}\n", options.file, vocabulary.size(),
-             hex(vocabulary.digest()));
-  if (!idf.empty())
-    fmt::print("  idf     {:.3f} to {:.3f}, median {:.3f}\n", idf.front(), idf.back(),
-               idf[idf.size() / 2]);
+  const double mean =
+      std::accumulate(idf.begin(), idf.end(), 0.0) / static_cast<double>(idf.size());
+  fmt::print("  tree    {} nodes, branching {}, depth {}\n", vocabulary.node_count(),
+             vocabulary.branching(), vocabulary.depth());
+  fmt::print("  idf     {:.3f} to {:.3f}, mean {:.3f}, median {:.3f}\n", idf.front(), idf.back(),
+             mean, idf[idf.size() / 2]);
+  fmt::print("  from    pictures: {}, descriptors: {}\n", or_unknown(vocabulary.training_images()),
+             or_unknown(vocabulary.training_descriptors()));
+  fmt::print("  digest  {}\n", hex(vocabulary.digest()));
+  if (!options.frames.empty()) print_score(vocabulary, options);
 }
 
 }  // namespace
@@ -52,20 +115,45 @@ void add_vocabulary(CLI::App& app) {
   command->footer("Example:\n  modelhouse vocabulary info assets/vocabulary.mhvoc");
 
   CLI::App* t = command->add_subcommand(
-      "train", "Trains on rendered rooms and materials that no evaluation uses.");
+      "train", "Trains on rendered rooms and materials that no evaluation uses, or on pictures.");
   VocabularyTraining& training = options->training;
-  t->add_option("--out", options->file, "Vocabulary file to write")->required();
+  t->add_option("--out", options->out, "Vocabulary file to write")->required();
   t->add_option("--rooms", training.rooms, "Training rooms")->check(CLI::Range(1, 100000));
   t->add_option("--views", training.views, "Pictures per room")->check(CLI::Range(1, 100000));
+  t->add_option("--images", options->list,
+                "List of picture files, one per line, to train on instead of rooms");
+  t->add_option("--branching", training.tree.branching, "Children per node")
+      ->check(CLI::Range(2, 255));
+  t->add_option("--depth", training.tree.depth, "Levels below the root")->check(CLI::Range(1, 10));
   t->add_option("--seed", training.seed, "Seed of rooms, views and tree");
   t->add_option("--threads", training.threads, "Rooms side by side; changes no bit")
       ->check(CLI::Range(1, 1024));
   t->footer("Example:\n  modelhouse vocabulary train --out assets/vocabulary.mhvoc");
   t->callback([options] { train(*options); });
 
-  CLI::App* i = command->add_subcommand("info", "Prints size, weights and digest.");
+  CLI::App* c = command->add_subcommand(
+      "convert", "Writes a vocabulary in DBoW2's text format (ORBvoc.txt) as one of our own.");
+  c->add_option("file", options->file, "Vocabulary file")->required();
+  c->add_option("--out", options->out, "Vocabulary file to write")->required();
+  c->footer("Example:\n  modelhouse vocabulary convert ORBvoc.txt --out ORBvoc.mhvoc");
+  c->callback([options] { convert(*options); });
+
+  CLI::App* i = command->add_subcommand("info", "Prints size, weights, origin and digest.");
   i->add_option("file", options->file, "Vocabulary file")->required();
-  i->footer("Example:\n  modelhouse vocabulary info assets/vocabulary.mhvoc");
+  auto* const frames = i->add_option("--frames", options->frames,
+                                     "tum:FOLDER with poses: how well words find views of a place");
+  i->add_option("--queries", options->queries, "tum:FOLDER to ask from, instead of the frames")
+      ->needs(frames);
+  auto* const settings =
+      i->add_option("--settings", options->settings, "Calibration (YAML, ORB-SLAM's keys)");
+  frames->needs(settings);
+  i->add_option("--every", options->score.every, "Every n-th frame only")
+      ->check(CLI::Range(1, 1000000));
+  i->add_option("--overlap", options->score.min_overlap, "Share of a view that its neighbours see")
+      ->check(CLI::Range(0.01, 1.0));
+  i->footer(
+      "Example:\n  modelhouse vocabulary info assets/vocabulary.mhvoc --frames tum:out/sequence "
+      "--settings out/sequence/camera.yaml");
   i->callback([options] { info(*options); });
 }
 

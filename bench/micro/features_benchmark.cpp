@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Feature extraction against cv::ORB on one thread (1,000 features, 8 levels, 640x480), its parts,
-// and the vocabulary on as many descriptors.
-#include <filesystem>
-
+// Feature extraction against cv::ORB on one thread (1,000 features, 8 levels, 640x480), and its
+// parts.
 #include <benchmark/benchmark.h>
 #include <opencv2/features2d.hpp>
 
@@ -10,7 +8,6 @@
 #include "slam/features/describe.hpp"
 #include "slam/features/features.hpp"
 #include "slam/features/pyramid.hpp"
-#include "slam/vocabulary/vocabulary.hpp"
 #include "tests/slam/features/texture.hpp"
 
 namespace mh {
@@ -77,40 +74,6 @@ void part_orientation_and_descriptor(benchmark::State& state) {
           describe(level.blurred, c.x, c.y, to_radians(orientation_deg(level.image, c.x, c.y))));
 }
 BENCHMARK(part_orientation_and_descriptor)->Unit(benchmark::kMillisecond);
-
-// 1,000 random descriptors and a tree of 10^4 words.
-struct Words {
-  std::vector<Descriptor> descriptors;
-  Vocabulary vocabulary;
-  std::filesystem::path file = std::filesystem::temp_directory_path() / "features_benchmark.mhv";
-
-  Words() {
-    std::vector<std::vector<Descriptor>> images(20);
-    for (std::uint64_t i = 0; i < 60000; ++i) {
-      const RandomStream r = RandomStream(1).fork(i);
-      images[i % images.size()].push_back({r.bits(0), r.bits(1), r.bits(2), r.bits(3)});
-    }
-    descriptors.assign(images[0].begin(), images[0].begin() + 1000);
-    vocabulary = Vocabulary::train(images, {.max_iterations = 3});
-    vocabulary.save(file);
-  }
-  ~Words() { std::filesystem::remove(file); }
-};
-
-void quantize_1000(benchmark::State& state) {
-  const Words words;
-  for (auto _ : state)
-    for (const Descriptor& d : words.descriptors)
-      benchmark::DoNotOptimize(words.vocabulary.quantize(d));
-  state.counters["words"] = static_cast<double>(words.vocabulary.size());
-}
-BENCHMARK(quantize_1000)->Unit(benchmark::kMillisecond);
-
-void load_vocabulary(benchmark::State& state) {
-  const Words words;
-  for (auto _ : state) benchmark::DoNotOptimize(Vocabulary::load(words.file));
-}
-BENCHMARK(load_vocabulary)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace mh

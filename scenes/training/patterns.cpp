@@ -9,56 +9,16 @@
 #include <string>
 
 #include "scenes/materials/canvas.hpp"
-#include "scenes/materials/noise.hpp"
+#include "scenes/training/ink.hpp"
+#include "scenes/training/prints.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
 namespace {
 
-constexpr int kTexels = 512;
+using namespace training;
+
 constexpr float kTile = 1.2F;  // m
-using Sheet = Grid2d<Rgb8>;
-
-/// The colours and the randomness of one sheet.
-struct Ink {
-  RandomStream random;
-  std::array<Tint, 5> palette;
-
-  explicit Ink(RandomStream stream) : random(stream) {
-    const RandomStream colours = stream.fork(1000);
-    for (std::uint64_t i = 0; i < palette.size(); ++i) {
-      // Light and dark take turns, so that neighbours in the palette can be told apart.
-      const bool is_light = (i + colours.below(90, 2)) % 2 == 0;
-      const double low = is_light ? 130.0 : 40.0, high = is_light ? 235.0 : 140.0;
-      const auto base = static_cast<float>(colours.uniform(4 * i, low, high));
-      const auto channel = [&](std::uint64_t k) {
-        return base * static_cast<float>(colours.uniform(4 * i + k, 0.75, 1.15));
-      };
-      palette[i] = {channel(1), channel(2), channel(3)};
-    }
-  }
-  float uniform(std::uint64_t i, double low, double high) const {
-    return static_cast<float>(random.uniform(i, low, high));
-  }
-  int whole(std::uint64_t i, int low, int high) const {  ///< both ends included
-    return low + static_cast<int>(random.below(i, static_cast<std::uint64_t>(high - low + 1)));
-  }
-  const Tint& pick(std::uint64_t i) const {
-    return palette[random.fork(7).below(i, palette.size())];
-  }
-};
-
-template <class TintAt>
-Sheet fill(const TintAt& tint_at) {
-  Sheet sheet(kTexels, kTexels);
-  for (int y = 0; y < kTexels; ++y)
-    for (int x = 0; x < kTexels; ++x) sheet(x, y) = to_rgb8(tint_at(x, y));
-  return sheet;
-}
-
-Field clouds(const Ink& ink, std::uint64_t name, int cells, int octaves = 5, float gain = 0.55F) {
-  return fbm(kTexels, kTexels, cells, cells, octaves, gain, ink.random.fork(name));
-}
 
 Sheet brick(const Ink& ink) {
   const int rows = 2 * ink.whole(0, 5, 10), columns = ink.whole(1, 4, 8);
@@ -315,12 +275,30 @@ struct Family {
   Sheet (*paint)(const Ink&);
 };
 
-constexpr std::array kFamilies = {
-    Family{"brick", brick},         Family{"camouflage", camouflage}, Family{"checks", checks},
-    Family{"circuit", circuit},     Family{"crackle", crackle},       Family{"hexagons", hexagons},
-    Family{"marble_veins", marble}, Family{"mosaic", mosaic},         Family{"pebbles", pebbles},
-    Family{"rust", rust},           Family{"signs", signs},           Family{"stripes", stripes},
-    Family{"terrazzo", terrazzo},   Family{"wallpaper", wallpaper},   Family{"wash", wash}};
+constexpr std::array kFamilies = {Family{"barcodes", barcodes},
+                                  Family{"brick", brick},
+                                  Family{"camouflage", camouflage},
+                                  Family{"charts", charts},
+                                  Family{"checks", checks},
+                                  Family{"circuit", circuit},
+                                  Family{"collage", collage},
+                                  Family{"confetti", confetti},
+                                  Family{"crackle", crackle},
+                                  Family{"halftone", halftone},
+                                  Family{"hexagons", hexagons},
+                                  Family{"marble_veins", marble},
+                                  Family{"mosaic", mosaic},
+                                  Family{"pebbles", pebbles},
+                                  Family{"rust", rust},
+                                  Family{"scales", scales},
+                                  Family{"scribbles", scribbles},
+                                  Family{"signs", signs},
+                                  Family{"stripes", stripes},
+                                  Family{"terrazzo", terrazzo},
+                                  Family{"truchet", truchet},
+                                  Family{"wallpaper", wallpaper},
+                                  Family{"wash", wash},
+                                  Family{"wire_mesh", wire_mesh}};
 
 constexpr auto kNames = [] {
   std::array<std::string_view, kFamilies.size()> names;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numeric>
@@ -9,6 +10,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/random.hpp"
 #include "slam/vocabulary/kmedians.hpp"
+#include "slam/vocabulary/tree.hpp"
 #include "slam/vocabulary/vocabulary.hpp"
 
 namespace mh {
@@ -33,27 +35,28 @@ std::vector<Descriptor> all_of(std::span<const std::vector<Descriptor>> images) 
   return all;
 }
 
-}  // namespace
-
 /// Grows the tree breadth first, each node from the descriptors that reach it.
 class VocabularyTrainer {
  public:
   VocabularyTrainer(std::span<const std::vector<Descriptor>> images,
                     const Vocabulary::TrainConfig& config)
       : images_(images), config_(config), descriptors_(all_of(images)) {
-    tree_.branching_ = config.branching;
-    tree_.depth_ = config.depth;
+    tree_.branching = static_cast<std::uint32_t>(config.branching);
+    tree_.depth = static_cast<std::uint32_t>(config.depth);
+    tree_.images = static_cast<std::uint32_t>(images.size());
+    tree_.descriptors = descriptors_.size();
   }
 
   Vocabulary train() {
     std::vector<std::uint32_t> everything(descriptors_.size());
     std::iota(everything.begin(), everything.end(), 0U);
-    tree_.nodes_.emplace_back();
+    add_node(Descriptor{});
     std::vector<Pending> level = {{0, std::move(everything)}};
     for (int depth = 0; depth < config_.depth; ++depth) level = grow(level, depth);
-    number_words();
-    weigh_words();
-    return std::move(tree_);
+    tree_.idf.assign(
+        static_cast<std::size_t>(std::ranges::count(tree_.child_counts, std::uint8_t{0})), 0.0F);
+    weigh_words(Vocabulary(tree_));
+    return Vocabulary(tree_);
   }
 
  private:
@@ -78,34 +81,31 @@ class VocabularyTrainer {
     return next;
   }
 
+  void add_node(const Descriptor& centre) {
+    tree_.centres.push_back(centre);
+    tree_.child_counts.push_back(0);
+  }
+
   void add_children(const Pending& parent, const Clusters& clusters, std::vector<Pending>& next) {
     const std::size_t first_pending = next.size();
-    tree_.nodes_[parent.node].first_child = static_cast<std::uint32_t>(tree_.nodes_.size());
-    tree_.nodes_[parent.node].child_count = static_cast<std::uint32_t>(clusters.centres.size());
+    tree_.child_counts[parent.node] = static_cast<std::uint8_t>(clusters.centres.size());
     for (const Descriptor& centre : clusters.centres) {
-      next.push_back({static_cast<std::uint32_t>(tree_.nodes_.size()), {}});
-      tree_.nodes_.push_back({.centre = centre});
+      next.push_back({static_cast<std::uint32_t>(tree_.centres.size()), {}});
+      add_node(centre);
     }
     for (std::size_t i = 0; i < parent.members.size(); ++i)
       next[first_pending + clusters.cluster_of[i]].members.push_back(parent.members[i]);
   }
 
-  void number_words() {
-    WordId word = 0;
-    for (Vocabulary::Node& node : tree_.nodes_)
-      if (node.child_count == 0) node.word = word++;
-    tree_.idf_.assign(word, 0.0F);
-  }
-
   // Inverse document frequency. Members were assigned to final centres at every node, so each word
   // is that of the descriptors that made it, and none is without an image.
-  void weigh_words() {
-    std::vector<std::uint32_t> images_with(tree_.idf_.size(), 0);
-    std::vector<std::uint32_t> last_image(tree_.idf_.size(), UINT32_MAX);
+  void weigh_words(const Vocabulary& unweighted) {
+    std::vector<std::uint32_t> images_with(tree_.idf.size(), 0);
+    std::vector<std::uint32_t> last_image(tree_.idf.size(), UINT32_MAX);
     std::uint32_t count = 0;
     for (const std::vector<Descriptor>& image : images_) {
       for (const Descriptor& d : image) {
-        const WordId word = tree_.quantize(d).word;
+        const WordId word = unweighted.quantize(d).word;
         if (last_image[word] == count) continue;
         last_image[word] = count;
         ++images_with[word];
@@ -114,15 +114,17 @@ class VocabularyTrainer {
     }
     for (std::size_t w = 0; w < images_with.size(); ++w) {
       assert(images_with[w] > 0);
-      tree_.idf_[w] = static_cast<float>(std::log(static_cast<double>(count) / images_with[w]));
+      tree_.idf[w] = static_cast<float>(std::log(static_cast<double>(count) / images_with[w]));
     }
   }
 
   std::span<const std::vector<Descriptor>> images_;
   Vocabulary::TrainConfig config_;
   std::vector<Descriptor> descriptors_;
-  Vocabulary tree_;
+  VocabularyTree tree_;
 };
+
+}  // namespace
 
 Vocabulary Vocabulary::train(std::span<const std::vector<Descriptor>> images,
                              const TrainConfig& config) {

@@ -3,23 +3,27 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "slam/features/features.hpp"
+#include "slam/vocabulary/held_bytes.hpp"
 
 namespace mh {
 
+struct VocabularyTree;
 using WordId = std::uint32_t;
 
 /// A tree of visual words: hierarchical k-medians over binary descriptors (Galvez-Lopez and
 /// Tardos, T-RO 2012, after Nister and Stewenius, CVPR 2006). Default-constructed it is empty and
-/// can only be assigned to.
+/// can only be assigned to. Immutable; copies share one tree, which may lie in a mapped file.
 class Vocabulary {
  public:
   struct TrainConfig {
     int branching = 10;       ///< children per node, 2 to 255
-    int depth = 4;            ///< levels below the root, 1 to 10; at most branching^depth words
+    int depth = 5;            ///< levels below the root, 1 to 10; at most branching^depth words
     int max_iterations = 12;  ///< of k-medians at each node, >= 1
     std::uint64_t seed = 0;
   };
@@ -32,7 +36,7 @@ class Vocabulary {
 
   /// branching^2 nodes, 100 as a rule: with 1,000 features in a picture some 10 share a node.
   static constexpr int kDirectIndexLevel = 2;
-  static constexpr std::uint32_t kFileVersion = 1;
+  static constexpr std::uint32_t kFileVersion = 2;
 
   /// Trains on the descriptors of many images. Deterministic: same images, config, same tree.
   /// Weights are idf = ln(images / images with the word); every word occurs in some image.
@@ -41,10 +45,17 @@ class Vocabulary {
   static Vocabulary train(std::span<const std::vector<Descriptor>> images,
                           const TrainConfig& config);
 
+  /// A tree made elsewhere. @throws InputError if it is no consistent tree.
+  explicit Vocabulary(const VocabularyTree& tree);
+  Vocabulary() = default;
+
+  /// Maps a file of our own into memory (held_bytes.hpp says what that asks of the file), or reads
+  /// one in DBoW2's text format (read_dbow2_text()), which takes some hundred times as long.
   /// @throws InputError naming file and fault: missing, not a vocabulary, another version, cut
-  /// short, checksum wrong.
+  /// short, checksum wrong; of a text its line.
   static Vocabulary load(const std::filesystem::path& file);
-  /// Written to a temporary, then renamed. @throws InputError if it cannot be written.
+  /// In our own format; written to a temporary, then renamed. @throws InputError if it cannot be
+  /// written.
   void save(const std::filesystem::path& file) const;
 
   /// The word a descriptor belongs to: from the root down, always to the nearest child in Hamming
@@ -55,26 +66,27 @@ class Vocabulary {
   float idf(WordId word) const { return idf_[word]; }
   int branching() const { return branching_; }
   int depth() const { return depth_; }
-  /// Of the file's content: equal digests, equal vocabularies.
-  std::uint64_t digest() const;
+  std::size_t node_count() const { return centres_.size(); }
+  std::uint32_t training_images() const { return training_images_; }  ///< 0 = not known
+  std::uint64_t training_descriptors() const { return training_descriptors_; }
+  /// Of the file's content: equal digests, equal vocabularies. 0 if empty.
+  std::uint64_t digest() const { return digest_; }
 
  private:
-  friend class VocabularyTrainer;
+  /// @throws InputError "name: ..." unless the bytes are those of a vocabulary file.
+  Vocabulary(HeldBytes bytes, const std::string& name);
 
-  std::string encode() const;
-  static Vocabulary decode(const std::string& bytes, const std::string& name);
-
+  HeldBytes bytes_;  ///< the whole file; what follows points into it
+  std::span<const Descriptor> centres_;
+  std::span<const float> idf_;
+  const std::uint8_t* child_counts_ = nullptr;
+  /// Per node: its first child, or its word where it has no child.
+  std::shared_ptr<const std::vector<std::uint32_t>> links_;
   int branching_ = 0;
   int depth_ = 0;
-  // Nodes in breadth-first order; node 0 is the root. Children of a node are contiguous.
-  struct Node {
-    Descriptor centre{};
-    std::uint32_t first_child = 0;
-    std::uint32_t child_count = 0;  ///< 0 = leaf
-    WordId word = 0;                ///< leaves only: their number in node order
-  };
-  std::vector<Node> nodes_;
-  std::vector<float> idf_;
+  std::uint32_t training_images_ = 0;
+  std::uint64_t training_descriptors_ = 0;
+  std::uint64_t digest_ = 0;
 };
 
 }  // namespace mh

@@ -91,7 +91,8 @@ class CommandLine : public testing::Test {
 TEST_F(CommandLine, EveryCommandHasHelpWithAnExample) {
   for (const char* command :
        {"", "bench", "verify", "evaluate", "scene", "scene info", "scene preview", "scene convert",
-        "drive", "render", "slam", "vocabulary", "vocabulary train", "vocabulary info"}) {
+        "drive", "render", "slam", "vocabulary", "vocabulary train", "vocabulary convert",
+        "vocabulary info"}) {
     EXPECT_EQ(run(std::string(command) + " --help"), 0) << command;
     EXPECT_NE(out_.find("Example"), std::string::npos) << command;
     EXPECT_NE(out_.find("  modelhouse "), std::string::npos) << command;
@@ -137,6 +138,23 @@ TEST_F(CommandLine, AVocabularyCutShort) {
                      (folder_ / "out").string(),
                  "cut.mhvoc");
   EXPECT_EQ(files_left(), 1u);  // cut.mhvoc itself
+}
+
+TEST_F(CommandLine, AVocabularyInText) {
+  std::string node = "0 1";
+  for (int byte = 0; byte < 32; ++byte) node += " 7";
+  const std::string text = write("words.txt", "10 6 0 0\n" + node + " 1.25\n").string();
+  const std::string own = (folder_ / "words.mhvoc").string();
+  EXPECT_EQ(run("vocabulary convert " + text + " --out " + own), 0) << err_;
+  EXPECT_NE(out_.find("1 words, ready in"), std::string::npos) << out_;
+  EXPECT_EQ(run("vocabulary info " + own), 0) << err_;
+  EXPECT_NE(out_.find("mean 1.250"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("pictures: not known"), std::string::npos) << out_;
+  const std::string bad = write("bad.txt", "10 6 0 0\n" + node + " 1.25 3\n").string();
+  expect_refused("vocabulary info " + bad, "bad.txt:2: line goes on where it should end: '3'");
+  expect_refused("vocabulary info " + text + " --frames here --settings s.yaml", "s.yaml");
+  expect_refused("vocabulary train --images " + (folder_ / "none.txt").string() + " --out " + own,
+                 "none.txt");
 }
 
 TEST_F(CommandLine, AnOutputFolderThatCannotBeWrittenIsFoundBeforeTheWork) {

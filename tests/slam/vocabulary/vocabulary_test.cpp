@@ -241,7 +241,7 @@ TEST_F(VocabularyFile, IsNoVocabulary) {
 TEST_F(VocabularyFile, IsOfAnotherVersion) {
   bytes_[8] = 7;
   rewrite(bytes_);
-  EXPECT_THAT(message_of_loading(), HasSubstr("of version 7, but this program reads 1"));
+  EXPECT_THAT(message_of_loading(), HasSubstr("of version 7, but this program reads 2"));
 }
 
 TEST_F(VocabularyFile, CutShortAnywhere) {
@@ -269,9 +269,10 @@ TEST_F(VocabularyFile, DamagedAnywhereBehindTheHeader) {
 }
 
 TEST_F(VocabularyFile, SignedNonsenseIsRefusedToo) {
-  std::uint32_t nodes = 0;
+  std::uint32_t nodes = 0, words = 0;
   std::memcpy(&nodes, bytes_.data() + 20, 4);
-  const std::size_t child_counts = 28 + 32 * std::size_t{nodes};
+  std::memcpy(&words, bytes_.data() + 24, 4);
+  const std::size_t idf = 64 + 32 * std::size_t{nodes}, child_counts = idf + 4 * std::size_t{words};
   std::string more_children = bytes_;
   more_children[child_counts] = 100;
   rewrite(signed_again(more_children));
@@ -281,9 +282,27 @@ TEST_F(VocabularyFile, SignedNonsenseIsRefusedToo) {
   rewrite(signed_again(fewer_children));
   EXPECT_THAT(message_of_loading(), HasSubstr("no consistent tree"));
   std::string negative = bytes_;
-  negative[bytes_.size() - 9] = static_cast<char>(0xff);
+  negative[child_counts - 1] = static_cast<char>(0xff);  // of the last weight
   rewrite(signed_again(negative));
   EXPECT_THAT(message_of_loading(), HasSubstr("weight"));
+}
+
+// What is mapped stays readable when the name comes to stand for another file.
+TEST_F(VocabularyFile, StaysWholeWhenTheFileIsReplacedOrRemoved) {
+  const Vocabulary loaded = Vocabulary::load(file_);
+  Vocabulary::train(scattered(10, 100, 50, 99), {.branching = 4, .depth = 3}).save(file_);
+  const Vocabulary copy = loaded;
+  fs::remove(file_);
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    const Descriptor d = random_descriptor(RandomStream(15).fork(i));
+    EXPECT_EQ(copy.quantize(d).word, vocabulary_.quantize(d).word);
+  }
+}
+
+TEST_F(VocabularyFile, SaysWhatItWasTrainedOn) {
+  EXPECT_EQ(Vocabulary::load(file_).training_images(), 10U);
+  EXPECT_EQ(Vocabulary::load(file_).training_descriptors(), 1000U);
+  EXPECT_EQ(Vocabulary().digest(), 0U);
 }
 
 TEST_F(VocabularyFile, SavingWhereNothingCanBeWrittenLeavesNothing) {

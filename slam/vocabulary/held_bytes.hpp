@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace mh {
+
+/// Bytes that nobody changes, and what keeps them alive. Copies share them.
+struct HeldBytes {
+  std::shared_ptr<const void> owner;
+  std::string_view view;  ///< starts at a multiple of 16
+};
+
+HeldBytes hold(std::string bytes);
+
+/// Maps a file into memory, to be read only: pages come as they are touched and are shared with
+/// other processes. The file must be replaced by renaming, never rewritten in place, while it is
+/// mapped. @throws InputError naming the file: missing, a folder, no permission.
+HeldBytes map_file(const std::filesystem::path& file);
+
+}  // namespace mh
