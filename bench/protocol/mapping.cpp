@@ -85,6 +85,7 @@ MappingOutcome map_sequence(System& system, std::size_t count, const FrameSource
                              .matching_digest = digest_of_matching(report),
                              .pose_digest = digest(report.world_from_camera)});
     add(outcome.matches, report.matches);
+    if (report.loop) outcome.loops.push_back(*report.loop);
     if (observe) observe(outcome.calls.back(), frame, report);
 
     if (report.status != TrackStatus::kLost) {

@@ -36,6 +36,7 @@ struct MappingOutcome {
   bool gave_up = false;              ///< ProtocolConfig::max_effort was spent
   std::size_t offered = 0;           ///< frames of the sequence that are no test frames
   MatchCounts matches{};             ///< summed over all track calls
+  std::vector<LoopClosure> loops;    ///< closed on the way, in order
 };
 
 /// Test frames are the last of every `test_interval`: 29, 59, ... at 30.

@@ -13,6 +13,13 @@ namespace mh {
 enum class TrackStatus { kInitialized, kTracked, kRelocalized, kLost };
 std::string_view name(TrackStatus status);
 
+/// A loop that was closed: two keyframes and where the one is as seen from the other, by what both
+/// see. For whoever knows the truth.
+struct LoopClosure {
+  Stamp stamp_ns = 0, old_stamp_ns = 0;  ///< of the newest keyframe and of the one recognised
+  SE3 old_from_new;                      ///< old camera from new camera
+};
+
 /// All that a step hands out: plain data, no reference into the system.
 struct StepReport {
   TrackStatus status = TrackStatus::kLost;
@@ -21,6 +28,7 @@ struct StepReport {
   int inliers = 0;
   bool keyframe_added = false;
   bool loop_closed = false;
+  std::optional<LoopClosure> loop;  ///< if one was closed
   RelocalizationStage relocalization = RelocalizationStage::kNone;
   std::optional<CandidateCounts> candidates;  ///< when relocalization was tried
   MatchCounts matches{};

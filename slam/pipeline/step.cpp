@@ -158,6 +158,9 @@ KeyframeId insert_keyframe(SlamState& state, PreparedFrame& frame, const SE3& ca
   if (config.loop.enabled)
     if (const auto loop = detect_loop(state.map, id, state.loop_memory, context, config.relocalize,
                                       config.loop, stream, report.matches)) {
+      const Keyframe& old = state.map.at(loop->old_keyframe);
+      report.loop = LoopClosure{frame.stamp_ns, old.stamp_ns,
+                                old.camera_from_world * loop->camera_from_world.inverse()};
       close_loop(state.map, *loop, context, config.loop, report.matches);
       report.loop_closed = true;
     }

@@ -166,7 +166,9 @@ TEST(ScoreVocabulary, FindsViewsOfOnePlaceByTheirWords) {
   ASSERT_TRUE(score.label_mass);
   EXPECT_NEAR(*score.label_mass, 25 / (25 + 50 * std::log(3.0)), 1e-6);
   // Who asks from elsewhere alone, or about too near a time, has no true neighbour.
-  EXPECT_THROW(score_vocabulary(vocabulary, views, {}, camera, {.min_gap_s = 35}), InputError);
+  VocabularyScoreConfig long_ago;
+  long_ago.min_gap_s = 35;
+  EXPECT_THROW(score_vocabulary(vocabulary, views, {}, camera, long_ago), InputError);
   // Words of another place mislead.
   std::swap(views[0].features, views[1].features);
   EXPECT_LT(score_vocabulary(vocabulary, views, {}, camera, {}).precision, 0.5);

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/protocol/loop_audit.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace mh {
+namespace {
+
+const TimedPose* at(const Trajectory& truth, Stamp stamp_ns) {
+  const auto found = std::ranges::lower_bound(truth, stamp_ns, {}, &TimedPose::stamp_ns);
+  return found == truth.end() || found->stamp_ns != stamp_ns ? nullptr : &*found;
+}
+
+}  // namespace
+
+LoopAudit audit_loops(std::span<const LoopClosure> loops, const Trajectory& truth,
+                      const ProtocolConfig& config) {
+  const double most_rad = config.correct_angle_deg * std::numbers::pi / 180.0;
+  LoopAudit audit;
+  for (const LoopClosure& loop : loops) {
+    ++audit.closed;
+    const TimedPose *old_pose = at(truth, loop.old_stamp_ns), *new_pose = at(truth, loop.stamp_ns);
+    if (!old_pose || !new_pose) {
+      ++audit.wrong;
+      continue;
+    }
+    const SE3 exact = old_pose->world_from_camera.inverse() * new_pose->world_from_camera;
+    const double distance_m = (loop.old_from_new.translation() - exact.translation()).norm();
+    const double angle_rad = angle_between_rad(loop.old_from_new, exact);
+    audit.worst_m = std::max(audit.worst_m, distance_m);
+    audit.worst_rad = std::max(audit.worst_rad, angle_rad);
+    audit.wrong += distance_m > config.correct_distance_m || angle_rad > most_rad ? 1 : 0;
+  }
+  return audit;
+}
+
+}  // namespace mh
