@@ -52,7 +52,7 @@ TEST(Loop, CutsInjectedDriftByFiveTimes) {
         step(state, testing_support::box_room_frame(i, true), RandomStream(7).fork(i));
     ASSERT_NE(report.status, TrackStatus::kLost) << i;
     if (i == 121) {
-      EXPECT_GT(before_m, 0.15) << "no drift to cut";
+      EXPECT_GT(before_m, 0.10) << "no drift to cut";
     }
     if (!report.loop_closed) continue;
     closed_at = i;
