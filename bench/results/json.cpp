@@ -2,10 +2,12 @@
 #include "bench/results/json.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include <opencv2/core/version.hpp>
 
 #include "bench/protocol/digest.hpp"
+#include "bench/protocol/loop_audit.hpp"
 #include "bench/results/fingerprint.hpp"
 
 namespace mh {
@@ -220,6 +222,13 @@ Json points_json(const RunResult& run) {
   return points;
 }
 
+Json loops_json(const LoopAudit& loops) {
+  return {{"closed", loops.closed},
+          {"false", loops.wrong},
+          {"worst_m", loops.worst_m},
+          {"worst_deg", loops.worst_rad * 180.0 / std::numbers::pi}};
+}
+
 Json run_json(const RunResult& run) {
   const MappingOutcome& m = run.mapping;
   Json trajectory = trajectory_json(run.trajectory);
@@ -245,6 +254,7 @@ Json run_json(const RunResult& run) {
             {"before_map", m.before_map},
             {"gave_up", m.gave_up},
             {"keyframes_made", keyframes},
+            {"loops", loops_json(audit_loops(m.loops, run.truth, run.spec.protocol))},
             {"matchers", matches_json(m.matches)}}},
           {"trajectory", trajectory},
           {"points", points_json(run)}};
