@@ -14,6 +14,7 @@ void add_drive(CLI::App& app);
 void add_evaluate(CLI::App& app);
 void add_render(CLI::App& app);
 void add_scene(CLI::App& app);
+void add_sensors(CLI::App& app);
 void add_slam(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_vocabulary(CLI::App& app);

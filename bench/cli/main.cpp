@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
   mh::cli::add_scene(app);
   mh::cli::add_drive(app);
   mh::cli::add_render(app);
+  mh::cli::add_sensors(app);
   mh::cli::add_slam(app);
   mh::cli::add_vocabulary(app);
   try {

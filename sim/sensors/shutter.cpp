@@ -52,6 +52,10 @@ class Rows {
         step_s_(duration_s(config) / pictures) {
     // Between two pictures an instantaneous row blends them.
     exposure_s_ = std::max(exposure_s_, step_s_);
+    for (int y = 0; y < height_; ++y) {
+      collected_s_.push_back(0.0);
+      for (int k = 0; k < pictures_; ++k) collected_s_.back() += overlap_s(k, y);
+    }
   }
 
   static double duration_s(const ShutterConfig& config) {
@@ -60,22 +64,22 @@ class Rows {
   }
   /// The middle of picture k's share of the time, s after the stamp.
   double time_s(int k) const { return (k + 0.5 - 0.5 * pictures_) * step_s_; }
-  /// What part of row y's light picture k stands for, as seconds.
+  /// For how long row y collects while picture k stands for what is there.
   double overlap_s(int k, int y) const {
     const double middle = ((y + 0.5) / height_ - 0.5) * readout_s_;
     const double begin = std::max(middle - 0.5 * exposure_s_, time_s(k) - 0.5 * step_s_);
     const double end = std::min(middle + 0.5 * exposure_s_, time_s(k) + 0.5 * step_s_);
     return std::max(0.0, end - begin);
   }
+  /// What share of row y's light picture k stands for.
   double weight(int k, int y) const {
-    double sum = 0.0;
-    for (int j = 0; j < pictures_; ++j) sum += overlap_s(j, y);
-    return overlap_s(k, y) / sum;
+    return overlap_s(k, y) / collected_s_[static_cast<std::size_t>(y)];
   }
 
  private:
   int height_, pictures_;
   double readout_s_, exposure_s_, step_s_;
+  std::vector<double> collected_s_;  // by row
 };
 
 /// Sums pictures of rows in linear light.
@@ -138,28 +142,33 @@ Camera with_lens(Camera camera, const SensorConfig& config) {
   return camera;
 }
 
-Shutter::Shutter(std::shared_ptr<const Renderer> renderer, const Camera& camera, Trajectory path,
-                 const SensorConfig& config)
-    : renderer_(std::move(renderer)),
+Shutter::Shutter(SceneAt scene, const Camera& camera, Trajectory path, const SensorConfig& config)
+    : scene_(std::move(scene)),
       camera_(with_lens(camera, config)),
       lens_(camera_),
       path_(std::move(path)),
       config_(config) {
-  assert(renderer_ != nullptr && !path_.empty());
+  assert(scene_ && !path_.empty());
   if (config_.auto_exposure_on) gains_ = exposure_gains();
 }
 
+Shutter::Shutter(std::shared_ptr<const Renderer> renderer, const Camera& camera, Trajectory path,
+                 const SensorConfig& config)
+    : Shutter([renderer = std::move(renderer)](Stamp) { return renderer; }, camera, std::move(path),
+              config) {}
+
 Shutter::Exposed Shutter::expose(std::size_t i) const {
   assert(i < path_.size());
-  RenderedFrame picture = render(path_[i].world_from_camera);
+  RenderedFrame picture = render(lens_.pinhole(), i, 0.0);
   blur(picture, i);
   if (config_.depth_offset_s != 0.0)
-    picture.depth_m = render(pose_at(path_, i, config_.depth_offset_s)).depth_m;
+    picture.depth_m = render(lens_.pinhole(), i, config_.depth_offset_s).depth_m;
   return {lens_.bend(std::move(picture)), gains_.empty() ? 1.0 : gains_[i]};
 }
 
-RenderedFrame Shutter::render(const SE3& world_from_camera) const {
-  return renderer_->render(lens_.pinhole(), world_from_camera);
+RenderedFrame Shutter::render(const Camera& pinhole, std::size_t i, double after_s) const {
+  const Stamp stamp_ns = path_[i].stamp_ns + static_cast<Stamp>(std::llround(after_s * 1e9));
+  return scene_(stamp_ns)->render(pinhole, pose_at(path_, i, after_s));
 }
 
 void Shutter::blur(RenderedFrame& picture, std::size_t i) const {
@@ -187,7 +196,7 @@ void Shutter::blur(RenderedFrame& picture, std::size_t i) const {
     strip.height_px = last - first;
     strip.cy_px -= first;
     Grid2d<Rgb8> colour;
-    if (!middle) colour = renderer_->render(strip, pose_at(path_, i, rows.time_s(k))).colour;
+    if (!middle) colour = render(strip, i, rows.time_s(k)).colour;
     for (int y = first; y < last; ++y)
       sum.add_row(y, middle ? picture.colour.row(y) : std::as_const(colour).row(y - first),
                   static_cast<float>(rows.weight(k, y)));
@@ -210,7 +219,7 @@ std::vector<double> Shutter::exposure_gains() const {
   double log_gain = 0.0;
   for (std::size_t i = 0; i < path_.size(); ++i) {
     double mean = 0.0;
-    for (const Rgb8& c : renderer_->render(meter, path_[i].world_from_camera).colour)
+    for (const Rgb8& c : render(meter, i, 0.0).colour)
       mean += luminance(srgb_to_linear(c)) / (kWidth * kHeight);
     const double wanted = std::clamp(std::log(config.target / std::max(mean, 1e-6)), -limit, limit);
     // The first frame finds the control at rest.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -22,8 +23,12 @@ Trajectory arriving_frames(const Trajectory& path, const SensorConfig& config, R
 /// noise. Frame i is a pure function of i. Safe to use from several threads.
 class Shutter {
  public:
+  /// A scene in which something moves: its picture at a moment.
+  using SceneAt = std::function<std::shared_ptr<const Renderer>(Stamp)>;
+
   /// @param renderer  of the scene; shared, one serves every path
   /// @param path      world_from_camera, at least one pose
+  Shutter(SceneAt scene, const Camera& camera, Trajectory path, const SensorConfig& config);
   Shutter(std::shared_ptr<const Renderer> renderer, const Camera& camera, Trajectory path,
           const SensorConfig& config);
 
@@ -38,11 +43,11 @@ class Shutter {
   const Camera& camera() const { return camera_; }
 
  private:
-  RenderedFrame render(const SE3& world_from_camera) const;
+  RenderedFrame render(const Camera& pinhole, std::size_t i, double after_s) const;
   void blur(RenderedFrame& picture, std::size_t i) const;
   std::vector<double> exposure_gains() const;
 
-  std::shared_ptr<const Renderer> renderer_;  // shared: one BVH serves every path of a scene
+  SceneAt scene_;
   Camera camera_;
   Lens lens_;
   Trajectory path_;

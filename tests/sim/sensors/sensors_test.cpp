@@ -2,6 +2,7 @@
 #include "sim/sensors/sensors.hpp"
 
 #include <gtest/gtest.h>
+#include <xxhash.h>
 
 #include <cmath>
 #include <numbers>
@@ -330,18 +331,42 @@ TEST(LabelImage, SmallerBoxesLieOverLargerOnesWhateverTheirIds) {
   EXPECT_EQ(label_image(truth, LabelMode::kBoxes).at(150, 150).most_probable(), 4);
 }
 
-TEST(SensorLevels, FrozenFilesSayWhatTheirNamesSay) {
-  const std::filesystem::path folder = std::filesystem::path(MH_SOURCE_DIR) / "sim/sensors/levels";
-  const SensorConfig ideal = load_sensor_config(folder / "ideal.yaml");
-  EXPECT_FALSE(ideal.depth_noise_on);
-  EXPECT_FALSE(ideal.colour_noise_on);
-  const SensorConfig pepper = load_sensor_config(folder / "pepper.yaml");
-  EXPECT_TRUE(pepper.depth_noise_on && pepper.colour_noise_on);
+std::filesystem::path level(const std::string& name) {
+  return std::filesystem::path(MH_SOURCE_DIR) / "sim/sensors/levels" / (name + ".yaml");
+}
+
+// Results name a level by its digest, and comparisons made under one name must mean one thing. A
+// change here is a new level: say so in CHANGELOG.md, and throw away what was measured before.
+TEST(SensorLevels, AreFrozen) {
+  const auto digest = [](const std::string& name) {
+    const std::string text = read_file(level(name));
+    return XXH3_64bits(text.data(), text.size());
+  };
+  EXPECT_EQ(digest("ideal"), 0x7922bfb11bb41b6bU);
+  EXPECT_EQ(digest("pepper"), 0x7dad5730e6fbf799U);
+  EXPECT_EQ(digest("handheld"), 0x55a2e442c5ec5e23U);
+}
+
+TEST(SensorLevels, SayWhatTheirNamesSay) {
+  const SensorConfig ideal = load_sensor_config(level("ideal"));
+  EXPECT_FALSE(ideal.depth_noise_on || ideal.colour_noise_on || ideal.shot_noise_on ||
+               ideal.shutter.motion_blur_on || ideal.shutter.rolling_shutter_on ||
+               ideal.auto_exposure_on || ideal.vignetting_on || ideal.lens_distortion_on);
+  EXPECT_EQ(ideal.depth_offset_s + ideal.blank_share + ideal.dropped_share, 0.0);
+
+  const SensorConfig pepper = load_sensor_config(level("pepper"));
   const DepthNoiseConfig& d = pepper.depth_noise;
-  EXPECT_TRUE(d.axial && d.lateral && d.quantisation && d.grazing_holes);
+  EXPECT_TRUE(pepper.depth_noise_on && d.axial && d.lateral && d.quantisation && d.grazing_holes &&
+              d.projector_shadow);
   EXPECT_EQ(d.min_range_m, 0.4);
   EXPECT_EQ(d.max_range_m, 8.0);
-  EXPECT_EQ(pepper.colour_noise.sigma, 0.007);
+  EXPECT_TRUE(pepper.shot_noise_on && !pepper.colour_noise_on);
+  EXPECT_NEAR(pepper.shutter.exposure_s, 0.020, 1e-12);
+  EXPECT_NEAR(pepper.shutter.readout_s, 0.0261, 1e-12);
+
+  const SensorConfig handheld = load_sensor_config(level("handheld"));
+  EXPECT_TRUE(handheld.depth_noise_on && handheld.shot_noise_on && handheld.auto_exposure_on &&
+              handheld.shutter.motion_blur_on && handheld.shutter.rolling_shutter_on);
 }
 
 TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {
@@ -364,6 +389,33 @@ TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {
   EXPECT_NE(message("depth_noise: {}\ncolour_noise: {sigma: -1}\n").find("-1"), std::string::npos);
   EXPECT_NE(message("depth_noise: {}\n").find("colour_noise"), std::string::npos);
   EXPECT_EQ(message("depth_noise: {}\n" + colour), "accepted");
+  // Each section by its own fault: what must be named, and in which line.
+  const std::string both = "depth_noise: {}\n" + colour;
+  const auto third_line = [&](const std::string& text, const std::string& named) {
+    const std::string told = message(both + text + "\n");
+    EXPECT_NE(told.find(":3:"), std::string::npos) << told;
+    EXPECT_NE(told.find(named), std::string::npos) << told;
+  };
+  third_line("motion_blur: {exposure_s: 0.02}", "exposure_s");
+  third_line("motion_blur: {exposure_ms: 0}", "exposure_ms");
+  third_line("motion_blur: {exposure_ms: 2000}", "2000");
+  third_line("rolling_shutter: {readout_ms: -1}", "-1");
+  third_line("shot_noise: {well_e: 0}", "well_e");
+  third_line("shot_noise: {gain: 0.5}", "0.5");
+  third_line("auto_exposure: {target: 2}", "2");
+  third_line("vignetting: {strength: 1.5}", "1.5");
+  third_line("lens_distortion: {k1: 7}", "7");
+  third_line("lens_distortion: {k9: 0}", "k9");
+  third_line("depth_offset: {enabled: true}", "offset_ms");
+  third_line("blank_frames: {share: 1.1}", "1.1");
+  third_line("dropped_frames: {rate: 0.1}", "share");
+  third_line("label_noise: {confusion: -0.1}", "-0.1");
+  third_line("label_noise: {erosion_px: 2.5}", "2.5");
+  third_line("label_noise: {persistent_share: 0.8, frame_share: 0.4}", "frame_share");
+  third_line("detector: {recall: 1}", "recall");
+  third_line("fog: {enabled: true}", "fog");
+  EXPECT_EQ(message(both + "motion_blur: {enabled: false, exposure_ms: 5}\nvignetting: {}\n"),
+            "accepted");
   std::filesystem::remove(file);
 }
 

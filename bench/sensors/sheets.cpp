@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/sensors/sheets.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
+
+#include "bench/pictures/canvas.hpp"
+#include "bench/pictures/contact_sheet.hpp"
+#include "sim/sensors/shutter.hpp"
+
+namespace mh {
+namespace {
+
+constexpr double kTileWidth = 400, kTileHeight = 300, kGap = 10, kMargin = 24, kCaption = 20;
+constexpr double kHeader = 70;
+constexpr std::size_t kMiddle = 30;  // of the path's frames
+constexpr Rgb8 kInk = {40, 43, 50}, kGrey = {110, 115, 125};
+
+/// One factor: what it is called, and what makes it mild and strong.
+struct Factor {
+  std::string name;
+  std::array<std::string, 3> captions;
+  std::array<std::function<void(SensorConfig&)>, 3> settings;
+  int crop_px = 640;  ///< width of the part that is shown, from the middle
+};
+
+using Set = std::function<void(SensorConfig&)>;
+const Set kOff = [](SensorConfig&) {};
+
+SensorConfig everything_off() {
+  SensorConfig config;
+  config.depth_noise_on = config.colour_noise_on = false;
+  config.depth_noise = {.axial = false,
+                        .lateral = false,
+                        .quantisation = false,
+                        .grazing_holes = false,
+                        .projector_shadow = false,
+                        .min_range_m = 0.0,
+                        .max_range_m = 1e6};
+  return config;
+}
+
+/// Where somebody at the height of a robot's camera sees most objects: from the rooms' middles, in
+/// eight directions.
+SE3 busiest_view(const Scene& scene, const Renderer& renderer, const Camera& camera) {
+  std::vector<Eigen::Vector3d> eyes;
+  for (const Room& room : scene.rooms) {
+    Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector2d& corner : room.polygon_m)
+      middle += corner / static_cast<double>(room.polygon_m.size());
+    eyes.emplace_back(middle.x(), middle.y(), 1.1);
+  }
+  if (eyes.empty()) {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (const Eigen::Vector3f& p : scene.positions_m)
+      sum += p / static_cast<float>(scene.positions_m.size());
+    eyes.emplace_back(sum.cast<double>());
+  }
+  SE3 best;
+  std::size_t most = 0;
+  for (const Eigen::Vector3d& eye : eyes)
+    for (int k = 0; k < 8; ++k) {
+      const double heading = k * std::numbers::pi / 4.0;
+      const SE3 pose =
+          look_at(eye, eye + Eigen::Vector3d(std::cos(heading), std::sin(heading), -0.15));
+      const RenderedFrame seen = renderer.render(camera, pose);
+      const std::size_t objects =
+          std::set<InstanceId>(seen.instances.begin(), seen.instances.end()).size();
+      if (objects <= most) continue;
+      most = objects;
+      best = pose;
+    }
+  return best;
+}
+
+/// Two seconds of walking and turning, the given pose in the middle.
+Trajectory motion_through(const SE3& pose) {
+  Vector6d twist;
+  twist << 0, 0, 0.4, 0, 1.0, 0;  // m/s, rad/s, of the camera
+  Trajectory path;
+  for (std::size_t i = 0; i <= 2 * kMiddle; ++i) {
+    const double t = (static_cast<double>(i) - static_cast<double>(kMiddle)) / 30.0;
+    path.push_back({static_cast<Stamp>(i) * 33'333'333, pose * SE3::exp(t * twist)});
+  }
+  return path;
+}
+
+cv::Mat colour_picture(const Grid2d<Rgb8>& colour) {
+  cv::Mat picture(colour.height(), colour.width(), CV_8UC3);
+  for (int y = 0; y < colour.height(); ++y)
+    for (int x = 0; x < colour.width(); ++x) {
+      const Rgb8 c = colour(x, y);
+      picture.at<cv::Vec3b>(y, x) = {c.b, c.g, c.r};
+    }
+  return picture;
+}
+
+/// False colours for the distance, shaded as if lit from the left, so that its noise can be seen;
+/// black without return.
+cv::Mat depth_picture(const Grid2d<float>& depth_m, const Camera& camera) {
+  const int w = depth_m.width(), h = depth_m.height();
+  cv::Mat grey(h, w, CV_8UC1), picture;
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x)
+      grey.at<std::uint8_t>(y, x) =
+          static_cast<std::uint8_t>(std::clamp((6.0F - depth_m(x, y)) / 5.5F, 0.0F, 1.0F) * 255.0F);
+  cv::applyColorMap(grey, picture, cv::COLORMAP_TURBO);
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) {
+      const float z = depth_m(x, y), next = depth_m(std::min(x + 2, w - 1), y);
+      cv::Vec3b& pixel = picture.at<cv::Vec3b>(y, x);
+      if (z <= 0.0F) {
+        pixel = {0, 0, 0};
+        continue;
+      }
+      const double slope = next > 0.0F ? (next - z) * camera.fx_px / (2.0 * z) : 0.0;
+      const double shade = 0.72 + 0.28 * slope / std::sqrt(1.0 + slope * slope);
+      for (int c = 0; c < 3; ++c) pixel[c] = static_cast<std::uint8_t>(pixel[c] * shade);
+    }
+  return picture;
+}
+
+/// Class colours over the grey picture; void is the picture itself.
+cv::Mat label_picture(const SemanticImage& labels, const Grid2d<Rgb8>& colour) {
+  cv::Mat picture = colour_picture(colour);
+  for (int y = 0; y < picture.rows; ++y)
+    for (int x = 0; x < picture.cols; ++x) {
+      cv::Vec3b& pixel = picture.at<cv::Vec3b>(y, x);
+      const double grey = (pixel[0] + pixel[1] + pixel[2]) / 3.0;
+      const ClassDistribution& seen = labels.at(x, y);
+      const ClassInfo& info = classes()[seen.most_probable()];
+      const double part = seen.entries.empty() ? 0.0 : 0.6;
+      const std::array<std::uint8_t, 3> bgr = {info.b, info.g, info.r};
+      for (int c = 0; c < 3; ++c)
+        pixel[c] = static_cast<std::uint8_t>(part * bgr[static_cast<std::size_t>(c)] +
+                                             (1.0 - part) * grey);
+    }
+  return picture;
+}
+
+std::vector<Factor> colour_factors() {
+  const auto shot = [](double gain) {
+    return [=](SensorConfig& c) { c.shot_noise_on = true, c.shot_noise.gain = gain; };
+  };
+  const auto blur = [](double s) {
+    return [=](SensorConfig& c) { c.shutter.motion_blur_on = true, c.shutter.exposure_s = s; };
+  };
+  const auto rolling = [](double s) {
+    return [=](SensorConfig& c) { c.shutter.rolling_shutter_on = true, c.shutter.readout_s = s; };
+  };
+  const auto vignetting = [](double strength) {
+    return [=](SensorConfig& c) { c.vignetting_on = true, c.vignetting.strength = strength; };
+  };
+  const auto lens = [](double k1) {
+    return [=](SensorConfig& c) {
+      c.lens_distortion_on = true, c.lens_distortion = {k1, 0.0692, -0.00241, -0.00112, 0.0};
+    };
+  };
+  const auto lag = [](double target) {
+    return [=](SensorConfig& c) { c.auto_exposure_on = true, c.auto_exposure.target = target; };
+  };
+  return {
+      {"motion blur", {"off", "20 ms", "66 ms"}, {kOff, blur(0.020), blur(0.066)}, 320},
+      {"rolling shutter", {"off", "26 ms", "100 ms"}, {kOff, rolling(0.0261), rolling(0.1)}},
+      {"shot and read noise", {"off", "gain 1", "gain 16"}, {kOff, shot(1), shot(16)}, 200},
+      {"vignetting", {"off", "half of cos^4", "cos^4"}, {kOff, vignetting(0.5), vignetting(1.0)}},
+      {"lens distortion",
+       {"off", "Pepper's, k1 = -0.055", "k1 = -0.35"},
+       {kOff, lens(-0.05452), lens(-0.35)}},
+      {"exposure control, wrong by its lag",
+       {"off", "a stop too dark", "a stop too bright"},
+       {kOff, lag(0.09), lag(0.5)}},
+  };
+}
+
+std::vector<Factor> depth_factors() {
+  const auto noise = [](void (*set)(DepthNoiseConfig&)) {
+    return [=](SensorConfig& c) {
+      c.depth_noise_on = true;
+      set(c.depth_noise);
+    };
+  };
+  const Set axial = noise([](DepthNoiseConfig& d) { d.axial = true; });
+  const Set lateral = noise([](DepthNoiseConfig& d) { d.lateral = true; });
+  const Set steps = noise([](DepthNoiseConfig& d) { d.quantisation = true; });
+  const Set shadow = noise([](DepthNoiseConfig& d) { d.projector_shadow = true; });
+  const Set range = noise([](DepthNoiseConfig& d) { d.min_range_m = 0.4, d.max_range_m = 8.0; });
+  const Set short_range =
+      noise([](DepthNoiseConfig& d) { d.min_range_m = 0.8, d.max_range_m = 3.5; });
+  const Set most = noise([](DepthNoiseConfig& d) {
+    d = DepthNoiseConfig{};
+    d.projector_shadow = false;
+  });
+  const Set all = noise([](DepthNoiseConfig& d) {
+    d = DepthNoiseConfig{};
+    d.projector_shadow = true;
+  });
+  const auto offset = [](double s) { return [=](SensorConfig& c) { c.depth_offset_s = s; }; };
+  return {
+      {"axial noise, steps",
+       {"off", "noise (Nguyen et al.)", "steps (Khoshelham, Elberink)"},
+       {kOff, axial, steps},
+       320},
+      {"edges", {"off", "lateral noise", "projector's shadow"}, {kOff, lateral, shadow}, 320},
+      {"range", {"off", "0.4 to 8 m", "0.8 to 3.5 m"}, {kOff, range, short_range}},
+      {"behind the colour", {"off", "20 ms", "100 ms"}, {kOff, offset(0.020), offset(0.100)}},
+      {"together", {"off", "without shadow", "Xtion"}, {kOff, most, all}},
+  };
+}
+
+std::vector<Factor> label_factors() {
+  const auto noise = [](auto member, auto value) {
+    return [=](SensorConfig& c) { c.labels.noise.*member = value; };
+  };
+  using N = LabelNoiseConfig;
+  return {
+      {"confusion (exact labels)",
+       {"off", "10 %", "50 %"},
+       {kOff, noise(&N::confusion, 0.1), noise(&N::confusion, 0.5)}},
+      {"swapped instances (exact labels)",
+       {"off", "10 %", "50 %"},
+       {kOff, noise(&N::swap, 0.1), noise(&N::swap, 0.5)}},
+      {"dropout (exact labels)",
+       {"off", "10 %", "50 %"},
+       {kOff, noise(&N::dropout, 0.1), noise(&N::dropout, 0.5)}},
+      {"eroded borders (exact labels)",
+       {"off", "3 px", "12 px"},
+       {kOff, noise(&N::erosion_px, 3), noise(&N::erosion_px, 12)}},
+  };
+}
+
+/// The rows of one sheet; `show` makes the picture of one setting.
+cv::Mat draw(const std::string& title, const std::vector<Factor>& factors,
+             const std::function<cv::Mat(const SensorConfig&)>& show) {
+  const double row = kTileHeight + 2 * kCaption + kGap;
+  Canvas canvas(static_cast<int>(2 * kMargin + 3 * kTileWidth + 2 * kGap),
+                static_cast<int>(kHeader + static_cast<double>(factors.size()) * row + kMargin));
+  canvas.text(title, {kMargin, 40}, 15, kInk, Canvas::Align::kLeft, true);
+  double y = kHeader;
+  for (const Factor& factor : factors) {
+    canvas.text(factor.name, {kMargin, y + 12}, 10.5, kInk, Canvas::Align::kLeft, true);
+    for (std::size_t k = 0; k < 3; ++k) {
+      SensorConfig config = everything_off();
+      factor.settings[k](config);
+      const double x = kMargin + static_cast<double>(k) * (kTileWidth + kGap);
+      const cv::Mat whole = show(config);
+      const int w = factor.crop_px, h = w * 3 / 4;
+      cv::Mat part;
+      cv::resize(whole({(whole.cols - w) / 2, (whole.rows - h) / 2, w, h}), part, {800, 600}, 0, 0,
+                 cv::INTER_NEAREST);
+      canvas.picture(part, x, y + kCaption, kTileWidth, kTileHeight);
+      canvas.text(factor.captions[k], {x, y + kCaption + kTileHeight + 14}, 8.5, kGrey);
+    }
+    y += row;
+  }
+  return canvas.finish();
+}
+
+}  // namespace
+
+SensorSheets draw_sensor_sheets(const Scene& scene, std::shared_ptr<const Renderer> renderer) {
+  const Camera camera;
+  const Trajectory path = motion_through(busiest_view(scene, *renderer, camera));
+  const SE3& pose = path[kMiddle].world_from_camera;
+  const RandomStream stream(1);
+  const auto frame = [&](const SensorConfig& config) {
+    const Shutter shutter(renderer, camera, path, config);
+    const Shutter::Exposed exposed = shutter.expose(kMiddle);
+    return sense(exposed.seen, shutter.camera(), config, stream, 0, exposed.gain);
+  };
+  SensorSheets sheets;
+  sheets.colour = draw("Colour: forward at 0.4 m/s while turning at 1 rad/s", colour_factors(),
+                       [&](const SensorConfig& c) { return colour_picture(frame(c).colour); });
+  sheets.depth =
+      draw("Depth: near red, far blue, black without return", depth_factors(),
+           [&](const SensorConfig& c) { return depth_picture(frame(c).depth_m, camera); });
+
+  const RenderedFrame truth = renderer->render(camera, pose);
+  std::vector<Factor> factors = label_factors();
+  sheets.labels =
+      draw("Labels: class colours over the picture", factors, [&](const SensorConfig& c) {
+        return label_picture(sense_labels(truth, LabelMode::kExact, c, pose, stream), truth.colour);
+      });
+  // The detector's rows go below: exact boxes, one network and another.
+  const Factor detectors{"detectors",
+                         {"exact boxes", "YOLOv3-like", "another such network"},
+                         {[](SensorConfig& c) { c.labels.seed = 100; }, kOff,
+                          [](SensorConfig& c) { c.labels.seed = 7; }}};
+  const cv::Mat more = draw("", {detectors}, [&](const SensorConfig& c) {
+    const LabelMode mode = c.labels.seed == 100 ? LabelMode::kBoxes : LabelMode::kDetector;
+    return label_picture(sense_labels(truth, mode, c, pose, stream), truth.colour);
+  });
+  cv::vconcat(sheets.labels,
+              more(cv::Range(static_cast<int>(kHeader) - 20, more.rows), cv::Range::all()),
+              sheets.labels);
+  return sheets;
+}
+
+}  // namespace mh

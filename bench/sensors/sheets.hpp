@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include <opencv2/core/mat.hpp>
+
+#include "scenes/scene.hpp"
+#include "sim/render/renderer.hpp"
+
+namespace mh {
+
+/// Contact sheets of the sensor factors, one row each: off, mild, strong, all from the same pose
+/// and motion (forward at 0.4 m/s while turning at 1 rad/s), where the scene shows most objects.
+struct SensorSheets {
+  cv::Mat colour, depth, labels;
+};
+SensorSheets draw_sensor_sheets(const Scene& scene, std::shared_ptr<const Renderer> renderer);
+
+}  // namespace mh
