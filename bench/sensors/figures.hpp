@@ -7,8 +7,10 @@
 
 namespace mh {
 
-/// The figure that each sensor model's source gives (lines) beside what the model does when it is
-/// measured (dots). Takes some seconds.
-std::vector<Plot> sensor_figures();
+// The figure that each sensor model's source gives (lines) beside what the model does when it is
+// measured (dots). Some seconds in all.
+std::vector<Plot> depth_figures();
+std::vector<Plot> light_figures();
+std::vector<Plot> label_figures();
 
 }  // namespace mh
