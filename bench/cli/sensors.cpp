@@ -23,8 +23,10 @@ struct Options {
 void plot(const Options& options) {
   make_output_folder(options.out);
   const fs::path file = fs::path(options.out) / "figures.png";
-  write_picture(
-      file, draw_plots("Sensor models: published (lines) and measured (dots)", sensor_figures()));
+  std::vector<Plot> plots = depth_figures();
+  for (const auto& more : {light_figures(), label_figures()})
+    plots.insert(plots.end(), more.begin(), more.end());
+  write_picture(file, draw_plots("Sensor models: published (lines) and measured (dots)", plots));
   fmt::print("{}\n", file.string());
 }
 
