@@ -65,6 +65,10 @@ void draw_panel(Canvas& canvas, const Plot& plot, double x0, double y0) {
     canvas.text(fmt::format("{:g}", std::abs(v) < 1e-12 ? 0.0 : v),
                 at(across.low, v) + cv::Point2d(-6, 3), 7.5, kGrey, Canvas::Align::kRight);
   }
+  // The legend keeps clear of where the first curve begins.
+  const bool begins_high = !plot.series.empty() && !plot.series[0].points.empty() &&
+                           up.share(plot.series[0].points[0].y) > 0.5;
+  const double legend_x = begins_high ? (left + right) / 2 - 10 : left;
   double legend = top + 10;
   for (std::size_t s = 0; s < plot.series.size(); ++s) {
     const Series& series = plot.series[s];
@@ -78,10 +82,10 @@ void draw_panel(Canvas& canvas, const Plot& plot, double x0, double y0) {
       }
     }
     if (series.dots)
-      canvas.disc({left + 16, legend - 3}, 2.6, colour);
+      canvas.disc({legend_x + 16, legend - 3}, 2.6, colour);
     else
-      canvas.line({left + 8, legend - 3}, {left + 24, legend - 3}, colour, 1.2);
-    canvas.text(series.name, {left + 30, legend}, 7.5, kInk);
+      canvas.line({legend_x + 8, legend - 3}, {legend_x + 24, legend - 3}, colour, 1.2);
+    canvas.text(series.name, {legend_x + 30, legend}, 7.5, kInk);
     legend += 14;
   }
 }

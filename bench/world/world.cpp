@@ -115,12 +115,19 @@ World build_world(const RunSpec& spec, int threads, const Say& say) {
   world.scene = scene;
   world.renderer = make_scene_renderer(*scene);
 
+  const auto lose_frames = [&](DrivenPath& path) {
+    const RandomStream same_for_every_trial(0);
+    path.camera = arriving_frames(path.camera, world.sensors, same_for_every_trial);
+    path.base = arriving_frames(path.base, world.sensors, same_for_every_trial);
+  };
   say(fmt::format("driving {}", mapping_tour.name));
   world.mapping = drive(*scene, world.robot, mapping_tour);
+  lose_frames(world.mapping);
   shorten(world.mapping);
   if (query_tour) {
     say(fmt::format("driving {}", query_tour->name));
     world.second = drive(*scene, world.robot, *query_tour);
+    lose_frames(*world.second);
     shorten(*world.second);
   }
   return world;

@@ -63,8 +63,10 @@ struct ShutterConfig {
   double readout_s = 0.0261;
   // The picture is the mean of pictures along the motion, in linear light; between two of them
   // nothing moves farther than step_px unless there would be more than max_pictures of them.
+  // Motion of less than sharp_px within a frame is not worth a second picture.
   double step_px = 1.5;
-  int max_pictures = 32;
+  double sharp_px = 0.5;
+  int max_pictures = 33;
 };
 
 /// Gain that follows the mean luminance with a lag, as the average-based control of OmniVision's

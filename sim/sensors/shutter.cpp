@@ -49,9 +49,9 @@ class Rows {
         pictures_(pictures),
         readout_s_(config.rolling_shutter_on ? config.readout_s : 0.0),
         exposure_s_(config.motion_blur_on ? config.exposure_s : 0.0),
-        step_s_(duration_s(config) / pictures) {
-    // Between two pictures an instantaneous row blends them.
-    exposure_s_ = std::max(exposure_s_, step_s_);
+        step_s_((readout_s_ + exposure_s_) / pictures) {
+    // A row that is exposed for less than a step blends the two pictures nearest in time.
+    if (exposure_s_ < step_s_) exposure_s_ = step_s_ = readout_s_ / (pictures - 1);
     for (int y = 0; y < height_; ++y) {
       collected_s_.push_back(0.0);
       for (int k = 0; k < pictures_; ++k) collected_s_.back() += overlap_s(k, y);
@@ -179,10 +179,10 @@ void Shutter::blur(RenderedFrame& picture, std::size_t i) const {
   const double motion_px =
       farthest_motion_px(camera, picture.depth_m, path_[i].world_from_camera,
                          pose_at(path_, i, -0.5 * duration_s), pose_at(path_, i, 0.5 * duration_s));
-  int pictures = static_cast<int>(std::ceil(motion_px / config.step_px));
-  if (pictures <= 1) return;
+  if (motion_px <= config.sharp_px) return;
   // An odd number of them has the picture that is there already in its middle.
-  pictures = std::min(pictures | 1, config.max_pictures | 1);
+  const int wanted = static_cast<int>(std::ceil(motion_px / config.step_px)) | 1;
+  const int pictures = std::clamp(wanted, 3, std::max(3, config.max_pictures | 1));
 
   const Rows rows(config, camera.height_px, pictures);
   LightSum sum(picture.colour);
