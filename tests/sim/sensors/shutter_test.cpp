@@ -59,6 +59,7 @@ SensorConfig blurring(double exposure_s) {
   config.shutter.motion_blur_on = true;
   config.shutter.exposure_s = exposure_s;
   config.shutter.step_px = 0.25;
+  config.shutter.sharp_px = 0.0;
   config.shutter.max_pictures = 301;
   return config;
 }
