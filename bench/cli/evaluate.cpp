@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/metrics/evaluate.hpp"
 
+#include <cmath>
 #include <map>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,6 +21,11 @@ namespace {
 struct Options {
   std::string truth, estimate;
   std::string align = "se3";
+  std::string format = "tum";
+  std::vector<std::string> deltas = {"1f", "1s"};
+  bool all_pairs = false;
+  double max_difference_s = 0.01;
+  double rate_hz = 10;
   bool json = false;
 };
 
@@ -24,6 +33,33 @@ const std::map<std::string, Alignment> kAlignments = {{"se3", Alignment::kSe3},
                                                       {"sim3", Alignment::kSim3},
                                                       {"origin", Alignment::kOrigin},
                                                       {"none", Alignment::kNone}};
+
+/// "30f", "0.2m", "1s". @throws InputError naming the text.
+RpeDelta parse_delta(const std::string& text, bool all_pairs) {
+  const auto fail = [&] {
+    throw InputError(fmt::format("--delta: '{}' is no distance such as 30f, 0.2m or 1s", text));
+  };
+  RpeDelta delta{.all_pairs = all_pairs};
+  std::size_t end = 0;
+  try {
+    delta.value = std::stod(text, &end);
+  } catch (const std::exception&) {
+    fail();
+  }
+  const std::string unit = text.substr(end);
+  if (unit == "f")
+    delta.unit = DeltaUnit::kFrames;
+  else if (unit == "m")
+    delta.unit = DeltaUnit::kMetres;
+  else if (unit == "s")
+    delta.unit = DeltaUnit::kSeconds;
+  else
+    fail();
+  if (!(delta.value > 0) || !std::isfinite(delta.value) ||
+      (delta.unit == DeltaUnit::kFrames && delta.value != std::floor(delta.value)))
+    fail();
+  return delta;
+}
 
 std::string delta_name(const RpeDelta& delta) {
   return delta.unit == DeltaUnit::kFrames    ? fmt::format("{} frame(s)", delta.value)
@@ -41,9 +77,12 @@ nlohmann::ordered_json to_json(const Evaluation& e, const std::string& align) {
   nlohmann::ordered_json rpe = nlohmann::ordered_json::array();
   for (const RelativeScore& r : e.rpe)
     rpe.push_back({{"delta", delta_name(r.delta)},
+                   {"all_pairs", r.delta.all_pairs || r.delta.unit != DeltaUnit::kFrames},
                    {"translation_m", to_json(r.translation_m)},
                    {"rotation_deg", to_json(r.rotation_deg)}});
   return {{"align", align},
+          {"truth_path_m", e.truth_path_m},
+          {"estimate_path_m", e.estimate_path_m},
           {"truth_poses", e.truth_poses},
           {"estimate_poses", e.estimate_poses},
           {"pairs", e.pairs},
@@ -65,13 +104,32 @@ void print_row(const std::string& what, const ErrorStatistics& s) {
              s.mean, s.median, s.std, s.min, s.max, s.count);
 }
 
+/// Both files in one format. KITTI's lines have no stamps: line i of one belongs to line i of the
+/// other.
+std::pair<Trajectory, Trajectory> load(const Options& options) {
+  if (options.format == "tum") return {read_tum(options.truth), read_tum(options.estimate)};
+  const auto period_ns = static_cast<Stamp>(std::llround(1e9 / options.rate_hz));
+  std::pair<Trajectory, Trajectory> both{read_kitti(options.truth, period_ns),
+                                         read_kitti(options.estimate, period_ns)};
+  if (both.first.size() != both.second.size())
+    throw InputError(fmt::format("{}: {} poses, {} has {}: KITTI's lines must correspond",
+                                 options.estimate, both.second.size(), options.truth,
+                                 both.first.size()));
+  return both;
+}
+
 void run(const Options& options) {
-  const Trajectory truth = read_tum(options.truth);
-  const Trajectory estimate = read_tum(options.estimate);
-  const Evaluation e = evaluate(truth, estimate, {.alignment = kAlignments.at(options.align)});
+  EvaluationOptions how{.alignment = kAlignments.at(options.align), .rpe_deltas = {}};
+  how.max_difference_ns = options.format == "tum"
+                              ? static_cast<Stamp>(std::llround(1e9 * options.max_difference_s))
+                              : 0;
+  for (const std::string& delta : options.deltas)
+    how.rpe_deltas.push_back(parse_delta(delta, options.all_pairs));
+  const auto [truth, estimate] = load(options);
+  const Evaluation e = evaluate(truth, estimate, how);
   if (e.pairs == 0)
-    throw InputError(
-        fmt::format("{}: no pose is within 0.01 s of one in {}", options.estimate, options.truth));
+    throw InputError(fmt::format("{}: no pose is within {:g} s of one in {}", options.estimate,
+                                 options.max_difference_s, options.truth));
   if (options.json) {
     fmt::print("{}\n", to_json(e, options.align).dump(2));
     return;
@@ -95,14 +153,30 @@ void run(const Options& options) {
 
 void add_evaluate(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
-      "evaluate", "Scores an estimated trajectory against the true one (both TUM text).");
+  CLI::App* command =
+      app.add_subcommand("evaluate", "Scores an estimated trajectory against the true one.");
   command->add_option("truth", options->truth, "True trajectory")->required();
   command->add_option("estimate", options->estimate, "Estimated trajectory")->required();
   command->add_option("--align", options->align, "se3 (default), sim3, origin or none")
       ->check(CLI::IsMember(kAlignments));
+  command->add_option("--format", options->format, "tum (default) or kitti, of both files")
+      ->check(CLI::IsMember({"tum", "kitti"}));
+  command
+      ->add_option("--delta", options->deltas,
+                   "Step of the relative error: 30f (frames), 0.2m or 1s; default 1f 1s")
+      ->expected(1, 100);
+  command->add_flag("--all-pairs", options->all_pairs,
+                    "Steps of frames start at every pose (those of metres and seconds always do)");
+  command
+      ->add_option("--max-difference", options->max_difference_s,
+                   "Stamps (s) that are taken for one moment, default 0.01")
+      ->check(CLI::Range(0.0, 1e6));
+  command->add_option("--rate", options->rate_hz, "Poses per second of KITTI files, default 10")
+      ->check(CLI::Range(1e-3, 1e6));
   command->add_flag("--json", options->json, "Prints JSON");
-  command->footer("Example:\n  modelhouse evaluate groundtruth.txt estimate.tum --align se3");
+  command->footer(
+      "Examples:\n  modelhouse evaluate groundtruth.txt estimate.tum --align se3\n"
+      "  modelhouse evaluate 00_truth.txt 00.txt --format kitti --delta 100m --json");
   command->callback([options] { run(*options); });
 }
 

@@ -9,6 +9,15 @@ enum class DropReset {
   kMap,      ///< the system forgets its map too
 };
 
+/// What a query's answer is compared with.
+enum class QueryTruth {
+  kLocal,  ///< the nearest mapped frame's estimate, carried on by the true motion to the query
+  /// Between the estimates of the mapped frames before and after, by time (section 3.2 of the
+  /// paper: "based on the camera poses with neighboring frames"). Needs no truth at all, but takes
+  /// the estimates' own errors for it. Where there are no two near neighbours: kLocal.
+  kInterpolated,
+};
+
 /// The paper's sections 3.1 and 3.2, each number settable.
 struct ProtocolConfig {
   int test_interval = 30;      ///< every so many frames one is held out as a test frame, >= 2
@@ -23,6 +32,7 @@ struct ProtocolConfig {
   int max_blank_frames = 30;  ///< blank frames shown at most until the system is lost, >= 1
   double correct_distance_m = 0.25;
   double correct_angle_deg = 10.0;
+  QueryTruth truth = QueryTruth::kLocal;
 };
 
 }  // namespace mh

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -44,6 +45,32 @@ std::optional<Anchor> nearest_mapped(const Trajectory& estimate, const Trajector
     best = Anchor{pose.world_from_camera, truth->world_from_camera, pose.stamp_ns};
   }
   return best;
+}
+
+std::optional<SE3> interpolated_pose(const Trajectory& estimate, Stamp stamp_ns) {
+  const auto after =
+      std::lower_bound(estimate.begin(), estimate.end(), stamp_ns,
+                       [](const TimedPose& pose, Stamp stamp) { return pose.stamp_ns < stamp; });
+  if (after != estimate.end() && after->stamp_ns == stamp_ns) return after->world_from_camera;
+  if (after == estimate.begin() || after == estimate.end()) return std::nullopt;
+  const TimedPose& before = *std::prev(after);
+  const Stamp gap_ns = after->stamp_ns - before.stamp_ns;
+  if (gap_ns > kMaxNeighbourGap_ns) return std::nullopt;
+  const double share =
+      static_cast<double>(stamp_ns - before.stamp_ns) / static_cast<double>(gap_ns);
+  const SE3& a = before.world_from_camera;
+  const SE3& b = after->world_from_camera;
+  return SE3(a.quaternion().slerp(share, b.quaternion()),
+             (1 - share) * a.translation() + share * b.translation());
+}
+
+std::optional<Anchor> find_anchor(const Trajectory& estimate, const Trajectory& mapping_truth,
+                                  const TimedPose& true_query, NearestBy by,
+                                  const ProtocolConfig& config) {
+  if (config.truth == QueryTruth::kInterpolated && by == NearestBy::kTime)
+    if (const auto pose = interpolated_pose(estimate, true_query.stamp_ns))
+      return Anchor{*pose, true_query.world_from_camera, true_query.stamp_ns};
+  return nearest_mapped(estimate, mapping_truth, true_query, by);
 }
 
 QueryScore score(const QueryAnswer& answer, const TimedPose& truth,

@@ -25,8 +25,8 @@ enum class OutsideMode {
 
 /// A SLAM system that a suite names by its command line (docs/outside_systems.md).
 struct OutsideProgram {
-  std::string name;     ///< in tables and messages
-  std::string command;  ///< for /bin/sh, with placeholders such as {dataset}
+  std::string name = {};     ///< in tables and messages
+  std::string command = {};  ///< for /bin/sh, with placeholders such as {dataset}
   OutsideMode mode = OutsideMode::kTrajectory;
   std::filesystem::path folder = ".";  ///< where the command runs
   double run_limit_s = 3600;           ///< wall time of a whole run in trajectory mode, > 0

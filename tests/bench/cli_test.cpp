@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +12,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace {
 
@@ -208,6 +210,69 @@ TEST_F(CommandLine, EvaluatesATrajectoryAgainstItself) {
   expect_refused("evaluate " + poses.string() + " " + other.string(), "no pose is within");
   expect_refused("evaluate " + poses.string() + " " + write("bad.tum", "0 0 0\n").string(),
                  "bad.tum:1");
+}
+
+TEST_F(CommandLine, EvaluatesKittiFilesByLine) {
+  const auto line = [](const std::string& x, const std::string& y) {
+    return "1 0 0 " + x + " 0 1 0 " + y + " 0 0 1 0\n";
+  };
+  const fs::path truth = write("t.kitti", line("0", "0") + line("1", "0") + line("1", "2"));
+  // By hand: laid over by the origin, errors 0, 0.3 and 0.4 m; rmse sqrt(0.25 / 3).
+  const fs::path estimate = write("e.kitti", line("5", "5") + line("6.3", "5") + line("6.4", "7"));
+  const std::string files = truth.string() + " " + estimate.string();
+  ASSERT_EQ(run("evaluate --format kitti --align origin --rate 2 --delta 1s --json " + files), 0)
+      << err_;
+  const auto json = nlohmann::json::parse(out_);
+  EXPECT_EQ(json["pairs"], 3);
+  EXPECT_NEAR(json["ape_translation_m"]["rmse"], std::sqrt(0.25 / 3), 1e-12);
+  EXPECT_NEAR(json["ape_unaligned_m"]["min"], std::sqrt(50.0), 1e-12);
+  // Two steps of half a second: 0.4 m off over the one pair that is 1 s apart.
+  EXPECT_EQ(json["rpe"][0]["translation_m"]["count"], 1);
+  EXPECT_NEAR(json["rpe"][0]["translation_m"]["mean"], 0.4, 1e-12);
+  expect_refused("evaluate --format kitti " + truth.string() + " " +
+                     write("short.kitti", line("0", "0")).string(),
+                 "short.kitti: 1 poses, " + truth.string() + " has 3");
+  expect_refused("evaluate --format kitti " + truth.string() + " " +
+                     write("bad.kitti", line("0", "0") + "1 2 3\n").string(),
+                 "bad.kitti:2: pose: 3 values");
+  expect_refused("evaluate --delta 1.5f " + files, "--delta: '1.5f'");
+  expect_refused("evaluate --delta 3 " + files, "--delta: '3'");
+  expect_refused("evaluate --format euroc " + files, "--format");
+}
+
+// All figures of the oracle through the executable, as users meet it.
+TEST_F(CommandLine, EvaluateGivesEvosOwnFigures) {
+  const fs::path data = fs::path(MH_SOURCE_DIR) / ".." / "shared/data";
+  const fs::path reference = data / "evo_reference/reference.json";
+  if (!fs::exists(reference)) GTEST_SKIP() << "no " << reference;
+  const auto evo = nlohmann::json::parse(content(reference));
+  const std::string files = (data / "tum_fr1_rpy/groundtruth.txt").string() + " " +
+                            (data / "evo_reference/estimate.txt").string();
+  std::size_t compared = 0;
+  const auto expect_equal = [&](const nlohmann::json& ours, const std::string& name) {
+    for (const auto& [field, expected] : evo.at(name).items()) {
+      // 1e-15 lets an exact zero be a rounding of ours.
+      const double value = expected;
+      EXPECT_NEAR(ours.at(field).get<double>(), value, 1e-9 * std::abs(value) + 1e-15)
+          << name << ' ' << field;
+    }
+    ++compared;
+  };
+  for (const std::string align : {"se3", "sim3", "none", "origin"}) {
+    ASSERT_EQ(run("evaluate --json --all-pairs --delta 1f 30f 0.2m --align " + align + " " + files),
+              0)
+        << err_;
+    const auto ours = nlohmann::json::parse(out_);
+    EXPECT_EQ(ours["pairs"], evo["pairs"]);
+    expect_equal(ours["ape_translation_m"], "ape_trans_" + align);
+    if (align != "se3") continue;
+    expect_equal(ours["ape_rotation_deg"], "ape_rot_deg_se3");
+    expect_equal(ours["rpe"][0]["translation_m"], "rpe_trans_1frame");
+    expect_equal(ours["rpe"][0]["rotation_deg"], "rpe_rot_deg_1frame");
+    expect_equal(ours["rpe"][1]["translation_m"], "rpe_trans_30frames_all_pairs");
+    expect_equal(ours["rpe"][2]["translation_m"], "rpe_trans_0.2m_all_pairs");
+  }
+  EXPECT_EQ(compared + 1, evo.size());  // every quantity, `pairs` apart
 }
 
 }  // namespace

@@ -50,6 +50,8 @@ class FakeSystem : public System {
 
   /// On which attempt (1, 2, ...) a query is answered; 0 = never. Default: the first.
   std::function<int(Stamp frame)> answers_at = [](Stamp) { return 1; };
+  /// Told the stream of every frame that a session is shown.
+  std::function<void(RandomStream)> on_query = [](RandomStream) {};
   /// How many blank frames are still believed to be tracked.
   int believes_blanks = 0;
 
@@ -69,6 +71,7 @@ class FakeSession : public RelocalizationSession {
   explicit FakeSession(const FakeSystem& system) : system_(system) {}
   StepReport feed(const RgbdFrame& frame, RandomStream stream) override {
     StepReport report;
+    system_.on_query(stream);
     const bool blank = frame.depth_m(0, 0) == 0.0F;
     if (blank) {
       report.status =

@@ -85,6 +85,62 @@ TEST(MapSequence, TheOtherReadingOfResetForgetsTheMap) {
   EXPECT_EQ(system.trajectory().size(), 86u);  // what was fed after the reset, counted above
 }
 
+// By hand, beside the counter reading above: the calls are the same 415, since both go back 50. But
+// at the drop frames 0 to 80 are forgotten; fed again are 30 to 119 without 59, 80, 89 and 119, so
+// that 86 of 116 frames have a pose in the end and frame 30 begins the new map.
+TEST(MapSequence, ResettingTheMapCostsWhatLiesBeforeTheRewind) {
+  FakeSystem system([](Stamp frame, int) { return frame != 80; });
+  ProtocolConfig config;
+  config.reset = DropReset::kMap;
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, config, RandomStream(1));
+  EXPECT_EQ(outcome.calls.size(), 415u);
+  EXPECT_EQ(outcome.failures, 6);
+  EXPECT_EQ(outcome.restarts, 6);
+  EXPECT_EQ(outcome.dropped, std::vector<std::size_t>{80});
+  EXPECT_EQ(system.trajectory().front().stamp_ns, 30);
+  EXPECT_EQ(system.trajectory().back().stamp_ns, 118);
+}
+
+// By hand: frame 10 fails twice, and the feed cannot go back beyond frame 0: 11 calls, 11 calls,
+// then all of 0 to 119 but the four test frames: 22 + 116 = 138.
+TEST(MapSequence, GoesBackToTheStartAtMost) {
+  FakeSystem system([](Stamp frame, int showing) { return frame != 10 || showing >= 3; });
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  EXPECT_EQ(outcome.failures, 2);
+  EXPECT_EQ(outcome.restarts, 2);
+  EXPECT_EQ(outcome.calls.size(), 138u);
+  EXPECT_EQ(system.fed[11], 0);
+}
+
+// By hand: without patience the first failure at 80 drops it. 0 to 80 without two test frames = 79
+// calls, then 30 to 119 without 59, 80, 89, 119 = 86: 165 in all.
+TEST(MapSequence, WithoutRestartsTheFirstFailureDropsTheFrame) {
+  FakeSystem system([](Stamp frame, int) { return frame != 80; });
+  ProtocolConfig config;
+  config.restarts_per_frame = 0;
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, config, RandomStream(1));
+  EXPECT_EQ(outcome.failures, 1);
+  EXPECT_EQ(outcome.restarts, 1);
+  EXPECT_EQ(outcome.dropped, std::vector<std::size_t>{80});
+  EXPECT_EQ(outcome.calls.size(), 165u);
+}
+
+// By hand, with rewinds of 5: 80 and 81 are never tracked. 0 to 80 without 29, 59 = 79 calls; five
+// times 75 to 80 = 30; the drop of 80 and 75 to 81 without it = 6, where 81 fails for the first
+// time; five times 76 to 81 without 80 = 25; the drop of 81 and 76 to 119 without 80, 81, 89, 119 =
+// 40. Together 79 + 30 + 6 + 25 + 40 = 180; failures 6 + 6.
+TEST(MapSequence, TwoOffendingFramesInARowAreDroppedOneAfterTheOther) {
+  FakeSystem system([](Stamp frame, int) { return frame != 80 && frame != 81; });
+  ProtocolConfig config;
+  config.rewind_frames = 5;
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, config, RandomStream(1));
+  EXPECT_EQ(outcome.dropped, (std::vector<std::size_t>{80, 81}));
+  EXPECT_EQ(outcome.failures, 12);
+  EXPECT_EQ(outcome.restarts, 12);
+  EXPECT_EQ(outcome.calls.size(), 180u);
+  EXPECT_EQ(system.trajectory().size(), 114u);
+}
+
 TEST(MapSequence, PassesOverFramesBeforeTheMapExists) {
   FakeSystem system([](Stamp frame, int) { return frame >= 7; });
   const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));

@@ -5,15 +5,18 @@
 #include <filesystem>
 
 #include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
 
 #include "bench/protocol/digest.hpp"
 #include "bench/protocol/query.hpp"
 #include "bench/protocol/score.hpp"
+#include "bench/recorded/frame_files.hpp"
 #include "bench/results/trajectory_score.hpp"
 #include "bench/systems/conversation.hpp"
 #include "bench/systems/recorded_run.hpp"
 #include "scenes/training/training.hpp"
 #include "sim/sensors/sensors.hpp"
+#include "slam/core/files.hpp"
 
 namespace mh {
 namespace {
@@ -77,6 +80,47 @@ class OutsideOdometry : public testing::Test {
   fs::path folder_;
 };
 
+TEST(FrameFiles, AreReadByOpenCvPixelForPixel) {
+  const fs::path folder = fs::temp_directory_path() / ("mh_frame_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  RgbdFrame frame;
+  frame.colour = Grid2d<Rgb8>(3, 2, Rgb8{1, 2, 3});
+  frame.colour(2, 1) = {200, 100, 50};
+  frame.depth_m = Grid2d<float>(3, 2, 0.0F);
+  frame.depth_m(1, 0) = 1.2345F;  // 6172.5 units
+  frame.depth_m(2, 1) = 20.0F;    // beyond what 16 bits hold
+  FrameFiles files = show(frame, folder);
+  EXPECT_TRUE(files.labels.empty());
+  frame.semantics = {Grid2d<std::uint8_t>(3, 2), {{}, {{{5, 0.3F}, {7, 0.6F}}}}};
+  frame.semantics.index(0, 1) = 1;
+  files = show(frame, folder);
+  const cv::Mat colour = cv::imread(files.colour.string(), cv::IMREAD_UNCHANGED);
+  const cv::Mat depth = cv::imread(files.depth.string(), cv::IMREAD_UNCHANGED);
+  const cv::Mat labels = cv::imread(files.labels.string(), cv::IMREAD_UNCHANGED);
+  fs::remove_all(folder);
+  ASSERT_EQ(colour.type(), CV_8UC3);
+  EXPECT_EQ(colour.at<cv::Vec3b>(1, 2), cv::Vec3b(50, 100, 200));
+  ASSERT_EQ(depth.type(), CV_16UC1);
+  EXPECT_NEAR(depth.at<std::uint16_t>(0, 1), 6172.5, 0.6);
+  EXPECT_EQ(depth.at<std::uint16_t>(1, 2), 65535);
+  EXPECT_EQ(depth.at<std::uint16_t>(1, 1), 0);
+  ASSERT_EQ(labels.type(), CV_8UC1);
+  EXPECT_EQ(labels.at<std::uint8_t>(1, 0), 7);  // the most probable class
+  EXPECT_EQ(labels.at<std::uint8_t>(0, 0), kVoid);
+}
+
+TEST(SettingsText, HasRealNumbersWhereReadersInsistOnThem) {
+  const cv::FileStorage settings(settings_text(Camera{}), cv::FileStorage::READ |
+                                                              cv::FileStorage::MEMORY |
+                                                              cv::FileStorage::FORMAT_YAML);
+  for (const char* key : {"Camera.fx", "Camera.cy", "Camera.k1", "Camera.bf", "DepthMapFactor",
+                          "ThDepth", "ORBextractor.scaleFactor"})
+    EXPECT_TRUE(settings[key].isReal()) << key;
+  EXPECT_EQ(settings["Camera.fx"].real(), Camera{}.fx_px);
+  EXPECT_TRUE(settings["Camera.width"].isInt());
+  EXPECT_EQ(static_cast<int>(settings["ORBextractor.nFeatures"]), 1000);
+}
+
 TEST_F(OutsideOdometry, GoesThroughTheWholeProtocol) {
   const auto system = converse();
   const MappingOutcome mapping = map_sequence(*system, kCount, frame, {}, RandomStream(1));
@@ -139,21 +183,24 @@ TEST_F(OutsideOdometry, BothModesGiveOneTrajectoryAndTheTruthStaysOutside) {
   for (std::size_t i = 0; i < kCount; ++i)
     if (!is_test_frame(i, {})) offered.push_back(i);
   const RandomStream noise = mapping_noise(RandomStream(1), 0);
-  const fs::path data = folder_ / "data";
-  const std::vector<Stamp> stamps = write_dataset(
-      data, camera(), offered.size(), [&](std::size_t k) { return frame(offered[k], noise); });
-  for (const auto& entry : fs::recursive_directory_iterator(data)) {
-    const std::string name = entry.path().filename().string();
-    EXPECT_TRUE(name.find("truth") == std::string::npos && name != "instance") << name;
-  }
-  const Trajectory recorded =
-      run_on_dataset({.name = "vo",
-                      .command = std::string(VO_RUN_DATASET) +
-                                 " {dataset} {associations} {settings} {trajectory}"},
-                     data, stamps, 0, folder_ / "out");
+  const std::vector<Stamp> stamps =
+      write_dataset(folder_ / "data", camera(), offered.size(),
+                    [&](std::size_t k) { return frame(offered[k], noise); });
+  OutsideProgram program{.name = "vo"};
+  // `find` writes the names of all that the program is given to standard output: its log.
+  program.command = "find {dataset} && " + std::string(VO_RUN_DATASET) +
+                    " {dataset} {associations} {settings} {trajectory}";
+  const Trajectory recorded = run_on_dataset(program, folder_ / "data", stamps, 0, folder_);
   EXPECT_EQ(recorded.size(), 87u);
   EXPECT_LT(*score_trajectory(recorded, path_, offered.size()).ate_rmse_m, 0.02);
   EXPECT_EQ(digest(recorded), digest(mapped(converse())->trajectory()));
+
+  const std::string given = read_file(folder_ / "outside.log");
+  for (const char* part : {"/rgb.txt", "/depth.txt", "/label.txt", "/associations.txt",
+                           "/camera.yaml", "/rgb/0.000000000.png", "/label/0.000000000.png"})
+    EXPECT_NE(given.find(part), std::string::npos) << part;
+  for (const char* part : {"truth", "instance", "/0.966666657.png"})  // the last: a test frame
+    EXPECT_EQ(given.find(part), std::string::npos) << part;
 }
 
 }  // namespace

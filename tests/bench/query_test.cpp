@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -33,6 +34,20 @@ TEST(Query, StopsAtTheFirstPoseThatComesBack) {
   EXPECT_EQ(answer.stage, RelocalizationStage::kVerified);
   ASSERT_TRUE(answer.candidates);
   EXPECT_EQ(answer.candidates->c2, 4);
+}
+
+TEST(Query, EachAttemptAtEachFrameHasItsOwnNoiseAndDraws) {
+  FakeSystem system = mapped();
+  system.answers_at = [](Stamp) { return 0; };
+  std::set<std::uint64_t> noise, draws;
+  const auto spy = [&](std::size_t index, RandomStream stream) {
+    noise.insert(stream.key());
+    return fake_frame(index, stream);
+  };
+  system.on_query = [&](RandomStream stream) { draws.insert(stream.key()); };
+  for (const std::size_t index : {29, 59}) query(system, index, spy, {}, RandomStream(1));
+  EXPECT_EQ(noise.size(), 10u);
+  EXPECT_EQ(draws.size(), 10u + 2u);  // and a blank frame for each
 }
 
 TEST(Query, GivesUpAfterFiveAttemptsAndNamesTheStage) {
@@ -96,6 +111,43 @@ TEST(NearestMapped, IsNextInTimeOrNextInPlaceAndHeading) {
   // Frame 20 is nearest in place but faces away (3 rad count as 3 m); frame 0 is 0.2 m off.
   EXPECT_EQ(nearest_mapped(estimate, truth, query, NearestBy::kPlace)->stamp_ns, 0);
   EXPECT_FALSE(nearest_mapped({}, truth, query, NearestBy::kTime));
+}
+
+TEST(InterpolatedPose, LiesBetweenItsNeighboursInTime) {
+  constexpr Stamp kMs = 1'000'000;
+  const Trajectory estimate = {
+      {0, at(0, 0, 0)}, {100 * kMs, at(1, 2, 0.4)}, {700 * kMs, at(5, 5, 1.0)}};
+  const auto quarter = interpolated_pose(estimate, 25 * kMs);
+  ASSERT_TRUE(quarter);
+  EXPECT_LT((quarter->inverse() * at(0.25, 0.5, 0.1)).log().norm(), 1e-12);
+  const auto exact = interpolated_pose(estimate, 100 * kMs);
+  ASSERT_TRUE(exact);
+  EXPECT_LT((exact->inverse() * at(1, 2, 0.4)).log().norm(), 1e-12);
+  EXPECT_FALSE(interpolated_pose(estimate, 300 * kMs)) << "neighbours 0.6 s apart";
+  EXPECT_FALSE(interpolated_pose(estimate, 701 * kMs)) << "nothing after it";
+  EXPECT_FALSE(interpolated_pose({}, 0));
+}
+
+TEST(FindAnchor, ComparesWithWhatTheProtocolAsksFor) {
+  constexpr Stamp kMs = 1'000'000;
+  // The robot really speeds up: half way in time it was at 0.2 m. The map is 10 m off as a whole.
+  const Trajectory truth = {{0, at(0, 0, 0)}, {50 * kMs, at(0.2, 0, 0)}, {100 * kMs, at(1, 0, 0)}};
+  const Trajectory estimate = {{0, at(10, 0, 0)}, {100 * kMs, at(11, 0, 0)}};
+  const auto expected = [&](NearestBy by, QueryTruth what) {
+    ProtocolConfig config;
+    config.truth = what;
+    const auto anchor = find_anchor(estimate, truth, truth[1], by, config);
+    return local_truth(*anchor, truth[1].world_from_camera).translation().x();
+  };
+  EXPECT_NEAR(expected(NearestBy::kTime, QueryTruth::kLocal), 10.2, 1e-12);
+  EXPECT_NEAR(expected(NearestBy::kTime, QueryTruth::kInterpolated), 10.5, 1e-12);
+  EXPECT_NEAR(expected(NearestBy::kPlace, QueryTruth::kInterpolated), 10.2, 1e-12);
+  ProtocolConfig config;
+  config.truth = QueryTruth::kInterpolated;
+  const TimedPose beyond{120 * kMs, at(1.1, 0, 0)};
+  const auto anchor = find_anchor(estimate, truth, beyond, NearestBy::kTime, config);
+  ASSERT_TRUE(anchor) << "without a neighbour after it: the local truth";
+  EXPECT_NEAR(local_truth(*anchor, beyond.world_from_camera).translation().x(), 11.1, 1e-12);
 }
 
 TEST(Score, TellsCorrectFromWrong) {
