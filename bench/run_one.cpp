@@ -60,7 +60,8 @@ class QueryRound {
     for (const std::size_t index : test_frames(sequence_.size(), spec_.protocol)) {
       const QueryAnswer answer = query(frozen, index, frames_, spec_.protocol, stream_);
       const TimedPose& truth = sequence_.path()[index];
-      scores.push_back(score(answer, truth, nearest_mapped(run_.estimate, run_.truth, truth, by_),
+      scores.push_back(score(answer, truth,
+                             find_anchor(run_.estimate, run_.truth, truth, by_, spec_.protocol),
                              run_.trajectory.truth_from_estimate, spec_.protocol));
       work.one_more();
     }

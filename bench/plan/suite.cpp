@@ -18,6 +18,8 @@ constexpr Names<LabelMode, 4> kLabels{{{"exact", LabelMode::kExact},
                                        {"detector", LabelMode::kDetector},
                                        {"none", LabelMode::kNone}}};
 constexpr Names<DropReset, 2> kResets{{{"counter", DropReset::kCounter}, {"map", DropReset::kMap}}};
+constexpr Names<QueryTruth, 2> kTruths{
+    {{"local", QueryTruth::kLocal}, {"interpolated", QueryTruth::kInterpolated}}};
 
 ProtocolConfig read_protocol(YamlReader node) {
   ProtocolConfig c;
@@ -33,6 +35,7 @@ ProtocolConfig read_protocol(YamlReader node) {
   c.max_blank_frames = count("max_blank_frames", c.max_blank_frames, 1, 100000);
   c.correct_distance_m = node.number_or("correct_distance_m", c.correct_distance_m, 0.0, 1000.0);
   c.correct_angle_deg = node.number_or("correct_angle_deg", c.correct_angle_deg, 0.0, 180.0);
+  if (const auto truth = node.find("truth")) c.truth = one_of(*truth, kTruths);
   node.finish();
   return c;
 }
@@ -53,6 +56,9 @@ std::string_view name(LabelMode labels) {
 }
 std::string_view name(DropReset reset) {
   return name_of(reset, kResets);
+}
+std::string_view name(QueryTruth truth) {
+  return name_of(truth, kTruths);
 }
 std::string level_name(const fs::path& level) {
   return level.stem().string();

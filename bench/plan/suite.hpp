@@ -20,6 +20,7 @@ namespace mh {
 std::string_view name(LabelMode labels);
 std::string_view name(Overlap overlap);
 std::string_view name(DropReset reset);
+std::string_view name(QueryTruth truth);
 
 /// A benchmark as data: the grid environments x systems x labels x levels x parameters x trials.
 struct Suite {

@@ -99,7 +99,8 @@ Json suite_json(const Suite& suite) {
             {"query_attempts", p.query_attempts},
             {"max_blank_frames", p.max_blank_frames},
             {"correct_distance_m", p.correct_distance_m},
-            {"correct_angle_deg", p.correct_angle_deg}}}};
+            {"correct_angle_deg", p.correct_angle_deg},
+            {"truth", name(p.truth)}}}};
 }
 
 Json path_json(const PathFacts& path) {

@@ -52,7 +52,7 @@ class SuiteFile : public testing::Test {
 TEST_F(SuiteFile, ReadsWhatStandsThere) {
   const Suite suite = load(
       "slam: {gamma: 0.5, xi: 2, overlap: labels}\n"
-      "protocol: {test_interval: 10, reset: map}\ntrials: 3\nseed: 7\n");
+      "protocol: {test_interval: 10, reset: map, truth: interpolated}\ntrials: 3\nseed: 7\n");
   EXPECT_EQ(suite.name, "suite");
   ASSERT_EQ(suite.environments.size(), 1u);
   EXPECT_EQ(suite.environments[0].name, "house");
@@ -65,6 +65,7 @@ TEST_F(SuiteFile, ReadsWhatStandsThere) {
   EXPECT_EQ(suite.semantics.overlap, Overlap::kLabels);
   EXPECT_EQ(suite.protocol.test_interval, 10);
   EXPECT_EQ(suite.protocol.reset, DropReset::kMap);
+  EXPECT_EQ(suite.protocol.truth, QueryTruth::kInterpolated);
   EXPECT_EQ(suite.trials, 3);
   EXPECT_EQ(suite.seed, 7u);
 }
