@@ -154,6 +154,7 @@ std::vector<Factor> colour_factors() {
   const auto blur = [](double s) {
     return [=](SensorConfig& c) { c.shutter.motion_blur_on = true, c.shutter.exposure_s = s; };
   };
+  const auto soft = [](double px) { return [=](SensorConfig& c) { c.lens_blur_px = px; }; };
   const auto rolling = [](double s) {
     return [=](SensorConfig& c) { c.shutter.rolling_shutter_on = true, c.shutter.readout_s = s; };
   };
@@ -170,6 +171,7 @@ std::vector<Factor> colour_factors() {
   };
   return {
       {"motion blur", {"off", "20 ms", "66 ms"}, {kOff, blur(0.020), blur(0.066)}, 320},
+      {"lens blur", {"off", "0.7 px", "2 px"}, {kOff, soft(0.7), soft(2.0)}, 200},
       {"rolling shutter", {"off", "26 ms", "100 ms"}, {kOff, rolling(0.0261), rolling(0.1)}},
       {"shot and read noise", {"off", "gain 1", "gain 16"}, {kOff, shot(1), shot(16)}, 200},
       {"vignetting", {"off", "half of cos^4", "cos^4"}, {kOff, vignetting(0.5), vignetting(1.0)}},

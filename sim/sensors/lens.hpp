@@ -26,6 +26,10 @@ class Lens {
   std::vector<Source> source_;  // by pixel; empty without distortion
 };
 
+/// A lens that is not quite sharp, and the interpolation of a colour filter: a Gaussian in linear
+/// light of this standard deviation, px; 0 or less: nothing.
+void blur_by_lens(Grid2d<Rgb8>& colour, double sigma_px);
+
 /// Where a distorted pixel lies at unit depth: the inverse of the distortion, by Newton's method.
 /// NaN where the lens maps nothing there.
 Eigen::Vector2d undistort_px(const Camera& camera, const Eigen::Vector2d& pixel);

@@ -62,6 +62,11 @@ void read_colour(YamlReader& file, SensorConfig& config) {
   section(file, "vignetting", config.vignetting_on, [&](YamlReader& node) {
     config.vignetting.strength = node.number_or("strength", config.vignetting.strength, 0.0, 1.0);
   });
+  bool blurred = false;
+  section(file, "lens_blur", blurred, [&](YamlReader& node) {
+    const double sigma_px = node.number("sigma_px", 0.0, 20.0);
+    config.lens_blur_px = blurred ? sigma_px : 0.0;
+  });
   section(file, "lens_distortion", config.lens_distortion_on, [&](YamlReader& node) {
     Distortion& d = config.lens_distortion;
     d.k1 = node.number_or("k1", d.k1, -2.0, 2.0);

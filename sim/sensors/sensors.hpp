@@ -96,6 +96,7 @@ struct SensorConfig {
   AutoExposureConfig auto_exposure;
   bool vignetting_on = false;
   VignettingConfig vignetting;
+  double lens_blur_px = 0.0;  ///< standard deviation of its point spread, 0 = none
   bool lens_distortion_on = false;
   Distortion lens_distortion;   ///< off: the camera's own, as it comes
   double depth_offset_s = 0.0;  ///< the depth is that of so much later than the stamp

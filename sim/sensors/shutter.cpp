@@ -163,7 +163,9 @@ Shutter::Exposed Shutter::expose(std::size_t i) const {
   blur(picture, i);
   if (config_.depth_offset_s != 0.0)
     picture.depth_m = render(lens_.pinhole(), i, config_.depth_offset_s).depth_m;
-  return {lens_.bend(std::move(picture)), gains_.empty() ? 1.0 : gains_[i]};
+  picture = lens_.bend(std::move(picture));
+  blur_by_lens(picture.colour, config_.lens_blur_px);
+  return {std::move(picture), gains_.empty() ? 1.0 : gains_[i]};
 }
 
 RenderedFrame Shutter::render(const Camera& pinhole, std::size_t i, double after_s) const {

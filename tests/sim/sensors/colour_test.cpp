@@ -129,6 +129,36 @@ TEST(Lens, WithoutDistortionNothingChanges) {
   EXPECT_EQ(lens.bend(picture).colour, picture.colour);
 }
 
+TEST(LensBlur, SpreadsAPointByItsSigmaAndLosesNoLight) {
+  for (const double sigma : {0.7, 2.0}) {
+    Grid2d<Rgb8> colour(61, 41);
+    // A block of 9 x 9, so that 8 bits suffice: its own variance is (81 - 1) / 12.
+    for (int y = 16; y <= 24; ++y)
+      for (int x = 26; x <= 34; ++x) colour(x, y) = {255, 255, 255};
+    blur_by_lens(colour, sigma);
+    double sum = 0, mean = 0, square = 0;
+    for (int y = 0; y < 41; ++y)
+      for (int x = 0; x < 61; ++x) {
+        const double light = srgb_to_linear(colour(x, y).g);
+        sum += light, mean += light * x, square += light * x * x;
+      }
+    EXPECT_NEAR(sum, 81.0, 0.3);
+    EXPECT_NEAR(mean / sum, 30.0, 1e-6);
+    EXPECT_NEAR(square / sum - 900.0, 80.0 / 12.0 + sigma * sigma, 0.04 * sigma * sigma + 0.02);
+  }
+}
+
+TEST(LensBlur, AnEvenPictureStaysAndZeroIsNothing) {
+  Grid2d<Rgb8> even(20, 20, {90, 140, 200});
+  blur_by_lens(even, 1.5);
+  EXPECT_EQ(even, Grid2d<Rgb8>(20, 20, {90, 140, 200}));
+  Grid2d<Rgb8> edge(20, 20);
+  edge(3, 3) = {255, 0, 0};
+  const Grid2d<Rgb8> before = edge;
+  blur_by_lens(edge, 0.0);
+  EXPECT_EQ(edge, before);
+}
+
 TEST(BlankFrames, ComeAtTheirRateWithoutDepthColourAndLabels) {
   Camera small;
   small.width_px = 32, small.height_px = 24, small.cx_px = 15.5, small.cy_px = 11.5;

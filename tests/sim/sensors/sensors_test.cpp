@@ -344,7 +344,7 @@ TEST(SensorLevels, AreFrozen) {
   };
   EXPECT_EQ(digest("ideal"), 0x7922bfb11bb41b6bU);
   EXPECT_EQ(digest("pepper"), 0xa8ef16bf06d441b7U);
-  EXPECT_EQ(digest("handheld"), 0x55a2e442c5ec5e23U);
+  EXPECT_EQ(digest("handheld"), 0x9af643ec3900eab0U);
 }
 
 TEST(SensorLevels, SayWhatTheirNamesSay) {
@@ -352,7 +352,8 @@ TEST(SensorLevels, SayWhatTheirNamesSay) {
   EXPECT_FALSE(ideal.depth_noise_on || ideal.colour_noise_on || ideal.shot_noise_on ||
                ideal.shutter.motion_blur_on || ideal.shutter.rolling_shutter_on ||
                ideal.auto_exposure_on || ideal.vignetting_on || ideal.lens_distortion_on);
-  EXPECT_EQ(ideal.depth_offset_s + ideal.blank_share + ideal.dropped_share, 0.0);
+  EXPECT_EQ(ideal.lens_blur_px + ideal.depth_offset_s + ideal.blank_share + ideal.dropped_share,
+            0.0);
 
   const SensorConfig pepper = load_sensor_config(level("pepper"));
   const DepthNoiseConfig& d = pepper.depth_noise;
@@ -404,6 +405,7 @@ TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {
   third_line("shot_noise: {gain: 0.5}", "0.5");
   third_line("auto_exposure: {target: 2}", "2");
   third_line("vignetting: {strength: 1.5}", "1.5");
+  third_line("lens_blur: {sigma_px: -1}", "-1");
   third_line("lens_distortion: {k1: 7}", "7");
   third_line("lens_distortion: {k9: 0}", "k9");
   third_line("depth_offset: {enabled: true}", "offset_ms");

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "sim/render/colour.hpp"
+#include "sim/sensors/lens.hpp"
+
+namespace mh {
+namespace {
+
+/// Weights of the pixels 0, 1, 2, ... aside; the whole kernel sums to one.
+std::vector<float> gaussian(double sigma_px) {
+  const int radius = std::max(1, static_cast<int>(std::ceil(3.5 * sigma_px)));
+  std::vector<double> weights;
+  double sum = 0.0;
+  for (int k = 0; k <= radius; ++k) {
+    weights.push_back(std::exp(-0.5 * k * k / (sigma_px * sigma_px)));
+    sum += (k == 0 ? 1.0 : 2.0) * weights.back();
+  }
+  std::vector<float> kernel;
+  for (const double weight : weights) kernel.push_back(static_cast<float>(weight / sum));
+  return kernel;
+}
+
+using LightRow = std::vector<float>;  // a row, three channels beside one another
+
+void add(LightRow& sum, const LightRow& row, float weight) {
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * row[i];
+}
+
+/// One row in linear light, blurred along itself.
+LightRow blurred_row(std::span<const Rgb8> row, const std::vector<float>& kernel) {
+  const std::size_t radius = kernel.size() - 1, n = row.size();
+  LightRow padded;
+  for (std::size_t i = 0; i < n + 2 * radius; ++i) {
+    const std::size_t x = std::min(i > radius ? i - radius : 0, n - 1);
+    for (const std::uint8_t v : {row[x].r, row[x].g, row[x].b}) padded.push_back(srgb_to_linear(v));
+  }
+  LightRow sum(3 * n, 0.0F);
+  for (std::size_t k = 0; k <= 2 * radius; ++k) {
+    const float weight = kernel[k > radius ? k - radius : radius - k];
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * padded[i + 3 * k];
+  }
+  return sum;
+}
+
+}  // namespace
+
+void blur_by_lens(Grid2d<Rgb8>& colour, double sigma_px) {
+  if (sigma_px <= 0.0 || colour.empty()) return;
+  const std::vector<float> kernel = gaussian(sigma_px);
+  const int radius = static_cast<int>(kernel.size()) - 1, last = colour.height() - 1;
+  std::vector<LightRow> rows;
+  for (int y = 0; y <= last; ++y) rows.push_back(blurred_row(std::as_const(colour).row(y), kernel));
+  for (int y = 0; y <= last; ++y) {
+    LightRow sum(rows[0].size(), 0.0F);
+    for (int k = -radius; k <= radius; ++k)
+      add(sum, rows[static_cast<std::size_t>(std::clamp(y + k, 0, last))],
+          kernel[static_cast<std::size_t>(std::abs(k))]);
+    const float* light = sum.data();
+    for (Rgb8& c : colour.row(y)) {
+      c = {linear_to_srgb(light[0]), linear_to_srgb(light[1]), linear_to_srgb(light[2])};
+      light += 3;
+    }
+  }
+}
+
+}  // namespace mh
