@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
+#include <string_view>
 
 #include "scenes/scene.hpp"
 #include "slam/core/camera.hpp"
@@ -11,34 +13,67 @@
 
 namespace mh {
 
-/// The exact picture of a moment: no noise, no lens. All grids have the camera's size. Depth, class
-/// and instance are those of the ray through the pixel's centre; so is the colour, except where a
-/// renderer smooths edges.
+/// RenderedFrame::faces where a pixel shows none.
+inline constexpr std::uint32_t kNoFace = ~std::uint32_t{0};
+
+/// The exact picture of a moment: no noise, no lens. All grids have the camera's size. All but the
+/// colour is that of the ray through the pixel's centre; so is the colour, unless it is smoothed
+/// (Antialiasing).
 struct RenderedFrame {
   Grid2d<Rgb8> colour;           ///< sRGB
   Grid2d<float> depth_m;         ///< along the optical axis; 0 = nothing hit
   Grid2d<ClassId> classes;       ///< kVoid where nothing was hit
   Grid2d<InstanceId> instances;  ///< 0 where nothing was hit
+
+  // On request (ExtraOutputs), else empty.
+  Grid2d<std::uint16_t> depth16;             ///< 5000 per metre as in TUM's files; 0 beyond 13.1 m
+  Grid2d<std::uint32_t> faces;               ///< index in Scene::triangles; kNoFace
+  Grid2d<std::array<float, 2>> barycentric;  ///< shares of the face's corners 1 and 2
+  Grid2d<Eigen::Vector3f> points_m;          ///< world; 0 where nothing was hit
 };
 
-/// Renders one scene; two implementations exist or are planned (Embree, OSMesa).
+struct ExtraOutputs {
+  bool depth16 = false;
+  bool faces = false;
+  bool barycentric = false;
+  bool points = false;
+};
+
+/// How colour becomes the mean of light over a pixel, as that of a sensor's cell is.
+enum class Antialiasing {
+  kNone,        ///< the ray through the centre alone
+  kEdges,       ///< two more rays where objects or depth have an edge; textures are filtered anyway
+  kSupersample  ///< four rays in each pixel, 2 x 2
+};
+
+/// Renders one scene; implemented by ray tracing (Embree) and by rasterisation (OSMesa).
 class Renderer {
  public:
   virtual ~Renderer() = default;
   /// Safe to call from several threads at once; lens distortion of the camera is ignored.
+  /// @throws InputError if the camera's size or focal length is out of range.
   virtual RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const = 0;
 };
 
 struct RenderConfig {
   int threads = 1;        ///< threads over tiles of one picture; never changes a bit of it
   float exposure = 1.0F;  ///< linear radiance that maps to white is 1 / exposure
-  /// Colours of pixels at edges (of objects and of depth) are averaged over two
-  /// more rays, as a sensor's cells average light; nothing else changes.
-  bool smooth_edges = true;
+  Antialiasing antialiasing = Antialiasing::kEdges;
+  ExtraOutputs extra{};
   bool portable = false;  ///< pin Embree to AVX2, so that pictures agree across processors
 };
 
 /// Ray-traces with Embree. Keeps no reference to the scene.
 std::unique_ptr<Renderer> make_embree_renderer(const Scene& scene, const RenderConfig& config = {});
+
+/// Rasterises with OSMesa: the independent oracle. Shows the centres of pixels only (kNone) and no
+/// extra outputs; `threads` and `portable` mean nothing to it. Pictures are made one at a time.
+/// Keeps no reference to the scene.
+/// @throws MachineError if this build or this machine has no OSMesa.
+std::unique_ptr<Renderer> make_osmesa_renderer(const Scene& scene, const RenderConfig& config = {});
+
+/// By name: "embree" or "osmesa". @throws InputError on another name.
+std::unique_ptr<Renderer> make_renderer(std::string_view name, const Scene& scene,
+                                        const RenderConfig& config = {});
 
 }  // namespace mh

@@ -3,6 +3,7 @@
 
 #include "sim/render/colour.hpp"
 #include "sim/render/renderer.hpp"
+#include "slam/core/error.hpp"
 #include "tests/sim/scene_builder.hpp"
 
 namespace mh {
@@ -236,7 +237,7 @@ TEST(EmbreeRenderer, SmoothEdgesMixLightAndLeaveTheRestAlone) {
   Camera camera;
   camera.cx_px = 319.8;  // pixel 320 sees the edge 0.2 px left of its centre
   const RenderedFrame sharp =
-      make_embree_renderer(scene, {.smooth_edges = false})->render(camera, kIdentity);
+      make_embree_renderer(scene, {.antialiasing = Antialiasing::kNone})->render(camera, kIdentity);
   const RenderedFrame smooth = make_embree_renderer(scene)->render(camera, kIdentity);
   EXPECT_EQ(sharp.depth_m, smooth.depth_m);
   EXPECT_EQ(sharp.classes, smooth.classes);
@@ -248,6 +249,97 @@ TEST(EmbreeRenderer, SmoothEdgesMixLightAndLeaveTheRestAlone) {
     if (x != 320) {
       EXPECT_EQ(smooth.colour(x, 240), sharp.colour(x, 240)) << x;
     }
+}
+
+TEST(EmbreeRenderer, ExtraOutputsAgreeWithOneAnotherAndWithTheClosedForm) {
+  Scene scene = plain_scene();
+  add_quad(scene, {-1, -1, 2}, {4, 0, 1}, {0, 2, 0}, 3, 2, 0, 5);
+  const Camera camera;
+  const SE3 pose(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY()).toRotationMatrix(),
+                 {0.1, -0.2, 0.3});
+  const RenderConfig all{
+      .extra = {.depth16 = true, .faces = true, .barycentric = true, .points = true}};
+  const RenderedFrame frame = make_embree_renderer(scene, all)->render(camera, pose);
+  int hits = 0;
+  for (int y = 0; y < camera.height_px; ++y)
+    for (int x = 0; x < camera.width_px; ++x) {
+      const float depth = frame.depth_m(x, y);
+      if (depth == 0.0F) {
+        ASSERT_EQ(frame.faces(x, y), kNoFace);
+        ASSERT_EQ(frame.depth16(x, y), 0);
+        ASSERT_EQ(frame.points_m(x, y), Vector3f::Zero().eval());
+        continue;
+      }
+      ++hits;
+      ASSERT_NEAR(frame.depth16(x, y), 5000.0F * depth, 0.51F);
+      ASSERT_LT(frame.faces(x, y), scene.triangles.size());
+      const auto& corners = scene.triangles[frame.faces(x, y)];
+      const auto [u, v] = frame.barycentric(x, y);
+      const Vector3f on_face = (1.0F - u - v) * scene.positions_m[corners[0]] +
+                               u * scene.positions_m[corners[1]] +
+                               v * scene.positions_m[corners[2]];
+      const Eigen::Vector3d seen = pose * camera.unproject(x, y, depth);
+      ASSERT_LT((frame.points_m(x, y).cast<double>() - seen).norm(), 3e-6);
+      ASSERT_LT((on_face.cast<double>() - seen).norm(), 3e-6);
+    }
+  EXPECT_GT(hits, 100000);
+  const RenderedFrame usual = make_embree_renderer(scene)->render(camera, pose);
+  EXPECT_EQ(usual.colour, frame.colour);
+  EXPECT_TRUE(usual.faces.empty() && usual.depth16.empty() && usual.points_m.empty());
+}
+
+TEST(EmbreeRenderer, Depth16BeyondItsRangeIsNoReturn) {
+  Scene scene = plain_scene();
+  add_quad(scene, {-50, -50, 13.2F}, {100, 0, 0}, {0, 100, 0}, 1, 1);
+  const auto renderer = make_embree_renderer(scene, {.extra = {.depth16 = true}});
+  EXPECT_EQ(renderer->render(Camera{}, kIdentity).depth16(5, 5), 0);
+  const SE3 nearer(Eigen::Matrix3d::Identity(), {0, 0, 0.1});
+  EXPECT_EQ(renderer->render(Camera{}, nearer).depth16(5, 5), 65500);
+}
+
+TEST(EmbreeRenderer, SupersamplingIsTheMeanOfFourFinerPixels) {
+  Scene scene = plain_scene();
+  scene.materials[0].texture = smooth_picture(64, 64);
+  add_quad(scene, {-1, -1, 2}, {2, 0, 0.5F}, {0, 2, 0}, 1, 1);
+  add_quad(scene, {-0.3F, -0.3F, 1.5F}, {0.5F, 0.1F, 0}, {0, 0.4F, 0}, 2, 2);
+  const Camera camera{.width_px = 100,
+                      .height_px = 80,
+                      .fx_px = 90,
+                      .fy_px = 95,
+                      .cx_px = 50,
+                      .cy_px = 40,
+                      .distortion = {}};
+  Camera finer = camera;  // pixel (x, y) is (2x .. 2x + 1, 2y .. 2y + 1) of it
+  finer.width_px *= 2, finer.height_px *= 2, finer.fx_px *= 2, finer.fy_px *= 2;
+  finer.cx_px = 2 * camera.cx_px + 0.5, finer.cy_px = 2 * camera.cy_px + 0.5;
+  const auto sharp = make_embree_renderer(scene, {.antialiasing = Antialiasing::kNone});
+  const RenderedFrame mean =
+      make_embree_renderer(scene, {.antialiasing = Antialiasing::kSupersample})
+          ->render(camera, kIdentity);
+  const RenderedFrame centres = sharp->render(camera, kIdentity);
+  const RenderedFrame fine = sharp->render(finer, kIdentity);
+  EXPECT_EQ(mean.depth_m, centres.depth_m);
+  EXPECT_EQ(mean.instances, centres.instances);
+  for (int y = 0; y < camera.height_px; ++y)
+    for (int x = 0; x < camera.width_px; ++x) {
+      Vector3f sum = Vector3f::Zero();
+      for (const int i : {0, 1})
+        for (const int j : {0, 1}) sum += srgb_to_linear(fine.colour(2 * x + i, 2 * y + j));
+      // Two roundings, to the fine pixels' levels and to the mean's.
+      ASSERT_NEAR(mean.colour(x, y).g, linear_to_srgb(sum.y() / 4.0F), 2) << x << " " << y;
+    }
+  EXPECT_NE(mean.colour, centres.colour);
+}
+
+TEST(EmbreeRenderer, RefusesACameraWithoutSizeOrFocalLength) {
+  const auto renderer = make_embree_renderer(plane_at_two_metres());
+  for (const auto& spoil : std::initializer_list<void (*)(Camera&)>{
+           [](Camera& c) { c.fx_px = 0; }, [](Camera& c) { c.fy_px = 0; },
+           [](Camera& c) { c.width_px = 0; }, [](Camera& c) { c.height_px = 0; }}) {
+    Camera camera;
+    spoil(camera);
+    EXPECT_THROW(renderer->render(camera, kIdentity), InputError);
+  }
 }
 
 TEST(EmbreeRenderer, ThreadsAndPicturesNotMultiplesOfATileChangeNoBit) {

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/render/shading.hpp"
+
+#include "sim/render/simd.hpp"
+
+namespace mh {
+
+void Shading::find_records(const Packet& packet, Seen& seen) const {
+  const RTCHit16& hit = packet.rays.hit;
+  const __m256i first = (__m256i)load8(first_faces_.data());
+  for (std::size_t i = 0; i < kLanes; i += 8) {
+    const Int8 geometry = load8(hit.geomID + i);
+    const Int8 miss = geometry == splat(-1);
+    const Int8 place =
+        load8(hit.primID + i) + (Int8)_mm256_permutevar8x32_epi32(first, (__m256i)geometry);
+    store8(seen.record.data() + i, miss ? splat(records_.nothing()) : place);
+    const Float8 depth = load8(packet.rays.ray.tfar + i);
+    _mm256_store_ps(seen.depth_m.data() + i, miss ? splat(0.0F) : depth);
+  }
+  for (const int index : seen.record)
+    _mm_prefetch(reinterpret_cast<const char*>(records_.data() + index), _MM_HINT_T0);
+}
+
+void Shading::find_texels(const Packet& packet, float pixel_area, Seen& seen) const {
+  const RTCHit16& hit = packet.rays.hit;
+  const RTCRay16& ray = packet.rays.ray;
+  for (std::size_t i = 0; i < kLanes; i += 8) {
+    std::array<const float*, 8> place, size;
+    for (std::size_t k = 0; k < 8; ++k) {
+      const FaceRecord& record = records_.data()[seen.record[i + k]];
+      place[k] = &record.u;
+      size[k] = &record.du2;
+      seen.instance[i + k] = record.instance;
+      seen.class_id[i + k] = static_cast<ClassId>(record.class_id);
+    }
+    const auto [du2, dv2, texels, texture] = load_fields(size);
+    const __m256i plain = (__m256i)((Int8)texture == splat(int{TextureTable::kWhite}));
+    seen.textured[i / 8] = _mm256_movemask_epi8(plain) != -1;
+    if (!seen.textured[i / 8]) continue;
+    const auto [u, v, du1, dv1] = load_fields(place);
+    const Float8 along1 = load8(hit.u + i), along2 = load8(hit.v + i);
+    // A pixel cuts depth^2 / (fx fy) out of the plane z = depth; a face of unit normal n shows
+    // 1 / |n . d| of that behind it, d having camera z = 1; and Ng = n x twice its area.
+    const Float8 facing = load8(hit.Ng_x + i) * load8(ray.dir_x + i) +
+                          load8(hit.Ng_y + i) * load8(ray.dir_y + i) +
+                          load8(hit.Ng_z + i) * load8(ray.dir_z + i);
+    const Float8 depth = load8(seen.depth_m.data() + i);
+    const Float8 seen_texels = depth * depth * pixel_area * texels / abs8(facing);
+    seen.lookup[i / 8] = records_.textures().look_up(texture, u + along1 * du1 + along2 * du2,
+                                                     v + along1 * dv1 + along2 * dv2, seen_texels);
+  }
+}
+
+Radiance Shading::shade(const Packet& packet, const Seen& seen) const {
+  Radiance light;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const FaceRecord& record = records_.data()[seen.record[i]];
+    __m128 colour = gain_at(record, packet.rays.hit.u[i], packet.rays.hit.v[i]);
+    if (seen.textured[i / 8])
+      colour = _mm_mul_ps(colour, records_.textures().filter(seen.lookup[i / 8], i % 8));
+    light.of[i] = _mm_add_ps(colour, load_halves(record.emission.data()));
+  }
+  return light;
+}
+
+}  // namespace mh

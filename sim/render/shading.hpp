@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "sim/render/embree_scene.hpp"
+#include "sim/render/face_record.hpp"
+#include "sim/render/packet.hpp"
+
+namespace mh {
+
+/// What the sixteen rays of a packet hit, on its way to the picture.
+struct Seen {
+  alignas(32) std::array<int, kLanes> record;  // index of FaceRecord
+  alignas(32) std::array<float, kLanes> depth_m;
+  std::array<InstanceId, kLanes> instance;
+  std::array<ClassId, kLanes> class_id;
+  std::array<bool, 2> textured;  // whether any of eight lanes is
+  std::array<TextureTable::Lookup, 2> lookup;
+};
+
+/// Linear RGB of sixteen lanes.
+struct Radiance {
+  __m128 of[kLanes];
+};
+
+/// Turns hits into light, in three steps, each of which asks early for the memory that the next one
+/// needs: done for many packets one step after another, hardly any of them waits.
+class Shading {
+ public:
+  Shading(const Scene& scene, const EmbreeScene& bvh, float exposure)
+      : first_faces_(bvh.first_faces()), records_(scene, bvh.faces(), exposure) {}
+
+  /// Step 1: what was hit.
+  void find_records(const Packet& packet, Seen& seen) const;
+  /// Step 2: instance and class, and which texels are wanted.
+  /// @param pixel_area  of what a ray stands for, at unit depth
+  void find_texels(const Packet& packet, float pixel_area, Seen& seen) const;
+  /// Step 3: linear RGB x exposure, not below 0.
+  Radiance shade(const Packet& packet, const Seen& seen) const;
+
+  /// Whether a lane hit anything.
+  bool hit(const Seen& seen, std::size_t lane) const {
+    return seen.record[lane] != records_.nothing();
+  }
+
+ private:
+  std::array<std::uint32_t, 8> first_faces_;  // by geometry
+  FaceRecords records_;
+};
+
+}  // namespace mh
