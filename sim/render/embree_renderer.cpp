@@ -30,20 +30,22 @@ constexpr std::array<Offset, 4> kQuarters = {
     {{-0.25F, -0.25F}, {0.25F, -0.25F}, {-0.25F, 0.25F}, {0.25F, 0.25F}}};
 
 /// Light within [0, 1]: what is brighter than white is white.
-__m128 up_to_white(__m128 linear) {
-  return _mm_min_ps(_mm_max_ps(linear, _mm_setzero_ps()), _mm_set1_ps(1.0F));
+inline __m256 up_to_white(__m256 linear) {
+  return _mm256_min_ps(_mm256_max_ps(linear, _mm256_setzero_ps()), _mm256_set1_ps(1.0F));
 }
 
-/// To sRGB.
-Rgb8 encode(__m128 linear) {
-  const __m128i level =
-      _mm_cvtps_epi32(_mm_mul_ps(up_to_white(linear), _mm_set1_ps(kSrgbTableMax)));
-  const auto index = static_cast<std::uint64_t>(_mm_cvtsi128_si64(_mm_packus_epi32(level, level)));
-  const std::uint8_t* table = srgb_table();
-  return {table[index & 0xFFFF], table[index >> 16 & 0xFFFF], table[index >> 32 & 0xFFFF]};
+/// Two linear colours to sRGB by srgb_table().
+inline void encode(__m256 linear, const std::uint8_t* table, Rgb8* to) {
+  const __m256i level =
+      _mm256_cvtps_epi32(_mm256_mul_ps(up_to_white(linear), _mm256_set1_ps(kSrgbTableMax)));
+  const __m256i packed = _mm256_packus_epi32(level, level);
+  const auto first = static_cast<std::uint64_t>(_mm256_extract_epi64(packed, 0));
+  const auto second = static_cast<std::uint64_t>(_mm256_extract_epi64(packed, 2));
+  to[0] = {table[first & 0xFFFF], table[first >> 16 & 0xFFFF], table[first >> 32 & 0xFFFF]};
+  to[1] = {table[second & 0xFFFF], table[second >> 16 & 0xFFFF], table[second >> 32 & 0xFFFF]};
 }
 
-/// What a thread works with; made once per row of tiles.
+/// What a thread works with.
 struct Bench {
   explicit Bench(const View& view) : packets(kPackets), seen(kPackets) {
     for (Packet& packet : packets) packet.start(view);
@@ -51,6 +53,13 @@ struct Bench {
   std::vector<Packet> packets;
   std::vector<Seen> seen;
   std::vector<Radiance> light;  // of supersampling
+  FlushDenormals flush;
+};
+struct EdgeBench {
+  explicit EdgeBench(const View& view) { packet.start(view); }
+  Packet packet;
+  std::vector<Pixel> edges;
+  FlushDenormals flush;
 };
 
 class EmbreeRenderer final : public Renderer {
@@ -64,22 +73,21 @@ class EmbreeRenderer final : public Renderer {
     validate(camera);
     const View view(camera, world_from_camera);
     RenderedFrame frame = empty_frame(view.width, view.height);
-    parallel_for((view.height + kTileHeight - 1) / kTileHeight, config_.threads, [&](int row) {
-      const FlushDenormals flush;
-      Bench bench(view);
-      for (int x = 0; x < view.width; x += kTileWidth)
-        render_tile(view, x, row * kTileHeight, bench, frame);
-    });
+    parallel_for((view.height + kTileHeight - 1) / kTileHeight, config_.threads,
+                 [&] { return Bench(view); },
+                 [&](int row, Bench& bench) {
+                   for (int x = 0; x < view.width; x += kTileWidth)
+                     render_tile(view, x, row * kTileHeight, bench, frame);
+                 });
     if (config_.antialiasing != Antialiasing::kEdges) return frame;
-    parallel_for((view.height + kEdgeBlock - 1) / kEdgeBlock, config_.threads, [&](int row) {
-      const FlushDenormals flush;
-      Packet packet;
-      packet.start(view);
-      std::vector<Pixel> edges;
-      find_edges(frame, row * kEdgeBlock, edges);
-      for (std::size_t first = 0; first < edges.size(); first += kLanes / kEdgeSamples)
-        smooth(view, edges, first, packet, frame);
-    });
+    parallel_for((view.height + kEdgeBlock - 1) / kEdgeBlock, config_.threads,
+                 [&] { return EdgeBench(view); },
+                 [&](int row, EdgeBench& bench) {
+                   find_edges(frame, row * kEdgeBlock, bench.edges);
+                   for (std::size_t first = 0; first < bench.edges.size();
+                        first += kLanes / kEdgeSamples)
+                     smooth(view, bench.edges, first, bench.packet, frame);
+                 });
     return frame;
   }
 
@@ -116,9 +124,10 @@ class EmbreeRenderer final : public Renderer {
         trace_tile(view, for_each, offset, 0.25F * pixel_area, bench);
         for_each([&](std::size_t k, int, int) {
           const Radiance light = shading_.shade(packets[k], seen[k]);
-          for (std::size_t i = 0; i < kLanes; ++i)
-            bench.light[k].of[i] = _mm_add_ps(
-                bench.light[k].of[i], _mm_mul_ps(_mm_set1_ps(0.25F), up_to_white(light.of[i])));
+          for (std::size_t i = 0; i < kLanes / 2; ++i)
+            bench.light[k].of[i] =
+                _mm256_add_ps(bench.light[k].of[i],
+                              _mm256_mul_ps(_mm256_set1_ps(0.25F), up_to_white(light.of[i])));
         });
       }
     }
@@ -138,8 +147,11 @@ class EmbreeRenderer final : public Renderer {
     std::vector<Packet>& packets = bench.packets;
     std::vector<Seen>& seen = bench.seen;
     for_each([&](std::size_t k, int x, int y) { packets[k].aim(view, x, y, offset); });
-    for_each([&](std::size_t k, int, int) { bvh_.intersect16(all.data(), packets[k].rays, true); });
-    for_each([&](std::size_t k, int, int) { shading_.find_records(packets[k], seen[k]); });
+    // The records that a packet asks for arrive while the next one is traced.
+    for_each([&](std::size_t k, int, int) {
+      bvh_.intersect16(all.data(), packets[k].rays, true);
+      shading_.find_records(packets[k], seen[k]);
+    });
     for_each(
         [&](std::size_t k, int, int) { shading_.find_texels(packets[k], pixel_area, seen[k]); });
   }
@@ -160,8 +172,9 @@ class EmbreeRenderer final : public Renderer {
   }
 
   static void write(const Radiance& light, const Seen& seen, int x0, int y0, RenderedFrame& frame) {
+    const std::uint8_t* table = srgb_table();
     std::array<Rgb8, kLanes> colour;
-    for (std::size_t i = 0; i < kLanes; ++i) colour[i] = encode(light.of[i]);
+    for (std::size_t i = 0; i < kLanes; i += 2) encode(light.of[i / 2], table, &colour[i]);
     copy(colour, x0, y0, frame.colour);
     copy(seen.depth_m, x0, y0, frame.depth_m);
     copy(seen.class_id, x0, y0, frame.classes);
@@ -219,11 +232,16 @@ class EmbreeRenderer final : public Renderer {
     const Radiance light = shading_.shade(packet, seen);
     for (std::size_t pixel = 0; pixel < count; ++pixel) {
       Rgb8& colour = frame.colour(edges[first + pixel].x, edges[first + pixel].y);
-      __m128 sum = _mm_setr_ps(srgb_to_linear(colour.r), srgb_to_linear(colour.g),
-                               srgb_to_linear(colour.b), 0.0F);
-      for (std::size_t s = 0; s < kEdgeSamples; ++s)
-        sum = _mm_add_ps(sum, up_to_white(light.of[pixel * kEdgeSamples + s]));
-      colour = encode(_mm_mul_ps(sum, _mm_set1_ps(1.0F / (kEdgeSamples + 1))));
+      static_assert(kEdgeSamples == 2);
+      const __m256 two = up_to_white(light.of[pixel]);
+      const __m128 centre = _mm_setr_ps(srgb_to_linear(colour.r), srgb_to_linear(colour.g),
+                                        srgb_to_linear(colour.b), 0.0F);
+      const __m128 sum = _mm_add_ps(
+          centre, _mm_add_ps(_mm256_castps256_ps128(two), _mm256_extractf128_ps(two, 1)));
+      std::array<Rgb8, 2> mean;
+      encode(_mm256_castps128_ps256(_mm_mul_ps(sum, _mm_set1_ps(1.0F / 3.0F))), srgb_table(),
+             mean.data());
+      colour = mean[0];
     }
   }
 

@@ -81,7 +81,27 @@ void EmbreeScene::attach(const Scene& scene, const std::vector<std::uint32_t>& f
   faces_.insert(faces_.end(), faces.begin(), faces.end());
 }
 
+void EmbreeScene::intersect_each(RTCRayHit16& rays) const {
+  for (int i = 0; i < 16; ++i) {
+    RTCRayHit one{};
+    one.ray.org_x = rays.ray.org_x[i], one.ray.org_y = rays.ray.org_y[i];
+    one.ray.org_z = rays.ray.org_z[i], one.ray.tfar = rays.ray.tfar[i];
+    one.ray.dir_x = rays.ray.dir_x[i], one.ray.dir_y = rays.ray.dir_y[i];
+    one.ray.dir_z = rays.ray.dir_z[i], one.ray.mask = rays.ray.mask[i];
+    one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    intersect1(one);
+    rays.ray.tfar[i] = one.ray.tfar;
+    rays.hit.Ng_x[i] = one.hit.Ng_x, rays.hit.Ng_y[i] = one.hit.Ng_y;
+    rays.hit.Ng_z[i] = one.hit.Ng_z, rays.hit.u[i] = one.hit.u, rays.hit.v[i] = one.hit.v;
+    rays.hit.primID[i] = one.hit.primID, rays.hit.geomID[i] = one.hit.geomID;
+  }
+}
+
 #if RTC_VERSION_MAJOR >= 4
+
+void EmbreeScene::intersect1(RTCRayHit& ray) const {
+  rtcIntersect1(scene_, &ray);
+}
 
 void EmbreeScene::intersect16(const int* valid, RTCRayHit16& rays, bool coherent) const {
   RTCIntersectArguments arguments;
@@ -95,6 +115,12 @@ void EmbreeScene::occluded16(const int* valid, RTCRay16& rays) const {
 }
 
 #else
+
+void EmbreeScene::intersect1(RTCRayHit& ray) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene_, &context, &ray);
+}
 
 void EmbreeScene::intersect16(const int* valid, RTCRayHit16& rays, bool coherent) const {
   RTCIntersectContext context;

@@ -44,6 +44,8 @@ class EmbreeScene {
 
   /// Traces 16 rays to their first hits; lanes whose `valid` is 0 are left alone.
   void intersect16(const int* valid, RTCRayHit16& rays, bool coherent) const;
+  /// The same ray by ray: what packets are measured against.
+  void intersect_each(RTCRayHit16& rays) const;
   /// Tells for 16 rays whether anything is in the way: their tfar becomes -infinity.
   void occluded16(const int* valid, RTCRay16& rays) const;
 
@@ -56,6 +58,7 @@ class EmbreeScene {
   const std::array<std::uint32_t, 8>& first_faces() const { return first_; }
 
  private:
+  void intersect1(RTCRayHit& ray) const;
   void attach(const Scene& scene, const std::vector<std::uint32_t>& faces, unsigned mask);
 
   RTCDevice device_ = nullptr;

@@ -52,7 +52,6 @@ FaceRecord make_record(const Scene& scene, const Surface& surface, std::size_t f
   FaceRecord record;
   record.class_id = scene.class_of[face];
   record.instance = scene.instance_of[face];
-  record.texture = surface.texture;
   store_halves(record.emission, surface.emission);
   const auto& corners = scene.triangles[face];
   std::array<Vector3f, 3> gain;
@@ -65,7 +64,14 @@ FaceRecord make_record(const Scene& scene, const Surface& surface, std::size_t f
   store_halves(record.gain, gain[0]);
   store_halves(record.gain_step1, gain[1] - gain[0]);
   store_halves(record.gain_step2, gain[2] - gain[0]);
+  return record;
+}
+
+FaceTexture make_texture(const Scene& scene, const Surface& surface, std::size_t face) {
+  FaceTexture record;
+  record.texture = surface.texture;
   if (surface.texture == TextureTable::kWhite) return record;
+  const auto& corners = scene.triangles[face];
   const Eigen::Vector2f& first = scene.uvs[corners[0]];
   const Eigen::Vector2f at = first - first.array().floor().matrix();  // it repeats: keep it small
   const Eigen::Vector2f step1 = scene.uvs[corners[1]] - first;
@@ -82,10 +88,15 @@ FaceRecord make_record(const Scene& scene, const Surface& surface, std::size_t f
 FaceRecords::FaceRecords(const Scene& scene, const std::vector<std::uint32_t>& order,
                          float exposure) {
   const std::vector<Surface> surfaces = make_surfaces(scene, exposure, textures_);
+  const bool textured = std::any_of(surfaces.begin(), surfaces.end(), [](const Surface& surface) {
+    return surface.texture != TextureTable::kWhite;
+  });
   records_.reserve(order.size() + 1);
+  if (textured) face_textures_.reserve(order.size() + 1);
   for (const std::uint32_t face : order) {
     const std::size_t material = scene.materials.empty() ? 0 : scene.material_of[face];
     records_.push_back(make_record(scene, surfaces[material], face, exposure));
+    if (textured) face_textures_.push_back(make_texture(scene, surfaces[material], face));
   }
   Vector3f sky = Vector3f::Zero();
   for (const Light& light : scene.lights)
@@ -93,6 +104,7 @@ FaceRecords::FaceRecords(const Scene& scene, const std::vector<std::uint32_t>& o
   FaceRecord nothing;
   store_halves(nothing.emission, sky.cwiseMin(1.0F));
   records_.push_back(nothing);
+  if (textured) face_textures_.emplace_back();
 }
 
 }  // namespace mh

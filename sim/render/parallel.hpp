@@ -7,17 +7,26 @@
 
 namespace mh {
 
-/// Calls work(i) once for every i in [0, count), from up to `threads` threads. The caller makes
-/// sure that each i writes its own output only, so that the thread count changes no bit.
-template <class Work>
-void parallel_for(int count, int threads, const Work& work) {
+/// Calls work(i, state) once for every i in [0, count), from up to `threads` threads, each with a
+/// state of its own from make_state(). The caller makes sure that each i writes its own output only
+/// and finds nothing of another's in the state, so that the thread count changes no bit.
+template <class MakeState, class Work>
+void parallel_for(int count, int threads, const MakeState& make_state, const Work& work) {
   std::atomic<int> next = 0;
   const auto run = [&] {
-    for (int i = next++; i < count; i = next++) work(i);
+    auto state = make_state();
+    for (int i = next++; i < count; i = next++) work(i, state);
   };
   std::vector<std::jthread> helpers;
   for (int t = 1; t < threads && t < count; ++t) helpers.emplace_back(run);
   run();
+}
+
+/// The same without a state: work(i).
+template <class Work>
+void parallel_for(int count, int threads, const Work& work) {
+  parallel_for(
+      count, threads, [] { return 0; }, [&](int i, int) { work(i); });
 }
 
 }  // namespace mh

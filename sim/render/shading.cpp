@@ -19,24 +19,36 @@ void Shading::find_records(const Packet& packet, Seen& seen) const {
   }
   for (const int index : seen.record)
     _mm_prefetch(reinterpret_cast<const char*>(records_.data() + index), _MM_HINT_T0);
+  if (records_.face_textures().empty()) return;
+  for (const int index : seen.record)
+    _mm_prefetch(reinterpret_cast<const char*>(records_.face_textures().data() + index),
+                 _MM_HINT_T0);
 }
 
 void Shading::find_texels(const Packet& packet, float pixel_area, Seen& seen) const {
   const RTCHit16& hit = packet.rays.hit;
   const RTCRay16& ray = packet.rays.ray;
   for (std::size_t i = 0; i < kLanes; i += 8) {
-    std::array<const float*, 8> place, size;
     for (std::size_t k = 0; k < 8; ++k) {
       const FaceRecord& record = records_.data()[seen.record[i + k]];
-      place[k] = &record.u;
-      size[k] = &record.du2;
       seen.instance[i + k] = record.instance;
       seen.class_id[i + k] = static_cast<ClassId>(record.class_id);
     }
+    seen.textured[i / 8] = false;
+    if (records_.face_textures().empty()) continue;
+    std::array<const float*, 8> place, size;
+    std::uint32_t textures = 0;
+    for (std::size_t k = 0; k < 8; ++k) {
+      const FaceTexture& face =
+          records_.face_textures()[static_cast<std::size_t>(seen.record[i + k])];
+      place[k] = &face.u;
+      size[k] = &face.du2;
+      textures |= face.texture;
+    }
+    static_assert(TextureTable::kWhite == 0);
+    seen.textured[i / 8] = textures != 0;
+    if (textures == 0) continue;
     const auto [du2, dv2, texels, texture] = load_fields(size);
-    const __m256i plain = (__m256i)((Int8)texture == splat(int{TextureTable::kWhite}));
-    seen.textured[i / 8] = _mm256_movemask_epi8(plain) != -1;
-    if (!seen.textured[i / 8]) continue;
     const auto [u, v, du1, dv1] = load_fields(place);
     const Float8 along1 = load8(hit.u + i), along2 = load8(hit.v + i);
     // A pixel cuts depth^2 / (fx fy) out of the plane z = depth; a face of unit normal n shows
@@ -52,13 +64,26 @@ void Shading::find_texels(const Packet& packet, float pixel_area, Seen& seen) co
 }
 
 Radiance Shading::shade(const Packet& packet, const Seen& seen) const {
+  const __m256 one = _mm256_set1_ps(1.0F);
   Radiance light;
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    const FaceRecord& record = records_.data()[seen.record[i]];
-    __m128 colour = gain_at(record, packet.rays.hit.u[i], packet.rays.hit.v[i]);
+  for (std::size_t i = 0; i < kLanes; i += 2) {
+    __m256 gain[2], rest[2];
+    for (std::size_t k = 0; k < 2; ++k) {
+      const FaceRecord& record = records_.data()[seen.record[i + k]];
+      const __m256 u = _mm256_broadcast_ss(packet.rays.hit.u + i + k);
+      const __m256 v = _mm256_broadcast_ss(packet.rays.hit.v + i + k);
+      // Halves of registers: gain and its first step; its second step and the emission.
+      const __m256 first = load_halves(record.gain.data());
+      rest[k] = load_halves(record.gain_step2.data());
+      gain[k] =
+          _mm256_add_ps(_mm256_mul_ps(first, _mm256_blend_ps(one, u, 0xF0)),
+                        _mm256_mul_ps(rest[k], _mm256_blend_ps(_mm256_setzero_ps(), v, 0x0F)));
+    }
+    __m256 colour = _mm256_add_ps(_mm256_permute2f128_ps(gain[0], gain[1], 0x20),
+                                  _mm256_permute2f128_ps(gain[0], gain[1], 0x31));
     if (seen.textured[i / 8])
-      colour = _mm_mul_ps(colour, records_.textures().filter(seen.lookup[i / 8], i % 8));
-    light.of[i] = _mm_add_ps(colour, load_halves(record.emission.data()));
+      colour = _mm256_mul_ps(colour, records_.textures().filter2(seen.lookup[i / 8], i % 8));
+    light.of[i / 2] = _mm256_add_ps(colour, _mm256_permute2f128_ps(rest[0], rest[1], 0x31));
   }
   return light;
 }

@@ -21,7 +21,7 @@ struct Seen {
 
 /// Linear RGB of sixteen lanes.
 struct Radiance {
-  __m128 of[kLanes];
+  __m256 of[kLanes / 2];  // lanes 2i and 2i + 1
 };
 
 /// Turns hits into light, in three steps, each of which asks early for the memory that the next one

@@ -52,8 +52,18 @@ class TextureTable {
   ///                half the logarithm to base 2, to within 0.05.
   Lookup look_up(Float8 first, Float8 u, Float8 v, Float8 texels) const;
 
-  /// The filtered colour of a lane: linear RGB, channel 3 = 0.
-  __m128 filter(const Lookup& lookup, std::size_t lane) const {
+  /// The filtered colours of a lane and the next one: linear RGB, channel 3 = 0.
+  __m256 filter2(const Lookup& lookup, std::size_t lane) const {
+    const __m128i both = _mm_unpacklo_epi64(filter(lookup, lane), filter(lookup, lane + 1));
+    return _mm256_mul_ps(_mm256_set1_ps(1.0F / kOne),
+                         _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(both)));
+  }
+
+ private:
+  static constexpr float kOne = 65535.0F;
+
+  /// The filtered colour of a lane, in 16-bit numbers.
+  __m128i filter(const Lookup& lookup, std::size_t lane) const {
     const std::uint16_t* fine = texel(lookup.fine[lane]);
     const std::uint16_t* coarse = texel(lookup.coarse[lane]);
     const __m256i upper = pairs(fine, coarse);
@@ -68,12 +78,8 @@ class TextureTable {
         _mm256_mulhi_epu16(column, _mm256_shuffle_epi8(across, spread(0, 2, 4, 6)));
     const __m128i left_right =
         _mm_add_epi16(_mm256_castsi256_si128(shares), _mm256_extracti128_si256(shares, 1));
-    const __m128i sum = _mm_add_epi16(left_right, _mm_srli_si128(left_right, 8));
-    return _mm_mul_ps(_mm_set1_ps(1.0F / kOne), _mm_cvtepi32_ps(_mm_cvtepu16_epi32(sum)));
+    return _mm_add_epi16(left_right, _mm_srli_si128(left_right, 8));
   }
-
- private:
-  static constexpr float kOne = 65535.0F;
 
   struct Level {
     float width = 0, height = 0;

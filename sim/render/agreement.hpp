@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "sim/render/renderer.hpp"
+
+namespace mh {
+
+/// How far two renderers' pictures of the same scene agree, in counts over all pixels compared.
+struct Agreement {
+  std::int64_t pixels = 0;
+  std::int64_t same_class = 0, same_instance = 0;
+  std::int64_t same_colour = 0;  ///< every channel within two grey levels
+  std::int64_t smooth = 0;       ///< pixels outside silhouettes, see below
+  double square_depth_m2 = 0.0;  ///< summed squares of depth differences over those
+
+  double class_share() const { return share(same_class); }
+  double instance_share() const { return share(same_instance); }
+  double colour_share() const { return share(same_colour); }
+  /// Root mean square of the depth differences outside silhouettes, m.
+  double depth_rmse_m() const;
+
+  /// Adds what two pictures of the same size show. A pixel is of a silhouette where in either
+  /// picture the instance or, by more than 2 cm and 2 %, the depth differs from a neighbour's.
+  void add(const RenderedFrame& a, const RenderedFrame& b);
+
+ private:
+  double share(std::int64_t count) const {
+    return static_cast<double>(count) / static_cast<double>(pixels);
+  }
+};
+
+}  // namespace mh

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#if __has_include(<GL/glcorearb.h>)
+#define MH_HAS_OSMESA 1
+#include <GL/glcorearb.h>
+
+namespace mh {
+
+// The functions of OpenGL that are used, as (name, its type's name). OSMesa is loaded at run time,
+// so that a machine without it runs everything else, and so are they.
+#define MH_GL_FUNCTIONS(F)                            \
+  F(ActiveTexture, ACTIVETEXTURE)                     \
+  F(AttachShader, ATTACHSHADER)                       \
+  F(BindBuffer, BINDBUFFER)                           \
+  F(BindFramebuffer, BINDFRAMEBUFFER)                 \
+  F(BindRenderbuffer, BINDRENDERBUFFER)               \
+  F(BindTexture, BINDTEXTURE)                         \
+  F(BindVertexArray, BINDVERTEXARRAY)                 \
+  F(BufferData, BUFFERDATA)                           \
+  F(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS)   \
+  F(ClearBufferfv, CLEARBUFFERFV)                     \
+  F(ClearBufferuiv, CLEARBUFFERUIV)                   \
+  F(ClipControl, CLIPCONTROL)                         \
+  F(CompileShader, COMPILESHADER)                     \
+  F(CreateProgram, CREATEPROGRAM)                     \
+  F(CreateShader, CREATESHADER)                       \
+  F(DepthFunc, DEPTHFUNC)                             \
+  F(DrawBuffers, DRAWBUFFERS)                         \
+  F(DrawElements, DRAWELEMENTS)                       \
+  F(Enable, ENABLE)                                   \
+  F(EnableVertexAttribArray, ENABLEVERTEXATTRIBARRAY) \
+  F(FramebufferRenderbuffer, FRAMEBUFFERRENDERBUFFER) \
+  F(GenBuffers, GENBUFFERS)                           \
+  F(GenFramebuffers, GENFRAMEBUFFERS)                 \
+  F(GenRenderbuffers, GENRENDERBUFFERS)               \
+  F(GenTextures, GENTEXTURES)                         \
+  F(GenVertexArrays, GENVERTEXARRAYS)                 \
+  F(GetError, GETERROR)                               \
+  F(GetProgramInfoLog, GETPROGRAMINFOLOG)             \
+  F(GetProgramiv, GETPROGRAMIV)                       \
+  F(GetUniformLocation, GETUNIFORMLOCATION)           \
+  F(LinkProgram, LINKPROGRAM)                         \
+  F(PixelStorei, PIXELSTOREI)                         \
+  F(ReadBuffer, READBUFFER)                           \
+  F(ReadPixels, READPIXELS)                           \
+  F(RenderbufferStorage, RENDERBUFFERSTORAGE)         \
+  F(ShaderSource, SHADERSOURCE)                       \
+  F(TexBuffer, TEXBUFFER)                             \
+  F(TexImage2D, TEXIMAGE2D)                           \
+  F(TexParameteri, TEXPARAMETERI)                     \
+  F(Uniform1f, UNIFORM1F)                             \
+  F(Uniform1i, UNIFORM1I)                             \
+  F(Uniform3fv, UNIFORM3FV)                           \
+  F(UniformMatrix3fv, UNIFORMMATRIX3FV)               \
+  F(UniformMatrix4fv, UNIFORMMATRIX4FV)               \
+  F(UseProgram, USEPROGRAM)                           \
+  F(VertexAttribPointer, VERTEXATTRIBPOINTER)         \
+  F(Viewport, VIEWPORT)
+
+struct Gl {
+#define MH_DECLARE(name, type) PFNGL##type##PROC name = nullptr;
+  MH_GL_FUNCTIONS(MH_DECLARE)
+#undef MH_DECLARE
+};
+
+/// A context of OpenGL 4.5 without a window. All that depends on where it comes from stands in
+/// osmesa_context.cpp: OSMesa has left Mesa 25.1, EGL may take its place there.
+class OffscreenContext {
+ public:
+  /// @throws MachineError if there is no OSMesa, or not one that can do what is needed.
+  OffscreenContext();
+  ~OffscreenContext();
+  OffscreenContext(const OffscreenContext&) = delete;
+  OffscreenContext& operator=(const OffscreenContext&) = delete;
+
+  const Gl& gl() const { return gl_; }
+
+  /// The calling thread's context while it lives; one at a time.
+  class Current {
+   public:
+    explicit Current(const OffscreenContext& context);
+    ~Current();
+    Current(const Current&) = delete;
+    Current& operator=(const Current&) = delete;
+
+   private:
+    const OffscreenContext& context_;
+  };
+
+ private:
+  struct Library;
+  std::unique_ptr<Library> library_;
+  Gl gl_;
+};
+
+}  // namespace mh
+#endif
