@@ -15,7 +15,7 @@ namespace mh::cli {
 namespace {
 
 struct Options {
-  std::string scene, tour, robot, level, out;
+  std::string scene, tour, robot, level, out, renderer = "embree";
   std::size_t frames = SIZE_MAX, every = 1;
   std::uint64_t seed = 0;
 };
@@ -30,6 +30,7 @@ void refuse_older_sequence(const std::filesystem::path& folder) {
 
 void run(const Options& options) {
   refuse_older_sequence(options.out);
+  make_renderer(options.renderer, Scene{});  // a machine that lacks it says so at once
   make_output_folder(options.out);
   const Robot robot = load_robot(options.robot);
   const Tour tour = load_tour(options.tour);
@@ -39,7 +40,7 @@ void run(const Options& options) {
   Progress progress("render");
   progress.say(fmt::format("scene {}", options.scene));
   const Scene scene = load_lit_scene(options.scene, 2);
-  const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene);
+  const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene, options.renderer);
   const DrivenPath path = drive(scene, robot, tour);
 
   const std::size_t last = std::min(options.frames, path.camera.size());
@@ -72,6 +73,7 @@ void add_render(CLI::App& app) {
       ->check(CLI::Range(1, 100000000));
   command->add_option("--every", options->every, "Every n-th frame only")
       ->check(CLI::Range(1, 100000000));
+  command->add_option("--renderer", options->renderer, "embree (default) or osmesa");
   command->add_option("--seed", options->seed, "Seed of the noise");
   command->footer(
       "Example:\n  modelhouse render scenes/model_house/house.yaml "

@@ -67,9 +67,9 @@ Scene load_lit_scene(const std::filesystem::path& file, int threads) {
   return scene;
 }
 
-std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene) {
-  return make_embree_renderer(scene,
-                              {.exposure = scene.light.empty() ? 1.0F : suggest_exposure(scene)});
+std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene, std::string_view renderer) {
+  return make_renderer(renderer, scene,
+                       {.exposure = scene.light.empty() ? 1.0F : suggest_exposure(scene)});
 }
 
 PlaceFacts facts(const World& world) {

@@ -50,7 +50,9 @@ Scene load_lit_scene(const std::filesystem::path& file, int threads);
 
 /// A renderer with the exposure that suits the scene; one that shows its own colours unlit is shown
 /// as it is.
-std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene);
+/// @param renderer  see make_renderer
+std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene,
+                                              std::string_view renderer = "embree");
 
 /// Loads scene, robot, vocabulary and level of a run, bakes the light, drives both tours.
 /// @throws InputError if a file is bad or a tour cannot be driven.

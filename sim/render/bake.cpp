@@ -8,6 +8,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include <xxhash.h>
+
 #include "sim/render/bake_points.hpp"
 #include "sim/render/colour.hpp"
 #include "sim/render/embree_scene.hpp"
@@ -22,6 +24,8 @@ using Eigen::Vector2f;
 using Eigen::Vector3f;
 using Colours = std::vector<Vector3f>;
 
+// Goes up whenever the same scene and config come out in other light.
+constexpr std::uint64_t kBakeVersion = 2;
 constexpr int kLanes = 16;
 constexpr int kVerticesPerJob = 1024;
 constexpr float kPi = std::numbers::pi_v<float>;
@@ -101,7 +105,7 @@ class Baker {
   Baker(const Scene& scene, const BakeConfig& config)
       : scene_(scene),
         config_(config),
-        bvh_(scene, config.threads, false),
+        bvh_(scene, config.threads, config.portable),
         points_(scene),
         hemisphere_(whole_packets(config.samples)),
         rough_(whole_packets((config.samples + 1) / 2)),
@@ -380,6 +384,17 @@ class Baker {
 };
 
 }  // namespace
+
+std::uint64_t digest(const BakeConfig& config) {
+  const std::array<std::uint64_t, 7> fields = {kBakeVersion,
+                                               static_cast<std::uint64_t>(config.samples),
+                                               static_cast<std::uint64_t>(config.bounces),
+                                               static_cast<std::uint64_t>(config.sun_samples),
+                                               static_cast<std::uint64_t>(config.smoothing),
+                                               config.seed,
+                                               config.portable};
+  return XXH3_64bits(fields.data(), sizeof(fields));
+}
 
 void bake_light(Scene& scene, const BakeConfig& config) {
   if (config.samples < 1 || config.bounces < 0 || config.sun_samples < 0 || config.smoothing < 0)

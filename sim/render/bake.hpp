@@ -11,8 +11,13 @@ struct BakeConfig {
   int sun_samples = 16;  ///< shadow rays per sun and per lamp, rounded up likewise
   int smoothing = 6;     ///< rounds of averaging the indirect part over neighbouring vertices
   std::uint64_t seed = 0;
-  int threads = 2;  ///< never changes a bit of the result
+  int threads = 2;        ///< never changes a bit of the result
+  bool portable = false;  ///< pin Embree to AVX2, so that light agrees across processors
 };
+
+/// Digest (xxh3-64) of all that decides what bake_light makes of a scene: its code's version and
+/// the config without `threads`. With the scene's own digest, the key of a baked scene.
+std::uint64_t digest(const BakeConfig& config);
 
 /// Computes Scene::light (irradiance / pi at every vertex, linear RGB) by ray tracing: sun through
 /// windows, sphere lamps with soft shadows, sky and glowing surfaces seen by hemisphere rays, and

@@ -170,6 +170,17 @@ TEST(BakeLight, ThreadsChangeNoBitAndSeedsDo) {
   EXPECT_NE(one, baked(1, 4));
 }
 
+TEST(BakeConfig, DigestTellsWhatChangesTheLightAndNothingElse) {
+  const std::uint64_t usual = digest(BakeConfig{});
+  EXPECT_EQ(digest({.threads = 7}), usual);
+  EXPECT_NE(digest({.samples = 64}), usual);
+  EXPECT_NE(digest({.bounces = 3}), usual);
+  EXPECT_NE(digest({.sun_samples = 32}), usual);
+  EXPECT_NE(digest({.smoothing = 0}), usual);
+  EXPECT_NE(digest({.seed = 1}), usual);
+  EXPECT_NE(digest({.portable = true}), usual);
+}
+
 TEST(SuggestExposure, BringsWhatIsSeenToTheStatedRadiance) {
   Scene scene = plain_scene({188, 188, 188});
   add_box(scene, {0, 0, 0}, {4, 3, 2.5F}, true, 1, 1);
