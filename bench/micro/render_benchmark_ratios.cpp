@@ -24,6 +24,10 @@
 namespace mh {
 namespace {
 
+// Where two threads work: what they and OSMesa's own use together. On an idle machine with two
+// cores the wall's clock says the same or more.
+constexpr clockid_t kSharedClock = CLOCK_PROCESS_CPUTIME_ID;
+
 /// Rays of a whole picture and nothing else, in the renderer's order.
 class RayTracer {
  public:
@@ -123,16 +127,16 @@ int run(bool portable, int repeats) {
       picture("textured, edges smoothed", make(room, 1, Antialiasing::kEdges)),
       picture("textured, 2 x 2 supersampled", make(room, 1, Antialiasing::kSupersample)),
       picture("vertex colours, 2 threads", make(without_textures(room), 2, Antialiasing::kNone),
-              CLOCK_MONOTONIC),
-      picture("textured, 2 threads", make(room, 2, Antialiasing::kNone), CLOCK_MONOTONIC),
+              kSharedClock),
+      picture("textured, 2 threads", make(room, 2, Antialiasing::kNone), kSharedClock),
       picture("ten times the triangles, textured",
               make(BenchmarkRoom::tenfold(), 1, Antialiasing::kNone)),
   };
   bool osmesa = true;
   try {
     contestants.push_back(picture("OSMesa, vertex colours",
-                                  make_osmesa_renderer(without_textures(room)), CLOCK_MONOTONIC));
-    contestants.push_back(picture("OSMesa, textured", make_osmesa_renderer(room), CLOCK_MONOTONIC));
+                                  make_osmesa_renderer(without_textures(room)), kSharedClock));
+    contestants.push_back(picture("OSMesa, textured", make_osmesa_renderer(room), kSharedClock));
   } catch (const MachineError& error) {
     fmt::print("{}\n", error.what());
     osmesa = false;

@@ -105,7 +105,7 @@ class Baker {
   Baker(const Scene& scene, const BakeConfig& config)
       : scene_(scene),
         config_(config),
-        bvh_(scene, config.threads, config.portable),
+        bvh_(scene, config.threads, config.portable, true),
         points_(scene),
         hemisphere_(whole_packets(config.samples)),
         rough_(whole_packets((config.samples + 1) / 2)),

@@ -31,7 +31,7 @@ FlushDenormals::~FlushDenormals() {
   _mm_setcsr(saved_);
 }
 
-EmbreeScene::EmbreeScene(const Scene& scene, int build_threads, bool portable) {
+EmbreeScene::EmbreeScene(const Scene& scene, int build_threads, bool portable, bool watertight) {
   const FlushDenormals flush;
   const std::string settings =
       fmt::format("threads={}{}", std::max(1, build_threads), portable ? ",isa=avx2" : "");
@@ -47,8 +47,7 @@ EmbreeScene::EmbreeScene(const Scene& scene, int build_threads, bool portable) {
   }
   attach(scene, opaque, kOpaqueFaces);
   attach(scene, luminous, kLuminousFaces);
-  // Not RTC_SCENE_FLAG_ROBUST: it costs a fifth of the tracing time, and without it one ray in two
-  // million slips between two faces that share an edge (docs/rendering.md).
+  if (watertight) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
   rtcCommitScene(scene_);
   check(device_, "build the hierarchy");
 }
@@ -111,7 +110,10 @@ void EmbreeScene::intersect16(const int* valid, RTCRayHit16& rays, bool coherent
 }
 
 void EmbreeScene::occluded16(const int* valid, RTCRay16& rays) const {
-  rtcOccluded16(valid, scene_, &rays);
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcOccluded16(valid, scene_, &rays, &arguments);
 }
 
 #else
@@ -133,6 +135,7 @@ void EmbreeScene::intersect16(const int* valid, RTCRayHit16& rays, bool coherent
 void EmbreeScene::occluded16(const int* valid, RTCRay16& rays) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded16(valid, scene_, &context, &rays);
 }
 
