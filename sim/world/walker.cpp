@@ -164,7 +164,7 @@ WalkedScene::WalkedScene(const Scene& scene, std::shared_ptr<const Renderer> ren
   assert(scene_ != nullptr);
   // Smoothed edges would mix the void around him into his outline.
   walker_ = make_embree_renderer(build_walker(mean_light(scene)),
-                                 {.exposure = exposure, .smooth_edges = false});
+                                 {.exposure = exposure, .antialiasing = Antialiasing::kNone});
   const int last = scene.instances.empty() ? 0 : scene.instances.back().id;
   assert(last < std::numeric_limits<InstanceId>::max());
   instance_ = static_cast<InstanceId>(last + 1);
