@@ -24,7 +24,7 @@ BundleProblem problem() {
 }
 
 BundleConfig config() {
-  return {.iterations = kIterations, .refine_iterations = 0};
+  return {.iterations = kIterations, .refine_iterations = 0, .relative_decrease = 1e-6};
 }
 
 /// A pose as (quaternion x y z w, translation), perturbed from the left. The cost functions give

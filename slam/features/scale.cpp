@@ -5,18 +5,34 @@
 #include <cmath>
 
 namespace mh {
+namespace {
+
+// Asked for thousands of times per frame, always with one scale: what it gives is remembered.
+struct Powers {
+  static constexpr int kCount = 16;
+  double scale = 0, log = 0;
+  std::array<double, kCount> power{};
+};
+
+const Powers& powers_of(double scale) {
+  thread_local Powers powers;
+  if (powers.scale == scale) return powers;
+  powers.scale = scale;
+  powers.log = std::log(scale);
+  for (int i = 0; i < Powers::kCount; ++i)
+    powers.power[static_cast<std::size_t>(i)] = std::pow(scale, i);
+  return powers;
+}
+
+}  // namespace
 
 double level_scale(const FeatureConfig& config, int octave) {
-  // Asked for thousands of times per frame, always with one scale: its powers are remembered.
-  constexpr int kRemembered = 16;
-  thread_local double scale = 0;
-  thread_local std::array<double, kRemembered> power{};
-  if (octave < 0 || octave >= kRemembered) return std::pow(config.scale, octave);
-  if (scale != config.scale) {
-    scale = config.scale;
-    for (int i = 0; i < kRemembered; ++i) power[static_cast<std::size_t>(i)] = std::pow(scale, i);
-  }
-  return power[static_cast<std::size_t>(octave)];
+  if (octave < 0 || octave >= Powers::kCount) return std::pow(config.scale, octave);
+  return powers_of(config.scale).power[static_cast<std::size_t>(octave)];
+}
+
+double log_of_scale(const FeatureConfig& config) {
+  return powers_of(config.scale).log;
 }
 
 }  // namespace mh

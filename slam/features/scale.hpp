@@ -7,5 +7,7 @@ namespace mh {
 
 /// config.scale^octave: how much coarser the pixels of a pyramid level are than the picture's.
 double level_scale(const FeatureConfig& config, int octave);
+/// ln(config.scale).
+double log_of_scale(const FeatureConfig& config);
 
 }  // namespace mh

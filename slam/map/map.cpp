@@ -119,7 +119,7 @@ void Map::erase(LandmarkId landmark) {
   if (l.erased) return;
   for (const Observation& o : l.observations)
     mutable_at(o.keyframe).landmarks[o.feature] = LandmarkId{};
-  l.observations.clear();
+  l.observations = {};  // gives its memory back, as clear() would not: tombstones must stay small
   l.erased = true;
   --landmark_count_;
 }

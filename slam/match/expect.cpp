@@ -34,7 +34,7 @@ std::optional<ProjectionTarget> expect(const Landmark& landmark, const SE3& came
 
   const double ratio = landmark.max_distance_m / distance;
   const int octave =
-      std::clamp(static_cast<int>(std::lround(std::log(ratio) / std::log(features.scale))), 0,
+      std::clamp(static_cast<int>(std::lround(std::log(ratio) / log_of_scale(features))), 0,
                  features.levels - 1);
   return ProjectionTarget{
       .u_px = static_cast<float>(pixel.x()),

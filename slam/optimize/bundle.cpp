@@ -5,9 +5,9 @@
 #include <cassert>
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "slam/optimize/pose_system.hpp"
 #include "slam/optimize/reprojection.hpp"
 
 namespace mh {
@@ -39,11 +39,10 @@ struct Workspace {
   std::vector<std::uint8_t> coupled;           ///< per observation: W is in use
   std::vector<Eigen::Matrix3d> point_inverse;  ///< per point: V^-1, damped
   std::vector<Eigen::Vector3d> point_gradient;
-  Eigen::MatrixXd reduced;        ///< lower triangle of U - W V^-1 W^T
+  PoseSystem reduced;             ///< U - W V^-1 W^T
   Eigen::VectorXd pose_diagonal;  ///< diagonal of U, for the damping
   Eigen::VectorXd right_side;
   Eigen::VectorXd pose_step;
-  Eigen::LLT<Eigen::MatrixXd> factor;
 };
 
 ImageMeasurement measurement(const BundleObservation& o) {
@@ -59,6 +58,22 @@ double chi2_of(const BundleObservation& o, const State& state, const Camera& cam
   const Eigen::Vector3d p = state.camera_from_world[o.pose] * state.points_in_world[o.point];
   if (p.z() < kMinimumDepth_m) return kBehindChi2;
   return reprojection_residual(p, measurement(o), camera).squaredNorm();
+}
+
+/// Pairs of free poses that see a point together; none where the system keeps all blocks anyway.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> couplings(
+    const BundleProblem& problem, const std::vector<std::uint32_t>& first_observation) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  if (problem.free_poses <= PoseSystem::kDirectPoses) return pairs;
+  for (std::size_t point = 0; point + 1 < first_observation.size(); ++point)
+    for (std::uint32_t a = first_observation[point]; a < first_observation[point + 1]; ++a)
+      for (std::uint32_t b = first_observation[point]; b < a; ++b) {
+        const std::uint32_t pose_a = problem.observations[a].pose;
+        const std::uint32_t pose_b = problem.observations[b].pose;
+        if (pose_a < problem.free_poses && pose_b < problem.free_poses)
+          pairs.emplace_back(pose_a, pose_b);
+      }
+  return pairs;
 }
 
 Workspace make_workspace(const BundleProblem& problem) {
@@ -80,7 +95,7 @@ Workspace make_workspace(const BundleProblem& problem) {
   w.coupled.assign(observations, 0);
   w.point_inverse.resize(points);
   w.point_gradient.resize(points);
-  w.reduced.resize(unknowns, unknowns);
+  w.reduced = PoseSystem(problem.free_poses, couplings(problem, w.first_observation));
   w.pose_diagonal.resize(unknowns);
   w.right_side.resize(unknowns);
   w.pose_step.resize(unknowns);
@@ -145,9 +160,10 @@ void linearize_point(const BundleProblem& problem, Workspace& w, const State& st
     const Eigen::Index at = 6 * static_cast<Eigen::Index>(o.pose);
     const Eigen::Matrix3d turned = cross_columns(p, term.information);
     const Eigen::Matrix3d turned_twice = cross_columns(p, turned.transpose());
-    w.reduced.block<3, 3>(at, at) += term.information;
-    w.reduced.block<3, 3>(at + 3, at) += turned;
-    w.reduced.block<3, 3>(at + 3, at + 3) += turned_twice;
+    PoseSystem::Block& own = w.reduced.at(o.pose, o.pose);
+    own.topLeftCorner<3, 3>() += term.information;
+    own.bottomLeftCorner<3, 3>() += turned;
+    own.bottomRightCorner<3, 3>() += turned_twice;
     w.pose_diagonal.segment<3>(at) += term.information.diagonal();
     w.pose_diagonal.segment<3>(at + 3) += turned_twice.diagonal();
     w.right_side.segment<3>(at) -= term.gradient;
@@ -169,12 +185,11 @@ void eliminate_point(const BundleProblem& problem, Workspace& w, std::uint32_t p
     for (std::uint32_t b = a; b < end; ++b) {
       if (!w.coupled[b]) continue;
       const std::uint32_t pose_b = problem.observations[b].pose;
-      const Eigen::Index column = 6 * static_cast<Eigen::Index>(pose_b);
       if (pose_a >= pose_b)
-        w.reduced.block<6, 6>(row, column).noalias() -= weighted * w.pose_point[b].transpose();
+        w.reduced.at(pose_a, pose_b).noalias() -= weighted * w.pose_point[b].transpose();
       // The mirrored block; both where one pose sees the point twice.
       if (pose_a < pose_b || (pose_a == pose_b && a != b))
-        w.reduced.block<6, 6>(column, row).noalias() -= w.pose_point[b] * weighted.transpose();
+        w.reduced.at(pose_b, pose_a).noalias() -= w.pose_point[b] * weighted.transpose();
     }
   }
 }
@@ -183,7 +198,7 @@ void eliminate_point(const BundleProblem& problem, Workspace& w, std::uint32_t p
 void build_reduced_system(const BundleProblem& problem, Workspace& w, const State& state,
                           const Camera& camera, const BundleConfig& config, bool robust,
                           double damping) {
-  w.reduced.setZero();
+  w.reduced.set_zero();
   w.pose_diagonal.setZero();
   w.right_side.setZero();
   Eigen::Matrix3d information;
@@ -201,20 +216,21 @@ void build_reduced_system(const BundleProblem& problem, Workspace& w, const Stat
     w.point_inverse[point] = information.inverse();
     eliminate_point(problem, w, point);
   }
-  w.reduced.diagonal() += damping * w.pose_diagonal;
-  // A pose that nothing speaks about stays where it is.
-  for (Eigen::Index k = 0; k < w.pose_diagonal.size(); ++k)
-    if (!(w.pose_diagonal[k] > 0)) w.reduced(k, k) = 1.0;
+  for (std::uint32_t pose = 0; pose < problem.free_poses; ++pose) {
+    const Vector6d diagonal = w.pose_diagonal.segment<6>(6 * static_cast<Eigen::Index>(pose));
+    PoseSystem::Block& own = w.reduced.at(pose, pose);
+    own.diagonal() += damping * diagonal;
+    // A pose that nothing speaks about stays where it is.
+    for (Eigen::Index k = 0; k < 6; ++k)
+      if (!(diagonal[k] > 0)) own(k, k) = 1.0;
+  }
 }
 
 /// Solves for the poses, substitutes back for the points. @returns false if the system is not
 /// positive definite.
 bool take_step(const BundleProblem& problem, Workspace& w, const State& from, State& to) {
-  w.factor.compute(w.reduced);
-  if (w.factor.info() != Eigen::Success) return false;
   w.pose_step = w.right_side;
-  w.factor.solveInPlace(w.pose_step);
-  if (!w.pose_step.allFinite()) return false;
+  if (!w.reduced.solve(w.pose_step) || !w.pose_step.allFinite()) return false;
   for (std::uint32_t pose = 0; pose < problem.free_poses; ++pose) {
     const Vector6d step = w.pose_step.segment<6>(6 * static_cast<Eigen::Index>(pose));
     to.camera_from_world[pose] = SE3::exp(step) * from.camera_from_world[pose];

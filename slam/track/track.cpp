@@ -163,6 +163,7 @@ LocalMap local_map(const TrackedPose& tracked, const TrackContext& context) {
 
   // Near and alike, nearest first.
   const SE3 world_from_camera = tracked.camera_from_world.inverse();
+  const double least_cosine = std::cos(context.config.near_angle_rad);
   std::vector<std::pair<double, KeyframeId>> near;
   for (const KeyframeId id :
        map.keyframes_near(world_from_camera.translation(), context.config.near_distance_m)) {
@@ -172,7 +173,7 @@ LocalMap local_map(const TrackedPose& tracked, const TrackContext& context) {
     if (distance > context.config.near_distance_m) continue;
     const double cosine =
         world_from_keyframe.rotation().col(2).dot(world_from_camera.rotation().col(2));
-    if (cosine < std::cos(context.config.near_angle_rad)) continue;
+    if (cosine < least_cosine) continue;
     near.emplace_back(distance, id);
   }
   std::sort(near.begin(), near.end());
