@@ -78,10 +78,9 @@ std::string last_line(const fs::path& file) {
 
 /// What the child does between fork and exec: system calls alone, since other threads of the bench
 /// may hold locks.
-[[noreturn]] void become(const char* folder, const char* command, int in, int out, int err,
-                         bool ends_with_parent) {
+[[noreturn]] void become(const char* folder, const char* command, int in, int out, int err) {
   setpgid(0, 0);
-  if (ends_with_parent) prctl(PR_SET_PDEATHSIG, SIGKILL);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // a bench that is killed leaves nothing running
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -117,11 +116,8 @@ ChildProcess::ChildProcess(const OutsideProgram& program, std::string command, T
     in[1] = open("/dev/null", O_RDONLY | O_CLOEXEC);
     out[1] = err;
   }
-  // A conversation ends with its standard input; a program that only computes must be told.
-  const bool ends_with_parent = talk == Talk::kNo;
   pid_ = fork();
-  if (pid_ == 0)
-    become(program_.folder.c_str(), command_.c_str(), in[1], out[1], err, ends_with_parent);
+  if (pid_ == 0) become(program_.folder.c_str(), command_.c_str(), in[1], out[1], err);
   const int forked = errno;
   close(in[1]);
   close(err);

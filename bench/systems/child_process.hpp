@@ -13,7 +13,8 @@
 namespace mh {
 
 /// A running outside program in a process group of its own, with time and memory limits. The group
-/// is killed when this object goes. Every failure is an OutsideError naming program, command, what
+/// is killed when this object goes; the command itself also when the thread that started it ends,
+/// however that came about. Every failure is an OutsideError naming program, command, what
 /// it did and the last line that it wrote to its log.
 class ChildProcess {
  public:

@@ -2,6 +2,7 @@
 // Outside programs that misbehave, as shell scripts: each fault is one OutsideError that names the
 // program, its command and what it did, and never the end of the bench.
 #include <signal.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -82,6 +83,17 @@ class OutsideFaults : public testing::Test {
     return error_of(p, [&] { make_conversation_system(p, camera_, 0, folder_ / "log"); });
   }
 
+  /// Whether a process is gone within seconds, or a zombie that some init has yet to bury.
+  static bool ends_soon(pid_t process) {
+    for (int i = 0; i < 500; ++i) {
+      std::string stat;
+      std::getline(std::ifstream("/proc/" + std::to_string(process) + "/stat"), stat);
+      if (stat.empty() || stat.find(") Z") != std::string::npos) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+
   fs::path folder_;
   Camera camera_;
 };
@@ -152,16 +164,29 @@ TEST_F(OutsideFaults, WhatAProgramLeavesBehindIsEndedToo) {
   const fs::path note = folder_ / "pid";
   run(program(OutsideMode::kTrajectory,
               "sleep 60 & echo $! > " + note.string() + "; echo 1 0 0 0 0 0 0 1 > {trajectory}"));
-  const pid_t left = std::stoi(read_file(note));
-  bool gone = false;
-  for (int i = 0; i < 200 && !gone; ++i) {
-    // Gone, or a zombie that some init has yet to bury.
-    std::string stat;
-    std::getline(std::ifstream("/proc/" + std::to_string(left) + "/stat"), stat);
-    gone = stat.empty() || stat.find(") Z") != std::string::npos;
-    if (!gone) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(ends_soon(std::stoi(read_file(note))));
+}
+
+TEST_F(OutsideFaults, ABenchThatIsKilledLeavesNothingRunning) {
+  const fs::path note = folder_ / "pid";
+  const pid_t bench = fork();
+  if (bench == 0) {
+    try {
+      run(program(OutsideMode::kTrajectory,
+                  "echo $$ > " + note.string() + "; exec sleep 60; : {trajectory}"));
+    } catch (const std::exception&) {
+    }
+    _exit(0);
   }
-  EXPECT_TRUE(gone);
+  std::string text;
+  for (int i = 0; i < 500 && !text.ends_with('\n'); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    if (fs::exists(note)) text = read_file(note);
+  }
+  ASSERT_TRUE(text.ends_with('\n'));
+  kill(bench, SIGKILL);
+  waitpid(bench, nullptr, 0);
+  EXPECT_TRUE(ends_soon(std::stoi(text)));
 }
 
 TEST_F(OutsideFaults, ConversationsThatDoNotBegin) {
