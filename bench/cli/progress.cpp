@@ -36,7 +36,7 @@ void Progress::say(std::string_view stage) {
   std::fflush(stderr);
 }
 
-void Progress::share(double done) {
+void Progress::share(double done, std::string_view figures) {
   done = std::clamp(done, 0.0, 1.0);
   if (!started_) {
     started_ = true;
@@ -53,11 +53,13 @@ void Progress::share(double done) {
   if (terminal_) {
     constexpr int kBar = 40;
     const int full = static_cast<int>(done * kBar);
-    fmt::print(stderr, "\r{} [{}{}] {:5.1f} %{}   ", what_, std::string(full, '#'),
-               std::string(kBar - full, '.'), 100 * done, to_go);
+    fmt::print(stderr, "\r{} [{}{}] {:5.1f} %{}{}{}   ", what_, std::string(full, '#'),
+               std::string(kBar - full, '.'), 100 * done, to_go, figures.empty() ? "" : "; ",
+               figures);
     line_open_ = true;
   } else {
-    fmt::print(stderr, "{}: {:.0f} %{}\n", what_, 100 * done, to_go);
+    fmt::print(stderr, "{}: {:.0f} %{}{}{}\n", what_, 100 * done, to_go,
+               figures.empty() ? "" : "; ", figures);
   }
   std::fflush(stderr);
 }

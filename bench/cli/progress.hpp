@@ -17,7 +17,9 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void say(std::string_view stage);
-  void share(double done);  ///< in [0, 1]; the first call starts the clock
+  /// @param done     in [0, 1]; the first call starts the clock
+  /// @param figures  shown behind: how the work stands
+  void share(double done, std::string_view figures = {});
 
  private:
   void end_line();

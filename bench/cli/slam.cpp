@@ -1,74 +1,190 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/cli/slam_report.hpp"
 #include "bench/metrics/trajectory_io.hpp"
-#include "bench/recorded/tum_folder.hpp"
-#include "bench/systems/ours.hpp"
-#include "bench/systems/timed.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/pipeline/map_file.hpp"
 
 namespace mh::cli {
 namespace {
 
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
 struct Options {
-  std::string source, settings, vocabulary, out;
-  double gamma = SemanticConfig{}.gamma, xi = SemanticConfig{}.xi;
+  std::string source, settings, vocabulary, out, map, save_map, truth;
+  std::string tour, robot, level;
+  std::optional<double> gamma, xi;
   bool plain = false;
   std::uint64_t seed = 0;
+  SlamRunOptions run;
 };
 
-void run(const Options& options) {
-  constexpr std::string_view kTum = "tum:";
-  if (!options.source.starts_with(kTum))
-    throw InputError(fmt::format("source '{}' must be tum:FOLDER", options.source));
-  make_output_folder(options.out);
-  const RecordedCamera camera = load_recorded_camera(options.settings);
-  const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
-  const std::vector<RecordedFrame> frames = load_tum_folder(options.source.substr(kTum.size()));
+bool is_tum_folder(const fs::path& folder) {
+  return fs::exists(folder / "rgb.txt") || fs::exists(folder / "associations.txt");
+}
 
-  SlamConfig config;
-  config.semantics.gamma = options.gamma;
-  config.semantics.xi = options.xi;
-  if (options.plain) config.semantics = config.semantics.neutralised();
-  TimedSystem system(make_our_system(camera.camera, config, vocabulary));
-  Progress progress("slam");
-  const RandomStream stream(options.seed);
-  std::size_t tracked = 0;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const StepReport report = system.track(read_frame(frames[i], camera), stream.fork(i));
-    tracked += report.status == TrackStatus::kLost ? 0 : 1;
-    progress.share(static_cast<double>(i + 1) / static_cast<double>(frames.size()));
+/// The settings file that was named, else the one that lies in the folder.
+Settings settings_for(const Options& options, const fs::path& folder) {
+  const fs::path beside = folder / "camera.yaml";
+  if (options.settings.empty() && !fs::exists(beside))
+    throw InputError(fmt::format("{}: holds no camera.yaml; name a settings file by --settings",
+                                 folder.string()));
+  const fs::path file = options.settings.empty() ? beside : fs::path(options.settings);
+  Settings settings = load_settings(file);
+  if (!settings.has_camera)
+    throw InputError(fmt::format("{}: key 'camera' is missing", file.string()));
+  return settings;
+}
+
+struct Source {
+  Settings settings;
+  std::unique_ptr<FrameSequence> frames;
+};
+
+Source open_source(const Options& options) {
+  constexpr std::string_view kTum = "tum:", kScene = "scene:";
+  const std::string& source = options.source;
+  if (source.starts_with(kScene)) {
+    if (options.tour.empty() || options.robot.empty())
+      throw InputError(fmt::format("source '{}' needs --tour and --robot", source));
+    Settings settings;
+    if (!options.settings.empty()) settings = load_settings(options.settings);
+    auto frames = open_scene({.scene = source.substr(kScene.size()),
+                              .tour = options.tour,
+                              .robot = options.robot,
+                              .level = options.level,
+                              .seed = options.seed});
+    settings.camera = frames->camera();
+    return {std::move(settings), std::move(frames)};
   }
-  write_tum(std::filesystem::path(options.out) / "estimate.tum", system.trajectory());
-  const TimeSummary times = summarize(system.times().track_ms);
-  fmt::print("{} of {} frames tracked; {:.1f} ms per frame (median; 95 % below {:.1f} ms)\n",
-             tracked, frames.size(), times.median_ms, times.p95_ms);
+  const bool named = source.starts_with(kTum);
+  const fs::path folder = named ? source.substr(kTum.size()) : source;
+  if (!fs::is_directory(folder))
+    throw InputError(fmt::format("source '{}' is no folder, nor scene:FILE", source));
+  if (!named && !is_tum_folder(folder))
+    throw InputError(
+        fmt::format("{}: holds neither rgb.txt nor associations.txt", folder.string()));
+  Settings settings = settings_for(options, folder);
+  auto frames = open_tum_folder(folder, settings);
+  return {std::move(settings), std::move(frames)};
+}
+
+/// A new state, or the one of the map file; the file's settings go before those of --settings.
+SlamState first_state(const Options& options, Settings& settings) {
+  const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
+  SlamState state;
+  if (options.map.empty()) {
+    state = make_slam(settings.camera, settings.slam, vocabulary);
+  } else {
+    state = load_slam(options.map, vocabulary);
+    if (state.camera != settings.camera)
+      throw InputError(fmt::format("{}: was made with another camera", options.map));
+    if (!options.run.resume) rewind(state);
+  }
+  SemanticConfig& semantics = state.config.semantics;
+  if (options.gamma) semantics.gamma = *options.gamma;
+  if (options.xi) semantics.xi = *options.xi;
+  if (options.plain) semantics = semantics.neutralised();
+  settings.slam = state.config;
+  return state;
+}
+
+std::optional<Evaluation> evaluation_of(const Options& options, const FrameSequence& frames,
+                                        const Trajectory& estimate) {
+  const std::optional<Trajectory> truth =
+      options.truth.empty() ? frames.truth() : std::optional(read_tum(options.truth));
+  if (!truth) return std::nullopt;
+  return evaluate(*truth, estimate);
+}
+
+void check(const Options& options) {
+  if (options.run.localize && options.map.empty())
+    throw InputError("--localize needs a map: name one by --map");
+  if (options.run.resume && options.map.empty())
+    throw InputError("--resume needs a map: name one by --map");
+}
+
+void run(const Options& options) {
+  check(options);
+  Source source = open_source(options);
+  for (const std::string& note : source.settings.notes) fmt::print(stderr, "slam: {}\n", note);
+  make_output_folder(options.out);
+  SlamState state = first_state(options, source.settings);
+
+  Progress progress("slam");
+  StageClock clock;
+  std::vector<double> frame_ms;
+  double running_ms = 0;
+  const StepObservers observers{.stage = [&](Stage stage, StageEvent e) { clock(stage, e); },
+                                .matches = nullptr};
+  const auto watch = [&](std::size_t done, const SlamRun& so_far) {
+    clock.end_frame();
+    double ms = 0;
+    for (const double stage_ms : clock.frames().back()) ms += stage_ms;
+    if (!so_far.frames.back().skipped) frame_ms.push_back(ms);
+    running_ms += ms;
+    const std::size_t all = std::min(options.run.count, source.frames->size());
+    progress.share(static_cast<double>(done) / static_cast<double>(all),
+                   fmt::format("{} tracked, {} keyframes, {} landmarks, {:.1f} ms a frame",
+                               so_far.tracked, state.map.keyframe_count(),
+                               state.map.landmark_count(), running_ms / static_cast<double>(done)));
+  };
+  const SlamRun result =
+      run_slam(state, *source.frames, options.run, RandomStream(options.seed), observers, watch);
+  if (!options.save_map.empty()) save_slam(options.save_map, state);
+
+  const SlamReport report{.state = state,
+                          .run = result,
+                          .clock = clock,
+                          .frame_ms = std::move(frame_ms),
+                          .evaluation = evaluation_of(options, *source.frames, result.trajectory),
+                          .source = options.source,
+                          .seed = options.seed};
+  write_slam_files(options.out, report, source.settings);
+  print_slam_report(report);
 }
 
 }  // namespace
 
 void add_slam(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("slam", "Runs SLAM on a recorded sequence.");
-  command->add_option("source", options->source, "tum:FOLDER")->required();
-  command->add_option("--settings", options->settings, "Calibration (YAML, ORB-SLAM's keys)")
-      ->required();
+  CLI::App* command =
+      app.add_subcommand("slam", "Runs SLAM on a recorded sequence or along a tour of a scene.");
+  command->add_option("source", options->source, "tum:FOLDER, FOLDER or scene:FILE")->required();
+  command->add_option("--settings", options->settings,
+                      "Settings (YAML), also ORB-SLAM2's; default: the folder's camera.yaml");
   command->add_option("--vocabulary", options->vocabulary, "Vocabulary file")->required();
-  command->add_option("--out", options->out, "Folder for estimate.tum")->required();
+  command->add_option("--out", options->out, "Folder for the results")->required();
+  command->add_option("--map", options->map, "Map file to begin with");
+  command->add_flag("--localize", options->run.localize, "The map stays as it is");
+  command->add_flag("--resume", options->run.resume,
+                    "Goes on with the sequence where the map's run stopped");
+  command->add_option("--save-map", options->save_map, "Map file to write");
+  command->add_option("--truth", options->truth,
+                      "True trajectory (TUM text); default: the folder's groundtruth.txt");
+  command->add_option("--frames", options->run.count, "At most so many frames")
+      ->check(CLI::Range(1, 100000000));
+  command->add_option("--tour", options->tour, "scene: tour (YAML)");
+  command->add_option("--robot", options->robot, "scene: robot (YAML)");
+  command->add_option("--level", options->level, "scene: sensor level (YAML); without: no noise");
   command->add_option("--gamma", options->gamma, "Weight of a label, equation 1")
       ->check(CLI::Range(0.0, 1e6));
   command->add_option("--xi", options->xi, "Penalty of labels that differ, equation 2")
       ->check(CLI::Range(1.0, 1e6));
   command->add_flag("--plain", options->plain, "Without semantics");
-  command->add_option("--seed", options->seed, "Seed of RANSAC");
+  command->add_option("--seed", options->seed, "Seed of RANSAC and of a scene's noise");
   command->footer(
-      "Example:\n  modelhouse slam tum:out/sequence --settings out/sequence/camera.yaml "
-      "--vocabulary assets/vocabulary.mhvoc --out out/slam");
+      "Example:\n  modelhouse slam out/sequence --vocabulary assets/vocabulary.mhvoc "
+      "--out out/slam --save-map out/house.mhmap");
   command->callback([options] { run(*options); });
 }
 

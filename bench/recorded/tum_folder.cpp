@@ -13,7 +13,7 @@
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "slam/core/files.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/pipeline/settings.hpp"
 
 namespace mh {
 namespace {
@@ -89,30 +89,8 @@ SemanticImage one_hot(const cv::Mat& ids, const fs::path& file) {
 }  // namespace
 
 RecordedCamera load_recorded_camera(const fs::path& file) {
-  std::string text = read_file(file);
-  // OpenCV's own dialect begins with "%YAML:1.0", which is no YAML; its line stays, so that line
-  // numbers hold.
-  if (text.starts_with("%YAML")) text[0] = '#';
-  YamlReader yaml = YamlReader::parse(text, file.string());
-  yaml.entries();
-  RecordedCamera recorded;
-  Camera& c = recorded.camera;
-  constexpr double kMost = 1e6;
-  c.fx_px = yaml.number("Camera.fx", 1.0, kMost);
-  c.fy_px = yaml.number("Camera.fy", 1.0, kMost);
-  c.cx_px = yaml.number("Camera.cx", 0.0, kMost);
-  c.cy_px = yaml.number("Camera.cy", 0.0, kMost);
-  c.distortion = {.k1 = yaml.number_or("Camera.k1", 0),
-                  .k2 = yaml.number_or("Camera.k2", 0),
-                  .p1 = yaml.number_or("Camera.p1", 0),
-                  .p2 = yaml.number_or("Camera.p2", 0),
-                  .k3 = yaml.number_or("Camera.k3", 0)};
-  c.width_px = static_cast<int>(yaml.integer_or("Camera.width", 640, 1, 100000));
-  c.height_px = static_cast<int>(yaml.integer_or("Camera.height", 480, 1, 100000));
-  c.rate_hz = yaml.number_or("Camera.fps", 30.0, 0.001, kMost);
-  c.baseline_m = yaml.number_or("Camera.bf", c.baseline_m * c.fx_px, 1e-6, kMost) / c.fx_px;
-  recorded.depth_per_metre = yaml.number_or("DepthMapFactor", kDepthPerMetre, 1e-3, 1e9);
-  return recorded;
+  const Settings settings = load_settings(file);
+  return {settings.camera, settings.depth_per_metre, settings.exchange_red_blue};
 }
 
 std::vector<RecordedFrame> load_tum_folder(const fs::path& folder) {
@@ -147,6 +125,7 @@ RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera
     for (int x = 0; x < colour.cols; ++x) {
       const cv::Vec3b bgr = colour.at<cv::Vec3b>(y, x);
       frame.colour(x, y) = {bgr[2], bgr[1], bgr[0]};
+      if (camera.exchange_red_blue) frame.colour(x, y) = {bgr[0], bgr[1], bgr[2]};
       frame.depth_m(x, y) =
           static_cast<float>(depth.at<std::uint16_t>(y, x) / camera.depth_per_metre);
     }

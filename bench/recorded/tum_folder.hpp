@@ -19,11 +19,10 @@ namespace mh {
 struct RecordedCamera {
   Camera camera;
   double depth_per_metre = kDepthPerMetre;  ///< value of a depth pixel one metre away
+  bool exchange_red_blue = false;           ///< the files' first channel is blue
 };
 
-/// Reads a calibration with ORB-SLAM's keys: Camera.fx, .fy, .cx, .cy (px, needed); Camera.k1 .k2
-/// .p1 .p2 .k3, Camera.width, .height, Camera.fps, Camera.bf (px m), DepthMapFactor. Other keys of
-/// such files (ORBextractor.*, Viewer.*, ...) are passed over. @throws InputError.
+/// The camera of a settings file, our own or ORB-SLAM2's: see load_settings(). @throws InputError.
 RecordedCamera load_recorded_camera(const std::filesystem::path& file);
 
 /// One moment of a recording: colour and depth pictures that belong together.

@@ -168,6 +168,8 @@ void triangulate_with_neighbours(Map& map, KeyframeId keyframe, const MappingCon
     const auto matches = match_by_words(a.features, a.words, unmapped(a), b.features, b.words,
                                         unmapped(b), static_cast<float>(context.match.max_distance),
                                         1.0F, SemanticMatcher(context.semantics, counts), on_line);
+    trace_words(context.trace, Matcher::kTriangulation, keyframe, a.features, {}, other, b.features,
+                matches, context.semantics);
     for (const FeatureMatch& m : matches) {
       const auto point = triangulate(map.at(keyframe), map.at(keyframe).features.keypoints[m.a],
                                      map.at(other), map.at(other).features.keypoints[m.b], context);
@@ -207,6 +209,8 @@ void fuse_into(Map& map, KeyframeId keyframe, const std::vector<LandmarkId>& lan
       match_by_projection(targets, k.features, k.grid, taken,
                           {.max_distance = static_cast<float>(context.match.max_distance)},
                           SemanticMatcher(context.semantics, counts));
+  trace_projection(context.trace, Matcher::kFusion, keyframe, k.features, targets, found,
+                   target_landmark, {}, context.semantics);
   for (std::size_t t = 0; t < found.size(); ++t) {
     if (found[t] < 0) continue;
     const auto feature = static_cast<std::uint32_t>(found[t]);

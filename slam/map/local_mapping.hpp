@@ -5,6 +5,7 @@
 #include "slam/map/map.hpp"
 #include "slam/match/config.hpp"
 #include "slam/match/counts.hpp"
+#include "slam/match/trace.hpp"
 #include "slam/optimize/bundle.hpp"
 #include "slam/track/config.hpp"
 
@@ -18,6 +19,7 @@ struct MappingContext {
   const MatchConfig& match;
   const BundleConfig& bundle;
   const KeyframeConfig& config;
+  MatchTrace* trace = nullptr;  ///< where accepted pairs are noted, if anywhere
 };
 
 /// Gives every close feature with depth (and at least the nearest hundred) a landmark of its own.

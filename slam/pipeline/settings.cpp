@@ -110,10 +110,12 @@ void check_camera(const Camera& camera, const std::string& file) {
   }
 }
 
-Settings read_own(YamlReader yaml) {
-  Settings settings;
+void read_camera(YamlReader& yaml, Settings& settings) {
+  auto section = yaml.find("camera");
+  if (!section) return;
+  YamlReader& camera = *section;
+  settings.has_camera = true;
   Camera& c = settings.camera;
-  YamlReader camera = yaml.at("camera");
   c.width_px = static_cast<int>(camera.integer_or("width_px", c.width_px, 1, 100000));
   c.height_px = static_cast<int>(camera.integer_or("height_px", c.height_px, 1, 100000));
   c.fx_px = camera.number("fx_px", 1, kMost);
@@ -128,6 +130,12 @@ Settings read_own(YamlReader yaml) {
     distortion->finish();
   }
   camera.finish();
+  check_camera(c, yaml.file());
+}
+
+Settings read_own(YamlReader yaml) {
+  Settings settings;
+  read_camera(yaml, settings);
   if (auto pictures = yaml.find("pictures")) {
     settings.depth_per_metre =
         pictures->number_or("depth_per_metre", settings.depth_per_metre, 1e-3, 1e9);
@@ -136,7 +144,6 @@ Settings read_own(YamlReader yaml) {
   }
   settings.slam = read_slam_config(yaml, settings.slam);
   yaml.finish();
-  check_camera(c, yaml.file());
   return settings;
 }
 
@@ -180,6 +187,7 @@ std::string unread_keys(YamlReader yaml) {
 
 Settings read_orb_slam(YamlReader yaml) {
   Settings settings;
+  settings.has_camera = true;
   Camera& c = settings.camera;
   c.fx_px = yaml.number("Camera.fx", 1, kMost);
   c.fy_px = yaml.number("Camera.fy", 1, kMost);
@@ -219,6 +227,20 @@ Settings read_orb_slam(YamlReader yaml) {
 }
 
 }  // namespace
+
+std::string format_settings(const Settings& settings) {
+  const Camera& c = settings.camera;
+  const Distortion& d = c.distortion;
+  return fmt::format(
+             "camera:\n  width_px: {}\n  height_px: {}\n  fx_px: {}\n  fy_px: {}\n  cx_px: {}\n"
+             "  cy_px: {}\n  distortion: {{k1: {}, k2: {}, p1: {}, p2: {}, k3: {}}}\n"
+             "  rate_hz: {}\n  baseline_m: {}\n  disparity_sigma_px: {}\n"
+             "pictures:\n  depth_per_metre: {}\n  exchange_red_blue: {}\n",
+             c.width_px, c.height_px, c.fx_px, c.fy_px, c.cx_px, c.cy_px, d.k1, d.k2, d.p1, d.p2,
+             d.k3, c.rate_hz, c.baseline_m, c.disparity_sigma_px, settings.depth_per_metre,
+             settings.exchange_red_blue) +
+         format_slam_config(settings.slam);
+}
 
 std::string format_slam_config(const SlamConfig& config, bool notes) {
   Write write(notes);

@@ -15,17 +15,22 @@ namespace mh {
 /// What a settings file says: the camera, how its pictures are stored, and SLAM's parameters.
 struct Settings {
   Camera camera;
+  bool has_camera = false;        ///< a file without one serves sources that bring their own
   double depth_per_metre = 5000;  ///< value of a depth pixel one metre away
   bool exchange_red_blue = false;
   SlamConfig slam;
   std::vector<std::string> notes;  ///< what was passed over or needs telling, one line each
 };
 
-/// Reads our own settings (sections camera, pictures and those of SlamConfig; all optional but the
-/// camera's focal lengths and centre) or a settings file of ORB-SLAM2 (`Camera.fx: ...`), which is
-/// told by its keys. @throws InputError "file:line: place: value".
+/// Reads our own settings (sections camera, pictures and those of SlamConfig, all optional; a
+/// camera needs its focal lengths and centre) or a settings file of ORB-SLAM2 (`Camera.fx: ...`),
+/// which is told by its keys. @throws InputError "file:line: place: value".
 Settings load_settings(const std::filesystem::path& file);
 Settings parse_settings(std::string text, const std::string& name);
+
+/// Camera, pictures and every setting of SLAM, as a file that load_settings() takes back bit for
+/// bit.
+std::string format_settings(const Settings& settings);
 
 /// Every setting of SLAM with its value, as YAML that read_slam_config takes back bit for bit; with
 /// notes each line ends in a comment that says what it means and which values it may take.

@@ -11,6 +11,7 @@
 #include "slam/core/trajectory.hpp"
 #include "slam/map/map.hpp"
 #include "slam/pipeline/config.hpp"
+#include "slam/pipeline/observe.hpp"
 #include "slam/pipeline/report.hpp"
 #include "slam/track/tracker.hpp"
 #include "slam/vocabulary/vocabulary.hpp"
@@ -42,12 +43,14 @@ SlamState make_slam(const Camera& camera, const SlamConfig& config,
 /// Processes one frame, mapping included: the whole system on one page (step.cpp). The first frame
 /// with enough depth becomes the world's origin. Random draws depend on the stream alone.
 /// @throws InputError if the frame does not fit the camera or its stamp does not grow.
-StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream);
+StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream,
+                const StepObservers& observers = {});
 
 /// The same from features that are at hand already: a cache, a synthetic world. step(state, frame,
 /// stream) is this after extract().
 /// @throws InputError if the stamp does not grow or there are not as many descriptors as keypoints.
-StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStream stream);
+StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStream stream,
+                const StepObservers& observers = {});
 
 /// The feed goes back: tracking counts as lost and earlier stamps are accepted; the map stays.
 void rewind(SlamState& state);
@@ -55,7 +58,7 @@ void rewind(SlamState& state);
 /// Localization against a map that no longer changes. The tracker is the caller's, so that many
 /// queries start from equal states: Tracker{} is lost. Stamps are not checked.
 StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& frame,
-                    RandomStream stream);
+                    RandomStream stream, const StepObservers& observers = {});
 
 /// From now on the frozen map answers with these settings: its keyframes' vectors (equation 1) are
 /// weighed anew where gamma or the policy on void changes.

@@ -23,6 +23,29 @@ struct PreparedFrame {
   std::optional<WordIndex> words;
 };
 
+/// Tells the observer that a stage lasts as long as this.
+class InStage {
+ public:
+  InStage(const StepObservers& observers, Stage stage) : observers_(observers), stage_(stage) {
+    if (observers_.stage) observers_.stage(stage_, StageEvent::kBegin);
+  }
+  ~InStage() {
+    if (observers_.stage) observers_.stage(stage_, StageEvent::kEnd);
+  }
+  InStage(const InStage&) = delete;
+  InStage& operator=(const InStage&) = delete;
+
+ private:
+  const StepObservers& observers_;
+  Stage stage_;
+};
+
+Features observed_features(const RgbdFrame& frame, const SlamState& state,
+                           const StepObservers& observers) {
+  const InStage stage(observers, Stage::kFeatures);
+  return extract(frame, state.camera, state.config.features);
+}
+
 PreparedFrame prepare(Stamp stamp_ns, Features features, const Camera& camera) {
   FeatureGrid grid(features.keypoints, camera);
   return {stamp_ns, std::move(features), std::move(grid), std::nullopt};
@@ -47,9 +70,11 @@ WordIndex index_words(const Features& features, const Vocabulary& vocabulary,
   return index;
 }
 
-Query with_words(PreparedFrame& frame, const SlamState& state) {
-  if (!frame.words)
+Query with_words(PreparedFrame& frame, const SlamState& state, const StepObservers& observers) {
+  if (!frame.words) {
+    const InStage stage(observers, Stage::kWords);
     frame.words = index_words(frame.features, *state.vocabulary, state.config.semantics);
+  }
   return {frame.features, frame.grid, *frame.words};
 }
 
@@ -70,52 +95,80 @@ struct Located {
   std::vector<LandmarkId> expected;
 };
 
-/// Finds the camera of a frame in the map: motion model, reference keyframe, relocalization; then
-/// the local map. Reads the map, never writes it.
-std::optional<Located> locate(const SlamState& state, const Tracker& tracker, PreparedFrame& frame,
-                              RandomStream stream, StepReport& report) {
-  const SlamConfig& config = state.config;
-  const TrackContext context{state.map,    state.camera, config.features, config.semantics,
-                             config.match, config.pose,  config.track};
-  std::optional<TrackedPose> tracked;
-  if (tracker.tracking()) {
-    const auto by_motion = [&] {
-      return track_motion(without_words(frame), *tracker.last, predict(tracker, frame.stamp_ns),
-                          context, at(report.matches, Matcher::kMotionModel));
-    };
-    const auto by_reference = [&] {
-      return track_reference(with_words(frame, state), state.map.standing(tracker.reference),
-                             tracker.last->camera_from_world, context,
-                             at(report.matches, Matcher::kReferenceKeyframe));
-    };
-    // Where the motion is not known yet, appearance needs no guess.
-    const bool moving = tracker.velocity_per_s.has_value();
-    tracked = moving ? by_motion() : by_reference();
-    if (!tracked) tracked = moving ? by_reference() : by_motion();
-  }
-  const bool relocalizing = !tracked;
-  if (relocalizing) {
-    RelocalizationResult found =
-        relocalize(with_words(frame, state), state.map, state.camera, config.features,
-                   config.semantics, config.match, config.relocalize, stream, report.matches);
-    report.relocalization = found.stage;
-    report.candidates = found.candidates;
-    if (!found.camera_from_world) return std::nullopt;
-    tracked = TrackedPose{*found.camera_from_world, std::move(found.landmarks), found.inliers};
-  }
+/// Where a frame is, told by the frame before it: motion model or reference keyframe.
+std::optional<TrackedPose> follow(const SlamState& state, const Tracker& tracker,
+                                  PreparedFrame& frame, const TrackContext& context,
+                                  const StepObservers& observers, StepReport& report) {
+  if (!tracker.tracking()) return std::nullopt;
+  const InStage stage(observers, Stage::kTracking);
+  const auto by_motion = [&] {
+    return track_motion(without_words(frame), *tracker.last, predict(tracker, frame.stamp_ns),
+                        context, at(report.matches, Matcher::kMotionModel));
+  };
+  const auto by_reference = [&] {
+    return track_reference(with_words(frame, state, observers),
+                           state.map.standing(tracker.reference), tracker.last->camera_from_world,
+                           context, at(report.matches, Matcher::kReferenceKeyframe));
+  };
+  // Where the motion is not known yet, appearance needs no guess.
+  const bool moving = tracker.velocity_per_s.has_value();
+  auto tracked = moving ? by_motion() : by_reference();
+  if (!tracked) tracked = moving ? by_reference() : by_motion();
+  return tracked;
+}
 
-  const LocalMap local = local_map(*tracked, context);
-  auto refined = track_local_map(without_words(frame), *tracked, local,
-                                 static_cast<float>(config.track.local_radius_px), context,
+std::optional<TrackedPose> search_everywhere(const SlamState& state, PreparedFrame& frame,
+                                             RandomStream stream, const StepObservers& observers,
+                                             StepReport& report) {
+  const SlamConfig& config = state.config;
+  const InStage stage(observers, Stage::kRelocalization);
+  RelocalizationResult found = relocalize(
+      with_words(frame, state, observers), state.map, state.camera, config.features,
+      config.semantics, config.match, config.relocalize, stream, report.matches, observers.matches);
+  report.relocalization = found.stage;
+  report.candidates = found.candidates;
+  if (!found.camera_from_world) return std::nullopt;
+  return TrackedPose{*found.camera_from_world, std::move(found.landmarks), found.inliers};
+}
+
+std::optional<Located> confirm_in_local_map(const SlamState& state, const PreparedFrame& frame,
+                                            const TrackedPose& tracked, int min_inliers,
+                                            const TrackContext& context,
+                                            const StepObservers& observers, StepReport& report) {
+  const InStage stage(observers, Stage::kLocalMap);
+  const LocalMap local = local_map(tracked, context);
+  auto refined = track_local_map(without_words(frame), tracked, local,
+                                 static_cast<float>(context.config.local_radius_px), context,
                                  at(report.matches, Matcher::kLocalMap));
-  const int needed = relocalizing ? config.relocalize.min_inliers : config.track.min_inliers;
-  if (!refined || refined->tracked.inliers < needed) {
-    if (relocalizing) report.relocalization = RelocalizationStage::kInliers;
-    return std::nullopt;
-  }
-  report.status = relocalizing ? TrackStatus::kRelocalized : TrackStatus::kTracked;
+  if (!refined || refined->tracked.inliers < min_inliers) return std::nullopt;
   const KeyframeId reference = reference_of(refined->tracked, state.map);
   return Located{std::move(refined->tracked), reference, std::move(refined->expected)};
+}
+
+/// Finds the camera of a frame in the map: from the frame before; where that does not hold in the
+/// local map, anywhere. Reads the map, never writes it.
+std::optional<Located> locate(const SlamState& state, const Tracker& tracker, PreparedFrame& frame,
+                              RandomStream stream, const StepObservers& observers,
+                              StepReport& report) {
+  const SlamConfig& config = state.config;
+  const TrackContext context{state.map,    state.camera, config.features, config.semantics,
+                             config.match, config.pose,  config.track,    observers.matches};
+  const auto confirm = [&](const TrackedPose& tracked, int min_inliers) {
+    return confirm_in_local_map(state, frame, tracked, min_inliers, context, observers, report);
+  };
+  if (const auto tracked = follow(state, tracker, frame, context, observers, report))
+    if (auto located = confirm(*tracked, config.track.min_inliers)) {
+      report.status = TrackStatus::kTracked;
+      return located;
+    }
+  const auto found = search_everywhere(state, frame, stream, observers, report);
+  if (!found) return std::nullopt;
+  auto located = confirm(*found, config.relocalize.min_inliers);
+  if (located)
+    report.status = TrackStatus::kRelocalized;
+  else
+    report.relocalization = RelocalizationStage::kInliers;
+  return located;
 }
 
 /// How the camera moved since the last frame. Taken before mapping, which may move the world.
@@ -137,25 +190,30 @@ void remember(Tracker& tracker, PreparedFrame&& frame, const SE3& camera_from_wo
 
 KeyframeId insert_keyframe(SlamState& state, PreparedFrame& frame, const SE3& camera_from_world,
                            const std::vector<LandmarkId>& landmarks, RandomStream stream,
-                           StepReport& report) {
+                           const StepObservers& observers, StepReport& report) {
   const SlamConfig& config = state.config;
-  const MappingContext context{state.camera, config.features, config.semantics,
-                               config.match, config.bundle,   config.keyframe};
+  const MappingContext context{state.camera,  config.features, config.semantics, config.match,
+                               config.bundle, config.keyframe, observers.matches};
   Keyframe keyframe;
   keyframe.stamp_ns = frame.stamp_ns;
   keyframe.camera_from_world = camera_from_world;
-  keyframe.words = with_words(frame, state).words;
+  keyframe.words = with_words(frame, state, observers).words;
   keyframe.features = frame.features;
   keyframe.grid = frame.grid;
-  const KeyframeId id = state.map.add(std::move(keyframe));
-  for (std::uint32_t i = 0; i < landmarks.size(); ++i)
-    if (landmarks[i].valid()) {
-      state.map.add_observation(landmarks[i], id, i);
-      state.map.refresh(landmarks[i], config.features);
-    }
-  add_landmarks_from_depth(state.map, id, context);
-  if (state.map.keyframe_count() > 1) map_keyframe(state.map, id, context, report.matches);
-  if (config.loop.enabled)
+  KeyframeId id;
+  {
+    const InStage stage(observers, Stage::kMapping);
+    id = state.map.add(std::move(keyframe));
+    for (std::uint32_t i = 0; i < landmarks.size(); ++i)
+      if (landmarks[i].valid()) {
+        state.map.add_observation(landmarks[i], id, i);
+        state.map.refresh(landmarks[i], config.features);
+      }
+    add_landmarks_from_depth(state.map, id, context);
+    if (state.map.keyframe_count() > 1) map_keyframe(state.map, id, context, report.matches);
+  }
+  if (config.loop.enabled) {
+    const InStage stage(observers, Stage::kLoop);
     if (const auto loop = detect_loop(state.map, id, state.loop_memory, context, config.relocalize,
                                       config.loop, stream, report.matches)) {
       const Keyframe& old = state.map.at(loop->old_keyframe);
@@ -164,18 +222,21 @@ KeyframeId insert_keyframe(SlamState& state, PreparedFrame& frame, const SE3& ca
       close_loop(state.map, *loop, context, config.loop, report.matches);
       report.loop_closed = true;
     }
+  }
   report.keyframe_added = true;
   state.tracker.frames_since_keyframe = 0;
   return id;
 }
 
-StepReport initialize(SlamState& state, PreparedFrame frame, StepReport report) {
+StepReport initialize(SlamState& state, PreparedFrame frame, const StepObservers& observers,
+                      StepReport report) {
   const auto with_depth =
       std::count_if(frame.features.keypoints.begin(), frame.features.keypoints.end(),
                     [](const Keypoint& k) { return k.depth_m > 0; });
   if (with_depth < kMinInitialPoints) return report;
   const std::vector<LandmarkId> none(frame.features.size());
-  const KeyframeId id = insert_keyframe(state, frame, SE3(), none, RandomStream(), report);
+  const KeyframeId id =
+      insert_keyframe(state, frame, SE3(), none, RandomStream(), observers, report);
   state.tracked_frames[frame.stamp_ns] = {id, SE3()};
   report.status = TrackStatus::kInitialized;
   report.world_from_camera = SE3();
@@ -203,12 +264,14 @@ SlamState make_slam(const Camera& camera, const SlamConfig& config,
   return state;
 }
 
-StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream) {
+StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream,
+                const StepObservers& observers) {
   check_stamp(state, frame.stamp_ns);
-  return step(state, frame.stamp_ns, extract(frame, state.camera, state.config.features), stream);
+  return step(state, frame.stamp_ns, observed_features(frame, state, observers), stream, observers);
 }
 
-StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStream stream) {
+StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStream stream,
+                const StepObservers& observers) {
   check_stamp(state, stamp_ns);
   if (features.descriptors.size() != features.keypoints.size())
     throw InputError(fmt::format("frame at {} ns: {} keypoints, but {} descriptors", stamp_ns,
@@ -218,9 +281,9 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
   StepReport report;
   report.keypoints = static_cast<int>(prepared.features.size());
   state.tracked_frames.erase(stamp_ns);
-  if (state.map.empty()) return initialize(state, std::move(prepared), report);
+  if (state.map.empty()) return initialize(state, std::move(prepared), observers, report);
 
-  auto located = locate(state, state.tracker, prepared, stream, report);
+  auto located = locate(state, state.tracker, prepared, stream, observers, report);
   if (!located) {
     state.tracker = Tracker{};
     return report;
@@ -237,8 +300,8 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
   report.inliers = located->tracked.inliers;
   if (needs_keyframe({camera_from_world, landmarks, report.inliers}, prepared.features, state.map,
                      reference, state.tracker.frames_since_keyframe, state.config.keyframe)) {
-    reference =
-        insert_keyframe(state, prepared, camera_from_world, landmarks, stream.fork(1), report);
+    reference = insert_keyframe(state, prepared, camera_from_world, landmarks, stream.fork(1),
+                                observers, report);
     camera_from_world = state.map.at(reference).camera_from_world;
     landmarks = state.map.at(reference).landmarks;
 #ifndef NDEBUG
@@ -259,12 +322,12 @@ void rewind(SlamState& state) {
 }
 
 StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& frame,
-                    RandomStream stream) {
+                    RandomStream stream, const StepObservers& observers) {
   PreparedFrame prepared =
-      prepare(frame.stamp_ns, extract(frame, frozen.camera, frozen.config.features), frozen.camera);
+      prepare(frame.stamp_ns, observed_features(frame, frozen, observers), frozen.camera);
   StepReport report;
   report.keypoints = static_cast<int>(prepared.features.size());
-  auto located = locate(frozen, tracker, prepared, stream, report);
+  auto located = locate(frozen, tracker, prepared, stream, observers, report);
   if (!located) {
     tracker = Tracker{};
     return report;

@@ -45,7 +45,7 @@ class CandidateTrial {
   CandidateTrial(const Query& query, const Map& map, const Camera& camera,
                  const FeatureConfig& features, const SemanticConfig& semantics,
                  const MatchConfig& match, const RelocalizeConfig& config, MatchCounts& counts,
-                 PlaceMatchers matchers)
+                 PlaceMatchers matchers, MatchTrace* trace)
       : query_(query),
         map_(map),
         camera_(camera),
@@ -54,12 +54,15 @@ class CandidateTrial {
         match_(match),
         config_(config),
         counts_(counts),
-        matchers_(matchers) {}
+        matchers_(matchers),
+        trace_(trace) {}
 
   Attempt run(KeyframeId candidate, RandomStream stream) {
     Attempt attempt;
     attempt.landmarks = match_landmarks(map_.at(candidate), query_.features, query_.words, match_,
                                         SemanticMatcher(semantics_, at(counts_, matchers_.words)));
+    trace_landmarks(trace_, matchers_.words, map_.at(candidate), query_.features, attempt.landmarks,
+                    semantics_);
     attempt.inliers =
         static_cast<int>(std::count_if(attempt.landmarks.begin(), attempt.landmarks.end(),
                                        [](LandmarkId id) { return id.valid(); }));
@@ -146,6 +149,8 @@ class CandidateTrial {
         match_by_projection(targets, query_.features, query_.grid, taken,
                             {.max_distance = max_distance, .check_angle = true},
                             SemanticMatcher(semantics_, at(counts_, matchers_.projection)));
+    trace_projection(trace_, matchers_.projection, {}, query_.features, targets, found,
+                     target_landmark, {}, semantics_);
     for (std::size_t t = 0; t < found.size(); ++t)
       if (found[t] >= 0) attempt.landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
   }
@@ -159,6 +164,7 @@ class CandidateTrial {
   const RelocalizeConfig& config_;
   MatchCounts& counts_;
   PlaceMatchers matchers_;
+  MatchTrace* trace_;
 };
 
 }  // namespace
@@ -205,9 +211,10 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
                                     const FeatureConfig& features, const SemanticConfig& semantics,
                                     const MatchConfig& match, const RelocalizeConfig& config,
                                     RandomStream stream, MatchCounts& counts,
-                                    PlaceMatchers matchers) {
+                                    PlaceMatchers matchers, MatchTrace* trace) {
   RelocalizationResult result;
-  CandidateTrial trial(query, map, camera, features, semantics, match, config, counts, matchers);
+  CandidateTrial trial(query, map, camera, features, semantics, match, config, counts, matchers,
+                       trace);
   for (const KeyframeId candidate : candidates) {
     Attempt attempt = trial.run(candidate, stream.fork(candidate.value));
     result.stage = std::max(result.stage, attempt.stage);
@@ -224,12 +231,12 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
 RelocalizationResult relocalize(const Query& query, const Map& map, const Camera& camera,
                                 const FeatureConfig& features, const SemanticConfig& semantics,
                                 const MatchConfig& match, const RelocalizeConfig& config,
-                                RandomStream stream, MatchCounts& counts) {
+                                RandomStream stream, MatchCounts& counts, MatchTrace* trace) {
   const auto selection = select_keyframes(map, query.words.vector, semantics);
   std::vector<KeyframeId> candidates;
   for (const auto& candidate : selection.candidates) candidates.push_back(candidate.keyframe);
   RelocalizationResult result = try_candidates(query, candidates, map, camera, features, semantics,
-                                               match, config, stream, counts);
+                                               match, config, stream, counts, {}, trace);
   result.candidates = {.keyframes = map.keyframe_count(),
                        .c1 = selection.c1,
                        .c2 = selection.c2,

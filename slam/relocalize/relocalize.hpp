@@ -11,6 +11,7 @@
 #include "slam/map/map.hpp"
 #include "slam/match/config.hpp"
 #include "slam/match/counts.hpp"
+#include "slam/match/trace.hpp"
 #include "slam/optimize/pose.hpp"
 #include "slam/semantics/candidate_selection.hpp"
 
@@ -68,13 +69,14 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
                                     const FeatureConfig& features, const SemanticConfig& semantics,
                                     const MatchConfig& match, const RelocalizeConfig& config,
                                     RandomStream stream, MatchCounts& counts,
-                                    PlaceMatchers matchers = {});
+                                    PlaceMatchers matchers = {}, MatchTrace* trace = nullptr);
 
 /// Finds the camera in the map without any guess: Algorithm 1 chooses the candidates, in order of
 /// score.
 RelocalizationResult relocalize(const Query& query, const Map& map, const Camera& camera,
                                 const FeatureConfig& features, const SemanticConfig& semantics,
                                 const MatchConfig& match, const RelocalizeConfig& config,
-                                RandomStream stream, MatchCounts& counts);
+                                RandomStream stream, MatchCounts& counts,
+                                MatchTrace* trace = nullptr);
 
 }  // namespace mh

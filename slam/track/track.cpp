@@ -73,13 +73,14 @@ std::optional<TrackedPose> optimise_matches(const Query& query,
 
 std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& last, const SE3& guess,
                                         const TrackContext& context, MatcherCounts& counts) {
-  const auto& [map, camera, features, semantics, match, pose, config] = context;
+  const auto& [map, camera, features, semantics, match, pose, config, trace] = context;
   const SE3 world_from_last = last.camera_from_world.inverse();
 
   // The last frame's points: landmarks, and what depth says of its other keypoints.
   struct Source {
     Eigen::Vector3d point_in_world;
     LandmarkId landmark;
+    std::uint32_t feature;  // of the last frame
   };
   std::vector<Source> sources;
   std::vector<ProjectionTarget> targets;
@@ -96,7 +97,7 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
         target_of(in_camera, keypoint, last.features.descriptors[i], camera,
                   static_cast<float>(config.search_radius_px), features);
     if (!camera.in_image(target.u_px, target.v_px)) continue;
-    sources.push_back({point, landmark});
+    sources.push_back({point, landmark, i});
     targets.push_back(target);
   }
 
@@ -115,6 +116,16 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
       break;
   }
 
+  if (trace != nullptr) {
+    std::vector<LandmarkId> landmarks;
+    std::vector<std::uint32_t> others;
+    for (const Source& source : sources) {
+      landmarks.push_back(source.landmark);
+      others.push_back(source.feature);
+    }
+    trace_projection(trace, Matcher::kMotionModel, {}, query.features, targets, found, landmarks,
+                     others, semantics);
+  }
   std::vector<PoseObservation> observations;
   std::vector<std::size_t> source_of;
   for (std::size_t t = 0; t < found.size(); ++t) {
@@ -142,6 +153,8 @@ std::optional<TrackedPose> track_reference(const Query& query, KeyframeId refere
   const std::vector<LandmarkId> landmarks =
       match_landmarks(context.map.at(reference), query.features, query.words, context.match,
                       SemanticMatcher(context.semantics, counts));
+  trace_landmarks(context.trace, Matcher::kReferenceKeyframe, context.map.at(reference),
+                  query.features, landmarks, context.semantics);
   auto tracked = optimise_matches(query, landmarks, guess, context.map, context.camera,
                                   context.features, context.pose);
   if (!tracked || tracked->inliers < context.config.min_inliers_frame) return std::nullopt;
@@ -223,6 +236,8 @@ std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedP
                           {.max_distance = static_cast<float>(context.match.max_distance_loose),
                            .ratio = static_cast<float>(context.match.ratio_projection)},
                           SemanticMatcher(context.semantics, counts));
+  trace_projection(context.trace, Matcher::kLocalMap, {}, query.features, targets, found,
+                   target_landmark, {}, context.semantics);
   for (std::size_t t = 0; t < found.size(); ++t)
     if (found[t] >= 0) landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
 

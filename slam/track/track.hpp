@@ -7,6 +7,7 @@
 #include "slam/map/map.hpp"
 #include "slam/match/config.hpp"
 #include "slam/match/counts.hpp"
+#include "slam/match/trace.hpp"
 #include "slam/optimize/pose.hpp"
 #include "slam/relocalize/relocalize.hpp"
 #include "slam/track/config.hpp"
@@ -30,6 +31,7 @@ struct TrackContext {
   const MatchConfig& match;
   const PoseConfig& pose;
   const TrackConfig& config;
+  MatchTrace* trace = nullptr;  ///< where accepted pairs are noted, if anywhere
 };
 
 /// The pose of a frame from the last one and a guess of the motion: the last frame's landmarks, and

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/cli/slam_report.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/metrics/trajectory_io.hpp"
+#include "bench/protocol/digest.hpp"
+#include "bench/systems/timed.hpp"
+#include "slam/core/files.hpp"
+#include "slam/pipeline/export.hpp"
+
+namespace mh::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts in kB
+}
+
+constexpr auto kStages = static_cast<std::size_t>(Stage::kCount);
+
+Json times_json(const SlamReport& report) {
+  const auto entry = [](const std::vector<double>& ms) {
+    const TimeSummary times = summarize(ms);
+    return Json{{"frames", ms.size()}, {"median_ms", times.median_ms}, {"p95_ms", times.p95_ms}};
+  };
+  Json times = {{"frame", entry(report.frame_ms)}};
+  for (std::size_t s = 0; s < kStages; ++s)
+    times[std::string(name(static_cast<Stage>(s)))] =
+        entry(report.clock.times_ms(static_cast<Stage>(s)));
+  return times;
+}
+
+Json summary_json(const SlamReport& report) {
+  const SlamRun& run = report.run;
+  Json json = {{"source", report.source},
+               {"seed", report.seed},
+               {"frames", run.frames.size()},
+               {"tracked", run.tracked},
+               {"completeness", run.completeness()},
+               {"lost", run.lost},
+               {"skipped", run.skipped},
+               {"relocalized", run.relocalized},
+               {"started_anew", run.started_anew},
+               {"keyframes", report.state.map.keyframe_count()},
+               {"landmarks", report.state.map.landmark_count()},
+               {"loops", run.loops},
+               {"trajectory_digest", hex(digest(run.trajectory))},
+               {"map_digest", hex(report.state.map.digest())}};
+  if (report.evaluation) {
+    const Evaluation& e = *report.evaluation;
+    const bool known = e.ape_translation_m.count > 0;
+    json["truth"] = {{"pairs", e.pairs},
+                     {"ate_rmse_m", known ? Json(e.ape_translation_m.rmse) : Json()}};
+  }
+  json["faults"] = run.faults;
+  json["times"] = times_json(report);
+  json["peak_memory_mb"] = peak_memory_mb();
+  return json;
+}
+
+}  // namespace
+
+void write_slam_files(const std::filesystem::path& folder, const SlamReport& report,
+                      const Settings& settings) {
+  write_tum(folder / "estimate.tum", report.run.trajectory);
+  write_kitti(folder / "estimate.kitti", report.run.trajectory);
+  write_atomically(folder / "frames.csv", frames_csv(report.run));
+  write_atomically(folder / "landmarks.ply", landmarks_ply(report.state.map));
+  write_atomically(folder / "keyframes.ply", keyframes_ply(report.state.map));
+  write_atomically(folder / "keyframes.json", keyframes_json(report.state.map));
+  write_atomically(folder / "settings.yaml", format_settings(settings));
+  write_atomically(folder / "summary.json", summary_json(report).dump(2) + "\n");
+}
+
+void print_slam_report(const SlamReport& report) {
+  const SlamRun& run = report.run;
+  for (const std::string& fault : run.faults) fmt::print("skipped: {}\n", fault);
+  fmt::print("{} of {} frames tracked ({:.1f} %); {} lost, {} skipped, {} relocalized\n",
+             run.tracked, run.frames.size(), 100 * run.completeness(), run.lost, run.skipped,
+             run.relocalized);
+  if (run.started_anew > 0)
+    fmt::print("started anew {} time(s): tracking was lost while the map was small\n",
+               run.started_anew);
+  fmt::print("{} keyframes, {} landmarks, {} loop(s) closed\n", report.state.map.keyframe_count(),
+             report.state.map.landmark_count(), run.loops);
+  if (report.evaluation) {
+    const Evaluation& e = *report.evaluation;
+    if (e.ape_translation_m.count > 0)
+      fmt::print("ATE {:.4f} m (RMSE over {} poses, aligned by SE(3) without scale)\n",
+                 e.ape_translation_m.rmse, e.pairs);
+    else
+      fmt::print("ATE unknown: {} poses have a true one beside them\n", e.pairs);
+  }
+  fmt::print("\n{:<16}{:>8}{:>12}{:>12}\n", "time (ms)", "frames", "median", "95 % below");
+  const auto row = [](std::string_view what, const std::vector<double>& ms) {
+    if (ms.empty()) return;
+    const TimeSummary times = summarize(ms);
+    fmt::print("{:<16}{:>8}{:>12.2f}{:>12.2f}\n", what, ms.size(), times.median_ms, times.p95_ms);
+  };
+  row("frame", report.frame_ms);
+  for (std::size_t s = 0; s < kStages; ++s)
+    row(name(static_cast<Stage>(s)), report.clock.times_ms(static_cast<Stage>(s)));
+  fmt::print("\npeak memory {:.0f} MB\n", peak_memory_mb());
+}
+
+}  // namespace mh::cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/metrics/evaluate.hpp"
+#include "bench/recorded/run_slam.hpp"
+#include "bench/systems/stage_clock.hpp"
+
+namespace mh::cli {
+
+/// A SLAM run as it is told at its end.
+struct SlamReport {
+  const SlamState& state;
+  const SlamRun& run;
+  const StageClock& clock;
+  std::vector<double> frame_ms;          ///< of each frame that was processed, reading apart
+  std::optional<Evaluation> evaluation;  ///< where the truth is known
+  std::string source;
+  std::uint64_t seed = 0;
+};
+
+/// Writes estimate.tum, estimate.kitti, frames.csv, landmarks.ply, keyframes.ply, keyframes.json,
+/// summary.json and settings.yaml.
+void write_slam_files(const std::filesystem::path& folder, const SlamReport& report,
+                      const Settings& settings);
+void print_slam_report(const SlamReport& report);
+
+}  // namespace mh::cli

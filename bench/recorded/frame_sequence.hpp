@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "slam/core/camera.hpp"
+#include "slam/core/rgbd_frame.hpp"
+#include "slam/core/trajectory.hpp"
+#include "slam/pipeline/settings.hpp"
+
+namespace mh {
+
+/// Frames in the order of their stamps, wherever they come from: a recorded folder, a scene driven
+/// through. Equal indices give equal bits.
+class FrameSequence {
+ public:
+  virtual ~FrameSequence() = default;
+
+  virtual const Camera& camera() const = 0;
+  virtual std::size_t size() const = 0;
+  virtual Stamp stamp_ns(std::size_t index) const = 0;
+  /// @throws InputError if this frame cannot be had; others may.
+  virtual RgbdFrame frame(std::size_t index) const = 0;
+  /// Where the cameras really were, where that is known.
+  virtual std::optional<Trajectory> truth() const = 0;
+};
+
+/// A folder in TUM's layout, with the camera that the settings tell.
+/// @throws InputError naming file and line.
+std::unique_ptr<FrameSequence> open_tum_folder(const std::filesystem::path& folder,
+                                               const Settings& settings);
+
+/// What is needed to see a scene.
+struct SceneDrive {
+  std::filesystem::path scene, tour, robot;
+  std::filesystem::path level;  ///< of the sensors; empty = no noise
+  std::uint64_t seed = 0;       ///< of the noise
+};
+
+/// A scene seen by a robot along a tour, with exact labels, rendered as it is asked for.
+/// @throws InputError naming file and place.
+std::unique_ptr<FrameSequence> open_scene(const SceneDrive& drive);
+
+/// Frames that lie in memory.
+std::unique_ptr<FrameSequence> frames_in_memory(const Camera& camera,
+                                                std::vector<RgbdFrame> frames);
+
+}  // namespace mh

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <utility>
+#include <vector>
+
+#include "slam/pipeline/observe.hpp"
+
+namespace mh {
+
+/// A stopwatch for the stages of steps: listens from outside, so that no algorithm has a clock. A
+/// stage within another counts for itself alone.
+class StageClock {
+ public:
+  using Times = std::array<double, static_cast<std::size_t>(Stage::kCount)>;  ///< ms by stage
+
+  void operator()(Stage stage, StageEvent event);
+  /// Ends a frame: its times are kept, the next begins at zero.
+  void end_frame();
+
+  const std::vector<Times>& frames() const { return frames_; }
+  /// Times of a stage over the frames in which it took place, ms.
+  std::vector<double> times_ms(Stage stage) const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void charge_open_stage(Clock::time_point now);
+
+  Times current_{};
+  std::vector<Times> frames_;
+  std::vector<Stage> open_;  // innermost last
+  Clock::time_point since_;
+};
+
+}  // namespace mh
