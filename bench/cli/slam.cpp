@@ -182,6 +182,13 @@ void add_slam(CLI::App& app) {
       ->check(CLI::Range(1.0, 1e6));
   command->add_flag("--plain", options->plain, "Without semantics");
   command->add_option("--seed", options->seed, "Seed of RANSAC and of a scene's noise");
+  command->add_flag_callback(
+      "--print-settings",
+      [] {
+        fmt::print("{}", format_slam_config({}, true));
+        throw CLI::Success();
+      },
+      "Prints every setting with its default, meaning and range");
   command->footer(
       "Example:\n  modelhouse slam out/sequence --vocabulary assets/vocabulary.mhvoc "
       "--out out/slam --save-map out/house.mhmap");

@@ -7,7 +7,7 @@
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "bench/world/world.hpp"
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/shutter.hpp"
 
 namespace mh {
 namespace {
@@ -34,32 +34,30 @@ class TumSequence : public FrameSequence {
 
 class SceneSequence : public FrameSequence {
  public:
-  explicit SceneSequence(const SceneDrive& source)
-      : robot_(load_robot(source.robot)), noise_(source.seed) {
-    const Tour tour = load_tour(source.tour);
-    sensors_.depth_noise_on = sensors_.colour_noise_on = false;
-    if (!source.level.empty()) sensors_ = load_sensor_config(source.level);
-    scene_ = load_lit_scene(source.scene, 2);
-    renderer_ = make_scene_renderer(scene_);
-    path_ = drive(scene_, robot_, tour);
-  }
-  const Camera& camera() const override { return robot_.camera; }
-  std::size_t size() const override { return path_.camera.size(); }
-  Stamp stamp_ns(std::size_t index) const override { return path_.camera[index].stamp_ns; }
+  SceneSequence(const SceneDrive& source, const Robot& robot, const Scene& scene,
+                const SensorConfig& sensors)
+      : sensors_(sensors),
+        noise_(source.seed),
+        shutter_(make_scene_renderer(scene), robot.camera,
+                 drive(scene, robot, load_tour(source.tour)).camera, sensors) {}
+  const Camera& camera() const override { return shutter_.camera(); }
+  std::size_t size() const override { return shutter_.path().size(); }
+  Stamp stamp_ns(std::size_t index) const override { return shutter_.path()[index].stamp_ns; }
   RgbdFrame frame(std::size_t index) const override {
-    const TimedPose& pose = path_.camera[index];
-    return sense(renderer_->render(robot_.camera, pose.world_from_camera), robot_.camera, sensors_,
-                 LabelMode::kExact, noise_.fork(index), pose.stamp_ns);
+    const TimedPose& pose = shutter_.path()[index];
+    const RandomStream noise = noise_.fork(index);
+    const Shutter::Exposed exposed = shutter_.expose(index);
+    RgbdFrame frame = sense(exposed.seen, camera(), sensors_, noise, pose.stamp_ns, exposed.gain);
+    frame.semantics =
+        sense_labels(exposed.seen, LabelMode::kExact, sensors_, pose.world_from_camera, noise);
+    return frame;
   }
-  std::optional<Trajectory> truth() const override { return path_.camera; }
+  std::optional<Trajectory> truth() const override { return shutter_.path(); }
 
  private:
-  Robot robot_;
   SensorConfig sensors_;
-  Scene scene_;
-  std::unique_ptr<Renderer> renderer_;
-  DrivenPath path_;
   RandomStream noise_;
+  Shutter shutter_;
 };
 
 class MemorySequence : public FrameSequence {
@@ -84,8 +82,12 @@ std::unique_ptr<FrameSequence> open_tum_folder(const std::filesystem::path& fold
   return std::make_unique<TumSequence>(folder, settings);
 }
 
-std::unique_ptr<FrameSequence> open_scene(const SceneDrive& drive) {
-  return std::make_unique<SceneSequence>(drive);
+std::unique_ptr<FrameSequence> open_scene(const SceneDrive& source) {
+  SensorConfig sensors;
+  sensors.depth_noise_on = sensors.colour_noise_on = false;
+  if (!source.level.empty()) sensors = load_sensor_config(source.level);
+  const Robot robot = load_robot(source.robot);
+  return std::make_unique<SceneSequence>(source, robot, load_lit_scene(source.scene, 2), sensors);
 }
 
 std::unique_ptr<FrameSequence> frames_in_memory(const Camera& camera,

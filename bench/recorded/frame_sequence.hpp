@@ -43,7 +43,7 @@ struct SceneDrive {
 
 /// A scene seen by a robot along a tour, with exact labels, rendered as it is asked for.
 /// @throws InputError naming file and place.
-std::unique_ptr<FrameSequence> open_scene(const SceneDrive& drive);
+std::unique_ptr<FrameSequence> open_scene(const SceneDrive& source);
 
 /// Frames that lie in memory.
 std::unique_ptr<FrameSequence> frames_in_memory(const Camera& camera,

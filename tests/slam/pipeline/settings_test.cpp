@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
 #include "slam/pipeline/settings.hpp"
 
 namespace mh {
@@ -90,6 +91,12 @@ TEST(Settings, NamesFileLinePlaceAndValue) {
       complaint("camera: {fx_px: 500, fy_px: 500, cx_px: 700, cy_px: 200}").find("cx_px = 700"),
       std::string::npos)
       << "a principal point outside the image";
+}
+
+TEST(Settings, TheDocsHaveThemAll) {
+  const std::string docs = read_file(std::string(MH_SOURCE_DIR) + "/docs/slam.md");
+  EXPECT_NE(docs.find(format_slam_config({}, true)), std::string::npos)
+      << "docs/slam.md: put there what `modelhouse slam --print-settings` prints";
 }
 
 // As it stands in the original's Examples/RGB-D folder, but for its comments.
