@@ -151,7 +151,7 @@ std::optional<Loop> detect_loop(const Map& map, KeyframeId newest, LoopMemory& m
       try_candidates({keyframe.features, keyframe.grid, keyframe.words},
                      candidates(map, newest, context.semantics, config), map, context.camera,
                      context.features, context.semantics, context.match, relocalize, stream, counts,
-                     {.words = Matcher::kLoop, .projection = Matcher::kLoop});
+                     {.words = Matcher::kLoop, .projection = Matcher::kLoop}, context.trace);
   if (!found.camera_from_world) return std::nullopt;
   const SE3 drift = found.camera_from_world->inverse() * keyframe.camera_from_world;
   const bool agrees =
