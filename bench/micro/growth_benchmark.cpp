@@ -76,7 +76,7 @@ double megabytes_at_most() {
 struct Run {
   SlamState state;
   Stamp stamp_ns = 0;
-  std::size_t lost = 0, keyframes = 0;
+  std::size_t lost = 0, keyframes = 0, loops = 0;
 
   double feed(const FeatureWorld& world, const SE3& pose, std::uint64_t noise) {
     Features features = world.see(pose, RandomStream(2).fork(noise));
@@ -86,6 +86,7 @@ struct Run {
     const double took = thread_ms() - start;
     lost += report.status == TrackStatus::kLost;
     keyframes += report.keyframe_added;
+    loops += report.loop_closed;
     return took;
   }
 };
@@ -94,6 +95,7 @@ void compare(const char* ground, Run& small, Run& large, const FeatureWorld& wor
              const std::vector<SE3>& path, std::uint64_t noise) {
   Times of_small, of_large;
   const std::size_t before_small = small.keyframes, before_large = large.keyframes;
+  const std::size_t loops_small = small.loops, loops_large = large.loops;
   for (const SE3& pose : path) {
     ++noise;
     of_small.ms.push_back(small.feed(world, pose, noise));
@@ -102,11 +104,15 @@ void compare(const char* ground, Run& small, Run& large, const FeatureWorld& wor
   const auto row = [](double a, double b) {
     return fmt::format("{:.2f} -> {:.2f} ms {:.2f}x", a, b, b / a);
   };
-  fmt::print("{} ground, {} frames, {} -> {} keyframes added: median {}, p95 {}, mean {}\n", ground,
-             path.size(), small.keyframes - before_small, large.keyframes - before_large,
-             row(of_small.quantile(0.5), of_large.quantile(0.5)),
-             row(of_small.quantile(0.95), of_large.quantile(0.95)),
-             row(of_small.mean(), of_large.mean()));
+  fmt::print(
+      "{} ground, {} frames, {} -> {} keyframes added, {} -> {} loops closed: median {}, p95 {}, "
+      "mean {}, "
+      "largest {}\n",
+      ground, path.size(), small.keyframes - before_small, large.keyframes - before_large,
+      small.loops - loops_small, large.loops - loops_large,
+      row(of_small.quantile(0.5), of_large.quantile(0.5)),
+      row(of_small.quantile(0.95), of_large.quantile(0.95)), row(of_small.mean(), of_large.mean()),
+      row(of_small.quantile(1.0), of_large.quantile(1.0)));
 }
 
 void run_rooms(const Options& options) {
