@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ratios of rendering times at 640x480: medians over interleaved repeats of twelve views, beside
 // the limits that docs/rendering.md states. What runs on one thread is timed by that thread's
-// clock, so that others' work on the machine hardly matters; what runs on two by the wall's: those
-// two ratios are worth something on an idle machine only.
+// clock; two threads and OSMesa by their process's: ratios of work, whatever else the machine does.
 // Usage: render_ratios [--portable] [repeats]
 #include <malloc.h>
 #include <time.h>

@@ -9,6 +9,7 @@
 namespace mh {
 namespace {
 
+constexpr float kTieShare = 1e-5F;
 constexpr int kColourLevels = 2;
 constexpr float kJumpM = 0.02F, kJumpShare = 0.02F;
 
@@ -41,6 +42,8 @@ void Agreement::add(const RenderedFrame& a, const RenderedFrame& b) {
       ++pixels;
       same_class += a.classes(x, y) == b.classes(x, y);
       same_instance += a.instances(x, y) == b.instances(x, y);
+      ties += a.instances(x, y) != b.instances(x, y) &&
+              std::abs(a.depth_m(x, y) - b.depth_m(x, y)) <= kTieShare * a.depth_m(x, y);
       same_colour += mh::same_colour(a.colour(x, y), b.colour(x, y));
       if (silhouette(a, x, y) || silhouette(b, x, y)) continue;
       ++smooth;

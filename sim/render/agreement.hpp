@@ -11,12 +11,16 @@ namespace mh {
 struct Agreement {
   std::int64_t pixels = 0;
   std::int64_t same_class = 0, same_instance = 0;
+  /// Pixels of another instance at the same depth (to 1e-5 of it): two objects that share a plane,
+  /// where either answer is right.
+  std::int64_t ties = 0;
   std::int64_t same_colour = 0;  ///< every channel within two grey levels
   std::int64_t smooth = 0;       ///< pixels outside silhouettes, see below
   double square_depth_m2 = 0.0;  ///< summed squares of depth differences over those
 
   double class_share() const { return share(same_class); }
   double instance_share() const { return share(same_instance); }
+  double tie_share() const { return share(ties); }
   double colour_share() const { return share(same_colour); }
   /// Root mean square of the depth differences outside silhouettes, m.
   double depth_rmse_m() const;

@@ -338,13 +338,16 @@ TEST(Agreement, CountsWhatDiffers) {
   b.colour(6, 6).g = static_cast<std::uint8_t>(b.colour(6, 6).g - 3);
   b.colour(7, 7).g = static_cast<std::uint8_t>(b.colour(7, 7).g - 2);  // still counts as the same
   for (float& depth : b.depth_m) depth += 0.001F;
+  b.instances(8, 8) = b.instances(9, 9) = 77;
+  b.depth_m(8, 8) = a.depth_m(8, 8);  // a tie; its neighbour is not
   Agreement agreement;
   agreement.add(a, b);
   EXPECT_EQ(agreement.pixels, 640 * 480);
   EXPECT_EQ(agreement.same_class, agreement.pixels - 1);
-  EXPECT_EQ(agreement.same_instance, agreement.pixels);
+  EXPECT_EQ(agreement.same_instance, agreement.pixels - 2);
+  EXPECT_EQ(agreement.ties, 1);
   EXPECT_EQ(agreement.same_colour, agreement.pixels - 1);
-  EXPECT_EQ(agreement.smooth, agreement.pixels);
+  EXPECT_EQ(agreement.smooth, agreement.pixels - 14);  // two overlapping squares of 3 x 3
   EXPECT_NEAR(agreement.depth_rmse_m(), 0.001, 1e-6);
 }
 
