@@ -23,8 +23,7 @@
 namespace mh {
 namespace {
 
-// Where two threads work: what they and OSMesa's own use together. On an idle machine with two
-// cores the wall's clock says the same or more.
+// Where two threads work: what they and those of OSMesa use together, on a machine that is shared.
 constexpr clockid_t kSharedClock = CLOCK_PROCESS_CPUTIME_ID;
 
 /// Rays of a whole picture and nothing else, in the renderer's order.
