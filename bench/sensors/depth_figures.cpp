@@ -49,8 +49,8 @@ double axial_sigma(double distance_m, double angle_rad) {
   return spread.sigma();
 }
 
-/// By how much the edge of a wall reaches over: the mean overreach of a normal stray is
-/// sigma / sqrt(2 pi).
+/// From how often the last pixel before the edge of a wall misses it: it strays by more than half a
+/// pixel with a probability of erfc(0.5 / sigma / sqrt 2) / 2.
 double lateral_sigma(double angle_rad) {
   SensorConfig config = depth_only();
   config.depth_noise.lateral = true;
@@ -60,10 +60,15 @@ double lateral_sigma(double angle_rad) {
   double missing = 0, rows = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const RgbdFrame frame = sense(truth, kCamera, config, RandomStream(seed), 0);
-    for (int y = 215; y < 265; ++y, ++rows)
-      for (int x = 300; x < 320; ++x) missing += frame.depth_m(x, y) == 0.0F;
+    for (int y = 215; y < 265; ++y, ++rows) missing += frame.depth_m(319, y) == 0.0F;
   }
-  return missing * std::sqrt(2.0 * std::numbers::pi) / rows;
+  double low = 0.1, high = 5.0;
+  while (high - low > 1e-4) {
+    const double sigma = 0.5 * (low + high);
+    const double expected = 0.5 * std::erfc(0.5 / sigma / std::numbers::sqrt2);
+    (expected < missing / rows ? low : high) = sigma;
+  }
+  return low;
 }
 
 Plot axial_over_distance() {
