@@ -116,11 +116,9 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   const auto start = std::chrono::steady_clock::now();
   const RandomStream stream(spec.seed);
   const RunTamper& tamper = tools.tamper;
-  const auto sequence = [&](const DrivenPath& path) {
-    return SimulatedSequence(world.renderer, world.robot.camera, path.camera, world.sensors,
-                             spec.labels);
-  };
-  const SimulatedSequence mapping = sequence(world.mapping);
+  const Camera& camera = world.robot.camera;
+  const SimulatedSequence mapping(world.renderer, camera, world.mapping.camera, world.sensors,
+                                  spec.labels, world.walked);
   WorkDone work(pieces_of_work(spec, world), tools.progress);
   RunResult run;
   run.spec = spec;
@@ -152,7 +150,9 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
 
     const QueryRound held_out(spec, mapping, NearestBy::kTime, tamper, run, stream.fork(kHeldOut));
     std::optional<SimulatedSequence> second;
-    if (world.second) second.emplace(sequence(*world.second));
+    if (world.second)
+      second.emplace(world.second_renderer ? world.second_renderer : world.renderer, camera,
+                     world.second->camera, world.sensors, spec.labels);
     for (const SemanticConfig& settings : spec.points) {
       system.set_query_settings(settings);
       PointResult point;

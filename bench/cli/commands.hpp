@@ -10,6 +10,7 @@ struct CheckFailed {};
 
 // Each adds one subcommand; its work is done in the callback, after all of the line was parsed.
 void add_bench(CLI::App& app);
+void add_check(CLI::App& app);
 void add_drive(CLI::App& app);
 void add_evaluate(CLI::App& app);
 void add_render(CLI::App& app);

@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
   app.footer("Example:\n  modelhouse bench bench/suites/model_house.yaml --jobs 2");
   mh::cli::add_bench(app);
   mh::cli::add_verify(app);
+  mh::cli::add_check(app);
   mh::cli::add_evaluate(app);
   mh::cli::add_scene(app);
   mh::cli::add_drive(app);

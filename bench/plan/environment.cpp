@@ -42,6 +42,10 @@ std::vector<Environment> read_entry(YamlReader node, const fs::path& folder,
     node.at("name").fail(fmt::format("'{}' needs an {{i}}: there are {} of it", name, count));
   const YamlReader scene = node.at("scene"), tour = node.at("mapping_tour");
   const auto query_tour = node.find("query_tour");
+  const auto query_scene = node.find("query_scene");
+  if (query_scene && !query_tour) query_scene->fail("needs a query_tour");
+  const auto kidnapped_tour = node.find("kidnapped_tour");
+  const auto sensors = node.find("sensors"), walk = node.find("walk");
   const auto robot = node.find("robot");
   if (!robot && !default_robot) node.at("robot");  // tells that it is missing
   node.finish();
@@ -56,6 +60,10 @@ std::vector<Environment> read_entry(YamlReader node, const fs::path& folder,
                   .query_tour = {}};
     check_folder_name(node, e.name);
     if (query_tour) e.query_tour = read_source(*query_tour, folder, i);
+    if (query_scene) e.query_scene = read_source(*query_scene, folder, i);
+    if (kidnapped_tour) e.kidnapped_tour = existing_file(*kidnapped_tour, folder);
+    if (sensors) e.sensors = existing_file(*sensors, folder);
+    if (walk) e.walk = existing_file(*walk, folder);
     environments.push_back(std::move(e));
   }
   return environments;

@@ -17,6 +17,12 @@ struct Environment {
   std::string category;  ///< over which means are taken: "bathroom"
   std::filesystem::path scene, robot, mapping_tour;
   std::optional<std::filesystem::path> query_tour;  ///< the second tour; none: held-out frames only
+  // What a scenario changes.
+  std::optional<std::filesystem::path> query_scene = {};  ///< of the second tour; none: the scene
+  /// From one frame to the next the robot is put to the start of this tour, and maps on.
+  std::optional<std::filesystem::path> kidnapped_tour = {};
+  std::optional<std::filesystem::path> sensors = {};  ///< settings in the place of the level's
+  std::optional<std::filesystem::path> walk = {};     ///< of a person, while the robot maps
 };
 
 /// Whether a source names something that code makes ("generated:bathroom:0") instead of a file.

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/check/gate_config.hpp"
 #include "bench/plan/names.hpp"
 #include "slam/core/error.hpp"
 
@@ -97,6 +98,11 @@ Suite load_suite(const fs::path& file, const SuiteOverrides& overrides) {
   if (const auto protocol = yaml.find("protocol")) suite.protocol = read_protocol(*protocol);
   if (const auto margin = yaml.find("non_inferiority_margin"))
     suite.non_inferiority_margin = margin->as_double(0.0, 1.0);
+  if (const auto check = yaml.find("check")) {
+    std::vector<std::string> environments;
+    for (const Environment& e : suite.environments) environments.push_back(e.name);
+    suite.gate = read_gate(*check, environments);
+  }
   yaml.finish();
 
   if (overrides.scene) replace_scene(suite, *overrides.scene);

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/check/gate.hpp"
 #include "bench/plan/environment.hpp"
 #include "bench/plan/parameters.hpp"
 #include "bench/plan/system_spec.hpp"
@@ -39,6 +40,7 @@ struct Suite {
   /// The semantic system counts as not inferior where the interval of its success minus the plain
   /// one's stays above -margin. Stated in the suite, before anything is measured.
   std::optional<double> non_inferiority_margin;
+  GateConfig gate;                        ///< what `modelhouse check` tolerates
   std::optional<std::size_t> max_frames;  ///< cuts the tours: for a quick look
 };
 

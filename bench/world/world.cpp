@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/world/world.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -26,6 +28,10 @@ std::vector<InputDigest> digest_inputs(const RunSpec& spec) {
   add("robot", spec.environment.robot);
   add("mapping_tour", spec.environment.mapping_tour);
   if (spec.environment.query_tour) add("query_tour", *spec.environment.query_tour);
+  if (spec.environment.query_scene) add("query_scene", *spec.environment.query_scene);
+  if (spec.environment.kidnapped_tour) add("kidnapped_tour", *spec.environment.kidnapped_tour);
+  if (spec.environment.sensors) add("sensors", *spec.environment.sensors);
+  if (spec.environment.walk) add("walk", *spec.environment.walk);
   add("vocabulary", spec.vocabulary);
   add("level", spec.level);
   return inputs;
@@ -38,6 +44,10 @@ void check_available(const std::filesystem::path& source, const char* what) {
         fmt::format("{} '{}' is not available yet: generated environments come with a "
                     "later version",
                     what, source.string()));
+}
+
+float exposure_of(const Scene& scene) {
+  return scene.light.empty() ? 1.0F : suggest_exposure(scene);
 }
 
 PathFacts facts(const DrivenPath& path) {
@@ -57,6 +67,21 @@ bool cut(DrivenPath& path, std::size_t max_frames) {
   return true;
 }
 
+DrivenPath joined(DrivenPath first, const DrivenPath& second, double rate_hz) {
+  const auto add = [rate_hz](Trajectory& path, const Trajectory& more) {
+    for (const TimedPose& pose : more)
+      path.push_back(
+          {std::llround(static_cast<double>(path.size()) * 1e9 / rate_hz), pose.world_from_camera});
+  };
+  add(first.camera, second.camera);
+  add(first.base, second.base);
+  first.length_m += second.length_m;
+  first.turned_in_place_rad += second.turned_in_place_rad;
+  first.max_penetration_m = std::max(first.max_penetration_m, second.max_penetration_m);
+  first.contact_time_s += second.contact_time_s;
+  return first;
+}
+
 void light_scene(Scene& scene, int threads) {
   if (scene.light.empty() && !scene.lights.empty()) bake_light(scene, {.threads = threads});
 }
@@ -68,8 +93,7 @@ Scene load_lit_scene(const std::filesystem::path& file, int threads) {
 }
 
 std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene, std::string_view renderer) {
-  return make_renderer(renderer, scene,
-                       {.exposure = scene.light.empty() ? 1.0F : suggest_exposure(scene)});
+  return make_renderer(renderer, scene, {.exposure = exposure_of(scene)});
 }
 
 PlaceFacts facts(const World& world) {
@@ -83,6 +107,10 @@ PlaceFacts facts(const World& world) {
                .second = {},
                .cut = world.cut,
                .inputs = world.inputs};
+  if (world.second_scene) {
+    const std::uint64_t second = digest(*world.second_scene);
+    f.scene_digest = digest_bytes(&second, sizeof second, f.scene_digest);
+  }
   if (world.second) {
     f.second = facts(*world.second);
     const std::uint64_t second = digest(world.second->camera);
@@ -104,16 +132,23 @@ World build_world(const RunSpec& spec, int threads, const Say& say) {
   };
   world.robot = load_robot(environment.robot);
   world.vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(spec.vocabulary));
-  world.sensors = load_sensor_config(spec.level);
+  world.sensors = load_sensor_config(environment.sensors.value_or(spec.level));
   world.robot.camera = with_lens(world.robot.camera, world.sensors);
   const Tour mapping_tour = load_tour(environment.mapping_tour);
   std::optional<Tour> query_tour;
   if (environment.query_tour) query_tour = load_tour(*environment.query_tour);
+  std::optional<Tour> kidnapped_tour;
+  if (environment.kidnapped_tour) kidnapped_tour = load_tour(*environment.kidnapped_tour);
+  std::optional<Walk> walk;
+  if (environment.walk) walk = load_walk(*environment.walk);
 
   say(fmt::format("scene {}", environment.scene.string()));
   auto scene = std::make_shared<const Scene>(load_lit_scene(environment.scene, threads));
   world.scene = scene;
   world.renderer = make_scene_renderer(*scene);
+  if (walk)
+    world.walked =
+        std::make_shared<const WalkedScene>(*scene, world.renderer, exposure_of(*scene), *walk);
 
   const auto lose_frames = [&](DrivenPath& path) {
     const RandomStream same_for_every_trial(0);
@@ -122,14 +157,23 @@ World build_world(const RunSpec& spec, int threads, const Say& say) {
   };
   say(fmt::format("driving {}", mapping_tour.name));
   world.mapping = drive(*scene, world.robot, mapping_tour);
+  if (kidnapped_tour)
+    world.mapping = joined(std::move(world.mapping), drive(*scene, world.robot, *kidnapped_tour),
+                           world.robot.camera.rate_hz);
   lose_frames(world.mapping);
   shorten(world.mapping);
-  if (query_tour) {
-    say(fmt::format("driving {}", query_tour->name));
-    world.second = drive(*scene, world.robot, *query_tour);
-    lose_frames(*world.second);
-    shorten(*world.second);
+  if (!query_tour) return world;
+
+  if (environment.query_scene) {
+    say(fmt::format("scene {}", environment.query_scene->string()));
+    world.second_scene =
+        std::make_shared<const Scene>(load_lit_scene(*environment.query_scene, threads));
+    world.second_renderer = make_scene_renderer(*world.second_scene);
   }
+  say(fmt::format("driving {}", query_tour->name));
+  world.second = drive(world.second_scene ? *world.second_scene : *scene, world.robot, *query_tour);
+  lose_frames(*world.second);
+  shorten(*world.second);
   return world;
 }
 

@@ -15,6 +15,7 @@
 #include "sim/motion/motion.hpp"
 #include "sim/render/renderer.hpp"
 #include "sim/sensors/sensors.hpp"
+#include "sim/world/walker.hpp"
 #include "slam/vocabulary/vocabulary.hpp"
 
 namespace mh {
@@ -25,7 +26,10 @@ struct World {
   std::shared_ptr<const Renderer> renderer;
   Robot robot;
   DrivenPath mapping;
-  std::optional<DrivenPath> second;  ///< the second tour, where the environment has one
+  std::optional<DrivenPath> second;           ///< the second tour, where the environment has one
+  std::shared_ptr<const Scene> second_scene;  ///< where it takes place; null: the same scene
+  std::shared_ptr<const Renderer> second_renderer;  ///< of that scene, likewise
+  std::shared_ptr<const WalkedScene> walked;        ///< who walks about during the mapping; or null
   std::shared_ptr<const Vocabulary> vocabulary;
   SensorConfig sensors;  ///< the level
   bool cut = false;      ///< the tours were cut after RunSpec::max_frames
@@ -41,6 +45,9 @@ using Say = std::function<void(std::string_view)>;
 /// Keeps the first frames of a path with their length; the other measures, which need the whole
 /// drive, become NaN. @returns whether anything was cut off
 bool cut(DrivenPath& path, std::size_t max_frames);
+
+/// One path after the other, without a way between them: the stamps go on at the camera's rate.
+DrivenPath joined(DrivenPath first, const DrivenPath& second, double rate_hz);
 
 /// Bakes the light of a scene that has lamps but no baked light.
 void light_scene(Scene& scene, int threads);

@@ -4,11 +4,21 @@
 #include <utility>
 
 namespace mh {
+namespace {
+
+Shutter::SceneAt scene_at(std::shared_ptr<const Renderer> renderer,
+                          std::shared_ptr<const WalkedScene> walked) {
+  if (walked) return [walked = std::move(walked)](Stamp stamp_ns) { return walked->at(stamp_ns); };
+  return [renderer = std::move(renderer)](Stamp) { return renderer; };
+}
+
+}  // namespace
 
 SimulatedSequence::SimulatedSequence(std::shared_ptr<const Renderer> renderer, Camera camera,
                                      std::vector<TimedPose> world_from_camera, SensorConfig sensors,
-                                     LabelMode labels)
-    : shutter_(std::move(renderer), camera, std::move(world_from_camera), sensors),
+                                     LabelMode labels, std::shared_ptr<const WalkedScene> walked)
+    : shutter_(scene_at(std::move(renderer), std::move(walked)), camera,
+               std::move(world_from_camera), sensors),
       sensors_(sensors),
       labels_(labels) {}
 

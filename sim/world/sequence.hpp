@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/sensors/shutter.hpp"
+#include "sim/world/walker.hpp"
 #include "slam/core/trajectory.hpp"
 
 namespace mh {
@@ -24,9 +25,10 @@ struct SimulatedFrame {
 /// the same `attempt` stream is the same bits whenever and wherever it is asked for.
 class SimulatedSequence {
  public:
+  /// @param walked  `renderer`'s scene with somebody who walks through it; may be null
   SimulatedSequence(std::shared_ptr<const Renderer> renderer, Camera camera,
                     std::vector<TimedPose> world_from_camera, SensorConfig sensors,
-                    LabelMode labels);
+                    LabelMode labels, std::shared_ptr<const WalkedScene> walked = nullptr);
 
   std::size_t size() const { return path().size(); }
   const Camera& camera() const { return shutter_.camera(); }

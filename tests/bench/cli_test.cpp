@@ -275,4 +275,19 @@ TEST_F(CommandLine, EvaluateGivesEvosOwnFigures) {
   EXPECT_EQ(compared + 1, evo.size());  // every quantity, `pairs` apart
 }
 
+TEST_F(CommandLine, CheckRefusesABaselineThatIsNotOfItsSuite) {
+  const std::string check =
+      "check " + std::string(MH_SOURCE_DIR) + "/bench/suites/ci.yaml --baseline ";
+  expect_refused(check + (folder_ / "none.json").string(), "none.json");
+  expect_refused(check + write("damaged.json", "{").string(), "is no baseline");
+  expect_refused(check + write("newer.json", R"({"format": "modelhouse-baseline-9"})").string(),
+                 "modelhouse-baseline-9");
+  const std::string head = R"({"format": "modelhouse-baseline-1", "suite_digest": "0", )"
+                           R"("origin": {}, "runs": [], "suite": )";
+  expect_refused(check + write("other.json", head + "\"table1\"}").string(), "'table1'");
+  expect_refused(check + write("older.json", head + "\"ci\"}").string(), "--update");
+  expect_refused("check " + std::string(MH_SOURCE_DIR) + "/bench/suites/model_house.yaml",
+                 "tolerances");
+}
+
 }  // namespace

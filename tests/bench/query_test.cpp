@@ -59,6 +59,21 @@ TEST(Query, GivesUpAfterFiveAttemptsAndNamesTheStage) {
   EXPECT_EQ(answer.stage, RelocalizationStage::kMatches);
 }
 
+TEST(Query, EachAttemptSeesNewNoiseAndDrawsAnew) {
+  FakeSystem system = mapped();
+  system.answers_at = [](Stamp) { return 6; };
+  std::set<std::uint64_t> noises;
+  const auto frames = [&](std::size_t index, RandomStream noise) {
+    noises.insert(noise.key());
+    return fake_frame(index, noise);
+  };
+  query(system, 59, frames, {}, RandomStream(1));
+  EXPECT_EQ(noises.size(), 5u);
+  ASSERT_EQ(system.attempt_streams.size(), 5u);
+  const std::set<std::uint64_t> draws(system.attempt_streams.begin(), system.attempt_streams.end());
+  EXPECT_EQ(draws.size(), 5u);
+}
+
 TEST(Query, ShowsBlankFramesUntilLost) {
   FakeSystem system = mapped();
   system.believes_blanks = 4;
@@ -148,6 +163,18 @@ TEST(FindAnchor, ComparesWithWhatTheProtocolAsksFor) {
   const auto anchor = find_anchor(estimate, truth, beyond, NearestBy::kTime, config);
   ASSERT_TRUE(anchor) << "without a neighbour after it: the local truth";
   EXPECT_NEAR(local_truth(*anchor, beyond.world_from_camera).translation().x(), 11.1, 1e-12);
+}
+
+TEST(Score, ADriftedMapIsRightWhereItIsRightLocally) {
+  const SE3 drift = at(3.0, -2.0, 0.4);
+  const TimedPose truth{0, at(1.1, 2.0, 0.35)};
+  const Anchor anchor{drift * at(1, 2, 0.3), at(1, 2, 0.3), 0};
+  QueryAnswer answer;
+  answer.world_from_camera = drift * truth.world_from_camera;
+  const QueryScore s = score(answer, truth, anchor, SE3(), {});
+  EXPECT_TRUE(s.correct);
+  EXPECT_NEAR(s.distance_m, 0, 1e-12);
+  EXPECT_GT(s.aligned_distance_m, 1.0);  // no global alignment undoes the drift here
 }
 
 TEST(Score, TellsCorrectFromWrong) {

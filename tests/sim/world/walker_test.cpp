@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/world/sequence.hpp"
 #include "slam/core/error.hpp"
 #include "tests/sim/scene_builder.hpp"
 
@@ -146,6 +147,22 @@ TEST_F(WalkedSceneTest, HeMovesWithTimeAndIsTheSameBitsAtTheSameTime) {
   EXPECT_EQ(left_edge(2 * kSecond), left_edge(2 * kSecond));
   // Half a second is half a metre is 40 px at 3 m; +y is to the left.
   EXPECT_NEAR(left_edge(2 * kSecond) - left_edge(2 * kSecond + kSecond / 2), 40, 2);
+}
+
+TEST_F(WalkedSceneTest, ASequenceShowsHimWhereHeIsAtEachStamp) {
+  const auto walked = std::make_shared<const WalkedScene>(
+      scene_, renderer_, 1.0F, Walk{.path_m = {{3, -2}, {3, 2}}, .speed_m_per_s = 1});
+  const std::vector<TimedPose> path = {{0, world_from_camera_}, {2 * kSecond, world_from_camera_}};
+  const auto person = [&](std::size_t i, std::shared_ptr<const WalkedScene> who) {
+    const SimulatedSequence sequence(renderer_, camera_, path, SensorConfig{}, LabelMode::kExact,
+                                     std::move(who));
+    const RgbdFrame frame = sequence.at(i, RandomStream(1)).frame;
+    return frame.semantics.at(159, 119).most_probable() == *class_by_name("person") &&
+           std::abs(frame.depth_m(159, 119) - 2.8F) < 0.1F;
+  };
+  EXPECT_FALSE(person(0, walked));  // 2 m aside, out of the picture
+  EXPECT_TRUE(person(1, walked));
+  EXPECT_FALSE(person(1, nullptr));
 }
 
 }  // namespace

@@ -117,6 +117,20 @@ TEST(SelectCandidates, BetaIsStrictAndTiesGoById) {
   EXPECT_EQ(selection.candidates[1].keyframe, 2);
 }
 
+// Keyframes 1 and 2 both choose 0: the first with a = 1.0 + 0.1, the second with 1.0 + 0.6.
+TEST(SelectCandidates, ASharedBestIsKeptOnceWithItsLargestSum) {
+  const std::vector<int> keyframes{1, 2};
+  const std::vector<int> neighbours[] = {{0}, {1, 0}, {2, 0}};
+  const double similarity[] = {1.0, 0.1, 0.6};
+  const auto selection = select_candidates(
+      std::span<const int>(keyframes), [](int) { return 1; }, [&](int k) { return neighbours[k]; },
+      [&](int k) { return similarity[k]; }, 0.5, 0.75);
+  EXPECT_EQ(selection.c3, 1);
+  ASSERT_EQ(selection.candidates.size(), 1U);
+  EXPECT_EQ(selection.candidates[0].keyframe, 0);
+  EXPECT_DOUBLE_EQ(selection.candidates[0].score, 1.6);
+}
+
 TEST(SelectCandidates, NothingSharedGivesNothing) {
   const std::vector<int> keyframes{0, 1};
   const auto selection = select_candidates(

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/check/from_runs.hpp"
+
+#include <fmt/format.h>
+
+#include "bench/protocol/digest.hpp"
+#include "bench/results/fingerprint.hpp"
+#include "bench/results/summary.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+void chain(std::uint64_t& sum, std::uint64_t next) {
+  sum = digest_bytes(&next, sizeof next, sum);
+}
+
+std::string run_digest(const RunResult& run) {
+  std::uint64_t sum = digest(run.estimate);
+  for (const MappedFrame& call : run.mapping.calls) {
+    chain(sum, call.image_digest);
+    chain(sum, call.matching_digest);
+    chain(sum, call.pose_digest);
+  }
+  for (const PointResult& point : run.points)
+    for (const QuerySet set : kQuerySets)
+      for (const QueryScore& q : queries(point, set)) {
+        chain(sum, q.answer.image_digest);
+        chain(sum, q.answer.matching_digest);
+        chain(sum, q.answer.pose_digest);
+      }
+  return hex(sum);
+}
+
+void add_queries(const std::string& set, const QuerySummary& s, RunFigures& figures) {
+  if (s.queries == 0) return;  // nothing was asked
+  auto& values = figures.values;
+  values[set + ".queries"] = s.queries;
+  values[set + ".success"] = s.success;
+  values[set + ".correct"] = s.correct;
+  values[set + ".false"] = s.wrong;
+  values[set + ".distance_median_m"] = s.distance_median_m;
+}
+
+/// "name=digest of content", so that a file may move and still be the same.
+std::string content(std::string_view what, const std::filesystem::path& file) {
+  const std::string text = is_generated(file) ? file.string() : read_file(file);
+  return fmt::format("{}={};", what, hex(digest_bytes(text.data(), text.size())));
+}
+
+std::string content(std::string_view what, const std::optional<std::filesystem::path>& file) {
+  return file ? content(what, *file) : fmt::format("{}=none;", what);
+}
+
+}  // namespace
+
+RunFigures figures(const RunResult& run) {
+  const RunSpec& spec = run.spec;
+  std::string system = spec.system.name;
+  if (spec.labels != LabelMode::kNone) system += fmt::format("-{}", name(spec.labels));
+  RunFigures figures{.scenario = spec.environment.name,
+                     .system = system + "-" + level_name(spec.level),
+                     .seed = spec.seed,
+                     .digest = run_digest(run)};
+  auto& values = figures.values;
+  values["offered"] = static_cast<double>(run.trajectory.offered);
+  values["completeness"] = run.trajectory.completeness;
+  values["ate_rmse_m"] = run.trajectory.ate_rmse_m;
+  values["rpe_frame_rmse_m"] = run.trajectory.rpe_frame_rmse_m;
+  values["restarts"] = run.mapping.restarts;
+  values["dropped"] = static_cast<double>(run.mapping.dropped.size());
+  if (!run.points.empty())
+    for (const QuerySet set : kQuerySets)
+      add_queries(std::string(name(set)), summarize(queries(run.points.front(), set)), figures);
+  return figures;
+}
+
+std::vector<RunFigures> figures(std::span<const RunResult> runs) {
+  std::vector<RunFigures> all;
+  for (const RunResult& run : runs) all.push_back(figures(run));
+  return all;
+}
+
+std::string gate_suite_digest(const Suite& suite) {
+  const ProtocolConfig& p = suite.protocol;
+  std::string text = fmt::format(
+      "trials={};seed={};frames={};interval={};rewind={};restarts={};reset={};effort={};"
+      "attempts={};blanks={};correct={},{};truth={};",
+      suite.trials, suite.seed, suite.max_frames ? std::to_string(*suite.max_frames) : "all",
+      p.test_interval, p.rewind_frames, p.restarts_per_frame, name(p.reset), p.max_effort,
+      p.query_attempts, p.max_blank_frames, p.correct_distance_m, p.correct_angle_deg,
+      name(p.truth));
+  for (const SystemSpec& system : suite.systems) text += fmt::format("system={};", system.name);
+  for (const LabelMode labels : suite.labels) text += fmt::format("labels={};", name(labels));
+  for (const auto& level : suite.levels) text += content(level_name(level), level);
+  for (const Environment& e : suite.environments)
+    text += fmt::format("environment={};", e.name) + content("scene", e.scene) +
+            content("robot", e.robot) + content("mapping_tour", e.mapping_tour) +
+            content("kidnapped_tour", e.kidnapped_tour) + content("query_tour", e.query_tour) +
+            content("query_scene", e.query_scene) + content("sensors", e.sensors) +
+            content("walk", e.walk);
+  return hex(digest_bytes(text.data(), text.size()));
+}
+
+nlohmann::ordered_json gate_origin() {
+  const std::string program = read_file("/proc/self/exe");
+  nlohmann::ordered_json origin = fingerprint_json();
+  origin["program"] = hex(digest_bytes(program.data(), program.size()));
+  return origin;
+}
+
+}  // namespace mh

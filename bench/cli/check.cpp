@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bench/check/baseline.hpp"
+#include "bench/check/from_runs.hpp"
+#include "bench/check/report.hpp"
+#include "bench/cli/commands.hpp"
+#include "bench/cli/progress.hpp"
+#include "bench/run.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string suite, baseline, junit;
+  int jobs = 1;
+  bool update = false, json = false;
+};
+
+fs::path baseline_file(const Options& options) {
+  if (!options.baseline.empty()) return options.baseline;
+  return fs::path(options.suite).replace_extension(".baseline.json");
+}
+
+/// Runs the suite anew: nothing is taken from a cache or from earlier results.
+Baseline measure(const Suite& suite, int jobs) {
+  Progress progress("check");
+  const RunOptions options{.jobs = jobs,
+                           .say = [&](std::string_view stage) { progress.say(stage); },
+                           .progress = [&](double share) { progress.share(share); },
+                           .finished =
+                               [](const World&, RunResult& run) {
+                                 run.volume.reset();  // large, and not judged
+                               }};
+  const std::vector<RunResult> runs = run_all(suite, options);
+  return {.suite = suite.name,
+          .suite_digest = gate_suite_digest(suite),
+          .origin = gate_origin(),
+          .runs = figures(runs)};
+}
+
+void tell(const Options& options, const GateResult& result, const std::string& suite) {
+  if (!options.junit.empty()) write_atomically(options.junit, gate_junit(result, suite));
+  if (options.json)
+    fmt::print("{}\n", gate_json(result, suite).dump(2));
+  else
+    fmt::print("{}", gate_report(result, suite));
+}
+
+/// Shows what a new baseline changes, where the old one tells of the same runs, and writes it.
+void update(const Options& options, const Suite& suite, const Baseline& now) {
+  const fs::path file = baseline_file(options);
+  if (fs::exists(file)) {
+    try {
+      const Baseline before = load_baseline(file);
+      tell(options, compare(before.runs, now.runs, suite.gate, false), suite.name);
+    } catch (const InputError& error) {
+      fmt::print("cannot be compared with the baseline before: {}\n", error.what());
+    }
+  }
+  save_baseline(now, file);
+  fmt::print("{}: {} runs written\n", file.string(), now.runs.size());
+}
+
+void run(const Options& options) {
+  const Suite suite = load_suite(options.suite);
+  if (suite.gate.tolerances.empty() && suite.gate.of_scenario.empty())
+    throw InputError(
+        fmt::format("{}: check: tolerances: missing: nothing would be judged", options.suite));
+  if (options.update) return update(options, suite, measure(suite, options.jobs));
+
+  const fs::path file = baseline_file(options);
+  const Baseline baseline = load_baseline(file);  // before the work: a slip costs no minutes
+  check_suite(baseline, file, suite.name, gate_suite_digest(suite));
+  const Baseline now = measure(suite, options.jobs);
+  const GateResult result =
+      compare(baseline.runs, now.runs, suite.gate, baseline.origin == now.origin);
+  tell(options, result, suite.name);
+  if (!result.passed()) throw CheckFailed();
+}
+
+}  // namespace
+
+void add_check(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "check", "Runs a suite and compares it with committed figures: a gate for CI.");
+  command->add_option("suite", options->suite, "Suite (YAML) with a section `check`")->required();
+  command->add_option("--baseline", options->baseline,
+                      "Committed figures (default: the suite's name with .baseline.json)");
+  command->add_option("--junit", options->junit, "Writes the findings as JUnit XML");
+  command->add_option("--jobs", options->jobs, "Runs at work at a time; never changes a result")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--update", options->update, "Rewrites the baseline and shows the difference");
+  command->add_flag("--json", options->json, "Prints JSON");
+  command->footer(
+      "Examples:\n  modelhouse check bench/suites/ci.yaml --jobs 2 --junit check.xml\n"
+      "  modelhouse check bench/suites/ci.yaml --jobs 2 --update\n"
+      "Exit code 1 where something got worse by more than its tolerance.");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace mh::cli

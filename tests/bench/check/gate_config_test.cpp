@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/check/gate_config.hpp"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "bench/check/from_runs.hpp"
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+
+GateConfig read(const std::string& text) {
+  return read_gate(YamlReader::parse(text, "suite.yaml"), {"hall", "attic"});
+}
+
+TEST(GateConfig, HoldsTolerancesForAllAndForOneScenario) {
+  const GateConfig c = read(
+      "tolerances: {completeness: 0.05, ate_rmse_m: {absolute: 0.01, relative: 0.5}}\n"
+      "scenarios: {attic: {completeness: 0.2}}\n");
+  EXPECT_EQ(c.tolerances.at("completeness").of(0.9), 0.05);
+  EXPECT_EQ(c.tolerances.at("ate_rmse_m").of(0.1), 0.05);
+  EXPECT_EQ(c.tolerances.at("ate_rmse_m").of(0.001), 0.01);
+  EXPECT_EQ(c.of_scenario.at("attic").at("completeness").of(0.9), 0.2);
+}
+
+TEST(GateConfig, SlipsAreNamed) {
+  for (const char* text :
+       {"scenarios: {}", "tolerances: {compleetness: 0.1}", "tolerances: {completeness: -0.1}",
+        "tolerances: {completeness: {abs: 0.1}}", "tolerances: {}\nscenarios: {cellar: {}}",
+        "tolerances: {}\nextra: 1"})
+    EXPECT_THROW(read(text), InputError) << text;
+}
+
+/// A suite over files that hold next to nothing.
+class GateDigest : public testing::Test {
+ protected:
+  GateDigest()
+      : folder_(std::filesystem::temp_directory_path() / ("mh_gate_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_);
+    for (const char* name : {"house", "later", "robot", "tour", "level", "words", "walk"})
+      write(name, name);
+  }
+  ~GateDigest() override { std::filesystem::remove_all(folder_); }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+  std::string digest(const std::string& more = "", const std::string& scene = "house") const {
+    write("suite.yaml",
+          "environments: [{category: hall, scene: " + scene +
+              ", mapping_tour: tour, query_tour: tour, query_scene: later, walk: walk}]\n"
+              "robot: robot\nvocabulary: words\nlevels: [level]\nsystems: [plain]\n"
+              "labels: [exact]\n" +
+              more);
+    return gate_suite_digest(load_suite(folder_ / "suite.yaml"));
+  }
+  std::filesystem::path folder_;
+};
+
+TEST_F(GateDigest, SeesEachFileAndSettingThatMakesTheRuns) {
+  const std::string before = digest();
+  for (const char* name : {"house", "later", "robot", "tour", "level", "walk"}) {
+    write(name, "changed");
+    EXPECT_NE(digest(), before) << name;
+    write(name, name);
+    EXPECT_EQ(digest(), before) << name;
+  }
+  EXPECT_NE(digest("trials: 3"), before);
+  EXPECT_NE(digest("seed: 3"), before);
+  EXPECT_NE(digest("protocol: {rewind_frames: 49}"), before);
+}
+
+TEST_F(GateDigest, LeavesOutWhatAChangeMayChange) {
+  const std::string before = digest();
+  EXPECT_EQ(digest("slam: {xi: 2}"), before);
+  EXPECT_EQ(digest("check: {tolerances: {completeness: 0.1}}"), before);
+  write("words", "trained anew");
+  EXPECT_EQ(digest(), before);
+}
+
+}  // namespace
+}  // namespace mh

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/results/trajectory_score.hpp"
+
+#include <gtest/gtest.h>
+
+namespace mh {
+namespace {
+
+Trajectory arc(int first, int last) {
+  Trajectory path;
+  for (int i = first; i < last; ++i)
+    path.push_back({1000 * i, SE3(Eigen::Matrix3d::Identity(),
+                                  Eigen::Vector3d(0.1 * i, 0.01 * i * i, 0.002 * i * i * i))});
+  return path;
+}
+
+TEST(ScoreTrajectory, CompletenessIsOfAllFramesThatWereOffered) {
+  const Trajectory truth = arc(0, 40);
+  EXPECT_DOUBLE_EQ(score_trajectory(arc(0, 40), truth, 40).completeness, 1.0);
+  EXPECT_DOUBLE_EQ(score_trajectory(arc(10, 20), truth, 40).completeness, 0.25);
+  EXPECT_DOUBLE_EQ(score_trajectory({}, truth, 40).completeness, 0.0);
+}
+
+TEST(ScoreTrajectory, AMapOfAnotherScaleHasAnError) {
+  Trajectory twice = arc(0, 40);
+  for (TimedPose& pose : twice)
+    pose.world_from_camera =
+        SE3(pose.world_from_camera.rotation(), 2.0 * pose.world_from_camera.translation());
+  const auto score = score_trajectory(twice, arc(0, 40), 40);
+  ASSERT_TRUE(score.ate_rmse_m);
+  EXPECT_GT(*score.ate_rmse_m, 0.5);
+}
+
+}  // namespace
+}  // namespace mh

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Each scenario of the gate is there to catch a fault. Here the fault is made, and the gate must
+// fail on the measures that the suite judges, in the scenario that is named for it, while the same
+// run without the fault passes.
+#include <gtest/gtest.h>
+
+#include "bench/check/from_runs.hpp"
+#include "bench/check/gate.hpp"
+#include "bench/check/report.hpp"
+#include "bench/run_one.hpp"
+#include "bench/systems/ours.hpp"
+
+namespace mh {
+namespace {
+
+const Suite& ci() {
+  static const Suite suite = load_suite(MH_SOURCE_DIR "/bench/suites/ci.yaml", {.trials = 1});
+  return suite;
+}
+
+RunSpec first_run(const std::string& scenario, SystemKind system) {
+  for (RunSpec& spec : expand(ci()))
+    if (spec.environment.name == scenario && spec.system.kind == system) return spec;
+  throw std::runtime_error("no such scenario: " + scenario);
+}
+
+struct Fault {
+  std::function<void(SlamConfig&)> settings = [](SlamConfig&) {};
+  RunTamper tamper = {};
+};
+
+RunFigures run(const RunSpec& spec, const World& world, const Fault& fault) {
+  RunTools tools;
+  tools.tamper = fault.tamper;
+  tools.system = [&](const RunSpec&, const World&) {
+    SlamConfig config;
+    config.semantics = spec.mapping;
+    fault.settings(config);
+    return make_our_system(world.robot.camera, config, world.vocabulary);
+  };
+  return figures(run_one(spec, world, tools));
+}
+
+/// The gate's judgement of a fault: one seed without it against the same seed with it.
+GateResult judge(const std::string& scenario, const Fault& fault,
+                 SystemKind system = SystemKind::kPlain) {
+  const RunSpec spec = first_run(scenario, system);
+  const World world = build_world(spec, 1, [](std::string_view) {});
+  const std::vector before = {run(spec, world, {})};
+  const std::vector after = {run(spec, world, fault)};
+  GateResult result = compare(before, after, ci().gate, false);
+  EXPECT_TRUE(compare(before, before, ci().gate, true).passed());
+  EXPECT_EQ(result.runs, 1u);
+  std::printf("%s", gate_report(result, scenario).c_str());
+  return result;
+}
+
+bool worse(const GateResult& result, std::string_view measure) {
+  for (const Change& c : result.changes)
+    if (c.measure->name == measure) return c.verdict == ChangeVerdict::kWorse;
+  return false;
+}
+
+TEST(Scenario, WoodenRepetitionCatchesFalsePlacesThatAreBelieved) {
+  const GateResult result = judge("wooden_repetition", {.settings = [](SlamConfig& c) {
+                                    c.match.ratio = c.match.ratio_projection = 1.0;
+                                    c.relocalize.min_word_matches = 5;
+                                    c.relocalize.min_inliers = 8;
+                                    c.relocalize.ransac.min_inliers = 5;
+                                  }});
+  EXPECT_FALSE(result.passed());
+}
+
+TEST(Scenario, BlankCorridorCatchesAThresholdThatIsNotLowered) {
+  const GateResult result = judge("blank_corridor", {.settings = [](SlamConfig& c) {
+                                    c.features.fast_threshold_low = c.features.fast_threshold;
+                                  }});
+  EXPECT_FALSE(result.passed());
+}
+
+TEST(Scenario, FastTurnCatchesFramesThatDoNotArrive) {
+  Fault fault;
+  fault.tamper.frame = [](std::size_t index, RgbdFrame& frame) {
+    if (index % 4 == 0) return;
+    std::fill(frame.colour.begin(), frame.colour.end(), Rgb8{});
+    std::fill(frame.depth_m.begin(), frame.depth_m.end(), 0.0F);
+  };
+  EXPECT_FALSE(judge("fast_turn", fault).passed());
+}
+
+TEST(Scenario, KidnappedRobotCatchesThatNothingRelocalizes) {
+  const GateResult result = judge(
+      "kidnapped_robot", {.settings = [](SlamConfig& c) { c.relocalize.min_inliers = 1'000'000; }});
+  EXPECT_TRUE(worse(result, "completeness"));
+}
+
+TEST(Scenario, MovedFurnitureCatchesThatOutliersAreNotRejected) {
+  const GateResult result =
+      judge("moved_furniture",
+            {.settings = [](SlamConfig& c) { c.pose.chi2_mono = c.pose.chi2_stereo = 1e9; }});
+  EXPECT_FALSE(result.passed());
+}
+
+TEST(Scenario, LightsChangedCatchesThatExposureControlFails) {
+  Fault fault;
+  fault.tamper.frame = [](std::size_t, RgbdFrame& frame) {
+    const auto dark = [](std::uint8_t v) { return static_cast<std::uint8_t>(v / 6); };
+    for (Rgb8& c : frame.colour) c = {dark(c.r), dark(c.g), dark(c.b)};
+  };
+  EXPECT_FALSE(judge("lights_changed", fault).passed());
+}
+
+TEST(Scenario, LabelNoiseCatchesScrambledLabels) {
+  Fault fault;
+  fault.tamper.frame = [](std::size_t index, RgbdFrame& frame) {
+    auto& palette = frame.semantics.palette;
+    if (!palette.empty())
+      std::rotate(palette.begin(),
+                  palette.begin() + static_cast<std::ptrdiff_t>(1 + 7 * index % palette.size()) %
+                                        static_cast<std::ptrdiff_t>(palette.size()),
+                  palette.end());
+  };
+  EXPECT_FALSE(judge("label_noise", fault, SystemKind::kSemantic).passed());
+}
+
+TEST(Scenario, LongLoopCatchesThatLoopsStayOpen) {
+  const GateResult result =
+      judge("long_loop", {.settings = [](SlamConfig& c) { c.loop.enabled = false; }});
+  EXPECT_TRUE(worse(result, "ate_rmse_m"));
+}
+
+TEST(Scenario, WalkingPersonCatchesThatOutliersAreNotRejected) {
+  const GateResult result =
+      judge("walking_person",
+            {.settings = [](SlamConfig& c) { c.pose.chi2_mono = c.pose.chi2_stereo = 1e9; }});
+  EXPECT_FALSE(result.passed());
+}
+
+}  // namespace
+}  // namespace mh
