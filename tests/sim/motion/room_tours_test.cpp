@@ -43,13 +43,13 @@ class RoomTours : public testing::TestWithParam<const char*> {
   DrivenPath mapping_, query_;
 };
 
-TEST_P(RoomTours, LeadThroughAllRoomsWithoutTouchingAnything) {
+TEST_P(RoomTours, TouchNothingAndTheMappingTourSeesAllRooms) {
   for (const DrivenPath* path : {&mapping_, &query_}) {
     EXPECT_LT(path->contact_time_s, 0.1);
     EXPECT_LT(path->max_penetration_m, 1e-3);
     EXPECT_GT(path->camera.size(), 300U);
-    EXPECT_EQ(rooms_of(*path).size(), scene_.rooms.size());
   }
+  EXPECT_EQ(rooms_of(mapping_).size(), scene_.rooms.size());
   EXPECT_GT(mapping_.length_m, 12.0);
   EXPECT_LT(mapping_.camera.size(), 2500U);
 }
