@@ -7,6 +7,7 @@
 
 #include "bench/plan/names.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
 
 namespace mh {
 namespace {
@@ -47,6 +48,7 @@ void replace_scene(Suite& suite, const fs::path& scene) {
     throw InputError(fmt::format("{}: --scene needs a suite of one environment, this has {}",
                                  suite.file.string(), suite.environments.size()));
   suite.environments.front().scene = scene;
+  suite.scene_replaced = true;
 }
 
 }  // namespace
@@ -65,7 +67,12 @@ std::string level_name(const fs::path& level) {
 }
 
 Suite load_suite(const fs::path& file, const SuiteOverrides& overrides) {
-  YamlReader yaml = YamlReader::load(file);
+  return parse_suite(read_file(file), file, overrides);
+}
+
+Suite parse_suite(const std::string& content, const fs::path& file,
+                  const SuiteOverrides& overrides) {
+  YamlReader yaml = YamlReader::parse(content, file.string());
   const fs::path folder = file.parent_path();
 
   Suite suite;

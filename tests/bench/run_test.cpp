@@ -288,22 +288,6 @@ TEST(Results, PathsDoNotDependOnTheSuitesSpelling) {
     EXPECT_EQ(scene(folder), "../scenes/house.yaml") << folder;
 }
 
-TEST(Results, OlderRunsAreRemovedAndNothingElse) {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::temp_directory_path() / ("mh_older_" + std::to_string(getpid()));
-  fs::create_directories(folder / "old");
-  fs::create_directories(folder / "mine");
-  for (const char* file : {"old/truth.tum", "old/topdown.png", "mine/truth.tum"})
-    std::ofstream(folder / file) << "x";
-  std::ofstream(folder / "results.json")
-      << R"({"format": "modelhouse-results-1", "runs": [{"name": "old"}, {"name": "../mine"}]})";
-  remove_older_results(folder);
-  EXPECT_FALSE(fs::exists(folder / "old"));
-  EXPECT_FALSE(fs::exists(folder / "results.json"));
-  EXPECT_TRUE(fs::exists(folder / "mine/truth.tum"));
-  fs::remove_all(folder);
-}
-
 TEST(ResultsTable, HasThePapersFormAndMarksASaturatedTable) {
   const Place place;
   const std::string table = results_table(place.suite, place.run());
