@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/run.hpp"
 
+#include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
+#include <cstdlib>
 #include <map>
 #include <numeric>
 #include <set>
@@ -75,7 +78,18 @@ RunCost cost_of_this_process(const RunResult& run) {
 
 TemporaryFolder::TemporaryFolder(const fs::path& parent) {
   static std::atomic<int> count = 0;
-  path_ = parent / fmt::format("modelhouse.{}.{}", getpid(), count++);
+  char host[256] = {};
+  gethostname(host, sizeof host - 1);
+  const std::string ours = fmt::format(".work.{}.", host);
+  // What a process left that was killed.
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(parent, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(ours)) continue;
+    const int process = std::atoi(name.c_str() + ours.size());
+    if (process > 0 && kill(process, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), error);
+  }
+  path_ = parent / fmt::format("{}{}.{}", ours, getpid(), count++);
   make_output_folder(path_);
 }
 

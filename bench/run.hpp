@@ -56,7 +56,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
 /// What the store holds of the suite that was planned last.
 BenchResults load_results(const Store& store, const Suite& suite);
 
-/// A folder that goes when it is left.
+/// A hidden folder that goes when it is left; one that a killed process left goes with the next.
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(const std::filesystem::path& parent);

@@ -62,7 +62,7 @@ std::string export_json(const Store& store) {
   for (const std::string table : {"runs", "points", "metrics", "calls", "frames", "queries"}) {
     const Rows rows = store.rows(fmt::format(
         "SELECT t.* FROM {} t JOIN (SELECT DISTINCT key, min(position) AS at FROM plan GROUP BY "
-        "key) p ON p.key = t.key ORDER BY p.at",
+        "key) p ON p.key = t.key ORDER BY p.at, 2, 3, 4",
         table));
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (std::size_t r = 1; r < rows.size(); ++r) {
