@@ -1,79 +1,187 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/run.hpp"
 
+#include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
-#include <exception>
-#include <mutex>
-#include <thread>
+#include <cerrno>
+#include <cstdlib>
+#include <map>
+#include <numeric>
+#include <set>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/plan/spec_json.hpp"
+#include "bench/results/write.hpp"
+#include "bench/run_one.hpp"
+#include "bench/store/run_key.hpp"
+#include "bench/world/world.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
 
 namespace mh {
 namespace {
 
-bool same_world(const RunSpec& a, const RunSpec& b) {
-  return a.environment.name == b.environment.name && a.level == b.level;
+namespace fs = std::filesystem;
+
+/// Everything that can be told before the work, once per file.
+void check_all_inputs(const std::vector<RunSpec>& specs) {
+  std::set<std::pair<std::string, fs::path>> seen;
+  std::set<fs::path> vocabularies;
+  for (const RunSpec& spec : specs) {
+    if (seen.insert({spec.environment.name, spec.level}).second) check_inputs(spec);
+    if (vocabularies.insert(spec.vocabulary).second) Vocabulary::load(spec.vocabulary);
+  }
 }
 
-/// Adds up what all runs have done and passes it on.
-class ProgressSum {
- public:
-  ProgressSum(std::size_t runs, const std::function<void(double)>& tell)
-      : done_(runs, 0.0), tell_(tell) {}
-  void reached(std::size_t run, double share) {
-    const std::lock_guard lock(mutex_);
-    sum_ += share - done_[run];
-    done_[run] = share;
-    tell_(sum_ / static_cast<double>(done_.size()));
-  }
+void check_names(const Suite& suite, const std::vector<RunSpec>& specs) {
+  std::set<std::string> names;
+  for (const RunSpec& spec : specs)
+    if (!names.insert(spec.name).second)
+      throw InputError(fmt::format("{}: two runs are named '{}': rename an environment or a level",
+                                   suite.file.string(), spec.name));
+}
 
- private:
-  std::mutex mutex_;
-  std::vector<double> done_;
-  double sum_ = 0;
-  const std::function<void(double)>& tell_;
-};
+std::string views_name(const Suite& suite, const RunSpec& spec) {
+  return suite.environments.size() == 1 ? std::string("views.png")
+                                        : fmt::format("views-{}.png", spec.environment.name);
+}
+
+fs::path real_executable(const fs::path& executable) {
+  std::error_code error;
+  const fs::path real = fs::canonical(executable, error);
+  return error ? executable : real;
+}
+
+RunCost cost_of_this_process(const RunResult& run) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  const auto sum_s = [](const std::vector<double>& ms) {
+    return std::accumulate(ms.begin(), ms.end(), 0.0) / 1e3;
+  };
+  return {.wall_s = run.wall_s,
+          .cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime),
+          .slam_s = sum_s(run.times.track_ms) + sum_s(run.times.relocalize_ms),
+          .frames_s = run.frames_s,
+          .max_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0};
+}
 
 }  // namespace
 
-std::vector<RunResult> run_all(const Suite& suite, const RunOptions& options) {
-  const std::vector<RunSpec> specs = expand(suite);
-  std::vector<RunResult> results(specs.size());
-  ProgressSum progress(specs.size(), options.progress);
-  for (std::size_t first = 0; first < specs.size();) {
-    std::size_t end = first;
-    while (end < specs.size() && same_world(specs[first], specs[end])) ++end;
-    const World world = build_world(specs[first], options.jobs, options.say);
-    options.say(fmt::format("{} runs of {} frames", end - first, world.mapping.camera.size()));
+TemporaryFolder::TemporaryFolder(const fs::path& parent) {
+  static std::atomic<int> count = 0;
+  char host[256] = {};
+  gethostname(host, sizeof host - 1);
+  const std::string ours = fmt::format(".work.{}.", host);
+  // What a process left that was killed.
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(parent, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(ours)) continue;
+    const int process = std::atoi(name.c_str() + ours.size());
+    if (process > 0 && kill(process, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), error);
+  }
+  path_ = parent / fmt::format("{}{}.{}", ours, getpid(), count++);
+  make_output_folder(path_);
+}
 
-    std::atomic<std::size_t> next = first;
-    std::mutex finishing;
-    std::exception_ptr error;
-    {
-      std::vector<std::jthread> threads;
-      for (int k = 0; k < options.jobs; ++k)
-        threads.emplace_back([&] {
-          try {
-            for (std::size_t run = next++; run < end; run = next++) {
-              RunResult result =
-                  run_one(specs[run], world,
-                          {.progress = [&, run](double share) { progress.reached(run, share); }});
-              const std::lock_guard lock(finishing);
-              options.finished(world, result);
-              results[run] = std::move(result);
-            }
-          } catch (...) {
-            const std::lock_guard lock(finishing);
-            if (!error) error = std::current_exception();
-            next = end;
-          }
-        });
-    }
-    if (error) std::rethrow_exception(error);
-    first = end;
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code error;
+  fs::remove_all(path_, error);
+}
+
+Shard parse_shard(const std::string& text) {
+  Shard shard;
+  char slash = 0, more = 0;
+  if (std::sscanf(text.c_str(), "%zu%c%zu%c", &shard.index, &slash, &shard.of, &more) != 3 ||
+      slash != '/' || shard.index < 1 || shard.index > shard.of || text[0] == '-')
+    throw InputError(fmt::format("shard '{}' is not i/n with 1 <= i <= n", text));
+  return shard;
+}
+
+BenchResults load_results(const Store& store, const Suite& suite) {
+  std::map<std::string, std::string> key_of;
+  for (auto& [name, key] : store.planned_keys()) key_of[name] = key;
+  BenchResults results;
+  for (const RunSpec& spec : expand(suite)) {
+    const auto key = key_of.find(spec.name);
+    const auto status = key == key_of.end() ? std::nullopt : store.status(key->second);
+    if (status == RunStatus::kDone)
+      results.runs.push_back(store.load(key->second, spec));
+    else if (status == RunStatus::kFailed)
+      results.failed.push_back({spec.name, store.error(key->second)});
+    else
+      ++results.missing;
   }
   return results;
+}
+
+BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
+                       const BenchOptions& options) {
+  const std::vector<RunSpec> specs = expand(suite);
+  check_names(suite, specs);
+  check_all_inputs(specs);
+
+  Store store(options.out / "results.sqlite");
+  std::vector<Job> mine;
+  std::vector<std::pair<std::string, std::string>> plan;
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    plan.emplace_back(specs[i].name, run_key(specs[i]));
+    if (i % options.shard.of + 1 == options.shard.index)
+      mine.push_back({specs[i], plan.back().second});
+  }
+  store.plan(suite, overrides, plan);
+  if (options.retry_failed)
+    for (const Job& job : mine) store.forget_failure(job.key);
+  std::erase_if(mine, [&](const Job& job) { return store.status(job.key).has_value(); });
+  options.say(fmt::format("{} runs, {} of them to do", specs.size(), mine.size()));
+
+  if (!mine.empty()) {
+    const TemporaryFolder work(options.out);
+    const fs::path cache = options.cache ? *options.cache : work.path() / "cache";
+    PoolOptions pool;
+    pool.jobs = options.jobs;
+    pool.time_limit_s = options.time_limit_s;
+    pool.memory_limit_mb = options.memory_limit_mb;
+    pool.executable = real_executable(options.executable);
+    pool.work_folder = work.path();
+    pool.arguments = [&](const Job& job, const fs::path& description) {
+      return std::vector<std::string>{"run-one",   description.string(),
+                                      "--store",   store.file().string(),
+                                      "--key",     job.key,
+                                      "--folder",  options.out.string(),
+                                      "--cache",   cache.string(),
+                                      "--views",   views_name(suite, job.spec),
+                                      "--threads", std::to_string(options.jobs),
+                                      "--parent",  std::to_string(getpid())};
+    };
+    pool.say = options.say;
+    pool.progress = options.progress;
+    work_off(store, std::move(mine), pool);
+  }
+  return load_results(store, suite);
+}
+
+void carry_out(const RunOrder& order) {
+  const auto json = nlohmann::ordered_json::parse(read_file(order.description), nullptr, false);
+  const RunSpec spec = run_spec_from_json(json);
+  const World world = build_world(spec, order.threads, Cache(order.cache), [](std::string_view) {});
+  const fs::path folder = order.folder / spec.name;
+  make_output_folder(folder);
+  RunResult run = run_one(
+      spec, world, {.folder = folder, .progress = order.progress, .system = {}, .tamper = {}});
+  write_run(folder, world, run);
+  // One process makes the contact sheet; should two begin it, both write the same bytes.
+  if (!fs::exists(order.folder / order.views)) write_views(order.folder / order.views, world);
+  Store(order.store).put(order.key, run, cost_of_this_process(run));
 }
 
 }  // namespace mh

@@ -1,25 +1,84 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include "bench/jobs/pool.hpp"
 #include "bench/plan/suite.hpp"
 #include "bench/results/run_result.hpp"
-#include "bench/run_one.hpp"
-#include "bench/world/world.hpp"
+#include "bench/store/store.hpp"
 
 namespace mh {
 
-struct RunOptions {
-  int jobs = 1;                       ///< runs at work at a time; never changes a result
-  Say say = [](std::string_view) {};  ///< told the stages of the work
-  std::function<void(double)> progress = [](double) {};  ///< share of all work done, in [0, 1]
-  /// Told each result with its world as it comes, never two at once: what is large is written here.
-  std::function<void(const World&, RunResult&)> finished = [](const World&, RunResult&) {};
+/// The part of a suite's runs that one machine takes: run i of all is in shard (i mod of) + 1.
+struct Shard {
+  std::size_t index = 1, of = 1;
 };
 
-/// All runs of a suite, in the order of expand(suite). Environments follow one another.
-std::vector<RunResult> run_all(const Suite& suite, const RunOptions& options);
+/// "2/3". @throws InputError unless 1 <= i <= n.
+Shard parse_shard(const std::string& text);
+
+struct BenchOptions {
+  std::filesystem::path out;  ///< exists; holds results.sqlite and a folder per run
+  int jobs = 1;               ///< never changes a result
+  Shard shard;
+  std::optional<std::filesystem::path> cache;  ///< none: light is baked for this command alone
+  double time_limit_s = 14400;                 ///< of one run; 0 = none
+  double memory_limit_mb = 0;                  ///< of one run; 0 = none
+  bool retry_failed = false;
+  std::filesystem::path executable = "/proc/self/exe";  ///< has the subcommand `run-one`
+  std::function<void(std::string_view)> say = [](std::string_view) {};
+  std::function<void(double, std::size_t, std::size_t)> progress =
+      [](double, std::size_t, std::size_t) {};  ///< as PoolOptions::progress
+};
+
+struct Failure {
+  std::string run, error;
+};
+
+/// What a store holds of a suite.
+struct BenchResults {
+  std::vector<RunResult> runs;  ///< finished ones, in the order of expand(suite)
+  std::vector<Failure> failed;
+  std::size_t missing = 0;  ///< neither: of other shards
+};
+
+/// Works off a suite into options.out / "results.sqlite". A finished run is never repeated.
+/// @throws InputError if an input cannot be read; Interrupted on Ctrl-C.
+BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
+                       const BenchOptions& options);
+
+/// What the store holds of the suite that was planned last.
+BenchResults load_results(const Store& store, const Suite& suite);
+
+/// A hidden folder that goes when it is left; one that a killed process left goes with the next.
+class TemporaryFolder {
+ public:
+  explicit TemporaryFolder(const std::filesystem::path& parent);
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// One run in this process, start to end: builds its world, works it off, writes its files into
+/// folder / its name, and puts it into the store. What a process of the pool does.
+struct RunOrder {
+  std::filesystem::path description;           ///< JSON of the RunSpec
+  std::filesystem::path store, folder, cache;  ///< an empty cache keeps nothing
+  std::string key;
+  std::string views;  ///< file name of the environment's contact sheet
+  int threads = 1;    ///< for baking light
+  std::function<void(double)> progress = [](double) {};
+};
+void carry_out(const RunOrder& order);
 
 }  // namespace mh

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
+#include <optional>
 
 #include "bench/protocol/digest.hpp"
 #include "bench/results/occupancy.hpp"
@@ -35,37 +37,64 @@ class WorkDone {
   const std::function<void(double)>& tell_;
 };
 
-FrameSource frames_of(const SimulatedSequence& sequence, const RunTamper& tamper) {
-  return [&sequence, &tamper](std::size_t index, RandomStream noise) {
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// @param spent_s  the time that making frames takes is added to it
+FrameSource frames_of(const SimulatedSequence& sequence, const RunTamper& tamper, double& spent_s) {
+  return [&sequence, &tamper, &spent_s](std::size_t index, RandomStream noise) {
+    const auto start = Clock::now();
     RgbdFrame frame = sequence.at(index, noise).frame;
     if (tamper.frame) tamper.frame(index, frame);
+    spent_s += seconds_since(start);
     return frame;
   };
 }
 
-/// One set of queries, under each parameter point in turn.
+/// Frames of one query, made once for all parameter points.
+FrameSource made_once(const FrameSource& frames) {
+  const auto made = std::make_shared<std::map<std::uint64_t, RgbdFrame>>();
+  return [frames, made](std::size_t index, RandomStream noise) {
+    const auto [place, is_new] = made->try_emplace(noise.key());
+    if (is_new) place->second = frames(index, noise);
+    return place->second;
+  };
+}
+
+/// One set of queries.
 class QueryRound {
  public:
   QueryRound(const RunSpec& spec, const SimulatedSequence& sequence, NearestBy by,
-             const RunTamper& tamper, const RunResult& run, RandomStream stream)
+             const RunTamper& tamper, RunResult& run, RandomStream stream)
       : spec_(spec),
         sequence_(sequence),
         by_(by),
-        frames_(frames_of(sequence, tamper)),
+        frames_(frames_of(sequence, tamper, run.frames_s)),
         run_(run),
         stream_(stream) {}
 
-  std::vector<QueryScore> put(const System& frozen, WorkDone& work) const {
-    std::vector<QueryScore> scores;
+  /// Puts each query under the points first .. end - 1; `scores[p]` takes the answers under point
+  /// p.
+  void put(System& frozen, std::size_t first, std::size_t end,
+           const std::vector<std::vector<QueryScore>*>& scores, WorkDone& work) const {
     for (const std::size_t index : test_frames(sequence_.size(), spec_.protocol)) {
-      const QueryAnswer answer = query(frozen, index, frames_, spec_.protocol, stream_);
       const TimedPose& truth = sequence_.path()[index];
-      scores.push_back(score(answer, truth,
-                             find_anchor(run_.estimate, run_.truth, truth, by_, spec_.protocol),
-                             run_.trajectory.truth_from_estimate, spec_.protocol));
-      work.one_more();
+      const auto anchor = find_anchor(run_.estimate, run_.truth, truth, by_, spec_.protocol);
+      const bool once = end - first == 1;  // nothing to share
+      const FrameSource frames = once ? frames_ : made_once(frames_);
+      const std::unique_ptr<QueryMemo> memo = once ? nullptr : frozen.make_memo();
+      for (std::size_t p = first; p < end; ++p) {
+        if (!once) frozen.set_query_settings(spec_.points[p]);
+        const QueryAnswer answer =
+            query(frozen, index, frames, spec_.protocol, stream_, memo.get());
+        scores[p]->push_back(
+            score(answer, truth, anchor, run_.trajectory.truth_from_estimate, spec_.protocol));
+        work.one_more();
+      }
     }
-    return scores;
   }
 
  private:
@@ -77,6 +106,23 @@ class QueryRound {
   RandomStream stream_;
 };
 
+/// The end of the points from `first` on under which keyframes are described alike (equation 1), so
+/// that going from one to the next costs nothing.
+std::size_t end_of_alike(const std::vector<SemanticConfig>& points, std::size_t first) {
+  std::size_t end = first + 1;
+  while (end < points.size() && points[end].gamma == points[first].gamma &&
+         points[end].void_is_a_label == points[first].void_is_a_label)
+    ++end;
+  return end;
+}
+
+std::vector<std::vector<QueryScore>*> lists(RunResult& run, QuerySet set) {
+  std::vector<std::vector<QueryScore>*> all;
+  for (PointResult& point : run.points)
+    all.push_back(set == QuerySet::kHeldOut ? &point.held_out : &point.second_tour);
+  return all;
+}
+
 std::size_t pieces_of_work(const RunSpec& spec, const World& world) {
   std::size_t queries = test_frames(world.mapping.camera.size(), spec.protocol).size();
   if (world.second) queries += test_frames(world.second->camera.size(), spec.protocol).size();
@@ -85,12 +131,11 @@ std::size_t pieces_of_work(const RunSpec& spec, const World& world) {
 
 /// The mapping frames as a folder, and what an outside program made of them.
 Trajectory run_recorded(const RunSpec& spec, const SimulatedSequence& mapping,
-                        const RunTamper& tamper, RandomStream stream,
+                        const FrameSource& frames, RandomStream stream,
                         const std::filesystem::path& folder) {
   std::vector<std::size_t> offered;
   for (std::size_t i = 0; i < mapping.size(); ++i)
     if (!is_test_frame(i, spec.protocol)) offered.push_back(i);
-  const FrameSource frames = frames_of(mapping, tamper);
   const std::filesystem::path dataset = folder / "dataset";
   const std::vector<Stamp> stamps =
       write_dataset(dataset, mapping.camera(), offered.size(),
@@ -113,7 +158,7 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
 }
 
 RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   const RandomStream stream(spec.seed);
   const RunTamper& tamper = tools.tamper;
   const Camera& camera = world.robot.camera;
@@ -125,43 +170,44 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   run.place = facts(world);
   run.truth = world.mapping.camera;
   KeyframeDepths depths;
+  const FrameSource frames = frames_of(mapping, tamper, run.frames_s);
 
   std::unique_ptr<System> inner =
       tools.system ? tools.system(spec, world) : make_system(spec, world, tools.folder);
   if (inner == nullptr) {  // a program that answers with a trajectory: nothing to ask it
     for (std::size_t i = 0; i < mapping.size(); ++i)
       run.mapping.offered += is_test_frame(i, spec.protocol) ? 0 : 1;
-    run.estimate = run_recorded(spec, mapping, tamper, stream.fork(kMapping), tools.folder);
+    run.estimate = run_recorded(spec, mapping, frames, stream.fork(kMapping), tools.folder);
     run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
     run.points.resize(spec.points.size());
   } else {
     if (tamper.report) inner = make_tampered(std::move(inner), tamper.report);
     TimedSystem system(std::move(inner));
-    run.mapping = map_sequence(
-        system, mapping.size(), frames_of(mapping, tamper), spec.protocol, stream.fork(kMapping),
-        [&](const MappedFrame& call, const RgbdFrame& frame, const StepReport&) {
-          if (call.keyframe_added) depths.keep(frame);
-          work.reached(call.index + 1);
-        });
+    run.mapping =
+        map_sequence(system, mapping.size(), frames, spec.protocol, stream.fork(kMapping),
+                     [&](const MappedFrame& call, const RgbdFrame& frame, const StepReport&) {
+                       if (call.keyframe_added) depths.keep(frame);
+                       work.reached(call.index + 1);
+                     });
     system.freeze();
     work.reached(mapping.size());
     run.estimate = system.trajectory();
     run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
 
+    run.points.resize(spec.points.size());
     const QueryRound held_out(spec, mapping, NearestBy::kTime, tamper, run, stream.fork(kHeldOut));
     std::optional<SimulatedSequence> second;
-    if (world.second)
+    std::optional<QueryRound> second_tour;
+    if (world.second) {
       second.emplace(world.second_renderer ? world.second_renderer : world.renderer, camera,
                      world.second->camera, world.sensors, spec.labels);
-    for (const SemanticConfig& settings : spec.points) {
-      system.set_query_settings(settings);
-      PointResult point;
-      point.held_out = held_out.put(system, work);
-      if (second)
-        point.second_tour =
-            QueryRound(spec, *second, NearestBy::kPlace, tamper, run, stream.fork(kSecondTour))
-                .put(system, work);
-      run.points.push_back(std::move(point));
+      second_tour.emplace(spec, *second, NearestBy::kPlace, tamper, run, stream.fork(kSecondTour));
+    }
+    for (std::size_t p = 0; p < spec.points.size(); p = end_of_alike(spec.points, p)) {
+      const std::size_t end = end_of_alike(spec.points, p);
+      system.set_query_settings(spec.points[p]);
+      held_out.put(system, p, end, lists(run, QuerySet::kHeldOut), work);
+      if (second_tour) second_tour->put(system, p, end, lists(run, QuerySet::kSecondTour), work);
     }
     run.times = system.times();
   }
@@ -171,7 +217,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   // From just over the floor (noise of the depth at 4 m lies below) to the top of the head.
   run.grid = run.volume->project(0.10, robot.height_m);
   run.map_digest = digest_bytes(run.grid.cells.data(), run.grid.cells.size(), digest(run.estimate));
-  run.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  run.wall_s = seconds_since(start);
   return run;
 }
 

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
 #include <memory>
 
 #include <fmt/format.h>
 
+#include "bench/cache/cache.hpp"
 #include "bench/cli/commands.hpp"
+#include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
-#include "bench/results/json.hpp"
-#include "bench/results/table.hpp"
-#include "bench/results/write.hpp"
 #include "bench/run.hpp"
 #include "slam/core/files.hpp"
 
@@ -22,41 +20,47 @@ struct Options {
   std::optional<int> trials;
   std::optional<std::size_t> frames;
   std::optional<std::string> scene;
+  std::string shard = "1/1";
+  std::string cache;
+  bool no_cache = false;
+  bool retry_failed = false;
+  double time_limit_s = BenchOptions{}.time_limit_s;
+  double memory_limit_mb = 0;
   bool json = false;
 };
 
+std::optional<std::filesystem::path> cache_folder(const Options& options) {
+  if (options.no_cache) return std::nullopt;
+  if (!options.cache.empty()) return std::filesystem::absolute(options.cache);
+  const std::filesystem::path usual = Cache::default_folder();
+  return usual.empty() ? std::nullopt : std::optional(usual);
+}
+
 void run(const Options& options) {
-  const auto start = std::chrono::steady_clock::now();
   SuiteOverrides overrides;
   overrides.trials = options.trials;
   overrides.max_frames = options.frames;
   if (options.scene) overrides.scene = *options.scene;
   const Suite suite = load_suite(options.suite, overrides);
-  const std::filesystem::path out = options.out.empty() ? std::filesystem::path("out") / suite.name
-                                                        : std::filesystem::path(options.out);
-  make_output_folder(out);  // before the work: a folder that cannot be written costs no minutes
-  remove_older_results(out);
+  BenchOptions bench;
+  bench.shard = parse_shard(options.shard);
+  bench.out = options.out.empty() ? std::filesystem::path("out") / suite.name
+                                  : std::filesystem::path(options.out);
+  bench.jobs = options.jobs;
+  bench.cache = cache_folder(options);
+  bench.time_limit_s = options.time_limit_s;
+  bench.memory_limit_mb = options.memory_limit_mb;
+  bench.retry_failed = options.retry_failed;
+  make_output_folder(
+      bench.out);  // before the work: a folder that cannot be written costs no minutes
 
   Progress progress("bench");
-  const RunOptions run_options{.jobs = options.jobs,
-                               .say = [&](std::string_view stage) { progress.say(stage); },
-                               .progress = [&](double share) { progress.share(share); },
-                               .finished =
-                                   [&](const World& world, RunResult& run) {
-                                     write_run(out / run.spec.name, world, run);
-                                     const auto views = out / "views.png";
-                                     if (!exists(views)) write_views(views, world);
-                                     run.volume.reset();
-                                   }};
-  const std::vector<RunResult> runs = run_all(suite, run_options);
-  const auto wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start);
-  const std::string table = write_results(out, suite, runs, wall.count());
-  if (options.json) {
-    fmt::print("{}\n", results_json(suite, runs).dump(2));
-    return;
-  }
-  fmt::print("{}\n{}\nresults in {} ({})\n", table, times_table(suite, runs), out.string(),
-             readable_time(wall.count()));
+  bench.say = [&](std::string_view stage) { progress.say(stage); };
+  bench.progress = [&](double share, std::size_t done, std::size_t failed) {
+    progress.share(share, fmt::format("{} done, {} failed", done, failed));
+  };
+  const BenchResults results = run_suite(suite, overrides, bench);
+  finish(bench.out, suite, results, options.json);
 }
 
 }  // namespace
@@ -75,6 +79,16 @@ void add_bench(CLI::App& app) {
       ->add_option("--frames", options->frames, "Cuts the tours after N frames, for a quick look")
       ->check(CLI::Range(1, 100000000));
   command->add_option("--scene", options->scene, "Another scene or mesh file in the suite's place");
+  command->add_option("--shard", options->shard,
+                      "i/n: takes run i, i + n, ... alone; `merge` puts them together");
+  command->add_option("--cache", options->cache,
+                      "Folder for what is dear to make (default: $XDG_CACHE_HOME/modelhouse)");
+  command->add_flag("--no-cache", options->no_cache, "Makes everything anew, keeps nothing");
+  command->add_flag("--retry-failed", options->retry_failed, "Tries failed runs again");
+  command->add_option("--time-limit", options->time_limit_s, "Seconds for one run; 0 = none")
+      ->check(CLI::Range(0.0, 1e9));
+  command->add_option("--memory-limit", options->memory_limit_mb, "MB for one run; 0 = none")
+      ->check(CLI::Range(0.0, 1e9));
   command->add_flag("--json", options->json, "Prints results.json instead of the table");
   command->footer(
       "Examples:\n  modelhouse bench bench/suites/model_house.yaml --jobs 2\n"

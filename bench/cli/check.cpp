@@ -29,21 +29,24 @@ fs::path baseline_file(const Options& options) {
   return fs::path(options.suite).replace_extension(".baseline.json");
 }
 
-/// Runs the suite anew: nothing is taken from a cache or from earlier results.
+/// Runs the suite anew: nothing is taken from earlier results, light is shared among these runs only.
 Baseline measure(const Suite& suite, int jobs) {
+  const TemporaryFolder folder(fs::temp_directory_path());
   Progress progress("check");
-  const RunOptions options{.jobs = jobs,
-                           .say = [&](std::string_view stage) { progress.say(stage); },
-                           .progress = [&](double share) { progress.share(share); },
-                           .finished =
-                               [](const World&, RunResult& run) {
-                                 run.volume.reset();  // large, and not judged
-                               }};
-  const std::vector<RunResult> runs = run_all(suite, options);
+  const BenchOptions options{
+      .out = folder.path(),
+      .jobs = jobs,
+      .cache = folder.path() / "cache",
+      .say = [&](std::string_view stage) { progress.say(stage); },
+      .progress = [&](double share, std::size_t, std::size_t) { progress.share(share); }};
+  const BenchResults results = run_suite(suite, {}, options);
+  if (!results.failed.empty())
+    throw MachineError(fmt::format("check: run {} failed: {}", results.failed.front().run,
+                                   results.failed.front().error));
   return {.suite = suite.name,
           .suite_digest = gate_suite_digest(suite),
           .origin = gate_origin(),
-          .runs = figures(runs)};
+          .runs = figures(results.runs)};
 }
 
 void tell(const Options& options, const GateResult& result, const std::string& suite) {

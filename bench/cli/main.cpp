@@ -10,11 +10,18 @@
 #include <opencv2/core/utility.hpp>
 
 #include "bench/cli/commands.hpp"
+#include "bench/jobs/pool.hpp"
 #include "slam/core/error.hpp"
 
 namespace {
 
-enum ExitCode { kGood = 0, kCheckFailed = 1, kBadInput = 2, kMachineFailed = 3 };
+enum ExitCode {
+  kGood = 0,
+  kCheckFailed = 1,
+  kBadInput = 2,
+  kMachineFailed = 3,
+  kInterrupted = 130
+};
 
 int fail(ExitCode code, std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');
@@ -33,6 +40,9 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("Example:\n  modelhouse bench bench/suites/model_house.yaml --jobs 2");
   mh::cli::add_bench(app);
+  mh::cli::add_run_one(app);
+  mh::cli::add_merge(app);
+  mh::cli::add_export(app);
   mh::cli::add_verify(app);
   mh::cli::add_check(app);
   mh::cli::add_evaluate(app);
@@ -52,6 +62,9 @@ int main(int argc, char** argv) {
     return fail(kBadInput, error.what());
   } catch (const mh::cli::CheckFailed&) {
     return kCheckFailed;
+  } catch (const mh::Interrupted&) {
+    fail(kInterrupted, "interrupted; what is finished is kept, the same command goes on with it");
+    return kInterrupted;
   } catch (const mh::InputError& error) {
     return fail(kBadInput, error.what());
   } catch (const std::invalid_argument& error) {

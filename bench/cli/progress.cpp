@@ -40,16 +40,20 @@ void Progress::share(double done, std::string_view figures) {
   done = std::clamp(done, 0.0, 1.0);
   if (!started_) {
     started_ = true;
+    first_share_ = done;
     start_ = std::chrono::steady_clock::now();
   }
   const int steps = terminal_ ? 200 : 10;
   const int step = static_cast<int>(done * steps);
-  if (step == last_step_) return;
+  if (step == last_step_ && figures == last_figures_) return;
   last_step_ = step;
+  last_figures_ = figures;
   const double elapsed =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const std::string to_go =
-      done > 0.005 && done < 1 ? ", " + readable_time(elapsed * (1 - done) / done) + " to go" : "";
+      done > first_share_ + 0.005 && done < 1
+          ? ", " + readable_time(elapsed * (1 - done) / (done - first_share_)) + " to go"
+          : "";
   if (terminal_) {
     constexpr int kBar = 40;
     const int full = static_cast<int>(done * kBar);

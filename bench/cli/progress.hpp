@@ -28,7 +28,10 @@ class Progress {
   bool terminal_;
   bool line_open_ = false;
   bool started_ = false;
+  double first_share_ =
+      0;  // what was done before the clock started takes no part in the time to go
   int last_step_ = -1;
+  std::string last_figures_;
   std::chrono::steady_clock::time_point start_;
 };
 

@@ -57,10 +57,10 @@ void run(const Options& options) {
   overrides.max_frames = options.frames;
   const Suite suite = load_suite(options.suite, overrides);
   Progress progress("verify");
-  RunOptions run_options;
-  run_options.say = [&](std::string_view stage) { progress.say(stage); };
-  run_options.progress = [&](double share) { progress.share(share); };
-  const Verification v = verify(suite, run_options);
+  BenchOptions bench;
+  bench.say = [&](std::string_view stage) { progress.say(stage); };
+  bench.progress = [&](double share, std::size_t, std::size_t) { progress.share(share); };
+  const Verification v = verify(suite, overrides, bench);
   options.json ? print_json(v) : print_table(v);
   if (v.difference) throw CheckFailed();
 }

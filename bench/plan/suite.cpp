@@ -8,6 +8,7 @@
 #include "bench/check/gate_config.hpp"
 #include "bench/plan/names.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
 
 namespace mh {
 namespace {
@@ -48,6 +49,7 @@ void replace_scene(Suite& suite, const fs::path& scene) {
     throw InputError(fmt::format("{}: --scene needs a suite of one environment, this has {}",
                                  suite.file.string(), suite.environments.size()));
   suite.environments.front().scene = scene;
+  suite.scene_replaced = true;
 }
 
 }  // namespace
@@ -66,7 +68,12 @@ std::string level_name(const fs::path& level) {
 }
 
 Suite load_suite(const fs::path& file, const SuiteOverrides& overrides) {
-  YamlReader yaml = YamlReader::load(file);
+  return parse_suite(read_file(file), file, overrides);
+}
+
+Suite parse_suite(const std::string& content, const fs::path& file,
+                  const SuiteOverrides& overrides) {
+  YamlReader yaml = YamlReader::parse(content, file.string());
   const fs::path folder = file.parent_path();
 
   Suite suite;

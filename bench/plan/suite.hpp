@@ -42,6 +42,7 @@ struct Suite {
   std::optional<double> non_inferiority_margin;
   GateConfig gate;                        ///< what `modelhouse check` tolerates
   std::optional<std::size_t> max_frames;  ///< cuts the tours: for a quick look
+  bool scene_replaced = false;            ///< by SuiteOverrides::scene
 };
 
 /// What the command line may put in the place of a suite's own settings.
@@ -54,6 +55,10 @@ struct SuiteOverrides {
 /// Reads a suite (YAML); its paths are relative to its own folder and must exist.
 /// @throws InputError naming file, line, field and value.
 Suite load_suite(const std::filesystem::path& file, const SuiteOverrides& overrides = {});
+
+/// The same from the text of a suite whose file need not be there any more.
+Suite parse_suite(const std::string& content, const std::filesystem::path& file,
+                  const SuiteOverrides& overrides = {});
 
 std::string level_name(const std::filesystem::path& level);
 

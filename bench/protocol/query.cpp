@@ -34,10 +34,10 @@ RgbdFrame blank_frame(int width_px, int height_px, Stamp stamp_ns) {
 }
 
 QueryAnswer query(const System& frozen, std::size_t index, const FrameSource& frames,
-                  const ProtocolConfig& config, RandomStream stream) {
+                  const ProtocolConfig& config, RandomStream stream, QueryMemo* memo) {
   const RandomStream noise = stream.fork(kNoise).fork(index);
   const RandomStream draws = stream.fork(kSlam).fork(index);
-  const auto session = frozen.open_session();
+  const auto session = memo == nullptr ? frozen.open_session() : frozen.open_session_with(*memo);
 
   QueryAnswer answer;
   answer.index = index;

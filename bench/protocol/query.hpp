@@ -32,8 +32,9 @@ RgbdFrame blank_frame(int width_px, int height_px, Stamp stamp_ns);
 /// until it is lost, then the test frame up to config.query_attempts times or until a pose comes
 /// back. Noise and SLAM draw from streams keyed by (test frame, attempt) alone: the answer depends
 /// on no other query.
+/// @param memo  of frozen.make_memo(), for this query alone; null or not, the answer is the same
 QueryAnswer query(const System& frozen, std::size_t index, const FrameSource& frames,
-                  const ProtocolConfig& config, RandomStream stream);
+                  const ProtocolConfig& config, RandomStream stream, QueryMemo* memo = nullptr);
 
 /// The test frames of a sequence, in order.
 std::vector<std::size_t> test_frames(std::size_t count, const ProtocolConfig& config);

@@ -26,9 +26,8 @@ std::string processor() {
 
 }  // namespace
 
-nlohmann::ordered_json fingerprint_json() {
+nlohmann::ordered_json build_json() {
   return {{"modelhouse", MH_VERSION},
-          {"processor", processor()},
           {"compiler", __VERSION__},
           {"build_type", MH_BUILD_TYPE},
           {"embree", RTC_VERSION_STRING},
@@ -36,6 +35,12 @@ nlohmann::ordered_json fingerprint_json() {
           {"eigen",
            fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
           {"ceres", CERES_VERSION_STRING}};
+}
+
+nlohmann::ordered_json fingerprint_json() {
+  nlohmann::ordered_json json = build_json();
+  json["processor"] = processor();
+  return json;
 }
 
 }  // namespace mh

@@ -5,8 +5,11 @@
 
 namespace mh {
 
-/// Build and machine, since the last bits may depend on them: processor, compiler, build type and
-/// the versions of the libraries that compute. Part of times.json, never of results.json.
+/// Compiler, build type and the versions of the libraries that compute.
+nlohmann::ordered_json build_json();
+
+/// Build and machine, since the last bits may depend on them. Part of what tells times, never of
+/// results.json.
 nlohmann::ordered_json fingerprint_json();
 
 }  // namespace mh

@@ -4,11 +4,15 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <opencv2/core/version.hpp>
 
+#include "bench/plan/spec_json.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/protocol/loop_audit.hpp"
 #include "bench/results/fingerprint.hpp"
+#include "bench/results/scenes.hpp"
+#include "bench/store/code_version.hpp"
 
 namespace mh {
 namespace {
@@ -36,12 +40,6 @@ std::string from_suite(const Suite& suite, const std::filesystem::path& file) {
   return (here / file).lexically_normal().lexically_relative(folder).generic_string();
 }
 
-Json settings_json(const SemanticConfig& s) {
-  return {{"gamma", s.gamma},           {"xi", s.xi},
-          {"alpha", s.alpha},           {"beta", s.beta},
-          {"overlap", name(s.overlap)}, {"void_is_a_label", s.void_is_a_label}};
-}
-
 Json source_json(const Suite& suite, const std::filesystem::path& source) {
   return is_generated(source) ? source.string() : from_suite(suite, source);
 }
@@ -65,12 +63,11 @@ Json system_json(const SystemSpec& system) {
 Json sweep_json(const Sweep& sweep) {
   if (sweep.points.empty()) return nullptr;
   Json points = Json::array();
-  for (const SemanticConfig& point : sweep.points) points.push_back(settings_json(point));
+  for (const SemanticConfig& point : sweep.points) points.push_back(to_json(point));
   return {{"map", name(sweep.map)}, {"varied", sweep.varied}, {"points", points}};
 }
 
 Json suite_json(const Suite& suite) {
-  const ProtocolConfig& p = suite.protocol;
   Json levels = Json::array(), systems = Json::array(), labels = Json::array();
   Json environments = Json::array();
   for (const Environment& e : suite.environments)
@@ -87,20 +84,10 @@ Json suite_json(const Suite& suite) {
           {"trials", suite.trials},
           {"frames", suite.max_frames ? Json(*suite.max_frames) : Json()},
           {"seed", suite.seed},
-          {"slam", settings_json(suite.semantics)},
+          {"slam", to_json(suite.semantics)},
           {"parameters", sweep_json(suite.sweep)},
           {"non_inferiority_margin", number(suite.non_inferiority_margin)},
-          {"protocol",
-           {{"test_interval", p.test_interval},
-            {"rewind_frames", p.rewind_frames},
-            {"restarts_per_frame", p.restarts_per_frame},
-            {"reset", name(p.reset)},
-            {"max_effort", p.max_effort},
-            {"query_attempts", p.query_attempts},
-            {"max_blank_frames", p.max_blank_frames},
-            {"correct_distance_m", p.correct_distance_m},
-            {"correct_angle_deg", p.correct_angle_deg},
-            {"truth", name(p.truth)}}}};
+          {"protocol", to_json(suite.protocol)}};
 }
 
 Json path_json(const PathFacts& path) {
@@ -212,7 +199,7 @@ Json digests_json(const RunResult& run) {
 Json points_json(const RunResult& run) {
   Json points = Json::array();
   for (std::size_t i = 0; i < run.points.size(); ++i) {
-    Json point = {{"settings", settings_json(run.spec.points[i])}};
+    Json point = {{"settings", to_json(run.spec.points[i])}};
     for (const QuerySet set : kQuerySets) {
       Json list = Json::array();
       for (const QueryScore& q : queries(run.points[i], set)) list.push_back(query_json(q));
@@ -247,7 +234,7 @@ Json run_json(const RunResult& run) {
           {"place", place_json(run.place)},
           {"digests", digests_json(run)},
           {"mapping",
-           {{"settings", settings_json(run.spec.mapping)},
+           {{"settings", to_json(run.spec.mapping)},
             {"track_calls", m.calls.size()},
             {"failures", m.failures},
             {"restarts", m.restarts},
@@ -275,6 +262,20 @@ Json row_json(const Row& row, const Suite& suite) {
           {"held_out", summary_json(row.held_out)},
           {"second_tour", summary_json(row.second_tour)},
           {"matchers", matches_json(row.matches)}};
+}
+
+Json category_json(const CategoryRow& row, const Suite& suite) {
+  return {{"category", row.category},
+          {"level", level_name(suite.levels[row.level])},
+          {"labels", name(row.labels)},
+          {"parameters", row.parameters},
+          {"system", suite.systems[row.system].name},
+          {"scenes", row.scenes},
+          {"completeness", row.completeness},
+          {"ate_rmse_m", number(row.ate_rmse_m)},
+          {"rpe_frame_rmse_m", number(row.rpe_frame_rmse_m)},
+          {"held_out", summary_json(row.held_out)},
+          {"second_tour", summary_json(row.second_tour)}};
 }
 
 Json comparison_json(const Comparison& c) {
@@ -306,16 +307,53 @@ Json results_json(const Suite& suite, std::span<const RunResult> runs) {
       json["level"] = level_name(suite.levels[family.level]);
       comparisons.push_back(std::move(json));
     }
+  Json categories = Json::array(), over_scenes = Json::array();
+  if (suite.environments.size() > 1) {
+    for (const CategoryRow& row : make_category_rows(suite, rows))
+      categories.push_back(category_json(row, suite));
+    for (const SceneFamily& family : compare_over_scenes(suite, rows))
+      for (const Comparison& c : family.comparisons) {
+        Json json = comparison_json(c);
+        json["level"] = level_name(suite.levels[family.level]);
+        json["parameters"] = family.parameters;
+        if (suite.non_inferiority_margin && c.what.starts_with("success"))
+          json["not_inferior"] = not_inferior(c, *suite.non_inferiority_margin);
+        over_scenes.push_back(std::move(json));
+      }
+  }
   return {
       {"format", kResultsFormat},
       {"versions", {{"modelhouse", MH_VERSION}, {"compiler", __VERSION__}, {"opencv", CV_VERSION}}},
       {"suite", suite_json(suite)},
       {"rows", row_list},
       {"comparisons", comparisons},
+      {"categories", categories},
+      {"comparisons_over_scenes", over_scenes},
       {"runs", run_list}};
 }
 
-Json times_json(std::span<const RunResult> runs, double wall_s) {
+Json reproduction_json(const Suite& suite, std::span<const RunResult> runs) {
+  std::string command = "modelhouse bench " + suite.file.generic_string();
+  if (suite.scene_replaced)
+    command += " --scene " + suite.environments.front().scene.generic_string();
+  command += fmt::format(" --trials {}", suite.trials);
+  if (suite.max_frames) command += fmt::format(" --frames {}", *suite.max_frames);
+  Json seeds = Json::array(), inputs = Json::object();
+  for (int trial = 0; trial < suite.trials; ++trial)
+    seeds.push_back(suite.seed + static_cast<std::uint64_t>(trial));
+  for (const RunResult& run : runs)
+    for (const InputDigest& input : run.place.inputs)
+      inputs[run.spec.environment.name][input.name] = hex(input.digest);
+  return {{"command", command},
+          {"commit", built_commit()},
+          {"code", code_of_run()},
+          {"build_and_machine", fingerprint_json()},
+          {"suite", suite_json(suite)},
+          {"seeds", seeds},
+          {"inputs", inputs}};
+}
+
+Json times_json(std::span<const RunResult> runs) {
   Json list = Json::array();
   for (const RunResult& run : runs) {
     const TimeSummary track = summarize(run.times.track_ms);
@@ -326,7 +364,7 @@ Json times_json(std::span<const RunResult> runs, double wall_s) {
          {"track_ms", {{"median", track.median_ms}, {"p95", track.p95_ms}}},
          {"relocalize_ms", {{"median", relocalize.median_ms}, {"p95", relocalize.p95_ms}}}});
   }
-  return {{"fingerprint", fingerprint_json()}, {"wall_s", wall_s}, {"runs", list}};
+  return {{"fingerprint", fingerprint_json()}, {"runs", list}};
 }
 
 }  // namespace mh

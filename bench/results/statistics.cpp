@@ -32,6 +32,42 @@ std::vector<std::size_t> draw_blocks(std::size_t n, std::size_t block, RandomStr
   return chosen;
 }
 
+/// Difference, interval and detectable difference by a circular block bootstrap. `means` takes the
+/// resampled means, sorted; it stays empty where there are too few pairs.
+Comparison resample(std::string what, std::span<const PairedDifference> pairs, std::size_t block,
+                    bool shares, std::uint64_t seed, int resamples, std::vector<double>& means) {
+  Comparison c{.what = std::move(what)};
+  const std::size_t n = pairs.size();
+  for (const PairedDifference& q : pairs) c.pairs += q.present ? 1 : 0;
+  std::vector<std::size_t> all(n);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  c.difference = mean_difference(pairs, all);
+  if (c.pairs < 4) {
+    c.low = -INFINITY;
+    c.high = INFINITY;
+    c.detectable = INFINITY;
+    return c;
+  }
+  means.reserve(static_cast<std::size_t>(resamples));
+  for (int r = 0; r < resamples; ++r) {
+    const RandomStream stream = RandomStream(seed).fork(static_cast<std::uint64_t>(r));
+    means.push_back(mean_difference(pairs, draw_blocks(n, block, stream)));
+  }
+  std::sort(means.begin(), means.end());
+  const auto at = [&](double share) {
+    return means[static_cast<std::size_t>(share * static_cast<double>(means.size() - 1))];
+  };
+  c.low = at(0.025);
+  c.high = at(0.975);
+  double variance = 0;
+  const double centre =
+      std::accumulate(means.begin(), means.end(), 0.0) / static_cast<double>(means.size());
+  for (const double m : means) variance += (m - centre) * (m - centre);
+  c.detectable = (1.96 + 0.84) * std::sqrt(variance / (static_cast<double>(means.size()) - 1.0));
+  if (shares) c.detectable = std::max(c.detectable, 3.0 / static_cast<double>(c.pairs));
+  return c;
+}
+
 }  // namespace
 
 double median(std::vector<double> values) {
@@ -55,34 +91,11 @@ double mean(std::span<const double> values) {
 
 Comparison compare_paired(std::string what, std::span<const PairedDifference> queries, bool shares,
                           std::uint64_t seed, int resamples) {
-  Comparison c{.what = std::move(what)};
-  const std::size_t n = queries.size();
-  for (const PairedDifference& q : queries) c.pairs += q.present ? 1 : 0;
-  std::vector<std::size_t> all(n);
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  c.difference = mean_difference(queries, all);
-  if (c.pairs < 4) {
-    c.low = -INFINITY;
-    c.high = INFINITY;
-    c.detectable = INFINITY;
-    return c;
-  }
-
   const auto block = std::max<std::size_t>(
-      2, static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(n)))));
+      2, static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(queries.size())))));
   std::vector<double> means;
-  means.reserve(static_cast<std::size_t>(resamples));
-  for (int r = 0; r < resamples; ++r) {
-    const RandomStream stream = RandomStream(seed).fork(static_cast<std::uint64_t>(r));
-    means.push_back(mean_difference(queries, draw_blocks(n, block, stream)));
-  }
-  std::sort(means.begin(), means.end());
-  const auto at = [&](double share) {
-    return means[static_cast<std::size_t>(share * static_cast<double>(means.size() - 1))];
-  };
-  c.low = at(0.025);
-  c.high = at(0.975);
-
+  Comparison c = resample(std::move(what), queries, block, shares, seed, resamples, means);
+  if (means.empty()) return c;
   const double count = static_cast<double>(means.size());
   const auto not_above =
       static_cast<double>(std::upper_bound(means.begin(), means.end(), 0.0) - means.begin());
@@ -90,13 +103,54 @@ Comparison compare_paired(std::string what, std::span<const PairedDifference> qu
       static_cast<double>(std::lower_bound(means.begin(), means.end(), 0.0) - means.begin());
   const double one_sided = std::min(not_above, count - below);
   c.p = std::min(1.0, 2.0 * (one_sided + 1.0) / (count + 1.0));
-
-  double variance = 0;
-  const double centre = mean(means);
-  for (const double m : means) variance += (m - centre) * (m - centre);
-  c.detectable = (1.96 + 0.84) * std::sqrt(variance / (count - 1.0));
-  if (shares) c.detectable = std::max(c.detectable, 3.0 / static_cast<double>(c.pairs));
   return c;
+}
+
+Comparison compare_scenes(std::string what, std::span<const PairedDifference> scenes, bool shares,
+                          std::uint64_t seed, int resamples) {
+  std::vector<PairedDifference> known;
+  std::vector<double> differences;
+  for (const PairedDifference& scene : scenes)
+    if (scene.present) {
+      known.push_back(scene);
+      differences.push_back(scene.difference);
+    }
+  std::vector<double> means;
+  Comparison c = resample(std::move(what), known, 1, shares, seed, resamples, means);
+  if (!means.empty()) c.p = wilcoxon_signed_rank(differences);
+  return c;
+}
+
+double wilcoxon_signed_rank(std::span<const double> differences) {
+  std::vector<double> d;
+  for (const double difference : differences)
+    if (difference != 0) d.push_back(difference);
+  std::sort(d.begin(), d.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  // Ranks doubled, so that middle ranks are whole.
+  std::vector<std::size_t> ranks(d.size());
+  for (std::size_t first = 0; first < d.size();) {
+    std::size_t end = first;
+    while (end < d.size() && std::abs(d[end]) == std::abs(d[first])) ++end;
+    for (std::size_t i = first; i < end; ++i) ranks[i] = first + end + 1;
+    first = end;
+  }
+  const std::size_t all = std::accumulate(ranks.begin(), ranks.end(), std::size_t{0});
+  std::size_t positive = 0;
+  for (std::size_t i = 0; i < d.size(); ++i) positive += d[i] > 0 ? ranks[i] : 0;
+
+  // probability[s]: that the ranks of positive sign sum to s when each sign is a fair coin.
+  std::vector<double> probability(all + 1, 0.0);
+  probability[0] = 1.0;
+  std::size_t reached = 0;
+  for (const std::size_t rank : ranks) {
+    reached += rank;
+    for (std::size_t s = reached + 1; s-- > 0;)
+      probability[s] = 0.5 * probability[s] + (s >= rank ? 0.5 * probability[s - rank] : 0.0);
+  }
+  const std::size_t smaller = std::min(positive, all - positive);
+  double tail = 0;
+  for (std::size_t s = 0; s <= smaller; ++s) tail += probability[s];
+  return std::min(1.0, 2.0 * tail);
 }
 
 void holm(std::span<Comparison> family) {

@@ -26,15 +26,27 @@ struct PairedDifference {
 struct Comparison {
   std::string what;  ///< e.g. "success, held-out, exact labels"
   bool more_is_better = true;
-  std::size_t pairs = 0;     ///< queries where both have a value
+  std::size_t pairs = 0;     ///< queries (or scenes) where both have a value
   double difference = 0;     ///< mean of first - second
   double low = 0, high = 0;  ///< 95 % bootstrap interval
-  double p = 1;              ///< two-sided, from the bootstrap
+  double p = 1;              ///< two-sided; of queries from the bootstrap, of scenes Wilcoxon's
   double p_holm = 1;         ///< corrected over the family (see holm)
   /// The true difference that would be found with 80 % power at the 5 % level: 2.8 standard errors;
   /// for shares at least 3 / pairs, since differences of which none was seen may still be there.
   double detectable = 0;
 };
+
+/// Two-sided p of Wilcoxon's signed-rank test that paired differences are symmetric about 0
+/// (Wilcoxon, 1945). Exact: the distribution over all signs, ties by middle ranks; differences of 0
+/// are left out. 1 where nothing is left.
+double wilcoxon_signed_rank(std::span<const double> differences);
+
+/// Mean difference of two systems over scenes: scenes are independent of one another, so they are
+/// resampled one by one for the interval, and p is Wilcoxon's. Scenes where one of the two has no
+/// value are left out; with fewer than 4 left the interval stays wide open.
+/// @param scenes  per scene, the difference of the two systems' medians over trials
+Comparison compare_scenes(std::string what, std::span<const PairedDifference> scenes, bool shares,
+                          std::uint64_t seed, int resamples = 10000);
 
 /// Circular block bootstrap (Politis and Romano, 1992) of the mean difference: neighbouring queries
 /// see the same place, so blocks of max(2, n^(1/3)) consecutive ones are drawn together.

@@ -115,15 +115,12 @@ std::vector<Comparison> compare_rows(const Row& semantic, const Row& plain, std:
     };
     const auto success = [](const QueryScore& q) { return std::optional(q.success ? 1.0 : 0.0); };
     const auto correct = [](const QueryScore& q) { return std::optional(q.correct ? 1.0 : 0.0); };
-    const auto distance = [](const QueryScore& q) {
-      return q.success ? std::optional(q.distance_m) : std::nullopt;
-    };
     comparisons.push_back(
         compare_paired(label("success"), differences(semantic, plain, set, success), true, seed));
     comparisons.push_back(
         compare_paired(label("correct"), differences(semantic, plain, set, correct), true, seed));
-    comparisons.push_back(compare_paired(label("distance where both answer, m"),
-                                         differences(semantic, plain, set, distance), false, seed));
+    comparisons.push_back(
+        compare_distances(semantic, plain, set, label("distance where both answer, m"), seed));
     comparisons.back().more_is_better = false;
   }
   return comparisons;
@@ -230,6 +227,19 @@ std::vector<Family> compare_systems(const Suite& suite, std::span<const Row> row
   }
   for (Family& family : families) holm(family.comparisons);
   return families;
+}
+
+Comparison compare_distances(const Row& first, const Row& second, QuerySet set, std::string what,
+                             std::uint64_t seed) {
+  const auto distance = [](const QueryScore& q) {
+    return q.success ? std::optional(q.distance_m) : std::nullopt;
+  };
+  return compare_paired(std::move(what), differences(first, second, set, distance), false, seed);
+}
+
+Comparison compare_correct(const Row& first, const Row& second, QuerySet set, std::uint64_t seed) {
+  const auto correct = [](const QueryScore& q) { return std::optional(q.correct ? 1.0 : 0.0); };
+  return compare_paired("correct", differences(first, second, set, correct), true, seed);
 }
 
 std::array<std::optional<double>, 2> ate_over_common_frames(const Row& first, const Row& second) {

@@ -64,6 +64,13 @@ struct Family {
 /// Empty where the suite lacks one of the two.
 std::vector<Family> compare_systems(const Suite& suite, std::span<const Row> rows);
 
+/// Distances over the queries that both answered, first minus second, by blocks of queries.
+Comparison compare_distances(const Row& first, const Row& second, QuerySet set,
+                             std::string what = "", std::uint64_t seed = 0);
+
+/// Shares of correct answers likewise.
+Comparison compare_correct(const Row& first, const Row& second, QuerySet set, std::uint64_t seed);
+
 /// ATE over the frames that both tracked, median over the trials that have one: first, second.
 std::array<std::optional<double>, 2> ate_over_common_frames(const Row& first, const Row& second);
 

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "bench/results/scenes.hpp"
+
 namespace mh {
 namespace {
 
@@ -174,6 +176,16 @@ std::string block_text(const Block& block) {
          penalties(block);
 }
 
+/// Of a comparison of success where the suite states a margin.
+std::string margin_line(const Suite& suite, const Comparison& c) {
+  if (!suite.non_inferiority_margin || !c.what.starts_with("success")) return "";
+  return fmt::format("  {:<62}{} by more than the {:.3f} stated beforehand\n", "",
+                     not_inferior(c, *suite.non_inferiority_margin)
+                         ? "semantic is not worse"
+                         : "not shown that semantic is not worse",
+                     *suite.non_inferiority_margin);
+}
+
 std::string family_text(const Suite& suite, const Family& family) {
   std::string text = fmt::format(
       "\nsemantic minus plain, level {}: blocks of queries resampled, 95 % intervals, Holm over "
@@ -181,28 +193,149 @@ std::string family_text(const Suite& suite, const Family& family) {
       level_name(suite.levels[family.level]), family.comparisons.size());
   if (suite.trials == 1)
     text += "  one trial: this holds for these maps; other seeds draw other maps (--trials 10)\n";
-  for (const Comparison& c : family.comparisons) text += comparison_line(c);
+  for (const Comparison& c : family.comparisons) text += comparison_line(c) + margin_line(suite, c);
   return text;
+}
+
+/// A suite of one place: everything about it.
+std::string place_text(const Suite& suite, const std::vector<Row>& rows) {
+  std::string text;
+  for (auto first = rows.begin(); first != rows.end();) {
+    Block block{suite, {}};
+    auto end = first;
+    for (; end != rows.end() && end->level == first->level && end->labels == first->labels; ++end)
+      block.rows.push_back(&*end);
+    text += block_text(block);
+    first = end;
+  }
+  for (const Family& family : compare_systems(suite, rows)) text += family_text(suite, family);
+  return text;
+}
+
+std::string category_line(const Suite& suite, const CategoryRow& row) {
+  std::string text = fmt::format("  {:<18}{:>7}  {:<10}{:>9}{:>10}{:>10.2f}%", row.category,
+                                 row.scenes, suite.systems[row.system].name, metres(row.ate_rmse_m),
+                                 metres(row.rpe_frame_rmse_m, 5), 100 * row.completeness);
+  for (const QuerySet set : kQuerySets) {
+    const QuerySummary& s = summary(row, set);
+    if (s.queries > 0)
+      text += fmt::format("{:>12.2f}%{:>10.2f}%{:>9}", 100 * s.success, 100 * s.correct,
+                          metres(s.distance_mean_m));
+  }
+  const bool saturated =
+      suite.systems[row.system].kind == SystemKind::kPlain && row.held_out.success > kSaturated;
+  return text + (saturated ? "   saturated\n" : "\n");
+}
+
+std::string scene_family_text(const Suite& suite, const SceneFamily& family) {
+  std::string text = fmt::format(
+      "\nsemantic minus plain, level {}: scenes resampled, 95 % intervals, Wilcoxon signed-rank, "
+      "Holm over these {} comparisons\n",
+      level_name(suite.levels[family.level]), family.comparisons.size());
+  for (const Comparison& c : family.comparisons) text += comparison_line(c) + margin_line(suite, c);
+  return text;
+}
+
+/// A suite of many places, in the form of the paper's Table 1.
+std::string scenes_text(const Suite& suite, const std::vector<Row>& rows) {
+  std::string text;
+  const CategoryRow* last = nullptr;
+  const std::vector<CategoryRow> categories = make_category_rows(suite, rows);
+  for (const CategoryRow& row : categories) {
+    if (last == nullptr || last->level != row.level || last->labels != row.labels) {
+      text += fmt::format(
+          "\n{}, level {}, {} labels, {} trial{}; per scene the median over trials, then the mean "
+          "over scenes\n",
+          suite.name, level_name(suite.levels[row.level]), name(row.labels), suite.trials,
+          suite.trials == 1 ? "" : "s");
+      text += fmt::format("  {:<18}{:>7}  {:<10}{:>9}{:>10}{:>11}", "environments", "scenes",
+                          "system", "APE m", "RPE m/fr", "complete");
+      for (const QuerySet set : kQuerySets)
+        if (summary(row, set).queries > 0)
+          text +=
+              fmt::format("{:>13}{:>11}{:>9}", set == QuerySet::kHeldOut ? "held out" : "2nd tour",
+                          "correct", "dist. m");
+      text += "\n";
+    }
+    text += category_line(suite, row);
+    last = &row;
+  }
+  for (const SceneFamily& family : compare_over_scenes(suite, rows))
+    text += scene_family_text(suite, family);
+  return text;
+}
+
+/// Of each system, level, labels and query set: the point with most correct answers, beside the
+/// suite's first point. Chosen among many by the same queries, it flatters; the interval does not
+/// correct for that, so a point is taken over from tuning scenes alone.
+std::string best_points(const Suite& suite, const std::vector<Row>& rows) {
+  std::string text =
+      "\nmost correct answers, and its difference to the first point (chosen by the "
+      "same queries: confirm it on others)\n";
+  for (const Row& first : rows) {
+    if (first.parameters != 0) continue;
+    for (const QuerySet set : kQuerySets) {
+      if (summary(first, set).queries == 0) continue;
+      const Row* best = &first;
+      for (const Row& row : rows)
+        if (row.environment == first.environment && row.level == first.level &&
+            row.system == first.system && row.labels == first.labels &&
+            summary(row, set).correct > summary(*best, set).correct)
+          best = &row;
+      const SemanticConfig at =
+          settings_of(suite.systems[first.system], parameter_points(suite)[best->parameters]);
+      Comparison c = compare_correct(*best, first, set, suite.seed);
+      text += fmt::format(
+          "  {}, {} labels, {}: gamma {:.4g}, xi {:.4g}, alpha {:.4g}, beta {:.4g}: {:.2f}%, "
+          "{:+.4f} [{:+.4f}, {:+.4f}]\n",
+          suite.systems[first.system].name, name(first.labels), name(set), at.gamma, at.xi,
+          at.alpha, at.beta, 100 * summary(*best, set).correct, c.difference, c.low, c.high);
+    }
+  }
+  return text;
+}
+
+/// One line per parameter point and system, and the point that answers most.
+std::string sweep_text(const Suite& suite, const std::vector<Row>& rows) {
+  const std::vector<SemanticConfig> points = parameter_points(suite);
+  std::string text;
+  const CategoryRow* last = nullptr;
+  const std::vector<CategoryRow> categories = make_category_rows(suite, rows);
+  for (const CategoryRow& row : categories) {
+    if (row.category != "all") continue;
+    if (last == nullptr || last->level != row.level || last->labels != row.labels) {
+      text += fmt::format("\n{}, level {}, {} labels, map: {}, {} trial{}\n", suite.name,
+                          level_name(suite.levels[row.level]), name(row.labels),
+                          name(suite.sweep.map), suite.trials, suite.trials == 1 ? "" : "s");
+      text += fmt::format("  {:<10}{:>9}{:>9}{:>9}{:>9}", "system", "gamma", "xi", "alpha", "beta");
+      for (const QuerySet set : kQuerySets)
+        if (summary(row, set).queries > 0)
+          text += fmt::format("{:>13}{:>11}{:>10}{:>9}{:>11}",
+                              set == QuerySet::kHeldOut ? "held out" : "2nd tour", "correct",
+                              "false", "dist. m", "candidates");
+      text += "\n";
+    }
+    const SemanticConfig seen = settings_of(suite.systems[row.system], points[row.parameters]);
+    text += fmt::format("  {:<10}{:>9.4g}{:>9.4g}{:>9.4g}{:>9.4g}", suite.systems[row.system].name,
+                        seen.gamma, seen.xi, seen.alpha, seen.beta);
+    for (const QuerySet set : kQuerySets) {
+      const QuerySummary& s = summary(row, set);
+      if (s.queries > 0)
+        text += fmt::format("{:>12.2f}%{:>10.2f}%{:>9.2f}%{:>9}{:>11.2f}", 100 * s.success,
+                            100 * s.correct, 100 * s.wrong, metres(s.distance_mean_m), s.final);
+    }
+    text += "\n";
+    last = &row;
+  }
+  return text + best_points(suite, rows);
 }
 
 }  // namespace
 
 std::string results_table(const Suite& suite, std::span<const RunResult> runs) {
   const std::vector<Row> rows = make_rows(suite, runs);
-  std::string text;
-  for (auto first = rows.begin(); first != rows.end();) {
-    Block block{suite, {}};
-    const auto same = [&](const Row& row) {
-      return row.environment == first->environment && row.level == first->level &&
-             row.labels == first->labels && row.parameters == first->parameters;
-    };
-    auto end = first;
-    for (; end != rows.end() && same(*end); ++end) block.rows.push_back(&*end);
-    text += block_text(block);
-    first = end;
-  }
-  for (const Family& family : compare_systems(suite, rows)) text += family_text(suite, family);
-  return text;
+  if (parameter_points(suite).size() > 1) return sweep_text(suite, rows);
+  return suite.environments.size() > 1 ? scenes_text(suite, rows) : place_text(suite, rows);
 }
 
 std::string times_table(const Suite& suite, std::span<const RunResult> runs) {

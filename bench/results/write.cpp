@@ -12,15 +12,7 @@
 #include "slam/core/files.hpp"
 
 namespace mh {
-namespace {
-
 namespace fs = std::filesystem;
-
-constexpr const char* kRunFiles[] = {
-    "truth.tum",   "estimate.tum",           "map.bt", "map.pgm", "map.yaml",
-    "topdown.png", "topdown_second_tour.png"};
-
-}  // namespace
 
 void write_run(const fs::path& folder, const World& world, const RunResult& run) {
   make_output_folder(folder);
@@ -41,25 +33,11 @@ void write_views(const fs::path& file, const World& world) {
                     views_along(world.mapping.camera, *world.renderer, world.robot.camera, 6)));
 }
 
-void remove_older_results(const fs::path& folder) {
-  const fs::path results = folder / "results.json";
-  if (!fs::is_regular_file(results)) return;
-  const auto json = nlohmann::json::parse(read_file(results), nullptr, false);
-  if (!json.is_object() || !json.value("format", "").starts_with("modelhouse-results-")) return;
-  std::error_code kept;  // what cannot be removed stays
-  fs::remove(results, kept);
-  for (const auto& run : json.value("runs", nlohmann::json::array())) {
-    const fs::path name = run.value("name", "");
-    if (name.empty() || name != name.filename() || name.string().starts_with('.')) continue;
-    for (const char* file : kRunFiles) fs::remove(folder / name / file, kept);
-    fs::remove(folder / name, kept);  // only where nothing else lies in it
-  }
-}
-
 std::string write_results(const fs::path& folder, const Suite& suite,
-                          std::span<const RunResult> runs, double wall_s) {
+                          std::span<const RunResult> runs) {
   const std::string table = results_table(suite, runs);
-  write_atomically(folder / "times.json", times_json(runs, wall_s).dump(2) + "\n");
+  write_atomically(folder / "times.json", times_json(runs).dump(2) + "\n");
+  write_atomically(folder / "reproduction.json", reproduction_json(suite, runs).dump(2) + "\n");
   write_atomically(folder / "times.txt", times_table(suite, runs));
   write_atomically(folder / "table.txt", table);
   write_atomically(folder / "results.json", results_json(suite, runs).dump(2) + "\n");

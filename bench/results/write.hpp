@@ -10,10 +10,6 @@
 
 namespace mh {
 
-/// Removes results.json of an earlier execution and the files of the runs that it names, so that
-/// none is taken for a new one. Nothing else in the folder is touched.
-void remove_older_results(const std::filesystem::path& folder);
-
 /// Writes what is large about a run into its folder: truth.tum, estimate.tum, map.bt, map.pgm,
 /// map.yaml and topdown.png. Each file appears whole or not at all.
 void write_run(const std::filesystem::path& folder, const World& world, const RunResult& run);
@@ -24,6 +20,6 @@ void write_views(const std::filesystem::path& file, const World& world);
 /// Writes what a suite's runs gave together: results.json, times.json, table.txt, times.txt.
 /// @returns the printed table.
 std::string write_results(const std::filesystem::path& folder, const Suite& suite,
-                          std::span<const RunResult> runs, double wall_s);
+                          std::span<const RunResult> runs);
 
 }  // namespace mh

@@ -2,6 +2,9 @@
 #include "bench/systems/ours.hpp"
 
 #include <cassert>
+#include <map>
+#include <optional>
+#include <tuple>
 #include <utility>
 
 namespace mh {
@@ -17,6 +20,41 @@ class OurSession : public RelocalizationSession {
  private:
   const SlamState& frozen_;  // outlived by the system that opened the session
   Tracker tracker_;
+};
+
+/// Of one query: what is known of each attempt, by its stream and by the settings that matter.
+class OurMemo : public QueryMemo {
+ public:
+  LocalizeMemo& of(RandomStream stream, const SemanticConfig& settings) {
+    return known_[{stream.key(), settings.xi, settings.void_is_a_label}];
+  }
+
+ private:
+  std::map<std::tuple<std::uint64_t, double, bool>, LocalizeMemo> known_;
+};
+
+/// A session that uses a memo as long as it is lost.
+class RememberingSession : public RelocalizationSession {
+ public:
+  RememberingSession(const SlamState& frozen, OurMemo& memo) : frozen_(frozen), memo_(memo) {}
+
+  StepReport feed(const RgbdFrame& frame, RandomStream stream) override {
+    if (found_) {  // a frame after that in which it was found: hardly ever asked for
+      localize(frozen_, tracker_, found_->first, found_->second);
+      found_.reset();
+    }
+    if (tracker_.tracking()) return localize(frozen_, tracker_, frame, stream);
+    const StepReport report =
+        localize(frozen_, frame, stream, memo_.of(stream, frozen_.config.semantics));
+    if (report.status != TrackStatus::kLost) found_.emplace(frame, stream);
+    return report;
+  }
+
+ private:
+  const SlamState& frozen_;
+  OurMemo& memo_;
+  Tracker tracker_;
+  std::optional<std::pair<RgbdFrame, RandomStream>> found_;  ///< not yet in tracker_
 };
 
 class OurSystem : public System {
@@ -37,9 +75,14 @@ class OurSystem : public System {
     mh::set_query_settings(state_, settings);
   }
   Trajectory trajectory() const override { return mh::trajectory(state_); }
+  std::unique_ptr<QueryMemo> make_memo() const override { return std::make_unique<OurMemo>(); }
   std::unique_ptr<RelocalizationSession> open_session() const override {
     assert(frozen_);
     return std::make_unique<OurSession>(state_);
+  }
+  std::unique_ptr<RelocalizationSession> open_session_with(QueryMemo& memo) const override {
+    assert(frozen_);
+    return std::make_unique<RememberingSession>(state_, static_cast<OurMemo&>(memo));
   }
 
  private:

@@ -20,6 +20,13 @@ class RelocalizationSession {
   virtual StepReport feed(const RgbdFrame& frame, RandomStream stream) = 0;
 };
 
+/// What a system keeps of one query between sessions that differ in settings alone; opaque. It
+/// spares work and changes no answer.
+class QueryMemo {
+ public:
+  virtual ~QueryMemo() = default;
+};
+
 /// A SLAM system under test, as the protocol drives it. It sees frames and nothing else.
 class System {
  public:
@@ -40,6 +47,15 @@ class System {
   virtual Trajectory trajectory() const = 0;
   /// A new session that starts lost. Call freeze() first.
   virtual std::unique_ptr<RelocalizationSession> open_session() const = 0;
+  /// An empty memo for one query; null where the system has no use for one.
+  virtual std::unique_ptr<QueryMemo> make_memo() const { return nullptr; }
+  /// open_session() with what is known of this query.
+  /// @param memo  made by make_memo(), for this query alone; outlives the session
+  virtual std::unique_ptr<RelocalizationSession> open_session_with(QueryMemo& memo) const;
 };
+
+inline std::unique_ptr<RelocalizationSession> System::open_session_with(QueryMemo&) const {
+  return open_session();
+}
 
 }  // namespace mh

@@ -23,8 +23,12 @@ class TamperedSystem : public System {
     inner_->set_query_settings(settings);
   }
   Trajectory trajectory() const override { return inner_->trajectory(); }
+  std::unique_ptr<QueryMemo> make_memo() const override { return inner_->make_memo(); }
   std::unique_ptr<RelocalizationSession> open_session() const override {
     return inner_->open_session();
+  }
+  std::unique_ptr<RelocalizationSession> open_session_with(QueryMemo& memo) const override {
+    return inner_->open_session_with(memo);
   }
 
  private:

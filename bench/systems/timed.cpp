@@ -43,7 +43,16 @@ StepReport TimedSystem::track(const RgbdFrame& frame, RandomStream stream) {
 }
 
 std::unique_ptr<RelocalizationSession> TimedSystem::open_session() const {
-  return std::make_unique<TimedSession>(inner_->open_session(), [this](double ms) {
+  return timed(inner_->open_session());
+}
+
+std::unique_ptr<RelocalizationSession> TimedSystem::open_session_with(QueryMemo& memo) const {
+  return timed(inner_->open_session_with(memo));
+}
+
+std::unique_ptr<RelocalizationSession> TimedSystem::timed(
+    std::unique_ptr<RelocalizationSession> inner) const {
+  return std::make_unique<TimedSession>(std::move(inner), [this](double ms) {
     const std::lock_guard lock(mutex_);
     relocalize_ms_.push_back(ms);
   });

@@ -29,10 +29,14 @@ class TimedSystem : public System {
   }
   Trajectory trajectory() const override { return inner_->trajectory(); }
   std::unique_ptr<RelocalizationSession> open_session() const override;
+  std::unique_ptr<RelocalizationSession> open_session_with(QueryMemo& memo) const override;
+  std::unique_ptr<QueryMemo> make_memo() const override { return inner_->make_memo(); }
 
   CallTimes times() const;
 
  private:
+  std::unique_ptr<RelocalizationSession> timed(std::unique_ptr<RelocalizationSession> inner) const;
+
   std::unique_ptr<System> inner_;
   std::vector<double> track_ms_;
   mutable std::mutex mutex_;  // sessions of one system may run side by side

@@ -8,6 +8,7 @@
 
 #include "bench/protocol/digest.hpp"
 #include "bench/results/json.hpp"
+#include "slam/core/error.hpp"
 
 namespace mh {
 namespace {
@@ -108,15 +109,22 @@ ExecutionDigests digests(const Suite& suite, std::span<const RunResult> runs) {
   return d;
 }
 
-Verification verify(const Suite& suite, RunOptions options) {
-  const auto tell = std::exchange(options.progress, {});
+Verification verify(const Suite& suite, const SuiteOverrides& overrides, BenchOptions options) {
+  const auto tell = std::exchange(options.progress, [](double, std::size_t, std::size_t) {});
   const auto execute = [&](int jobs, double share_before) {
     options.say(fmt::format("executing with {} job{}", jobs, jobs == 1 ? "" : "s"));
+    const TemporaryFolder folder(std::filesystem::temp_directory_path());
+    options.out = folder.path();
+    options.cache.reset();
     options.jobs = jobs;
-    options.progress = [&tell, share_before](double share) {
-      if (tell) tell(share_before + 0.5 * share);
+    options.progress = [&](double share, std::size_t done, std::size_t failed) {
+      tell(share_before + 0.5 * share, done, failed);
     };
-    return run_all(suite, options);
+    BenchResults results = run_suite(suite, overrides, options);
+    if (!results.failed.empty())
+      throw MachineError(
+          fmt::format("{}: {}", results.failed.front().run, results.failed.front().error));
+    return std::move(results.runs);
   };
   const std::vector<RunResult> first = execute(kFewJobs, 0.0);
   const std::vector<RunResult> second = execute(kManyJobs, 0.5);

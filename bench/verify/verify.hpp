@@ -39,8 +39,9 @@ struct Verification {
   std::optional<Difference> difference;
 };
 
-/// Executes a suite twice from the files on, once with 1 job and once with 4, sharing nothing, and
-/// compares.
-Verification verify(const Suite& suite, RunOptions options);
+/// Executes a suite twice from the files on, once with 1 job and once with 4, sharing nothing (no
+/// store, no cache), and compares.
+/// @throws MachineError if a run failed.
+Verification verify(const Suite& suite, const SuiteOverrides& overrides, BenchOptions options);
 
 }  // namespace mh

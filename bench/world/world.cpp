@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include <fmt/format.h>
 
 #include "bench/metrics/errors.hpp"
 #include "bench/protocol/digest.hpp"
+#include "bench/results/fingerprint.hpp"
+#include "bench/store/code_version.hpp"
+#include "bench/store/run_key.hpp"
 #include "scenes/load.hpp"
 #include "sim/render/bake.hpp"
 #include "sim/sensors/shutter.hpp"
@@ -17,25 +21,6 @@
 
 namespace mh {
 namespace {
-
-std::vector<InputDigest> digest_inputs(const RunSpec& spec) {
-  std::vector<InputDigest> inputs;
-  const auto add = [&](std::string name, const std::filesystem::path& source) {
-    const std::string content = is_generated(source) ? source.string() : read_file(source);
-    inputs.push_back({std::move(name), digest_bytes(content.data(), content.size())});
-  };
-  add("scene", spec.environment.scene);
-  add("robot", spec.environment.robot);
-  add("mapping_tour", spec.environment.mapping_tour);
-  if (spec.environment.query_tour) add("query_tour", *spec.environment.query_tour);
-  if (spec.environment.query_scene) add("query_scene", *spec.environment.query_scene);
-  if (spec.environment.kidnapped_tour) add("kidnapped_tour", *spec.environment.kidnapped_tour);
-  if (spec.environment.sensors) add("sensors", *spec.environment.sensors);
-  if (spec.environment.walk) add("walk", *spec.environment.walk);
-  add("vocabulary", spec.vocabulary);
-  add("level", spec.level);
-  return inputs;
-}
 
 /// @throws InputError where the source is one that no code makes yet.
 void check_available(const std::filesystem::path& source, const char* what) {
@@ -82,13 +67,27 @@ DrivenPath joined(DrivenPath first, const DrivenPath& second, double rate_hz) {
   return first;
 }
 
-void light_scene(Scene& scene, int threads) {
-  if (scene.light.empty() && !scene.lights.empty()) bake_light(scene, {.threads = threads});
+void light_scene(Scene& scene, int threads, const Cache& cache) {
+  if (!scene.light.empty() || scene.lights.empty()) return;
+  const BakeConfig config{.threads = threads};
+  const std::string key = text_key(fmt::format(
+      "{} {} {} {} {} {} {} {}", code_of_light(), fingerprint_json().dump(), hex(digest(scene)),
+      config.samples, config.bounces, config.sun_samples, config.smoothing, config.seed));
+  const std::string light = cache.get("light", key, [&] {
+    bake_light(scene, config);
+    return std::string(reinterpret_cast<const char*>(scene.light.data()),
+                       scene.light.size() * sizeof(Eigen::Vector3f));
+  });
+  if (light.size() != scene.positions_m.size() * sizeof(Eigen::Vector3f))
+    throw MachineError(fmt::format("{}: holds an entry that does not fit its key: remove it",
+                                   cache.folder().string()));
+  scene.light.resize(scene.positions_m.size());
+  std::memcpy(static_cast<void*>(scene.light.data()), light.data(), light.size());
 }
 
-Scene load_lit_scene(const std::filesystem::path& file, int threads) {
+Scene load_lit_scene(const std::filesystem::path& file, int threads, const Cache& cache) {
   Scene scene = load_scene(file);
-  light_scene(scene, threads);
+  light_scene(scene, threads, cache);
   return scene;
 }
 
@@ -119,12 +118,20 @@ PlaceFacts facts(const World& world) {
   return f;
 }
 
-World build_world(const RunSpec& spec, int threads, const Say& say) {
-  // What is cheap to check comes first, so that a slip is told within a second.
+void check_inputs(const RunSpec& spec) {
   const Environment& environment = spec.environment;
   check_available(environment.scene, "scene");
   check_available(environment.mapping_tour, "tour");
   if (environment.query_tour) check_available(*environment.query_tour, "tour");
+  load_robot(environment.robot);
+  load_sensor_config(spec.level);
+  load_tour(environment.mapping_tour);
+  if (environment.query_tour) load_tour(*environment.query_tour);
+}
+
+World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say) {
+  const Environment& environment = spec.environment;
+  check_inputs(spec);
   World world;
   world.inputs = digest_inputs(spec);
   const auto shorten = [&](DrivenPath& path) {
@@ -143,7 +150,7 @@ World build_world(const RunSpec& spec, int threads, const Say& say) {
   if (environment.walk) walk = load_walk(*environment.walk);
 
   say(fmt::format("scene {}", environment.scene.string()));
-  auto scene = std::make_shared<const Scene>(load_lit_scene(environment.scene, threads));
+  auto scene = std::make_shared<const Scene>(load_lit_scene(environment.scene, threads, cache));
   world.scene = scene;
   world.renderer = make_scene_renderer(*scene);
   if (walk)

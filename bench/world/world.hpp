@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/cache/cache.hpp"
 #include "bench/plan/runs.hpp"
 #include "bench/results/run_result.hpp"
 #include "robots/model/robot.hpp"
@@ -49,11 +50,11 @@ bool cut(DrivenPath& path, std::size_t max_frames);
 /// One path after the other, without a way between them: the stamps go on at the camera's rate.
 DrivenPath joined(DrivenPath first, const DrivenPath& second, double rate_hz);
 
-/// Bakes the light of a scene that has lamps but no baked light.
-void light_scene(Scene& scene, int threads);
+/// Gives a scene that has lamps but no baked light its light, from the cache where it is there.
+void light_scene(Scene& scene, int threads, const Cache& cache = Cache());
 
 /// A scene ready to be looked at: loaded and lit. @throws InputError naming file and place.
-Scene load_lit_scene(const std::filesystem::path& file, int threads);
+Scene load_lit_scene(const std::filesystem::path& file, int threads, const Cache& cache = Cache());
 
 /// A renderer with the exposure that suits the scene; one that shows its own colours unlit is shown
 /// as it is.
@@ -63,6 +64,10 @@ std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene,
 
 /// Loads scene, robot, vocabulary and level of a run, bakes the light, drives both tours.
 /// @throws InputError if a file is bad or a tour cannot be driven.
-World build_world(const RunSpec& spec, int threads, const Say& say);
+World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say);
+
+/// Whether robot, level, tours and generated sources of a run can be read: what can be told within
+/// a second. @throws InputError if not.
+void check_inputs(const RunSpec& spec);
 
 }  // namespace mh

@@ -60,6 +60,27 @@ void rewind(SlamState& state);
 StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& frame,
                     RandomStream stream, const StepObservers& observers = {});
 
+/// What localizations of one frame under one stream, each from a lost tracker, may share while xi
+/// and the policy on void stay the same: features, words, attempts at candidates, refined poses.
+/// Settings that choose other candidates (gamma, alpha, beta, overlap) then cost their choice
+/// alone.
+class LocalizeMemo {
+ public:
+  LocalizeMemo();
+  ~LocalizeMemo();
+  LocalizeMemo(LocalizeMemo&&) noexcept;
+
+ private:
+  friend StepReport localize(const SlamState&, const RgbdFrame&, RandomStream, LocalizeMemo&);
+  struct Content;
+  std::unique_ptr<Content> content_;
+};
+
+/// localize() from a lost tracker that is not needed afterwards, with what is known already.
+/// @param memo  of the same frame, stream and map, and of no other xi or policy on void
+StepReport localize(const SlamState& frozen, const RgbdFrame& frame, RandomStream stream,
+                    LocalizeMemo& memo);
+
 /// From now on the frozen map answers with these settings: its keyframes' vectors (equation 1) are
 /// weighed anew where gamma or the policy on void changes.
 /// @throws InputError naming the setting that is out of range.

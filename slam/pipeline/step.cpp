@@ -340,6 +340,68 @@ StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& 
   return report;
 }
 
+struct LocalizeMemo::Content {
+  /// What came of the winner: its pose in the local map, and the counts of getting it.
+  struct Refined {
+    std::optional<SE3> camera_from_world;
+    int inliers = 0;
+    MatchCounts counts{};
+  };
+  std::optional<PreparedFrame> frame;
+  double gamma = 0;  ///< of the frame's words
+  AttemptMemo attempts;
+  std::map<KeyframeId, Refined> refined;
+};
+LocalizeMemo::LocalizeMemo() : content_(std::make_unique<Content>()) {}
+LocalizeMemo::~LocalizeMemo() = default;
+LocalizeMemo::LocalizeMemo(LocalizeMemo&&) noexcept = default;
+
+StepReport localize(const SlamState& frozen, const RgbdFrame& frame, RandomStream stream,
+                    LocalizeMemo& memo) {
+  LocalizeMemo::Content& known = *memo.content_;
+  const SlamConfig& config = frozen.config;
+  if (!known.frame)
+    known.frame =
+        prepare(frame.stamp_ns, extract(frame, frozen.camera, config.features), frozen.camera);
+  if (known.gamma != config.semantics.gamma) known.frame->words.reset();
+  known.gamma = config.semantics.gamma;
+
+  const StepObservers observers;
+  StepReport report;
+  report.keypoints = static_cast<int>(known.frame->features.size());
+  const RelocalizationResult found =
+      relocalize(with_words(*known.frame, frozen, observers), frozen.map, frozen.camera,
+                 config.features, config.semantics, config.match, config.relocalize, stream,
+                 report.matches, nullptr, &known.attempts);
+  report.relocalization = found.stage;
+  report.candidates = found.candidates;
+  if (!found.camera_from_world) return report;
+
+  const auto [place, is_new] = known.refined.try_emplace(found.keyframe);
+  LocalizeMemo::Content::Refined& refined = place->second;
+  if (is_new) {
+    const TrackContext context{frozen.map,   frozen.camera, config.features, config.semantics,
+                               config.match, config.pose,   config.track,    nullptr};
+    StepReport of_refining;
+    if (const auto located = confirm_in_local_map(
+            frozen, *known.frame, {*found.camera_from_world, found.landmarks, found.inliers},
+            config.relocalize.min_inliers, context, observers, of_refining)) {
+      refined.camera_from_world = located->tracked.camera_from_world;
+      refined.inliers = located->tracked.inliers;
+    }
+    refined.counts = of_refining.matches;
+  }
+  for (std::size_t m = 0; m < report.matches.size(); ++m) report.matches[m] += refined.counts[m];
+  if (!refined.camera_from_world) {
+    report.relocalization = RelocalizationStage::kInliers;
+    return report;
+  }
+  report.status = TrackStatus::kRelocalized;
+  report.inliers = refined.inliers;
+  report.world_from_camera = refined.camera_from_world->inverse();
+  return report;
+}
+
 void set_query_settings(SlamState& frozen, const SemanticConfig& settings) {
   SemanticConfig& own = frozen.config.semantics;
   const bool same_vectors =

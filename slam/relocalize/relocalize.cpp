@@ -32,12 +32,7 @@ int overlap(const InvertedIndex::Score& score, Overlap what) {
   return score.shared_words;
 }
 
-struct Attempt {
-  RelocalizationStage stage = RelocalizationStage::kMatches;
-  SE3 camera_from_world;
-  std::vector<LandmarkId> landmarks;
-  int inliers = 0;
-};
+using Attempt = CandidateAttempt;
 
 /// Relocalizes against one candidate keyframe.
 class CandidateTrial {
@@ -211,16 +206,25 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
                                     const FeatureConfig& features, const SemanticConfig& semantics,
                                     const MatchConfig& match, const RelocalizeConfig& config,
                                     RandomStream stream, MatchCounts& counts,
-                                    PlaceMatchers matchers, MatchTrace* trace) {
+                                    PlaceMatchers matchers, MatchTrace* trace, AttemptMemo* memo) {
   RelocalizationResult result;
-  CandidateTrial trial(query, map, camera, features, semantics, match, config, counts, matchers,
-                       trace);
+  AttemptMemo own;
+  AttemptMemo& known = memo != nullptr ? *memo : own;
   for (const KeyframeId candidate : candidates) {
-    Attempt attempt = trial.run(candidate, stream.fork(candidate.value));
+    const auto [place, is_new] = known.try_emplace(candidate);
+    if (is_new) {
+      MatchCounts its_counts{};
+      CandidateTrial trial(query, map, camera, features, semantics, match, config, its_counts,
+                           matchers, trace);
+      place->second = trial.run(candidate, stream.fork(candidate.value));
+      place->second.counts = its_counts;
+    }
+    const Attempt& attempt = place->second;
+    for (std::size_t m = 0; m < counts.size(); ++m) counts[m] += attempt.counts[m];
     result.stage = std::max(result.stage, attempt.stage);
     if (attempt.stage != RelocalizationStage::kVerified) continue;
     result.camera_from_world = attempt.camera_from_world;
-    result.landmarks = std::move(attempt.landmarks);
+    result.landmarks = attempt.landmarks;
     result.inliers = attempt.inliers;
     result.keyframe = candidate;
     break;
@@ -231,12 +235,13 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
 RelocalizationResult relocalize(const Query& query, const Map& map, const Camera& camera,
                                 const FeatureConfig& features, const SemanticConfig& semantics,
                                 const MatchConfig& match, const RelocalizeConfig& config,
-                                RandomStream stream, MatchCounts& counts, MatchTrace* trace) {
+                                RandomStream stream, MatchCounts& counts, MatchTrace* trace,
+                                AttemptMemo* memo) {
   const auto selection = select_keyframes(map, query.words.vector, semantics);
   std::vector<KeyframeId> candidates;
   for (const auto& candidate : selection.candidates) candidates.push_back(candidate.keyframe);
   RelocalizationResult result = try_candidates(query, candidates, map, camera, features, semantics,
-                                               match, config, stream, counts, {}, trace);
+                                               match, config, stream, counts, {}, trace, memo);
   result.candidates = {.keyframes = map.keyframe_count(),
                        .c1 = selection.c1,
                        .c2 = selection.c2,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -62,14 +63,29 @@ struct PlaceMatchers {
   Matcher projection = Matcher::kRelocalizationProjection;
 };
 
+/// What came of trying one candidate.
+struct CandidateAttempt {
+  RelocalizationStage stage = RelocalizationStage::kMatches;
+  SE3 camera_from_world;
+  std::vector<LandmarkId> landmarks;  ///< per feature
+  int inliers = 0;
+  MatchCounts counts{};  ///< of this attempt alone
+};
+
+/// Attempts of one query under one stream and one xi against the candidates that were tried so far:
+/// searches that merely choose other candidates need not make them again.
+using AttemptMemo = std::map<KeyframeId, CandidateAttempt>;
+
 /// Tries candidate keyframes in order: matches by words, PnP with RANSAC, refinement, guided
-/// search. The first that holds wins; `candidates` of the result stays empty.
+/// search. The first that holds wins; `candidates` of the result stays empty. A memo changes
+/// nothing but the work.
 RelocalizationResult try_candidates(const Query& query, std::span<const KeyframeId> candidates,
                                     const Map& map, const Camera& camera,
                                     const FeatureConfig& features, const SemanticConfig& semantics,
                                     const MatchConfig& match, const RelocalizeConfig& config,
                                     RandomStream stream, MatchCounts& counts,
-                                    PlaceMatchers matchers = {}, MatchTrace* trace = nullptr);
+                                    PlaceMatchers matchers = {}, MatchTrace* trace = nullptr,
+                                    AttemptMemo* memo = nullptr);
 
 /// Finds the camera in the map without any guess: Algorithm 1 chooses the candidates, in order of
 /// score.
@@ -77,6 +93,6 @@ RelocalizationResult relocalize(const Query& query, const Map& map, const Camera
                                 const FeatureConfig& features, const SemanticConfig& semantics,
                                 const MatchConfig& match, const RelocalizeConfig& config,
                                 RandomStream stream, MatchCounts& counts,
-                                MatchTrace* trace = nullptr);
+                                MatchTrace* trace = nullptr, AttemptMemo* memo = nullptr);
 
 }  // namespace mh

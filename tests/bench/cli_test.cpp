@@ -93,8 +93,8 @@ class CommandLine : public testing::Test {
 TEST_F(CommandLine, EveryCommandHasHelpWithAnExample) {
   for (const char* command :
        {"", "bench", "verify", "evaluate", "scene", "scene info", "scene preview", "scene convert",
-        "drive", "render", "slam", "vocabulary", "vocabulary train", "vocabulary convert",
-        "vocabulary info"}) {
+        "drive", "render", "slam", "merge", "export", "vocabulary", "vocabulary train",
+        "vocabulary convert", "vocabulary info"}) {
     EXPECT_EQ(run(std::string(command) + " --help"), 0) << command;
     EXPECT_NE(out_.find("Example"), std::string::npos) << command;
     EXPECT_NE(out_.find("  modelhouse "), std::string::npos) << command;

@@ -8,9 +8,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "bench/results/json.hpp"
+#include "bench/results/scenes.hpp"
 #include "bench/results/table.hpp"
 #include "bench/results/trajectory_score.hpp"
 #include "bench/results/write.hpp"
@@ -245,6 +247,46 @@ TEST(Verify, SeesAnotherPath) {
   EXPECT_EQ(describe(*difference), "semantic-exact-fake-0: world: path differs");
 }
 
+TEST(Scenes, MeansAreOfMediansAndScenesArePaired) {
+  Place place;
+  place.suite.environments.push_back(place.suite.environments[0]);
+  place.suite.environments[1].name = "other";
+  place.suite.environments.push_back(place.suite.environments[0]);
+  place.suite.environments[2].name = "hall";
+  place.suite.environments[2].category = "hall";
+  place.suite.trials = 3;
+  std::vector<RunResult> runs = place.run();
+  ASSERT_EQ(runs.size(), 27u);
+  // Completeness of the plain system in the first scene: 0.2, 0.5, 0.9; elsewhere 1.
+  int trial = 0;
+  const double completeness[] = {0.2, 0.9, 0.5};
+  for (RunResult& run : runs)
+    if (run.spec.system.name == "plain" && run.spec.environment.name == "fake")
+      run.trajectory.completeness = completeness[trial++];
+  const std::vector<Row> rows = make_rows(place.suite, runs);
+  const std::vector<CategoryRow> categories = make_category_rows(place.suite, rows);
+  std::vector<std::string> seen;
+  for (const CategoryRow& row : categories)
+    if (row.labels == LabelMode::kExact && place.suite.systems[row.system].name == "plain")
+      seen.push_back(fmt::format("{} {} {}", row.category, row.scenes, row.completeness));
+  EXPECT_EQ(seen,
+            (std::vector<std::string>{"fake 2 0.75", "hall 1 1", "all 3 0.8333333333333334"}));
+  const std::vector<SceneFamily> families = compare_over_scenes(place.suite, rows);
+  ASSERT_EQ(families.size(), 1u);
+  EXPECT_EQ(families[0].comparisons[0].what, "success, held_out, exact labels");
+  EXPECT_EQ(families[0].comparisons[0].pairs, 3u) << "scenes, not queries";
+  EXPECT_NE(results_table(place.suite, runs).find("Wilcoxon"), std::string::npos);
+}
+
+TEST(Scenes, NotInferiorNeedsTheWholeIntervalAboveTheMargin) {
+  Comparison c{.what = "success"};
+  c.low = -0.03;
+  EXPECT_TRUE(not_inferior(c, 0.05));
+  EXPECT_FALSE(not_inferior(c, 0.03));
+  c.low = -INFINITY;
+  EXPECT_FALSE(not_inferior(c, 1.0)) << "too few scenes";
+}
+
 TEST(Results, WhatIsUndeterminedIsNull) {
   const Place place;  // its path is straight: no alignment by SE(3)
   const std::vector<RunResult> runs = place.run();
@@ -286,22 +328,6 @@ TEST(Results, PathsDoNotDependOnTheSuitesSpelling) {
   };
   for (const char* folder : {"", ".", "suites", "../suites", "/suites"})
     EXPECT_EQ(scene(folder), "../scenes/house.yaml") << folder;
-}
-
-TEST(Results, OlderRunsAreRemovedAndNothingElse) {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::temp_directory_path() / ("mh_older_" + std::to_string(getpid()));
-  fs::create_directories(folder / "old");
-  fs::create_directories(folder / "mine");
-  for (const char* file : {"old/truth.tum", "old/topdown.png", "mine/truth.tum"})
-    std::ofstream(folder / file) << "x";
-  std::ofstream(folder / "results.json")
-      << R"({"format": "modelhouse-results-1", "runs": [{"name": "old"}, {"name": "../mine"}]})";
-  remove_older_results(folder);
-  EXPECT_FALSE(fs::exists(folder / "old"));
-  EXPECT_FALSE(fs::exists(folder / "results.json"));
-  EXPECT_TRUE(fs::exists(folder / "mine/truth.tum"));
-  fs::remove_all(folder);
 }
 
 TEST(ResultsTable, HasThePapersFormAndMarksASaturatedTable) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/results/statistics.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace mh {
@@ -67,6 +69,41 @@ TEST(ComparePaired, IsAFunctionOfItsSeed) {
   for (int i = 0; i < 60; ++i) values.push_back({0.1 * (i * 37 % 11 - 4), i % 7 != 0});
   EXPECT_EQ(compare_paired("x", values, false, 3).low, compare_paired("x", values, false, 3).low);
   EXPECT_NE(compare_paired("x", values, false, 3).p, 0);
+}
+
+TEST(Wilcoxon, AgreesWithCountingAllSigns) {
+  // Five differences of one sign: 2 of the 32 sign patterns are as extreme.
+  EXPECT_DOUBLE_EQ(wilcoxon_signed_rank(std::vector<double>{1, 2, 3, 4, 5}), 2.0 / 32);
+  // Positive ranks 4 + 5 = 9 of 15: sums of at most 6 come from 13 subsets of {1 .. 5}.
+  EXPECT_DOUBLE_EQ(wilcoxon_signed_rank(std::vector<double>{-1, -2, -3, 4, 5}), 2 * 13.0 / 32);
+  // Ties take middle ranks, zeros none: ranks 1.5, 1.5, 3, all positive.
+  EXPECT_DOUBLE_EQ(wilcoxon_signed_rank(std::vector<double>{1, 1, 2, 0}), 2.0 / 8);
+  EXPECT_EQ(wilcoxon_signed_rank(std::vector<double>{0, 0}), 1.0);
+  EXPECT_EQ(wilcoxon_signed_rank({}), 1.0);
+  EXPECT_EQ(wilcoxon_signed_rank(std::vector<double>{-2, 2}), 1.0);
+}
+
+TEST(Wilcoxon, NearsTheNormalDistributionForManyScenes) {
+  std::vector<double> d;
+  for (int i = 1; i <= 200; ++i) d.push_back(i % 5 == 0 ? -i : i);
+  double positive = 0;
+  for (const double x : d) positive += x > 0 ? x : 0;  // |d| are the ranks
+  const double mean = 200 * 201 / 4.0, sd = std::sqrt(200 * 201 * 401 / 24.0);
+  const double p = std::erfc((positive - 0.5 - mean) / sd / std::sqrt(2.0));
+  EXPECT_NEAR(wilcoxon_signed_rank(d) / p, 1.0, 0.1);
+}
+
+TEST(CompareScenes, ScenesAreIndependentAndThoseWithoutAValueAreLeftOut) {
+  std::vector<PairedDifference> scenes = all_equal_to(0.1, 20);
+  for (std::size_t i = 0; i < 20; i += 2) scenes[i].difference = 0.3;
+  const Comparison full = compare_scenes("x", scenes, false, 1);
+  EXPECT_NEAR(full.difference, 0.2, 1e-12);
+  EXPECT_NEAR(full.high - full.low, 2 * 1.96 * 0.1 / std::sqrt(20.0), 0.02);
+  EXPECT_LT(full.p, 1e-4);
+  scenes.push_back({99, false});
+  const Comparison same = compare_scenes("x", scenes, false, 1);
+  EXPECT_EQ(same.pairs, 20u);
+  EXPECT_EQ(same.low, full.low);
 }
 
 TEST(Holm, CorrectsByRankAndStaysMonotone) {

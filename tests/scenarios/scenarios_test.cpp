@@ -45,7 +45,7 @@ RunFigures run(const RunSpec& spec, const World& world, const Fault& fault) {
 GateResult judge(const std::string& scenario, const Fault& fault,
                  SystemKind system = SystemKind::kPlain) {
   const RunSpec spec = first_run(scenario, system);
-  const World world = build_world(spec, 1, [](std::string_view) {});
+  const World world = build_world(spec, 1, Cache(), [](std::string_view) {});
   const std::vector before = {run(spec, world, {})};
   const std::vector after = {run(spec, world, fault)};
   GateResult result = compare(before, after, ci().gate, false);

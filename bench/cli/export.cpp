@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bench/cli/commands.hpp"
+#include "bench/store/export.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh::cli {
+namespace {
+
+struct Options {
+  std::string store, format = "csv", out;
+};
+
+void run(const Options& options) {
+  const Store store = Store::open_existing(options.store);
+  const std::string text = options.format == "csv"    ? export_csv(store)
+                           : options.format == "json" ? export_json(store)
+                                                      : export_latex(store);
+  if (options.out.empty())
+    fmt::print("{}", text);
+  else
+    write_atomically(options.out, text);
+}
+
+}  // namespace
+
+void add_export(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("export", "Results of a suite as CSV, JSON or LaTeX.");
+  command->add_option("store", options->store, "results.sqlite, or the folder that holds it")
+      ->required();
+  command
+      ->add_option("--format", options->format,
+                   "csv: a line per run and parameter point; json: "
+                   "every table; latex: the rows of the table")
+      ->check(CLI::IsMember({"csv", "json", "latex"}));
+  command->add_option("--out", options->out, "File (default: standard output)");
+  command->footer("Example:\n  modelhouse export out/model_house --format csv --out runs.csv");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace mh::cli

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bench/cli/commands.hpp"
+#include "bench/cli/finish.hpp"
+#include "bench/run.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string out;
+  std::vector<std::string> in;
+  bool json = false;
+};
+
+/// Folders of runs and pictures that the output does not hold yet.
+void copy_files(const fs::path& from, const fs::path& to) {
+  for (const auto& entry : fs::directory_iterator(from)) {
+    const std::string name = entry.path().filename().string();
+    const bool run = entry.is_directory() && fs::exists(entry.path() / "estimate.tum");
+    const bool views = name.starts_with("views") && name.ends_with(".png");
+    if ((run || views) && !fs::exists(to / name))
+      fs::copy(entry.path(), to / name, fs::copy_options::recursive);
+  }
+}
+
+void run(const Options& options) {
+  for (const std::string& in : options.in)
+    if (!fs::is_regular_file(fs::path(in) / "results.sqlite"))
+      throw InputError(fmt::format("{}: holds no results.sqlite", in));
+  make_output_folder(options.out);
+  Store store(fs::path(options.out) / "results.sqlite");
+  for (const std::string& in : options.in) {
+    if (fs::equivalent(in, options.out)) continue;
+    store.merge(fs::path(in) / "results.sqlite");
+    copy_files(in, options.out);
+  }
+  const Suite suite = store.planned_suite();
+  finish(options.out, suite, load_results(store, suite), options.json);
+}
+
+}  // namespace
+
+void add_merge(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "merge", "Puts the results of a suite's shards together; prints the table.");
+  command->add_option("out", options->out, "Folder for all results; may hold some already")
+      ->required();
+  command->add_option("in", options->in, "Folders of `bench --shard i/n`")->required();
+  command->add_flag("--json", options->json, "Prints results.json instead of the table");
+  command->footer(
+      "Example:\n"
+      "  modelhouse bench bench/suites/model_house.yaml --shard 1/2 --out out/part1\n"
+      "  modelhouse bench bench/suites/model_house.yaml --shard 2/2 --out out/part2\n"
+      "  modelhouse merge out/all out/part1 out/part2");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace mh::cli

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bench/cli/commands.hpp"
+#include "bench/jobs/run_process.hpp"
+#include "bench/run.hpp"
+
+namespace mh::cli {
+namespace {
+
+struct Options {
+  std::string description, store, folder, cache, views, key;
+  int threads = 1;
+  int parent = 0;
+};
+
+void run(const Options& options) {
+  if (options.parent != 0) die_with(options.parent);
+  int last = -1;
+  carry_out({.description = options.description,
+             .store = options.store,
+             .folder = options.folder,
+             .cache = options.cache,
+             .key = options.key,
+             .views = options.views,
+             .threads = options.threads,
+             .progress = [&](double share) {
+               const int step = static_cast<int>(200 * share);
+               if (step == last) return;
+               last = step;
+               fmt::print("{:.4f}\n", share);
+               std::fflush(stdout);
+             }});
+}
+
+}  // namespace
+
+void add_run_one(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("run-one", "One run of a suite: what `bench` starts for each.");
+  command->group("");  // for bench alone: not listed
+  command->add_option("description", options->description)->required();
+  command->add_option("--store", options->store)->required();
+  command->add_option("--key", options->key)->required();
+  command->add_option("--folder", options->folder)->required();
+  command->add_option("--cache", options->cache);
+  command->add_option("--views", options->views)->required();
+  command->add_option("--threads", options->threads);
+  command->add_option("--parent", options->parent);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace mh::cli

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bench/plan/runs.hpp"
+#include "bench/store/store.hpp"
+
+namespace mh {
+
+/// Thrown when the user ended the work (Ctrl-C, SIGTERM): every process is gone, what is finished
+/// is kept.
+struct Interrupted {
+  int signal = 0;
+};
+
+/// A run and the key of its result.
+struct Job {
+  RunSpec spec;
+  std::string key;
+};
+
+struct PoolOptions {
+  int jobs = 1;                 ///< processes side by side; never changes a result
+  double time_limit_s = 14400;  ///< wall time of one run; 0 = none
+  double memory_limit_mb = 0;   ///< resident set of one run; 0 = none
+  std::filesystem::path executable;
+  std::filesystem::path work_folder;  ///< for logs and descriptions of runs; exists
+  /// The command line of a run's process. It finishes by putting the result into the store.
+  std::function<std::vector<std::string>(const Job&, const std::filesystem::path& description)>
+      arguments;
+  std::function<void(std::string_view)> say = [](std::string_view) {};
+  /// Share of all runs done in [0, 1], runs done, runs failed.
+  std::function<void(double, std::size_t, std::size_t)> progress = [](double, std::size_t,
+                                                                      std::size_t) {};
+};
+
+/// Works off the runs that the store does not hold yet, each in a process of its own, and returns
+/// when it holds all of them, done or failed. Runs that another process has claimed are left to it
+/// and waited for.
+///
+/// - A further process starts only while the memory that the running ones still need (by what was
+///   measured of finished ones) and its own are available; one always runs.
+/// - A run that ends by itself in any way but well is a failure and stays one. One that was killed
+///   from outside (SIGKILL, SIGTERM: the kernel out of memory, an impatient scheduler) is tried
+///   once more, alone.
+/// @throws Interrupted on Ctrl-C or SIGTERM.
+void work_off(Store& store, std::vector<Job> jobs, const PoolOptions& options);
+
+}  // namespace mh

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/store/store.hpp"
+
+namespace mh {
+
+/// How a process ended.
+struct ProcessEnd {
+  bool good = false;
+  int signal = 0;       ///< that ended it; 0 = it returned
+  int code = 0;         ///< that it returned
+  std::string message;  ///< the last line of its standard error
+  RunCost cost;
+};
+
+/// A process of our own executable that works off one run. It dies with this one. What it prints on
+/// standard output are shares of the work done, one per line.
+class RunProcess {
+ public:
+  /// @param log  file for its standard error
+  RunProcess(const std::filesystem::path& executable, const std::vector<std::string>& arguments,
+             std::filesystem::path log);
+  /// Kills it if it still runs.
+  ~RunProcess();
+  RunProcess(const RunProcess&) = delete;
+  RunProcess& operator=(const RunProcess&) = delete;
+
+  /// Its end, once; nullopt while it runs.
+  std::optional<ProcessEnd> poll();
+  void kill();
+
+  double share() const { return share_; }  ///< of its work done, as of the last poll
+  double age_s() const;
+  double rss_mb() const;
+  int output() const { return output_; }  ///< readable when it told something
+
+ private:
+  void read_shares();
+
+  std::filesystem::path log_;
+  pid_t process_ = -1;
+  int output_ = -1;
+  std::string unread_;
+  double share_ = 0;
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// Called by such a process: it is killed when `parent` dies.
+void die_with(pid_t parent);
+
+}  // namespace mh

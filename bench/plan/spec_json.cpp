@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/plan/spec_json.hpp"
+
+#include <fmt/format.h>
+
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The enumerator whose name() is the word.
+template <class T>
+T named(const Json& word, std::initializer_list<T> values) {
+  for (const T value : values)
+    if (name(value) == word.get<std::string>()) return value;
+  throw InputError(fmt::format("'{}' is no known word", word.get<std::string>()));
+}
+
+template <class T>
+Json optional_json(const std::optional<T>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json to_json(const SystemSpec& system) {
+  const OutsideProgram& p = system.outside;
+  Json json = {{"kind", name(system.kind)}, {"name", system.name}};
+  if (system.kind == SystemKind::kOutside)
+    json["outside"] = {{"command", p.command},
+                       {"mode", name(p.mode)},
+                       {"folder", p.folder.string()},
+                       {"run_limit_s", p.run_limit_s},
+                       {"answer_limit_s", p.answer_limit_s},
+                       {"memory_limit_mb", p.memory_limit_mb}};
+  return json;
+}
+
+SystemSpec system_from_json(const Json& json) {
+  SystemSpec system{.kind = named(json.at("kind"), {SystemKind::kSemantic, SystemKind::kPlain,
+                                                    SystemKind::kOutside}),
+                    .name = json.at("name"),
+                    .outside = {}};
+  if (system.kind == SystemKind::kOutside) {
+    const Json& p = json.at("outside");
+    system.outside = {
+        .name = system.name,
+        .command = p.at("command"),
+        .mode = named(p.at("mode"), {OutsideMode::kTrajectory, OutsideMode::kConversation}),
+        .folder = p.at("folder").get<std::string>(),
+        .run_limit_s = p.at("run_limit_s"),
+        .answer_limit_s = p.at("answer_limit_s"),
+        .memory_limit_mb = p.at("memory_limit_mb")};
+  }
+  return system;
+}
+
+Json path_json(const std::optional<std::filesystem::path>& path) {
+  return path ? Json(path->string()) : Json();
+}
+
+std::optional<std::filesystem::path> path_from_json(const Json& json) {
+  if (json.is_null()) return std::nullopt;
+  return json.get<std::string>();
+}
+
+Json to_json(const Environment& e) {
+  return {{"name", e.name},
+          {"category", e.category},
+          {"scene", e.scene.string()},
+          {"robot", e.robot.string()},
+          {"mapping_tour", e.mapping_tour.string()},
+          {"query_tour", path_json(e.query_tour)},
+          {"query_scene", path_json(e.query_scene)},
+          {"kidnapped_tour", path_json(e.kidnapped_tour)},
+          {"sensors", path_json(e.sensors)},
+          {"walk", path_json(e.walk)}};
+}
+
+Environment environment_from_json(const Json& json) {
+  return {.name = json.at("name"),
+          .category = json.at("category"),
+          .scene = json.at("scene").get<std::string>(),
+          .robot = json.at("robot").get<std::string>(),
+          .mapping_tour = json.at("mapping_tour").get<std::string>(),
+          .query_tour = path_from_json(json.at("query_tour")),
+          .query_scene = path_from_json(json.at("query_scene")),
+          .kidnapped_tour = path_from_json(json.at("kidnapped_tour")),
+          .sensors = path_from_json(json.at("sensors")),
+          .walk = path_from_json(json.at("walk"))};
+}
+
+ProtocolConfig protocol_from_json(const Json& p) {
+  return {.test_interval = p.at("test_interval"),
+          .rewind_frames = p.at("rewind_frames"),
+          .restarts_per_frame = p.at("restarts_per_frame"),
+          .reset = named(p.at("reset"), {DropReset::kCounter, DropReset::kMap}),
+          .max_effort = p.at("max_effort"),
+          .query_attempts = p.at("query_attempts"),
+          .max_blank_frames = p.at("max_blank_frames"),
+          .correct_distance_m = p.at("correct_distance_m"),
+          .correct_angle_deg = p.at("correct_angle_deg"),
+          .truth = named(p.at("truth"), {QueryTruth::kLocal, QueryTruth::kInterpolated})};
+}
+
+RunSpec read(const Json& json) {
+  RunSpec spec;
+  spec.name = json.at("name");
+  spec.environment = environment_from_json(json.at("environment"));
+  spec.level = json.at("level").get<std::string>();
+  spec.vocabulary = json.at("vocabulary").get<std::string>();
+  spec.system = system_from_json(json.at("system"));
+  spec.labels = named(json.at("labels"), {LabelMode::kNone, LabelMode::kExact, LabelMode::kBoxes,
+                                          LabelMode::kDetector});
+  spec.trial = json.at("trial");
+  spec.seed = json.at("seed");
+  spec.mapping = semantics_from_json(json.at("mapping"));
+  for (const Json& point : json.at("points")) spec.points.push_back(semantics_from_json(point));
+  spec.protocol = protocol_from_json(json.at("protocol"));
+  if (!json.at("max_frames").is_null()) spec.max_frames = json.at("max_frames").get<std::size_t>();
+  return spec;
+}
+
+}  // namespace
+
+Json to_json(const SemanticConfig& s) {
+  return {{"gamma", s.gamma},           {"xi", s.xi},
+          {"alpha", s.alpha},           {"beta", s.beta},
+          {"overlap", name(s.overlap)}, {"void_is_a_label", s.void_is_a_label}};
+}
+
+Json to_json(const ProtocolConfig& p) {
+  return {{"test_interval", p.test_interval},
+          {"rewind_frames", p.rewind_frames},
+          {"restarts_per_frame", p.restarts_per_frame},
+          {"reset", name(p.reset)},
+          {"max_effort", p.max_effort},
+          {"query_attempts", p.query_attempts},
+          {"max_blank_frames", p.max_blank_frames},
+          {"correct_distance_m", p.correct_distance_m},
+          {"correct_angle_deg", p.correct_angle_deg},
+          {"truth", name(p.truth)}};
+}
+
+Json to_json(const RunSpec& spec) {
+  Json points = Json::array();
+  for (const SemanticConfig& point : spec.points) points.push_back(to_json(point));
+  return {{"name", spec.name},
+          {"environment", to_json(spec.environment)},
+          {"level", spec.level.string()},
+          {"vocabulary", spec.vocabulary.string()},
+          {"system", to_json(spec.system)},
+          {"labels", name(spec.labels)},
+          {"trial", spec.trial},
+          {"seed", spec.seed},
+          {"mapping", to_json(spec.mapping)},
+          {"points", points},
+          {"protocol", to_json(spec.protocol)},
+          {"max_frames", optional_json(spec.max_frames)}};
+}
+
+SemanticConfig semantics_from_json(const Json& s) {
+  return {
+      .gamma = s.at("gamma"),
+      .xi = s.at("xi"),
+      .alpha = s.at("alpha"),
+      .beta = s.at("beta"),
+      .overlap = named(s.at("overlap"), {Overlap::kLabels, Overlap::kAugmented, Overlap::kWords}),
+      .void_is_a_label = s.at("void_is_a_label")};
+}
+
+RunSpec run_spec_from_json(const Json& json) {
+  try {
+    return read(json);
+  } catch (const Json::exception& error) {
+    throw InputError(fmt::format("run description: {}", error.what()));
+  }
+}
+
+}  // namespace mh

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/results/scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace mh {
+namespace {
+
+std::optional<double> mean_of_known(const std::vector<std::optional<double>>& values) {
+  std::vector<double> known;
+  for (const auto& value : values)
+    if (value) known.push_back(*value);
+  return known.empty() ? std::nullopt : std::optional(mean(known));
+}
+
+QuerySummary mean_summary(const std::vector<const Row*>& scenes, QuerySet set) {
+  std::vector<const QuerySummary*> all;
+  for (const Row* row : scenes)
+    if (summary(*row, set).queries > 0) all.push_back(&summary(*row, set));
+  QuerySummary m;
+  if (all.empty()) return m;
+  for (double QuerySummary::*field :
+       {&QuerySummary::queries, &QuerySummary::success, &QuerySummary::correct,
+        &QuerySummary::wrong, &QuerySummary::attempts, &QuerySummary::keyframes, &QuerySummary::c1,
+        &QuerySummary::c2, &QuerySummary::c3, &QuerySummary::final, &QuerySummary::single_candidate,
+        &QuerySummary::label_mass}) {
+    std::vector<double> values;
+    for (const QuerySummary* s : all) values.push_back(s->*field);
+    m.*field = mean(values);
+  }
+  for (std::optional<double> QuerySummary::*field :
+       {&QuerySummary::distance_mean_m, &QuerySummary::distance_median_m,
+        &QuerySummary::aligned_distance_mean_m}) {
+    std::vector<std::optional<double>> values;
+    for (const QuerySummary* s : all) values.push_back(s->*field);
+    m.*field = mean_of_known(values);
+  }
+  return m;
+}
+
+CategoryRow together(std::string category, const std::vector<const Row*>& scenes) {
+  const Row& any = *scenes.front();
+  CategoryRow c;
+  c.category = std::move(category);
+  c.level = any.level;
+  c.system = any.system;
+  c.parameters = any.parameters;
+  c.labels = any.labels;
+  c.scenes = scenes.size();
+  std::vector<double> completeness;
+  std::vector<std::optional<double>> ate, rpe;
+  for (const Row* row : scenes) {
+    completeness.push_back(row->trajectory.completeness);
+    ate.push_back(row->trajectory.ate_rmse_m);
+    rpe.push_back(row->trajectory.rpe_frame_rmse_m);
+  }
+  c.completeness = mean(completeness);
+  c.ate_rmse_m = mean_of_known(ate);
+  c.rpe_frame_rmse_m = mean_of_known(rpe);
+  c.held_out = mean_summary(scenes, QuerySet::kHeldOut);
+  c.second_tour = mean_summary(scenes, QuerySet::kSecondTour);
+  return c;
+}
+
+std::vector<std::string> categories(const Suite& suite) {
+  std::vector<std::string> names;
+  for (const Environment& e : suite.environments)
+    if (std::find(names.begin(), names.end(), e.category) == names.end())
+      names.push_back(e.category);
+  return names;
+}
+
+/// Rows of one system, one per environment; null where it has none.
+std::vector<const Row*> scenes_of(const Suite& suite, std::span<const Row> rows, std::size_t level,
+                                  LabelMode labels, std::size_t parameters, std::size_t system) {
+  std::vector<const Row*> scenes(suite.environments.size(), nullptr);
+  for (const Row& row : rows)
+    if (row.level == level && row.labels == labels && row.parameters == parameters &&
+        row.system == system)
+      scenes[row.environment] = &row;
+  return scenes;
+}
+
+PairedDifference between(const std::optional<double>& a, const std::optional<double>& b) {
+  return a && b ? PairedDifference{*a - *b, true} : PairedDifference{};
+}
+
+/// Semantic minus plain in one scene.
+using Measure = PairedDifference (*)(const Row&, const Row&, QuerySet);
+
+template <double QuerySummary::*kField>
+PairedDifference share(const Row& a, const Row& b, QuerySet set) {
+  if (summary(a, set).queries == 0 || summary(b, set).queries == 0) return {};
+  return {summary(a, set).*kField - summary(b, set).*kField, true};
+}
+
+PairedDifference distance(const Row& a, const Row& b, QuerySet set) {
+  const Comparison c = compare_distances(a, b, set);
+  return c.pairs > 0 ? PairedDifference{c.difference, true} : PairedDifference{};
+}
+
+PairedDifference ate(const Row& a, const Row& b, QuerySet) {
+  const auto [first, second] = ate_over_common_frames(a, b);
+  return between(first, second);
+}
+
+std::vector<Comparison> compare(const std::vector<const Row*>& semantic,
+                                const std::vector<const Row*>& plain, LabelMode labels,
+                                std::uint64_t seed) {
+  std::vector<Comparison> comparisons;
+  const auto add = [&](const std::string& what, Measure measure, QuerySet set, bool shares,
+                       bool more_is_better) {
+    std::vector<PairedDifference> differences;
+    for (std::size_t i = 0; i < semantic.size(); ++i)
+      differences.push_back(semantic[i] != nullptr && plain[i] != nullptr
+                                ? measure(*semantic[i], *plain[i], set)
+                                : PairedDifference{});
+    comparisons.push_back(compare_scenes(what, differences, shares, seed));
+    comparisons.back().more_is_better = more_is_better;
+    if (comparisons.back().pairs == 0) comparisons.pop_back();
+  };
+  for (const QuerySet set : kQuerySets) {
+    const auto what = [&](const char* measure) {
+      return fmt::format("{}, {}, {} labels", measure, name(set), name(labels));
+    };
+    add(what("success"), share<&QuerySummary::success>, set, true, true);
+    add(what("correct"), share<&QuerySummary::correct>, set, true, true);
+    add(what("false"), share<&QuerySummary::wrong>, set, true, false);
+    add(what("distance where both answer, m"), distance, set, false, false);
+  }
+  add(fmt::format("ATE where both track, m, {} labels", name(labels)), ate, QuerySet::kHeldOut,
+      false, false);
+  return comparisons;
+}
+
+std::optional<std::size_t> system_of(const Suite& suite, SystemKind kind) {
+  for (std::size_t s = 0; s < suite.systems.size(); ++s)
+    if (suite.systems[s].kind == kind) return s;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<CategoryRow> make_category_rows(const Suite& suite, std::span<const Row> rows) {
+  std::vector<std::string> groups = categories(suite);
+  groups.emplace_back("all");
+  std::vector<CategoryRow> result;
+  for (std::size_t level = 0; level < suite.levels.size(); ++level)
+    for (const LabelMode labels : suite.labels)
+      for (std::size_t p = 0; p < parameter_points(suite).size(); ++p)
+        for (std::size_t g = 0; g < groups.size(); ++g)
+          for (std::size_t s = 0; s < suite.systems.size(); ++s) {
+            std::vector<const Row*> scenes = scenes_of(suite, rows, level, labels, p, s);
+            std::erase_if(scenes, [&](const Row* row) {
+              return row == nullptr || (g + 1 < groups.size() &&
+                                        suite.environments[row->environment].category != groups[g]);
+            });
+            if (!scenes.empty()) result.push_back(together(groups[g], scenes));
+          }
+  return result;
+}
+
+std::vector<SceneFamily> compare_over_scenes(const Suite& suite, std::span<const Row> rows) {
+  std::vector<SceneFamily> families;
+  const auto semantic = system_of(suite, SystemKind::kSemantic);
+  const auto plain = system_of(suite, SystemKind::kPlain);
+  if (!semantic || !plain) return families;
+  for (std::size_t level = 0; level < suite.levels.size(); ++level)
+    for (std::size_t p = 0; p < parameter_points(suite).size(); ++p) {
+      SceneFamily family{level, p, {}};
+      for (const LabelMode labels : suite.labels)
+        for (Comparison& c :
+             compare(scenes_of(suite, rows, level, labels, p, *semantic),
+                     scenes_of(suite, rows, level, labels, p, *plain), labels, suite.seed))
+          family.comparisons.push_back(std::move(c));
+      if (family.comparisons.empty()) continue;
+      holm(family.comparisons);
+      families.push_back(std::move(family));
+    }
+  return families;
+}
+
+bool not_inferior(const Comparison& success, double margin) {
+  return std::isfinite(success.low) && success.low > -margin;
+}
+
+}  // namespace mh

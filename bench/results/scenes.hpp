@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/results/summary.hpp"
+
+namespace mh {
+
+/// The scenes of one category taken together, in the form of the paper's Table 1: of each scene the
+/// median over trials (a Row), of these the mean.
+struct CategoryRow {
+  std::string category;  ///< "all" for all of them
+  std::size_t level = 0, system = 0, parameters = 0;
+  LabelMode labels = LabelMode::kNone;
+  std::size_t scenes = 0;
+  double completeness = 0;
+  std::optional<double> ate_rmse_m, rpe_frame_rmse_m;  ///< over the scenes that have one
+  QuerySummary held_out, second_tour;                  ///< over the scenes with such queries
+};
+inline const QuerySummary& summary(const CategoryRow& row, QuerySet set) {
+  return set == QuerySet::kHeldOut ? row.held_out : row.second_tour;
+}
+
+/// By level, labels, parameters and category (in the order of their first environments, "all"
+/// last), then system.
+std::vector<CategoryRow> make_category_rows(const Suite& suite, std::span<const Row> rows);
+
+/// Semantic minus plain over scenes, paired: one family per level and parameter point, corrected
+/// by Holm. Success, correct, false, distance over the queries that both answered, ATE over the
+/// frames that both tracked.
+struct SceneFamily {
+  std::size_t level = 0, parameters = 0;
+  std::vector<Comparison> comparisons;
+};
+std::vector<SceneFamily> compare_over_scenes(const Suite& suite, std::span<const Row> rows);
+
+/// Whether the interval of a share stays above -margin: not inferior by more than that.
+bool not_inferior(const Comparison& success, double margin);
+
+}  // namespace mh

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/store/code_version.hpp"
+
+#include "code_version_made.hpp"
+
+namespace mh {
+
+std::string_view code_of_light() {
+  return MH_CODE_LIGHT;
+}
+std::string_view code_of_run() {
+  return MH_CODE_RUN;
+}
+std::string_view built_commit() {
+  return MH_COMMIT;
+}
+
+}  // namespace mh

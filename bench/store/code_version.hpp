@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+namespace mh {
+
+/// Digest of the sources that decide a scene's baked light.
+std::string_view code_of_light();
+/// Digest of the sources that decide what a run gives.
+std::string_view code_of_run();
+/// `git describe` of what was built; empty outside a repository.
+std::string_view built_commit();
+
+}  // namespace mh

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/store/guard.hpp"
+
+#include <sqlite3.h>
+
+#include <fmt/format.h>
+
+#include "slam/core/error.hpp"
+
+namespace mh {
+
+void throw_meaning(const std::filesystem::path& file, const SQLite::Exception& error) {
+  const std::string name = file.string();
+  switch (error.getErrorCode()) {
+    case SQLITE_FULL:
+      throw MachineError(fmt::format(
+          "{}: the disk is full: make room and run again, what is finished is kept", name));
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+      throw InputError(fmt::format(
+          "{}: is damaged or no results file: put back a copy, or move it away and run again",
+          name));
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      throw MachineError(fmt::format(
+          "{}: another process does not let go of it: wait or end it, then run again", name));
+    case SQLITE_CANTOPEN:
+    case SQLITE_PERM:
+    case SQLITE_READONLY:
+      throw InputError(
+          fmt::format("{}: cannot be opened for writing: check folder and permissions", name));
+    default:
+      throw MachineError(
+          fmt::format("{}: {}: run again, what is finished is kept", name, error.what()));
+  }
+}
+
+}  // namespace mh

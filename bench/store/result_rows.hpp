@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/results/run_result.hpp"
+
+namespace mh {
+
+// A run as rows of the tables of schema.hpp, both ways. All within the caller's transaction.
+
+void put_run(SQLite::Database& db, const std::string& key, const RunSpec& spec,
+             const std::string& error, const std::string& result);
+void put_rows(SQLite::Database& db, const std::string& key, const RunResult& run);
+void forget_rows(SQLite::Database& db, const std::string& key);
+RunResult load_rows(SQLite::Database& db, const std::string& key, const RunSpec& spec);
+
+/// Times of all calls: not part of what is compared.
+nlohmann::ordered_json calls_json(const CallTimes& times);
+
+}  // namespace mh

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/results/run_result.hpp"
+
+namespace mh {
+
+/// Digests of the content of the files that a run reads. Beside a mesh, the files that share its
+/// name (labels, materials) are part of it.
+/// @throws InputError naming a file that cannot be read.
+std::vector<InputDigest> digest_inputs(const RunSpec& spec);
+
+/// xxh3-128, 32 hexadecimal digits, of everything that determines a run's result: its resolved
+/// settings without names and paths, the digests of its input files, the code, the compiler and the
+/// libraries that compute.
+std::string run_key(const RunSpec& spec);
+
+/// The spec as it is kept beside a result: names instead of paths, so that it is the same wherever
+/// the files lie.
+std::string stored_spec(const RunSpec& spec);
+
+/// xxh3-128 of a text, in hexadecimal.
+std::string text_key(std::string_view text);
+
+}  // namespace mh

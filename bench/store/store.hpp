@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/plan/suite.hpp"
+#include "bench/results/run_result.hpp"
+
+namespace SQLite {
+class Database;
+}
+
+namespace mh {
+
+/// What a run cost; differs from one execution to the next.
+struct RunCost {
+  double wall_s = 0;
+  double cpu_s = 0;  ///< user and system time of its process
+  // Of the wall time:
+  double slam_s = 0;    ///< inside the system under test
+  double frames_s = 0;  ///< making its frames
+  double max_rss_mb = 0;
+};
+
+enum class RunStatus { kDone, kFailed };
+
+/// The results of a suite in one SQLite file (docs/store.md). A result is put in one transaction:
+/// it is there as a whole or not at all, whenever a process dies. Several processes may use one
+/// file. Errors tell what to do: InputError for a file that is damaged, of a newer schema or no
+/// results file, MachineError for a full disk or a file that another process will not let go.
+class Store {
+ public:
+  /// Opens or creates the file.
+  explicit Store(std::filesystem::path file);
+  ~Store();
+  Store(Store&&) noexcept;
+  /// Opens a file that must be there. @throws InputError if it is not.
+  static Store open_existing(const std::filesystem::path& file);
+
+  /// Remembers the suite and which result belongs to which of its runs, in the place of what was
+  /// remembered before. Results stay.
+  void plan(const Suite& suite, const SuiteOverrides& overrides,
+            const std::vector<std::pair<std::string, std::string>>& key_of_name);
+  /// The suite that was remembered. @throws InputError if there is none, or if its files are gone.
+  Suite planned_suite() const;
+  std::vector<std::pair<std::string, std::string>> planned_keys() const;  ///< name, key; in order
+
+  std::optional<RunStatus> status(const std::string& key) const;
+  /// Error of a failed run; empty if it did not fail.
+  std::string error(const std::string& key) const;
+
+  /// Takes a run that is neither finished nor being worked on; a claim whose process has died, or
+  /// has not shown itself for kClaimLife_s from another host, is taken over.
+  bool claim(const std::string& key);
+  void release(const std::string& key);
+  void beat();  ///< this process's claims are alive
+  static constexpr int kClaimLife_s = 120;
+
+  /// Each ends the claim. A failed run's result takes no part in the tables.
+  void put(const std::string& key, const RunResult& run, const RunCost& cost);
+  void put_failure(const std::string& key, const RunSpec& spec, const std::string& error,
+                   const RunCost& cost);
+  void forget_failure(const std::string& key);
+
+  /// A finished run; `spec` supplies names and paths. Without its volume and grid.
+  RunResult load(const std::string& key, const RunSpec& spec) const;
+  /// The largest resident set of a finished run, MB; 0 of none.
+  double largest_rss_mb() const;
+
+  /// Takes over what another store holds and this one lacks. @throws InputError if a run of one
+  /// name was planned with different settings, code or input.
+  void merge(const std::filesystem::path& other);
+
+  /// Rows of a query, for exports: column names first. Numbers are printed so that they read back.
+  std::vector<std::vector<std::string>> rows(const std::string& sql) const;
+
+  const std::filesystem::path& file() const { return file_; }
+
+ private:
+  std::filesystem::path file_;
+  std::unique_ptr<SQLite::Database> database_;
+};
+
+/// The number that prints as itself: shortest text that reads back as the same double.
+std::string exact(double value);
+
+}  // namespace mh

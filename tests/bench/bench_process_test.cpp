@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+// `modelhouse bench` with real processes over a small room: what is promised of stores, shards,
+// crashes, limits and signals.
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string content(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+const fs::path& test_folder() {
+  static const struct Folder {
+    fs::path path = fs::temp_directory_path() / ("mh_process_" + std::to_string(getpid()));
+    Folder() { fs::create_directories(path); }
+    ~Folder() { fs::remove_all(path); }
+  } folder;
+  return folder.path;
+}
+
+/// A suite of three short runs, or of what `systems` says.
+fs::path write_suite(const std::string& name = "small",
+                     const std::string& systems = "[semantic, plain]",
+                     const std::string& more = "") {
+  const std::string root = MH_SOURCE_DIR;
+  const fs::path file = test_folder() / (name + ".yaml");
+  std::ofstream(file) << "environments:\n- {category: room, scene: " << root
+                      << "/bench/scenarios/room.yaml, mapping_tour: " << root
+                      << "/bench/scenarios/tours/room.yaml, query_tour: " << root
+                      << "/bench/scenarios/tours/room_query.yaml}\nrobot: " << root
+                      << "/bench/scenarios/robot.yaml\nvocabulary: " << root
+                      << "/assets/vocabulary.mhvoc\nlevels: [" << root
+                      << "/sim/sensors/levels/pepper.yaml]\nsystems: " << systems
+                      << "\nlabels: [exact, boxes]\nprotocol: {test_interval: 10}\n"
+                      << more;
+  return file;
+}
+
+class Command {
+ public:
+  explicit Command(const std::string& arguments) {
+    process_ = fork();
+    if (process_ != 0) return;
+    const int out = open((test_folder() / "stdout").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    const int err = open((test_folder() / "stderr").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    dup2(out, STDOUT_FILENO);
+    dup2(err, STDERR_FILENO);
+    execl("/bin/sh", "sh", "-c", ("exec " MH_EXECUTABLE " " + arguments).c_str(), nullptr);
+    _exit(127);
+  }
+  void signal(int number) const { kill(process_, number); }
+  bool running() { return !ended_ && !(ended_ = waitpid(process_, &status_, WNOHANG) == process_); }
+  int wait() {
+    if (!ended_) waitpid(process_, &status_, 0);
+    ended_ = true;
+    return WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_);
+  }
+  /// Its processes, by their parent.
+  std::vector<pid_t> children() const {
+    std::vector<pid_t> found;
+    for (const auto& entry : fs::directory_iterator("/proc")) {
+      const std::string stat = content(entry.path() / "stat");
+      const auto after = stat.rfind(')');
+      if (after == std::string::npos) continue;
+      std::istringstream fields(stat.substr(after + 2));
+      char state = 0;
+      pid_t parent = 0;
+      fields >> state >> parent;
+      if (parent == process_ && state != 'Z')
+        found.push_back(std::stoi(entry.path().filename().string()));
+    }
+    return found;
+  }
+
+ private:
+  pid_t process_ = -1;
+  bool ended_ = false;
+  int status_ = 0;
+};
+
+std::string bench(const fs::path& suite, const std::string& out, const std::string& more = "") {
+  return "bench " + suite.string() + " --frames 45 --cache " + (test_folder() / "cache").string() +
+         " --out " + (test_folder() / out).string() + " " + more;
+}
+
+int run(const std::string& arguments) {
+  return Command(arguments).wait();
+}
+
+std::string errors() {
+  return content(test_folder() / "stderr");
+}
+
+/// Everything that must not depend on how the work was done.
+std::string tables(const std::string& out) {
+  const fs::path folder = test_folder() / out;
+  EXPECT_EQ(run("export " + folder.string() + " --format json"), 0) << errors();
+  return content(folder / "results.json") + content(folder / "table.txt") +
+         content(test_folder() / "stdout");
+}
+
+/// The tables of a run that nobody disturbed.
+const std::string& undisturbed() {
+  static const std::string kTables = [] {
+    EXPECT_EQ(run(bench(write_suite(), "plain_run")), 0) << errors();
+    return tables("plain_run");
+  }();
+  return kTables;
+}
+
+TEST(BenchProcess, JobsAndShardsChangeNoByte) {
+  ASSERT_GT(undisturbed().size(), 10000u);
+  EXPECT_EQ(run(bench(write_suite(), "two_jobs", "--jobs 2")), 0) << errors();
+  EXPECT_EQ(tables("two_jobs"), undisturbed());
+  std::string shards;
+  for (const char* i : {"1", "2", "3"}) {
+    const std::string out = std::string("shard") + i;
+    EXPECT_EQ(run(bench(write_suite(), out, std::string("--shard ") + i + "/3")), 0) << errors();
+    shards += " " + (test_folder() / out).string();
+  }
+  EXPECT_EQ(run("merge " + (test_folder() / "merged").string() + shards), 0) << errors();
+  EXPECT_EQ(tables("merged"), undisturbed());
+}
+
+TEST(BenchProcess, AFinishedRunIsNotRepeated) {
+  undisturbed();
+  EXPECT_EQ(run(bench(write_suite(), "plain_run")), 0);
+  EXPECT_NE(errors().find("3 runs, 0 of them to do"), std::string::npos) << errors();
+  EXPECT_EQ(tables("plain_run"), undisturbed());
+}
+
+TEST(BenchProcess, KilledAtRandomMomentsItGoesOnAndLosesNothing) {
+  std::mt19937 random(7);
+  int kills = 0;
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    Command command(bench(write_suite(), "killed", "--jobs 2"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200 + random() % 1200));
+    if (!command.running()) break;
+    command.signal(SIGKILL);
+    command.wait();
+    ++kills;
+  }
+  EXPECT_GT(kills, 0);
+  EXPECT_EQ(run(bench(write_suite(), "killed")), 0) << errors();
+  EXPECT_EQ(tables("killed"), undisturbed());
+}
+
+TEST(BenchProcess, TwoProcessesShareOneStore) {
+  Command one(bench(write_suite(), "shared")), two(bench(write_suite(), "shared"));
+  EXPECT_EQ(one.wait(), 0) << errors();
+  EXPECT_EQ(two.wait(), 0) << errors();
+  EXPECT_EQ(tables("shared"), undisturbed());
+}
+
+TEST(BenchProcess, ARunKilledFromOutsideIsTriedAgain) {
+  Command command(bench(write_suite(), "outside"));
+  bool killed = false;
+  for (int i = 0; i < 400 && !killed && command.running(); ++i) {
+    for (const pid_t child : command.children()) killed = kill(child, SIGKILL) == 0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(command.wait(), 0) << errors();
+  EXPECT_TRUE(killed);
+  EXPECT_NE(errors().find("was killed from outside"), std::string::npos) << errors();
+  EXPECT_EQ(tables("outside"), undisturbed());
+}
+
+TEST(BenchProcess, CtrlCEndsEverythingAndKeepsWhatIsFinished) {
+  Command command(bench(write_suite(), "stopped", "--jobs 2"));
+  std::vector<pid_t> children;
+  for (int i = 0; i < 500 && children.empty(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    children = command.children();
+  }
+  ASSERT_FALSE(children.empty());
+  command.signal(SIGINT);
+  EXPECT_EQ(command.wait(), 130) << errors();
+  for (const pid_t child : children) EXPECT_NE(kill(child, 0), 0) << "a process was left behind";
+  EXPECT_EQ(run(bench(write_suite(), "stopped")), 0) << errors();
+  EXPECT_EQ(tables("stopped"), undisturbed());
+}
+
+TEST(BenchProcess, ACrashIsAFailureAndStaysOne) {
+  const fs::path marks = test_folder() / "marks";
+  const fs::path suite =
+      write_suite("crash", "[plain, {name: crasher, protocol: conversation, command: 'echo x >>" +
+                               marks.string() + "; kill -SEGV $$'}]");
+  EXPECT_EQ(run(bench(suite, "crash")), 3);
+  EXPECT_NE(errors().find("crasher-exact-pepper-0"), std::string::npos) << errors();
+  const std::string once = content(marks);
+  EXPECT_EQ(run(bench(suite, "crash")), 3);
+  EXPECT_EQ(content(marks), once) << "a failed run was repeated";
+  EXPECT_NE(content(test_folder() / "crash" / "table.txt").find("plain"), std::string::npos);
+  EXPECT_EQ(run(bench(suite, "crash", "--retry-failed")), 3);
+  EXPECT_NE(content(marks), once);
+}
+
+TEST(BenchProcess, LimitsEndARun) {
+  EXPECT_EQ(run(bench(write_suite("slow", "[plain]"), "slow", "--time-limit 0.05")), 3);
+  EXPECT_NE(errors().find("took longer than the limit"), std::string::npos) << errors();
+  EXPECT_EQ(run(bench(write_suite("large", "[plain]"), "large", "--memory-limit 5")), 3);
+  EXPECT_NE(errors().find("needed more memory than the limit of 5 MB"), std::string::npos)
+      << errors();
+}
+
+TEST(BenchProcess, ASweepOverAFixedMapAnswersAsSeparateQueriesWould) {
+  const fs::path sweep = write_suite(
+      "sweep", "[semantic]", "parameters: {map: fixed, alpha: [0.8, 0.5], beta: [0.75, 0.9]}\n");
+  EXPECT_EQ(run(bench(sweep, "sweep")), 0) << errors();
+  for (const auto& [alpha, beta, point] :
+       {std::tuple("0.8", "0.75", 0), std::tuple("0.5", "0.9", 3)}) {
+    const std::string name = std::string("alone") + alpha;
+    const fs::path alone = write_suite(
+        name, "[semantic]",
+        std::string("parameters: {map: fixed, alpha: [") + alpha + "], beta: [" + beta + "]}\n");
+    EXPECT_EQ(run(bench(alone, name)), 0) << errors();
+    const auto queries = [&](const std::string& out, int at) {
+      EXPECT_EQ(run("export " + (test_folder() / out).string() + " --format csv"), 0);
+      std::istringstream lines(content(test_folder() / "stdout"));
+      std::string line, all;
+      while (std::getline(lines, line))
+        if (line.find(std::string(",") + std::to_string(at) + ",1,1.5," + alpha + "," + beta) !=
+            std::string::npos)
+          all += line.substr(line.find("," + std::string(alpha) + ",")) + "\n";
+      return all;
+    };
+    EXPECT_FALSE(queries("sweep", point).empty());
+    EXPECT_EQ(queries("sweep", point), queries(name, 0));
+  }
+}
+
+TEST(BenchProcess, BadInputIsTold) {
+  EXPECT_EQ(run(bench(write_suite(), "bad", "--shard 4/3")), 2);
+  EXPECT_NE(errors().find("shard '4/3'"), std::string::npos) << errors();
+  EXPECT_EQ(run(bench(MH_SOURCE_DIR "/bench/suites/table1_quick.yaml", "bad")), 2);
+  EXPECT_NE(errors().find("'generated:bathroom:0' is not available yet"), std::string::npos)
+      << errors();
+  EXPECT_EQ(run("export " + (test_folder() / "nowhere").string()), 2);
+  EXPECT_EQ(run("merge " + (test_folder() / "m").string() + " " + test_folder().string()), 2);
+}
+
+}  // namespace

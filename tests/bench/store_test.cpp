@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/store/store.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "bench/results/json.hpp"
+#include "bench/store/export.hpp"
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A run with one of everything: a tracked and an untracked frame, an answered and an unanswered
+/// query, unknown scores, numbers that decimal text would round.
+RunResult some_run(const std::string& name, double shift_m = 0.0) {
+  const auto pose = [&](double x) {
+    return SE3(Eigen::Quaterniond(0.9, 0.1, -0.2, 0.3), Eigen::Vector3d(x / 3.0 + shift_m, 0.1, 2));
+  };
+  RunResult run;
+  run.spec.name = name;
+  run.spec.environment = {.name = "room",
+                          .category = "rooms",
+                          .scene = "a/room.yaml",
+                          .robot = "a/robot.yaml",
+                          .mapping_tour = "a/tour.yaml",
+                          .query_tour = {}};
+  run.spec.level = "levels/pepper.yaml";
+  run.spec.points = {SemanticConfig{}};
+  run.place.scene = "room";
+  run.place.scene_digest = 0xfedcba9876543210;
+  run.place.mapping.contact_time_s = std::nan("");
+  run.place.inputs = {{"scene", 7}};
+  run.truth = {{0, pose(0)}, {33, pose(1)}};
+  run.estimate = {{33, pose(1.1)}};
+  run.mapping.calls = {{.index = 0, .stamp_ns = 0, .restart = 0, .status = TrackStatus::kLost},
+                       {.index = 1,
+                        .stamp_ns = 33,
+                        .restart = 1,
+                        .status = TrackStatus::kTracked,
+                        .inliers = 12,
+                        .keyframe_added = true,
+                        .image_digest = 1,
+                        .matching_digest = 0xffffffffffffffff,
+                        .pose_digest = 3}};
+  run.mapping.dropped = {5};
+  run.mapping.matches[0].compared = 9;
+  run.trajectory.completeness = 1.0 / 3.0;
+  run.trajectory.rpe_frame_rmse_m = 0.1;
+  QueryScore answered, unanswered;
+  answered.answer.index = 29;
+  answered.success = answered.correct = true;
+  answered.distance_m = 1.0 / 7.0;
+  answered.answer.world_from_camera = pose(5);
+  answered.answer.stage = RelocalizationStage::kVerified;
+  answered.answer.candidates =
+      CandidateCounts{.keyframes = 3, .c1 = 2, .final = 1, .label_mass = 0.3};
+  answered.answer.matches[3].penalised = 4;
+  unanswered.answer.index = 59;
+  unanswered.answer.stage = RelocalizationStage::kPnp;
+  run.points = {{.held_out = {answered, unanswered}, .second_tour = {unanswered}}};
+  run.map_digest = 77;
+  run.times.track_ms = {1.25};
+  return run;
+}
+
+class StoreFile : public testing::Test {
+ protected:
+  StoreFile() : folder_(fs::temp_directory_path() / ("mh_store_" + std::to_string(getpid()))) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~StoreFile() override { fs::remove_all(folder_); }
+  std::string error_of_opening(const fs::path& file) const {
+    try {
+      Store store(file);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  }
+  Suite suite() const {
+    Suite s;
+    s.name = "s";
+    s.file = folder_ / "suite.yaml";
+    std::ofstream(s.file) << "name: s\n";
+    return s;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(StoreFile, ARunComesBackAsItWas) {
+  Store store(folder_ / "r.sqlite");
+  const RunResult run = some_run("a");
+  store.put("k", run, {.wall_s = 2});
+  EXPECT_EQ(store.status("k"), RunStatus::kDone);
+  const RunResult once = store.load("k", run.spec);
+  EXPECT_EQ(once.place.scene_digest, run.place.scene_digest);
+  EXPECT_TRUE(std::isnan(once.place.mapping.contact_time_s));
+  EXPECT_EQ(once.place.inputs, run.place.inputs);
+  ASSERT_EQ(once.mapping.calls.size(), 2u);
+  EXPECT_EQ(once.mapping.calls[1].matching_digest, 0xffffffffffffffff);
+  EXPECT_EQ(once.mapping.calls[1].status, TrackStatus::kTracked);
+  EXPECT_EQ(once.mapping.dropped, run.mapping.dropped);
+  EXPECT_EQ(once.mapping.matches[0].compared, 9);
+  EXPECT_EQ(once.trajectory.completeness, 1.0 / 3.0);
+  EXPECT_FALSE(once.trajectory.ate_rmse_m);
+  EXPECT_EQ(once.estimate.size(), 1u);
+  EXPECT_EQ(once.estimate[0].stamp_ns, 33);
+  EXPECT_EQ(once.estimate[0].world_from_camera.translation(),
+            run.estimate[0].world_from_camera.translation());
+  const PointResult& p = once.points.at(0);
+  ASSERT_EQ(p.held_out.size(), 2u);
+  EXPECT_EQ(p.held_out[0].distance_m, 1.0 / 7.0);
+  EXPECT_EQ(p.held_out[0].answer.candidates->label_mass, 0.3);
+  EXPECT_EQ(p.held_out[0].answer.matches[3].penalised, 4);
+  EXPECT_FALSE(p.held_out[1].answer.world_from_camera);
+  EXPECT_EQ(p.held_out[1].answer.stage, RelocalizationStage::kPnp);
+  EXPECT_EQ(p.second_tour.size(), 1u);
+  EXPECT_EQ(once.times.track_ms, run.times.track_ms);
+  // Written and read once more it stays the same to the last bit of its rotations.
+  store.put("again", once, {});
+  EXPECT_EQ(store.rows("SELECT qx, qy, qz, qw, true_qw FROM frames WHERE key = 'k'"),
+            store.rows("SELECT qx, qy, qz, qw, true_qw FROM frames WHERE key = 'again'"));
+}
+
+TEST_F(StoreFile, ANewerSchemaIsRefused) {
+  const fs::path file = folder_ / "r.sqlite";
+  { Store store(file); }
+  SQLite::Database(file.string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99");
+  const std::string message = error_of_opening(file);
+  EXPECT_NE(message.find("has schema 99"), std::string::npos) << message;
+  EXPECT_NE(message.find("newer"), std::string::npos) << message;
+}
+
+TEST_F(StoreFile, ADamagedOrForeignFileIsRefusedWithAdvice) {
+  const fs::path file = folder_ / "r.sqlite";
+  std::ofstream(file) << std::string(5000, 'x');
+  EXPECT_NE(error_of_opening(file).find("move it away"), std::string::npos);
+  fs::remove(file);
+  SQLite::Database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
+      .exec("CREATE TABLE cats (name TEXT)");
+  EXPECT_NE(error_of_opening(file).find("no results file"), std::string::npos);
+  fs::remove(file);
+  {
+    Store store(file);
+    for (int i = 0; i < 20; ++i) store.put("k" + std::to_string(i), some_run("a"), {});
+  }
+  ASSERT_GT(fs::file_size(file), 40000u);
+  {
+    std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(8192);
+    bytes << std::string(16384, '\xff');
+  }
+  EXPECT_NE(error_of_opening(file).find("is damaged"), std::string::npos);
+}
+
+TEST_F(StoreFile, ARunIsClaimedOnce) {
+  const fs::path file = folder_ / "r.sqlite";
+  Store one(file), two(file);
+  EXPECT_TRUE(one.claim("k"));
+  EXPECT_FALSE(two.claim("k"));
+  one.release("k");
+  EXPECT_TRUE(two.claim("k"));
+  two.put("k", some_run("a"), {});
+  EXPECT_FALSE(one.claim("k")) << "it is finished";
+  EXPECT_EQ(one.rows("SELECT * FROM claims").size(), 1u) << "the header alone";
+}
+
+TEST_F(StoreFile, AClaimOfADeadProcessIsTakenOver) {
+  const fs::path file = folder_ / "r.sqlite";
+  Store store(file);
+  ASSERT_TRUE(store.claim("k"));
+  SQLite::Database raw(file.string(), SQLite::OPEN_READWRITE);
+  raw.exec(
+      "UPDATE claims SET started = started - 1");  // the number lives on, another process has it
+  EXPECT_TRUE(store.claim("k"));
+  raw.exec("UPDATE claims SET host = 'elsewhere'");
+  EXPECT_FALSE(store.claim("k")) << "it may live: it showed itself just now";
+  raw.exec("UPDATE claims SET beat = beat - 1000");
+  EXPECT_TRUE(store.claim("k"));
+}
+
+TEST_F(StoreFile, AFailureStaysUntilItIsForgotten) {
+  Store store(folder_ / "r.sqlite");
+  store.put_failure("k", some_run("a").spec, "ended by signal 11", {});
+  EXPECT_EQ(store.status("k"), RunStatus::kFailed);
+  EXPECT_EQ(store.error("k"), "ended by signal 11");
+  EXPECT_FALSE(store.claim("k"));
+  store.forget_failure("k");
+  EXPECT_FALSE(store.status("k"));
+  store.put("k", some_run("a"), {});
+  store.forget_failure("k");
+  EXPECT_EQ(store.status("k"), RunStatus::kDone) << "a result is no failure";
+}
+
+TEST_F(StoreFile, MergingTakesOverWhatIsMissingOnce) {
+  const Suite s = suite();
+  Store a(folder_ / "a.sqlite"), b(folder_ / "b.sqlite");
+  const std::vector<std::pair<std::string, std::string>> plan = {{"x", "kx"}, {"y", "ky"}};
+  a.plan(s, {}, plan);
+  b.plan(s, {}, plan);
+  a.put("kx", some_run("x"), {});
+  a.put_failure("ky", some_run("y").spec, "crashed", {});
+  b.put("ky", some_run("y", 1.0), {});
+  Store all(folder_ / "all.sqlite");
+  all.merge(a.file());
+  all.merge(b.file());
+  all.merge(b.file());
+  EXPECT_EQ(all.planned_keys(), plan);
+  EXPECT_EQ(
+      all.rows("SELECT name, status FROM runs ORDER BY name"),
+      (std::vector<std::vector<std::string>>{{"name", "status"}, {"x", "done"}, {"y", "done"}}));
+  EXPECT_EQ(all.rows("SELECT * FROM queries").size(), 1u + 2 * 3);
+}
+
+TEST_F(StoreFile, MergingRefusesRunsOfOtherSettings) {
+  Store a(folder_ / "a.sqlite"), b(folder_ / "b.sqlite");
+  a.plan(suite(), {}, {{"x", "k1"}});
+  b.plan(suite(), {}, {{"x", "k2"}});
+  try {
+    a.merge(b.file());
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("run 'x' was made with other settings"), std::string::npos)
+        << e.what();
+  }
+}
+
+TEST_F(StoreFile, ExportsALinePerRunAndPoint) {
+  Store store(folder_ / "r.sqlite");
+  store.plan(suite(), {}, {{"x", "kx"}});
+  RunResult run = some_run("x");
+  run.spec.points.push_back(run.spec.points[0]);
+  run.spec.points[1].alpha = 0.5;
+  run.points.push_back(run.points[0]);
+  store.put("kx", run, {});
+  const std::string csv = export_csv(store);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3) << csv;
+  EXPECT_NE(csv.find("held_out.success"), std::string::npos) << csv;
+  EXPECT_NE(csv.find(",0.5,"), std::string::npos) << csv;
+  const auto json = nlohmann::json::parse(export_json(store));
+  EXPECT_EQ(json["queries"].size(), 6u);
+  EXPECT_FALSE(json.contains("times"));
+}
+
+TEST(Exact, ReadsBackTheSame) {
+  for (const double value : {0.1, 1.0 / 3.0, 1e-300, 12345678.9})
+    EXPECT_EQ(std::stod(exact(value)), value);
+}
+
+}  // namespace
+}  // namespace mh
