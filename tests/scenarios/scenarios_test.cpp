@@ -71,9 +71,9 @@ TEST(Scenario, WoodenRepetitionCatchesFalsePlacesThatAreBelieved) {
   EXPECT_FALSE(result.passed());
 }
 
-TEST(Scenario, BlankCorridorCatchesAThresholdThatIsNotLowered) {
+TEST(Scenario, BlankCorridorCatchesACornerThresholdThatIsTooHighForIt) {
   const GateResult result = judge("blank_corridor", {.settings = [](SlamConfig& c) {
-                                    c.features.fast_threshold_low = c.features.fast_threshold;
+                                    c.features.fast_threshold = c.features.fast_threshold_low = 60;
                                   }});
   EXPECT_FALSE(result.passed());
 }
@@ -120,12 +120,16 @@ TEST(Scenario, LabelNoiseCatchesScrambledLabels) {
                                         static_cast<std::ptrdiff_t>(palette.size()),
                   palette.end());
   };
-  EXPECT_FALSE(judge("label_noise", fault, SystemKind::kSemantic).passed());
+  const GateResult result = judge("label_noise", fault, SystemKind::kSemantic);
+  EXPECT_TRUE(worse(result, "penalised"));
 }
 
-TEST(Scenario, LongLoopCatchesThatLoopsStayOpen) {
-  const GateResult result =
-      judge("long_loop", {.settings = [](SlamConfig& c) { c.loop.enabled = false; }});
+// The look around the map (TrackConfig::near_distance_m) alone joins the ends of a loop this small.
+TEST(Scenario, LongLoopCatchesThatItsEndsAreNotJoined) {
+  const GateResult result = judge("long_loop", {.settings = [](SlamConfig& c) {
+                                    c.loop.enabled = false;
+                                    c.track.near_distance_m = 0;
+                                  }});
   EXPECT_TRUE(worse(result, "ate_rmse_m"));
 }
 
