@@ -61,14 +61,12 @@ bool worse(const GateResult& result, std::string_view measure) {
   return false;
 }
 
-TEST(Scenario, WoodenRepetitionCatchesFalsePlacesThatAreBelieved) {
-  const GateResult result = judge("wooden_repetition", {.settings = [](SlamConfig& c) {
-                                    c.match.ratio = c.match.ratio_projection = 1.0;
-                                    c.relocalize.min_word_matches = 5;
-                                    c.relocalize.min_inliers = 8;
-                                    c.relocalize.ransac.min_inliers = 5;
-                                  }});
-  EXPECT_FALSE(result.passed());
+// Where everything has a twin, the second best is nearly as good as the best.
+TEST(Scenario, WoodenRepetitionCatchesARatioTestThatRejectsWhateverHasATwin) {
+  const GateResult result =
+      judge("wooden_repetition",
+            {.settings = [](SlamConfig& c) { c.match.ratio = c.match.ratio_projection = 0.4; }});
+  EXPECT_TRUE(worse(result, "completeness"));
 }
 
 TEST(Scenario, BlankCorridorCatchesACornerThresholdThatIsTooHighForIt) {
@@ -97,7 +95,7 @@ TEST(Scenario, KidnappedRobotCatchesThatNothingRelocalizes) {
 TEST(Scenario, MovedFurnitureCatchesThatOutliersAreNotRejected) {
   const GateResult result =
       judge("moved_furniture",
-            {.settings = [](SlamConfig& c) { c.pose.chi2_mono = c.pose.chi2_stereo = 1e9; }});
+            {.settings = [](SlamConfig& c) { c.pose.chi2_mono = c.pose.chi2_stereo = 1e6; }});
   EXPECT_FALSE(result.passed());
 }
 
@@ -136,7 +134,7 @@ TEST(Scenario, LongLoopCatchesThatItsEndsAreNotJoined) {
 TEST(Scenario, WalkingPersonCatchesThatOutliersAreNotRejected) {
   const GateResult result =
       judge("walking_person",
-            {.settings = [](SlamConfig& c) { c.pose.chi2_mono = c.pose.chi2_stereo = 1e9; }});
+            {.settings = [](SlamConfig& c) { c.pose.chi2_mono = c.pose.chi2_stereo = 1e6; }});
   EXPECT_FALSE(result.passed());
 }
 
