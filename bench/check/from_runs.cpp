@@ -32,6 +32,13 @@ std::string run_digest(const RunResult& run) {
   return hex(sum);
 }
 
+/// Share of the pairs compared with the local map whose labels disagree: what labels are worth.
+std::optional<double> penalised(MatchCounts matches) {
+  const MatcherCounts& c = at(matches, Matcher::kLocalMap);
+  if (c.compared == 0) return std::nullopt;
+  return static_cast<double>(c.penalised) / static_cast<double>(c.compared);
+}
+
 void add_queries(const std::string& set, const QuerySummary& s, RunFigures& figures) {
   if (s.queries == 0) return;  // nothing was asked
   auto& values = figures.values;
@@ -68,6 +75,7 @@ RunFigures figures(const RunResult& run) {
   values["ate_rmse_m"] = run.trajectory.ate_rmse_m;
   values["rpe_frame_rmse_m"] = run.trajectory.rpe_frame_rmse_m;
   values["restarts"] = run.mapping.restarts;
+  values["penalised"] = penalised(run.mapping.matches);
   values["dropped"] = static_cast<double>(run.mapping.dropped.size());
   if (!run.points.empty())
     for (const QuerySet set : kQuerySets)

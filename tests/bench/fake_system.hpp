@@ -57,7 +57,6 @@ class FakeSystem : public System {
 
   std::vector<Stamp> fed;
   std::vector<std::uint64_t> streams;
-  mutable std::vector<std::uint64_t> attempt_streams;  ///< of the attempts at queries, blanks apart
   int rewinds = 0, resets = 0;
   bool frozen = false;
 
@@ -79,7 +78,6 @@ class FakeSession : public RelocalizationSession {
           ++blanks_ > system_.believes_blanks ? TrackStatus::kLost : TrackStatus::kTracked;
       return report;
     }
-    system_.attempt_streams.push_back(stream.key());
     const bool found = ++attempts_ == system_.answers_at(frame.stamp_ns);
     report.relocalization = found ? RelocalizationStage::kVerified : RelocalizationStage::kMatches;
     report.candidates = CandidateCounts{.keyframes = 10, .c1 = 9, .c2 = 4, .c3 = 3, .final = 1};

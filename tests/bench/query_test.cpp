@@ -59,21 +59,6 @@ TEST(Query, GivesUpAfterFiveAttemptsAndNamesTheStage) {
   EXPECT_EQ(answer.stage, RelocalizationStage::kMatches);
 }
 
-TEST(Query, EachAttemptSeesNewNoiseAndDrawsAnew) {
-  FakeSystem system = mapped();
-  system.answers_at = [](Stamp) { return 6; };
-  std::set<std::uint64_t> noises;
-  const auto frames = [&](std::size_t index, RandomStream noise) {
-    noises.insert(noise.key());
-    return fake_frame(index, noise);
-  };
-  query(system, 59, frames, {}, RandomStream(1));
-  EXPECT_EQ(noises.size(), 5u);
-  ASSERT_EQ(system.attempt_streams.size(), 5u);
-  const std::set<std::uint64_t> draws(system.attempt_streams.begin(), system.attempt_streams.end());
-  EXPECT_EQ(draws.size(), 5u);
-}
-
 TEST(Query, ShowsBlankFramesUntilLost) {
   FakeSystem system = mapped();
   system.believes_blanks = 4;

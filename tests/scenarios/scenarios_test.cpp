@@ -61,19 +61,9 @@ bool worse(const GateResult& result, std::string_view measure) {
   return false;
 }
 
-TEST(Scenario, WoodenRepetitionCatchesFalsePlacesThatAreBelieved) {
-  const GateResult result = judge("wooden_repetition", {.settings = [](SlamConfig& c) {
-                                    c.match.ratio = c.match.ratio_projection = 1.0;
-                                    c.relocalize.min_word_matches = 5;
-                                    c.relocalize.min_inliers = 8;
-                                    c.relocalize.ransac.min_inliers = 5;
-                                  }});
-  EXPECT_FALSE(result.passed());
-}
-
-TEST(Scenario, BlankCorridorCatchesAThresholdThatIsNotLowered) {
+TEST(Scenario, BlankCorridorCatchesACornerThresholdThatIsTooHighForIt) {
   const GateResult result = judge("blank_corridor", {.settings = [](SlamConfig& c) {
-                                    c.features.fast_threshold_low = c.features.fast_threshold;
+                                    c.features.fast_threshold = c.features.fast_threshold_low = 60;
                                   }});
   EXPECT_FALSE(result.passed());
 }
@@ -97,7 +87,7 @@ TEST(Scenario, KidnappedRobotCatchesThatNothingRelocalizes) {
 TEST(Scenario, MovedFurnitureCatchesThatOutliersAreNotRejected) {
   const GateResult result =
       judge("moved_furniture",
-            {.settings = [](SlamConfig& c) { c.pose.chi2_mono = c.pose.chi2_stereo = 1e9; }});
+            {.settings = [](SlamConfig& c) { c.pose.chi2_mono = c.pose.chi2_stereo = 1e6; }});
   EXPECT_FALSE(result.passed());
 }
 
@@ -120,19 +110,14 @@ TEST(Scenario, LabelNoiseCatchesScrambledLabels) {
                                         static_cast<std::ptrdiff_t>(palette.size()),
                   palette.end());
   };
-  EXPECT_FALSE(judge("label_noise", fault, SystemKind::kSemantic).passed());
-}
-
-TEST(Scenario, LongLoopCatchesThatLoopsStayOpen) {
-  const GateResult result =
-      judge("long_loop", {.settings = [](SlamConfig& c) { c.loop.enabled = false; }});
-  EXPECT_TRUE(worse(result, "ate_rmse_m"));
+  const GateResult result = judge("label_noise", fault, SystemKind::kSemantic);
+  EXPECT_TRUE(worse(result, "penalised"));
 }
 
 TEST(Scenario, WalkingPersonCatchesThatOutliersAreNotRejected) {
   const GateResult result =
       judge("walking_person",
-            {.settings = [](SlamConfig& c) { c.pose.chi2_mono = c.pose.chi2_stereo = 1e9; }});
+            {.settings = [](SlamConfig& c) { c.pose.chi2_mono = c.pose.chi2_stereo = 1e6; }});
   EXPECT_FALSE(result.passed());
 }
 
