@@ -36,6 +36,7 @@ Baseline measure(const Suite& suite, int jobs) {
   const BenchOptions options{
       .out = folder.path(),
       .jobs = jobs,
+      .shard = {},
       .cache = folder.path() / "cache",
       .say = [&](std::string_view stage) { progress.say(stage); },
       .progress = [&](double share, std::size_t, std::size_t) { progress.share(share); }};
