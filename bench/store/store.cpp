@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/store/store.hpp"
 
+#include <sqlite3.h>
 #include <unistd.h>
 
 #include <charconv>
 #include <chrono>
 #include <ctime>
 #include <fstream>
+#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -86,13 +88,28 @@ SQLite::Transaction writing(SQLite::Database& db) {
   return SQLite::Transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
 }
 
+/// Two processes that open a new file at once refuse each other the change without waiting.
+void enter_wal(SQLite::Database& db) {
+  constexpr int kTries = 200;
+  for (int tries = 1;; ++tries) {
+    try {
+      if (db.execAndGet("PRAGMA journal_mode").getString() != "wal")
+        db.exec("PRAGMA journal_mode = WAL");
+      return;
+    } catch (const SQLite::Exception& error) {
+      if (error.getErrorCode() != SQLITE_BUSY || tries == kTries) throw;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  }
+}
+
 void open_schema(SQLite::Database& db, const fs::path& file) {
   const auto version = [&] { return db.execAndGet("PRAGMA user_version").getInt(); };
   if (version() > kSchemaVersion)
     throw InputError(
         fmt::format("{}: has schema {}, this version of modelhouse reads up to {}: use a newer one",
                     file.string(), version(), kSchemaVersion));
-  db.exec("PRAGMA journal_mode = WAL");
+  enter_wal(db);
   db.exec("PRAGMA synchronous = FULL");
   if (version() == 0) {
     SQLite::Transaction transaction = writing(db);
