@@ -108,6 +108,16 @@ cv::Mat Canvas::finish() const {
   return small;
 }
 
+cv::Mat colour_picture(const Grid2d<Rgb8>& colour) {
+  cv::Mat picture(colour.height(), colour.width(), CV_8UC3);
+  for (int y = 0; y < colour.height(); ++y)
+    for (int x = 0; x < colour.width(); ++x) {
+      const Rgb8 c = colour(x, y);
+      picture.at<cv::Vec3b>(y, x) = {c.b, c.g, c.r};
+    }
+  return picture;
+}
+
 void write_picture(const std::filesystem::path& file, const cv::Mat& picture) {
   write_atomically(file, [&](const std::filesystem::path& temporary) {
     if (!cv::imwrite(temporary.string(), picture))

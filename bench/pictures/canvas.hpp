@@ -39,6 +39,9 @@ class Canvas {
   cv::Mat large_;
 };
 
+/// The same picture as 8-bit BGR.
+cv::Mat colour_picture(const Grid2d<Rgb8>& colour);
+
 /// Writes a PNG whole or not at all. @throws InputError if it cannot be written.
 void write_picture(const std::filesystem::path& file, const cv::Mat& bgr);
 

@@ -20,16 +20,6 @@ constexpr double kTileWidth = 400;
 constexpr float kNear_m = 0.4F, kFar_m = 8.0F;  // range of the false colours
 constexpr double kEye_m = 1.45;                 // of a person who sits or a child who stands
 
-cv::Mat colour_picture(const Grid2d<Rgb8>& colour) {
-  cv::Mat picture(colour.height(), colour.width(), CV_8UC3);
-  for (int y = 0; y < colour.height(); ++y)
-    for (int x = 0; x < colour.width(); ++x) {
-      const Rgb8 c = colour(x, y);
-      picture.at<cv::Vec3b>(y, x) = {c.b, c.g, c.r};
-    }
-  return picture;
-}
-
 /// Near is red, far is blue, no return is black.
 cv::Mat depth_picture(const Grid2d<float>& depth_m) {
   cv::Mat grey(depth_m.height(), depth_m.width(), CV_8UC1);

@@ -17,28 +17,12 @@ std::optional<double> mean_of_known(const std::vector<std::optional<double>>& va
 }
 
 QuerySummary mean_summary(const std::vector<const Row*>& scenes, QuerySet set) {
-  std::vector<const QuerySummary*> all;
+  std::vector<QuerySummary> all;
   for (const Row* row : scenes)
-    if (summary(*row, set).queries > 0) all.push_back(&summary(*row, set));
-  QuerySummary m;
-  if (all.empty()) return m;
-  for (double QuerySummary::*field :
-       {&QuerySummary::queries, &QuerySummary::success, &QuerySummary::correct,
-        &QuerySummary::wrong, &QuerySummary::attempts, &QuerySummary::keyframes, &QuerySummary::c1,
-        &QuerySummary::c2, &QuerySummary::c3, &QuerySummary::final, &QuerySummary::single_candidate,
-        &QuerySummary::label_mass}) {
-    std::vector<double> values;
-    for (const QuerySummary* s : all) values.push_back(s->*field);
-    m.*field = mean(values);
-  }
-  for (std::optional<double> QuerySummary::*field :
-       {&QuerySummary::distance_mean_m, &QuerySummary::distance_median_m,
-        &QuerySummary::aligned_distance_mean_m}) {
-    std::vector<std::optional<double>> values;
-    for (const QuerySummary* s : all) values.push_back(s->*field);
-    m.*field = mean_of_known(values);
-  }
-  return m;
+    if (summary(*row, set).queries > 0) all.push_back(summary(*row, set));
+  if (all.empty()) return {};
+  return reduce(
+      all, [](const std::vector<double>& values) { return mean(values); }, mean_of_known);
 }
 
 CategoryRow together(std::string category, const std::vector<const Row*>& scenes) {

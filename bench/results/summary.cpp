@@ -21,24 +21,9 @@ double median_over(const std::vector<Trial>& trials, Get get) {
 QuerySummary median_summary(const std::vector<Trial>& trials, QuerySet set) {
   std::vector<QuerySummary> all;
   for (const Trial& trial : trials) all.push_back(summarize(queries(*trial.point, set)));
-  QuerySummary m;
-  for (double QuerySummary::*field :
-       {&QuerySummary::queries, &QuerySummary::success, &QuerySummary::correct,
-        &QuerySummary::wrong, &QuerySummary::attempts, &QuerySummary::keyframes, &QuerySummary::c1,
-        &QuerySummary::c2, &QuerySummary::c3, &QuerySummary::final, &QuerySummary::single_candidate,
-        &QuerySummary::label_mass}) {
-    std::vector<double> values;
-    for (const QuerySummary& s : all) values.push_back(s.*field);
-    m.*field = median(std::move(values));
-  }
-  for (std::optional<double> QuerySummary::*field :
-       {&QuerySummary::distance_mean_m, &QuerySummary::distance_median_m,
-        &QuerySummary::aligned_distance_mean_m}) {
-    std::vector<std::optional<double>> values;
-    for (const QuerySummary& s : all) values.push_back(s.*field);
-    m.*field = median_of_known(values);
-  }
-  return m;
+  return reduce(
+      all, [](const std::vector<double>& values) { return median(values); },
+      [](const std::vector<std::optional<double>>& values) { return median_of_known(values); });
 }
 
 void add(MatchCounts& sum, const MatchCounts& counts) {
@@ -182,6 +167,31 @@ QuerySummary summarize(std::span<const QueryScore> queries) {
   s.aligned_distance_mean_m = mean(aligned);
   s.distance_median_m = median(std::move(distances));
   return s;
+}
+
+QuerySummary reduce(
+    std::span<const QuerySummary> summaries,
+    const std::function<double(const std::vector<double>&)>& of,
+    const std::function<std::optional<double>(const std::vector<std::optional<double>>&)>&
+        of_known) {
+  QuerySummary result;
+  for (double QuerySummary::*field :
+       {&QuerySummary::queries, &QuerySummary::success, &QuerySummary::correct,
+        &QuerySummary::wrong, &QuerySummary::attempts, &QuerySummary::keyframes, &QuerySummary::c1,
+        &QuerySummary::c2, &QuerySummary::c3, &QuerySummary::final, &QuerySummary::single_candidate,
+        &QuerySummary::label_mass}) {
+    std::vector<double> values;
+    for (const QuerySummary& s : summaries) values.push_back(s.*field);
+    result.*field = of(values);
+  }
+  for (std::optional<double> QuerySummary::*field :
+       {&QuerySummary::distance_mean_m, &QuerySummary::distance_median_m,
+        &QuerySummary::aligned_distance_mean_m}) {
+    std::vector<std::optional<double>> values;
+    for (const QuerySummary& s : summaries) values.push_back(s.*field);
+    result.*field = of_known(values);
+  }
+  return result;
 }
 
 std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs) {

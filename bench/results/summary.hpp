@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -25,6 +26,13 @@ struct QuerySummary {
   double label_mass = 0;        ///< mean share of the query vector held by labels
 };
 QuerySummary summarize(std::span<const QueryScore> queries);
+
+/// Field by field, one summary of many: `of` over the values, `of_known` where some may be absent.
+QuerySummary reduce(
+    std::span<const QuerySummary> summaries,
+    const std::function<double(const std::vector<double>&)>& of,
+    const std::function<std::optional<double>(const std::vector<std::optional<double>>&)>&
+        of_known);
 
 /// A run and one of its parameter points.
 struct Trial {

@@ -27,13 +27,7 @@ RenderedFrame leaning(double distance_m, double angle_rad) {
 SensorConfig depth_only() {
   SensorConfig config;
   config.colour_noise_on = false;
-  config.depth_noise = {.axial = false,
-                        .lateral = false,
-                        .quantisation = false,
-                        .grazing_holes = false,
-                        .projector_shadow = false,
-                        .min_range_m = 0.0,
-                        .max_range_m = 1e6};
+  config.depth_noise = no_depth_noise();
   return config;
 }
 

@@ -39,13 +39,7 @@ const Set kOff = [](SensorConfig&) {};
 SensorConfig everything_off() {
   SensorConfig config;
   config.depth_noise_on = config.colour_noise_on = false;
-  config.depth_noise = {.axial = false,
-                        .lateral = false,
-                        .quantisation = false,
-                        .grazing_holes = false,
-                        .projector_shadow = false,
-                        .min_range_m = 0.0,
-                        .max_range_m = 1e6};
+  config.depth_noise = no_depth_noise();
   return config;
 }
 
@@ -92,16 +86,6 @@ Trajectory motion_through(const SE3& pose) {
     path.push_back({static_cast<Stamp>(i) * 33'333'333, pose * SE3::exp(t * twist)});
   }
   return path;
-}
-
-cv::Mat colour_picture(const Grid2d<Rgb8>& colour) {
-  cv::Mat picture(colour.height(), colour.width(), CV_8UC3);
-  for (int y = 0; y < colour.height(); ++y)
-    for (int x = 0; x < colour.width(); ++x) {
-      const Rgb8 c = colour(x, y);
-      picture.at<cv::Vec3b>(y, x) = {c.b, c.g, c.r};
-    }
-  return picture;
 }
 
 /// False colours for the distance, shaded as if lit from the left, so that its noise can be seen;

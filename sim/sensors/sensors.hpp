@@ -12,10 +12,10 @@
 namespace mh {
 
 /// Xtion/Kinect v1 depth. Axial and lateral noise: Nguyen, Izadi and Lovell, "Modeling Kinect
-/// sensor noise for improved 3D reconstruction and tracking", 3DIMPVT 2012; disparity quantisation:
-/// and the shadow of the projector, which stands camera.baseline_m to the right of the camera:
-/// Khoshelham and Elberink, "Accuracy and resolution of Kinect depth data", Sensors 2012; range:
-/// ASUS Xtion data sheet. Each on or off alone.
+/// sensor noise for improved 3D reconstruction and tracking", 3DIMPVT 2012; disparity
+/// quantisation and the shadow of the projector, which stands camera.baseline_m to the right of the
+/// camera: Khoshelham and Elberink, "Accuracy and resolution of Kinect depth data", Sensors 2012;
+/// range: ASUS Xtion data sheet. Each on or off alone.
 struct DepthNoiseConfig {
   bool axial = true;              ///< sigma_z(z, incidence)
   bool lateral = true;            ///< ragged edges: the lookup strays by sigma_L(incidence), px
@@ -25,6 +25,17 @@ struct DepthNoiseConfig {
   double min_range_m = 0.4;       ///< nearer surfaces give no return; 0 or more
   double max_range_m = 8.0;       ///< farther ones neither; above min_range_m
 };
+
+/// The exact depth at any range: everything off, for switching on one fault alone.
+inline DepthNoiseConfig no_depth_noise() {
+  return {.axial = false,
+          .lateral = false,
+          .quantisation = false,
+          .grazing_holes = false,
+          .projector_shadow = false,
+          .min_range_m = 0.0,
+          .max_range_m = 1e6};
+}
 
 /// Nguyen et al. could measure up to 80 deg of incidence; beyond it the sensor returned too little.
 inline constexpr double kMaxIncidenceRad = 1.3962634015954636;

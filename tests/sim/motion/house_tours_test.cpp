@@ -11,6 +11,7 @@
 #include "sim/motion/motion.hpp"
 #include "slam/core/error.hpp"
 #include "tests/sim/boxes.hpp"
+#include "tests/sim/motion/nearest_view.hpp"
 
 namespace mh {
 namespace {
@@ -84,20 +85,8 @@ TEST(HouseTours, QueriesComeFromElsewhereInAllRooms) {
   const auto seen = views(query);
   for (const Room& room : house().rooms) EXPECT_TRUE(seen.contains(room.name)) << room.name;
 
-  // How far each query is from the most similar mapped view (1 rad weighs as much as 1 m).
-  std::vector<double> distances;
-  for (std::size_t q = 0; q < query.camera.size(); q += 30) {
-    const SE3& a = query.camera[q].world_from_camera;
-    double nearest = 1e9;
-    for (const TimedPose& mapped : mapping.camera) {
-      const SE3& b = mapped.world_from_camera;
-      nearest =
-          std::min(nearest, (a.translation() - b.translation()).norm() + angle_between_rad(a, b));
-    }
-    distances.push_back(nearest);
-  }
-  std::nth_element(distances.begin(), distances.begin() + distances.size() / 2, distances.end());
-  EXPECT_GT(distances[distances.size() / 2], 0.15);  // no replay of the mapping tour
+  // No replay of the mapping tour.
+  EXPECT_GT(test::median_distance_to_nearest_view(query.camera, mapping.camera), 0.15);
 }
 
 TEST(HouseTours, AWaypointInsideTheSofaCannotBeReached) {

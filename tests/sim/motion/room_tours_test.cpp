@@ -9,6 +9,7 @@
 #include "scenes/house.hpp"
 #include "sim/motion/motion.hpp"
 #include "tests/sim/boxes.hpp"
+#include "tests/sim/motion/nearest_view.hpp"
 
 namespace mh {
 namespace {
@@ -55,30 +56,15 @@ TEST_P(RoomTours, TouchNothingAndTheMappingTourSeesAllRooms) {
 }
 
 TEST_P(RoomTours, MappingComesBackToWhatItSawFirst) {
-  double nearest = 1e9;  // 1 rad weighs as much as 1 m
+  double nearest = 1e9;
   const SE3& first = mapping_.camera.front().world_from_camera;
-  for (std::size_t i = mapping_.camera.size() / 2; i < mapping_.camera.size(); ++i) {
-    const SE3& later = mapping_.camera[i].world_from_camera;
-    nearest = std::min(nearest, (first.translation() - later.translation()).norm() +
-                                    angle_between_rad(first, later));
-  }
+  for (std::size_t i = mapping_.camera.size() / 2; i < mapping_.camera.size(); ++i)
+    nearest = std::min(nearest, test::view_distance(first, mapping_.camera[i].world_from_camera));
   EXPECT_LT(nearest, 1.3);
 }
 
 TEST_P(RoomTours, QueriesComeFromElsewhere) {
-  std::vector<double> distances;
-  for (std::size_t q = 0; q < query_.camera.size(); q += 30) {
-    const SE3& a = query_.camera[q].world_from_camera;
-    double nearest = 1e9;
-    for (const TimedPose& mapped : mapping_.camera) {
-      const SE3& b = mapped.world_from_camera;
-      nearest =
-          std::min(nearest, (a.translation() - b.translation()).norm() + angle_between_rad(a, b));
-    }
-    distances.push_back(nearest);
-  }
-  std::ranges::nth_element(distances, distances.begin() + distances.size() / 2);
-  EXPECT_GT(distances[distances.size() / 2], 0.15);
+  EXPECT_GT(test::median_distance_to_nearest_view(query_.camera, mapping_.camera), 0.15);
 }
 
 INSTANTIATE_TEST_SUITE_P(Places, RoomTours,

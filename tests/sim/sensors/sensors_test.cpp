@@ -45,12 +45,7 @@ double incidence_rad(int x, int y, double angle_rad) {
 SensorConfig no_noise() {
   SensorConfig config;
   config.colour_noise_on = false;
-  config.depth_noise = {.axial = false,
-                        .lateral = false,
-                        .quantisation = false,
-                        .grazing_holes = false,
-                        .min_range_m = 0.0,
-                        .max_range_m = 1e6};
+  config.depth_noise = no_depth_noise();
   return config;
 }
 
