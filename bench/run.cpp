@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <cstdlib>
 #include <map>
-#include <numeric>
 #include <set>
 
 #include <fmt/format.h>
@@ -58,19 +57,13 @@ fs::path real_executable(const fs::path& executable) {
   return error ? executable : real;
 }
 
-RunCost cost_of_this_process(const RunResult& run) {
+RunCost cost_of_this_process(const RunResult& run, double world_s) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  const auto sum_s = [](const std::vector<double>& ms) {
-    return std::accumulate(ms.begin(), ms.end(), 0.0) / 1e3;
-  };
   return {.wall_s = run.wall_s,
-          .cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime),
-          .slam_s = sum_s(run.times.track_ms) + sum_s(run.times.relocalize_ms),
-          .frames_s = run.frames_s,
+          .cpu_s = processor_time_s(),
+          .slam_s = run.times.processor_s,
+          .frames_s = world_s + run.frames_s,
           .max_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0};
 }
 
@@ -154,14 +147,17 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
     pool.executable = real_executable(options.executable);
     pool.work_folder = work.path();
     pool.arguments = [&](const Job& job, const fs::path& description) {
-      return std::vector<std::string>{"run-one",   description.string(),
-                                      "--store",   store.file().string(),
-                                      "--key",     job.key,
-                                      "--folder",  options.out.string(),
-                                      "--cache",   cache.string(),
-                                      "--views",   views_name(suite, job.spec),
-                                      "--threads", std::to_string(options.jobs),
-                                      "--parent",  std::to_string(getpid())};
+      std::vector<std::string> arguments{"run-one",   description.string(),
+                                         "--store",   store.file().string(),
+                                         "--key",     job.key,
+                                         "--folder",  options.out.string(),
+                                         "--cache",   cache.string(),
+                                         "--views",   views_name(suite, job.spec),
+                                         "--threads", std::to_string(options.jobs),
+                                         "--parent",  std::to_string(getpid())};
+      if (options.cache) arguments.insert(arguments.end(), {"--maps", cache.string()});
+      if (options.figures_alone) arguments.emplace_back("--figures-alone");
+      return arguments;
     };
     pool.say = options.say;
     pool.progress = options.progress;
@@ -173,15 +169,24 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
 void carry_out(const RunOrder& order) {
   const auto json = nlohmann::ordered_json::parse(read_file(order.description), nullptr, false);
   const RunSpec spec = run_spec_from_json(json);
+  const double before_world_s = processor_time_s();
   const World world = build_world(spec, order.threads, Cache(order.cache), [](std::string_view) {});
+  const double world_s = processor_time_s() - before_world_s;
   const fs::path folder = order.folder / spec.name;
   make_output_folder(folder);
-  RunResult run = run_one(
-      spec, world, {.folder = folder, .progress = order.progress, .system = {}, .tamper = {}});
-  write_run(folder, world, run);
-  // One process makes the contact sheet; should two begin it, both write the same bytes.
-  if (!fs::exists(order.folder / order.views)) write_views(order.folder / order.views, world);
-  Store(order.store).put(order.key, run, cost_of_this_process(run));
+  const RunResult run = run_one(spec, world,
+                                {.folder = folder,
+                                 .progress = order.progress,
+                                 .system = {},
+                                 .tamper = {},
+                                 .occupancy = !order.figures_alone,
+                                 .maps = Cache(order.maps)});
+  if (!order.figures_alone) {
+    write_run(folder, world, run);
+    // One process makes the contact sheet; should two begin it, both write the same bytes.
+    if (!fs::exists(order.folder / order.views)) write_views(order.folder / order.views, world);
+  }
+  Store(order.store).put(order.key, run, cost_of_this_process(run, world_s));
 }
 
 }  // namespace mh

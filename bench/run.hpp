@@ -27,10 +27,13 @@ struct BenchOptions {
   std::filesystem::path out;  ///< exists; holds results.sqlite and a folder per run
   int jobs = 1;               ///< never changes a result
   Shard shard;
-  std::optional<std::filesystem::path> cache;  ///< none: light is baked for this command alone
-  double time_limit_s = 14400;                 ///< of one run; 0 = none
-  double memory_limit_mb = 0;                  ///< of one run; 0 = none
+  /// None: light is baked for this command alone (once), and each run maps anew.
+  std::optional<std::filesystem::path> cache;
+  double time_limit_s = 14400;  ///< of one run; 0 = none
+  double memory_limit_mb = 0;   ///< of one run; 0 = none
   bool retry_failed = false;
+  /// Nothing but what is scored: no occupancy map, no pictures and no files of runs.
+  bool figures_alone = false;
   std::filesystem::path executable = "/proc/self/exe";  ///< has the subcommand `run-one`
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(double, std::size_t, std::size_t)> progress =
@@ -72,11 +75,14 @@ class TemporaryFolder {
 /// One run in this process, start to end: builds its world, works it off, writes its files into
 /// folder / its name, and puts it into the store. What a process of the pool does.
 struct RunOrder {
-  std::filesystem::path description;           ///< JSON of the RunSpec
-  std::filesystem::path store, folder, cache;  ///< an empty cache keeps nothing
+  std::filesystem::path description;  ///< JSON of the RunSpec
+  std::filesystem::path store, folder;
+  std::filesystem::path cache;  ///< for baked light; empty: keeps nothing
+  std::filesystem::path maps;   ///< for finished maps; likewise
   std::string key;
-  std::string views;  ///< file name of the environment's contact sheet
-  int threads = 1;    ///< for baking light
+  std::string views;           ///< file name of the environment's contact sheet
+  int threads = 1;             ///< for baking light
+  bool figures_alone = false;  ///< as BenchOptions
   std::function<void(double)> progress = [](double) {};
 };
 void carry_out(const RunOrder& order);

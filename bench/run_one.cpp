@@ -9,7 +9,9 @@
 #include "bench/protocol/digest.hpp"
 #include "bench/results/occupancy.hpp"
 #include "bench/results/trajectory_score.hpp"
+#include "bench/store/run_key.hpp"
 #include "bench/systems/conversation.hpp"
+#include "bench/systems/finished_map.hpp"
 #include "bench/systems/ours.hpp"
 #include "bench/systems/recorded_run.hpp"
 #include "bench/systems/tampered.hpp"
@@ -43,13 +45,13 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// @param spent_s  the time that making frames takes is added to it
+/// @param spent_s  the processor time that making frames takes is added to it
 FrameSource frames_of(const SimulatedSequence& sequence, const RunTamper& tamper, double& spent_s) {
   return [&sequence, &tamper, &spent_s](std::size_t index, RandomStream noise) {
-    const auto start = Clock::now();
+    const double before_s = processor_time_s();
     RgbdFrame frame = sequence.at(index, noise).frame;
     if (tamper.frame) tamper.frame(index, frame);
-    spent_s += seconds_since(start);
+    spent_s += processor_time_s() - before_s;
     return frame;
   };
 }
@@ -171,6 +173,10 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   run.truth = world.mapping.camera;
   KeyframeDepths depths;
   const FrameSource frames = frames_of(mapping, tamper, run.frames_s);
+  const auto integrate = [&] {
+    if (tools.occupancy)
+      run.volume = depths.integrate(camera, run.estimate, run.trajectory.dock_from_estimate);
+  };
 
   std::unique_ptr<System> inner =
       tools.system ? tools.system(spec, world) : make_system(spec, world, tools.folder);
@@ -179,20 +185,45 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
       run.mapping.offered += is_test_frame(i, spec.protocol) ? 0 : 1;
     run.estimate = run_recorded(spec, mapping, frames, stream.fork(kMapping), tools.folder);
     run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
+    integrate();
     run.points.resize(spec.points.size());
   } else {
     if (tamper.report) inner = make_tampered(std::move(inner), tamper.report);
     TimedSystem system(std::move(inner));
-    run.mapping =
-        map_sequence(system, mapping.size(), frames, spec.protocol, stream.fork(kMapping),
-                     [&](const MappedFrame& call, const RgbdFrame& frame, const StepReport&) {
-                       if (call.keyframe_added) depths.keep(frame);
-                       work.reached(call.index + 1);
-                     });
-    system.freeze();
+    const auto take_trajectory = [&] {
+      system.freeze();
+      run.estimate = system.trajectory();
+      run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
+    };
+    const auto map_now = [&] {
+      run.mapping =
+          map_sequence(system, mapping.size(), frames, spec.protocol, stream.fork(kMapping),
+                       [&](const MappedFrame& call, const RgbdFrame& frame, const StepReport&) {
+                         if (call.keyframe_added && tools.occupancy) depths.keep(frame);
+                         work.reached(call.index + 1);
+                       });
+      take_trajectory();
+      integrate();
+    };
+    if (!tools.maps.folder().empty() && tools.occupancy &&
+        spec.system.kind != SystemKind::kOutside) {
+      bool mapped = false;
+      const std::string kept = tools.maps.get("map", map_key(spec), [&] {
+        map_now();
+        mapped = true;
+        return encode(FinishedMap{system.save(), run.mapping, run.volume});
+      });
+      if (!mapped) {
+        FinishedMap finished = decode_finished_map(kept, "cached map");
+        system.restore(finished.system);
+        run.mapping = std::move(finished.outcome);
+        run.volume = std::move(finished.volume);
+        take_trajectory();
+      }
+    } else {
+      map_now();
+    }
     work.reached(mapping.size());
-    run.estimate = system.trajectory();
-    run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
 
     run.points.resize(spec.points.size());
     const QueryRound held_out(spec, mapping, NearestBy::kTime, tamper, run, stream.fork(kHeldOut));
@@ -212,10 +243,8 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     run.times = system.times();
   }
 
-  const Robot& robot = world.robot;
-  run.volume = depths.integrate(robot.camera, run.estimate, run.trajectory.dock_from_estimate);
   // From just over the floor (noise of the depth at 4 m lies below) to the top of the head.
-  run.grid = run.volume->project(0.10, robot.height_m);
+  if (run.volume) run.grid = run.volume->project(0.10, world.robot.height_m);
   run.map_digest = digest_bytes(run.grid.cells.data(), run.grid.cells.size(), digest(run.estimate));
   run.wall_s = seconds_since(start);
   return run;

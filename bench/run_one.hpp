@@ -25,7 +25,8 @@ struct RunTamper {
 std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
                                     const std::filesystem::path& folder);
 
-/// What a run is given beside its spec and world; none of it changes a result.
+/// What a run is given beside its spec and world; but for `tamper` and `occupancy` none of it
+/// changes a result.
 struct RunTools {
   std::filesystem::path folder = ".";  ///< exists; an outside program's files go there
   /// Told how much of the work is done, in [0, 1]; a rewind takes nothing back.
@@ -33,6 +34,8 @@ struct RunTools {
   /// Makes the system in make_system()'s place: for tests.
   std::function<std::unique_ptr<System>(const RunSpec&, const World&)> system = {};
   RunTamper tamper = {};
+  bool occupancy = true;  ///< false: RunResult::volume stays null and its grid empty
+  Cache maps = Cache();  ///< a finished map of the same mapping is taken from here, or kept here
 };
 
 /// One run from the first frame to the last query: map the tour, freeze, score the trajectory, put

@@ -12,6 +12,8 @@
 #include <optional>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "bench/protocol/digest.hpp"
 #include "slam/core/files.hpp"
 
@@ -87,7 +89,7 @@ std::string Cache::get(std::string_view kind, std::string_view key,
   fs::create_directories(file.parent_path(), error);
   fs::create_directories(folder_ / "locks", error);
   // A bounded number of lock files: two entries may share one, which costs a wait at worst.
-  const EntryLock lock(folder_ / "locks" / std::string(key.substr(0, 2)));
+  const EntryLock lock(folder_ / "locks" / fmt::format("{}-{}", kind, key.substr(0, 2)));
   if (auto content = unpack(file)) {
     fs::last_write_time(file, fs::file_time_type::clock::now(), error);
     return *std::move(content);

@@ -29,7 +29,8 @@ fs::path baseline_file(const Options& options) {
   return fs::path(options.suite).replace_extension(".baseline.json");
 }
 
-/// Runs the suite anew: nothing is taken from earlier results, light is shared among these runs only.
+/// Runs the suite anew: nothing is taken from earlier results, light is shared among these runs
+/// only.
 Baseline measure(const Suite& suite, int jobs) {
   const TemporaryFolder folder(fs::temp_directory_path());
   Progress progress("check");
@@ -37,7 +38,8 @@ Baseline measure(const Suite& suite, int jobs) {
       .out = folder.path(),
       .jobs = jobs,
       .shard = {},
-      .cache = folder.path() / "cache",
+      .cache = {},
+      .figures_alone = true,
       .say = [&](std::string_view stage) { progress.say(stage); },
       .progress = [&](double share, std::size_t, std::size_t) { progress.share(share); }};
   const BenchResults results = run_suite(suite, {}, options);

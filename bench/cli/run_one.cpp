@@ -12,9 +12,10 @@ namespace mh::cli {
 namespace {
 
 struct Options {
-  std::string description, store, folder, cache, views, key;
+  std::string description, store, folder, cache, maps, views, key;
   int threads = 1;
   int parent = 0;
+  bool figures_alone = false;
 };
 
 void run(const Options& options) {
@@ -24,9 +25,11 @@ void run(const Options& options) {
              .store = options.store,
              .folder = options.folder,
              .cache = options.cache,
+             .maps = options.maps,
              .key = options.key,
              .views = options.views,
              .threads = options.threads,
+             .figures_alone = options.figures_alone,
              .progress = [&](double share) {
                const int step = static_cast<int>(200 * share);
                if (step == last) return;
@@ -48,8 +51,10 @@ void add_run_one(CLI::App& app) {
   command->add_option("--key", options->key)->required();
   command->add_option("--folder", options->folder)->required();
   command->add_option("--cache", options->cache);
+  command->add_option("--maps", options->maps);
   command->add_option("--views", options->views)->required();
   command->add_option("--threads", options->threads);
+  command->add_flag("--figures-alone", options->figures_alone);
   command->add_option("--parent", options->parent);
   command->callback([options] { run(*options); });
 }

@@ -356,13 +356,15 @@ Json reproduction_json(const Suite& suite, std::span<const RunResult> runs) {
 Json times_json(std::span<const RunResult> runs) {
   Json list = Json::array();
   for (const RunResult& run : runs) {
-    const TimeSummary track = summarize(run.times.track_ms);
-    const TimeSummary relocalize = summarize(run.times.relocalize_ms);
-    list.push_back(
-        {{"name", run.spec.name},
-         {"wall_s", run.wall_s},
-         {"track_ms", {{"median", track.median_ms}, {"p95", track.p95_ms}}},
-         {"relocalize_ms", {{"median", relocalize.median_ms}, {"p95", relocalize.p95_ms}}}});
+    const auto calls = [](const std::vector<double>& times_ms) -> Json {
+      if (times_ms.empty()) return nullptr;
+      const TimeSummary t = summarize(times_ms);
+      return {{"median", t.median_ms}, {"p95", t.p95_ms}};
+    };
+    list.push_back({{"name", run.spec.name},
+                    {"wall_s", run.wall_s},
+                    {"track_ms", calls(run.times.track_ms)},
+                    {"relocalize_ms", calls(run.times.relocalize_ms)}});
   }
   return {{"fingerprint", fingerprint_json()}, {"runs", list}};
 }

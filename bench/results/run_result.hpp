@@ -74,7 +74,7 @@ struct RunResult {
   OccupancyGrid grid;                             ///< what of it stands in a robot's way
   std::uint64_t map_digest = 0;                   ///< of trajectory and grid
   CallTimes times;                                ///< not deterministic: never part of results.json
-  double frames_s = 0;                            ///< likewise: making the frames
+  double frames_s = 0;                            ///< likewise: processor time of making the frames
   double wall_s = 0;                              ///< likewise
 };
 

@@ -130,7 +130,7 @@ std::optional<std::size_t> system_of(const Suite& suite, SystemKind kind) {
 
 std::vector<CategoryRow> make_category_rows(const Suite& suite, std::span<const Row> rows) {
   std::vector<std::string> groups = categories(suite);
-  groups.emplace_back("all");
+  groups.emplace_back(kAllCategories);
   std::vector<CategoryRow> result;
   for (std::size_t level = 0; level < suite.levels.size(); ++level)
     for (const LabelMode labels : suite.labels)

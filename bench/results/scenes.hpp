@@ -3,16 +3,20 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/results/summary.hpp"
 
 namespace mh {
 
+/// Name of the category that holds all scenes.
+inline constexpr std::string_view kAllCategories = "all";
+
 /// The scenes of one category taken together, in the form of the paper's Table 1: of each scene the
 /// median over trials (a Row), of these the mean.
 struct CategoryRow {
-  std::string category;  ///< "all" for all of them
+  std::string category;
   std::size_t level = 0, system = 0, parameters = 0;
   LabelMode labels = LabelMode::kNone;
   std::size_t scenes = 0;

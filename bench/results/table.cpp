@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/results/scenes.hpp"
+#include "bench/results/sweep.hpp"
 
 namespace mh {
 namespace {
@@ -21,6 +21,22 @@ std::string title(QuerySet set) {
 
 std::string metres(const std::optional<double>& value, int digits = 4) {
   return value ? fmt::format("{:.{}f}", *value, digits) : std::string("-");
+}
+
+/// "87.30%"; "-" where nothing was asked, as of a program that answers with a trajectory alone.
+std::string percent(const QuerySummary& s, double QuerySummary::*share) {
+  return s.queries > 0 ? fmt::format("{:.2f}%", 100 * s.*share) : std::string("-");
+}
+
+/// Queries put to the system that was asked most.
+double most_queries(const std::vector<const Row*>& rows, QuerySet set) {
+  double most = 0;
+  for (const Row* row : rows) most = std::max(most, summary(*row, set).queries);
+  return most;
+}
+bool asked(const std::vector<CategoryRow>& rows, QuerySet set) {
+  return std::any_of(rows.begin(), rows.end(),
+                     [&](const CategoryRow& row) { return summary(row, set).queries > 0; });
 }
 
 std::string rule(std::size_t width) {
@@ -38,13 +54,14 @@ std::string table_2(const Block& block) {
   std::string text =
       fmt::format("  {:<44}{:>22}{:>22}\n", "", "Reloc. success (%)", "Average distance (m)");
   for (const QuerySet set : kQuerySets) {
-    if (summary(*block.rows.front(), set).queries == 0) continue;
-    text += fmt::format("  {}, {:.0f} queries\n", title(set),
-                        summary(*block.rows.front(), set).queries);
+    const double queries = most_queries(block.rows, set);
+    if (queries == 0) continue;
+    text += fmt::format("  {}, {:.0f} queries\n", title(set), queries);
     for (const Row* row : block.rows) {
       const QuerySummary& s = summary(*row, set);
       const bool saturated = block.system(row).kind == SystemKind::kPlain && s.success > kSaturated;
-      text += fmt::format("    {:<42}{:>22.2f}{:>22}{}\n", block.system(row).name, 100 * s.success,
+      text += fmt::format("    {:<42}{:>22}{:>22}{}\n", block.system(row).name,
+                          s.queries > 0 ? fmt::format("{:.2f}", 100 * s.success) : "-",
                           metres(s.distance_mean_m), saturated ? "   saturated" : "");
     }
   }
@@ -61,10 +78,11 @@ std::string query_details(const Block& block, QuerySet set) {
                   "correct", "false", "mean m", "median m", "aligned m", "attempts");
   for (const Row* row : block.rows) {
     const QuerySummary& s = summary(*row, set);
-    text += fmt::format("  {:<10}{:>8.2f}%{:>9.2f}%{:>8.2f}%{:>10}{:>11}{:>12}{:>10.2f}\n",
-                        block.system(row).name, 100 * s.success, 100 * s.correct, 100 * s.wrong,
-                        metres(s.distance_mean_m), metres(s.distance_median_m),
-                        metres(s.aligned_distance_mean_m), s.attempts);
+    text += fmt::format(
+        "  {:<10}{:>9}{:>10}{:>9}{:>10}{:>11}{:>12}{:>10}\n", block.system(row).name,
+        percent(s, &QuerySummary::success), percent(s, &QuerySummary::correct),
+        percent(s, &QuerySummary::wrong), metres(s.distance_mean_m), metres(s.distance_median_m),
+        metres(s.aligned_distance_mean_m), s.queries > 0 ? fmt::format("{:.2f}", s.attempts) : "-");
   }
   return text;
 }
@@ -77,6 +95,7 @@ std::string candidate_details(const Block& block, QuerySet set) {
                                  "after eq. 6", "one left", "label mass");
   for (const Row* row : block.rows) {
     const QuerySummary& s = summary(*row, set);
+    if (s.queries == 0) continue;
     const auto left = [&](double count) {
       return fmt::format("{:.2f} ({:.2f}%)", count, 100 * count / std::max(1.0, s.keyframes));
     };
@@ -170,7 +189,7 @@ std::string block_text(const Block& block) {
       row.trials.front().run->place.cut ? fmt::format(", first {} frames", *suite.max_frames) : "");
   text += rule(90) + table_2(block) + rule(90);
   for (const QuerySet set : kQuerySets)
-    if (summary(row, set).queries > 0)
+    if (most_queries(block.rows, set) > 0)
       text += query_details(block, set) + candidate_details(block, set);
   return text + failing_stages(block) + mapping_details(block) + common_ate(block) +
          penalties(block);
@@ -212,15 +231,16 @@ std::string place_text(const Suite& suite, const std::vector<Row>& rows) {
   return text;
 }
 
-std::string category_line(const Suite& suite, const CategoryRow& row) {
+std::string category_line(const Suite& suite, const CategoryRow& row,
+                          const std::vector<CategoryRow>& all) {
   std::string text = fmt::format("  {:<18}{:>7}  {:<10}{:>9}{:>10}{:>10.2f}%", row.category,
                                  row.scenes, suite.systems[row.system].name, metres(row.ate_rmse_m),
                                  metres(row.rpe_frame_rmse_m, 5), 100 * row.completeness);
   for (const QuerySet set : kQuerySets) {
     const QuerySummary& s = summary(row, set);
-    if (s.queries > 0)
-      text += fmt::format("{:>12.2f}%{:>10.2f}%{:>9}", 100 * s.success, 100 * s.correct,
-                          metres(s.distance_mean_m));
+    if (asked(all, set))
+      text += fmt::format("{:>13}{:>11}{:>9}", percent(s, &QuerySummary::success),
+                          percent(s, &QuerySummary::correct), metres(s.distance_mean_m));
   }
   const bool saturated =
       suite.systems[row.system].kind == SystemKind::kPlain && row.held_out.success > kSaturated;
@@ -251,13 +271,13 @@ std::string scenes_text(const Suite& suite, const std::vector<Row>& rows) {
       text += fmt::format("  {:<18}{:>7}  {:<10}{:>9}{:>10}{:>11}", "environments", "scenes",
                           "system", "APE m", "RPE m/fr", "complete");
       for (const QuerySet set : kQuerySets)
-        if (summary(row, set).queries > 0)
+        if (asked(categories, set))
           text +=
               fmt::format("{:>13}{:>11}{:>9}", set == QuerySet::kHeldOut ? "held out" : "2nd tour",
                           "correct", "dist. m");
       text += "\n";
     }
-    text += category_line(suite, row);
+    text += category_line(suite, row, categories);
     last = &row;
   }
   for (const SceneFamily& family : compare_over_scenes(suite, rows))
@@ -265,33 +285,24 @@ std::string scenes_text(const Suite& suite, const std::vector<Row>& rows) {
   return text;
 }
 
-/// Of each system, level, labels and query set: the point with most correct answers, beside the
-/// suite's first point. Chosen among many by the same queries, it flatters; the interval does not
-/// correct for that, so a point is taken over from tuning scenes alone.
 std::string best_points(const Suite& suite, const std::vector<Row>& rows) {
   std::string text =
       "\nmost correct answers, and its difference to the first point (chosen by the "
       "same queries: confirm it on others)\n";
-  for (const Row& first : rows) {
-    if (first.parameters != 0) continue;
+  for (const SweepResult& result : sweep_results(suite, rows))
     for (const QuerySet set : kQuerySets) {
-      if (summary(first, set).queries == 0) continue;
-      const Row* best = &first;
-      for (const Row& row : rows)
-        if (row.environment == first.environment && row.level == first.level &&
-            row.system == first.system && row.labels == first.labels &&
-            summary(row, set).correct > summary(*best, set).correct)
-          best = &row;
-      const SemanticConfig at =
-          settings_of(suite.systems[first.system], parameter_points(suite)[best->parameters]);
-      Comparison c = compare_correct(*best, first, set, suite.seed);
+      const auto best = best_point(suite, rows, result, set);
+      if (!best) continue;
+      const SystemSpec& system = suite.systems[result.system];
+      const SemanticConfig at = settings_of(system, result.points[best->point]);
+      const Comparison& c = best->to_first;
       text += fmt::format(
-          "  {}, {} labels, {}: gamma {:.4g}, xi {:.4g}, alpha {:.4g}, beta {:.4g}: {:.2f}%, "
-          "{:+.4f} [{:+.4f}, {:+.4f}]\n",
-          suite.systems[first.system].name, name(first.labels), name(set), at.gamma, at.xi,
-          at.alpha, at.beta, 100 * summary(*best, set).correct, c.difference, c.low, c.high);
+          "  {}, level {}, {} labels, {}: gamma {:.4g}, xi {:.4g}, alpha {:.4g}, beta {:.4g}: "
+          "{:.2f}%, {:+.4f} [{:+.4f}, {:+.4f}]\n",
+          system.name, level_name(suite.levels[result.level]), name(result.labels), name(set),
+          at.gamma, at.xi, at.alpha, at.beta,
+          100 * summary(result.answers[best->point], set).correct, c.difference, c.low, c.high);
     }
-  }
   return text;
 }
 
@@ -302,14 +313,14 @@ std::string sweep_text(const Suite& suite, const std::vector<Row>& rows) {
   const CategoryRow* last = nullptr;
   const std::vector<CategoryRow> categories = make_category_rows(suite, rows);
   for (const CategoryRow& row : categories) {
-    if (row.category != "all") continue;
+    if (row.category != kAllCategories) continue;
     if (last == nullptr || last->level != row.level || last->labels != row.labels) {
       text += fmt::format("\n{}, level {}, {} labels, map: {}, {} trial{}\n", suite.name,
                           level_name(suite.levels[row.level]), name(row.labels),
                           name(suite.sweep.map), suite.trials, suite.trials == 1 ? "" : "s");
       text += fmt::format("  {:<10}{:>9}{:>9}{:>9}{:>9}", "system", "gamma", "xi", "alpha", "beta");
       for (const QuerySet set : kQuerySets)
-        if (summary(row, set).queries > 0)
+        if (asked(categories, set))
           text += fmt::format("{:>13}{:>11}{:>10}{:>9}{:>11}",
                               set == QuerySet::kHeldOut ? "held out" : "2nd tour", "correct",
                               "false", "dist. m", "candidates");
@@ -320,9 +331,11 @@ std::string sweep_text(const Suite& suite, const std::vector<Row>& rows) {
                         seen.gamma, seen.xi, seen.alpha, seen.beta);
     for (const QuerySet set : kQuerySets) {
       const QuerySummary& s = summary(row, set);
-      if (s.queries > 0)
-        text += fmt::format("{:>12.2f}%{:>10.2f}%{:>9.2f}%{:>9}{:>11.2f}", 100 * s.success,
-                            100 * s.correct, 100 * s.wrong, metres(s.distance_mean_m), s.final);
+      if (asked(categories, set))
+        text += fmt::format("{:>13}{:>11}{:>10}{:>9}{:>11}", percent(s, &QuerySummary::success),
+                            percent(s, &QuerySummary::correct), percent(s, &QuerySummary::wrong),
+                            metres(s.distance_mean_m),
+                            s.queries > 0 ? fmt::format("{:.2f}", s.final) : "-");
     }
     text += "\n";
     last = &row;
@@ -343,6 +356,7 @@ std::string times_table(const Suite& suite, std::span<const RunResult> runs) {
       fmt::format("  {:<44}{:>18}{:>18}\n", "ms per call, median (p95)", "track", "relocalize");
   for (const Row& row : make_rows(suite, runs)) {
     const auto cell = [](const TimeSummary& t) {
+      if (t.p95_ms == 0) return std::string("-");  // no calls: its map was at hand
       return fmt::format("{:.1f} ({:.1f})", t.median_ms, t.p95_ms);
     };
     text += fmt::format("  {:<44}{:>18}{:>18}\n",

@@ -6,6 +6,7 @@
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "bench/pictures/contact_sheet.hpp"
+#include "bench/pictures/sweep.hpp"
 #include "bench/pictures/topdown.hpp"
 #include "bench/results/json.hpp"
 #include "bench/results/table.hpp"
@@ -39,6 +40,11 @@ std::string write_results(const fs::path& folder, const Suite& suite,
   write_atomically(folder / "times.json", times_json(runs).dump(2) + "\n");
   write_atomically(folder / "reproduction.json", reproduction_json(suite, runs).dump(2) + "\n");
   write_atomically(folder / "times.txt", times_table(suite, runs));
+  if (parameter_points(suite).size() > 1) {
+    const std::vector<Row> rows = make_rows(suite, runs);
+    for (const SweepResult& result : sweep_results(suite, rows))
+      write_picture(folder / sweep_picture_name(suite, result), draw_sweep(suite, rows, result));
+  }
   write_atomically(folder / "table.txt", table);
   write_atomically(folder / "results.json", results_json(suite, runs).dump(2) + "\n");
   return table;

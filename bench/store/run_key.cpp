@@ -69,7 +69,10 @@ std::vector<InputDigest> digest_inputs(const RunSpec& spec) {
   return inputs;
 }
 
-std::string run_key(const RunSpec& spec) {
+namespace {
+
+/// All that determines a result, by content instead of by names and paths.
+nlohmann::ordered_json determining(const RunSpec& spec) {
   nlohmann::ordered_json json = to_json(spec);
   if (spec.system.kind == SystemKind::kOutside) json["system"]["outside"].erase("folder");
   for (const char* named : {"name", "environment", "level", "vocabulary"}) json.erase(named);
@@ -77,6 +80,24 @@ std::string run_key(const RunSpec& spec) {
     json["inputs"][input.name] = hex(input.digest);
   json["code"] = code_of_run();
   json["build"] = build_json();
+  return json;
+}
+
+}  // namespace
+
+std::string run_key(const RunSpec& spec) {
+  return text_key(determining(spec).dump());
+}
+
+std::string map_key(const RunSpec& spec) {
+  nlohmann::ordered_json json = determining(spec);
+  json.erase("points");
+  json.erase("trial");  // the seed tells
+  json["system"].erase("name");
+  for (const char* of_queries : {"query_tour", "query_scene"}) json["inputs"].erase(of_queries);
+  for (const char* of_queries :
+       {"query_attempts", "max_blank_frames", "correct_distance_m", "correct_angle_deg", "truth"})
+    json["protocol"].erase(of_queries);
   return text_key(json.dump());
 }
 

@@ -18,6 +18,10 @@ std::vector<InputDigest> digest_inputs(const RunSpec& spec);
 /// libraries that compute.
 std::string run_key(const RunSpec& spec);
 
+/// The same of a run's finished map: what only its queries depend on is left out, so that runs
+/// which differ in nothing else share it.
+std::string map_key(const RunSpec& spec);
+
 /// The spec as it is kept beside a result: names instead of paths, so that it is the same wherever
 /// the files lie.
 std::string stored_spec(const RunSpec& spec);

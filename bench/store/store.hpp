@@ -22,9 +22,9 @@ namespace mh {
 struct RunCost {
   double wall_s = 0;
   double cpu_s = 0;  ///< user and system time of its process
-  // Of the wall time:
-  double slam_s = 0;    ///< inside the system under test
-  double frames_s = 0;  ///< making its frames
+  // Of cpu_s:
+  double slam_s = 0;    ///< inside the system under test, as far as it works in our process
+  double frames_s = 0;  ///< making its frames: scene, light and drives included
   double max_rss_mb = 0;
 };
 

@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "slam/pipeline/map_file.hpp"
+
 namespace mh {
 namespace {
 
@@ -73,6 +75,13 @@ class OurSystem : public System {
   void set_query_settings(const SemanticConfig& settings) override {
     assert(frozen_);
     mh::set_query_settings(state_, settings);
+  }
+  std::string save() const override {
+    assert(frozen_);
+    return encode_slam(state_);
+  }
+  void restore(const std::string& saved) override {
+    state_ = decode_slam(saved, "saved map", state_.vocabulary);
   }
   Trajectory trajectory() const override { return mh::trajectory(state_); }
   std::unique_ptr<QueryMemo> make_memo() const override { return std::make_unique<OurMemo>(); }

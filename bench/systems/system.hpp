@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "slam/core/random.hpp"
 #include "slam/core/rgbd_frame.hpp"
@@ -43,6 +44,11 @@ class System {
   /// Answers queries with other settings of the method than those it mapped with, from the next
   /// session on. Call freeze() first. A system that has no such settings passes it over.
   virtual void set_query_settings(const SemanticConfig&) {}
+  /// The finished map as bytes, of which restore() makes a system that answers with the same bits.
+  /// Call freeze() first. Empty: this system cannot be saved.
+  virtual std::string save() const { return {}; }
+  /// Takes the place of all mapping. @param saved  by save() of a system of the same settings
+  virtual void restore(const std::string&) {}
   /// Each tracked frame once, ordered by stamp, as world_from_camera in the system's own world.
   virtual Trajectory trajectory() const = 0;
   /// A new session that starts lost. Call freeze() first.

@@ -9,10 +9,14 @@
 
 namespace mh {
 
+/// Processor time of this process so far, all its threads.
+double processor_time_s();
+
 /// Wall time (ms) of every call that handled a frame, in call order.
 struct CallTimes {
   std::vector<double> track_ms;
   std::vector<double> relocalize_ms;  ///< blank frames included
+  double processor_s = 0;             ///< of all these calls, in this process
 };
 
 /// A system whose calls are timed on the way; what it answers is untouched.
@@ -27,6 +31,8 @@ class TimedSystem : public System {
   void set_query_settings(const SemanticConfig& settings) override {
     inner_->set_query_settings(settings);
   }
+  std::string save() const override { return inner_->save(); }
+  void restore(const std::string& saved) override { inner_->restore(saved); }
   Trajectory trajectory() const override { return inner_->trajectory(); }
   std::unique_ptr<RelocalizationSession> open_session() const override;
   std::unique_ptr<RelocalizationSession> open_session_with(QueryMemo& memo) const override;
@@ -38,9 +44,11 @@ class TimedSystem : public System {
   std::unique_ptr<RelocalizationSession> timed(std::unique_ptr<RelocalizationSession> inner) const;
 
   std::unique_ptr<System> inner_;
+  double track_processor_s_ = 0;
   std::vector<double> track_ms_;
   mutable std::mutex mutex_;  // sessions of one system may run side by side
   mutable std::vector<double> relocalize_ms_;
+  mutable double relocalize_processor_s_ = 0;
 };
 
 /// Median and 95th percentile, ms.

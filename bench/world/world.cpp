@@ -174,7 +174,7 @@ World build_world(const RunSpec& spec, int threads, const Cache& cache, const Sa
   if (environment.query_scene) {
     say(fmt::format("scene {}", environment.query_scene->string()));
     world.second_scene =
-        std::make_shared<const Scene>(load_lit_scene(*environment.query_scene, threads));
+        std::make_shared<const Scene>(load_lit_scene(*environment.query_scene, threads, cache));
     world.second_renderer = make_scene_renderer(*world.second_scene);
   }
   say(fmt::format("driving {}", query_tour->name));

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <iosfwd>
 #include <memory>
+#include <string>
 
 #include <Eigen/Core>
 
@@ -62,6 +64,10 @@ class OccupancyMapper {
   void save_bt(const std::filesystem::path& file) const;
   /// Reads such a file. @throws InputError naming it.
   static OccupancyMapper load_bt(const std::filesystem::path& file);
+
+  /// The same format to and from a stream; `name` stands for the file in messages.
+  void write_bt(std::ostream& out) const;
+  static OccupancyMapper read_bt(std::istream& in, const std::string& name);
 
  private:
   struct Impl;

@@ -105,16 +105,20 @@ std::size_t OccupancyMapper::leaf_count() const {
 
 // The file's header is written and read here, and only the data by OctoMap, which would talk to
 // stderr at each file.
+void OccupancyMapper::write_bt(std::ostream& out) const {
+  octomap::OcTree tree(impl_->tree);
+  tree.toMaxLikelihood();  // as the format does, so that equal neighbours can be joined first
+  tree.prune();
+  out << kMagic << "\n"
+      << fmt::format("id {}\nsize {}\nres {}\ndata\n", tree.getTreeType(), tree.size(),
+                     tree.getResolution());
+  if (tree.size() > 0) tree.writeBinaryData(out);
+}
+
 void OccupancyMapper::save_bt(const std::filesystem::path& file) const {
   write_atomically(file, [&](const std::filesystem::path& temporary) {
-    octomap::OcTree tree(impl_->tree);
-    tree.toMaxLikelihood();  // as the format does, so that equal neighbours can be joined first
-    tree.prune();
     std::ofstream out(temporary, std::ios::binary);
-    out << kMagic << "\n"
-        << fmt::format("id {}\nsize {}\nres {}\ndata\n", tree.getTreeType(), tree.size(),
-                       tree.getResolution());
-    if (tree.size() > 0) tree.writeBinaryData(out);
+    write_bt(out);
     if (!out.flush()) throw InputError(fmt::format("{}: cannot be written", file.string()));
   });
 }
@@ -122,6 +126,10 @@ void OccupancyMapper::save_bt(const std::filesystem::path& file) const {
 OccupancyMapper OccupancyMapper::load_bt(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw InputError(fmt::format("{}: cannot be read: no such file", file.string()));
+  return read_bt(in, file.string());
+}
+
+OccupancyMapper OccupancyMapper::read_bt(std::istream& in, const std::string& name) {
   std::string line, key, type;
   std::size_t size = 0;
   OccupancyConfig config{.resolution_m = 0};
@@ -135,11 +143,11 @@ OccupancyMapper OccupancyMapper::load_bt(const std::filesystem::path& file) {
   }
   in.get();  // the end of the line "data"
   if (!in || !has_magic || type != "OcTree" || !(config.resolution_m > 0))
-    throw InputError(fmt::format("{}: is no binary OctoMap file of an OcTree", file.string()));
+    throw InputError(fmt::format("{}: is no binary OctoMap file of an OcTree", name));
   OccupancyMapper mapper(config);
   if (size > 0) mapper.impl_->tree.readBinaryData(in);
   if (!in || mapper.impl_->tree.size() != size)
-    throw InputError(fmt::format("{}: is cut short", file.string()));
+    throw InputError(fmt::format("{}: is cut short", name));
   return mapper;
 }
 

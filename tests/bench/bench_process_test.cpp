@@ -29,7 +29,12 @@ std::string content(const fs::path& file) {
 const fs::path& test_folder() {
   static const struct Folder {
     fs::path path = fs::temp_directory_path() / ("mh_process_" + std::to_string(getpid()));
-    Folder() { fs::create_directories(path); }
+    Folder() {
+      fs::create_directories(path / "cache");
+      // Baked light is shared by all tests (its key holds scene and code), maps are not.
+      fs::create_directories(fs::path(MH_TEST_CACHE) / "light");
+      fs::create_directory_symlink(fs::path(MH_TEST_CACHE) / "light", path / "cache" / "light");
+    }
     ~Folder() { fs::remove_all(path); }
   } folder;
   return folder.path;
@@ -95,9 +100,16 @@ class Command {
   int status_ = 0;
 };
 
-std::string bench(const fs::path& suite, const std::string& out, const std::string& more = "") {
+std::string bench_with_kept_maps(const fs::path& suite, const std::string& out,
+                                 const std::string& more = "") {
   return "bench " + suite.string() + " --frames 45 --cache " + (test_folder() / "cache").string() +
          " --out " + (test_folder() / out).string() + " " + more;
+}
+
+/// The same, but every run has to map.
+std::string bench(const fs::path& suite, const std::string& out, const std::string& more = "") {
+  fs::remove_all(test_folder() / "cache" / "map");
+  return bench_with_kept_maps(suite, out, more);
 }
 
 int run(const std::string& arguments) {
@@ -162,6 +174,22 @@ TEST(BenchProcess, KilledAtRandomMomentsItGoesOnAndLosesNothing) {
   EXPECT_EQ(tables("killed"), undisturbed());
 }
 
+TEST(BenchProcess, AMapFromTheCacheChangesNoByte) {
+  EXPECT_EQ(run(bench(write_suite(), "mapped")), 0) << errors();
+  EXPECT_EQ(run(bench_with_kept_maps(write_suite(), "cached")), 0) << errors();
+  const auto maps_anew = [](const std::string& out) {
+    return content(test_folder() / out / "times.json").find("\"track_ms\": null") ==
+           std::string::npos;
+  };
+  EXPECT_TRUE(maps_anew("mapped"));
+  EXPECT_FALSE(maps_anew("cached"));
+  for (const char* out : {"mapped", "cached"}) EXPECT_EQ(tables(out), undisturbed()) << out;
+  for (const char* file : {"map.bt", "map.pgm", "estimate.tum", "topdown.png"})
+    EXPECT_EQ(content(test_folder() / "cached" / "semantic-exact-pepper-0" / file),
+              content(test_folder() / "mapped" / "semantic-exact-pepper-0" / file))
+        << file;
+}
+
 TEST(BenchProcess, TwoProcessesShareOneStore) {
   Command one(bench(write_suite(), "shared")), two(bench(write_suite(), "shared"));
   EXPECT_EQ(one.wait(), 0) << errors();
@@ -224,13 +252,14 @@ TEST(BenchProcess, ASweepOverAFixedMapAnswersAsSeparateQueriesWould) {
   const fs::path sweep = write_suite(
       "sweep", "[semantic]", "parameters: {map: fixed, alpha: [0.8, 0.5], beta: [0.75, 0.9]}\n");
   EXPECT_EQ(run(bench(sweep, "sweep")), 0) << errors();
-  for (const auto& [alpha, beta, point] :
-       {std::tuple("0.8", "0.75", 0), std::tuple("0.5", "0.9", 3)}) {
+  // The one maps for itself, the other takes the sweep's map from the cache.
+  for (const auto& [alpha, beta, point, cache] :
+       {std::tuple("0.8", "0.75", 0, "--no-cache"), std::tuple("0.5", "0.9", 3, "")}) {
     const std::string name = std::string("alone") + alpha;
     const fs::path alone = write_suite(
         name, "[semantic]",
         std::string("parameters: {map: fixed, alpha: [") + alpha + "], beta: [" + beta + "]}\n");
-    EXPECT_EQ(run(bench(alone, name)), 0) << errors();
+    EXPECT_EQ(run(bench_with_kept_maps(alone, name, cache)), 0) << errors();
     const auto queries = [&](const std::string& out, int at) {
       EXPECT_EQ(run("export " + (test_folder() / out).string() + " --format csv"), 0);
       std::istringstream lines(content(test_folder() / "stdout"));

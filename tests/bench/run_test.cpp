@@ -7,6 +7,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <regex>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -298,6 +300,31 @@ TEST(Results, WhatIsUndeterminedIsNull) {
   EXPECT_FALSE(score_trajectory(one, one, 1).ate_first_pose_m);
   const std::vector<QueryScore> unanswered(3);
   EXPECT_FALSE(summarize(unanswered).distance_mean_m);
+}
+
+TEST(Results, WhatWasNotAskedIsADashNotZeroPercent) {
+  Place place;
+  place.suite.labels = {LabelMode::kExact};
+  std::vector<RunResult> runs = place.run();
+  ASSERT_EQ(runs[0].spec.system.name, "semantic");
+  runs[0].points[0] = {};  // as of a program that answers with a trajectory alone
+  place.suite.environments.push_back(place.suite.environments[0]);
+  place.suite.environments[1].name = "other";
+  for (const std::size_t places : {1u, 2u}) {
+    place.suite.environments.resize(places);
+    std::istringstream lines(results_table(place.suite, runs));
+    int of_semantic = 0, of_plain = 0;
+    for (std::string line; std::getline(lines, line);) {
+      static const std::regex kNothing(" 0\\.00(%| )"), kAsked(" plain .* 100\\.00(%| )");
+      if (line.find(" semantic ") != std::string::npos && line.find(" - ") != std::string::npos) {
+        EXPECT_FALSE(std::regex_search(line, kNothing)) << line;
+        ++of_semantic;
+      }
+      of_plain += std::regex_search(line, kAsked) ? 1 : 0;
+    }
+    EXPECT_GE(of_semantic, places == 1 ? 4 : 2);
+    EXPECT_GE(of_plain, places == 1 ? 4 : 2);
+  }
 }
 
 TEST(Results, ACutRunSaysSo) {

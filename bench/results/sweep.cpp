@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/results/sweep.hpp"
+
+#include <algorithm>
+
+namespace mh {
+namespace {
+
+/// The rows of a result's system at one point, one per environment that has one.
+std::vector<const Row*> rows_at(std::span<const Row> rows, const SweepResult& result,
+                                std::size_t point) {
+  std::vector<const Row*> found;
+  for (const Row& row : rows)
+    if (row.level == result.level && row.system == result.system && row.labels == result.labels &&
+        row.parameters == point)
+      found.push_back(&row);
+  return found;
+}
+
+}  // namespace
+
+std::vector<SweepResult> sweep_results(const Suite& suite, std::span<const Row> rows) {
+  const std::vector<SemanticConfig> points = parameter_points(suite);
+  std::vector<SweepResult> results;
+  for (const CategoryRow& row : make_category_rows(suite, rows)) {
+    if (row.category != kAllCategories) continue;
+    auto result = std::ranges::find_if(results, [&](const SweepResult& r) {
+      return r.level == row.level && r.system == row.system && r.labels == row.labels;
+    });
+    if (result == results.end())
+      result = results.insert(results.end(), {row.level, row.system, row.labels, {}, {}});
+    result->points.push_back(points[row.parameters]);
+    result->answers.push_back(row);
+  }
+  std::erase_if(results, [&](const SweepResult& result) {
+    const SystemSpec& system = suite.systems[result.system];
+    return std::ranges::all_of(result.points, [&](const SemanticConfig& point) {
+      return settings_of(system, point) == settings_of(system, result.points.front());
+    });
+  });
+  return results;
+}
+
+std::optional<BestPoint> best_point(const Suite& suite, std::span<const Row> rows,
+                                    const SweepResult& result, QuerySet set) {
+  const auto correct = [&](const CategoryRow& row) { return summary(row, set).correct; };
+  if (result.answers.empty() || summary(result.answers.front(), set).queries == 0)
+    return std::nullopt;
+  const auto best = std::ranges::max_element(result.answers, {}, correct);
+  BestPoint found{.point = static_cast<std::size_t>(best - result.answers.begin()), .to_first = {}};
+  const std::vector<const Row*> at_best = rows_at(rows, result, best->parameters);
+  const std::vector<const Row*> at_first = rows_at(rows, result, result.answers.front().parameters);
+  if (at_best.size() == 1 && at_first.size() == 1) {
+    found.to_first = compare_correct(*at_best.front(), *at_first.front(), set, suite.seed);
+    return found;
+  }
+  std::vector<PairedDifference> differences;
+  for (const Row* a : at_best)
+    for (const Row* b : at_first)
+      if (a->environment == b->environment)
+        differences.push_back({summary(*a, set).correct - summary(*b, set).correct,
+                               summary(*a, set).queries > 0 && summary(*b, set).queries > 0});
+  found.to_first = compare_scenes("correct", differences, true, suite.seed);
+  return found;
+}
+
+}  // namespace mh
