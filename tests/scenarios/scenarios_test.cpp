@@ -32,6 +32,7 @@ struct Fault {
 RunFigures run(const RunSpec& spec, const World& world, const Fault& fault) {
   RunTools tools;
   tools.tamper = fault.tamper;
+  tools.occupancy = false;  // no measure of the gate looks at it
   tools.system = [&](const RunSpec&, const World&) {
     SlamConfig config;
     config.semantics = spec.mapping;
@@ -45,7 +46,8 @@ RunFigures run(const RunSpec& spec, const World& world, const Fault& fault) {
 GateResult judge(const std::string& scenario, const Fault& fault,
                  SystemKind system = SystemKind::kPlain) {
   const RunSpec spec = first_run(scenario, system);
-  const World world = build_world(spec, 1, Cache(), [](std::string_view) {});
+  // Baked light is shared by all tests; its key holds scene and code.
+  const World world = build_world(spec, 1, Cache(MH_TEST_CACHE), [](std::string_view) {});
   const std::vector before = {run(spec, world, {})};
   const std::vector after = {run(spec, world, fault)};
   GateResult result = compare(before, after, ci().gate, false);
@@ -59,6 +61,15 @@ bool worse(const GateResult& result, std::string_view measure) {
   for (const Change& c : result.changes)
     if (c.measure->name == measure) return c.verdict == ChangeVerdict::kWorse;
   return false;
+}
+
+// Where everything looks alike, the second best match is as good as the best.
+TEST(Scenario, WoodenRepetitionCatchesThatLookAlikesAreNotToldApart) {
+  const GateResult result = judge("wooden_repetition", {.settings = [](SlamConfig& c) {
+                                    c.match.ratio = c.match.ratio_projection = 1.0;
+                                    c.pose.chi2_mono = c.pose.chi2_stereo = 1e6;
+                                  }});
+  EXPECT_FALSE(result.passed());
 }
 
 TEST(Scenario, BlankCorridorCatchesACornerThresholdThatIsTooHighForIt) {
@@ -112,6 +123,15 @@ TEST(Scenario, LabelNoiseCatchesScrambledLabels) {
   };
   const GateResult result = judge("label_noise", fault, SystemKind::kSemantic);
   EXPECT_TRUE(worse(result, "penalised"));
+}
+
+// Too little to be seen in a room; once round 14 m it is some centimetres.
+TEST(Scenario, LongLoopCatchesADepthThatReadsThreePercentTooLong) {
+  Fault fault;
+  fault.tamper.frame = [](std::size_t, RgbdFrame& frame) {
+    for (float& depth_m : frame.depth_m) depth_m *= 1.03F;
+  };
+  EXPECT_TRUE(worse(judge("long_loop", fault), "ate_rmse_m"));
 }
 
 TEST(Scenario, WalkingPersonCatchesThatOutliersAreNotRejected) {
