@@ -157,5 +157,28 @@ TEST(MatchByWords, MatchesWithinNodesOnceAndByDominantRotation) {
   }
 }
 
+TEST(MatchByWords, LabelsThatDisagreePayXi) {
+  Frame a, b;
+  WordIndex words;
+  constexpr ClassId kChair = 5, kTable = 7;
+  const RandomStream random(9);
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    const Descriptor d{random.bits(4 * i), random.bits(4 * i + 1), random.bits(4 * i + 2),
+                       random.bits(4 * i + 3)};
+    a.add(0, 0, d, kChair, 0, 0.0F);
+    b.add(0, 0, flipped(d, 40), i % 3 == 0 ? kTable : i % 3 == 1 ? kChair : kVoid, 0, 0.0F);
+    words.by_node.emplace_back(i, i);  // each pair under a node of its own
+  }
+  MatcherCounts counts;
+  const std::vector<std::uint8_t> all(12, 1);
+  const auto matches = match_by_words(a.features, words, all, b.features, words, all, 50, 0.75F,
+                                      SemanticMatcher(SemanticConfig{.xi = 1.5}, counts));
+  EXPECT_EQ(matches.size(), 8U);  // 40 bits are under 50, 1.5 times 40 are not
+  for (const FeatureMatch& m : matches) EXPECT_NE(m.b % 3, 0U);
+  EXPECT_EQ(counts.compared, 12);
+  EXPECT_EQ(counts.penalised, 4);
+  EXPECT_EQ(counts.rejected_by_xi, 4);
+}
+
 }  // namespace
 }  // namespace mh

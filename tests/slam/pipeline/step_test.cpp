@@ -157,6 +157,17 @@ TEST(SemanticLaw, NeutralSettingsOnLabelledInputAreThePlainSystem) {
   };
   EXPECT_EQ(geometry(neutral), geometry(plain));
   EXPECT_NE(geometry(semantic), geometry(plain)) << "labels change nothing: the law says nothing";
+  // Nor do labels choose whom to relocalize against.
+  for (const int i : {3, 30, 55}) {
+    Tracker a, b;
+    const StepReport ra = localize(neutral.state, a, frame(i, true), RandomStream(i));
+    const StepReport rb = localize(plain.state, b, frame(i, false), RandomStream(i));
+    ASSERT_TRUE(ra.candidates && rb.candidates);
+    EXPECT_EQ(ra.candidates->label_mass, 0);
+    EXPECT_EQ(ra.candidates->final, rb.candidates->final);
+    ASSERT_TRUE(ra.world_from_camera && rb.world_from_camera);
+    EXPECT_EQ(ra.world_from_camera->translation(), rb.world_from_camera->translation());
+  }
 }
 
 TEST(SemanticLaw, WithoutLabelsTheSemanticSystemIsThePlainOne) {
