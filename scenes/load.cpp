@@ -8,21 +8,30 @@
 #include <cctype>
 #include <string_view>
 
+#include "scenes/gazebo.hpp"
 #include "scenes/house.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
+#include "scenes/placed_objects.hpp"
+#include "scenes/scannet/files.hpp"
+#include "scenes/scannet/scannet.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
 
 Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings) {
+  if (is_scannet_scene(file) || std::filesystem::is_directory(file))
+    return load_scannet(file, warnings);
   constexpr std::array<std::string_view, 5> kMeshes = {".dae", ".glb", ".gltf", ".obj", ".ply"};
   std::string ending = file.extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (std::ranges::find(kMeshes, ending) != kMeshes.end()) return load_mesh(file, warnings);
-  if (ending == ".yaml" || ending == ".yml") return load_house(file);
-  throw InputError(fmt::format(
-      "{}: unknown kind of scene: the ending must be .yaml, .ply, .obj, .glb, .gltf or .dae",
-      file.string()));
+  if (ending == ".yaml" || ending == ".yml")
+    return is_placed_scene(file) ? load_placed_scene(file, warnings) : load_house(file);
+  if (ending == ".sdf" || ending == ".world") return load_gazebo_world(file, warnings);
+  throw InputError(
+      fmt::format("{}: unknown kind of scene: the ending must be .yaml, .ply, .obj, .glb, .gltf, "
+                  ".dae, .sdf or .world",
+                  file.string()));
 }
 
 }  // namespace mh

@@ -73,6 +73,9 @@ class Checker {
     for (const Material& material : scene_.materials) {
       if (!material.texture.empty() && scene_.uvs.empty())
         fail("material {}: has a texture, but the scene has no uvs", material.name);
+      if (!material.opacity.empty() && (material.opacity.width() != material.texture.width() ||
+                                        material.opacity.height() != material.texture.height()))
+        fail("material {}: opacity must be as large as the texture", material.name);
       if (!(material.tile_m.minCoeff() > 0.0F) || !material.tile_m.allFinite())
         fail("material {}: tile_m must be positive, is {} x {}", material.name, material.tile_m.x(),
              material.tile_m.y());
@@ -169,6 +172,7 @@ std::uint64_t digest(const Scene& scene) {
     all.value(material.texture.width());
     all.array(material.texture.data(), material.texture.size());
     all.vector(material.emission);
+    if (!material.opacity.empty()) all.array(material.opacity.data(), material.opacity.size());
   }
   for (const Instance& instance : scene.instances) {
     all.value(instance.id);

@@ -16,14 +16,21 @@ namespace mh {
 
 using InstanceId = std::uint16_t;  ///< 0 = none
 
+/// The least opacity, of 255, that can be seen: glTF's usual cut-off of 0.5.
+inline constexpr std::uint8_t kOpaqueFrom = 128;
+
 /// A surface's look. Texel (x, y) of the texture covers u in [x/w, (x+1)/w), v in [y/h, (y+1)/h);
 /// v grows downwards in the picture; the texture repeats.
 struct Material {
   std::string name;
   Rgb8 base_colour{255, 255, 255};  ///< sRGB; multiplies the texture and the vertex colours
   Grid2d<Rgb8> texture;             ///< sRGB; empty = base_colour alone
+  /// How opaque each texel is: what is below kOpaqueFrom is a hole. Empty = opaque; else as large
+  /// as the texture.
+  Grid2d<std::uint8_t> opacity{};
   Eigen::Vector2f tile_m{1.0F, 1.0F};  ///< physical size of one repeat of the texture, where known
-  Eigen::Vector3f emission = Eigen::Vector3f::Zero();  ///< linear radiance added to what is reflected
+  Eigen::Vector3f emission =
+      Eigen::Vector3f::Zero();  ///< linear radiance added to what is reflected
 };
 
 /// An object (or a wall, a floor): what one instance id stands for.
@@ -37,10 +44,10 @@ struct Instance {
 struct Light {
   enum class Kind { kSun, kSphere, kSky };
   Kind kind = Kind::kSphere;
-  Eigen::Vector3f position_m = Eigen::Vector3f::Zero();    ///< sphere: centre
-  Eigen::Vector3f direction = {0.0F, 0.0F, -1.0F};         ///< sun: the way its light travels, unit
-  float radius_m = 0.05F;                                  ///< sphere: radius
-  float angular_radius_rad = 0.00465F;                     ///< sun: half its apparent size
+  Eigen::Vector3f position_m = Eigen::Vector3f::Zero();  ///< sphere: centre
+  Eigen::Vector3f direction = {0.0F, 0.0F, -1.0F};       ///< sun: the way its light travels, unit
+  float radius_m = 0.05F;                                ///< sphere: radius
+  float angular_radius_rad = 0.00465F;                   ///< sun: half its apparent size
   /// Linear RGB. Sun: irradiance on a surface facing it; sky: radiance of rays that leave the
   /// scene; sphere: radiant intensity (irradiance at 1 m).
   Eigen::Vector3f colour = Eigen::Vector3f::Ones();

@@ -5,6 +5,7 @@
 
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/recorded/scannet_folder.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "bench/world/world.hpp"
 #include "sim/sensors/shutter.hpp"
@@ -15,17 +16,22 @@ namespace mh::cli {
 namespace {
 
 struct Options {
-  std::string scene, tour, robot, level, out, renderer = "embree";
+  std::string scene, tour, robot, level, out, renderer = "embree", format = "tum";
   std::size_t frames = SIZE_MAX, every = 1;
   std::uint64_t seed = 0;
 };
 
 /// Pictures of two tours in one folder would be taken for one sequence.
 void refuse_older_sequence(const std::filesystem::path& folder) {
+  const auto refuse = [&] {
+    throw InputError(
+        fmt::format("{}: holds a sequence already; name another folder", folder.string()));
+  };
   for (const char* part : {"rgb", "rgb.txt"})
-    if (std::filesystem::exists(folder / part))
-      throw InputError(
-          fmt::format("{}: holds a sequence already; name another folder", folder.string()));
+    if (std::filesystem::exists(folder / part)) refuse();
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (entry.path().extension() == ".sens") refuse();
 }
 
 void run(const Options& options) {
@@ -46,14 +52,24 @@ void run(const Options& options) {
   const std::size_t last = std::min(options.frames, path.camera.size());
   const RandomStream noise(options.seed);
   const Shutter shutter(renderer, robot.camera, path.camera, sensors);
-  TumWriter writer(options.out, shutter.camera());
-  for (std::size_t i = 0; i < last; i += options.every) {
+  const std::size_t count = (last + options.every - 1) / options.every;
+  const auto frame_at = [&](std::size_t index) {
+    const std::size_t i = index * options.every;
     const TimedPose& pose = path.camera[i];
-    const Shutter::Exposed exposed = shutter.expose(i);
-    const RgbdFrame frame =
+    Shutter::Exposed exposed = shutter.expose(i);
+    RgbdFrame frame =
         sense(exposed.seen, shutter.camera(), sensors, noise.fork(i), pose.stamp_ns, exposed.gain);
-    writer.add(frame, exposed.seen, pose.world_from_camera);
     progress.share(static_cast<double>(i + 1) / static_cast<double>(last));
+    return ExactFrame{std::move(frame), std::move(exposed.seen), pose.world_from_camera};
+  };
+  if (options.format == "scannet") {
+    write_scannet_recording(options.out, shutter.camera(), count, frame_at);
+    return;
+  }
+  TumWriter writer(options.out, shutter.camera());
+  for (std::size_t i = 0; i < count; ++i) {
+    const ExactFrame frame = frame_at(i);
+    writer.add(frame.seen, frame.exact, frame.world_from_camera);
   }
   writer.finish();
 }
@@ -63,12 +79,16 @@ void run(const Options& options) {
 void add_render(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
-      "render", "Writes what a robot sees along a tour in TUM's layout, with labels and poses.");
+      "render", "Writes what a robot sees along a tour, in TUM's or ScanNet's layout.");
   command->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
   command->add_option("tour", options->tour, "Tour (YAML)")->required();
   command->add_option("--robot", options->robot, "Robot (YAML)")->required();
   command->add_option("--level", options->level, "Sensor level (YAML); without: no noise");
   command->add_option("--out", options->out, "Folder to write")->required();
+  command
+      ->add_option("--format", options->format,
+                   "tum (default): folders and lists; scannet: .sens, label images")
+      ->check(CLI::IsMember({"tum", "scannet"}));
   command->add_option("--frames", options->frames, "At most so many frames of the tour")
       ->check(CLI::Range(1, 100000000));
   command->add_option("--every", options->every, "Every n-th frame only")

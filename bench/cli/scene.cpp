@@ -13,6 +13,7 @@
 #include "bench/world/world.hpp"
 #include "scenes/load.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
+#include "scenes/scannet/scannet.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -23,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr int kThreads = 2;  // for baking light; changes no bit
 
 struct Options {
-  std::string scene, out;
+  std::string scene, out, format;
   bool json = false;
 };
 
@@ -86,12 +87,21 @@ void preview(const Options& options) {
 
 void convert(const Options& options) {
   const std::string ending = fs::path(options.out).extension().string();
-  if (ending != ".ply" && ending != ".glb")
-    throw InputError(fmt::format("{}: must end in .ply or .glb", options.out));
-  need_folder_of(options.out);
+  std::string format = options.format;
+  if (format.empty()) format = ending.empty() ? "scannet" : ending.substr(1);
+  const bool folder = format == "scannet";
+  if (!folder && (format != "ply" && format != "glb"))
+    throw InputError(fmt::format(
+        "{}: must end in .ply or .glb, or name a folder for a ScanNet scene", options.out));
+  if (!folder && ending != "." + format)
+    throw InputError(fmt::format("{}: must end in .{}", options.out, format));
+  folder ? make_output_folder(options.out) : need_folder_of(options.out);
   Scene scene = load(options.scene);
   light_scene(scene, kThreads);
-  ending == ".ply" ? save_scannet_ply(scene, options.out) : save_glb(scene, options.out);
+  if (folder)
+    save_scannet(scene, options.out);
+  else
+    format == "ply" ? save_scannet_ply(scene, options.out) : save_glb(scene, options.out);
 }
 
 }  // namespace
@@ -115,9 +125,17 @@ void add_scene(CLI::App& app) {
   p->callback([options] { preview(*options); });
 
   CLI::App* c = command->add_subcommand("convert", "Writes a scene as a mesh, light baked in.");
-  c->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
-  c->add_option("--out", options->out, "Mesh to write: .ply (ScanNet-like) or .glb")->required();
-  c->footer("Example:\n  modelhouse scene convert scenes/model_house/house.yaml --out house.glb");
+  c->add_option("scene", options->scene, "Scene (YAML), mesh file or ScanNet folder")->required();
+  c->add_option(
+       "--out", options->out,
+       "Mesh to write: .ply (ScanNet-like) or .glb; or a folder, to become a ScanNet scene")
+      ->required();
+  c->add_option("--format", options->format,
+                "ply, glb or scannet; default: by the ending of --out, a folder without one")
+      ->check(CLI::IsMember({"ply", "glb", "scannet"}));
+  c->footer(
+      "Examples:\n  modelhouse scene convert scenes/model_house/house.yaml --out house.glb\n"
+      "  modelhouse scene convert house.glb --out out/scene0000_00 --format scannet");
   c->callback([options] { convert(*options); });
 }
 

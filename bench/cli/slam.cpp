@@ -9,6 +9,7 @@
 #include "bench/cli/progress.hpp"
 #include "bench/cli/slam_report.hpp"
 #include "bench/metrics/trajectory_io.hpp"
+#include "bench/recorded/scannet_folder.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/pipeline/map_file.hpp"
@@ -32,12 +33,15 @@ bool is_tum_folder(const fs::path& folder) {
   return fs::exists(folder / "rgb.txt") || fs::exists(folder / "associations.txt");
 }
 
-/// The settings file that was named, else the one that lies in the folder.
+/// The settings file that was named, else the one that lies in the folder, else its calibration.
 Settings settings_for(const Options& options, const fs::path& folder) {
-  const fs::path beside = folder / "camera.yaml";
+  fs::path beside = folder / "camera.yaml";
+  if (!fs::exists(beside)) beside = folder / "camera_info.yaml";
   if (options.settings.empty() && !fs::exists(beside))
-    throw InputError(fmt::format("{}: holds no camera.yaml; name a settings file by --settings",
-                                 folder.string()));
+    throw InputError(
+        fmt::format("{}: holds neither camera.yaml nor camera_info.yaml; name a settings file by "
+                    "--settings",
+                    folder.string()));
   const fs::path file = options.settings.empty() ? beside : fs::path(options.settings);
   Settings settings = load_settings(file);
   if (!settings.has_camera)
@@ -51,7 +55,7 @@ struct Source {
 };
 
 Source open_source(const Options& options) {
-  constexpr std::string_view kTum = "tum:", kScene = "scene:";
+  constexpr std::string_view kTum = "tum:", kScene = "scene:", kScannet = "scannet:";
   const std::string& source = options.source;
   if (source.starts_with(kScene)) {
     if (options.tour.empty() || options.robot.empty())
@@ -66,10 +70,18 @@ Source open_source(const Options& options) {
     settings.camera = frames->camera();
     return {std::move(settings), std::move(frames)};
   }
+  if (source.starts_with(kScannet)) {
+    Settings settings;
+    if (!options.settings.empty()) settings = load_settings(options.settings);
+    auto frames = open_scannet(source.substr(kScannet.size()), settings.notes);
+    settings.camera = frames->camera();
+    return {std::move(settings), std::move(frames)};
+  }
   const bool named = source.starts_with(kTum);
   const fs::path folder = named ? source.substr(kTum.size()) : source;
   if (!fs::is_directory(folder))
-    throw InputError(fmt::format("source '{}' is no folder, nor scene:FILE", source));
+    throw InputError(
+        fmt::format("source '{}' is no folder, nor scene:FILE or scannet:PATH", source));
   if (!named && !is_tum_folder(folder))
     throw InputError(
         fmt::format("{}: holds neither rgb.txt nor associations.txt", folder.string()));
@@ -159,7 +171,10 @@ void add_slam(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("slam", "Runs SLAM on a recorded sequence or along a tour of a scene.");
-  command->add_option("source", options->source, "tum:FOLDER, FOLDER or scene:FILE")->required();
+  command
+      ->add_option("source", options->source,
+                   "tum:FOLDER, FOLDER, scannet:FOLDER, scannet:FILE.sens or scene:FILE")
+      ->required();
   command->add_option("--settings", options->settings,
                       "Settings (YAML), also ORB-SLAM2's; default: the folder's camera.yaml");
   command->add_option("--vocabulary", options->vocabulary, "Vocabulary file")->required();

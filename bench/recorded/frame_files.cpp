@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -81,6 +82,22 @@ std::string settings_text(const Camera& camera) {
       camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, d.k1, d.k2, d.p1, d.p2, d.k3,
       camera.width_px, camera.height_px, camera.rate_hz, camera.baseline_m * camera.fx_px,
       kDepthPerMetre);
+}
+
+std::string camera_info_text(const Camera& camera) {
+  const Distortion& d = camera.distortion;
+  const auto matrix = [](const char* name, int rows, const std::vector<double>& data) {
+    return fmt::format("{}:\n  rows: {}\n  cols: {}\n  data: [{}]\n", name, rows,
+                       data.size() / static_cast<std::size_t>(rows), fmt::join(data, ", "));
+  };
+  const double fx = camera.fx_px, fy = camera.fy_px, cx = camera.cx_px, cy = camera.cy_px;
+  return fmt::format("image_width: {}\nimage_height: {}\ncamera_name: modelhouse\n",
+                     camera.width_px, camera.height_px) +
+         matrix("camera_matrix", 3, {fx, 0, cx, 0, fy, cy, 0, 0, 1}) +
+         "distortion_model: plumb_bob\n" +
+         matrix("distortion_coefficients", 1, {d.k1, d.k2, d.p1, d.p2, d.k3}) +
+         matrix("rectification_matrix", 3, {1, 0, 0, 0, 1, 0, 0, 0, 1}) +
+         matrix("projection_matrix", 3, {fx, 0, cx, 0, 0, fy, cy, 0, 0, 0, 1, 0});
 }
 
 }  // namespace mh

@@ -31,4 +31,7 @@ FrameFiles show(const RgbdFrame& frame, const std::filesystem::path& folder);
 /// ThDepth, ORBextractor.*, Viewer.*. load_recorded_camera() reads it back.
 std::string settings_text(const Camera& camera);
 
+/// The same calibration as ROS' camera_info YAML; load_settings() reads it back.
+std::string camera_info_text(const Camera& camera);
+
 }  // namespace mh

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/pictures/canvas.hpp"
+#include "bench/recorded/tum_list.hpp"
 #include "slam/core/files.hpp"
 #include "slam/pipeline/settings.hpp"
 
@@ -22,32 +22,12 @@ namespace fs = std::filesystem;
 
 constexpr Stamp kMaxApart_ns = 20'000'000;  // as TUM's associate.py
 
-struct Listed {
-  Stamp stamp_ns = 0;
-  fs::path file;
-};
+using Listed = TumListEntry;
 
-/// Reads "stamp file" lines, after so many words to skip; '#' begins a comment.
+/// Reads a list whose files lie beside it.
 std::vector<Listed> read_list(const fs::path& list, int skip = 0) {
-  std::istringstream text(read_file(list));
-  std::vector<Listed> entries;
-  std::string line;
-  for (int number = 1; std::getline(text, line); ++number) {
-    std::istringstream words(line.substr(0, line.find('#')));
-    std::string stamp, file;
-    if (!(words >> stamp)) continue;
-    for (int k = 0; k < skip; ++k)
-      if (!(words >> stamp)) stamp.clear();
-    if (!(words >> file))
-      throw InputError(fmt::format("{}:{}: a stamp and a file are needed", list.string(), number));
-    try {
-      entries.push_back({parse_stamp(stamp), list.parent_path() / file});
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}:{}: {}", list.string(), number, error.what()));
-    }
-    if (entries.size() > 1 && entries.back().stamp_ns <= entries[entries.size() - 2].stamp_ns)
-      throw InputError(fmt::format("{}:{}: stamps must increase", list.string(), number));
-  }
+  std::vector<Listed> entries = parse_tum_list(read_file(list), list.string(), skip);
+  for (Listed& entry : entries) entry.file = list.parent_path() / entry.file;
   return entries;
 }
 
@@ -192,6 +172,7 @@ void TumWriter::finish() {
     write_atomically(folder_ / (part + ".txt"), "# stamp (s) file\n" + list);
   write_atomically(folder_ / "associations.txt", associations_);
   if (!truth_.empty()) write_tum(folder_ / "groundtruth.txt", truth_);
+  write_atomically(folder_ / "camera_info.yaml", camera_info_text(camera_));
   write_atomically(folder_ / "camera.yaml", settings_text(camera_));
 }
 

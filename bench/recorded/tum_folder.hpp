@@ -40,9 +40,9 @@ std::vector<RecordedFrame> load_tum_folder(const std::filesystem::path& folder);
 RgbdFrame read_frame(const RecordedFrame& frame, const RecordedCamera& camera);
 
 /// Writes sequences in TUM's layout: rgb/ and depth/ (16 bit, 5000 per metre), label/ (class ids, 8
-/// bit), their lists, associations.txt and camera.yaml; with truth also instance/ (16 bit), its
-/// list and groundtruth.txt. The lists appear with finish(), so that a folder without them was not
-/// finished.
+/// bit), their lists, associations.txt, camera.yaml and camera_info.yaml; with truth also instance/
+/// (16 bit), its list and groundtruth.txt. The lists appear with finish(), so that a folder without
+/// them was not finished.
 class TumWriter {
  public:
   TumWriter(std::filesystem::path folder, const Camera& camera);

@@ -7,15 +7,19 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <limits>
+#include <map>
 #include <set>
 
+#include "scenes/mesh_io/instances_in.hpp"
+#include "scenes/mesh_io/label_rules.hpp"
 #include "scenes/mesh_io/labels_file.hpp"
 #include "scenes/mesh_io/materials_in.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/mesh_io/node_name.hpp"
+#include "scenes/mesh_io/ply.hpp"
 #include "scenes/srgb.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/held_bytes.hpp"
 
 namespace mh {
 namespace fs = std::filesystem;
@@ -74,8 +78,9 @@ NodeLabel label_of(const aiNode& node) {
 /// Walks the nodes of a file and gathers their meshes into one scene.
 class Gatherer {
  public:
-  Gatherer(const aiScene& in, const fs::path& file, const Format& format, Scene& scene)
-      : in_(in), file_(file), format_(format), scene_(scene) {}
+  Gatherer(const aiScene& in, const fs::path& file, const Format& format, const LabelRules& rules,
+           Scene& scene)
+      : in_(in), file_(file), format_(format), rules_(rules), scene_(scene) {}
 
   void run() {
     survey(*in_.mRootNode);
@@ -104,13 +109,22 @@ class Gatherer {
 
   void visit(const aiNode& node, const aiMatrix4x4& world_from_parent) {
     const aiMatrix4x4 world_from_node = world_from_parent * node.mTransformation;
-    if (node.mNumMeshes > 0) {
-      const NodeLabel label = label_of(node);
-      const InstanceId instance = enter_instance(label);
-      for (unsigned i = 0; i < node.mNumMeshes; ++i)
-        add(*in_.mMeshes[node.mMeshes[i]], world_from_node, label.class_id, instance);
+    // A node is an object; where rules tell its pieces apart, each class of them is one.
+    std::map<ClassId, InstanceId> instance_of;
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+      const aiMesh& mesh = *in_.mMeshes[node.mMeshes[i]];
+      NodeLabel label = label_of(node);
+      if (const auto told = rules_.find({label.name, mesh.mName.C_Str(), material_name(mesh)}))
+        label.class_id = *told;
+      const auto [place, is_new] = instance_of.try_emplace(label.class_id, InstanceId{0});
+      if (is_new) place->second = enter_instance(label);
+      add(mesh, world_from_node, label.class_id, place->second);
     }
     for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i], world_from_node);
+  }
+
+  std::string material_name(const aiMesh& mesh) const {
+    return in_.mMaterials[mesh.mMaterialIndex]->GetName().C_Str();
   }
 
   InstanceId free_id() {
@@ -195,6 +209,7 @@ class Gatherer {
   const aiScene& in_;
   const fs::path& file_;
   const Format& format_;
+  const LabelRules& rules_;
   Scene& scene_;
   std::set<InstanceId> reserved_{0};
   std::set<std::string> names_;
@@ -224,59 +239,54 @@ void whiten_default_material(const Format& format, Scene& scene) {
       material.base_colour = {255, 255, 255};
 }
 
-void find_boxes(Scene& scene) {
-  std::vector<Instance*> by_id(65536, nullptr);
-  for (Instance& instance : scene.instances) {
-    instance.min_m.setConstant(std::numeric_limits<float>::infinity());
-    instance.max_m = -instance.min_m;
-    by_id[instance.id] = &instance;
-  }
-  for (std::size_t face = 0; face < scene.triangles.size(); ++face)
-    if (Instance* instance = by_id[scene.instance_of[face]])
-      for (const std::uint32_t vertex : scene.triangles[face]) {
-        instance->min_m = instance->min_m.cwiseMin(scene.positions_m[vertex]);
-        instance->max_m = instance->max_m.cwiseMax(scene.positions_m[vertex]);
-      }
-  for (Instance& instance : scene.instances)  // those without faces
-    if (!instance.min_m.allFinite()) instance.min_m = instance.max_m = Eigen::Vector3f::Zero();
+/// A PLY's vertices as a scene that knows no objects.
+Scene scene_of(PlyMesh mesh, const fs::path& file) {
+  Scene scene;
+  scene.name = file.stem().string();
+  scene.positions_m = std::move(mesh.positions_m);
+  scene.colours = std::move(mesh.colours);
+  scene.triangles = std::move(mesh.triangles);
+  const std::size_t faces = scene.triangles.size();
+  scene.material_of.assign(faces, 0);
+  scene.class_of.assign(faces, kVoid);
+  scene.instance_of.assign(faces, 0);
+  scene.materials.push_back({.name = "vertex colours", .texture = {}});
+  return scene;
 }
 
-/// A mesh that came without a plan: the box of each floor is a room, so that those who ask where
-/// people stand (metering, previews, plans) find an answer.
-void rooms_from_floors(Scene& scene) {
-  constexpr float kLeastRoom_m2 = 1.0F;
-  const std::optional<ClassId> floor = class_by_name("floor");
-  for (const Instance& instance : scene.instances) {
-    const Eigen::Vector3f size = instance.max_m - instance.min_m;
-    if (instance.class_id != floor || size.x() * size.y() < kLeastRoom_m2) continue;
-    const Eigen::Vector3d low = instance.min_m.cast<double>(), high = instance.max_m.cast<double>();
-    scene.rooms.push_back(
-        {.name = instance.name.substr(0, instance.name.find('/')),
-         .polygon_m = {
-             {low.x(), low.y()}, {high.x(), low.y()}, {high.x(), high.y()}, {low.x(), high.y()}}});
-  }
+/// What all kinds of files need in the end.
+Scene finished(Scene scene, const fs::path& file) {
+  if (scene.triangles.empty())
+    throw InputError(fmt::format("{}: has no faces to be seen", file.string()));
+  if (format_of(file).ply && fs::exists(labels_path(file))) load_labels(scene, labels_path(file));
+  find_boxes(scene);
+  if (scene.rooms.empty()) rooms_from_floors(scene);
+  validate(scene);
+  return scene;
 }
 
 }  // namespace
 
-Scene load_mesh(const fs::path& file, std::vector<std::string>* warnings) {
+Scene load_mesh(const fs::path& file, std::vector<std::string>* warnings, const LabelRules& rules) {
   const Format format = format_of(file);
+  if (format.ply) {
+    const HeldBytes held = map_file(file);
+    if (is_plain_binary_ply(held.view))
+      return finished(scene_of(parse_ply(held.view, file.string()), file), file);
+  }
   Assimp::Importer importer;
   const aiScene& in = read(importer, file, format);
   Scene scene;
   scene.name = file.stem().string();
   scene.materials = convert_materials(in, file, format.gltf, warnings);
-  Gatherer(in, file, format, scene).run();
-  if (scene.triangles.empty())
-    throw InputError(fmt::format("{}: has no faces to be seen", file.string()));
+  LabelRules all_rules = rules;
+  const LabelRules beside = find_label_rules(file);
+  all_rules.rules.insert(all_rules.rules.end(), beside.rules.begin(), beside.rules.end());
+  Gatherer(in, file, format, all_rules, scene).run();
   whiten_default_material(format, scene);
   if (scene.uvs.empty())
     for (Material& material : scene.materials) material.texture = {};
-  if (format.ply && fs::exists(labels_path(file))) load_labels(scene, labels_path(file));
-  find_boxes(scene);
-  if (scene.rooms.empty()) rooms_from_floors(scene);
-  validate(scene);
-  return scene;
+  return finished(std::move(scene), file);
 }
 
 }  // namespace mh

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/mesh_io/materials_in.hpp"
 
+#include <assimp/GltfMaterial.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "scenes/picture_file.hpp"
 #include "scenes/srgb.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -20,36 +26,74 @@ namespace {
 
 constexpr Rgb8 kMissing{255, 0, 255};  // seen at once, and in no real room
 
+struct Picture {
+  Grid2d<Rgb8> colour;
+  Grid2d<std::uint8_t> opacity;  ///< empty if the file has none
+};
+
+/// One channel as a picture of its own.
+Grid2d<std::uint8_t> channel_of(const cv::Mat& picture, int channel) {
+  Grid2d<std::uint8_t> values(picture.cols, picture.rows);
+  cv::Mat out(picture.rows, picture.cols, CV_8UC1, values.data());
+  cv::extractChannel(picture, out, channel);
+  return values;
+}
+
 /// The picture in these bytes; empty if they hold none.
-Grid2d<Rgb8> decode(const void* data, std::size_t size) {
-  if (size == 0) return {};
+Picture decode(const void* data, std::size_t size) {
+  if (size == 0 || size > std::numeric_limits<int>::max() ||
+      claims_too_much({static_cast<const char*>(data), size}))
+    return {};
   const cv::Mat bytes(1, static_cast<int>(size), CV_8UC1, const_cast<void*>(data));
-  const cv::Mat bgr = cv::imdecode(bytes, cv::IMREAD_COLOR);
-  if (bgr.empty()) return {};
-  Grid2d<Rgb8> picture(bgr.cols, bgr.rows);
-  cv::Mat rgb(bgr.rows, bgr.cols, CV_8UC3, picture.data());
-  cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
+  cv::Mat stored;
+  try {
+    stored = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception&) {  // a size beyond OpenCV's limits
+    return {};
+  }
+  if (stored.empty()) return {};
+  if (stored.depth() == CV_16U) stored.convertTo(stored, CV_8U, 1.0 / 257.0);
+  if (stored.depth() != CV_8U) return {};
+  Picture picture;
+  picture.colour = Grid2d<Rgb8>(stored.cols, stored.rows);
+  cv::Mat rgb(stored.rows, stored.cols, CV_8UC3, picture.colour.data());
+  switch (stored.channels()) {
+    case 1:
+      cv::cvtColor(stored, rgb, cv::COLOR_GRAY2RGB);
+      break;
+    case 3:
+      cv::cvtColor(stored, rgb, cv::COLOR_BGR2RGB);
+      break;
+    case 4:
+      cv::cvtColor(stored, rgb, cv::COLOR_BGRA2RGB);
+      picture.opacity = channel_of(stored, 3);
+      break;
+    default:
+      return {};
+  }
   return picture;
 }
 
-Grid2d<Rgb8> convert_embedded(const aiTexture& texture) {
+Picture convert_embedded(const aiTexture& texture) {
   if (texture.mHeight == 0) return decode(texture.pcData, texture.mWidth);
-  Grid2d<Rgb8> picture(static_cast<int>(texture.mWidth), static_cast<int>(texture.mHeight));
-  std::transform(texture.pcData, texture.pcData + picture.size(), picture.begin(),
-                 [](const aiTexel& t) {
-                   return Rgb8{t.r, t.g, t.b};
-                 });
+  const int width = static_cast<int>(texture.mWidth), height = static_cast<int>(texture.mHeight);
+  Picture picture{Grid2d<Rgb8>(width, height), Grid2d<std::uint8_t>(width, height)};
+  for (std::size_t i = 0; i < picture.colour.size(); ++i) {
+    const aiTexel& t = texture.pcData[i];
+    picture.colour.data()[i] = {t.r, t.g, t.b};
+    picture.opacity.data()[i] = t.a;
+  }
   return picture;
 }
 
-Grid2d<Rgb8> read_picture(const fs::path& path) {
+Picture read_picture(const fs::path& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return {};
   const std::string bytes = read_file(path);
   return decode(bytes.data(), bytes.size());
 }
 
-Grid2d<Rgb8> find_texture(const aiScene& in, const std::string& name, const fs::path& folder) {
+Picture find_texture(const aiScene& in, const std::string& name, const fs::path& folder) {
   if (const aiTexture* embedded = in.GetEmbeddedTexture(name.c_str()))
     return convert_embedded(*embedded);
   std::string portable = name;
@@ -63,6 +107,27 @@ Rgb8 convert_colour(const aiColor4D& c, bool linear) {
     return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(v, 0.0F, 1.0F)));
   };
   return {level(c.r), level(c.g), level(c.b)};
+}
+
+/// Whether a material's alpha counts: glTF says so, other formats mean it where they have one.
+bool has_holes(const aiMaterial& record) {
+  aiString mode;
+  return record.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != aiReturn_SUCCESS ||
+         std::string_view(mode.C_Str()) != "OPAQUE";
+}
+
+/// A mask of its own (OBJ's map_d) as opacity, in the size of the texture that it belongs to.
+Grid2d<std::uint8_t> opacity_of_mask(const Picture& mask, const Grid2d<Rgb8>& texture) {
+  if (mask.colour.empty() || texture.empty()) return {};
+  Grid2d<std::uint8_t> opacity(texture.width(), texture.height());
+  for (int y = 0; y < opacity.height(); ++y)
+    for (int x = 0; x < opacity.width(); ++x) {
+      const int from_x = x * mask.colour.width() / opacity.width();
+      const int from_y = y * mask.colour.height() / opacity.height();
+      opacity(x, y) =
+          mask.opacity.empty() ? mask.colour(from_x, from_y).g : mask.opacity(from_x, from_y);
+    }
+  return opacity;
 }
 
 Material convert(const aiScene& in, const aiMaterial& record, const fs::path& file, bool linear,
@@ -81,14 +146,49 @@ Material convert(const aiScene& in, const aiMaterial& record, const fs::path& fi
   if (record.GetTexture(aiTextureType_BASE_COLOR, 0, &texture) != aiReturn_SUCCESS &&
       record.GetTexture(aiTextureType_DIFFUSE, 0, &texture) != aiReturn_SUCCESS)
     return material;
-  material.texture = find_texture(in, texture.C_Str(), file.parent_path());
-  if (material.texture.empty()) {
-    material.base_colour = kMissing;
-    if (warnings)
+  const auto find = [&](const aiString& name) {
+    Picture picture = find_texture(in, name.C_Str(), file.parent_path());
+    if (picture.colour.empty() && warnings)
       warnings->push_back(fmt::format("{}: material {}: texture {} is missing or no picture",
-                                      file.string(), material.name, texture.C_Str()));
-  }
+                                      file.string(), material.name, name.C_Str()));
+    return picture;
+  };
+  Picture picture = find(texture);
+  if (picture.colour.empty()) material.base_colour = kMissing;
+  material.texture = std::move(picture.colour);
+  aiString mask;
+  if (record.GetTexture(aiTextureType_OPACITY, 0, &mask) == aiReturn_SUCCESS && mask != texture)
+    material.opacity = opacity_of_mask(find(mask), material.texture);
+  else if (has_holes(record))
+    material.opacity = std::move(picture.opacity);
+  const auto opaque = [](std::uint8_t level) { return level >= kOpaqueFrom; };
+  if (std::ranges::all_of(material.opacity, opaque)) material.opacity = {};
   return material;
+}
+
+/// The JSON of a .gltf, or of a .glb's first chunk.
+std::string gltf_json(const fs::path& file) {
+  std::string bytes = read_file(file);
+  if (!bytes.starts_with("glTF") || bytes.size() < 20) return bytes;
+  std::uint32_t size = 0;
+  std::memcpy(&size, bytes.data() + 12, sizeof size);
+  return bytes.substr(20, size);
+}
+
+/// KHR_materials_emissive_strength by material name: assimp drops it.
+std::map<std::string, float> emissive_strengths(const fs::path& file) {
+  using Json = nlohmann::json;
+  std::map<std::string, float> strengths;
+  const std::string text = gltf_json(file);
+  if (text.find("KHR_materials_emissive_strength") == text.npos) return strengths;
+  const Json json = Json::parse(text, nullptr, false);  // assimp has told what is wrong with it
+  const Json::json_pointer place("/extensions/KHR_materials_emissive_strength/emissiveStrength");
+  for (const Json& material : json.value("materials", Json::array()))
+    if (material.contains(place) && material.at(place).is_number() && material.contains("name") &&
+        material.at("name").is_string())
+      strengths[material.at("name").get<std::string>()] =
+          std::clamp(material.at(place).get<float>(), 0.0F, 1e6F);
+  return strengths;
 }
 
 }  // namespace
@@ -98,6 +198,11 @@ std::vector<Material> convert_materials(const aiScene& in, const fs::path& file,
   std::vector<Material> materials;
   for (unsigned i = 0; i < in.mNumMaterials; ++i)
     materials.push_back(convert(in, *in.mMaterials[i], file, linear_colours, warnings));
+  if (!linear_colours) return materials;
+  const std::map<std::string, float> strengths = emissive_strengths(file);
+  for (Material& material : materials)
+    if (const auto found = strengths.find(material.name); found != strengths.end())
+      material.emission *= found->second;
   return materials;
 }
 

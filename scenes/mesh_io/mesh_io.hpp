@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/mesh_io/label_rules.hpp"
 #include "scenes/scene.hpp"
 
 namespace mh {
@@ -13,21 +14,27 @@ namespace mh {
 /// result is z-up: glTF and DAE, which are y-up, are turned; the others are taken as they are.
 ///
 /// Textures may be embedded or lie beside the file. One that is missing or cannot be decoded is
-/// replaced by magenta and named in `warnings`. Transparency is ignored.
+/// replaced by magenta and named in `warnings`. Texels that are not opaque are holes
+/// (Material::opacity); other transparency is ignored.
 ///
 /// Class and instance come from
 /// - the side file <stem>.labels.json of a PLY, as save_scannet_ply writes it;
 /// - node names `name#class=CLASS#instance=ID`, as save_glb writes them, or glTF node extras
 ///   `class` (a name or an id) and `instance`;
+/// - a side table <stem>.labels.yaml or labels.yaml beside the mesh, pattern -> class, for names of
+///   nodes, meshes and materials (LabelRules); a node whose pieces are of several classes is an
+///   instance for each;
 /// - else from the node's name: "kitchen/night_stand_2" is a night stand; every node is an
 /// instance.
 ///
 /// Vertex colours of a file written by save_glb are its baked light and return to Scene::light;
 /// everybody else's are Scene::colours.
 /// @param warnings where to append one line per flaw that could be mended; may be null.
+/// @param rules     come before those of the side table
 /// @throws InputError for a missing file, no mesh, no faces, positions that are not finite, or
 /// labels that do not fit the mesh.
-Scene load_mesh(const std::filesystem::path& file, std::vector<std::string>* warnings = nullptr);
+Scene load_mesh(const std::filesystem::path& file, std::vector<std::string>* warnings = nullptr,
+                const LabelRules& rules = {});
 
 /// Writes a ScanNet-like mesh: binary little-endian PLY with x y z (float) and red green blue alpha
 /// (uchar, sRGB) per vertex, faces as `uchar int vertex_indices`. The colour of a vertex is what
@@ -42,10 +49,10 @@ void save_scannet_ply(const Scene& scene, const std::filesystem::path& file,
                       float max_edge_m = 0.04F);
 
 /// Writes a binary glTF 2.0 with embedded PNG textures, y-up as glTF wants it, one node per
-/// instance (and class) named `name#class=CLASS#instance=ID`, and baked light times vertex colour
-/// as linear vertex colours (they may exceed 1) of unlit materials. Lamps and tile sizes are
-/// not kept; rooms come back as the boxes of the floors.
-/// @throws InputError if the file cannot be written.
+/// instance (and class) named `name#class=CLASS#instance=ID` with extras `class` and `instance`,
+/// and baked light times vertex colour as linear vertex colours (they may exceed 1) of unlit
+/// materials. Lamps and tile sizes are not kept; rooms come back as the boxes of the floors.
+/// @throws InputError if the file cannot be written or would exceed glTF's 4 GiB.
 void save_glb(const Scene& scene, const std::filesystem::path& file);
 
 }  // namespace mh

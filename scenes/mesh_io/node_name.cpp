@@ -47,12 +47,17 @@ ClassId guess_class(std::string_view name) {
     if (is_letter) words += static_cast<char>(std::tolower(letter));
     if (!is_letter && !words.empty() && words.back() != ' ') words += ' ';
   }
-  while (!words.empty()) {
-    if (words.back() == ' ') words.pop_back();
-    if (const auto found = class_by_name(words)) return *found;
-    const auto last_space = words.rfind(' ');
-    if (last_space == words.npos) break;
-    words.resize(last_space);
+  if (words.ends_with(' ')) words.pop_back();
+  // The longest run of words at the start, then those behind it: "wooden table" is a table.
+  for (std::string_view rest = words; !rest.empty();) {
+    for (std::string_view run = rest;;) {
+      if (const auto found = class_by_name(run)) return *found;
+      const auto last_space = run.rfind(' ');
+      if (last_space == run.npos) break;
+      run = run.substr(0, last_space);
+    }
+    const auto space = rest.find(' ');
+    rest = space == rest.npos ? std::string_view() : rest.substr(space + 1);
   }
   return kVoid;
 }

@@ -19,8 +19,9 @@ struct NodeLabel {
 /// "kitchen/chair_2#class=chair#instance=17".
 std::string node_name(std::string_view name, ClassId class_id, InstanceId instance);
 
-/// Reads a name made by node_name, and guesses the class of any other from the longest run of words
-/// at the start of its last part: "kitchen/night_stand_2" is a night stand; void if none fits.
+/// Reads a name made by node_name, and guesses the class of any other from the first and longest
+/// run of words in its last part: "kitchen/night_stand_2" is a night stand, "wooden_table_02" a
+/// table; void if none fits.
 NodeLabel parse_node_name(std::string_view node);
 
 /// The class guessed from a plain name; void if none fits.

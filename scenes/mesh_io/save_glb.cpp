@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <assimp/scene.h>
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
-#include <assimp/Exporter.hpp>
-
-#include <cstdio>
+#include <algorithm>
+#include <bit>
+#include <limits>
 #include <map>
-#include <memory>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -22,6 +20,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
+static_assert(std::endian::native == std::endian::little,
+              "buffers are written as they lie in memory");
+
+using Json = nlohmann::json;
+
+// The glTF 2.0 specification's numbers.
+constexpr int kFloat = 5126, kUint32 = 5125;
+constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
+constexpr int kRepeat = 10497;
+
 /// Faces of one node: those with this instance and class, by material.
 struct NodeKey {
   InstanceId instance;
@@ -30,11 +38,8 @@ struct NodeKey {
 };
 using FacesByMaterial = std::map<std::uint16_t, std::vector<std::size_t>>;
 
-aiVector3D y_up(const Eigen::Vector3f& p) {
+Eigen::Vector3f y_up(const Eigen::Vector3f& p) {
   return {p.x(), p.z(), -p.y()};
-}
-aiColor4D colour4(const Eigen::Vector3f& c) {
-  return {c.x(), c.y(), c.z(), 1.0F};
 }
 
 Eigen::Vector3f vertex_factor(const Scene& scene, std::uint32_t vertex) {
@@ -44,158 +49,214 @@ Eigen::Vector3f vertex_factor(const Scene& scene, std::uint32_t vertex) {
   return factor.matrix();
 }
 
-/// Normals of the scene's vertices, area-weighted over their faces. The exporter joins vertices
-/// that differ in colour alone; normals keep the two sides of an edge, and so their light, apart.
-std::vector<Eigen::Vector3f> vertex_normals(const Scene& scene) {
-  std::vector<Eigen::Vector3f> normals(scene.positions_m.size(), Eigen::Vector3f::Zero());
-  for (const auto& [a, b, c] : scene.triangles) {
-    const Eigen::Vector3f ab = scene.positions_m[b] - scene.positions_m[a];
-    const Eigen::Vector3f ac = scene.positions_m[c] - scene.positions_m[a];
-    const Eigen::Vector3f doubled_area = ab.cross(ac);
-    for (const std::uint32_t vertex : {a, b, c}) normals[vertex] += doubled_area;
-  }
-  for (Eigen::Vector3f& normal : normals)
-    normal = normal.squaredNorm() > 0.0F ? normal.normalized() : Eigen::Vector3f::UnitZ().eval();
-  return normals;
+Json list_of(const Eigen::Vector3f& v) {
+  return {v.x(), v.y(), v.z()};
 }
 
-/// The faces as one mesh with its own vertices, in the order in which the faces first use them.
-std::unique_ptr<aiMesh> make_mesh(const Scene& scene, const std::vector<Eigen::Vector3f>& normals,
-                                  const std::vector<std::size_t>& faces, std::uint16_t material,
-                                  const std::string& name) {
-  std::map<std::uint32_t, unsigned> own_index;
-  std::vector<std::uint32_t> vertices;
-  auto mesh = std::make_unique<aiMesh>();
-  mesh->mName = name;
-  mesh->mMaterialIndex = material;
-  mesh->mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
-  mesh->mNumFaces = static_cast<unsigned>(faces.size());
-  mesh->mFaces = new aiFace[faces.size()];
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    aiFace& face = mesh->mFaces[i];
-    face.mNumIndices = 3;
-    face.mIndices = new unsigned[3];
-    for (int corner = 0; corner < 3; ++corner) {
-      const std::uint32_t vertex = scene.triangles[faces[i]][corner];
-      const auto [entry, is_new] = own_index.try_emplace(vertex, vertices.size());
-      if (is_new) vertices.push_back(vertex);
-      face.mIndices[corner] = entry->second;
-    }
-  }
-  mesh->mNumVertices = static_cast<unsigned>(vertices.size());
-  mesh->mVertices = new aiVector3D[vertices.size()];
-  mesh->mNormals = new aiVector3D[vertices.size()];
-  mesh->mColors[0] = new aiColor4D[vertices.size()];
-  const bool textured = !scene.uvs.empty();
-  if (textured) {
-    mesh->mTextureCoords[0] = new aiVector3D[vertices.size()];
-    mesh->mNumUVComponents[0] = 2;
-  }
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    mesh->mVertices[i] = y_up(scene.positions_m[vertices[i]]);
-    mesh->mNormals[i] = y_up(normals[vertices[i]]);
-    mesh->mColors[0][i] = colour4(vertex_factor(scene, vertices[i]));
-    if (textured) {
-      const Eigen::Vector2f& uv = scene.uvs[vertices[i]];
-      mesh->mTextureCoords[0][i] = {uv.x(), 1.0F - uv.y(), 0.0F};  // assimp counts v upwards
-    }
-  }
-  return mesh;
-}
-
-std::unique_ptr<aiTexture> make_texture(const Grid2d<Rgb8>& texture) {
+/// The texture as a PNG, with the material's opacity as its fourth channel where there is one.
+std::vector<unsigned char> png_of(const Material& material) {
+  const Grid2d<Rgb8>& texture = material.texture;
   const cv::Mat rgb(texture.height(), texture.width(), CV_8UC3, const_cast<Rgb8*>(texture.data()));
-  cv::Mat bgr;
-  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+  cv::Mat out;
+  cv::cvtColor(rgb, out, cv::COLOR_RGB2BGR);
+  if (!material.opacity.empty()) {
+    const cv::Mat opacity(texture.height(), texture.width(), CV_8UC1,
+                          const_cast<std::uint8_t*>(material.opacity.data()));
+    cv::Mat with_opacity;
+    cv::merge(std::vector<cv::Mat>{out, opacity}, with_opacity);  // the last of (BGR), A
+    out = with_opacity;
+  }
   std::vector<unsigned char> png;
-  cv::imencode(".png", bgr, png, {cv::IMWRITE_PNG_COMPRESSION, 3});
-  auto result = std::make_unique<aiTexture>();
-  result->mWidth =
-      static_cast<unsigned>(png.size());  // mHeight = 0: a compressed file of mWidth bytes
-  result->mHeight = 0;
-  std::snprintf(result->achFormatHint, sizeof result->achFormatHint, "png");
-  result->pcData = new aiTexel[png.size() / sizeof(aiTexel) + 1];
-  std::copy(png.begin(), png.end(), reinterpret_cast<unsigned char*>(result->pcData));
-  return result;
+  cv::imencode(".png", out, png, {cv::IMWRITE_PNG_COMPRESSION, 3});
+  return png;
 }
 
-std::unique_ptr<aiMaterial> make_material_record(const Material& material, int texture_index) {
-  auto record = std::make_unique<aiMaterial>();
-  const aiString name(material.name);
-  record->AddProperty(&name, AI_MATKEY_NAME);
-  const aiColor4D base = colour4(linear_from_srgb(material.base_colour));
-  record->AddProperty(&base, 1, AI_MATKEY_BASE_COLOR);
-  const aiColor3D emission(material.emission.x(), material.emission.y(), material.emission.z());
-  record->AddProperty(&emission, 1, AI_MATKEY_COLOR_EMISSIVE);
-  const int unlit = aiShadingMode_Unlit, both_sides = 1;
-  record->AddProperty(&unlit, 1, AI_MATKEY_SHADING_MODEL);
-  record->AddProperty(&both_sides, 1, AI_MATKEY_TWOSIDED);
-  if (texture_index >= 0) {
-    const aiString path(fmt::format("*{}", texture_index));
-    record->AddProperty(&path, AI_MATKEY_TEXTURE(aiTextureType_BASE_COLOR, 0));
+/// Gathers the JSON and the binary chunk of one file.
+class GlbBuilder {
+ public:
+  explicit GlbBuilder(const Scene& scene)
+      : scene_(scene), own_index_(scene.positions_m.size()), seen_in_(scene.positions_m.size()) {
+    for (const char* part : {"accessors", "bufferViews", "meshes", "nodes", "materials"})
+      json_[part] = Json::array();
   }
-  return record;
-}
 
-void add_materials(const Scene& scene, aiScene& out) {
-  std::vector<aiTexture*> textures;
-  out.mNumMaterials = static_cast<unsigned>(scene.materials.size());
-  out.mMaterials = new aiMaterial*[scene.materials.size()];
-  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    const Material& material = scene.materials[i];
-    const int index = material.texture.empty() ? -1 : static_cast<int>(textures.size());
-    if (index >= 0) textures.push_back(make_texture(material.texture).release());
-    out.mMaterials[i] = make_material_record(material, index).release();
+  std::string build() {
+    json_["asset"] = {{"version", "2.0"}, {"generator", "Modelhouse"}};
+    for (const Material& material : scene_.materials) add_material(material);
+    add_nodes();
+    json_["scene"] = 0;
+    json_["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
+    std::vector<std::string> used = {"KHR_materials_unlit"};
+    if (strong_emission_) used.emplace_back("KHR_materials_emissive_strength");
+    json_["extensionsUsed"] = used;
+    return chunks();
   }
-  out.mNumTextures = static_cast<unsigned>(textures.size());
-  out.mTextures = new aiTexture*[textures.size()];
-  std::ranges::copy(textures, out.mTextures);
-}
 
-void add_nodes(const Scene& scene, aiScene& out) {
-  std::map<InstanceId, std::string> names{{0, "unlabelled"}};
-  for (const Instance& instance : scene.instances) names[instance.id] = instance.name;
-  std::map<NodeKey, FacesByMaterial> nodes;
-  for (std::size_t i = 0; i < scene.triangles.size(); ++i)
-    nodes[{scene.instance_of[i], scene.class_of[i]}][scene.material_of[i]].push_back(i);
+ private:
+  /// @returns the index of the view
+  std::size_t add_view(const void* data, std::size_t size, int target) {
+    binary_.resize((binary_.size() + 3) / 4 * 4, '\0');
+    Json view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", size}};
+    if (target != 0) view["target"] = target;
+    binary_.append(static_cast<const char*>(data), size);
+    json_["bufferViews"].push_back(std::move(view));
+    return json_["bufferViews"].size() - 1;
+  }
 
-  const std::vector<Eigen::Vector3f> normals = vertex_normals(scene);
-  std::vector<aiMesh*> meshes;
-  out.mRootNode = new aiNode("scene");
-  out.mRootNode->mNumChildren = static_cast<unsigned>(nodes.size());
-  out.mRootNode->mChildren = new aiNode*[nodes.size()];
-  std::size_t next = 0;
-  for (const auto& [key, faces_by_material] : nodes) {
-    auto* node = new aiNode(node_name(names.at(key.instance), key.class_id, key.instance));
-    node->mParent = out.mRootNode;
-    out.mRootNode->mChildren[next++] = node;
-    node->mNumMeshes = static_cast<unsigned>(faces_by_material.size());
-    node->mMeshes = new unsigned[faces_by_material.size()];
-    std::size_t slot = 0;
-    for (const auto& [material, faces] : faces_by_material) {
-      node->mMeshes[slot++] = static_cast<unsigned>(meshes.size());
-      meshes.push_back(
-          make_mesh(scene, normals, faces, material, names.at(key.instance)).release());
+  template <class Item>
+  std::size_t add_accessor(const std::vector<Item>& items, const char* type) {
+    constexpr bool kIndices = std::is_same_v<Item, std::uint32_t>;
+    const std::size_t view = add_view(items.data(), items.size() * sizeof(Item),
+                                      kIndices ? kElementArrayBuffer : kArrayBuffer);
+    json_["accessors"].push_back({{"bufferView", view},
+                                  {"componentType", kIndices ? kUint32 : kFloat},
+                                  {"count", items.size()},
+                                  {"type", type}});
+    return json_["accessors"].size() - 1;
+  }
+
+  void add_material(const Material& material) {
+    const Eigen::Vector3f base = linear_from_srgb(material.base_colour);
+    Json surface = {{"baseColorFactor", {base.x(), base.y(), base.z(), 1.0F}},
+                    {"metallicFactor", 0.0},
+                    {"roughnessFactor", 1.0}};
+    if (!material.texture.empty()) surface["baseColorTexture"] = {{"index", add_texture(material)}};
+    Json record = {{"name", material.name},
+                   {"pbrMetallicRoughness", std::move(surface)},
+                   {"doubleSided", true}};
+    const float strength = material.emission.maxCoeff();
+    // What glows by itself is no unlit material to glTF.
+    if (!(strength > 0.0F)) record["extensions"]["KHR_materials_unlit"] = Json::object();
+    if (!material.opacity.empty()) {
+      record["alphaMode"] = "MASK";
+      record["alphaCutoff"] = kOpaqueFrom / 255.0;
     }
+    if (strength > 0.0F) {  // factors end at 1
+      const float unit = std::max(strength, 1.0F);
+      record["emissiveFactor"] = list_of(material.emission / unit);
+      if (unit > 1.0F) {
+        record["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", unit}};
+        strong_emission_ = true;
+      }
+    }
+    json_["materials"].push_back(std::move(record));
   }
-  out.mNumMeshes = static_cast<unsigned>(meshes.size());
-  out.mMeshes = new aiMesh*[meshes.size()];
-  std::ranges::copy(meshes, out.mMeshes);
-}
+
+  std::size_t add_texture(const Material& material) {
+    if (!json_.contains("textures")) {
+      json_["textures"] = Json::array();
+      json_["images"] = Json::array();
+      json_["samplers"] = Json::array({{{"wrapS", kRepeat}, {"wrapT", kRepeat}}});
+    }
+    const std::vector<unsigned char> png = png_of(material);
+    json_["images"].push_back({{"name", material.name},
+                               {"mimeType", "image/png"},
+                               {"bufferView", add_view(png.data(), png.size(), 0)}});
+    json_["textures"].push_back({{"sampler", 0}, {"source", json_["images"].size() - 1}});
+    return json_["textures"].size() - 1;
+  }
+
+  void add_nodes() {
+    std::map<InstanceId, std::string> names{{0, "unlabelled"}};
+    for (const Instance& instance : scene_.instances) names[instance.id] = instance.name;
+    std::map<NodeKey, FacesByMaterial> nodes;
+    for (std::size_t i = 0; i < scene_.triangles.size(); ++i)
+      nodes[{scene_.instance_of[i], scene_.class_of[i]}][scene_.material_of[i]].push_back(i);
+    Json children = Json::array();
+    for (const auto& [key, faces_by_material] : nodes) {
+      Json primitives = Json::array();
+      for (const auto& [material, faces] : faces_by_material)
+        primitives.push_back(make_primitive(faces, material));
+      json_["meshes"].push_back(
+          {{"name", names.at(key.instance)}, {"primitives", std::move(primitives)}});
+      children.push_back(json_["nodes"].size());
+      json_["nodes"].push_back(
+          {{"name", node_name(names.at(key.instance), key.class_id, key.instance)},
+           {"mesh", json_["meshes"].size() - 1},
+           {"extras",
+            {{"class", std::string(classes()[key.class_id].name)},
+             {"instance", int{key.instance}}}}});
+    }
+    json_["scenes"] = Json::array({{{"name", scene_.name}, {"nodes", std::move(children)}}});
+  }
+
+  /// The faces with vertices of their own, in the order in which the faces first use them.
+  Json make_primitive(const std::vector<std::size_t>& faces, std::uint16_t material) {
+    ++primitive_;
+    std::vector<std::uint32_t> vertices, indices;
+    indices.reserve(3 * faces.size());
+    for (const std::size_t face : faces)
+      for (const std::uint32_t vertex : scene_.triangles[face]) {
+        if (seen_in_[vertex] != primitive_) {
+          seen_in_[vertex] = primitive_;
+          own_index_[vertex] = static_cast<std::uint32_t>(vertices.size());
+          vertices.push_back(vertex);
+        }
+        indices.push_back(own_index_[vertex]);
+      }
+    std::vector<Eigen::Vector3f> positions, factors;
+    Eigen::Vector3f low = Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity());
+    Eigen::Vector3f high = -low;
+    for (const std::uint32_t vertex : vertices) {
+      positions.push_back(y_up(scene_.positions_m[vertex]));
+      factors.push_back(vertex_factor(scene_, vertex));
+      low = low.cwiseMin(positions.back());
+      high = high.cwiseMax(positions.back());
+    }
+    Json attributes;
+    const std::size_t position = add_accessor(positions, "VEC3");
+    json_["accessors"][position]["min"] = list_of(low);
+    json_["accessors"][position]["max"] = list_of(high);
+    attributes["POSITION"] = position;
+    attributes["COLOR_0"] = add_accessor(factors, "VEC3");
+    if (!scene_.uvs.empty()) {
+      std::vector<Eigen::Vector2f> uvs;
+      for (const std::uint32_t vertex : vertices) uvs.push_back(scene_.uvs[vertex]);
+      attributes["TEXCOORD_0"] = add_accessor(uvs, "VEC2");
+    }
+    return {{"attributes", std::move(attributes)},
+            {"indices", add_accessor(indices, "SCALAR")},
+            {"material", material}};
+  }
+
+  /// The file: a header of 12 bytes, then the JSON chunk and the binary chunk.
+  std::string chunks() {
+    std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    binary_.resize((binary_.size() + 3) / 4 * 4, '\0');
+    const std::uint64_t size = 12 + 8 + text.size() + 8 + binary_.size();
+    if (size > std::numeric_limits<std::uint32_t>::max())
+      throw InputError(
+          fmt::format("scene {}: is too large for a GLB file, which ends at 4 GiB", scene_.name));
+    std::string file;
+    file.reserve(static_cast<std::size_t>(size));
+    const auto number = [&](std::uint64_t value) {
+      const auto word = static_cast<std::uint32_t>(value);
+      file.append(reinterpret_cast<const char*>(&word), sizeof word);
+    };
+    file += "glTF";
+    number(2);
+    number(size);
+    number(text.size());
+    file += "JSON" + text;
+    number(binary_.size());
+    file += std::string_view("BIN\0", 4);
+    return file + binary_;
+  }
+
+  const Scene& scene_;
+  Json json_;
+  std::string binary_;
+  std::vector<std::uint32_t> own_index_, seen_in_;  ///< by vertex: index in, number of a primitive
+  std::uint32_t primitive_ = 0;
+  bool strong_emission_ = false;
+};
 
 }  // namespace
 
 void save_glb(const Scene& scene, const fs::path& file) {
   validate(scene);
-  aiScene out;  // owns everything that is added to it
-  add_materials(scene, out);
-  add_nodes(scene, out);
-  write_atomically(file, [&](const fs::path& temporary) {
-    Assimp::Exporter exporter;
-    if (exporter.Export(&out, "glb2", temporary.string()) != aiReturn_SUCCESS)
-      throw InputError(
-          fmt::format("{}: cannot be written: {}", file.string(), exporter.GetErrorString()));
-  });
+  write_atomically(file, GlbBuilder(scene).build());
 }
 
 }  // namespace mh

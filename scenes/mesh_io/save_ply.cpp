@@ -1,87 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
-#include <bit>
-#include <cmath>
-#include <cstring>
-#include <limits>
-
 #include "scenes/mesh_io/labels_file.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
+#include "scenes/mesh_io/ply.hpp"
+#include "scenes/mesh_io/seen_colours.hpp"
 #include "scenes/mesh_io/subdivide.hpp"
-#include "scenes/srgb.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
 namespace fs = std::filesystem;
-
-namespace {
-
-static_assert(std::endian::native == std::endian::little,
-              "the PLY is written as it lies in memory");
-
-/// Linear colour of a texture that repeats, bilinear between texel centres.
-Eigen::Vector3f sample_texture(const Grid2d<Rgb8>& texture, const Eigen::Vector2f& uv) {
-  const float x = (uv.x() - std::floor(uv.x())) * static_cast<float>(texture.width()) - 0.5F;
-  const float y = (uv.y() - std::floor(uv.y())) * static_cast<float>(texture.height()) - 0.5F;
-  const float left = std::floor(x), top = std::floor(y);
-  const auto wrap = [](float i, int n) { return (static_cast<int>(i) + n) % n; };
-  const auto texel = [&](float i, float j) {
-    return linear_from_srgb(texture(wrap(i, texture.width()), wrap(j, texture.height())));
-  };
-  const float tx = x - left, ty = y - top;
-  return (1 - ty) * ((1 - tx) * texel(left, top) + tx * texel(left + 1, top)) +
-         ty * ((1 - tx) * texel(left, top + 1) + tx * texel(left + 1, top + 1));
-}
-
-Rgb8 seen_colour(const Scene& scene, std::uint32_t vertex, const Material& material) {
-  Eigen::Array3f colour = linear_from_srgb(material.base_colour).array();
-  if (!material.texture.empty())
-    colour *= sample_texture(material.texture, scene.uvs[vertex]).array();
-  if (!scene.colours.empty()) colour *= linear_from_srgb(scene.colours[vertex]).array();
-  if (!scene.light.empty()) colour *= scene.light[vertex].array();
-  return srgb_from_linear((colour + material.emission.array()).matrix().eval());
-}
-
-std::vector<Rgb8> seen_colours(const Scene& scene) {
-  constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> material_of_vertex(scene.positions_m.size(), kUnused);
-  for (std::size_t face = 0; face < scene.triangles.size(); ++face)
-    for (const std::uint32_t vertex : scene.triangles[face])
-      if (material_of_vertex[vertex] == kUnused)
-        material_of_vertex[vertex] = scene.material_of[face];
-  std::vector<Rgb8> colours(scene.positions_m.size());
-  for (std::uint32_t v = 0; v < colours.size(); ++v)
-    if (material_of_vertex[v] != kUnused)
-      colours[v] = seen_colour(scene, v, scene.materials[material_of_vertex[v]]);
-  return colours;
-}
-
-std::string ply_content(const Scene& scene) {
-  std::string content = fmt::format(
-      "ply\nformat binary_little_endian 1.0\ncomment Modelhouse\nelement vertex {}\n"
-      "property float x\nproperty float y\nproperty float z\n"
-      "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n"
-      "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-      scene.positions_m.size(), scene.triangles.size());
-  const auto append = [&](const auto& value) {
-    content.append(reinterpret_cast<const char*>(&value), sizeof value);
-  };
-  const std::vector<Rgb8> colours = seen_colours(scene);
-  content.reserve(content.size() + 16 * colours.size() + 13 * scene.triangles.size());
-  for (std::size_t v = 0; v < colours.size(); ++v) {
-    for (int axis = 0; axis < 3; ++axis) append(scene.positions_m[v][axis]);
-    append(colours[v]);
-    append(std::uint8_t{255});
-  }
-  for (const auto& triangle : scene.triangles) {
-    append(std::uint8_t{3});
-    append(triangle);
-  }
-  return content;
-}
-
-}  // namespace
 
 void save_scannet_ply(const Scene& scene, const fs::path& file, float max_edge_m) {
   validate(scene);
@@ -89,7 +15,10 @@ void save_scannet_ply(const Scene& scene, const fs::path& file, float max_edge_m
     save_scannet_ply(subdivide(scene, max_edge_m), file, 0.0F);
     return;
   }
-  write_atomically(file, ply_content(scene));
+  write_atomically(file, ply_bytes({.positions_m = scene.positions_m,
+                                    .colours = seen_colours(scene),
+                                    .labels = {},
+                                    .triangles = scene.triangles}));
   save_labels(scene, labels_path(file));
 }
 

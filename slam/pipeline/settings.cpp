@@ -226,6 +226,32 @@ Settings read_orb_slam(YamlReader yaml) {
   return settings;
 }
 
+/// A calibration as ROS' camera_calibration writes it; lens distortion as plumb_bob.
+Settings read_camera_info(YamlReader yaml) {
+  Settings settings;
+  settings.has_camera = true;
+  Camera& c = settings.camera;
+  c.width_px = static_cast<int>(yaml.integer("image_width", 1, 100000));
+  c.height_px = static_cast<int>(yaml.integer("image_height", 1, 100000));
+  YamlReader matrix = yaml.at("camera_matrix");
+  const std::vector<double> k = matrix.at("data").as_numbers(9);
+  c.fx_px = k[0];
+  c.fy_px = k[4];
+  c.cx_px = k[2];
+  c.cy_px = k[5];
+  if (const auto model = yaml.find("distortion_model"); model && model->as_string() != "plumb_bob")
+    model->fail(fmt::format("'{}' is not plumb_bob", model->as_string()));
+  if (auto distortion = yaml.find("distortion_coefficients")) {
+    const YamlReader data = distortion->at("data");
+    std::vector<double> d = data.as_numbers();
+    if (d.size() > 5) data.fail(fmt::format("{} coefficients; plumb_bob has 5", d.size()));
+    d.resize(5, 0.0);
+    c.distortion = {.k1 = d[0], .k2 = d[1], .p1 = d[2], .p2 = d[3], .k3 = d[4]};
+  }
+  check_camera(c, yaml.file());
+  return settings;
+}
+
 }  // namespace
 
 std::string format_settings(const Settings& settings) {
@@ -260,9 +286,12 @@ Settings parse_settings(std::string text, const std::string& name) {
   // numbers hold.
   if (text.starts_with("%YAML:")) text[0] = '#';
   YamlReader yaml = YamlReader::parse(text, name);
-  bool orb_slam = false;
-  for (const auto& [key, node] : YamlReader(yaml).entries())
+  bool orb_slam = false, camera_info = false;
+  for (const auto& [key, node] : YamlReader(yaml).entries()) {
     orb_slam = orb_slam || key.starts_with("Camera.");
+    camera_info = camera_info || key == "camera_matrix";
+  }
+  if (camera_info) return read_camera_info(std::move(yaml));
   return orb_slam ? read_orb_slam(std::move(yaml)) : read_own(std::move(yaml));
 }
 

@@ -23,8 +23,9 @@ struct Settings {
 };
 
 /// Reads our own settings (sections camera, pictures and those of SlamConfig, all optional; a
-/// camera needs its focal lengths and centre) or a settings file of ORB-SLAM2 (`Camera.fx: ...`),
-/// which is told by its keys. @throws InputError "file:line: place: value".
+/// camera needs its focal lengths and centre), a settings file of ORB-SLAM2 (`Camera.fx: ...`), or
+/// a ROS camera_info (`camera_matrix: ...`), which are told by their keys. @throws InputError
+/// "file:line: place: value".
 Settings load_settings(const std::filesystem::path& file);
 Settings parse_settings(std::string text, const std::string& name);
 

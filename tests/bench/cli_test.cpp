@@ -179,6 +179,29 @@ TEST_F(CommandLine, PicturesAndSequencesGoWhereTheyCanBeRead) {
   expect_refused(render + folder_.string(), "holds a sequence already");
 }
 
+TEST_F(CommandLine, ASceneBecomesAScannetFolderAndIsReadBack) {
+  const fs::path mesh =
+      write("m.obj", "v 0 0 0\nv 2 0 0\nv 0 3 0\no chair_1\nf 1 2 3\no floor\nf 3 2 1\n");
+  const std::string out = (folder_ / "scene0000_00").string();
+  ASSERT_EQ(run("scene convert " + mesh.string() + " --out " + out), 0) << err_;
+  ASSERT_EQ(run("scene info --json " + out), 0) << err_;
+  const auto info = nlohmann::json::parse(out_);
+  EXPECT_EQ(info["name"], "scene0000_00");
+  EXPECT_EQ(info["triangles"], 2);
+  EXPECT_EQ(info["classes"]["chair"], 1);
+  EXPECT_EQ(info["rooms"].size(), 1U);
+  fs::remove(folder_ / "scene0000_00" / "scene0000_00.aggregation.json");
+  ASSERT_EQ(run("scene info " + out), 0) << err_;
+  EXPECT_NE(err_.find("warning: "), std::string::npos) << err_;
+  expect_refused("scene convert " + mesh.string() + " --format ply --out " + out, "must end in");
+  expect_refused("scene convert " + mesh.string() + " --out a.obj", "must end in .ply or .glb");
+  const std::string slam = " --vocabulary " + std::string(MH_SOURCE_DIR) +
+                           "/assets/vocabulary.mhvoc --out " + (folder_ / "out").string();
+  expect_refused("slam scannet:" + (folder_ / "nowhere").string() + slam, "nowhere");
+  expect_refused("slam scannet:" + out + slam, "no ScanNet recording");
+  expect_refused("slam scannet:" + write("a.sens", "text").string() + slam, "a.sens");
+}
+
 TEST_F(CommandLine, ATourThatCannotBeDriven) {
   const fs::path tour = write("tour.yaml",
                               "name: through_the_wall\nstart: {position: [2, 2], heading_deg: 0}\n"

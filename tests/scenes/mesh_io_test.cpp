@@ -157,6 +157,51 @@ TEST_F(MeshIo, GlbReadBackIsTheSameScene) {
   }
 }
 
+TEST_F(MeshIo, HolesOfATextureSurviveAGlb) {
+  Scene scene = example_scene();
+  Material& leaf = scene.materials[0];
+  leaf.opacity = Grid2d<std::uint8_t>(leaf.texture.width(), leaf.texture.height(), 255);
+  leaf.opacity(3, 2) = 0;
+  leaf.opacity(4, 2) = kOpaqueFrom - 1;
+  save_glb(scene, folder_ / "leaf.glb");
+  const Scene read = load_mesh(folder_ / "leaf.glb");
+  const auto& same = *std::ranges::find(read.materials, leaf.name, &Material::name);
+  EXPECT_EQ(same.opacity, leaf.opacity);
+  EXPECT_EQ(same.texture, leaf.texture);
+  for (const Material& other : read.materials)
+    EXPECT_EQ(other.opacity.empty(), other.name != leaf.name) << other.name;
+}
+
+TEST_F(MeshIo, AMaskBesideAnObjTextureCutsHoles) {
+  write("leaf.mtl", "newmtl leaf\nmap_Kd pic.ppm\nmap_d mask.pgm\n");
+  write("pic.ppm", std::string("P6\n2 1\n255\n") + std::string("\xff\x00\x00\x00\x00\xff", 6));
+  write("mask.pgm", std::string("P5\n2 1\n255\n") + std::string("\x00\xff", 2));
+  const auto file = write("leaf.obj",
+                          "mtllib leaf.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"
+                          "o plant_1\nusemtl leaf\nf 1/1 2/2 3/3\n");
+  const Scene scene = load_mesh(file);
+  const auto& leaf = *std::ranges::find(scene.materials, "leaf", &Material::name);
+  ASSERT_EQ(leaf.opacity.size(), 2U);
+  EXPECT_EQ(leaf.opacity(0, 0), 0);
+  EXPECT_EQ(leaf.opacity(1, 0), 255);
+}
+
+TEST_F(MeshIo, ATextureThatIsNoPictureIsNamedAndMagenta) {
+  write("room.mtl", "newmtl text\nmap_Kd text.png\nnewmtl huge\nmap_Kd huge.png\n");
+  write("text.png", "this is no picture");
+  // A PNG's first bytes that announce 30,000 x 30,000 pixels, and nothing behind them.
+  write("huge.png",
+        std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x75\x30\0\0\x75\x30\x08\x02", 26));
+  const auto file = write("room.obj",
+                          "mtllib room.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"
+                          "o a\nusemtl text\nf 1/1 2/2 3/3\no b\nusemtl huge\nf 1/1 2/2 3/3\n");
+  std::vector<std::string> warnings;
+  const Scene scene = load_mesh(file, &warnings);
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_NE(warnings[0].find("text.png"), std::string::npos);
+  EXPECT_NE(warnings[1].find("huge.png"), std::string::npos);
+}
+
 TEST_F(MeshIo, WithoutAPlanEachFloorIsARoom) {
   Scene scene = example_scene();
   scene.instances[0] = {.id = 1, .class_id = 2, .name = "hall/floor"};
@@ -401,6 +446,8 @@ TEST(NodeName, GuessesClassFromTheFirstWordsOfTheLastPart) {
   EXPECT_EQ(guess_class("kitchen/night_stand_2"), *class_by_name("night stand"));
   EXPECT_EQ(guess_class("Chair.003"), *class_by_name("chair"));
   EXPECT_EQ(guess_class("sofa left"), *class_by_name("sofa"));
+  EXPECT_EQ(guess_class("wooden_table_02"), *class_by_name("table"));
+  EXPECT_EQ(guess_class("wooden_bookshelf_worn"), *class_by_name("bookshelf"));
   EXPECT_EQ(guess_class("table/gadget"), kVoid);
   EXPECT_EQ(guess_class(""), kVoid);
 }

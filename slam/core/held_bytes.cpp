@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "slam/vocabulary/held_bytes.hpp"
+#include "slam/core/held_bytes.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -49,7 +49,7 @@ HeldBytes hold(std::string bytes) {
   return {owner, *owner};
 }
 
-HeldBytes map_file(const std::filesystem::path& file) {
+HeldBytes map_file(const std::filesystem::path& file, MapPages pages) {
   const auto refusal = [&](const char* reason) {
     return InputError(fmt::format("{}: cannot be read: {}", file.string(), reason));
   };
@@ -62,7 +62,9 @@ HeldBytes map_file(const std::filesystem::path& file) {
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size == 0) return {};  // nothing to map
   void* const start =
-      mmap(nullptr, size, PROT_READ, MAP_PRIVATE | MAP_POPULATE, descriptor.value(), 0);
+      mmap(nullptr, size, PROT_READ,
+           pages == MapPages::kAtOnce ? MAP_PRIVATE | MAP_POPULATE : MAP_PRIVATE,
+           descriptor.value(), 0);
   if (start == MAP_FAILED) throw refusal(reason_of(errno));
   return {std::shared_ptr<const void>(
               start, [size](const void* p) { munmap(const_cast<void*>(p), size); }),

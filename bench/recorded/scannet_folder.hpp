@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/recorded/frame_sequence.hpp"
+#include "sim/render/renderer.hpp"
+#include "slam/core/camera.hpp"
+
+namespace mh {
+
+/// A ScanNet recording as a sequence: a .sens file, the folder of one, or an extracted folder (see
+/// open_recording). Frames are those of the depth camera: each of its pixels takes the colour that
+/// the colour camera saw there, so that depths stay as measured; the colour picture is first
+/// averaged down to the depth picture's resolution. Labels come from label-filt beside the
+/// recording, through the label table. The truth leaves invalid frames out; SLAM is offered them
+/// like any other, for their pictures are sound.
+/// @param notes  where to append what could not be used, one line each
+/// @throws InputError naming file and place.
+std::unique_ptr<FrameSequence> open_scannet(const std::filesystem::path& path,
+                                            std::vector<std::string>& notes);
+
+/// A frame to record, with the truth.
+struct ExactFrame {
+  RgbdFrame seen;
+  RenderedFrame exact;  ///< of the same moment; its classes and instances are written
+  SE3 world_from_camera;
+};
+
+/// Writes a recording as ScanNet releases one: NAME.sens, NAME_2d-label-filt.zip (our class ids as
+/// raw category ids), NAME_2d-instance-filt.zip and the label table that explains them; NAME is the
+/// folder's. One camera stands for both; depth beyond 65.5 m is none.
+/// @param frame_at  called once per index, in order
+/// @throws InputError if it cannot be written.
+void write_scannet_recording(const std::filesystem::path& folder, const Camera& camera,
+                             std::size_t frames,
+                             const std::function<ExactFrame(std::size_t index)>& frame_at);
+
+}  // namespace mh

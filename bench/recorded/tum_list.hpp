@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "slam/core/rgbd_frame.hpp"
+
+namespace mh {
+
+/// One line of rgb.txt, depth.txt, label.txt: a picture and its moment.
+struct TumListEntry {
+  Stamp stamp_ns = 0;
+  std::filesystem::path file;  ///< as the list names it
+};
+
+/// Parses "stamp file" lines, after so many words to skip; '#' begins a comment.
+/// @param name  stands for the list in messages
+/// @throws InputError naming list and line: no file, no stamp, stamps that do not increase.
+std::vector<TumListEntry> parse_tum_list(const std::string& text, const std::string& name,
+                                         int skip = 0);
+
+}  // namespace mh

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/mesh_io/seen_colours.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "scenes/srgb.hpp"
+
+namespace mh {
+namespace {
+
+/// Linear colour of a texture that repeats, bilinear between texel centres.
+Eigen::Vector3f sample_texture(const Grid2d<Rgb8>& texture, const Eigen::Vector2f& uv) {
+  const float x = (uv.x() - std::floor(uv.x())) * static_cast<float>(texture.width()) - 0.5F;
+  const float y = (uv.y() - std::floor(uv.y())) * static_cast<float>(texture.height()) - 0.5F;
+  const float left = std::floor(x), top = std::floor(y);
+  const auto wrap = [](float i, int n) { return (static_cast<int>(i) + n) % n; };
+  const auto texel = [&](float i, float j) {
+    return linear_from_srgb(texture(wrap(i, texture.width()), wrap(j, texture.height())));
+  };
+  const float tx = x - left, ty = y - top;
+  return (1 - ty) * ((1 - tx) * texel(left, top) + tx * texel(left + 1, top)) +
+         ty * ((1 - tx) * texel(left, top + 1) + tx * texel(left + 1, top + 1));
+}
+
+Rgb8 seen_colour(const Scene& scene, std::uint32_t vertex, const Material& material) {
+  Eigen::Array3f colour = linear_from_srgb(material.base_colour).array();
+  if (!material.texture.empty())
+    colour *= sample_texture(material.texture, scene.uvs[vertex]).array();
+  if (!scene.colours.empty()) colour *= linear_from_srgb(scene.colours[vertex]).array();
+  if (!scene.light.empty()) colour *= scene.light[vertex].array();
+  return srgb_from_linear((colour + material.emission.array()).matrix().eval());
+}
+
+}  // namespace
+
+std::vector<Rgb8> seen_colours(const Scene& scene) {
+  constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> material_of_vertex(scene.positions_m.size(), kUnused);
+  for (std::size_t face = 0; face < scene.triangles.size(); ++face)
+    for (const std::uint32_t vertex : scene.triangles[face])
+      if (material_of_vertex[vertex] == kUnused)
+        material_of_vertex[vertex] = scene.material_of[face];
+  std::vector<Rgb8> colours(scene.positions_m.size());
+  for (std::uint32_t v = 0; v < colours.size(); ++v)
+    if (material_of_vertex[v] != kUnused)
+      colours[v] = seen_colour(scene, v, scene.materials[material_of_vertex[v]]);
+  return colours;
+}
+
+}  // namespace mh

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/picture_file.hpp"
+
+#include <limits>
+#include <vector>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace mh {
+namespace {
+
+std::uint32_t big_endian(std::string_view bytes, std::size_t at, int count) {
+  std::uint32_t value = 0;
+  for (int i = 0; i < count; ++i)
+    value = value << 8 | static_cast<unsigned char>(bytes[at + static_cast<std::size_t>(i)]);
+  return value;
+}
+
+/// Walks a JPEG's segments to its frame header (ITU-T T.81, annex B).
+std::optional<PictureSize> jpeg_size(std::string_view bytes) {
+  std::size_t at = 2;
+  while (at + 4 <= bytes.size() && bytes[at] == '\xff') {
+    const auto marker = static_cast<unsigned char>(bytes[at + 1]);
+    if (marker == 0xff) {  // fill byte
+      ++at;
+      continue;
+    }
+    const bool frame =
+        marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+    if (frame && at + 9 <= bytes.size())
+      return PictureSize{big_endian(bytes, at + 7, 2), big_endian(bytes, at + 5, 2)};
+    if (marker == 0xd9 || marker == 0xda) break;  // end of picture, start of data
+    at += 2 + big_endian(bytes, at + 2, 2);
+  }
+  return std::nullopt;
+}
+
+/// Empty if the bytes hold no picture, or one too large.
+cv::Mat decode(std::string_view bytes) {
+  if (!announced_size(bytes) || claims_too_much(bytes)) return {};
+  const cv::Mat view(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
+  try {
+    return cv::imdecode(view, cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception&) {
+    return {};
+  }
+}
+
+std::string encode(const char* ending, const cv::Mat& picture, const std::vector<int>& options) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(ending, picture, bytes, options);
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace
+
+std::optional<PictureSize> announced_size(std::string_view bytes) {
+  if (bytes.size() > std::numeric_limits<int>::max()) return std::nullopt;
+  if (bytes.starts_with("\xff\xd8")) return jpeg_size(bytes);
+  if (bytes.starts_with("\x89PNG\r\n\x1a\n") && bytes.size() >= 24)
+    return PictureSize{big_endian(bytes, 16, 4), big_endian(bytes, 20, 4)};
+  return std::nullopt;
+}
+
+bool claims_too_much(std::string_view bytes) {
+  // A picture of one colour: deflate grows by 1032, a JPEG's blocks of 256 pixels take a few bytes.
+  constexpr std::uint64_t kMostPixels = 1U << 28, kMostPixelsPerByte = 2048;
+  const auto size = announced_size(bytes);
+  if (!size) return false;
+  const std::uint64_t pixels = std::uint64_t{size->width} * size->height;
+  return pixels > kMostPixels || pixels / kMostPixelsPerByte > bytes.size();
+}
+
+std::optional<Grid2d<Rgb8>> decode_colour(std::string_view bytes) {
+  const cv::Mat bgr = decode(bytes);
+  if (bgr.empty() || bgr.type() != CV_8UC3) return std::nullopt;
+  Grid2d<Rgb8> picture(bgr.cols, bgr.rows);
+  cv::Mat rgb(bgr.rows, bgr.cols, CV_8UC3, picture.data());
+  cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
+  return picture;
+}
+
+std::optional<Grid2d<std::uint16_t>> decode_grey16(std::string_view bytes) {
+  const cv::Mat grey = decode(bytes);
+  if (grey.empty() || (grey.type() != CV_8UC1 && grey.type() != CV_16UC1)) return std::nullopt;
+  Grid2d<std::uint16_t> picture(grey.cols, grey.rows);
+  cv::Mat out(grey.rows, grey.cols, CV_16UC1, picture.data());
+  grey.convertTo(out, CV_16U);
+  return picture;
+}
+
+std::string encode_jpeg(const Grid2d<Rgb8>& picture, int quality) {
+  const cv::Mat rgb(picture.height(), picture.width(), CV_8UC3, const_cast<Rgb8*>(picture.data()));
+  cv::Mat bgr;
+  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+  return encode(".jpg", bgr, {cv::IMWRITE_JPEG_QUALITY, quality});
+}
+
+std::string encode_png(const Grid2d<std::uint16_t>& picture) {
+  const cv::Mat grey(picture.height(), picture.width(), CV_16UC1,
+                     const_cast<std::uint16_t*>(picture.data()));
+  return encode(".png", grey, {cv::IMWRITE_PNG_COMPRESSION, 3});
+}
+
+std::string encode_png(const Grid2d<std::uint8_t>& picture) {
+  const cv::Mat grey(picture.height(), picture.width(), CV_8UC1,
+                     const_cast<std::uint8_t*>(picture.data()));
+  return encode(".png", grey, {cv::IMWRITE_PNG_COMPRESSION, 3});
+}
+
+}  // namespace mh

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "slam/core/grid2d.hpp"
+#include "slam/core/rgbd_frame.hpp"
+
+namespace mh {
+
+struct PictureSize {
+  std::uint32_t width = 0, height = 0;
+};
+
+/// The size that a JPEG or PNG announces, without decoding it; nullopt if the bytes are neither.
+std::optional<PictureSize> announced_size(std::string_view bytes);
+
+/// Whether they announce more pixels than so few bytes can hold, or than anybody needs: to be
+/// refused before anything is allocated for them.
+bool claims_too_much(std::string_view bytes);
+
+/// Decodes a picture of three 8-bit channels; nullopt if the bytes hold none.
+std::optional<Grid2d<Rgb8>> decode_colour(std::string_view bytes);
+/// Decodes a picture of one channel, 8 or 16 bits; nullopt if the bytes hold none.
+std::optional<Grid2d<std::uint16_t>> decode_grey16(std::string_view bytes);
+
+/// @param quality  of the JPEG, 1 to 100
+std::string encode_jpeg(const Grid2d<Rgb8>& picture, int quality);
+std::string encode_png(const Grid2d<std::uint16_t>& picture);
+std::string encode_png(const Grid2d<std::uint8_t>& picture);
+
+}  // namespace mh

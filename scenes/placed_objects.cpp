@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/placed_objects.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "scenes/mesh_io/instances_in.hpp"
+#include "scenes/mesh_io/mesh_io.hpp"
+#include "scenes/placed_scene_file.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/yaml.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::size_t kMostIds = std::numeric_limits<std::uint16_t>::max();
+
+/// Appends a per-vertex array; where only one side has it, the other is filled with `neutral`.
+template <class T>
+void append_values(std::vector<T>& whole, std::size_t before, const std::vector<T>& part,
+                   std::size_t count, const T& neutral) {
+  if (whole.empty() && part.empty()) return;
+  whole.resize(before, neutral);
+  whole.insert(whole.end(), part.begin(), part.end());
+  whole.resize(before + count, neutral);
+}
+
+void make_one_object(Scene& part, ClassId class_id) {
+  part.instances = {{.id = 1, .class_id = class_id, .name = "object"}};
+  std::ranges::fill(part.instance_of, InstanceId{1});
+  std::ranges::fill(part.class_of, class_id);
+}
+
+/// The new number of every object of the part.
+std::vector<InstanceId> enter_objects(Scene& scene, const Scene& part, const std::string& prefix) {
+  const std::size_t first = scene.instances.empty() ? 1 : scene.instances.back().id + 1U;
+  if (first + part.instances.size() > kMostIds + 1)
+    throw InputError(fmt::format("scene {}: {}: more than 65535 objects", scene.name, prefix));
+  std::vector<InstanceId> renamed(kMostIds + 1, 0);
+  for (std::size_t i = 0; i < part.instances.size(); ++i) {
+    Instance instance = part.instances[i];
+    renamed[instance.id] = static_cast<InstanceId>(first + i);
+    instance.id = static_cast<InstanceId>(first + i);
+    instance.name = part.instances.size() == 1 ? prefix : prefix + "/" + instance.name;
+    scene.instances.push_back(std::move(instance));
+  }
+  return renamed;
+}
+
+}  // namespace
+
+void append_part(Scene& scene, Scene part, const Eigen::Affine3d& scene_from_part,
+                 const std::string& prefix, std::optional<ClassId> class_id) {
+  if (class_id) make_one_object(part, *class_id);
+  const std::size_t before = scene.positions_m.size(), count = part.positions_m.size();
+  const std::size_t first_material = scene.materials.size();
+  if (first_material + part.materials.size() > kMostIds)
+    throw InputError(fmt::format("scene {}: {}: more than 65535 materials", scene.name, prefix));
+  const std::vector<InstanceId> renamed = enter_objects(scene, part, prefix);
+
+  append_values(scene.uvs, before, part.uvs, count, Eigen::Vector2f::Zero().eval());
+  append_values(scene.colours, before, part.colours, count, Rgb8{255, 255, 255});
+  append_values(scene.light, before, part.light, count, Eigen::Vector3f::Ones().eval());
+  for (const Eigen::Vector3f& p : part.positions_m)
+    scene.positions_m.push_back((scene_from_part * p.cast<double>()).cast<float>());
+  for (std::size_t face = 0; face < part.triangles.size(); ++face) {
+    const auto& [a, b, c] = part.triangles[face];
+    const auto moved = static_cast<std::uint32_t>(before);
+    scene.triangles.push_back({a + moved, b + moved, c + moved});
+    scene.material_of.push_back(
+        static_cast<std::uint16_t>(part.material_of[face] + first_material));
+    scene.class_of.push_back(part.class_of[face]);
+    scene.instance_of.push_back(renamed[part.instance_of[face]]);
+  }
+  std::ranges::move(part.materials, std::back_inserter(scene.materials));
+}
+
+void finish_parts(Scene& scene) {
+  if (scene.triangles.empty())
+    throw InputError(fmt::format("scene {}: has nothing to be seen", scene.name));
+  find_boxes(scene);
+  rooms_from_floors(scene);
+  validate(scene);
+}
+
+bool is_placed_scene(const fs::path& yaml) {
+  return YamlReader::load(yaml).has("objects");
+}
+
+Scene load_placed_scene(const fs::path& yaml, std::vector<std::string>* warnings) {
+  const PlacedScene placed =
+      read_placed_scene(YamlReader::load(yaml), yaml.parent_path(), yaml.stem().string());
+  Scene scene;
+  scene.name = placed.name;
+  for (const PlacedObject& object : placed.objects)
+    append_part(scene, load_mesh(object.file, warnings, placed.rules), object.scene_from_object,
+                object.name, object.class_id);
+  finish_parts(scene);
+  return scene;
+}
+
+}  // namespace mh

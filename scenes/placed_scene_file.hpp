@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "scenes/mesh_io/label_rules.hpp"
+#include "slam/core/labels.hpp"
+#include "slam/core/yaml.hpp"
+
+namespace mh {
+
+/// A mesh file and its place.
+struct PlacedObject {
+  std::string name;  ///< unique in its scene
+  std::filesystem::path file;
+  Eigen::Affine3d scene_from_object = Eigen::Affine3d::Identity();
+  std::optional<ClassId> class_id;  ///< of the whole file; nullopt = what the file itself tells
+};
+
+/// What a YAML file tells of mesh files, each to be put in its place:
+///
+///   name: living room
+///   labels: {"*curtain*": curtain, Floor: floor}     # optional: see LabelRules
+///   objects:
+///     - file: models/sofa.gltf        # beside the YAML file, or absolute
+///       name: sofa                    # optional, else the file's; unique
+///       class: sofa                   # optional: the whole file is one object of this class
+///       position_m: [0, -2.4, 0]      # optional
+///       rpy_deg: [0, 0, 180]          # optional: about the fixed axes x, y, z, in this order
+///       scale: 1                      # optional: one number, or three
+struct PlacedScene {
+  std::string name;
+  LabelRules rules;
+  std::vector<PlacedObject> objects;
+};
+
+/// @param folder  what files are named relative to
+/// @param name    of a scene that names none
+/// @throws InputError "file:line: place: value".
+PlacedScene read_placed_scene(YamlReader yaml, const std::filesystem::path& folder,
+                              const std::string& name);
+
+/// Rotation about the fixed axes x, y, z in this order (URDF's and SDF's convention).
+Eigen::Matrix3d rotation_of_rpy(const Eigen::Vector3d& rpy_rad);
+
+}  // namespace mh

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/scannet/frame_folder.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "scenes/picture_file.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr int kJpegQuality = 92;
+
+std::string matrix_text(const Eigen::Matrix4d& matrix) {
+  std::string text;
+  for (int row = 0; row < 4; ++row)
+    text += fmt::format("{} {} {} {}\n", matrix(row, 0), matrix(row, 1), matrix(row, 2),
+                        matrix(row, 3));
+  return text;
+}
+
+}  // namespace
+
+std::optional<std::uint32_t> number_of_name(const fs::path& name) {
+  const std::string stem = name.stem().string();
+  std::uint32_t number = 0;
+  const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), number);
+  if (stem.empty() || error != std::errc() || end != stem.data() + stem.size()) return std::nullopt;
+  return number;
+}
+
+NumberedFiles::NumberedFiles(const fs::path& folder,
+                             std::initializer_list<std::string_view> endings) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error))
+    throw InputError(fmt::format("{}: is no folder", folder.string()));
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string ending = entry.path().extension().string();
+    if (std::ranges::find(endings, std::string_view(ending)) == endings.end()) continue;
+    const auto number = number_of_name(entry.path());
+    if (!number) continue;
+    // Of two files with one number the first by name counts, in whatever order the disk lists them.
+    const auto [place, is_new] = files_.try_emplace(*number, entry.path());
+    if (!is_new) place->second = std::min(place->second, entry.path());
+  }
+}
+
+std::vector<std::uint32_t> NumberedFiles::numbers() const {
+  std::vector<std::uint32_t> numbers;
+  for (const auto& [number, file] : files_) numbers.push_back(number);
+  return numbers;
+}
+
+void save_extracted(const fs::path& folder, const RecordingInfo& info, std::size_t frames,
+                    const std::function<RecordedMoment(std::size_t index)>& frame_at) {
+  for (const char* part : {"color", "depth", "pose", "intrinsic"})
+    make_output_folder(folder / part);
+  for (std::size_t i = 0; i < frames; ++i) {
+    const RecordedMoment moment = frame_at(i);
+    const double lost = -std::numeric_limits<double>::infinity();
+    write_atomically(folder / "color" / fmt::format("{}.jpg", i),
+                     encode_jpeg(moment.colour, kJpegQuality));
+    write_atomically(folder / "depth" / fmt::format("{}.png", i), encode_png(moment.depth));
+    write_atomically(
+        folder / "pose" / fmt::format("{}.txt", i),
+        matrix_text(moment.world_from_device ? matrix_of(*moment.world_from_device)
+                                             : Eigen::Matrix4d::Constant(lost).eval()));
+  }
+  const auto write_lens = [&](const char* which, const RecordedLens& lens) {
+    write_atomically(folder / "intrinsic" / fmt::format("intrinsic_{}.txt", which),
+                     matrix_text(intrinsics_of(lens)));
+    write_atomically(folder / "intrinsic" / fmt::format("extrinsic_{}.txt", which),
+                     matrix_text(matrix_of(lens.device_from_camera)));
+  };
+  write_lens("color", info.colour);
+  write_lens("depth", info.depth);
+}
+
+}  // namespace mh

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/scannet/label_images.hpp"
+
+#include <zip.h>
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "scenes/picture_file.hpp"
+#include "scenes/scannet/frame_folder.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr zip_uint64_t kLargestEntry = 1U << 28;
+
+Grid2d<std::uint16_t> decode(std::string_view bytes, const std::string& name) {
+  auto picture = decode_grey16(bytes);
+  if (!picture) throw InputError(fmt::format("{}: is no picture of one channel", name));
+  return std::move(*picture);
+}
+
+class LabelFolder : public LabelImages {
+ public:
+  explicit LabelFolder(const fs::path& folder) : files_(folder, {".png"}) {}
+  std::optional<Grid2d<std::uint16_t>> read(std::uint32_t number) const override {
+    if (!files_.contains(number)) return std::nullopt;
+    const fs::path& file = files_.file(number);
+    return decode(read_file(file), file.string());
+  }
+
+ private:
+  NumberedFiles files_;
+};
+
+/// Whether an entry would land outside of the folder that a zip is unpacked into.
+bool points_outside(const std::string& entry) {
+  const fs::path path = fs::path(entry).lexically_normal();
+  return entry.empty() || path.is_absolute() || entry.find('\\') != entry.npos ||
+         (!path.empty() && *path.begin() == "..");
+}
+
+class LabelZip : public LabelImages {
+ public:
+  LabelZip(HeldBytes bytes, const std::string& name) : held_(std::move(bytes)), name_(name) {
+    zip_error_t error;
+    zip_error_init(&error);
+    zip_source_t* source =
+        zip_source_buffer_create(held_.view.data(), held_.view.size(), 0, &error);
+    zip_t* opened = source ? zip_open_from_source(source, ZIP_RDONLY, &error) : nullptr;
+    if (opened == nullptr) {
+      const std::string why = zip_error_strerror(&error);
+      zip_error_fini(&error);
+      if (source) zip_source_free(source);
+      throw InputError(fmt::format("{}: is no zip that can be read: {}", name_, why));
+    }
+    zip_error_fini(&error);
+    archive_.reset(opened);
+    index_entries();
+  }
+
+  std::optional<Grid2d<std::uint16_t>> read(std::uint32_t number) const override {
+    const auto found = entries_.find(number);
+    if (found == entries_.end()) return std::nullopt;
+    const std::string bytes = read_entry(found->second);
+    return decode(bytes, fmt::format("{}: {}", name_, entry_name(found->second)));
+  }
+
+ private:
+  struct Closer {
+    void operator()(zip_t* archive) const { zip_discard(archive); }
+  };
+
+  std::string entry_name(zip_uint64_t index) const {
+    const char* name = zip_get_name(archive_.get(), index, ZIP_FL_ENC_RAW);
+    if (name == nullptr) throw InputError(fmt::format("{}: entry {} has no name", name_, index));
+    return name;
+  }
+
+  void index_entries() {
+    const zip_int64_t count = zip_get_num_entries(archive_.get(), 0);
+    for (zip_int64_t i = 0; i < count; ++i) {
+      const std::string name = entry_name(static_cast<zip_uint64_t>(i));
+      if (points_outside(name))
+        throw InputError(fmt::format("{}: entry '{}' points outside of the zip", name_, name));
+      const fs::path path(name);
+      if (path.extension() != ".png") continue;
+      if (const auto number = number_of_name(path))
+        entries_.try_emplace(*number, static_cast<zip_uint64_t>(i));
+    }
+  }
+
+  std::string read_entry(zip_uint64_t index) const {
+    const auto fail = [&](const std::string& what) {
+      throw InputError(fmt::format("{}: {}: {}", name_, entry_name(index), what));
+    };
+    zip_stat_t info;
+    if (zip_stat_index(archive_.get(), index, 0, &info) != 0 || (info.valid & ZIP_STAT_SIZE) == 0)
+      fail("its size cannot be read");
+    // Deflate grows by 1032 at most; a picture that claims more is none.
+    if (info.size > kLargestEntry || info.size / 1032 > held_.view.size())
+      fail(fmt::format("claims {} bytes", info.size));
+    const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(
+        zip_fopen_index(archive_.get(), index, 0), zip_fclose);
+    if (!file) fail(zip_strerror(archive_.get()));
+    std::string bytes(static_cast<std::size_t>(info.size), '\0');
+    // One byte more than announced tells that there is more, and makes libzip check the sum.
+    char more = 0;
+    if (zip_fread(file.get(), bytes.data(), bytes.size()) !=
+            static_cast<zip_int64_t>(bytes.size()) ||
+        zip_fread(file.get(), &more, 1) != 0)
+      fail("cannot be unpacked");
+    return bytes;
+  }
+
+  HeldBytes held_;
+  std::string name_;
+  std::unique_ptr<zip_t, Closer> archive_;
+  std::map<std::uint32_t, zip_uint64_t> entries_;
+};
+
+/// PNG of the depth that ScanNet uses for the kind.
+std::string encode(const Grid2d<std::uint16_t>& ids, const std::string& kind) {
+  if (kind != "instance-filt" || std::ranges::any_of(ids, [](auto id) { return id > 255; }))
+    return encode_png(ids);
+  Grid2d<std::uint8_t> narrow(ids.width(), ids.height());
+  std::ranges::transform(ids, narrow.begin(),
+                         [](std::uint16_t id) { return static_cast<std::uint8_t>(id); });
+  return encode_png(narrow);
+}
+
+class FolderWriter : public LabelImageWriter {
+ public:
+  FolderWriter(const fs::path& folder, const std::string& kind)
+      : folder_(folder / kind), kind_(kind) {
+    make_output_folder(folder_);
+  }
+  void add(std::uint32_t number, const Grid2d<std::uint16_t>& ids) override {
+    write_atomically(folder_ / fmt::format("{}.png", number), encode(ids, kind_));
+  }
+  void finish() override {}
+
+ private:
+  fs::path folder_;
+  std::string kind_;
+};
+
+class ZipWriter : public LabelImageWriter {
+ public:
+  ZipWriter(const fs::path& file, const std::string& kind) : file_(file), kind_(kind) {}
+  void add(std::uint32_t number, const Grid2d<std::uint16_t>& ids) override {
+    pictures_[number] = encode(ids, kind_);
+  }
+  void finish() override {
+    write_atomically(file_, [&](const fs::path& temporary) { write(temporary); });
+  }
+
+ private:
+  void write(const fs::path& temporary) const {
+    int error = 0;
+    zip_t* archive = zip_open(temporary.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &error);
+    if (archive == nullptr)
+      throw InputError(fmt::format("{}: cannot be written: zip error {}", file_.string(), error));
+    const auto fail = [&] {
+      const std::string why = zip_strerror(archive);
+      zip_discard(archive);
+      throw InputError(fmt::format("{}: cannot be written: {}", file_.string(), why));
+    };
+    for (const auto& [number, png] : pictures_) {
+      zip_source_t* source = zip_source_buffer(archive, png.data(), png.size(), 0);
+      const std::string name = fmt::format("{}/{}.png", kind_, number);
+      const zip_int64_t entry = zip_file_add(archive, name.c_str(), source, ZIP_FL_ENC_UTF_8);
+      if (entry < 0) {
+        zip_source_free(source);
+        fail();
+      }
+      // PNG is compressed already. A fixed time keeps equal content equal, byte for byte.
+      const auto index = static_cast<zip_uint64_t>(entry);
+      zip_set_file_compression(archive, index, ZIP_CM_STORE, 0);
+      zip_file_set_dostime(archive, index, 0, 0x21, 0);  // 1980-01-01, the first that a zip knows
+    }
+    if (zip_close(archive) != 0) fail();
+  }
+
+  fs::path file_;
+  std::string kind_;
+  std::map<std::uint32_t, std::string> pictures_;
+};
+
+}  // namespace
+
+std::unique_ptr<LabelImages> find_label_images(const fs::path& folder, const std::string& kind) {
+  std::error_code error;
+  if (fs::is_directory(folder / kind, error)) return std::make_unique<LabelFolder>(folder / kind);
+  const std::string ending = fmt::format("_2d-{}.zip", kind);
+  std::vector<fs::path> zips;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (entry.path().filename().string().ends_with(ending)) zips.push_back(entry.path());
+  if (zips.empty()) return nullptr;
+  const fs::path& first = *std::ranges::min_element(zips);
+  return open_label_zip(map_file(first, MapPages::kAsTouched), first.string());
+}
+
+std::unique_ptr<LabelImages> open_label_zip(HeldBytes bytes, const std::string& name) {
+  return std::make_unique<LabelZip>(std::move(bytes), name);
+}
+
+std::unique_ptr<LabelImageWriter> write_label_folder(const fs::path& folder,
+                                                     const std::string& kind) {
+  return std::make_unique<FolderWriter>(folder, kind);
+}
+
+std::unique_ptr<LabelImageWriter> write_label_zip(const fs::path& file, const std::string& kind) {
+  return std::make_unique<ZipWriter>(file, kind);
+}
+
+}  // namespace mh

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "slam/core/grid2d.hpp"
+#include "slam/core/held_bytes.hpp"
+
+namespace mh {
+
+/// One picture of ids for each frame of a recording: ScanNet's label-filt (raw category ids) or
+/// instance-filt (objectId + 1). 8 or 16 bits.
+class LabelImages {
+ public:
+  virtual ~LabelImages() = default;
+  /// The picture of a frame; nullopt where there is none. @throws InputError if it is damaged.
+  virtual std::optional<Grid2d<std::uint16_t>> read(std::uint32_t number) const = 0;
+};
+
+/// Opens them where they lie beside a recording: a folder `kind` ("label-filt", "instance-filt"),
+/// or a zip *_2d-KIND.zip. Null if there are none.
+/// @throws InputError if the zip is damaged, or names files outside of it.
+std::unique_ptr<LabelImages> find_label_images(const std::filesystem::path& folder,
+                                               const std::string& kind);
+/// Opens a zip of them; `name` stands for the file in messages.
+std::unique_ptr<LabelImages> open_label_zip(HeldBytes bytes, const std::string& name);
+
+/// Writes KIND/N.png, 16 bits, or 8 where no id is above 255 and the kind is instance-filt, as
+/// ScanNet has them: into a folder, or into a zip of that name.
+class LabelImageWriter {
+ public:
+  virtual ~LabelImageWriter() = default;
+  virtual void add(std::uint32_t number, const Grid2d<std::uint16_t>& ids) = 0;
+  virtual void finish() = 0;
+};
+std::unique_ptr<LabelImageWriter> write_label_folder(const std::filesystem::path& folder,
+                                                     const std::string& kind);
+/// The zip appears with finish().
+std::unique_ptr<LabelImageWriter> write_label_zip(const std::filesystem::path& file,
+                                                  const std::string& kind);
+
+}  // namespace mh

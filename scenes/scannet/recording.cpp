@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/scannet/recording.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <sstream>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "scenes/picture_file.hpp"
+#include "scenes/scannet/frame_folder.hpp"
+#include "scenes/scannet/sens.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Sixteen numbers of a text file, row by row; "-inf" is a number.
+Eigen::Matrix4d read_matrix(const fs::path& file) {
+  const std::string text = read_file(file);
+  std::istringstream words(text);
+  Eigen::Matrix4d matrix;
+  std::string word;
+  for (int i = 0; i < 16; ++i) {
+    if (!(words >> word))
+      throw InputError(fmt::format("{}: holds {} numbers, 16 are needed", file.string(), i));
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size())
+      throw InputError(
+          fmt::format("{}: number {}: '{}' is none", file.string(), i + 1, word.substr(0, 40)));
+    matrix(i / 4, i % 4) = value;
+  }
+  if (words >> word) throw InputError(fmt::format("{}: holds more than 16 numbers", file.string()));
+  return matrix;
+}
+
+/// color/ depth/ pose/ intrinsic/, as ScanNet's SensReader extracts them.
+class ExtractedFolder : public Recording {
+ public:
+  explicit ExtractedFolder(const fs::path& folder)
+      : folder_(folder),
+        colour_(folder / "color", {".jpg", ".png"}),
+        depth_(folder / "depth", {".png"}) {
+    for (const std::uint32_t number : colour_.numbers())
+      if (depth_.contains(number)) numbers_.push_back(number);
+    if (numbers_.empty())
+      throw InputError(fmt::format("{}: no picture of color/ has one of the same number in depth/",
+                                   folder.string()));
+    info_.sensor = "extracted";
+    info_.colour = read_lens("color", announced(colour_));
+    info_.depth = read_lens("depth", announced(depth_));
+    for (const std::uint32_t number : numbers_) poses_.push_back(read_pose(number));
+  }
+
+  const RecordingInfo& info() const override { return info_; }
+  std::size_t size() const override { return numbers_.size(); }
+  /// Extracted folders have no stamps: ScanNet's sensor made 30 pictures a second.
+  Stamp stamp_ns(std::size_t index) const override {
+    return static_cast<Stamp>(numbers_[index]) * 1'000'000'000 / 30;
+  }
+  std::uint32_t number(std::size_t index) const override { return numbers_[index]; }
+  std::optional<SE3> world_from_device(std::size_t index) const override { return poses_[index]; }
+
+  RecordedMoment frame(std::size_t index) const override {
+    const fs::path colour_file = colour_.file(numbers_[index]);
+    const fs::path depth_file = depth_.file(numbers_[index]);
+    auto colour = decode_colour(read_file(colour_file));
+    auto depth = decode_grey16(read_file(depth_file));
+    if (!colour)
+      throw InputError(fmt::format("{}: is no picture of 3 x 8 bits", colour_file.string()));
+    if (!depth) throw InputError(fmt::format("{}: is no picture of 16 bits", depth_file.string()));
+    check_size(*colour, info_.colour, colour_file);
+    check_size(*depth, info_.depth, depth_file);
+    return {stamp_ns(index), std::move(*colour), std::move(*depth), poses_[index]};
+  }
+
+ private:
+  PictureSize announced(const NumberedFiles& files) const {
+    const fs::path file = files.file(numbers_.front());
+    const auto size = announced_size(read_file(file));
+    constexpr std::uint32_t kLongestSide_px = 16384;
+    if (!size || size->width == 0 || size->height == 0 || size->width > kLongestSide_px ||
+        size->height > kLongestSide_px)
+      throw InputError(fmt::format("{}: is no JPEG or PNG picture", file.string()));
+    return *size;
+  }
+
+  RecordedLens read_lens(const std::string& which, const PictureSize& size) const {
+    const fs::path intrinsics = folder_ / "intrinsic" / ("intrinsic_" + which + ".txt");
+    const fs::path extrinsics = folder_ / "intrinsic" / ("extrinsic_" + which + ".txt");
+    return lens_of(read_matrix(intrinsics),
+                   fs::exists(extrinsics) ? read_matrix(extrinsics) : Eigen::Matrix4d::Identity(),
+                   static_cast<int>(size.width), static_cast<int>(size.height),
+                   intrinsics.string());
+  }
+
+  std::optional<SE3> read_pose(std::uint32_t number) const {
+    const fs::path file = folder_ / "pose" / fmt::format("{}.txt", number);
+    if (fs::exists(file)) return pose_of(read_matrix(file), file.string());
+    const fs::path padded = folder_ / "pose" / fmt::format("{:06}.txt", number);
+    if (!fs::exists(padded)) return std::nullopt;
+    return pose_of(read_matrix(padded), padded.string());
+  }
+
+  template <class Pixel>
+  static void check_size(const Grid2d<Pixel>& picture, const RecordedLens& lens,
+                         const fs::path& file) {
+    if (picture.width() != lens.width_px || picture.height() != lens.height_px)
+      throw InputError(fmt::format("{}: is {} x {}, the first picture is {} x {}", file.string(),
+                                   picture.width(), picture.height(), lens.width_px,
+                                   lens.height_px));
+  }
+
+  fs::path folder_;
+  NumberedFiles colour_, depth_;
+  std::vector<std::uint32_t> numbers_;
+  RecordingInfo info_;
+  std::vector<std::optional<SE3>> poses_;
+};
+
+/// The .sens files of a folder.
+std::vector<fs::path> sens_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".sens") files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
+}
+
+}  // namespace
+
+RecordedLens lens_of(const Eigen::Matrix4d& intrinsics, const Eigen::Matrix4d& extrinsics,
+                     int width_px, int height_px, const std::string& what) {
+  const RecordedLens lens{
+      width_px,         height_px, intrinsics(0, 0), intrinsics(1, 1), intrinsics(0, 2),
+      intrinsics(1, 2), {}};
+  const bool good = intrinsics.topLeftCorner<3, 3>().allFinite() && lens.fx_px > 0 &&
+                    lens.fy_px > 0 && lens.fx_px < 1e6 && lens.fy_px < 1e6 && lens.cx_px >= 0 &&
+                    lens.cy_px >= 0 && lens.cx_px < width_px && lens.cy_px < height_px;
+  if (!good)
+    throw InputError(
+        fmt::format("{}: fx {} fy {} cx {} cy {} are no intrinsics of a picture of {} x {}", what,
+                    lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, width_px, height_px));
+  const auto placed = pose_of(extrinsics, what);
+  if (!placed) throw InputError(fmt::format("{}: the extrinsics are not finite", what));
+  RecordedLens result = lens;
+  result.device_from_camera = *placed;
+  return result;
+}
+
+std::optional<SE3> pose_of(const Eigen::Matrix4d& matrix, const std::string& what) {
+  if (!matrix.allFinite()) return std::nullopt;
+  const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
+  // Written with six decimals or as floats, so far from a rotation that the quaternion matters not.
+  constexpr double kTolerance = 1e-2;
+  const Eigen::Matrix3d square = rotation * rotation.transpose();
+  if (!square.isIdentity(kTolerance) || rotation.determinant() < 0)
+    throw InputError(fmt::format("{}: the upper left 3 x 3 of a pose is no rotation", what));
+  return SE3(Eigen::Quaterniond(rotation), matrix.topRightCorner<3, 1>());
+}
+
+Eigen::Matrix4d intrinsics_of(const RecordedLens& lens) {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix(0, 0) = lens.fx_px;
+  matrix(1, 1) = lens.fy_px;
+  matrix(0, 2) = lens.cx_px;
+  matrix(1, 2) = lens.cy_px;
+  return matrix;
+}
+
+Eigen::Matrix4d matrix_of(const SE3& pose) {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix.topLeftCorner<3, 3>() = pose.rotation();
+  matrix.topRightCorner<3, 1>() = pose.translation();
+  return matrix;
+}
+
+std::unique_ptr<Recording> open_recording(const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(path, error))
+    throw InputError(fmt::format("{}: cannot be read: no such file", path.string()));
+  if (!fs::is_directory(path, error)) return open_sens(path);
+  if (fs::is_directory(path / "color", error)) return std::make_unique<ExtractedFolder>(path);
+  const std::vector<fs::path> files = sens_files(path);
+  if (files.empty())
+    throw InputError(
+        fmt::format("{}: holds neither color/ nor a .sens file: it is no ScanNet "
+                    "recording",
+                    path.string()));
+  if (files.size() > 1)
+    throw InputError(
+        fmt::format("{}: holds {} .sens files: name one", path.string(), files.size()));
+  return open_sens(files[0]);
+}
+
+}  // namespace mh

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: Apache-2.0
+// The .sens format, version 4, as ScanNet's SensReader describes it: little-endian, no padding.
+#include "scenes/scannet/sens.hpp"
+
+#include <zlib.h>
+
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "scenes/picture_file.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+static_assert(std::endian::native == std::endian::little, "values are read as they lie");
+
+constexpr std::uint32_t kVersion = 4;
+constexpr std::uint64_t kLongestName = 4096;
+constexpr std::uint32_t kLongestSide_px = 16384;
+constexpr std::uint64_t kDeflateLimit = 1032;  // no deflate stream grows by more (zlib's manual)
+constexpr int kJpegQuality = 92;
+enum ColourKind : std::int32_t { kRawColour = 0, kPng = 1, kJpeg = 2 };
+enum DepthKind : std::int32_t { kRawDepth = 0, kZlib = 1 };
+
+/// Takes values from the front of the bytes.
+class Cursor {
+ public:
+  Cursor(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(fmt::format("{}: byte {}: {}", name_, at_, what));
+  }
+  void need(std::uint64_t size, const std::string& what) const {
+    if (size > bytes_.size() - at_)
+      fail(fmt::format("is cut short: {} needs {} bytes, {} are left", what, size,
+                       bytes_.size() - at_));
+  }
+  template <class T>
+  T take(const char* what) {
+    need(sizeof(T), what);
+    T value;
+    std::memcpy(&value, bytes_.data() + at_, sizeof value);
+    at_ += sizeof value;
+    return value;
+  }
+  std::string_view take_bytes(std::uint64_t size, const std::string& what) {
+    need(size, what);
+    const std::string_view taken = bytes_.substr(at_, static_cast<std::size_t>(size));
+    at_ += static_cast<std::size_t>(size);
+    return taken;
+  }
+  Eigen::Matrix4d take_matrix(const char* what) {
+    Eigen::Matrix4d matrix;
+    for (int i = 0; i < 16; ++i) matrix(i / 4, i % 4) = take<float>(what);
+    return matrix;
+  }
+
+ private:
+  std::string_view bytes_;
+  const std::string& name_;
+  std::size_t at_ = 0;
+};
+
+struct FrameRecord {
+  Stamp stamp_ns = 0;
+  std::optional<SE3> world_from_device;
+  std::string_view colour, depth;
+};
+
+class SensFile : public Recording {
+ public:
+  SensFile(HeldBytes bytes, const std::string& name) : held_(std::move(bytes)), name_(name) {
+    Cursor cursor(held_.view, name_);
+    const std::uint64_t frames = read_header(cursor);
+    for (std::uint64_t i = 0; i < frames; ++i) frames_.push_back(read_record(cursor, i));
+    mend_stamps();
+  }
+
+  const RecordingInfo& info() const override { return info_; }
+  std::size_t size() const override { return frames_.size(); }
+  Stamp stamp_ns(std::size_t index) const override { return frames_[index].stamp_ns; }
+  std::uint32_t number(std::size_t index) const override {
+    return static_cast<std::uint32_t>(index);
+  }
+  std::optional<SE3> world_from_device(std::size_t index) const override {
+    return frames_[index].world_from_device;
+  }
+  RecordedMoment frame(std::size_t index) const override {
+    const FrameRecord& record = frames_[index];
+    return {record.stamp_ns, colour_of(record, index), depth_of(record, index),
+            record.world_from_device};
+  }
+
+ private:
+  std::uint64_t read_header(Cursor& cursor) {
+    const auto version = cursor.take<std::uint32_t>("the version");
+    if (version != kVersion)
+      throw InputError(
+          fmt::format("{}: is of version {}; version {} is read", name_, version, kVersion));
+    const auto length = cursor.take<std::uint64_t>("the length of the sensor's name");
+    if (length > kLongestName) cursor.fail(fmt::format("a sensor's name of {} bytes", length));
+    info_.sensor = cursor.take_bytes(length, "the sensor's name");
+    const Eigen::Matrix4d colour_intrinsics = cursor.take_matrix("the colour intrinsics");
+    const Eigen::Matrix4d colour_extrinsics = cursor.take_matrix("the colour extrinsics");
+    const Eigen::Matrix4d depth_intrinsics = cursor.take_matrix("the depth intrinsics");
+    const Eigen::Matrix4d depth_extrinsics = cursor.take_matrix("the depth extrinsics");
+    colour_kind_ = cursor.take<std::int32_t>("the colour compression");
+    if (colour_kind_ != kRawColour && colour_kind_ != kPng && colour_kind_ != kJpeg)
+      cursor.fail(
+          fmt::format("colour compression {} is none of 0 raw, 1 png, 2 jpeg", colour_kind_));
+    depth_kind_ = cursor.take<std::int32_t>("the depth compression");
+    if (depth_kind_ != kRawDepth && depth_kind_ != kZlib)
+      cursor.fail(fmt::format("depth compression {} is none of 0 raw, 1 zlib", depth_kind_));
+    const PictureSize colour = take_size(cursor, "colour"), depth = take_size(cursor, "depth");
+    info_.depth_per_metre = cursor.take<float>("the depth shift");
+    if (!(info_.depth_per_metre > 0) || info_.depth_per_metre > 1e6)
+      cursor.fail(fmt::format("a depth shift of {}", info_.depth_per_metre));
+    info_.colour = lens_of(colour_intrinsics, colour_extrinsics, static_cast<int>(colour.width),
+                           static_cast<int>(colour.height), name_ + ": colour camera");
+    info_.depth = lens_of(depth_intrinsics, depth_extrinsics, static_cast<int>(depth.width),
+                          static_cast<int>(depth.height), name_ + ": depth camera");
+    return cursor.take<std::uint64_t>("the number of frames");
+  }
+
+  static PictureSize take_size(Cursor& cursor, const char* which) {
+    PictureSize size;
+    size.width = cursor.take<std::uint32_t>("the width");
+    size.height = cursor.take<std::uint32_t>("the height");
+    if (size.width == 0 || size.height == 0 || size.width > kLongestSide_px ||
+        size.height > kLongestSide_px)
+      cursor.fail(fmt::format("{} pictures of {} x {}: sides must be 1 to {} pixels", which,
+                              size.width, size.height, kLongestSide_px));
+    return size;
+  }
+
+  FrameRecord read_record(Cursor& cursor, std::uint64_t index) const {
+    const std::string frame = fmt::format("frame {}", index);
+    cursor.need(16 * sizeof(float) + 4 * sizeof(std::uint64_t), frame);
+    FrameRecord record;
+    record.world_from_device =
+        pose_of(cursor.take_matrix("the pose"), fmt::format("{}: {}", name_, frame));
+    const auto stamp_us = cursor.take<std::uint64_t>("the colour stamp");
+    if (stamp_us > static_cast<std::uint64_t>(std::numeric_limits<Stamp>::max() / 1000))
+      cursor.fail(fmt::format("{}: a stamp of {} us", frame, stamp_us));
+    record.stamp_ns = static_cast<Stamp>(stamp_us * 1000);
+    cursor.take<std::uint64_t>("the depth stamp");
+    const auto colour_size = cursor.take<std::uint64_t>("the size of the colour picture");
+    const auto depth_size = cursor.take<std::uint64_t>("the size of the depth picture");
+    record.colour = cursor.take_bytes(colour_size, frame + "'s colour picture");
+    record.depth = cursor.take_bytes(depth_size, frame + "'s depth picture");
+    return record;
+  }
+
+  /// Some recordings have no stamps, or equal ones: then frames count at 30 Hz.
+  void mend_stamps() {
+    bool increase = true;
+    for (std::size_t i = 1; i < frames_.size(); ++i)
+      increase = increase && frames_[i].stamp_ns > frames_[i - 1].stamp_ns;
+    if (increase) return;
+    for (std::size_t i = 0; i < frames_.size(); ++i)
+      frames_[i].stamp_ns = static_cast<Stamp>(i) * 1'000'000'000 / 30;
+  }
+
+  [[noreturn]] void fail(std::size_t index, const std::string& what) const {
+    throw InputError(fmt::format("{}: frame {}: {}", name_, index, what));
+  }
+
+  Grid2d<Rgb8> colour_of(const FrameRecord& record, std::size_t index) const {
+    const RecordedLens& lens = info_.colour;
+    const auto fail_size = [&](std::uint64_t width, std::uint64_t height) {
+      fail(index, fmt::format("the colour picture is {} x {}, the header says {} x {}", width,
+                              height, lens.width_px, lens.height_px));
+    };
+    if (colour_kind_ == kRawColour) {
+      Grid2d<Rgb8> picture = empty_picture<Rgb8>(lens, record.colour.size(), index, "colour");
+      std::memcpy(static_cast<void*>(picture.data()), record.colour.data(), record.colour.size());
+      return picture;
+    }
+    const auto size = announced_size(record.colour);
+    if (!size) fail(index, "the colour picture is neither JPEG nor PNG");
+    if (size->width != static_cast<std::uint32_t>(lens.width_px) ||
+        size->height != static_cast<std::uint32_t>(lens.height_px))
+      fail_size(size->width, size->height);
+    auto picture = decode_colour(record.colour);
+    if (!picture) fail(index, "the colour picture cannot be decoded");
+    if (picture->width() != lens.width_px || picture->height() != lens.height_px)
+      fail_size(static_cast<std::uint64_t>(picture->width()),
+                static_cast<std::uint64_t>(picture->height()));
+    return std::move(*picture);
+  }
+
+  /// A picture for so many raw bytes.
+  template <class Pixel>
+  Grid2d<Pixel> empty_picture(const RecordedLens& lens, std::size_t bytes, std::size_t index,
+                              const char* which) const {
+    const std::uint64_t wanted = sizeof(Pixel) * static_cast<std::uint64_t>(lens.width_px) *
+                                 static_cast<std::uint64_t>(lens.height_px);
+    if (bytes != wanted)
+      fail(index, fmt::format("the {} picture has {} bytes, {} x {} pixels have {}", which, bytes,
+                              lens.width_px, lens.height_px, wanted));
+    return {lens.width_px, lens.height_px};
+  }
+
+  Grid2d<std::uint16_t> depth_of(const FrameRecord& record, std::size_t index) const {
+    const RecordedLens& lens = info_.depth;
+    if (depth_kind_ == kRawDepth) {
+      auto picture = empty_picture<std::uint16_t>(lens, record.depth.size(), index, "depth");
+      std::memcpy(picture.data(), record.depth.data(), record.depth.size());
+      return picture;
+    }
+    const std::uint64_t bytes =
+        2 * static_cast<std::uint64_t>(lens.width_px) * static_cast<std::uint64_t>(lens.height_px);
+    const auto wrong = [&](const char* why) {
+      fail(index, fmt::format("the depth picture does not decompress to {} x {} pixels: {}",
+                              lens.width_px, lens.height_px, why));
+    };
+    if (bytes / kDeflateLimit > record.depth.size()) wrong("there are too few bytes");
+    Grid2d<std::uint16_t> picture(lens.width_px, lens.height_px);
+    uLongf size = bytes;
+    const int result = uncompress(reinterpret_cast<Bytef*>(picture.data()), &size,
+                                  reinterpret_cast<const Bytef*>(record.depth.data()),
+                                  static_cast<uLong>(record.depth.size()));
+    if (result == Z_BUF_ERROR) wrong("it has more, or is cut short");
+    if (result != Z_OK) wrong("it is damaged");
+    if (size != bytes) wrong("it has fewer");
+    return picture;
+  }
+
+  HeldBytes held_;
+  std::string name_;
+  RecordingInfo info_;
+  std::int32_t colour_kind_ = kJpeg, depth_kind_ = kZlib;
+  std::vector<FrameRecord> frames_;
+};
+
+/// Writes values one after the other.
+class Writer {
+ public:
+  explicit Writer(const fs::path& file) : out_(file, std::ios::binary) {}
+
+  template <class T>
+  void put(T value) {
+    out_.write(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  void put(const Eigen::Matrix4d& matrix) {
+    for (int i = 0; i < 16; ++i) put(static_cast<float>(matrix(i / 4, i % 4)));
+  }
+  void put_bytes(std::string_view bytes) {
+    out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  }
+  bool finish() { return static_cast<bool>(out_.flush()); }
+
+ private:
+  std::ofstream out_;
+};
+
+std::string compressed(const Grid2d<std::uint16_t>& depth) {
+  uLongf size = compressBound(2 * depth.size());
+  std::string bytes(size, '\0');
+  compress2(reinterpret_cast<Bytef*>(bytes.data()), &size,
+            reinterpret_cast<const Bytef*>(depth.data()), 2 * depth.size(), Z_DEFAULT_COMPRESSION);
+  bytes.resize(size);
+  return bytes;
+}
+
+bool fits(const auto& picture, const RecordedLens& lens) {
+  return picture.width() == lens.width_px && picture.height() == lens.height_px;
+}
+
+}  // namespace
+
+std::unique_ptr<Recording> open_sens(HeldBytes bytes, const std::string& name) {
+  return std::make_unique<SensFile>(std::move(bytes), name);
+}
+
+std::unique_ptr<Recording> open_sens(const fs::path& file) {
+  return open_sens(map_file(file, MapPages::kAsTouched), file.string());
+}
+
+void save_sens(const fs::path& file, const RecordingInfo& info, std::size_t frames,
+               const std::function<RecordedMoment(std::size_t index)>& frame_at) {
+  write_atomically(file, [&](const fs::path& temporary) {
+    Writer out(temporary);
+    out.put(kVersion);
+    out.put(static_cast<std::uint64_t>(info.sensor.size()));
+    out.put_bytes(info.sensor);
+    for (const RecordedLens& lens : {info.colour, info.depth}) {
+      out.put(intrinsics_of(lens));
+      out.put(matrix_of(lens.device_from_camera));
+    }
+    out.put(static_cast<std::int32_t>(kJpeg));
+    out.put(static_cast<std::int32_t>(kZlib));
+    for (const RecordedLens& lens : {info.colour, info.depth}) {
+      out.put(static_cast<std::uint32_t>(lens.width_px));
+      out.put(static_cast<std::uint32_t>(lens.height_px));
+    }
+    out.put(static_cast<float>(info.depth_per_metre));
+    out.put(static_cast<std::uint64_t>(frames));
+    for (std::size_t i = 0; i < frames; ++i) {
+      const RecordedMoment moment = frame_at(i);
+      if (!fits(moment.colour, info.colour) || !fits(moment.depth, info.depth))
+        throw InputError(fmt::format("{}: frame {} has not the cameras' size", file.string(), i));
+      const std::string colour = encode_jpeg(moment.colour, kJpegQuality);
+      const std::string depth = compressed(moment.depth);
+      const double lost = -std::numeric_limits<double>::infinity();
+      out.put(moment.world_from_device ? matrix_of(*moment.world_from_device)
+                                       : Eigen::Matrix4d::Constant(lost).eval());
+      for (int stamp = 0; stamp < 2; ++stamp)  // colour's and depth's
+        out.put(static_cast<std::uint64_t>(moment.stamp_ns / 1000));
+      out.put(static_cast<std::uint64_t>(colour.size()));
+      out.put(static_cast<std::uint64_t>(depth.size()));
+      out.put_bytes(colour);
+      out.put_bytes(depth);
+    }
+    out.put(std::uint64_t{0});  // inertial measurements
+    if (out.finish()) return;
+    if (errno == ENOSPC)
+      throw MachineError(
+          fmt::format("{}: the disk is full: make room and run again", file.string()));
+    throw InputError(fmt::format("{}: cannot be written", file.string()));
+  });
+}
+
+}  // namespace mh

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/recorded/scannet_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include "bench/recorded/frame_files.hpp"
+#include "bench/recorded/tum_folder.hpp"
+#include "scenes/scannet/frame_folder.hpp"
+#include "scenes/scannet/label_images.hpp"
+#include "slam/core/files.hpp"
+#include "slam/pipeline/settings.hpp"
+#include "tests/scenes/temporary_folder.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ScannetFolder : public TemporaryFolder {
+ protected:
+  ScannetFolder() {
+    camera_.width_px = 32;
+    camera_.height_px = 24;
+    camera_.fx_px = camera_.fy_px = 30;
+    camera_.cx_px = 15.5;
+    camera_.cy_px = 11.5;
+  }
+
+  /// Grey that grows to the right; two classes, left and right; depth in whole millimetres.
+  ExactFrame frame(std::size_t index) const {
+    ExactFrame f;
+    f.seen.stamp_ns = static_cast<Stamp>(index) * 40'000'000;
+    f.seen.colour = Grid2d<Rgb8>(32, 24);
+    f.seen.depth_m = Grid2d<float>(32, 24, 1.5F);
+    f.seen.depth_m(3, 3) = 0;
+    f.seen.depth_m(4, 4) = 70.0F;  // beyond 16 bits of millimetres
+    f.exact.classes = Grid2d<ClassId>(32, 24, ClassId{5});
+    f.exact.instances = Grid2d<InstanceId>(32, 24, InstanceId{3});
+    for (int y = 0; y < 24; ++y)
+      for (int x = 0; x < 32; ++x) {
+        const auto grey = static_cast<std::uint8_t>(40 + 5 * x);
+        f.seen.colour(x, y) = {grey, grey, grey};
+        if (x >= 16) f.exact.classes(x, y) = 43;  // a potted plant: NYU40 has none
+      }
+    f.world_from_camera = SE3(so3_exp({0, 0.1 * static_cast<double>(index), 0}), {1, 2, 3});
+    return f;
+  }
+
+  Camera camera_;
+};
+
+TEST_F(ScannetFolder, ARecordingReadBackIsWhatWasSeen) {
+  write_scannet_recording(folder_ / "s", camera_, 3, [&](std::size_t i) { return frame(i); });
+  std::vector<std::string> notes;
+  const auto sequence = open_scannet(folder_ / "s", notes);
+  EXPECT_TRUE(notes.empty());
+  EXPECT_EQ(sequence->camera().width_px, 32);
+  EXPECT_NEAR(sequence->camera().cx_px, 15.5, 1e-6);
+  ASSERT_EQ(sequence->size(), 3U);
+  EXPECT_EQ(sequence->stamp_ns(2), 80'000'000);
+  const RgbdFrame read = sequence->frame(1);
+  const ExactFrame expected = frame(1);
+  EXPECT_FLOAT_EQ(read.depth_m(10, 10), 1.5F);
+  EXPECT_EQ(read.depth_m(3, 3), 0.0F);
+  EXPECT_EQ(read.depth_m(4, 4), 0.0F);
+  for (int x = 0; x < 32; ++x) {
+    EXPECT_NEAR(read.colour(x, 12).g, expected.seen.colour(x, 12).g, 4) << x;
+    EXPECT_EQ(read.semantics.at(x, 12).most_probable(), x < 16 ? 5 : 43);
+  }
+  const auto truth = sequence->truth();
+  ASSERT_TRUE(truth);
+  ASSERT_EQ(truth->size(), 3U);
+  const SE3 moved = (*truth)[1].world_from_camera.inverse() * expected.world_from_camera;
+  EXPECT_LT(moved.log().norm(), 1e-6);
+  const auto instances = find_label_images(folder_ / "s", "instance-filt");
+  ASSERT_NE(instances, nullptr);
+  EXPECT_EQ((*instances->read(1))(20, 20), 3);
+}
+
+TEST_F(ScannetFolder, WithoutALabelTableLabelsAreLeftOutWithANote) {
+  write_scannet_recording(folder_ / "s", camera_, 1, [&](std::size_t i) { return frame(i); });
+  fs::remove(folder_ / "s" / "scannetv2-labels.combined.tsv");
+  std::vector<std::string> notes;
+  EXPECT_TRUE(open_scannet(folder_ / "s", notes)->frame(0).semantics.index.empty());
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_TRUE(names(notes[0], {"labels are left out"}));
+}
+
+/// Colour has twice the pixels, another centre, and stands 10 cm to the right: a point at depth z
+/// is seen fx * 0.1 / z further left.
+TEST_F(ScannetFolder, ColourAndLabelsAreTakenWhereTheColourCameraSawThePixel) {
+  RecordingInfo info;
+  info.depth = {16, 12, 20, 20, 7.5, 5.5, {}};
+  info.colour = {64, 48, 80, 80, 33.5, 23.5, SE3(Eigen::Matrix3d::Identity(), {0.1, 0, 0})};
+  RecordedMoment moment{.stamp_ns = 0,
+                        .colour = Grid2d<Rgb8>(64, 48),
+                        .depth = Grid2d<std::uint16_t>(16, 12, std::uint16_t{2000}),
+                        .world_from_device = SE3()};
+  Grid2d<std::uint16_t> labels(64, 48);
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x) {
+      moment.colour(x, y) = {static_cast<std::uint8_t>(3 * x), static_cast<std::uint8_t>(4 * y), 0};
+      labels(x, y) = x < 32 ? 1 : 2;
+    }
+  moment.depth(8, 6) = 0;  // far away: no parallax
+  save_extracted(folder_, info, 1, [&](std::size_t) { return moment; });
+  write_label_folder(folder_, "label-filt")->add(0, labels);
+  write("scannetv2-labels.combined.tsv", "id\traw_category\tnyu40id\n1\twall\t1\n2\tchair\t5\n");
+  std::vector<std::string> notes;
+  const RgbdFrame frame = open_scannet(folder_, notes)->frame(0);
+  ASSERT_EQ(frame.colour.width(), 16);
+  const auto column_of = [&](int x, double depth_m) {
+    return 80 * ((x - 7.5) / 20 - 0.1 / depth_m) + 33.5;
+  };
+  for (int x = 2; x < 14; ++x) {
+    const double column = column_of(x, 2.0), row = 80 * ((5 - 5.5) / 20) + 23.5;
+    // Averaging over 4 x 4 pixels, JPEG, and remap's steps of 1/32 px: a few levels.
+    EXPECT_NEAR(frame.colour(x, 5).r, 3 * column, 6) << x;
+    EXPECT_NEAR(frame.colour(x, 5).g, 4 * row, 8) << x;
+    EXPECT_EQ(frame.semantics.at(x, 5).most_probable(), std::round(column) < 32 ? 1 : 5) << x;
+  }
+  EXPECT_NEAR(frame.colour(8, 6).r, 3 * column_of(8, 1e9), 6);
+}
+
+TEST_F(ScannetFolder, ARosCalibrationReadsBackAndServesATumFolder) {
+  camera_.distortion = {.k1 = 0.25, .k2 = -0.5, .p1 = 0.001, .p2 = -0.002, .k3 = 1.125};
+  const Settings read = parse_settings(camera_info_text(camera_), "camera_info.yaml");
+  EXPECT_TRUE(read.has_camera);
+  EXPECT_EQ(read.camera, camera_);
+  EXPECT_EQ(read.depth_per_metre, 5000);
+  const auto error = [](const std::string& text) {
+    return error_of([&] { parse_settings(text, "info.yaml"); });
+  };
+  std::string text = camera_info_text(camera_);
+  EXPECT_TRUE(names(
+      error(text.substr(0, text.find("distortion_model")) + "distortion_model: equidistant\n"),
+      {"info.yaml", "equidistant"}));
+  EXPECT_TRUE(names(error("camera_matrix: {data: [1, 2]}\nimage_width: 4\nimage_height: 3\n"),
+                    {"info.yaml:1"}));
+  TumWriter writer(folder_ / "t", camera_);
+  const ExactFrame f = frame(0);
+  writer.add(f.seen, f.exact, f.world_from_camera);
+  writer.finish();
+  EXPECT_EQ(load_settings(folder_ / "t" / "camera_info.yaml").camera, camera_);
+}
+
+}  // namespace
+}  // namespace mh

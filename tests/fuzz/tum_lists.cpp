@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/metrics/trajectory_io.hpp"
+#include "bench/recorded/tum_list.hpp"
+#include "tests/fuzz/fuzz.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(mh::bytes_of(data, size));
+  mh::try_input([&] { mh::parse_tum_list(text, "rgb.txt"); });
+  mh::try_input([&] { mh::parse_tum_list(text, "associations.txt", 2); });
+  mh::try_input([&] { mh::parse_tum(text, "groundtruth.txt"); });
+  return 0;
+}

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/mesh_io/ply.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+
+#include "tests/scenes/temporary_folder.hpp"
+
+namespace mh {
+namespace {
+
+template <class T>
+std::string raw(T value) {
+  std::string bytes(sizeof value, '\0');
+  std::memcpy(bytes.data(), &value, sizeof value);
+  return bytes;
+}
+
+/// A square of two triangles.
+PlyMesh square() {
+  return {.positions_m = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0.5F}},
+          .colours = {{1, 2, 3}, {255, 0, 0}, {0, 255, 0}, {9, 8, 7}},
+          .labels = {0, 5, 40, 1163},
+          .triangles = {{0, 1, 2}, {0, 2, 3}}};
+}
+
+void expect_same(const PlyMesh& a, const PlyMesh& b) {
+  EXPECT_EQ(a.positions_m, b.positions_m);
+  EXPECT_EQ(a.colours, b.colours);
+  EXPECT_EQ(a.labels, b.labels);
+  EXPECT_EQ(a.triangles, b.triangles);
+}
+
+std::string error_of_ply(const std::string& bytes) {
+  return error_of([&] { parse_ply(bytes, "mesh.ply"); });
+}
+
+/// A header over elements of one's own, little-endian.
+std::string header(const std::string& elements) {
+  return "ply\nformat binary_little_endian 1.0\n" + elements + "end_header\n";
+}
+const std::string kPoint = "property float x\nproperty float y\nproperty float z\n";
+const std::string kList = "property list uchar int vertex_indices\n";
+
+std::string points(int count) {
+  std::string bytes;
+  for (int i = 0; i < 3 * count; ++i) bytes += raw(static_cast<float>(i));
+  return bytes;
+}
+
+TEST(Ply, ReadsBackWhatItWrote) {
+  expect_same(parse_ply(ply_bytes(square()), "mesh.ply"), square());
+  PlyMesh plain = square();
+  plain.labels.clear();
+  expect_same(parse_ply(ply_bytes(plain), "mesh.ply"), plain);
+  EXPECT_TRUE(is_plain_binary_ply(ply_bytes(plain)));
+}
+
+TEST(Ply, ReadsLabelsAlone) {
+  const PlyMesh read = parse_ply(ply_bytes(square()), "mesh.ply", {.geometry = false});
+  EXPECT_EQ(read.labels, square().labels);
+  EXPECT_TRUE(read.positions_m.empty());
+  EXPECT_TRUE(read.triangles.empty());
+}
+
+TEST(Ply, TakesAnyTypeAndOrderAndPassesOverTheUnknown) {
+  const std::string bytes =
+      header(
+          "comment made by hand\nelement camera 1\nproperty list ushort float matrix\n"
+          "element vertex 5\nproperty double z\nproperty ushort label\nproperty double y\n"
+          "property short quality\nproperty double x\nproperty float red\nproperty float green\n"
+          "property float blue\nelement face 3\nproperty uchar flag\n"
+          "property list uint ushort vertex_index\nproperty list uchar float weights\n"
+          "element edge 1\nproperty int a\nproperty int b\n") +
+      [] {
+        std::string body = raw(std::uint16_t{2}) + raw(1.0F) + raw(2.0F);
+        for (int i = 0; i < 5; ++i)
+          body += raw(double(i)) + raw(std::uint16_t(i)) + raw(10.0 + i) + raw(std::int16_t{-1}) +
+                  raw(20.0 + i) + raw(1.0F) + raw(0.5F) + raw(0.0F);
+        const auto face = [](std::initializer_list<std::uint16_t> corners) {
+          std::string one = raw(std::uint8_t{7}) + raw(std::uint32_t(corners.size()));
+          for (const std::uint16_t corner : corners) one += raw(corner);
+          return one + raw(std::uint8_t{1}) + raw(0.25F);
+        };
+        return body + face({0, 1, 2}) + face({0, 1}) + face({4, 3, 2, 1, 0}) + raw(1) + raw(2);
+      }();
+  const PlyMesh mesh = parse_ply(bytes, "mesh.ply");
+  ASSERT_EQ(mesh.positions_m.size(), 5U);
+  EXPECT_EQ(mesh.positions_m[3], Eigen::Vector3f(23, 13, 3));
+  EXPECT_EQ(mesh.colours[0], (Rgb8{255, 128, 0}));
+  EXPECT_EQ(mesh.labels[4], 4);
+  // The line of two corners cannot be seen; the pentagon is a fan of three.
+  const std::vector<std::array<std::uint32_t, 3>> expected = {
+      {0, 1, 2}, {4, 3, 2}, {4, 2, 1}, {4, 1, 0}};
+  EXPECT_EQ(mesh.triangles, expected);
+}
+
+TEST(Ply, EveryTruncationIsAnErrorThatNamesTheFile) {
+  const std::string whole = ply_bytes(square());
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_TRUE(names(error_of_ply(whole.substr(0, size)), {"mesh.ply"})) << size;
+}
+
+TEST(Ply, NamesTheFaceAndTheVertexThatIsNotThere) {
+  PlyMesh mesh = square();
+  mesh.triangles[1][2] = 4;
+  EXPECT_TRUE(names(error_of_ply(ply_bytes(mesh)), {"face 1", "vertex 4 of 4"}));
+  mesh.triangles[1][2] = 0xffffffff;  // -1 in a file of signed numbers
+  EXPECT_TRUE(names(error_of_ply(ply_bytes(mesh)), {"face 1", "of 4"}));
+  EXPECT_TRUE(names(error_of_ply(header("element vertex 1\n" + kPoint +
+                                        "element face 1\n"
+                                        "property list uchar char vertex_indices\n") +
+                                 points(1) + raw(std::uint8_t{3}) + std::string("\0\0\xff", 3)),
+                    {"face 0", "vertex -1 of 1"}));
+}
+
+TEST(Ply, NamesTheVertexThatIsNotFinite) {
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    PlyMesh mesh = square();
+    mesh.positions_m[2].y() = bad;
+    EXPECT_TRUE(names(error_of_ply(ply_bytes(mesh)), {"vertex 2", "not finite"}));
+  }
+}
+
+TEST(Ply, CountsThatOverflowAreRefusedBeforeAnythingIsAllocated) {
+  const std::string huge = "18446744073709551615";
+  EXPECT_TRUE(names(error_of_ply(header("element vertex " + huge + "\n" + kPoint)), {"32 bits"}));
+  EXPECT_TRUE(names(error_of_ply(header("element vertex 4294967295\n" + kPoint)), {"cut short"}));
+  EXPECT_TRUE(names(error_of_ply(header("element vertex 99999999999999999999\n" + kPoint)),
+                    {"mesh.ply:3", "number of elements"}));
+  const std::string faces = "element vertex 3\n" + kPoint + "element face ";
+  EXPECT_TRUE(names(error_of_ply(header(faces + huge + "\n" + kList) + points(3)), {"cut short"}));
+  EXPECT_TRUE(names(error_of_ply(header(faces + "1\nproperty list uint int vertex_indices\n") +
+                                 points(3) + raw(std::uint32_t{0xffffffff}) + points(1)),
+                    {"list of 4294967295 items"}));
+  EXPECT_TRUE(names(error_of_ply(header(faces + "1\nproperty list int int vertex_indices\n") +
+                                 points(3) + raw(std::int32_t{-1}) + points(1)),
+                    {"list of -1 items"}));
+}
+
+TEST(Ply, SaysWhatIsWrongWithAHeader) {
+  EXPECT_TRUE(names(error_of_ply("hello\n"), {"mesh.ply:1", "no PLY"}));
+  EXPECT_TRUE(names(error_of_ply("ply\nformat ascii 1.0\nend_header\n"), {"binary_little_endian"}));
+  EXPECT_TRUE(names(error_of_ply(header("property float x\n")), {"mesh.ply:3", "first element"}));
+  EXPECT_TRUE(names(error_of_ply(header("element vertex 1\nproperty quux x\n")), {":4", "quux"}));
+  EXPECT_TRUE(names(error_of_ply(header("element vertex 0\nproperty float x\n")), {"'y'"}));
+  EXPECT_TRUE(names(error_of_ply(header("element vertex 0\n" + kPoint)), {"'face'"}));
+  EXPECT_TRUE(names(error_of_ply(header("element face 0\n" + kList)), {"before the vertices"}));
+  EXPECT_FALSE(is_plain_binary_ply("ply\nformat ascii 1.0\nend_header\n"));
+  EXPECT_FALSE(is_plain_binary_ply(header("element vertex 0\nproperty float s\n")));
+}
+
+}  // namespace
+}  // namespace mh

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/scannet/recording.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "scenes/picture_file.hpp"
+#include "scenes/scannet/frame_folder.hpp"
+#include "scenes/scannet/label_images.hpp"
+#include "scenes/scannet/sens.hpp"
+#include "slam/core/files.hpp"
+#include "tests/scenes/temporary_folder.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+RecordingInfo info() {
+  return {.sensor = "StructureSensor",
+          .colour = {16, 8, 20, 21, 7.5, 3.5, SE3(Eigen::Matrix3d::Identity(), {0.01, 0, 0})},
+          .depth = {8, 6, 10, 10.5, 3.5, 2.5, {}},
+          .depth_per_metre = 1000};
+}
+
+/// Smooth, so that JPEG changes little; the second of three frames is invalid.
+RecordedMoment moment(std::size_t index) {
+  RecordedMoment m{.stamp_ns = static_cast<Stamp>(1000 * (33'333 * index + 7)),
+                   .colour = Grid2d<Rgb8>(16, 8),
+                   .depth = Grid2d<std::uint16_t>(8, 6),
+                   .world_from_device = std::nullopt};
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 16; ++x) {
+      const auto level = static_cast<std::uint8_t>(100 + 4 * x + 3 * y);
+      m.colour(x, y) = {level, level, static_cast<std::uint8_t>(level + 10 * index)};
+    }
+  for (int y = 0; y < 6; ++y)
+    for (int x = 0; x < 8; ++x) m.depth(x, y) = static_cast<std::uint16_t>(1000 * x + y + index);
+  if (index != 1)
+    m.world_from_device = SE3(so3_exp({0.1, 0.2 * static_cast<double>(index), 0.3}), {1, 2, 3.5});
+  return m;
+}
+
+void expect_recorded(const Recording& recording, bool stamps) {
+  EXPECT_EQ(recording.info().colour.width_px, 16);
+  EXPECT_EQ(recording.info().depth.height_px, 6);
+  EXPECT_NEAR(recording.info().depth.fy_px, 10.5, 1e-6);
+  EXPECT_NEAR(recording.info().colour.device_from_camera.translation().x(), 0.01, 1e-8);
+  EXPECT_EQ(recording.info().depth_per_metre, 1000);
+  ASSERT_EQ(recording.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const RecordedMoment expected = moment(i), read = recording.frame(i);
+    EXPECT_EQ(read.depth, expected.depth);
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 16; ++x)  // a smooth ramp survives JPEG to within a few levels
+        EXPECT_NEAR(read.colour(x, y).g, expected.colour(x, y).g, 6);
+    const Stamp at_thirty_hertz = static_cast<Stamp>(i) * 1'000'000'000 / 30;
+    EXPECT_EQ(recording.stamp_ns(i), stamps ? expected.stamp_ns : at_thirty_hertz);
+    EXPECT_EQ(recording.number(i), i);
+    ASSERT_EQ(recording.world_from_device(i).has_value(), i != 1);
+    if (i == 1) continue;
+    const SE3 moved = recording.world_from_device(i)->inverse() * *expected.world_from_device;
+    EXPECT_LT(moved.log().norm(), 1e-6);  // floats
+  }
+}
+
+class SensFile : public TemporaryFolder {
+ protected:
+  /// A whole file and where its fields lie.
+  std::string bytes() const {
+    save_sens(folder_ / "a.sens", info(), 3, moment);
+    return read_file(folder_ / "a.sens");
+  }
+  static constexpr std::size_t kName = 4 + 8, kMatrices = kName + 15, kKinds = kMatrices + 4 * 64,
+                               kSizes = kKinds + 8, kCount = kSizes + 16 + 4, kFrame = kCount + 8,
+                               kStamps = kFrame + 64, kDepthSize = kStamps + 24;
+  template <class T>
+  static std::string with(std::string bytes, std::size_t at, T value) {
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+    return bytes;
+  }
+  /// What opening the file and reading all its frames says.
+  static std::string error(const std::string& bytes) {
+    return error_of([&] {
+      const auto recording = open_sens(hold(bytes), "a.sens");
+      for (std::size_t i = 0; i < recording->size(); ++i) recording->frame(i);
+    });
+  }
+};
+
+TEST_F(SensFile, ReadsBackWhatItWrote) {
+  save_sens(folder_ / "a.sens", info(), 3, moment);
+  const auto recording = open_recording(folder_ / "a.sens");
+  expect_recorded(*recording, true);
+  EXPECT_EQ(recording->info().sensor, "StructureSensor");
+  expect_recorded(*open_recording(folder_), true);  // the only one of its folder
+  save_sens(folder_ / "b.sens", info(), 1, moment);
+  EXPECT_TRUE(names(error_of([&] { open_recording(folder_); }), {"2 .sens files"}));
+}
+
+TEST_F(SensFile, AnyTruncationIsAnErrorThatNamesTheFile) {
+  const std::string whole = bytes();
+  EXPECT_EQ(error(whole), "");
+  const std::size_t frames_end = whole.size() - 8;  // then come inertial measurements, unread
+  for (std::size_t size = 0; size < frames_end; size += 13)
+    EXPECT_TRUE(names(error(whole.substr(0, size)), {"a.sens", "cut short"})) << size;
+}
+
+TEST_F(SensFile, SaysWhichFieldIsWrong) {
+  const std::string whole = bytes();
+  EXPECT_TRUE(names(error(with(whole, 0, std::uint32_t{3})), {"version 3", "version 4"}));
+  EXPECT_TRUE(names(error(with(whole, 4, std::uint64_t{1} << 60)), {"sensor's name"}));
+  EXPECT_TRUE(names(error(with(whole, kKinds, std::int32_t{-1})), {"colour compression -1"}));
+  EXPECT_TRUE(names(error(with(whole, kKinds + 4, std::int32_t{2})), {"depth compression 2"}));
+  EXPECT_TRUE(names(error(with(whole, kSizes, std::uint32_t{100000})), {"100000 x 8"}));
+  EXPECT_TRUE(names(error(with(whole, kMatrices, 0.0F)), {"colour camera", "fx 0"}));
+  EXPECT_TRUE(names(error(with(whole, kCount, std::uint64_t{1} << 62)), {"frame 3", "cut short"}));
+  EXPECT_TRUE(names(error(with(whole, kDepthSize, std::uint64_t{1} << 62)),
+                    {"frame 0's depth picture", "cut short"}));
+  EXPECT_TRUE(names(error(with(whole, kFrame, 2.0F)), {"frame 0", "no rotation"}));
+}
+
+TEST_F(SensFile, PicturesThatAreNotWhatTheHeaderSaysAreRefused) {
+  const std::string whole = bytes();
+  EXPECT_TRUE(names(error(with(whole, kSizes, std::uint32_t{18})),
+                    {"frame 0", "16 x 8", "header says 18 x 8"}));
+  EXPECT_TRUE(names(error(with(whole, kSizes + 8, std::uint32_t{9})), {"depth", "9 x 6"}));
+  EXPECT_TRUE(names(error(with(whole, kSizes + 8, std::uint32_t{7})), {"depth", "7 x 6"}));
+  // A header that claims half a gigabyte for each picture: refused by the bytes that are there.
+  EXPECT_TRUE(names(
+      error(with(with(whole, kSizes + 8, std::uint32_t{16384}), kSizes + 12, std::uint32_t{16384})),
+      {"16384 x 16384", "too few bytes"}));
+  std::string damaged = whole;
+  const std::size_t jpeg = kDepthSize + 8;
+  damaged[jpeg] = 'x';
+  EXPECT_TRUE(names(error(damaged), {"frame 0", "neither JPEG nor PNG"}));
+  std::uint64_t jpeg_size = 0;
+  std::memcpy(&jpeg_size, whole.data() + kDepthSize - 8, sizeof jpeg_size);
+  damaged = whole;
+  damaged[jpeg + jpeg_size + 5] ^= 0x5a;
+  EXPECT_TRUE(names(error(damaged), {"frame 0", "decompress"}));
+}
+
+TEST_F(SensFile, AJpegThatClaimsAnotherSizeIsNotDecoded) {
+  std::string jpeg = encode_jpeg(moment(0).colour, 90);
+  const std::size_t frame_header = jpeg.find("\xff\xc0");
+  ASSERT_NE(frame_header, jpeg.npos);
+  jpeg[frame_header + 5] = '\x7f';  // height: 32 thousand rows
+  const auto size = announced_size(jpeg);
+  ASSERT_TRUE(size);
+  EXPECT_GT(size->height, 32000U);
+  jpeg[frame_header + 7] = '\x7f';
+  EXPECT_FALSE(decode_colour(jpeg));  // 10^9 pixels
+  EXPECT_FALSE(announced_size("GIF89a"));
+  EXPECT_FALSE(announced_size("\xff\xd8\xff"));
+}
+
+TEST_F(SensFile, WithoutIncreasingStampsFramesCountAtThirtyHertz) {
+  std::string same = bytes();
+  const auto recording = open_sens(hold(with(same, kStamps, std::uint64_t{1} << 40)), "a.sens");
+  EXPECT_EQ(recording->stamp_ns(0), 0);
+  EXPECT_EQ(recording->stamp_ns(2), 66'666'666);
+}
+
+class Extracted : public TemporaryFolder {};
+
+TEST_F(Extracted, ReadsBackWhatItWrote) {
+  save_extracted(folder_, info(), 3, moment);
+  for (const char* file : {"color/2.jpg", "depth/2.png", "pose/2.txt",
+                           "intrinsic/intrinsic_depth.txt", "intrinsic/extrinsic_color.txt"})
+    EXPECT_TRUE(fs::exists(folder_ / file)) << file;
+  expect_recorded(*open_recording(folder_), false);
+}
+
+TEST_F(Extracted, TakesPartOfTheFramesAndPaddedNames) {
+  save_extracted(folder_, info(), 3, moment);
+  fs::remove(folder_ / "depth/0.png");
+  fs::rename(folder_ / "color/2.jpg", folder_ / "color/000002.jpg");
+  fs::rename(folder_ / "pose/2.txt", folder_ / "pose/000002.txt");
+  fs::remove(folder_ / "pose/1.txt");
+  const auto recording = open_recording(folder_);
+  ASSERT_EQ(recording->size(), 2U);
+  EXPECT_EQ(recording->number(1), 2U);
+  EXPECT_EQ(recording->stamp_ns(1), 66'666'666);
+  EXPECT_FALSE(recording->world_from_device(0));
+  EXPECT_TRUE(recording->world_from_device(1));
+}
+
+TEST_F(Extracted, NamesTheFileThatIsWrong) {
+  const auto error = [&] {
+    return error_of([&] {
+      const auto recording = open_recording(folder_);
+      for (std::size_t i = 0; i < recording->size(); ++i) recording->frame(i);
+    });
+  };
+  EXPECT_TRUE(names(error(), {"neither color/ nor a .sens file"}));
+  save_extracted(folder_, info(), 3, moment);
+  EXPECT_EQ(error(), "");
+  write("pose/0.txt", "1 0 0 0 0 1 0 0 0 0 1\n");
+  EXPECT_TRUE(names(error(), {"pose/0.txt", "11 numbers"}));
+  write("pose/0.txt", "1 0 0 0 0 x");
+  EXPECT_TRUE(names(error(), {"pose/0.txt", "number 6", "'x'"}));
+  write("pose/0.txt", "-inf -inf -inf -inf -inf -inf -inf -inf -inf -inf -inf -inf 0 0 0 1\n");
+  EXPECT_EQ(error(), "");
+  write("color/1.jpg", "no picture");
+  EXPECT_TRUE(names(error(), {"color/1.jpg"}));
+  fs::remove(folder_ / "intrinsic/intrinsic_depth.txt");
+  EXPECT_TRUE(names(error(), {"intrinsic_depth.txt"}));
+}
+
+class LabelImagesOf : public TemporaryFolder {
+ protected:
+  static Grid2d<std::uint16_t> ids(std::uint16_t first) {
+    Grid2d<std::uint16_t> picture(5, 4, first);
+    picture(2, 1) = 3;
+    return picture;
+  }
+};
+
+TEST_F(LabelImagesOf, FoldersAndZipsReadBackTheSame) {
+  for (const bool zipped : {false, true}) {
+    const fs::path place = folder_ / (zipped ? "zip" : "folder");
+    fs::create_directories(place);
+    const auto writer = zipped ? write_label_zip(place / "s_2d-label-filt.zip", "label-filt")
+                               : write_label_folder(place, "label-filt");
+    writer->add(0, ids(1163));
+    writer->add(40, ids(2));
+    writer->finish();
+    const auto images = find_label_images(place, "label-filt");
+    ASSERT_NE(images, nullptr);
+    EXPECT_EQ(images->read(0), ids(1163));
+    EXPECT_EQ(images->read(40), ids(2));
+    EXPECT_FALSE(images->read(1));
+    EXPECT_EQ(find_label_images(place, "instance-filt"), nullptr);
+  }
+}
+
+TEST_F(LabelImagesOf, InstancesHaveEightBitsWhereTheyFitAsInScannet) {
+  const auto writer = write_label_folder(folder_, "instance-filt");
+  writer->add(0, ids(255));
+  writer->add(1, ids(256));
+  const auto bits = [&](const char* file) { return read_file(folder_ / file)[24]; };
+  EXPECT_EQ(bits("instance-filt/0.png"), 8);
+  EXPECT_EQ(bits("instance-filt/1.png"), 16);
+  const auto images = find_label_images(folder_, "instance-filt");
+  EXPECT_EQ(images->read(0), ids(255));
+  EXPECT_EQ(images->read(1), ids(256));
+}
+
+TEST_F(LabelImagesOf, ZipsThatPointOutsideAreDamagedOrClaimTooMuchAreRefused) {
+  const fs::path file = folder_ / "s_2d-label-filt.zip";
+  const auto writer = write_label_zip(file, "label-filt");
+  writer->add(0, ids(7));
+  writer->finish();
+  const std::string whole = read_file(file);
+  const auto error = [](const std::string& bytes) {
+    return error_of([&] { open_label_zip(hold(bytes), "l.zip")->read(0); });
+  };
+  EXPECT_EQ(error(whole), "");
+  std::string outside = whole;
+  for (std::size_t at; (at = outside.find("label-filt/0.png")) != outside.npos;)
+    outside.replace(at, 16, "../bel-filt/0.pn");
+  EXPECT_TRUE(names(error(outside), {"l.zip", "../bel-filt/0.pn", "outside"}));
+  for (std::size_t at; (at = outside.find("../bel-filt/0.pn")) != outside.npos;)
+    outside.replace(at, 16, "/etc/passwd/0.pn");
+  EXPECT_TRUE(names(error(outside), {"/etc/passwd", "outside"}));
+  EXPECT_TRUE(names(error(whole.substr(0, whole.size() / 2)), {"l.zip", "no zip"}));
+  EXPECT_TRUE(names(error("no zip"), {"l.zip"}));
+  std::string claims = whole;  // the size in the central directory, 24 bytes behind its mark
+  const std::size_t central = claims.find("PK\x01\x02");
+  ASSERT_NE(central, claims.npos);
+  claims.replace(central + 24, 4, "\xff\xff\xff\x7f");
+  EXPECT_TRUE(names(error(claims), {"l.zip"}));
+  std::string text = whole;
+  text.replace(text.find("\x89PNG"), 4, "text");
+  EXPECT_TRUE(names(error(text), {"l.zip"}));
+}
+
+}  // namespace
+}  // namespace mh
