@@ -2,6 +2,7 @@
 #include "slam/loop/loop.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "slam/map/id_set.hpp"
 #include "slam/match/expect.hpp"
@@ -12,6 +13,10 @@ namespace {
 
 /// Covisible keyframes that share this many landmarks hold each other's relative pose well.
 constexpr int kStrongEdge = 100;
+
+/// Keyframes that a loop moved by this share of what is negligible are adjusted. More precisely, the
+/// map of one house: with the whole of it no better, with a share of 1 twice as far from the truth.
+constexpr double kNoticed = 0.1;
 
 /// Tells the keyframes that may be the newest one's other end of a loop.
 class Unrelated {
@@ -62,18 +67,43 @@ std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest,
   };
   const auto selection = select_candidates(
       std::span<const KeyframeId>(old), [&](KeyframeId k) { return shared[k.value]; },
-      [&](KeyframeId k) {
-        std::vector<KeyframeId> group{k};
-        for (const Keyframe::Neighbour& n : map.at(k).covisible)
-          if (group.size() <= 10 && is_old(n.id)) group.push_back(n.id);
-        return group;
-      },
-      similarity, semantics.alpha, semantics.beta);
+      [&](KeyframeId k) { return neighbourhood(map, k, is_old); }, similarity, semantics.alpha, semantics.beta);
   std::vector<KeyframeId> result;
   for (const auto& candidate : selection.candidates)
     if (similarity(candidate.keyframe) >= config.min_similarity_share * least)
       result.push_back(candidate.keyframe);
   return result;
+}
+
+/// The way between a keyframe and the newest, along the keyframes in the order of their making;
+/// from the newest's strong neighbour that is nearest on it, since that is as well placed.
+double way_between_m(const Map& map, KeyframeId old, KeyframeId newest, const LoopConfig& config) {
+  std::vector<double> way_m(map.keyframes().size(), 0.0);
+  std::optional<Eigen::Vector3d> before;
+  double sum_m = 0;
+  for (const Keyframe& k : map.keyframes()) {
+    if (k.erased) continue;
+    const Eigen::Vector3d place = k.camera_from_world.inverse().translation();
+    if (before) sum_m += (place - *before).norm();
+    before = place;
+    way_m[k.id.value] = sum_m;
+  }
+  double least_m = std::abs(way_m[newest.value] - way_m[old.value]);
+  for (const Keyframe::Neighbour& n : map.at(newest).covisible)
+    if (n.shared >= config.loosely_shared)
+      least_m = std::min(least_m, std::abs(way_m[n.id.value] - way_m[old.value]));
+  return least_m;
+}
+
+/// Whether so much drift can have gathered between the ends.
+bool plausible(const Map& map, KeyframeId old, KeyframeId newest, const SE3& camera_from_world,
+               const LoopConfig& config) {
+  const SE3& now = map.at(newest).camera_from_world;
+  const double moved_m =
+      (camera_from_world.inverse().translation() - now.inverse().translation()).norm();
+  const double most_m =
+      config.max_drift_m + config.max_drift_share * way_between_m(map, old, newest, config);
+  return moved_m <= most_m && angle_between_rad(camera_from_world, now) <= config.max_drift_rad;
 }
 
 struct Graph {
@@ -83,7 +113,7 @@ struct Graph {
 };
 
 /// The essential graph: each keyframe with its best earlier neighbour, with those that share much,
-/// and the loop.
+/// and the loop. An edge weighs the landmarks that hold it: drift arises where there are few.
 Graph essential_graph(const Map& map, const Loop& loop) {
   Graph graph;
   std::vector<std::uint32_t> index(map.keyframes().size(), UINT32_MAX);
@@ -93,8 +123,8 @@ Graph essential_graph(const Map& map, const Loop& loop) {
     graph.keyframes.push_back(k.id);
     graph.poses.push_back(k.camera_from_world);
   }
-  const auto connect = [&](KeyframeId a, KeyframeId b, const SE3& a_from_b) {
-    graph.edges.push_back({index[a.value], index[b.value], a_from_b});
+  const auto connect = [&](KeyframeId a, KeyframeId b, const SE3& a_from_b, int landmarks) {
+    graph.edges.push_back({index[a.value], index[b.value], a_from_b, static_cast<double>(landmarks)});
   };
   for (std::size_t i = 1; i < graph.keyframes.size(); ++i) {
     const Keyframe& k = map.at(graph.keyframes[i]);
@@ -103,19 +133,29 @@ Graph essential_graph(const Map& map, const Loop& loop) {
       if (!(n.id < k.id)) continue;
       if (has_parent && n.shared < kStrongEdge) break;  // most shared first
       has_parent = true;
-      connect(k.id, n.id, k.camera_from_world * map.at(n.id).camera_from_world.inverse());
+      connect(k.id, n.id, k.camera_from_world * map.at(n.id).camera_from_world.inverse(), n.shared);
     }
     if (!has_parent) {
       const Keyframe& before = map.at(graph.keyframes[i - 1]);
-      connect(k.id, before.id, k.camera_from_world * before.camera_from_world.inverse());
+      connect(k.id, before.id, k.camera_from_world * before.camera_from_world.inverse(), 1);
     }
   }
+  const auto seen = std::count_if(loop.landmarks.begin(), loop.landmarks.end(),
+                                  [](LandmarkId id) { return id.valid(); });
   connect(loop.keyframe, loop.old_keyframe,
-          loop.camera_from_world * map.at(loop.old_keyframe).camera_from_world.inverse());
+          loop.camera_from_world * map.at(loop.old_keyframe).camera_from_world.inverse(),
+          static_cast<int>(seen));
   return graph;
 }
 
-void spread_drift(Map& map, const Loop& loop) {
+/// Whether a motion is smaller than this share of what is negligible for a loop.
+bool negligible(const SE3& motion, const LoopConfig& config, double share = 1.0) {
+  return motion.translation().norm() < share * config.negligible_m &&
+         angle_between_rad(motion, SE3()) < share * config.negligible_rad;
+}
+
+/// Bends the map so that the loop's ends meet. @returns the keyframes that it moved noticeably.
+std::vector<KeyframeId> spread_drift(Map& map, const Loop& loop, const LoopConfig& config) {
   const Graph graph = essential_graph(map, loop);
   const std::vector<SE3> poses = optimize_pose_graph(graph.poses, graph.edges);
   std::vector<SE3> moved(map.keyframes().size());  // new world from old world, per keyframe
@@ -124,7 +164,13 @@ void spread_drift(Map& map, const Loop& loop) {
   for (const Landmark& l : map.landmarks())
     if (!l.erased)
       map.set_position(l.id, moved[l.observations.front().keyframe.value] * l.position_in_world);
-  for (std::size_t i = 0; i < poses.size(); ++i) map.set_pose(graph.keyframes[i], poses[i]);
+  std::vector<KeyframeId> noticed;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    map.set_pose(graph.keyframes[i], poses[i]);
+    if (!negligible(graph.poses[i] * poses[i].inverse(), config, kNoticed))
+      noticed.push_back(graph.keyframes[i]);
+  }
+  return noticed;
 }
 
 /// Old landmarks take over what the newest keyframe sees of them.
@@ -152,7 +198,9 @@ std::optional<Loop> detect_loop(const Map& map, KeyframeId newest, LoopMemory& m
                      candidates(map, newest, context.semantics, config), map, context.camera,
                      context.features, context.semantics, context.match, relocalize, stream, counts,
                      {.words = Matcher::kLoop, .projection = Matcher::kLoop}, context.trace);
-  if (!found.camera_from_world) return std::nullopt;
+  if (!found.camera_from_world ||
+      !plausible(map, found.keyframe, newest, *found.camera_from_world, config))
+    return std::nullopt;
   const SE3 drift = found.camera_from_world->inverse() * keyframe.camera_from_world;
   const bool agrees =
       memory.drift &&
@@ -167,19 +215,19 @@ std::optional<Loop> detect_loop(const Map& map, KeyframeId newest, LoopMemory& m
 
 void close_loop(Map& map, const Loop& loop, const MappingContext& context, const LoopConfig& config,
                 MatchCounts& counts) {
-  const SE3 drift = loop.camera_from_world.inverse() * map.at(loop.keyframe).camera_from_world;
-  const bool negligible = drift.translation().norm() < config.negligible_m &&
-                          angle_between_rad(drift, SE3()) < config.negligible_rad;
-  if (!negligible) spread_drift(map, loop);
+  const SE3 drift = loop.camera_from_world * map.at(loop.keyframe).camera_from_world.inverse();
+  std::vector<KeyframeId> moved;
+  if (!negligible(drift, config)) moved = spread_drift(map, loop, config);
   join_landmarks(map, loop);
   map.update_covisibility(loop.keyframe);
   map.update_covisibility(loop.old_keyframe);
   fuse_with_neighbours(map, loop.keyframe, context, at(counts, Matcher::kFusion));
   map.update_covisibility(loop.keyframe);
-  if (negligible)
+  // What the loop left in place holds what it moved.
+  if (moved.empty())
     adjust_neighbourhood(map, loop.keyframe, context);
   else
-    adjust_all(map, context);
+    adjust_together(map, moved, context);
 }
 
 }  // namespace mh

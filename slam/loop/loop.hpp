@@ -21,6 +21,10 @@ struct LoopConfig {
   int patience = 5;            ///< each at most so many keyframes after the one before
   double same_drift_m = 0.10;  ///< what counts as the same
   double same_drift_rad = 0.05;
+  /// Nobody drifts by more than this, and this share of the way between the ends: what looks so is
+  /// another place that looks the same.
+  double max_drift_m = 0.3, max_drift_share = 0.03;
+  double max_drift_rad = 0.35;
   double negligible_m = 0.01;  ///< below, landmarks are joined but poses stay
   double negligible_rad = 0.003;
 };
@@ -49,7 +53,8 @@ std::optional<Loop> detect_loop(const Map& map, KeyframeId newest, LoopMemory& m
                                 const LoopConfig& config, RandomStream stream, MatchCounts& counts);
 
 /// Closes a loop: the drift is spread over the graph of keyframes, landmarks move along, the two
-/// ends' landmarks become one, everything is adjusted together.
+/// ends' landmarks become one, and what moved noticeably is adjusted against what did not: the cost
+/// follows the loop, not the map.
 void close_loop(Map& map, const Loop& loop, const MappingContext& context, const LoopConfig& config,
                 MatchCounts& counts);
 

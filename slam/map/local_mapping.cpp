@@ -252,10 +252,25 @@ void fuse_with_neighbours(Map& map, KeyframeId keyframe, const MappingContext& c
 
 namespace {
 
+/// The other keyframes that see the landmarks of these, those that see most of them first.
+std::vector<KeyframeId> onlookers(const Map& map, const std::vector<KeyframeId>& keyframes) {
+  std::vector<std::int32_t> sees(map.keyframes().size(), 0);
+  for (const LandmarkId l : landmarks_of(map, keyframes))
+    for (const Observation& o : map.at(l).observations) ++sees[o.keyframe.value];
+  for (const KeyframeId id : keyframes) sees[id.value] = 0;
+  std::vector<KeyframeId> result;
+  for (std::uint32_t i = 0; i < sees.size(); ++i)
+    if (sees[i] > 0) result.push_back(KeyframeId{i});
+  std::stable_sort(result.begin(), result.end(),
+                   [&](KeyframeId a, KeyframeId b) { return sees[a.value] > sees[b.value]; });
+  return result;
+}
+
 /// Adjusts the free keyframes and all landmarks they see; the fixed ones hold the frame of
-/// reference.
+/// reference: without any, nothing moves.
 void adjust_keyframes(Map& map, const std::vector<KeyframeId>& free,
                       const std::vector<KeyframeId>& fixed, const MappingContext& context) {
+  if (free.empty() || fixed.empty()) return;
   std::vector<std::int32_t> pose_of(map.keyframes().size(), -1);
   BundleProblem problem;
   problem.free_poses = static_cast<std::uint32_t>(free.size());
@@ -306,28 +321,14 @@ void adjust_neighbourhood(Map& map, KeyframeId keyframe, const MappingContext& c
   if (keyframe.value != 0) free.push_back(keyframe);
   for (const KeyframeId id : best_neighbours(map, keyframe, kAdjustedNeighbours))
     if (id.value != 0) free.push_back(id);
-  if (free.empty()) return;
-
-  // Fixed: the others that see the same landmarks, those that see most of them.
-  std::vector<std::int32_t> sees(map.keyframes().size(), 0);
-  for (const LandmarkId l : landmarks_of(map, free))
-    for (const Observation& o : map.at(l).observations) ++sees[o.keyframe.value];
-  for (const KeyframeId id : free) sees[id.value] = 0;
-  std::vector<KeyframeId> fixed;
-  for (std::uint32_t i = 0; i < sees.size(); ++i)
-    if (sees[i] > 0) fixed.push_back(KeyframeId{i});
-  if (fixed.empty()) return;  // nothing holds the frame of reference
-  std::stable_sort(fixed.begin(), fixed.end(),
-                   [&](KeyframeId a, KeyframeId b) { return sees[a.value] > sees[b.value]; });
+  std::vector<KeyframeId> fixed = onlookers(map, free);
   if (fixed.size() > kFixedKeyframes) fixed.resize(kFixedKeyframes);
   adjust_keyframes(map, free, fixed, context);
 }
 
-void adjust_all(Map& map, const MappingContext& context) {
-  std::vector<KeyframeId> free;
-  for (const Keyframe& k : map.keyframes())
-    if (!k.erased && k.id.value != 0) free.push_back(k.id);
-  adjust_keyframes(map, free, {KeyframeId{0}}, context);
+void adjust_together(Map& map, const std::vector<KeyframeId>& keyframes,
+                     const MappingContext& context) {
+  adjust_keyframes(map, keyframes, onlookers(map, keyframes), context);
 }
 
 void cull_redundant_keyframes(Map& map, KeyframeId newest, const MappingContext& context) {

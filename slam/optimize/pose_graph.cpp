@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/optimize/pose_graph.hpp"
 
+#include <cmath>
+
 #include <ceres/ceres.h>
 
 namespace mh {
@@ -54,8 +56,9 @@ std::vector<SE3> optimize_pose_graph(const std::vector<SE3>& camera_from_world,
   problem.SetParameterBlockConstant(poses.front().position.data());
   problem.SetParameterBlockConstant(poses.front().rotation.coeffs().data());
   for (const PoseGraphEdge& edge : edges) {
+    const double strength = std::sqrt(edge.weight);
     auto* residual = new EdgeResidual{edge.a_from_b.quaternion(), edge.a_from_b.translation(),
-                                      1.0 / config.sigma_m, 1.0 / config.sigma_rad};
+                                      strength / config.sigma_m, strength / config.sigma_rad};
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<EdgeResidual, 6, 3, 4, 3, 4>(residual),
                              nullptr, poses[edge.a].position.data(),
                              poses[edge.a].rotation.coeffs().data(), poses[edge.b].position.data(),

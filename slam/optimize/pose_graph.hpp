@@ -12,17 +12,18 @@ namespace mh {
 struct PoseGraphEdge {
   std::uint32_t a = 0, b = 0;  ///< indices of poses
   SE3 a_from_b;
+  double weight = 1;  ///< of its squared error, against the others: how much holds the two together
 };
 
 struct PoseGraphConfig {
-  double sigma_m = 0.01;     ///< of an edge's translation
+  double sigma_m = 0.01;     ///< of the translation of an edge of weight 1
   double sigma_rad = 0.002;  ///< and rotation; only their ratio matters
   int max_iterations = 20;
 };
 
-/// Spreads what contradicts over the edges: argmin over poses of the sum of squared differences
-/// between a_from_world * world_from_b and a_from_b (Grisetti et al., "A tutorial on graph-based
-/// SLAM", 2010). The first pose is held fixed. Solved by Ceres on one thread.
+/// Spreads what contradicts over the edges: argmin over poses of the weighted sum of squared
+/// differences between a_from_world * world_from_b and a_from_b (Grisetti et al., "A tutorial on
+/// graph-based SLAM", 2010). The first pose is held fixed. Solved by Ceres on one thread.
 /// @returns camera_from_world of every pose.
 std::vector<SE3> optimize_pose_graph(const std::vector<SE3>& camera_from_world,
                                      const std::vector<PoseGraphEdge>& edges,

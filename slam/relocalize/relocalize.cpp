@@ -11,15 +11,6 @@ namespace {
 
 constexpr std::size_t kNeighbours = 10;
 
-/// N_k of equation 5: k and its best covisible keyframes.
-std::vector<KeyframeId> neighbourhood(const Map& map, KeyframeId k) {
-  std::vector<KeyframeId> result{k};
-  const auto& covisible = map.at(k).covisible;
-  for (std::size_t i = 0; i < std::min(kNeighbours, covisible.size()); ++i)
-    result.push_back(covisible[i].id);
-  return result;
-}
-
 int overlap(const InvertedIndex::Score& score, Overlap what) {
   switch (what) {
     case Overlap::kLabels:
@@ -180,6 +171,16 @@ std::string_view name(RelocalizationStage stage) {
       return "verified";
   }
   return "?";
+}
+
+std::vector<KeyframeId> neighbourhood(const Map& map, KeyframeId k,
+                                      const std::function<bool(KeyframeId)>& belongs) {
+  std::vector<KeyframeId> result{k};
+  for (const Keyframe::Neighbour& n : map.at(k).covisible) {
+    if (result.size() > kNeighbours) break;
+    if (!belongs || belongs(n.id)) result.push_back(n.id);
+  }
+  return result;
 }
 
 CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedVector& query,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -52,6 +53,11 @@ struct RelocalizationResult {
   int inliers = 0;
   KeyframeId keyframe;  ///< the candidate that led to the pose
 };
+
+/// N_k of equation 5: a keyframe and its best covisible ones, ten at most.
+/// @param belongs  which keyframes count at all; empty = all
+std::vector<KeyframeId> neighbourhood(const Map& map, KeyframeId k,
+                                      const std::function<bool(KeyframeId)>& belongs = {});
 
 /// Algorithm 1 over the whole map. Where the query has no label member, words are counted.
 CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedVector& query,

@@ -36,17 +36,21 @@ double end_error_m(const SlamState& state, int frame) {
       .norm();
 }
 
+Vector6d injected() {
+  Vector6d drift;
+  drift << 0.20, -0.05, 0.10, 0.0, 0.05, 0.0;  // m, rad: more than any tour of this house gathers
+  return drift;
+}
+
 // The local map's look around is off: what comes back into view is a loop.
 TEST(Loop, CutsInjectedDriftByFiveTimes) {
   SlamConfig config = testing_support::box_room_settings(SemanticConfig{});
   config.track.near_distance_m = 0;
   SlamState state = make_slam(BoxRoom::camera(), config, testing_support::box_room_vocabulary());
-  Vector6d drift;
-  drift << 0.20, -0.05, 0.10, 0.0, 0.05, 0.0;  // m, rad: more than any tour of this house gathers
   double before_m = 0, after_m = 0;
   int closed_at = -1;
   for (int i = 0; i < kTurnFrames + 60 && closed_at < 0; ++i) {
-    if (i == 120) inject_drift(state, drift);
+    if (i == 120) inject_drift(state, injected());
     if (i > 0) before_m = end_error_m(state, i - 1);
     const StepReport report =
         step(state, testing_support::box_room_frame(i, true), RandomStream(7).fork(i));
@@ -72,6 +76,20 @@ TEST(Loop, CutsInjectedDriftByFiveTimes) {
   ASSERT_GT(closed_at, 180) << "a loop was seen where there is none, or never";
   EXPECT_GT(before_m, 0.10);
   EXPECT_LT(after_m, before_m / 5) << "before: " << before_m;
+}
+
+TEST(Loop, IsRefusedWhereItTellsOfMoreDriftThanCanBe) {
+  SlamConfig config = testing_support::box_room_settings(SemanticConfig{});
+  config.track.near_distance_m = 0;
+  config.loop.max_drift_m = 0.05;
+  config.loop.max_drift_share = 0;
+  SlamState state = make_slam(BoxRoom::camera(), config, testing_support::box_room_vocabulary());
+  for (int i = 0; i < kTurnFrames + 60; ++i) {
+    if (i == 120) inject_drift(state, injected());
+    const StepReport report =
+        step(state, testing_support::box_room_frame(i, true), RandomStream(7).fork(i));
+    ASSERT_FALSE(report.loop_closed) << i;
+  }
 }
 
 }  // namespace

@@ -63,5 +63,25 @@ TEST(PoseGraph, ALoopTakesTheDriftOutOfAChain) {
   EXPECT_LT(worst_error_m({closed[0]}, {truth[0]}), 1e-12) << "the first pose is held";
 }
 
+TEST(PoseGraph, DriftIsTakenFromWhereLittleHoldsThePosesTogether) {
+  const std::vector<SE3> truth = circle(40);
+  // All odometry is right but one edge, which one landmark holds instead of two hundred.
+  const SE3 slip(so3_exp({0, 0, 0.05}), Eigen::Vector3d(0.05, 0.02, 0));
+  std::vector<PoseGraphEdge> edges;
+  std::vector<SE3> drifted{truth[0]};
+  for (std::uint32_t i = 1; i < 40; ++i) {
+    edges.push_back(edge(truth, i - 1, i, i == 20 ? slip : SE3()));
+    edges.back().weight = i == 20 ? 1 : 200;
+    drifted.push_back(edges.back().a_from_b.inverse() * drifted.back());
+  }
+  edges.push_back(edge(truth, 39, 0));
+  edges.back().weight = 200;
+  const double weighted_m = worst_error_m(optimize_pose_graph(drifted, edges), truth);
+  for (PoseGraphEdge& e : edges) e.weight = 1;
+  const double even_m = worst_error_m(optimize_pose_graph(drifted, edges), truth);
+  EXPECT_GT(even_m, 0.03);
+  EXPECT_LT(weighted_m, even_m / 3);
+}
+
 }  // namespace
 }  // namespace mh
