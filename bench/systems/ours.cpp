@@ -45,7 +45,7 @@ class RememberingSession : public RelocalizationSession {
       localize(frozen_, tracker_, found_->first, found_->second);
       found_.reset();
     }
-    if (tracker_.tracking()) return localize(frozen_, tracker_, frame, stream);
+    if (tracker_.last) return localize(frozen_, tracker_, frame, stream);
     const StepReport report =
         localize(frozen_, frame, stream, memo_.of(stream, frozen_.config.semantics));
     if (report.status != TrackStatus::kLost) found_.emplace(frame, stream);

@@ -93,15 +93,18 @@ void fields(C& c, Visit& v) {
 
 template <Either<TrackConfig> C, class Visit>
 void fields(C& c, Visit& v) {
-  auto& [min_inliers, min_inliers_frame, search_radius_px, local_radius_px, local_keyframes,
-         near_distance_m, near_angle_rad] = c;
+  auto& [min_inliers, min_inliers_sparse, min_inliers_frame, search_radius_px, local_radius_px,
+         local_keyframes, near_distance_m, near_angle_rad, coast_s] = c;
   v("min_inliers", min_inliers, kPoints, "after the local map, to count as tracked");
+  v("min_inliers_sparse", min_inliers_sparse, kPoints,
+    "where that is more than a sixth of the keypoints");
   v("min_inliers_frame", min_inliers_frame, kPoints, "after the motion model");
   v("search_radius_px", search_radius_px, kRadius_px, "around the predicted place, octave 0");
   v("local_radius_px", local_radius_px, kRadius_px, "around the place by the tracked pose");
   v("local_keyframes", local_keyframes, kCount, "at most, in the local map");
   v("near_distance_m", near_distance_m, kLength_m, "keyframes this near and");
   v("near_angle_rad", near_angle_rad, kAngle_rad, "facing this alike join the local map");
+  v("coast_s", coast_s, {0, 10}, "so long a lost camera is looked for near its last place");
 }
 
 template <Either<RansacConfig> C, class Visit>
@@ -123,7 +126,8 @@ void fields(C& c, Visit& v) {
 template <Either<LoopConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, augmented, min_gap, loosely_shared, min_similarity_share, agreeing, patience,
-         same_drift_m, same_drift_rad, negligible_m, negligible_rad] = c;
+         same_drift_m, same_drift_rad, max_drift_m, max_drift_share, max_drift_rad, negligible_m,
+         negligible_rad] = c;
   v("enabled", enabled, kSwitch, "whether loops are looked for");
   v("augmented", augmented, kSwitch, "candidates by equation 1 with labels; else by words alone");
   v("min_gap", min_gap, kCount, "keyframes between the two ends");
@@ -133,6 +137,9 @@ void fields(C& c, Visit& v) {
   v("patience", patience, kCount, "each at most so many keyframes after the one before");
   v("same_drift_m", same_drift_m, kLength_m, "what counts as the same");
   v("same_drift_rad", same_drift_rad, kAngle_rad, "");
+  v("max_drift_m", max_drift_m, kLength_m, "no loop moves the camera farther than this and");
+  v("max_drift_share", max_drift_share, kShare, "this share of the way between its ends,");
+  v("max_drift_rad", max_drift_rad, kAngle_rad, "nor turns it farther");
   v("negligible_m", negligible_m, kLength_m, "below, landmarks are joined but poses stay");
   v("negligible_rad", negligible_rad, kAngle_rad, "");
 }

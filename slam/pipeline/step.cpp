@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -95,28 +96,6 @@ struct Located {
   std::vector<LandmarkId> expected;
 };
 
-/// Where a frame is, told by the frame before it: motion model or reference keyframe.
-std::optional<TrackedPose> follow(const SlamState& state, const Tracker& tracker,
-                                  PreparedFrame& frame, const TrackContext& context,
-                                  const StepObservers& observers, StepReport& report) {
-  if (!tracker.tracking()) return std::nullopt;
-  const InStage stage(observers, Stage::kTracking);
-  const auto by_motion = [&] {
-    return track_motion(without_words(frame), *tracker.last, predict(tracker, frame.stamp_ns),
-                        context, at(report.matches, Matcher::kMotionModel));
-  };
-  const auto by_reference = [&] {
-    return track_reference(with_words(frame, state, observers),
-                           state.map.standing(tracker.reference), tracker.last->camera_from_world,
-                           context, at(report.matches, Matcher::kReferenceKeyframe));
-  };
-  // Where the motion is not known yet, appearance needs no guess.
-  const bool moving = tracker.velocity_per_s.has_value();
-  auto tracked = moving ? by_motion() : by_reference();
-  if (!tracked) tracked = moving ? by_reference() : by_motion();
-  return tracked;
-}
-
 std::optional<TrackedPose> search_everywhere(const SlamState& state, PreparedFrame& frame,
                                              RandomStream stream, const StepObservers& observers,
                                              StepReport& report) {
@@ -145,30 +124,78 @@ std::optional<Located> confirm_in_local_map(const SlamState& state, const Prepar
   return Located{std::move(refined->tracked), reference, std::move(refined->expected)};
 }
 
-/// Finds the camera of a frame in the map: from the frame before; where that does not hold in the
-/// local map, anywhere. Reads the map, never writes it.
+/// Landmarks that a frame must hold to be tracked: fewer where it shows little.
+int inliers_needed(const Features& features, const TrackConfig& config) {
+  const int share = static_cast<int>(features.size()) / 6;
+  return std::min(config.min_inliers, std::max(config.min_inliers_sparse, share));
+}
+
+/// Where a frame is, told by the last one that was tracked: by the motion model or the reference
+/// keyframe, whichever holds in the local map first. One that comes after lost frames needs as much
+/// as relocalization asks for.
+std::optional<Located> follow(const SlamState& state, const Tracker& tracker, PreparedFrame& frame,
+                              const TrackContext& context, const StepObservers& observers,
+                              StepReport& report) {
+  if (!tracker.last) return std::nullopt;
+  const auto by_motion = [&] {
+    return track_motion(without_words(frame), *tracker.last, predict(tracker, frame.stamp_ns),
+                        context, at(report.matches, Matcher::kMotionModel));
+  };
+  const auto by_reference = [&] {
+    return track_reference(with_words(frame, state, observers),
+                           state.map.standing(tracker.reference), tracker.last->camera_from_world,
+                           context, at(report.matches, Matcher::kReferenceKeyframe));
+  };
+  const int min_inliers =
+      tracker.coasting ? state.config.relocalize.min_inliers
+                       : inliers_needed(frame.features, state.config.track);
+  // Where the motion is not known yet, appearance needs no guess.
+  const bool moving = tracker.velocity_per_s.has_value();
+  for (const bool use_motion : {moving, !moving}) {
+    std::optional<TrackedPose> tracked;
+    {
+      const InStage stage(observers, Stage::kTracking);
+      tracked = use_motion ? by_motion() : by_reference();
+    }
+    if (!tracked) continue;
+    if (auto located =
+            confirm_in_local_map(state, frame, *tracked, min_inliers, context, observers, report))
+      return located;
+  }
+  return std::nullopt;
+}
+
+/// Finds the camera of a frame in the map: from the frames before; where that does not hold,
+/// anywhere. Reads the map, never writes it.
 std::optional<Located> locate(const SlamState& state, const Tracker& tracker, PreparedFrame& frame,
                               RandomStream stream, const StepObservers& observers,
                               StepReport& report) {
   const SlamConfig& config = state.config;
   const TrackContext context{state.map,    state.camera, config.features, config.semantics,
                              config.match, config.pose,  config.track,    observers.matches};
-  const auto confirm = [&](const TrackedPose& tracked, int min_inliers) {
-    return confirm_in_local_map(state, frame, tracked, min_inliers, context, observers, report);
-  };
-  if (const auto tracked = follow(state, tracker, frame, context, observers, report))
-    if (auto located = confirm(*tracked, config.track.min_inliers)) {
-      report.status = TrackStatus::kTracked;
-      return located;
-    }
+  if (auto located = follow(state, tracker, frame, context, observers, report)) {
+    report.status = tracker.coasting ? TrackStatus::kRelocalized : TrackStatus::kTracked;
+    return located;
+  }
   const auto found = search_everywhere(state, frame, stream, observers, report);
   if (!found) return std::nullopt;
-  auto located = confirm(*found, config.relocalize.min_inliers);
+  auto located = confirm_in_local_map(state, frame, *found, config.relocalize.min_inliers, context,
+                                      observers, report);
   if (located)
     report.status = TrackStatus::kRelocalized;
   else
     report.relocalization = RelocalizationStage::kInliers;
   return located;
+}
+
+/// The frame is lost. For a while the last tracked one still tells where to look for the next.
+void lose(Tracker& tracker, Stamp stamp_ns, const TrackConfig& config) {
+  const double lost_s =
+      tracker.last ? static_cast<double>(stamp_ns - tracker.last->stamp_ns) / kSecond_ns : HUGE_VAL;
+  if (lost_s >= 0 && lost_s < config.coast_s)
+    tracker.coasting = true;
+  else
+    tracker = Tracker{};
 }
 
 /// How the camera moved since the last frame. Taken before mapping, which may move the world.
@@ -186,6 +213,7 @@ void remember(Tracker& tracker, PreparedFrame&& frame, const SE3& camera_from_wo
   tracker.last =
       LastFrame{frame.stamp_ns, camera_from_world, std::move(frame.features), std::move(landmarks)};
   tracker.reference = reference;
+  tracker.coasting = false;
 }
 
 KeyframeId insert_keyframe(SlamState& state, PreparedFrame& frame, const SE3& camera_from_world,
@@ -285,7 +313,7 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
 
   auto located = locate(state, state.tracker, prepared, stream, observers, report);
   if (!located) {
-    state.tracker = Tracker{};
+    lose(state.tracker, stamp_ns, state.config.track);
     return report;
   }
   for (const LandmarkId id : located->expected) state.map.count_visible(id);
@@ -329,7 +357,7 @@ StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& 
   report.keypoints = static_cast<int>(prepared.features.size());
   auto located = locate(frozen, tracker, prepared, stream, observers, report);
   if (!located) {
-    tracker = Tracker{};
+    lose(tracker, frame.stamp_ns, frozen.config.track);
     return report;
   }
   report.inliers = located->tracked.inliers;

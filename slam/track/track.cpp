@@ -104,16 +104,29 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
   const std::vector<std::uint8_t> taken(query.features.size(), 0);
   const ProjectionGate gate{.max_distance = static_cast<float>(match.max_distance_loose),
                             .check_angle = true};
+  // A guess that is far off finds little, or what does not fit together: search again in twice the
+  // radius, then in four times.
   std::vector<std::int32_t> found;
-  // A guess that is far off finds little: search again in twice the radius.
-  for (const float widen : {1.0F, 2.0F}) {
-    if (widen > 1.0F)
-      for (ProjectionTarget& target : targets) target.radius_px *= widen;
+  std::vector<std::size_t> source_of;
+  std::optional<PoseEstimate> estimate;
+  constexpr int kSearches = 3;
+  for (int search = 1; search <= kSearches && !estimate; ++search) {
+    if (search > 1)
+      for (ProjectionTarget& target : targets) target.radius_px *= 2.0F;
     found = match_by_projection(targets, query.features, query.grid, taken, gate,
                                 SemanticMatcher(semantics, counts));
-    if (std::count_if(found.begin(), found.end(), [](int f) { return f >= 0; }) >=
-        2 * config.min_inliers_frame)
-      break;
+    source_of.clear();
+    for (std::size_t t = 0; t < found.size(); ++t)
+      if (found[t] >= 0) source_of.push_back(t);
+    const auto enough = static_cast<std::size_t>(2 * config.min_inliers_frame);
+    if (source_of.size() < enough && search < kSearches) continue;
+    std::vector<PoseObservation> observations;
+    for (const std::size_t t : source_of)
+      observations.push_back(observe(sources[t].point_in_world,
+                                     query.features.keypoints[static_cast<std::size_t>(found[t])],
+                                     camera, features));
+    estimate = estimate_pose(observations, guess, camera, pose);
+    if (estimate && estimate->inlier_count < config.min_inliers_frame) estimate.reset();
   }
 
   if (trace != nullptr) {
@@ -126,17 +139,7 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
     trace_projection(trace, Matcher::kMotionModel, {}, query.features, targets, found, landmarks,
                      others, semantics);
   }
-  std::vector<PoseObservation> observations;
-  std::vector<std::size_t> source_of;
-  for (std::size_t t = 0; t < found.size(); ++t) {
-    if (found[t] < 0) continue;
-    observations.push_back(observe(sources[t].point_in_world,
-                                   query.features.keypoints[static_cast<std::size_t>(found[t])],
-                                   camera, features));
-    source_of.push_back(t);
-  }
-  const auto estimate = estimate_pose(observations, guess, camera, pose);
-  if (!estimate || estimate->inlier_count < config.min_inliers_frame) return std::nullopt;
+  if (!estimate) return std::nullopt;
 
   TrackedPose tracked{estimate->camera_from_world, std::vector<LandmarkId>(query.features.size()),
                       estimate->inlier_count};

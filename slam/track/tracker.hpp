@@ -21,12 +21,13 @@ struct LastFrame {
 
 /// What tracking remembers between frames; Tracker{} is lost.
 struct Tracker {
-  std::optional<LastFrame> last;           ///< none = lost (or nothing mapped yet)
+  std::optional<LastFrame> last;           ///< none = lost for good (or nothing mapped yet)
   std::optional<Vector6d> velocity_per_s;  ///< twist of the camera, in its own frame
   KeyframeId reference;                    ///< keyframe that shares most landmarks
   int frames_since_keyframe = 0;
+  bool coasting = false;  ///< lost since `last`, which is still worth a try
 
-  bool tracking() const { return last.has_value(); }
+  bool tracking() const { return last.has_value() && !coasting; }
 };
 
 }  // namespace mh

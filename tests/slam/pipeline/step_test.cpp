@@ -219,6 +219,41 @@ TEST(Localize, ABlankFrameIsLostAndLeavesTheTrackerLost) {
   EXPECT_FALSE(tracker.tracking());
 }
 
+TEST(Step, ALostCameraIsLookedForNearItsLastPlaceForAWhile) {
+  const auto after_a_blank = [](double coast_s, int frames_later) {
+    SlamConfig config = settings({});
+    config.relocalize.min_word_matches = 100'000;  // the whole map is of no help
+    config.track.coast_s = coast_s;
+    SlamState state = make_slam(BoxRoom::camera(), config, vocabulary());
+    for (int i = 0; i < 20; ++i) step(state, frame(i), RandomStream(1).fork(i));
+    const Camera camera = BoxRoom::camera();
+    for (int i = 0; i < frames_later; ++i) {
+      const RgbdFrame blank{kFrame_ns * (21 + i),
+                            Grid2d<Rgb8>(camera.width_px, camera.height_px),
+                            Grid2d<float>(camera.width_px, camera.height_px),
+                            {}};
+      EXPECT_EQ(step(state, blank, RandomStream(2)).status, TrackStatus::kLost);
+      EXPECT_FALSE(state.tracker.tracking());
+    }
+    return step(state, frame(21 + frames_later), RandomStream(3)).status;
+  };
+  EXPECT_EQ(after_a_blank(1.0, 3), TrackStatus::kRelocalized);
+  EXPECT_EQ(after_a_blank(0.0, 3), TrackStatus::kLost);
+}
+
+TEST(Step, AFrameThatShowsLittleNeedsASixthOfItsKeypoints) {
+  const auto last_status = [](int min_inliers_sparse) {
+    SlamConfig config = settings({});
+    config.track.min_inliers = 100'000;
+    config.track.min_inliers_sparse = min_inliers_sparse;
+    SlamState state = make_slam(BoxRoom::camera(), config, vocabulary());
+    for (int i = 0; i < 3; ++i) step(state, frame(i), RandomStream(1).fork(i));
+    return step(state, frame(3), RandomStream(1)).status;
+  };
+  EXPECT_EQ(last_status(10), TrackStatus::kTracked);
+  EXPECT_NE(last_status(100'000), TrackStatus::kTracked);
+}
+
 TEST(Rewind, TracksAgainOnTheMapAsItIsAndKeepsEachFrameOnce) {
   Drive r = run(SemanticConfig{}, 60);
   rewind(r.state);
