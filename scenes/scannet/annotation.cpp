@@ -83,8 +83,8 @@ class SegmentsHandler : public nlohmann::json_sax<Json> {
 
 std::uint32_t read_id(const Json& value, const char* what) {
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() > kMost)
-    throw InputError(fmt::format("{}: {} is no id", what,
-                                 value.is_number() ? value.dump() : value.type_name()));
+    throw InputError(
+        fmt::format("{}: {} is no id", what, value.is_number() ? value.dump() : value.type_name()));
   return value.get<std::uint32_t>();
 }
 

@@ -72,7 +72,6 @@ class TableParser {
     nyu40_class_ = column({"nyu40class"});
     own_ = column({"modelhouse"});
     if (category_ == kNone) fail(1, "has neither a column 'raw_category' (v2) nor 'category' (v1)");
-    if (id_ == kNone) fail(1, "has neither a column 'id' (v2) nor 'index' (v1)");
     if (nyu40_id_ == kNone && nyu40_class_ == kNone)
       fail(1, "has neither a column 'nyu40id' nor 'nyu40class'");
   }
@@ -83,7 +82,9 @@ class TableParser {
     };
     const std::string_view category = cell(category_);
     if (category.empty()) fail(line, "the category is empty");
-    const auto id = number(cell(id_), line, "raw category id");
+    ++rows_;
+    const auto id =
+        id_ == kNone ? std::optional(rows_) : number(cell(id_), line, "raw category id");
     if (!id) fail(line, "the raw category id is missing");
     const ClassId class_id = class_of(cell(own_), cell(nyu40_id_), cell(nyu40_class_), line);
     table_.class_of_category.emplace(category, class_id);
@@ -117,6 +118,7 @@ class TableParser {
 
   static constexpr std::size_t kNone = ~std::size_t{0};
   LabelTable table_;
+  std::uint32_t rows_ = 0;
   std::size_t category_ = kNone, id_ = kNone, nyu40_id_ = kNone, nyu40_class_ = kNone, own_ = kNone;
 };
 

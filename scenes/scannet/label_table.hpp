@@ -25,7 +25,7 @@ struct LabelTable {
 };
 
 /// Reads a label table; which release it belongs to is told by its columns: `raw_category` and `id`
-/// (v2), or `category` and `index` (v1). The class is that of `nyu40id`, of `nyu40class` where
+/// (v2), or `category` and `index` (v1); without ids, rows count from 1. The class is that of `nyu40id`, of `nyu40class` where
 /// there is none; our own tables have a column `modelhouse` beside, which names the class that
 /// NYU40 lumps into otherfurniture or otherprop. A row without any of them is void.
 /// @throws InputError naming file and line.

@@ -126,9 +126,8 @@ class Loader {
   }
 
   std::vector<ClassId> classes_of_labels() {
-    const bool raw =
-        greatest_label_ > kLastNyu40 || (table_ && table_->release == ScannetRelease::kV1);
-    if (raw && !table_)
+    raw_ids_ = greatest_label_ > kLastNyu40 || (table_ && table_->release == ScannetRelease::kV1);
+    if (raw_ids_ && !table_)
       throw InputError(
           fmt::format("{}: holds label {}, which is no NYU40 id but one of a label table: neither "
                       "{} nor {} lies beside the scene or above it",
@@ -137,7 +136,7 @@ class Loader {
     std::vector<ClassId> class_of(std::size_t{greatest_label_} + 1, kVoid);
     std::vector<bool> unknown(class_of.size(), false);
     for (std::uint32_t label = 1; label < class_of.size(); ++label) {
-      if (!raw) {
+      if (!raw_ids_) {
         class_of[label] = static_cast<ClassId>(label);
         continue;
       }
@@ -212,7 +211,7 @@ class Loader {
       vertices.instances[v] = object->instance;
       if (!object->class_id)
         vertices.classes[v] = kVoid;
-      else if (!labelled || classes()[*object->class_id].nyu40 == vertices.classes[v])
+      else if (!labelled || raw_ids_ || classes()[*object->class_id].nyu40 == vertices.classes[v])
         vertices.classes[v] = *object->class_id;
     }
   }
@@ -273,6 +272,7 @@ class Loader {
   fs::path labels_file_;
   std::vector<std::uint16_t> labels_;
   std::uint16_t greatest_label_ = 0;
+  bool raw_ids_ = false;  ///< labels are raw category ids
   std::optional<LabelTable> table_;
 };
 

@@ -13,9 +13,9 @@ namespace mh {
 ///
 /// Positions are turned by the scene's axisAlignment, which v1 lacks. The instance of a vertex is
 /// the object (objectId + 1) whose segments it belongs to, the last one where several claim it. Its
-/// class is the one that the label table gives the object's category; where the mesh's own `label`
-/// tells another class, or the vertex belongs to no object, that label counts: an NYU40 id in v2, a
-/// raw category id in v1. A face takes the class, and the instance, that most of its vertices have;
+/// class is the one that the label table gives the object's category; where it belongs to none, the
+/// mesh's own `label` counts, a raw category id in v1. In v2 that label is an NYU40 id and goes
+/// before the category where the two differ. A face takes the class, and the instance, that most of its vertices have;
 /// where all three differ, the first vertex counts. Objects of a category that the table lacks are
 /// unlabelled.
 ///

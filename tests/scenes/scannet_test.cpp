@@ -234,6 +234,12 @@ TEST(ScannetAnnotation, SegmentsAreWholeNumbersOfTheOutermostObject) {
   EXPECT_TRUE(names(error(R"({"other":[1]})"), {"no array segIndices"}));
 }
 
+TEST(ScannetLabelTable, WithoutIdsRowsCountFromOne) {
+  const LabelTable table = parse_label_table("category\tnyu40id\nwall\t1\nlamp\t35\n", "t");
+  EXPECT_EQ(table.release, ScannetRelease::kV1);
+  EXPECT_EQ(table.class_of_id.at(2), 35);
+}
+
 TEST(ScannetLabelTable, ReadsItsOwnRowsBack) {
   const LabelTable table = parse_label_table(label_table_text(), "own");
   EXPECT_EQ(table.release, ScannetRelease::kV2);
