@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -92,13 +93,47 @@ void draw_slice(Canvas& canvas, const PlanView& view, const std::vector<SliceSeg
       canvas.line(view(s.from_m), view(s.to_m), colour, thickness);
 }
 
-void draw_room_names(Canvas& canvas, const PlanView& view, const Scene& scene) {
+/// What a name should not be written over.
+std::vector<cv::Point2d> marks(const PlanView& view, const World& world, const RunResult& run,
+                               QuerySet set, const std::vector<SliceSegment>& furniture) {
+  std::vector<cv::Point2d> result;
+  for (const TimedPose& pose : world.mapping.camera)
+    result.push_back(view(pose.world_from_camera.translation().head<2>()));
+  for (const QueryScore& q : queries(run.points.front(), set))
+    result.push_back(view(q.true_world_from_camera.translation().head<2>()));
+  for (const SliceSegment& s : furniture) result.push_back(view(0.5 * (s.from_m + s.to_m)));
+  return result;
+}
+
+/// Each room's name as near to its middle as leaves it free of marks; in the middle where nothing
+/// does.
+void draw_room_names(Canvas& canvas, const PlanView& view, const Scene& scene,
+                     const std::vector<cv::Point2d>& marks) {
+  constexpr double kCapital = 14, kClear = 8, kStep = 10;
   for (const Room& room : scene.rooms) {
     Bounds box;
     for (const Eigen::Vector2d& corner : room.polygon_m) box.add(corner);
     std::string label = room.name;
     std::replace(label.begin(), label.end(), '_', ' ');
-    canvas.text(label, view(0.5 * (box.low + box.high)), 14, kRoomName, Canvas::Align::kCentre);
+    const double half_width = 0.5 * Canvas::text_width(label, kCapital) + kClear;
+    const cv::Point2d low = view({box.low.x(), box.high.y()}),
+                      high = view({box.high.x(), box.low.y()}), middle = 0.5 * (low + high);
+    const auto is_free = [&](const cv::Point2d& at) {
+      return std::none_of(marks.begin(), marks.end(), [&](const cv::Point2d& mark) {
+        return std::abs(mark.x - at.x) < half_width && mark.y < at.y + kClear &&
+               mark.y > at.y - kCapital - kClear;
+      });
+    };
+    cv::Point2d best = middle;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (double y = low.y + 2 * kCapital; y < high.y - kCapital; y += kStep)
+      for (double x = low.x + half_width; x < high.x - half_width; x += kStep) {
+        const double distance = std::hypot(x - middle.x, y - middle.y);
+        if (distance >= nearest || !is_free({x, y})) continue;
+        nearest = distance;
+        best = {x, y};
+      }
+    canvas.text(label, best, kCapital, kRoomName, Canvas::Align::kCentre);
   }
 }
 
@@ -206,7 +241,7 @@ cv::Mat draw_topdown(const World& world, const RunResult& run, QuerySet set) {
   draw_grid(canvas, view, run.grid);
   draw_slice(canvas, view, furniture, kFurniture, 1.2);
   draw_slice(canvas, view, walls, kWall, 2.2);
-  draw_room_names(canvas, view, *world.scene);
+  draw_room_names(canvas, view, *world.scene, marks(view, world, run, set, furniture));
   draw_path(canvas, view, world.mapping.camera, SE3(), kTruth, 2.2);
   draw_path(canvas, view, run.estimate, run.trajectory.dock_from_estimate, kEstimate, 1.1);
   draw_queries(canvas, view, queries(run.points.front(), set), run.trajectory.dock_from_estimate);
