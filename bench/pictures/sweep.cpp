@@ -187,12 +187,12 @@ std::string place_of(const SemanticConfig& point, const std::vector<std::string>
 
 std::string caption(const SweepResult& result, QuerySet set, const std::vector<std::string>& varied,
                     const BestPoint& best) {
-  const Comparison& c = best.to_first;
+  const Comparison& c = best.to_reference;
   return fmt::format(
       "{}: most correct answers at {}: {:.1f} %, {:+.1f} [{:+.1f}, {:+.1f}] points against {}",
       name(set), place_of(result.points[best.point], varied),
       100 * summary(result.answers[best.point], set).correct, 100 * c.difference, 100 * c.low,
-      100 * c.high, place_of(result.points.front(), varied));
+      100 * c.high, place_of(result.points[best.reference], varied));
 }
 
 }  // namespace

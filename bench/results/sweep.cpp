@@ -46,21 +46,28 @@ std::optional<BestPoint> best_point(const Suite& suite, std::span<const Row> row
   const auto correct = [&](const CategoryRow& row) { return summary(row, set).correct; };
   if (result.answers.empty() || summary(result.answers.front(), set).queries == 0)
     return std::nullopt;
-  const auto best = std::ranges::max_element(result.answers, {}, correct);
-  BestPoint found{.point = static_cast<std::size_t>(best - result.answers.begin()), .to_first = {}};
+  const auto own = std::ranges::find(result.points, suite.semantics);
+  BestPoint found;
+  if (own != result.points.end())
+    found.reference = static_cast<std::size_t>(own - result.points.begin());
+  const CategoryRow& reference = result.answers[found.reference];
+  auto best = std::ranges::max_element(result.answers, {}, correct);
+  if (correct(reference) == correct(*best))
+    best = result.answers.begin() + static_cast<std::ptrdiff_t>(found.reference);
+  found.point = static_cast<std::size_t>(best - result.answers.begin());
   const std::vector<const Row*> at_best = rows_at(rows, result, best->parameters);
-  const std::vector<const Row*> at_first = rows_at(rows, result, result.answers.front().parameters);
-  if (at_best.size() == 1 && at_first.size() == 1) {
-    found.to_first = compare_correct(*at_best.front(), *at_first.front(), set, suite.seed);
+  const std::vector<const Row*> at_reference = rows_at(rows, result, reference.parameters);
+  if (at_best.size() == 1 && at_reference.size() == 1) {
+    found.to_reference = compare_correct(*at_best.front(), *at_reference.front(), set, suite.seed);
     return found;
   }
   std::vector<PairedDifference> differences;
   for (const Row* a : at_best)
-    for (const Row* b : at_first)
+    for (const Row* b : at_reference)
       if (a->environment == b->environment)
         differences.push_back({summary(*a, set).correct - summary(*b, set).correct,
                                summary(*a, set).queries > 0 && summary(*b, set).queries > 0});
-  found.to_first = compare_scenes("correct", differences, true, suite.seed);
+  found.to_reference = compare_scenes("correct", differences, true, suite.seed);
   return found;
 }
 

@@ -21,13 +21,14 @@ struct SweepResult {
 /// One per level, labels and system that sees more than one point of the sweep; in this order.
 std::vector<SweepResult> sweep_results(const Suite& suite, std::span<const Row> rows);
 
-/// The point with the largest share of correct answers (the first of equals) and its difference to
-/// the sweep's first point. Chosen among many by the same queries, it flatters; the interval does
-/// not correct for that, so a point is taken over from tuning scenes alone.
+/// The point with the largest share of correct answers, beside the point of the suite's own
+/// settings (the first one, where the sweep does not come by them). Of equals the suite's own is
+/// best, then the first. Chosen among many by the same queries, it flatters; the interval does not
+/// correct for that, so a point is taken over from tuning scenes alone.
 struct BestPoint {
-  std::size_t point = 0;
+  std::size_t point = 0, reference = 0;
   /// Of one environment by blocks of queries, of more by scenes.
-  Comparison to_first;
+  Comparison to_reference;
 };
 
 /// nullopt where these queries were not put.

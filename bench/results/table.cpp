@@ -287,15 +287,16 @@ std::string scenes_text(const Suite& suite, const std::vector<Row>& rows) {
 
 std::string best_points(const Suite& suite, const std::vector<Row>& rows) {
   std::string text =
-      "\nmost correct answers, and its difference to the first point (chosen by the "
-      "same queries: confirm it on others)\n";
+      "\nmost correct answers, and the difference to the suite's own settings, or to the first "
+      "point "
+      "(chosen by the same queries: confirm it on others)\n";
   for (const SweepResult& result : sweep_results(suite, rows))
     for (const QuerySet set : kQuerySets) {
       const auto best = best_point(suite, rows, result, set);
       if (!best) continue;
       const SystemSpec& system = suite.systems[result.system];
       const SemanticConfig at = settings_of(system, result.points[best->point]);
-      const Comparison& c = best->to_first;
+      const Comparison& c = best->to_reference;
       text += fmt::format(
           "  {}, level {}, {} labels, {}: gamma {:.4g}, xi {:.4g}, alpha {:.4g}, beta {:.4g}: "
           "{:.2f}%, {:+.4f} [{:+.4f}, {:+.4f}]\n",
@@ -355,6 +356,7 @@ std::string times_table(const Suite& suite, std::span<const RunResult> runs) {
   std::string text =
       fmt::format("  {:<44}{:>18}{:>18}\n", "ms per call, median (p95)", "track", "relocalize");
   for (const Row& row : make_rows(suite, runs)) {
+    if (suite.sweep.map == SweepMap::kFixed && row.parameters != 0) continue;  // the same calls
     const auto cell = [](const TimeSummary& t) {
       if (t.p95_ms == 0) return std::string("-");  // no calls: its map was at hand
       return fmt::format("{:.1f} ({:.1f})", t.median_ms, t.p95_ms);

@@ -51,7 +51,8 @@ std::string export_csv(const Store& store) {
       "ORDER BY p.position, o.point");
   std::string text;
   for (const auto& row : rows) {
-    for (std::size_t c = 0; c < row.size(); ++c) text += (c > 0 ? "," : "") + csv_cell(row[c]);
+    for (std::size_t c = 0; c < row.size(); ++c)
+      text.append(c > 0 ? "," : "").append(csv_cell(row[c]));
     text += "\n";
   }
   return text;

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "bench/pictures/sweep.hpp"
 #include "bench/results/json.hpp"
 #include "bench/results/scenes.hpp"
 #include "bench/results/table.hpp"
@@ -300,6 +301,36 @@ TEST(Results, WhatIsUndeterminedIsNull) {
   EXPECT_FALSE(score_trajectory(one, one, 1).ate_first_pose_m);
   const std::vector<QueryScore> unanswered(3);
   EXPECT_FALSE(summarize(unanswered).distance_mean_m);
+}
+
+TEST(Sweep, TheBestPointIsComparedWithTheSuitesOwnSettings) {
+  Place place;
+  place.suite.labels = {LabelMode::kExact};
+  place.suite.sweep.varied = {"gamma", "alpha"};
+  for (const double gamma : {0.5, 1.0})
+    for (const double alpha : {0.7, 0.8}) {
+      place.suite.sweep.points.push_back(place.suite.semantics);
+      place.suite.sweep.points.back().gamma = gamma;
+      place.suite.sweep.points.back().alpha = alpha;
+    }
+  std::vector<RunResult> runs = place.run();
+  // Of the semantic system's five held-out answers under each point 3, 4, 5, 4 are correct.
+  const std::size_t correct[] = {3, 4, 5, 4};
+  for (std::size_t p = 0; p < 4; ++p)
+    for (std::size_t q = 0; q < 5; ++q) runs[0].points[p].held_out[q].correct = q < correct[p];
+  const std::vector<Row> rows = make_rows(place.suite, runs);
+  const std::vector<SweepResult> results = sweep_results(place.suite, rows);
+  ASSERT_EQ(results.size(), 2u);  // of the plain system those that differ in alpha
+  const auto best = best_point(place.suite, rows, results[0], QuerySet::kHeldOut);
+  ASSERT_TRUE(best);
+  EXPECT_EQ(best->point, 2u);
+  EXPECT_EQ(best->reference, 3u);  // gamma 1, alpha 0.8
+  EXPECT_NEAR(best->to_reference.difference, 0.2, 1e-12);
+  EXPECT_EQ(best_point(place.suite, rows, results[1], QuerySet::kHeldOut)->point, 3u)
+      << "of equals the suite's own";
+  const cv::Mat picture = draw_sweep(place.suite, rows, results[0]);
+  EXPECT_GT(picture.cols, 1000);
+  EXPECT_EQ(sweep_picture_name(place.suite, results[0]), "sweep-semantic-exact-fake.png");
 }
 
 TEST(Results, WhatWasNotAskedIsADashNotZeroPercent) {
