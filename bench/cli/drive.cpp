@@ -7,25 +7,37 @@
 
 #include "bench/cli/commands.hpp"
 #include "bench/metrics/trajectory_io.hpp"
+#include "bench/recorded/robot_readings.hpp"
+#include "bench/world/travel.hpp"
 #include "robots/model/robot.hpp"
 #include "scenes/load.hpp"
-#include "sim/motion/motion.hpp"
+#include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh::cli {
 namespace {
 
 struct Options {
-  std::string scene, tour, robot, out;
+  std::string scene, tour, motion, robot, out;
+  std::uint64_t seed = 0;
+  bool sensors = false;
   bool json = false;
 };
 
 void run(const Options& options) {
+  if (options.motion.empty() == options.tour.empty())
+    throw InputError("give the motion once: as TOUR or as --motion");
+  const std::string& motion = options.motion.empty() ? options.tour : options.motion;
+  if (options.sensors && options.out.empty())
+    throw InputError("--sensors needs --out: a folder to write them into");
   const std::filesystem::path out = options.out;
   if (!options.out.empty()) make_output_folder(out);
   const Robot robot = load_robot(options.robot);
-  const Tour tour = load_tour(options.tour);
-  const DrivenPath path = drive(load_scene(options.scene), robot, tour);
+  check_motion(motion);
+  const Scene scene = load_scene(options.scene);
+  const DrivenPath path = travel(scene, robot, motion);
+  if (options.sensors)
+    write_readings(out, robot, read_sensors(scene, robot, path.base, options.seed));
   if (!options.out.empty()) {
     write_tum(out / "camera.tum", path.camera);
     write_tum(out / "base.tum", path.base);
@@ -36,7 +48,7 @@ void run(const Options& options) {
           : static_cast<double>(path.camera.back().stamp_ns - path.camera.front().stamp_ns) * 1e-9;
   const double turned_deg = path.turned_in_place_rad * 180 / std::numbers::pi;
   if (options.json) {
-    const nlohmann::ordered_json json = {{"tour", tour.name},
+    const nlohmann::ordered_json json = {{"tour", motion},
                                          {"frames", path.camera.size()},
                                          {"duration_s", seconds},
                                          {"length_m", path.length_m},
@@ -49,7 +61,7 @@ void run(const Options& options) {
   fmt::print(
       "{}: {} frames in {:.1f} s, {:.2f} m driven, {:.0f} deg turned in place, {:.2f} s in "
       "contact (at most {:.4f} m deep)\n",
-      tour.name, path.camera.size(), seconds, path.length_m, turned_deg, path.contact_time_s,
+      motion, path.camera.size(), seconds, path.length_m, turned_deg, path.contact_time_s,
       path.max_penetration_m);
 }
 
@@ -57,11 +69,18 @@ void run(const Options& options) {
 
 void add_drive(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("drive", "Drives the robot through a scene along a tour.");
+  CLI::App* command =
+      app.add_subcommand("drive", "Drives the robot through a scene, or moves a camera by hand.");
   command->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
-  command->add_option("tour", options->tour, "Tour (YAML)")->required();
+  command->add_option("tour", options->tour, "Tour (YAML); or --motion");
+  command->add_option("--motion", options->motion,
+                      "TOUR.yaml, auto[:SEED], handheld[:SEED[:FRAMES]], replay:FILE.tum or "
+                      "commands:FILE.yaml");
   command->add_option("--robot", options->robot, "Robot (YAML)")->required();
   command->add_option("--out", options->out, "Folder for camera.tum and base.tum");
+  command->add_flag("--sensors", options->sensors,
+                    "Also writes wheel odometry, lasers, sonars, bumpers and IMU into --out");
+  command->add_option("--seed", options->seed, "Seed of the odometry's errors");
   command->add_flag("--json", options->json, "Prints JSON");
   command->footer(
       "Example:\n  modelhouse drive scenes/model_house/house.yaml "

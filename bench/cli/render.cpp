@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
-#include "bench/recorded/scannet_folder.hpp"
-#include "bench/recorded/tum_folder.hpp"
+#include "bench/protocol/digest.hpp"
+#include "bench/recorded/render_sequence.hpp"
+#include "bench/world/travel.hpp"
 #include "bench/world/world.hpp"
 #include "sim/sensors/shutter.hpp"
 #include "slam/core/error.hpp"
@@ -15,63 +18,136 @@
 namespace mh::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct Options {
-  std::string scene, tour, robot, level, out, renderer = "embree", format = "tum";
-  std::size_t frames = SIZE_MAX, every = 1;
-  std::uint64_t seed = 0;
+  std::string scene, tour, motion, robot, camera, level, walk, out, format = "tum",
+                                                                    renderer = "embree";
+  RenderSequenceOptions sequence;
+  int png_compression = kPngCompression;
+  bool json = false;
 };
 
-/// Pictures of two tours in one folder would be taken for one sequence.
-void refuse_older_sequence(const std::filesystem::path& folder) {
-  const auto refuse = [&] {
-    throw InputError(
-        fmt::format("{}: holds a sequence already; name another folder", folder.string()));
-  };
-  for (const char* part : {"rgb", "rgb.txt"})
-    if (std::filesystem::exists(folder / part)) refuse();
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
-    if (entry.path().extension() == ".sens") refuse();
+std::string digest_of_file(const std::string& file) {
+  if (file.empty()) return "";
+  const std::string text = read_file(file);
+  return hex(digest_bytes(text.data(), text.size()));
 }
 
-void run(const Options& options) {
-  refuse_older_sequence(options.out);
+/// What decides the pictures: a folder is gone on with only where all of it is the same.
+std::string settings_of(const Options& o, const Scene& scene, const Trajectory& path) {
+  nlohmann::ordered_json json = {{"scene", o.scene},
+                                 {"scene_digest", hex(digest(scene))},
+                                 {"motion", o.motion},
+                                 {"path_digest", hex(digest(path))},
+                                 {"robot", o.robot},
+                                 {"robot_digest", digest_of_file(o.robot)},
+                                 {"camera", o.camera},
+                                 {"level", o.level},
+                                 {"level_digest", digest_of_file(o.level)},
+                                 {"walk", o.walk},
+                                 {"walk_digest", digest_of_file(o.walk)},
+                                 {"format", o.format},
+                                 {"renderer", o.renderer},
+                                 {"every", o.sequence.every},
+                                 {"seed", o.sequence.seed},
+                                 {"png_compression", o.png_compression}};
+  if (o.sequence.frames != SIZE_MAX) json["frames"] = o.sequence.frames;
+  return json.dump(2) + "\n";
+}
+
+/// Pictures of two tours in one folder would be taken for one sequence.
+[[noreturn]] void refuse_folder(const fs::path& folder) {
+  throw InputError(
+      fmt::format("{}: holds a sequence already; name another folder", folder.string()));
+}
+
+void refuse_older_sequence(const fs::path& folder) {
+  if (fs::exists(folder / "render.json")) return;  // compared when all settings are known
+  for (const char* part : {"rgb", "rgb.txt", "color", "intrinsic"})
+    if (fs::exists(folder / part)) refuse_folder(folder);
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".sens") refuse_folder(folder);
+}
+
+/// The camera that is asked for, and its path: one beside the robot's own hangs where the URDF has
+/// it, and moves with the head.
+std::pair<Camera, Trajectory> choose_camera(const Options& options, const Robot& robot,
+                                            DrivenPath path) {
+  if (options.camera.empty()) return {robot.camera, std::move(path.camera)};
+  if (!robot.equipment)
+    throw InputError(fmt::format("--camera {}: robot '{}' has no other cameras than its own",
+                                 options.camera, robot.name));
+  for (const MountedCamera& mounted : robot.equipment->cameras) {
+    if (mounted.name != options.camera) continue;
+    const Equipment& e = *robot.equipment;
+    for (std::size_t i = 0; i < path.base.size(); ++i) {
+      std::map<std::string, double> joints;
+      if (!path.head.empty())
+        joints = {{e.head_yaw, path.head[i][0]}, {e.head_pitch, path.head[i][1]}};
+      path.camera[i].world_from_camera =
+          path.base[i].world_from_camera * e.tree.root_from(mounted.link, joints);
+    }
+    return {mounted.camera, std::move(path.camera)};
+  }
+  throw InputError(
+      fmt::format("--camera {}: robot '{}' has no such camera", options.camera, robot.name));
+}
+
+void run(Options options) {
+  if (options.motion.empty() == options.tour.empty())
+    throw InputError("give the motion once: as TOUR or as --motion");
+  if (options.motion.empty()) options.motion = options.tour;
+  const fs::path out = options.out;
+  refuse_older_sequence(out);
   make_renderer(options.renderer, Scene{});  // a machine that lacks it says so at once
-  make_output_folder(options.out);
+  make_output_folder(out);
   const Robot robot = load_robot(options.robot);
-  const Tour tour = load_tour(options.tour);
+  check_motion(options.motion);
   SensorConfig sensors;
   sensors.depth_noise_on = sensors.colour_noise_on = false;
   if (!options.level.empty()) sensors = load_sensor_config(options.level);
+  std::optional<Walk> walk;
+  if (!options.walk.empty()) walk = load_walk(options.walk);
+
   Progress progress("render");
   progress.say(fmt::format("scene {}", options.scene));
-  const Scene scene = load_lit_scene(options.scene, 2);
+  const Scene scene = load_lit_scene(options.scene, options.sequence.threads);
   const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene, options.renderer);
-  const DrivenPath path = drive(scene, robot, tour);
+  progress.say(fmt::format("moving along {}", options.motion));
+  auto [camera, path] = choose_camera(options, robot, travel(scene, robot, options.motion));
 
-  const std::size_t last = std::min(options.frames, path.camera.size());
-  const RandomStream noise(options.seed);
-  const Shutter shutter(renderer, robot.camera, path.camera, sensors);
-  const std::size_t count = (last + options.every - 1) / options.every;
-  const auto frame_at = [&](std::size_t index) {
-    const std::size_t i = index * options.every;
-    const TimedPose& pose = path.camera[i];
-    Shutter::Exposed exposed = shutter.expose(i);
-    RgbdFrame frame =
-        sense(exposed.seen, shutter.camera(), sensors, noise.fork(i), pose.stamp_ns, exposed.gain);
-    progress.share(static_cast<double>(i + 1) / static_cast<double>(last));
-    return ExactFrame{std::move(frame), std::move(exposed.seen), pose.world_from_camera};
-  };
-  if (options.format == "scannet") {
-    write_scannet_recording(options.out, shutter.camera(), count, frame_at);
+  const std::string settings = settings_of(options, scene, path);
+  if (fs::exists(out / "render.json")) {
+    if (read_file(out / "render.json") != settings) refuse_folder(out);
+    options.sequence.resume = true;
+  }
+  write_atomically(out / "render.json", settings);
+  std::shared_ptr<const WalkedScene> walked;
+  if (walk) walked = make_walked_scene(scene, renderer, *walk);
+  const Shutter shutter =
+      walked ? Shutter([walked](Stamp stamp) { return walked->at(stamp); }, camera, path, sensors)
+             : Shutter(renderer, camera, path, sensors);
+  if (options.format == "scannet") {  // one file for all: frames in order, one by one
+    const std::size_t last = std::min(options.sequence.frames, shutter.path().size());
+    const std::size_t count = (last + options.sequence.every - 1) / options.sequence.every;
+    write_scannet_recording(out, shutter.camera(), count, [&](std::size_t k) {
+      progress.share(static_cast<double>(k) / static_cast<double>(count));
+      return exact_frame(shutter, sensors, options.sequence, k);
+    });
     return;
   }
-  TumWriter writer(options.out, shutter.camera());
-  for (std::size_t i = 0; i < count; ++i) {
-    const ExactFrame frame = frame_at(i);
-    writer.add(frame.seen, frame.exact, frame.world_from_camera);
-  }
-  writer.finish();
+  const auto writer =
+      make_sequence_writer(options.format, out, shutter.camera(), options.png_compression);
+  const RenderedSequence done = render_sequence(shutter, sensors, *writer, options.sequence,
+                                                [&](double share) { progress.share(share); });
+  if (options.json)
+    fmt::print("{}\n", nlohmann::ordered_json({{"frames", done.frames},
+                                               {"resumed", done.resumed},
+                                               {"render_s", done.render_s},
+                                               {"encode_s", done.encode_s}})
+                           .dump(2));
 }
 
 }  // namespace
@@ -79,26 +155,42 @@ void run(const Options& options) {
 void add_render(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
-      "render", "Writes what a robot sees along a tour, in TUM's or ScanNet's layout.");
+      "render",
+      "Writes what a camera sees on its way through a scene, with labels, instances and poses.");
   command->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
-  command->add_option("tour", options->tour, "Tour (YAML)")->required();
-  command->add_option("--robot", options->robot, "Robot (YAML)")->required();
+  command->add_option("tour", options->tour, "Tour (YAML); or --motion");
+  command->add_option("--motion", options->motion,
+                      "TOUR.yaml, auto[:SEED], handheld[:SEED[:FRAMES]], replay:FILE.tum or "
+                      "commands:FILE.yaml");
+  command->add_option("--robot", options->robot, "Robot (YAML): base and camera")->required();
+  command->add_option("--camera", options->camera,
+                      "Another of the robot's cameras, by its name in the robot's file");
   command->add_option("--level", options->level, "Sensor level (YAML); without: no noise");
-  command->add_option("--out", options->out, "Folder to write")->required();
+  command->add_option("--walk", options->walk, "Somebody who walks about meanwhile (YAML)");
+  command->add_option("--out", options->out, "Folder to write; goes on where it was stopped")
+      ->required();
   command
       ->add_option("--format", options->format,
-                   "tum (default): folders and lists; scannet: .sens, label images")
-      ->check(CLI::IsMember({"tum", "scannet"}));
-  command->add_option("--frames", options->frames, "At most so many frames of the tour")
+                   "tum (default): folders and lists; scannet: .sens, label images; "
+                   "scannet-frames: folders as extracted from a .sens")
+      ->check(CLI::IsMember({"tum", "scannet", "scannet-frames"}));
+  command->add_option("--frames", options->sequence.frames, "At most so many frames of the path")
       ->check(CLI::Range(1, 100000000));
-  command->add_option("--every", options->every, "Every n-th frame only")
+  command->add_option("--every", options->sequence.every, "Every n-th frame only")
       ->check(CLI::Range(1, 100000000));
   command->add_option("--renderer", options->renderer, "embree (default) or osmesa");
-  command->add_option("--seed", options->seed, "Seed of the noise");
+  command->add_option("--seed", options->sequence.seed, "Seed of the noise");
+  command
+      ->add_option("--threads", options->sequence.threads,
+                   "Frames worked on side by side (2); never changes a byte")
+      ->check(CLI::Range(1, 256));
+  command->add_option("--png-compression", options->png_compression, "0 to 9 (1)")
+      ->check(CLI::Range(0, 9));
+  command->add_flag("--json", options->json, "Prints frames written and the time of each stage");
   command->footer(
-      "Example:\n  modelhouse render scenes/model_house/house.yaml "
-      "scenes/model_house/tours/query.yaml --robot robots/pepper/pepper.yaml "
-      "--level sim/sensors/levels/pepper.yaml --out out/sequence --every 10");
+      "Example:\n  modelhouse render scenes/rooms/office.yaml --motion handheld:0 "
+      "--robot robots/pepper/pepper.yaml --level sim/sensors/levels/handheld.yaml "
+      "--out out/sequence");
   command->callback([options] { run(*options); });
 }
 

@@ -118,9 +118,10 @@ cv::Mat colour_picture(const Grid2d<Rgb8>& colour) {
   return picture;
 }
 
-void write_picture(const std::filesystem::path& file, const cv::Mat& picture) {
+void write_picture(const std::filesystem::path& file, const cv::Mat& picture,
+                   const std::vector<int>& settings) {
   write_atomically(file, [&](const std::filesystem::path& temporary) {
-    if (!cv::imwrite(temporary.string(), picture))
+    if (!cv::imwrite(temporary.string(), picture, settings))
       throw InputError(fmt::format("{}: cannot be written", file.string()));
   });
 }

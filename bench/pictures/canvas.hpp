@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <opencv2/core/mat.hpp>
 
@@ -42,7 +43,10 @@ class Canvas {
 /// The same picture as 8-bit BGR.
 cv::Mat colour_picture(const Grid2d<Rgb8>& colour);
 
-/// Writes a PNG whole or not at all. @throws InputError if it cannot be written.
-void write_picture(const std::filesystem::path& file, const cv::Mat& bgr);
+/// Writes a picture, in the format that the file's ending tells, whole or not at all.
+/// @param settings  of the format, as cv::imwrite takes them
+/// @throws InputError if it cannot be written.
+void write_picture(const std::filesystem::path& file, const cv::Mat& bgr,
+                   const std::vector<int>& settings = {});
 
 }  // namespace mh

@@ -32,6 +32,14 @@ fs::path read_source(const YamlReader& node, const fs::path& folder, int index) 
   return file;
 }
 
+/// A tour: a source, or a motion by its name alone (bench/world/travel.hpp).
+fs::path read_tour(const YamlReader& node, const fs::path& folder, int index) {
+  const std::string text = with_index(node.as_string(), index);
+  for (const char* motion : {"auto", "handheld"})
+    if (text == motion || text.starts_with(motion + std::string(":"))) return "generated:" + text;
+  return read_source(node, folder, index);
+}
+
 std::vector<Environment> read_entry(YamlReader node, const fs::path& folder,
                                     const std::optional<fs::path>& default_robot) {
   const auto count = static_cast<int>(node.integer_or("count", 1, 1, 100000));
@@ -40,7 +48,8 @@ std::vector<Environment> read_entry(YamlReader node, const fs::path& folder,
   const std::string name = node.string("name", node.has("count") ? category + "-{i}" : category);
   if (count > 1 && name.find("{i}") == std::string::npos)
     node.at("name").fail(fmt::format("'{}' needs an {{i}}: there are {} of it", name, count));
-  const YamlReader scene = node.at("scene"), tour = node.at("mapping_tour");
+  const YamlReader scene = node.at("scene");
+  const auto tour = node.find("mapping_tour");
   const auto query_tour = node.find("query_tour");
   const auto query_scene = node.find("query_scene");
   if (query_scene && !query_tour) query_scene->fail("needs a query_tour");
@@ -56,10 +65,10 @@ std::vector<Environment> read_entry(YamlReader node, const fs::path& folder,
                   .category = category,
                   .scene = read_source(scene, folder, i),
                   .robot = robot ? existing_file(*robot, folder) : *default_robot,
-                  .mapping_tour = read_source(tour, folder, i),
+                  .mapping_tour = tour ? read_tour(*tour, folder, i) : fs::path("generated:auto:0"),
                   .query_tour = {}};
     check_folder_name(node, e.name);
-    if (query_tour) e.query_tour = read_source(*query_tour, folder, i);
+    if (query_tour) e.query_tour = read_tour(*query_tour, folder, i);
     if (query_scene) e.query_scene = read_source(*query_scene, folder, i);
     if (kidnapped_tour) e.kidnapped_tour = existing_file(*kidnapped_tour, folder);
     if (sensors) e.sensors = existing_file(*sensors, folder);

@@ -6,6 +6,7 @@
 
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/tum_folder.hpp"
+#include "bench/world/travel.hpp"
 #include "bench/world/world.hpp"
 #include "sim/sensors/shutter.hpp"
 
@@ -39,7 +40,7 @@ class SceneSequence : public FrameSequence {
       : sensors_(sensors),
         noise_(source.seed),
         shutter_(make_scene_renderer(scene), robot.camera,
-                 drive(scene, robot, load_tour(source.tour)).camera, sensors) {}
+                 travel(scene, robot, source.tour.string()).camera, sensors) {}
   const Camera& camera() const override { return shutter_.camera(); }
   std::size_t size() const override { return shutter_.path().size(); }
   Stamp stamp_ns(std::size_t index) const override { return shutter_.path()[index].stamp_ns; }

@@ -2,6 +2,7 @@
 #include "bench/recorded/tum_folder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -115,33 +116,30 @@ RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera
   return frame;
 }
 
-TumWriter::TumWriter(fs::path folder, const Camera& camera)
-    : folder_(std::move(folder)), camera_(camera) {
+TumWriter::TumWriter(fs::path folder, const Camera& camera, int png_compression)
+    : folder_(std::move(folder)), camera_(camera), png_compression_(png_compression) {
   for (const char* part : {"rgb", "depth", "label"}) {
     make_output_folder(folder_ / part);
-    lists_[part];
+    listed_[part];
   }
 }
 
+fs::path TumWriter::file_of(const char* part, Stamp stamp_ns) const {
+  return folder_ / part / (format_stamp(stamp_ns) + ".png");
+}
+
 void TumWriter::write(const char* part, Stamp stamp_ns, const cv::Mat& picture) {
-  const std::string name = format_stamp(stamp_ns);
-  write_picture(folder_ / part / (name + ".png"), picture);
-  lists_[part] += fmt::format("{0} {1}/{0}.png\n", name, part);
+  write_picture(file_of(part, stamp_ns), picture, {cv::IMWRITE_PNG_COMPRESSION, png_compression_});
+  const std::scoped_lock lock(mutex_);
+  listed_[part].insert(stamp_ns);
 }
 
 void TumWriter::add_pictures(const RgbdFrame& frame) {
-  const int width = frame.colour.width(), height = frame.colour.height();
-  cv::Mat colour(height, width, CV_8UC3), depth(height, width, CV_16UC1);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const Rgb8 c = frame.colour(x, y);
-      colour.at<cv::Vec3b>(y, x) = {c.b, c.g, c.r};
-      depth.at<std::uint16_t>(y, x) = depth_units(frame.depth_m(x, y));
-    }
-  write("rgb", frame.stamp_ns, colour);
+  cv::Mat depth(frame.depth_m.height(), frame.depth_m.width(), CV_16UC1);
+  std::transform(frame.depth_m.begin(), frame.depth_m.end(), depth.begin<std::uint16_t>(),
+                 depth_units);
+  write("rgb", frame.stamp_ns, colour_picture(frame.colour));
   write("depth", frame.stamp_ns, depth);
-  const std::string name = format_stamp(frame.stamp_ns);
-  associations_ += fmt::format("{0} rgb/{0}.png {0} depth/{0}.png\n", name);
 }
 
 void TumWriter::add_labels(Stamp stamp_ns, const Grid2d<ClassId>& classes) {
@@ -155,23 +153,45 @@ void TumWriter::add(const RgbdFrame& frame) {
   if (!frame.semantics.index.empty()) add_labels(frame.stamp_ns, class_image(frame.semantics));
 }
 
-void TumWriter::add(const RgbdFrame& frame, const RenderedFrame& exact,
+void TumWriter::add(std::size_t, const RgbdFrame& frame, const RenderedFrame& exact,
                     const SE3& world_from_camera) {
-  if (truth_.empty()) make_output_folder(folder_ / "instance");
+  fs::create_directories(folder_ / "instance");
   add_pictures(frame);
   add_labels(frame.stamp_ns, exact.classes);
   const Grid2d<InstanceId>& instances = exact.instances;
   cv::Mat instance(instances.height(), instances.width(), CV_16UC1);
   std::copy(instances.begin(), instances.end(), instance.begin<std::uint16_t>());
   write("instance", frame.stamp_ns, instance);
-  truth_.push_back({frame.stamp_ns, world_from_camera});
+  const std::scoped_lock lock(mutex_);
+  truth_[frame.stamp_ns] = world_from_camera;
+}
+
+bool TumWriter::resume(std::size_t, Stamp stamp_ns, const SE3& world_from_camera) {
+  constexpr std::array kParts = {"rgb", "depth", "label", "instance"};
+  if (!std::ranges::all_of(kParts,
+                           [&](const char* part) { return fs::exists(file_of(part, stamp_ns)); }))
+    return false;
+  const std::scoped_lock lock(mutex_);
+  for (const char* part : kParts) listed_[part].insert(stamp_ns);
+  truth_[stamp_ns] = world_from_camera;
+  return true;
 }
 
 void TumWriter::finish() {
-  for (const auto& [part, list] : lists_)
-    write_atomically(folder_ / (part + ".txt"), "# stamp (s) file\n" + list);
-  write_atomically(folder_ / "associations.txt", associations_);
-  if (!truth_.empty()) write_tum(folder_ / "groundtruth.txt", truth_);
+  std::string associations;
+  for (const auto& [part, stamps] : listed_) {
+    std::string list = "# stamp (s) file\n";
+    for (const Stamp stamp : stamps) {
+      const std::string name = format_stamp(stamp);
+      list += fmt::format("{0} {1}/{0}.png\n", name, part);
+      if (part == "rgb") associations += fmt::format("{0} rgb/{0}.png {0} depth/{0}.png\n", name);
+    }
+    write_atomically(folder_ / (part + ".txt"), list);
+  }
+  write_atomically(folder_ / "associations.txt", associations);
+  Trajectory truth;
+  for (const auto& [stamp, pose] : truth_) truth.push_back({stamp, pose});
+  if (!truth.empty()) write_tum(folder_ / "groundtruth.txt", truth);
   write_atomically(folder_ / "camera_info.yaml", camera_info_text(camera_));
   write_atomically(folder_ / "camera.yaml", settings_text(camera_));
 }

@@ -3,12 +3,15 @@
 
 #include <filesystem>
 #include <map>
+#include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
 #include <opencv2/core/mat.hpp>
 
 #include "bench/recorded/frame_files.hpp"
+#include "bench/recorded/sequence_writer.hpp"
 #include "sim/world/sequence.hpp"
 #include "slam/core/camera.hpp"
 #include "slam/core/rgbd_frame.hpp"
@@ -43,25 +46,29 @@ RgbdFrame read_frame(const RecordedFrame& frame, const RecordedCamera& camera);
 /// bit), their lists, associations.txt, camera.yaml and camera_info.yaml; with truth also instance/
 /// (16 bit), its list and groundtruth.txt. The lists appear with finish(), so that a folder without
 /// them was not finished.
-class TumWriter {
+class TumWriter : public SequenceWriter {
  public:
-  TumWriter(std::filesystem::path folder, const Camera& camera);
+  TumWriter(std::filesystem::path folder, const Camera& camera,
+            int png_compression = kPngCompression);
   /// What a system may see and nothing else. label.txt lists the frames that have labels.
   void add(const RgbdFrame& frame);
-  /// With the truth. @param exact  of the same moment; its classes and instances are written
-  void add(const RgbdFrame& frame, const RenderedFrame& exact, const SE3& world_from_camera);
-  void finish();
+  void add(std::size_t index, const RgbdFrame& frame, const RenderedFrame& exact,
+           const SE3& world_from_camera) override;
+  bool resume(std::size_t index, Stamp stamp_ns, const SE3& world_from_camera) override;
+  void finish() override;
 
  private:
+  std::filesystem::path file_of(const char* part, Stamp stamp_ns) const;
   void write(const char* part, Stamp stamp_ns, const cv::Mat& picture);
   void add_pictures(const RgbdFrame& frame);
   void add_labels(Stamp stamp_ns, const Grid2d<ClassId>& classes);
 
   std::filesystem::path folder_;
   Camera camera_;
-  std::map<std::string, std::string> lists_;  ///< by part: the lines of rgb.txt, ...
-  std::string associations_;
-  Trajectory truth_;
+  int png_compression_;
+  std::mutex mutex_;                               ///< of what follows
+  std::map<std::string, std::set<Stamp>> listed_;  ///< by part: whose pictures are there
+  std::map<Stamp, SE3> truth_;
 };
 
 }  // namespace mh

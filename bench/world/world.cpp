@@ -13,6 +13,7 @@
 #include "bench/results/fingerprint.hpp"
 #include "bench/store/code_version.hpp"
 #include "bench/store/run_key.hpp"
+#include "bench/world/travel.hpp"
 #include "scenes/load.hpp"
 #include "sim/render/bake.hpp"
 #include "sim/sensors/shutter.hpp"
@@ -95,6 +96,12 @@ std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene, std::string_vi
   return make_renderer(renderer, scene, {.exposure = exposure_of(scene)});
 }
 
+std::shared_ptr<const WalkedScene> make_walked_scene(const Scene& scene,
+                                                     std::shared_ptr<const Renderer> renderer,
+                                                     const Walk& walk) {
+  return std::make_shared<const WalkedScene>(scene, std::move(renderer), exposure_of(scene), walk);
+}
+
 PlaceFacts facts(const World& world) {
   PlaceFacts f{.scene = world.scene->name,
                .robot = world.robot.name,
@@ -121,12 +128,10 @@ PlaceFacts facts(const World& world) {
 void check_inputs(const RunSpec& spec) {
   const Environment& environment = spec.environment;
   check_available(environment.scene, "scene");
-  check_available(environment.mapping_tour, "tour");
-  if (environment.query_tour) check_available(*environment.query_tour, "tour");
   load_robot(environment.robot);
   load_sensor_config(spec.level);
-  load_tour(environment.mapping_tour);
-  if (environment.query_tour) load_tour(*environment.query_tour);
+  check_motion(environment.mapping_tour);
+  if (environment.query_tour) check_motion(*environment.query_tour);
 }
 
 World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say) {
@@ -141,9 +146,6 @@ World build_world(const RunSpec& spec, int threads, const Cache& cache, const Sa
   world.vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(spec.vocabulary));
   world.sensors = load_sensor_config(environment.sensors.value_or(spec.level));
   world.robot.camera = with_lens(world.robot.camera, world.sensors);
-  const Tour mapping_tour = load_tour(environment.mapping_tour);
-  std::optional<Tour> query_tour;
-  if (environment.query_tour) query_tour = load_tour(*environment.query_tour);
   std::optional<Tour> kidnapped_tour;
   if (environment.kidnapped_tour) kidnapped_tour = load_tour(*environment.kidnapped_tour);
   std::optional<Walk> walk;
@@ -153,23 +155,21 @@ World build_world(const RunSpec& spec, int threads, const Cache& cache, const Sa
   auto scene = std::make_shared<const Scene>(load_lit_scene(environment.scene, threads, cache));
   world.scene = scene;
   world.renderer = make_scene_renderer(*scene);
-  if (walk)
-    world.walked =
-        std::make_shared<const WalkedScene>(*scene, world.renderer, exposure_of(*scene), *walk);
+  if (walk) world.walked = make_walked_scene(*scene, world.renderer, *walk);
 
   const auto lose_frames = [&](DrivenPath& path) {
     const RandomStream same_for_every_trial(0);
     path.camera = arriving_frames(path.camera, world.sensors, same_for_every_trial);
     path.base = arriving_frames(path.base, world.sensors, same_for_every_trial);
   };
-  say(fmt::format("driving {}", mapping_tour.name));
-  world.mapping = drive(*scene, world.robot, mapping_tour);
+  say(fmt::format("moving along {}", environment.mapping_tour.filename().string()));
+  world.mapping = travel(*scene, world.robot, environment.mapping_tour);
   if (kidnapped_tour)
     world.mapping = joined(std::move(world.mapping), drive(*scene, world.robot, *kidnapped_tour),
                            world.robot.camera.rate_hz);
   lose_frames(world.mapping);
   shorten(world.mapping);
-  if (!query_tour) return world;
+  if (!environment.query_tour) return world;
 
   if (environment.query_scene) {
     say(fmt::format("scene {}", environment.query_scene->string()));
@@ -177,8 +177,9 @@ World build_world(const RunSpec& spec, int threads, const Cache& cache, const Sa
         std::make_shared<const Scene>(load_lit_scene(*environment.query_scene, threads, cache));
     world.second_renderer = make_scene_renderer(*world.second_scene);
   }
-  say(fmt::format("driving {}", query_tour->name));
-  world.second = drive(world.second_scene ? *world.second_scene : *scene, world.robot, *query_tour);
+  say(fmt::format("moving along {}", environment.query_tour->filename().string()));
+  world.second = travel(world.second_scene ? *world.second_scene : *scene, world.robot,
+                        *environment.query_tour);
   lose_frames(*world.second);
   shorten(*world.second);
   return world;

@@ -62,6 +62,11 @@ Scene load_lit_scene(const std::filesystem::path& file, int threads, const Cache
 std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene,
                                               std::string_view renderer = "embree");
 
+/// The scene with somebody who walks through it, shown with the scene's exposure.
+std::shared_ptr<const WalkedScene> make_walked_scene(const Scene& scene,
+                                                     std::shared_ptr<const Renderer> renderer,
+                                                     const Walk& walk);
+
 /// Loads scene, robot, vocabulary and level of a run, bakes the light, drives both tours.
 /// @throws InputError if a file is bad or a tour cannot be driven.
 World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say);

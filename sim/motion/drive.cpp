@@ -5,8 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "sim/motion/automatic.hpp"
 #include "sim/motion/motion.hpp"
 #include "sim/motion/path.hpp"
+#include "sim/motion/start.hpp"
 #include "sim/physics/planar_world.hpp"
 #include "slam/core/error.hpp"
 
@@ -23,7 +25,6 @@ constexpr double kStuck_m = 0.15;  // this far behind the plan, something is in 
 constexpr double kArrived_m = 0.01, kTurned_rad = 0.005;
 constexpr double kAtRest_m_per_s = 0.01;
 constexpr double kPatience_s = 3.0;  // for the last centimetre of an arrival
-constexpr double kDeepStart_m = 1e-3;
 
 double wrapped(double angle_rad) {
   return std::remainder(angle_rad, 2 * M_PI);
@@ -42,18 +43,6 @@ double turn_rate(double error_rad, const BaseLimits& limits) {
   return std::copysign(std::min(rate, limits.max_turn_rad_per_s), error_rad);
 }
 
-bool contains(const Room& room, const Eigen::Vector2d& p) {
-  bool inside = false;
-  const auto& corners = room.polygon_m;
-  for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
-    const Eigen::Vector2d &a = corners[i], &b = corners[j];
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
-      inside = !inside;
-  }
-  return inside;
-}
-
 /// A robot on its tour: steps the physics, keeps the record.
 class Driver {
  public:
@@ -66,7 +55,7 @@ class Driver {
                1.0 / (robot.camera.rate_hz * steps_per_frame_)),
         state_(world_.state()),
         heading_rad_(tour.start_heading_rad) {
-    check_start();
+    check_start(world_, scene, tour.start_m, tour.file.string());
     record();
   }
 
@@ -96,26 +85,8 @@ class Driver {
         fmt::format("{}{}: waypoint {}: [{:.2f}, {:.2f}] cannot be reached: the robot is stuck at "
                     "[{:.2f}, {:.2f}] m{}, on its way to [{:.2f}, {:.2f}]",
                     tour_.file.string(), line, index + 1, w.position_m.x(), w.position_m.y(),
-                    state_.position_m.x(), state_.position_m.y(), against(last_touched_),
+                    state_.position_m.x(), state_.position_m.y(), against(scene_, last_touched_),
                     goal_m.x(), goal_m.y()));
-  }
-
-  std::string against(InstanceId id) const {
-    for (const Instance& instance : scene_.instances)
-      if (instance.id == id && id != 0) return " against " + instance.name;
-    return "";
-  }
-
-  void check_start() {
-    const auto place = fmt::format("{}: start [{:.2f}, {:.2f}]", tour_.file.string(),
-                                   tour_.start_m.x(), tour_.start_m.y());
-    const Contact contact = world_.contact();
-    if (contact.penetration_m > kDeepStart_m)
-      throw InputError(fmt::format("{}: the robot would stand {:.0f} mm inside something{}", place,
-                                   1e3 * contact.penetration_m, against(contact.instance)));
-    const auto holds = [this](const Room& room) { return contains(room, tour_.start_m); };
-    if (!scene_.rooms.empty() && std::ranges::none_of(scene_.rooms, holds))
-      throw InputError(fmt::format("{}: lies in no room of {}", place, scene_.name));
   }
 
   Eigen::Vector2d place_before(std::size_t index) const {
@@ -271,6 +242,7 @@ Robot restrained(Robot robot, const Tour& tour) {
 DrivenPath drive(const Scene& scene, const Robot& robot, const Tour& tour) {
   if (tour.waypoints.empty())
     throw InputError(fmt::format("{}: the tour has no waypoints", tour.file.string()));
+  if (tour.plan) return drive(scene, robot, planned(scene, robot, tour));
   const Robot driven = restrained(robot, tour);
   Driver driver(scene, driven, tour);
   std::size_t first = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -18,8 +19,8 @@ struct Waypoint {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
   // Where the base looks on the way: to look_at_m if given; else it turns over the leg until it
   // has heading_rad at arrival, if given; else it faces the way of travel.
-  std::optional<double> heading_rad;
-  std::optional<Eigen::Vector2d> look_at_m;
+  std::optional<double> heading_rad = {};
+  std::optional<Eigen::Vector2d> look_at_m = {};
   double turn_rad = 0.0;  ///< turned in place at arrival, counter-clockwise; may exceed a round
   double pause_s = 0.0;   ///< rest after the turn
   int line = 0;           ///< in the tour's file, for messages; 0 = none
@@ -33,19 +34,21 @@ struct Tour {
   // A tour may be driven more gently than the robot could; never faster.
   std::optional<double> max_velocity_m_per_s;
   std::optional<double> max_turn_rad_per_s;
+  bool plan = false;  ///< ways over the free floor between waypoints instead of straight lines
   std::vector<Waypoint> waypoints;
 };
 
 /// Reads a tour (YAML): `name`; `start: {position: [x, y], heading_deg}`; optional
-/// `speed_m_per_s`, `turn_deg_per_s`; `waypoints`, a list of mappings with any of `to: [x, y]`,
+/// `speed_m_per_s`, `turn_deg_per_s`, `plan` (true or false); `waypoints`, a list of mappings with any of `to: [x, y]`,
 /// `heading_deg`, `face: travel | [x, y]`, `turn_deg`, `pause_s`. Without `to` it stays in place.
 /// @throws InputError naming file, line, field and value.
 Tour load_tour(const std::filesystem::path& file);
 
 /// What the robot really did: base and camera, at the camera's rate.
 struct DrivenPath {
-  std::vector<TimedPose> camera;  ///< world_from_camera, stamps of frames
-  std::vector<TimedPose> base;    ///< world_from_base, same stamps
+  std::vector<TimedPose> camera;            ///< world_from_camera, stamps of frames
+  std::vector<TimedPose> base;              ///< world_from_base, same stamps
+  std::vector<std::array<double, 2>> head;  ///< yaw, pitch (rad), same stamps; empty = at rest
   double length_m = 0.0;
   double turned_in_place_rad = 0.0;
   double max_penetration_m = 0.0;
@@ -54,7 +57,7 @@ struct DrivenPath {
 
 /// Drives the robot through the scene with Bullet, velocity and acceleration limited, and samples
 /// the camera. Stamps are round(i * 1e9 / rate). The base comes from Bullet's body, the camera from
-/// the base and base_from_camera; nothing is added.
+/// the base and base_from_camera; nothing is added. Ways are planned first where the tour says so.
 /// @throws InputError naming tour, waypoint, place and what stands in the way if a waypoint is not
 /// reached, or if the start pose is inside something or outside the rooms.
 DrivenPath drive(const Scene& scene, const Robot& robot, const Tour& tour);

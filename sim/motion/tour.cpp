@@ -54,6 +54,7 @@ Tour load_tour(const std::filesystem::path& file) {
     tour.max_velocity_m_per_s = speed->as_double(0.01, 5.0);
   if (const auto turn = yaml.find("turn_deg_per_s"))
     tour.max_turn_rad_per_s = turn->as_double(1.0, 360.0) * kRadPerDeg;
+  tour.plan = yaml.boolean("plan", false);
   YamlReader list = yaml.at("waypoints");
   for (const YamlReader& item : list.items())
     tour.waypoints.push_back(read_waypoint(

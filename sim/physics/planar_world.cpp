@@ -6,33 +6,20 @@
 #include <cassert>
 #include <cmath>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include <btBulletDynamicsCommon.h>
 
+#include "scenes/band.hpp"
+
 namespace mh {
 namespace {
 
-constexpr float kBandBottom_m = 0.03F;  // lower things (rugs, thresholds) are driven over
 // The cylinder reaches past the band of obstacles by this much at both ends, so that the shortest
 // way out of any overlap is sideways, the only way a planar body can go.
 constexpr float kOverhang_m = 1.0F;
-
-using Polygon = std::vector<Eigen::Vector3f>;
-
-/// The part of a convex polygon with sign * (z - height) >= 0 (Sutherland and Hodgman, 1974).
-Polygon clip(const Polygon& polygon, float height_m, float sign) {
-  Polygon kept;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Eigen::Vector3f& a = polygon[i];
-    const Eigen::Vector3f& b = polygon[(i + 1) % polygon.size()];
-    const float above_a = sign * (a.z() - height_m), above_b = sign * (b.z() - height_m);
-    if (above_a >= 0) kept.push_back(a);
-    if ((above_a > 0 && above_b < 0) || (above_a < 0 && above_b > 0))
-      kept.push_back(a + (b - a) * (above_a / (above_a - above_b)));
-  }
-  return kept;
-}
 
 /// What can be run into: triangles, and for each of them the instance it belongs to.
 struct Obstacles {
@@ -44,18 +31,13 @@ struct Obstacles {
 std::unique_ptr<Obstacles> obstacles(const Scene& scene, float top_m) {
   auto result = std::make_unique<Obstacles>();
   const auto point = [](const Eigen::Vector3f& p) { return btVector3(p.x(), p.y(), p.z()); };
-  for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
-    Polygon polygon;
-    for (const std::uint32_t v : scene.triangles[face]) polygon.push_back(scene.positions_m[v]);
-    const auto [low, high] = std::minmax({polygon[0].z(), polygon[1].z(), polygon[2].z()});
-    if (high < kBandBottom_m || low > top_m) continue;
-    if (low < kBandBottom_m) polygon = clip(polygon, kBandBottom_m, 1.0F);
-    if (high > top_m) polygon = clip(polygon, top_m, -1.0F);
-    for (std::size_t i = 2; i < polygon.size(); ++i) {
-      result->mesh.addTriangle(point(polygon[0]), point(polygon[i - 1]), point(polygon[i]));
-      result->instance_of.push_back(scene.instance_of[face]);
-    }
-  }
+  for_each_face_in_band(
+      scene, kBandBottom_m, top_m, [&](std::size_t face, std::span<const Eigen::Vector3f> polygon) {
+        for (std::size_t i = 2; i < polygon.size(); ++i) {
+          result->mesh.addTriangle(point(polygon[0]), point(polygon[i - 1]), point(polygon[i]));
+          result->instance_of.push_back(scene.instance_of[face]);
+        }
+      });
   return result;
 }
 
@@ -80,6 +62,13 @@ struct PlanarWorld::Impl {
   std::unique_ptr<btRigidBody> house;
   btCylinderShapeZ robot_shape;
   std::unique_ptr<btRigidBody> robot;
+  struct Mover {
+    MovingObstacle obstacle;
+    std::unique_ptr<btCylinderShapeZ> shape;
+    std::unique_ptr<btRigidBody> body;
+  };
+  std::vector<Mover> movers;
+  long steps = 0;
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;
@@ -103,6 +92,7 @@ struct PlanarWorld::Impl {
 
   ~Impl() {
     world.removeRigidBody(robot.get());
+    for (const Mover& mover : movers) world.removeRigidBody(mover.body.get());
     if (house) world.removeRigidBody(house.get());
   }
 
@@ -157,6 +147,32 @@ struct PlanarWorld::Impl {
     return obstacles_in_band->instance_of[static_cast<std::size_t>(hit.face)];
   }
 
+  InstanceId instance_of(const btCollisionObject* body, int face) const {
+    for (const Mover& mover : movers)
+      if (mover.body.get() == body) return mover.obstacle.instance;
+    return obstacles_in_band->instance_of[static_cast<std::size_t>(face)];
+  }
+
+  btTransform pose_of(const MovingObstacle& obstacle, double time_s) const {
+    const Eigen::Vector2d p = obstacle.path(time_s);
+    return btTransform(btQuaternion::getIdentity(),
+                       btVector3(static_cast<btScalar>(p.x()), static_cast<btScalar>(p.y()),
+                                 static_cast<btScalar>(0.5 * obstacle.height_m)));
+  }
+
+  /// Puts moving obstacles where they are after the next step, with the speed of getting there.
+  void move_movers() {
+    for (Mover& mover : movers) {
+      const btTransform from = pose_of(mover.obstacle, static_cast<double>(steps) * step_s);
+      const btTransform to = pose_of(mover.obstacle, static_cast<double>(steps + 1) * step_s);
+      mover.body->setWorldTransform(to);
+      mover.body->setInterpolationWorldTransform(from);
+      mover.body->setLinearVelocity((to.getOrigin() - from.getOrigin()) /
+                                    static_cast<btScalar>(step_s));
+    }
+    ++steps;
+  }
+
   Contact deepest_contact() {
     Contact contact;
     double distance_m = kTouch_m;
@@ -167,10 +183,16 @@ struct PlanarWorld::Impl {
         const btManifoldPoint& point = manifold->getContactPoint(k);
         if (point.getDistance() >= distance_m) continue;
         distance_m = point.getDistance();
+        const btCollisionObject* other =
+            robot_is_first ? manifold->getBody1() : manifold->getBody0();
         const int face = robot_is_first ? point.m_index1 : point.m_index0;
+        const btVector3 away =
+            (robot_is_first ? point.getPositionWorldOnA() : point.getPositionWorldOnB()) -
+            robot->getWorldTransform().getOrigin();
         contact = {.touching = true,
                    .penetration_m = std::max(0.0, -distance_m),
-                   .instance = obstacles_in_band->instance_of[static_cast<std::size_t>(face)]};
+                   .instance = instance_of(other, face),
+                   .direction = Eigen::Vector2d(away.x(), away.y()).stableNormalized()};
       }
     }
     return contact;
@@ -218,6 +240,7 @@ Contact PlanarWorld::step(const BaseCommand& command) {
                                             static_cast<btScalar>(change_m_per_s.y()), 0));
   body.applyTorqueImpulse(
       btVector3(0, 0, inertia_z * static_cast<btScalar>(turn_change_rad_per_s)));
+  impl_->move_movers();
   impl_->world.stepSimulation(static_cast<btScalar>(impl_->step_s), 0);
   return impl_->deepest_contact();
 }
@@ -227,6 +250,67 @@ Contact PlanarWorld::contact() {
   if (const auto on_axis = impl_->instance_on_axis())
     return {.touching = true, .penetration_m = impl_->radius_m, .instance = *on_axis};
   return impl_->deepest_contact();
+}
+
+void PlanarWorld::place(const Eigen::Vector2d& position_m, double heading_rad) {
+  btRigidBody& body = *impl_->robot;
+  const btTransform pose(
+      btQuaternion(btVector3(0, 0, 1), static_cast<btScalar>(heading_rad)),
+      btVector3(static_cast<btScalar>(position_m.x()), static_cast<btScalar>(position_m.y()),
+                body.getWorldTransform().getOrigin().z()));
+  body.setWorldTransform(pose);
+  body.setInterpolationWorldTransform(pose);
+  body.setLinearVelocity(btVector3(0, 0, 0));
+  body.setAngularVelocity(btVector3(0, 0, 0));
+  body.clearForces();
+  // Contacts of the old place would push in the new one.
+  impl_->broadphase.getOverlappingPairCache()->cleanProxyFromPairs(body.getBroadphaseHandle(),
+                                                                   &impl_->dispatcher);
+}
+
+void PlanarWorld::add(MovingObstacle obstacle) {
+  assert(obstacle.path && obstacle.radius_m > 0 && obstacle.height_m > 0);
+  Impl::Mover mover;
+  const auto r = static_cast<btScalar>(obstacle.radius_m);
+  mover.shape = std::make_unique<btCylinderShapeZ>(
+      btVector3(r, r, static_cast<btScalar>(0.5 * obstacle.height_m) + kOverhang_m));
+  btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, mover.shape.get());
+  info.m_startWorldTransform =
+      impl_->pose_of(obstacle, static_cast<double>(impl_->steps) * impl_->step_s);
+  info.m_friction = 0;
+  mover.body = std::make_unique<btRigidBody>(info);
+  mover.body->setCollisionFlags(mover.body->getCollisionFlags() |
+                                btCollisionObject::CF_KINEMATIC_OBJECT);
+  mover.body->setActivationState(DISABLE_DEACTIVATION);
+  mover.obstacle = std::move(obstacle);
+  impl_->world.addRigidBody(mover.body.get());
+  impl_->movers.push_back(std::move(mover));
+}
+
+void PlanarWorld::show_at(double time_s) {
+  impl_->steps = std::lround(time_s / impl_->step_s);
+  for (Impl::Mover& mover : impl_->movers)
+    mover.body->setWorldTransform(
+        impl_->pose_of(mover.obstacle, static_cast<double>(impl_->steps) * impl_->step_s));
+}
+
+std::optional<double> PlanarWorld::cast(const Eigen::Vector3d& from_m,
+                                        const Eigen::Vector3d& direction, double range_m) const {
+  const auto point = [](const Eigen::Vector3d& p) {
+    return btVector3(static_cast<btScalar>(p.x()), static_cast<btScalar>(p.y()),
+                     static_cast<btScalar>(p.z()));
+  };
+  const btVector3 from = point(from_m), to = point(from_m + range_m * direction);
+  btCollisionWorld::ClosestRayResultCallback hit(from, to);
+  const auto try_body = [&](btRigidBody& body) {
+    btCollisionWorld::rayTestSingle(btTransform(btQuaternion::getIdentity(), from),
+                                    btTransform(btQuaternion::getIdentity(), to), &body,
+                                    body.getCollisionShape(), body.getWorldTransform(), hit);
+  };
+  if (impl_->house) try_body(*impl_->house);
+  for (const Impl::Mover& mover : impl_->movers) try_body(*mover.body);
+  if (!hit.hasHit()) return std::nullopt;
+  return static_cast<double>(hit.m_closestHitFraction) * range_m;
 }
 
 }  // namespace mh

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 
 #include <Eigen/Core>
 
@@ -24,10 +26,19 @@ struct BaseCommand {
   double turn_rad_per_s = 0.0;
 };
 
+/// Somebody or something upright that moves by itself: a cylinder on a path.
+struct MovingObstacle {
+  double radius_m = 0.22, height_m = 1.72;
+  InstanceId instance = 0;                             ///< reported where it is touched
+  std::function<Eigen::Vector2d(double time_s)> path;  ///< where it stands, world
+};
+
 struct Contact {
   bool touching = false;       ///< nearer to something than kTouch_m
   double penetration_m = 0.0;  ///< depth of the deepest overlap, 0 = none
   InstanceId instance = 0;     ///< what is touched (the deepest, if several)
+  /// Where on the base it is: direction from its middle, world; 0 where nothing is touched.
+  Eigen::Vector2d direction = Eigen::Vector2d::Zero();
 };
 
 /// Closer than this counts as touching: Bullet holds a pressed body a hair away from the wall.
@@ -53,6 +64,18 @@ class PlanarWorld {
   /// whole footprint radius.
   Contact contact();
   double step_s() const;
+
+  /// Puts the base somewhere else, at rest.
+  void place(const Eigen::Vector2d& position_m, double heading_rad);
+  /// Adds a moving obstacle. It pushes the base, and nothing stops it.
+  void add(MovingObstacle obstacle);
+  /// Puts the moving obstacles where they are at a time; steps go on from there.
+  void show_at(double time_s);
+  /// Distance (m) along a ray, world frame, to the first thing between floor and head that is not
+  /// the robot; nothing within the range if there is none.
+  /// @param direction  unit
+  std::optional<double> cast(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction,
+                             double range_m) const;
 
  private:
   struct Impl;

@@ -51,8 +51,8 @@ class TumFolder : public testing::Test {
 TEST_F(TumFolder, ReadsBackWhatItWrote) {
   TumWriter writer(folder_, camera_);
   const SE3 pose(Eigen::Matrix3d::Identity(), {1, 2, 3});
-  writer.add(frame(0), exact(), pose);
-  writer.add(frame(33'333'333), exact(), pose);
+  writer.add(0, frame(0), exact(), pose);
+  writer.add(1, frame(33'333'333), exact(), pose);
   EXPECT_FALSE(fs::exists(folder_ / "rgb.txt")) << "an unfinished folder looks finished";
   writer.finish();
 

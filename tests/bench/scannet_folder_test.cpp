@@ -139,7 +139,7 @@ TEST_F(ScannetFolder, ARosCalibrationReadsBackAndServesATumFolder) {
                     {"info.yaml:1"}));
   TumWriter writer(folder_ / "t", camera_);
   const ExactFrame f = frame(0);
-  writer.add(f.seen, f.exact, f.world_from_camera);
+  writer.add(0, f.seen, f.exact, f.world_from_camera);
   writer.finish();
   EXPECT_EQ(load_settings(folder_ / "t" / "camera_info.yaml").camera, camera_);
 }

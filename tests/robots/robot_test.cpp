@@ -22,6 +22,8 @@ std::string refusal(const std::string& from, const std::string& to) {
   EXPECT_NE(at, std::string::npos) << from;
   text.replace(at, from.size(), to);
   const std::string file = testing::TempDir() + "robot_test.yaml";
+  write_atomically(testing::TempDir() + "pepper.urdf",
+                   read_file(MH_SOURCE_DIR "/robots/pepper/pepper.urdf"));
   write_atomically(file, text);
   try {
     load_robot(file);

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/recorded/sequence_writer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <set>
+#include <vector>
+
+#include <fmt/format.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include "bench/pictures/canvas.hpp"
+#include "bench/recorded/tum_folder.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kScanNetPerMetre = 1000;
+constexpr int kJpegQuality = 95;
+
+std::string rows(const Eigen::Matrix4d& m) {
+  std::string text;
+  for (int y = 0; y < 4; ++y)
+    text += fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}\n", m(y, 0), m(y, 1), m(y, 2), m(y, 3));
+  return text;
+}
+
+Eigen::Matrix4d matrix(const SE3& pose) {
+  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+  m.topLeftCorner<3, 3>() = pose.rotation();
+  m.topRightCorner<3, 1>() = pose.translation();
+  return m;
+}
+
+Eigen::Matrix4d intrinsics(const Camera& camera) {
+  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+  m(0, 0) = camera.fx_px;
+  m(1, 1) = camera.fy_px;
+  m(0, 2) = camera.cx_px;
+  m(1, 2) = camera.cy_px;
+  return m;
+}
+
+template <class Id>
+cv::Mat ids(const Grid2d<Id>& grid) {
+  cv::Mat picture(grid.height(), grid.width(), CV_16UC1);
+  std::copy(grid.begin(), grid.end(), picture.begin<std::uint16_t>());
+  return picture;
+}
+
+class ScanNetWriter : public SequenceWriter {
+ public:
+  ScanNetWriter(fs::path folder, const Camera& camera, int png_compression)
+      : folder_(std::move(folder)), camera_(camera), png_compression_(png_compression) {
+    for (const char* part : {"color", "depth", "pose", "intrinsic", "label-filt", "instance-filt"})
+      make_output_folder(folder_ / part);
+  }
+
+  void add(std::size_t index, const RgbdFrame& frame, const RenderedFrame& exact,
+           const SE3& world_from_camera) override {
+    const std::string name = std::to_string(index);
+    write_picture(folder_ / "color" / (name + ".jpg"), colour_picture(frame.colour),
+                  {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+    cv::Mat depth(frame.depth_m.height(), frame.depth_m.width(), CV_16UC1);
+    std::transform(frame.depth_m.begin(), frame.depth_m.end(), depth.begin<std::uint16_t>(),
+                   [](float m) {
+                     const double units = std::round(static_cast<double>(m) * kScanNetPerMetre);
+                     return static_cast<std::uint16_t>(std::clamp(units, 0.0, 65535.0));
+                   });
+    const std::vector<int> png = {cv::IMWRITE_PNG_COMPRESSION, png_compression_};
+    write_picture(folder_ / "depth" / (name + ".png"), depth, png);
+    write_picture(folder_ / "label-filt" / (name + ".png"), ids(exact.classes), png);
+    write_picture(folder_ / "instance-filt" / (name + ".png"), ids(exact.instances), png);
+    write_atomically(folder_ / "pose" / (name + ".txt"), rows(matrix(world_from_camera)));
+    count(index);
+  }
+
+  bool resume(std::size_t index, Stamp, const SE3&) override {
+    const std::string name = std::to_string(index);
+    const std::array files = {
+        folder_ / "color" / (name + ".jpg"), folder_ / "depth" / (name + ".png"),
+        folder_ / "label-filt" / (name + ".png"), folder_ / "instance-filt" / (name + ".png"),
+        folder_ / "pose" / (name + ".txt")};
+    if (!std::ranges::all_of(files, [](const fs::path& file) { return fs::exists(file); }))
+      return false;
+    count(index);
+    return true;
+  }
+
+  void finish() override {
+    const std::string k = rows(intrinsics(camera_));
+    const std::string identity = rows(Eigen::Matrix4d::Identity());
+    write_atomically(folder_ / "intrinsic" / "intrinsic_color.txt", k);
+    write_atomically(folder_ / "intrinsic" / "intrinsic_depth.txt", k);
+    write_atomically(folder_ / "intrinsic" / "extrinsic_color.txt", identity);
+    write_atomically(folder_ / "intrinsic" / "extrinsic_depth.txt", identity);
+    std::string labels = "id\traw_category\tcategory\tcount\tnyu40id\tnyu40class\n";
+    for (const ClassInfo& info : classes())
+      if (info.id != kVoid)
+        labels += fmt::format("{0}\t{1}\t{1}\t0\t{2}\t{3}\n", info.id, info.name, info.nyu40,
+                              classes()[info.nyu40].name);
+    write_atomically(folder_ / "labels.tsv", labels);
+    // Named as the info file of an extracted .sens, which readers look into.
+    write_atomically(
+        folder_ / "_info.txt",
+        fmt::format("m_versionNumber = 4\nm_sensorName = Modelhouse\nm_colorWidth = {0}\n"
+                    "m_colorHeight = {1}\nm_depthWidth = {0}\nm_depthHeight = {1}\n"
+                    "m_depthShift = {2}\nm_frames.size = {3}\n",
+                    camera_.width_px, camera_.height_px, kScanNetPerMetre, written_.size()));
+  }
+
+ private:
+  void count(std::size_t index) {
+    const std::scoped_lock lock(mutex_);
+    written_.insert(index);
+  }
+
+  fs::path folder_;
+  Camera camera_;
+  int png_compression_;
+  std::mutex mutex_;
+  std::set<std::size_t> written_;
+};
+
+}  // namespace
+
+std::unique_ptr<SequenceWriter> make_sequence_writer(std::string_view format,
+                                                     const fs::path& folder, const Camera& camera,
+                                                     int png_compression) {
+  if (format == "tum") return std::make_unique<TumWriter>(folder, camera, png_compression);
+  if (format == "scannet-frames")
+    return std::make_unique<ScanNetWriter>(folder, camera, png_compression);
+  throw InputError(fmt::format("format '{}' is neither 'tum' nor 'scannet-frames'", format));
+}
+
+}  // namespace mh

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/world/travel.hpp"
+
+#include <charconv>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "bench/metrics/trajectory_io.hpp"
+#include "sim/motion/automatic.hpp"
+#include "sim/motion/by_hand.hpp"
+#include "sim/motion/commands.hpp"
+#include "sim/motion/replay.hpp"
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+
+struct Motion {
+  enum class Kind { kTour, kAuto, kHandheld, kReplay, kCommands } kind = Kind::kTour;
+  std::filesystem::path file = {};
+  std::uint64_t seed = 0;
+  std::optional<std::size_t> frames = {};
+};
+
+std::uint64_t number(const std::string& motion, std::string_view text, const char* what) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw InputError(fmt::format("motion '{}': {} '{}' is not a whole number", motion, what, text));
+  return value;
+}
+
+Motion parse(const std::string& motion) {
+  std::string_view text = motion;
+  if (text.starts_with("generated:")) text.remove_prefix(10);
+  if (text.starts_with("replay:"))
+    return {.kind = Motion::Kind::kReplay, .file = std::string(text.substr(7))};
+  if (text.starts_with("commands:"))
+    return {.kind = Motion::Kind::kCommands, .file = std::string(text.substr(9))};
+  std::vector<std::string_view> parts;
+  for (std::string_view rest = text;;) {
+    const auto colon = rest.find(':');
+    parts.push_back(rest.substr(0, colon));
+    if (colon == std::string_view::npos) break;
+    rest.remove_prefix(colon + 1);
+  }
+  const bool by_hand = parts[0] == "handheld";
+  if (!by_hand && parts[0] != "auto") {
+    if (text.size() != motion.size())
+      throw InputError(
+          fmt::format("motion '{}': '{}' is neither 'auto' nor 'handheld'", motion, parts[0]));
+    return {.file = motion};
+  }
+  if (parts.size() > (by_hand ? 3U : 2U))
+    throw InputError(
+        fmt::format("motion '{}': there is no such part as '{}'", motion, parts.back()));
+  Motion result{.kind = by_hand ? Motion::Kind::kHandheld : Motion::Kind::kAuto};
+  if (parts.size() > 1) result.seed = number(motion, parts[1], "seed");
+  if (parts.size() > 2) {
+    result.frames = number(motion, parts[2], "number of frames");
+    validate(HandheldConfig{.frames = result.frames});
+  }
+  return result;
+}
+
+}  // namespace
+
+void check_motion(const std::string& motion) {
+  const Motion parsed = parse(motion);
+  if (parsed.kind == Motion::Kind::kTour) load_tour(parsed.file);
+  if (parsed.kind == Motion::Kind::kReplay) read_tum(parsed.file);
+  if (parsed.kind == Motion::Kind::kCommands) load_commands(parsed.file);
+}
+
+DrivenPath travel(const Scene& scene, const Robot& robot, const std::string& motion) {
+  const Motion parsed = parse(motion);
+  switch (parsed.kind) {
+    case Motion::Kind::kAuto:
+      return drive(scene, robot, automatic_tour(scene, robot, {.seed = parsed.seed}));
+    case Motion::Kind::kHandheld:
+      return scan_by_hand(scene, robot.camera, {.seed = parsed.seed, .frames = parsed.frames});
+    case Motion::Kind::kReplay:
+      return replay(scene, robot.camera, read_tum(parsed.file), parsed.file.string());
+    case Motion::Kind::kCommands:
+      return drive(scene, robot, load_commands(parsed.file)).path;
+    case Motion::Kind::kTour:
+      break;
+  }
+  return drive(scene, robot, load_tour(parsed.file));
+}
+
+}  // namespace mh

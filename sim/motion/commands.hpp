@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/motion/motion.hpp"
+#include "sim/physics/planar_world.hpp"
+
+namespace mh {
+
+/// What the base should do for a while: a velocity in its own frame; where the head should look.
+struct VelocityCommand {
+  double duration_s = 0;
+  double forward_m_per_s = 0, left_m_per_s = 0, turn_rad_per_s = 0;
+  // None: as before. At first 0.
+  std::optional<double> head_yaw_rad = {}, head_pitch_rad = {};
+  int line = 0;  ///< in the script's file, for messages; 0 = none
+};
+
+/// A robot steered by hand, written down.
+struct CommandScript {
+  std::string name;
+  std::filesystem::path file;  ///< where it came from, for messages
+  Eigen::Vector2d start_m = Eigen::Vector2d::Zero();
+  double start_heading_rad = 0;
+  bool reflex = true;  ///< the external-collision reflex is awake
+  std::vector<VelocityCommand> commands;
+};
+
+/// Reads a script (YAML): `name`; `start: {position: [x, y], heading_deg}`; optional `reflex`;
+/// `commands`, a list of mappings with `for_s` and any of `forward_m_per_s`, `left_m_per_s`,
+/// `turn_deg_per_s`, `head_yaw_deg`, `head_pitch_deg`.
+/// @throws InputError naming file, line, field and value.
+CommandScript load_commands(const std::filesystem::path& file);
+
+/// The most that a drive asked of the robot, contacts apart; over the floor and in turning.
+struct DrivePeaks {
+  double m_per_s = 0, m_per_s2 = 0, m_per_s3 = 0;
+  double rad_per_s = 0, rad_per_s2 = 0, rad_per_s3 = 0;
+  double rim_m_per_s = 0;  ///< of any wheel, where the robot has wheels
+};
+
+struct CommandedDrive {
+  DrivenPath path;
+  DrivePeaks peaks;
+  double reflex_time_s = 0;  ///< spent slower than asked because something was near
+};
+
+/// Drives the robot as the script says, by physics: velocity, acceleration, jerk and rim speed
+/// within its limits, the head's joints within theirs. Unlike a tour, a script arrives nowhere:
+/// where something is in the way, the robot stops before it (reflex) or at it.
+/// @param others  that move about
+/// @throws InputError if the robot has no jerk limit, the start is inside something, a head angle
+/// is out of the joint's range (naming file and line).
+CommandedDrive drive(const Scene& scene, const Robot& robot, const CommandScript& script,
+                     const std::vector<MovingObstacle>& others = {});
+
+}  // namespace mh

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/recorded/render_sequence.hpp"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <fstream>
+#include <map>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include "bench/recorded/tum_folder.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "tests/sim/boxes.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Every file below a folder, by its path, with its bytes.
+std::map<std::string, std::string> contents(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file())
+      files[fs::relative(entry.path(), folder).string()] = read_file(entry.path());
+  return files;
+}
+
+class RenderSequence : public testing::Test {
+ protected:
+  RenderSequence()
+      : folder_(fs::temp_directory_path() / ("mh_render_" + std::to_string(getpid()))) {
+    Scene scene = test::empty_room();
+    test::add_box(scene, "box", {6, 4, 0}, {7, 6, 1});
+    camera_.width_px = 64;
+    camera_.height_px = 48;
+    camera_.fx_px = camera_.fy_px = 50;
+    camera_.cx_px = 31.5;
+    camera_.cy_px = 23.5;
+    sensors_.depth_noise_on = false;
+    const Robot robot = test::pepper();
+    Trajectory path;
+    for (int i = 0; i < 12; ++i) {
+      const SE3 world_from_base(
+          Eigen::AngleAxisd(0.1 * i, Eigen::Vector3d::UnitZ()).toRotationMatrix(), {3, 5, 0});
+      path.push_back({i * 33'333'333LL, world_from_base * robot.base_from_camera});
+    }
+    shutter_ = std::make_unique<Shutter>(
+        std::shared_ptr<const Renderer>(make_embree_renderer(scene)), camera_, path, sensors_);
+  }
+  ~RenderSequence() override { fs::remove_all(folder_); }
+
+  std::map<std::string, std::string> rendered(const char* layout, const char* name,
+                                              RenderSequenceOptions options) {
+    const auto writer = make_sequence_writer(layout, folder_ / name, camera_);
+    result_ = render_sequence(*shutter_, sensors_, *writer, options, [](double) {});
+    return contents(folder_ / name);
+  }
+
+  fs::path folder_;
+  Camera camera_;
+  SensorConfig sensors_;
+  std::unique_ptr<Shutter> shutter_;
+  RenderedSequence result_;
+};
+
+TEST_F(RenderSequence, TheBytesDoNotDependOnTheThreads) {
+  for (const char* layout : {"tum", "scannet-frames"}) {
+    const std::string name = layout;
+    const auto one = rendered(layout, (name + "1").c_str(), {.threads = 1});
+    const auto four = rendered(layout, (name + "4").c_str(), {.threads = 4});
+    EXPECT_EQ(result_.frames, 12U);
+    EXPECT_EQ(one, four) << layout;
+    EXPECT_NE(one, rendered(layout, (name + "s").c_str(), {.seed = 1, .threads = 1}));
+  }
+}
+
+TEST_F(RenderSequence, GoesOnWhereItWasStopped) {
+  const auto whole = rendered("tum", "whole", {.every = 2, .threads = 1});
+  EXPECT_EQ(result_.frames, 6U);
+  {
+    const auto writer = make_sequence_writer("tum", folder_ / "part", camera_);
+    EXPECT_THROW(render_sequence(*shutter_, sensors_, *writer, {.every = 2, .threads = 2},
+                                 [](double share) {
+                                   if (share > 0.4) throw InputError("stopped");
+                                 }),
+                 InputError);
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "part" / "rgb.txt")) << "an unfinished folder looks finished";
+  const auto gone_on = rendered("tum", "part", {.every = 2, .threads = 2, .resume = true});
+  EXPECT_GT(result_.resumed, 0U);
+  EXPECT_EQ(result_.resumed + result_.frames, 6U);
+  EXPECT_EQ(gone_on, whole);
+}
+
+TEST_F(RenderSequence, ScanNetsLayoutHoldsWhatWasSeen) {
+  rendered("scannet-frames", "s", {.threads = 2});
+  const RenderedFrame exact = shutter_->expose(5).seen;
+  const auto read = [&](const char* file) {
+    return cv::imread((folder_ / "s" / file).string(), cv::IMREAD_UNCHANGED);
+  };
+  const cv::Mat depth = read("depth/5.png"), label = read("label-filt/5.png"),
+                instance = read("instance-filt/5.png"), colour = read("color/5.jpg");
+  ASSERT_EQ(depth.type(), CV_16UC1);
+  ASSERT_EQ(label.type(), CV_16UC1);
+  ASSERT_EQ(colour.size(), cv::Size(64, 48));
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x) {
+      ASSERT_EQ(label.at<std::uint16_t>(y, x), exact.classes(x, y));
+      ASSERT_EQ(instance.at<std::uint16_t>(y, x), exact.instances(x, y));
+      ASSERT_NEAR(depth.at<std::uint16_t>(y, x) / 1000.0, exact.depth_m(x, y), 0.00051);
+    }
+  std::ifstream pose(folder_ / "s" / "pose" / "5.txt");
+  const SE3& truth = shutter_->path()[5].world_from_camera;
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) {
+      double value = 0;
+      ASSERT_TRUE(pose >> value);
+      const double wanted = row == 3      ? (column == 3 ? 1.0 : 0.0)
+                            : column == 3 ? truth.translation()[row]
+                                          : truth.rotation()(row, column);
+      EXPECT_NEAR(value, wanted, 1e-8);
+    }
+  double fx = 0;
+  std::ifstream(folder_ / "s" / "intrinsic" / "intrinsic_depth.txt") >> fx;
+  EXPECT_EQ(fx, 50);
+  EXPECT_NE(read_file(folder_ / "s" / "labels.tsv").find("\n5\tchair\tchair\t0\t5\tchair\n"),
+            std::string::npos);
+  EXPECT_THROW(make_sequence_writer("kitti", folder_, camera_), InputError);
+}
+
+}  // namespace
+}  // namespace mh

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robots/model/urdf.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "robots/model/robot.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+const std::string kFolder = MH_SOURCE_DIR "/robots/pepper/";
+
+std::string refusal_of(const std::string& text) {
+  const std::string file = testing::TempDir() + "urdf_test.urdf";
+  write_atomically(file, text);
+  try {
+    load_urdf(file);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+/// The message with which Pepper's URDF is refused after one edit.
+std::string refusal(const std::string& from, const std::string& to) {
+  std::string text = read_file(kFolder + "pepper.urdf");
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return refusal_of(text.replace(at, from.size(), to));
+}
+
+TEST(LoadUrdf, PepperIsAsPublished) {
+  const KinematicTree tree = load_urdf(kFolder + "pepper.urdf");
+  EXPECT_EQ(tree.name, "pepper");
+  EXPECT_EQ(tree.root, "base_footprint");
+  EXPECT_NEAR(tree.mass_kg(), 28.681, 1e-6);
+  const auto at = [&](const char* link) { return tree.root_from(link).translation(); };
+  const auto near = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return (a - b).norm() < 1e-4;  // published with four decimals
+  };
+  EXPECT_TRUE(near(at("torso"), {0, 0, 0.820}));
+  EXPECT_TRUE(near(at("Neck"), {-0.038, 0, 0.9899}));
+  EXPECT_TRUE(near(at("CameraTop_frame"), {0.0480, 0, 1.1527}));
+  EXPECT_TRUE(near(at("CameraBottom_frame"), {0.0546, 0, 1.0517}));
+  EXPECT_TRUE(near(at("CameraDepth_frame"), {0.0134, 0.0390, 1.1093}));
+  EXPECT_TRUE(near(at("WheelB_link"), {-0.170, 0, 0.070}));
+  EXPECT_DOUBLE_EQ(tree.joint("WheelFL").velocity, 6.28319);
+  EXPECT_DOUBLE_EQ(tree.joint("HeadPitch").upper, 0.637045);
+  EXPECT_TRUE(std::isinf(tree.joint("WheelFL").upper));
+}
+
+TEST(LoadUrdf, TheHeadMovesItsCameras) {
+  const KinematicTree tree = load_urdf(kFolder + "pepper.urdf");
+  // Aldebaran's Stand posture: the published pose of the top camera is (0.0266, -0.003, 1.1667),
+  // 10.6 deg upwards.
+  const SE3 pose = tree.root_from("CameraTop_frame", {{"HeadPitch", -0.21169},
+                                                      {"HeadYaw", -0.00767},
+                                                      {"HipPitch", -0.02608},
+                                                      {"HipRoll", -0.00460}});
+  EXPECT_TRUE(pose.translation().isApprox(Eigen::Vector3d(0.0266, -0.003, 1.1667), 5e-4));
+  const double up_rad = std::asin(pose.rotation()(2, 0));
+  EXPECT_NEAR(up_rad * 180 / M_PI, 10.6, 0.1);
+  // Yaw turns about the neck.
+  const SE3 left = tree.root_from("CameraDepth_frame", {{"HeadYaw", M_PI_2}});
+  EXPECT_TRUE(
+      left.translation().isApprox(Eigen::Vector3d(-0.038 - 0.039, 0.05138, 0.9899 + 0.1194), 1e-6));
+  EXPECT_THROW(tree.root_from("CameraDepth_frame", {{"HeadRoll", 0.1}}), InputError);
+  EXPECT_THROW(tree.root_from("Tail"), InputError);
+}
+
+TEST(LoadUrdf, RefusesWhatIsNoRobot) {
+  EXPECT_NE(refusal("<child link=\"Neck\"/>", "<child link=\"Nekc\"/>").find("Nekc"),
+            std::string::npos);
+  EXPECT_NE(refusal("<parent link=\"Neck\"/>", "<parent link=\"Nekc\"/>").find("Nekc"),
+            std::string::npos);
+  EXPECT_NE(refusal("<mass value=\"11.6015\"/>", "<mass value=\"-11.6\"/>")
+                .find("link 'Tibia': its mass -11.6 kg is not positive"),
+            std::string::npos);
+  EXPECT_NE(refusal("ixx=\"0.129229\"", "ixx=\"9\"").find("link 'Tibia': no body has"),
+            std::string::npos);
+  EXPECT_NE(refusal("lower=\"-0.706858\"", "lower=\"0.9\"").find("joint 'HeadPitch'"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("this is no XML").find("urdf_test.urdf: "), std::string::npos);
+  EXPECT_NE(refusal_of("<house/>").find("urdf_test.urdf: "), std::string::npos);
+  EXPECT_THROW(load_urdf("/no/such.urdf"), InputError);
+}
+
+TEST(LoadUrdf, RefusesJointsInACircle) {
+  const auto joint = [](const char* name, const char* parent, const char* child) {
+    return std::string("<joint name=\"") + name + "\" type=\"fixed\"><parent link=\"" + parent +
+           "\"/><child link=\"" + child + "\"/></joint>";
+  };
+  const std::string links = "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>";
+  const auto robot = [&](const std::string& joints) {
+    return refusal_of("<robot name=\"r\">" + links + joints + "</robot>");
+  };
+  EXPECT_EQ(robot(joint("1", "a", "b") + joint("2", "b", "c")), "no error");
+  // All in one circle: there is no root.
+  const std::string all = robot(joint("1", "a", "b") + joint("2", "b", "c") + joint("3", "c", "a"));
+  EXPECT_NE(all.find("root"), std::string::npos) << all;
+  // Beside a root.
+  const std::string some = robot(joint("2", "b", "c") + joint("3", "c", "b"));
+  EXPECT_NE(some.find("circle"), std::string::npos) << some;
+  const std::string twice =
+      robot(joint("1", "a", "b") + joint("2", "a", "c") + joint("3", "b", "c"));
+  EXPECT_NE(twice.find("link 'c' hangs on two joints"), std::string::npos) << twice;
+}
+
+TEST(Robot, PepperFileAndUrdfAgree) {
+  const Robot robot = load_robot(kFolder + "pepper.yaml");
+  ASSERT_NE(robot.equipment, nullptr);
+  const Equipment& e = *robot.equipment;
+  EXPECT_NEAR(e.tree.mass_kg(), robot.mass_kg, 1e-6);
+  const SE3 camera = e.tree.root_from(e.depth_camera_link);
+  EXPECT_LT((camera.translation() - robot.base_from_camera.translation()).norm(), 1e-4);
+  EXPECT_LT(angle_between_rad(camera, robot.base_from_camera), 1e-9);
+  ASSERT_EQ(e.cameras.size(), 2U);
+  EXPECT_EQ(e.lasers.size(), 3U);
+  EXPECT_EQ(e.lasers[0].rays, 15);
+  EXPECT_EQ(e.sonars.size(), 2U);
+  EXPECT_EQ(e.bumpers.size(), 3U);
+  EXPECT_NEAR(e.wheels.max_rim_m_per_s, 0.4398, 1e-4);
+  EXPECT_DOUBLE_EQ(robot.limits.max_jerk_m_per_s3.value(), 1.0);
+}
+
+}  // namespace
+}  // namespace mh

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/motion/commands.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "sim/motion/sensing.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/random.hpp"
+#include "tests/sim/boxes.hpp"
+
+namespace mh {
+namespace {
+
+using test::add_box;
+using test::empty_room;
+using test::pepper;
+
+CommandScript script_of(std::vector<VelocityCommand> commands, bool reflex = false) {
+  CommandScript script;
+  script.name = "test";
+  script.file = "test.yaml";
+  script.start_m = {5, 5};
+  script.reflex = reflex;
+  script.commands = std::move(commands);
+  return script;
+}
+
+TEST(Commands, ReadsAScriptAndNamesWhatIsWrong) {
+  const std::string file = testing::TempDir() + "commands_test.yaml";
+  const std::string head = "name: t\nstart: {position: [1, 2], heading_deg: 90}\n";
+  const auto refusal = [&](const std::string& text) -> std::string {
+    write_atomically(file, text);
+    try {
+      load_commands(file);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  write_atomically(file, head +
+                             "reflex: false\ncommands:\n"
+                             "- {for_s: 2, forward_m_per_s: 0.3, turn_deg_per_s: -90}\n"
+                             "- {for_s: 1.5, left_m_per_s: 0.1, head_yaw_deg: 45}\n");
+  const CommandScript script = load_commands(file);
+  EXPECT_FALSE(script.reflex);
+  ASSERT_EQ(script.commands.size(), 2U);
+  EXPECT_DOUBLE_EQ(script.commands[0].turn_rad_per_s, -M_PI_2);
+  EXPECT_DOUBLE_EQ(script.commands[1].head_yaw_rad.value(), M_PI_4);
+  EXPECT_FALSE(script.commands[1].head_pitch_rad);
+  EXPECT_EQ(script.commands[1].line, 6);
+  EXPECT_NE(refusal(head + "commands: []\n").find("at least one"), std::string::npos);
+  EXPECT_NE(refusal(head + "commands:\n- {for_s: -1}\n").find(":4: commands[0].for_s: -1"),
+            std::string::npos);
+  EXPECT_NE(refusal(head + "commands:\n- {for_s: 1, sideways: 2}\n").find("sideways"),
+            std::string::npos);
+}
+
+TEST(Commands, RandomCommandsKeepEveryLimitOfTheRobot) {
+  const Robot robot = pepper();
+  const RandomStream draw(11);
+  std::vector<VelocityCommand> commands;
+  for (std::uint64_t i = 0; i < 150; ++i)
+    commands.push_back({.duration_s = draw.uniform(5 * i, 0.05, 1.5),
+                        .forward_m_per_s = draw.uniform(5 * i + 1, -0.8, 0.8),
+                        .left_m_per_s = draw.uniform(5 * i + 2, -0.8, 0.8),
+                        .turn_rad_per_s = draw.uniform(5 * i + 3, -1.5, 1.5)});
+  Scene wide;  // nothing to run into
+  wide.name = "wide";
+  wide.materials.emplace_back();
+  add_box(wide, "floor", {-100, -100, -0.1F}, {100, 100, 0});
+  const CommandedDrive result = drive(wide, robot, script_of(commands));
+  const BaseLimits& limits = robot.limits;
+  EXPECT_EQ(result.path.contact_time_s, 0.0);
+  EXPECT_LE(result.peaks.m_per_s, limits.max_velocity_m_per_s * (1 + 1e-4));
+  EXPECT_LE(result.peaks.m_per_s2, limits.max_acceleration_m_per_s2 * (1 + 1e-6));
+  EXPECT_LE(result.peaks.m_per_s3, *limits.max_jerk_m_per_s3 * (1 + 1e-6));
+  EXPECT_LE(result.peaks.rad_per_s, limits.max_turn_rad_per_s * (1 + 1e-4));
+  EXPECT_LE(result.peaks.rad_per_s2, limits.max_turn_acceleration_rad_per_s2 * (1 + 1e-6));
+  EXPECT_LE(result.peaks.rad_per_s3, *limits.max_turn_jerk_rad_per_s3 * (1 + 1e-6));
+  EXPECT_LE(result.peaks.rim_m_per_s, robot.equipment->wheels.max_rim_m_per_s);
+  EXPECT_GT(result.peaks.rim_m_per_s, 0.7 * robot.equipment->wheels.max_rim_m_per_s);
+  EXPECT_GT(result.path.length_m, 10);
+
+  const CommandedDrive again = drive(wide, robot, script_of(commands));
+  ASSERT_EQ(result.path.base.size(), again.path.base.size());
+  for (std::size_t i = 0; i < result.path.base.size(); ++i)
+    ASSERT_EQ(result.path.base[i].world_from_camera.translation(),
+              again.path.base[i].world_from_camera.translation());
+}
+
+TEST(Commands, TheReflexStopsTheRobotFortyCentimetresBeforeAWall) {
+  const VelocityCommand east{.duration_s = 20, .forward_m_per_s = 0.5};
+  const CommandedDrive careful = drive(empty_room(), pepper(), script_of({east}, true));
+  const CommandedDrive bold = drive(empty_room(), pepper(), script_of({east}, false));
+  const double careful_x = careful.path.base.back().world_from_camera.translation().x();
+  EXPECT_NEAR(careful_x, 10 - 0.26 - 0.40, 0.04);  // the grid's cell
+  EXPECT_EQ(careful.path.contact_time_s, 0.0);
+  EXPECT_GT(careful.reflex_time_s, 1.0);
+  EXPECT_NEAR(bold.path.base.back().world_from_camera.translation().x(), 10 - 0.26, 5e-3);
+  EXPECT_GT(bold.path.contact_time_s, 1.0);
+  EXPECT_LE(bold.path.max_penetration_m, 5e-3);
+}
+
+TEST(Commands, TheReflexLetsPassWhatIsAsideAndStopsForAPerson) {
+  Scene scene = empty_room();
+  add_box(scene, "shelf", {6, 5.40F, 0}, {8, 6, 1});         // 0.14 m beside the way
+  add_box(scene, "bin", {6, 4.2F, 0}, {6.5F, 4.68F, 0.5F});  // 0.06 m beside it
+  CommandScript script = script_of({{.duration_s = 8, .forward_m_per_s = 0.4}}, true);
+  const auto end_x = [&](const std::vector<MovingObstacle>& others) {
+    return drive(scene, pepper(), script, others)
+        .path.base.back()
+        .world_from_camera.translation()
+        .x();
+  };
+  EXPECT_LT(end_x({}), 5.8);  // the bin is too near
+  scene = empty_room();
+  add_box(scene, "shelf", {6, 5.40F, 0}, {8, 6, 1});
+  EXPECT_GT(end_x({}), 7.5);
+  const MovingObstacle person{.instance = 99,
+                              .path = [](double) { return Eigen::Vector2d(7, 4.9); }};
+  const double before_person = end_x({person});
+  EXPECT_LT(before_person, 7 - 0.26 - 0.22 - 0.35);
+  EXPECT_GT(before_person, 7 - 0.26 - 0.22 - 0.50);
+}
+
+TEST(Commands, HeadJointsMoveTheCameraAndKeepTheirLimits) {
+  const Robot robot = pepper();
+  const CommandedDrive result =
+      drive(empty_room(), robot,
+            script_of({{.duration_s = 1.0},
+                       {.duration_s = 1.0, .head_yaw_rad = M_PI_2, .head_pitch_rad = 0.3}}));
+  ASSERT_EQ(result.path.head.size(), result.path.camera.size());
+  EXPECT_TRUE(result.path.camera.front().world_from_camera.translation().isApprox(
+      Eigen::Vector3d(5, 5, 0) + robot.base_from_camera.translation(), 1e-9));
+  const Eigen::Vector3d ahead = result.path.camera.back().world_from_camera.rotation().col(2);
+  EXPECT_NEAR(std::atan2(ahead.y(), ahead.x()), M_PI_2, 1e-6);
+  EXPECT_NEAR(std::asin(-ahead.z()), 0.3, 1e-6);
+  double fastest = 0;
+  for (std::size_t i = 1; i < result.path.head.size(); ++i)
+    fastest = std::max(fastest, (result.path.head[i][0] - result.path.head[i - 1][0]) * 30);
+  EXPECT_LE(fastest, 7.33998 + 1e-6);
+  EXPECT_GT(fastest, 7.0);
+  try {
+    drive(empty_room(), robot, script_of({{.duration_s = 1, .head_pitch_rad = 1.0, .line = 4}}));
+    FAIL() << "the head went too far";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("test.yaml:4: HeadPitch: 57.3 deg is outside"),
+              std::string::npos)
+        << e.what();
+  }
+}
+
+TEST(Commands, AStartInsideFurnitureIsRefused) {
+  Scene scene = empty_room();
+  add_box(scene, "sofa", {5.1F, 4, 0}, {6, 6, 0.8F});
+  EXPECT_THROW(drive(scene, pepper(), script_of({{.duration_s = 1}})), InputError);
+}
+
+TEST(ReadSensors, LasersAndSonarsMeasureTheRoom) {
+  Scene scene = empty_room();
+  add_box(scene, "box", {6.5F, 4, 0}, {7, 6, 1});
+  const Trajectory base = {{0, SE3(Eigen::Matrix3d::Identity(), {5, 5, 0})}};
+  const RobotReadings readings = read_sensors(scene, pepper(), base, 0);
+  const RobotReading& r = readings.moments.at(0);
+  ASSERT_EQ(r.lasers_m.size(), 3U);
+  ASSERT_EQ(r.lasers_m[0].size(), 15U);
+  EXPECT_NEAR(r.lasers_m[0][7], 1.5 - 0.0562, 1e-4);  // the middle ray of the front laser
+  // Outer rays of 30 deg: the box is 2 m wide, its face 1.44 m away.
+  EXPECT_NEAR(r.lasers_m[0][0], (1.5 - 0.0562) / std::cos(M_PI / 6), 1e-3);
+  EXPECT_EQ(r.lasers_m[1][7], 0.0F);  // nothing within 3 m to the left
+  EXPECT_NEAR(r.sonars_m[0], 1.5 - 0.0699, 0.03);
+  EXPECT_EQ(r.sonars_m[1], 0.0F);
+  EXPECT_NEAR(r.specific_force_m_per_s2.z(), 9.81, 1e-9);
+  EXPECT_FALSE(r.bumpers[0] || r.bumpers[1] || r.bumpers[2]);
+
+  // Somebody stands behind it.
+  const MovingObstacle person{.path = [](double) { return Eigen::Vector2d(3.5, 5); }};
+  const RobotReadings with = read_sensors(scene, pepper(), base, 0, {person});
+  EXPECT_NEAR(with.moments.at(0).sonars_m[1], 1.5 - 0.0718 - 0.22, 0.04);
+}
+
+TEST(ReadSensors, TheBumperThatIsTouchedIsPressed) {
+  const VelocityCommand west{.duration_s = 15, .forward_m_per_s = -0.5};
+  const CommandedDrive back = drive(empty_room(), pepper(), script_of({west}));
+  const RobotReadings readings = read_sensors(empty_room(), pepper(), back.path.base, 0);
+  const RobotReading& last = readings.moments.back();
+  EXPECT_FALSE(last.bumpers[0] || last.bumpers[1]);
+  EXPECT_TRUE(last.bumpers[2]);
+  EXPECT_FALSE(readings.moments.front().bumpers[2]);
+}
+
+TEST(ReadSensors, TheImuFeelsAccelerationAndTurning) {
+  Trajectory base;  // constant acceleration of 0.3 m/s2 ahead, then nothing; turning at 0.5 rad/s
+  for (int i = 0; i <= 60; ++i) {
+    const double t = i / 30.0;
+    base.push_back(
+        {std::llround(t * 1e9), SE3(Eigen::Matrix3d::Identity(), {1 + 0.15 * t * t, 5, 0})});
+  }
+  const RobotReadings straight = read_sensors(empty_room(), pepper(), base, 0);
+  EXPECT_NEAR(straight.moments[30].specific_force_m_per_s2.x(), 0.3, 1e-6);
+  for (std::size_t i = 0; i < base.size(); ++i)
+    base[i].world_from_camera =
+        SE3(Eigen::AngleAxisd(0.5 * static_cast<double>(i) / 30, Eigen::Vector3d::UnitZ())
+                .toRotationMatrix(),
+            {5, 5, 0});
+  const RobotReadings turning = read_sensors(empty_room(), pepper(), base, 0);
+  EXPECT_NEAR(turning.moments[30].turn_rad_per_s.z(), 0.5, 1e-6);
+}
+
+}  // namespace
+}  // namespace mh
