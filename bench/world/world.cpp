@@ -13,6 +13,7 @@
 #include "bench/results/fingerprint.hpp"
 #include "bench/store/code_version.hpp"
 #include "bench/store/run_key.hpp"
+#include "scenes/generate/generate.hpp"
 #include "scenes/load.hpp"
 #include "sim/render/bake.hpp"
 #include "sim/sensors/shutter.hpp"
@@ -120,7 +121,7 @@ PlaceFacts facts(const World& world) {
 
 void check_inputs(const RunSpec& spec) {
   const Environment& environment = spec.environment;
-  check_available(environment.scene, "scene");
+  if (is_generated(environment.scene)) parse_generated(environment.scene.string());
   check_available(environment.mapping_tour, "tour");
   if (environment.query_tour) check_available(*environment.query_tour, "tour");
   load_robot(environment.robot);
