@@ -6,17 +6,11 @@
 
 #include "scenes/house_plan.hpp"
 #include "scenes/house_shell.hpp"
+#include "scenes/name_key.hpp"
 #include "slam/core/yaml.hpp"
 
 namespace mh {
 namespace {
-
-/// A stable number for a name (FNV-1a): a piece keeps its looks when others come or go.
-std::uint64_t name_key(std::string_view name) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  return hash;
-}
 
 void add_lamp_light(const ItemPlan& item, Scene& scene) {
   if (!item.kind->bulb || !item.glow) return;
@@ -40,9 +34,11 @@ void build_item(const ItemPlan& item, MeshBuilder& mesh) {
   mesh.pop();
 }
 
-Scene build(const HousePlan& house) {
+Scene build(const HousePlan& house, bool painted = true) {
   MeshBuilder mesh;
+  mesh.painted = painted;
   mesh.scene().name = house.name;
+  mesh.detail = static_cast<float>(house.detail);
   build_shell(house, mesh);
   for (const ItemPlan& item : house.items) build_item(item, mesh);
   Scene scene = mesh.finish();
@@ -50,8 +46,7 @@ Scene build(const HousePlan& house) {
   if (house.sky) scene.lights.push_back(*house.sky);
   for (const ItemPlan& item : house.items) add_lamp_light(item, scene);
   for (const RoomPlan& room : house.rooms) {
-    const FloorRect& r = room.rect;
-    scene.rooms.push_back({room.name, {{r.x0, r.y0}, {r.x1, r.y0}, {r.x1, r.y1}, {r.x0, r.y1}}});
+    scene.rooms.push_back({room.name, room.outline_m()});
   }
   validate(scene);
   return scene;
@@ -65,6 +60,10 @@ Scene load_house(const std::filesystem::path& yaml) {
 
 Scene build_house(const std::string& yaml_text, const std::string& name) {
   return build(read_house_plan(YamlReader::parse(yaml_text, name)));
+}
+
+std::size_t count_triangles(const std::string& yaml_text, const std::string& name) {
+  return build(read_house_plan(YamlReader::parse(yaml_text, name)), false).triangles.size();
 }
 
 }  // namespace mh

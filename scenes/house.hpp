@@ -20,4 +20,7 @@ Scene load_house(const std::filesystem::path& yaml);
 /// The same from text; `name` stands for the file in messages.
 Scene build_house(const std::string& yaml_text, const std::string& name);
 
+/// How many triangles build_house would make of it, without painting its materials.
+std::size_t count_triangles(const std::string& yaml_text, const std::string& name);
+
 }  // namespace mh

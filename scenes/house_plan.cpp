@@ -100,6 +100,24 @@ std::size_t room_by_name(const YamlReader& yaml, const std::vector<RoomPlan>& ro
   yaml.fail(fmt::format("there is no room '{}'", yaml.as_string()));
 }
 
+FloorRect read_cut(YamlReader yaml, const FloorRect& rect) {
+  constexpr double kLeft = 0.8;  // a passage must be left beside it
+  const YamlReader corner = yaml.at("corner"), size = yaml.at("size_m");
+  const std::string name = corner.as_string();
+  const bool south = name.starts_with("south_"), west = name.ends_with("_west");
+  if (name != fmt::format("{}_{}", south ? "south" : "north", west ? "west" : "east"))
+    corner.fail(fmt::format("'{}' is no corner; corners are south_west, south_east, north_west, "
+                            "north_east",
+                            name));
+  const std::vector<double> n = size.as_numbers(2);
+  if (n[0] <= 0 || n[1] <= 0 || n[0] > rect.x1 - rect.x0 - kLeft || n[1] > rect.y1 - rect.y0 - kLeft)
+    size.fail(fmt::format("[{}, {}] is no part of the room that leaves {} m beside it", n[0], n[1],
+                          kLeft));
+  yaml.finish();
+  return {west ? rect.x0 : rect.x1 - n[0], south ? rect.y0 : rect.y1 - n[1],
+          west ? rect.x0 + n[0] : rect.x1, south ? rect.y0 + n[1] : rect.y1};
+}
+
 RoomPlan read_room(YamlReader& yaml, const Materials& materials) {
   RoomPlan room;
   room.name = yaml.string("name");
@@ -112,6 +130,7 @@ RoomPlan read_room(YamlReader& yaml, const Materials& materials) {
     if (const auto one = walls.find(std::string(side_name(side))))
       room.walls[static_cast<std::size_t>(side)] = material_by_name(*one, materials);
   walls.finish();
+  if (const auto cut = yaml.find("cut")) room.cut = read_cut(*cut, room.rect);
   return room;
 }
 
@@ -139,10 +158,9 @@ std::pair<double, double> read_span(const YamlReader& yaml) {
 
 /// The side of room a on which room b lies across one wall.
 std::optional<Side> side_between(const HousePlan& house, const RoomPlan& a, const RoomPlan& b) {
-  constexpr std::array kOpposite = {Side::kNorth, Side::kSouth, Side::kEast, Side::kWest};
   for (const Side side : kSides) {
     const double gap = std::abs(wall_at(a.rect, side) -
-                                wall_at(b.rect, kOpposite[static_cast<std::size_t>(side)]));
+                                wall_at(b.rect, opposite(side)));
     const auto [a0, a1] = wall_span(a.rect, side);
     const auto [b0, b1] = wall_span(b.rect, side);
     if (std::abs(gap - house.wall_m) < 1e-6 && std::min(a1, b1) - std::max(a0, b0) > 0) return side;
@@ -150,10 +168,19 @@ std::optional<Side> side_between(const HousePlan& house, const RoomPlan& a, cons
   return std::nullopt;
 }
 
+/// The stretch of a room's wall: what a missing corner takes of it is none.
+std::pair<double, double> wall_span(const RoomPlan& room, Side side) {
+  auto [low, high] = wall_span(room.rect, side);
+  if (!room.cut || wall_at(*room.cut, side) != wall_at(room.rect, side)) return {low, high};
+  const auto [cut_low, cut_high] = wall_span(*room.cut, side);
+  (cut_low <= low ? low : high) = cut_low <= low ? cut_high : cut_low;
+  return {low, high};
+}
+
 void check_in_wall(const YamlReader& yaml, const HousePlan& house, const OpeningPlan& opening) {
-  auto [low, high] = wall_span(house.rooms[opening.room].rect, opening.side);
+  auto [low, high] = wall_span(house.rooms[opening.room], opening.side);
   if (opening.other) {
-    const auto [other_low, other_high] = wall_span(house.rooms[*opening.other].rect, opening.side);
+    const auto [other_low, other_high] = wall_span(house.rooms[*opening.other], opposite(opening.side));
     low = std::max(low, other_low);
     high = std::min(high, other_high);
   }
@@ -339,6 +366,14 @@ void check_in_room(const HousePlan& house, const ItemPlan& item) {
     item.where.fail(fmt::format("'{}' at [{:.2f}, {:.2f}] lies outside all rooms", item.name,
                                 middle.x(), middle.y()));
   }
+  if (room.cut) {
+    const FloorRect& c = *room.cut;
+    const double depth =
+        overlap_m(item.footprint(), {{{c.x0, c.y0}, {c.x1, c.y0}, {c.x1, c.y1}, {c.x0, c.y1}}});
+    if (depth > kTouch)
+      item.where.fail(fmt::format("'{}' stands {:.2f} m in the corner that room '{}' lacks",
+                                  item.name, depth, room.name));
+  }
   // Walls are what lies between the inner rectangles: a footprint that leaves its room enters one.
   for (const Vector2d& corner : item.footprint())
     if (!room.rect.contains(corner, kTouch))
@@ -396,6 +431,22 @@ std::string_view side_name(Side side) {
   return kNames[static_cast<std::size_t>(side)];
 }
 
+std::vector<Vector2d> RoomPlan::outline_m() const {
+  const FloorRect& r = rect;
+  std::vector<Vector2d> corners = {{r.x0, r.y0}, {r.x1, r.y0}, {r.x1, r.y1}, {r.x0, r.y1}};
+  if (!cut) return corners;
+  const bool south = cut->y0 <= r.y0, west = cut->x0 <= r.x0;
+  const std::size_t missing = south ? (west ? 0 : 1) : (west ? 3 : 2);
+  // Counter-clockwise: the end of the wall before the missing corner, the inner corner, the next.
+  const Vector2d inner(west ? cut->x1 : cut->x0, south ? cut->y1 : cut->y0);
+  const Vector2d on_x(inner.x(), south ? r.y0 : r.y1), on_y(west ? r.x0 : r.x1, inner.y());
+  const bool y_first = south == west;
+  const std::array<Vector2d, 3> step = {y_first ? on_y : on_x, inner, y_first ? on_x : on_y};
+  corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(missing));
+  corners.insert(corners.begin() + static_cast<std::ptrdiff_t>(missing), step.begin(), step.end());
+  return corners;
+}
+
 std::array<Vector2d, 4> ItemPlan::footprint() const {
   const double c = std::cos(turn_rad), s = std::sin(turn_rad);
   std::array<Vector2d, 4> result;
@@ -432,6 +483,7 @@ HousePlan read_house_plan(YamlReader yaml) {
   house.extent = read_rect(yaml.at("extent_m"));
   house.height_m = yaml.number("height_m", 2.0, 10.0);
   house.wall_m = yaml.number("wall_thickness_m", 0.02, 1.0);
+  house.detail = yaml.number_or("detail", house.detail, 0.5, 8.0);
   const Materials materials = read_materials(yaml.at("materials"));
   house.trim = material_by_name(yaml.at("trim"), materials);
   house.window_frame = material_by_name(yaml.at("window_frame"), materials);

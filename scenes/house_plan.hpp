@@ -33,11 +33,20 @@ constexpr bool runs_along_x(Side side) {
   return side == Side::kSouth || side == Side::kNorth;
 }
 
+constexpr Side opposite(Side side) {
+  constexpr std::array kOpposite = {Side::kNorth, Side::kSouth, Side::kEast, Side::kWest};
+  return kOpposite[static_cast<std::size_t>(side)];
+}
+
 struct RoomPlan {
   std::string name;
   FloorRect rect;
   MaterialSpec floor, ceiling;
   std::array<MaterialSpec, 4> walls;  ///< indexed by Side
+  std::optional<FloorRect> cut;       ///< the corner that an L-shaped room lacks
+
+  /// The floor's outline, counter-clockwise, m.
+  std::vector<Eigen::Vector2d> outline_m() const;
 };
 
 /// A hole in a wall: a doorway or a window.
@@ -80,6 +89,7 @@ struct HousePlan {
   std::string name;
   FloorRect extent;
   double height_m = 2.5, wall_m = 0.1;
+  double detail = 1.0;  ///< see MeshBuilder::detail
   std::vector<RoomPlan> rooms;
   std::vector<OpeningPlan> doorways, windows;
   std::vector<ItemPlan> items;  ///< what carries others stands before them

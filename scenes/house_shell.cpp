@@ -67,6 +67,7 @@ struct Hole {
 void wall_sheet(MeshBuilder& mesh, MaterialId material, const WallFrame& wall, bool inwards,
                 float from, float to, float low, float high, const std::vector<Hole>& holes,
                 float step) {
+  step /= mesh.detail;
   // u runs to the right of who looks at the wall.
   const bool forward = ((wall.side == Side::kNorth || wall.side == Side::kWest) == inwards);
   const float sign = forward ? 1.0F : -1.0F;
@@ -133,22 +134,47 @@ void build_room(const HousePlan& house, std::size_t index, MaterialId trim, Mesh
   const auto x0 = static_cast<float>(room.rect.x0), x1 = static_cast<float>(room.rect.x1);
   const auto y0 = static_cast<float>(room.rect.y0), y1 = static_cast<float>(room.rect.y1);
   const auto top = static_cast<float>(house.height_m);
+  const float fine = kWallStep / mesh.detail, coarse = kCeilingStep / mesh.detail;
+  std::vector<float> x_stops, y_stops;
+  if (room.cut) {
+    x_stops = {static_cast<float>(room.cut->x0), static_cast<float>(room.cut->x1)};
+    y_stops = {static_cast<float>(room.cut->y0), static_cast<float>(room.cut->y1)};
+  }
+  const auto missing = [&](float x, float y) {
+    return room.cut && room.cut->contains({x, y});
+  };
   mesh.begin_instance(room.name + "/floor", class_id("floor"));
   mesh.panel(mesh.material(room.floor), Vector3f::Zero(), Vector3f::UnitX(), Vector3f::UnitY(),
-             breaks(x0, x1, kWallStep), breaks(y0, y1, kWallStep));
+             breaks(x0, x1, fine, x_stops), breaks(y0, y1, fine, y_stops), missing);
   mesh.begin_instance(room.name + "/ceiling", class_id("ceiling"));
   mesh.panel(mesh.material(room.ceiling), {0, 0, top}, Vector3f::UnitY(), Vector3f::UnitX(),
-             breaks(y0, y1, kCeilingStep), breaks(x0, x1, kCeilingStep));
+             breaks(y0, y1, coarse, y_stops), breaks(x0, x1, coarse, x_stops),
+             [&](float y, float x) { return missing(x, y); });
   for (const Side side : kSides) {
     const WallFrame wall = wall_frame(room.rect, side);
     std::vector<Hole> holes;
     for (const auto* list : {&house.doorways, &house.windows})
       for (const OpeningPlan& opening : *list)
         if (pierces(house, opening, index, side)) holes.push_back(hole_of(opening));
-    const float from = wall.along_x() ? x0 : y0, to = wall.along_x() ? x1 : y1;
+    float from = wall.along_x() ? x0 : y0, to = wall.along_x() ? x1 : y1;
+    const MaterialId paint = mesh.material(room.walls[static_cast<std::size_t>(side)]);
+    if (room.cut) {
+      const WallFrame inner = wall_frame(*room.cut, opposite(side));
+      const WallFrame behind = wall_frame(*room.cut, side);
+      const FloorRect& c = *room.cut;
+      const auto a = static_cast<float>(wall.along_x() ? c.x0 : c.y0);
+      const auto b = static_cast<float>(wall.along_x() ? c.x1 : c.y1);
+      if (behind.face == wall.face) {  // this wall ends where the missing corner begins
+        (a <= from ? from : to) = a <= from ? b : a;
+        const WallFrame across{side, inner.face};
+        mesh.begin_instance(fmt::format("{}/wall_inner_{}", room.name, side_name(side)),
+                            class_id("wall"));
+        wall_sheet(mesh, paint, across, true, a, b, 0.0F, top, {}, kWallStep);
+        build_skirting(mesh, trim, across, a, b, {});
+      }
+    }
     mesh.begin_instance(fmt::format("{}/wall_{}", room.name, side_name(side)), class_id("wall"));
-    wall_sheet(mesh, mesh.material(room.walls[static_cast<std::size_t>(side)]), wall, true, from,
-               to, 0.0F, top, holes, kWallStep);
+    wall_sheet(mesh, paint, wall, true, from, to, 0.0F, top, holes, kWallStep);
     build_skirting(mesh, trim, wall, from, to, holes);
   }
 }

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "scenes/gazebo.hpp"
+#include "scenes/generate/generate.hpp"
 #include "scenes/house.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/placed_objects.hpp"
@@ -19,6 +20,8 @@
 namespace mh {
 
 Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings) {
+  if (file.native().starts_with(kGeneratedPrefix))
+    return generate_scene(parse_generated(file.native()));
   if (is_scannet_scene(file) || std::filesystem::is_directory(file))
     return load_scannet(file, warnings);
   constexpr std::array<std::string_view, 5> kMeshes = {".dae", ".glb", ".gltf", ".obj", ".ply"};

@@ -12,7 +12,7 @@ namespace mh {
 /// Loads a scene of any kind by the ending of its file: .yaml is a house (load_house) or, where it
 /// lists objects, a scene of mesh files (load_placed_scene); .ply .obj .glb .gltf .dae are meshes
 /// (load_mesh), .sdf .world are Gazebo's (load_gazebo_world). A folder is a ScanNet scene
-/// (load_scannet).
+/// (load_scannet), "generated:CATEGORY:SEED" is made by code (generate_scene).
 /// @param warnings where to append what could be mended; may be null.
 /// @throws InputError if the file is missing, damaged or of another ending.
 Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings = nullptr);

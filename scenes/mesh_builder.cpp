@@ -78,7 +78,7 @@ MaterialId MeshBuilder::material(const MaterialSpec& spec, const Vector3f& emiss
   const auto [found, is_new] =
       materials_.try_emplace(key, static_cast<MaterialId>(scene_.materials.size()));
   if (is_new) {
-    scene_.materials.push_back(make_material(spec));
+    scene_.materials.push_back(painted ? make_material(spec) : Material{});
     scene_.materials.back().emission = emission;
   }
   return found->second;
@@ -144,7 +144,7 @@ void MeshBuilder::grid_faces(MaterialId material, const Grid& grid, int nu, int 
 }
 
 int MeshBuilder::cells(float length_m) const {
-  return std::max(1, static_cast<int>(std::ceil(length_m / max_edge_m - 1e-4F)));
+  return std::max(1, static_cast<int>(std::ceil(length_m * detail / max_edge_m - 1e-4F)));
 }
 
 void MeshBuilder::box(MaterialId material, const Vector3f& min_m, const Vector3f& max_m,

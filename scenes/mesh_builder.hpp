@@ -42,6 +42,10 @@ class MeshBuilder {
 
   /// No edge of a tessellated flat face is longer than this (m).
   float max_edge_m = 0.12F;
+  /// Divides max_edge_m and every other step: small rooms can afford finer light.
+  float detail = 1.0F;
+  /// Without, materials have no texture, which takes most of the time.
+  bool painted = true;
 
   /// Nests a frame: outer_from_inner applies to everything until pop().
   void push(const Eigen::Isometry3f& outer_from_inner);

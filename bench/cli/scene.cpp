@@ -1,19 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "bench/cli/commands.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "bench/pictures/contact_sheet.hpp"
 #include "bench/protocol/digest.hpp"
+#include "bench/realism/short_walks.hpp"
 #include "bench/world/world.hpp"
+#include "scenes/generate/generate.hpp"
+#include "scenes/generate/grammar.hpp"
+#include "scenes/house.hpp"
 #include "scenes/load.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/scannet/scannet.hpp"
+#include "sim/render/scan_look.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -25,6 +33,11 @@ constexpr int kThreads = 2;  // for baking light; changes no bit
 
 struct Options {
   std::string scene, out, format;
+  std::vector<std::string> scenes;  ///< preview
+  bool scan_look = false;           ///< make
+  int each = 0;                     ///< preview: so many of each category
+  bool captions = true;
+  std::uint64_t seed = 0;
   bool json = false;
 };
 
@@ -79,10 +92,51 @@ void preview(const Options& options) {
   if (fs::path(options.out).extension() != ".png" || fs::is_directory(options.out))
     throw InputError(fmt::format("{}: must name a file that ends in .png", options.out));
   need_folder_of(options.out);
-  Scene scene = load(options.scene);
-  light_scene(scene, kThreads);
+  std::vector<std::string> names = options.scenes;
+  for (const Category& category : categories())
+    for (int i = 0; i < options.each; ++i)
+      names.push_back(to_string({category.name, static_cast<std::uint64_t>(i)}));
+  if (names.empty()) throw InputError("preview: name a scene, or give --each");
+  std::vector<View> gallery;
+  for (const std::string& name : names) {
+    Scene scene = load(name);
+    light_scene(scene, kThreads);
+    const auto renderer = make_scene_renderer(scene);
+    std::vector<View> views = views_of(scene, *renderer);
+    if (names.size() == 1) {
+      write_picture(options.out, draw_contact_sheet(scene.name, views));
+      return;
+    }
+    gallery.push_back(std::move(views.front()));
+    gallery.back().caption = name;
+  }
+  constexpr int kColumns = 4;
+  write_picture(options.out, draw_gallery(gallery, kColumns, options.captions));
+}
+
+void need_ending(const Options& options, const std::vector<std::string>& endings) {
+  const std::string ending = fs::path(options.out).extension().string();
+  if (std::ranges::find(endings, ending) == endings.end())
+    throw InputError(
+        fmt::format("{}: must end in {}", options.out, fmt::join(endings, " or ")));
+  need_folder_of(options.out);
+}
+
+/// As somebody who walks through it with a depth camera would scan it.
+Scene scanned(const Scene& scene) {
+  constexpr std::size_t kViews = 90;
   const auto renderer = make_scene_renderer(scene);
-  write_picture(options.out, draw_contact_sheet(scene.name, views_of(scene, *renderer)));
+  Camera camera;
+  std::vector<SE3> views;
+  for (const Trajectory& walk : short_walks(scene, 0, kViews))
+    views.push_back(walk[kMiddlePose].world_from_camera);
+  return scan_look(scene, *renderer, camera, views);
+}
+
+void write_mesh(Scene scene, const fs::path& out, bool scan = false) {
+  light_scene(scene, kThreads);
+  if (scan) scene = scanned(scene);
+  out.extension() == ".ply" ? save_scannet_ply(scene, out) : save_glb(scene, out);
 }
 
 void convert(const Options& options) {
@@ -96,12 +150,80 @@ void convert(const Options& options) {
   if (!folder && ending != "." + format)
     throw InputError(fmt::format("{}: must end in .{}", options.out, format));
   folder ? make_output_folder(options.out) : need_folder_of(options.out);
+  if (!folder) {
+    write_mesh(load(options.scene), options.out);
+    return;
+  }
   Scene scene = load(options.scene);
   light_scene(scene, kThreads);
-  if (folder)
-    save_scannet(scene, options.out);
+  save_scannet(scene, options.out);
+}
+
+nlohmann::ordered_json facts_json(const GeneratedReference& reference, const GeneratedPlan& plan) {
+  return {{"scene", to_string(reference)},
+          {"room", plan.room},
+          {"floor_area_m2", plan.floor_area_m2},
+          {"objects", plan.objects},
+          {"objects_per_10_m2", plan.objects_per_10_m2()},
+          {"group", density_group_name(density_group(plan.objects_per_10_m2()))},
+          {"free_floor", plan.free_share}};
+}
+
+void make(const Options& options) {
+  const GeneratedReference reference{options.scene, options.seed};
+  if (options.scan_look)
+    need_ending(options, {".glb", ".ply"});
+  else if (!options.out.empty())
+    need_ending(options, {".yaml", ".glb", ".ply"});
+  const GeneratedPlan plan = generate_plan(reference);
+  if (options.json)
+    fmt::print("{}\n", facts_json(reference, plan).dump(2));
   else
-    format == "ply" ? save_scannet_ply(scene, options.out) : save_glb(scene, options.out);
+    fmt::print("{}: {}, {:.1f} m2, {} objects, {:.1f} per 10 m2, {:.0f} % of the floor free\n",
+               to_string(reference), plan.room, plan.floor_area_m2, plan.objects,
+               plan.objects_per_10_m2(), 100 * plan.free_share);
+  if (options.out.empty()) return;
+  if (fs::path(options.out).extension() == ".yaml")
+    write_atomically(options.out, with_detail(plan));
+  else
+    write_mesh(build_house(with_detail(plan), plan.name), options.out, options.scan_look);
+}
+
+/// Every environment of every category, and how many fall into each group of the paper's Figure 3.
+void list(const Options& options) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  std::array<int, kDensityGroups> total{};
+  int count = 0;
+  if (!options.json) {
+    fmt::print("{:<18}{:>6}", "objects per 10 m2", "");
+    for (int g = 0; g < kDensityGroups; ++g) fmt::print("{:>7}", density_group_name(g));
+    fmt::print("   floor, m2\n");
+  }
+  for (const Category& category : categories()) {
+    std::array<int, kDensityGroups> groups{};
+    double least = 1e30, most = 0;
+    for (int i = 0; i < category.count; ++i) {
+      const GeneratedReference reference{category.name, static_cast<std::uint64_t>(i)};
+      const GeneratedPlan plan = generate_plan(reference);
+      ++groups[static_cast<std::size_t>(density_group(plan.objects_per_10_m2()))];
+      least = std::min(least, plan.floor_area_m2);
+      most = std::max(most, plan.floor_area_m2);
+      if (options.json) all.push_back(facts_json(reference, plan));
+    }
+    count += category.count;
+    for (std::size_t g = 0; g < groups.size(); ++g) total[g] += groups[g];
+    if (options.json) continue;
+    fmt::print("{:<18}{:>6}", category.name, category.count);
+    for (const int n : groups) fmt::print("{:>7}", n);
+    fmt::print("   {:.1f} to {:.1f}\n", least, most);
+  }
+  if (options.json) {
+    fmt::print("{}\n", all.dump(2));
+    return;
+  }
+  fmt::print("{:<18}{:>6}", "all", count);
+  for (const int n : total) fmt::print("{:>7}", n);
+  fmt::print("\n");
 }
 
 }  // namespace
@@ -118,10 +240,34 @@ void add_scene(CLI::App& app) {
   i->footer("Example:\n  modelhouse scene info scenes/model_house/house.yaml --json");
   i->callback([options] { info(*options); });
 
-  CLI::App* p = command->add_subcommand("preview", "Draws a contact sheet: colour, depth, labels.");
-  p->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
+  CLI::App* l = command->add_subcommand(
+      "list", "Lists the categories of generated scenes with their tally of densities.");
+  l->add_flag("--json", options->json, "Prints JSON: one entry per environment");
+  l->footer("Example:\n  modelhouse scene list");
+  l->callback([options] { list(*options); });
+
+  CLI::App* m = command->add_subcommand("make", "Generates a furnished room of a category.");
+  m->add_option("category", options->scene, "One of those that 'scene list' names")->required();
+  m->add_option("--seed", options->seed, "Another seed is another room");
+  m->add_option("--out", options->out, "What to write: .yaml (a plan), .glb or .ply (a mesh, lit)");
+  m->add_flag("--scan-look", options->scan_look,
+              "Writes what a hand-held scan of it would be: colours per vertex, holes, bumps");
+  m->add_flag("--json", options->json, "Prints JSON");
+  m->footer(
+      "Example:\n  modelhouse scene make bathroom --seed 3 --out bathroom.yaml\n"
+      "Wherever a scene file is wanted, generated:bathroom:3 stands for the same room.");
+  m->callback([options] { make(*options); });
+
+  CLI::App* p = command->add_subcommand(
+      "preview", "Draws a contact sheet: colour, depth, labels of one scene, or a view of each.");
+  p->add_option("scenes", options->scenes, "Scenes: files, or generated:CATEGORY:SEED");
+  p->add_option("--each", options->each, "So many generated scenes of every category")
+      ->check(CLI::Range(1, 1000));
+  p->add_flag("--captions,!--no-captions", options->captions, "Leaves out what each picture shows");
   p->add_option("--out", options->out, "Picture to write (PNG)")->required();
-  p->footer("Example:\n  modelhouse scene preview scenes/model_house/house.yaml --out house.png");
+  p->footer(
+      "Example:\n  modelhouse scene preview scenes/model_house/house.yaml --out house.png\n"
+      "  modelhouse scene preview --each 2 --out categories.png");
   p->callback([options] { preview(*options); });
 
   CLI::App* c = command->add_subcommand("convert", "Writes a scene as a mesh, light baked in.");
@@ -137,6 +283,7 @@ void add_scene(CLI::App& app) {
       "Examples:\n  modelhouse scene convert scenes/model_house/house.yaml --out house.glb\n"
       "  modelhouse scene convert house.glb --out out/scene0000_00 --format scannet");
   c->callback([options] { convert(*options); });
+  add_scene_statistics(*command);
 }
 
 }  // namespace mh::cli

@@ -202,4 +202,24 @@ cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& vi
   return canvas.finish();
 }
 
+cv::Mat draw_gallery(const std::vector<View>& views, int columns, bool captions) {
+  const double below = captions ? kCaption : kGap;
+  const double tile_height =
+      views.empty() ? 300 : kTileWidth * views[0].colour.height() / views[0].colour.width();
+  const auto rows = (views.size() + static_cast<std::size_t>(columns) - 1) /
+                    static_cast<std::size_t>(columns);
+  Canvas canvas(static_cast<int>(2 * kMargin + columns * kTileWidth + (columns - 1) * kGap),
+                static_cast<int>(2 * kMargin + static_cast<double>(rows) * (tile_height + below)));
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const double x = kMargin + static_cast<double>(i % static_cast<std::size_t>(columns)) *
+                                   (kTileWidth + kGap);
+    const double y = kMargin + static_cast<double>(i / static_cast<std::size_t>(columns)) *
+                                   (tile_height + below);
+    canvas.picture(colour_picture(views[i].colour), x, y, kTileWidth, tile_height);
+    if (captions)
+      canvas.text(views[i].caption, {x, y + tile_height + 14}, 9.5, {60, 64, 72});
+  }
+  return canvas.finish();
+}
+
 }  // namespace mh

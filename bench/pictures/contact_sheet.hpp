@@ -24,6 +24,9 @@ struct View {
 /// names of the classes seen.
 cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& views);
 
+/// The colours of many views, `columns` in a row, with or without their captions.
+cv::Mat draw_gallery(const std::vector<View>& views, int columns, bool captions);
+
 /// Exact pictures from a few poses spread evenly over a path.
 std::vector<View> views_along(const Trajectory& path, const Renderer& renderer,
                               const Camera& camera, std::size_t count);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "bench/plan/names.hpp"
+#include "scenes/generate/generate.hpp"
 
 namespace mh {
 namespace {
@@ -95,7 +96,7 @@ std::vector<fs::path> matching_files(const YamlReader& pattern, const fs::path& 
 }  // namespace
 
 bool is_generated(const fs::path& source) {
-  return source.string().starts_with("generated:");
+  return source.string().starts_with(kGeneratedPrefix);
 }
 
 fs::path existing_file(const YamlReader& node, const fs::path& folder) {

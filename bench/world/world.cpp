@@ -14,6 +14,7 @@
 #include "bench/store/code_version.hpp"
 #include "bench/store/run_key.hpp"
 #include "bench/world/travel.hpp"
+#include "scenes/generate/generate.hpp"
 #include "scenes/load.hpp"
 #include "sim/render/bake.hpp"
 #include "sim/sensors/shutter.hpp"
@@ -22,15 +23,6 @@
 
 namespace mh {
 namespace {
-
-/// @throws InputError where the source is one that no code makes yet.
-void check_available(const std::filesystem::path& source, const char* what) {
-  if (is_generated(source))
-    throw InputError(
-        fmt::format("{} '{}' is not available yet: generated environments come with a "
-                    "later version",
-                    what, source.string()));
-}
 
 float exposure_of(const Scene& scene) {
   return scene.light.empty() ? 1.0F : suggest_exposure(scene);
@@ -127,7 +119,7 @@ PlaceFacts facts(const World& world) {
 
 void check_inputs(const RunSpec& spec) {
   const Environment& environment = spec.environment;
-  check_available(environment.scene, "scene");
+  if (is_generated(environment.scene)) parse_generated(environment.scene.string());
   load_robot(environment.robot);
   load_sensor_config(spec.level);
   check_motion(environment.mapping_tour);

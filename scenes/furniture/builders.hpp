@@ -35,6 +35,68 @@ void cupboard(Piece& piece);
 void box(Piece& piece);
 void book_stack(Piece& piece);
 
+// bathroom.cpp
+void toilet(Piece& piece);
+void bathtub(Piece& piece);
+void shower(Piece& piece);
+void washbasin(Piece& piece);
+void washing_machine(Piece& piece);
+void laundry_basket(Piece& piece);
+void trash_can(Piece& piece);
+void toilet_paper(Piece& piece);
+void radiator(Piece& piece);
+void blinds(Piece& piece);
+
+// office.cpp
+void office_chair(Piece& piece);
+void monitor(Piece& piece);
+void keyboard(Piece& piece);
+void filing_cabinet(Piece& piece);
+void whiteboard(Piece& piece);
+void notice_board(Piece& piece);
+void copier(Piece& piece);
+void printer(Piece& piece);
+void paper_stack(Piece& piece);
+void mailboxes(Piece& piece);
+void conference_table(Piece& piece);
+void conference_phone(Piece& piece);
+void water_cooler(Piece& piece);
+void computer(Piece& piece);
+void panel_lamp(Piece& piece);
+
+// public.cpp
+void reception_desk(Piece& piece);
+void lift_door(Piece& piece);
+void magazine_rack(Piece& piece);
+void school_desk(Piece& piece);
+void school_chair(Piece& piece);
+void projector_screen(Piece& piece);
+void wall_screen(Piece& piece);
+void lockers(Piece& piece);
+void fire_extinguisher(Piece& piece);
+void storage_shelf(Piece& piece);
+void base_counter(Piece& piece);
+void vending_machine(Piece& piece);
+
+// leisure.cpp
+void pool_table(Piece& piece);
+void treadmill(Piece& piece);
+void exercise_bike(Piece& piece);
+void dumbbell_rack(Piece& piece);
+void weight_bench(Piece& piece);
+void exercise_ball(Piece& piece);
+void yoga_mat(Piece& piece);
+void ironing_board(Piece& piece);
+void workbench(Piece& piece);
+void tool_board(Piece& piece);
+void bicycle(Piece& piece);
+void ladder(Piece& piece);
+void clothes_rack(Piece& piece);
+void fireplace(Piece& piece);
+void piano(Piece& piece);
+void stool(Piece& piece);
+void dart_board(Piece& piece);
+
 // kitchen.cpp
 void refrigerator(Piece& piece);
 void kitchen_counter(Piece& piece);
@@ -86,6 +148,11 @@ MaterialSpec plain(std::string kind, Rgb8 tone, double variation = 0.3, std::uin
 /// `height` tall and `depth` deep; the current object is theirs.
 void books(Piece& piece, float x0, float x1, float front, float z, float height, float depth,
            std::uint64_t row);
+/// A round body whose section is an ellipse (square = 1) or nearer to a rectangle (square < 1):
+/// profile of (share of the radii, height above centre), listed upwards seen from outside.
+void oval(Piece& piece, MaterialId material, const Eigen::Vector3f& centre, float radius_x_m,
+          float radius_y_m, std::span<const Eigen::Vector2f> profile, int sides = 28,
+          float square = 1.0F);
 /// A bar handle from a to b standing off by `off` along -y.
 void handle(Piece& piece, MaterialId material, const Eigen::Vector3f& a, const Eigen::Vector3f& b,
             float off = 0.03F);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "scenes/materials/painters.hpp"
+#include "scenes/name_key.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
@@ -47,6 +48,7 @@ constexpr std::array kKinds = {
     Kind{"screen", kWhole, kWhole, 0.0015F, paint_screen},
     Kind{"stone", 1.2F, 1.2F, 0.002F, paint_stone},
     Kind{"tiles", 1.2F, 1.2F, 0.002F, paint_tiles},
+    Kind{"whiteboard", kWhole, kWhole, 0.002F, paint_whiteboard},
     Kind{"wood_boards", 2.4F, 1.2F, 0.0025F, paint_wood_boards},
     Kind{"wood_grain", 2.0F, 0.8F, 0.002F, paint_wood_grain},
 };
@@ -63,13 +65,6 @@ const Kind& find_kind(std::string_view name) {
   const auto* const found = std::ranges::find(kKinds, name, &Kind::name);
   if (found == kKinds.end()) throw InputError(fmt::format("unknown kind of material: {}", name));
   return *found;
-}
-
-/// A stable number for a name (FNV-1a), so that two kinds with one seed share no random stream.
-std::uint64_t name_key(std::string_view name) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  return hash;
 }
 
 void check(const MaterialSpec& spec) {
@@ -100,6 +95,7 @@ Material make_material(const MaterialSpec& spec) {
                                  .texel_m = texel_m,
                                  .tone = Tint(spec.tone),
                                  .variation = static_cast<float>(spec.variation),
+                                 // Two kinds with one seed share no random stream.
                                  .random = RandomStream(spec.seed).fork(name_key(spec.kind))});
   return material;
 }

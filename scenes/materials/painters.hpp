@@ -60,6 +60,7 @@ Picture paint_book_cover(const PaintJob& job);
 Picture paint_poster(const PaintJob& job);
 Picture paint_paper(const PaintJob& job);
 Picture paint_screen(const PaintJob& job);
+Picture paint_whiteboard(const PaintJob& job);
 
 // views.cpp
 Picture paint_painting(const PaintJob& job);

@@ -326,4 +326,45 @@ Picture paint_screen(const PaintJob& job) {
   return picture;
 }
 
+Picture paint_whiteboard(const PaintJob& job) {
+  const Field broad = fbm(job.width, job.height, 3, 2, 3, 0.5F, job.random.fork(0));
+  Picture picture = paint(job, [&](int x, int y) {
+    return job.tone * (1.0F + 0.012F * broad(x, y));  // not wiped quite clean
+  });
+  Canvas canvas(picture);
+  const RandomStream random = job.random.fork(1);
+  constexpr std::array<Tint, 3> kPens = {Tint{40, 60, 150}, Tint{30, 30, 34}, Tint{176, 40, 40}};
+  const auto w = static_cast<float>(job.width), h = static_cast<float>(job.height);
+  const float pen = static_cast<float>(job.texels(0.006));
+  // Blocks of writing and a sketch or two; many boards are empty.
+  const int blocks = static_cast<int>(job.variation * 6.0F * static_cast<float>(random.uniform(0)));
+  for (int b = 0; b < blocks; ++b) {
+    const RandomStream r = random.fork(static_cast<std::uint64_t>(10 + b));
+    const Tint tint = kPens[r.below(0, kPens.size())];
+    const auto x0 = static_cast<float>(r.uniform(1, 0.04, 0.66)) * w;
+    const auto y0 = static_cast<float>(r.uniform(2, 0.08, 0.6)) * h;
+    const float line = static_cast<float>(job.texels(0.07));
+    if (r.uniform(3) < 0.3) {
+      canvas.frame(x0, y0, 0.18F * w, 0.22F * h, pen, tint);
+      canvas.line(x0 + 0.18F * w, y0 + 0.1F * h, x0 + 0.28F * w, y0 + 0.16F * h, pen, tint);
+      canvas.ellipse(x0 + 0.30F * w, y0 + 0.18F * h, 0.03F * w, 0.05F * h, 0.0F, tint);
+      continue;
+    }
+    for (int i = 0; i < 2 + static_cast<int>(r.below(4, 5)); ++i) {
+      const RandomStream q = r.fork(static_cast<std::uint64_t>(i));
+      float x = x0;
+      const float y = y0 + line * static_cast<float>(i), end = x0 + w * static_cast<float>(q.uniform(0, 0.1, 0.3));
+      float low = y;
+      for (std::uint64_t k = 1; x < end; k += 2) {  // a hand's zigzag
+        const float nx = x + 0.28F * line * static_cast<float>(q.uniform(k, 0.4, 1.2));
+        const float ny = y - 0.55F * line * static_cast<float>(q.uniform(k + 1, -0.2, 1.0));
+        if (q.uniform(k + 1000) > 0.15) canvas.line(x, low, nx, ny, pen, tint);
+        x = nx;
+        low = ny;
+      }
+    }
+  }
+  return picture;
+}
+
 }  // namespace mh

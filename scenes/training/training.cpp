@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "scenes/dice.hpp"
 #include "scenes/training/patterns.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/random.hpp"
@@ -20,26 +21,6 @@ using Eigen::Vector3f;
 
 constexpr float kMaxEdge = 0.15F;  // m; baked light lives at the vertices
 constexpr float kPi = std::numbers::pi_v<float>;
-
-/// Draws numbers one after the other. Never twice in one argument list, whose order is anyone's
-/// guess (a braced one goes from left to right).
-class Dice {
- public:
-  explicit Dice(RandomStream random) : random_(random) {}
-  float uniform(double low, double high) {
-    return static_cast<float>(random_.uniform(next_++, low, high));
-  }
-  int whole(int low, int high) {  ///< both ends included
-    return low +
-           static_cast<int>(random_.below(next_++, static_cast<std::uint64_t>(high - low + 1)));
-  }
-  std::uint64_t bits() { return random_.bits(next_++); }
-
- private:
-  RandomStream random_;
-  std::uint64_t next_ = 0;
-};
-
 /// Assembles a training room from flat and round faces.
 class RoomMaker {
  public:

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "bench/cli/commands.hpp"
+#include "bench/cli/progress.hpp"
+#include "bench/realism/short_walks.hpp"
+#include "bench/realism/survey.hpp"
+#include "bench/recorded/tum_folder.hpp"
+#include "bench/world/world.hpp"
+#include "scenes/generate/generate.hpp"
+#include "scenes/generate/grammar.hpp"
+#include "sim/world/sequence.hpp"
+#include "slam/core/error.hpp"
+
+namespace mh::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<std::string> scenes;
+  std::string level, robot, reference, tum;
+  int per_category = 0;
+  std::size_t frames = 600;
+  int threads = 2;
+  bool json = false;
+};
+
+std::vector<std::string> names_of(const Options& options) {
+  if (!options.scenes.empty()) return options.scenes;
+  std::vector<std::string> names;
+  for (const Category& category : categories()) {
+    const int count =
+        options.per_category > 0 ? std::min(options.per_category, category.count) : category.count;
+    for (int i = 0; i < count; ++i)
+      names.push_back(to_string({category.name, static_cast<std::uint64_t>(i)}));
+  }
+  return names;
+}
+
+cv::Mat grey_of(const Grid2d<Rgb8>& colour) {
+  // cv::Mat does not write through this view.
+  const cv::Mat rgb(colour.height(), colour.width(), CV_8UC3,
+                    const_cast<Rgb8*>(colour.data()));
+  cv::Mat grey;
+  cv::cvtColor(rgb, grey, cv::COLOR_RGB2GRAY);
+  return grey;
+}
+
+/// Moments of a walk through it, as the level's sensors see them.
+MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const Options& options,
+                            const Robot& robot, const SensorConfig& sensors) {
+  const Scene scene = load_lit_scene(name, options.threads);
+  const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene);
+  MeasuredPlace place{.name = name, .frames = {}};
+  for (const Trajectory& walk : short_walks(scene, 0, frames)) {
+    const SimulatedSequence sequence(renderer, robot.camera, walk, sensors, LabelMode::kNone);
+    place.frames.push_back(
+        measure_image(grey_of(sequence.at(kMiddlePose, RandomStream(0)).frame.colour)));
+  }
+  return place;
+}
+
+MeasuredPlace measure_recording(const fs::path& folder) {
+  MeasuredPlace place{.name = folder.string(), .frames = {}};
+  for (const RecordedFrame& frame : load_tum_folder(folder)) {
+    const cv::Mat grey = cv::imread(frame.colour.string(), cv::IMREAD_GRAYSCALE);
+    if (grey.empty())
+      throw InputError(fmt::format("{}: is no picture that can be read", frame.colour.string()));
+    place.frames.push_back(measure_image(grey));
+  }
+  return place;
+}
+
+std::string number(double v) {
+  return std::abs(v) >= 1000 ? fmt::format("{:.0f}", v) : fmt::format("{:.3g}", v);
+}
+
+void print_table(const std::vector<MeasuredPlace>& places, const std::vector<RealFrames>& real,
+                 const std::optional<MeasuredPlace>& recording) {
+  std::size_t frames = 0;
+  for (const MeasuredPlace& place : places) frames += place.frames.size();
+  fmt::print("{} frames of {} places; percentiles 5 / 25 / 50 / 75 / 95\n", frames, places.size());
+  for (std::size_t q = 0; q < kImageQuantityCount; ++q) {
+    fmt::print("\n{}\n", kImageQuantities[q].name);
+    const auto line = [](const std::string& name, const std::array<double, 5>& p,
+                         const std::string& more) {
+      fmt::print("  {:<14}{:>8}{:>8}{:>8}{:>8}{:>8}   {}\n", name, number(p[0]), number(p[1]),
+                 number(p[2]), number(p[3]), number(p[4]), more);
+    };
+    const RealismRow row = compare(places, real.front(), q);
+    line("generated", row.ours,
+         fmt::format("median of places {} {} the middle half of {}; spread {:.2f} of it",
+                     number(row.median_of_places), row.in_range ? "within" : "OUTSIDE",
+                     real.front().name, row.spread_ratio));
+    for (const RealFrames& set : real) line(set.name, set.percentiles[q], "");
+    if (recording) {
+      std::array<double, 5> measured{};
+      for (std::size_t k = 0; k < kShares.size(); ++k) measured[k] = recording->at(q, kShares[k]);
+      line("recording", measured,
+           fmt::format("{} frames, measured now", recording->frames.size()));
+    }
+    if (row.outside.empty()) continue;
+    std::vector<std::string> outside;
+    for (const std::size_t i : row.outside)
+      outside.push_back(fmt::format("{} ({})", places[i].name, number(places[i].at(q, 0.5))));
+    fmt::print("  {} places whose median leaves {}'s 5 to 95 %: {}\n", outside.size(),
+               real.front().name, fmt::join(outside, ", "));
+  }
+}
+
+void print_json(const std::vector<MeasuredPlace>& places, const RealFrames& real) {
+  nlohmann::ordered_json json, list = nlohmann::ordered_json::array();
+  for (std::size_t q = 0; q < kImageQuantityCount; ++q) {
+    const RealismRow row = compare(places, real, q);
+    json["quantities"][std::string(kImageQuantities[q].key)] = {
+        {"percentiles", row.ours},       {"real", real.percentiles[q]},
+        {"median", row.median_of_places}, {"in_range", row.in_range},
+        {"spread_ratio", row.spread_ratio}};
+  }
+  for (const MeasuredPlace& place : places) {
+    nlohmann::ordered_json entry = {{"scene", place.name}, {"frames", place.frames.size()}};
+    for (std::size_t q = 0; q < kImageQuantityCount; ++q)
+      entry[std::string(kImageQuantities[q].key)] = place.at(q, 0.5);
+    list.push_back(entry);
+  }
+  json["places"] = list;
+  fmt::print("{}\n", json.dump(2));
+}
+
+void run(const Options& options) {
+  const std::vector<RealFrames> real = load_real_frames(options.reference);
+  const Robot robot = load_robot(options.robot);
+  const SensorConfig sensors = load_sensor_config(options.level);
+  const std::vector<std::string> names = names_of(options);
+  std::optional<MeasuredPlace> recording;
+  if (!options.tum.empty()) recording = measure_recording(options.tum);
+  Progress progress("statistics");
+  std::vector<MeasuredPlace> places;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    // Together they make up the frames asked for.
+    const std::size_t frames =
+        (i + 1) * options.frames / names.size() - i * options.frames / names.size();
+    if (frames > 0) places.push_back(measure_scene(names[i], frames, options, robot, sensors));
+    progress.share(static_cast<double>(i + 1) / static_cast<double>(names.size()));
+  }
+  options.json ? print_json(places, real.front()) : print_table(places, real, recording);
+}
+
+}  // namespace
+
+void add_scene_statistics(CLI::App& scene) {
+  auto options = std::make_shared<Options>();
+  options->level = "sim/sensors/levels/handheld.yaml";
+  options->robot = "robots/pepper/pepper.yaml";
+  options->reference = "assets/real_frames.yaml";
+  CLI::App* command = scene.add_subcommand(
+      "statistics", "Measures rendered frames beside real ones: texture, blankness, sharpness.");
+  command->add_option("scenes", options->scenes, "Scenes; without: those of every category");
+  command->add_option("--per-category", options->per_category, "Only so many of each category")
+      ->check(CLI::Range(1, 1000));
+  command->add_option("--frames", options->frames, "Frames of all scenes together")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command->add_option("--level", options->level, "Sensor level (YAML)")->capture_default_str();
+  command->add_option("--robot", options->robot, "Whose camera (YAML)")->capture_default_str();
+  command->add_option("--reference", options->reference, "Figures of real frames (YAML)")
+      ->capture_default_str();
+  command->add_option("--tum", options->tum, "Folder of real frames in TUM's layout, measured too");
+  command->add_option("--jobs", options->threads, "Threads that bake light; changes no figure")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--json", options->json, "Prints JSON, with the median of each scene");
+  command->footer(
+      "Example:\n  modelhouse scene statistics --per-category 3 --frames 540\n"
+      "Paths are relative to where the command is run: the project's folder.");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace mh::cli

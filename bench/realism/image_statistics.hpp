@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+namespace mh {
+
+/// What is measured of a picture to tell how hard it is for features: texture, blankness,
+/// sharpness. In the order of kImageQuantities.
+inline constexpr std::size_t kImageQuantityCount = 8;
+using ImageStatistics = std::array<double, kImageQuantityCount>;
+
+struct ImageQuantity {
+  std::string_view key, name;
+};
+inline constexpr std::array<ImageQuantity, kImageQuantityCount> kImageQuantities = {{
+    {"fast_20", "FAST corners, threshold 20"},
+    {"fast_7", "FAST corners, threshold 7"},
+    {"orb", "ORB keypoints, at most 2000"},
+    {"gradient_median", "gradient, median (grey levels/px)"},
+    {"gradient_p95", "gradient, 95th percentile"},
+    {"blank_cells", "share of blank 40x30 cells"},
+    {"spectrum_slope", "slope of the power spectrum"},
+    {"laplacian_variance", "variance of the Laplacian"},
+}};
+
+/// Measures a picture scaled to 640x480:
+/// - corners by cv::FAST with suppression of non-maxima; keypoints by cv::ORB (8 levels of 1.2, at
+///   most 2000, threshold 20);
+/// - the length of the gradient by Sobel / 8; a cell of 40x30 pixels is blank where 95 % of its
+///   gradients are below 3;
+/// - the slope of log power over log frequency from 8 to 159 cycles, averaged over rings, of the
+///   middle 480x480 under a Hann window;
+/// - the variance of the 4-neighbour Laplacian.
+/// @param grey 8 bits, one channel, not empty
+ImageStatistics measure_image(const cv::Mat& grey);
+
+/// The value below which that share of a list lies, interpolated between neighbours; NaN if empty.
+double percentile(std::vector<double> values, double share);
+
+}  // namespace mh

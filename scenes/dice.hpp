@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "slam/core/random.hpp"
+
+namespace mh {
+
+/// Draws one after the other. Name each draw in its own statement or braced list: the order in
+/// which the arguments of a call are evaluated is anybody's guess (a braced one goes from left to
+/// right).
+class Dice {
+ public:
+  explicit Dice(RandomStream random) : random_(random) {}
+
+  float uniform(double low, double high) { return static_cast<float>(number(low, high)); }
+  double number(double low, double high) { return random_.uniform(next_++, low, high); }
+  int whole(int low, int high) {  ///< both ends included
+    return low +
+           static_cast<int>(random_.below(next_++, static_cast<std::uint64_t>(high - low + 1)));
+  }
+  std::uint64_t bits() { return random_.bits(next_++); }
+  bool chance(double share) { return random_.uniform(next_++) < share; }
+  std::size_t below(std::size_t count) {
+    return static_cast<std::size_t>(random_.below(next_++, count));
+  }
+  template <class T>
+  const T& one_of(std::span<const T> list) {
+    return list[below(list.size())];
+  }
+
+ private:
+  RandomStream random_;
+  std::uint64_t next_ = 0;
+};
+
+}  // namespace mh

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenes/scene.hpp"
+
+namespace mh {
+
+/// A generated environment by name: "generated:bathroom:3".
+struct GeneratedReference {
+  std::string category;
+  std::uint64_t seed = 0;
+};
+
+/// What such a name begins with, in the place of a file's.
+inline constexpr std::string_view kGeneratedPrefix = "generated:";
+/// @throws InputError if it is none, or names no category
+GeneratedReference parse_generated(std::string_view source);
+std::string to_string(const GeneratedReference& reference);
+
+/// An environment drawn from a category's grammar (scenes/categories/), as the plan of a house:
+/// what build_house makes a scene of. The same category and seed give the same text. Nothing
+/// overlaps, doors can be opened, and a robot 0.52 m wide gets from every place where it can stand
+/// to every other.
+struct GeneratedPlan {
+  std::string name;  ///< "bathroom-3"
+  std::string room;  ///< which of the category's rooms: "bathroom", "gym"
+  std::string yaml;  ///< see docs/formats.md, House
+  double floor_area_m2 = 0;
+  int objects = 0;         ///< pieces, doors and windows
+  double free_share = 0;   ///< of the floor: where the robot can stand
+  double objects_per_10_m2() const { return 10.0 * objects / floor_area_m2; }
+};
+GeneratedPlan generate_plan(const GeneratedReference& reference);
+/// The plan's text, its mesh made as fine as it takes for kLeastTriangles: small rooms get finer
+/// light.
+std::string with_detail(const GeneratedPlan& plan);
+inline constexpr std::size_t kLeastTriangles = 120'000, kMostTriangles = 550'000;
+Scene generate_scene(const GeneratedReference& reference);
+
+/// The groups of objects per 10 m2 of floor in the paper's Figure 3: 0-4, 4-8, 8-16, 16 and more.
+inline constexpr int kDensityGroups = 4;
+int density_group(double objects_per_10_m2);
+std::string_view density_group_name(int group);
+
+}  // namespace mh

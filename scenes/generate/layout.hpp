@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenes/furniture/furniture.hpp"
+#include "scenes/house_plan.hpp"
+#include "slam/core/grid2d.hpp"
+
+namespace mh {
+
+/// Corners of an upright box's footprint, counter-clockwise, m.
+using Footprint = std::array<Eigen::Vector2d, 4>;
+
+Footprint footprint_of(const Eigen::Vector2d& middle_m, double turn_deg, double width_m,
+                       double depth_m);
+/// Into the frame of something that stands at `middle_m`, turned.
+Eigen::Vector2d from_frame(const Eigen::Vector2d& middle_m, double turn_deg,
+                           const Eigen::Vector2d& local_m);
+
+/// A stretch of wall with the room before it.
+struct WallRun {
+  Side side = Side::kSouth;  ///< of the room, or of the part of it before this stretch
+  double face_m = 0, from_m = 0, to_m = 0;
+  bool outer = true;  ///< a window may be in it
+
+  /// The middle of something of this depth, its back `gap_m` before the wall.
+  Eigen::Vector2d place(double along_m, double depth_m, double gap_m) const;
+  double turn_deg() const;  ///< of a piece that stands with its back to it
+};
+
+struct WallOpening {
+  std::string name;
+  Side side = Side::kSouth;
+  double from_m = 0, to_m = 0, low_m = 0, high_m = 0;
+  bool door = false;
+};
+
+struct LayoutItem {
+  std::string name;
+  const FurnitureKind* kind = nullptr;
+  Eigen::Vector2d at_m = Eigen::Vector2d::Zero();  ///< world
+  double z_m = 0, turn_deg = 0;
+  Eigen::Vector3d size_m = Eigen::Vector3d::Ones();
+  std::optional<std::size_t> on;     ///< what carries it
+  Eigen::Vector2d on_at_m = Eigen::Vector2d::Zero();  ///< in the carrier's frame
+  double on_turn_deg = 0;
+  bool on_board = false;             ///< stands in the carrier, not on its top
+  std::optional<std::size_t> under;  ///< what it is pushed under
+  bool covers_window = false;        ///< blinds
+  std::map<std::string, std::string> materials;  ///< role -> name of a material
+  std::optional<Eigen::Vector3d> glow;
+
+  Footprint footprint() const { return footprint_of(at_m, turn_deg, size_m.x(), size_m.y()); }
+};
+
+/// A room while it is being furnished: what stands where, and that one can walk.
+class Layout {
+ public:
+  static constexpr double kRobotRadius_m = 0.26 + 0.03;  ///< half of 0.52 m, and some play
+  static constexpr double kCell_m = 0.05;
+
+  /// @param cut  the corner that an L-shaped room lacks
+  Layout(double width_m, double depth_m, double height_m, std::optional<FloorRect> cut);
+
+  const FloorRect& rect() const { return rect_; }
+  const std::optional<FloorRect>& cut() const { return cut_; }
+  double height_m() const { return height_m_; }
+  double floor_area_m2() const;
+  const std::vector<WallRun>& walls() const { return walls_; }
+  const std::vector<WallOpening>& openings() const { return openings_; }
+  const std::vector<LayoutItem>& items() const { return items_; }
+  const LayoutItem& item(std::size_t i) const { return items_[i]; }
+
+  /// Whether an opening fits into a stretch of wall, apart from the others.
+  bool add_opening(const WallRun& wall, WallOpening opening);
+  /// Adds a piece if it stands in the room, overlaps nothing, leaves doors and windows, its own
+  /// front and those of others free, and all free floor stays one. @returns its index
+  std::optional<std::size_t> add(const LayoutItem& item, double front_m);
+  /// The share of the floor where the robot can stand.
+  double free_share() const;
+  /// Pieces, doors and windows: what counts as an object.
+  int object_count() const;
+
+ private:
+  bool inside(const Footprint& footprint) const;
+  bool apart(const LayoutItem& item) const;
+  bool leaves_openings(const LayoutItem& item) const;
+  bool in_the_way(const LayoutItem& item) const;  ///< of the robot
+  void block(Grid2d<char>& grid, const Footprint& footprint) const;
+  bool connected(const Grid2d<char>& grid) const;
+  Eigen::Vector2d cell_centre(int x, int y) const;
+
+  FloorRect rect_;
+  double height_m_;
+  std::optional<FloorRect> cut_;
+  std::vector<WallRun> walls_;
+  std::vector<WallOpening> openings_;
+  std::vector<LayoutItem> items_;
+  std::vector<Footprint> swings_;  ///< of doors
+  std::vector<Footprint> fronts_;  ///< floor before pieces, where only their own chairs stand
+  Grid2d<char> blocked_;  ///< where the robot's middle cannot be
+};
+
+}  // namespace mh

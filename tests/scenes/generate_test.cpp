@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/generate/generate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "scenes/generate/grammar.hpp"
+#include "scenes/house.hpp"
+#include "scenes/house_plan.hpp"
+#include "scenes/load.hpp"
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+
+/// The first of each category, and one of each sort of room where there are several.
+std::vector<GeneratedReference> sample() {
+  std::vector<GeneratedReference> list;
+  for (const Category& category : categories())
+    for (std::size_t i = 0; i < category.rooms.size(); ++i) list.push_back({category.name, i});
+  return list;
+}
+
+TEST(Generate, HasAsManyEnvironmentsAsThePapersTable1) {
+  const std::vector<std::pair<std::string, int>> wanted = {
+      {"bathroom", 27},       {"bedroom", 25}, {"bookstore", 10}, {"classroom", 7},
+      {"conference_room", 13}, {"copy_mail_room", 7}, {"hallway", 8}, {"kitchen", 16},
+      {"living_room", 34},    {"lobby", 8},    {"office", 22},    {"misc", 24}};
+  std::vector<std::pair<std::string, int>> found;
+  for (const Category& category : categories()) found.emplace_back(category.name, category.count);
+  EXPECT_EQ(found, wanted);
+}
+
+TEST(Generate, AllDensityGroupsAreThereAndNoTwoPlansAlike) {
+  std::array<int, kDensityGroups> groups{};
+  std::set<std::string> texts;
+  for (const Category& category : categories())
+    for (int i = 0; i < category.count; ++i) {
+      const GeneratedPlan plan = generate_plan({category.name, static_cast<std::uint64_t>(i)});
+      ++groups[static_cast<std::size_t>(density_group(plan.objects_per_10_m2()))];
+      texts.insert(plan.yaml.substr(plan.yaml.find("extent_m")));
+    }
+  EXPECT_EQ(texts.size(), 201U);
+  for (int g = 0; g < kDensityGroups; ++g)
+    EXPECT_GE(groups[static_cast<std::size_t>(g)], 8) << density_group_name(g);
+}
+
+TEST(Generate, SameSeedSameBytes) {
+  for (const GeneratedReference& reference : sample())
+    EXPECT_EQ(generate_plan(reference).yaml, generate_plan(reference).yaml)
+        << to_string(reference);
+  EXPECT_EQ(digest(generate_scene({"bathroom", 5})), digest(generate_scene({"bathroom", 5})));
+  EXPECT_NE(generate_plan({"bathroom", 5}).yaml, generate_plan({"bathroom", 6}).yaml);
+}
+
+// Where the robot's middle can be, found from the triangles alone: cells from whose middle nothing
+// between rugs and its head is nearer than its radius.
+cv::Mat free_floor(const Scene& scene, double radius_m, double cell_m) {
+  Eigen::Vector2d high(0, 0);
+  for (const Eigen::Vector2d& p : scene.rooms[0].polygon_m) high = high.cwiseMax(p);
+  const int w = static_cast<int>(high.x() / cell_m), h = static_cast<int>(high.y() / cell_m);
+  cv::Mat open(h, w, CV_8UC1, cv::Scalar(0));
+  std::vector<cv::Point> outline;
+  for (const Eigen::Vector2d& p : scene.rooms[0].polygon_m)
+    outline.emplace_back(static_cast<int>(p.x() / cell_m), static_cast<int>(p.y() / cell_m));
+  cv::fillPoly(open, std::vector{outline}, cv::Scalar(255));
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x)
+      if (x == 0 || y == 0 || x == w - 1 || y == h - 1) open.at<std::uint8_t>(y, x) = 0;
+  for (const auto& t : scene.triangles) {
+    const Eigen::Vector3f &a = scene.positions_m[t[0]], &b = scene.positions_m[t[1]],
+                          &c = scene.positions_m[t[2]];
+    if (std::max({a.z(), b.z(), c.z()}) < 0.03F || std::min({a.z(), b.z(), c.z()}) > 1.25F) continue;
+    const double edge = std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
+    const int n = std::max(1, static_cast<int>(std::ceil(edge / cell_m)));
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; i + j <= n; ++j) {
+        const Eigen::Vector3f p = a + (b - a) * (static_cast<float>(i) / static_cast<float>(n)) +
+                                  (c - a) * (static_cast<float>(j) / static_cast<float>(n));
+        if (p.z() < 0.03F || p.z() > 1.25F) continue;
+        const int x = static_cast<int>(std::floor(p.x() / cell_m)),
+                  y = static_cast<int>(std::floor(p.y() / cell_m));
+        if (x >= 0 && y >= 0 && x < w && y < h) open.at<std::uint8_t>(y, x) = 0;
+      }
+  }
+  cv::Mat distance, free;
+  cv::distanceTransform(open, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  cv::compare(distance, radius_m / cell_m, free, cv::CMP_GT);
+  return free;
+}
+
+class GeneratedScene : public testing::TestWithParam<GeneratedReference> {};
+
+TEST_P(GeneratedScene, IsWholeAndCanBeWalked) {
+  const GeneratedPlan plan = generate_plan(GetParam());
+  const std::string text = with_detail(plan);
+  const Scene scene = build_house(text, plan.name);
+  EXPECT_GE(scene.triangles.size(), 100'000U);
+  EXPECT_LE(scene.triangles.size(), 600'000U);
+  EXPECT_NEAR(scene.floor_area_m2(), plan.floor_area_m2, 1e-6);
+
+  // Boxes, exactly: reading the plan refuses overlaps of more than 1 cm, here there are none.
+  const HousePlan house = read_house_plan(YamlReader::parse(text, plan.name));
+  EXPECT_EQ(static_cast<int>(house.items.size() + house.doorways.size() + house.windows.size()),
+            plan.objects);
+  for (std::size_t i = 0; i < house.items.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      const ItemPlan &a = house.items[i], &b = house.items[k];
+      if (a.on != b.on || a.under == k) continue;
+      if (!a.on && (a.size_m.z() <= 0.03 || b.size_m.z() <= 0.03)) continue;  // rugs
+      const double low = std::max(a.position_m.z(), b.position_m.z());
+      const double high = std::min(a.position_m.z() + a.size_m.z(), b.position_m.z() + b.size_m.z());
+      if (high - low <= 1e-6) continue;
+      EXPECT_LE(overlap_m(a.footprint(), b.footprint()), 0.0) << a.name << ", " << b.name;
+    }
+
+  // The largest free part of the floor holds next to all of what is free, and each door.
+  constexpr double kCell = 0.025;
+  const cv::Mat free = free_floor(scene, 0.26, kCell);
+  cv::Mat labels, facts, centres;
+  const int parts = cv::connectedComponentsWithStats(free, labels, facts, centres, 4);
+  // Closed furniture is free inside: no floor.
+  std::vector<char> is_inside(static_cast<std::size_t>(parts), 0);
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x) {
+      const int k = labels.at<int>(y, x);
+      const Eigen::Vector2d p((x + 0.5) * kCell, (y + 0.5) * kCell);
+      const auto holds = [&](const ItemPlan& item) {
+        const Eigen::Vector2d d = p - item.position_m.head<2>();
+        const double c = std::cos(item.turn_rad), s = std::sin(item.turn_rad);
+        return !item.on && item.position_m.z() < 0.1 && item.size_m.z() > 0.1 &&
+               std::abs(c * d.x() + s * d.y()) < item.size_m.x() / 2 &&
+               std::abs(c * d.y() - s * d.x()) < item.size_m.y() / 2;
+      };
+      if (k > 0 && !is_inside[static_cast<std::size_t>(k)])
+        is_inside[static_cast<std::size_t>(k)] = std::ranges::any_of(house.items, holds);
+    }
+  double largest = 0, all = 0;
+  int best = 0;
+  for (int k = 1; k < parts; ++k) {
+    if (is_inside[static_cast<std::size_t>(k)]) continue;
+    const double area = facts.at<int>(k, cv::CC_STAT_AREA) * kCell * kCell;
+    all += area;
+    if (area > largest) largest = area, best = k;
+  }
+  EXPECT_GT(largest, 0.05 * plan.floor_area_m2);
+  // A place where the robot fits by less than the 3 cm of play that were planned may be cut off.
+  EXPECT_LT(all - largest, 0.03);
+  for (const OpeningPlan& door : house.doorways) {
+    const double middle = 0.5 * (door.from_m + door.to_m), in = 0.5;
+    const FloorRect& r = house.rooms[0].rect;
+    const Eigen::Vector2d at = door.side == Side::kSouth   ? Eigen::Vector2d(middle, r.y0 + in)
+                               : door.side == Side::kNorth ? Eigen::Vector2d(middle, r.y1 - in)
+                               : door.side == Side::kWest  ? Eigen::Vector2d(r.x0 + in, middle)
+                                                           : Eigen::Vector2d(r.x1 - in, middle);
+    EXPECT_EQ(labels.at<int>(static_cast<int>(at.y() / kCell), static_cast<int>(at.x() / kCell)),
+              best)
+        << door.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryCategory, GeneratedScene, testing::ValuesIn(sample()),
+                         [](const auto& test) {
+                           return test.param.category + "_" + std::to_string(test.param.seed);
+                         });
+
+TEST(Generate, DrawsFromManyMaterialsOfWhichNoneTrainedTheVocabulary) {
+  // The kinds of scenes/training are not among those that a plan can name at all.
+  for (const auto& [name, list] : palettes().lists)
+    for (const PaletteEntry& entry : list)
+      EXPECT_NE(std::ranges::find(material_kinds(), entry.kind), material_kinds().end()) << name;
+  const HousePlan house = read_house_plan(
+      YamlReader::parse(generate_plan({"living_room", 0}).yaml, "living_room"));
+  std::set<std::uint64_t> seeds;
+  for (const ItemPlan& item : house.items)
+    for (const auto& [role, spec] : item.materials) seeds.insert(spec.seed);
+  EXPECT_GE(seeds.size(), 8U);
+}
+
+TEST(Generate, IsLoadedByName) {
+  const Scene scene = load_scene("generated:bathroom:2");
+  EXPECT_EQ(scene.name, "bathroom-2");
+  EXPECT_TRUE(std::ranges::any_of(scene.instances, [](const Instance& i) {
+    return classes()[i.class_id].name == "toilet";
+  }));
+}
+
+std::string error_of(const std::string& reference) {
+  try {
+    load_scene(reference);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Generate, RefusesUnknownNames) {
+  EXPECT_NE(error_of("generated:cellar:2").find("'cellar' is no category; there are: bathroom"),
+            std::string::npos);
+  for (const char* bad : {"generated:bathroom", "generated:bathroom:", "generated:bathroom:x",
+                          "generated:bathroom:-1", "generated::2"})
+    EXPECT_FALSE(error_of(bad).empty()) << bad;
+}
+
+TEST(Generate, ACutCornerMustBeOneAndLeaveAWay) {
+  const std::string plan = generate_plan({"hallway", 1}).yaml;
+  const std::size_t at = plan.find("    cut: {"), end = plan.find('\n', at);
+  const auto error = [&](const std::string& cut) -> std::string {
+    try {
+      build_house(plan.substr(0, at) + "    cut: {" + cut + "}" + plan.substr(end), "plan.yaml");
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_NE(error("corner: north, size_m: [1, 1]").find("'north' is no corner"), std::string::npos);
+  EXPECT_NE(error("corner: north_west, size_m: [99, 1]").find("[99, 1] is no part of the room"),
+            std::string::npos);
+}
+
+TEST(Generate, CutCornerMakesAnLShapedRoom) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const GeneratedPlan plan = generate_plan({"hallway", 2 * seed + 1});
+    const HousePlan house = read_house_plan(YamlReader::parse(plan.yaml, "hallway"));
+    ASSERT_TRUE(house.rooms[0].cut);
+    const auto outline = house.rooms[0].outline_m();
+    ASSERT_EQ(outline.size(), 6U);
+    double twice = 0;
+    for (std::size_t i = 0; i < 6; ++i) {
+      const Eigen::Vector2d &a = outline[i], &b = outline[(i + 1) % 6];
+      twice += a.x() * b.y() - a.y() * b.x();
+      EXPECT_TRUE(a.x() == b.x() || a.y() == b.y());
+    }
+    EXPECT_NEAR(0.5 * twice, plan.floor_area_m2, 1e-9);  // counter-clockwise
+    if (seed > 8) break;
+  }
+}
+
+}  // namespace
+}  // namespace mh
