@@ -72,7 +72,11 @@ TEST(ScanByHand, KeepsClearAndSeesTheWholeRoom) {
       EXPECT_GE(grid.clearance_at(p.head<2>()), 0.1) << p.transpose();
       EXPECT_NEAR(p.z(), 1.4, 0.2);
       const Eigen::Vector3d ahead = pose.world_from_camera.rotation().col(2);
-      quarters.insert(std::lround(std::atan2(ahead.y(), ahead.x()) / M_PI_2 + 4) % 4);
+      // The picture's left end, middle and right end.
+      const double half_view_rad = std::atan(0.5 * camera.width_px / camera.fx_px);
+      for (const double aside_rad : {-half_view_rad, 0.0, half_view_rad})
+        quarters.insert(std::lround((std::atan2(ahead.y(), ahead.x()) + aside_rad) / M_PI_2 + 8) %
+                        4);
       EXPECT_LT(std::abs(ahead.z()), 0.75);
     }
     EXPECT_EQ(quarters.size(), 4U);
