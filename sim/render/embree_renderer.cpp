@@ -70,7 +70,7 @@ class EmbreeRenderer final : public Renderer {
         shading_(scene, bvh_, config.exposure) {}
 
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
-    validate(camera);
+    check_projection(camera);
     const View view(camera, world_from_camera);
     RenderedFrame frame = empty_frame(view.width, view.height);
     parallel_for((view.height + kTileHeight - 1) / kTileHeight, config_.threads,

@@ -102,7 +102,7 @@ class OsmesaRenderer final : public Renderer {
   }
 
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
-    validate(camera);
+    check_projection(camera);
     const std::lock_guard lock(mutex_);
     const OffscreenContext::Current current(context_);
     prepare_targets(camera.width_px, camera.height_px);

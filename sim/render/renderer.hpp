@@ -55,6 +55,14 @@ class Renderer {
   virtual RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const = 0;
 };
 
+/// What both renderers refuse: a size or focal length out of range. The principal point may lie
+/// anywhere: a rolling shutter renders strips of a picture, most of which do not hold it.
+/// @throws InputError naming the field.
+inline void check_projection(Camera camera) {
+  camera.cx_px = camera.cy_px = 0;
+  validate(camera);
+}
+
 struct RenderConfig {
   int threads = 1;        ///< threads over tiles of one picture; never changes a bit of it
   float exposure = 1.0F;  ///< linear radiance that maps to white is 1 / exposure

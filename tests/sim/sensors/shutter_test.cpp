@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/render/colour.hpp"
+#include "tests/sim/scene_builder.hpp"
 
 namespace mh {
 namespace {
@@ -158,6 +159,19 @@ TEST(RollingShutter, AloneCostsAboutOnePictureMore) {
   shutter.expose(2);
   EXPECT_LE(scene->rows, 120 * 4);  // the exact one, and each row of the others about twice
   EXPECT_GE(scene->rows, 120 * 2);
+}
+
+TEST(RollingShutter, ARealRendererDrawsEveryStrip) {
+  // Strips above and below the middle do not hold the principal point.
+  Scene scene = test::plain_scene();
+  test::add_box(scene, {-3, -3, -3}, {3, 3, 3}, true, 1, 1);
+  const std::shared_ptr<const Renderer> renderer = make_embree_renderer(scene);
+  SensorConfig config = blurring(0.02);
+  config.shutter.rolling_shutter_on = true;
+  config.shutter.step_px = 1.5;
+  const Shutter shutter(renderer, small_camera(), sliding(2.0), config);
+  const RenderedFrame seen = shutter.expose(2).seen;
+  for (const float depth_m : seen.depth_m) ASSERT_GT(depth_m, 0.0F);
 }
 
 TEST(Shutter, IsAPureFunctionOfTheFrame) {
