@@ -53,8 +53,7 @@ std::optional<Loop> detect_loop(const Map& map, KeyframeId newest, LoopMemory& m
                                 const LoopConfig& config, RandomStream stream, MatchCounts& counts);
 
 /// Closes a loop: the drift is spread over the graph of keyframes, landmarks move along, the two
-/// ends' landmarks become one, and what moved noticeably is adjusted against what did not: the cost
-/// follows the loop, not the map.
+/// ends' landmarks become one, and the whole map is adjusted.
 void close_loop(Map& map, const Loop& loop, const MappingContext& context, const LoopConfig& config,
                 MatchCounts& counts);
 

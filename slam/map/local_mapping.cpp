@@ -326,9 +326,11 @@ void adjust_neighbourhood(Map& map, KeyframeId keyframe, const MappingContext& c
   adjust_keyframes(map, free, fixed, context);
 }
 
-void adjust_together(Map& map, const std::vector<KeyframeId>& keyframes,
-                     const MappingContext& context) {
-  adjust_keyframes(map, keyframes, onlookers(map, keyframes), context);
+void adjust_all(Map& map, const MappingContext& context) {
+  std::vector<KeyframeId> free;
+  for (const Keyframe& k : map.keyframes())
+    if (!k.erased && k.id.value != 0) free.push_back(k.id);
+  adjust_keyframes(map, free, {KeyframeId{0}}, context);
 }
 
 void cull_redundant_keyframes(Map& map, KeyframeId newest, const MappingContext& context) {

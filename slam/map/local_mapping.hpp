@@ -38,10 +38,8 @@ void triangulate_with_neighbours(Map& map, KeyframeId keyframe, const MappingCon
 void fuse_with_neighbours(Map& map, KeyframeId keyframe, const MappingContext& context,
                           MatcherCounts& counts);
 void adjust_neighbourhood(Map& map, KeyframeId keyframe, const MappingContext& context);
-/// Bundle adjustment of these keyframes and all that they see; the others that see the same are
-/// held. Nothing moves where there are no others.
-void adjust_together(Map& map, const std::vector<KeyframeId>& keyframes,
-                     const MappingContext& context);
+/// Bundle adjustment of the whole map; the first keyframe is held.
+void adjust_all(Map& map, const MappingContext& context);
 void cull_redundant_keyframes(Map& map, KeyframeId newest, const MappingContext& context);
 
 }  // namespace mh
