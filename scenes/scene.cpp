@@ -146,6 +146,17 @@ class Digest {
 
 }  // namespace
 
+bool Room::contains(const Eigen::Vector2d& place_m) const {
+  bool inside = false;
+  for (std::size_t i = 0, j = polygon_m.size() - 1; i < polygon_m.size(); j = i++) {
+    const Eigen::Vector2d &a = polygon_m[i], &b = polygon_m[j];
+    if ((a.y() > place_m.y()) != (b.y() > place_m.y()) &&
+        place_m.x() < (b.x() - a.x()) * (place_m.y() - a.y()) / (b.y() - a.y()) + a.x())
+      inside = !inside;
+  }
+  return inside;
+}
+
 double Scene::floor_area_m2() const {
   double sum = 0.0;
   for (const Room& room : rooms) sum += polygon_area_m2(room.polygon_m);

@@ -56,6 +56,7 @@ struct Light {
 struct Room {
   std::string name;
   std::vector<Eigen::Vector2d> polygon_m;  ///< inner floor outline, counter-clockwise
+  bool contains(const Eigen::Vector2d& place_m) const;
 };
 
 /// What there is to see: one indexed triangle mesh with a material, a class and an instance per

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cli/commands.hpp"
+#include "bench/cli/motion_option.hpp"
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/robot_readings.hpp"
 #include "bench/world/travel.hpp"
@@ -18,16 +19,15 @@ namespace mh::cli {
 namespace {
 
 struct Options {
-  std::string scene, tour, motion, robot, out;
+  std::string scene, robot, out;
+  MotionOption motion;
   std::uint64_t seed = 0;
   bool sensors = false;
   bool json = false;
 };
 
 void run(const Options& options) {
-  if (options.motion.empty() == options.tour.empty())
-    throw InputError("give the motion once: as TOUR or as --motion");
-  const std::string& motion = options.motion.empty() ? options.tour : options.motion;
+  const std::string& motion = options.motion.given();
   if (options.sensors && options.out.empty())
     throw InputError("--sensors needs --out: a folder to write them into");
   const std::filesystem::path out = options.out;
@@ -72,10 +72,7 @@ void add_drive(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("drive", "Drives the robot through a scene, or moves a camera by hand.");
   command->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
-  command->add_option("tour", options->tour, "Tour (YAML); or --motion");
-  command->add_option("--motion", options->motion,
-                      "TOUR.yaml, auto[:SEED], handheld[:SEED[:FRAMES]], replay:FILE.tum or "
-                      "commands:FILE.yaml");
+  options->motion.add_to(*command);
   command->add_option("--robot", options->robot, "Robot (YAML)")->required();
   command->add_option("--out", options->out, "Folder for camera.tum and base.tum");
   command->add_flag("--sensors", options->sensors,

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cli/commands.hpp"
+#include "bench/cli/motion_option.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/recorded/render_sequence.hpp"
@@ -21,8 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string scene, tour, motion, robot, camera, level, walk, out, format = "tum",
-                                                                    renderer = "embree";
+  std::string scene, robot, camera, level, walk, out, format = "tum", renderer = "embree";
+  MotionOption motion;
   RenderSequenceOptions sequence;
   int png_compression = kPngCompression;
   bool json = false;
@@ -38,7 +39,7 @@ std::string digest_of_file(const std::string& file) {
 std::string settings_of(const Options& o, const Scene& scene, const Trajectory& path) {
   nlohmann::ordered_json json = {{"scene", o.scene},
                                  {"scene_digest", hex(digest(scene))},
-                                 {"motion", o.motion},
+                                 {"motion", o.motion.given()},
                                  {"path_digest", hex(digest(path))},
                                  {"robot", o.robot},
                                  {"robot_digest", digest_of_file(o.robot)},
@@ -96,15 +97,13 @@ std::pair<Camera, Trajectory> choose_camera(const Options& options, const Robot&
 }
 
 void run(Options options) {
-  if (options.motion.empty() == options.tour.empty())
-    throw InputError("give the motion once: as TOUR or as --motion");
-  if (options.motion.empty()) options.motion = options.tour;
+  const std::string& motion = options.motion.given();
   const fs::path out = options.out;
   refuse_older_sequence(out);
   make_renderer(options.renderer, Scene{});  // a machine that lacks it says so at once
   make_output_folder(out);
   const Robot robot = load_robot(options.robot);
-  check_motion(options.motion);
+  check_motion(motion);
   SensorConfig sensors;
   sensors.depth_noise_on = sensors.colour_noise_on = false;
   if (!options.level.empty()) sensors = load_sensor_config(options.level);
@@ -115,8 +114,8 @@ void run(Options options) {
   progress.say(fmt::format("scene {}", options.scene));
   const Scene scene = load_lit_scene(options.scene, options.sequence.threads);
   const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene, options.renderer);
-  progress.say(fmt::format("moving along {}", options.motion));
-  auto [camera, path] = choose_camera(options, robot, travel(scene, robot, options.motion));
+  progress.say(fmt::format("moving along {}", motion));
+  auto [camera, path] = choose_camera(options, robot, travel(scene, robot, motion));
 
   const std::string settings = settings_of(options, scene, path);
   if (fs::exists(out / "render.json")) {
@@ -158,10 +157,7 @@ void add_render(CLI::App& app) {
       "render",
       "Writes what a camera sees on its way through a scene, with labels, instances and poses.");
   command->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
-  command->add_option("tour", options->tour, "Tour (YAML); or --motion");
-  command->add_option("--motion", options->motion,
-                      "TOUR.yaml, auto[:SEED], handheld[:SEED[:FRAMES]], replay:FILE.tum or "
-                      "commands:FILE.yaml");
+  options->motion.add_to(*command);
   command->add_option("--robot", options->robot, "Robot (YAML): base and camera")->required();
   command->add_option("--camera", options->camera,
                       "Another of the robot's cameras, by its name in the robot's file");

@@ -238,7 +238,8 @@ cv::Mat draw_sweep(const Suite& suite, std::span<const Row> rows, const SweepRes
       const std::string title = grid ? fmt::format("{}: {}", name(set), measure.title)
                                      : fmt::format("{}: {:.1f} to {:.1f} % correct", name(set),
                                                    values.least, values.most);
-      const auto framed = grid && i > 0 ? std::nullopt : std::optional(best.point);
+      std::optional<std::size_t> framed;
+      if (!grid || i == 0) framed = best.point;
       if (grid)
         draw_grid(canvas, corner, result, varied, title, measure, values, framed);
       else

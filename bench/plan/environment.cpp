@@ -37,7 +37,7 @@ fs::path read_source(const YamlReader& node, const fs::path& folder, int index) 
 fs::path read_tour(const YamlReader& node, const fs::path& folder, int index) {
   const std::string text = with_index(node.as_string(), index);
   for (const char* motion : {"auto", "handheld"})
-    if (text == motion || text.starts_with(motion + std::string(":"))) return "generated:" + text;
+    if (text == motion || text.starts_with(motion + std::string(":"))) return std::string(kGeneratedPrefix) + text;
   return read_source(node, folder, index);
 }
 

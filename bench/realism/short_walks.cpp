@@ -22,18 +22,14 @@ constexpr double kRate_hz = 30.0;
 
 /// Distance to the walls from inside, below 0 outside.
 double depth_inside(const Room& room, const Vector2d& p) {
-  bool inside = false;
   double nearest = 1e30;
   const auto& corners = room.polygon_m;
   for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
     const Vector2d &a = corners[j], &b = corners[i];
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
-      inside = !inside;
     const double t = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
     nearest = std::min(nearest, (p - a - t * (b - a)).norm());
   }
-  return inside ? nearest : -nearest;
+  return room.contains(p) ? nearest : -nearest;
 }
 
 bool is_free(const Scene& scene, const Vector3d& eye) {
@@ -79,7 +75,8 @@ std::vector<Trajectory> short_walks(const Scene& scene, std::uint64_t seed, std:
       const double b = pitch + (1.0 - std::abs(share)) * turning * t;
       const Vector3d at = eye + speed * t * Vector3d(std::cos(course), std::sin(course), 0);
       const Vector3d way(std::cos(b) * std::cos(a), std::cos(b) * std::sin(a), std::sin(b));
-      walk.push_back({std::llround(static_cast<double>(k) * 1e9 / kRate_hz), look_at(at, at + way)});
+      walk.push_back(
+          {std::llround(static_cast<double>(k) * 1e9 / kRate_hz), look_at(at, at + way)});
     }
     walks.push_back(std::move(walk));
   }

@@ -12,7 +12,6 @@
 #include "scenes/scannet/files.hpp"
 #include "scenes/scannet/label_images.hpp"
 #include "scenes/scannet/label_table.hpp"
-#include "scenes/scannet/recording.hpp"
 #include "scenes/scannet/sens.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -21,7 +20,6 @@ namespace mh {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double kScannetDepthPerMetre = 1000;
 
 Camera camera_of(const RecordedLens& lens) {
   Camera camera;
@@ -194,6 +192,16 @@ std::uint16_t millimetres(float depth_m) {
 
 }  // namespace
 
+RecordedLens recorded_lens(const Camera& camera) {
+  return {camera.width_px,
+          camera.height_px,
+          camera.fx_px,
+          camera.fy_px,
+          camera.cx_px,
+          camera.cy_px,
+          {}};
+}
+
 std::unique_ptr<FrameSequence> open_scannet(const fs::path& path, std::vector<std::string>& notes) {
   return std::make_unique<ScannetSequence>(path, notes);
 }
@@ -203,13 +211,7 @@ void write_scannet_recording(const fs::path& folder, const Camera& camera, std::
   make_output_folder(folder);
   const fs::path full = fs::absolute(folder).lexically_normal();
   const std::string name = (full.has_filename() ? full : full.parent_path()).filename().string();
-  const RecordedLens lens{camera.width_px,
-                          camera.height_px,
-                          camera.fx_px,
-                          camera.fy_px,
-                          camera.cx_px,
-                          camera.cy_px,
-                          {}};
+  const RecordedLens lens = recorded_lens(camera);
   const RecordingInfo info{.sensor = "Modelhouse",
                            .colour = lens,
                            .depth = lens,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/recorded/frame_sequence.hpp"
+#include "scenes/scannet/recording.hpp"
 #include "sim/render/renderer.hpp"
 #include "slam/core/camera.hpp"
 
@@ -23,6 +24,12 @@ namespace mh {
 /// @throws InputError naming file and place.
 std::unique_ptr<FrameSequence> open_scannet(const std::filesystem::path& path,
                                             std::vector<std::string>& notes);
+
+/// Of the 16-bit depth that is written.
+inline constexpr double kScannetDepthPerMetre = 1000;
+
+/// What a recording says of a camera that is the device itself.
+RecordedLens recorded_lens(const Camera& camera);
 
 /// A frame to record, with the truth.
 struct ExactFrame {

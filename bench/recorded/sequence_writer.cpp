@@ -12,6 +12,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "bench/pictures/canvas.hpp"
+#include "bench/recorded/scannet_folder.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -21,7 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kScanNetPerMetre = 1000;
 constexpr int kJpegQuality = 95;
 
 std::string rows(const Eigen::Matrix4d& m) {
@@ -29,22 +29,6 @@ std::string rows(const Eigen::Matrix4d& m) {
   for (int y = 0; y < 4; ++y)
     text += fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}\n", m(y, 0), m(y, 1), m(y, 2), m(y, 3));
   return text;
-}
-
-Eigen::Matrix4d matrix(const SE3& pose) {
-  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-  m.topLeftCorner<3, 3>() = pose.rotation();
-  m.topRightCorner<3, 1>() = pose.translation();
-  return m;
-}
-
-Eigen::Matrix4d intrinsics(const Camera& camera) {
-  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-  m(0, 0) = camera.fx_px;
-  m(1, 1) = camera.fy_px;
-  m(0, 2) = camera.cx_px;
-  m(1, 2) = camera.cy_px;
-  return m;
 }
 
 template <class Id>
@@ -68,16 +52,16 @@ class ScanNetWriter : public SequenceWriter {
     write_picture(folder_ / "color" / (name + ".jpg"), colour_picture(frame.colour),
                   {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
     cv::Mat depth(frame.depth_m.height(), frame.depth_m.width(), CV_16UC1);
-    std::transform(frame.depth_m.begin(), frame.depth_m.end(), depth.begin<std::uint16_t>(),
-                   [](float m) {
-                     const double units = std::round(static_cast<double>(m) * kScanNetPerMetre);
-                     return static_cast<std::uint16_t>(std::clamp(units, 0.0, 65535.0));
-                   });
+    std::transform(
+        frame.depth_m.begin(), frame.depth_m.end(), depth.begin<std::uint16_t>(), [](float m) {
+          const double units = std::round(static_cast<double>(m) * kScannetDepthPerMetre);
+          return static_cast<std::uint16_t>(std::clamp(units, 0.0, 65535.0));
+        });
     const std::vector<int> png = {cv::IMWRITE_PNG_COMPRESSION, png_compression_};
     write_picture(folder_ / "depth" / (name + ".png"), depth, png);
     write_picture(folder_ / "label-filt" / (name + ".png"), ids(exact.classes), png);
     write_picture(folder_ / "instance-filt" / (name + ".png"), ids(exact.instances), png);
-    write_atomically(folder_ / "pose" / (name + ".txt"), rows(matrix(world_from_camera)));
+    write_atomically(folder_ / "pose" / (name + ".txt"), rows(matrix_of(world_from_camera)));
     count(index);
   }
 
@@ -94,7 +78,7 @@ class ScanNetWriter : public SequenceWriter {
   }
 
   void finish() override {
-    const std::string k = rows(intrinsics(camera_));
+    const std::string k = rows(intrinsics_of(recorded_lens(camera_)));
     const std::string identity = rows(Eigen::Matrix4d::Identity());
     write_atomically(folder_ / "intrinsic" / "intrinsic_color.txt", k);
     write_atomically(folder_ / "intrinsic" / "intrinsic_depth.txt", k);
@@ -112,7 +96,7 @@ class ScanNetWriter : public SequenceWriter {
         fmt::format("m_versionNumber = 4\nm_sensorName = Modelhouse\nm_colorWidth = {0}\n"
                     "m_colorHeight = {1}\nm_depthWidth = {0}\nm_depthHeight = {1}\n"
                     "m_depthShift = {2}\nm_frames.size = {3}\n",
-                    camera_.width_px, camera_.height_px, kScanNetPerMetre, written_.size()));
+                    camera_.width_px, camera_.height_px, kScannetDepthPerMetre, written_.size()));
   }
 
  private:

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "bench/metrics/trajectory_io.hpp"
+#include "scenes/generate/generate.hpp"
 #include "sim/motion/automatic.hpp"
 #include "sim/motion/by_hand.hpp"
 #include "sim/motion/commands.hpp"
@@ -35,7 +36,7 @@ std::uint64_t number(const std::string& motion, std::string_view text, const cha
 
 Motion parse(const std::string& motion) {
   std::string_view text = motion;
-  if (text.starts_with("generated:")) text.remove_prefix(10);
+  if (text.starts_with(kGeneratedPrefix)) text.remove_prefix(kGeneratedPrefix.size());
   if (text.starts_with("replay:"))
     return {.kind = Motion::Kind::kReplay, .file = std::string(text.substr(7))};
   if (text.starts_with("commands:"))

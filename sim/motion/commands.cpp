@@ -137,11 +137,9 @@ CommandScript load_commands(const std::filesystem::path& file) {
   CommandScript script;
   script.file = file;
   script.name = yaml.string("name");
-  YamlReader start = yaml.at("start");
-  const std::vector<double> place = start.at("position").as_numbers(2);
-  script.start_m = {place[0], place[1]};
-  script.start_heading_rad = start.number("heading_deg", -360.0, 360.0) * kRadPerDeg;
-  start.finish();
+  const Start start = read_start(yaml);
+  script.start_m = start.place_m;
+  script.start_heading_rad = start.heading_rad;
   script.reflex = yaml.boolean("reflex", true);
   YamlReader list = yaml.at("commands");
   for (YamlReader& item : list.items()) {

@@ -2,6 +2,7 @@
 #include "sim/motion/start.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -12,19 +13,23 @@ namespace {
 
 constexpr double kDeepStart_m = 1e-3;
 
-bool contains(const Room& room, const Eigen::Vector2d& p) {
-  bool inside = false;
-  const auto& corners = room.polygon_m;
-  for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
-    const Eigen::Vector2d &a = corners[i], &b = corners[j];
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
-      inside = !inside;
-  }
-  return inside;
+}  // namespace
+
+Eigen::Vector2d read_place(const YamlReader& yaml) {
+  constexpr double kFar_m = 1000.0;
+  yaml.as_numbers(2);
+  const std::vector<YamlReader> xy = yaml.items();
+  return {xy[0].as_double(-kFar_m, kFar_m), xy[1].as_double(-kFar_m, kFar_m)};
 }
 
-}  // namespace
+Start read_start(YamlReader& motion) {
+  YamlReader yaml = motion.at("start");
+  const Start start{
+      .place_m = read_place(yaml.at("position")),
+      .heading_rad = yaml.number("heading_deg", -360.0, 360.0) * (std::numbers::pi / 180.0)};
+  yaml.finish();
+  return start;
+}
 
 std::string against(const Scene& scene, InstanceId id) {
   for (const Instance& instance : scene.instances)
@@ -39,7 +44,7 @@ void check_start(PlanarWorld& world, const Scene& scene, const Eigen::Vector2d& 
   if (contact.penetration_m > kDeepStart_m)
     throw InputError(fmt::format("{}: the robot would stand {:.0f} mm inside something{}", place,
                                  1e3 * contact.penetration_m, against(scene, contact.instance)));
-  const auto holds = [&](const Room& room) { return contains(room, start_m); };
+  const auto holds = [&](const Room& room) { return room.contains(start_m); };
   if (!scene.rooms.empty() && std::ranges::none_of(scene.rooms, holds))
     throw InputError(fmt::format("{}: lies in no room of {}", place, scene.name));
 }

@@ -5,8 +5,20 @@
 
 #include "scenes/scene.hpp"
 #include "sim/physics/planar_world.hpp"
+#include "slam/core/yaml.hpp"
 
 namespace mh {
+
+/// [x, y] in metres, within a kilometre of the origin.
+Eigen::Vector2d read_place(const YamlReader& yaml);
+
+/// Where a motion begins, as files of motions write it: `start: {position: [x, y], heading_deg:
+/// h}`.
+struct Start {
+  Eigen::Vector2d place_m;
+  double heading_rad = 0;
+};
+Start read_start(YamlReader& motion);
 
 /// " against NAME", or "" where the instance is none.
 std::string against(const Scene& scene, InstanceId instance);

@@ -2,19 +2,13 @@
 #include <numbers>
 
 #include "sim/motion/motion.hpp"
+#include "sim/motion/start.hpp"
 #include "slam/core/yaml.hpp"
 
 namespace mh {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-
-Eigen::Vector2d read_place(const YamlReader& yaml) {
-  constexpr double kFar_m = 1000.0;
-  yaml.as_numbers(2);
-  const std::vector<YamlReader> xy = yaml.items();
-  return {xy[0].as_double(-kFar_m, kFar_m), xy[1].as_double(-kFar_m, kFar_m)};
-}
 
 /// @param before_m where the robot stands before this waypoint
 Waypoint read_waypoint(YamlReader yaml, const Eigen::Vector2d& before_m) {
@@ -46,10 +40,9 @@ Tour load_tour(const std::filesystem::path& file) {
   Tour tour;
   tour.file = file;
   tour.name = yaml.string("name");
-  YamlReader start = yaml.at("start");
-  tour.start_m = read_place(start.at("position"));
-  tour.start_heading_rad = start.number("heading_deg", -360.0, 360.0) * kRadPerDeg;
-  start.finish();
+  const Start start = read_start(yaml);
+  tour.start_m = start.place_m;
+  tour.start_heading_rad = start.heading_rad;
   if (const auto speed = yaml.find("speed_m_per_s"))
     tour.max_velocity_m_per_s = speed->as_double(0.01, 5.0);
   if (const auto turn = yaml.find("turn_deg_per_s"))

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "bench/results/json.hpp"
@@ -156,7 +157,7 @@ TEST_F(StoreFile, ADamagedOrForeignFileIsRefusedWithAdvice) {
   fs::remove(file);
   {
     Store store(file);
-    for (int i = 0; i < 20; ++i) store.put("k" + std::to_string(i), some_run("a"), {});
+    for (int i = 0; i < 20; ++i) store.put(fmt::format("k{}", i), some_run("a"), {});
   }
   ASSERT_GT(fs::file_size(file), 40000u);
   {

@@ -34,6 +34,14 @@ TEST(OmniWheels, AheadTheFrontWheelsDriveAndTheRearOneRolls) {
   EXPECT_TRUE(twist_of_rims(wheels(), rim_speeds_m_per_s(wheels(), twist)).isApprox(twist, 1e-12));
 }
 
+/// A velocity in any direction, up to the given speed.
+JerkLimiter::Velocity any_velocity(const RandomStream& draw, std::uint64_t i, double most_m_per_s) {
+  const double angle = draw.uniform(4 * i + 1, -M_PI, M_PI);
+  return {.m_per_s = draw.uniform(4 * i + 2, 0, most_m_per_s) *
+                     Eigen::Vector2d(std::cos(angle), std::sin(angle)),
+          .turn_rad_per_s = draw.uniform(4 * i + 3, -2, 2)};
+}
+
 TEST(JerkLimiter, NoRimGoesFasterThanItCan) {
   constexpr double h = 1.0 / 240;
   JerkLimiter limiter(pepper().limits, h, &wheels());
@@ -41,12 +49,7 @@ TEST(JerkLimiter, NoRimGoesFasterThanItCan) {
   double heading = 0, top = 0;
   JerkLimiter::Velocity command;
   for (std::uint64_t i = 0; i < 200000; ++i) {
-    if (i % 120 == 0 && draw.uniform(4 * i) < 0.5) {
-      const double angle = draw.uniform(4 * i + 1, -M_PI, M_PI);
-      command = {.m_per_s = draw.uniform(4 * i + 2, 0, 0.7) *
-                            Eigen::Vector2d(std::cos(angle), std::sin(angle)),
-                 .turn_rad_per_s = draw.uniform(4 * i + 3, -2, 2)};
-    }
+    if (i % 120 == 0 && draw.uniform(4 * i) < 0.5) command = any_velocity(draw, i, 0.7);
     const JerkLimiter::Velocity v = limiter.step(command);
     const Eigen::Vector2d in_base = Eigen::Rotation2Dd(-heading) * v.m_per_s;
     const double rim = rim_speeds_m_per_s(wheels(), {in_base.x(), in_base.y(), v.turn_rad_per_s})
@@ -73,12 +76,7 @@ TEST(JerkLimiter, NeverExceedsALimitUnderCommandsThatJump) {
   double turn_a_before = 0, top = 0, top_turn = 0, top_a = 0;
   JerkLimiter::Velocity command;
   for (std::uint64_t i = 0; i < 400000; ++i) {
-    if (i % 97 == 0 && draw.uniform(4 * i) < 0.4) {
-      const double angle = draw.uniform(4 * i + 1, -M_PI, M_PI);
-      command = {.m_per_s = draw.uniform(4 * i + 2, 0, 1.0) *
-                            Eigen::Vector2d(std::cos(angle), std::sin(angle)),
-                 .turn_rad_per_s = draw.uniform(4 * i + 3, -2, 2)};
-    }
+    if (i % 97 == 0 && draw.uniform(4 * i) < 0.4) command = any_velocity(draw, i, 1.0);
     const JerkLimiter::Velocity now = limiter.step(command);
     const Eigen::Vector2d a = (now.m_per_s - before.m_per_s) / h;
     const double turn_a = (now.turn_rad_per_s - before.turn_rad_per_s) / h;
