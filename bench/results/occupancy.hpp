@@ -11,7 +11,7 @@
 
 namespace mh {
 
-/// Depth of keyframes, kept until their poses are final: every second pixel of every second row.
+/// Depth of keyframes, kept until their poses are final: a sixteenth of the pixels.
 class KeyframeDepths {
  public:
   /// A frame seen again (after a rewind) takes the place of what was kept of it.
