@@ -19,6 +19,7 @@
 #include "scenes/mesh_io/node_name.hpp"
 #include "scenes/placed_objects.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/file_errors.hpp"
 
 namespace mh {
 namespace {
@@ -144,9 +145,7 @@ class WorldReader {
       : file_(file), warnings_(warnings), rules_(find_label_rules(file)) {}
 
   Scene read() {
-    std::error_code error;
-    if (!fs::is_regular_file(file_, error))
-      throw InputError(fmt::format("{}: cannot be read: no such file", file_.string()));
+    require_readable(file_);
     IncludeWalk().enter(file_);
     sdf::ParserConfig config;
     config.SetFindCallback([this](const std::string& uri) {

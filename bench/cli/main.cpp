@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <iostream>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -11,7 +14,9 @@
 
 #include "bench/cli/commands.hpp"
 #include "bench/jobs/pool.hpp"
+#include "bench/jobs/run_process.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/file_errors.hpp"
 
 namespace {
 
@@ -23,15 +28,23 @@ enum ExitCode {
   kInterrupted = 130
 };
 
-int fail(ExitCode code, std::string message) {
+int fail(int code, std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');
   fmt::print(stderr, "modelhouse: error: {}\n", message);
   return code;
 }
 
-}  // namespace
+/// What stands in the buffers still has to be written: a full disk shows here at the latest.
+int finish_output(int code) {
+  std::cout.flush();
+  const bool lost = std::fflush(stdout) != 0;
+  if (!lost && std::ferror(stdout) == 0 && std::cout) return code;
+  const std::string why = lost ? fmt::format(": {}", std::strerror(errno)) : "";
+  if (code != kGood && code != kCheckFailed) return code;  // said already
+  return fail(kMachineFailed, "standard output: cannot be written" + why);
+}
 
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   // Same bits at any load: OpenCV must not split its work by the number of processors.
   cv::setNumThreads(1);
   CLI::App app("Modelhouse: a simulation-backed test bench for object-aware visual SLAM.",
@@ -69,6 +82,8 @@ int main(int argc, char** argv) {
     return fail(kBadInput, error.what());
   } catch (const std::invalid_argument& error) {
     return fail(kBadInput, error.what());
+  } catch (const mh::DiskFullError& error) {
+    return fail(app.got_subcommand("run-one") ? mh::kDiskFullCode : kMachineFailed, error.what());
   } catch (const mh::MachineError& error) {
     return fail(kMachineFailed, error.what());
   } catch (const std::bad_alloc&) {
@@ -76,4 +91,10 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return fail(kMachineFailed, error.what());
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return finish_output(run(argc, argv));
 }

@@ -18,6 +18,7 @@
 #include "scenes/generate/grammar.hpp"
 #include "sim/world/sequence.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/file_errors.hpp"
 
 namespace mh::cli {
 namespace {
@@ -71,6 +72,7 @@ MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const O
 MeasuredPlace measure_recording(const fs::path& folder) {
   MeasuredPlace place{.name = folder.string(), .frames = {}};
   for (const RecordedFrame& frame : load_tum_folder(folder)) {
+    require_readable(frame.colour);
     const cv::Mat grey = cv::imread(frame.colour.string(), cv::IMREAD_GRAYSCALE);
     if (grey.empty())
       throw InputError(fmt::format("{}: is no picture that can be read", frame.colour.string()));

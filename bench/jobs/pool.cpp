@@ -17,6 +17,7 @@
 
 #include "bench/jobs/run_process.hpp"
 #include "bench/plan/spec_json.hpp"
+#include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
@@ -85,7 +86,10 @@ class Pool {
     auto next_beat = Clock::now() + kBeat;
     tell();
     while (!waiting_.empty() || !running_.empty()) {
-      if (g_signal != 0) stop();
+      if (g_signal != 0) {
+        give_up();
+        throw Interrupted{static_cast<int>(g_signal)};
+      }
       start_what_fits();
       wait_a_moment();
       look_after_running();
@@ -96,13 +100,13 @@ class Pool {
   }
 
  private:
-  [[noreturn]] void stop() {
+  /// Ends every process and gives back what they had claimed.
+  void give_up() {
     for (Running& r : running_) r.process->kill();
     std::vector<std::string> keys;
     for (const Running& r : running_) keys.push_back(r.what.job.key);
     running_.clear();  // waits for them
     for (const std::string& key : keys) store_.release(key);
-    throw Interrupted{static_cast<int>(g_signal)};
   }
 
   double need_mb() const { return need_mb_ > 0 ? need_mb_ : kFirstGuess_mb; }
@@ -204,6 +208,13 @@ class Pool {
       store_.release(job.key);
       waiting_.push_back({job, true});
       return;
+    }
+    if (end.code == kDiskFullCode && ended.cut_off.empty()) {
+      give_up();
+      store_.release(job.key);
+      throw DiskFullError(end.message.empty()
+                              ? job.spec.name + ": the disk is full: make room and run again"
+                              : end.message);
     }
     const std::string error = describe(ended, end);
     store_.put_failure(job.key, job.spec, error, end.cost);

@@ -46,8 +46,9 @@ struct PoolOptions {
 ///   measured of finished ones) and its own are available; one always runs.
 /// - A run that ends by itself in any way but well is a failure and stays one. One that was killed
 ///   from outside (SIGKILL, SIGTERM: the kernel out of memory, an impatient scheduler) is tried
-///   once more, alone.
-/// @throws Interrupted on Ctrl-C or SIGTERM.
+///   once more, alone. One that met a full disk ends all work and is no failure: the same command
+///   goes on once there is room.
+/// @throws Interrupted on Ctrl-C or SIGTERM; DiskFullError.
 void work_off(Store& store, std::vector<Job> jobs, const PoolOptions& options);
 
 }  // namespace mh

@@ -13,6 +13,9 @@
 
 namespace mh {
 
+/// What a run's process returns when it met a full disk: no fault of the run.
+inline constexpr int kDiskFullCode = 4;
+
 /// How a process ended.
 struct ProcessEnd {
   bool good = false;

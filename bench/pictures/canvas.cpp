@@ -120,10 +120,12 @@ cv::Mat colour_picture(const Grid2d<Rgb8>& colour) {
 
 void write_picture(const std::filesystem::path& file, const cv::Mat& picture,
                    const std::vector<int>& settings) {
-  write_atomically(file, [&](const std::filesystem::path& temporary) {
-    if (!cv::imwrite(temporary.string(), picture, settings))
-      throw InputError(fmt::format("{}: cannot be written", file.string()));
-  });
+  std::vector<unsigned char> bytes;
+  if (!cv::haveImageWriter(file.string()) ||
+      !cv::imencode(file.extension().string(), picture, bytes, settings))
+    throw InputError(
+        fmt::format("{}: cannot be written: no format of pictures ends so", file.string()));
+  write_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace mh

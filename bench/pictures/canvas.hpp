@@ -44,7 +44,7 @@ class Canvas {
 cv::Mat colour_picture(const Grid2d<Rgb8>& colour);
 
 /// Writes a picture, in the format that the file's ending tells, whole or not at all.
-/// @param settings  of the format, as cv::imwrite takes them
+/// @param settings  of the format, as cv::imencode takes them
 /// @throws InputError if it cannot be written.
 void write_picture(const std::filesystem::path& file, const cv::Mat& bgr,
                    const std::vector<int>& settings = {});

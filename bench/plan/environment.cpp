@@ -10,6 +10,7 @@
 
 #include "bench/plan/names.hpp"
 #include "scenes/generate/generate.hpp"
+#include "slam/core/file_errors.hpp"
 
 namespace mh {
 namespace {
@@ -28,8 +29,8 @@ fs::path read_source(const YamlReader& node, const fs::path& folder, int index) 
   const std::string text = with_index(node.as_string(), index);
   if (is_generated(text)) return text;
   const fs::path file = (folder / text).lexically_normal();
-  if (!fs::is_regular_file(file))
-    node.fail(fmt::format("'{}' cannot be read: no such file", file.string()));
+  if (const char* reason = why_unreadable(file))
+    node.fail(fmt::format("'{}' cannot be read: {}", file.string(), reason));
   return file;
 }
 
@@ -101,8 +102,8 @@ bool is_generated(const fs::path& source) {
 
 fs::path existing_file(const YamlReader& node, const fs::path& folder) {
   const fs::path file = (folder / node.as_string()).lexically_normal();
-  if (!fs::is_regular_file(file))
-    node.fail(fmt::format("'{}' cannot be read: no such file", file.string()));
+  if (const char* reason = why_unreadable(file))
+    node.fail(fmt::format("'{}' cannot be read: {}", file.string(), reason));
   return file;
 }
 

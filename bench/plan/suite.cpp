@@ -8,6 +8,7 @@
 #include "bench/check/gate_config.hpp"
 #include "bench/plan/names.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
@@ -43,8 +44,7 @@ ProtocolConfig read_protocol(YamlReader node) {
 }
 
 void replace_scene(Suite& suite, const fs::path& scene) {
-  if (!fs::is_regular_file(scene))
-    throw InputError(fmt::format("{}: cannot be read: no such file", scene.string()));
+  require_readable(scene);
   if (suite.environments.size() != 1)
     throw InputError(fmt::format("{}: --scene needs a suite of one environment, this has {}",
                                  suite.file.string(), suite.environments.size()));

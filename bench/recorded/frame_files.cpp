@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
+#include "slam/core/file_errors.hpp"
 
 namespace mh {
 namespace {
@@ -23,7 +23,7 @@ void write_pnm(const fs::path& file, const char* magic, int width, int height, i
   out << magic << '\n' << width << ' ' << height << '\n' << greatest << '\n';
   out.write(static_cast<const char*>(pixels), static_cast<std::streamsize>(bytes));
   if (!out.flush())
-    throw MachineError(fmt::format("{}: cannot be written: is the disk full?", file.string()));
+    throw DiskFullError(fmt::format("{}: cannot be written: is the disk full?", file.string()));
 }
 
 }  // namespace

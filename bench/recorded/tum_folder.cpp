@@ -13,6 +13,7 @@
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "bench/recorded/tum_list.hpp"
+#include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 #include "slam/pipeline/settings.hpp"
 
@@ -42,7 +43,8 @@ const Listed* nearest(const std::vector<Listed>& entries, Stamp stamp_ns) {
 }
 
 cv::Mat read_picture(const fs::path& file, int type, const Camera& camera) {
-  const cv::Mat picture = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
+  cv::Mat picture;
+  if (why_unreadable(file) == nullptr) picture = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
   if (picture.empty()) throw InputError(fmt::format("{}: is missing or no picture", file.string()));
   if (picture.type() != type)
     throw InputError(fmt::format("{}: has the wrong number of bits or channels", file.string()));

@@ -19,7 +19,7 @@ void write_run(const fs::path& folder, const World& world, const RunResult& run)
   make_output_folder(folder);
   write_tum(folder / "truth.tum", world.mapping.camera);
   write_tum(folder / "estimate.tum", run.estimate);
-  write_atomically(folder / "map.bt", [&](const fs::path& file) { run.volume->save_bt(file); });
+  run.volume->save_bt(folder / "map.bt");
   save_map_server(run.grid, folder / "map");
   write_picture(folder / "topdown.png", draw_topdown(world, run, QuerySet::kHeldOut));
   if (world.second)

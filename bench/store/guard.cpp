@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
+#include "slam/core/file_errors.hpp"
 
 namespace mh {
 
@@ -13,7 +13,7 @@ void throw_meaning(const std::filesystem::path& file, const SQLite::Exception& e
   const std::string name = file.string();
   switch (error.getErrorCode()) {
     case SQLITE_FULL:
-      throw MachineError(fmt::format(
+      throw DiskFullError(fmt::format(
           "{}: the disk is full: make room and run again, what is finished is kept", name));
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:

@@ -19,6 +19,7 @@
 #include "scenes/mesh_io/ply.hpp"
 #include "scenes/srgb.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/file_errors.hpp"
 #include "slam/core/held_bytes.hpp"
 
 namespace mh {
@@ -218,9 +219,7 @@ class Gatherer {
 };
 
 const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Format& format) {
-  std::error_code error;
-  if (!fs::is_regular_file(file, error))
-    throw InputError(fmt::format("{}: cannot be read: no such file", file.string()));
+  require_readable(file);
   // No step that reorders vertices or faces: labels beside a PLY count on their order.
   const unsigned steps =
       format.ply ? unsigned{aiProcess_Triangulate} : aiProcess_Triangulate | aiProcess_GlobalScale;

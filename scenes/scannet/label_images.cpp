@@ -11,6 +11,7 @@
 #include "scenes/picture_file.hpp"
 #include "scenes/scannet/frame_folder.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
@@ -168,7 +169,11 @@ class ZipWriter : public LabelImageWriter {
       throw InputError(fmt::format("{}: cannot be written: zip error {}", file_.string(), error));
     const auto fail = [&] {
       const std::string why = zip_strerror(archive);
+      const zip_error_t* what = zip_get_error(archive);
+      const int system =
+          zip_error_system_type(what) == ZIP_ET_SYS ? zip_error_code_system(what) : 0;
       zip_discard(archive);
+      if (system != 0) throw_unwritable(file_, system);
       throw InputError(fmt::format("{}: cannot be written: {}", file_.string(), why));
     };
     for (const auto& [number, png] : pictures_) {

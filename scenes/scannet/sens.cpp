@@ -15,6 +15,7 @@
 
 #include "scenes/picture_file.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
@@ -249,18 +250,24 @@ class Writer {
 
   template <class T>
   void put(T value) {
-    out_.write(reinterpret_cast<const char*>(&value), sizeof value);
+    put_bytes({reinterpret_cast<const char*>(&value), sizeof value});
   }
   void put(const Eigen::Matrix4d& matrix) {
     for (int i = 0; i < 16; ++i) put(static_cast<float>(matrix(i / 4, i % 4)));
   }
   void put_bytes(std::string_view bytes) {
-    out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    if (!out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size())) && error_ == 0)
+      error_ = errno;
   }
-  bool finish() { return static_cast<bool>(out_.flush()); }
+  /// @returns 0, or errno of the first write that failed
+  int finish() {
+    if (!out_.flush() && error_ == 0) error_ = errno;
+    return error_;
+  }
 
  private:
   std::ofstream out_;
+  int error_ = out_ ? 0 : errno;
 };
 
 std::string compressed(const Grid2d<std::uint16_t>& depth) {
@@ -322,11 +329,7 @@ void save_sens(const fs::path& file, const RecordingInfo& info, std::size_t fram
       out.put_bytes(depth);
     }
     out.put(std::uint64_t{0});  // inertial measurements
-    if (out.finish()) return;
-    if (errno == ENOSPC)
-      throw MachineError(
-          fmt::format("{}: the disk is full: make room and run again", file.string()));
-    throw InputError(fmt::format("{}: cannot be written", file.string()));
+    if (const int error = out.finish()) throw_unwritable(file, error);
   });
 }
 

@@ -15,10 +15,11 @@
 namespace mh {
 namespace {
 
+/// Opened without waiting: a pipe that nobody writes to is refused, not waited for.
 class FileDescriptor {
  public:
   explicit FileDescriptor(const std::filesystem::path& file)
-      : value_(open(file.c_str(), O_RDONLY | O_CLOEXEC)) {}
+      : value_(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
   FileDescriptor(const FileDescriptor&) = delete;
   FileDescriptor& operator=(const FileDescriptor&) = delete;
   ~FileDescriptor() {
@@ -61,10 +62,9 @@ HeldBytes map_file(const std::filesystem::path& file, MapPages pages) {
   if (!S_ISREG(status.st_mode)) throw refusal("it is no file");
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size == 0) return {};  // nothing to map
-  void* const start =
-      mmap(nullptr, size, PROT_READ,
-           pages == MapPages::kAtOnce ? MAP_PRIVATE | MAP_POPULATE : MAP_PRIVATE,
-           descriptor.value(), 0);
+  void* const start = mmap(nullptr, size, PROT_READ,
+                           pages == MapPages::kAtOnce ? MAP_PRIVATE | MAP_POPULATE : MAP_PRIVATE,
+                           descriptor.value(), 0);
   if (start == MAP_FAILED) throw refusal(reason_of(errno));
   return {std::shared_ptr<const void>(
               start, [size](const void* p) { munmap(const_cast<void*>(p), size); }),

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <fstream>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <octomap/octomap.h>
@@ -116,16 +116,13 @@ void OccupancyMapper::write_bt(std::ostream& out) const {
 }
 
 void OccupancyMapper::save_bt(const std::filesystem::path& file) const {
-  write_atomically(file, [&](const std::filesystem::path& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    write_bt(out);
-    if (!out.flush()) throw InputError(fmt::format("{}: cannot be written", file.string()));
-  });
+  std::ostringstream out;
+  write_bt(out);
+  write_atomically(file, out.view());
 }
 
 OccupancyMapper OccupancyMapper::load_bt(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(fmt::format("{}: cannot be read: no such file", file.string()));
+  std::istringstream in(read_file(file));
   return read_bt(in, file.string());
 }
 

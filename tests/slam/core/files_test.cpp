@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/core/files.hpp"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <fstream>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "slam/core/error.hpp"
+#include "slam/core/file_errors.hpp"
+#include "slam/core/held_bytes.hpp"
 
 namespace mh {
 namespace {
@@ -27,6 +33,28 @@ TEST(WriteAtomically, KeepsTheOldFileWhenWritingFails) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << "a temporary was left behind";
 }
 
+TEST(WriteAtomically, AFullDiskIsNoBadInput) {
+  const fs::path folder = fs::path(testing::TempDir()) / "full_disk";
+  fs::remove_all(folder);
+  make_output_folder(folder);
+  const fs::path file = folder / "result.json";
+  write_atomically(file, "old");
+  // What is written to the temporary meets a full disk.
+  fs::create_symlink("/dev/full", folder / fmt::format(".result.{}.tmp.json", getpid()));
+  EXPECT_THROW(write_atomically(file, "new"), DiskFullError);
+  EXPECT_EQ(read_file(file), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << "a temporary was left behind";
+}
+
+TEST(WriteAtomically, PutsNoFileInThePlaceOfAnythingElse) {
+  EXPECT_THROW(write_atomically(testing::TempDir(), "x"), InputError);
+  const fs::path pipe = fs::path(testing::TempDir()) / "no_file_to_write";
+  fs::remove(pipe);
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(write_atomically(pipe, "x"), InputError);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
 TEST(ReadFile, SaysWhetherItIsMissingOrAFolder) {
   const auto error_of = [](const fs::path& file) -> std::string {
     try {
@@ -38,6 +66,11 @@ TEST(ReadFile, SaysWhetherItIsMissingOrAFolder) {
   };
   EXPECT_EQ(error_of("/nowhere/a"), "/nowhere/a: cannot be read: no such file");
   EXPECT_EQ(error_of(testing::TempDir()), testing::TempDir() + ": cannot be read: it is a folder");
+  const fs::path pipe = fs::path(testing::TempDir()) / "a_pipe";
+  fs::remove(pipe);
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(error_of(pipe), pipe.string() + ": cannot be read: it is no file");
+  EXPECT_THROW(map_file(pipe), InputError);
 }
 
 TEST(MakeOutputFolder, RefusesAPathThatIsAFile) {

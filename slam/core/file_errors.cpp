@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/core/file_errors.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace mh {
+namespace fs = std::filesystem;
+
+void throw_unwritable(const fs::path& file, int error) {
+  if (error == ENOSPC || error == EDQUOT)
+    throw DiskFullError(
+        fmt::format("{}: the disk is full: make room and run again", file.string()));
+  throw InputError(fmt::format("{}: cannot be written{}", file.string(),
+                               error == 0 ? "" : ": " + std::generic_category().message(error)));
+}
+
+const char* why_unreadable(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  switch (status.type()) {
+    case fs::file_type::regular:
+      return access(file.c_str(), R_OK) == 0 ? nullptr : "no permission";
+    case fs::file_type::directory:
+      return "it is a folder";
+    case fs::file_type::not_found:
+      return "no such file";
+    case fs::file_type::none:
+      return error == std::errc::permission_denied ? "no permission" : "the system refuses";
+    default:
+      return "it is no file";
+  }
+}
+
+void require_readable(const fs::path& file) {
+  if (const char* reason = why_unreadable(file))
+    throw InputError(fmt::format("{}: cannot be read: {}", file.string(), reason));
+}
+
+}  // namespace mh
