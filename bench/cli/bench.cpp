@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "bench/cache/cache.hpp"
+#include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
@@ -86,9 +87,9 @@ void add_bench(CLI::App& app) {
   command->add_flag("--no-cache", options->no_cache, "Makes everything anew, keeps nothing");
   command->add_flag("--retry-failed", options->retry_failed, "Tries failed runs again");
   command->add_option("--time-limit", options->time_limit_s, "Seconds for one run; 0 = none")
-      ->check(CLI::Range(0.0, 1e9));
+      ->check(number_between(0.0, 1e9));
   command->add_option("--memory-limit", options->memory_limit_mb, "MB for one run; 0 = none")
-      ->check(CLI::Range(0.0, 1e9));
+      ->check(number_between(0.0, 1e9));
   command->add_flag("--json", options->json, "Prints results.json instead of the table");
   command->footer(
       "Examples:\n  modelhouse bench bench/suites/model_house.yaml --jobs 2\n"

@@ -7,6 +7,7 @@
 #include "bench/check/baseline.hpp"
 #include "bench/check/from_runs.hpp"
 #include "bench/check/report.hpp"
+#include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/run.hpp"
@@ -80,6 +81,8 @@ void run(const Options& options) {
   if (suite.gate.tolerances.empty() && suite.gate.of_scenario.empty())
     throw InputError(
         fmt::format("{}: check: tolerances: missing: nothing would be judged", options.suite));
+  if (!options.junit.empty()) need_writable(options.junit);
+  if (options.update) need_writable(baseline_file(options));
   if (options.update) return update(options, suite, measure(suite, options.jobs));
 
   const fs::path file = baseline_file(options);

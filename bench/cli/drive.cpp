@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/motion_option.hpp"
 #include "bench/metrics/trajectory_io.hpp"
@@ -77,7 +78,8 @@ void add_drive(CLI::App& app) {
   command->add_option("--out", options->out, "Folder for camera.tum and base.tum");
   command->add_flag("--sensors", options->sensors,
                     "Also writes wheel odometry, lasers, sonars, bumpers and IMU into --out");
-  command->add_option("--seed", options->seed, "Seed of the odometry's errors");
+  command->add_option("--seed", options->seed, "Seed of the odometry's errors")
+      ->check(seed_number());
   command->add_flag("--json", options->json, "Prints JSON");
   command->footer(
       "Example:\n  modelhouse drive scenes/model_house/house.yaml "

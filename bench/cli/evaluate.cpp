@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/metrics/trajectory_io.hpp"
 #include "slam/core/error.hpp"
@@ -170,9 +171,9 @@ void add_evaluate(CLI::App& app) {
   command
       ->add_option("--max-difference", options->max_difference_s,
                    "Stamps (s) that are taken for one moment, default 0.01")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(number_between(0.0, 1e6));
   command->add_option("--rate", options->rate_hz, "Poses per second of KITTI files, default 10")
-      ->check(CLI::Range(1e-3, 1e6));
+      ->check(number_between(1e-3, 1e6));
   command->add_flag("--json", options->json, "Prints JSON");
   command->footer(
       "Examples:\n  modelhouse evaluate groundtruth.txt estimate.tum --align se3\n"

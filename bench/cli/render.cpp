@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/motion_option.hpp"
 #include "bench/cli/progress.hpp"
@@ -175,7 +176,7 @@ void add_render(CLI::App& app) {
   command->add_option("--every", options->sequence.every, "Every n-th frame only")
       ->check(CLI::Range(1, 100000000));
   command->add_option("--renderer", options->renderer, "embree (default) or osmesa");
-  command->add_option("--seed", options->sequence.seed, "Seed of the noise");
+  command->add_option("--seed", options->sequence.seed, "Seed of the noise")->check(seed_number());
   command
       ->add_option("--threads", options->sequence.threads,
                    "Frames worked on side by side (2); never changes a byte")

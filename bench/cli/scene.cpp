@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "bench/pictures/contact_sheet.hpp"
@@ -83,15 +84,10 @@ void info(const Options& options) {
   fmt::print("  digest     {}\n", hex(digest(scene)));
 }
 
-/// Finds out before the work whether a file can be written there.
-void need_folder_of(const fs::path& file) {
-  make_output_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
-}
-
 void preview(const Options& options) {
   if (fs::path(options.out).extension() != ".png" || fs::is_directory(options.out))
     throw InputError(fmt::format("{}: must name a file that ends in .png", options.out));
-  need_folder_of(options.out);
+  need_writable(options.out);
   std::vector<std::string> names = options.scenes;
   for (const Category& category : categories())
     for (int i = 0; i < options.each; ++i)
@@ -117,9 +113,8 @@ void preview(const Options& options) {
 void need_ending(const Options& options, const std::vector<std::string>& endings) {
   const std::string ending = fs::path(options.out).extension().string();
   if (std::ranges::find(endings, ending) == endings.end())
-    throw InputError(
-        fmt::format("{}: must end in {}", options.out, fmt::join(endings, " or ")));
-  need_folder_of(options.out);
+    throw InputError(fmt::format("{}: must end in {}", options.out, fmt::join(endings, " or ")));
+  need_writable(options.out);
 }
 
 /// As somebody who walks through it with a depth camera would scan it.
@@ -149,7 +144,7 @@ void convert(const Options& options) {
         "{}: must end in .ply or .glb, or name a folder for a ScanNet scene", options.out));
   if (!folder && ending != "." + format)
     throw InputError(fmt::format("{}: must end in .{}", options.out, format));
-  folder ? make_output_folder(options.out) : need_folder_of(options.out);
+  folder ? make_output_folder(options.out) : need_writable(options.out);
   if (!folder) {
     write_mesh(load(options.scene), options.out);
     return;
@@ -248,7 +243,7 @@ void add_scene(CLI::App& app) {
 
   CLI::App* m = command->add_subcommand("make", "Generates a furnished room of a category.");
   m->add_option("category", options->scene, "One of those that 'scene list' names")->required();
-  m->add_option("--seed", options->seed, "Another seed is another room");
+  m->add_option("--seed", options->seed, "Another seed is another room")->check(seed_number());
   m->add_option("--out", options->out, "What to write: .yaml (a plan), .glb or .ply (a mesh, lit)");
   m->add_flag("--scan-look", options->scan_look,
               "Writes what a hand-held scan of it would be: colours per vertex, holes, bumps");

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/slam_report.hpp"
@@ -110,14 +111,6 @@ SlamState first_state(const Options& options, Settings& settings) {
   return state;
 }
 
-std::optional<Evaluation> evaluation_of(const Options& options, const FrameSequence& frames,
-                                        const Trajectory& estimate) {
-  const std::optional<Trajectory> truth =
-      options.truth.empty() ? frames.truth() : std::optional(read_tum(options.truth));
-  if (!truth) return std::nullopt;
-  return evaluate(*truth, estimate);
-}
-
 void check(const Options& options) {
   if (options.run.localize && options.map.empty())
     throw InputError("--localize needs a map: name one by --map");
@@ -129,7 +122,11 @@ void run(const Options& options) {
   check(options);
   Source source = open_source(options);
   for (const std::string& note : source.settings.notes) fmt::print(stderr, "slam: {}\n", note);
+  // Before the work: a slip costs no minutes.
+  const std::optional<Trajectory> truth =
+      options.truth.empty() ? source.frames->truth() : std::optional(read_tum(options.truth));
   make_output_folder(options.out);
+  if (!options.save_map.empty()) need_writable(options.save_map);
   SlamState state = first_state(options, source.settings);
 
   Progress progress("slam");
@@ -154,13 +151,14 @@ void run(const Options& options) {
       run_slam(state, *source.frames, options.run, RandomStream(options.seed), observers, watch);
   if (!options.save_map.empty()) save_slam(options.save_map, state);
 
-  const SlamReport report{.state = state,
-                          .run = result,
-                          .clock = clock,
-                          .frame_ms = std::move(frame_ms),
-                          .evaluation = evaluation_of(options, *source.frames, result.trajectory),
-                          .source = options.source,
-                          .seed = options.seed};
+  const SlamReport report{
+      .state = state,
+      .run = result,
+      .clock = clock,
+      .frame_ms = std::move(frame_ms),
+      .evaluation = truth ? std::optional(evaluate(*truth, result.trajectory)) : std::nullopt,
+      .source = options.source,
+      .seed = options.seed};
   write_slam_files(options.out, report, source.settings);
   print_slam_report(report);
 }
@@ -192,11 +190,12 @@ void add_slam(CLI::App& app) {
   command->add_option("--robot", options->robot, "scene: robot (YAML)");
   command->add_option("--level", options->level, "scene: sensor level (YAML); without: no noise");
   command->add_option("--gamma", options->gamma, "Weight of a label, equation 1")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(number_between(0.0, 1e6));
   command->add_option("--xi", options->xi, "Penalty of labels that differ, equation 2")
-      ->check(CLI::Range(1.0, 1e6));
+      ->check(number_between(1.0, 1e6));
   command->add_flag("--plain", options->plain, "Without semantics");
-  command->add_option("--seed", options->seed, "Seed of RANSAC and of a scene's noise");
+  command->add_option("--seed", options->seed, "Seed of RANSAC and of a scene's noise")
+      ->check(seed_number());
   command->add_flag_callback(
       "--print-settings",
       [] {

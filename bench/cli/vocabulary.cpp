@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/protocol/digest.hpp"
@@ -25,10 +26,6 @@ struct Options {
   VocabularyScoreConfig score;
 };
 
-void make_folder_of(const std::filesystem::path& file) {
-  make_output_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."));
-}
-
 /// Loads a vocabulary and says how long that took.
 Vocabulary load_timed(const std::string& file) {
   const auto start = std::chrono::steady_clock::now();
@@ -40,7 +37,7 @@ Vocabulary load_timed(const std::string& file) {
 
 void train(Options& options) {
   const std::filesystem::path out = options.out;
-  make_folder_of(out);
+  need_writable(out);
   if (!options.list.empty()) options.training.pictures = load_picture_list(options.list);
   Progress progress("vocabulary");
   const Vocabulary vocabulary = train_vocabulary(options.training, [&](int done, int total) {
@@ -52,7 +49,7 @@ void train(Options& options) {
 }
 
 void convert(const Options& options) {
-  make_folder_of(options.out);
+  need_writable(options.out);
   const Vocabulary vocabulary = load_timed(options.file);
   vocabulary.save(options.out);
   load_timed(options.out);
@@ -125,7 +122,7 @@ void add_vocabulary(CLI::App& app) {
   t->add_option("--branching", training.tree.branching, "Children per node")
       ->check(CLI::Range(2, 255));
   t->add_option("--depth", training.tree.depth, "Levels below the root")->check(CLI::Range(1, 10));
-  t->add_option("--seed", training.seed, "Seed of rooms, views and tree");
+  t->add_option("--seed", training.seed, "Seed of rooms, views and tree")->check(seed_number());
   t->add_option("--threads", training.threads, "Rooms side by side; changes no bit")
       ->check(CLI::Range(1, 1024));
   t->footer("Example:\n  modelhouse vocabulary train --out assets/vocabulary.mhvoc");
@@ -150,7 +147,7 @@ void add_vocabulary(CLI::App& app) {
   i->add_option("--every", options->score.every, "Every n-th frame only")
       ->check(CLI::Range(1, 1000000));
   i->add_option("--overlap", options->score.min_overlap, "Share of a view that its neighbours see")
-      ->check(CLI::Range(0.01, 1.0));
+      ->check(number_between(0.01, 1.0));
   i->footer(
       "Example:\n  modelhouse vocabulary info assets/vocabulary.mhvoc --frames tum:out/sequence "
       "--settings out/sequence/camera.yaml");

@@ -136,6 +136,18 @@ TEST_F(SlamCommand, RefusesWhatItCannotUse) {
   expect_refused(path("room") + out + " --settings " + path("bare.yaml"), "'camera' is missing");
 }
 
+TEST_F(SlamCommand, FindsBadFilesBeforeTheWork) {
+  const std::string start = path("room") + " --out " + path("no");
+  const auto refused_at_once = [&](const std::string& more, const std::string& part) {
+    expect_refused(start + more, part);
+    EXPECT_EQ(err_.find("keyframes"), std::string::npos) << "it worked first: " << err_;
+  };
+  refused_at_once(" --truth " + path("nowhere.txt"), "nowhere.txt: cannot be read: no such file");
+  refused_at_once(" --truth " + path("room/camera.yaml"), "camera.yaml:");
+  refused_at_once(" --save-map " + path("room"), "room: cannot be written: it is a folder");
+  refused_at_once(" --save-map " + path("words.mhvoc/map"), "words.mhvoc: cannot be made a folder");
+}
+
 TEST_F(SlamCommand, PrintsItsSettings) {
   ASSERT_EQ(run("--print-settings"), 0) << err_;
   EXPECT_EQ(out_, format_slam_config({}, true));
