@@ -19,7 +19,10 @@
 #include "bench/results/write.hpp"
 #include "bench/run_one.hpp"
 #include "bench/store/run_key.hpp"
+#include "bench/systems/find_program.hpp"
+#include "bench/world/travel.hpp"
 #include "bench/world/world.hpp"
+#include "scenes/load.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -27,6 +30,34 @@ namespace mh {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Whether what the runs name can be worked with, each once: outside programs can be started,
+/// scenes read, tours driven. Generated scenes and motions are valid by construction.
+void check_places(const std::vector<Job>& jobs, const std::function<void(std::string_view)>& say) {
+  std::set<std::string> programs;
+  std::map<fs::path, std::set<std::pair<fs::path, fs::path>>> drives;  // of each scene: robot, tour
+  for (const Job& job : jobs) {
+    const RunSpec& spec = job.spec;
+    if (spec.system.kind == SystemKind::kOutside && programs.insert(spec.system.name).second)
+      require_program(spec.system.outside);
+    const Environment& e = spec.environment;
+    if (e.walk) load_walk(*e.walk);
+    if (e.sensors) load_sensor_config(*e.sensors);
+    const auto note = [&](const fs::path& scene, const std::optional<fs::path>& tour) {
+      if (is_generated(scene)) return;
+      auto& of_scene = drives[scene];
+      if (tour && !is_generated(*tour)) of_scene.insert({e.robot, *tour});
+    };
+    note(e.scene, e.mapping_tour);
+    note(e.scene, e.kidnapped_tour);
+    note(e.query_scene.value_or(e.scene), e.query_tour);
+  }
+  for (const auto& [file, of_scene] : drives) {
+    say(fmt::format("checking {}", file.string()));
+    const Scene scene = load_scene(file);
+    for (const auto& [robot, tour] : of_scene) travel(scene, load_robot(robot), tour);
+  }
+}
 
 /// Everything that can be told before the work, once per file.
 void check_all_inputs(const std::vector<RunSpec>& specs) {
@@ -123,7 +154,6 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
   check_names(suite, specs);
   check_all_inputs(specs);
 
-  Store store(options.out / "results.sqlite");
   std::vector<Job> mine;
   std::vector<std::pair<std::string, std::string>> plan;
   for (std::size_t i = 0; i < specs.size(); ++i) {
@@ -131,10 +161,17 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
     if (i % options.shard.of + 1 == options.shard.index)
       mine.push_back({specs[i], plan.back().second});
   }
+  const fs::path results = options.out / "results.sqlite";
+  if (fs::exists(results)) {
+    Store before(results);
+    if (options.retry_failed)
+      for (const Job& job : mine) before.forget_failure(job.key);
+    std::erase_if(mine, [&](const Job& job) { return before.status(job.key).has_value(); });
+  }
+  check_places(mine, options.say);  // bad input leaves no file
+
+  Store store(results);
   store.plan(suite, overrides, plan);
-  if (options.retry_failed)
-    for (const Job& job : mine) store.forget_failure(job.key);
-  std::erase_if(mine, [&](const Job& job) { return store.status(job.key).has_value(); });
   options.say(fmt::format("{} runs, {} of them to do", specs.size(), mine.size()));
 
   if (!mine.empty()) {

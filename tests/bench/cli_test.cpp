@@ -108,6 +108,63 @@ TEST_F(CommandLine, BadUsageIsRefused) {
   expect_refused("bench x.yaml --jobs 0", "--jobs");
 }
 
+TEST_F(CommandLine, NumbersAreFiniteAndSeedsDoNotWrap) {
+  for (const char* value : {"nan", "inf", "-inf", "1e999", "1.5x"})
+    expect_refused(std::string("slam x --vocabulary v --out o --xi=") + value,
+                   std::string("--xi: '") + value + "' is no finite number");
+  expect_refused("slam x --vocabulary v --out o --xi 0.5", "--xi");
+  expect_refused("evaluate a b --max-difference nan", "--max-difference");
+  expect_refused("evaluate a b --rate nan", "--rate");
+  expect_refused("bench x.yaml --time-limit nan", "--time-limit");
+  expect_refused("bench x.yaml --memory-limit inf", "--memory-limit");
+  expect_refused("vocabulary info v --overlap nan", "--overlap");
+  for (const char* command : {"drive a b --robot c", "render a b --robot c --out d", "scene make x",
+                              "slam x --vocabulary v --out o", "vocabulary train --out o"})
+    for (const char* seed : {"-1", "18446744073709551616", "1.5"})
+      expect_refused(std::string(command) + " --seed " + seed,
+                     std::string("'") + seed + "' is no whole number from 0 to 2^64 - 1");
+}
+
+TEST_F(CommandLine, LostOutputIsTold) {
+  const std::string command =
+      std::string(MH_EXECUTABLE) + " scene list 2>" + (folder_ / "said").string() + " >/dev/full";
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 3);
+  const std::string said = content(folder_ / "said");
+  EXPECT_NE(said.find("modelhouse: error: "), std::string::npos) << said;
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+}
+
+TEST_F(CommandLine, BenchFindsWhatCannotBeWorkedWithBeforeTheWork) {
+  const auto refused = [&](const std::string& key, const std::string& value,
+                           const std::string& part) {
+    expect_refused("bench " + suite_with(key, value).string() + " --frames 5 --out " +
+                       (folder_ / "out").string(),
+                   part);
+    EXPECT_EQ(err_.find(" runs, "), std::string::npos) << "it began: " << err_;
+    EXPECT_FALSE(fs::exists(folder_ / "out/results.sqlite"));
+    EXPECT_FALSE(fs::exists(folder_ / "out/table.txt"));
+  };
+  std::string small = content(house_);
+  const std::string extent = "extent_m: [0, 0, 9.3, 6.7]";
+  ASSERT_NE(small.find(extent), std::string::npos);
+  small.replace(small.find(extent), extent.size(), "extent_m: [0, 0, 5.3, 6.7]");
+  refused("scene", write("small.yaml", small).string(), "small.yaml:");
+  // From inside the outer wall.
+  const fs::path tour =
+      write("walled.yaml",
+            "name: walled\nstart: {position: [-3, -3], heading_deg: 0}\nwaypoints: [{to: [1, 1]}]\n");
+  refused("mapping_tour", tour.string(), "walled.yaml");
+  for (const char* command : {"no_such_program_of_mine --x", "./nowhere/vo", "exec suite.yaml/x"})
+    refused("systems",
+            std::string("[{name: vo, protocol: conversation, command: '") + command + "'}]",
+            "cannot be started");
+  refused(
+      "systems",
+      "[{name: vo, protocol: conversation, command: '" + write("plain.txt", "x").string() + "'}]",
+      "it may not be executed");
+}
+
 TEST_F(CommandLine, MissingSceneFile) {
   expect_refused("scene info " + (folder_ / "nowhere.yaml").string(), "nowhere.yaml");
   expect_refused("scene convert nowhere.ply --out " + (folder_ / "a.glb").string(), "nowhere.ply");

@@ -12,9 +12,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "bench/jobs/pool.hpp"
+#include "bench/jobs/run_process.hpp"
 #include "bench/results/json.hpp"
 #include "bench/store/export.hpp"
-#include "slam/core/error.hpp"
+#include "slam/core/file_errors.hpp"
 
 namespace mh {
 namespace {
@@ -135,6 +137,21 @@ TEST_F(StoreFile, ARunComesBackAsItWas) {
                 .cwiseAbs()
                 .maxCoeff(),
             1e-15);
+}
+
+TEST_F(StoreFile, ARunThatMetAFullDiskIsNoFailure) {
+  const fs::path program = folder_ / "program";
+  std::ofstream(program) << "#!/bin/sh\necho 'modelhouse: error: x: the disk is full' >&2\nexit "
+                         << kDiskFullCode << "\n";
+  fs::permissions(program, fs::perms::owner_all);
+  Store store(folder_ / "r.sqlite");
+  PoolOptions options;
+  options.executable = program;
+  options.work_folder = folder_;
+  options.arguments = [](const Job&, const fs::path&) { return std::vector<std::string>(); };
+  EXPECT_THROW(work_off(store, {{some_run("a").spec, "k"}}, options), DiskFullError);
+  EXPECT_EQ(store.status("k"), std::nullopt);
+  EXPECT_TRUE(store.claim("k")) << "its claim was kept";
 }
 
 TEST_F(StoreFile, ANewerSchemaIsRefused) {
