@@ -126,7 +126,7 @@ Shard parse_shard(const std::string& text) {
   Shard shard;
   char slash = 0, more = 0;
   if (std::sscanf(text.c_str(), "%zu%c%zu%c", &shard.index, &slash, &shard.of, &more) != 3 ||
-      slash != '/' || shard.index < 1 || shard.index > shard.of || text[0] == '-')
+      slash != '/' || shard.index < 1 || shard.index > shard.of || text.find('-') != std::string::npos)
     throw InputError(fmt::format("shard '{}' is not i/n with 1 <= i <= n", text));
   return shard;
 }

@@ -278,6 +278,8 @@ TEST(BenchProcess, ASweepOverAFixedMapAnswersAsSeparateQueriesWould) {
 TEST(BenchProcess, BadInputIsTold) {
   EXPECT_EQ(run(bench(write_suite(), "bad", "--shard 4/3")), 2);
   EXPECT_NE(errors().find("shard '4/3'"), std::string::npos) << errors();
+  EXPECT_EQ(run(bench(write_suite(), "bad", "--shard 1/-3")), 2);
+  EXPECT_NE(errors().find("shard '1/-3'"), std::string::npos) << errors();
   EXPECT_EQ(run("scene info generated:cave:0"), 2);
   EXPECT_NE(errors().find("cave"), std::string::npos) << errors();
   EXPECT_EQ(run("export " + (test_folder() / "nowhere").string()), 2);
