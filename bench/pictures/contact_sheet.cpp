@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include <fmt/format.h>
-#include <opencv2/imgproc.hpp>
 
 #include "bench/pictures/canvas.hpp"
+#include "bench/pictures/false_colours.hpp"
 
 namespace mh {
 namespace {
@@ -19,28 +19,6 @@ constexpr double kMargin = 30, kGap = 12, kCaption = 22, kHeader = 92;
 constexpr double kTileWidth = 400;
 constexpr float kNear_m = 0.4F, kFar_m = 8.0F;  // range of the false colours
 constexpr double kEye_m = 1.45;                 // of a person who sits or a child who stands
-
-/// Near is red, far is blue, no return is black.
-cv::Mat depth_picture(const Grid2d<float>& depth_m) {
-  cv::Mat grey(depth_m.height(), depth_m.width(), CV_8UC1);
-  for (int y = 0; y < depth_m.height(); ++y)
-    for (int x = 0; x < depth_m.width(); ++x) {
-      const float share = (kFar_m - depth_m(x, y)) / (kFar_m - kNear_m);
-      grey.at<std::uint8_t>(y, x) =
-          static_cast<std::uint8_t>(std::clamp(share, 0.0F, 1.0F) * 255.0F);
-    }
-  cv::Mat picture;
-  cv::applyColorMap(grey, picture, cv::COLORMAP_TURBO);
-  for (int y = 0; y < depth_m.height(); ++y)
-    for (int x = 0; x < depth_m.width(); ++x)
-      if (depth_m(x, y) <= 0) picture.at<cv::Vec3b>(y, x) = {0, 0, 0};
-  return picture;
-}
-
-Rgb8 class_colour(ClassId id) {
-  const ClassInfo& info = classes()[id];
-  return {info.r, info.g, info.b};
-}
 
 cv::Mat class_picture(const Grid2d<ClassId>& labels) {
   Grid2d<Rgb8> colours(labels.width(), labels.height());
@@ -60,10 +38,7 @@ std::vector<ClassId> classes_seen(const std::vector<View>& views) {
 }
 
 void draw_depth_scale(Canvas& canvas, double x, double y, double width) {
-  cv::Mat ramp(1, 256, CV_8UC1), colours;
-  for (int i = 0; i < 256; ++i) ramp.at<std::uint8_t>(0, i) = static_cast<std::uint8_t>(255 - i);
-  cv::applyColorMap(ramp, colours, cv::COLORMAP_TURBO);
-  canvas.picture(colours, x, y, width, 14);
+  canvas.picture(depth_scale(), x, y, width, 14);
   canvas.text(fmt::format("{} m", kNear_m), {x, y + 32}, 9);
   canvas.text(fmt::format("{} m and more", kFar_m), {x + width, y + 32}, 9, {40, 40, 40},
               Canvas::Align::kRight);
@@ -192,7 +167,7 @@ cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& vi
   double y = kHeader;
   for (const View& view : views) {
     canvas.picture(colour_picture(view.colour), column(0), y, kTileWidth, tile_height);
-    canvas.picture(depth_picture(view.depth_m), column(1), y, kTileWidth, tile_height);
+    canvas.picture(depth_colours(view.depth_m, kNear_m, kFar_m), column(1), y, kTileWidth, tile_height);
     canvas.picture(class_picture(view.classes), column(2), y, kTileWidth, tile_height);
     canvas.text(view.caption, {column(0), y + tile_height + 14}, 8.5, {110, 115, 125});
     y += tile_height + kCaption;

@@ -15,6 +15,7 @@
 
 #include "bench/pictures/canvas.hpp"
 #include "bench/pictures/contact_sheet.hpp"
+#include "bench/pictures/false_colours.hpp"
 #include "sim/sensors/shutter.hpp"
 
 namespace mh {
@@ -92,20 +93,12 @@ Trajectory motion_through(const SE3& pose) {
 /// black without return.
 cv::Mat depth_picture(const Grid2d<float>& depth_m, const Camera& camera) {
   const int w = depth_m.width(), h = depth_m.height();
-  cv::Mat grey(h, w, CV_8UC1), picture;
-  for (int y = 0; y < h; ++y)
-    for (int x = 0; x < w; ++x)
-      grey.at<std::uint8_t>(y, x) =
-          static_cast<std::uint8_t>(std::clamp((6.0F - depth_m(x, y)) / 5.5F, 0.0F, 1.0F) * 255.0F);
-  cv::applyColorMap(grey, picture, cv::COLORMAP_TURBO);
+  cv::Mat picture = depth_colours(depth_m, 0.5F, 6.0F);
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       const float z = depth_m(x, y), next = depth_m(std::min(x + 2, w - 1), y);
       cv::Vec3b& pixel = picture.at<cv::Vec3b>(y, x);
-      if (z <= 0.0F) {
-        pixel = {0, 0, 0};
-        continue;
-      }
+      if (z <= 0.0F) continue;
       const double slope = next > 0.0F ? (next - z) * camera.fx_px / (2.0 * z) : 0.0;
       const double shade = 0.72 + 0.28 * slope / std::sqrt(1.0 + slope * slope);
       for (int c = 0; c < 3; ++c) pixel[c] = static_cast<std::uint8_t>(pixel[c] * shade);
@@ -121,9 +114,9 @@ cv::Mat label_picture(const SemanticImage& labels, const Grid2d<Rgb8>& colour) {
       cv::Vec3b& pixel = picture.at<cv::Vec3b>(y, x);
       const double grey = (pixel[0] + pixel[1] + pixel[2]) / 3.0;
       const ClassDistribution& seen = labels.at(x, y);
-      const ClassInfo& info = classes()[seen.most_probable()];
+      const Rgb8 shown = class_colour(seen.most_probable());
       const double part = seen.entries.empty() ? 0.0 : 0.6;
-      const std::array<std::uint8_t, 3> bgr = {info.b, info.g, info.r};
+      const std::array<std::uint8_t, 3> bgr = {shown.b, shown.g, shown.r};
       for (int c = 0; c < 3; ++c)
         pixel[c] = static_cast<std::uint8_t>(part * bgr[static_cast<std::size_t>(c)] +
                                              (1.0 - part) * grey);

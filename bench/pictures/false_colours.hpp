@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+
+#include "slam/core/grid2d.hpp"
+#include "slam/core/labels.hpp"
+#include "slam/core/rgbd_frame.hpp"
+
+namespace mh {
+
+/// Depth as 8-bit BGR: near is red, far is a bright blue, no return is black, which the scale does
+/// not come near to (Turbo without its dark ends).
+cv::Mat depth_colours(const Grid2d<float>& depth_m, float near_m, float far_m);
+/// The scale of depth_colours(), 256 x 1, near to far.
+cv::Mat depth_scale();
+
+/// The colour that a class has in pictures for people: that of classes(), or the nearest one that
+/// can be told from those of all lower ids. The same in every picture.
+Rgb8 class_colour(ClassId id);
+
+/// How different two colours look: their distance in CIE L*a*b* (1976). About 2 can just be seen.
+double colour_distance(Rgb8 a, Rgb8 b);
+
+}  // namespace mh

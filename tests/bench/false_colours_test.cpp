@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/pictures/false_colours.hpp"
+
+#include <gtest/gtest.h>
+
+namespace mh {
+namespace {
+
+TEST(ClassColour, AnyTwoClassesCanBeTold) {
+  for (const ClassInfo& a : classes())
+    for (const ClassInfo& b : classes())
+      if (a.id < b.id) {
+        EXPECT_GT(colour_distance(class_colour(a.id), class_colour(b.id)), 20)
+            << a.name << " and " << b.name;
+      }
+}
+
+TEST(ColourDistance, IsThatOfCieLab) {
+  EXPECT_NEAR(colour_distance({255, 255, 255}, {0, 0, 0}), 100, 0.1);
+  EXPECT_EQ(colour_distance({9, 8, 7}, {9, 8, 7}), 0);
+}
+
+TEST(DepthColours, NothingThatReturnedIsNearlyAsBlackAsWhatDidNot) {
+  Grid2d<float> depth_m(101, 1);
+  for (int x = 0; x < 101; ++x) depth_m(x, 0) = 0.1F * static_cast<float>(x);
+  const cv::Mat picture = depth_colours(depth_m, 0.4F, 8.0F);
+  const auto at = [&](int x) {
+    const cv::Vec3b bgr = picture.at<cv::Vec3b>(0, x);
+    return Rgb8{bgr[2], bgr[1], bgr[0]};
+  };
+  EXPECT_EQ(colour_distance(at(0), {0, 0, 0}), 0);
+  for (int x = 1; x < 101; ++x) EXPECT_GT(colour_distance(at(x), at(0)), 60) << depth_m(x, 0);
+  EXPECT_GT(colour_distance(at(4), at(80)), 60) << "near and far";
+}
+
+}  // namespace
+}  // namespace mh
