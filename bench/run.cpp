@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/counted.hpp"
 #include "bench/plan/spec_json.hpp"
 #include "bench/results/write.hpp"
 #include "bench/run_one.hpp"
@@ -172,7 +173,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
 
   Store store(results);
   store.plan(suite, overrides, plan);
-  options.say(fmt::format("{} runs, {} of them to do", specs.size(), mine.size()));
+  options.say(fmt::format("{}, {} of them to do", counted(specs.size(), "run"), mine.size()));
 
   if (!mine.empty()) {
     const TemporaryFolder work(options.out);

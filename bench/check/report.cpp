@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "bench/counted.hpp"
+
 namespace mh {
 namespace {
 
@@ -56,8 +58,8 @@ std::string table(const GateResult& result) {
 }
 
 std::string origin_line(const GateResult& result) {
-  return fmt::format("{} of {} runs are equal to the baseline bit for bit{}\n", result.identical,
-                     result.runs,
+  return fmt::format("equal to the baseline bit for bit: {} of {}{}\n", result.identical,
+                     counted(result.runs, "run"),
                      result.same_origin ? ", and all must be: same program, same kind of machine"
                                         : "; they need not be: another program or machine made it");
 }

@@ -61,6 +61,7 @@ void run(const Options& options) {
     progress.share(share, fmt::format("{} done, {} failed", done, failed));
   };
   const BenchResults results = run_suite(suite, overrides, bench);
+  progress.end();
   finish(bench.out, suite, results, options.json);
 }
 

@@ -10,6 +10,7 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/counted.hpp"
 #include "bench/run.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -73,7 +74,7 @@ void update(const Options& options, const Suite& suite, const Baseline& now) {
     }
   }
   save_baseline(now, file);
-  fmt::print("{}: {} runs written\n", file.string(), now.runs.size());
+  fmt::print("{}: {} written\n", file.string(), counted(now.runs.size(), "run"));
 }
 
 void run(const Options& options) {

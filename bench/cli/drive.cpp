@@ -10,6 +10,7 @@
 #include "bench/cli/motion_option.hpp"
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/robot_readings.hpp"
+#include "bench/counted.hpp"
 #include "bench/world/travel.hpp"
 #include "robots/model/robot.hpp"
 #include "scenes/load.hpp"
@@ -60,9 +61,9 @@ void run(const Options& options) {
     return;
   }
   fmt::print(
-      "{}: {} frames in {:.1f} s, {:.2f} m driven, {:.0f} deg turned in place, {:.2f} s in "
+      "{}: {} in {:.1f} s, {:.2f} m driven, {:.0f} deg turned in place, {:.2f} s in "
       "contact (at most {:.4f} m deep)\n",
-      motion, path.camera.size(), seconds, path.length_m, turned_deg, path.contact_time_s,
+      motion, counted(path.camera.size(), "frame"), seconds, path.length_m, turned_deg, path.contact_time_s,
       path.max_penetration_m);
 }
 

@@ -13,6 +13,7 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
+#include "bench/counted.hpp"
 #include "bench/metrics/trajectory_io.hpp"
 #include "slam/core/error.hpp"
 
@@ -63,7 +64,7 @@ RpeDelta parse_delta(const std::string& text, bool all_pairs) {
 }
 
 std::string delta_name(const RpeDelta& delta) {
-  return delta.unit == DeltaUnit::kFrames    ? fmt::format("{} frame(s)", delta.value)
+  return delta.unit == DeltaUnit::kFrames    ? counted(std::lround(delta.value), "frame")
          : delta.unit == DeltaUnit::kSeconds ? fmt::format("{} s", delta.value)
                                              : fmt::format("{} m", delta.value);
 }
@@ -135,8 +136,8 @@ void run(const Options& options) {
     fmt::print("{}\n", to_json(e, options.align).dump(2));
     return;
   }
-  fmt::print("{} pairs of {} true and {} estimated poses, aligned by {}\n", e.pairs, e.truth_poses,
-             e.estimate_poses, options.align);
+  fmt::print("{} of {} true and {}, aligned by {}\n", counted(e.pairs, "pair"), e.truth_poses,
+             counted(e.estimate_poses, "estimated pose"), options.align);
   if (!e.truth_from_estimate)
     fmt::print("the alignment is undetermined: too few poses, or all on a line\n");
   fmt::print("{:<30}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}\n", "", "rmse", "mean", "median",

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/counted.hpp"
 #include "bench/results/json.hpp"
 #include "bench/results/table.hpp"
 #include "bench/results/write.hpp"
@@ -18,7 +19,7 @@ void finish(const std::filesystem::path& out, const Suite& suite, const BenchRes
   } else {
     fmt::print("{}\n{}\n", table, times_table(suite, results.runs));
     if (results.missing > 0)
-      fmt::print("{} runs are missing: of other shards (modelhouse merge)\n", results.missing);
+      fmt::print("missing, of other shards (modelhouse merge): {}\n", counted(results.missing, "run"));
     fmt::print("results in {}\n", out.string());
   }
   if (results.failed.empty()) return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/cli/progress.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +11,15 @@
 #include <fmt/format.h>
 
 namespace mh::cli {
+namespace {
+
+std::size_t columns_of(std::FILE* terminal) {
+  winsize size{};
+  if (ioctl(fileno(terminal), TIOCGWINSZ, &size) != 0 || size.ws_col < 2) return 80;
+  return size.ws_col;
+}
+
+}  // namespace
 
 std::string readable_time(double seconds) {
   const auto s = static_cast<long>(std::lround(std::max(0.0, seconds)));
@@ -18,22 +28,41 @@ std::string readable_time(double seconds) {
   return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
 }
 
-Progress::Progress(std::string what)
-    : what_(std::move(what)), terminal_(isatty(STDERR_FILENO) != 0) {}
-
-Progress::~Progress() {
-  end_line();
+std::string bar_line(std::string_view what, double done, std::string_view to_go,
+                     std::string_view figures, std::size_t columns) {
+  constexpr std::size_t kLongestBar = 40, kShortestBar = 8;
+  std::string tail = fmt::format("] {:5.1f} %{}", 100 * done, to_go);
+  const std::size_t around = what.size() + 2 + tail.size();  // the line without bar and figures
+  const std::size_t room = columns > around + kShortestBar ? columns - around - kShortestBar : 0;
+  while (figures.size() + 2 > room && !figures.empty()) {
+    const std::size_t comma = figures.rfind(", ");
+    figures = comma == std::string_view::npos ? std::string_view() : figures.substr(0, comma);
+  }
+  if (!figures.empty()) tail += fmt::format("; {}", figures);
+  const std::size_t taken = what.size() + 2 + tail.size();
+  const std::size_t bar = columns > taken ? std::min(kLongestBar, columns - taken) : 0;
+  const auto full = static_cast<std::size_t>(done * static_cast<double>(bar));
+  return fmt::format("{} [{}{}{}", what, std::string(full, '#'), std::string(bar - full, '.'), tail)
+      .substr(0, columns);
 }
 
-void Progress::end_line() {
-  if (line_open_) fmt::print(stderr, "\n");
+Progress::Progress(std::string what, std::FILE* to)
+    : what_(std::move(what)), to_(to), terminal_(isatty(fileno(to)) != 0) {}
+
+Progress::~Progress() {
+  end();
+}
+
+void Progress::end() {
+  if (line_open_) fmt::print(to_, "\n");
   line_open_ = false;
+  std::fflush(to_);
 }
 
 void Progress::say(std::string_view stage) {
-  end_line();
-  fmt::print(stderr, "{}: {}\n", what_, stage);
-  std::fflush(stderr);
+  end();
+  fmt::print(to_, "{}: {}\n", what_, stage);
+  std::fflush(to_);
 }
 
 void Progress::share(double done, std::string_view figures) {
@@ -44,8 +73,9 @@ void Progress::share(double done, std::string_view figures) {
     start_ = std::chrono::steady_clock::now();
   }
   const int steps = terminal_ ? 200 : 10;
-  const int step = static_cast<int>(done * steps);
-  if (step == last_step_ && figures == last_figures_) return;
+  // 0.3 * 10 and the like may fall just short of the step that they have reached.
+  const int step = static_cast<int>(done * steps + 1e-9);
+  if (step == last_step_ && (!terminal_ || figures == last_figures_)) return;
   last_step_ = step;
   last_figures_ = figures;
   const double elapsed =
@@ -55,17 +85,14 @@ void Progress::share(double done, std::string_view figures) {
           ? ", " + readable_time(elapsed * (1 - done) / (done - first_share_)) + " to go"
           : "";
   if (terminal_) {
-    constexpr int kBar = 40;
-    const int full = static_cast<int>(done * kBar);
-    fmt::print(stderr, "\r{} [{}{}] {:5.1f} %{}{}{}   ", what_, std::string(full, '#'),
-               std::string(kBar - full, '.'), 100 * done, to_go, figures.empty() ? "" : "; ",
-               figures);
+    // The last column stays free: some terminals wrap as soon as it is written.
+    fmt::print(to_, "\r{}\x1b[K", bar_line(what_, done, to_go, figures, columns_of(to_) - 1));
     line_open_ = true;
   } else {
-    fmt::print(stderr, "{}: {:.0f} %{}{}{}\n", what_, 100 * done, to_go,
-               figures.empty() ? "" : "; ", figures);
+    fmt::print(to_, "{}: {:.0f} %{}{}{}\n", what_, 100 * done, to_go, figures.empty() ? "" : "; ",
+               figures);
   }
-  std::fflush(stderr);
+  std::fflush(to_);
 }
 
 }  // namespace mh::cli

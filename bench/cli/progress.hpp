@@ -2,16 +2,17 @@
 #pragma once
 
 #include <chrono>
+#include <cstdio>
 #include <string>
 #include <string_view>
 
 namespace mh::cli {
 
-/// Tells on stderr how far long work has come, with the time to go: a bar that is drawn over itself
-/// on a terminal, a plain line every tenth of the work elsewhere.
+/// Tells how far long work has come, with the time to go: a bar that is drawn over itself and stays
+/// within one line on a terminal, a plain line every tenth of the work elsewhere.
 class Progress {
  public:
-  explicit Progress(std::string what);
+  explicit Progress(std::string what, std::FILE* to = stderr);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -20,11 +21,12 @@ class Progress {
   /// @param done     in [0, 1]; the first call starts the clock
   /// @param figures  shown behind: how the work stands
   void share(double done, std::string_view figures = {});
+  /// Leaves the bar's line: what is printed next begins a line of its own.
+  void end();
 
  private:
-  void end_line();
-
   std::string what_;
+  std::FILE* to_;
   bool terminal_;
   bool line_open_ = false;
   bool started_ = false;
@@ -34,6 +36,11 @@ class Progress {
   std::string last_figures_;
   std::chrono::steady_clock::time_point start_;
 };
+
+/// One line of at most `columns` characters: the bar gives way first, then the last figures do.
+/// @param figures  parted by ", "
+std::string bar_line(std::string_view what, double done, std::string_view to_go,
+                     std::string_view figures, std::size_t columns);
 
 /// "3 min 20 s"
 std::string readable_time(double seconds);

@@ -129,19 +129,21 @@ void run(Options options) {
   const Shutter shutter =
       walked ? Shutter([walked](Stamp stamp) { return walked->at(stamp); }, camera, path, sensors)
              : Shutter(renderer, camera, path, sensors);
+  const Camera camera_told = recorded_camera(shutter.camera(), options.sequence);
   if (options.format == "scannet") {  // one file for all: frames in order, one by one
     const std::size_t last = std::min(options.sequence.frames, shutter.path().size());
     const std::size_t count = (last + options.sequence.every - 1) / options.sequence.every;
-    write_scannet_recording(out, shutter.camera(), count, [&](std::size_t k) {
+    write_scannet_recording(out, camera_told, count, [&](std::size_t k) {
       progress.share(static_cast<double>(k) / static_cast<double>(count));
       return exact_frame(shutter, sensors, options.sequence, k);
     });
     return;
   }
   const auto writer =
-      make_sequence_writer(options.format, out, shutter.camera(), options.png_compression);
+      make_sequence_writer(options.format, out, camera_told, options.png_compression);
   const RenderedSequence done = render_sequence(shutter, sensors, *writer, options.sequence,
                                                 [&](double share) { progress.share(share); });
+  progress.end();
   if (options.json)
     fmt::print("{}\n", nlohmann::ordered_json({{"frames", done.frames},
                                                {"resumed", done.resumed},

@@ -11,6 +11,7 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
+#include "bench/counted.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "bench/pictures/contact_sheet.hpp"
 #include "bench/protocol/digest.hpp"
@@ -72,13 +73,14 @@ void info(const Options& options) {
     fmt::print("{}\n", json.dump(2));
     return;
   }
-  fmt::print("{}\n  floor      {:.2f} m2 in {} rooms\n", scene.name, scene.floor_area_m2(),
-             scene.rooms.size());
+  fmt::print("{}\n  floor      {:.2f} m2 in {}\n", scene.name, scene.floor_area_m2(),
+             counted(scene.rooms.size(), "room"));
   for (const Room& room : scene.rooms) fmt::print("             {}\n", room.name);
   fmt::print("  triangles  {}\n  vertices   {}\n  materials  {}\n  lights     {}\n",
              scene.triangles.size(), scene.positions_m.size(), scene.materials.size(),
              scene.lights.size());
-  fmt::print("  objects    {} of {} classes\n", scene.instances.size(), objects.size());
+  fmt::print("  objects    {} of {}\n", scene.instances.size(),
+             counted(objects.size(), "class", "classes"));
   for (const auto& [id, count] : objects)
     fmt::print("             {:>4}  {}\n", count, classes()[id].name);
   fmt::print("  digest     {}\n", hex(digest(scene)));
@@ -174,8 +176,8 @@ void make(const Options& options) {
   if (options.json)
     fmt::print("{}\n", facts_json(reference, plan).dump(2));
   else
-    fmt::print("{}: {}, {:.1f} m2, {} objects, {:.1f} per 10 m2, {:.0f} % of the floor free\n",
-               to_string(reference), plan.room, plan.floor_area_m2, plan.objects,
+    fmt::print("{}: {}, {:.1f} m2, {}, {:.1f} per 10 m2, {:.0f} % of the floor free\n",
+               to_string(reference), plan.room, plan.floor_area_m2, counted(plan.objects, "object"),
                plan.objects_per_10_m2(), 100 * plan.free_share);
   if (options.out.empty()) return;
   if (fs::path(options.out).extension() == ".yaml")

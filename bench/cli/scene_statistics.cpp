@@ -10,6 +10,7 @@
 
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/counted.hpp"
 #include "bench/realism/short_walks.hpp"
 #include "bench/realism/survey.hpp"
 #include "bench/recorded/tum_folder.hpp"
@@ -89,7 +90,8 @@ void print_table(const std::vector<MeasuredPlace>& places, const std::vector<Rea
                  const std::optional<MeasuredPlace>& recording) {
   std::size_t frames = 0;
   for (const MeasuredPlace& place : places) frames += place.frames.size();
-  fmt::print("{} frames of {} places; percentiles 5 / 25 / 50 / 75 / 95\n", frames, places.size());
+  fmt::print("{} of {}; percentiles 5 / 25 / 50 / 75 / 95\n", counted(frames, "frame"),
+             counted(places.size(), "place"));
   for (std::size_t q = 0; q < kImageQuantityCount; ++q) {
     fmt::print("\n{}\n", kImageQuantities[q].name);
     const auto line = [](const std::string& name, const std::array<double, 5>& p,
@@ -107,13 +109,14 @@ void print_table(const std::vector<MeasuredPlace>& places, const std::vector<Rea
       std::array<double, 5> measured{};
       for (std::size_t k = 0; k < kShares.size(); ++k) measured[k] = recording->at(q, kShares[k]);
       line("recording", measured,
-           fmt::format("{} frames, measured now", recording->frames.size()));
+           fmt::format("{}, measured now", counted(recording->frames.size(), "frame")));
     }
     if (row.outside.empty()) continue;
     std::vector<std::string> outside;
     for (const std::size_t i : row.outside)
       outside.push_back(fmt::format("{} ({})", places[i].name, number(places[i].at(q, 0.5))));
-    fmt::print("  {} places whose median leaves {}'s 5 to 95 %: {}\n", outside.size(),
+    fmt::print("  {} whose median leaves {}'s 5 to 95 %: {}\n",
+               counted(outside.size(), "place"),
                real.front().name, fmt::join(outside, ", "));
   }
 }
@@ -153,6 +156,7 @@ void run(const Options& options) {
     if (frames > 0) places.push_back(measure_scene(names[i], frames, options, robot, sensors));
     progress.share(static_cast<double>(i + 1) / static_cast<double>(names.size()));
   }
+  progress.end();
   options.json ? print_json(places, real.front()) : print_table(places, real, recording);
 }
 

@@ -9,6 +9,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/slam_report.hpp"
+#include "bench/counted.hpp"
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/scannet_folder.hpp"
 #include "slam/core/error.hpp"
@@ -143,9 +144,9 @@ void run(const Options& options) {
     running_ms += ms;
     const std::size_t all = std::min(options.run.count, source.frames->size());
     progress.share(static_cast<double>(done) / static_cast<double>(all),
-                   fmt::format("{} tracked, {} keyframes, {} landmarks, {:.1f} ms a frame",
-                               so_far.tracked, state.map.keyframe_count(),
-                               state.map.landmark_count(), running_ms / static_cast<double>(done)));
+                   fmt::format("{} tracked, {}, {}, {:.1f} ms a frame", so_far.tracked,
+                               counted(state.map.keyframe_count(), "keyframe"),
+                               counted(state.map.landmark_count(), "landmark"), running_ms / static_cast<double>(done)));
   };
   const SlamRun result =
       run_slam(state, *source.frames, options.run, RandomStream(options.seed), observers, watch);
@@ -159,6 +160,7 @@ void run(const Options& options) {
       .evaluation = truth ? std::optional(evaluate(*truth, result.trajectory)) : std::nullopt,
       .source = options.source,
       .seed = options.seed};
+  progress.end();
   write_slam_files(options.out, report, source.settings);
   print_slam_report(report);
 }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/counted.hpp"
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/systems/timed.hpp"
@@ -84,21 +85,21 @@ void write_slam_files(const std::filesystem::path& folder, const SlamReport& rep
 void print_slam_report(const SlamReport& report) {
   const SlamRun& run = report.run;
   for (const std::string& fault : run.faults) fmt::print("skipped: {}\n", fault);
-  fmt::print("{} of {} frames tracked ({:.1f} %); {} lost, {} skipped, {} relocalized\n",
-             run.tracked, run.frames.size(), 100 * run.completeness(), run.lost, run.skipped,
+  fmt::print("{} of {} tracked ({:.1f} %); {} lost, {} skipped, {} relocalized\n",
+             run.tracked, counted(run.frames.size(), "frame"), 100 * run.completeness(), run.lost, run.skipped,
              run.relocalized);
   if (run.started_anew > 0)
-    fmt::print("started anew {} time(s): tracking was lost while the map was small\n",
-               run.started_anew);
-  fmt::print("{} keyframes, {} landmarks, {} loop(s) closed\n", report.state.map.keyframe_count(),
-             report.state.map.landmark_count(), run.loops);
+    fmt::print("started anew {}: tracking was lost while the map was small\n",
+               counted(run.started_anew, "time"));
+  fmt::print("{}, {}, {} closed\n", counted(report.state.map.keyframe_count(), "keyframe"),
+             counted(report.state.map.landmark_count(), "landmark"), counted(run.loops, "loop"));
   if (report.evaluation) {
     const Evaluation& e = *report.evaluation;
     if (e.ape_translation_m.count > 0)
-      fmt::print("ATE {:.4f} m (RMSE over {} poses, aligned by SE(3) without scale)\n",
-                 e.ape_translation_m.rmse, e.pairs);
+      fmt::print("ATE {:.4f} m (RMSE over {}, aligned by SE(3) without scale)\n",
+                 e.ape_translation_m.rmse, counted(e.pairs, "pose"));
     else
-      fmt::print("ATE unknown: {} poses have a true one beside them\n", e.pairs);
+      fmt::print("ATE unknown: {} with a true one beside\n", counted(e.pairs, "pose"));
   }
   fmt::print("\n{:<16}{:>8}{:>12}{:>12}\n", "time (ms)", "frames", "median", "95 % below");
   const auto row = [](std::string_view what, const std::vector<double>& ms) {

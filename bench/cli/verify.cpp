@@ -61,6 +61,7 @@ void run(const Options& options) {
   bench.say = [&](std::string_view stage) { progress.say(stage); };
   bench.progress = [&](double share, std::size_t, std::size_t) { progress.share(share); };
   const Verification v = verify(suite, overrides, bench);
+  progress.end();
   options.json ? print_json(v) : print_table(v);
   if (v.difference) throw CheckFailed();
 }

@@ -10,6 +10,7 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/counted.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/vocabulary_score.hpp"
 #include "bench/vocabulary_training.hpp"
@@ -31,7 +32,7 @@ Vocabulary load_timed(const std::string& file) {
   const auto start = std::chrono::steady_clock::now();
   Vocabulary vocabulary = Vocabulary::load(file);
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-  fmt::print("{}: {} words, ready in {:.1f} ms\n", file, vocabulary.size(), took.count());
+  fmt::print("{}: {}, ready in {:.1f} ms\n", file, counted(vocabulary.size(), "word"), took.count());
   return vocabulary;
 }
 
@@ -43,8 +44,9 @@ void train(Options& options) {
   const Vocabulary vocabulary = train_vocabulary(options.training, [&](int done, int total) {
     progress.share(static_cast<double>(done) / total);
   });
+  progress.end();
   vocabulary.save(out);
-  fmt::print("{}: {} words, digest {}\n", out.string(), vocabulary.size(),
+  fmt::print("{}: {}, content digest {}\n", out.string(), counted(vocabulary.size(), "word"),
              hex(vocabulary.digest()));
 }
 
@@ -75,8 +77,8 @@ void print_score(const Vocabulary& vocabulary, const Options& options) {
     queries = load_placed_views(folder_of(options.queries), camera, options.score);
   const VocabularyScore score =
       score_vocabulary(vocabulary, views, queries, camera.camera, options.score);
-  fmt::print("  frames  {} views, {} queries, {:.0f} different words in each\n", score.views,
-             score.queries, score.words_per_view);
+  fmt::print("  frames  {}, {}, {:.0f} different words in each\n",
+             counted(score.views, "view"), counted(score.queries, "query", "queries"), score.words_per_view);
   if (score.label_mass)
     fmt::print("  labels  hold {:.1f} % of a frame's mass at gamma = 1\n", 100 * *score.label_mass);
   fmt::print(
@@ -99,7 +101,7 @@ void info(const Options& options) {
              mean, idf[idf.size() / 2]);
   fmt::print("  from    pictures: {}, descriptors: {}\n", or_unknown(vocabulary.training_images()),
              or_unknown(vocabulary.training_descriptors()));
-  fmt::print("  digest  {}\n", hex(vocabulary.digest()));
+  fmt::print("  content digest  {}\n", hex(vocabulary.digest()));
   if (!options.frames.empty()) print_score(vocabulary, options);
 }
 

@@ -185,7 +185,7 @@ class Pool {
   void keep_within_limits(Running& r) const {
     if (!r.cut_off.empty()) return;
     if (options_.time_limit_s > 0 && r.process->age_s() > options_.time_limit_s)
-      r.cut_off = fmt::format("took longer than the limit of {:.0f} s", options_.time_limit_s);
+      r.cut_off = fmt::format("took longer than the limit of {:g} s", options_.time_limit_s);
     else if (options_.memory_limit_mb > 0 && r.process->rss_mb() > options_.memory_limit_mb)
       r.cut_off =
           fmt::format("needed more memory than the limit of {:.0f} MB", options_.memory_limit_mb);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/counted.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "bench/pictures/slice.hpp"
 
@@ -214,15 +215,15 @@ void draw_header(Canvas& canvas, const World& world, const RunResult& run, Query
                           run.spec.system.kind == SystemKind::kPlain
                               ? ""
                               : fmt::format(", {} labels", name(run.spec.labels)),
-                          world.cut ? fmt::format(", first {} frames", *run.spec.max_frames) : ""),
+                          world.cut ? fmt::format(", first {}", counted(*run.spec.max_frames, "frame")) : ""),
               {kMargin, 38}, 17, kInk, Canvas::Align::kLeft, true);
   const QuerySummary s = summarize(queries(run.points.front(), set));
   const std::optional<double>& ate = run.trajectory.ate_rmse_m;
   canvas.text(
-      fmt::format("level {}, trial {}; {} {:.1f} m driven; {} queries ({}): {:.1f} % answered, "
+      fmt::format("level {}, trial {}; {} {:.1f} m driven; {} ({}): {:.1f} % answered, "
                   "{:.1f} % correct; ATE {}, completeness {:.1f} %",
                   level_name(run.spec.level), run.spec.trial, world.robot.name,
-                  world.mapping.length_m, static_cast<int>(s.queries),
+                  world.mapping.length_m, counted(static_cast<int>(s.queries), "query", "queries"),
                   set == QuerySet::kHeldOut ? "held-out" : "second tour", 100 * s.success,
                   100 * s.correct, ate ? fmt::format("{:.3f} m", *ate) : "-",
                   100 * run.trajectory.completeness),

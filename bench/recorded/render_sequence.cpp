@@ -12,6 +12,11 @@
 
 namespace mh {
 
+Camera recorded_camera(Camera camera, const RenderSequenceOptions& options) {
+  camera.rate_hz /= static_cast<double>(options.every);
+  return camera;
+}
+
 ExactFrame exact_frame(const Shutter& shutter, const SensorConfig& sensors,
                        const RenderSequenceOptions& options, std::size_t k) {
   const std::size_t i = k * options.every;

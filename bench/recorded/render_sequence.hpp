@@ -18,6 +18,9 @@ struct RenderSequenceOptions {
   bool resume = false;            ///< leaves out frames that are there already
 };
 
+/// The camera as the sequence tells of it: with `every`, its rate is that of the frames kept.
+Camera recorded_camera(Camera camera, const RenderSequenceOptions& options);
+
 /// The k-th frame that is asked for, with the truth.
 ExactFrame exact_frame(const Shutter& shutter, const SensorConfig& sensors,
                        const RenderSequenceOptions& options, std::size_t k);

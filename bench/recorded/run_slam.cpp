@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/counted.hpp"
 #include "bench/metrics/trajectory_io.hpp"
 #include "slam/core/error.hpp"
 
@@ -114,8 +115,8 @@ SlamRun run_slam(SlamState& state, const FrameSequence& sequence, const SlamRunO
   if (run.skipped == static_cast<int>(run.frames.size())) throw InputError(run.faults.front());
   if (state.map.empty())
     throw InputError(fmt::format(
-        "nothing could be mapped: none of {} frames showed 100 keypoints with depth to begin with",
-        run.frames.size()));
+        "nothing could be mapped: none of {} showed 100 keypoints with depth to begin with",
+        counted(run.frames.size(), "frame")));
   if (!options.localize) {
     run.trajectory = poses_of(state, run.frames);
     // A map that was given up took its frames along.

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/counted.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/results/json.hpp"
 #include "slam/core/error.hpp"
@@ -55,7 +56,7 @@ std::string describe(const Difference& d) {
   text += d.phase + ": ";
   if (d.phase == "world") return text + d.stage + " differs";
   text += fmt::format("frame {}", d.frame);
-  if (d.restart > 0) text += fmt::format(" (after {} restarts)", d.restart);
+  if (d.restart > 0) text += fmt::format(" (after {})", counted(d.restart, "restart"));
   return text + ": " + d.stage + " differs";
 }
 
@@ -112,7 +113,7 @@ ExecutionDigests digests(const Suite& suite, std::span<const RunResult> runs) {
 Verification verify(const Suite& suite, const SuiteOverrides& overrides, BenchOptions options) {
   const auto tell = std::exchange(options.progress, [](double, std::size_t, std::size_t) {});
   const auto execute = [&](int jobs, double share_before) {
-    options.say(fmt::format("executing with {} job{}", jobs, jobs == 1 ? "" : "s"));
+    options.say(fmt::format("executing with {}", counted(jobs, "job")));
     const TemporaryFolder folder(std::filesystem::temp_directory_path());
     options.out = folder.path();
     options.cache.reset();

@@ -242,7 +242,7 @@ TEST(BenchProcess, ACrashIsAFailureAndStaysOne) {
 
 TEST(BenchProcess, LimitsEndARun) {
   EXPECT_EQ(run(bench(write_suite("slow", "[plain]"), "slow", "--time-limit 0.05")), 3);
-  EXPECT_NE(errors().find("took longer than the limit"), std::string::npos) << errors();
+  EXPECT_NE(errors().find("took longer than the limit of 0.05 s"), std::string::npos) << errors();
   EXPECT_EQ(run(bench(write_suite("large", "[plain]"), "large", "--memory-limit 5")), 3);
   EXPECT_NE(errors().find("needed more memory than the limit of 5 MB"), std::string::npos)
       << errors();

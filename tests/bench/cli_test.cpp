@@ -205,7 +205,7 @@ TEST_F(CommandLine, AVocabularyInText) {
   const std::string text = write("words.txt", "10 6 0 0\n" + node + " 1.25\n").string();
   const std::string own = (folder_ / "words.mhvoc").string();
   EXPECT_EQ(run("vocabulary convert " + text + " --out " + own), 0) << err_;
-  EXPECT_NE(out_.find("1 words, ready in"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("1 word, ready in"), std::string::npos) << out_;
   EXPECT_EQ(run("vocabulary info " + own), 0) << err_;
   EXPECT_NE(out_.find("mean 1.250"), std::string::npos) << out_;
   EXPECT_NE(out_.find("pictures: not known"), std::string::npos) << out_;

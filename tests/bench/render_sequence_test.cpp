@@ -96,6 +96,18 @@ TEST_F(RenderSequence, GoesOnWhereItWasStopped) {
   EXPECT_EQ(gone_on, whole);
 }
 
+TEST_F(RenderSequence, EveryNthFrameComesAtAnNthOfTheRate) {
+  EXPECT_EQ(recorded_camera(camera_, {}), camera_);
+  const RenderSequenceOptions options{.every = 5, .threads = 1};
+  {
+    const auto writer =
+        make_sequence_writer("tum", folder_ / "fifth", recorded_camera(camera_, options));
+    render_sequence(*shutter_, sensors_, *writer, options, [](double) {});
+  }
+  EXPECT_DOUBLE_EQ(load_recorded_camera(folder_ / "fifth" / "camera.yaml").camera.rate_hz,
+                   camera_.rate_hz / 5);
+}
+
 TEST_F(RenderSequence, ScanNetsLayoutHoldsWhatWasSeen) {
   rendered("scannet-frames", "s", {.threads = 2});
   const RenderedFrame exact = shutter_->expose(5).seen;
