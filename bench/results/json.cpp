@@ -13,6 +13,7 @@
 #include "bench/results/fingerprint.hpp"
 #include "bench/results/scenes.hpp"
 #include "bench/store/code_version.hpp"
+#include "bench/systems/outside_program.hpp"
 
 namespace mh {
 namespace {
@@ -103,7 +104,7 @@ Json place_json(const PlaceFacts& place) {
   for (const InputDigest& input : place.inputs) inputs[input.name] = hex(input.digest);
   return {{"scene", place.scene},
           {"scene_digest", hex(place.scene_digest)},
-          {"vocabulary_digest", hex(place.vocabulary_digest)},
+          {"vocabulary_content_digest", hex(place.vocabulary_digest)},
           {"vocabulary_words", place.vocabulary_words},
           {"robot", place.robot},
           {"mapping_tour", path_json(place.mapping)},
@@ -280,14 +281,16 @@ Json category_json(const CategoryRow& row, const Suite& suite) {
 
 Json comparison_json(const Comparison& c) {
   const Verdict v = verdict(c);
+  const auto known = [&](double value) { return c.pairs > 0 ? number(value) : Json(); };
   return {{"what", c.what},
           {"pairs", c.pairs},
-          {"semantic_minus_plain", c.difference},
-          {"low", number(c.low)},
-          {"high", number(c.high)},
-          {"p", c.p},
-          {"p_holm", c.p_holm},
-          {"detectable", number(c.detectable)},
+          {"in_family", c.in_family},
+          {"semantic_minus_plain", known(c.difference)},
+          {"low", known(c.low)},
+          {"high", known(c.high)},
+          {"p", known(c.p)},
+          {"p_holm", counts(c) ? Json(c.p_holm) : Json()},
+          {"detectable", known(c.detectable)},
           {"better", v == Verdict::kUndecided     ? Json()
                      : v == Verdict::kFirstBetter ? Json("semantic")
                                                   : Json("plain")}};
@@ -333,9 +336,18 @@ Json results_json(const Suite& suite, std::span<const RunResult> runs) {
 }
 
 Json reproduction_json(const Suite& suite, std::span<const RunResult> runs) {
-  std::string command = "modelhouse bench " + suite.file.generic_string();
-  if (suite.scene_replaced)
-    command += " --scene " + suite.environments.front().scene.generic_string();
+  const auto from_anywhere = [](const std::filesystem::path& file) {
+    return shell_quoted(std::filesystem::absolute(file).lexically_normal().string());
+  };
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  std::string command = (error ? std::string("modelhouse") : from_anywhere(program)) + " bench " +
+                        from_anywhere(suite.file);
+  if (suite.scene_replaced) {
+    const std::filesystem::path& scene = suite.environments.front().scene;
+    command +=
+        " --scene " + (is_generated(scene) ? shell_quoted(scene.string()) : from_anywhere(scene));
+  }
   command += fmt::format(" --trials {}", suite.trials);
   if (suite.max_frames) command += fmt::format(" --frames {}", *suite.max_frames);
   Json seeds = Json::array(), inputs = Json::object();

@@ -15,7 +15,7 @@ inline constexpr const char* kResultsFormat = "modelhouse-results-2";
 /// settings, digests, one entry per run with its queries, the rows of the table, the comparisons.
 nlohmann::ordered_json results_json(const Suite& suite, std::span<const RunResult> runs);
 
-/// What it takes to make the results again: the command, the commit and digest of the code, build and
+/// What it takes to make the results again: the command, which works from any folder, the commit and digest of the code, build and
 /// machine, the resolved suite, seeds and digests of the inputs.
 nlohmann::ordered_json reproduction_json(const Suite& suite, std::span<const RunResult> runs);
 

@@ -96,7 +96,7 @@ std::vector<Comparison> compare(const std::vector<const Row*>& semantic,
                                 std::uint64_t seed) {
   std::vector<Comparison> comparisons;
   const auto add = [&](const std::string& what, Measure measure, QuerySet set, bool shares,
-                       bool more_is_better) {
+                       bool more_is_better, bool in_family) {
     std::vector<PairedDifference> differences;
     for (std::size_t i = 0; i < semantic.size(); ++i)
       differences.push_back(semantic[i] != nullptr && plain[i] != nullptr
@@ -104,19 +104,20 @@ std::vector<Comparison> compare(const std::vector<const Row*>& semantic,
                                 : PairedDifference{});
     comparisons.push_back(compare_scenes(what, differences, shares, seed));
     comparisons.back().more_is_better = more_is_better;
+    comparisons.back().in_family = in_family;
     if (comparisons.back().pairs == 0) comparisons.pop_back();
   };
   for (const QuerySet set : kQuerySets) {
     const auto what = [&](const char* measure) {
       return fmt::format("{}, {}, {} labels", measure, name(set), name(labels));
     };
-    add(what("success"), share<&QuerySummary::success>, set, true, true);
-    add(what("correct"), share<&QuerySummary::correct>, set, true, true);
-    add(what("false"), share<&QuerySummary::wrong>, set, true, false);
-    add(what("distance where both answer, m"), distance, set, false, false);
+    add(what("success"), share<&QuerySummary::success>, set, true, true, true);
+    add(what("correct"), share<&QuerySummary::correct>, set, true, true, false);
+    add(what("false"), share<&QuerySummary::wrong>, set, true, false, false);
+    add(what("distance where both answer, m"), distance, set, false, false, true);
   }
   add(fmt::format("ATE where both track, m, {} labels", name(labels)), ate, QuerySet::kHeldOut,
-      false, false);
+      false, false, true);
   return comparisons;
 }
 

@@ -153,9 +153,18 @@ double wilcoxon_signed_rank(std::span<const double> differences) {
   return std::min(1.0, 2.0 * tail);
 }
 
+bool counts(const Comparison& comparison) {
+  return comparison.in_family && comparison.pairs > 0;
+}
+
+std::size_t family_size(std::span<const Comparison> comparisons) {
+  return static_cast<std::size_t>(std::count_if(comparisons.begin(), comparisons.end(), counts));
+}
+
 void holm(std::span<Comparison> family) {
-  std::vector<std::size_t> order(family.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < family.size(); ++i)
+    if (counts(family[i])) order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return family[a].p < family[b].p; });
   double largest = 0;
@@ -167,7 +176,7 @@ void holm(std::span<Comparison> family) {
 }
 
 Verdict verdict(const Comparison& c) {
-  if (c.p_holm >= 0.05 || (c.low <= 0 && c.high >= 0)) return Verdict::kUndecided;
+  if (!counts(c) || c.p_holm >= 0.05 || (c.low <= 0 && c.high >= 0)) return Verdict::kUndecided;
   return (c.difference > 0) == c.more_is_better ? Verdict::kFirstBetter : Verdict::kSecondBetter;
 }
 

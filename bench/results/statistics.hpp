@@ -26,7 +26,8 @@ struct PairedDifference {
 struct Comparison {
   std::string what;  ///< e.g. "success, held-out, exact labels"
   bool more_is_better = true;
-  std::size_t pairs = 0;     ///< queries (or scenes) where both have a value
+  bool in_family = true;     ///< false: shown beside the family that was declared, never judged
+  std::size_t pairs = 0;     ///< queries (or scenes) where both have a value; 0: nothing is known
   double difference = 0;     ///< mean of first - second
   double low = 0, high = 0;  ///< 95 % bootstrap interval
   double p = 1;              ///< two-sided; of queries from the bootstrap, of scenes Wilcoxon's
@@ -55,8 +56,12 @@ Comparison compare_scenes(std::string what, std::span<const PairedDifference> sc
 Comparison compare_paired(std::string what, std::span<const PairedDifference> queries, bool shares,
                           std::uint64_t seed, int resamples = 10000);
 
-/// Holm's correction over one family of comparisons, in place (Holm, 1979).
-void holm(std::span<Comparison> family);
+/// Whether Holm's correction counts it: one of the family, of which there is anything to compare.
+bool counts(const Comparison& comparison);
+std::size_t family_size(std::span<const Comparison> comparisons);
+
+/// Holm's correction over those that count, in place (Holm, 1979).
+void holm(std::span<Comparison> comparisons);
 
 /// Whether the rule of DESIGN section 5 lets the word *better* be printed, and of whom.
 enum class Verdict { kUndecided, kFirstBetter, kSecondBetter };

@@ -104,6 +104,7 @@ std::vector<Comparison> compare_rows(const Row& semantic, const Row& plain, std:
         compare_paired(label("success"), differences(semantic, plain, set, success), true, seed));
     comparisons.push_back(
         compare_paired(label("correct"), differences(semantic, plain, set, correct), true, seed));
+    comparisons.back().in_family = false;
     comparisons.push_back(
         compare_distances(semantic, plain, set, label("distance where both answer, m"), seed));
     comparisons.back().more_is_better = false;

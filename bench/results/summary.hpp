@@ -68,7 +68,9 @@ struct Family {
 };
 
 /// Semantic minus plain at the suite's first parameter point, for each environment, level, label
-/// kind, query set and measure; p corrected by Holm over the family of one environment and level.
+/// kind, query set and measure. The family of one environment and level, over which Holm corrects,
+/// are the two figures of the paper's Table 2 for each label kind and query set: success, and the
+/// distance where both answer. *Correct* stands beside it: where nothing is false it is success.
 /// Empty where the suite lacks one of the two.
 std::vector<Family> compare_systems(const Suite& suite, std::span<const Row> rows);
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/counted.hpp"
 #include "bench/results/sweep.hpp"
 
 namespace mh {
@@ -56,7 +57,7 @@ std::string table_2(const Block& block) {
   for (const QuerySet set : kQuerySets) {
     const double queries = most_queries(block.rows, set);
     if (queries == 0) continue;
-    text += fmt::format("  {}, {:.0f} queries\n", title(set), queries);
+    text += fmt::format("  {}, {}\n", title(set), counted(std::lround(queries), "query", "queries"));
     for (const Row* row : block.rows) {
       const QuerySummary& s = summary(*row, set);
       const bool saturated = block.system(row).kind == SystemKind::kPlain && s.success > kSaturated;
@@ -66,7 +67,7 @@ std::string table_2(const Block& block) {
     }
   }
   text += "  published, other data (the paper's Table 2: a real house of 60 m2, YOLOv3 boxes)\n";
-  text += fmt::format("    {:<42}{:>22}{:>22}\n", "Ours", "79.25", "0.0512");
+  text += fmt::format("    {:<42}{:>22}{:>22}\n", "the paper's semantic system", "79.25", "0.0512");
   text += fmt::format("    {:<42}{:>22}{:>22}\n", "ORB-SLAM2", "71.43", "0.0945");
   return text;
 }
@@ -167,6 +168,7 @@ std::string common_ate(const Block& block) {
 }
 
 std::string comparison_line(const Comparison& c) {
+  if (c.pairs == 0) return fmt::format("  {:<62}-  (no pairs)\n", c.what);
   const Verdict v = verdict(c);
   const std::string word =
       v == Verdict::kFirstBetter    ? "semantic is better"
@@ -174,19 +176,21 @@ std::string comparison_line(const Comparison& c) {
       : std::isfinite(c.detectable)
           ? fmt::format("undecided; smallest detectable difference {:.4f}", c.detectable)
           : std::string("undecided; too few queries");
-  return fmt::format("  {:<62}{:+.4f} [{:+.4f}, {:+.4f}]  p = {:.4f} (Holm {:.4f})  {}\n", c.what,
-                     c.difference, c.low, c.high, c.p, c.p_holm, word);
+  const std::string corrected =
+      c.in_family ? fmt::format("(Holm {:.4f})  {}", c.p_holm, word) : "(beside the family)";
+  return fmt::format("  {:<62}{:+.4f} [{:+.4f}, {:+.4f}]  p = {:.4f} {}\n", c.what, c.difference,
+                     c.low, c.high, c.p, corrected);
 }
 
 std::string block_text(const Block& block) {
   const Suite& suite = block.suite;
   const Row& row = *block.rows.front();
   std::string text = fmt::format(
-      "\n{}, level {}, {} labels, {} trial{}{}\n",
+      "\n{}, level {}, {} labels, {}{}{}\n",
       suite.environments.size() > 1 ? suite.environments[row.environment].name : suite.name,
-      level_name(suite.levels[row.level]), name(row.labels), suite.trials,
-      suite.trials == 1 ? "" : "s (medians)",
-      row.trials.front().run->place.cut ? fmt::format(", first {} frames", *suite.max_frames) : "");
+      level_name(suite.levels[row.level]), name(row.labels), counted(suite.trials, "trial"),
+      suite.trials == 1 ? "" : " (medians)",
+      row.trials.front().run->place.cut ? fmt::format(", first {}", counted(*suite.max_frames, "frame")) : "");
   text += rule(90) + table_2(block) + rule(90);
   for (const QuerySet set : kQuerySets)
     if (most_queries(block.rows, set) > 0)
@@ -197,7 +201,7 @@ std::string block_text(const Block& block) {
 
 /// Of a comparison of success where the suite states a margin.
 std::string margin_line(const Suite& suite, const Comparison& c) {
-  if (!suite.non_inferiority_margin || !c.what.starts_with("success")) return "";
+  if (!suite.non_inferiority_margin || c.pairs == 0 || !c.what.starts_with("success")) return "";
   return fmt::format("  {:<62}{} by more than the {:.3f} stated beforehand\n", "",
                      not_inferior(c, *suite.non_inferiority_margin)
                          ? "semantic is not worse"
@@ -208,8 +212,9 @@ std::string margin_line(const Suite& suite, const Comparison& c) {
 std::string family_text(const Suite& suite, const Family& family) {
   std::string text = fmt::format(
       "\nsemantic minus plain, level {}: blocks of queries resampled, 95 % intervals, Holm over "
-      "these {} comparisons\n",
-      level_name(suite.levels[family.level]), family.comparisons.size());
+      "{} of success and distance\n",
+      level_name(suite.levels[family.level]),
+      counted(family_size(family.comparisons), "comparison"));
   if (suite.trials == 1)
     text += "  one trial: this holds for these maps; other seeds draw other maps (--trials 10)\n";
   for (const Comparison& c : family.comparisons) text += comparison_line(c) + margin_line(suite, c);
@@ -250,8 +255,9 @@ std::string category_line(const Suite& suite, const CategoryRow& row,
 std::string scene_family_text(const Suite& suite, const SceneFamily& family) {
   std::string text = fmt::format(
       "\nsemantic minus plain, level {}: scenes resampled, 95 % intervals, Wilcoxon signed-rank, "
-      "Holm over these {} comparisons\n",
-      level_name(suite.levels[family.level]), family.comparisons.size());
+      "Holm over {} of success, distance and ATE\n",
+      level_name(suite.levels[family.level]),
+      counted(family_size(family.comparisons), "comparison"));
   for (const Comparison& c : family.comparisons) text += comparison_line(c) + margin_line(suite, c);
   return text;
 }
@@ -264,10 +270,10 @@ std::string scenes_text(const Suite& suite, const std::vector<Row>& rows) {
   for (const CategoryRow& row : categories) {
     if (last == nullptr || last->level != row.level || last->labels != row.labels) {
       text += fmt::format(
-          "\n{}, level {}, {} labels, {} trial{}; per scene the median over trials, then the mean "
+          "\n{}, level {}, {} labels, {}; per scene the median over trials, then the mean "
           "over scenes\n",
-          suite.name, level_name(suite.levels[row.level]), name(row.labels), suite.trials,
-          suite.trials == 1 ? "" : "s");
+          suite.name, level_name(suite.levels[row.level]), name(row.labels),
+          counted(suite.trials, "trial"));
       text += fmt::format("  {:<18}{:>7}  {:<10}{:>9}{:>10}{:>11}", "environments", "scenes",
                           "system", "APE m", "RPE m/fr", "complete");
       for (const QuerySet set : kQuerySets)
@@ -299,10 +305,12 @@ std::string best_points(const Suite& suite, const std::vector<Row>& rows) {
       const Comparison& c = best->to_reference;
       text += fmt::format(
           "  {}, level {}, {} labels, {}: gamma {:.4g}, xi {:.4g}, alpha {:.4g}, beta {:.4g}: "
-          "{:.2f}%, {:+.4f} [{:+.4f}, {:+.4f}]\n",
+          "{:.2f}%, {}\n",
           system.name, level_name(suite.levels[result.level]), name(result.labels), name(set),
           at.gamma, at.xi, at.alpha, at.beta,
-          100 * summary(result.answers[best->point], set).correct, c.difference, c.low, c.high);
+          100 * summary(result.answers[best->point], set).correct,
+          c.pairs == 0 ? std::string("-")
+                       : fmt::format("{:+.4f} [{:+.4f}, {:+.4f}]", c.difference, c.low, c.high));
     }
   return text;
 }
@@ -316,9 +324,9 @@ std::string sweep_text(const Suite& suite, const std::vector<Row>& rows) {
   for (const CategoryRow& row : categories) {
     if (row.category != kAllCategories) continue;
     if (last == nullptr || last->level != row.level || last->labels != row.labels) {
-      text += fmt::format("\n{}, level {}, {} labels, map: {}, {} trial{}\n", suite.name,
+      text += fmt::format("\n{}, level {}, {} labels, map: {}, {}\n", suite.name,
                           level_name(suite.levels[row.level]), name(row.labels),
-                          name(suite.sweep.map), suite.trials, suite.trials == 1 ? "" : "s");
+                          name(suite.sweep.map), counted(suite.trials, "trial"));
       text += fmt::format("  {:<10}{:>9}{:>9}{:>9}{:>9}", "system", "gamma", "xi", "alpha", "beta");
       for (const QuerySet set : kQuerySets)
         if (asked(categories, set))

@@ -40,18 +40,18 @@ std::string replace_placeholders(std::string_view text,
   return result;
 }
 
-std::string shell_quoted(std::string_view value) {
-  std::string result = "'";
-  for (const char c : value) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
-
 void check_limit(const OutsideProgram& program, std::string_view what, double value, bool zero) {
   if (!std::isfinite(value) || value < 0 || (value == 0 && !zero))
     throw InputError(fmt::format("{}: {}: {} is out of range", program.name, what, value));
 }
 
 }  // namespace
+
+std::string shell_quoted(std::string_view value) {
+  std::string result = "'";
+  for (const char c : value) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
 
 void validate(const OutsideProgram& program) {
   const auto fail = [&](const std::string& what) {

@@ -40,6 +40,9 @@ struct OutsideProgram {
 /// @throws InputError naming the value.
 void validate(const OutsideProgram& program);
 
+/// One word for the shell, whatever is in it.
+std::string shell_quoted(std::string_view value);
+
 /// The command with its placeholders replaced by values quoted for the shell.
 /// @pre validate() passed and every placeholder of the command has a value.
 std::string expand_command(

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "bench/counted.hpp"
 #include "bench/pictures/sweep.hpp"
 #include "bench/results/json.hpp"
 #include "bench/results/scenes.hpp"
@@ -388,11 +389,61 @@ TEST(Results, PathsDoNotDependOnTheSuitesSpelling) {
     EXPECT_EQ(scene(folder), "../scenes/house.yaml") << folder;
 }
 
+TEST(Results, WhatHasNoPairsIsUnknownAndTheFamilyIsSuccessAndDistance) {
+  const Place place;
+  std::vector<RunResult> runs = place.run();
+  const auto family = [&] {
+    std::map<std::string, bool> counted;  // by what; whether it has a corrected p
+    const auto json = results_json(place.suite, runs);
+    for (const auto& c : json["comparisons"]) counted[c["what"]] = !c["p_holm"].is_null();
+    return counted;
+  };
+  const auto of_all = family();
+  EXPECT_EQ(of_all.size(), 12u);
+  for (const auto& [what, counts] : of_all)
+    EXPECT_EQ(counts, !what.starts_with("correct")) << what;
+  EXPECT_NE(results_table(place.suite, runs).find("Holm over 8 comparisons"), std::string::npos);
+
+  for (RunResult& run : runs)
+    if (run.spec.system.kind == SystemKind::kPlain)
+      for (QueryScore& q : run.points[0].held_out) q.success = q.correct = false;
+  const std::string table = results_table(place.suite, runs);
+  EXPECT_NE(table.find("Holm over 6 comparisons"), std::string::npos) << table;
+  EXPECT_NE(table.find("-  (no pairs)"), std::string::npos) << table;
+  EXPECT_FALSE(family()["distance where both answer, m, held_out, exact labels"]);
+  EXPECT_TRUE(family()["distance where both answer, m, second_tour, exact labels"]);
+  const auto json = results_json(place.suite, runs);
+  for (const auto& c : json["comparisons"])
+    for (const char* figure : {"semantic_minus_plain", "p"})
+      EXPECT_EQ(c[figure].is_null(), c["pairs"] == 0) << c.dump();
+}
+
+TEST(Results, TheCommandToMakeThemAgainWorksFromAnyFolder) {
+  Place place;
+  place.suite.file = "my suites/it's one.yaml";
+  place.suite.scene_replaced = true;
+  place.suite.environments[0].scene = "other house.glb";
+  const std::string here = std::filesystem::current_path().string();
+  const std::string command = reproduction_json(place.suite, {})["command"];
+  EXPECT_NE(command.find(" bench '" + here + "/my suites/it'\\''s one.yaml' --scene '" + here +
+                         "/other house.glb' --trials 1"),
+            std::string::npos)
+      << command;
+  EXPECT_TRUE(command.starts_with("'/")) << command;
+}
+
+TEST(Counted, OneIsNotMany) {
+  EXPECT_EQ(counted(1, "run"), "1 run");
+  EXPECT_EQ(counted(0, "run"), "0 runs");
+  EXPECT_EQ(counted(2, "query", "queries"), "2 queries");
+  EXPECT_EQ(counted(1, "query", "queries"), "1 query");
+}
+
 TEST(ResultsTable, HasThePapersFormAndMarksASaturatedTable) {
   const Place place;
   const std::string table = results_table(place.suite, place.run());
   for (const char* part :
-       {"Reloc. success (%)", "Average distance (m)", "published, other data", "79.25", "0.0512",
+       {"Reloc. success (%)", "Average distance (m)", "published, other data", "the paper's semantic system", "79.25", "0.0512",
         "71.43", "0.0945", "exact labels", "boxes labels", "held-out frames", "second tour",
         "saturated", "smallest detectable difference"})
     EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;

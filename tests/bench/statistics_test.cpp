@@ -107,7 +107,7 @@ TEST(CompareScenes, ScenesAreIndependentAndThoseWithoutAValueAreLeftOut) {
 }
 
 TEST(Holm, CorrectsByRankAndStaysMonotone) {
-  std::vector<Comparison> family(3);
+  std::vector<Comparison> family(3, {.what = "x", .pairs = 9});
   family[0].p = 0.04;
   family[1].p = 0.01;
   family[2].p = 0.03;
@@ -115,6 +115,21 @@ TEST(Holm, CorrectsByRankAndStaysMonotone) {
   EXPECT_DOUBLE_EQ(family[1].p_holm, 0.03);  // 3 * 0.01
   EXPECT_DOUBLE_EQ(family[2].p_holm, 0.06);  // 2 * 0.03
   EXPECT_DOUBLE_EQ(family[0].p_holm, 0.06);  // 1 * 0.04, but not below the one before
+}
+
+TEST(Holm, CountsNeitherWhatHasNoPairsNorWhatStandsBesideTheFamily) {
+  std::vector<Comparison> all(4, {.what = "x", .pairs = 9, .p = 0.01});
+  all[1].pairs = 0;
+  all[2].in_family = false;
+  EXPECT_EQ(family_size(all), 2u);
+  holm(all);
+  EXPECT_DOUBLE_EQ(all[0].p_holm, 0.02);
+  EXPECT_DOUBLE_EQ(all[3].p_holm, 0.02);
+  for (const std::size_t i : {1u, 2u}) {
+    all[i].low = all[i].high = all[i].difference = 1;
+    EXPECT_EQ(all[i].p_holm, 1) << i;
+    EXPECT_EQ(verdict(all[i]), Verdict::kUndecided) << i;
+  }
 }
 
 }  // namespace
