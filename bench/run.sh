@@ -54,7 +54,8 @@ cd "$root"
 status=0
 build/release/modelhouse bench "$suite" --jobs "$jobs" --out "$out" "${trials[@]}" "${extra[@]}" ||
   status=$?
-if [[ -d $out ]]; then
+# After a failure those that lie there are of an earlier run.
+if (( status == 0 )); then
   echo
   echo "Pictures:"
   find "$out" -name '*.png' | LC_ALL=C sort | sed 's/^/  /'
