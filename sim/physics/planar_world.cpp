@@ -7,28 +7,35 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <btBulletDynamicsCommon.h>
 
 #include "scenes/band.hpp"
+#include "sim/physics/outline.hpp"
 
 namespace mh {
 namespace {
 
-// The cylinder reaches past the band of obstacles by this much at both ends, so that the shortest
+// What is met sideways reaches past the middle of the robot by this much, up and down: the shortest
 // way out of any overlap is sideways, the only way a planar body can go.
 constexpr float kOverhang_m = 1.0F;
 
-/// What can be run into: triangles, and for each of them the instance it belongs to.
+/// Triangles, the instance that each belongs to, and the shape made of them.
 struct Obstacles {
   btTriangleMesh mesh;
   std::vector<InstanceId> instance_of;
+  std::unique_ptr<btBvhTriangleMeshShape> shape;  // none if there are no triangles
+
+  void make_shape() {
+    if (!instance_of.empty()) shape = std::make_unique<btBvhTriangleMeshShape>(&mesh, true);
+  }
 };
 
-/// Triangles of the scene, cut to the band of heights in which they are obstacles.
-std::unique_ptr<Obstacles> obstacles(const Scene& scene, float top_m) {
+/// Triangles of the scene, cut to the band of heights in which they are obstacles: what rays meet.
+std::unique_ptr<Obstacles> seen_obstacles(const Scene& scene, float top_m) {
   auto result = std::make_unique<Obstacles>();
   const auto point = [](const Eigen::Vector3f& p) { return btVector3(p.x(), p.y(), p.z()); };
   for_each_face_in_band(
@@ -38,8 +45,126 @@ std::unique_ptr<Obstacles> obstacles(const Scene& scene, float top_m) {
           result->instance_of.push_back(scene.instance_of[face]);
         }
       });
+  result->make_shape();
   return result;
 }
+
+/// Upright walls along the outline of the same, two triangles for each edge: what the base runs
+/// into. An upright cylinder among triangles is a disc among their outlines.
+std::unique_ptr<Obstacles> felt_obstacles(const Scene& scene, float top_m, float middle_m) {
+  auto result = std::make_unique<Obstacles>();
+  const float low = middle_m - kOverhang_m, high = middle_m + kOverhang_m;
+  for (const OutlineEdge& edge : floor_outline(scene, kBandBottom_m, top_m)) {
+    const btVector3 a(edge.a_m.x(), edge.a_m.y(), low), b(edge.b_m.x(), edge.b_m.y(), low),
+        a_high(edge.a_m.x(), edge.a_m.y(), high), b_high(edge.b_m.x(), edge.b_m.y(), high);
+    result->mesh.addTriangle(a, b, b_high);
+    result->mesh.addTriangle(a, b_high, a_high);
+    result->instance_of.insert(result->instance_of.end(), 2, edge.instance);
+  }
+  result->make_shape();
+  return result;
+}
+
+/// Where the base (a sphere that stands for a disc) touches the outline. Bullet's own pairing of a
+/// sphere with a mesh lets a shallow contact take the place of a deep one that points the same way,
+/// and furniture has many layers a few millimetres apart.
+class OutlineContacts final : public btCollisionAlgorithm {
+ public:
+  struct Maker final : btCollisionAlgorithmCreateFunc {
+    btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                   const btCollisionObjectWrapper* a,
+                                                   const btCollisionObjectWrapper* b) override {
+      void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(OutlineContacts));
+      return new (memory) OutlineContacts(info, a->getCollisionObject(), b->getCollisionObject());
+    }
+  };
+
+  OutlineContacts(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObject* a,
+                  const btCollisionObject* b)
+      : btCollisionAlgorithm(info), manifold_(m_dispatcher->getNewManifold(a, b)) {}
+  ~OutlineContacts() override { m_dispatcher->releaseManifold(manifold_); }
+
+  void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
+                        const btDispatcherInfo& /*info*/, btManifoldResult* result) override {
+    const bool base_is_first = a->getCollisionShape()->getShapeType() == SPHERE_SHAPE_PROXYTYPE;
+    const btCollisionObjectWrapper& base = base_is_first ? *a : *b;
+    const btCollisionObjectWrapper& house = base_is_first ? *b : *a;
+    const btVector3 centre = base.getWorldTransform().getOrigin();
+    const btScalar radius =
+        static_cast<const btSphereShape*>(base.getCollisionShape())->getRadius();
+    find_near(*static_cast<const btBvhTriangleMeshShape*>(house.getCollisionShape()), centre,
+              radius + kReach_m);
+    manifold_->clearManifold();
+    result->setPersistentManifold(manifold_);
+    std::array<btVector3, MANIFOLD_CACHE_SIZE> directions;
+    std::size_t kept = 0;
+    for (const Near& near : near_) {
+      if (kept == directions.size()) break;
+      const btVector3 direction = (centre - near.point) / near.distance_m;
+      const auto alike = [&](const btVector3& other) { return other.dot(direction) > kSameWay; };
+      if (std::any_of(directions.begin(), directions.begin() + kept, alike)) continue;
+      directions[kept++] = direction;
+      const btScalar gap_m = near.distance_m - radius;
+      if (base_is_first) {
+        result->setShapeIdentifiersB(0, near.triangle);
+        result->addContactPoint(direction, near.point, gap_m);
+      } else {
+        result->setShapeIdentifiersA(0, near.triangle);
+        result->addContactPoint(-direction, centre - radius * direction, gap_m);
+      }
+    }
+  }
+
+  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
+                                 btManifoldResult*) override {
+    return 1;
+  }
+  void getAllContactManifolds(btManifoldArray& manifolds) override {
+    manifolds.push_back(manifold_);
+  }
+
+ private:
+  static constexpr btScalar kReach_m = 0.005F;  // farther than a step goes
+  static constexpr btScalar kSameWay = 0.995F;  // 6 deg: the deeper of two such contacts is enough
+
+  struct Near {
+    btScalar distance_m;
+    int triangle;
+    btVector3 point;  // of the wall, at the height of the base's middle
+  };
+
+  /// Walls within a distance of the centre, the nearest first.
+  void find_near(const btBvhTriangleMeshShape& walls, const btVector3& centre, btScalar most_m) {
+    struct Visitor final : btTriangleCallback {
+      btVector3 centre;
+      btScalar most_m = 0;
+      std::vector<Near>* near = nullptr;
+      void processTriangle(btVector3* corners, int /*part*/, int triangle) override {
+        if (triangle % 2 != 0) return;  // the other half of the same wall
+        btVector3 a = corners[0], along = corners[1] - corners[0];
+        a.setZ(centre.z());
+        const btScalar t =
+            std::clamp((centre - a).dot(along) / along.length2(), btScalar(0), btScalar(1));
+        const btVector3 point = a + t * along;
+        const btScalar distance_m = (centre - point).length();
+        if (distance_m < most_m && distance_m > 0) near->push_back({distance_m, triangle, point});
+      }
+    };
+    near_.clear();
+    Visitor visitor;
+    visitor.centre = centre;
+    visitor.most_m = most_m;
+    visitor.near = &near_;
+    const btVector3 reach(most_m, most_m, most_m);
+    walls.processAllTriangles(&visitor, centre - reach, centre + reach);
+    std::sort(near_.begin(), near_.end(), [](const Near& a, const Near& b) {
+      return std::tie(a.distance_m, a.triangle) < std::tie(b.distance_m, b.triangle);
+    });
+  }
+
+  btPersistentManifold* manifold_;
+  std::vector<Near> near_;
+};
 
 double limited(double value, double limit) {
   return std::clamp(value, -limit, limit);
@@ -57,10 +182,9 @@ struct PlanarWorld::Impl {
   BaseLimits limits;
   double radius_m, height_m;
   double step_s;
-  std::unique_ptr<Obstacles> obstacles_in_band;
-  std::unique_ptr<btBvhTriangleMeshShape> house_shape;  // none if there is nothing to hit
-  std::unique_ptr<btRigidBody> house;
-  btCylinderShapeZ robot_shape;
+  std::unique_ptr<Obstacles> seen, felt;
+  std::unique_ptr<btRigidBody> house;  // of what is felt; none if there is nothing to hit
+  btSphereShape robot_shape;           // see felt_obstacles
   std::unique_ptr<btRigidBody> robot;
   struct Mover {
     MovingObstacle obstacle;
@@ -69,6 +193,7 @@ struct PlanarWorld::Impl {
   };
   std::vector<Mover> movers;
   long steps = 0;
+  OutlineContacts::Maker outline_contacts;
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;
@@ -81,11 +206,17 @@ struct PlanarWorld::Impl {
         radius_m(model.footprint_radius_m),
         height_m(model.height_m),
         step_s(step),
-        obstacles_in_band(obstacles(scene, static_cast<float>(model.height_m))),
-        robot_shape(btVector3(static_cast<btScalar>(model.footprint_radius_m),
-                              static_cast<btScalar>(model.footprint_radius_m),
-                              static_cast<btScalar>(0.5 * model.height_m) + kOverhang_m)) {
+        seen(seen_obstacles(scene, static_cast<float>(model.height_m))),
+        felt(felt_obstacles(scene, static_cast<float>(model.height_m),
+                            static_cast<float>(0.5 * model.height_m))),
+        robot_shape(static_cast<btScalar>(model.footprint_radius_m)) {
     world.setGravity(btVector3(0, 0, 0));
+    // An overlap is undone without a push that would outlast it.
+    world.getSolverInfo().m_splitImpulsePenetrationThreshold = 0;
+    dispatcher.registerCollisionCreateFunc(SPHERE_SHAPE_PROXYTYPE, TRIANGLE_MESH_SHAPE_PROXYTYPE,
+                                           &outline_contacts);
+    dispatcher.registerCollisionCreateFunc(TRIANGLE_MESH_SHAPE_PROXYTYPE, SPHERE_SHAPE_PROXYTYPE,
+                                           &outline_contacts);
     add_house();
     add_robot(model, start_m, heading_rad);
   }
@@ -97,18 +228,17 @@ struct PlanarWorld::Impl {
   }
 
   void add_house() {
-    if (obstacles_in_band->instance_of.empty()) return;
-    house_shape = std::make_unique<btBvhTriangleMeshShape>(&obstacles_in_band->mesh, true);
+    if (!felt->shape) return;
     house = std::make_unique<btRigidBody>(
-        btRigidBody::btRigidBodyConstructionInfo(0, nullptr, house_shape.get()));
+        btRigidBody::btRigidBodyConstructionInfo(0, nullptr, felt->shape.get()));
     house->setFriction(0);
     world.addRigidBody(house.get());
   }
 
   void add_robot(const Robot& model, const Eigen::Vector2d& start_m, double heading_rad) {
     const auto mass = static_cast<btScalar>(model.mass_kg);
-    btVector3 inertia;
-    robot_shape.calculateLocalInertia(mass, inertia);
+    const btScalar r = robot_shape.getRadius();
+    const btVector3 inertia = 0.5F * mass * r * r * btVector3(1, 1, 1);  // a cylinder's about z
     btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &robot_shape, inertia);
     info.m_startWorldTransform = btTransform(
         btQuaternion(btVector3(0, 0, 1), static_cast<btScalar>(heading_rad)),
@@ -136,21 +266,21 @@ struct PlanarWorld::Impl {
         return ClosestRayResultCallback::addSingleResult(ray, normal_is_world);
       }
     };
-    if (!house) return std::nullopt;
+    if (!seen->shape) return std::nullopt;
     const btVector3& p = robot->getWorldTransform().getOrigin();
     const btVector3 top(p.x(), p.y(), static_cast<btScalar>(height_m)), bottom(p.x(), p.y(), 0);
     Hit hit(top, bottom);
     btCollisionWorld::rayTestSingle(btTransform(btQuaternion::getIdentity(), top),
                                     btTransform(btQuaternion::getIdentity(), bottom), house.get(),
-                                    house_shape.get(), house->getWorldTransform(), hit);
+                                    seen->shape.get(), house->getWorldTransform(), hit);
     if (hit.face < 0) return std::nullopt;
-    return obstacles_in_band->instance_of[static_cast<std::size_t>(hit.face)];
+    return seen->instance_of[static_cast<std::size_t>(hit.face)];
   }
 
   InstanceId instance_of(const btCollisionObject* body, int face) const {
     for (const Mover& mover : movers)
       if (mover.body.get() == body) return mover.obstacle.instance;
-    return obstacles_in_band->instance_of[static_cast<std::size_t>(face)];
+    return felt->instance_of[static_cast<std::size_t>(face)];
   }
 
   btTransform pose_of(const MovingObstacle& obstacle, double time_s) const {
@@ -181,8 +311,12 @@ struct PlanarWorld::Impl {
       const bool robot_is_first = manifold->getBody0() == robot.get();
       for (int k = 0; k < manifold->getNumContacts(); ++k) {
         const btManifoldPoint& point = manifold->getContactPoint(k);
-        if (point.getDistance() >= distance_m) continue;
-        distance_m = point.getDistance();
+        // Distances are those before the step; what pushed in it has been reached.
+        const double now_m = point.getAppliedImpulse() > 0
+                                 ? std::min<double>(point.getDistance(), 0)
+                                 : point.getDistance();
+        if (now_m >= distance_m) continue;
+        distance_m = now_m;
         const btCollisionObject* other =
             robot_is_first ? manifold->getBody1() : manifold->getBody0();
         const int face = robot_is_first ? point.m_index1 : point.m_index0;
@@ -302,13 +436,13 @@ std::optional<double> PlanarWorld::cast(const Eigen::Vector3d& from_m,
   };
   const btVector3 from = point(from_m), to = point(from_m + range_m * direction);
   btCollisionWorld::ClosestRayResultCallback hit(from, to);
-  const auto try_body = [&](btRigidBody& body) {
+  const auto try_shape = [&](btRigidBody& body, const btCollisionShape& shape) {
     btCollisionWorld::rayTestSingle(btTransform(btQuaternion::getIdentity(), from),
-                                    btTransform(btQuaternion::getIdentity(), to), &body,
-                                    body.getCollisionShape(), body.getWorldTransform(), hit);
+                                    btTransform(btQuaternion::getIdentity(), to), &body, &shape,
+                                    body.getWorldTransform(), hit);
   };
-  if (impl_->house) try_body(*impl_->house);
-  for (const Impl::Mover& mover : impl_->movers) try_body(*mover.body);
+  if (impl_->house) try_shape(*impl_->house, *impl_->seen->shape);
+  for (const Impl::Mover& mover : impl_->movers) try_shape(*mover.body, *mover.shape);
   if (!hit.hasHit()) return std::nullopt;
   return static_cast<double>(hit.m_closestHitFraction) * range_m;
 }

@@ -45,9 +45,10 @@ struct Contact {
 inline constexpr double kTouch_m = 5e-4;
 
 /// A robot's base in a scene, moved by Bullet: a rigid upright cylinder that slides on the floor
-/// and turns about its axis. It is driven by impulses whose size respects BaseLimits, so that its
-/// velocity and (contacts apart) acceleration never exceed them. What lies wholly below 3 cm or
-/// above the robot's head is no obstacle. Deterministic: the same steps give the same bits.
+/// and turns about its axis; walls and furniture stop it by their outline from above. It is driven
+/// by impulses whose size respects BaseLimits, so that its velocity and (contacts apart)
+/// acceleration never exceed them. What lies wholly below 3 cm or above the robot's head is no
+/// obstacle. Deterministic: the same steps give the same bits.
 class PlanarWorld {
  public:
   /// @param step_s duration of one step; contacts stay shallow for steps up to 1/200 s.
