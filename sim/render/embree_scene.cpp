@@ -3,6 +3,8 @@
 
 #include <immintrin.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <string>
 
@@ -22,7 +24,28 @@ void check(RTCDevice device, const char* what) {
         fmt::format("Embree failed to {} (error {})", what, static_cast<int>(error)));
 }
 
+/// Rays go on through holes.
+void pass_holes(const RTCFilterFunctionNArguments* hits) {
+  const auto& cut_outs = *static_cast<const CutOuts*>(hits->geometryUserPtr);
+  for (unsigned i = 0; i < hits->N; ++i)
+    if (hits->valid[i] != 0 &&
+        cut_outs.is_hole(RTCHitN_primID(hits->hit, hits->N, i), RTCHitN_u(hits->hit, hits->N, i),
+                         RTCHitN_v(hits->hit, hits->N, i)))
+      hits->valid[i] = 0;
+}
+
 }  // namespace
+
+bool CutOuts::is_hole(unsigned primitive, float u, float v) const {
+  const Face& face = faces[primitive];
+  const Grid2d<std::uint8_t>& opacity = opacity_of[face.material];
+  const Eigen::Vector2f place = (1.0F - u - v) * face.uvs[0] + u * face.uvs[1] + v * face.uvs[2];
+  const auto texel = [](float at, int size) {
+    return std::min(size - 1, static_cast<int>((at - std::floor(at)) * static_cast<float>(size)));
+  };
+  return opacity(texel(place.x(), opacity.width()), texel(place.y(), opacity.height())) <
+         kOpaqueFrom;
+}
 
 FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) {
   _mm_setcsr(saved_ | kFlushToZeroAndDenormalsAreZero);
@@ -39,14 +62,26 @@ EmbreeScene::EmbreeScene(const Scene& scene, int build_threads, bool portable, b
   check(device_, "start");
   scene_ = rtcNewScene(device_);
 
-  std::vector<std::uint32_t> opaque, luminous;
+  std::vector<std::uint32_t> opaque, luminous, cut_out;
   for (std::uint32_t f = 0; f < scene.triangles.size(); ++f) {
     const bool emits =
         !scene.materials.empty() && !scene.materials[scene.material_of[f]].emission.isZero();
-    (emits ? luminous : opaque).push_back(f);
+    const bool has_holes = !scene.uvs.empty() && !scene.materials.empty() &&
+                           !scene.materials[scene.material_of[f]].opacity.empty();
+    (emits ? luminous : has_holes ? cut_out : opaque).push_back(f);
   }
   attach(scene, opaque, kOpaqueFaces);
   attach(scene, luminous, kLuminousFaces);
+  if (!cut_out.empty()) {
+    for (const Material& material : scene.materials)
+      cut_outs_.opacity_of.push_back(material.opacity);
+    for (const std::uint32_t f : cut_out) {
+      const auto& t = scene.triangles[f];
+      cut_outs_.faces.push_back({.uvs = {scene.uvs[t[0]], scene.uvs[t[1]], scene.uvs[t[2]]},
+                                 .material = scene.material_of[f]});
+    }
+    attach(scene, cut_out, kOpaqueFaces, &cut_outs_);
+  }
   if (watertight) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
   rtcCommitScene(scene_);
   check(device_, "build the hierarchy");
@@ -57,8 +92,8 @@ EmbreeScene::~EmbreeScene() {
   rtcReleaseDevice(device_);
 }
 
-void EmbreeScene::attach(const Scene& scene, const std::vector<std::uint32_t>& faces,
-                         unsigned mask) {
+void EmbreeScene::attach(const Scene& scene, const std::vector<std::uint32_t>& faces, unsigned mask,
+                         CutOuts* cut_outs) {
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   // Embree allocates the buffers: it reads 16 bytes past a vertex buffer's end.
   auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
@@ -73,6 +108,11 @@ void EmbreeScene::attach(const Scene& scene, const std::vector<std::uint32_t>& f
   for (std::size_t i = 0; i < faces.size(); ++i)
     std::memcpy(indices + 3 * i, scene.triangles[faces[i]].data(), 3 * sizeof(std::uint32_t));
   rtcSetGeometryMask(geometry, mask);
+  if (cut_outs != nullptr) {
+    rtcSetGeometryUserData(geometry, cut_outs);
+    rtcSetGeometryIntersectFilterFunction(geometry, pass_holes);
+    rtcSetGeometryOccludedFilterFunction(geometry, pass_holes);
+  }
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene_, geometry, geometries_);
   rtcReleaseGeometry(geometry);

@@ -31,6 +31,18 @@ inline constexpr unsigned kOpaqueFaces = 1;
 inline constexpr unsigned kLuminousFaces = 2;  ///< faces of materials that emit light
 inline constexpr unsigned kAllFaces = ~0U;
 
+/// Where faces have holes: what an intersection filter asks. A texel is whole or a hole, without
+/// blending, so that depth and labels are those of one surface.
+struct CutOuts {
+  struct Face {
+    std::array<Eigen::Vector2f, 3> uvs;
+    std::uint16_t material = 0;
+  };
+  std::vector<Face> faces;                       // by primitive
+  std::vector<Grid2d<std::uint8_t>> opacity_of;  // by material
+  bool is_hole(unsigned primitive, float u, float v) const;
+};
+
 /// The triangles of a scene in an Embree hierarchy; owns all that it needs. Tracing is safe from
 /// several threads. One place for the differences between Embree 3 and 4.
 class EmbreeScene {
@@ -62,13 +74,15 @@ class EmbreeScene {
 
  private:
   void intersect1(RTCRayHit& ray) const;
-  void attach(const Scene& scene, const std::vector<std::uint32_t>& faces, unsigned mask);
+  void attach(const Scene& scene, const std::vector<std::uint32_t>& faces, unsigned mask,
+              CutOuts* cut_outs = nullptr);
 
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
   std::vector<std::uint32_t> faces_;      // one geometry after another
   std::array<std::uint32_t, 8> first_{};  // in faces_, by geometry id
   unsigned geometries_ = 0;
+  CutOuts cut_outs_;
 };
 
 }  // namespace mh

@@ -28,7 +28,7 @@ constexpr float kNearM = 1e-3F;
 
 // The camera's frame is x right, y down, z forward; row 0 of a picture is the first that is read
 // back, so nothing is turned over. Depth is reversed (near / z), which is finest in floats.
-constexpr const char* kVertexShader = R"(#version 450 core
+constexpr const char* kVertexShader = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 uv;
 layout(location = 2) in vec3 gain;
@@ -47,7 +47,11 @@ void main() {
 )";
 
 // The level of detail follows TextureTable::look_up: the texels that a pixel covers.
-constexpr const char* kFragmentShader = R"(#version 450 core
+// Holes follow CutOuts::is_hole. Only a scene that has any pays for them: a shader that may discard
+// is tested for depth after it has run.
+constexpr const char* kVersion = "#version 450 core\n";
+constexpr const char* kVersionWithHoles = "#version 450 core\n#define HOLES\n";
+constexpr const char* kFragmentShader = R"(
 in vec2 texture_place;
 in vec3 vertex_gain;
 in vec3 from_origin;
@@ -56,13 +60,23 @@ uniform samplerBuffer normals;   // per face: normal x twice its area, texels of
 uniform usamplerBuffer labels;   // per face: class, instance
 uniform int first_face;
 uniform bool textured;
+uniform bool has_holes;
+uniform sampler2D opacity;
 uniform vec3 base;
 uniform vec3 emission;
 uniform float pixel_area;
+uniform float least_opacity;
 layout(location = 0) out vec4 colour;
 layout(location = 1) out uvec2 label;
 layout(location = 2) out float depth;
 void main() {
+#ifdef HOLES
+  if (has_holes) {
+    ivec2 size = textureSize(opacity, 0);
+    ivec2 texel = min(size - 1, ivec2((texture_place - floor(texture_place)) * vec2(size)));
+    if (texelFetch(opacity, texel, 0).r < least_opacity) discard;
+  }
+#endif
   int face = first_face + gl_PrimitiveID;
   depth = 1.0 / gl_FragCoord.w;
   vec3 light = vertex_gain * base;
@@ -82,6 +96,7 @@ void main() {
 struct Batch {
   int first = 0, count = 0;  // faces
   GLuint texture = 0;        // 0 = none
+  GLuint opacity = 0;        // 0 = no holes
   Vector3f base, emission;   // linear, x exposure
 };
 
@@ -89,7 +104,8 @@ class OsmesaRenderer final : public Renderer {
  public:
   OsmesaRenderer(const Scene& scene, const RenderConfig& config) : gl_(context_.gl()) {
     const OffscreenContext::Current current(context_);
-    make_program();
+    make_program(
+        std::ranges::any_of(scene.materials, [](const Material& m) { return !m.opacity.empty(); }));
     const std::vector<std::uint32_t> order = sort_faces(scene);
     make_batches(scene, order, config.exposure);
     load_vertices(scene);
@@ -128,11 +144,12 @@ class OsmesaRenderer final : public Renderer {
 
   GLint place(const char* uniform) const { return gl_.GetUniformLocation(program_, uniform); }
 
-  void make_program() {
+  void make_program(bool with_holes) {
     program_ = gl_.CreateProgram();
     const auto add = [&](GLenum kind, const char* source) {
       const GLuint shader = gl_.CreateShader(kind);
-      gl_.ShaderSource(shader, 1, &source, nullptr);
+      const std::array<const char*, 2> parts = {with_holes ? kVersionWithHoles : kVersion, source};
+      gl_.ShaderSource(shader, 2, parts.data(), nullptr);
       gl_.CompileShader(shader);
       gl_.AttachShader(program_, shader);
     };
@@ -150,6 +167,8 @@ class OsmesaRenderer final : public Renderer {
     gl_.Uniform1i(place("picture"), 0);
     gl_.Uniform1i(place("normals"), 1);
     gl_.Uniform1i(place("labels"), 2);
+    gl_.Uniform1i(place("opacity"), 3);
+    gl_.Uniform1f(place("least_opacity"), (static_cast<float>(kOpaqueFrom) - 0.5F) / 255.0F);
     gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     gl_.Enable(GL_DEPTH_TEST);
     gl_.DepthFunc(GL_GREATER);
@@ -170,8 +189,8 @@ class OsmesaRenderer final : public Renderer {
 
   void make_batches(const Scene& scene, const std::vector<std::uint32_t>& order, float exposure) {
     if (scene.materials.empty()) {
-      batches_.push_back(
-          {0, static_cast<int>(order.size()), 0, Vector3f::Constant(exposure), Vector3f::Zero()});
+      batches_.push_back({0, static_cast<int>(order.size()), 0, 0, Vector3f::Constant(exposure),
+                          Vector3f::Zero()});
       return;
     }
     for (int first = 0; first < static_cast<int>(order.size());) {
@@ -181,7 +200,11 @@ class OsmesaRenderer final : public Renderer {
              scene.material_of[order[static_cast<std::size_t>(end)]] == id)
         ++end;
       const Material& material = scene.materials[id];
-      Batch batch{first, end - first, 0, srgb_to_linear(material.base_colour) * exposure,
+      Batch batch{first,
+                  end - first,
+                  0,
+                  0,
+                  srgb_to_linear(material.base_colour) * exposure,
                   material.emission * exposure};
       if (!material.texture.empty()) {
         if (scene.uvs.empty())
@@ -189,6 +212,8 @@ class OsmesaRenderer final : public Renderer {
         else
           batch.texture = load_texture(material.texture);
       }
+      if (!material.opacity.empty() && !scene.uvs.empty() && material.emission.isZero())
+        batch.opacity = load_opacity(material.opacity);
       batches_.push_back(batch);
       first = end;
     }
@@ -211,6 +236,19 @@ class OsmesaRenderer final : public Renderer {
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(levels.size()) - 1);
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    return texture;
+  }
+
+  GLuint load_opacity(const Grid2d<std::uint8_t>& opacity) const {
+    GLuint texture = 0;
+    gl_.GenTextures(1, &texture);
+    gl_.ActiveTexture(GL_TEXTURE3);
+    gl_.BindTexture(GL_TEXTURE_2D, texture);
+    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, opacity.width(), opacity.height(), 0, GL_RED,
+                   GL_UNSIGNED_BYTE, opacity.data());
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl_.ActiveTexture(GL_TEXTURE0);
     return texture;
   }
 
@@ -329,6 +367,12 @@ class OsmesaRenderer final : public Renderer {
     gl_.Uniform1i(place("textured"), batch.texture != 0);
     gl_.Uniform3fv(place("base"), 1, batch.base.data());
     gl_.Uniform3fv(place("emission"), 1, batch.emission.data());
+    gl_.Uniform1i(place("has_holes"), batch.opacity != 0);
+    if (batch.opacity != 0) {
+      gl_.ActiveTexture(GL_TEXTURE3);
+      gl_.BindTexture(GL_TEXTURE_2D, batch.opacity);
+      gl_.ActiveTexture(GL_TEXTURE0);
+    }
     gl_.BindTexture(GL_TEXTURE_2D, batch.texture);
     const std::size_t bytes = static_cast<std::size_t>(batch.first) * 3 * sizeof(std::uint32_t);
     gl_.DrawElements(GL_TRIANGLES, 3 * batch.count, GL_UNSIGNED_INT,

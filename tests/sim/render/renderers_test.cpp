@@ -67,6 +67,36 @@ Vector3f bilinear_truth(const Grid2d<Rgb8>& picture, double u, double v) {
          fy * ((1 - fx) * texel(x0, y0 + 1) + fx * texel(x0 + 1, y0 + 1));
 }
 
+TEST_P(BothRenderers, LooksThroughTheHolesOfACutOut) {
+  Scene scene = plane_at_two_metres();
+  Material fence{.name = "fence"};
+  fence.texture = Grid2d<Rgb8>(4, 2, {250, 250, 250});
+  fence.opacity = Grid2d<std::uint8_t>(4, 2, 255);
+  fence.opacity(1, 0) = kOpaqueFrom - 1;
+  fence.opacity(2, 1) = 0;
+  fence.opacity(3, 1) = kOpaqueFrom;
+  scene.materials.push_back(fence);
+  const std::size_t before = scene.triangles.size();
+  add_quad(scene, {-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, 2, 2);
+  for (std::size_t f = before; f < scene.triangles.size(); ++f) scene.material_of[f] = 1;
+  const Camera camera;
+  const RenderedFrame frame = make(scene)->render(camera, kIdentity);
+  int holes = 0;
+  for (int y = 0; y < camera.height_px; ++y)
+    for (int x = 0; x < camera.width_px; ++x) {
+      const double u = 4 * ((x - camera.cx_px) / camera.fx_px + 1) / 2;  // texels
+      const double v = 2 * ((y - camera.cy_px) / camera.fy_px + 1) / 2;
+      if (std::abs(u - std::round(u)) < 1e-3 || std::abs(v - std::round(v)) < 1e-3) continue;
+      ASSERT_TRUE(u > 0 && u < 4 && v > 0 && v < 2);  // the fence fills the view
+      const bool hole = fence.opacity(static_cast<int>(u), static_cast<int>(v)) < kOpaqueFrom;
+      holes += hole ? 1 : 0;
+      ASSERT_NEAR(frame.depth_m(x, y), hole ? 2.0F : 1.0F, 1e-5) << x << ", " << y;
+      ASSERT_EQ(frame.classes(x, y), hole ? 1 : 2) << x << ", " << y;
+      ASSERT_EQ(frame.instances(x, y), hole ? 1 : 2) << x << ", " << y;
+    }
+  EXPECT_GT(holes, 50000);
+}
+
 TEST_P(BothRenderers, PlaneAtTwoMetresReadsTwoMetresAtEveryPixel) {
   const auto renderer = make(plane_at_two_metres());
   const RenderedFrame frame = renderer->render(Camera{}, kIdentity);
