@@ -69,7 +69,8 @@ Vector3f bilinear_truth(const Grid2d<Rgb8>& picture, double u, double v) {
 
 TEST_P(BothRenderers, LooksThroughTheHolesOfACutOut) {
   Scene scene = plane_at_two_metres();
-  Material fence{.name = "fence"};
+  Material fence;
+  fence.name = "fence";
   fence.texture = Grid2d<Rgb8>(4, 2, {250, 250, 250});
   fence.opacity = Grid2d<std::uint8_t>(4, 2, 255);
   fence.opacity(1, 0) = kOpaqueFrom - 1;
