@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <tuple>
 #include <utility>
@@ -37,25 +38,38 @@ float doubled_area_m2(std::span<const Eigen::Vector3f> polygon) {
 std::vector<OutlineEdge> floor_outline(const Scene& scene, float bottom_m, float top_m) {
   constexpr float kUpright_m2 = 1e-9F;
   std::vector<FaceEdge> edges;
-  for_each_face_in_band(scene, bottom_m, top_m,
-                        [&](std::size_t face, std::span<const Eigen::Vector3f> polygon) {
-                          const float area_m2 = doubled_area_m2(polygon);
-                          for (std::size_t i = 0; i < polygon.size(); ++i) {
-                            std::pair from(polygon[i].x(), polygon[i].y());
-                            std::pair to(polygon[(i + 1) % polygon.size()].x(),
-                                         polygon[(i + 1) % polygon.size()].y());
-                            if (from == to) continue;  // upright
-                            bool left = area_m2 > kUpright_m2, right = area_m2 < -kUpright_m2;
-                            if (to < from) {
-                              std::swap(from, to);
-                              std::swap(left, right);
-                            }
-                            edges.push_back({.ends = {from.first, from.second, to.first, to.second},
-                                             .face = static_cast<std::uint32_t>(face),
-                                             .left = left,
-                                             .right = right});
-                          }
-                        });
+  for_each_face_in_band(
+      scene, bottom_m, top_m, [&](std::size_t face, std::span<const Eigen::Vector3f> polygon) {
+        using Place = std::pair<float, float>;
+        const auto place = [&](std::size_t i) {
+          const Eigen::Vector3f& corner = polygon[i % polygon.size()];
+          return Place(corner.x(), corner.y());
+        };
+        const auto add = [&](const Place& from, const Place& to, bool left, bool right) {
+          if (from != to)
+            edges.push_back({.ends = {from.first, from.second, to.first, to.second},
+                             .face = static_cast<std::uint32_t>(face),
+                             .left = left,
+                             .right = right});
+        };
+        const float area_m2 = doubled_area_m2(polygon);
+        if (std::abs(area_m2) <= kUpright_m2) {  // a line, from its least point to its greatest
+          Place least = place(0), greatest = place(0);
+          for (std::size_t i = 1; i < polygon.size(); ++i) {
+            least = std::min(least, place(i));
+            greatest = std::max(greatest, place(i));
+          }
+          add(least, greatest, false, false);
+          return;
+        }
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+          const Place from = place(i), to = place(i + 1);
+          if (from < to)
+            add(from, to, area_m2 > 0, area_m2 < 0);
+          else
+            add(to, from, area_m2<0, area_m2> 0);
+        }
+      });
   std::sort(edges.begin(), edges.end(), [](const FaceEdge& a, const FaceEdge& b) {
     return std::tie(a.ends, a.face) < std::tie(b.ends, b.face);
   });

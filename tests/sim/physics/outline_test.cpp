@@ -26,7 +26,7 @@ double length_m(const std::vector<OutlineEdge>& outline) {
 
 TEST(Outline, OfABoxIsItsRectangle) {
   Scene scene;
-  test::add_box(scene, "box", {1, 2, 0}, {4, 3, 0.5F});
+  test::add_box(scene, "box", {1, 2, 0.1F}, {4, 3, 0.5F});
   const auto outline = floor_outline(scene, 0.03F, 1.2F);
   ASSERT_EQ(outline.size(), 4u);  // no diagonal, nothing twice though four faces meet at each edge
   EXPECT_FLOAT_EQ(length_m(outline), 8);
@@ -36,8 +36,8 @@ TEST(Outline, OfABoxIsItsRectangle) {
 
 TEST(Outline, LeavesOutWhatIsBetweenTwoFaces) {
   Scene scene;
-  test::add_box(scene, "left", {0, 0, 0}, {1, 1, 1});
-  test::add_box(scene, "right", {1, 0, 0}, {2, 1, 1});
+  test::add_box(scene, "left", {0, 0, 0.1F}, {1, 1, 1});
+  test::add_box(scene, "right", {1, 0, 0.1F}, {2, 1, 1});
   EXPECT_FLOAT_EQ(length_m(floor_outline(scene, 0.03F, 1.2F)), 6);  // of the two together
 }
 
