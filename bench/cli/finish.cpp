@@ -17,9 +17,11 @@ void finish(const std::filesystem::path& out, const Suite& suite, const BenchRes
   if (json) {
     fmt::print("{}\n", results_json(suite, results.runs).dump(2));
   } else {
-    fmt::print("{}\n{}\n", table, times_table(suite, results.runs));
+    fmt::print("{}\n", table);
+    if (!results.runs.empty()) fmt::print("{}\n", times_table(suite, results.runs));
     if (results.missing > 0)
-      fmt::print("missing, of other shards (modelhouse merge): {}\n", counted(results.missing, "run"));
+      fmt::print("missing, of other shards (modelhouse merge): {}\n",
+                 counted(results.missing, "run"));
     fmt::print("results in {}\n", out.string());
   }
   if (results.failed.empty()) return;

@@ -51,9 +51,11 @@ int run(int argc, char** argv) {
                "modelhouse");
   app.set_version_flag("--version", std::string("modelhouse ") + MH_VERSION);
   app.require_subcommand(1);
-  app.footer("Example:\n  modelhouse bench bench/suites/model_house.yaml --jobs 2\n"
-             "Exit codes: 0 good; 1 the work ran and its check failed; 2 bad usage or bad input;\n"
-             "3 the machine failed it; 130 interrupted, the same command goes on with it.");
+  app.footer(
+      "Example:\n  modelhouse bench bench/suites/model_house.yaml --jobs 2\n"
+      "Exit codes: 0 good; 1 the work ran and its check failed; 2 bad usage or bad input;\n"
+      "3 the machine or an outside program failed it; 130 interrupted, the same command goes on "
+      "with it.");
   mh::cli::add_bench(app);
   mh::cli::add_run_one(app);
   mh::cli::add_merge(app);

@@ -15,8 +15,8 @@ inline constexpr const char* kResultsFormat = "modelhouse-results-2";
 /// settings, digests, one entry per run with its queries, the rows of the table, the comparisons.
 nlohmann::ordered_json results_json(const Suite& suite, std::span<const RunResult> runs);
 
-/// What it takes to make the results again: the command, which works from any folder, the commit and digest of the code, build and
-/// machine, the resolved suite, seeds and digests of the inputs.
+/// What it takes to make the results again: the command, which works from any folder, the commit
+/// and digest of the code, build and machine, the resolved suite, seeds and digests of the inputs.
 nlohmann::ordered_json reproduction_json(const Suite& suite, std::span<const RunResult> runs);
 
 /// What differs from one execution to the next: wall time, time per frame.

@@ -57,7 +57,8 @@ std::string table_2(const Block& block) {
   for (const QuerySet set : kQuerySets) {
     const double queries = most_queries(block.rows, set);
     if (queries == 0) continue;
-    text += fmt::format("  {}, {}\n", title(set), counted(std::lround(queries), "query", "queries"));
+    text +=
+        fmt::format("  {}, {}\n", title(set), counted(std::lround(queries), "query", "queries"));
     for (const Row* row : block.rows) {
       const QuerySummary& s = summary(*row, set);
       const bool saturated = block.system(row).kind == SystemKind::kPlain && s.success > kSaturated;
@@ -116,8 +117,13 @@ std::string failing_stages(const Block& block) {
         for (const QueryScore& q : queries(*trial.point, set))
           if (!q.success) ++stages[q.answer.stage];
       if (stages.empty()) continue;
-      text += fmt::format("  {}, {}: failed at", block.system(row).name, name(set));
-      for (const auto& [stage, count] : stages) text += fmt::format(" {} {}", name(stage), count);
+      text += fmt::format("  {}, {}: unanswered, by the stage reached:", block.system(row).name,
+                          name(set));
+      const char* comma = "";
+      for (const auto& [stage, count] : stages) {
+        text += fmt::format("{} {} {}", comma, count, name(stage));
+        comma = ",";
+      }
       text += "\n";
     }
   return text;
@@ -190,7 +196,9 @@ std::string block_text(const Block& block) {
       suite.environments.size() > 1 ? suite.environments[row.environment].name : suite.name,
       level_name(suite.levels[row.level]), name(row.labels), counted(suite.trials, "trial"),
       suite.trials == 1 ? "" : " (medians)",
-      row.trials.front().run->place.cut ? fmt::format(", first {}", counted(*suite.max_frames, "frame")) : "");
+      row.trials.front().run->place.cut
+          ? fmt::format(", first {}", counted(*suite.max_frames, "frame"))
+          : "");
   text += rule(90) + table_2(block) + rule(90);
   for (const QuerySet set : kQuerySets)
     if (most_queries(block.rows, set) > 0)
@@ -361,8 +369,8 @@ std::string results_table(const Suite& suite, std::span<const RunResult> runs) {
 }
 
 std::string times_table(const Suite& suite, std::span<const RunResult> runs) {
-  std::string text =
-      fmt::format("  {:<44}{:>18}{:>18}\n", "ms per call, median (p95)", "track", "relocalize");
+  std::string text = fmt::format("  {:<44}{:>18}{:>18}\n", "wall time, ms per call: median (p95)",
+                                 "track", "relocalize");
   for (const Row& row : make_rows(suite, runs)) {
     if (suite.sweep.map == SweepMap::kFixed && row.parameters != 0) continue;  // the same calls
     const auto cell = [](const TimeSummary& t) {

@@ -10,22 +10,40 @@
 namespace mh {
 namespace {
 
-void check_no_duplicate_keys(const YAML::Node& node, const std::string& file) {
-  if (node.IsMap()) {
-    std::set<std::string> seen;
-    for (const auto& entry : node) {
-      if (!entry.first.IsScalar())
-        throw InputError(
-            fmt::format("{}:{}: a key must be a plain word", file, entry.first.Mark().line + 1));
-      if (!seen.insert(entry.first.Scalar()).second)
-        throw InputError(fmt::format("{}:{}: key '{}' stands twice", file,
-                                     entry.first.Mark().line + 1, entry.first.Scalar()));
-      check_no_duplicate_keys(entry.second, file);
+/// Looks at every node once for each way that leads to it: keys that stand twice, and aliases that
+/// hold themselves or multiply, for which reading would have no end.
+class Walk {
+ public:
+  explicit Walk(const std::string& file) : file_(file) {}
+
+  void visit(const YAML::Node& node, int depth = 0) {
+    constexpr int kDeepest = 64, kMost = 500'000;
+    if (depth > kDeepest || ++visited_ > kMost)
+      fail(node, depth > kDeepest
+                     ? fmt::format("nested deeper than {} levels, or an alias that holds itself",
+                                   kDeepest)
+                     : fmt::format("more than {} values, aliases counted each time", kMost));
+    if (node.IsMap()) {
+      std::set<std::string> seen;
+      for (const auto& entry : node) {
+        if (!entry.first.IsScalar()) fail(entry.first, "a key must be a plain word");
+        if (!seen.insert(entry.first.Scalar()).second)
+          fail(entry.first, fmt::format("key '{}' stands twice", entry.first.Scalar()));
+        visit(entry.second, depth + 1);
+      }
+    } else if (node.IsSequence()) {
+      for (const auto& item : node) visit(item, depth + 1);
     }
-  } else if (node.IsSequence()) {
-    for (const auto& item : node) check_no_duplicate_keys(item, file);
   }
-}
+
+ private:
+  [[noreturn]] void fail(const YAML::Node& node, const std::string& what) const {
+    throw InputError(fmt::format("{}:{}: {}", file_, node.Mark().line + 1, what));
+  }
+
+  const std::string& file_;
+  int visited_ = 0;
+};
 
 }  // namespace
 
@@ -39,7 +57,7 @@ YamlReader YamlReader::load(const std::filesystem::path& file) {
 YamlReader YamlReader::parse(const std::string& text, const std::string& name) {
   try {
     YAML::Node node = YAML::Load(text);
-    check_no_duplicate_keys(node, name);
+    Walk(name).visit(node);
     return {node, name, ""};
   } catch (const YAML::Exception& e) {
     throw InputError(fmt::format("{}:{}: is no valid YAML: {}", name, e.mark.line + 1, e.msg));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/core/yaml.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace mh {
@@ -36,6 +37,24 @@ TEST(YamlReader, UnknownAndDoubledKeysAreErrors) {
             "f.yaml:2: unknown key 'c' (known here: a)");
   EXPECT_EQ(error_of([] { YamlReader::parse("a: 1\na: 2\n", "f.yaml"); }),
             "f.yaml:2: key 'a' stands twice");
+}
+
+TEST(YamlReader, AliasesMayNotHoldThemselvesNorMultiply) {
+  EXPECT_EQ(YamlReader::parse("a: &a 3\nb: *a\n", "f.yaml").number("b"), 3);
+  for (const char* text : {"a: &a [*a]\n", "a: &a\n  b: *a\n"})
+    EXPECT_NE(
+        error_of([&] { YamlReader::parse(text, "f.yaml"); }).find("an alias that holds itself"),
+        std::string::npos)
+        << text;
+  std::string laughs = "a: &a [x,x,x,x,x,x,x,x,x]\n";
+  for (char name = 'b'; name <= 'i'; ++name) {
+    laughs += fmt::format("{0}: &{0} [", name);
+    for (int i = 0; i < 9; ++i) laughs += fmt::format("{}*{}", i > 0 ? "," : "", char(name - 1));
+    laughs += "]\n";
+  }
+  EXPECT_NE(
+      error_of([&] { YamlReader::parse(laughs, "f.yaml"); }).find("aliases counted each time"),
+      std::string::npos);
 }
 
 TEST(YamlReader, MissingFileAndBrokenYaml) {
