@@ -36,7 +36,7 @@ struct OccupancyGrid {
 
 struct OccupancyConfig {
   double resolution_m = 0.05;
-  double max_range_m = 4.0;  ///< farther returns only clear the way up to here
+  double max_range_m = 4.0;  ///< farther returns only clear the way up to here; <= 250 resolutions
   int stride_px = 2;         ///< every n-th pixel of every n-th row is used
 };
 

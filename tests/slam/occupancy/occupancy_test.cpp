@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include <gtest/gtest.h>
 #include <octomap/octomap.h>
@@ -132,6 +133,56 @@ TEST(OccupancyMapper, OctoMapReadsTheFile) {
   ASSERT_TRUE(here != nullptr && wall != nullptr);
   EXPECT_FALSE(tree.isNodeOccupied(here));
   EXPECT_TRUE(tree.isNodeOccupied(wall));
+}
+
+/// Deeper and shallower than the range, from a moving eye, so that rays cross voxels in many ways.
+TEST(OccupancyMapper, InsertsAsOctoMapDoes) {
+  for (const double max_range_m : {0.9, 4.0}) {
+    OccupancyMapper mapper({.max_range_m = max_range_m, .stride_px = 3});
+    octomap::OcTree tree(0.05);
+    for (int i = 0; i < 20; ++i) {
+      const SE3 turned = world_from_camera(i * 0.7);
+      const SE3 pose(turned.rotation(),
+                     turned.translation() + Eigen::Vector3d(0.013 * i, -0.007 * i, 0.011 * i));
+      const Grid2d<float> depth = depth_of_room(turned);
+      mapper.insert(depth, kCamera, pose);
+      octomap::Pointcloud points;
+      for (int y = 1; y < depth.height(); y += 3)
+        for (int x = 1; x < depth.width(); x += 3) {
+          const Eigen::Vector3d p = pose * kCamera.unproject(x, y, depth(x, y));
+          points.push_back(static_cast<float>(p.x()), static_cast<float>(p.y()),
+                           static_cast<float>(p.z()));
+        }
+      const Eigen::Vector3d& eye = pose.translation();
+      tree.insertPointCloud(
+          points,
+          {static_cast<float>(eye.x()), static_cast<float>(eye.y()), static_cast<float>(eye.z())},
+          max_range_m, true, true);
+    }
+    ASSERT_GT(tree.getNumLeafNodes(), 5000U);
+    EXPECT_EQ(mapper.leaf_count(), tree.getNumLeafNodes());
+    tree.toMaxLikelihood();
+    tree.prune();
+    std::ostringstream expected, got;
+    tree.writeBinaryData(expected);
+    mapper.write_bt(got);
+    EXPECT_TRUE(got.str().ends_with("data\n" + expected.str()));
+  }
+}
+
+TEST(OccupancyMapper, AReloadedTreeTakesMore) {
+  const std::string file = testing::TempDir() + "occupancy_more.bt";
+  mapped_room().save_bt(file);
+  OccupancyMapper reloaded = OccupancyMapper::load_bt(file);
+  const SE3 pose = world_from_camera(0);
+  // A thing close by in a room that was free there: its voxels alone may change, not the blocks
+  // that they were part of.
+  Grid2d<float> near(kCamera.width_px, kCamera.height_px, 0.0F);
+  near(81, 61) = 0.5F;  // every second pixel is used
+  for (int i = 0; i < 20; ++i) reloaded.insert(near, kCamera, pose);
+  const OccupancyGrid before = mapped_room().project(0.3, 1.9), after = reloaded.project(0.3, 1.9);
+  EXPECT_EQ(count(after, kOccupied), count(before, kOccupied) + 1);
+  EXPECT_EQ(count(after, kUnknown), count(before, kUnknown));
 }
 
 TEST(OccupancyMapper, RepeatsBitForBit) {
