@@ -10,6 +10,12 @@
 namespace mh {
 namespace {
 
+/// "file:line"; the file alone where the node has no place in it.
+std::string place_in(const std::string& file, const YAML::Node& node) {
+  const int line = node.Mark().line + 1;
+  return line > 0 ? fmt::format("{}:{}", file, line) : file;
+}
+
 /// Looks at every node once for each way that leads to it: keys that stand twice, and aliases that
 /// hold themselves or multiply, for which reading would have no end.
 class Walk {
@@ -38,7 +44,7 @@ class Walk {
 
  private:
   [[noreturn]] void fail(const YAML::Node& node, const std::string& what) const {
-    throw InputError(fmt::format("{}:{}: {}", file_, node.Mark().line + 1, what));
+    throw InputError(fmt::format("{}: {}", place_in(file_, node), what));
   }
 
   const std::string& file_;
@@ -70,7 +76,8 @@ int YamlReader::line() const {
 
 void YamlReader::fail(const std::string& what) const {
   const std::string where = place_.empty() ? "" : place_ + ": ";
-  throw InputError(fmt::format("{}:{}: {}{}", file_, line(), where, what));
+  if (place_.empty() && node_.IsNull()) throw InputError(file_ + ": the file holds nothing");
+  throw InputError(fmt::format("{}: {}{}", place_in(file_, node_), where, what));
 }
 
 bool YamlReader::has(const std::string& key) const {
