@@ -22,7 +22,7 @@ struct BaseLimits {
   double max_acceleration_m_per_s2 = 0.3;
   double max_turn_rad_per_s = 1.0;
   double max_turn_acceleration_rad_per_s2 = 0.75;
-  // Kept where something drives by JerkLimiter; none: not limited.
+  // None: not limited.
   std::optional<double> max_jerk_m_per_s3 = {}, max_turn_jerk_rad_per_s3 = {};
 };
 

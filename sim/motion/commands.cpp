@@ -9,6 +9,7 @@
 
 #include "robots/model/wheel_base.hpp"
 #include "robots/navigation/floor_grid.hpp"
+#include "sim/motion/peaks.hpp"
 #include "sim/motion/start.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/yaml.hpp"
@@ -21,7 +22,6 @@ using Eigen::Vector2d;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kStepRate_hz = 240.0;  // physics steps per second, at least
 constexpr double kReflexCell_m = 0.025;
-constexpr double kBlocked_m_per_s = 1e-3;  // off the plan by more than this: something pushed
 
 Vector2d turned(const Vector2d& v, double angle_rad) {
   return {std::cos(angle_rad) * v.x() - std::sin(angle_rad) * v.y(),
@@ -75,40 +75,6 @@ class Reflex {
   double radius_m_;
   CollisionReflex zone_;
   BaseLimits limits_;
-};
-
-/// What the base asked of its motors, from one step to the next.
-class PeakMeter {
- public:
-  explicit PeakMeter(double step_s) : step_s_(step_s) {}
-  void add(const JerkLimiter::Velocity& v, double rim_m_per_s) {
-    const Vector2d a = (v.m_per_s - before_.m_per_s) / step_s_;
-    const double turn_a = (v.turn_rad_per_s - before_.turn_rad_per_s) / step_s_;
-    const auto raise = [](double& peak, double value) { peak = std::max(peak, std::abs(value)); };
-    raise(peaks.m_per_s, v.m_per_s.norm());
-    raise(peaks.rad_per_s, v.turn_rad_per_s);
-    raise(peaks.rim_m_per_s, rim_m_per_s);
-    raise(peaks.m_per_s2, a.norm());
-    raise(peaks.rad_per_s2, turn_a);
-    raise(peaks.m_per_s3, (a - a_before_).norm() / step_s_);
-    raise(peaks.rad_per_s3, (turn_a - turn_a_before_) / step_s_);
-    before_ = v;
-    a_before_ = a;
-    turn_a_before_ = turn_a;
-  }
-  /// A contact is no acceleration of the motors'.
-  void pushed(const JerkLimiter::Velocity& v) {
-    before_ = v;
-    a_before_.setZero();
-    turn_a_before_ = 0;
-  }
-  DrivePeaks peaks;
-
- private:
-  double step_s_;
-  JerkLimiter::Velocity before_;
-  Vector2d a_before_ = Vector2d::Zero();
-  double turn_a_before_ = 0;
 };
 
 /// A joint on its way to where it should be.
@@ -180,7 +146,11 @@ CommandedDrive drive(const Scene& scene, const Robot& robot, const CommandScript
   HeadJoint pitch{.joint = &equipment.tree.joint(equipment.head_pitch)};
   const SE3 camera_from_base_at_rest =
       equipment.tree.root_from(equipment.depth_camera_link).inverse();
-  JerkLimiter limiter(robot.limits, step_s, &equipment.wheels);
+  // A hair below what the physics cuts off, which would be a jerk.
+  BaseLimits limits = robot.limits;
+  limits.max_velocity_m_per_s *= 0.9995;
+  limits.max_turn_rad_per_s *= 0.9995;
+  JerkLimiter limiter(limits, step_s, &equipment.wheels);
   PeakMeter meter(step_s);
   CommandedDrive result;
   BaseState state = world.state();
@@ -233,16 +203,11 @@ CommandedDrive drive(const Scene& scene, const Robot& robot, const CommandScript
     yaw.step(step_s);
     pitch.step(step_s);
 
-    const JerkLimiter::Velocity real{state.velocity_m_per_s, state.turn_rad_per_s};
-    if (contact.touching && (real.m_per_s - next.m_per_s).norm() > kBlocked_m_per_s) {
-      limiter.stopped_at(real);
-      meter.pushed(real);
+    if (contact.touching && (state.velocity_m_per_s - next.m_per_s).norm() > kPushed_m_per_s) {
+      limiter.stopped_at({state.velocity_m_per_s, state.turn_rad_per_s});
+      meter.pushed(state);
     } else {
-      const Vector2d in_base = turned(next.m_per_s, -before.heading_rad);
-      meter.add(next, rim_speeds_m_per_s(equipment.wheels,
-                                         {in_base.x(), in_base.y(), next.turn_rad_per_s})
-                          .cwiseAbs()
-                          .maxCoeff());
+      meter.add(state, &equipment.wheels);
     }
     result.path.length_m += (state.position_m - before.position_m).norm();
     result.path.max_penetration_m = std::max(result.path.max_penetration_m, contact.penetration_m);
@@ -258,7 +223,7 @@ CommandedDrive drive(const Scene& scene, const Robot& robot, const CommandScript
     for (long i = 0; i < count; ++i) step(command);
   }
   while (steps % steps_per_frame != 0) step({});
-  result.peaks = meter.peaks;
+  result.path.peaks = meter.peaks();
   return result;
 }
 

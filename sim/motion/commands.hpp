@@ -36,16 +36,8 @@ struct CommandScript {
 /// @throws InputError naming file, line, field and value.
 CommandScript load_commands(const std::filesystem::path& file);
 
-/// The most that a drive asked of the robot, contacts apart; over the floor and in turning.
-struct DrivePeaks {
-  double m_per_s = 0, m_per_s2 = 0, m_per_s3 = 0;
-  double rad_per_s = 0, rad_per_s2 = 0, rad_per_s3 = 0;
-  double rim_m_per_s = 0;  ///< of any wheel, where the robot has wheels
-};
-
 struct CommandedDrive {
   DrivenPath path;
-  DrivePeaks peaks;
   double reflex_time_s = 0;  ///< spent slower than asked because something was near
 };
 

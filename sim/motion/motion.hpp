@@ -44,6 +44,14 @@ struct Tour {
 /// @throws InputError naming file, line, field and value.
 Tour load_tour(const std::filesystem::path& file);
 
+/// The most that the base did, from one step of the physics to the next, contacts apart; over the
+/// floor and in turning.
+struct DrivePeaks {
+  double m_per_s = 0, m_per_s2 = 0, m_per_s3 = 0;
+  double rad_per_s = 0, rad_per_s2 = 0, rad_per_s3 = 0;
+  double rim_m_per_s = 0;  ///< of any wheel, where the robot has wheels
+};
+
 /// What the robot really did: base and camera, at the camera's rate.
 struct DrivenPath {
   std::vector<TimedPose> camera;            ///< world_from_camera, stamps of frames
@@ -53,10 +61,11 @@ struct DrivenPath {
   double turned_in_place_rad = 0.0;
   double max_penetration_m = 0.0;
   double contact_time_s = 0.0;  ///< time spent touching something
+  DrivePeaks peaks;             ///< all 0 where no physics moved the camera
 };
 
-/// Drives the robot through the scene with Bullet, velocity and acceleration limited, and samples
-/// the camera. Stamps are round(i * 1e9 / rate). The base comes from Bullet's body, the camera from
+/// Drives the robot through the scene with Bullet, along the reference_motion of the tour, velocity,
+/// acceleration and (where the robot has such a limit) jerk limited, and samples the camera. Stamps are round(i * 1e9 / rate). The base comes from Bullet's body, the camera from
 /// the base and base_from_camera; nothing is added. Ways are planned first where the tour says so.
 /// @throws InputError naming tour, waypoint, place and what stands in the way if a waypoint is not
 /// reached, or if the start pose is inside something or outside the rooms.

@@ -82,6 +82,23 @@ SpeedProfile::SpeedProfile(const RoundedPath& path, const SpeedLimits& limits) {
     const double to_turn = limits.across_m_per_s2 / std::max(curvature, 1e-9);
     squared_[i] = std::min({limits.velocity_m_per_s * limits.velocity_m_per_s, to_turn, to_brake});
   }
+  squared_[0] = 0;
+  time_s_.push_back(0);
+  for (std::size_t i = 0; i < intervals; ++i) {
+    squared_[i + 1] =
+        std::min(squared_[i + 1], squared_[i] + 2 * limits.along_m_per_s2 * spacing_m_);
+    time_s_.push_back(time_s_.back() +
+                      2 * spacing_m_ / (std::sqrt(squared_[i]) + std::sqrt(squared_[i + 1])));
+  }
+}
+
+double SpeedProfile::s_at(double time_s) const {
+  const auto after = std::upper_bound(time_s_.begin() + 1, time_s_.end() - 1, time_s);
+  const auto i = static_cast<std::size_t>(after - time_s_.begin()) - 1;
+  const double within_s = std::clamp(time_s, time_s_[i], time_s_[i + 1]) - time_s_[i];
+  const double acceleration = (squared_[i + 1] - squared_[i]) / (2 * spacing_m_);
+  return spacing_m_ * static_cast<double>(i) +
+         within_s * (std::sqrt(squared_[i]) + 0.5 * acceleration * within_s);
 }
 
 double SpeedProfile::at(double s_m) const {

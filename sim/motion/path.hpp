@@ -51,16 +51,20 @@ struct SpeedLimits {
   double across_m_per_s2 = 0;  ///< v^2 * curvature
 };
 
-/// The fastest speed at each arc length from which the robot can still take every bow ahead and
-/// stop at the end of the path.
+/// The fastest speed at each arc length, from rest at the beginning of the path to rest at its end,
+/// with which the robot takes every bow.
 class SpeedProfile {
  public:
   SpeedProfile(const RoundedPath& path, const SpeedLimits& limits);
   double at(double s_m) const;  ///< m/s
+  double duration_s() const { return time_s_.back(); }
+  /// Arc length reached at a time; that of the end from then on.
+  double s_at(double time_s) const;
 
  private:
   double spacing_m_ = 0;
-  std::vector<double> squared_;  // v^2 changes linearly under constant acceleration
+  // At places that far apart: v^2, which changes linearly under constant acceleration, and when.
+  std::vector<double> squared_, time_s_;
 };
 
 }  // namespace mh

@@ -10,6 +10,7 @@
 #include "sim/motion/replay.hpp"
 #include "slam/core/error.hpp"
 #include "tests/sim/boxes.hpp"
+#include "tests/sim/motion/limits_kept.hpp"
 
 namespace mh {
 namespace {
@@ -34,6 +35,7 @@ TEST(AutomaticTour, LeadsThroughTheWholeHouseWithoutTouchingAnything) {
   EXPECT_LT(path.contact_time_s, 0.1);
   EXPECT_LT(path.max_penetration_m, 1e-3);
   EXPECT_GT(path.length_m, 20.0);
+  test::expect_limits_kept(path.peaks, pepper().limits);
   EXPECT_LT(
       angle_between_rad(path.base.front().world_from_camera, path.base.back().world_from_camera),
       0.05);
@@ -58,6 +60,7 @@ TEST(AutomaticTour, OtherSeedsGoElsewhereInEveryRoom) {
       const DrivenPath path = drive(scene, pepper(), *tour);
       EXPECT_LT(path.contact_time_s, 0.1) << place;
       EXPECT_GT(path.camera.size(), 300U) << place;
+      test::expect_limits_kept(path.peaks, pepper().limits);
     }
   }
 }

@@ -42,12 +42,32 @@ TEST(SpeedProfile, NeverAsksForMoreThanTheLimits) {
   for (double s = 0; s + h < path.length_m(); s += h) {
     const double v = profile.at(s), next = profile.at(s + h);
     ASSERT_LE(v, limits.velocity_m_per_s + 1e-12);
-    ASSERT_LE((v * v - next * next) / (2 * h), limits.along_m_per_s2 + 1e-9) << s;
+    ASSERT_LE(std::abs(v * v - next * next) / (2 * h), limits.along_m_per_s2 + 1e-9) << s;
     ASSERT_LE(v * v * std::abs(path.at(s).curvature_per_m), limits.across_m_per_s2 + 1e-9) << s;
     top = std::max(top, v);
   }
   EXPECT_DOUBLE_EQ(top, limits.velocity_m_per_s);
+  EXPECT_EQ(profile.at(0), 0.0);
   EXPECT_EQ(profile.at(path.length_m()), 0.0);
+}
+
+TEST(SpeedProfile, TimeAndPlaceAgreeWithTheSpeed) {
+  const RoundedPath path(kCorners);
+  const SpeedProfile profile(
+      path, {.velocity_m_per_s = 0.55, .along_m_per_s2 = 0.4, .across_m_per_s2 = 0.3});
+  constexpr double h = 1e-3;
+  for (double t = 0; t + h < profile.duration_s(); t += h) {
+    const double s = profile.s_at(t), ds = profile.s_at(t + h) - s;
+    ASSERT_NEAR(ds / h, profile.at(s + 0.5 * ds), 0.4 * h) << t;
+  }
+  EXPECT_EQ(profile.s_at(0), 0.0);
+  EXPECT_NEAR(profile.s_at(profile.duration_s()), path.length_m(), 1e-12);
+  EXPECT_NEAR(profile.s_at(1e3), path.length_m(), 1e-12);
+  // A straight way: v / a to speed up and to slow down, the rest at v.
+  const std::array<Eigen::Vector2d, 2> line{Eigen::Vector2d{0, 0}, {3, 0}};
+  const SpeedProfile straight(
+      RoundedPath(line), {.velocity_m_per_s = 0.5, .along_m_per_s2 = 0.4, .across_m_per_s2 = 0.3});
+  EXPECT_NEAR(straight.duration_s(), 3 / 0.5 + 0.5 / 0.4, 0.01);  // speed kinks within 1 cm
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "scenes/house.hpp"
 #include "sim/motion/motion.hpp"
 #include "tests/sim/boxes.hpp"
+#include "tests/sim/motion/limits_kept.hpp"
 #include "tests/sim/motion/nearest_view.hpp"
 
 namespace mh {
@@ -49,6 +50,7 @@ TEST_P(RoomTours, TouchNothingAndTheMappingTourSeesAllRooms) {
     EXPECT_LT(path->contact_time_s, 0.1);
     EXPECT_LT(path->max_penetration_m, 1e-3);
     EXPECT_GT(path->camera.size(), 300U);
+    test::expect_limits_kept(path->peaks, test::pepper().limits);
   }
   EXPECT_EQ(rooms_of(mapping_).size(), scene_.rooms.size());
   EXPECT_GT(mapping_.length_m, 12.0);

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "robots/model/wheel_base.hpp"
+#include "sim/motion/motion.hpp"
+#include "sim/physics/planar_world.hpp"
+
+namespace mh {
+
+/// Off what was asked by more than this, the base was pushed.
+inline constexpr double kPushed_m_per_s = 1e-3;
+
+/// Keeps the most that the base did, from one step of the physics to the next.
+class PeakMeter {
+ public:
+  explicit PeakMeter(double step_s) : step_s_(step_s) {}
+  /// @param wheels  null where the robot has none
+  void add(const BaseState& state, const OmniWheels* wheels);
+  /// A contact changed the velocity, which is no acceleration of the motors'.
+  void pushed(const BaseState& state);
+  const DrivePeaks& peaks() const { return peaks_; }
+
+ private:
+  double step_s_;
+  DrivePeaks peaks_;
+  BaseState before_;
+  Eigen::Vector2d a_before_ = Eigen::Vector2d::Zero();
+  double turn_a_before_ = 0;
+};
+
+}  // namespace mh
