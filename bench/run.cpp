@@ -89,14 +89,27 @@ fs::path real_executable(const fs::path& executable) {
   return error ? executable : real;
 }
 
-RunCost cost_of_this_process(const RunResult& run, double world_s) {
+/// Processes at work per processor, of the last minute; 0 where it is unknown.
+double load_per_processor() {
+  double load = 0;
+  if (getloadavg(&load, 1) != 1) return 0;
+  return load / std::max(1.0, static_cast<double>(sysconf(_SC_NPROCESSORS_ONLN)));
+}
+
+/// @param world_s, products_s  processor time besides what `run` knows of
+RunCost cost_of_this_process(const RunResult& run, double world_s, double products_s,
+                             const RunOrder& order) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return {.wall_s = run.wall_s,
-          .cpu_s = processor_time_s(),
-          .slam_s = run.times.processor_s,
-          .frames_s = world_s + run.frames_s,
-          .max_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0};
+  return {
+      .wall_s = run.wall_s,
+      .cpu_s = processor_time_s(),
+      .slam_s = run.times.processor_s,
+      .frames_s = world_s + run.frames_s,
+      .products_s = products_s + run.products_s,
+      .max_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0,
+      .circumstances = {
+          .host = {}, .sitting = order.sitting, .jobs = order.jobs, .load = load_per_processor()}};
 }
 
 }  // namespace
@@ -127,7 +140,8 @@ Shard parse_shard(const std::string& text) {
   Shard shard;
   char slash = 0, more = 0;
   if (std::sscanf(text.c_str(), "%zu%c%zu%c", &shard.index, &slash, &shard.of, &more) != 3 ||
-      slash != '/' || shard.index < 1 || shard.index > shard.of || text.find('-') != std::string::npos)
+      slash != '/' || shard.index < 1 || shard.index > shard.of ||
+      text.find('-') != std::string::npos)
     throw InputError(fmt::format("shard '{}' is not i/n with 1 <= i <= n", text));
   return shard;
 }
@@ -178,6 +192,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
   if (!mine.empty()) {
     const TemporaryFolder work(options.out);
     const fs::path cache = options.cache ? *options.cache : work.path() / "cache";
+    const std::string sitting = utc_now();
     PoolOptions pool;
     pool.jobs = options.jobs;
     pool.time_limit_s = options.time_limit_s;
@@ -191,7 +206,8 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
                                          "--folder",  options.out.string(),
                                          "--cache",   cache.string(),
                                          "--views",   views_name(suite, job.spec),
-                                         "--threads", std::to_string(options.jobs),
+                                         "--jobs",    std::to_string(options.jobs),
+                                         "--sitting", sitting,
                                          "--parent",  std::to_string(getpid())};
       if (options.cache) arguments.insert(arguments.end(), {"--maps", cache.string()});
       if (options.figures_alone) arguments.emplace_back("--figures-alone");
@@ -207,9 +223,11 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
 void carry_out(const RunOrder& order) {
   const auto json = nlohmann::ordered_json::parse(read_file(order.description), nullptr, false);
   const RunSpec spec = run_spec_from_json(json);
-  const double before_world_s = processor_time_s();
-  const World world = build_world(spec, order.threads, Cache(order.cache), [](std::string_view) {});
-  const double world_s = processor_time_s() - before_world_s;
+  double world_s = 0, products_s = 0;
+  const World world = [&] {
+    const ProcessorTimer timer(world_s);
+    return build_world(spec, order.jobs, Cache(order.cache), order.say);
+  }();
   const fs::path folder = order.folder / spec.name;
   make_output_folder(folder);
   const RunResult run = run_one(spec, world,
@@ -220,11 +238,12 @@ void carry_out(const RunOrder& order) {
                                  .occupancy = !order.figures_alone,
                                  .maps = Cache(order.maps)});
   if (!order.figures_alone) {
+    const ProcessorTimer timer(products_s);
     write_run(folder, world, run);
     // One process makes the contact sheet; should two begin it, both write the same bytes.
     if (!fs::exists(order.folder / order.views)) write_views(order.folder / order.views, world);
   }
-  Store(order.store).put(order.key, run, cost_of_this_process(run, world_s));
+  Store(order.store).put(order.key, run, cost_of_this_process(run, world_s, products_s, order));
 }
 
 }  // namespace mh

@@ -81,8 +81,10 @@ struct RunOrder {
   std::filesystem::path maps;   ///< for finished maps; likewise
   std::string key;
   std::string views;           ///< file name of the environment's contact sheet
-  int threads = 1;             ///< for baking light
+  std::string sitting;         ///< when the command began that gives this order
+  int jobs = 1;                ///< runs at work side by side; threads for baking light
   bool figures_alone = false;  ///< as BenchOptions
+  std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(double)> progress = [](double) {};
 };
 void carry_out(const RunOrder& order);

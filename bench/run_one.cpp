@@ -48,10 +48,9 @@ double seconds_since(Clock::time_point start) {
 /// @param spent_s  the processor time that making frames takes is added to it
 FrameSource frames_of(const SimulatedSequence& sequence, const RunTamper& tamper, double& spent_s) {
   return [&sequence, &tamper, &spent_s](std::size_t index, RandomStream noise) {
-    const double before_s = processor_time_s();
+    const ProcessorTimer timer(spent_s);
     RgbdFrame frame = sequence.at(index, noise).frame;
     if (tamper.frame) tamper.frame(index, frame);
-    spent_s += processor_time_s() - before_s;
     return frame;
   };
 }
@@ -174,6 +173,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   KeyframeDepths depths;
   const FrameSource frames = frames_of(mapping, tamper, run.frames_s);
   const auto integrate = [&] {
+    const ProcessorTimer timer(run.products_s);
     if (tools.occupancy)
       run.volume = depths.integrate(camera, run.estimate, run.trajectory.dock_from_estimate);
   };
@@ -199,6 +199,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
       run.mapping =
           map_sequence(system, mapping.size(), frames, spec.protocol, stream.fork(kMapping),
                        [&](const MappedFrame& call, const RgbdFrame& frame, const StepReport&) {
+                         const ProcessorTimer timer(run.products_s);
                          if (call.keyframe_added && tools.occupancy) depths.keep(frame);
                          work.reached(call.index + 1);
                        });
@@ -243,6 +244,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     run.times = system.times();
   }
 
+  const ProcessorTimer timer(run.products_s);
   // From just over the floor (noise of the depth at 4 m lies below) to the top of the head.
   if (run.volume) run.grid = run.volume->project(0.10, world.robot.height_m);
   run.map_digest = digest_bytes(run.grid.cells.data(), run.grid.cells.size(), digest(run.estimate));

@@ -58,4 +58,17 @@ void need_writable(const std::filesystem::path& file) {
   make_output_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."));
 }
 
+OutputFolder::OutputFolder(const std::filesystem::path& folder) {
+  std::error_code error;
+  for (std::filesystem::path p = folder; !p.empty() && !std::filesystem::exists(p, error);
+       p = p.parent_path())
+    made_.push_back(p);
+  make_output_folder(folder);
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code error;  // a folder that holds something stays
+  for (const std::filesystem::path& folder : made_) std::filesystem::remove(folder, error);
+}
+
 }  // namespace mh::cli

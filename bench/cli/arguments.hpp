@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -17,5 +18,19 @@ CLI::Validator seed_number();
 /// Finds out before the work whether a file can be written there; makes its folder.
 /// @throws InputError naming file or folder; DiskFullError.
 void need_writable(const std::filesystem::path& file);
+
+/// The folder that a command writes into, made before the work: one that cannot be written costs no
+/// minutes. Work that is refused before it wrote anything leaves no empty folder.
+class OutputFolder {
+ public:
+  /// @throws as make_output_folder()
+  explicit OutputFolder(const std::filesystem::path& folder);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+ private:
+  std::vector<std::filesystem::path> made_;  // innermost first
+};
 
 }  // namespace mh::cli

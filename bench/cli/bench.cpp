@@ -9,7 +9,6 @@
 #include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/run.hpp"
-#include "slam/core/files.hpp"
 
 namespace mh::cli {
 namespace {
@@ -52,8 +51,7 @@ void run(const Options& options) {
   bench.time_limit_s = options.time_limit_s;
   bench.memory_limit_mb = options.memory_limit_mb;
   bench.retry_failed = options.retry_failed;
-  make_output_folder(
-      bench.out);  // before the work: a folder that cannot be written costs no minutes
+  const OutputFolder folder(bench.out);
 
   Progress progress("bench");
   bench.say = [&](std::string_view stage) { progress.say(stage); };

@@ -9,6 +9,7 @@
 #include "bench/check/report.hpp"
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
+#include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/counted.hpp"
 #include "bench/run.hpp"
@@ -45,9 +46,7 @@ Baseline measure(const Suite& suite, int jobs) {
       .say = [&](std::string_view stage) { progress.say(stage); },
       .progress = [&](double share, std::size_t, std::size_t) { progress.share(share); }};
   const BenchResults results = run_suite(suite, {}, options);
-  if (!results.failed.empty())
-    throw MachineError(fmt::format("check: run {} failed: {}", results.failed.front().run,
-                                   results.failed.front().error));
+  throw_failures(results.failed);
   return {.suite = suite.name,
           .suite_digest = gate_suite_digest(suite),
           .origin = gate_origin(),

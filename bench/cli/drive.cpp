@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -8,14 +9,13 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/motion_option.hpp"
+#include "bench/counted.hpp"
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/robot_readings.hpp"
-#include "bench/counted.hpp"
 #include "bench/world/travel.hpp"
 #include "robots/model/robot.hpp"
 #include "scenes/load.hpp"
 #include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
 
 namespace mh::cli {
 namespace {
@@ -33,7 +33,8 @@ void run(const Options& options) {
   if (options.sensors && options.out.empty())
     throw InputError("--sensors needs --out: a folder to write them into");
   const std::filesystem::path out = options.out;
-  if (!options.out.empty()) make_output_folder(out);
+  std::optional<OutputFolder> folder;
+  if (!options.out.empty()) folder.emplace(out);
   const Robot robot = load_robot(options.robot);
   check_motion(motion);
   const Scene scene = load_scene(options.scene);
@@ -56,15 +57,23 @@ void run(const Options& options) {
                                          {"length_m", path.length_m},
                                          {"turned_in_place_deg", turned_deg},
                                          {"contact_time_s", path.contact_time_s},
-                                         {"max_penetration_m", path.max_penetration_m}};
+                                         {"max_penetration_m", path.max_penetration_m},
+                                         {"peaks",
+                                          {{"m_per_s", path.peaks.m_per_s},
+                                           {"m_per_s2", path.peaks.m_per_s2},
+                                           {"m_per_s3", path.peaks.m_per_s3},
+                                           {"rad_per_s", path.peaks.rad_per_s},
+                                           {"rad_per_s2", path.peaks.rad_per_s2},
+                                           {"rad_per_s3", path.peaks.rad_per_s3},
+                                           {"rim_m_per_s", path.peaks.rim_m_per_s}}}};
     fmt::print("{}\n", json.dump(2));
     return;
   }
   fmt::print(
       "{}: {} in {:.1f} s, {:.2f} m driven, {:.0f} deg turned in place, {:.2f} s in "
       "contact (at most {:.4f} m deep)\n",
-      motion, counted(path.camera.size(), "frame"), seconds, path.length_m, turned_deg, path.contact_time_s,
-      path.max_penetration_m);
+      motion, counted(path.camera.size(), "frame"), seconds, path.length_m, turned_deg,
+      path.contact_time_s, path.max_penetration_m);
 }
 
 }  // namespace

@@ -114,9 +114,9 @@ std::pair<Trajectory, Trajectory> load(const Options& options) {
   std::pair<Trajectory, Trajectory> both{read_kitti(options.truth, period_ns),
                                          read_kitti(options.estimate, period_ns)};
   if (both.first.size() != both.second.size())
-    throw InputError(fmt::format("{}: {} poses, {} has {}: KITTI's lines must correspond",
-                                 options.estimate, both.second.size(), options.truth,
-                                 both.first.size()));
+    throw InputError(fmt::format("{}: {}, {} has {}: KITTI's lines must correspond",
+                                 options.estimate, counted(both.second.size(), "pose"),
+                                 options.truth, both.first.size()));
   return both;
 }
 

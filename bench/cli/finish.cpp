@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/cli/finish.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "bench/counted.hpp"
@@ -24,11 +26,19 @@ void finish(const std::filesystem::path& out, const Suite& suite, const BenchRes
                  counted(results.missing, "run"));
     fmt::print("results in {}\n", out.string());
   }
-  if (results.failed.empty()) return;
+  throw_failures(results.failed);
+}
+
+void throw_failures(const std::vector<Failure>& failed) {
+  if (failed.empty()) return;
   std::string others;
-  if (results.failed.size() > 1) others = fmt::format(" (and {} more)", results.failed.size() - 1);
-  throw MachineError(fmt::format("{}{} failed: {}; --retry-failed tries again",
-                                 results.failed.front().run, others, results.failed.front().error));
+  if (failed.size() > 1) others = fmt::format(" (and {} more)", failed.size() - 1);
+  const std::string told =
+      fmt::format("{}{} failed: {}", failed.front().run, others, failed.front().error);
+  if (std::all_of(failed.begin(), failed.end(),
+                  [](const Failure& f) { return f.error.starts_with(kBadInputMark); }))
+    throw InputError(told);
+  throw MachineError(told + "; --retry-failed tries again");
 }
 
 }  // namespace mh::cli

@@ -8,8 +8,12 @@
 namespace mh::cli {
 
 /// Writes the results of a suite into its folder and prints them.
-/// @throws MachineError naming the first failed run, after everything was written.
+/// @throws as throw_failures(), after everything was written.
 void finish(const std::filesystem::path& out, const Suite& suite, const BenchResults& results,
             bool json);
+
+/// Does nothing if there are none.
+/// @throws InputError if all of them met bad input, else MachineError, naming the first.
+void throw_failures(const std::vector<Failure>& failed);
 
 }  // namespace mh::cli

@@ -23,7 +23,7 @@ namespace {
 enum ExitCode {
   kGood = 0,
   kCheckFailed = 1,
-  kBadInput = 2,
+  kBadInput = mh::kBadInputCode,
   kMachineFailed = 3,
   kInterrupted = 130
 };

@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/finish.hpp"
 #include "bench/run.hpp"
 #include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
 
 namespace mh::cli {
 namespace {
@@ -35,7 +35,9 @@ void run(const Options& options) {
   for (const std::string& in : options.in)
     if (!fs::is_regular_file(fs::path(in) / "results.sqlite"))
       throw InputError(fmt::format("{}: holds no results.sqlite", in));
-  make_output_folder(options.out);
+  // A part that is refused leaves nothing.
+  for (const std::string& in : options.in) Store::open_existing(in);
+  const OutputFolder folder(options.out);
   Store store(fs::path(options.out) / "results.sqlite");
   for (const std::string& in : options.in) {
     if (fs::equivalent(in, options.out)) continue;

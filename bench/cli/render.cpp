@@ -102,7 +102,7 @@ void run(Options options) {
   const fs::path out = options.out;
   refuse_older_sequence(out);
   make_renderer(options.renderer, Scene{});  // a machine that lacks it says so at once
-  make_output_folder(out);
+  const OutputFolder folder(out);
   const Robot robot = load_robot(options.robot);
   check_motion(motion);
   SensorConfig sensors;

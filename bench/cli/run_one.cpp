@@ -12,8 +12,8 @@ namespace mh::cli {
 namespace {
 
 struct Options {
-  std::string description, store, folder, cache, maps, views, key;
-  int threads = 1;
+  std::string description, store, folder, cache, maps, views, key, sitting;
+  int jobs = 1;
   int parent = 0;
   bool figures_alone = false;
 };
@@ -28,15 +28,22 @@ void run(const Options& options) {
              .maps = options.maps,
              .key = options.key,
              .views = options.views,
-             .threads = options.threads,
+             .sitting = options.sitting,
+             .jobs = options.jobs,
              .figures_alone = options.figures_alone,
-             .progress = [&](double share) {
-               const int step = static_cast<int>(200 * share);
-               if (step == last) return;
-               last = step;
-               fmt::print("{:.4f}\n", share);
-               std::fflush(stdout);
-             }});
+             .say =
+                 [](std::string_view stage) {
+                   fmt::print("{}\n", stage);
+                   std::fflush(stdout);
+                 },
+             .progress =
+                 [&](double share) {
+                   const int step = static_cast<int>(200 * share);
+                   if (step == last) return;
+                   last = step;
+                   fmt::print("{:.4f}\n", share);
+                   std::fflush(stdout);
+                 }});
 }
 
 }  // namespace
@@ -53,7 +60,8 @@ void add_run_one(CLI::App& app) {
   command->add_option("--cache", options->cache);
   command->add_option("--maps", options->maps);
   command->add_option("--views", options->views)->required();
-  command->add_option("--threads", options->threads);
+  command->add_option("--sitting", options->sitting);
+  command->add_option("--jobs", options->jobs);
   command->add_flag("--figures-alone", options->figures_alone);
   command->add_option("--parent", options->parent);
   command->callback([options] { run(*options); });

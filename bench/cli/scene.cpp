@@ -38,7 +38,7 @@ struct Options {
   std::vector<std::string> scenes;  ///< preview
   bool scan_look = false;           ///< make
   int each = 0;                     ///< preview: so many of each category
-  bool captions = true;
+  bool no_captions = false;
   std::uint64_t seed = 0;
   bool json = false;
 };
@@ -109,7 +109,7 @@ void preview(const Options& options) {
     gallery.back().caption = name;
   }
   constexpr int kColumns = 4;
-  write_picture(options.out, draw_gallery(gallery, kColumns, options.captions));
+  write_picture(options.out, draw_gallery(gallery, kColumns, !options.no_captions));
 }
 
 void need_ending(const Options& options, const std::vector<std::string>& endings) {
@@ -260,7 +260,8 @@ void add_scene(CLI::App& app) {
   p->add_option("scenes", options->scenes, "Scenes: files, or generated:CATEGORY:SEED");
   p->add_option("--each", options->each, "So many generated scenes of every category")
       ->check(CLI::Range(1, 1000));
-  p->add_flag("--captions,!--no-captions", options->captions, "Leaves out what each picture shows");
+  p->add_flag("--no-captions", options->no_captions,
+              "Of several scenes: pictures alone, without their names below");
   p->add_option("--out", options->out, "Picture to write (PNG)")->required();
   p->footer(
       "Example:\n  modelhouse scene preview scenes/model_house/house.yaml --out house.png\n"

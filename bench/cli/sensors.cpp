@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "bench/sensors/figures.hpp"
 #include "bench/sensors/sheets.hpp"
 #include "bench/world/world.hpp"
-#include "slam/core/files.hpp"
 
 namespace mh::cli {
 namespace {
@@ -21,7 +21,7 @@ struct Options {
 };
 
 void plot(const Options& options) {
-  make_output_folder(options.out);
+  const OutputFolder folder(options.out);
   const fs::path file = fs::path(options.out) / "figures.png";
   std::vector<Plot> plots = depth_figures();
   for (const auto& more : {light_figures(), label_figures()})
@@ -31,7 +31,7 @@ void plot(const Options& options) {
 }
 
 void sheet(const Options& options) {
-  make_output_folder(options.out);
+  const OutputFolder folder(options.out);
   const Scene scene = load_lit_scene(options.scene, 2);
   const SensorSheets sheets = draw_sensor_sheets(scene, make_scene_renderer(scene));
   for (const auto& [name, picture] :

@@ -13,7 +13,6 @@
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/scannet_folder.hpp"
 #include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
 #include "slam/pipeline/map_file.hpp"
 
 namespace mh::cli {
@@ -126,7 +125,7 @@ void run(const Options& options) {
   // Before the work: a slip costs no minutes.
   const std::optional<Trajectory> truth =
       options.truth.empty() ? source.frames->truth() : std::optional(read_tum(options.truth));
-  make_output_folder(options.out);
+  const OutputFolder folder(options.out);
   if (!options.save_map.empty()) need_writable(options.save_map);
   SlamState state = first_state(options, source.settings);
 
@@ -146,7 +145,8 @@ void run(const Options& options) {
     progress.share(static_cast<double>(done) / static_cast<double>(all),
                    fmt::format("{} tracked, {}, {}, {:.1f} ms a frame", so_far.tracked,
                                counted(state.map.keyframe_count(), "keyframe"),
-                               counted(state.map.landmark_count(), "landmark"), running_ms / static_cast<double>(done)));
+                               counted(state.map.landmark_count(), "landmark"),
+                               running_ms / static_cast<double>(done)));
   };
   const SlamRun result =
       run_slam(state, *source.frames, options.run, RandomStream(options.seed), observers, watch);

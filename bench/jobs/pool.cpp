@@ -170,6 +170,8 @@ class Pool {
       const double before = r.process->share();
       const auto end = r.process->poll();
       news = news || end || r.process->share() != before;
+      for (const std::string& stage : r.process->take_stages())
+        options_.say(fmt::format("{}: {}", r.what.job.spec.name, stage));
       if (!end) {
         keep_within_limits(r);
         ++i;
@@ -228,7 +230,8 @@ class Pool {
     if (end.signal != 0)
       return fmt::format("ended by signal {} ({}){}", end.signal, strsignal(end.signal), last);
     if (end.good) return "ended without a result";
-    return end.message.empty() ? fmt::format("returned {}", end.code) : end.message;
+    if (end.message.empty()) return fmt::format("returned {}", end.code);
+    return end.code == kBadInputCode ? std::string(kBadInputMark) + end.message : end.message;
   }
 
   void note_end(bool good) {

@@ -23,6 +23,9 @@ struct Job {
   std::string key;
 };
 
+/// How the error of a run begins that met bad input: the user can mend it, not the machine.
+inline constexpr std::string_view kBadInputMark = "bad input: ";
+
 struct PoolOptions {
   int jobs = 1;                 ///< processes side by side; never changes a result
   double time_limit_s = 14400;  ///< wall time of one run; 0 = none

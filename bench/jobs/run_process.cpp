@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -96,9 +97,19 @@ void RunProcess::read_shares() {
     unread_.append(buffer, static_cast<std::size_t>(got));
   }
   for (auto end = unread_.find('\n'); end != std::string::npos; end = unread_.find('\n')) {
-    share_ = std::strtod(unread_.substr(0, end).c_str(), nullptr);
+    const std::string line = unread_.substr(0, end);
     unread_.erase(0, end + 1);
+    char* rest = nullptr;
+    const double share = std::strtod(line.c_str(), &rest);
+    if (!line.empty() && *rest == '\0')
+      share_ = share;
+    else
+      stages_.push_back(line);
   }
+}
+
+std::vector<std::string> RunProcess::take_stages() {
+  return std::exchange(stages_, {});
 }
 
 std::optional<ProcessEnd> RunProcess::poll() {
@@ -115,6 +126,7 @@ std::optional<ProcessEnd> RunProcess::poll() {
               .cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime),
               .slam_s = 0,
               .frames_s = 0,
+              .products_s = 0,
               .max_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0};
   if (!end.good) end.message = last_line(log_);
   return end;

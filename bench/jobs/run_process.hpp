@@ -15,6 +15,8 @@ namespace mh {
 
 /// What a run's process returns when it met a full disk: no fault of the run.
 inline constexpr int kDiskFullCode = 4;
+/// ... or bad input that shows in the work alone.
+inline constexpr int kBadInputCode = 2;
 
 /// How a process ended.
 struct ProcessEnd {
@@ -26,7 +28,7 @@ struct ProcessEnd {
 };
 
 /// A process of our own executable that works off one run. It dies with this one. What it prints on
-/// standard output are shares of the work done, one per line.
+/// standard output are shares of the work done, one per line, and the names of long stages.
 class RunProcess {
  public:
   /// @param log  file for its standard error
@@ -42,6 +44,8 @@ class RunProcess {
   void kill();
 
   double share() const { return share_; }  ///< of its work done, as of the last poll
+  /// The stages that it has told since they were taken last.
+  std::vector<std::string> take_stages();
   double age_s() const;
   double rss_mb() const;
   int output() const { return output_; }  ///< readable when it told something
@@ -53,6 +57,7 @@ class RunProcess {
   pid_t process_ = -1;
   int output_ = -1;
   std::string unread_;
+  std::vector<std::string> stages_;
   double share_ = 0;
   std::chrono::steady_clock::time_point start_;
 };

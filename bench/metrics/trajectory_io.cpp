@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -136,8 +137,8 @@ Trajectory parse_tum(const std::string& text, const std::string& name) {
   Trajectory trajectory;
   for_each_line(text, name, [&](const std::vector<std::string>& words, const Place& place) {
     if (words.size() != 8)
-      place.fail(
-          fmt::format("pose: {} values, expected 8 (stamp tx ty tz qx qy qz qw)", words.size()));
+      place.fail(fmt::format("pose: {}, expected 8 (stamp tx ty tz qx qy qz qw)",
+                             counted(words.size(), "value")));
     const Stamp stamp_ns = parse_stamp_at(words[0], place);
     if (!trajectory.empty() && stamp_ns <= trajectory.back().stamp_ns)
       place.fail(fmt::format("stamp: {} does not come after {}", words[0],
@@ -177,7 +178,8 @@ Trajectory parse_kitti(const std::string& text, const std::string& name, Stamp p
   Trajectory trajectory;
   for_each_line(text, name, [&](const std::vector<std::string>& words, const Place& place) {
     if (words.size() != 12)
-      place.fail(fmt::format("pose: {} values, expected 12 (3x4 matrix by rows)", words.size()));
+      place.fail(fmt::format("pose: {}, expected 12 (3x4 matrix by rows)",
+                             counted(words.size(), "value")));
     Eigen::Matrix<double, 3, 4> matrix;
     for (int row = 0; row < 3; ++row)
       for (int column = 0; column < 4; ++column)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "bench/counted.hpp"
 #include "bench/plan/names.hpp"
 #include "slam/core/random.hpp"
 
@@ -52,7 +53,8 @@ void read_grid(YamlReader& node, const SemanticConfig& base, Sweep& sweep) {
         parameter(points.back(), name) = value;
       }
     if (points.size() > kMaxPoints)
-      list->fail(fmt::format("makes {} points, at most {} can be", points.size(), kMaxPoints));
+      list->fail(
+          fmt::format("makes {}, at most {} can be", counted(points.size(), "point"), kMaxPoints));
     sweep.points = std::move(points);
   }
 }

@@ -61,6 +61,14 @@ struct PointResult {
   std::vector<QueryScore> second_tour;  ///< never pooled with held_out
 };
 
+/// When and where a run's times were measured: those of different sittings do not compare.
+struct Circumstances {
+  std::string host;
+  std::string sitting;  ///< when the command began that made the run, UTC; empty: unknown
+  int jobs = 0;         ///< runs that it had at work side by side
+  double load = 0;      ///< of the last minute, processes at work per processor
+};
+
 /// All that one run gave.
 struct RunResult {
   RunSpec spec;
@@ -74,8 +82,11 @@ struct RunResult {
   OccupancyGrid grid;                             ///< what of it stands in a robot's way
   std::uint64_t map_digest = 0;                   ///< of trajectory and grid
   CallTimes times;                                ///< not deterministic: never part of results.json
-  double frames_s = 0;                            ///< likewise: processor time of making the frames
-  double wall_s = 0;                              ///< likewise
+  // Likewise not deterministic. Processor time of making the frames, and of what is neither SLAM
+  // nor scored: octree, grid, pictures.
+  double frames_s = 0, products_s = 0;
+  double wall_s = 0;
+  Circumstances circumstances;
 };
 
 /// Which test frames: never pooled with one another.

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bench/counted.hpp"
 #include "bench/results/sweep.hpp"
@@ -40,6 +43,20 @@ bool asked(const std::vector<CategoryRow>& rows, QuerySet set) {
                      [&](const CategoryRow& row) { return summary(row, set).queries > 0; });
 }
 
+/// Least and greatest of some numbers.
+struct Range {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  void add(double value) {
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  std::string text(int digits) const {
+    const std::string low = fmt::format("{:.{}f}", least, digits),
+                      high = fmt::format("{:.{}f}", most, digits);
+    return low == high ? low : fmt::format("{} to {}", low, high);
+  }
+};
+
 std::string rule(std::size_t width) {
   return std::string(width, '-') + "\n";
 }
@@ -48,8 +65,24 @@ std::string rule(std::size_t width) {
 struct Block {
   const Suite& suite;
   std::vector<const Row*> rows;
+  /// Those with details of their own: without the plain system where a block above told them.
+  std::vector<const Row*> detailed;
   const SystemSpec& system(const Row* row) const { return suite.systems[row->system]; }
 };
+
+/// ", first 200 frames" behind what was cut; empty otherwise.
+std::string shortened(const Suite& suite, const RunResult& run) {
+  return run.place.cut ? fmt::format(", first {}", counted(*suite.max_frames, "frame")) : "";
+}
+
+/// What stands above all tables of tours that were cut.
+std::string warning_of_cut(const Suite& suite, std::span<const RunResult> runs) {
+  const auto cut = std::ranges::find_if(runs, [](const RunResult& run) { return run.place.cut; });
+  if (cut == runs.end()) return "";
+  return fmt::format(
+      "\nSHORTENED to the first {} of each tour: a quick look, no result of this suite\n",
+      counted(*suite.max_frames, "frame"));
+}
 
 std::string table_2(const Block& block) {
   std::string text =
@@ -78,7 +111,7 @@ std::string query_details(const Block& block, QuerySet set) {
   std::string text =
       fmt::format("  {:<10}{:>9}{:>10}{:>9}{:>10}{:>11}{:>12}{:>10}\n", heading, "success",
                   "correct", "false", "mean m", "median m", "aligned m", "attempts");
-  for (const Row* row : block.rows) {
+  for (const Row* row : block.detailed) {
     const QuerySummary& s = summary(*row, set);
     text += fmt::format(
         "  {:<10}{:>9}{:>10}{:>9}{:>10}{:>11}{:>12}{:>10}\n", block.system(row).name,
@@ -95,7 +128,7 @@ std::string candidate_details(const Block& block, QuerySet set) {
   std::string text = fmt::format("  {:<10}{:>10}{:>18}{:>18}{:>18}{:>18}{:>11}{:>13}\n", heading,
                                  "keyframes", "after eq. 3", "after eq. 4", "after eq. 5",
                                  "after eq. 6", "one left", "label mass");
-  for (const Row* row : block.rows) {
+  for (const Row* row : block.detailed) {
     const QuerySummary& s = summary(*row, set);
     if (s.queries == 0) continue;
     const auto left = [&](double count) {
@@ -110,7 +143,7 @@ std::string candidate_details(const Block& block, QuerySet set) {
 
 std::string failing_stages(const Block& block) {
   std::string text;
-  for (const Row* row : block.rows)
+  for (const Row* row : block.detailed)
     for (const QuerySet set : kQuerySets) {
       std::map<RelocalizationStage, int> stages;
       for (const Trial& trial : row->trials)
@@ -133,7 +166,7 @@ std::string mapping_details(const Block& block) {
   std::string text =
       fmt::format("  {:<10}{:>10}{:>14}{:>11}{:>12}{:>11}{:>10}{:>9}\n", "mapping", "ATE m",
                   "first pose m", "RPE m/fr", "RPE m/s", "complete", "restarts", "dropped");
-  for (const Row* row : block.rows) {
+  for (const Row* row : block.detailed) {
     const TrajectoryScore& t = row->trajectory;
     text += fmt::format("  {:<10}{:>10}{:>14}{:>11}{:>12}{:>10.2f}%{:>10.0f}{:>9.0f}\n",
                         block.system(row).name, metres(t.ate_rmse_m), metres(t.ate_first_pose_m),
@@ -195,16 +228,16 @@ std::string block_text(const Block& block) {
       "\n{}, level {}, {} labels, {}{}{}\n",
       suite.environments.size() > 1 ? suite.environments[row.environment].name : suite.name,
       level_name(suite.levels[row.level]), name(row.labels), counted(suite.trials, "trial"),
-      suite.trials == 1 ? "" : " (medians)",
-      row.trials.front().run->place.cut
-          ? fmt::format(", first {}", counted(*suite.max_frames, "frame"))
-          : "");
+      suite.trials == 1 ? "" : " (medians)", shortened(suite, *row.trials.front().run));
   text += rule(90) + table_2(block) + rule(90);
   for (const QuerySet set : kQuerySets)
     if (most_queries(block.rows, set) > 0)
       text += query_details(block, set) + candidate_details(block, set);
-  return text + failing_stages(block) + mapping_details(block) + common_ate(block) +
-         penalties(block);
+  text += failing_stages(block) + mapping_details(block);
+  if (block.detailed.size() < block.rows.size())
+    text +=
+        "  plain: the same runs as above, since it looks at no labels; their details stand there\n";
+  return text + common_ate(block) + penalties(block);
 }
 
 /// Of a comparison of success where the suite states a margin.
@@ -229,14 +262,21 @@ std::string family_text(const Suite& suite, const Family& family) {
   return text;
 }
 
+/// The plain system looks at no labels: its runs stand beside each kind, told of with the first.
+bool told_above(const Suite& suite, const Row& row) {
+  return suite.systems[row.system].kind == SystemKind::kPlain && row.labels != suite.labels.front();
+}
+
 /// A suite of one place: everything about it.
 std::string place_text(const Suite& suite, const std::vector<Row>& rows) {
   std::string text;
   for (auto first = rows.begin(); first != rows.end();) {
-    Block block{suite, {}};
+    Block block{suite, {}, {}};
     auto end = first;
-    for (; end != rows.end() && end->level == first->level && end->labels == first->labels; ++end)
+    for (; end != rows.end() && end->level == first->level && end->labels == first->labels; ++end) {
       block.rows.push_back(&*end);
+      if (!told_above(suite, *end)) block.detailed.push_back(&*end);
+    }
     text += block_text(block);
     first = end;
   }
@@ -278,10 +318,10 @@ std::string scenes_text(const Suite& suite, const std::vector<Row>& rows) {
   for (const CategoryRow& row : categories) {
     if (last == nullptr || last->level != row.level || last->labels != row.labels) {
       text += fmt::format(
-          "\n{}, level {}, {} labels, {}; per scene the median over trials, then the mean "
+          "\n{}, level {}, {} labels, {}{}; per scene the median over trials, then the mean "
           "over scenes\n",
           suite.name, level_name(suite.levels[row.level]), name(row.labels),
-          counted(suite.trials, "trial"));
+          counted(suite.trials, "trial"), shortened(suite, *rows.front().trials.front().run));
       text += fmt::format("  {:<18}{:>7}  {:<10}{:>9}{:>10}{:>11}", "environments", "scenes",
                           "system", "APE m", "RPE m/fr", "complete");
       for (const QuerySet set : kQuerySets)
@@ -332,9 +372,10 @@ std::string sweep_text(const Suite& suite, const std::vector<Row>& rows) {
   for (const CategoryRow& row : categories) {
     if (row.category != kAllCategories) continue;
     if (last == nullptr || last->level != row.level || last->labels != row.labels) {
-      text += fmt::format("\n{}, level {}, {} labels, map: {}, {}\n", suite.name,
+      text += fmt::format("\n{}, level {}, {} labels, map: {}, {}{}\n", suite.name,
                           level_name(suite.levels[row.level]), name(row.labels),
-                          name(suite.sweep.map), counted(suite.trials, "trial"));
+                          name(suite.sweep.map), counted(suite.trials, "trial"),
+                          shortened(suite, *rows.front().trials.front().run));
       text += fmt::format("  {:<10}{:>9}{:>9}{:>9}{:>9}", "system", "gamma", "xi", "alpha", "beta");
       for (const QuerySet set : kQuerySets)
         if (asked(categories, set))
@@ -360,12 +401,38 @@ std::string sweep_text(const Suite& suite, const std::vector<Row>& rows) {
   return text + best_points(suite, rows);
 }
 
+/// Where the times come from: what other work did beside them shows in them.
+std::string circumstances(std::span<const RunResult> runs) {
+  std::set<std::string> hosts, sittings;
+  bool unknown = false;
+  Range jobs, load;
+  for (const RunResult& run : runs) {
+    const Circumstances& c = run.circumstances;
+    hosts.insert(c.host);
+    unknown = unknown || c.sitting.empty();
+    if (c.sitting.empty()) continue;
+    sittings.insert(c.host + " " + c.sitting);
+    jobs.add(c.jobs);
+    load.add(c.load);
+  }
+  std::string text = fmt::format("  measured on {}", fmt::join(hosts, ", "));
+  if (!sittings.empty())
+    text += fmt::format(" in {}, {} side by side, load per processor {}",
+                        counted(sittings.size(), "sitting"),
+                        jobs.text(0) + (jobs.most == 1 ? " job" : " jobs"), load.text(1));
+  if (unknown)
+    text += sittings.empty() ? ", it is not known when" : ", others it is not known when";
+  if (hosts.size() > 1 || sittings.size() > 1 || unknown) text += ": rows need not compare";
+  return text + "\n";
+}
+
 }  // namespace
 
 std::string results_table(const Suite& suite, std::span<const RunResult> runs) {
   const std::vector<Row> rows = make_rows(suite, runs);
-  if (parameter_points(suite).size() > 1) return sweep_text(suite, rows);
-  return suite.environments.size() > 1 ? scenes_text(suite, rows) : place_text(suite, rows);
+  return warning_of_cut(suite, runs) + (parameter_points(suite).size() > 1 ? sweep_text(suite, rows)
+                                        : suite.environments.size() > 1 ? scenes_text(suite, rows)
+                                                                        : place_text(suite, rows));
 }
 
 std::string times_table(const Suite& suite, std::span<const RunResult> runs) {
@@ -373,16 +440,20 @@ std::string times_table(const Suite& suite, std::span<const RunResult> runs) {
                                  "track", "relocalize");
   for (const Row& row : make_rows(suite, runs)) {
     if (suite.sweep.map == SweepMap::kFixed && row.parameters != 0) continue;  // the same calls
+    if (told_above(suite, row)) continue;
     const auto cell = [](const TimeSummary& t) {
       if (t.p95_ms == 0) return std::string("-");  // no calls: its map was at hand
       return fmt::format("{:.1f} ({:.1f})", t.median_ms, t.p95_ms);
     };
+    const std::string& place = suite.environments[row.environment].name;
     text += fmt::format("  {:<44}{:>18}{:>18}\n",
-                        fmt::format("{}, {}, {} labels", suite.environments[row.environment].name,
-                                    suite.systems[row.system].name, name(row.labels)),
+                        suite.systems[row.system].kind == SystemKind::kPlain
+                            ? fmt::format("{}, {}", place, suite.systems[row.system].name)
+                            : fmt::format("{}, {}, {} labels", place,
+                                          suite.systems[row.system].name, name(row.labels)),
                         cell(row.track), cell(row.relocalize));
   }
-  return text;
+  return text + circumstances(runs);
 }
 
 }  // namespace mh

@@ -29,9 +29,24 @@ void throw_meaning(const std::filesystem::path& file, const SQLite::Exception& e
     case SQLITE_READONLY:
       throw InputError(
           fmt::format("{}: cannot be opened for writing: check folder and permissions", name));
-    default:
+    case SQLITE_IOERR:
       throw MachineError(
-          fmt::format("{}: {}: run again, what is finished is kept", name, error.what()));
+          fmt::format("{}: its disk cannot be read or written: see to it and run again, what is "
+                      "finished is kept",
+                      name));
+    case SQLITE_NOMEM:
+      throw MachineError(fmt::format("{}: out of memory", name));
+    case SQLITE_ERROR:
+    case SQLITE_SCHEMA:
+    case SQLITE_MISMATCH:
+    case SQLITE_CONSTRAINT:
+      throw InputError(fmt::format(
+          "{}: does not hold what a results file must ({}): put back a copy, or move it "
+          "away and run again",
+          name, error.what()));
+    default:
+      throw MachineError(fmt::format("{}: SQLite gave up ({}): run again, what is finished is kept",
+                                     name, error.what()));
   }
 }
 

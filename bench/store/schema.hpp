@@ -3,8 +3,9 @@
 
 namespace mh {
 
-/// `PRAGMA user_version` of a results file; a file of a higher one is refused.
-inline constexpr int kSchemaVersion = 1;
+/// `PRAGMA user_version` of a results file; a file of a higher one is refused, one of a lower one
+/// changed.
+inline constexpr int kSchemaVersion = 2;
 
 /// docs/store.md explains each column. `runs`, `points`, `metrics`, `frames` and `queries` are a
 /// function of suite, seeds and binary; `times` and `claims` hold all that is not.
@@ -47,11 +48,21 @@ CREATE TABLE queries (
   image TEXT NOT NULL, matching TEXT NOT NULL, pose TEXT NOT NULL, matchers TEXT NOT NULL,
   PRIMARY KEY (key, point, query_set, frame)) WITHOUT ROWID;
 CREATE TABLE times (
-  key TEXT PRIMARY KEY, wall_s REAL, cpu_s REAL, slam_s REAL, frames_s REAL, max_rss_mb REAL, host TEXT, finished TEXT,
-  fingerprint TEXT, calls TEXT) WITHOUT ROWID;
+  key TEXT PRIMARY KEY, wall_s REAL, cpu_s REAL, slam_s REAL, frames_s REAL, max_rss_mb REAL,
+  host TEXT, finished TEXT, fingerprint TEXT, calls TEXT,
+  products_s REAL, sitting TEXT, jobs INTEGER, load REAL) WITHOUT ROWID;
 CREATE TABLE claims (
   key TEXT PRIMARY KEY, host TEXT NOT NULL, process INTEGER NOT NULL, started INTEGER NOT NULL,
   beat INTEGER NOT NULL) WITHOUT ROWID;
+)sql";
+
+/// What makes a file of schema 1 one of schema 2. New columns stand last, as a file of either
+/// origin has them, so that merging may copy whole rows.
+inline constexpr const char* kFromSchema1 = R"sql(
+ALTER TABLE times ADD COLUMN products_s REAL;
+ALTER TABLE times ADD COLUMN sitting TEXT;
+ALTER TABLE times ADD COLUMN jobs INTEGER;
+ALTER TABLE times ADD COLUMN load REAL;
 )sql";
 
 }  // namespace mh

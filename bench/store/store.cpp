@@ -52,18 +52,13 @@ std::int64_t start_of_process(std::int64_t process) {
   return fields ? std::strtoll(field.c_str(), nullptr, 10) : 0;
 }
 
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
-}
-
 void put_cost(SQLite::Database& db, const std::string& key, const RunCost& cost,
               const std::string& calls) {
-  SQLite::Statement s(db, "INSERT OR REPLACE INTO times VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SQLite::Statement s(
+      db,
+      "INSERT OR REPLACE INTO times (key, wall_s, cpu_s, slam_s, frames_s, max_rss_mb, host, "
+      "finished, fingerprint, calls, products_s, sitting, jobs, load) "
+      "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   s.bind(1, key);
   s.bind(2, cost.wall_s);
   s.bind(3, cost.cpu_s);
@@ -74,6 +69,12 @@ void put_cost(SQLite::Database& db, const std::string& key, const RunCost& cost,
   s.bind(8, utc_now());
   s.bind(9, fingerprint_json().dump());
   s.bind(10, calls);
+  s.bind(11, cost.products_s);
+  if (const Circumstances& c = cost.circumstances; !c.sitting.empty()) {
+    s.bind(12, c.sitting);
+    s.bind(13, c.jobs);
+    s.bind(14, c.load);
+  }
   s.exec();
 }
 
@@ -117,6 +118,14 @@ void open_schema(SQLite::Database& db, const fs::path& file) {
       if (db.execAndGet("SELECT count(*) FROM sqlite_master").getInt() != 0)
         throw InputError(fmt::format("{}: is a database, but no results file", file.string()));
       db.exec(kSchema);
+      db.exec(fmt::format("PRAGMA user_version = {}", kSchemaVersion));
+    }
+    transaction.commit();
+  }
+  if (version() == 1) {
+    SQLite::Transaction transaction = writing(db);
+    if (version() == 1) {  // likewise
+      db.exec(kFromSchema1);
       db.exec(fmt::format("PRAGMA user_version = {}", kSchemaVersion));
     }
     transaction.commit();
@@ -189,7 +198,9 @@ void Store::plan(const Suite& suite, const SuiteOverrides& overrides,
 Suite Store::planned_suite() const {
   return guarded(file_, [&] {
     SQLite::Statement s(*database_, "SELECT file, content, overrides FROM suite");
-    if (!s.executeStep()) throw InputError(fmt::format("{}: holds no suite", file_.string()));
+    if (!s.executeStep())
+      throw InputError(fmt::format("{}: holds no suite: run `modelhouse bench` into its folder",
+                                   file_.string()));
     return parse_suite(s.getColumn(1).getString(), s.getColumn(0).getString(),
                        overrides_from_json(nlohmann::json::parse(s.getColumn(2).getString())));
   });
@@ -359,6 +370,15 @@ std::vector<std::vector<std::string>> Store::rows(const std::string& sql) const 
     }
     return rows;
   });
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
 }
 
 std::string exact(double value) {

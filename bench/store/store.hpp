@@ -23,9 +23,11 @@ struct RunCost {
   double wall_s = 0;
   double cpu_s = 0;  ///< user and system time of its process
   // Of cpu_s:
-  double slam_s = 0;    ///< inside the system under test, as far as it works in our process
-  double frames_s = 0;  ///< making its frames: scene, light and drives included
+  double slam_s = 0;      ///< inside the system under test, as far as it works in our process
+  double frames_s = 0;    ///< making its frames: scene, light and drives included
+  double products_s = 0;  ///< occupancy map, pictures and files of the run
   double max_rss_mb = 0;
+  Circumstances circumstances = {};  ///< but for the host, which the store knows
 };
 
 enum class RunStatus { kDone, kFailed };
@@ -86,6 +88,9 @@ class Store {
   std::filesystem::path file_;
   std::unique_ptr<SQLite::Database> database_;
 };
+
+/// This moment, "2026-11-22T07:08:40Z".
+std::string utc_now();
 
 /// The number that prints as itself: shortest text that reads back as the same double.
 std::string exact(double value);

@@ -47,11 +47,35 @@ TimedSystem::TimedSystem(std::unique_ptr<System> inner) : inner_(std::move(inner
 
 StepReport TimedSystem::track(const RgbdFrame& frame, RandomStream stream) {
   const auto start = Clock::now();
-  const double processor_before_s = processor_time_s();
+  const ProcessorTimer timer(processor_s_);
   StepReport report = inner_->track(frame, stream);
   track_ms_.push_back(ms_since(start));
-  track_processor_s_ += processor_time_s() - processor_before_s;
   return report;
+}
+
+void TimedSystem::rewind() {
+  const ProcessorTimer timer(processor_s_);
+  inner_->rewind();
+}
+
+void TimedSystem::reset() {
+  const ProcessorTimer timer(processor_s_);
+  inner_->reset();
+}
+
+void TimedSystem::freeze() {
+  const ProcessorTimer timer(processor_s_);
+  inner_->freeze();
+}
+
+void TimedSystem::set_query_settings(const SemanticConfig& settings) {
+  const ProcessorTimer timer(processor_s_);
+  inner_->set_query_settings(settings);
+}
+
+Trajectory TimedSystem::trajectory() const {
+  const ProcessorTimer timer(processor_s_);
+  return inner_->trajectory();
 }
 
 std::unique_ptr<RelocalizationSession> TimedSystem::open_session() const {
@@ -74,7 +98,7 @@ std::unique_ptr<RelocalizationSession> TimedSystem::timed(
 
 CallTimes TimedSystem::times() const {
   const std::lock_guard lock(mutex_);
-  return {track_ms_, relocalize_ms_, track_processor_s_ + relocalize_processor_s_};
+  return {track_ms_, relocalize_ms_, processor_s_ + relocalize_processor_s_};
 }
 
 TimeSummary summarize(std::vector<double> times_ms) {

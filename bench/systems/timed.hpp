@@ -12,11 +12,24 @@ namespace mh {
 /// Processor time of this process so far, all its threads.
 double processor_time_s();
 
+/// Adds the processor time of its life to a sum.
+class ProcessorTimer {
+ public:
+  explicit ProcessorTimer(double& sum_s) : sum_s_(sum_s), start_s_(processor_time_s()) {}
+  ~ProcessorTimer() { sum_s_ += processor_time_s() - start_s_; }
+  ProcessorTimer(const ProcessorTimer&) = delete;
+  ProcessorTimer& operator=(const ProcessorTimer&) = delete;
+
+ private:
+  double& sum_s_;
+  double start_s_;
+};
+
 /// Wall time (ms) of every call that handled a frame, in call order.
 struct CallTimes {
   std::vector<double> track_ms;
   std::vector<double> relocalize_ms;  ///< blank frames included
-  double processor_s = 0;             ///< of all these calls, in this process
+  double processor_s = 0;             ///< of all calls but save and restore, in this process
 };
 
 /// A system whose calls are timed on the way; what it answers is untouched.
@@ -25,15 +38,13 @@ class TimedSystem : public System {
   explicit TimedSystem(std::unique_ptr<System> inner);
 
   StepReport track(const RgbdFrame& frame, RandomStream stream) override;
-  void rewind() override { inner_->rewind(); }
-  void reset() override { inner_->reset(); }
-  void freeze() override { inner_->freeze(); }
-  void set_query_settings(const SemanticConfig& settings) override {
-    inner_->set_query_settings(settings);
-  }
+  void rewind() override;
+  void reset() override;
+  void freeze() override;
+  void set_query_settings(const SemanticConfig& settings) override;
   std::string save() const override { return inner_->save(); }
   void restore(const std::string& saved) override { inner_->restore(saved); }
-  Trajectory trajectory() const override { return inner_->trajectory(); }
+  Trajectory trajectory() const override;
   std::unique_ptr<RelocalizationSession> open_session() const override;
   std::unique_ptr<RelocalizationSession> open_session_with(QueryMemo& memo) const override;
   std::unique_ptr<QueryMemo> make_memo() const override { return inner_->make_memo(); }
@@ -44,7 +55,7 @@ class TimedSystem : public System {
   std::unique_ptr<RelocalizationSession> timed(std::unique_ptr<RelocalizationSession> inner) const;
 
   std::unique_ptr<System> inner_;
-  double track_processor_s_ = 0;
+  mutable double processor_s_ = 0;
   std::vector<double> track_ms_;
   mutable std::mutex mutex_;  // sessions of one system may run side by side
   mutable std::vector<double> relocalize_ms_;

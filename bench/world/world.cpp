@@ -60,13 +60,14 @@ DrivenPath joined(DrivenPath first, const DrivenPath& second, double rate_hz) {
   return first;
 }
 
-void light_scene(Scene& scene, int threads, const Cache& cache) {
+void light_scene(Scene& scene, int threads, const Cache& cache, const Say& say) {
   if (!scene.light.empty() || scene.lights.empty()) return;
   const BakeConfig config{.threads = threads};
   const std::string key = text_key(fmt::format(
       "{} {} {} {} {} {} {} {}", code_of_light(), fingerprint_json().dump(), hex(digest(scene)),
       config.samples, config.bounces, config.sun_samples, config.smoothing, config.seed));
   const std::string light = cache.get("light", key, [&] {
+    say(fmt::format("baking the light of {}", scene.name));
     bake_light(scene, config);
     return std::string(reinterpret_cast<const char*>(scene.light.data()),
                        scene.light.size() * sizeof(Eigen::Vector3f));
@@ -78,9 +79,10 @@ void light_scene(Scene& scene, int threads, const Cache& cache) {
   std::memcpy(static_cast<void*>(scene.light.data()), light.data(), light.size());
 }
 
-Scene load_lit_scene(const std::filesystem::path& file, int threads, const Cache& cache) {
+Scene load_lit_scene(const std::filesystem::path& file, int threads, const Cache& cache,
+                     const Say& say) {
   Scene scene = load_scene(file);
-  light_scene(scene, threads, cache);
+  light_scene(scene, threads, cache, say);
   return scene;
 }
 
@@ -143,8 +145,8 @@ World build_world(const RunSpec& spec, int threads, const Cache& cache, const Sa
   std::optional<Walk> walk;
   if (environment.walk) walk = load_walk(*environment.walk);
 
-  say(fmt::format("scene {}", environment.scene.string()));
-  auto scene = std::make_shared<const Scene>(load_lit_scene(environment.scene, threads, cache));
+  auto scene =
+      std::make_shared<const Scene>(load_lit_scene(environment.scene, threads, cache, say));
   world.scene = scene;
   world.renderer = make_scene_renderer(*scene);
   if (walk) world.walked = make_walked_scene(*scene, world.renderer, *walk);
@@ -154,7 +156,6 @@ World build_world(const RunSpec& spec, int threads, const Cache& cache, const Sa
     path.camera = arriving_frames(path.camera, world.sensors, same_for_every_trial);
     path.base = arriving_frames(path.base, world.sensors, same_for_every_trial);
   };
-  say(fmt::format("moving along {}", environment.mapping_tour.filename().string()));
   world.mapping = travel(*scene, world.robot, environment.mapping_tour);
   if (kidnapped_tour)
     world.mapping = joined(std::move(world.mapping), drive(*scene, world.robot, *kidnapped_tour),
@@ -164,12 +165,10 @@ World build_world(const RunSpec& spec, int threads, const Cache& cache, const Sa
   if (!environment.query_tour) return world;
 
   if (environment.query_scene) {
-    say(fmt::format("scene {}", environment.query_scene->string()));
-    world.second_scene =
-        std::make_shared<const Scene>(load_lit_scene(*environment.query_scene, threads, cache));
+    world.second_scene = std::make_shared<const Scene>(
+        load_lit_scene(*environment.query_scene, threads, cache, say));
     world.second_renderer = make_scene_renderer(*world.second_scene);
   }
-  say(fmt::format("moving along {}", environment.query_tour->filename().string()));
   world.second = travel(world.second_scene ? *world.second_scene : *scene, world.robot,
                         *environment.query_tour);
   lose_frames(*world.second);

@@ -40,7 +40,7 @@ struct World {
 /// What results tell of it.
 PlaceFacts facts(const World& world);
 
-/// Told what is being done, one short line each.
+/// Told what is being done, one short line each, not beginning with a digit.
 using Say = std::function<void(std::string_view)>;
 
 /// Keeps the first frames of a path with their length; the other measures, which need the whole
@@ -51,10 +51,15 @@ bool cut(DrivenPath& path, std::size_t max_frames);
 DrivenPath joined(DrivenPath first, const DrivenPath& second, double rate_hz);
 
 /// Gives a scene that has lamps but no baked light its light, from the cache where it is there.
-void light_scene(Scene& scene, int threads, const Cache& cache = Cache());
+/// @param say  told when the light has to be baked
+void light_scene(
+    Scene& scene, int threads, const Cache& cache = Cache(),
+    const Say& say = [](std::string_view) {});
 
 /// A scene ready to be looked at: loaded and lit. @throws InputError naming file and place.
-Scene load_lit_scene(const std::filesystem::path& file, int threads, const Cache& cache = Cache());
+Scene load_lit_scene(
+    const std::filesystem::path& file, int threads, const Cache& cache = Cache(),
+    const Say& say = [](std::string_view) {});
 
 /// A renderer with the exposure that suits the scene; one that shows its own colours unlit is shown
 /// as it is.
@@ -67,7 +72,8 @@ std::shared_ptr<const WalkedScene> make_walked_scene(const Scene& scene,
                                                      std::shared_ptr<const Renderer> renderer,
                                                      const Walk& walk);
 
-/// Loads scene, robot, vocabulary and level of a run, bakes the light, drives both tours.
+/// Loads scene, robot, vocabulary and level of a run, bakes the light, drives both tours. Says what
+/// takes long: baking.
 /// @throws InputError if a file is bad or a tour cannot be driven.
 World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say);
 

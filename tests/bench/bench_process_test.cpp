@@ -260,6 +260,8 @@ TEST(BenchProcess, ASweepOverAFixedMapAnswersAsSeparateQueriesWould) {
         name, "[semantic]",
         std::string("parameters: {map: fixed, alpha: [") + alpha + "], beta: [" + beta + "]}\n");
     EXPECT_EQ(run(bench_with_kept_maps(alone, name, cache)), 0) << errors();
+    EXPECT_EQ(errors().find("baking the light of") != std::string::npos, *cache != '\0')
+        << "whether it says what takes long: " << errors();
     const auto queries = [&](const std::string& out, int at) {
       EXPECT_EQ(run("export " + (test_folder() / out).string() + " --format csv"), 0);
       std::istringstream lines(content(test_folder() / "stdout"));
@@ -275,7 +277,46 @@ TEST(BenchProcess, ASweepOverAFixedMapAnswersAsSeparateQueriesWould) {
   }
 }
 
+TEST(BenchProcess, BadInputFoundInTheWorkIsNoFailureOfTheMachine) {
+  const fs::path mesh = test_folder() / "sliver.ply";
+  std::ofstream(mesh) << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty "
+                         "float y\nproperty float z\nelement face 1\nproperty list uchar int "
+                         "vertex_indices\nend_header\n0 0 0\n0.1 0 0\n0 0.1 0\n3 0 1 2\n";
+  std::string suite = content(write_suite("late", "[plain]"));
+  const std::string tour = MH_SOURCE_DIR "/bench/scenarios/tours/room.yaml";
+  suite.replace(suite.find(tour), tour.size(), "generated:auto:0");
+  std::ofstream(test_folder() / "late.yaml") << suite;
+  EXPECT_EQ(run(bench(test_folder() / "late.yaml", "late", "--scene " + mesh.string())), 2);
+  EXPECT_NE(errors().find("bad input: "), std::string::npos) << errors();
+  EXPECT_EQ(errors().find("--retry-failed"), std::string::npos) << errors();
+}
+
+TEST(BenchProcess, WhatIsRefusedLeavesNoFolder) {
+  const fs::path out = test_folder() / "new" / "folder";
+  EXPECT_EQ(run("bench " + write_suite().string() + " --out " + out.string() + " --scene " +
+                (test_folder() / "small.yaml").string()),
+            2);
+  EXPECT_FALSE(fs::exists(test_folder() / "new")) << errors();
+  const fs::path part = test_folder() / "part";
+  fs::create_directories(part);
+  std::ofstream(part / "results.sqlite") << std::string(5000, 'x');
+  EXPECT_EQ(run("merge " + out.string() + " " + part.string()), 2);
+  EXPECT_NE(errors().find("is damaged"), std::string::npos) << errors();
+  EXPECT_FALSE(fs::exists(test_folder() / "new"));
+}
+
+TEST(BenchProcess, MergingAPartTwiceIsHarmless) {
+  undisturbed();
+  const std::string part = (test_folder() / "plain_run").string();
+  EXPECT_EQ(run("merge " + (test_folder() / "twice").string() + " " + part + " " + part), 0)
+      << errors();
+  EXPECT_EQ(tables("twice"), undisturbed());
+}
+
 TEST(BenchProcess, BadInputIsTold) {
+  std::ofstream(test_folder() / "empty.yaml");
+  EXPECT_EQ(run("bench " + (test_folder() / "empty.yaml").string()), 2);
+  EXPECT_NE(errors().find("empty.yaml: the file holds nothing"), std::string::npos) << errors();
   EXPECT_EQ(run(bench(write_suite(), "bad", "--shard 4/3")), 2);
   EXPECT_NE(errors().find("shard '4/3'"), std::string::npos) << errors();
   EXPECT_EQ(run(bench(write_suite(), "bad", "--shard 1/-3")), 2);

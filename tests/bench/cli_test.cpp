@@ -311,7 +311,7 @@ TEST_F(CommandLine, EvaluatesKittiFilesByLine) {
   EXPECT_NEAR(json["rpe"][0]["translation_m"]["mean"], 0.4, 1e-12);
   expect_refused("evaluate --format kitti " + truth.string() + " " +
                      write("short.kitti", line("0", "0")).string(),
-                 "short.kitti: 1 poses, " + truth.string() + " has 3");
+                 "short.kitti: 1 pose, " + truth.string() + " has 3");
   expect_refused("evaluate --format kitti " + truth.string() + " " +
                      write("bad.kitti", line("0", "0") + "1 2 3\n").string(),
                  "bad.kitti:2: pose: 3 values");

@@ -374,7 +374,29 @@ TEST(Results, ACutRunSaysSo) {
   const auto json = results_json(place.suite, runs);
   EXPECT_EQ(json["suite"]["frames"], 101);
   EXPECT_TRUE(json["runs"][0]["place"]["mapping_tour"]["contact_time_s"].is_null());
-  EXPECT_NE(results_table(place.suite, runs).find("first 101 frames"), std::string::npos);
+  const std::string table = results_table(place.suite, runs);
+  EXPECT_TRUE(table.starts_with("\nSHORTENED to the first 101 frames")) << table;
+  EXPECT_NE(table.find("1 trial, first 101 frames"), std::string::npos) << table;
+}
+
+TEST(TimesTable, SaysInWhichSittingsItWasMeasuredAndShowsThePlainSystemOnce) {
+  const Place place;
+  std::vector<RunResult> runs = place.run();
+  for (RunResult& run : runs)
+    run.circumstances = {.host = "a", .sitting = "2026-01-01T00:00:00Z", .jobs = 2, .load = 0.5};
+  const std::string one = times_table(place.suite, runs);
+  EXPECT_NE(one.find("measured on a in 1 sitting, 2 jobs side by side, load per processor 0.5\n"),
+            std::string::npos)
+      << one;
+  EXPECT_EQ(one.find("plain"), one.rfind("plain")) << one;
+
+  runs.back().circumstances = {
+      .host = "b", .sitting = "2026-01-01T00:00:00Z", .jobs = 1, .load = 2};
+  const std::string two = times_table(place.suite, runs);
+  EXPECT_NE(two.find("measured on a, b in 2 sittings, 1 to 2 jobs side by side, load per processor "
+                     "0.5 to 2.0: rows need not compare\n"),
+            std::string::npos)
+      << two;
 }
 
 TEST(Results, PathsDoNotDependOnTheSuitesSpelling) {
@@ -400,8 +422,7 @@ TEST(Results, WhatHasNoPairsIsUnknownAndTheFamilyIsSuccessAndDistance) {
   };
   const auto of_all = family();
   EXPECT_EQ(of_all.size(), 12u);
-  for (const auto& [what, counts] : of_all)
-    EXPECT_EQ(counts, !what.starts_with("correct")) << what;
+  for (const auto& [what, counts] : of_all) EXPECT_EQ(counts, !what.starts_with("correct")) << what;
   EXPECT_NE(results_table(place.suite, runs).find("Holm over 8 comparisons"), std::string::npos);
 
   for (RunResult& run : runs)
@@ -442,10 +463,10 @@ TEST(Counted, OneIsNotMany) {
 TEST(ResultsTable, HasThePapersFormAndMarksASaturatedTable) {
   const Place place;
   const std::string table = results_table(place.suite, place.run());
-  for (const char* part :
-       {"Reloc. success (%)", "Average distance (m)", "published, other data", "the paper's semantic system", "79.25", "0.0512",
-        "71.43", "0.0945", "exact labels", "boxes labels", "held-out frames", "second tour",
-        "saturated", "smallest detectable difference"})
+  for (const char* part : {"Reloc. success (%)", "Average distance (m)", "published, other data",
+                           "the paper's semantic system", "79.25", "0.0512", "71.43", "0.0945",
+                           "exact labels", "boxes labels", "held-out frames", "second tour",
+                           "saturated", "smallest detectable difference"})
     EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;
   EXPECT_EQ(table.find("is better"), std::string::npos) << table;
 }

@@ -132,11 +132,11 @@ TEST_F(StoreFile, ARunComesBackAsItWas) {
   EXPECT_EQ(p.second_tour.size(), 1u);
   EXPECT_EQ(once.times.track_ms, run.times.track_ms);
   // Rotations go through quaternions: they come back to the last place but one.
-  EXPECT_LT((once.estimate[0].world_from_camera.rotation() -
-             run.estimate[0].world_from_camera.rotation())
-                .cwiseAbs()
-                .maxCoeff(),
-            1e-15);
+  EXPECT_LT(
+      (once.estimate[0].world_from_camera.rotation() - run.estimate[0].world_from_camera.rotation())
+          .cwiseAbs()
+          .maxCoeff(),
+      1e-15);
 }
 
 TEST_F(StoreFile, ARunThatMetAFullDiskIsNoFailure) {
@@ -154,6 +154,38 @@ TEST_F(StoreFile, ARunThatMetAFullDiskIsNoFailure) {
   EXPECT_TRUE(store.claim("k")) << "its claim was kept";
 }
 
+TEST_F(StoreFile, BadInputFoundLateIsToldAsSuchAndStagesAreSaid) {
+  const fs::path program = folder_ / "program";
+  std::ofstream(program) << "#!/bin/sh\necho 0.5; echo baking the light of a room; echo 0.75\n"
+                            "echo 'modelhouse: error: x.ply: no floor' >&2\nexit 2\n";
+  fs::permissions(program, fs::perms::owner_all);
+  Store store(folder_ / "r.sqlite");
+  std::vector<std::string> said;
+  PoolOptions options;
+  options.executable = program;
+  options.work_folder = folder_;
+  options.arguments = [](const Job&, const fs::path&) { return std::vector<std::string>(); };
+  options.say = [&](std::string_view line) { said.emplace_back(line); };
+  work_off(store, {{some_run("a").spec, "k"}}, options);
+  EXPECT_EQ(store.error("k"), std::string(kBadInputMark) + "x.ply: no floor");
+  EXPECT_EQ(said, (std::vector<std::string>{"a: baking the light of a room",
+                                            "a: failed: bad input: x.ply: no floor"}));
+}
+
+TEST_F(StoreFile, AFileWithoutItsTablesIsRefusedWithAdvice) {
+  const fs::path file = folder_ / "r.sqlite";
+  { Store store(file); }
+  SQLite::Database(file.string(), SQLite::OPEN_READWRITE).exec("DROP TABLE runs");
+  try {
+    Store(file).status("k");
+    FAIL();
+  } catch (const InputError& e) {
+    const std::string message = e.what();
+    EXPECT_TRUE(message.starts_with(file.string())) << message;
+    EXPECT_NE(message.find("move it away"), std::string::npos) << message;
+  }
+}
+
 TEST_F(StoreFile, ANewerSchemaIsRefused) {
   const fs::path file = folder_ / "r.sqlite";
   { Store store(file); }
@@ -161,6 +193,42 @@ TEST_F(StoreFile, ANewerSchemaIsRefused) {
   const std::string message = error_of_opening(file);
   EXPECT_NE(message.find("has schema 99"), std::string::npos) << message;
   EXPECT_NE(message.find("newer"), std::string::npos) << message;
+}
+
+TEST_F(StoreFile, AFileOfSchema1IsTakenOverAndMerges) {
+  const fs::path file = folder_ / "old.sqlite";
+  {
+    Store store(file);
+    store.plan(suite(), {}, {{"x", "kx"}, {"y", "ky"}});
+    store.put("kx", some_run("x"), {.wall_s = 2, .max_rss_mb = 11});
+  }
+  {
+    SQLite::Database raw(file.string(), SQLite::OPEN_READWRITE);
+    for (const char* column : {"products_s", "sitting", "jobs", "load"})
+      raw.exec(fmt::format("ALTER TABLE times DROP COLUMN {}", column));
+    raw.exec("PRAGMA user_version = 1");
+  }
+  Store old(file), fresh(folder_ / "fresh.sqlite");
+  EXPECT_EQ(old.rows("PRAGMA user_version")[1][0], "2");
+  const RunResult before = old.load("kx", some_run("x").spec);
+  EXPECT_EQ(before.wall_s, 2);
+  EXPECT_EQ(before.circumstances.sitting, "");
+  const RunCost cost{
+      .products_s = 0.5,
+      .max_rss_mb = 12,
+      .circumstances = {.host = "", .sitting = "2026-01-01T00:00:00Z", .jobs = 3, .load = 0.25}};
+  old.put("ky", some_run("y"), cost);
+  fresh.merge(file);
+  for (const Store* store : {&old, &fresh}) {
+    EXPECT_EQ(store->rows("SELECT key, products_s, max_rss_mb FROM times ORDER BY key"),
+              (std::vector<std::vector<std::string>>{
+                  {"key", "products_s", "max_rss_mb"}, {"kx", "", "11"}, {"ky", "0.5", "12"}}));
+    const Circumstances after = store->load("ky", some_run("y").spec).circumstances;
+    EXPECT_EQ(after.sitting, cost.circumstances.sitting);
+    EXPECT_EQ(after.jobs, 3);
+    EXPECT_EQ(after.load, 0.25);
+    EXPECT_NE(after.host, "");
+  }
 }
 
 TEST_F(StoreFile, ADamagedOrForeignFileIsRefusedWithAdvice) {
