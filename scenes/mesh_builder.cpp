@@ -78,6 +78,7 @@ MaterialId MeshBuilder::material(const MaterialSpec& spec, const Vector3f& emiss
   const auto [found, is_new] =
       materials_.try_emplace(key, static_cast<MaterialId>(scene_.materials.size()));
   if (is_new) {
+    validate(spec);
     scene_.materials.push_back(painted ? make_material(spec) : Material{});
     scene_.materials.back().emission = emission;
   }

@@ -11,12 +11,12 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/counted.hpp"
-#include "bench/realism/short_walks.hpp"
 #include "bench/realism/survey.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "bench/world/world.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/generate/grammar.hpp"
+#include "sim/motion/by_hand.hpp"
 #include "sim/world/sequence.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
@@ -49,23 +49,28 @@ std::vector<std::string> names_of(const Options& options) {
 
 cv::Mat grey_of(const Grid2d<Rgb8>& colour) {
   // cv::Mat does not write through this view.
-  const cv::Mat rgb(colour.height(), colour.width(), CV_8UC3,
-                    const_cast<Rgb8*>(colour.data()));
+  const cv::Mat rgb(colour.height(), colour.width(), CV_8UC3, const_cast<Rgb8*>(colour.data()));
   cv::Mat grey;
   cv::cvtColor(rgb, grey, cv::COLOR_RGB2GRAY);
   return grey;
 }
 
-/// Moments of a walk through it, as the level's sensors see them.
+/// Moments of a scan of it by hand, evenly over its length, as the level's sensors see them.
 MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const Options& options,
                             const Robot& robot, const SensorConfig& sensors) {
+  constexpr std::size_t kAround = 3;  // poses before and after a moment: what blurs it
   const Scene scene = load_lit_scene(name, options.threads);
   const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene);
+  const Trajectory scan = scan_by_hand(scene, robot.camera).camera;
   MeasuredPlace place{.name = name, .frames = {}};
-  for (const Trajectory& walk : short_walks(scene, 0, frames)) {
-    const SimulatedSequence sequence(renderer, robot.camera, walk, sensors, LabelMode::kNone);
+  for (std::size_t k = 0; k < frames; ++k) {
+    const std::size_t at = (2 * k + 1) * scan.size() / (2 * frames);
+    const std::size_t first = std::clamp(at, kAround, scan.size() - 1 - kAround) - kAround;
+    const auto from = scan.begin() + static_cast<std::ptrdiff_t>(first);
+    const SimulatedSequence moment(renderer, robot.camera, Trajectory(from, from + 2 * kAround + 1),
+                                   sensors, LabelMode::kNone);
     place.frames.push_back(
-        measure_image(grey_of(sequence.at(kMiddlePose, RandomStream(0)).frame.colour)));
+        measure_image(grey_of(moment.at(kAround, RandomStream(k)).frame.colour)));
   }
   return place;
 }
@@ -115,8 +120,7 @@ void print_table(const std::vector<MeasuredPlace>& places, const std::vector<Rea
     std::vector<std::string> outside;
     for (const std::size_t i : row.outside)
       outside.push_back(fmt::format("{} ({})", places[i].name, number(places[i].at(q, 0.5))));
-    fmt::print("  {} whose median leaves {}'s 5 to 95 %: {}\n",
-               counted(outside.size(), "place"),
+    fmt::print("  {} whose median leaves {}'s 5 to 95 %: {}\n", counted(outside.size(), "place"),
                real.front().name, fmt::join(outside, ", "));
   }
 }
@@ -125,10 +129,11 @@ void print_json(const std::vector<MeasuredPlace>& places, const RealFrames& real
   nlohmann::ordered_json json, list = nlohmann::ordered_json::array();
   for (std::size_t q = 0; q < kImageQuantityCount; ++q) {
     const RealismRow row = compare(places, real, q);
-    json["quantities"][std::string(kImageQuantities[q].key)] = {
-        {"percentiles", row.ours},       {"real", real.percentiles[q]},
-        {"median", row.median_of_places}, {"in_range", row.in_range},
-        {"spread_ratio", row.spread_ratio}};
+    json["quantities"][std::string(kImageQuantities[q].key)] = {{"percentiles", row.ours},
+                                                                {"real", real.percentiles[q]},
+                                                                {"median", row.median_of_places},
+                                                                {"in_range", row.in_range},
+                                                                {"spread_ratio", row.spread_ratio}};
   }
   for (const MeasuredPlace& place : places) {
     nlohmann::ordered_json entry = {{"scene", place.name}, {"frames", place.frames.size()}};

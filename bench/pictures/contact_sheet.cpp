@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include "bench/pictures/canvas.hpp"
 #include "bench/pictures/false_colours.hpp"
@@ -76,6 +77,31 @@ float openness(const View& view) {
   return *tenth;
 }
 
+/// Above 0 where the outline, walked counter-clockwise, turns left: at corners that point outward.
+double turn_at(const Room& room, std::size_t i) {
+  const auto& p = room.polygon_m;
+  const Eigen::Vector2d before = p[i] - p[(i + p.size() - 1) % p.size()];
+  const Eigen::Vector2d after = p[(i + 1) % p.size()] - p[i];
+  return before.x() * after.y() - before.y() * after.x();
+}
+
+/// A place that can be seen from all corners of a room: the middle of a rectangle; where a corner
+/// is missing, of the part that both arms share.
+Eigen::Vector2d heart(const Room& room) {
+  const auto& p = room.polygon_m;
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& corner : p) box.extend(corner);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (turn_at(room, i) >= 0) continue;
+    const Eigen::Vector2d inward = (p[i] - p[(i + p.size() - 1) % p.size()]).normalized() +
+                                   (p[i] - p[(i + 1) % p.size()]).normalized();
+    const Eigen::Vector2d opposite(inward.x() > 0 ? box.max().x() : box.min().x(),
+                                   inward.y() > 0 ? box.max().y() : box.min().y());
+    return 0.5 * (p[i] + opposite);
+  }
+  return box.center();
+}
+
 /// A wide lens (75 degrees), as a person takes pictures of rooms.
 Camera wide_camera() {
   Camera camera;
@@ -109,24 +135,20 @@ std::vector<View> views_of(const Scene& scene, const Renderer& renderer) {
   const Camera camera = wide_camera();
   std::vector<View> views;
   for (const Room& room : scene.rooms) {
-    Eigen::Vector2d low(1e30, 1e30), high(-1e30, -1e30);
-    for (const Eigen::Vector2d& corner : room.polygon_m) {
-      low = low.cwiseMin(corner);
-      high = high.cwiseMax(corner);
-    }
-    const Eigen::Vector2d centre = 0.5 * (low + high);
+    const Eigen::Vector2d middle = heart(room);
     std::vector<View> corners;
-    for (const Eigen::Vector2d& corner :
-         {low, Eigen::Vector2d(high.x(), low.y()), high, Eigen::Vector2d(low.x(), high.y())}) {
-      const Eigen::Vector2d eye = centre + 0.8 * (corner - centre);
+    for (std::size_t i = 0; i < room.polygon_m.size(); ++i) {
+      if (turn_at(room, i) <= 0) continue;
+      const Eigen::Vector2d eye = middle + 0.8 * (room.polygon_m[i] - middle);
       corners.push_back(shoot(room.name, renderer, camera,
-                              look_at({eye.x(), eye.y(), kEye_m}, {centre.x(), centre.y(), 0.75})));
+                              look_at({eye.x(), eye.y(), kEye_m}, {middle.x(), middle.y(), 0.75})));
     }
+    if (corners.empty()) continue;
     // Furniture may stand in a corner: the two that see farthest show the room.
     std::stable_sort(corners.begin(), corners.end(),
                      [](const View& a, const View& b) { return openness(a) > openness(b); });
     views.push_back(std::move(corners[0]));
-    views.push_back(std::move(corners[1]));
+    if (corners.size() > 1) views.push_back(std::move(corners[1]));
   }
   if (!views.empty()) return views;
 
@@ -167,7 +189,8 @@ cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& vi
   double y = kHeader;
   for (const View& view : views) {
     canvas.picture(colour_picture(view.colour), column(0), y, kTileWidth, tile_height);
-    canvas.picture(depth_colours(view.depth_m, kNear_m, kFar_m), column(1), y, kTileWidth, tile_height);
+    canvas.picture(depth_colours(view.depth_m, kNear_m, kFar_m), column(1), y, kTileWidth,
+                   tile_height);
     canvas.picture(class_picture(view.classes), column(2), y, kTileWidth, tile_height);
     canvas.text(view.caption, {column(0), y + tile_height + 14}, 8.5, {110, 115, 125});
     y += tile_height + kCaption;
@@ -181,18 +204,17 @@ cv::Mat draw_gallery(const std::vector<View>& views, int columns, bool captions)
   const double below = captions ? kCaption : kGap;
   const double tile_height =
       views.empty() ? 300 : kTileWidth * views[0].colour.height() / views[0].colour.width();
-  const auto rows = (views.size() + static_cast<std::size_t>(columns) - 1) /
-                    static_cast<std::size_t>(columns);
+  const auto rows =
+      (views.size() + static_cast<std::size_t>(columns) - 1) / static_cast<std::size_t>(columns);
   Canvas canvas(static_cast<int>(2 * kMargin + columns * kTileWidth + (columns - 1) * kGap),
                 static_cast<int>(2 * kMargin + static_cast<double>(rows) * (tile_height + below)));
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const double x = kMargin + static_cast<double>(i % static_cast<std::size_t>(columns)) *
-                                   (kTileWidth + kGap);
+    const double x =
+        kMargin + static_cast<double>(i % static_cast<std::size_t>(columns)) * (kTileWidth + kGap);
     const double y = kMargin + static_cast<double>(i / static_cast<std::size_t>(columns)) *
                                    (tile_height + below);
     canvas.picture(colour_picture(views[i].colour), x, y, kTileWidth, tile_height);
-    if (captions)
-      canvas.text(views[i].caption, {x, y + tile_height + 14}, 9.5, {60, 64, 72});
+    if (captions) canvas.text(views[i].caption, {x, y + tile_height + 14}, 9.5, {60, 64, 72});
   }
   return canvas.finish();
 }

@@ -67,7 +67,10 @@ const Kind& find_kind(std::string_view name) {
   return *found;
 }
 
-void check(const MaterialSpec& spec) {
+}  // namespace
+
+void validate(const MaterialSpec& spec) {
+  find_kind(spec.kind);
   if (!(spec.variation >= 0.0 && spec.variation <= 1.0))
     throw InputError(
         fmt::format("material {}: variation must lie in [0, 1], is {}", spec.name, spec.variation));
@@ -76,11 +79,9 @@ void check(const MaterialSpec& spec) {
                                  spec.size_m.x(), spec.size_m.y()));
 }
 
-}  // namespace
-
 Material make_material(const MaterialSpec& spec) {
+  validate(spec);
   const Kind& kind = find_kind(spec.kind);
-  check(spec);
   Material material;
   material.name = spec.name.empty() ? spec.kind : spec.name;
   material.tile_m =

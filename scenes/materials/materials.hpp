@@ -22,6 +22,9 @@ struct MaterialSpec {
   Eigen::Vector2f size_m{1.0F, 1.0F};  ///< size of the whole picture where is_picture(kind)
 };
 
+/// @throws InputError if the kind is unknown, or a number out of range.
+void validate(const MaterialSpec& spec);
+
 /// Makes a procedural surface at 1 to 4 mm per texel, at most 1024 x 1024. Materials that repeat
 /// tile without a seam and choose their own Material::tile_m; pictures (posters, rows of books,
 /// screens, views) cover spec.size_m once. The grain of wood runs along u.

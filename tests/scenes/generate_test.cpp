@@ -51,6 +51,14 @@ TEST(Generate, AllDensityGroupsAreThereAndNoTwoPlansAlike) {
     EXPECT_GE(groups[static_cast<std::size_t>(g)], 8) << density_group_name(g);
 }
 
+TEST(Generate, EveryEnvironmentCanBeBuilt) {
+  for (const Category& category : categories())
+    for (int i = 0; i < category.count; ++i) {
+      const GeneratedPlan plan = generate_plan({category.name, static_cast<std::uint64_t>(i)});
+      EXPECT_NO_THROW(count_triangles(plan.yaml, plan.name)) << plan.name;
+    }
+}
+
 TEST(Generate, SameSeedSameBytes) {
   for (const GeneratedReference& reference : sample())
     EXPECT_EQ(generate_plan(reference).yaml, generate_plan(reference).yaml) << to_string(reference);
