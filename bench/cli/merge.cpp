@@ -32,17 +32,22 @@ void copy_files(const fs::path& from, const fs::path& to) {
 }
 
 void run(const Options& options) {
-  for (const std::string& in : options.in)
-    if (!fs::is_regular_file(fs::path(in) / "results.sqlite"))
-      throw InputError(fmt::format("{}: holds no results.sqlite", in));
-  // A part that is refused leaves nothing.
-  for (const std::string& in : options.in) Store::open_existing(in);
-  const OutputFolder folder(options.out);
-  Store store(fs::path(options.out) / "results.sqlite");
+  const fs::path results = fs::path(options.out) / "results.sqlite";
+  std::vector<fs::path> all;
+  if (fs::exists(results)) all.push_back(results);
   for (const std::string& in : options.in) {
-    if (fs::equivalent(in, options.out)) continue;
-    store.merge(fs::path(in) / "results.sqlite");
-    copy_files(in, options.out);
+    all.push_back(fs::path(in) / "results.sqlite");
+    if (!fs::is_regular_file(all.back()))
+      throw InputError(fmt::format("{}: holds no results.sqlite", in));
+  }
+  Store::check_mergeable(all);  // a part that is refused leaves nothing
+  const OutputFolder folder(options.out);
+  Store store(results);
+  for (const std::string& in : options.in) {
+    const bool itself = fs::equivalent(in, options.out);
+    if (itself || store.merge(fs::path(in) / "results.sqlite") == 0)
+      fmt::print(stderr, "merge: {}: holds no result that is not here already\n", in);
+    if (!itself) copy_files(in, options.out);
   }
   const Suite suite = store.planned_suite();
   finish(options.out, suite, load_results(store, suite), options.json);

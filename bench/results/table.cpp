@@ -214,7 +214,7 @@ std::string comparison_line(const Comparison& c) {
       : v == Verdict::kSecondBetter ? "plain is better"
       : std::isfinite(c.detectable)
           ? fmt::format("undecided; smallest detectable difference {:.4f}", c.detectable)
-          : std::string("undecided; too few queries");
+          : std::string("undecided; too few pairs");
   const std::string corrected =
       c.in_family ? fmt::format("(Holm {:.4f})  {}", c.p_holm, word) : "(beside the family)";
   return fmt::format("  {:<62}{:+.4f} [{:+.4f}, {:+.4f}]  p = {:.4f} {}\n", c.what, c.difference,

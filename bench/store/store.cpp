@@ -8,6 +8,7 @@
 #include <chrono>
 #include <ctime>
 #include <fstream>
+#include <map>
 #include <thread>
 
 #include <fmt/format.h>
@@ -50,6 +51,12 @@ std::int64_t start_of_process(std::int64_t process) {
   std::string field;
   for (int i = 0; i < 20; ++i) fields >> field;  // the 22nd of all
   return fields ? std::strtoll(field.c_str(), nullptr, 10) : 0;
+}
+
+InputError made_otherwise(const fs::path& file, const std::string& run, const fs::path& than_in) {
+  return InputError(
+      fmt::format("{}: run '{}' was made with other settings, input or code than in {}",
+                  file.string(), run, than_in.string()));
 }
 
 void put_cost(SQLite::Database& db, const std::string& key, const RunCost& cost,
@@ -316,9 +323,29 @@ double Store::largest_rss_mb() const {
   });
 }
 
-void Store::merge(const fs::path& other) {
+void Store::check_mergeable(const std::vector<fs::path>& files) {
+  std::map<std::string, std::pair<std::string, fs::path>> planned;  // of each run: key, first file
+  std::optional<std::pair<std::string, fs::path>> suite;
+  for (const fs::path& file : files) {
+    const Store store = open_existing(file);
+    const auto keys = store.planned_keys();
+    if (keys.empty()) continue;
+    if (!suite) suite.emplace(store.planned_suite().name, file);
+    if (const std::string name = store.planned_suite().name; name != suite->first)
+      throw InputError(fmt::format("{}: holds results of the suite '{}', {} of '{}'", file.string(),
+                                   name, suite->second.string(), suite->first));
+    for (const auto& [run, key] : keys) {
+      const auto [first, is_new] = planned.try_emplace(run, key, file);
+      if (!is_new && first->second.first != key)
+        throw made_otherwise(file, run, first->second.second);
+    }
+  }
+}
+
+std::size_t Store::merge(const fs::path& other) {
   const Store source = open_existing(other);
-  guarded(file_, [&] {
+  return guarded(file_, [&] {
+    std::size_t taken = 0;
     SQLite::Statement attach(*database_, "ATTACH ? AS other");
     attach.bind(1, source.file().string());
     attach.exec();
@@ -327,10 +354,7 @@ void Store::merge(const fs::path& other) {
       SQLite::Statement clash(*database_,
                               "SELECT a.name FROM plan a JOIN other.plan b ON a.name = b.name "
                               "WHERE a.key <> b.key LIMIT 1");
-      if (clash.executeStep())
-        throw InputError(
-            fmt::format("{}: run '{}' was made with other settings, input or code than in {}",
-                        other.string(), clash.getColumn(0).getString(), file_.string()));
+      if (clash.executeStep()) throw made_otherwise(other, clash.getColumn(0).getString(), file_);
       clash.reset();
       database_->exec("INSERT OR IGNORE INTO suite SELECT * FROM other.suite");
       // What is finished here stays; a failure gives way to a result.
@@ -338,6 +362,7 @@ void Store::merge(const fs::path& other) {
           "CREATE TEMP TABLE wanted AS SELECT key FROM other.runs o WHERE NOT EXISTS "
           "(SELECT 1 FROM runs r WHERE r.key = o.key AND (r.status = 'done' OR o.status = "
           "'failed'))");
+      taken = database_->execAndGet("SELECT COUNT(*) FROM wanted").getUInt();
       for (const char* table :
            {"runs", "points", "metrics", "calls", "frames", "queries", "times"}) {
         database_->exec(
@@ -351,6 +376,7 @@ void Store::merge(const fs::path& other) {
       transaction.commit();
     }
     database_->exec("DETACH other");
+    return taken;
   });
 }
 

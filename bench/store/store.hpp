@@ -75,9 +75,12 @@ class Store {
   /// The largest resident set of a finished run, MB; 0 of none.
   double largest_rss_mb() const;
 
-  /// Takes over what another store holds and this one lacks. @throws InputError if a run of one
-  /// name was planned with different settings, code or input.
-  void merge(const std::filesystem::path& other);
+  /// Takes over what another store holds and this one lacks; returns how many runs that were.
+  /// @throws InputError if a run of one name was planned with different settings, code or input.
+  std::size_t merge(const std::filesystem::path& other);
+  /// What merging them all would find. @throws InputError as merge() does, or if they are results
+  /// of different suites.
+  static void check_mergeable(const std::vector<std::filesystem::path>& files);
 
   /// Rows of a query, for exports: column names first. Numbers are printed so that they read back.
   std::vector<std::vector<std::string>> rows(const std::string& sql) const;

@@ -157,6 +157,8 @@ class Conversation {
     Json answer;
     try {
       answer = Json::parse(line);
+    } catch (const Json::out_of_range&) {
+      fail(fmt::format("wrote a number that is too large: '{}'", shortened(line)));
     } catch (const Json::exception&) {
       std::string small = line;
       std::transform(small.begin(), small.end(), small.begin(),

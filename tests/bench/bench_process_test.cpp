@@ -310,7 +310,24 @@ TEST(BenchProcess, MergingAPartTwiceIsHarmless) {
   const std::string part = (test_folder() / "plain_run").string();
   EXPECT_EQ(run("merge " + (test_folder() / "twice").string() + " " + part + " " + part), 0)
       << errors();
+  EXPECT_EQ(errors(), "merge: " + part + ": holds no result that is not here already\n");
   EXPECT_EQ(tables("twice"), undisturbed());
+}
+
+TEST(BenchProcess, PartsThatDoNotBelongTogetherAreRefusedAndLeaveNothing) {
+  const std::string out = (test_folder() / "mixed").string();
+  const std::string part = " " + (test_folder() / "f45").string();
+  EXPECT_EQ(run(bench(write_suite(), "f45", "--shard 3/3")), 0) << errors();
+  EXPECT_EQ(run("bench " + write_suite().string() + " --frames 46 --shard 3/3 --cache " +
+                (test_folder() / "cache").string() + " --out " + (test_folder() / "f46").string()),
+            0)
+      << errors();
+  EXPECT_EQ(run("merge " + out + part + " " + (test_folder() / "f46").string()), 2);
+  EXPECT_NE(errors().find("made with other settings"), std::string::npos) << errors();
+  EXPECT_EQ(run(bench(write_suite("second", "[plain]"), "second")), 0) << errors();
+  EXPECT_EQ(run("merge " + out + part + " " + (test_folder() / "second").string()), 2);
+  EXPECT_NE(errors().find("of the suite 'second'"), std::string::npos) << errors();
+  EXPECT_FALSE(fs::exists(out));
 }
 
 TEST(BenchProcess, BadInputIsTold) {
