@@ -2,6 +2,7 @@
 #include "slam/features/features.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -42,10 +43,35 @@ std::vector<std::vector<Corner>> corners_per_level(const std::vector<PyramidLeve
   return found;
 }
 
+/// Depth of the surface that a corner belongs to; 0 where nothing is known. The corner of a
+/// silhouette is the outline of what stands in front, and moves with it, while the pixel itself may
+/// show what lies behind: where the 3x3 pixels around it hold two surfaces, the nearer one counts.
 float depth_at(const Grid2d<float>& depth_m, int x, int y, double max_depth_m) {
+  constexpr float kSameSurface = 1.05F;  // farthest to nearest depth
   if (depth_m.empty()) return 0.0F;
-  const float depth = depth_m(x, y);
-  return depth > 0 && depth <= max_depth_m ? depth : 0.0F;  // NaN fails both comparisons
+  const auto known = [max_depth_m](float depth) {
+    return depth > 0 && depth <= max_depth_m;  // NaN fails both comparisons
+  };
+  std::array<float, 9> around{};
+  std::size_t count = 0;
+  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, depth_m.height() - 1); ++v)
+    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, depth_m.width() - 1); ++u)
+      if (const float depth = depth_m(u, v); known(depth)) around[count++] = depth;
+  if (count == 0) return 0.0F;
+  const auto [nearest, farthest] = std::minmax_element(around.begin(), around.begin() + count);
+  if (*farthest < kSameSurface * *nearest) {
+    const float depth = depth_m(x, y);
+    return known(depth) ? depth : 0.0F;
+  }
+  const float limit = kSameSurface * *nearest;
+  float sum = 0;
+  int in_front = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    if (around[i] < limit) {
+      sum += around[i];
+      ++in_front;
+    }
+  return sum / static_cast<float>(in_front);
 }
 
 void append(const PyramidLevel& level, int octave, const Corner& corner, const RgbdFrame& frame,

@@ -2,6 +2,7 @@
 #include "slam/track/track.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 #include "slam/map/id_set.hpp"
 #include "slam/match/expect.hpp"
@@ -50,7 +51,8 @@ KeyframeId reference_of(const TrackedPose& tracked, const Map& map) {
 
 std::optional<TrackedPose> optimise_matches(const Query& query,
                                             const std::vector<LandmarkId>& landmarks,
-                                            const SE3& guess, const Map& map, const Camera& camera,
+                                            std::span<const PassingPoint> passing, const SE3& guess,
+                                            const Map& map, const Camera& camera,
                                             const FeatureConfig& features, const PoseConfig& pose) {
   std::vector<PoseObservation> observations;
   std::vector<std::uint32_t> feature_of;
@@ -59,6 +61,12 @@ std::optional<TrackedPose> optimise_matches(const Query& query,
     observations.push_back(observe(map.at(landmarks[i]).position_in_world,
                                    query.features.keypoints[i], camera, features));
     feature_of.push_back(i);
+  }
+  for (const PassingPoint& point : passing) {
+    if (landmarks[point.feature].valid()) continue;
+    observations.push_back(observe(point.position_in_world, query.features.keypoints[point.feature],
+                                   camera, features));
+    observations.back().sigma_px *= std::numbers::sqrt2;  // its point is no surer than the corner
   }
   const auto estimate = estimate_pose(observations, guess, camera, pose);
   if (!estimate) return std::nullopt;
@@ -143,10 +151,15 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
 
   TrackedPose tracked{estimate->camera_from_world, std::vector<LandmarkId>(query.features.size()),
                       estimate->inlier_count};
-  for (std::size_t j = 0; j < source_of.size(); ++j)
-    if (estimate->inlier[j] != 0)
-      tracked.landmarks[static_cast<std::size_t>(found[source_of[j]])] =
-          sources[source_of[j]].landmark;
+  for (std::size_t j = 0; j < source_of.size(); ++j) {
+    if (estimate->inlier[j] == 0) continue;
+    const Source& source = sources[source_of[j]];
+    const auto feature = static_cast<std::uint32_t>(found[source_of[j]]);
+    if (source.landmark.valid())
+      tracked.landmarks[feature] = source.landmark;
+    else
+      tracked.passing.push_back({feature, source.point_in_world});
+  }
   return tracked;
 }
 
@@ -158,7 +171,7 @@ std::optional<TrackedPose> track_reference(const Query& query, KeyframeId refere
                       SemanticMatcher(context.semantics, counts));
   trace_landmarks(context.trace, Matcher::kReferenceKeyframe, context.map.at(reference),
                   query.features, landmarks, context.semantics);
-  auto tracked = optimise_matches(query, landmarks, guess, context.map, context.camera,
+  auto tracked = optimise_matches(query, landmarks, {}, guess, context.map, context.camera,
                                   context.features, context.pose);
   if (!tracked || tracked->inliers < context.config.min_inliers_frame) return std::nullopt;
   return tracked;
@@ -244,8 +257,8 @@ std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedP
   for (std::size_t t = 0; t < found.size(); ++t)
     if (found[t] >= 0) landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
 
-  auto refined = optimise_matches(query, landmarks, tracked.camera_from_world, map, context.camera,
-                                  context.features, context.pose);
+  auto refined = optimise_matches(query, landmarks, tracked.passing, tracked.camera_from_world, map,
+                                  context.camera, context.features, context.pose);
   if (!refined) return std::nullopt;
   result.tracked = std::move(*refined);
   return result;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "slam/map/map.hpp"
@@ -15,11 +16,18 @@
 
 namespace mh {
 
+/// A feature whose place is known from the last frame's depth alone: no landmark of the map.
+struct PassingPoint {
+  std::uint32_t feature;
+  Eigen::Vector3d position_in_world;
+};
+
 /// A camera pose with the landmarks that support it.
 struct TrackedPose {
   SE3 camera_from_world;
   std::vector<LandmarkId> landmarks;  ///< per feature; inliers only
   int inliers = 0;
+  std::vector<PassingPoint> passing = {};  ///< inliers of the motion model without a landmark
 };
 
 /// What every stage of tracking works with; references live as long as the step.
@@ -65,7 +73,8 @@ struct LocalMapResult {
   std::vector<LandmarkId> expected;  ///< landmarks that should have been visible
 };
 
-/// Refines a pose with every landmark of the local map that can be found in the frame.
+/// Refines a pose with every landmark of the local map that can be found in the frame, and with the
+/// points that pass by.
 /// @returns nullopt if the optimisation fails.
 std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedPose& tracked,
                                               const LocalMap& local, float radius_px,
@@ -76,9 +85,13 @@ bool needs_keyframe(const TrackedPose& tracked, const Features& features, const 
                     KeyframeId reference, int frames_since_keyframe, const KeyframeConfig& config);
 
 /// Landmarks of the inlier observations, per feature; the front of every tracking stage's end.
+/// @param passing  observed too where the feature has no landmark, but no inliers: where the map is
+///                 young, landmarks alone may cover a narrow part of the picture, in which turning
+///                 and shifting look alike.
 std::optional<TrackedPose> optimise_matches(const Query& query,
                                             const std::vector<LandmarkId>& landmarks,
-                                            const SE3& guess, const Map& map, const Camera& camera,
+                                            std::span<const PassingPoint> passing, const SE3& guess,
+                                            const Map& map, const Camera& camera,
                                             const FeatureConfig& features, const PoseConfig& pose);
 
 }  // namespace mh

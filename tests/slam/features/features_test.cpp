@@ -272,6 +272,29 @@ TEST(Extract, TakesDepthAndLabelAtTheKeypointsPixel) {
   }
 }
 
+TEST(Extract, TheCornerOfASilhouetteIsAsNearAsWhatStandsInFront) {
+  RgbdFrame frame = frame_of(squares(kWidth, kHeight, 10));
+  // Columns 1 m and 3 m away in turn, each 4 pixels wide; one row in three has no depth.
+  const auto surface = [](int x) { return x / 4 % 2 == 0 ? 1.0F : 3.0F; };
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) frame.depth_m(x, y) = y % 3 == 0 ? 0.0F : surface(x);
+  int at_edges = 0, behind = 0;
+  for (const Keypoint& k : extract(frame, camera_of(frame), {}).keypoints) {
+    const int x = static_cast<int>(std::lround(k.u_px)), y = static_cast<int>(std::lround(k.v_px));
+    if (std::abs(k.u_px - x) > 0.499F || std::abs(k.v_px - y) > 0.499F) continue;
+    const float left = surface(x - 1), right = surface(x + 1);
+    if (left != right) {
+      EXPECT_EQ(k.depth_m, 1.0F) << "whatever the pixel itself shows";
+      ++at_edges;
+    } else {
+      EXPECT_EQ(k.depth_m, frame.depth_m(x, y)) << "one surface: nothing is made up";
+      behind += k.depth_m == 3.0F;
+    }
+  }
+  EXPECT_GT(at_edges, 100);
+  EXPECT_GT(behind, 100);
+}
+
 TEST(Extract, DepthThatIsNoDepthCountsAsNone) {
   RgbdFrame frame = frame_of(squares(kWidth, kHeight, 9));
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
