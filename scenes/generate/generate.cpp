@@ -22,8 +22,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kTries = 24;   // places tried for one piece
-constexpr int kDrafts = 400;  // rooms drawn until one holds all that it needs
+constexpr int kTries = 24;           // places tried for one piece
+constexpr int kDrafts = 400;         // rooms drawn until one holds all that it needs
 constexpr double kLeastFree = 0.07;  // of the floor: where the robot can stand
 constexpr double kDegree = std::numbers::pi / 180.0;
 
@@ -57,7 +57,7 @@ class Maker {
     if (!add_lamps()) return false;
     const double area = layout_.floor_area_m2();
     constexpr std::array<DrawRange, kDensityGroups> kRatios = {
-        {{1.5, 3.9}, {4.1, 7.9}, {8.2, 15.8}, {16.3, 26.0}}};
+        {{1.5, 3.9}, {4.1, 7.9}, {8.2, 15.8}, {16.3, 34.0}}};
     const double ratio = draw(dice_, kRatios[static_cast<std::size_t>(group_)]);
     target_ = std::max(3, static_cast<int>(ratio * area / 10.0));
     for (const ItemRule& rule : grammar_.furniture)
@@ -141,12 +141,10 @@ class Maker {
                                   : any_outer_wall();
         const double width = whole_mm(draw(dice_, grammar_.window_width_m));
         const double low = whole_mm(draw(dice_, grammar_.window_sill_m));
-        const double high =
-            whole_mm(std::min(std::max(low + 0.35, draw(dice_, grammar_.window_head_m)),
-                              layout_.height_m() - 0.12));
+        const double high = whole_mm(std::min(
+            std::max(low + 0.35, draw(dice_, grammar_.window_head_m)), layout_.height_m() - 0.12));
         if (wall.to_m - wall.from_m < width + 0.3) continue;
-        const double from =
-            whole_mm(dice_.number(wall.from_m + 0.13, wall.to_m - 0.13 - width));
+        const double from = whole_mm(dice_.number(wall.from_m + 0.13, wall.to_m - 0.13 - width));
         if (layout_.add_opening(wall, {.name = fmt::format("window_{}", i + 1),
                                        .from_m = from,
                                        .to_m = whole_mm(from + width),
@@ -166,10 +164,9 @@ class Maker {
     const auto level = [&](std::uint8_t v) {
       return std::clamp(static_cast<int>(std::lround(v * (1.0 + shade))), 0, 255);
     };
-    const std::string value =
-        fmt::format("{{kind: {}, tone: [{}, {}, {}], variation: {:.2f}, seed: {}}}", entry.kind,
-                    level(tone.r), level(tone.g), level(tone.b), variation,
-                    dice_.whole(1, 999'999));
+    const std::string value = fmt::format(
+        "{{kind: {}, tone: [{}, {}, {}], variation: {:.2f}, seed: {}}}", entry.kind, level(tone.r),
+        level(tone.g), level(tone.b), variation, dice_.whole(1, 999'999));
     const std::string name = fmt::format("{}_{}", palette, materials_.size() + 1);
     materials_.emplace_back(name, value);
     return name;
@@ -336,7 +333,8 @@ class Maker {
       case Place::kHang:
       case Place::kCorner: {
         const WallRun& wall = layout_.walls()[dice_.below(layout_.walls().size())];
-        const double c = std::abs(std::cos(extra * kDegree)), s = std::abs(std::sin(extra * kDegree));
+        const double c = std::abs(std::cos(extra * kDegree)),
+                     s = std::abs(std::sin(extra * kDegree));
         const double across = c * w + s * depth, deep = s * w + c * depth;
         const double low = wall.from_m + across / 2 + 0.02, high = wall.to_m - across / 2 - 0.02;
         if (high < low) return false;
@@ -502,8 +500,7 @@ class Maker {
       LayoutItem item = item_of(d);
       const Vector2d out = seat.local.y() != 0 ? Vector2d(0, seat.local.y() > 0 ? 1 : -1)
                                                : Vector2d(seat.local.x() > 0 ? 1 : -1, 0);
-      const Vector2d at =
-          from_frame(table.at_m, table.turn_deg, seat.local + gap * out);
+      const Vector2d at = from_frame(table.at_m, table.turn_deg, seat.local + gap * out);
       item.at_m = {whole_mm(at.x()), whole_mm(at.y())};
       item.turn_deg = table.turn_deg + seat.turn + extra;
       if (gap < 0) item.under = table_index;
@@ -529,7 +526,8 @@ class Maker {
     const double margin = 0.75, before = 1.7, behind = 0.3;
     const int columns =
         std::max(1, static_cast<int>((wide - 2 * margin + aisle) / (d.size_m.x() + aisle)));
-    const int lines = std::max(1, static_cast<int>((deep - before - behind) / (d.size_m.y() + way)));
+    const int lines =
+        std::max(1, static_cast<int>((deep - before - behind) / (d.size_m.y() + way)));
     const int wanted = draw_count(dice_, d.rule->count);
     int placed = 0;
     for (int j = 0; j < lines && placed < wanted; ++j)
@@ -603,7 +601,8 @@ class Maker {
       for (int k = 0; k < 3; ++k) d.size_m[k] = whole_mm(d.size_m[k]);
       for (const double along : places) {
         LayoutItem item = item_of(d);
-        const Vector2d at = wall.place(along, d.size_m.y(), d.kind->mount == Mount::kWall ? 0.002 : 0.02);
+        const Vector2d at =
+            wall.place(along, d.size_m.y(), d.kind->mount == Mount::kWall ? 0.002 : 0.02);
         item.at_m = {whole_mm(at.x()), whole_mm(at.y())};
         item.turn_deg = wall.turn_deg();
         item.z_m = whole_mm(z);
@@ -671,12 +670,14 @@ class Maker {
     const std::set<std::string> used = used_materials();
     for (const auto& [key, value] : materials_)
       if (used.contains(key)) out += fmt::format("  {}: {}\n", key, value);
-    out += fmt::format("\nrooms:\n  - name: room\n    rect_m: [0, 0, {:.3f}, {:.3f}]\n", r.x1, r.y1);
+    out +=
+        fmt::format("\nrooms:\n  - name: room\n    rect_m: [0, 0, {:.3f}, {:.3f}]\n", r.x1, r.y1);
     if (const auto& c = layout_.cut())
       out += fmt::format("    cut: {{corner: {}_{}, size_m: [{:.3f}, {:.3f}]}}\n",
                          c->y0 <= 0 ? "south" : "north", c->x0 <= 0 ? "west" : "east",
                          c->x1 - c->x0, c->y1 - c->y0);
-    out += fmt::format("    floor: {}\n    ceiling: {}\n    walls: {{all: {}", floor_, ceiling_, wall_);
+    out += fmt::format("    floor: {}\n    ceiling: {}\n    walls: {{all: {}", floor_, ceiling_,
+                       wall_);
     if (!accent_.empty()) out += fmt::format(", {}: {}", side_name(accent_side_), accent_);
     out += "}\n    items:\n";
     for (const LayoutItem& item : layout_.items()) out += line(item);
@@ -687,7 +688,8 @@ class Maker {
         trim_, frame_, garden_, night_ ? 0.002 : 0.03);
     const double s = night_ ? 0.004 : 1.0, a = sun_turn_ * kDegree;
     out += fmt::format(
-        "\nlights:\n  sun: {{direction: [{:.3f}, {:.3f}, -0.7], colour: [{:.3f}, {:.3f}, {:.3f}]}}\n"
+        "\nlights:\n  sun: {{direction: [{:.3f}, {:.3f}, -0.7], colour: [{:.3f}, {:.3f}, "
+        "{:.3f}]}}\n"
         "  sky: {{colour: [{:.3f}, {:.3f}, {:.3f}]}}\n",
         0.6 * std::cos(a), 0.6 * std::sin(a), s * sun_power_, s * 0.94 * sun_power_,
         s * 0.82 * sun_power_, s * 0.86 * sky_power_, s * 0.97 * sky_power_, s * 1.15 * sky_power_);
@@ -705,11 +707,10 @@ class Maker {
     std::string out = fmt::format("      - {{name: {}, kind: {}, ", item.name, item.kind->name);
     const auto turned = [](double deg) { return std::remainder(deg, 360.0); };
     if (item.on) {
-      out += fmt::format("on: {}, at: [{:.3f}, {:.3f}], turn_deg: {:.1f}",
-                         layout_.item(*item.on).name, item.on_at_m.x(), item.on_at_m.y(),
-                         turned(item.on_turn_deg));
-      if (item.on_board)
-        out += fmt::format(", z_m: {:.3f}", item.z_m - layout_.item(*item.on).z_m);
+      out +=
+          fmt::format("on: {}, at: [{:.3f}, {:.3f}], turn_deg: {:.1f}", layout_.item(*item.on).name,
+                      item.on_at_m.x(), item.on_at_m.y(), turned(item.on_turn_deg));
+      if (item.on_board) out += fmt::format(", z_m: {:.3f}", item.z_m - layout_.item(*item.on).z_m);
     } else {
       out += fmt::format("at: [{:.3f}, {:.3f}], turn_deg: {:.1f}", item.at_m.x(), item.at_m.y(),
                          turned(item.turn_deg));
@@ -813,8 +814,7 @@ GeneratedPlan generate_plan(const GeneratedReference& reference) {
   const int group = draw_group(chooser, room.density);
   for (std::uint64_t draft = 1; draft <= kDrafts; ++draft) {
     Maker maker(room, Dice(stream.fork(draft)), group);
-    if (maker.furnish())
-      return maker.plan(fmt::format("{}-{}", category.name, reference.seed));
+    if (maker.furnish()) return maker.plan(fmt::format("{}-{}", category.name, reference.seed));
   }
   throw MachineError(fmt::format("{}: no room of {} drafts holds what a {} of density {} needs",
                                  to_string(reference), kDrafts, room.name,
