@@ -188,9 +188,13 @@ std::string place_of(const SemanticConfig& point, const std::vector<std::string>
 std::string caption(const SweepResult& result, QuerySet set, const std::vector<std::string>& varied,
                     const BestPoint& best) {
   const Comparison& c = best.to_reference;
+  if (best.equals == result.points.size())
+    return fmt::format("{}: {:.1f} % correct at each of {} points", name(set),
+                       100 * summary(result.answers[best.point], set).correct, best.equals);
   return fmt::format(
-      "{}: most correct answers at {}: {:.1f} %, {:+.1f} [{:+.1f}, {:+.1f}] points against {}",
+      "{}: most correct answers at {}{}: {:.1f} %, {:+.1f} [{:+.1f}, {:+.1f}] points against {}",
       name(set), place_of(result.points[best.point], varied),
+      best.equals > 1 ? fmt::format(" (one of {} equals)", best.equals) : "",
       100 * summary(result.answers[best.point], set).correct, 100 * c.difference, 100 * c.low,
       100 * c.high, place_of(result.points[best.reference], varied));
 }
@@ -239,7 +243,7 @@ cv::Mat draw_sweep(const Suite& suite, std::span<const Row> rows, const SweepRes
                                      : fmt::format("{}: {:.1f} to {:.1f} % correct", name(set),
                                                    values.least, values.most);
       std::optional<std::size_t> framed;
-      if (!grid || i == 0) framed = best.point;
+      if ((!grid || i == 0) && best.equals < result.points.size()) framed = best.point;
       if (grid)
         draw_grid(canvas, corner, result, varied, title, measure, values, framed);
       else

@@ -52,6 +52,8 @@ std::optional<BestPoint> best_point(const Suite& suite, std::span<const Row> row
     found.reference = static_cast<std::size_t>(own - result.points.begin());
   const CategoryRow& reference = result.answers[found.reference];
   auto best = std::ranges::max_element(result.answers, {}, correct);
+  found.equals =
+      static_cast<std::size_t>(std::ranges::count(result.answers, correct(*best), correct));
   if (correct(reference) == correct(*best))
     best = result.answers.begin() + static_cast<std::ptrdiff_t>(found.reference);
   found.point = static_cast<std::size_t>(best - result.answers.begin());

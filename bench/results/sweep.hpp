@@ -27,6 +27,7 @@ std::vector<SweepResult> sweep_results(const Suite& suite, std::span<const Row> 
 /// correct for that, so a point is taken over from tuning scenes alone.
 struct BestPoint {
   std::size_t point = 0, reference = 0;
+  std::size_t equals = 1;  ///< points with as many correct answers, itself among them
   /// Of one environment by blocks of queries, of more by scenes.
   Comparison to_reference;
 };

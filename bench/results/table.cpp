@@ -351,14 +351,22 @@ std::string best_points(const Suite& suite, const std::vector<Row>& rows) {
       const SystemSpec& system = suite.systems[result.system];
       const SemanticConfig at = settings_of(system, result.points[best->point]);
       const Comparison& c = best->to_reference;
+      if (best->equals == result.points.size()) {
+        text += fmt::format("  {}, level {}, {} labels, {}: {:.2f}% at each of {} points\n",
+                            system.name, level_name(suite.levels[result.level]),
+                            name(result.labels), name(set),
+                            100 * summary(result.answers[best->point], set).correct, best->equals);
+        continue;
+      }
       text += fmt::format(
           "  {}, level {}, {} labels, {}: gamma {:.4g}, xi {:.4g}, alpha {:.4g}, beta {:.4g}: "
-          "{:.2f}%, {}\n",
+          "{:.2f}%, {}{}\n",
           system.name, level_name(suite.levels[result.level]), name(result.labels), name(set),
           at.gamma, at.xi, at.alpha, at.beta,
           100 * summary(result.answers[best->point], set).correct,
           c.pairs == 0 ? std::string("-")
-                       : fmt::format("{:+.4f} [{:+.4f}, {:+.4f}]", c.difference, c.low, c.high));
+                       : fmt::format("{:+.4f} [{:+.4f}, {:+.4f}]", c.difference, c.low, c.high),
+          best->equals > 1 ? fmt::format("; {} points are equal", best->equals) : "");
     }
   return text;
 }

@@ -327,8 +327,15 @@ TEST(Sweep, TheBestPointIsComparedWithTheSuitesOwnSettings) {
   EXPECT_EQ(best->point, 2u);
   EXPECT_EQ(best->reference, 3u);  // gamma 1, alpha 0.8
   EXPECT_NEAR(best->to_reference.difference, 0.2, 1e-12);
-  EXPECT_EQ(best_point(place.suite, rows, results[1], QuerySet::kHeldOut)->point, 3u)
-      << "of equals the suite's own";
+  EXPECT_EQ(best->equals, 1u);
+  const auto plain = best_point(place.suite, rows, results[1], QuerySet::kHeldOut);
+  EXPECT_EQ(plain->point, 3u) << "of equals the suite's own";
+  EXPECT_EQ(plain->equals, 4u);
+  const std::string table = results_table(place.suite, runs);
+  EXPECT_NE(table.find("alpha 0.7, beta 0.75: 100.00%, +0.2000"), std::string::npos) << table;
+  EXPECT_NE(table.find("held_out: 100.00% at each of 4 points"), std::string::npos) << table;
+  runs[0].points[0].held_out = runs[0].points[2].held_out;
+  EXPECT_NE(results_table(place.suite, runs).find("; 2 points are equal\n"), std::string::npos);
   const cv::Mat picture = draw_sweep(place.suite, rows, results[0]);
   EXPECT_GT(picture.cols, 1000);
   EXPECT_EQ(sweep_picture_name(place.suite, results[0]), "sweep-semantic-exact-fake.png");
