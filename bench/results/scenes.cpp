@@ -168,8 +168,12 @@ std::vector<SceneFamily> compare_over_scenes(const Suite& suite, std::span<const
   return families;
 }
 
+bool enough_for(const Comparison& success, double margin) {
+  return margin * static_cast<double>(success.pairs) >= 3.0;
+}
+
 bool not_inferior(const Comparison& success, double margin) {
-  return std::isfinite(success.low) && success.low > -margin;
+  return success.low > -margin && enough_for(success, margin);
 }
 
 }  // namespace mh

@@ -41,7 +41,12 @@ struct SceneFamily {
 };
 std::vector<SceneFamily> compare_over_scenes(const Suite& suite, std::span<const Row> rows);
 
-/// Whether the interval of a share stays above -margin: not inferior by more than that.
+/// Whether a loss as large as the margin would show among so many pairs: by the rule of three,
+/// fewer than 3 / margin may well hold none of it.
+bool enough_for(const Comparison& success, double margin);
+
+/// Whether the interval of a share stays above -margin, over enough pairs: not inferior by more
+/// than that.
 bool not_inferior(const Comparison& success, double margin);
 
 }  // namespace mh

@@ -244,9 +244,10 @@ std::string block_text(const Block& block) {
 std::string margin_line(const Suite& suite, const Comparison& c) {
   if (!suite.non_inferiority_margin || c.pairs == 0 || !c.what.starts_with("success")) return "";
   return fmt::format("  {:<62}{} by more than the {:.3f} stated beforehand\n", "",
-                     not_inferior(c, *suite.non_inferiority_margin)
-                         ? "semantic is not worse"
-                         : "not shown that semantic is not worse",
+                     not_inferior(c, *suite.non_inferiority_margin) ? "semantic is not worse"
+                     : enough_for(c, *suite.non_inferiority_margin)
+                         ? "not shown that semantic is not worse"
+                         : "too few pairs to show that semantic is not worse",
                      *suite.non_inferiority_margin);
 }
 

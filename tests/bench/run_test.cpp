@@ -283,12 +283,17 @@ TEST(Scenes, MeansAreOfMediansAndScenesArePaired) {
 }
 
 TEST(Scenes, NotInferiorNeedsTheWholeIntervalAboveTheMargin) {
-  Comparison c{.what = "success"};
+  Comparison c{.what = "success", .pairs = 100};
   c.low = -0.03;
   EXPECT_TRUE(not_inferior(c, 0.05));
   EXPECT_FALSE(not_inferior(c, 0.03));
   c.low = -INFINITY;
   EXPECT_FALSE(not_inferior(c, 1.0)) << "too few scenes";
+  c.low = 0;  // no query differs
+  c.pairs = 60;
+  EXPECT_TRUE(not_inferior(c, 0.05));
+  c.pairs = 59;
+  EXPECT_FALSE(not_inferior(c, 0.05)) << "a loss of 5 % may show in none of 59";
 }
 
 TEST(Results, WhatIsUndeterminedIsNull) {
