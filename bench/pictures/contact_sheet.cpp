@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -66,15 +69,37 @@ View shoot(std::string caption, const Renderer& renderer, const Camera& camera, 
           std::move(frame.classes)};
 }
 
-/// The depth (m) that nine tenths of a view exceed: next to nothing where something is in the way.
-float openness(const View& view) {
+/// A view from a corner of a room and what it is worth.
+struct CornerView {
+  View view;
+  int objects = 0;   ///< that fill a hundredth of it or more, without walls, floor and ceiling
+  float near_m = 0;  ///< nine tenths are farther: next to nothing where something is in the way
+};
+
+CornerView shoot_corner(const Scene& scene, const Room& room, const Renderer& renderer,
+                        const Camera& camera, const SE3& pose) {
+  RenderedFrame frame = renderer.render(camera, pose);
+  CornerView corner;
+  std::map<InstanceId, std::size_t> pixels;
+  for (const InstanceId id : frame.instances) ++pixels[id];
+  for (const Instance& instance : scene.instances) {
+    const std::string_view name = classes()[instance.class_id].name;
+    const auto seen = pixels.find(instance.id);
+    if (seen != pixels.end() && 100 * seen->second >= frame.instances.size() && name != "wall" &&
+        name != "floor" && name != "ceiling")
+      ++corner.objects;
+  }
   std::vector<float> depths;
-  for (const float depth : view.depth_m)
+  for (const float depth : frame.depth_m)
     if (depth > 0) depths.push_back(depth);
-  if (depths.empty()) return 0;
-  const auto tenth = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 10);
-  std::nth_element(depths.begin(), tenth, depths.end());
-  return *tenth;
+  if (!depths.empty()) {
+    const auto tenth = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 10);
+    std::nth_element(depths.begin(), tenth, depths.end());
+    corner.near_m = *tenth;
+  }
+  corner.view = {room.name, std::move(frame.colour), std::move(frame.depth_m),
+                 std::move(frame.classes)};
+  return corner;
 }
 
 /// Above 0 where the outline, walked counter-clockwise, turns left: at corners that point outward.
@@ -136,19 +161,21 @@ std::vector<View> views_of(const Scene& scene, const Renderer& renderer) {
   std::vector<View> views;
   for (const Room& room : scene.rooms) {
     const Eigen::Vector2d middle = heart(room);
-    std::vector<View> corners;
+    std::vector<CornerView> corners;
     for (std::size_t i = 0; i < room.polygon_m.size(); ++i) {
       if (turn_at(room, i) <= 0) continue;
       const Eigen::Vector2d eye = middle + 0.8 * (room.polygon_m[i] - middle);
-      corners.push_back(shoot(room.name, renderer, camera,
-                              look_at({eye.x(), eye.y(), kEye_m}, {middle.x(), middle.y(), 0.75})));
+      corners.push_back(
+          shoot_corner(scene, room, renderer, camera,
+                       look_at({eye.x(), eye.y(), kEye_m}, {middle.x(), middle.y(), 0.75})));
     }
-    if (corners.empty()) continue;
-    // Furniture may stand in a corner: the two that see farthest show the room.
-    std::stable_sort(corners.begin(), corners.end(),
-                     [](const View& a, const View& b) { return openness(a) > openness(b); });
-    views.push_back(std::move(corners[0]));
-    if (corners.size() > 1) views.push_back(std::move(corners[1]));
+    // Those that show most of what is there; where furniture stands in a corner, from elsewhere.
+    constexpr float kFree_m = 0.7F;
+    std::ranges::stable_sort(corners, std::greater<>(), [](const CornerView& corner) {
+      return std::tuple(corner.near_m > kFree_m, corner.objects, corner.near_m);
+    });
+    for (std::size_t i = 0; i < std::min<std::size_t>(2, corners.size()); ++i)
+      views.push_back(std::move(corners[i].view));
   }
   if (!views.empty()) return views;
 

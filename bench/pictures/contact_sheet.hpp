@@ -31,8 +31,8 @@ cv::Mat draw_gallery(const std::vector<View>& views, int columns, bool captions)
 std::vector<View> views_along(const Trajectory& path, const Renderer& renderer,
                               const Camera& camera, std::size_t count);
 
-/// Exact pictures that show a scene to a person: each room from its two most open corners at eye
-/// height, or turns around the middle where the scene has no rooms.
+/// Exact pictures that show a scene to a person: each room from the two corners at eye height that
+/// show most of what stands in it, or turns around the middle where the scene has no rooms.
 std::vector<View> views_of(const Scene& scene, const Renderer& renderer);
 
 /// A camera at `eye` that looks at `target`, upright.

@@ -623,8 +623,9 @@ class Maker {
         at -= grammar_.extras[i++].weight;
       const ItemRule& rule = grammar_.extras[i];
       const Design d = design(rule);
+      const int& there = counts_[std::string(d.kind->name)];
       const int count = draw_count(dice_, rule.count);
-      for (int k = 0; k < count && !full(); ++k)
+      for (int k = 0; k < count && !full() && there < rule.most; ++k)
         if (const auto index = place_one(d)) place_parts(rule, *index);
     }
   }

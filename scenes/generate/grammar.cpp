@@ -89,8 +89,8 @@ std::map<std::string, std::string> read_roles(YamlReader& yaml, const std::strin
 Place read_place(const YamlReader& yaml, bool belongs) {
   using enum Place;
   static const std::map<std::string, Place> alone = {
-      {"wall", kWall}, {"corner", kCorner}, {"centre", kCentre}, {"floor", kFloor},
-      {"hang", kHang}, {"rows", kRows}, {"aisles", kAisles}, {"window", kWindow},
+      {"wall", kWall},       {"corner", kCorner}, {"centre", kCentre}, {"floor", kFloor},
+      {"hang", kHang},       {"rows", kRows},     {"aisles", kAisles}, {"window", kWindow},
       {"ceiling", kCeiling}, {"on", kOnAny}};
   static const std::map<std::string, Place> part = {
       {"on", kOn}, {"beside", kBeside}, {"front", kFront}, {"around", kAround}, {"above", kAbove}};
@@ -114,6 +114,7 @@ ItemRule read_rule(YamlReader yaml, bool belongs) {
   rule.need = yaml.boolean("need", false);
   rule.chance = yaml.number_or("chance", 1.0, 0.0, 1.0);
   rule.weight = yaml.number_or("weight", 1.0, 0.0, 100.0);
+  rule.most = static_cast<int>(yaml.number_or("most", rule.most, 1, 1000));
   rule.count = range_or(yaml, "count", rule.count, 0, 100);
   if (const auto size = yaml.find("size_m")) {
     const std::vector<YamlReader> axes = size->items();
@@ -197,8 +198,8 @@ const std::vector<Category>& categories() {
   static const std::vector<Category> all = [] {
     std::vector<Category> list;
     for (const std::string_view name : kCategoryNames)
-      list.push_back(read_category(YamlReader::parse(std::string(generator_data(name)),
-                                                     fmt::format("{}.yaml", name))));
+      list.push_back(read_category(
+          YamlReader::parse(std::string(generator_data(name)), fmt::format("{}.yaml", name))));
     return list;
   }();
   return all;
@@ -208,8 +209,8 @@ const Category& category_by_name(std::string_view name) {
   const auto& all = categories();
   const auto found = std::ranges::find(all, name, &Category::name);
   if (found != all.end()) return *found;
-  throw InputError(fmt::format("'{}' is no category; there are: {}", name,
-                               fmt::join(kCategoryNames, ", ")));
+  throw InputError(
+      fmt::format("'{}' is no category; there are: {}", name, fmt::join(kCategoryNames, ", ")));
 }
 
 }  // namespace mh

@@ -34,25 +34,39 @@ struct Palettes {
 
 /// Where a piece is put. The second row is of pieces that belong to another (ItemRule::with).
 enum class Place {
-  kWall, kCorner, kCentre, kFloor, kHang, kRows, kAisles, kWindow, kCeiling, kOnAny,
-  kOn, kBeside, kFront, kAround, kAbove
+  kWall,
+  kCorner,
+  kCentre,
+  kFloor,
+  kHang,
+  kRows,
+  kAisles,
+  kWindow,
+  kCeiling,
+  kOnAny,
+  kOn,
+  kBeside,
+  kFront,
+  kAround,
+  kAbove
 };
 
 struct ItemRule {
   std::vector<std::string> kinds;  ///< one is drawn
   Place place = Place::kWall;
-  bool need = false;     ///< an environment without it is drawn anew
-  double chance = 1.0;   ///< of being tried at all
-  double weight = 1.0;   ///< among extras
+  bool need = false;    ///< an environment without it is drawn anew
+  double chance = 1.0;  ///< of being tried at all
+  double weight = 1.0;  ///< among extras
+  int most = 1000;      ///< extras: pieces of its kind in the whole room
   DrawRange count{1, 1};
   std::optional<std::array<DrawRange, 3>> size_m;  ///< none: the kind's usual size, nearly
-  std::optional<DrawRange> z_m;                    ///< height above floor (on, around: the carrier's foot)
-  DrawRange gap_m{0.005, 0.03};                    ///< to the wall or to the piece that it belongs to
-  DrawRange turn_deg{0, 0};                        ///< added to the turn that the place asks for
-  double front_m = 0.0;                            ///< floor that must stay free before it
-  DrawRange spacing_m{1.2, 1.5};                   ///< rows and aisles: free way between them
-  std::array<double, 4> zone{-1, -1, 1, 1};  ///< of the carrier's top, x and y in half sizes
-  std::vector<std::string> carriers;         ///< kOnAny: kinds that carry it
+  std::optional<DrawRange> z_m;   ///< height above floor (on, around: the carrier's foot)
+  DrawRange gap_m{0.005, 0.03};   ///< to the wall or to the piece that it belongs to
+  DrawRange turn_deg{0, 0};       ///< added to the turn that the place asks for
+  double front_m = 0.0;           ///< floor that must stay free before it
+  DrawRange spacing_m{1.2, 1.5};  ///< rows and aisles: free way between them
+  std::array<double, 4> zone{-1, -1, 1, 1};      ///< of the carrier's top, x and y in half sizes
+  std::vector<std::string> carriers;             ///< kOnAny: kinds that carry it
   std::map<std::string, std::string> materials;  ///< role -> palette
   std::vector<ItemRule> with;
 };
@@ -61,11 +75,12 @@ struct ItemRule {
 struct RoomGrammar {
   std::string name;
   DrawRange area_m2, aspect, height_m;
-  double cut_chance = 0;  ///< of an L-shaped room
+  double cut_chance = 0;           ///< of an L-shaped room
   DrawRange cut_share{0.25, 0.5};  ///< of width and depth that the missing corner takes
-  DrawRange windows{0, 2}, window_width_m{0.9, 1.6}, window_sill_m{0.8, 1.0}, window_head_m{1.9, 2.2};
+  DrawRange windows{0, 2}, window_width_m{0.9, 1.6}, window_sill_m{0.8, 1.0},
+      window_head_m{1.9, 2.2};
   DrawRange doors{1, 1};
-  std::array<double, 4> density{1, 1, 1, 1};  ///< weights of the groups of objects per 10 m2
+  std::array<double, 4> density{1, 1, 1, 1};         ///< weights of the groups of objects per 10 m2
   std::vector<std::string> floors, walls, ceilings;  ///< names of palettes
   double accent_chance = 0.2;                        ///< of one wall of another colour
   std::string lamp = "ceiling_lamp";
