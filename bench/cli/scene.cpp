@@ -15,6 +15,7 @@
 #include "bench/pictures/canvas.hpp"
 #include "bench/pictures/contact_sheet.hpp"
 #include "bench/protocol/digest.hpp"
+#include "bench/realism/short_walks.hpp"
 #include "bench/world/world.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/generate/grammar.hpp"
@@ -22,7 +23,6 @@
 #include "scenes/load.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/scannet/scannet.hpp"
-#include "sim/motion/by_hand.hpp"
 #include "sim/render/scan_look.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -125,9 +125,9 @@ Scene scanned(const Scene& scene) {
   const auto renderer = make_scene_renderer(scene);
   Camera camera;
   std::vector<SE3> views;
-  const Trajectory path = scan_by_hand(scene, camera).camera;
-  for (std::size_t k = 0; k < kViews; ++k)
-    views.push_back(path[(2 * k + 1) * path.size() / (2 * kViews)].world_from_camera);
+  // Who scans a place looks up and down too: one walk alone leaves half of the floor out.
+  for (const Trajectory& walk : short_walks(scene, 0, kViews))
+    views.push_back(walk[kMiddlePose].world_from_camera);
   return scan_look(scene, *renderer, camera, views);
 }
 
