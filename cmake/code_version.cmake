@@ -31,6 +31,9 @@ digest_of(RUN slam/*.cpp slam/*.hpp scenes/*.cpp scenes/*.hpp scenes/categories/
           bench/results/trajectory_score.cpp CMakeLists.txt)
 execute_process(COMMAND git -C ${ROOT} describe --always --dirty --tags
                 OUTPUT_VARIABLE commit ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
+if(commit STREQUAL "")
+  set(commit "unknown")  # no git here, or no clone
+endif()
 file(CONFIGURE OUTPUT ${OUT} CONTENT
 "// Made by cmake/code_version.cmake.
 #pragma once

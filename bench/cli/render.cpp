@@ -75,26 +75,28 @@ void refuse_older_sequence(const fs::path& folder) {
 
 /// The camera that is asked for, and its path: one beside the robot's own hangs where the URDF has
 /// it, and moves with the head.
-std::pair<Camera, Trajectory> choose_camera(const Options& options, const Robot& robot,
-                                            DrivenPath path) {
-  if (options.camera.empty()) return {robot.camera, std::move(path.camera)};
+/// The camera named by --camera; nullptr for the robot's own.
+const MountedCamera* find_camera(const Options& options, const Robot& robot) {
+  if (options.camera.empty()) return nullptr;
   if (!robot.equipment)
     throw InputError(fmt::format("--camera {}: robot '{}' has no other cameras than its own",
                                  options.camera, robot.name));
-  for (const MountedCamera& mounted : robot.equipment->cameras) {
-    if (mounted.name != options.camera) continue;
-    const Equipment& e = *robot.equipment;
-    for (std::size_t i = 0; i < path.base.size(); ++i) {
-      std::map<std::string, double> joints;
-      if (!path.head.empty())
-        joints = {{e.head_yaw, path.head[i][0]}, {e.head_pitch, path.head[i][1]}};
-      path.camera[i].world_from_camera =
-          path.base[i].world_from_camera * e.tree.root_from(mounted.link, joints);
-    }
-    return {mounted.camera, std::move(path.camera)};
-  }
+  for (const MountedCamera& mounted : robot.equipment->cameras)
+    if (mounted.name == options.camera) return &mounted;
   throw InputError(
       fmt::format("--camera {}: robot '{}' has no such camera", options.camera, robot.name));
+}
+
+/// Where a camera was along the robot's path.
+Trajectory path_of(const MountedCamera& mounted, const Equipment& e, DrivenPath path) {
+  for (std::size_t i = 0; i < path.base.size(); ++i) {
+    std::map<std::string, double> joints;
+    if (!path.head.empty())
+      joints = {{e.head_yaw, path.head[i][0]}, {e.head_pitch, path.head[i][1]}};
+    path.camera[i].world_from_camera =
+        path.base[i].world_from_camera * e.tree.root_from(mounted.link, joints);
+  }
+  return std::move(path.camera);
 }
 
 void run(Options options) {
@@ -104,6 +106,7 @@ void run(Options options) {
   make_renderer(options.renderer, Scene{});  // a machine that lacks it says so at once
   const OutputFolder folder(out);
   const Robot robot = load_robot(options.robot);
+  const MountedCamera* const mounted = find_camera(options, robot);
   check_motion(motion);
   SensorConfig sensors;
   sensors.depth_noise_on = sensors.colour_noise_on = false;
@@ -116,7 +119,11 @@ void run(Options options) {
   const Scene scene = load_lit_scene(options.scene, options.sequence.threads);
   const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene, options.renderer);
   progress.say(fmt::format("moving along {}", motion));
-  auto [camera, path] = choose_camera(options, robot, travel(scene, robot, motion));
+  DrivenPath driven = travel(scene, robot, motion);
+  const Camera camera = mounted != nullptr ? mounted->camera : robot.camera;
+  const Trajectory path = mounted != nullptr
+                              ? path_of(*mounted, *robot.equipment, std::move(driven))
+                              : std::move(driven.camera);
 
   const std::string settings = settings_of(options, scene, path);
   if (fs::exists(out / "render.json")) {

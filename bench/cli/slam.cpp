@@ -92,8 +92,8 @@ Source open_source(const Options& options) {
 }
 
 /// A new state, or the one of the map file; the file's settings go before those of --settings.
-SlamState first_state(const Options& options, Settings& settings) {
-  const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
+SlamState first_state(const Options& options, const std::shared_ptr<const Vocabulary>& vocabulary,
+                      Settings& settings) {
   SlamState state;
   if (options.map.empty()) {
     state = make_slam(settings.camera, settings.slam, vocabulary);
@@ -120,6 +120,7 @@ void check(const Options& options) {
 
 void run(const Options& options) {
   check(options);
+  const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
   Source source = open_source(options);
   for (const std::string& note : source.settings.notes) fmt::print(stderr, "slam: {}\n", note);
   // Before the work: a slip costs no minutes.
@@ -127,7 +128,7 @@ void run(const Options& options) {
       options.truth.empty() ? source.frames->truth() : std::optional(read_tum(options.truth));
   const OutputFolder folder(options.out);
   if (!options.save_map.empty()) need_writable(options.save_map);
-  SlamState state = first_state(options, source.settings);
+  SlamState state = first_state(options, vocabulary, source.settings);
 
   Progress progress("slam");
   StageClock clock;

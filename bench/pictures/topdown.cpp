@@ -197,8 +197,8 @@ void draw_legend(Canvas& canvas, double y) {
     return [&canvas, colour](cv::Point2d at) { canvas.fill(at.x - 9, at.y - 7, 18, 14, colour); };
   };
   Legend first(canvas, y);
-  first.entry("true path", stroke(kTruth, 2));
-  first.entry("estimated path", stroke(kEstimate, 2));
+  first.entry("mapping path, true", stroke(kTruth, 2));
+  first.entry("estimated", stroke(kEstimate, 2));
   first.entry("query, true place", [&](cv::Point2d at) { canvas.cross(at, 4.5, kX, 1.8); });
   first.entry("not answered", [&](cv::Point2d at) { canvas.cross(at, 4.5, kMissed, 1.8); });
   first.entry("estimated place", [&](cv::Point2d at) { canvas.ring(at, 6.5, kGood, 1.8); });
