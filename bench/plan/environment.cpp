@@ -24,25 +24,30 @@ std::string with_index(std::string text, int index) {
   return text;
 }
 
-/// A file, or something that code makes. `index` replaces {i}.
-fs::path read_source(const YamlReader& node, const fs::path& folder, int index) {
-  const std::string text = with_index(node.as_string(), index);
-  if (is_generated(text)) return text;
-  const fs::path file = (folder / text).lexically_normal();
-  if (const char* reason = why_unreadable(file))
+fs::path file_named(const std::string& text, const YamlReader& node, const SuitePaths& paths) {
+  const fs::path file = (paths.folder / text).lexically_normal();
+  if (const char* reason = paths.must_exist ? why_unreadable(file) : nullptr)
     node.fail(fmt::format("'{}' cannot be read: {}", file.string(), reason));
   return file;
 }
 
-/// A tour: a source, or a motion by its name alone (bench/world/travel.hpp).
-fs::path read_tour(const YamlReader& node, const fs::path& folder, int index) {
+/// A file, or something that code makes. `index` replaces {i}.
+fs::path read_source(const YamlReader& node, const SuitePaths& paths, int index) {
   const std::string text = with_index(node.as_string(), index);
-  for (const char* motion : {"auto", "handheld"})
-    if (text == motion || text.starts_with(motion + std::string(":"))) return std::string(kGeneratedPrefix) + text;
-  return read_source(node, folder, index);
+  if (is_generated(text)) return text;
+  return file_named(text, node, paths);
 }
 
-std::vector<Environment> read_entry(YamlReader node, const fs::path& folder,
+/// A tour: a source, or a motion by its name alone (bench/world/travel.hpp).
+fs::path read_tour(const YamlReader& node, const SuitePaths& paths, int index) {
+  const std::string text = with_index(node.as_string(), index);
+  for (const char* motion : {"auto", "handheld"})
+    if (text == motion || text.starts_with(motion + std::string(":")))
+      return std::string(kGeneratedPrefix) + text;
+  return read_source(node, paths, index);
+}
+
+std::vector<Environment> read_entry(YamlReader node, const SuitePaths& paths,
                                     const std::optional<fs::path>& default_robot) {
   const auto count = static_cast<int>(node.integer_or("count", 1, 1, 100000));
   const std::string category = node.string("category");
@@ -65,16 +70,16 @@ std::vector<Environment> read_entry(YamlReader node, const fs::path& folder,
   for (int i = 0; i < count; ++i) {
     Environment e{.name = with_index(name, i),
                   .category = category,
-                  .scene = read_source(scene, folder, i),
-                  .robot = robot ? existing_file(*robot, folder) : *default_robot,
-                  .mapping_tour = tour ? read_tour(*tour, folder, i) : fs::path("generated:auto:0"),
+                  .scene = read_source(scene, paths, i),
+                  .robot = robot ? named_file(*robot, paths) : *default_robot,
+                  .mapping_tour = tour ? read_tour(*tour, paths, i) : fs::path("generated:auto:0"),
                   .query_tour = {}};
     check_folder_name(node, e.name);
-    if (query_tour) e.query_tour = read_tour(*query_tour, folder, i);
-    if (query_scene) e.query_scene = read_source(*query_scene, folder, i);
-    if (kidnapped_tour) e.kidnapped_tour = existing_file(*kidnapped_tour, folder);
-    if (sensors) e.sensors = existing_file(*sensors, folder);
-    if (walk) e.walk = existing_file(*walk, folder);
+    if (query_tour) e.query_tour = read_tour(*query_tour, paths, i);
+    if (query_scene) e.query_scene = read_source(*query_scene, paths, i);
+    if (kidnapped_tour) e.kidnapped_tour = named_file(*kidnapped_tour, paths);
+    if (sensors) e.sensors = named_file(*sensors, paths);
+    if (walk) e.walk = named_file(*walk, paths);
     environments.push_back(std::move(e));
   }
   return environments;
@@ -100,14 +105,11 @@ bool is_generated(const fs::path& source) {
   return source.string().starts_with(kGeneratedPrefix);
 }
 
-fs::path existing_file(const YamlReader& node, const fs::path& folder) {
-  const fs::path file = (folder / node.as_string()).lexically_normal();
-  if (const char* reason = why_unreadable(file))
-    node.fail(fmt::format("'{}' cannot be read: {}", file.string(), reason));
-  return file;
+fs::path named_file(const YamlReader& node, const SuitePaths& paths) {
+  return file_named(node.as_string(), node, paths);
 }
 
-std::vector<Environment> read_environments(const YamlReader& list, const fs::path& folder,
+std::vector<Environment> read_environments(const YamlReader& list, const SuitePaths& paths,
                                            const std::optional<fs::path>& default_robot) {
   std::vector<Environment> all;
   std::set<std::string> names;
@@ -121,13 +123,13 @@ std::vector<Environment> read_environments(const YamlReader& list, const fs::pat
   for (YamlReader entry : items_of(list)) {
     const auto pattern = entry.find("files");
     if (!pattern) {
-      add(read_entry(entry, folder, default_robot), entry);
+      add(read_entry(entry, paths, default_robot), entry);
       continue;
     }
     entry.finish();
-    for (const fs::path& file : matching_files(*pattern, folder)) {
+    for (const fs::path& file : matching_files(*pattern, paths.folder)) {
       const YamlReader node = YamlReader::load(file);
-      add(read_entry(node, file.parent_path(), default_robot), node);
+      add(read_entry(node, {file.parent_path(), paths.must_exist}, default_robot), node);
     }
   }
   return all;

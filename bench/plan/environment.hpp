@@ -30,6 +30,13 @@ struct Environment {
 /// Whether a source names something that code makes ("generated:bathroom:0") instead of a file.
 bool is_generated(const std::filesystem::path& source);
 
+/// What a suite's paths are relative to, and whether the files must be there: results are put
+/// together and exported where nothing of what made them may be left.
+struct SuitePaths {
+  std::filesystem::path folder;
+  bool must_exist = true;
+};
+
 /// Reads the list `environments` of a suite. Each entry is a mapping with the fields of
 /// Environment, and one of these more:
 /// - `count: N` makes N of it, with {i} = 0 .. N-1 put into name, scene and tours; the name
@@ -41,10 +48,10 @@ bool is_generated(const std::filesystem::path& source);
 /// @throws InputError naming file, line, field and value: an empty list, two environments of one
 /// name, a file that is missing.
 std::vector<Environment> read_environments(
-    const YamlReader& list, const std::filesystem::path& folder,
+    const YamlReader& list, const SuitePaths& paths,
     const std::optional<std::filesystem::path>& default_robot);
 
-/// A path relative to `folder` that must name a file. @throws InputError at this place.
-std::filesystem::path existing_file(const YamlReader& node, const std::filesystem::path& folder);
+/// The file that a suite names. @throws InputError at this place if it must exist and does not.
+std::filesystem::path named_file(const YamlReader& node, const SuitePaths& paths);
 
 }  // namespace mh

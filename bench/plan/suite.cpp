@@ -44,7 +44,6 @@ ProtocolConfig read_protocol(YamlReader node) {
 }
 
 void replace_scene(Suite& suite, const fs::path& scene) {
-  require_readable(scene);
   if (suite.environments.size() != 1)
     throw InputError(fmt::format("{}: --scene needs a suite of one environment, this has {}",
                                  suite.file.string(), suite.environments.size()));
@@ -71,28 +70,28 @@ Suite load_suite(const fs::path& file, const SuiteOverrides& overrides) {
   return parse_suite(read_file(file), file, overrides);
 }
 
-Suite parse_suite(const std::string& content, const fs::path& file,
-                  const SuiteOverrides& overrides) {
+Suite parse_suite(const std::string& content, const fs::path& file, const SuiteOverrides& overrides,
+                  bool files_must_exist) {
   YamlReader yaml = YamlReader::parse(content, file.string());
-  const fs::path folder = file.parent_path();
+  const SuitePaths paths{file.parent_path(), files_must_exist};
 
   Suite suite;
   suite.file = file;
   suite.name = yaml.string("name", file.stem().string());
   if (yaml.has("name")) check_folder_name(yaml.at("name"), suite.name);
   std::optional<fs::path> robot;
-  if (const auto node = yaml.find("robot")) robot = existing_file(*node, folder);
-  suite.environments = read_environments(yaml.at("environments"), folder, robot);
-  suite.vocabulary = existing_file(yaml.at("vocabulary"), folder);
+  if (const auto node = yaml.find("robot")) robot = named_file(*node, paths);
+  suite.environments = read_environments(yaml.at("environments"), paths, robot);
+  suite.vocabulary = named_file(yaml.at("vocabulary"), paths);
   std::set<std::string> names;
   for (const YamlReader& level : items_of(yaml.at("levels"))) {
-    suite.levels.push_back(existing_file(level, folder));
+    suite.levels.push_back(named_file(level, paths));
     if (!names.insert(level_name(suite.levels.back())).second)
       level.fail(fmt::format("'{}' stands twice", level_name(suite.levels.back())));
   }
   names.clear();
   for (const YamlReader& system : items_of(yaml.at("systems"))) {
-    suite.systems.push_back(read_system(system, folder));
+    suite.systems.push_back(read_system(system, paths.folder));
     if (!names.insert(suite.systems.back().name).second)
       system.fail(fmt::format("'{}' stands twice", suite.systems.back().name));
   }
@@ -112,7 +111,10 @@ Suite parse_suite(const std::string& content, const fs::path& file,
   }
   yaml.finish();
 
-  if (overrides.scene) replace_scene(suite, *overrides.scene);
+  if (overrides.scene) {
+    if (files_must_exist) require_readable(*overrides.scene);
+    replace_scene(suite, *overrides.scene);
+  }
   if (overrides.trials) suite.trials = *overrides.trials;
   suite.max_frames = overrides.max_frames;
   return suite;

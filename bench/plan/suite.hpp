@@ -56,9 +56,10 @@ struct SuiteOverrides {
 /// @throws InputError naming file, line, field and value.
 Suite load_suite(const std::filesystem::path& file, const SuiteOverrides& overrides = {});
 
-/// The same from the text of a suite whose file need not be there any more.
+/// The same from the text of a suite whose file need not be there any more, nor, if so asked, the
+/// files that it names.
 Suite parse_suite(const std::string& content, const std::filesystem::path& file,
-                  const SuiteOverrides& overrides = {});
+                  const SuiteOverrides& overrides = {}, bool files_must_exist = true);
 
 std::string level_name(const std::filesystem::path& level);
 

@@ -209,7 +209,8 @@ Suite Store::planned_suite() const {
       throw InputError(fmt::format("{}: holds no suite: run `modelhouse bench` into its folder",
                                    file_.string()));
     return parse_suite(s.getColumn(1).getString(), s.getColumn(0).getString(),
-                       overrides_from_json(nlohmann::json::parse(s.getColumn(2).getString())));
+                       overrides_from_json(nlohmann::json::parse(s.getColumn(2).getString())),
+                       false);  // they may have been made on another machine
   });
 }
 

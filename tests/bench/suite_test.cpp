@@ -11,6 +11,7 @@
 
 #include "bench/plan/runs.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
 
 namespace mh {
 namespace {
@@ -68,6 +69,18 @@ TEST_F(SuiteFile, ReadsWhatStandsThere) {
   EXPECT_EQ(suite.protocol.truth, QueryTruth::kInterpolated);
   EXPECT_EQ(suite.trials, 3);
   EXPECT_EQ(suite.seed, 7u);
+}
+
+TEST_F(SuiteFile, IsReadElsewhereWhereTheFilesThatItNamesNeedNotBe) {
+  const Suite here = load("");
+  const std::string content = read_file(here.file);
+  for (const char* name : {"house.yaml", "robot.yaml", "tour.yaml", "words", "pepper.yaml"})
+    fs::remove(folder_ / name);
+  const Suite elsewhere = parse_suite(content, here.file, {}, false);
+  EXPECT_EQ(elsewhere.environments[0].scene, here.environments[0].scene);
+  EXPECT_EQ(elsewhere.vocabulary, here.vocabulary);
+  EXPECT_EQ(elsewhere.levels, here.levels);
+  EXPECT_THROW(parse_suite(content, here.file), InputError);
 }
 
 TEST_F(SuiteFile, ExpandsToOneRunPerSystemLabelsLevelTrialAndThePlainOnce) {
