@@ -24,7 +24,7 @@ std::string with_index(std::string text, int index) {
   return text;
 }
 
-fs::path file_named(const std::string& text, const YamlReader& node, const SuitePaths& paths) {
+fs::path resolve(const std::string& text, const YamlReader& node, const SuitePaths& paths) {
   const fs::path file = (paths.folder / text).lexically_normal();
   if (const char* reason = paths.must_exist ? why_unreadable(file) : nullptr)
     node.fail(fmt::format("'{}' cannot be read: {}", file.string(), reason));
@@ -35,7 +35,7 @@ fs::path file_named(const std::string& text, const YamlReader& node, const Suite
 fs::path read_source(const YamlReader& node, const SuitePaths& paths, int index) {
   const std::string text = with_index(node.as_string(), index);
   if (is_generated(text)) return text;
-  return file_named(text, node, paths);
+  return resolve(text, node, paths);
 }
 
 /// A tour: a source, or a motion by its name alone (bench/world/travel.hpp).
@@ -106,7 +106,7 @@ bool is_generated(const fs::path& source) {
 }
 
 fs::path named_file(const YamlReader& node, const SuitePaths& paths) {
-  return file_named(node.as_string(), node, paths);
+  return resolve(node.as_string(), node, paths);
 }
 
 std::vector<Environment> read_environments(const YamlReader& list, const SuitePaths& paths,

@@ -331,8 +331,9 @@ void Store::check_mergeable(const std::vector<fs::path>& files) {
     const Store store = open_existing(file);
     const auto keys = store.planned_keys();
     if (keys.empty()) continue;
-    if (!suite) suite.emplace(store.planned_suite().name, file);
-    if (const std::string name = store.planned_suite().name; name != suite->first)
+    const std::string name = store.planned_suite().name;
+    if (!suite) suite.emplace(name, file);
+    if (name != suite->first)
       throw InputError(fmt::format("{}: holds results of the suite '{}', {} of '{}'", file.string(),
                                    name, suite->second.string(), suite->first));
     for (const auto& [run, key] : keys) {
