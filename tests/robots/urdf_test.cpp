@@ -15,7 +15,9 @@ namespace {
 const std::string kFolder = MH_SOURCE_DIR "/robots/pepper/";
 
 std::string refusal_of(const std::string& text) {
-  const std::string file = testing::TempDir() + "urdf_test.urdf";
+  const std::string file = testing::TempDir() +
+                           testing::UnitTest::GetInstance()->current_test_info()->name() +
+                           "_urdf_test.urdf";
   write_atomically(file, text);
   try {
     load_urdf(file);

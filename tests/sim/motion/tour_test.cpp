@@ -13,7 +13,9 @@ namespace {
 constexpr const char* kHead = "name: t\nstart: {position: [1, 2], heading_deg: 90}\n";
 
 Tour load(const std::string& text) {
-  const std::string file = testing::TempDir() + "tour_test.yaml";
+  const std::string file = testing::TempDir() +
+                           testing::UnitTest::GetInstance()->current_test_info()->name() +
+                           "_tour_test.yaml";
   write_atomically(file, text);
   return load_tour(file);
 }
