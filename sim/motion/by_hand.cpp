@@ -297,7 +297,7 @@ class Gaze {
     const Look look = look_of(best->id);
     const double top_m =
         look.bare || best->id == 0 ? height_m_ : std::min(look.top_m, height_m_ + 0.05);
-    const double z_m = stream_.uniform(count_++, 0.4, 1.0) * std::max(0.0, top_m);
+    const double z_m = stream_.uniform(count_++) * std::max(0.0, top_m);
     return std::clamp(std::atan2(height_m_ - z_m, std::max(0.8, best->d_m)), -5 * kDeg, 40 * kDeg);
   }
 
