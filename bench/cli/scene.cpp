@@ -15,7 +15,7 @@
 #include "bench/pictures/canvas.hpp"
 #include "bench/pictures/contact_sheet.hpp"
 #include "bench/protocol/digest.hpp"
-#include "bench/realism/short_walks.hpp"
+#include "bench/realism/scan_views.hpp"
 #include "bench/world/world.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/generate/grammar.hpp"
@@ -124,11 +124,8 @@ Scene scanned(const Scene& scene) {
   constexpr std::size_t kViews = 90;
   const auto renderer = make_scene_renderer(scene);
   Camera camera;
-  std::vector<SE3> views;
-  // Who scans a place looks up and down too: one walk alone leaves half of the floor out.
-  for (const Trajectory& walk : short_walks(scene, 0, kViews))
-    views.push_back(walk[kMiddlePose].world_from_camera);
-  return scan_look(scene, *renderer, camera, views);
+  // From anywhere, up and down too: one walk alone leaves half of the floor out.
+  return scan_look(scene, *renderer, camera, scan_views(scene, 0, kViews));
 }
 
 void write_mesh(Scene scene, const fs::path& out, bool scan = false) {

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::vector<std::string> scenes;
-  std::string level, robot, reference, tum;
+  std::string level, robot, reference, tum, cache;
   int per_category = 0;
   std::size_t frames = 600;
   int threads = 2;
@@ -59,7 +59,7 @@ cv::Mat grey_of(const Grid2d<Rgb8>& colour) {
 MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const Options& options,
                             const Robot& robot, const SensorConfig& sensors) {
   constexpr std::size_t kAround = 3;  // poses before and after a moment: what blurs it
-  const Scene scene = load_lit_scene(name, options.threads);
+  const Scene scene = load_lit_scene(name, options.threads, Cache(options.cache));
   const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene);
   const Trajectory scan = scan_by_hand(scene, robot.camera).camera;
   MeasuredPlace place{.name = name, .frames = {}};
@@ -187,6 +187,7 @@ void add_scene_statistics(CLI::App& scene) {
   command->add_option("--tum", options->tum, "Folder of real frames in TUM's layout, measured too");
   command->add_option("--jobs", options->threads, "Threads that bake light; changes no figure")
       ->check(CLI::Range(1, 1024));
+  command->add_option("--cache", options->cache, "Folder that keeps baked light; none: bakes anew");
   command->add_flag("--json", options->json, "Prints JSON, with the median of each scene");
   command->footer(
       "Example:\n  modelhouse scene statistics --per-category 3 --frames 540\n"

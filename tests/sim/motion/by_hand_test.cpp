@@ -83,6 +83,35 @@ TEST(ScanByHand, KeepsClearAndSeesTheWholeRoom) {
   }
 }
 
+// In a bare hall with one table in its middle a camera that looked anywhere would have the table's
+// middle in view in a sixth of the frames (a view is 58 degrees wide).
+TEST(ScanByHand, LooksAtFurnitureRatherThanAtBareWalls) {
+  const Camera camera = test::pepper().camera;
+  const double half_view_rad = std::atan(0.5 * camera.width_px / camera.fx_px);
+  const auto frames_with_the_table = [&](const char* kind) {
+    Scene hall = test::empty_room();
+    test::add_box(hall, "in the middle", {4.4F, 4.4F, 0}, {5.6F, 5.6F, 0.8F});
+    hall.instances.back().class_id = class_by_name(kind).value();
+    double seen = 0, tilt_rad = 0, count = 0;
+    for (std::uint64_t seed = 0; seed < 4; ++seed)
+      for (const TimedPose& pose : scan_by_hand(hall, camera, {.seed = seed}).camera) {
+        const Eigen::Vector3d ahead = pose.world_from_camera.rotation().col(2);
+        const Eigen::Vector3d way = Eigen::Vector3d(5, 5, 0) - pose.world_from_camera.translation();
+        const double aside_rad = std::remainder(
+            std::atan2(way.y(), way.x()) - std::atan2(ahead.y(), ahead.x()), 2 * M_PI);
+        seen += std::abs(aside_rad) < half_view_rad ? 1 : 0;
+        tilt_rad -= std::asin(ahead.z());
+        ++count;
+      }
+    EXPECT_GT(tilt_rad / count, 5 * M_PI / 180);
+    EXPECT_LT(tilt_rad / count, 35 * M_PI / 180);
+    return seen / count;
+  };
+  const double of_a_table = frames_with_the_table("table");
+  EXPECT_GT(of_a_table, 0.22);
+  EXPECT_GT(of_a_table, 1.2 * frames_with_the_table("wall"));
+}
+
 TEST(ScanByHand, IsAFunctionOfItsSeed) {
   const Camera camera = test::pepper().camera;
   const auto path = [&](std::uint64_t seed) {

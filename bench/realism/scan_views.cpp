@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/realism/short_walks.hpp"
+#include "bench/realism/scan_views.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kClearance_m = 0.3, kFlat_m = 0.03;
-constexpr double kRate_hz = 30.0;
 
 /// Distance to the walls from inside, below 0 outside.
 double depth_inside(const Room& room, const Vector2d& p) {
@@ -46,12 +45,12 @@ bool is_free(const Scene& scene, const Vector3d& eye) {
 
 }  // namespace
 
-std::vector<Trajectory> short_walks(const Scene& scene, std::uint64_t seed, std::size_t count) {
+std::vector<SE3> scan_views(const Scene& scene, std::uint64_t seed, std::size_t count) {
   if (scene.rooms.empty()) throw InputError(fmt::format("scene {}: has no room", scene.name));
   constexpr double kDegree = std::numbers::pi / 180.0;
   Dice dice(RandomStream(seed).fork(0x77616c6b));
-  std::vector<Trajectory> walks;
-  for (std::size_t tries = 0; walks.size() < count; ++tries) {
+  std::vector<SE3> views;
+  for (std::size_t tries = 0; views.size() < count; ++tries) {
     if (tries > 2000 * (count + 1))
       throw InputError(fmt::format("scene {}: no free place for a camera", scene.name));
     const Room& room = scene.rooms[dice.below(scene.rooms.size())];
@@ -61,26 +60,18 @@ std::vector<Trajectory> short_walks(const Scene& scene, std::uint64_t seed, std:
     const Vector3d eye(x, y, dice.number(1.1, 1.6));
     const double yaw = dice.number(-std::numbers::pi, std::numbers::pi);
     const double pitch = dice.number(-30, 12) * kDegree;
-    const double speed = dice.number(0.03, 0.42), course = yaw + dice.number(-0.6, 0.6);
-    const double turning = dice.number(2, 26) * kDegree, share = dice.number(-1, 1);
+    // Four numbers that nothing needs: without them a seed would give other views.
+    for (int i = 0; i < 4; ++i) dice.number(0, 1);
     // Nobody scans a wall from a hand's breadth: a metre ahead there is still room.
     const Vector2d ahead = eye.head<2>() + Vector2d(std::cos(yaw), std::sin(yaw));
     if (depth_inside(room, eye.head<2>()) < kClearance_m || depth_inside(room, ahead) < 0 ||
         !is_free(scene, eye))
       continue;
-    Trajectory walk;
-    for (std::size_t k = 0; k <= 2 * kMiddlePose; ++k) {
-      const double t = (static_cast<double>(k) - kMiddlePose) / kRate_hz;
-      const double a = yaw + share * turning * t;
-      const double b = pitch + (1.0 - std::abs(share)) * turning * t;
-      const Vector3d at = eye + speed * t * Vector3d(std::cos(course), std::sin(course), 0);
-      const Vector3d way(std::cos(b) * std::cos(a), std::cos(b) * std::sin(a), std::sin(b));
-      walk.push_back(
-          {std::llround(static_cast<double>(k) * 1e9 / kRate_hz), look_at(at, at + way)});
-    }
-    walks.push_back(std::move(walk));
+    const Vector3d way(std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw),
+                       std::sin(pitch));
+    views.push_back(look_at(eye, eye + way));
   }
-  return walks;
+  return views;
 }
 
 }  // namespace mh
