@@ -7,9 +7,6 @@
 
 namespace mh {
 
-/// Patches of orientation and descriptor reach that far: pixels a keypoint keeps from the border.
-inline constexpr int kPatchReach_px = 19;
-
 /// Orientation of the patch around a pixel: direction from it to the intensity centroid of a disc
 /// of radius 15 px (Rosin 1999; Rublee et al., ICCV 2011, section 3.2), degrees in [0, 360).
 /// @pre the pixel is at least kPatchReach_px from the border.

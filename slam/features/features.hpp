@@ -19,6 +19,10 @@ inline int hamming(const Descriptor& a, const Descriptor& b) {
          std::popcount(a[3] ^ b[3]);
 }
 
+/// Patches of orientation and descriptor reach that far: pixels of its level that a keypoint keeps
+/// from the border.
+inline constexpr int kPatchReach_px = 19;
+
 struct Keypoint {
   float u_px = 0, v_px = 0;  ///< undistorted, at full resolution
   float depth_m = 0;         ///< 0 = none
