@@ -211,7 +211,7 @@ void fields(A& a, T& observation) {
 template <class A, Either<Landmark> T>
 void fields(A& a, T& landmark) {
   auto& [id, position_in_world, observations, descriptor, label, mean_direction, min_distance_m,
-         max_distance_m, first_keyframe, visible, found, erased] = landmark;
+         max_distance_m, first_keyframe, visible, found, erased, described] = landmark;
   a(id, position_in_world, observations, descriptor, label, mean_direction, min_distance_m,
     max_distance_m, first_keyframe, visible, found, erased);
 }

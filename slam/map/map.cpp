@@ -100,6 +100,7 @@ bool Map::add_observation(LandmarkId landmark, KeyframeId keyframe, std::uint32_
                        [](const Observation& o, KeyframeId wanted) { return o.keyframe < wanted; });
   if (place != l.observations.end() && place->keyframe == keyframe) return false;
   l.observations.insert(place, {keyframe, feature});
+  l.described = false;
   k.landmarks[feature] = landmark;
   return true;
 }
@@ -111,6 +112,7 @@ void Map::erase_observation(LandmarkId landmark, KeyframeId keyframe) {
   if (place == l.observations.end()) return;
   mutable_at(keyframe).landmarks[place->feature] = LandmarkId{};
   l.observations.erase(place);
+  l.described = false;
   if (l.observations.empty()) erase(landmark);
 }
 
@@ -167,21 +169,25 @@ void Map::set_pose(KeyframeId id, const SE3& camera_from_world) {
   k.camera_from_world = camera_from_world;
 }
 
+void Map::describe(Landmark& l) const {
+  std::vector<const Descriptor*> descriptors;
+  for (const Observation& o : l.observations)
+    descriptors.push_back(&at(o.keyframe).features.descriptors[o.feature]);
+  const std::size_t central = most_central(descriptors);
+  l.descriptor = *descriptors[central];
+  const Observation& o = l.observations[central];
+  l.label = at(o.keyframe).features.keypoints[o.feature].label;
+  l.described = true;
+}
+
 void Map::refresh(LandmarkId id, const FeatureConfig& config) {
   Landmark& l = mutable_at(id);
   if (l.erased) return;
-  std::vector<const Descriptor*> descriptors;
+  if (!l.described) describe(l);
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-  for (const Observation& o : l.observations) {
-    const Keyframe& k = at(o.keyframe);
-    descriptors.push_back(&k.features.descriptors[o.feature]);
-    direction += (l.position_in_world - k.camera_from_world.inverse().translation()).normalized();
-  }
-  const std::size_t central = most_central(descriptors);
-  l.descriptor = *descriptors[central];
-  l.label = at(l.observations[central].keyframe)
-                .features.keypoints[l.observations[central].feature]
-                .label;
+  for (const Observation& o : l.observations)
+    direction += (l.position_in_world - at(o.keyframe).camera_from_world.inverse().translation())
+                     .normalized();
   l.mean_direction = direction.norm() > 1e-9 ? Eigen::Vector3d(direction.normalized())
                                              : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
 

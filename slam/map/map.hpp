@@ -67,6 +67,7 @@ struct Landmark {
   int visible = 1;  ///< frames in which it was expected
   int found = 1;    ///< frames in which it was an inlier
   bool erased = false;
+  bool described = false;  ///< descriptor and label are of these observations; kept in no file
 };
 
 /// Keyframes, landmarks and who sees whom. Entities are addressed by id and never move; erased
@@ -114,7 +115,7 @@ class Map {
   void count_visible(LandmarkId id) { ++landmarks_[id.value].visible; }
   void count_found(LandmarkId id) { ++landmarks_[id.value].found; }
 
-  /// Recomputes descriptor, label, mean direction and distance range of a landmark.
+  /// Brings descriptor, label, mean direction and distance range of a landmark up to date.
   void refresh(LandmarkId id, const FeatureConfig& config);
   /// Counts anew which keyframes share landmarks with this one, on both sides.
   void update_covisibility(KeyframeId id);
@@ -142,6 +143,7 @@ class Map {
  private:
   Keyframe& mutable_at(KeyframeId id) { return keyframes_[id.value]; }
   Landmark& mutable_at(LandmarkId id) { return landmarks_[id.value]; }
+  void describe(Landmark& landmark) const;
   void set_neighbour(KeyframeId of, KeyframeId neighbour, int shared);
 
   std::vector<Keyframe> keyframes_;

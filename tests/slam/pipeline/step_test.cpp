@@ -71,6 +71,18 @@ TEST(Step, TracksANoiseFreeRoomToMillimetres) {
   EXPECT_LT(std::sqrt(sum2 / 300), 0.015);
 }
 
+TEST(Step, LandmarksAreDescribedAsIfAnewAfterEachChange) {
+  Map kept = mapped().state.map;
+  std::vector<Landmark> landmarks = kept.landmarks();
+  for (Landmark& l : landmarks) l.described = false;
+  Map anew = Map::restore(kept.keyframes(), std::move(landmarks));
+  for (const Landmark& l : mapped().state.map.landmarks()) {
+    kept.refresh(l.id, mapped().state.config.features);
+    anew.refresh(l.id, mapped().state.config.features);
+  }
+  EXPECT_EQ(kept.digest(), anew.digest());
+}
+
 TEST(Step, EveryMatcherMeetsLabelsThatDisagree) {
   // Without depth on one side, landmarks there can only come from triangulation.
   Drive r{make_slam(BoxRoom::camera(), settings(SemanticConfig{}), vocabulary()), {}, {}};
