@@ -81,6 +81,8 @@ class Checker {
              material.tile_m.y());
       if (!material.emission.allFinite() || material.emission.minCoeff() < 0.0F)
         fail("material {}: emission is negative or not finite", material.name);
+      if (!(material.transmission.minCoeff() >= 0.0F && material.transmission.maxCoeff() <= 1.0F))
+        fail("material {}: transmission must be 0 to 1", material.name);
     }
   }
 
@@ -184,6 +186,7 @@ std::uint64_t digest(const Scene& scene) {
     all.array(material.texture.data(), material.texture.size());
     all.vector(material.emission);
     if (!material.opacity.empty()) all.array(material.opacity.data(), material.opacity.size());
+    if (material.is_pane()) all.vector(material.transmission);
   }
   for (const Instance& instance : scene.instances) {
     all.value(instance.id);

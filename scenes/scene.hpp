@@ -31,6 +31,10 @@ struct Material {
   Eigen::Vector2f tile_m{1.0F, 1.0F};  ///< physical size of one repeat of the texture, where known
   Eigen::Vector3f emission =
       Eigen::Vector3f::Zero();  ///< linear radiance added to what is reflected
+  /// The share of light (linear RGB) that a thin pane lets through, as glass and curtains of gauze
+  /// do; zero = none. A pane tints what stands behind it and has no depth or label of its own.
+  Eigen::Vector3f transmission = Eigen::Vector3f::Zero();
+  bool is_pane() const { return !transmission.isZero(0.0F); }
 };
 
 /// An object (or a wall, a floor): what one instance id stands for.

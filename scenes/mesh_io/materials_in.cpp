@@ -130,6 +130,24 @@ Grid2d<std::uint8_t> opacity_of_mask(const Picture& mask, const Grid2d<Rgb8>& te
   return opacity;
 }
 
+/// What a material lets through (linear RGB): glTF's KHR_materials_transmission, or an alpha of the
+/// whole material below kOpaqueFrom, in glTF where it says BLEND. Alpha 0 is more often a mistake
+/// than something invisible.
+Eigen::Vector3f transmission_of(const aiMaterial& record, const aiColor4D& base) {
+  const Eigen::Vector3f tint(base.r, base.g, base.b);
+  float share = 0.0F;
+  if (record.Get(AI_MATKEY_TRANSMISSION_FACTOR, share) == aiReturn_SUCCESS && share > 0.0F)
+    return (std::min(share, 1.0F) * tint).cwiseMax(0.0F).cwiseMin(1.0F);
+  float opacity = 1.0F;
+  aiString mode;
+  if (record.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == aiReturn_SUCCESS)
+    opacity = std::string_view(mode.C_Str()) == "BLEND" ? base.a : 1.0F;
+  else
+    record.Get(AI_MATKEY_OPACITY, opacity);
+  if (!(opacity > 0.0F && opacity < kOpaqueFrom / 255.0F)) return Eigen::Vector3f::Zero();
+  return (Eigen::Vector3f::Constant(1.0F - opacity) + opacity * tint).cwiseMin(1.0F);
+}
+
 Material convert(const aiScene& in, const aiMaterial& record, const fs::path& file, bool linear,
                  std::vector<std::string>* warnings) {
   Material material;
@@ -142,6 +160,7 @@ Material convert(const aiScene& in, const aiMaterial& record, const fs::path& fi
   if (record.Get(AI_MATKEY_COLOR_EMISSIVE, emission) == aiReturn_SUCCESS)
     material.emission = {std::max(0.0F, emission.r), std::max(0.0F, emission.g),
                          std::max(0.0F, emission.b)};
+  material.transmission = transmission_of(record, base);
   aiString texture;
   if (record.GetTexture(aiTextureType_BASE_COLOR, 0, &texture) != aiReturn_SUCCESS &&
       record.GetTexture(aiTextureType_DIFFUSE, 0, &texture) != aiReturn_SUCCESS)

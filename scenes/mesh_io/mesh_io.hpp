@@ -15,7 +15,8 @@ namespace mh {
 ///
 /// Textures may be embedded or lie beside the file. One that is missing or cannot be decoded is
 /// replaced by magenta and named in `warnings`. Texels that are not opaque are holes
-/// (Material::opacity); other transparency is ignored.
+/// (Material::opacity); a material of which most is seen through is a pane
+/// (Material::transmission).
 ///
 /// Class and instance come from
 /// - the side file <stem>.labels.json of a PLY, as save_scannet_ply writes it;

@@ -88,6 +88,7 @@ class GlbBuilder {
     json_["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
     std::vector<std::string> used = {"KHR_materials_unlit"};
     if (strong_emission_) used.emplace_back("KHR_materials_emissive_strength");
+    if (has_panes_) used.emplace_back("KHR_materials_transmission");
     json_["extensionsUsed"] = used;
     return chunks();
   }
@@ -116,7 +117,9 @@ class GlbBuilder {
   }
 
   void add_material(const Material& material) {
-    const Eigen::Vector3f base = linear_from_srgb(material.base_colour);
+    // A pane's own colour is what it lets through.
+    const Eigen::Vector3f base =
+        material.is_pane() ? material.transmission : linear_from_srgb(material.base_colour);
     Json surface = {{"baseColorFactor", {base.x(), base.y(), base.z(), 1.0F}},
                     {"metallicFactor", 0.0},
                     {"roughnessFactor", 1.0}};
@@ -127,6 +130,11 @@ class GlbBuilder {
     const float strength = material.emission.maxCoeff();
     // What glows by itself is no unlit material to glTF.
     if (!(strength > 0.0F)) record["extensions"]["KHR_materials_unlit"] = Json::object();
+    if (material.is_pane()) {
+      record["extensions"].erase("KHR_materials_unlit");
+      record["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", 1.0}};
+      has_panes_ = true;
+    }
     if (!material.opacity.empty()) {
       record["alphaMode"] = "MASK";
       record["alphaCutoff"] = kOpaqueFrom / 255.0;
@@ -249,7 +257,7 @@ class GlbBuilder {
   std::string binary_;
   std::vector<std::uint32_t> own_index_, seen_in_;  ///< by vertex: index in, number of a primitive
   std::uint32_t primitive_ = 0;
-  bool strong_emission_ = false;
+  bool strong_emission_ = false, has_panes_ = false;
 };
 
 }  // namespace

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <immintrin.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <optional>
 
 #include "sim/render/colour.hpp"
 #include "sim/render/edges.hpp"
@@ -62,12 +65,56 @@ struct EdgeBench {
   FlushDenormals flush;
 };
 
+/// The panes of a scene, where it has any.
+class Panes {
+ public:
+  Panes(const Scene& scene, const RenderConfig& config)
+      : bvh_(scene, config.threads, config.portable, false, Faces::kPanes) {
+    for (const std::uint16_t material : scene.material_of)
+      transmission_.push_back(scene.materials[material].transmission);
+  }
+
+  /// Takes from the light of a packet's lanes what the panes between camera and surface hold back.
+  void dim(const Packet& packet, Radiance& light) const {
+    RTCRayHit16 rays = packet.rays;
+    alignas(64) std::array<int, kLanes> valid;
+    valid.fill(-1);
+    for (bool any = true; any;) {
+      for (int i = 0; i < kLanes; ++i) rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+      bvh_.intersect16(valid.data(), rays, true);
+      any = false;
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        if (valid[i] != 0 && rays.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) {
+          any = true;
+          const Eigen::Vector3f& share =
+              transmission_[bvh_.face_of(rays.hit.geomID[i], rays.hit.primID[i])];
+          const __m128 of_lane = _mm_setr_ps(share.x(), share.y(), share.z(), 0.0F);
+          const __m128 none = _mm_set1_ps(1.0F);
+          light.of[i / 2] =
+              _mm256_mul_ps(light.of[i / 2], i % 2 == 0 ? _mm256_set_m128(none, of_lane)
+                                                        : _mm256_set_m128(of_lane, none));
+          rays.ray.tnear[i] = std::nextafter(rays.ray.tfar[i], std::numeric_limits<float>::max());
+          rays.ray.tfar[i] = packet.rays.ray.tfar[i];
+        } else {
+          valid[i] = 0;
+        }
+      }
+    }
+  }
+
+ private:
+  EmbreeScene bvh_;
+  std::vector<Eigen::Vector3f> transmission_;  // by face
+};
+
 class EmbreeRenderer final : public Renderer {
  public:
   EmbreeRenderer(const Scene& scene, const RenderConfig& config)
       : config_(config),
         bvh_(scene, config.threads, config.portable),
-        shading_(scene, bvh_, config.exposure) {}
+        shading_(scene, bvh_, config.exposure) {
+    if (std::ranges::any_of(scene.materials, &Material::is_pane)) panes_.emplace(scene, config);
+  }
 
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
     check_projection(camera);
@@ -106,6 +153,13 @@ class EmbreeRenderer final : public Renderer {
     return frame;
   }
 
+  /// What reaches the camera of what a packet's lanes show.
+  Radiance light_of(const Packet& packet, const Seen& seen) const {
+    Radiance light = shading_.shade(packet, seen);
+    if (panes_) panes_->dim(packet, light);
+    return light;
+  }
+
   void render_tile(const View& view, int x0, int y0, Bench& bench, RenderedFrame& frame) const {
     const int x1 = std::min(x0 + kTileWidth, view.width);
     const int y1 = std::min(y0 + kTileHeight, view.height);
@@ -123,7 +177,7 @@ class EmbreeRenderer final : public Renderer {
       for (const Offset& offset : kQuarters) {
         trace_tile(view, for_each, offset, 0.25F * pixel_area, bench);
         for_each([&](std::size_t k, int, int) {
-          const Radiance light = shading_.shade(packets[k], seen[k]);
+          const Radiance light = light_of(packets[k], seen[k]);
           for (std::size_t i = 0; i < kLanes / 2; ++i)
             bench.light[k].of[i] =
                 _mm256_add_ps(bench.light[k].of[i],
@@ -133,8 +187,7 @@ class EmbreeRenderer final : public Renderer {
     }
     trace_tile(view, for_each, {}, pixel_area, bench);
     for_each([&](std::size_t k, int x, int y) {
-      write(supersample ? bench.light[k] : shading_.shade(packets[k], seen[k]), seen[k], x, y,
-            frame);
+      write(supersample ? bench.light[k] : light_of(packets[k], seen[k]), seen[k], x, y, frame);
       if (any_extra()) write_extra(packets[k], seen[k], x, y, frame);
     });
   }
@@ -229,7 +282,7 @@ class EmbreeRenderer final : public Renderer {
     Seen seen;
     shading_.find_records(packet, seen);
     shading_.find_texels(packet, view.pixel_width * view.pixel_height, seen);
-    const Radiance light = shading_.shade(packet, seen);
+    const Radiance light = light_of(packet, seen);
     for (std::size_t pixel = 0; pixel < count; ++pixel) {
       Rgb8& colour = frame.colour(edges[first + pixel].x, edges[first + pixel].y);
       static_assert(kEdgeSamples == 2);
@@ -248,6 +301,7 @@ class EmbreeRenderer final : public Renderer {
   RenderConfig config_;
   EmbreeScene bvh_;
   Shading shading_;
+  std::optional<Panes> panes_;
 };
 
 }  // namespace

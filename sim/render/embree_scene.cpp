@@ -54,7 +54,8 @@ FlushDenormals::~FlushDenormals() {
   _mm_setcsr(saved_);
 }
 
-EmbreeScene::EmbreeScene(const Scene& scene, int build_threads, bool portable, bool watertight) {
+EmbreeScene::EmbreeScene(const Scene& scene, int build_threads, bool portable, bool watertight,
+                         Faces which) {
   const FlushDenormals flush;
   const std::string settings =
       fmt::format("threads={}{}", std::max(1, build_threads), portable ? ",isa=avx2" : "");
@@ -64,10 +65,11 @@ EmbreeScene::EmbreeScene(const Scene& scene, int build_threads, bool portable, b
 
   std::vector<std::uint32_t> opaque, luminous, cut_out;
   for (std::uint32_t f = 0; f < scene.triangles.size(); ++f) {
-    const bool emits =
-        !scene.materials.empty() && !scene.materials[scene.material_of[f]].emission.isZero();
-    const bool has_holes = !scene.uvs.empty() && !scene.materials.empty() &&
-                           !scene.materials[scene.material_of[f]].opacity.empty();
+    const Material* material =
+        scene.materials.empty() ? nullptr : &scene.materials[scene.material_of[f]];
+    if ((material != nullptr && material->is_pane()) != (which == Faces::kPanes)) continue;
+    const bool emits = material != nullptr && !material->emission.isZero();
+    const bool has_holes = !scene.uvs.empty() && material != nullptr && !material->opacity.empty();
     (emits ? luminous : has_holes ? cut_out : opaque).push_back(f);
   }
   attach(scene, opaque, kOpaqueFaces);

@@ -43,8 +43,11 @@ struct CutOuts {
   bool is_hole(unsigned primitive, float u, float v) const;
 };
 
-/// The triangles of a scene in an Embree hierarchy; owns all that it needs. Tracing is safe from
-/// several threads. One place for the differences between Embree 3 and 4.
+/// What stops a ray, or what a ray passes and is tinted by (Material::transmission).
+enum class Faces { kSurfaces, kPanes };
+
+/// Surfaces or panes of a scene in an Embree hierarchy; owns all that it needs. Tracing is safe
+/// from several threads. One place for the differences between Embree 3 and 4.
 class EmbreeScene {
  public:
   /// @param portable pins the instruction set to AVX2, so that results agree across processors.
@@ -52,7 +55,8 @@ class EmbreeScene {
   /// it
   ///                   one in two million of a camera's rays does, and many that start on a face.
   /// @throws MachineError if Embree fails (out of memory, or no AVX2 where it is pinned).
-  EmbreeScene(const Scene& scene, int build_threads, bool portable, bool watertight = false);
+  EmbreeScene(const Scene& scene, int build_threads, bool portable, bool watertight = false,
+              Faces which = Faces::kSurfaces);
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;

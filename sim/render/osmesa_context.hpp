@@ -19,18 +19,23 @@ namespace mh {
   F(BindRenderbuffer, BINDRENDERBUFFER)               \
   F(BindTexture, BINDTEXTURE)                         \
   F(BindVertexArray, BINDVERTEXARRAY)                 \
+  F(BlendFunc, BLENDFUNC)                             \
   F(BufferData, BUFFERDATA)                           \
   F(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS)   \
   F(ClearBufferfv, CLEARBUFFERFV)                     \
   F(ClearBufferuiv, CLEARBUFFERUIV)                   \
   F(ClipControl, CLIPCONTROL)                         \
+  F(ColorMaski, COLORMASKI)                           \
   F(CompileShader, COMPILESHADER)                     \
   F(CreateProgram, CREATEPROGRAM)                     \
   F(CreateShader, CREATESHADER)                       \
   F(DepthFunc, DEPTHFUNC)                             \
+  F(DepthMask, DEPTHMASK)                             \
+  F(Disablei, DISABLEI)                               \
   F(DrawBuffers, DRAWBUFFERS)                         \
   F(DrawElements, DRAWELEMENTS)                       \
   F(Enable, ENABLE)                                   \
+  F(Enablei, ENABLEI)                                 \
   F(EnableVertexAttribArray, ENABLEVERTEXATTRIBARRAY) \
   F(FramebufferRenderbuffer, FRAMEBUFFERRENDERBUFFER) \
   F(GenBuffers, GENBUFFERS)                           \

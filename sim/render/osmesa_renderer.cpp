@@ -64,6 +64,7 @@ uniform bool has_holes;
 uniform sampler2D opacity;
 uniform vec3 base;
 uniform vec3 emission;
+uniform float white;  // what is brighter is cut off
 uniform float pixel_area;
 uniform float least_opacity;
 layout(location = 0) out vec4 colour;
@@ -87,7 +88,7 @@ void main() {
     float level = 0.5 * (float(floatBitsToInt(texels)) * exp2(-23.0) - 127.0);
     light *= textureLod(picture, texture_place, clamp(level, 0.0, 15.0)).rgb;
   }
-  colour = vec4(clamp(light + emission, 0.0, 1.0), 1.0);
+  colour = vec4(clamp(light + emission, 0.0, white), 1.0);
   label = texelFetch(labels, face).xy;
 }
 )";
@@ -98,12 +99,14 @@ struct Batch {
   GLuint texture = 0;        // 0 = none
   GLuint opacity = 0;        // 0 = no holes
   Vector3f base, emission;   // linear, x exposure
+  bool pane = false;         // emission is what the pane lets through
 };
 
 class OsmesaRenderer final : public Renderer {
  public:
   OsmesaRenderer(const Scene& scene, const RenderConfig& config) : gl_(context_.gl()) {
     const OffscreenContext::Current current(context_);
+    has_panes_ = std::ranges::any_of(scene.materials, &Material::is_pane);
     make_program(
         std::ranges::any_of(scene.materials, [](const Material& m) { return !m.opacity.empty(); }));
     const std::vector<std::uint32_t> order = sort_faces(scene);
@@ -113,7 +116,7 @@ class OsmesaRenderer final : public Renderer {
     Vector3f sky = Vector3f::Zero();
     for (const Light& light : scene.lights)
       if (light.kind == Light::Kind::kSky) sky += light.colour * config.exposure;
-    for (int k = 0; k < 3; ++k) sky_[static_cast<std::size_t>(k)] = std::min(sky[k], 1.0F);
+    for (int k = 0; k < 3; ++k) sky_[static_cast<std::size_t>(k)] = std::min(sky[k], white());
     check("load the scene");
   }
 
@@ -129,13 +132,18 @@ class OsmesaRenderer final : public Renderer {
     gl_.ClearBufferuiv(GL_COLOR, 1, kNoLabel.data());
     gl_.ClearBufferfv(GL_COLOR, 2, kNoDepth.data());
     gl_.ClearBufferfv(GL_DEPTH, 0, kNoDepth.data());
-    for (const Batch& batch : batches_) draw(batch);
+    for (const Batch& batch : batches_)
+      if (!batch.pane) draw(batch);
+    if (has_panes_) draw_panes();
     RenderedFrame frame = read_back(camera.width_px, camera.height_px);
     check("draw");
     return frame;
   }
 
  private:
+  /// Behind a pane what is brighter than white need not be white.
+  float white() const { return has_panes_ ? std::numeric_limits<float>::max() : 1.0F; }
+
   void check(const char* what) const {
     const GLenum error = gl_.GetError();
     if (error != GL_NO_ERROR)
@@ -168,6 +176,7 @@ class OsmesaRenderer final : public Renderer {
     gl_.Uniform1i(place("normals"), 1);
     gl_.Uniform1i(place("labels"), 2);
     gl_.Uniform1i(place("opacity"), 3);
+    gl_.Uniform1f(place("white"), white());
     gl_.Uniform1f(place("least_opacity"), (static_cast<float>(kOpaqueFrom) - 0.5F) / 255.0F);
     gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     gl_.Enable(GL_DEPTH_TEST);
@@ -214,6 +223,12 @@ class OsmesaRenderer final : public Renderer {
       }
       if (!material.opacity.empty() && !scene.uvs.empty() && material.emission.isZero())
         batch.opacity = load_opacity(material.opacity);
+      if (material.is_pane())
+        batch = {.first = first,
+                 .count = end - first,
+                 .base = Vector3f::Zero(),
+                 .emission = material.transmission,
+                 .pane = true};
       batches_.push_back(batch);
       first = end;
     }
@@ -329,13 +344,13 @@ class OsmesaRenderer final : public Renderer {
     gl_.Viewport(0, 0, width, height);
     if (width == width_ && height == height_) return;
     width_ = width, height_ = height;
-    constexpr std::array<GLenum, 4> kFormats = {GL_RGBA16, GL_RG16UI, GL_R32F,
-                                                GL_DEPTH_COMPONENT32F};
+    const std::array<GLenum, 4> formats = {has_panes_ ? GL_RGBA32F : GL_RGBA16, GL_RG16UI, GL_R32F,
+                                           GL_DEPTH_COMPONENT32F};
     constexpr std::array<GLenum, 4> kPlaces = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
                                                GL_COLOR_ATTACHMENT2, GL_DEPTH_ATTACHMENT};
     for (std::size_t i = 0; i < 4; ++i) {
       gl_.BindRenderbuffer(GL_RENDERBUFFER, targets_[i]);
-      gl_.RenderbufferStorage(GL_RENDERBUFFER, kFormats[i], width, height);
+      gl_.RenderbufferStorage(GL_RENDERBUFFER, formats[i], width, height);
       gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, kPlaces[i], GL_RENDERBUFFER, targets_[i]);
     }
     gl_.DrawBuffers(3, kPlaces.data());
@@ -379,26 +394,38 @@ class OsmesaRenderer final : public Renderer {
                      reinterpret_cast<const void*>(bytes));
   }
 
+  /// Panes take their share of the light behind them, in whatever order; nothing else changes.
+  void draw_panes() const {
+    gl_.Enablei(GL_BLEND, 0);
+    gl_.BlendFunc(GL_ZERO, GL_SRC_COLOR);
+    gl_.DepthMask(GL_FALSE);
+    for (const GLuint target : {1U, 2U})
+      gl_.ColorMaski(target, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    for (const Batch& batch : batches_)
+      if (batch.pane) draw(batch);
+    for (const GLuint target : {1U, 2U}) gl_.ColorMaski(target, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    gl_.DepthMask(GL_TRUE);
+    gl_.Disablei(GL_BLEND, 0);
+  }
+
   RenderedFrame read_back(int width, int height) const {
     RenderedFrame frame;
     frame.colour = Grid2d<Rgb8>(width, height);
     frame.depth_m = Grid2d<float>(width, height);
     frame.classes = Grid2d<ClassId>(width, height);
     frame.instances = Grid2d<InstanceId>(width, height);
-    std::vector<std::array<std::uint16_t, 4>> colour(frame.colour.size());
+    std::vector<std::array<float, 4>> colour(frame.colour.size());
     std::vector<std::array<std::uint16_t, 2>> label(colour.size());
     const auto read = [&](GLenum from, GLenum format, GLenum type, void* to) {
       gl_.ReadBuffer(from);
       gl_.ReadPixels(0, 0, width, height, format, type, to);
     };
-    read(GL_COLOR_ATTACHMENT0, GL_RGBA, GL_UNSIGNED_SHORT, colour.data());
+    read(GL_COLOR_ATTACHMENT0, GL_RGBA, GL_FLOAT, colour.data());
     read(GL_COLOR_ATTACHMENT1, GL_RG_INTEGER, GL_UNSIGNED_SHORT, label.data());
     read(GL_COLOR_ATTACHMENT2, GL_RED, GL_FLOAT, frame.depth_m.data());
-    const auto srgb = [](std::uint16_t linear) {
-      return linear_to_srgb(static_cast<float>(linear) / 65535.0F);
-    };
     for (std::size_t i = 0; i < colour.size(); ++i) {
-      frame.colour.data()[i] = {srgb(colour[i][0]), srgb(colour[i][1]), srgb(colour[i][2])};
+      frame.colour.data()[i] = {linear_to_srgb(colour[i][0]), linear_to_srgb(colour[i][1]),
+                                linear_to_srgb(colour[i][2])};
       frame.classes.data()[i] = static_cast<ClassId>(label[i][0]);
       frame.instances.data()[i] = label[i][1];
     }
@@ -409,6 +436,7 @@ class OsmesaRenderer final : public Renderer {
   const Gl& gl_;
   GLuint program_ = 0;
   std::vector<Batch> batches_;
+  bool has_panes_ = false;
   std::array<float, 4> sky_{};  // linear x exposure
   mutable std::mutex mutex_;    // guards the context and what follows
   mutable std::vector<GLuint> targets_;

@@ -172,6 +172,36 @@ TEST_F(MeshIo, HolesOfATextureSurviveAGlb) {
     EXPECT_EQ(other.opacity.empty(), other.name != leaf.name) << other.name;
 }
 
+TEST_F(MeshIo, APaneSurvivesAGlb) {
+  Scene scene = example_scene();
+  Material& glass = scene.materials[0];
+  glass.transmission = {0.8F, 0.9F, 0.85F};
+  save_glb(scene, folder_ / "glass.glb");
+  const Scene read = load_mesh(folder_ / "glass.glb");
+  for (const Material& material : read.materials)
+    if (material.name == glass.name)
+      EXPECT_LT((material.transmission - glass.transmission).norm(), 1e-6F);
+    else
+      EXPECT_FALSE(material.is_pane()) << material.name;
+}
+
+TEST_F(MeshIo, AMaterialThatIsMostlySeenThroughIsAPane) {
+  write("room.mtl",
+        "newmtl glass\nKd 0 1 0\nd 0.25\nnewmtl milk\nKd 1 1 1\nd 0.8\nnewmtl gone\nd 0\n");
+  const auto file = write("room.obj",
+                          "mtllib room.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\n"
+                          "o window_1\nusemtl glass\nf 1 2 3\n"
+                          "o lamp_1\nusemtl milk\nf 1 2 3\n"
+                          "o box_1\nusemtl gone\nf 1 2 3\n");
+  const Scene scene = load_mesh(file);
+  const auto transmission = [&](const char* name) {
+    return std::ranges::find(scene.materials, name, &Material::name)->transmission;
+  };
+  EXPECT_LT((transmission("glass") - Eigen::Vector3f(0.75F, 1.0F, 0.75F)).norm(), 1e-6F);
+  EXPECT_TRUE(transmission("milk").isZero());
+  EXPECT_TRUE(transmission("gone").isZero());
+}
+
 TEST_F(MeshIo, AMaskBesideAnObjTextureCutsHoles) {
   write("leaf.mtl", "newmtl leaf\nmap_Kd pic.ppm\nmap_d mask.pgm\n");
   write("pic.ppm", std::string("P6\n2 1\n255\n") + std::string("\xff\x00\x00\x00\x00\xff", 6));

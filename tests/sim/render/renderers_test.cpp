@@ -98,6 +98,57 @@ TEST_P(BothRenderers, LooksThroughTheHolesOfACutOut) {
   EXPECT_GT(holes, 50000);
 }
 
+TEST_P(BothRenderers, SeesThroughPanesInTheirColours) {
+  Scene scene = plane_at_two_metres();
+  const auto pane = [&](const Vector3f& transmission, double left, double z, double width) {
+    Material material;
+    material.name = "pane " + std::to_string(scene.materials.size());
+    material.transmission = transmission;
+    scene.materials.push_back(material);
+    const std::size_t before = scene.triangles.size();
+    add_quad(scene, {left, -1, z}, {width, 0, 0}, {0, 2, 0}, 2, 2);
+    for (std::size_t f = before; f < scene.triangles.size(); ++f)
+      scene.material_of[f] = static_cast<std::uint16_t>(scene.materials.size() - 1);
+  };
+  const Vector3f green(0.5F, 0.9F, 0.6F), grey(0.25F, 0.25F, 0.25F);
+  pane(green, -1, 1.0, 1.0);  // the left half
+  pane(grey, -1, 1.2, 1.25);  // behind it and beyond its edge, x < 0.25
+  pane(grey, -5, 2.5, 10);    // behind the wall: seen by nobody
+  const Camera camera;
+  for (const Antialiasing antialiasing :
+       {Antialiasing::kNone, Antialiasing::kEdges, Antialiasing::kSupersample}) {
+    const RenderedFrame frame =
+        make(scene, {.antialiasing = antialiasing})->render(camera, kIdentity);
+    const Vector3f wall = srgb_to_linear(Rgb8{200, 100, 50});
+    for (int y = 0; y < camera.height_px; ++y)
+      for (int x = 0; x < camera.width_px; ++x) {
+        const double a = (x - camera.cx_px) / camera.fx_px;
+        ASSERT_EQ(frame.instances(x, y), 1) << x << ", " << y;
+        ASSERT_NEAR(frame.depth_m(x, y), 2.0F, 1e-6) << x << ", " << y;
+        if (std::abs(a) < 0.003 || std::abs(1.2 * a - 0.25) < 0.003) continue;  // edges of panes
+        Vector3f light = wall;
+        if (a < 0) light = light.cwiseProduct(green);
+        if (1.2 * a < 0.25) light = light.cwiseProduct(grey);
+        const Rgb8 seen = frame.colour(x, y);
+        for (const auto& [channel, k] : {std::pair{seen.r, 0}, {seen.g, 1}, {seen.b, 2}})
+          ASSERT_NEAR(channel, linear_to_srgb(light[k]), 1) << x << ", " << y << ", " << k;
+      }
+  }
+}
+
+TEST_P(BothRenderers, WhatIsBrighterThanWhiteIsDimmedBeforeItIsCutOff) {
+  Scene scene = plane_at_two_metres();
+  scene.materials[0].emission = {4, 4, 4};
+  Material shade;
+  shade.name = "shade";
+  shade.transmission = {0.1F, 0.1F, 0.1F};
+  scene.materials.push_back(shade);
+  add_quad(scene, {-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, 2, 2);
+  scene.material_of[2] = scene.material_of[3] = 1;
+  const Rgb8 seen = make(scene)->render(Camera{}, kIdentity).colour(320, 240);
+  EXPECT_NEAR(seen.g, linear_to_srgb(0.1F * (4 + srgb_to_linear(Rgb8{200, 100, 50}).y())), 1);
+}
+
 TEST_P(BothRenderers, PlaneAtTwoMetresReadsTwoMetresAtEveryPixel) {
   const auto renderer = make(plane_at_two_metres());
   const RenderedFrame frame = renderer->render(Camera{}, kIdentity);
