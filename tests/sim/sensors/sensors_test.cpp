@@ -339,7 +339,7 @@ TEST(SensorLevels, AreFrozen) {
   };
   EXPECT_EQ(digest("ideal"), 0x7922bfb11bb41b6bU);
   EXPECT_EQ(digest("pepper"), 0xa8ef16bf06d441b7U);
-  EXPECT_EQ(digest("handheld"), 0x9af643ec3900eab0U);
+  EXPECT_EQ(digest("handheld"), 0x8e01036c7726d76aU);
 }
 
 TEST(SensorLevels, SayWhatTheirNamesSay) {
