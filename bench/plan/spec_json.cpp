@@ -32,7 +32,8 @@ Json to_json(const SystemSpec& system) {
                        {"folder", p.folder.string()},
                        {"run_limit_s", p.run_limit_s},
                        {"answer_limit_s", p.answer_limit_s},
-                       {"memory_limit_mb", p.memory_limit_mb}};
+                       {"memory_limit_mb", p.memory_limit_mb},
+                       {"inputs", p.inputs}};
   return json;
 }
 
@@ -50,7 +51,8 @@ SystemSpec system_from_json(const Json& json) {
         .folder = p.at("folder").get<std::string>(),
         .run_limit_s = p.at("run_limit_s"),
         .answer_limit_s = p.at("answer_limit_s"),
-        .memory_limit_mb = p.at("memory_limit_mb")};
+        .memory_limit_mb = p.at("memory_limit_mb"),
+        .inputs = p.at("inputs").get<std::vector<std::string>>()};
   }
   return system;
 }

@@ -91,7 +91,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   }
   names.clear();
   for (const YamlReader& system : items_of(yaml.at("systems"))) {
-    suite.systems.push_back(read_system(system, paths.folder));
+    suite.systems.push_back(read_system(system, paths));
     if (!names.insert(suite.systems.back().name).second)
       system.fail(fmt::format("'{}' stands twice", suite.systems.back().name));
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/plan/system_spec.hpp"
 
+#include <fmt/format.h>
+
 #include "bench/plan/names.hpp"
 #include "slam/core/error.hpp"
 
@@ -22,7 +24,7 @@ std::string_view name(OutsideMode mode) {
   return name_of(mode, kModes);
 }
 
-SystemSpec read_system(YamlReader node, const std::filesystem::path& folder) {
+SystemSpec read_system(YamlReader node, const SuitePaths& paths) {
   SystemSpec spec;
   if (!node.is_map()) {
     spec.kind = one_of(node, kOurs);
@@ -36,13 +38,19 @@ SystemSpec read_system(YamlReader node, const std::filesystem::path& folder) {
     node.at("name").fail("'" + spec.name + "' is one of Modelhouse's own systems");
   OutsideProgram& program = spec.outside;
   program.name = spec.name;
-  program.folder = folder.empty() ? "." : folder;
+  program.folder = paths.folder.empty() ? "." : paths.folder;
   program.command = node.string("command");
+  program.place = fmt::format("{}:{}", node.file(), node.at("command").line());
   program.mode = one_of(node.at("protocol"), kModes);
   program.run_limit_s = node.number_or("run_limit_s", program.run_limit_s, 0.01, kLongest_s);
   program.answer_limit_s =
       node.number_or("answer_limit_s", program.answer_limit_s, 0.01, kLongest_s);
   program.memory_limit_mb = node.number_or("memory_limit_mb", program.memory_limit_mb, 0.0, 1e9);
+  if (const auto inputs = node.find("inputs"))
+    for (const YamlReader& input : inputs->items()) {
+      named_file(input, paths);
+      program.inputs.push_back(input.as_string());
+    }
   node.finish();
   try {
     validate(program);

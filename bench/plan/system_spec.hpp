@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "bench/plan/environment.hpp"
 #include "bench/systems/outside_program.hpp"
 #include "slam/core/yaml.hpp"
 
@@ -25,8 +26,8 @@ struct SystemSpec {
 
 /// `semantic`, `plain`, or a mapping {name, command, protocol: trajectory |
 /// conversation} with `run_limit_s`, `answer_limit_s`, `memory_limit_mb` where the defaults do not
-/// do. The command runs in the suite's folder.
-/// @throws InputError naming file, line, field and value.
-SystemSpec read_system(YamlReader node, const std::filesystem::path& folder);
+/// do, and `inputs`, a list of files. The command runs in the suite's folder.
+/// @throws InputError naming file, line, field and value; an input that must exist and does not.
+SystemSpec read_system(YamlReader node, const SuitePaths& paths);
 
 }  // namespace mh

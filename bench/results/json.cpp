@@ -58,7 +58,8 @@ Json system_json(const SystemSpec& system) {
   if (system.kind != SystemKind::kOutside) return system.name;
   return {{"name", system.name},
           {"command", system.outside.command},
-          {"protocol", name(system.outside.mode)}};
+          {"protocol", name(system.outside.mode)},
+          {"inputs", system.outside.inputs}};
 }
 
 Json sweep_json(const Sweep& sweep) {

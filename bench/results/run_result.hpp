@@ -17,7 +17,9 @@ namespace mh {
 
 /// xxh3-64 of the content of a file that the results depend on.
 struct InputDigest {
-  std::string name;  ///< scene, robot, mapping_tour, query_tour, vocabulary, level
+  /// scene, robot, mapping_tour, query_tour, vocabulary, level; "SYSTEM: WORD" of what an outside
+  /// program's command names.
+  std::string name;
   std::uint64_t digest = 0;
   friend bool operator==(const InputDigest&, const InputDigest&) = default;
 };

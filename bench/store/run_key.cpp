@@ -11,6 +11,7 @@
 #include "bench/protocol/digest.hpp"
 #include "bench/results/fingerprint.hpp"
 #include "bench/store/code_version.hpp"
+#include "bench/systems/find_program.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
@@ -66,6 +67,12 @@ std::vector<InputDigest> digest_inputs(const RunSpec& spec) {
   if (e.walk) add("walk", *e.walk);
   add("vocabulary", spec.vocabulary);
   add("level", spec.level);
+  if (spec.system.kind == SystemKind::kOutside)
+    for (const ProgramFile& file : files_of(spec.system.outside)) {
+      const std::string content = read_file(file.file);
+      inputs.push_back({fmt::format("{}: {}", spec.system.name, file.word),
+                        digest_bytes(content.data(), content.size())});
+    }
   return inputs;
 }
 

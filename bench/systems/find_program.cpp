@@ -3,10 +3,12 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -35,20 +37,49 @@ std::string first_program(const std::string& command) {
   return {};
 }
 
+/// The file that the shell starts by a word without a slash; empty where PATH has none.
+std::filesystem::path on_path(const std::string& word) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::filesystem::path file = std::filesystem::path(folder) / word;
+    std::error_code error;
+    if (std::filesystem::is_regular_file(file, error) && access(file.c_str(), X_OK) == 0)
+      return file;
+  }
+  return {};
+}
+
+/// A command cut where the shell may cut it, and at '='; without the files that it writes to by
+/// '>'.
+std::vector<std::string> pieces(const std::string& command) {
+  constexpr std::string_view kBetween = " \t\n;&|<>()='\"`";
+  std::vector<std::string> all;
+  bool written = false;
+  for (std::size_t at = 0; at < command.size();) {
+    const std::size_t end = std::min(command.find_first_of(kBetween, at), command.size());
+    if (end > at && !std::exchange(written, false)) all.push_back(command.substr(at, end - at));
+    if (end < command.size() && command[end] == '>') written = true;
+    at = end + 1;
+  }
+  return all;
+}
+
 }  // namespace
 
 void require_program(const OutsideProgram& program) {
   const std::string word = first_program(program.command);
   if (word.empty() || word[0] == '-') return;
   const auto refuse = [&](const std::string& why) {
-    throw InputError(fmt::format("outside program '{}' ({}): '{}' cannot be started: {}",
-                                 program.name, program.command, word, why));
+    throw InputError(fmt::format("{}outside program '{}' ({}): '{}' cannot be started: {}",
+                                 program.place.empty() ? "" : program.place + ": ", program.name,
+                                 program.command, word, why));
   };
   if (word.find('/') != std::string::npos) {
     const std::filesystem::path file = program.folder / word;
     if (const char* reason = why_unreadable(file);
         reason != nullptr && std::string_view(reason) != "no permission")
-      refuse(reason);
+      refuse(std::string(reason) + "; has it been built?");
     if (access(file.c_str(), X_OK) != 0) refuse("it may not be executed");
     return;
   }
@@ -56,6 +87,23 @@ void require_program(const OutsideProgram& program) {
   const std::string question =
       expand_command("command -v {word} >/dev/null 2>&1", {{"word", word}});
   if (std::system(question.c_str()) != 0) refuse("no such program on PATH");
+}
+
+std::vector<ProgramFile> files_of(const OutsideProgram& program) {
+  std::vector<ProgramFile> files;
+  const auto add = [&](const std::string& word, const std::filesystem::path& file) {
+    std::error_code error;
+    const bool known =
+        std::ranges::any_of(files, [&](const ProgramFile& f) { return f.word == word; });
+    if (!known && std::filesystem::is_regular_file(file, error) &&
+        access(file.c_str(), R_OK) == 0)  // a program may be one that may only be executed
+      files.push_back({word, file});
+  };
+  const std::string first = first_program(program.command);
+  if (first.find('/') == std::string::npos && !first.empty()) add(first, on_path(first));
+  for (const std::string& word : pieces(program.command)) add(word, program.folder / word);
+  for (const std::string& input : program.inputs) add(input, program.folder / input);
+  return files;
 }
 
 }  // namespace mh

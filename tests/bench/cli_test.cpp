@@ -159,6 +159,7 @@ TEST_F(CommandLine, BenchFindsWhatCannotBeWorkedWithBeforeTheWork) {
     refused("systems",
             std::string("[{name: vo, protocol: conversation, command: '") + command + "'}]",
             "cannot be started");
+  EXPECT_NE(err_.find("suite.yaml:"), std::string::npos) << "of which line? " << err_;
   refused(
       "systems",
       "[{name: vo, protocol: conversation, command: '" + write("plain.txt", "x").string() + "'}]",

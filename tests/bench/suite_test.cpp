@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "bench/plan/runs.hpp"
+#include "bench/store/run_key.hpp"
+#include "bench/systems/find_program.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -235,6 +237,52 @@ TEST_F(SuiteFile, NamesAnOutsideProgram) {
   const std::vector<RunSpec> runs = expand(suite);
   ASSERT_EQ(runs.size(), 2u) << "neither looks at xi";
   EXPECT_EQ(runs[1].name, "vo-exact-pepper-0");
+}
+
+TEST_F(SuiteFile, AnOutsideProgramsRunIsNamedByWhatItsFilesHold) {
+  const auto put = [&](const char* name, const char* text) {
+    std::ofstream(folder_ / name) << text;
+  };
+  for (const char* name : {"slam", "slam.py", "words.txt", "weights", "log"}) put(name, "1");
+  const auto key_and_inputs = [&](const std::string& more = "") {
+    std::ofstream(folder_ / "suite.yaml")
+        << "environments:\n- {category: house, scene: house.yaml, mapping_tour: tour.yaml}\n"
+           "robot: robot.yaml\nvocabulary: words\nlevels: [pepper.yaml]\nlabels: [exact]\n"
+           "systems:\n- {name: vo, command: 'exec ./slam slam.py --words=words.txt no.txt >> log; "
+           "true', protocol: conversation, inputs: [weights"
+        << more << "]}\n";
+    const RunSpec run = expand(load_suite(folder_ / "suite.yaml")).front();
+    std::string names;
+    for (const InputDigest& input : digest_inputs(run))
+      if (input.name.starts_with("vo: ")) names += input.name.substr(4) + " ";
+    return std::pair(run_key(run), names);
+  };
+  const auto before = key_and_inputs();
+  EXPECT_EQ(before.second, "./slam slam.py words.txt weights ");
+  EXPECT_EQ(key_and_inputs(), before);
+  for (const char* name : {"slam", "slam.py", "words.txt", "weights"}) {
+    put(name, "2");
+    EXPECT_NE(key_and_inputs().first, before.first) << name;
+    put(name, "1");
+  }
+  put("log", "2");
+  EXPECT_EQ(key_and_inputs(), before) << "it writes that one";
+  try {
+    key_and_inputs(", gone.bin");
+    FAIL();
+  } catch (const InputError& e) {
+    const std::string what = e.what();
+    EXPECT_NE(what.find("suite.yaml:"), std::string::npos) << what;
+    EXPECT_NE(what.find("inputs[1]: "), std::string::npos) << what;
+    EXPECT_NE(what.find("gone.bin' cannot be read: no such file"), std::string::npos) << what;
+  }
+}
+
+TEST(FilesOf, TheFirstWordIsLookedForOnThePath) {
+  const auto files = files_of({.name = "vo", .command = "sh -c true"});
+  ASSERT_EQ(files.size(), 1u);
+  EXPECT_EQ(files[0].word, "sh");
+  EXPECT_TRUE(files[0].file.is_absolute()) << files[0].file;
 }
 
 TEST(Sobol, EachDyadicIntervalHoldsItsShare) {
