@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/cache/cache.hpp"
 #include "bench/counted.hpp"
 #include "bench/plan/spec_json.hpp"
 #include "bench/results/write.hpp"
@@ -156,7 +157,7 @@ BenchResults load_results(const Store& store, const Suite& suite) {
     if (status == RunStatus::kDone)
       results.runs.push_back(store.load(key->second, spec));
     else if (status == RunStatus::kFailed)
-      results.failed.push_back({spec.name, store.error(key->second)});
+      results.failed.push_back({spec, store.error(key->second)});
     else
       ++results.missing;
   }
@@ -192,6 +193,10 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
   if (!mine.empty()) {
     const TemporaryFolder work(options.out);
     const fs::path cache = options.cache ? *options.cache : work.path() / "cache";
+    if (options.cache)
+      if (const std::string why = Cache(cache).why_unwritable(); !why.empty())
+        options.say(fmt::format(
+            "warning: the cache keeps nothing, light is baked anew in each run: {}", why));
     const std::string sitting = utc_now();
     PoolOptions pool;
     pool.jobs = options.jobs;

@@ -40,15 +40,11 @@ struct BenchOptions {
       [](double, std::size_t, std::size_t) {};  ///< as PoolOptions::progress
 };
 
-struct Failure {
-  std::string run, error;
-};
-
 /// What a store holds of a suite.
 struct BenchResults {
-  std::vector<RunResult> runs;  ///< finished ones, in the order of expand(suite)
-  std::vector<Failure> failed;
-  std::size_t missing = 0;  ///< neither: of other shards
+  std::vector<RunResult> runs;    ///< finished ones, in the order of expand(suite)
+  std::vector<FailedRun> failed;  ///< likewise
+  std::size_t missing = 0;        ///< neither: of other shards
 };
 
 /// Works off a suite into options.out / "results.sqlite". A finished run is never repeated.

@@ -29,10 +29,51 @@ digest_of(RUN slam/*.cpp slam/*.hpp scenes/*.cpp scenes/*.hpp scenes/categories/
           bench/metrics/*.hpp bench/systems/*.cpp bench/systems/*.hpp bench/world/*.cpp
           bench/world/*.hpp bench/run_one.cpp bench/results/occupancy.cpp
           bench/results/trajectory_score.cpp CMakeLists.txt)
+# Where git is not installed: what .git says, a worktree's included. Changes in files go unseen.
+function(commit_from_files variable)
+  set(${variable} "unknown" PARENT_SCOPE)  # no clone
+  set(folder ${ROOT}/.git)
+  if(EXISTS ${folder} AND NOT IS_DIRECTORY ${folder})
+    file(READ ${folder} text)
+    string(REGEX MATCH "gitdir: ([^\n]+)" found "${text}")
+    get_filename_component(folder "${CMAKE_MATCH_1}" ABSOLUTE BASE_DIR ${ROOT})
+  endif()
+  if(NOT EXISTS ${folder}/HEAD)
+    return()
+  endif()
+  set(common ${folder})
+  if(EXISTS ${folder}/commondir)
+    file(READ ${folder}/commondir text)
+    string(STRIP "${text}" text)
+    get_filename_component(common "${text}" ABSOLUTE BASE_DIR ${folder})
+  endif()
+  file(READ ${folder}/HEAD head)
+  string(STRIP "${head}" head)
+  if(head MATCHES "^ref: (.+)$")
+    set(ref ${CMAKE_MATCH_1})
+    set(head "")
+    if(EXISTS ${common}/${ref})
+      file(READ ${common}/${ref} head)
+      string(STRIP "${head}" head)
+    elseif(EXISTS ${common}/packed-refs)
+      file(STRINGS ${common}/packed-refs lines)
+      foreach(line IN LISTS lines)
+        if(line MATCHES "^([0-9a-f]+) (.+)$" AND CMAKE_MATCH_2 STREQUAL ref)
+          set(head ${CMAKE_MATCH_1})
+        endif()
+      endforeach()
+    endif()
+  endif()
+  if(head MATCHES "^[0-9a-f]+$")
+    string(SUBSTRING ${head} 0 7 head)
+    set(${variable} "${head} (by .git alone: changed files are not seen)" PARENT_SCOPE)
+  endif()
+endfunction()
+
 execute_process(COMMAND git -C ${ROOT} describe --always --dirty --tags
                 OUTPUT_VARIABLE commit ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
 if(commit STREQUAL "")
-  set(commit "unknown")  # no git here, or no clone
+  commit_from_files(commit)
 endif()
 file(CONFIGURE OUTPUT ${OUT} CONTENT
 "// Made by cmake/code_version.cmake.

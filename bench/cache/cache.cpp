@@ -81,6 +81,20 @@ fs::path Cache::default_folder() {
   return {};
 }
 
+std::string Cache::why_unwritable() const {
+  constexpr std::size_t kProbe_bytes = 1 << 20;
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  const fs::path probe = folder_ / fmt::format("probe-{}", getpid());
+  try {
+    write_atomically(probe, std::string(kProbe_bytes, '\0'));
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  fs::remove(probe, error);
+  return {};
+}
+
 std::string Cache::get(std::string_view kind, std::string_view key,
                        const std::function<std::string()>& make) const {
   std::error_code error;

@@ -29,6 +29,8 @@ class Cache {
   const std::filesystem::path& folder() const { return folder_; }
   /// $XDG_CACHE_HOME/modelhouse, else ~/.cache/modelhouse; empty where neither is known.
   static std::filesystem::path default_folder();
+  /// Why nothing can be kept: a folder that cannot be written, a full disk. Empty if it can.
+  std::string why_unwritable() const;
 
   static constexpr std::uintmax_t kDefaultBytes = std::uintmax_t{4} << 30;
 

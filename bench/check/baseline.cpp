@@ -37,19 +37,40 @@ RunFigures read_run(const Json& json) {
 Baseline read(const Json& json) {
   Baseline baseline{.suite = json.at("suite").get<std::string>(),
                     .suite_digest = json.at("suite_digest").get<std::string>(),
-                    .origin = json.at("origin")};
+                    .origin = json.at("origin"),
+                    .settings = json.value("settings", Json())};
   for (const Json& run : json.at("runs")) baseline.runs.push_back(read_run(run));
   return baseline;
 }
 
 }  // namespace
 
+std::vector<std::string> changed_settings(const Baseline& before, const Baseline& now) {
+  std::vector<std::string> changed;
+  if (before.settings.is_null()) return changed;
+  const auto old_ones = before.settings.flatten(), new_ones = now.settings.flatten();
+  const auto shown = [](const Json& all, const std::string& key) {
+    return all.contains(key) ? all.at(key).dump() : std::string("none");
+  };
+  const auto note = [&](const std::string& key) {
+    changed.push_back(
+        fmt::format("{}: {} -> {}", key.substr(1), shown(old_ones, key), shown(new_ones, key)));
+  };
+  for (const auto& [key, value] : old_ones.items())
+    if (shown(new_ones, key) != value.dump()) note(key);
+  for (const auto& [key, value] : new_ones.items())
+    if (!old_ones.contains(key)) note(key);
+  return changed;
+}
+
 std::string to_text(const Baseline& baseline) {
   std::string text = fmt::format(
       "{{\n\"format\": \"{}\",\n\"suite\": {},\n\"suite_digest\": {},\n\"origin\": {},\n"
-      "\"runs\": [",
+      "{}\"runs\": [",
       kBaselineFormat, Json(baseline.suite).dump(), Json(baseline.suite_digest).dump(),
-      baseline.origin.dump(2));
+      baseline.origin.dump(2),
+      baseline.settings.is_null() ? std::string()
+                                  : fmt::format("\"settings\": {},\n", baseline.settings.dump(2)));
   for (std::size_t i = 0; i < baseline.runs.size(); ++i)
     text += (i == 0 ? "\n" : ",\n") + run_json(baseline.runs[i]).dump();
   return text + "\n]\n}\n";

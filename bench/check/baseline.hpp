@@ -19,10 +19,16 @@ struct Baseline {
   std::string suite_digest;  ///< of what its runs are: scenes, tours, systems, seeds, protocol
   /// Program and machine that made the figures: where all of it is equal, so must be the bits.
   nlohmann::ordered_json origin;
+  /// What a change may change and a program is compared under (see gate_settings). Null in a
+  /// baseline of an older program.
+  nlohmann::ordered_json settings = {};
   std::vector<RunFigures> runs = {};
 };
 
 /// One line per run, so that a change of one run is a change of one line.
+/// "slam.xi: 1.5 -> 3" for each setting that differs; of a baseline without settings none is known.
+std::vector<std::string> changed_settings(const Baseline& before, const Baseline& now);
+
 std::string to_text(const Baseline& baseline);
 void save_baseline(const Baseline& baseline, const std::filesystem::path& file);
 

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "bench/plan/spec_json.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/results/fingerprint.hpp"
 #include "bench/results/summary.hpp"
+#include "bench/systems/find_program.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
@@ -108,6 +110,20 @@ std::string gate_suite_digest(const Suite& suite) {
             content("query_scene", e.query_scene) + content("sensors", e.sensors) +
             content("walk", e.walk);
   return hex(digest_bytes(text.data(), text.size()));
+}
+
+nlohmann::ordered_json gate_settings(const Suite& suite) {
+  const auto file_digest = [](const std::filesystem::path& file) {
+    const std::string text = read_file(file);
+    return hex(digest_bytes(text.data(), text.size()));
+  };
+  nlohmann::ordered_json settings = {{"slam", to_json(suite.semantics)},
+                                     {"vocabulary", file_digest(suite.vocabulary)}};
+  for (const SystemSpec& system : suite.systems)
+    if (system.kind == SystemKind::kOutside)
+      for (const ProgramFile& file : files_of(system.outside))
+        settings[system.name][file.word] = file_digest(file.file);
+  return settings;
 }
 
 nlohmann::ordered_json gate_origin() {

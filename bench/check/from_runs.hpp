@@ -21,6 +21,10 @@ std::vector<RunFigures> figures(std::span<const RunResult> runs);
 /// vocabulary, tolerances) is no part of it.
 std::string gate_suite_digest(const Suite& suite);
 
+/// What a change to the program may change along with it: the section `slam`, the digests of the
+/// vocabulary and of what outside programs are made of. With other ones other bits are no wonder.
+nlohmann::ordered_json gate_settings(const Suite& suite);
+
 /// Program and machine: digest of the executable, processor and the features that libraries choose
 /// their instructions by.
 nlohmann::ordered_json gate_origin();

@@ -53,7 +53,9 @@ struct GateResult {
   std::size_t runs = 0;
   std::size_t identical = 0;              ///< runs whose digest is the baseline's
   std::vector<std::string> unrepeatable;  ///< runs that differ though program and machine do not
-  bool same_origin = false;               ///< program and machine are those of the baseline
+  bool same_origin = false;  ///< program, machine and settings are those of the baseline
+  std::vector<std::string> changed_settings = {};  ///< what the baseline was made with otherwise
+  bool settings_known = true;                      ///< whether the baseline tells its settings
 
   std::size_t worse() const;
   std::size_t better() const;
@@ -61,8 +63,8 @@ struct GateResult {
 };
 
 /// Pairs the runs by scenario, system and seed and judges each median paired change.
-/// @param same_origin  the baseline was made by this very program on this kind of machine, so that
-///                     each digest must be the same
+/// @param same_origin  the baseline was made by this very program with these settings on this kind
+///                     of machine, so that each digest must be the same
 /// @throws InputError if the two hold different runs.
 GateResult compare(std::span<const RunFigures> baseline, std::span<const RunFigures> current,
                    const GateConfig& config, bool same_origin);

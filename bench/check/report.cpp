@@ -61,7 +61,15 @@ std::string origin_line(const GateResult& result) {
   return fmt::format("equal to the baseline bit for bit: {} of {}{}\n", result.identical,
                      counted(result.runs, "run"),
                      result.same_origin ? ", and all must be: same program, same kind of machine"
-                                        : "; they need not be: another program or machine made it");
+                     : result.changed_settings.empty()
+                         ? "; they need not be: another program or machine made it"
+                         : "; they need not be: it was made with other settings");
+}
+
+std::string settings_lines(const GateResult& result) {
+  std::string text;
+  for (const std::string& setting : result.changed_settings) text += "  " + setting + "\n";
+  return text.empty() ? text : "settings, the baseline's -> these:\n" + text;
 }
 
 std::string escaped(std::string_view text) {
@@ -107,7 +115,7 @@ struct JunitSuite {
 }  // namespace
 
 std::string gate_report(const GateResult& result, const std::string& suite) {
-  std::string text = table(result) + "\n" + origin_line(result);
+  std::string text = table(result) + "\n" + origin_line(result) + settings_lines(result);
   text +=
       "would see: a true worsening of this size fails the gate with 80 % power; chance alone as it "
       "shows between the baseline's seeds\n\n";
@@ -115,7 +123,11 @@ std::string gate_report(const GateResult& result, const std::string& suite) {
                "better than the baseline (keep it with --update, or later loss goes unseen):");
   text += list(result, ChangeVerdict::kWorse, "worse than the baseline:");
   if (!result.unrepeatable.empty()) {
-    text += "not repeatable: same program, same machine, other bits:\n";
+    text +=
+        result.settings_known
+            ? "not repeatable: same program, same settings, same machine, other bits:\n"
+            : "not repeatable: same program, same machine, other bits; or other settings (`slam`, "
+              "vocabulary), which this baseline does not tell (--update makes one that does):\n";
     for (const std::string& run : result.unrepeatable) text += "  " + run + "\n";
   }
   text += fmt::format("{}: {}: {} of {} measures worse, {} better\n", suite,
@@ -145,6 +157,7 @@ Json gate_json(const GateResult& result, const std::string& suite) {
           {"runs", result.runs},
           {"identical", result.identical},
           {"same_origin", result.same_origin},
+          {"changed_settings", result.changed_settings},
           {"unrepeatable", result.unrepeatable},
           {"changes", changes}};
 }

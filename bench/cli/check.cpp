@@ -50,6 +50,7 @@ Baseline measure(const Suite& suite, int jobs) {
   return {.suite = suite.name,
           .suite_digest = gate_suite_digest(suite),
           .origin = gate_origin(),
+          .settings = gate_settings(suite),
           .runs = figures(results.runs)};
 }
 
@@ -59,6 +60,15 @@ void tell(const Options& options, const GateResult& result, const std::string& s
     fmt::print("{}\n", gate_json(result, suite).dump(2));
   else
     fmt::print("{}", gate_report(result, suite));
+}
+
+GateResult judge(const Suite& suite, const Baseline& before, const Baseline& now) {
+  const std::vector<std::string> changed = changed_settings(before, now);
+  GateResult result =
+      compare(before.runs, now.runs, suite.gate, before.origin == now.origin && changed.empty());
+  result.changed_settings = changed;
+  result.settings_known = !before.settings.is_null();
+  return result;
 }
 
 /// Shows what a new baseline changes, where the old one tells of the same runs, and writes it.
@@ -86,11 +96,13 @@ void run(const Options& options) {
   if (options.update) return update(options, suite, measure(suite, options.jobs));
 
   const fs::path file = baseline_file(options);
+  if (!fs::exists(file))
+    throw InputError(
+        fmt::format("{}: cannot be read: no such baseline; --update makes one", file.string()));
   const Baseline baseline = load_baseline(file);  // before the work: a slip costs no minutes
   check_suite(baseline, file, suite.name, gate_suite_digest(suite));
   const Baseline now = measure(suite, options.jobs);
-  const GateResult result =
-      compare(baseline.runs, now.runs, suite.gate, baseline.origin == now.origin);
+  const GateResult result = judge(suite, baseline, now);
   tell(options, result, suite.name);
   if (!result.passed()) throw CheckFailed();
 }

@@ -15,9 +15,9 @@ namespace mh::cli {
 
 void finish(const std::filesystem::path& out, const Suite& suite, const BenchResults& results,
             bool json) {
-  const std::string table = write_results(out, suite, results.runs);
+  const std::string table = write_results(out, suite, results.runs, results.failed);
   if (json) {
-    fmt::print("{}\n", results_json(suite, results.runs).dump(2));
+    fmt::print("{}\n", results_json(suite, results.runs, results.failed).dump(2));
   } else {
     fmt::print("{}\n", table);
     if (!results.runs.empty()) fmt::print("{}\n", times_table(suite, results.runs));
@@ -29,14 +29,14 @@ void finish(const std::filesystem::path& out, const Suite& suite, const BenchRes
   throw_failures(results.failed);
 }
 
-void throw_failures(const std::vector<Failure>& failed) {
+void throw_failures(const std::vector<FailedRun>& failed) {
   if (failed.empty()) return;
   std::string others;
   if (failed.size() > 1) others = fmt::format(" (and {} more)", failed.size() - 1);
   const std::string told =
-      fmt::format("{}{} failed: {}", failed.front().run, others, failed.front().error);
+      fmt::format("{}{} failed: {}", failed.front().spec.name, others, failed.front().error);
   if (std::all_of(failed.begin(), failed.end(),
-                  [](const Failure& f) { return f.error.starts_with(kBadInputMark); }))
+                  [](const FailedRun& f) { return f.error.starts_with(kBadInputMark); }))
     throw InputError(told);
   throw MachineError(told + "; --retry-failed tries again");
 }

@@ -14,6 +14,6 @@ void finish(const std::filesystem::path& out, const Suite& suite, const BenchRes
 
 /// Does nothing if there are none.
 /// @throws InputError if all of them met bad input, else MachineError, naming the first.
-void throw_failures(const std::vector<Failure>& failed);
+void throw_failures(const std::vector<FailedRun>& failed);
 
 }  // namespace mh::cli

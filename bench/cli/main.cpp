@@ -80,7 +80,9 @@ int run(int argc, char** argv) {
   } catch (const mh::cli::CheckFailed&) {
     return kCheckFailed;
   } catch (const mh::Interrupted&) {
-    fail(kInterrupted, "interrupted; what is finished is kept, the same command goes on with it");
+    fmt::print(stderr,
+               "modelhouse: interrupted; what is finished is kept, the same command goes on with "
+               "it\n");
     return kInterrupted;
   } catch (const mh::InputError& error) {
     return fail(kBadInput, error.what());

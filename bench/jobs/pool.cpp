@@ -242,7 +242,10 @@ class Pool {
   void tell() const {
     double sum = static_cast<double>(done_ + failed_);
     for (const Running& r : running_) sum += r.process->share();
-    options_.progress(all_ == 0 ? 1.0 : sum / static_cast<double>(all_), done_, failed_);
+    // The whole is done when every run is settled, not when the last one says that it is at its
+    // end.
+    const bool over = done_ + failed_ == all_;
+    options_.progress(over ? 1.0 : std::min(0.99, sum / static_cast<double>(all_)), done_, failed_);
   }
 
   Store& store_;

@@ -4,9 +4,11 @@
 #include <fstream>
 #include <string>
 
+#include <LinearMath/btScalar.h>
 #include <ceres/version.h>
 #include <embree3/rtcore_config.h>
 #include <fmt/format.h>
+#include <sqlite3.h>
 #include <Eigen/Core>
 #include <opencv2/core/version.hpp>
 
@@ -34,7 +36,13 @@ nlohmann::ordered_json build_json() {
           {"opencv", CV_VERSION},
           {"eigen",
            fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
-          {"ceres", CERES_VERSION_STRING}};
+          {"ceres", CERES_VERSION_STRING},
+          {"bullet", fmt::format("{}.{}", BT_BULLET_VERSION / 100, BT_BULLET_VERSION % 100)},
+          {"octomap", MH_OCTOMAP},
+          {"assimp", MH_ASSIMP},
+          {"sdformat", MH_SDFORMAT},
+          {"yaml-cpp", MH_YAML_CPP},
+          {"sqlite", SQLITE_VERSION}};
 }
 
 nlohmann::ordered_json fingerprint_json() {

@@ -5,7 +5,7 @@
 
 namespace mh {
 
-/// Compiler, build type and the versions of the libraries that compute.
+/// Compiler, build type and the versions of the libraries that results depend on.
 nlohmann::ordered_json build_json();
 
 /// Build and machine, since the last bits may depend on them. Part of what tells times, never of

@@ -125,13 +125,18 @@ Json matches_json(const MatchCounts& matches) {
   return all;
 }
 
-Json query_json(const QueryScore& q) {
+Json count_json(int count) {
+  return count == kUnknownCount ? Json() : Json(count);
+}
+
+/// @param system  that answered
+Json query_json(const QueryScore& q, SystemKind system) {
   Json json = {{"frame", q.answer.index},
                {"stamp_ns", q.stamp_ns},
                {"success", q.success},
                {"correct", q.correct},
                {"false", q.wrong},
-               {"stage", name(q.answer.stage)},
+               {"stage", is_told(system, q.answer.stage) ? Json(name(q.answer.stage)) : Json()},
                {"attempts", q.answer.attempts},
                {"blank_frames", q.answer.blank_frames},
                {"truth", pose_json(q.true_world_from_camera)}};
@@ -142,12 +147,12 @@ Json query_json(const QueryScore& q) {
     json["aligned_distance_m"] = q.aligned_distance_m;
   }
   if (const auto& c = q.answer.candidates)
-    json["candidates"] = {{"keyframes", c->keyframes},
-                          {"c1", c->c1},
-                          {"c2", c->c2},
-                          {"c3", c->c3},
-                          {"final", c->final},
-                          {"label_mass", c->label_mass}};
+    json["candidates"] = {{"keyframes", count_json(c->keyframes)},
+                          {"c1", count_json(c->c1)},
+                          {"c2", count_json(c->c2)},
+                          {"c3", count_json(c->c3)},
+                          {"final", count_json(c->final)},
+                          {"label_mass", number(c->label_mass)}};
   return json;
 }
 
@@ -170,13 +175,13 @@ Json summary_json(const QuerySummary& s) {
           {"aligned_distance_mean_m", number(s.aligned_distance_mean_m)},
           {"attempts", s.attempts},
           {"candidates",
-           {{"keyframes", s.keyframes},
-            {"c1", s.c1},
-            {"c2", s.c2},
-            {"c3", s.c3},
-            {"final", s.final},
-            {"single", s.single_candidate},
-            {"label_mass", s.label_mass}}}};
+           {{"keyframes", number(s.keyframes)},
+            {"c1", number(s.c1)},
+            {"c2", number(s.c2)},
+            {"c3", number(s.c3)},
+            {"final", number(s.final)},
+            {"single", number(s.single_candidate)},
+            {"label_mass", number(s.label_mass)}}}};
 }
 
 Json digests_json(const RunResult& run) {
@@ -198,13 +203,19 @@ Json digests_json(const RunResult& run) {
       {"images", hex(images)}, {"poses", hex(poses)}, {"trajectory", hex(digest(run.estimate))}};
 }
 
+/// What an outside program does not have or tell.
+Json of_ours(const SystemSpec& system, const Json& value) {
+  return system.kind == SystemKind::kOutside ? Json() : value;
+}
+
 Json points_json(const RunResult& run) {
   Json points = Json::array();
   for (std::size_t i = 0; i < run.points.size(); ++i) {
-    Json point = {{"settings", to_json(run.spec.points[i])}};
+    Json point = {{"settings", of_ours(run.spec.system, to_json(run.spec.points[i]))}};
     for (const QuerySet set : kQuerySets) {
       Json list = Json::array();
-      for (const QueryScore& q : queries(run.points[i], set)) list.push_back(query_json(q));
+      for (const QueryScore& q : queries(run.points[i], set))
+        list.push_back(query_json(q, run.spec.system.kind));
       point[std::string(name(set))] = std::move(list);
     }
     points.push_back(std::move(point));
@@ -227,6 +238,7 @@ Json run_json(const RunResult& run) {
   std::size_t keyframes = 0;
   for (const MappedFrame& call : m.calls) keyframes += call.keyframe_added ? 1 : 0;
   return {{"name", run.spec.name},
+          {"status", "done"},
           {"environment", run.spec.environment.name},
           {"system", run.spec.system.name},
           {"labels", name(run.spec.labels)},
@@ -236,7 +248,7 @@ Json run_json(const RunResult& run) {
           {"place", place_json(run.place)},
           {"digests", digests_json(run)},
           {"mapping",
-           {{"settings", to_json(run.spec.mapping)},
+           {{"settings", of_ours(run.spec.system, to_json(run.spec.mapping))},
             {"track_calls", m.calls.size()},
             {"failures", m.failures},
             {"restarts", m.restarts},
@@ -245,12 +257,25 @@ Json run_json(const RunResult& run) {
             {"gave_up", m.gave_up},
             {"keyframes_made", keyframes},
             {"loops", loops_json(audit_loops(m.loops, run.truth, run.spec.protocol))},
-            {"matchers", matches_json(m.matches)}}},
+            {"matchers", of_ours(run.spec.system, matches_json(m.matches))}}},
           {"trajectory", trajectory},
           {"points", points_json(run)}};
 }
 
+Json failed_json(const FailedRun& run) {
+  return {{"name", run.spec.name},
+          {"status", "failed"},
+          {"error", run.error},
+          {"environment", run.spec.environment.name},
+          {"system", run.spec.system.name},
+          {"labels", name(run.spec.labels)},
+          {"level", level_name(run.spec.level)},
+          {"trial", run.spec.trial},
+          {"seed", run.spec.seed}};
+}
+
 Json row_json(const Row& row, const Suite& suite) {
+  const auto known = [&](const Json& value) { return row.trials.empty() ? Json() : value; };
   return {{"environment", suite.environments[row.environment].name},
           {"category", suite.environments[row.environment].category},
           {"level", level_name(suite.levels[row.level])},
@@ -258,12 +283,13 @@ Json row_json(const Row& row, const Suite& suite) {
           {"parameters", row.parameters},
           {"system", suite.systems[row.system].name},
           {"trials", row.trials.size()},
-          {"trajectory", trajectory_json(row.trajectory)},
-          {"restarts", row.restarts},
-          {"dropped", row.dropped},
+          {"failed", row.failed},
+          {"trajectory", known(trajectory_json(row.trajectory))},
+          {"restarts", known(row.restarts)},
+          {"dropped", known(row.dropped)},
           {"held_out", summary_json(row.held_out)},
           {"second_tour", summary_json(row.second_tour)},
-          {"matchers", matches_json(row.matches)}};
+          {"matchers", known(of_ours(suite.systems[row.system], matches_json(row.matches)))}};
 }
 
 Json category_json(const CategoryRow& row, const Suite& suite) {
@@ -273,7 +299,9 @@ Json category_json(const CategoryRow& row, const Suite& suite) {
           {"parameters", row.parameters},
           {"system", suite.systems[row.system].name},
           {"scenes", row.scenes},
-          {"completeness", row.completeness},
+          {"of_scenes", row.of},
+          {"failed", row.failed},
+          {"completeness", row.scenes > 0 ? Json(row.completeness) : Json()},
           {"ate_rmse_m", number(row.ate_rmse_m)},
           {"rpe_frame_rmse_m", number(row.rpe_frame_rmse_m)},
           {"held_out", summary_json(row.held_out)},
@@ -299,10 +327,12 @@ Json comparison_json(const Comparison& c) {
 
 }  // namespace
 
-Json results_json(const Suite& suite, std::span<const RunResult> runs) {
-  const std::vector<Row> rows = make_rows(suite, runs);
+Json results_json(const Suite& suite, std::span<const RunResult> runs,
+                  std::span<const FailedRun> failed) {
+  const std::vector<Row> rows = make_rows(suite, runs, failed);
   Json run_list = Json::array(), row_list = Json::array(), comparisons = Json::array();
   for (const RunResult& run : runs) run_list.push_back(run_json(run));
+  for (const FailedRun& run : failed) run_list.push_back(failed_json(run));
   for (const Row& row : rows) row_list.push_back(row_json(row, suite));
   for (const Family& family : compare_systems(suite, rows))
     for (const Comparison& c : family.comparisons) {

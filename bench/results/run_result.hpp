@@ -91,6 +91,17 @@ struct RunResult {
   Circumstances circumstances;
 };
 
+/// Whether a system said how far its relocalization came: an outside one need not, ours do.
+inline bool is_told(SystemKind system, RelocalizationStage stage) {
+  return system != SystemKind::kOutside || stage != RelocalizationStage::kNone;
+}
+
+/// A run that came to nothing.
+struct FailedRun {
+  RunSpec spec;
+  std::string error;
+};
+
 /// Which test frames: never pooled with one another.
 enum class QuerySet { kHeldOut, kSecondTour };
 std::string_view name(QuerySet set);

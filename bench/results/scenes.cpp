@@ -25,10 +25,19 @@ QuerySummary mean_summary(const std::vector<const Row*>& scenes, QuerySet set) {
       all, [](const std::vector<double>& values) { return mean(values); }, mean_of_known);
 }
 
-CategoryRow together(std::string category, const std::vector<const Row*>& scenes) {
+bool has_result(const Row* row) {
+  return row != nullptr && !row->trials.empty();
+}
+
+/// @param scenes  at least one; those of which all runs failed are counted alone
+/// @param of      scenes of the category in the suite
+CategoryRow together(std::string category, std::vector<const Row*> scenes, std::size_t of) {
   const Row& any = *scenes.front();
   CategoryRow c;
   c.category = std::move(category);
+  c.of = of;
+  for (const Row* row : scenes) c.failed += row->failed;
+  std::erase_if(scenes, [](const Row* row) { return !has_result(row); });
   c.level = any.level;
   c.system = any.system;
   c.parameters = any.parameters;
@@ -99,7 +108,7 @@ std::vector<Comparison> compare(const std::vector<const Row*>& semantic,
                        bool more_is_better, bool in_family) {
     std::vector<PairedDifference> differences;
     for (std::size_t i = 0; i < semantic.size(); ++i)
-      differences.push_back(semantic[i] != nullptr && plain[i] != nullptr
+      differences.push_back(has_result(semantic[i]) && has_result(plain[i])
                                 ? measure(*semantic[i], *plain[i], set)
                                 : PairedDifference{});
     comparisons.push_back(compare_scenes(what, differences, shares, seed));
@@ -138,12 +147,16 @@ std::vector<CategoryRow> make_category_rows(const Suite& suite, std::span<const 
       for (std::size_t p = 0; p < parameter_points(suite).size(); ++p)
         for (std::size_t g = 0; g < groups.size(); ++g)
           for (std::size_t s = 0; s < suite.systems.size(); ++s) {
+            const auto is_in = [&](const Environment& e) {
+              return g + 1 == groups.size() || e.category == groups[g];
+            };
             std::vector<const Row*> scenes = scenes_of(suite, rows, level, labels, p, s);
             std::erase_if(scenes, [&](const Row* row) {
-              return row == nullptr || (g + 1 < groups.size() &&
-                                        suite.environments[row->environment].category != groups[g]);
+              return row == nullptr || !is_in(suite.environments[row->environment]);
             });
-            if (!scenes.empty()) result.push_back(together(groups[g], scenes));
+            const auto of =
+                static_cast<std::size_t>(std::ranges::count_if(suite.environments, is_in));
+            if (!scenes.empty()) result.push_back(together(groups[g], std::move(scenes), of));
           }
   return result;
 }

@@ -19,7 +19,9 @@ struct CategoryRow {
   std::string category;
   std::size_t level = 0, system = 0, parameters = 0;
   LabelMode labels = LabelMode::kNone;
-  std::size_t scenes = 0;
+  std::size_t scenes = 0;  ///< where the system has a result: what all below is over; may be 0
+  std::size_t of = 0;      ///< scenes of the category in the suite
+  std::size_t failed = 0;  ///< runs that failed, in all of them
   double completeness = 0;
   std::optional<double> ate_rmse_m, rpe_frame_rmse_m;  ///< over the scenes that have one
   QuerySummary held_out, second_tour;                  ///< over the scenes with such queries

@@ -2,7 +2,9 @@
 #include "bench/results/summary.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -132,11 +134,27 @@ std::string_view name(QuerySet set) {
   return set == QuerySet::kHeldOut ? "held_out" : "second_tour";
 }
 
+namespace {
+
+/// Mean of a number over the queries whose candidates tell it; absent where none does.
+template <class Get>
+std::optional<double> mean_told(std::span<const QueryScore> queries, Get get) {
+  double sum = 0, count = 0;
+  for (const QueryScore& q : queries) {
+    const double value = q.answer.candidates ? get(*q.answer.candidates) : std::nan("");
+    if (std::isnan(value)) continue;
+    sum += value;
+    ++count;
+  }
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
+}
+
+}  // namespace
+
 QuerySummary summarize(std::span<const QueryScore> queries) {
   QuerySummary s;
   if (queries.empty()) return s;
   std::vector<double> distances, aligned;
-  double with_candidates = 0;
   for (const QueryScore& q : queries) {
     s.success += q.success;
     s.correct += q.correct;
@@ -146,23 +164,22 @@ QuerySummary summarize(std::span<const QueryScore> queries) {
       distances.push_back(q.distance_m);
       aligned.push_back(q.aligned_distance_m);
     }
-    if (const auto& c = q.answer.candidates) {
-      ++with_candidates;
-      s.keyframes += c->keyframes;
-      s.c1 += c->c1;
-      s.c2 += c->c2;
-      s.c3 += c->c3;
-      s.final += c->final;
-      s.single_candidate += c->final == 1;
-      s.label_mass += c->label_mass;
-    }
   }
   s.queries = static_cast<double>(queries.size());
   for (double* share : {&s.success, &s.correct, &s.wrong, &s.attempts}) *share /= s.queries;
-  if (with_candidates > 0)
-    for (double* m :
-         {&s.keyframes, &s.c1, &s.c2, &s.c3, &s.final, &s.single_candidate, &s.label_mass})
-      *m /= with_candidates;
+  for (const auto& [field, count] :
+       {std::pair(&QuerySummary::keyframes, &CandidateCounts::keyframes),
+        {&QuerySummary::c1, &CandidateCounts::c1},
+        {&QuerySummary::c2, &CandidateCounts::c2},
+        {&QuerySummary::c3, &CandidateCounts::c3},
+        {&QuerySummary::final, &CandidateCounts::final}})
+    s.*field = mean_told(queries, [count = count](const CandidateCounts& c) {
+      return c.*count == kUnknownCount ? std::nan("") : c.*count;
+    });
+  s.single_candidate = mean_told(queries, [](const CandidateCounts& c) {
+    return c.final == kUnknownCount ? std::nan("") : static_cast<double>(c.final == 1);
+  });
+  s.label_mass = mean_told(queries, [](const CandidateCounts& c) { return c.label_mass; });
   if (distances.empty()) return s;
   s.distance_mean_m = mean(distances);
   s.aligned_distance_mean_m = mean(aligned);
@@ -178,16 +195,16 @@ QuerySummary reduce(
   QuerySummary result;
   for (double QuerySummary::*field :
        {&QuerySummary::queries, &QuerySummary::success, &QuerySummary::correct,
-        &QuerySummary::wrong, &QuerySummary::attempts, &QuerySummary::keyframes, &QuerySummary::c1,
-        &QuerySummary::c2, &QuerySummary::c3, &QuerySummary::final, &QuerySummary::single_candidate,
-        &QuerySummary::label_mass}) {
+        &QuerySummary::wrong, &QuerySummary::attempts}) {
     std::vector<double> values;
     for (const QuerySummary& s : summaries) values.push_back(s.*field);
     result.*field = of(values);
   }
   for (std::optional<double> QuerySummary::*field :
        {&QuerySummary::distance_mean_m, &QuerySummary::distance_median_m,
-        &QuerySummary::aligned_distance_mean_m}) {
+        &QuerySummary::aligned_distance_mean_m, &QuerySummary::keyframes, &QuerySummary::c1,
+        &QuerySummary::c2, &QuerySummary::c3, &QuerySummary::final, &QuerySummary::single_candidate,
+        &QuerySummary::label_mass}) {
     std::vector<std::optional<double>> values;
     for (const QuerySummary& s : summaries) values.push_back(s.*field);
     result.*field = of_known(values);
@@ -195,7 +212,8 @@ QuerySummary reduce(
   return result;
 }
 
-std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs) {
+std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs,
+                           std::span<const FailedRun> failed) {
   const std::vector<SemanticConfig> points = parameter_points(suite);
   std::vector<Row> rows;
   for (std::size_t e = 0; e < suite.environments.size(); ++e)
@@ -214,7 +232,13 @@ std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs) 
               if (belongs(run.spec, suite, row))
                 if (const PointResult* point = find_point(run, seen))
                   row.trials.push_back({&run, point});
-            if (!row.trials.empty()) rows.push_back(fill_in(std::move(row)));
+            for (const FailedRun& run : failed)
+              if (belongs(run.spec, suite, row) && std::ranges::count(run.spec.points, seen) > 0)
+                ++row.failed;
+            if (!row.trials.empty())
+              rows.push_back(fill_in(std::move(row)));
+            else if (row.failed > 0)
+              rows.push_back(std::move(row));
           }
   return rows;
 }
@@ -222,10 +246,11 @@ std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs) 
 std::vector<Family> compare_systems(const Suite& suite, std::span<const Row> rows) {
   std::vector<Family> families;
   for (const Row& semantic : rows) {
-    if (suite.systems[semantic.system].kind != SystemKind::kSemantic || semantic.parameters != 0)
+    if (suite.systems[semantic.system].kind != SystemKind::kSemantic || semantic.parameters != 0 ||
+        semantic.trials.empty())
       continue;
     const auto plain = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
-      return suite.systems[row.system].kind == SystemKind::kPlain &&
+      return suite.systems[row.system].kind == SystemKind::kPlain && !row.trials.empty() &&
              row.environment == semantic.environment && row.level == semantic.level &&
              row.labels == semantic.labels && row.parameters == semantic.parameters;
     });
@@ -255,11 +280,13 @@ Comparison compare_correct(const Row& first, const Row& second, QuerySet set, st
 
 std::array<std::optional<double>, 2> ate_over_common_frames(const Row& first, const Row& second) {
   std::vector<std::optional<double>> a, b;
-  const std::size_t trials = std::min(first.trials.size(), second.trials.size());
-  for (std::size_t t = 0; t < trials; ++t) {
-    const Trajectory& truth = first.trials[t].run->truth;
-    const Trajectory& x = first.trials[t].run->estimate;
-    const Trajectory& y = second.trials[t].run->estimate;
+  for (const Trial& trial : first.trials) {
+    const auto other = std::ranges::find_if(
+        second.trials, [&](const Trial& t) { return t.run->spec.trial == trial.run->spec.trial; });
+    if (other == second.trials.end()) continue;  // that one failed
+    const Trajectory& truth = trial.run->truth;
+    const Trajectory& x = trial.run->estimate;
+    const Trajectory& y = other->run->estimate;
     Trajectory common_x, common_y;
     for (std::size_t i = 0, j = 0; i < x.size() && j < y.size();) {
       if (x[i].stamp_ns == y[j].stamp_ns) {

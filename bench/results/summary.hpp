@@ -20,10 +20,11 @@ struct QuerySummary {
   std::optional<double> distance_mean_m, distance_median_m;
   std::optional<double> aligned_distance_mean_m;  ///< the same, in the globally aligned frame
   double attempts = 0;                            ///< mean
-  /// Candidate keyframes left after equations 3, 4, 5 and 6: mean counts over queries.
-  double keyframes = 0, c1 = 0, c2 = 0, c3 = 0, final = 0;
-  double single_candidate = 0;  ///< share of queries with exactly one left
-  double label_mass = 0;        ///< mean share of the query vector held by labels
+  /// Candidate keyframes left after equations 3, 4, 5 and 6: mean counts over the queries where the
+  /// system tells them; absent where it tells none.
+  std::optional<double> keyframes, c1, c2, c3, final;
+  std::optional<double> single_candidate;  ///< share of queries with exactly one left
+  std::optional<double> label_mass;        ///< mean share of the query vector held by labels
 };
 QuerySummary summarize(std::span<const QueryScore> queries);
 
@@ -46,7 +47,8 @@ struct Row {
   std::size_t environment = 0, level = 0, system = 0;  ///< indices into the suite's lists
   LabelMode labels = LabelMode::kNone;
   std::size_t parameters = 0;  ///< index into parameter_points(suite)
-  std::vector<Trial> trials;
+  std::vector<Trial> trials;   ///< those that are done
+  std::size_t failed = 0;      ///< runs of it that failed
   TrajectoryScore trajectory;  ///< medians over the trials that have the score
   double restarts = 0, dropped = 0;
   QuerySummary held_out, second_tour;
@@ -59,7 +61,9 @@ inline const QuerySummary& summary(const Row& row, QuerySet set) {
 
 /// One row per environment, level, labels, parameter point and system, in this order, where there
 /// is a run of it. The plain system, run once without labels, stands beside each kind of label.
-std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs);
+/// @param failed  counted in their rows; a row of which nothing else is left has no trials
+std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs,
+                           std::span<const FailedRun> failed = {});
 
 /// What is compared: rows that differ in nothing but the system.
 struct Family {
@@ -81,7 +85,7 @@ Comparison compare_distances(const Row& first, const Row& second, QuerySet set,
 /// Shares of correct answers likewise.
 Comparison compare_correct(const Row& first, const Row& second, QuerySet set, std::uint64_t seed);
 
-/// ATE over the frames that both tracked, median over the trials that have one: first, second.
+/// ATE over the frames that both tracked, median over the trials that both have: first, second.
 std::array<std::optional<double>, 2> ate_over_common_frames(const Row& first, const Row& second);
 
 }  // namespace mh

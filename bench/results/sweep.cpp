@@ -12,7 +12,7 @@ std::vector<const Row*> rows_at(std::span<const Row> rows, const SweepResult& re
   std::vector<const Row*> found;
   for (const Row& row : rows)
     if (row.level == result.level && row.system == result.system && row.labels == result.labels &&
-        row.parameters == point)
+        row.parameters == point && !row.trials.empty())
       found.push_back(&row);
   return found;
 }
@@ -23,7 +23,7 @@ std::vector<SweepResult> sweep_results(const Suite& suite, std::span<const Row> 
   const std::vector<SemanticConfig> points = parameter_points(suite);
   std::vector<SweepResult> results;
   for (const CategoryRow& row : make_category_rows(suite, rows)) {
-    if (row.category != kAllCategories) continue;
+    if (row.category != kAllCategories || row.scenes == 0) continue;
     auto result = std::ranges::find_if(results, [&](const SweepResult& r) {
       return r.level == row.level && r.system == row.system && r.labels == row.labels;
     });
@@ -43,9 +43,14 @@ std::vector<SweepResult> sweep_results(const Suite& suite, std::span<const Row> 
 
 std::optional<BestPoint> best_point(const Suite& suite, std::span<const Row> rows,
                                     const SweepResult& result, QuerySet set) {
-  const auto correct = [&](const CategoryRow& row) { return summary(row, set).correct; };
   if (result.answers.empty() || summary(result.answers.front(), set).queries == 0)
     return std::nullopt;
+  // A point that failed in some scenes would be compared by the others alone: it is never best.
+  const std::size_t scenes =
+      std::ranges::max_element(result.answers, {}, &CategoryRow::scenes)->scenes;
+  const auto correct = [&](const CategoryRow& row) {
+    return row.scenes == scenes ? summary(row, set).correct : -1.0;
+  };
   const auto own = std::ranges::find(result.points, suite.semantics);
   BestPoint found;
   if (own != result.points.end())

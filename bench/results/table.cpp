@@ -64,6 +64,7 @@ std::string rule(std::size_t width) {
 /// Rows that differ in nothing but the system.
 struct Block {
   const Suite& suite;
+  std::span<const Row> all;  ///< of the whole table
   std::vector<const Row*> rows;
   /// Those with details of their own: without the plain system where a block above told them.
   std::vector<const Row*> detailed;
@@ -71,8 +72,36 @@ struct Block {
 };
 
 /// ", first 200 frames" behind what was cut; empty otherwise.
-std::string shortened(const Suite& suite, const RunResult& run) {
-  return run.place.cut ? fmt::format(", first {}", counted(*suite.max_frames, "frame")) : "";
+std::string shortened(const Suite& suite, std::span<const Row> rows) {
+  const bool cut = std::ranges::any_of(rows, [](const Row& row) {
+    return std::ranges::any_of(row.trials, [](const Trial& t) { return t.run->place.cut; });
+  });
+  return cut ? fmt::format(", first {}", counted(*suite.max_frames, "frame")) : "";
+}
+
+/// Width of a column of the systems' names.
+std::size_t name_width(const Suite& suite, std::size_t least = 10) {
+  for (const SystemSpec& system : suite.systems) least = std::max(least, system.name.size() + 1);
+  return least;
+}
+
+/// "   2 of 3 trials, 1 failed" behind a row that lacks some; empty otherwise.
+std::string lacking(const Suite& suite, const Row& row) {
+  const auto all = static_cast<std::size_t>(suite.trials);
+  if (row.trials.size() == all) return "";
+  if (row.trials.empty())
+    return all == 1 ? "   failed" : fmt::format("   failed: {} of {} trials", row.failed, all);
+  return fmt::format("   {} of {}{}", row.trials.size(), counted(all, "trial"),
+                     row.failed > 0 ? fmt::format(", {} failed", row.failed) : "");
+}
+
+/// The same of scenes: "   1 of 2 scenes, 3 runs failed".
+std::string lacking(const CategoryRow& row) {
+  std::string text;
+  if (row.scenes < row.of) text = fmt::format("   {} of {}", row.scenes, counted(row.of, "scene"));
+  if (row.failed > 0)
+    text += fmt::format("{}{} failed", text.empty() ? "   " : ", ", counted(row.failed, "run"));
+  return text;
 }
 
 /// What stands above all tables of tours that were cut.
@@ -95,9 +124,10 @@ std::string table_2(const Block& block) {
     for (const Row* row : block.rows) {
       const QuerySummary& s = summary(*row, set);
       const bool saturated = block.system(row).kind == SystemKind::kPlain && s.success > kSaturated;
-      text += fmt::format("    {:<42}{:>22}{:>22}{}\n", block.system(row).name,
-                          s.queries > 0 ? fmt::format("{:.2f}", 100 * s.success) : "-",
-                          metres(s.distance_mean_m), saturated ? "   saturated" : "");
+      text += fmt::format(
+          "    {:<{}}{:>22}{:>22}{}{}\n", block.system(row).name, name_width(block.suite, 42),
+          s.queries > 0 ? fmt::format("{:.2f}", 100 * s.success) : "-", metres(s.distance_mean_m),
+          saturated ? "   saturated" : "", lacking(block.suite, *row));
     }
   }
   text += "  published, other data (the paper's Table 2: a real house of 60 m2, YOLOv3 boxes)\n";
@@ -108,13 +138,14 @@ std::string table_2(const Block& block) {
 
 std::string query_details(const Block& block, QuerySet set) {
   const char* heading = set == QuerySet::kHeldOut ? "held-out" : "2nd tour";
+  const std::size_t width = name_width(block.suite);
   std::string text =
-      fmt::format("  {:<10}{:>9}{:>10}{:>9}{:>10}{:>11}{:>12}{:>10}\n", heading, "success",
+      fmt::format("  {:<{}}{:>9}{:>10}{:>9}{:>10}{:>11}{:>12}{:>10}\n", heading, width, "success",
                   "correct", "false", "mean m", "median m", "aligned m", "attempts");
   for (const Row* row : block.detailed) {
     const QuerySummary& s = summary(*row, set);
     text += fmt::format(
-        "  {:<10}{:>9}{:>10}{:>9}{:>10}{:>11}{:>12}{:>10}\n", block.system(row).name,
+        "  {:<{}}{:>9}{:>10}{:>9}{:>10}{:>11}{:>12}{:>10}\n", block.system(row).name, width,
         percent(s, &QuerySummary::success), percent(s, &QuerySummary::correct),
         percent(s, &QuerySummary::wrong), metres(s.distance_mean_m), metres(s.distance_median_m),
         metres(s.aligned_distance_mean_m), s.queries > 0 ? fmt::format("{:.2f}", s.attempts) : "-");
@@ -122,21 +153,29 @@ std::string query_details(const Block& block, QuerySet set) {
   return text;
 }
 
-/// Keyframes left after the steps of Algorithm 1, as counts and as shares of the map.
+/// Keyframes left after the steps of Algorithm 1, as counts and as shares of the map; "-" is what a
+/// program did not tell.
 std::string candidate_details(const Block& block, QuerySet set) {
   const char* heading = set == QuerySet::kHeldOut ? "held-out" : "2nd tour";
-  std::string text = fmt::format("  {:<10}{:>10}{:>18}{:>18}{:>18}{:>18}{:>11}{:>13}\n", heading,
-                                 "keyframes", "after eq. 3", "after eq. 4", "after eq. 5",
+  const std::size_t width = name_width(block.suite);
+  std::string text = fmt::format("  {:<{}}{:>10}{:>18}{:>18}{:>18}{:>18}{:>11}{:>13}\n", heading,
+                                 width, "keyframes", "after eq. 3", "after eq. 4", "after eq. 5",
                                  "after eq. 6", "one left", "label mass");
   for (const Row* row : block.detailed) {
     const QuerySummary& s = summary(*row, set);
     if (s.queries == 0) continue;
-    const auto left = [&](double count) {
-      return fmt::format("{:.2f} ({:.2f}%)", count, 100 * count / std::max(1.0, s.keyframes));
+    const auto left = [&](const std::optional<double>& count) {
+      if (!count) return std::string("-");
+      if (!s.keyframes) return fmt::format("{:.2f}", *count);
+      return fmt::format("{:.2f} ({:.2f}%)", *count, 100 * *count / std::max(1.0, *s.keyframes));
     };
-    text += fmt::format("  {:<10}{:>10.0f}{:>18}{:>18}{:>18}{:>18}{:>10.1f}%{:>12.1f}%\n",
-                        block.system(row).name, s.keyframes, left(s.c1), left(s.c2), left(s.c3),
-                        left(s.final), 100 * s.single_candidate, 100 * s.label_mass);
+    const auto share = [](const std::optional<double>& value) {
+      return value ? fmt::format("{:.1f}%", 100 * *value) : std::string("-");
+    };
+    text += fmt::format(
+        "  {:<{}}{:>10}{:>18}{:>18}{:>18}{:>18}{:>11}{:>13}\n", block.system(row).name, width,
+        s.keyframes ? fmt::format("{:.0f}", *s.keyframes) : "-", left(s.c1), left(s.c2), left(s.c3),
+        left(s.final), share(s.single_candidate), share(s.label_mass));
   }
   return text;
 }
@@ -154,7 +193,8 @@ std::string failing_stages(const Block& block) {
                           name(set));
       const char* comma = "";
       for (const auto& [stage, count] : stages) {
-        text += fmt::format("{} {} {}", comma, count, name(stage));
+        text += fmt::format("{} {} {}", comma, count,
+                            is_told(block.system(row).kind, stage) ? name(stage) : "not told");
         comma = ",";
       }
       text += "\n";
@@ -163,15 +203,20 @@ std::string failing_stages(const Block& block) {
 }
 
 std::string mapping_details(const Block& block) {
+  const std::size_t width = name_width(block.suite);
   std::string text =
-      fmt::format("  {:<10}{:>10}{:>14}{:>11}{:>12}{:>11}{:>10}{:>9}\n", "mapping", "ATE m",
+      fmt::format("  {:<{}}{:>10}{:>14}{:>11}{:>12}{:>11}{:>10}{:>9}\n", "mapping", width, "ATE m",
                   "first pose m", "RPE m/fr", "RPE m/s", "complete", "restarts", "dropped");
   for (const Row* row : block.detailed) {
     const TrajectoryScore& t = row->trajectory;
-    text += fmt::format("  {:<10}{:>10}{:>14}{:>11}{:>12}{:>10.2f}%{:>10.0f}{:>9.0f}\n",
-                        block.system(row).name, metres(t.ate_rmse_m), metres(t.ate_first_pose_m),
-                        metres(t.rpe_frame_rmse_m, 5), metres(t.rpe_second_rmse_m, 5),
-                        100 * t.completeness, row->restarts, row->dropped);
+    const auto cell = [&](const char* format, double value) {
+      return row->trials.empty() ? "-" : fmt::format(fmt::runtime(format), value);
+    };
+    text += fmt::format(
+        "  {:<{}}{:>10}{:>14}{:>11}{:>12}{:>11}{:>10}{:>9}{}\n", block.system(row).name, width,
+        metres(t.ate_rmse_m), metres(t.ate_first_pose_m), metres(t.rpe_frame_rmse_m, 5),
+        metres(t.rpe_second_rmse_m, 5), cell("{:.2f}%", 100 * t.completeness),
+        cell("{:.0f}", row->restarts), cell("{:.0f}", row->dropped), lacking(block.suite, *row));
   }
   return text;
 }
@@ -179,7 +224,7 @@ std::string mapping_details(const Block& block) {
 std::string penalties(const Block& block) {
   std::string text;
   for (const Row* row : block.rows) {
-    if (block.system(row).kind == SystemKind::kPlain) continue;
+    if (block.system(row).kind != SystemKind::kSemantic || row->trials.empty()) continue;
     text += "  pairs penalised by xi (of those compared; rejected by it; ratio tests it helped)\n";
     for (std::size_t m = 0; m < row->matches.size(); ++m) {
       const MatcherCounts& c = row->matches[m];
@@ -197,6 +242,7 @@ std::string penalties(const Block& block) {
 std::string common_ate(const Block& block) {
   const Row *semantic = nullptr, *plain = nullptr;
   for (const Row* row : block.rows) {
+    if (row->trials.empty()) continue;
     if (block.system(row).kind == SystemKind::kSemantic) semantic = row;
     if (block.system(row).kind == SystemKind::kPlain) plain = row;
   }
@@ -204,6 +250,13 @@ std::string common_ate(const Block& block) {
   const auto [a, b] = ate_over_common_frames(*semantic, *plain);
   return fmt::format("  ATE over the frames that both tracked, m: semantic {}, plain {}\n",
                      metres(a), metres(b));
+}
+
+/// "[-0.0123, +0.0456]"; "-" where too few pairs leave it open.
+std::string interval(const Comparison& c) {
+  return std::isfinite(c.low) && std::isfinite(c.high)
+             ? fmt::format("[{:+.4f}, {:+.4f}]", c.low, c.high)
+             : std::string("-");
 }
 
 std::string comparison_line(const Comparison& c) {
@@ -217,8 +270,8 @@ std::string comparison_line(const Comparison& c) {
           : std::string("undecided; too few pairs");
   const std::string corrected =
       c.in_family ? fmt::format("(Holm {:.4f})  {}", c.p_holm, word) : "(beside the family)";
-  return fmt::format("  {:<62}{:+.4f} [{:+.4f}, {:+.4f}]  p = {:.4f} {}\n", c.what, c.difference,
-                     c.low, c.high, c.p, corrected);
+  return fmt::format("  {:<62}{:+.4f} {}  p = {:.4f} {}\n", c.what, c.difference, interval(c), c.p,
+                     corrected);
 }
 
 std::string block_text(const Block& block) {
@@ -228,7 +281,7 @@ std::string block_text(const Block& block) {
       "\n{}, level {}, {} labels, {}{}{}\n",
       suite.environments.size() > 1 ? suite.environments[row.environment].name : suite.name,
       level_name(suite.levels[row.level]), name(row.labels), counted(suite.trials, "trial"),
-      suite.trials == 1 ? "" : " (medians)", shortened(suite, *row.trials.front().run));
+      suite.trials == 1 ? "" : " (medians)", shortened(suite, block.all));
   text += rule(90) + table_2(block) + rule(90);
   for (const QuerySet set : kQuerySets)
     if (most_queries(block.rows, set) > 0)
@@ -272,7 +325,7 @@ bool told_above(const Suite& suite, const Row& row) {
 std::string place_text(const Suite& suite, const std::vector<Row>& rows) {
   std::string text;
   for (auto first = rows.begin(); first != rows.end();) {
-    Block block{suite, {}, {}};
+    Block block{suite, rows, {}, {}};
     auto end = first;
     for (; end != rows.end() && end->level == first->level && end->labels == first->labels; ++end) {
       block.rows.push_back(&*end);
@@ -285,11 +338,20 @@ std::string place_text(const Suite& suite, const std::vector<Row>& rows) {
   return text;
 }
 
+/// Width of a column of categories.
+std::size_t category_width(const Suite& suite) {
+  std::size_t width = 18;
+  for (const Environment& e : suite.environments) width = std::max(width, e.category.size() + 1);
+  return width;
+}
+
 std::string category_line(const Suite& suite, const CategoryRow& row,
                           const std::vector<CategoryRow>& all) {
-  std::string text = fmt::format("  {:<18}{:>7}  {:<10}{:>9}{:>10}{:>10.2f}%", row.category,
-                                 row.scenes, suite.systems[row.system].name, metres(row.ate_rmse_m),
-                                 metres(row.rpe_frame_rmse_m, 5), 100 * row.completeness);
+  std::string text =
+      fmt::format("  {:<{}}{:>7}  {:<{}}{:>9}{:>10}{:>11}", row.category, category_width(suite),
+                  row.scenes, suite.systems[row.system].name, name_width(suite),
+                  metres(row.ate_rmse_m), metres(row.rpe_frame_rmse_m, 5),
+                  row.scenes > 0 ? fmt::format("{:.2f}%", 100 * row.completeness) : "-");
   for (const QuerySet set : kQuerySets) {
     const QuerySummary& s = summary(row, set);
     if (asked(all, set))
@@ -298,7 +360,7 @@ std::string category_line(const Suite& suite, const CategoryRow& row,
   }
   const bool saturated =
       suite.systems[row.system].kind == SystemKind::kPlain && row.held_out.success > kSaturated;
-  return text + (saturated ? "   saturated\n" : "\n");
+  return text + (saturated ? "   saturated" : "") + lacking(row) + "\n";
 }
 
 std::string scene_family_text(const Suite& suite, const SceneFamily& family) {
@@ -307,7 +369,13 @@ std::string scene_family_text(const Suite& suite, const SceneFamily& family) {
       "Holm over {} of success, distance and ATE\n",
       level_name(suite.levels[family.level]),
       counted(family_size(family.comparisons), "comparison"));
-  for (const Comparison& c : family.comparisons) text += comparison_line(c) + margin_line(suite, c);
+  const std::size_t scenes = suite.environments.size();
+  for (const Comparison& c : family.comparisons) {
+    if (c.pairs < scenes)
+      text += fmt::format("  over {} of {}, where both have a value:\n", c.pairs,
+                          counted(scenes, "scene"));
+    text += comparison_line(c) + margin_line(suite, c);
+  }
   return text;
 }
 
@@ -322,9 +390,10 @@ std::string scenes_text(const Suite& suite, const std::vector<Row>& rows) {
           "\n{}, level {}, {} labels, {}{}; per scene the median over trials, then the mean "
           "over scenes\n",
           suite.name, level_name(suite.levels[row.level]), name(row.labels),
-          counted(suite.trials, "trial"), shortened(suite, *rows.front().trials.front().run));
-      text += fmt::format("  {:<18}{:>7}  {:<10}{:>9}{:>10}{:>11}", "environments", "scenes",
-                          "system", "APE m", "RPE m/fr", "complete");
+          counted(suite.trials, "trial"), shortened(suite, rows));
+      text += fmt::format("  {:<{}}{:>7}  {:<{}}{:>9}{:>10}{:>11}", "environments",
+                          category_width(suite), "scenes", "system", name_width(suite), "ATE m",
+                          "RPE m/fr", "complete");
       for (const QuerySet set : kQuerySets)
         if (asked(categories, set))
           text +=
@@ -365,8 +434,7 @@ std::string best_points(const Suite& suite, const std::vector<Row>& rows) {
           system.name, level_name(suite.levels[result.level]), name(result.labels), name(set),
           at.gamma, at.xi, at.alpha, at.beta,
           100 * summary(result.answers[best->point], set).correct,
-          c.pairs == 0 ? std::string("-")
-                       : fmt::format("{:+.4f} [{:+.4f}, {:+.4f}]", c.difference, c.low, c.high),
+          c.pairs == 0 ? std::string("-") : fmt::format("{:+.4f} {}", c.difference, interval(c)),
           best->equals > 1 ? fmt::format("; {} points are equal", best->equals) : "");
     }
   return text;
@@ -381,11 +449,12 @@ std::string sweep_text(const Suite& suite, const std::vector<Row>& rows) {
   for (const CategoryRow& row : categories) {
     if (row.category != kAllCategories) continue;
     if (last == nullptr || last->level != row.level || last->labels != row.labels) {
-      text += fmt::format("\n{}, level {}, {} labels, map: {}, {}{}\n", suite.name,
-                          level_name(suite.levels[row.level]), name(row.labels),
-                          name(suite.sweep.map), counted(suite.trials, "trial"),
-                          shortened(suite, *rows.front().trials.front().run));
-      text += fmt::format("  {:<10}{:>9}{:>9}{:>9}{:>9}", "system", "gamma", "xi", "alpha", "beta");
+      text +=
+          fmt::format("\n{}, level {}, {} labels, map: {}, {}{}\n", suite.name,
+                      level_name(suite.levels[row.level]), name(row.labels), name(suite.sweep.map),
+                      counted(suite.trials, "trial"), shortened(suite, rows));
+      text += fmt::format("  {:<{}}{:>9}{:>9}{:>9}{:>9}", "system", name_width(suite), "gamma",
+                          "xi", "alpha", "beta");
       for (const QuerySet set : kQuerySets)
         if (asked(categories, set))
           text += fmt::format("{:>13}{:>11}{:>10}{:>9}{:>11}",
@@ -393,21 +462,33 @@ std::string sweep_text(const Suite& suite, const std::vector<Row>& rows) {
                               "false", "dist. m", "candidates");
       text += "\n";
     }
-    const SemanticConfig seen = settings_of(suite.systems[row.system], points[row.parameters]);
-    text += fmt::format("  {:<10}{:>9.4g}{:>9.4g}{:>9.4g}{:>9.4g}", suite.systems[row.system].name,
-                        seen.gamma, seen.xi, seen.alpha, seen.beta);
+    const SystemSpec& system = suite.systems[row.system];
+    const SemanticConfig seen = settings_of(system, points[row.parameters]);
+    text += fmt::format("  {:<{}}", system.name, name_width(suite));
+    for (const double value : {seen.gamma, seen.xi, seen.alpha, seen.beta})
+      text += fmt::format("{:>9}",
+                          system.kind == SystemKind::kOutside ? "-" : fmt::format("{:.4g}", value));
     for (const QuerySet set : kQuerySets) {
       const QuerySummary& s = summary(row, set);
       if (asked(categories, set))
-        text += fmt::format("{:>13}{:>11}{:>10}{:>9}{:>11}", percent(s, &QuerySummary::success),
-                            percent(s, &QuerySummary::correct), percent(s, &QuerySummary::wrong),
-                            metres(s.distance_mean_m),
-                            s.queries > 0 ? fmt::format("{:.2f}", s.final) : "-");
+        text +=
+            fmt::format("{:>13}{:>11}{:>10}{:>9}{:>11}", percent(s, &QuerySummary::success),
+                        percent(s, &QuerySummary::correct), percent(s, &QuerySummary::wrong),
+                        metres(s.distance_mean_m), s.final ? fmt::format("{:.2f}", *s.final) : "-");
     }
-    text += "\n";
+    text += lacking(row) + "\n";
     last = &row;
   }
   return text + best_points(suite, rows);
+}
+
+/// Why runs are missing above.
+std::string failures_text(std::span<const FailedRun> failed) {
+  if (failed.empty()) return "";
+  std::string text = fmt::format("\nfailed, so that the figures above are without {}:\n",
+                                 counted(failed.size(), "run"));
+  for (const FailedRun& run : failed) text += fmt::format("  {}: {}\n", run.spec.name, run.error);
+  return text;
 }
 
 /// Where the times come from: what other work did beside them shows in them.
@@ -437,30 +518,37 @@ std::string circumstances(std::span<const RunResult> runs) {
 
 }  // namespace
 
-std::string results_table(const Suite& suite, std::span<const RunResult> runs) {
-  const std::vector<Row> rows = make_rows(suite, runs);
-  return warning_of_cut(suite, runs) + (parameter_points(suite).size() > 1 ? sweep_text(suite, rows)
-                                        : suite.environments.size() > 1 ? scenes_text(suite, rows)
-                                                                        : place_text(suite, rows));
+std::string results_table(const Suite& suite, std::span<const RunResult> runs,
+                          std::span<const FailedRun> failed) {
+  const std::vector<Row> rows = make_rows(suite, runs, failed);
+  return warning_of_cut(suite, runs) +
+         (parameter_points(suite).size() > 1 ? sweep_text(suite, rows)
+          : suite.environments.size() > 1    ? scenes_text(suite, rows)
+                                             : place_text(suite, rows)) +
+         failures_text(failed);
 }
 
 std::string times_table(const Suite& suite, std::span<const RunResult> runs) {
-  std::string text = fmt::format("  {:<44}{:>18}{:>18}\n", "wall time, ms per call: median (p95)",
-                                 "track", "relocalize");
-  for (const Row& row : make_rows(suite, runs)) {
+  const std::vector<Row> rows = make_rows(suite, runs);
+  const auto label = [&](const Row& row) {
+    const SystemSpec& system = suite.systems[row.system];
+    std::string text = fmt::format("{}, {}", suite.environments[row.environment].name, system.name);
+    if (system.kind != SystemKind::kPlain) text += fmt::format(", {} labels", name(row.labels));
+    return text;
+  };
+  std::size_t width = 44;
+  for (const Row& row : rows) width = std::max(width, label(row).size());
+  std::string text = fmt::format("  {:<{}}{:>18}{:>18}\n", "wall time, ms per call: median (p95)",
+                                 width, "track", "relocalize");
+  for (const Row& row : rows) {
     if (suite.sweep.map == SweepMap::kFixed && row.parameters != 0) continue;  // the same calls
     if (told_above(suite, row)) continue;
     const auto cell = [](const TimeSummary& t) {
       if (t.p95_ms == 0) return std::string("-");  // no calls: its map was at hand
       return fmt::format("{:.1f} ({:.1f})", t.median_ms, t.p95_ms);
     };
-    const std::string& place = suite.environments[row.environment].name;
-    text += fmt::format("  {:<44}{:>18}{:>18}\n",
-                        suite.systems[row.system].kind == SystemKind::kPlain
-                            ? fmt::format("{}, {}", place, suite.systems[row.system].name)
-                            : fmt::format("{}, {}, {} labels", place,
-                                          suite.systems[row.system].name, name(row.labels)),
-                        cell(row.track), cell(row.relocalize));
+    text += fmt::format("  {:<{}}{:>18}{:>18}\n", label(row), width, cell(row.track),
+                        cell(row.relocalize));
   }
   return text + circumstances(runs);
 }

@@ -11,7 +11,9 @@ namespace mh {
 /// The results as text: first in the form of the paper's Table 2 beside its published numbers, then
 /// everything that DESIGN section 5 asks to be printed with them.
 /// A function of suite, seeds and binary: times stand in a table of their own.
-std::string results_table(const Suite& suite, std::span<const RunResult> runs);
+/// Failed runs are told with the row that they would belong to, and why at the end.
+std::string results_table(const Suite& suite, std::span<const RunResult> runs,
+                          std::span<const FailedRun> failed = {});
 
 /// How long the systems took.
 std::string times_table(const Suite& suite, std::span<const RunResult> runs);

@@ -20,6 +20,6 @@ void write_views(const std::filesystem::path& file, const World& world);
 /// Writes what a suite's runs gave together: results.json, times.json, table.txt, times.txt.
 /// @returns the printed table.
 std::string write_results(const std::filesystem::path& folder, const Suite& suite,
-                          std::span<const RunResult> runs);
+                          std::span<const RunResult> runs, std::span<const FailedRun> failed = {});
 
 }  // namespace mh

@@ -57,6 +57,11 @@ class Insert {
     return *this;
   }
   Insert& operator<<(std::string_view text) { return *this << std::string(text); }
+  Insert& operator<<(const std::optional<std::string>& text) {
+    if (text) return *this << *text;
+    ++next_;  // stays null
+    return *this;
+  }
   Insert& operator<<(std::int64_t value) {
     statement_.bind(next_++, value);
     return *this;
@@ -262,7 +267,8 @@ void put_calls(SQLite::Database& db, const std::string& key, const RunResult& ru
   std::int64_t call = 0;
   for (const MappedFrame& m : run.mapping.calls) {
     row << key << call++ << static_cast<std::int64_t>(m.index) << m.stamp_ns
-        << std::int64_t{m.restart} << name(m.status) << std::int64_t{m.inliers}
+        << std::int64_t{m.restart} << name(m.status)
+        << (m.inliers == kUnknownCount ? std::nullopt : std::optional<double>(m.inliers))
         << std::int64_t{m.keyframe_added} << hex(m.image_digest) << hex(m.matching_digest)
         << hex(m.pose_digest);
     row.put();
@@ -284,19 +290,25 @@ void put_frames(SQLite::Database& db, const std::string& key, const RunResult& r
 
 void put_queries(SQLite::Database& db, const std::string& key, const RunResult& run) {
   Insert row(db, "queries", 38);
+  const SystemKind kind = run.spec.system.kind;
   for (std::size_t p = 0; p < run.points.size(); ++p)
     for (const QuerySet set : kQuerySets)
       for (const QueryScore& q : queries(run.points[p], set)) {
         const auto& c = q.answer.candidates;
         const auto counted = [&](int CandidateCounts::*count) {
-          return c ? std::optional<double>((*c).*count) : std::nullopt;
+          return c && (*c).*count != kUnknownCount ? std::optional<double>((*c).*count)
+                                                   : std::nullopt;
+        };
+        const auto told = [](bool is, std::string_view text) {
+          return is ? std::optional(std::string(text)) : std::nullopt;
         };
         const auto measured = [&](double value) {
           return q.success ? std::optional(value) : std::nullopt;
         };
         row << key << static_cast<std::int64_t>(p) << name(set)
             << static_cast<std::int64_t>(q.answer.index) << q.stamp_ns << std::int64_t{q.success}
-            << std::int64_t{q.correct} << std::int64_t{q.wrong} << name(q.answer.stage)
+            << std::int64_t{q.correct} << std::int64_t{q.wrong}
+            << told(is_told(kind, q.answer.stage), name(q.answer.stage))
             << std::int64_t{q.answer.attempts} << std::int64_t{q.answer.blank_frames}
             << measured(q.distance_m) << measured(q.angle_deg) << measured(q.aligned_distance_m)
             << counted(&CandidateCounts::keyframes) << counted(&CandidateCounts::c1)
@@ -304,7 +316,7 @@ void put_queries(SQLite::Database& db, const std::string& key, const RunResult& 
             << counted(&CandidateCounts::final) << (c ? std::optional(c->label_mass) : std::nullopt)
             << q.true_world_from_camera << q.answer.world_from_camera << hex(q.answer.image_digest)
             << hex(q.answer.matching_digest) << hex(q.answer.pose_digest)
-            << matches_json(q.answer.matches).dump();
+            << told(kind != SystemKind::kOutside, matches_json(q.answer.matches).dump());
         row.put();
       }
 }
@@ -319,28 +331,32 @@ QueryScore query_at(SQLite::Statement& s) {
   q.success = integer(2) != 0;
   q.correct = integer(3) != 0;
   q.wrong = integer(4) != 0;
-  q.answer.stage = named(
-      s.getColumn(5).getString(),
-      {RelocalizationStage::kNone, RelocalizationStage::kNoCandidate, RelocalizationStage::kMatches,
-       RelocalizationStage::kPnp, RelocalizationStage::kInliers, RelocalizationStage::kVerified});
+  if (!s.getColumn(5).isNull())
+    q.answer.stage = named(s.getColumn(5).getString(),
+                           {RelocalizationStage::kNone, RelocalizationStage::kNoCandidate,
+                            RelocalizationStage::kMatches, RelocalizationStage::kPnp,
+                            RelocalizationStage::kInliers, RelocalizationStage::kVerified});
   q.answer.attempts = integer(6);
   q.answer.blank_frames = integer(7);
   q.distance_m = real(8);
   q.angle_deg = real(9);
   q.aligned_distance_m = real(10);
-  if (!s.getColumn(11).isNull())
-    q.answer.candidates = CandidateCounts{.keyframes = integer(11),
-                                          .c1 = integer(12),
-                                          .c2 = integer(13),
-                                          .c3 = integer(14),
-                                          .final = integer(15),
-                                          .label_mass = real(16)};
+  const auto count = [&](int i) { return s.getColumn(i).isNull() ? kUnknownCount : integer(i); };
+  const CandidateCounts told{.keyframes = count(11),
+                             .c1 = count(12),
+                             .c2 = count(13),
+                             .c3 = count(14),
+                             .final = count(15),
+                             .label_mass = s.getColumn(16).isNull() ? std::nan("") : real(16)};
+  for (const int number : {told.keyframes, told.c1, told.c2, told.c3, told.final})
+    if (number != kUnknownCount) q.answer.candidates = told;
   q.true_world_from_camera = pose_at(s, 17);
   if (!s.getColumn(24).isNull()) q.answer.world_from_camera = pose_at(s, 24);
   q.answer.image_digest = from_hex(s.getColumn(31).getString());
   q.answer.matching_digest = from_hex(s.getColumn(32).getString());
   q.answer.pose_digest = from_hex(s.getColumn(33).getString());
-  q.answer.matches = matches_from_json(Json::parse(s.getColumn(34).getString()));
+  if (!s.getColumn(34).isNull())
+    q.answer.matches = matches_from_json(Json::parse(s.getColumn(34).getString()));
   return q;
 }
 
@@ -351,17 +367,18 @@ void load_calls(SQLite::Database& db, const std::string& key, RunResult& run) {
       "pose FROM calls WHERE key = ? ORDER BY call");
   s.bind(1, key);
   while (s.executeStep())
-    run.mapping.calls.push_back({.index = static_cast<std::size_t>(s.getColumn(0).getInt64()),
-                                 .stamp_ns = s.getColumn(1).getInt64(),
-                                 .restart = s.getColumn(2).getInt(),
-                                 .status = named(s.getColumn(3).getString(),
-                                                 {TrackStatus::kInitialized, TrackStatus::kTracked,
-                                                  TrackStatus::kRelocalized, TrackStatus::kLost}),
-                                 .inliers = s.getColumn(4).getInt(),
-                                 .keyframe_added = s.getColumn(5).getInt() != 0,
-                                 .image_digest = from_hex(s.getColumn(6).getString()),
-                                 .matching_digest = from_hex(s.getColumn(7).getString()),
-                                 .pose_digest = from_hex(s.getColumn(8).getString())});
+    run.mapping.calls.push_back(
+        {.index = static_cast<std::size_t>(s.getColumn(0).getInt64()),
+         .stamp_ns = s.getColumn(1).getInt64(),
+         .restart = s.getColumn(2).getInt(),
+         .status =
+             named(s.getColumn(3).getString(), {TrackStatus::kInitialized, TrackStatus::kTracked,
+                                                TrackStatus::kRelocalized, TrackStatus::kLost}),
+         .inliers = s.getColumn(4).isNull() ? kUnknownCount : s.getColumn(4).getInt(),
+         .keyframe_added = s.getColumn(5).getInt() != 0,
+         .image_digest = from_hex(s.getColumn(6).getString()),
+         .matching_digest = from_hex(s.getColumn(7).getString()),
+         .pose_digest = from_hex(s.getColumn(8).getString())});
 }
 
 void load_frames(SQLite::Database& db, const std::string& key, RunResult& run) {
@@ -436,8 +453,11 @@ void put_rows(SQLite::Database& db, const std::string& key, const RunResult& run
   Insert row(db, "points", 8);
   for (std::size_t p = 0; p < run.spec.points.size(); ++p) {
     const SemanticConfig& s = run.spec.points[p];
-    row << key << static_cast<std::int64_t>(p) << s.gamma << s.xi << s.alpha << s.beta
-        << name(s.overlap) << std::int64_t{s.void_is_a_label};
+    row << key << static_cast<std::int64_t>(p);
+    // An outside program has no such settings: the rest stays null.
+    if (run.spec.system.kind != SystemKind::kOutside)
+      row << s.gamma << s.xi << s.alpha << s.beta << name(s.overlap)
+          << std::int64_t{s.void_is_a_label};
     row.put();
   }
   put_metrics(db, key, run);
@@ -454,13 +474,14 @@ void forget_rows(SQLite::Database& db, const std::string& key) {
   }
 }
 
-RunResult load_rows(SQLite::Database& db, const std::string& key, const RunSpec& spec) {
+RunResult load_rows(SQLite::Database& db, const std::filesystem::path& file, const std::string& key,
+                    const RunSpec& spec) {
   RunResult run;
   run.spec = spec;
   SQLite::Statement s(db, "SELECT result FROM runs WHERE key = ? AND status = 'done'");
   s.bind(1, key);
   if (!s.executeStep())
-    throw InputError(fmt::format("results file: run '{}' is not in it", spec.name));
+    throw InputError(fmt::format("{}: run '{}' is not in it", file.string(), spec.name));
   try {
     read_result(Json::parse(s.getColumn(0).getString()), run);
     load_calls(db, key, run);
@@ -468,7 +489,10 @@ RunResult load_rows(SQLite::Database& db, const std::string& key, const RunSpec&
     load_queries(db, key, run);
     load_times(db, key, run);
   } catch (const Json::exception& error) {
-    throw InputError(fmt::format("results file: run '{}' is damaged: {}", spec.name, error.what()));
+    throw InputError(
+        fmt::format("{}: run '{}' is damaged: {}: put back a copy, or move the file away "
+                    "and run again",
+                    file.string(), spec.name, error.what()));
   }
   return run;
 }

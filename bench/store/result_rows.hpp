@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -16,7 +17,9 @@ void put_run(SQLite::Database& db, const std::string& key, const RunSpec& spec,
              const std::string& error, const std::string& result);
 void put_rows(SQLite::Database& db, const std::string& key, const RunResult& run);
 void forget_rows(SQLite::Database& db, const std::string& key);
-RunResult load_rows(SQLite::Database& db, const std::string& key, const RunSpec& spec);
+/// @param file  that the database lies in, for messages
+RunResult load_rows(SQLite::Database& db, const std::filesystem::path& file, const std::string& key,
+                    const RunSpec& spec);
 
 /// Times of all calls: not part of what is compared.
 nlohmann::ordered_json calls_json(const CallTimes& times);

@@ -129,11 +129,16 @@ void open_schema(SQLite::Database& db, const fs::path& file) {
     }
     transaction.commit();
   }
-  if (version() == 1) {
+  if (version() < kSchemaVersion) {
     SQLite::Transaction transaction = writing(db);
-    if (version() == 1) {  // likewise
+    // Likewise.
+    if (version() == 1) {
       db.exec(kFromSchema1);
-      db.exec(fmt::format("PRAGMA user_version = {}", kSchemaVersion));
+      db.exec("PRAGMA user_version = 2");
+    }
+    if (version() == 2) {
+      db.exec(kFromSchema2);
+      db.exec("PRAGMA user_version = 3");
     }
     transaction.commit();
   }
@@ -315,7 +320,7 @@ void Store::forget_failure(const std::string& key) {
 }
 
 RunResult Store::load(const std::string& key, const RunSpec& spec) const {
-  return guarded(file_, [&] { return load_rows(*database_, key, spec); });
+  return guarded(file_, [&] { return load_rows(*database_, file_, key, spec); });
 }
 
 double Store::largest_rss_mb() const {
@@ -326,21 +331,34 @@ double Store::largest_rss_mb() const {
 
 void Store::check_mergeable(const std::vector<fs::path>& files) {
   std::map<std::string, std::pair<std::string, fs::path>> planned;  // of each run: key, first file
-  std::optional<std::pair<std::string, fs::path>> suite;
+  std::optional<std::pair<Suite, fs::path>> first;
   for (const fs::path& file : files) {
     const Store store = open_existing(file);
     const auto keys = store.planned_keys();
     if (keys.empty()) continue;
-    const std::string name = store.planned_suite().name;
-    if (!suite) suite.emplace(name, file);
-    if (name != suite->first)
+    const Suite suite = store.planned_suite();
+    if (!first) first.emplace(suite, file);
+    const auto differs = [&](const std::string& what, const auto& here, const auto& there) {
+      return InputError(
+          fmt::format("{}: {} {}, {} has {}: parts of one suite must not differ in it",
+                      file.string(), what, here, first->second.string(), there));
+    };
+    if (suite.name != first->first.name)
       throw InputError(fmt::format("{}: holds results of the suite '{}', {} of '{}'", file.string(),
-                                   name, suite->second.string(), suite->first));
+                                   suite.name, first->second.string(), first->first.name));
     for (const auto& [run, key] : keys) {
-      const auto [first, is_new] = planned.try_emplace(run, key, file);
-      if (!is_new && first->second.first != key)
-        throw made_otherwise(file, run, first->second.second);
+      const auto [of_run, is_new] = planned.try_emplace(run, key, file);
+      if (!is_new && of_run->second.first != key)
+        throw made_otherwise(file, run, of_run->second.second);
     }
+    if (suite.trials != first->first.trials)
+      throw differs("was run with --trials", suite.trials, first->first.trials);
+    // Every part plans the whole suite, whatever its own share.
+    if (keys.size() != planned.size())
+      throw differs("number of runs:", keys.size(), planned.size());
+    const auto margin = [](const Suite& s) { return s.non_inferiority_margin.value_or(0); };
+    if (margin(suite) != margin(first->first))
+      throw differs("non_inferiority_margin", margin(suite), margin(first->first));
   }
 }
 
@@ -382,22 +400,44 @@ std::size_t Store::merge(const fs::path& other) {
   });
 }
 
-std::vector<std::vector<std::string>> Store::rows(const std::string& sql) const {
+std::vector<std::vector<Store::Value>> Store::values(const std::string& sql) const {
   return guarded(file_, [&] {
     SQLite::Statement s(*database_, sql);
-    std::vector<std::vector<std::string>> rows(1);
+    std::vector<std::vector<Value>> rows(1);
     for (int c = 0; c < s.getColumnCount(); ++c) rows[0].emplace_back(s.getColumnName(c));
     while (s.executeStep()) {
       auto& row = rows.emplace_back();
       for (int c = 0; c < s.getColumnCount(); ++c) {
         const SQLite::Column column = s.getColumn(c);
-        row.push_back(column.isNull()    ? std::string()
-                      : column.isFloat() ? exact(column.getDouble())
-                                         : column.getString());
+        if (column.isNull())
+          row.emplace_back();
+        else if (column.isFloat())
+          row.emplace_back(column.getDouble());
+        else if (column.isInteger())
+          row.emplace_back(column.getInt64());
+        else
+          row.emplace_back(column.getString());
       }
     }
     return rows;
   });
+}
+
+std::vector<std::vector<std::string>> Store::rows(const std::string& sql) const {
+  std::vector<std::vector<std::string>> texts;
+  for (const auto& row : values(sql)) {
+    auto& text = texts.emplace_back();
+    for (const Value& value : row)
+      if (const auto* number = std::get_if<double>(&value))
+        text.push_back(exact(*number));
+      else if (const auto* integer = std::get_if<std::int64_t>(&value))
+        text.push_back(std::to_string(*integer));
+      else if (const auto* word = std::get_if<std::string>(&value))
+        text.push_back(*word);
+      else
+        text.emplace_back();
+  }
+  return texts;
 }
 
 std::string utc_now() {

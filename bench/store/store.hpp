@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "bench/plan/suite.hpp"
@@ -79,10 +81,13 @@ class Store {
   /// @throws InputError if a run of one name was planned with different settings, code or input.
   std::size_t merge(const std::filesystem::path& other);
   /// What merging them all would find. @throws InputError as merge() does, or if they are results
-  /// of different suites.
+  /// of different suites, of one with different trials, or of other runs of it.
   static void check_mergeable(const std::vector<std::filesystem::path>& files);
 
-  /// Rows of a query, for exports: column names first. Numbers are printed so that they read back.
+  /// Rows of a query, for exports: column names first.
+  using Value = std::variant<std::monostate, std::int64_t, double, std::string>;  ///< null first
+  std::vector<std::vector<Value>> values(const std::string& sql) const;
+  /// The same as text: null is empty, numbers are printed so that they read back.
   std::vector<std::vector<std::string>> rows(const std::string& sql) const;
 
   const std::filesystem::path& file() const { return file_; }

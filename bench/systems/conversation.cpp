@@ -131,7 +131,7 @@ class Conversation {
     report.world_from_camera = pose(answer);
     report.status = report.world_from_camera ? with_pose : TrackStatus::kLost;
     report.keypoints = count(answer, "keypoints");
-    report.inliers = count(answer, "inliers");
+    report.inliers = count(answer, "inliers", kUnknownCount);
     if (const auto it = answer.find("keyframe"); it != answer.end()) {
       if (!it->is_boolean()) fail(fmt::format("gave a keyframe of {}", shortened(it->dump())));
       report.keyframe_added = *it;
@@ -192,9 +192,10 @@ class Conversation {
     return SE3(rotation, Eigen::Vector3d(v[0], v[1], v[2]));
   }
 
-  int count(const Json& from, const char* key) {
+  /// @param fallback  where the program does not tell it
+  int count(const Json& from, const char* key, int fallback = 0) {
     const auto it = from.find(key);
-    if (it == from.end()) return 0;
+    if (it == from.end()) return fallback;
     if (!it->is_number_integer() || *it < 0 || *it > 1'000'000'000)
       fail(fmt::format("gave {} of {}: expected a count", key, shortened(it->dump())));
     return *it;
@@ -217,11 +218,12 @@ class Conversation {
     for (const auto& [key, value] : it->items())
       if (!std::set<std::string>{"keyframes", "c1", "c2", "c3", "final"}.contains(key))
         fail(fmt::format("gave an unknown key 'candidates.{}'", shortened(key)));
-    return CandidateCounts{.keyframes = count(*it, "keyframes"),
-                           .c1 = count(*it, "c1"),
-                           .c2 = count(*it, "c2"),
-                           .c3 = count(*it, "c3"),
-                           .final = count(*it, "final")};
+    return CandidateCounts{.keyframes = count(*it, "keyframes", kUnknownCount),
+                           .c1 = count(*it, "c1", kUnknownCount),
+                           .c2 = count(*it, "c2", kUnknownCount),
+                           .c3 = count(*it, "c3", kUnknownCount),
+                           .final = count(*it, "final", kUnknownCount),
+                           .label_mass = std::nan("")};
   }
 
   const ScratchFolder scratch_;

@@ -28,6 +28,10 @@ class QueryMemo {
   virtual ~QueryMemo() = default;
 };
 
+/// In counts of inliers and candidates: what a system did not tell. An unknown label mass is no
+/// number.
+inline constexpr int kUnknownCount = -1;
+
 /// A SLAM system under test, as the protocol drives it. It sees frames and nothing else.
 class System {
  public:

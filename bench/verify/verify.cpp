@@ -124,7 +124,7 @@ Verification verify(const Suite& suite, const SuiteOverrides& overrides, BenchOp
     BenchResults results = run_suite(suite, overrides, options);
     if (!results.failed.empty())
       throw MachineError(
-          fmt::format("{}: {}", results.failed.front().run, results.failed.front().error));
+          fmt::format("{}: {}", results.failed.front().spec.name, results.failed.front().error));
     return std::move(results.runs);
   };
   const std::vector<RunResult> first = execute(kFewJobs, 0.0);

@@ -235,7 +235,17 @@ TEST(BenchProcess, ACrashIsAFailureAndStaysOne) {
   const std::string once = content(marks);
   EXPECT_EQ(run(bench(suite, "crash")), 3);
   EXPECT_EQ(content(marks), once) << "a failed run was repeated";
-  EXPECT_NE(content(test_folder() / "crash" / "table.txt").find("plain"), std::string::npos);
+  const std::string table = content(test_folder() / "crash" / "table.txt");
+  EXPECT_NE(table.find("plain"), std::string::npos);
+  EXPECT_NE(table.find("   failed\n"), std::string::npos) << table;
+  EXPECT_NE(table.find("  crasher-exact-pepper-0: "), std::string::npos) << table;
+  EXPECT_NE(content(test_folder() / "crash" / "results.json").find("\"status\": \"failed\""),
+            std::string::npos);
+  EXPECT_EQ(run("export " + (test_folder() / "crash").string() + " --format latex"), 0);
+  const std::string latex = content(test_folder() / "stdout");
+  EXPECT_NE(latex.find("crasher & 0 of 1, 1 failed & -- & -- & -- & -- & -- & -- & -- "),
+            std::string::npos)
+      << latex;
   EXPECT_EQ(run(bench(suite, "crash", "--retry-failed")), 3);
   EXPECT_NE(content(marks), once);
 }
@@ -272,6 +282,11 @@ TEST(BenchProcess, ASweepOverAFixedMapAnswersAsSeparateQueriesWould) {
           all += line.substr(line.find("," + std::string(alpha) + ",")) + "\n";
       return all;
     };
+    EXPECT_EQ(run("export " + (test_folder() / "sweep").string() + " --format latex"), 0);
+    const std::string latex = content(test_folder() / "stdout");
+    EXPECT_NE(latex.find("semantic & 1 & 1.5 & " + std::string(alpha) + " & " + beta + " & 1 & "),
+              std::string::npos)
+        << latex;
     EXPECT_FALSE(queries("sweep", point).empty());
     EXPECT_EQ(queries("sweep", point), queries(name, 0));
   }
@@ -324,6 +339,11 @@ TEST(BenchProcess, PartsThatDoNotBelongTogetherAreRefusedAndLeaveNothing) {
       << errors();
   EXPECT_EQ(run("merge " + out + part + " " + (test_folder() / "f46").string()), 2);
   EXPECT_NE(errors().find("made with other settings"), std::string::npos) << errors();
+  EXPECT_EQ(run(bench(write_suite(), "trials", "--trials 2 --shard 6/6")), 0) << errors();
+  EXPECT_EQ(run("merge " + out + part + " " + (test_folder() / "trials").string()), 2);
+  EXPECT_NE(errors().find("trials/results.sqlite: was run with --trials 2, "), std::string::npos)
+      << errors();
+  EXPECT_NE(errors().find("f45/results.sqlite has 1: "), std::string::npos) << errors();
   EXPECT_EQ(run(bench(write_suite("second", "[plain]"), "second")), 0) << errors();
   EXPECT_EQ(run("merge " + out + part + " " + (test_folder() / "second").string()), 2);
   EXPECT_NE(errors().find("of the suite 'second'"), std::string::npos) << errors();

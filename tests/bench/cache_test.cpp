@@ -82,6 +82,10 @@ TEST_F(CacheFolder, OneThatCannotBeWrittenCostsTimeAlone) {
   EXPECT_EQ(get(Cache(folder_), "aa1"), "light");
   EXPECT_EQ(get(Cache(), "aa1"), "light");
   EXPECT_EQ(made_, 2);
+  EXPECT_NE(Cache(folder_).why_unwritable().find(folder_.string()), std::string::npos);
+  fs::remove(folder_);
+  EXPECT_EQ(Cache(folder_).why_unwritable(), "");
+  EXPECT_TRUE(fs::is_empty(folder_)) << "the probe is gone";
 }
 
 TEST_F(CacheFolder, WhoAsksMeanwhileWaitsInsteadOfMakingItTwice) {

@@ -151,9 +151,9 @@ TEST_F(CommandLine, BenchFindsWhatCannotBeWorkedWithBeforeTheWork) {
   small.replace(small.find(extent), extent.size(), "extent_m: [0, 0, 5.3, 6.7]");
   refused("scene", write("small.yaml", small).string(), "small.yaml:");
   // From inside the outer wall.
-  const fs::path tour =
-      write("walled.yaml",
-            "name: walled\nstart: {position: [-3, -3], heading_deg: 0}\nwaypoints: [{to: [1, 1]}]\n");
+  const fs::path tour = write(
+      "walled.yaml",
+      "name: walled\nstart: {position: [-3, -3], heading_deg: 0}\nwaypoints: [{to: [1, 1]}]\n");
   refused("mapping_tour", tour.string(), "walled.yaml");
   for (const char* command : {"no_such_program_of_mine --x", "./nowhere/vo", "exec suite.yaml/x"})
     refused("systems",
@@ -359,7 +359,8 @@ TEST_F(CommandLine, EvaluateGivesEvosOwnFigures) {
 TEST_F(CommandLine, CheckRefusesABaselineThatIsNotOfItsSuite) {
   const std::string check =
       "check " + std::string(MH_SOURCE_DIR) + "/bench/suites/ci.yaml --baseline ";
-  expect_refused(check + (folder_ / "none.json").string(), "none.json");
+  expect_refused(check + (folder_ / "none.json").string(), "none.json: ");
+  EXPECT_NE(err_.find("--update makes one"), std::string::npos) << err_;
   expect_refused(check + write("damaged.json", "{").string(), "is no baseline");
   expect_refused(check + write("newer.json", R"({"format": "modelhouse-baseline-9"})").string(),
                  "modelhouse-baseline-9");

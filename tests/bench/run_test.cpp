@@ -371,6 +371,156 @@ TEST(Results, WhatWasNotAskedIsADashNotZeroPercent) {
   }
 }
 
+/// The runs without those of a name's beginning, and these as failures.
+std::pair<std::vector<RunResult>, std::vector<FailedRun>> with_failed(
+    std::vector<RunResult> runs, const std::vector<std::string>& names) {
+  std::vector<FailedRun> failed;
+  std::erase_if(runs, [&](const RunResult& run) {
+    const bool is = std::ranges::count(names, run.spec.name) > 0;
+    if (is) failed.push_back({run.spec, "ended by signal 11"});
+    return is;
+  });
+  EXPECT_EQ(failed.size(), names.size());
+  return {std::move(runs), std::move(failed)};
+}
+
+TEST(Results, FailedRunsAreToldInTheirRows) {
+  Place place;
+  place.suite.labels = {LabelMode::kExact};
+  place.suite.trials = 3;
+  const auto [runs, failed] = with_failed(
+      place.run(), {"semantic-exact-fake-1", "plain-fake-0", "plain-fake-1", "plain-fake-2"});
+  const std::string table = results_table(place.suite, runs, failed);
+  for (const char* part : {"   2 of 3 trials, 1 failed\n", "   failed: 3 of 3 trials\n",
+                           "failed, so that the figures above are without 4 runs:\n",
+                           "  semantic-exact-fake-1: ended by signal 11\n"})
+    EXPECT_NE(table.find(part), std::string::npos) << part << table;
+  EXPECT_EQ(table.find("semantic minus plain"), std::string::npos) << "with what? " << table;
+  const auto json = results_json(place.suite, runs, failed);
+  ASSERT_EQ(json["runs"].size(), 6u);
+  EXPECT_EQ(json["runs"][0]["status"], "done");
+  EXPECT_EQ(json["runs"][5]["status"], "failed");
+  EXPECT_EQ(json["runs"][5]["error"], "ended by signal 11");
+  EXPECT_EQ(json["rows"][0]["trials"], 2);
+  EXPECT_EQ(json["rows"][0]["failed"], 1);
+  EXPECT_EQ(json["rows"][1]["trials"], 0);
+  EXPECT_TRUE(json["rows"][1]["trajectory"].is_null());
+  EXPECT_TRUE(json["rows"][1]["held_out"].is_null());
+  // Nothing at all is left.
+  const std::string nothing = results_table(place.suite, {}, failed);
+  EXPECT_NE(nothing.find("   failed: 3 of 3 trials\n"), std::string::npos) << nothing;
+}
+
+TEST(Scenes, WhereRunsFailedItIsSaidOverHowManyScenesTheMeanIs) {
+  Place place;
+  place.suite.labels = {LabelMode::kExact};
+  place.suite.environments.push_back(place.suite.environments[0]);
+  place.suite.environments[1].name = place.suite.environments[1].category = "hall";
+  const auto [runs, failed] = with_failed(place.run(), {"hall-plain-fake-0"});
+  const std::vector<Row> rows = make_rows(place.suite, runs, failed);
+  std::vector<std::string> seen;
+  for (const CategoryRow& row : make_category_rows(place.suite, rows))
+    seen.push_back(fmt::format("{} {} {}/{} {}", row.category, place.suite.systems[row.system].name,
+                               row.scenes, row.of, row.failed));
+  EXPECT_EQ(seen, (std::vector<std::string>{"fake semantic 1/1 0", "fake plain 1/1 0",
+                                            "hall semantic 1/1 0", "hall plain 0/1 1",
+                                            "all semantic 2/2 0", "all plain 1/2 1"}));
+  const auto families = compare_over_scenes(place.suite, rows);
+  ASSERT_EQ(families.size(), 1u);
+  EXPECT_EQ(families[0].comparisons[0].pairs, 1u);
+  const std::string table = results_table(place.suite, runs, failed);
+  for (const char* part : {"   0 of 1 scene, 1 run failed\n", "   1 of 2 scenes, 1 run failed\n",
+                           "over 1 of 2 scenes, where both have a value"})
+    EXPECT_NE(table.find(part), std::string::npos) << part << table;
+  EXPECT_EQ(table.find("inf"), std::string::npos) << table;
+  const auto json = results_json(place.suite, runs, failed);
+  EXPECT_TRUE(json["categories"][3]["completeness"].is_null());
+  EXPECT_EQ(json["categories"][5]["of_scenes"], 2);
+}
+
+TEST(Sweep, APointThatFailedInSomeScenesIsNeverBest) {
+  Place place;
+  place.suite.labels = {LabelMode::kExact};
+  place.suite.systems.resize(1);
+  place.suite.environments.push_back(place.suite.environments[0]);
+  place.suite.environments[1].name = "hall";
+  place.suite.sweep.map = SweepMap::kRebuilt;
+  place.suite.sweep.varied = {"alpha"};
+  for (const double alpha : {0.7, 0.8}) {
+    place.suite.sweep.points.push_back(place.suite.semantics);
+    place.suite.sweep.points.back().alpha = alpha;
+  }
+  std::vector<RunResult> all = place.run();
+  for (RunResult& run : all)  // the second point answers half as often
+    if (run.spec.points[0].alpha == 0.8)
+      for (std::size_t q = 0; q < run.points[0].held_out.size(); q += 2)
+        run.points[0].held_out[q].correct = false;
+  const auto [runs, failed] = with_failed(std::move(all), {"hall-semantic-exact-fake-p00-0"});
+  const std::vector<Row> rows = make_rows(place.suite, runs, failed);
+  const auto best =
+      best_point(place.suite, rows, sweep_results(place.suite, rows)[0], QuerySet::kHeldOut);
+  ASSERT_TRUE(best);
+  EXPECT_EQ(best->point, 1u);
+}
+
+TEST(Results, OfTwoSystemsTheSameTrialsAreCompared) {
+  Place place;
+  place.suite.labels = {LabelMode::kExact};
+  place.suite.trials = 2;
+  std::vector<RunResult> all = place.run();
+  const auto bent = [](double by) {  // a path with a corner: it determines an alignment
+    Trajectory path = straight_path(40);
+    for (std::size_t i = 20; i < path.size(); ++i)
+      path[i].world_from_camera =
+          SE3(Eigen::Matrix3d::Identity(),
+              Eigen::Vector3d(0.2, 0.01 * static_cast<double>(i), 1.0 + by * (i % 2 ? 1 : -1)));
+    return path;
+  };
+  for (RunResult& run : all) {
+    run.truth = bent(0);
+    run.estimate = bent(run.spec.trial == 0 ? 0.1 : 0.0);
+  }
+  const auto [runs, failed] = with_failed(std::move(all), {"semantic-exact-fake-0"});
+  const std::vector<Row> rows = make_rows(place.suite, runs, failed);
+  const auto [semantic, plain] = ate_over_common_frames(rows[0], rows[1]);
+  ASSERT_TRUE(semantic && plain);
+  EXPECT_NEAR(*semantic, 0, 1e-9);
+  EXPECT_NEAR(*plain, 0, 1e-9) << "trial 0 of the plain system has no counterpart";
+}
+
+TEST(Results, WhatAnOutsideProgramDoesNotTellIsUnknown) {
+  Place place;
+  place.suite.labels = {LabelMode::kExact};
+  place.suite.systems = {{SystemKind::kPlain, "plain", {}},
+                         {SystemKind::kOutside, "odometry_of_theirs", {.name = "x"}}};
+  std::vector<RunResult> runs = place.run();
+  ASSERT_EQ(runs[1].spec.system.kind, SystemKind::kOutside);
+  for (QueryScore& q : runs[1].points[0].held_out) {
+    q.success = false;
+    q.answer.stage = RelocalizationStage::kNone;
+    q.answer.candidates = CandidateCounts{.keyframes = kUnknownCount,
+                                          .c1 = kUnknownCount,
+                                          .c2 = kUnknownCount,
+                                          .c3 = kUnknownCount,
+                                          .final = 5,
+                                          .label_mass = std::nan("")};
+  }
+  const QuerySummary s = summarize(runs[1].points[0].held_out);
+  EXPECT_FALSE(s.c1 || s.keyframes || s.label_mass);
+  EXPECT_EQ(s.final, 5.0);
+  EXPECT_EQ(s.single_candidate, 0.0);
+  const std::string table = results_table(place.suite, runs);
+  EXPECT_TRUE(
+      std::regex_search(table, std::regex("odometry_of_theirs +- +- +- +- +5\\.00 +0\\.0% +-\n")))
+      << table;
+  EXPECT_NE(table.find(" 5 not told\n"), std::string::npos) << table;
+  EXPECT_EQ(table.find("penalised"), std::string::npos) << table;
+  const auto query = results_json(place.suite, runs)["runs"][1]["points"][0]["held_out"][0];
+  EXPECT_TRUE(query["stage"].is_null());
+  EXPECT_TRUE(query["candidates"]["c1"].is_null());
+  EXPECT_EQ(query["candidates"]["final"], 5);
+}
+
 TEST(Results, ACutRunSaysSo) {
   Place place;
   place.world.mapping.base = place.world.mapping.camera;

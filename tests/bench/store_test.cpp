@@ -204,12 +204,22 @@ TEST_F(StoreFile, AFileOfSchema1IsTakenOverAndMerges) {
   }
   {
     SQLite::Database raw(file.string(), SQLite::OPEN_READWRITE);
+    raw.exec("ALTER TABLE points RENAME TO p");
+    raw.exec(
+        "CREATE TABLE points (key TEXT NOT NULL, point INTEGER NOT NULL, gamma REAL NOT NULL, xi "
+        "REAL NOT NULL, alpha REAL NOT NULL, beta REAL NOT NULL, overlap TEXT NOT NULL, "
+        "void_is_a_label INTEGER NOT NULL, PRIMARY KEY (key, point)) WITHOUT ROWID");
+    raw.exec("INSERT INTO points SELECT * FROM p");
+    raw.exec("DROP TABLE p");
     for (const char* column : {"products_s", "sitting", "jobs", "load"})
       raw.exec(fmt::format("ALTER TABLE times DROP COLUMN {}", column));
     raw.exec("PRAGMA user_version = 1");
   }
   Store old(file), fresh(folder_ / "fresh.sqlite");
-  EXPECT_EQ(old.rows("PRAGMA user_version")[1][0], "2");
+  EXPECT_EQ(old.rows("PRAGMA user_version")[1][0], "3");
+  EXPECT_EQ(old.rows("SELECT key, alpha FROM points")[1],
+            (std::vector<std::string>{"kx", exact(SemanticConfig{}.alpha)}));
+  EXPECT_EQ(old.rows("SELECT * FROM queries").size(), 1u + 3);
   const RunResult before = old.load("kx", some_run("x").spec);
   EXPECT_EQ(before.wall_s, 2);
   EXPECT_EQ(before.circumstances.sitting, "");
@@ -217,7 +227,9 @@ TEST_F(StoreFile, AFileOfSchema1IsTakenOverAndMerges) {
       .products_s = 0.5,
       .max_rss_mb = 12,
       .circumstances = {.host = "", .sitting = "2026-01-01T00:00:00Z", .jobs = 3, .load = 0.25}};
-  old.put("ky", some_run("y"), cost);
+  RunResult theirs = some_run("y");
+  theirs.spec.system = {SystemKind::kOutside, "vo", {}};
+  old.put("ky", theirs, cost);
   fresh.merge(file);
   for (const Store* store : {&old, &fresh}) {
     EXPECT_EQ(store->rows("SELECT key, products_s, max_rss_mb FROM times ORDER BY key"),
@@ -340,6 +352,59 @@ TEST_F(StoreFile, ExportsALinePerRunAndPoint) {
   const auto json = nlohmann::json::parse(export_json(store));
   EXPECT_EQ(json["queries"].size(), 6u);
   EXPECT_FALSE(json.contains("times"));
+  EXPECT_EQ(json["queries"][0]["success"], 1);
+  EXPECT_EQ(json["queries"][0]["distance_m"], 1.0 / 7.0);
+  EXPECT_EQ(json["runs"][0]["trial"], 0);
+  EXPECT_EQ(json["runs"][0]["name"], "x");
+  EXPECT_TRUE(json["queries"][1]["distance_m"].is_null());
+}
+
+TEST_F(StoreFile, WhatAnOutsideProgramDoesNotTellIsNull) {
+  Store store(folder_ / "r.sqlite");
+  store.plan(suite(), {}, {{"x", "kx"}});
+  RunResult run = some_run("x");
+  run.spec.system = {SystemKind::kOutside, "vo", {}};
+  QueryScore& query = run.points[0].held_out[0];
+  query.answer.stage = RelocalizationStage::kNone;
+  query.answer.matches = {};
+  run.mapping.calls[0].inliers = kUnknownCount;
+  query.answer.candidates = CandidateCounts{.keyframes = kUnknownCount,
+                                            .c1 = kUnknownCount,
+                                            .c2 = kUnknownCount,
+                                            .c3 = kUnknownCount,
+                                            .final = 5,
+                                            .label_mass = std::nan("")};
+  store.put("kx", run, {});
+  EXPECT_EQ(
+      store.rows("SELECT stage, c1, final, label_mass, matchers FROM queries WHERE frame = 29")
+          .at(1),
+      (std::vector<std::string>{"", "", "5", "", ""}));
+  EXPECT_NE(export_csv(store).find(",0,,,,,,"), std::string::npos) << export_csv(store);
+  EXPECT_EQ(store.rows("SELECT inliers FROM calls ORDER BY call"),
+            (std::vector<std::vector<std::string>>{{"inliers"}, {""}, {"12"}}));
+  EXPECT_EQ(store.load("kx", run.spec).mapping.calls[0].inliers, kUnknownCount);
+  const QueryScore back = store.load("kx", run.spec).points[0].held_out[0];
+  ASSERT_TRUE(back.answer.candidates);
+  EXPECT_EQ(back.answer.candidates->c1, kUnknownCount);
+  EXPECT_EQ(back.answer.candidates->final, 5);
+  EXPECT_TRUE(std::isnan(back.answer.candidates->label_mass));
+  const auto told = results_json(suite(), std::vector{store.load("kx", run.spec)})["runs"][0];
+  EXPECT_TRUE(told["points"][0]["settings"].is_null());
+  EXPECT_TRUE(told["mapping"]["matchers"].is_null());
+}
+
+TEST_F(StoreFile, ADamagedResultIsNamedWithItsFile) {
+  const fs::path file = folder_ / "r.sqlite";
+  Store store(file);
+  store.put("k", some_run("a"), {});
+  SQLite::Database(file.string(), SQLite::OPEN_READWRITE).exec("UPDATE runs SET result = '{'");
+  try {
+    store.load("k", some_run("a").spec);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find(file.string() + ": run 'a' is damaged"), std::string::npos)
+        << e.what();
+  }
 }
 
 TEST(Exact, ReadsBackTheSame) {

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/check/baseline.hpp"
 #include "bench/check/from_runs.hpp"
 #include "slam/core/error.hpp"
 
@@ -80,6 +81,25 @@ TEST_F(GateDigest, LeavesOutWhatAChangeMayChange) {
   EXPECT_EQ(digest("check: {tolerances: {completeness: 0.1}}"), before);
   write("words", "trained anew");
   EXPECT_EQ(digest(), before);
+}
+
+TEST_F(GateDigest, WhatAChangeMayChangeIsTold) {
+  const auto settings = [&](const std::string& more = "") {
+    digest(more);  // writes the suite
+    return Baseline{.suite = "s",
+                    .suite_digest = "",
+                    .origin = {},
+                    .settings = gate_settings(load_suite(folder_ / "suite.yaml"))};
+  };
+  const Baseline before = settings();
+  EXPECT_TRUE(changed_settings(before, settings("trials: 3")).empty());
+  const auto xi = changed_settings(before, settings("slam: {xi: 3}"));
+  ASSERT_EQ(xi.size(), 1u);
+  EXPECT_EQ(xi[0], "slam/xi: 1.5 -> 3.0");
+  write("words", "trained anew");
+  const auto words = changed_settings(before, settings());
+  ASSERT_EQ(words.size(), 1u);
+  EXPECT_TRUE(words[0].starts_with("vocabulary: ")) << words[0];
 }
 
 }  // namespace

@@ -201,6 +201,33 @@ TEST_F(BaselineFile, ComesBackAsItWas) {
   EXPECT_EQ(to_text(read), to_text(saved));
 }
 
+TEST_F(BaselineFile, TellsTheSettingsThatChanged) {
+  Baseline saved{.suite = "ci",
+                 .suite_digest = "12ab",
+                 .origin = {},
+                 .settings = {{"slam", {{"xi", 1.5}, {"alpha", 0.8}}}, {"vocabulary", "aa"}}};
+  save_baseline(saved, file_);
+  const Baseline before = load_baseline(file_);
+  EXPECT_TRUE(changed_settings(before, saved).empty());
+  saved.settings["slam"]["xi"] = 3.0;
+  saved.settings["vo"]["./vo"] = "cc";
+  EXPECT_EQ(changed_settings(before, saved),
+            (std::vector<std::string>{"slam/xi: 1.5 -> 3.0", "vo/.~1vo: none -> \"cc\""}));
+  EXPECT_TRUE(changed_settings(Baseline{}, saved).empty()) << "of an older one nothing is known";
+}
+
+TEST(GateReport, OtherSettingsAreNoLackOfRepeatability) {
+  auto after = five_runs();
+  after[2].digest = "other";
+  GateResult result = compare(five_runs(), after, kConfig, false);
+  result.changed_settings = {"slam/xi: 1.5 -> 3.0"};
+  const std::string report = gate_report(result, "ci");
+  EXPECT_NE(report.find("it was made with other settings\n"), std::string::npos) << report;
+  EXPECT_NE(report.find("  slam/xi: 1.5 -> 3.0\n"), std::string::npos) << report;
+  EXPECT_NE(report.find("ci: passed"), std::string::npos) << report;
+  EXPECT_EQ(report.find("repeatable"), std::string::npos) << report;
+}
+
 TEST_F(BaselineFile, OfAnotherSuiteIsAnErrorThatSaysSo) {
   const Baseline b{.suite = "ci", .suite_digest = "12ab", .origin = {}};
   EXPECT_NO_THROW(check_suite(b, file_, "ci", "12ab"));
