@@ -75,6 +75,7 @@ void check_references(const Reader& reader, const std::vector<Keyframe>& keyfram
   }
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
     const Landmark& l = landmarks[i];
+    if (l.erased) continue;
     reader.require(l.id.value == i, "a landmark's id");
     reader.require(l.label < classes().size(), "a landmark's label");
     reader.require(l.first_keyframe.value < keyframes.size(), "a landmark's first keyframe");

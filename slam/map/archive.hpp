@@ -61,7 +61,8 @@ class Writer {
       put(static_cast<std::uint8_t>(value));
     } else if constexpr (Number<T> || std::is_same_v<T, Descriptor>) {
       bytes(&value, sizeof value);
-    } else if constexpr (kIsVector<T> || std::is_same_v<T, std::string>) {
+    } else if constexpr (kIsVector<T> || std::is_same_v<T, std::string> ||
+                         std::is_same_v<T, LandmarkTable>) {
       put(static_cast<std::uint64_t>(value.size()));
       for (const auto& element : value) put(element);
     } else if constexpr (kIsOptional<T>) {
@@ -212,8 +213,10 @@ template <class A, Either<Landmark> T>
 void fields(A& a, T& landmark) {
   auto& [id, position_in_world, observations, descriptor, label, mean_direction, min_distance_m,
          max_distance_m, first_keyframe, visible, found, erased, described] = landmark;
+  a(erased);
+  if (erased) return;
   a(id, position_in_world, observations, descriptor, label, mean_direction, min_distance_m,
-    max_distance_m, first_keyframe, visible, found, erased);
+    max_distance_m, first_keyframe, visible, found);
 }
 template <class A, Either<Distortion> T>
 void fields(A& a, T& distortion) {

@@ -134,11 +134,11 @@ void add_landmarks_from_depth(Map& map, KeyframeId keyframe, const MappingContex
 
 void cull_young_landmarks(Map& map, KeyframeId newest) {
   // Landmark ids grow with their first keyframe: the young ones are at the end.
-  for (std::size_t n = map.landmarks().size(); n > 0; --n) {
-    const Landmark& l = map.landmarks()[n - 1];
+  for (auto n = static_cast<std::uint32_t>(map.landmarks().size()); n > 0; --n) {
+    const Landmark& l = map.at(LandmarkId{n - 1});
+    if (l.erased) continue;
     const std::uint32_t age = newest.value - l.first_keyframe.value;
     if (age > 3) break;
-    if (l.erased) continue;
     const bool seldom_found = l.found < kFoundShare * l.visible;
     const bool seen_once = age >= 2 && l.observations.size() < 2;
     if (seldom_found || seen_once) map.erase(l.id);

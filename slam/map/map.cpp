@@ -43,7 +43,10 @@ std::size_t most_central(const std::vector<const Descriptor*>& descriptors) {
 Map Map::restore(std::vector<Keyframe> keyframes, std::vector<Landmark> landmarks) {
   Map map;
   map.keyframes_ = std::move(keyframes);
-  map.landmarks_ = std::move(landmarks);
+  for (Landmark& l : landmarks) {
+    if (!l.erased) ++map.landmark_count_;
+    map.landmarks_.add(std::move(l));
+  }
   for (const Keyframe& k : map.keyframes_)
     if (!k.erased) {
       map.inverted_index_.add(k.id, k.words.vector);
@@ -52,8 +55,6 @@ Map Map::restore(std::vector<Keyframe> keyframes, std::vector<Landmark> landmark
   const auto standing = [](const auto& entity) { return !entity.erased; };
   map.keyframe_count_ =
       static_cast<int>(std::count_if(map.keyframes_.begin(), map.keyframes_.end(), standing));
-  map.landmark_count_ =
-      static_cast<int>(std::count_if(map.landmarks_.begin(), map.landmarks_.end(), standing));
   map.check_invariants();
   return map;
 }
@@ -80,49 +81,47 @@ void Map::set_words(KeyframeId id, WordIndex words) {
 LandmarkId Map::add_landmark(const Eigen::Vector3d& position_in_world, KeyframeId keyframe,
                              std::uint32_t feature) {
   Landmark landmark;
-  landmark.id = LandmarkId{static_cast<std::uint32_t>(landmarks_.size())};
   landmark.position_in_world = position_in_world;
   landmark.first_keyframe = keyframe;
-  landmarks_.push_back(std::move(landmark));
+  const LandmarkId id = landmarks_.add(std::move(landmark));
   ++landmark_count_;
-  const LandmarkId id = landmarks_.back().id;
   [[maybe_unused]] const bool added = add_observation(id, keyframe, feature);
   assert(added);
   return id;
 }
 
 bool Map::add_observation(LandmarkId landmark, KeyframeId keyframe, std::uint32_t feature) {
-  Landmark& l = mutable_at(landmark);
+  Landmark* l = landmarks_.find(landmark);
   Keyframe& k = mutable_at(keyframe);
-  if (l.erased || k.erased || k.landmarks[feature].valid()) return false;
+  if (l == nullptr || k.erased || k.landmarks[feature].valid()) return false;
   const auto place =
-      std::lower_bound(l.observations.begin(), l.observations.end(), keyframe,
+      std::lower_bound(l->observations.begin(), l->observations.end(), keyframe,
                        [](const Observation& o, KeyframeId wanted) { return o.keyframe < wanted; });
-  if (place != l.observations.end() && place->keyframe == keyframe) return false;
-  l.observations.insert(place, {keyframe, feature});
-  l.described = false;
+  if (place != l->observations.end() && place->keyframe == keyframe) return false;
+  l->observations.insert(place, {keyframe, feature});
+  l->described = false;
   k.landmarks[feature] = landmark;
   return true;
 }
 
 void Map::erase_observation(LandmarkId landmark, KeyframeId keyframe) {
-  Landmark& l = mutable_at(landmark);
-  const auto place = std::find_if(l.observations.begin(), l.observations.end(),
+  Landmark* l = landmarks_.find(landmark);
+  if (l == nullptr) return;
+  const auto place = std::find_if(l->observations.begin(), l->observations.end(),
                                   [&](const Observation& o) { return o.keyframe == keyframe; });
-  if (place == l.observations.end()) return;
+  if (place == l->observations.end()) return;
   mutable_at(keyframe).landmarks[place->feature] = LandmarkId{};
-  l.observations.erase(place);
-  l.described = false;
-  if (l.observations.empty()) erase(landmark);
+  l->observations.erase(place);
+  l->described = false;
+  if (l->observations.empty()) erase(landmark);
 }
 
 void Map::erase(LandmarkId landmark) {
-  Landmark& l = mutable_at(landmark);
-  if (l.erased) return;
-  for (const Observation& o : l.observations)
+  const Landmark* l = landmarks_.find(landmark);
+  if (l == nullptr) return;
+  for (const Observation& o : l->observations)
     mutable_at(o.keyframe).landmarks[o.feature] = LandmarkId{};
-  l.observations = {};  // gives its memory back, as clear() would not: tombstones must stay small
-  l.erased = true;
+  landmarks_.erase(landmark);
   --landmark_count_;
 }
 
@@ -133,8 +132,8 @@ void Map::fuse(LandmarkId from, LandmarkId into) {
   const int found = at(from).found;
   erase(from);
   for (const Observation& o : moved) add_observation(into, o.keyframe, o.feature);
-  mutable_at(into).visible += visible;
-  mutable_at(into).found += found;
+  landmarks_.find(into)->visible += visible;
+  landmarks_.find(into)->found += found;
 }
 
 void Map::erase(KeyframeId keyframe) {
@@ -181,8 +180,9 @@ void Map::describe(Landmark& l) const {
 }
 
 void Map::refresh(LandmarkId id, const FeatureConfig& config) {
-  Landmark& l = mutable_at(id);
-  if (l.erased) return;
+  Landmark* standing = landmarks_.find(id);
+  if (standing == nullptr) return;
+  Landmark& l = *standing;
   if (!l.described) describe(l);
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   for (const Observation& o : l.observations)

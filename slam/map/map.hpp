@@ -13,6 +13,7 @@
 #include "slam/core/se3.hpp"
 #include "slam/features/feature_grid.hpp"
 #include "slam/features/features.hpp"
+#include "slam/map/landmark_table.hpp"
 #include "slam/map/position_index.hpp"
 #include "slam/semantics/augmented_vector.hpp"
 #include "slam/vocabulary/inverted_index.hpp"
@@ -46,32 +47,8 @@ struct Keyframe {
   SE3 camera_from_parent;  ///< valid if erased
 };
 
-struct Observation {
-  KeyframeId keyframe;
-  std::uint32_t feature = 0;
-  friend bool operator==(const Observation&, const Observation&) = default;
-};
-
-struct Landmark {
-  LandmarkId id;
-  Eigen::Vector3d position_in_world = Eigen::Vector3d::Zero();
-  std::vector<Observation> observations;  ///< ordered by keyframe, one per keyframe
-
-  // Derived from the observations by Map::refresh().
-  Descriptor descriptor{};  ///< the observed one with the least median distance to the others
-  ClassId label = kVoid;    ///< of the observation that supplies the descriptor
-  Eigen::Vector3d mean_direction = Eigen::Vector3d::UnitZ();  ///< from cameras to the landmark
-  double min_distance_m = 0, max_distance_m = 0;  ///< range in which the pyramid can match it
-
-  KeyframeId first_keyframe;
-  int visible = 1;  ///< frames in which it was expected
-  int found = 1;    ///< frames in which it was an inlier
-  bool erased = false;
-  bool described = false;  ///< descriptor and label are of these observations; kept in no file
-};
-
-/// Keyframes, landmarks and who sees whom. Entities are addressed by id and never move; erased
-/// ones stay as tombstones. Invariants (check_invariants()): an observation and the keyframe's
+/// Keyframes, landmarks and who sees whom. Entities are addressed by id; erased ones stay as
+/// tombstones. Invariants (check_invariants()): an observation and the keyframe's
 /// landmark slot always name each other; erased entities are named by nobody; covisibility is
 /// symmetric.
 class Map {
@@ -80,9 +57,9 @@ class Map {
   static constexpr int kMinShared = 15;
 
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
-  const std::vector<Landmark>& landmarks() const { return landmarks_; }
+  const LandmarkTable& landmarks() const { return landmarks_; }
   const Keyframe& at(KeyframeId id) const { return keyframes_[id.value]; }
-  const Landmark& at(LandmarkId id) const { return landmarks_[id.value]; }
+  const Landmark& at(LandmarkId id) const { return landmarks_[id]; }
   int keyframe_count() const { return keyframe_count_; }
   int landmark_count() const { return landmark_count_; }
   bool empty() const { return keyframe_count_ == 0; }
@@ -108,12 +85,16 @@ class Map {
 
   void set_pose(KeyframeId id, const SE3& camera_from_world);
   void set_position(LandmarkId id, const Eigen::Vector3d& position_in_world) {
-    landmarks_[id.value].position_in_world = position_in_world;
+    if (Landmark* l = landmarks_.find(id)) l->position_in_world = position_in_world;
   }
   /// Describes a standing keyframe's view anew.
   void set_words(KeyframeId id, WordIndex words);
-  void count_visible(LandmarkId id) { ++landmarks_[id.value].visible; }
-  void count_found(LandmarkId id) { ++landmarks_[id.value].found; }
+  void count_visible(LandmarkId id) {
+    if (Landmark* l = landmarks_.find(id)) ++l->visible;
+  }
+  void count_found(LandmarkId id) {
+    if (Landmark* l = landmarks_.find(id)) ++l->found;
+  }
 
   /// Brings descriptor, label, mean direction and distance range of a landmark up to date.
   void refresh(LandmarkId id, const FeatureConfig& config);
@@ -142,12 +123,11 @@ class Map {
 
  private:
   Keyframe& mutable_at(KeyframeId id) { return keyframes_[id.value]; }
-  Landmark& mutable_at(LandmarkId id) { return landmarks_[id.value]; }
   void describe(Landmark& landmark) const;
   void set_neighbour(KeyframeId of, KeyframeId neighbour, int shared);
 
   std::vector<Keyframe> keyframes_;
-  std::vector<Landmark> landmarks_;
+  LandmarkTable landmarks_;
   InvertedIndex inverted_index_;
   PositionIndex position_index_;
   int keyframe_count_ = 0;

@@ -73,10 +73,11 @@ TEST(Step, TracksANoiseFreeRoomToMillimetres) {
 
 TEST(Step, LandmarksAreDescribedAsIfAnewAfterEachChange) {
   Map kept = mapped().state.map;
-  std::vector<Landmark> landmarks = kept.landmarks();
+  std::vector<Landmark> landmarks(kept.landmarks().begin(), kept.landmarks().end());
   for (Landmark& l : landmarks) l.described = false;
   Map anew = Map::restore(kept.keyframes(), std::move(landmarks));
   for (const Landmark& l : mapped().state.map.landmarks()) {
+    if (l.erased) continue;
     kept.refresh(l.id, mapped().state.config.features);
     anew.refresh(l.id, mapped().state.config.features);
   }

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "slam/core/ids.hpp"
+#include "slam/core/rgbd_frame.hpp"
+#include "slam/features/features.hpp"
+
+namespace mh {
+
+struct Observation {
+  KeyframeId keyframe;
+  std::uint32_t feature = 0;
+  friend bool operator==(const Observation&, const Observation&) = default;
+};
+
+struct Landmark {
+  LandmarkId id;
+  Eigen::Vector3d position_in_world = Eigen::Vector3d::Zero();
+  std::vector<Observation> observations;  ///< ordered by keyframe, one per keyframe
+
+  // Derived from the observations by Map::refresh().
+  Descriptor descriptor{};  ///< the observed one with the least median distance to the others
+  ClassId label = kVoid;    ///< of the observation that supplies the descriptor
+  Eigen::Vector3d mean_direction = Eigen::Vector3d::UnitZ();  ///< from cameras to the landmark
+  double min_distance_m = 0, max_distance_m = 0;  ///< range in which the pyramid can match it
+
+  KeyframeId first_keyframe;
+  int visible = 1;  ///< frames in which it was expected
+  int found = 1;    ///< frames in which it was an inlier
+  bool erased = false;
+  bool described = false;  ///< descriptor and label are of these observations; kept in no file
+};
+
+}  // namespace mh
