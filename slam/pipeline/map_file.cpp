@@ -27,8 +27,8 @@ void fields(A& a, T& last) {
 }
 template <class A, Either<Tracker> T>
 void fields(A& a, T& tracker) {
-  auto& [last, velocity_per_s, reference, frames_since_keyframe, carried, coasting] = tracker;
-  a(last, velocity_per_s, reference, frames_since_keyframe, carried, coasting);
+  auto& [last, velocity_per_s, reference, frames_since_keyframe, coasting] = tracker;
+  a(last, velocity_per_s, reference, frames_since_keyframe, coasting);
 }
 template <class A, Either<LoopMemory> T>
 void fields(A& a, T& memory) {

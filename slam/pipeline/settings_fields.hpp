@@ -94,7 +94,7 @@ void fields(C& c, Visit& v) {
 template <Either<TrackConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [min_inliers, min_inliers_sparse, min_inliers_frame, search_radius_px, local_radius_px,
-         local_keyframes, near_distance_m, near_angle_rad, carry_s, coast_s] = c;
+         local_keyframes, near_distance_m, near_angle_rad, coast_s] = c;
   v("min_inliers", min_inliers, kPoints, "after the local map, to count as tracked");
   v("min_inliers_sparse", min_inliers_sparse, kPoints,
     "where that is more than a sixth of the keypoints");
@@ -104,7 +104,6 @@ void fields(C& c, Visit& v) {
   v("local_keyframes", local_keyframes, kCount, "at most, in the local map");
   v("near_distance_m", near_distance_m, kLength_m, "keyframes this near and");
   v("near_angle_rad", near_angle_rad, kAngle_rad, "facing this alike join the local map");
-  v("carry_s", carry_s, {0, 1}, "so soon after the last, a frame may be placed by motion alone");
   v("coast_s", coast_s, {0, 10}, "so long a lost camera is looked for near its last place");
 }
 

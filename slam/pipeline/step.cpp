@@ -90,11 +90,6 @@ SE3 predict(const Tracker& tracker, Stamp stamp_ns) {
   return SE3::exp(*tracker.velocity_per_s * elapsed_s) * tracker.last->camera_from_world;
 }
 
-int points_with_depth(const Features& features) {
-  return static_cast<int>(std::count_if(features.keypoints.begin(), features.keypoints.end(),
-                                        [](const Keypoint& k) { return k.depth_m > 0; }));
-}
-
 struct Located {
   TrackedPose tracked;
   KeyframeId reference;
@@ -151,8 +146,9 @@ std::optional<Located> follow(const SlamState& state, const Tracker& tracker, Pr
                            state.map.standing(tracker.reference), tracker.last->camera_from_world,
                            context, at(report.matches, Matcher::kReferenceKeyframe));
   };
-  const int min_inliers = tracker.coasting ? state.config.relocalize.min_inliers
-                                           : inliers_needed(frame.features, state.config.track);
+  const int min_inliers =
+      tracker.coasting ? state.config.relocalize.min_inliers
+                       : inliers_needed(frame.features, state.config.track);
   // Where the motion is not known yet, appearance needs no guess.
   const bool moving = tracker.velocity_per_s.has_value();
   for (const bool use_motion : {moving, !moving}) {
@@ -192,24 +188,6 @@ std::optional<Located> locate(const SlamState& state, const Tracker& tracker, Pr
   return located;
 }
 
-/// A frame placed by its motion alone, where the last one's points have left the picture: a corner
-/// so bare that a turn lets go of all it showed. What it shows itself must be enough to hold the
-/// next one, so that there is never more than one.
-std::optional<Located> carry(const SlamState& state, const PreparedFrame& frame) {
-  const Tracker& tracker = state.tracker;
-  const TrackConfig& config = state.config.track;
-  if (!tracker.tracking() || tracker.carried || !tracker.velocity_per_s) return std::nullopt;
-  if (static_cast<double>(frame.stamp_ns - tracker.last->stamp_ns) > config.carry_s * kSecond_ns)
-    return std::nullopt;
-  if (points_with_depth(frame.features) < config.min_inliers) return std::nullopt;
-  const SE3 guess = predict(tracker, frame.stamp_ns);
-  if (count_that_can_be_found(*tracker.last, guess, state.map, state.camera) >= config.min_inliers)
-    return std::nullopt;
-  return Located{{guess, std::vector<LandmarkId>(frame.features.size())},
-                 state.map.standing(tracker.reference),
-                 {}};
-}
-
 /// The frame is lost. For a while the last tracked one still tells where to look for the next.
 void lose(Tracker& tracker, Stamp stamp_ns, const TrackConfig& config) {
   const double lost_s =
@@ -235,7 +213,7 @@ void remember(Tracker& tracker, PreparedFrame&& frame, const SE3& camera_from_wo
   tracker.last =
       LastFrame{frame.stamp_ns, camera_from_world, std::move(frame.features), std::move(landmarks)};
   tracker.reference = reference;
-  tracker.carried = tracker.coasting = false;
+  tracker.coasting = false;
 }
 
 KeyframeId insert_keyframe(SlamState& state, PreparedFrame& frame, const SE3& camera_from_world,
@@ -280,7 +258,9 @@ KeyframeId insert_keyframe(SlamState& state, PreparedFrame& frame, const SE3& ca
 
 StepReport initialize(SlamState& state, PreparedFrame frame, const StepObservers& observers,
                       StepReport report) {
-  const int with_depth = points_with_depth(frame.features);
+  const auto with_depth =
+      std::count_if(frame.features.keypoints.begin(), frame.features.keypoints.end(),
+                    [](const Keypoint& k) { return k.depth_m > 0; });
   if (with_depth < kMinInitialPoints) return report;
   const std::vector<LandmarkId> none(frame.features.size());
   const KeyframeId id =
@@ -288,7 +268,7 @@ StepReport initialize(SlamState& state, PreparedFrame frame, const StepObservers
   state.tracked_frames[frame.stamp_ns] = {id, SE3()};
   report.status = TrackStatus::kInitialized;
   report.world_from_camera = SE3();
-  report.inliers = with_depth;
+  report.inliers = static_cast<int>(with_depth);
   remember(state.tracker, std::move(frame), SE3(), state.map.at(id).landmarks, id);
   return report;
 }
@@ -332,12 +312,6 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
   if (state.map.empty()) return initialize(state, std::move(prepared), observers, report);
 
   auto located = locate(state, state.tracker, prepared, stream, observers, report);
-  bool carried = false;
-  if (!located) {
-    located = carry(state, prepared);
-    carried = located.has_value();
-    if (carried) report.status = TrackStatus::kTracked;
-  }
   if (!located) {
     lose(state.tracker, stamp_ns, state.config.track);
     return report;
@@ -367,7 +341,6 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
   state.tracked_frames[stamp_ns] = {
       reference, camera_from_world * state.map.camera_from_world(reference).inverse()};
   remember(state.tracker, std::move(prepared), camera_from_world, std::move(landmarks), reference);
-  state.tracker.carried = carried;
   return report;
 }
 

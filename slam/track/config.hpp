@@ -21,7 +21,6 @@ struct TrackConfig {
   int local_keyframes = 60;      ///< at most, in the local map
   double near_distance_m = 2.5;  ///< keyframes this near and
   double near_angle_rad = 0.9;   ///< facing this alike join the local map, whatever they share
-  double carry_s = 0.1;  ///< motion alone places one frame that cannot show what the last one did
   double coast_s = 1.0;  ///< a lost camera is looked for so long where its motion would take it
 };
 

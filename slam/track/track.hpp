@@ -48,12 +48,6 @@ struct TrackContext {
 std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& last, const SE3& guess,
                                         const TrackContext& context, MatcherCounts& counts);
 
-/// How many of the last frame's points (as in track_motion) the guess puts where a keypoint can be:
-/// if they are few, no frame there holds by the last one, however well its motion is known. The
-/// border is that of the finest level.
-int count_that_can_be_found(const LastFrame& last, const SE3& guess, const Map& map,
-                            const Camera& camera);
-
 /// The pose of a frame by appearance: words shared with the reference keyframe.
 /// @returns nullopt below config.min_inliers_frame.
 std::optional<TrackedPose> track_reference(const Query& query, KeyframeId reference,

@@ -25,7 +25,6 @@ struct Tracker {
   std::optional<Vector6d> velocity_per_s;  ///< twist of the camera, in its own frame
   KeyframeId reference;                    ///< keyframe that shares most landmarks
   int frames_since_keyframe = 0;
-  bool carried = false;   ///< `last` was placed by its motion alone
   bool coasting = false;  ///< lost since `last`, which is still worth a try
 
   bool tracking() const { return last.has_value() && !coasting; }

@@ -22,7 +22,6 @@ SlamConfig unusual() {
   c.loop.enabled = false;
   c.loop.same_drift_rad = 1e-3;
   c.track.near_angle_rad = 0.7;
-  c.track.carry_s = 0.2;
   return c;
 }
 

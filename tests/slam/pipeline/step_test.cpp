@@ -254,68 +254,6 @@ TEST(Step, ALostCameraIsLookedForNearItsLastPlaceForAWhile) {
   EXPECT_EQ(after_a_blank(0.0, 3), TrackStatus::kLost);
 }
 
-/// Features of a frame of the drive, those of some columns alone.
-Features columns(int i, float first_px, float last_px) {
-  const SlamConfig config = settings({});
-  const Features all = extract(frame(i), BoxRoom::camera(), config.features);
-  Features some;
-  for (std::size_t f = 0; f < all.size(); ++f)
-    if (all.keypoints[f].u_px >= first_px && all.keypoints[f].u_px <= last_px) {
-      some.keypoints.push_back(all.keypoints[f]);
-      some.descriptors.push_back(all.descriptors[f]);
-    }
-  return some;
-}
-
-/// The camera turns to the left, by some 45 px in each step of six frames. First the picture shows
-/// what leaves it on the right, then, in `carried` frames, what has come in on the left.
-struct BareCorner {
-  SlamState state;
-  std::vector<TrackStatus> statuses;
-
-  explicit BareCorner(double carry_s, int carried = 1, float last_px = 60) {
-    SlamConfig config = settings({});
-    config.relocalize.min_word_matches = 100'000;  // the whole map is of no help
-    config.track.carry_s = carry_s;
-    state = make_slam(BoxRoom::camera(), config, vocabulary());
-    for (int k = 0; k < 6; ++k) show(6 * k, columns(6 * k, 0, 320));
-    show(36, columns(36, 265, 320));
-    // A second bare frame shows something else again: it turns as far as three steps would.
-    for (int k = 0; k < carried; ++k)
-      show(42 + 18 * k, columns(42 + 18 * k, 0, last_px), 42 + 6 * k);
-  }
-
-  void show(int i, Features features) { show(i, std::move(features), i); }
-  void show(int i, Features features, int stamp) {
-    statuses.push_back(
-        step(state, stamp * kFrame_ns, std::move(features), RandomStream(1).fork(i)).status);
-  }
-};
-
-TEST(Step, MotionAlonePlacesAFrameThatCannotShowWhatTheLastOneDid) {
-  BareCorner corner(0.3);
-  EXPECT_EQ(corner.statuses.back(), TrackStatus::kTracked);
-  corner.show(48, columns(48, 0, 320));
-  EXPECT_EQ(corner.statuses.back(), TrackStatus::kTracked);
-  corner.state.map.check_invariants();
-  const SE3 world_from_origin = BoxRoom::round_trip(0, kTurnFrames);
-  const Trajectory estimate = trajectory(corner.state);
-  ASSERT_EQ(estimate.size(), 9U);
-  for (const int i : {42, 48}) {
-    const SE3 error = (world_from_origin * estimate[i / 6U].world_from_camera).inverse() *
-                      BoxRoom::round_trip(i, kTurnFrames);
-    // The last frame before it held by a strip of 55 px, in which turning and shifting look alike.
-    EXPECT_LT(error.translation().norm(), 0.05) << i;
-    EXPECT_LT(error.log().tail<3>().norm(), 0.02) << i;
-  }
-}
-
-TEST(Step, MotionAlonePlacesNoFrameThatComesLateOrShowsNothingOrFollowsSuchAFrame) {
-  EXPECT_EQ(BareCorner(0.1).statuses.back(), TrackStatus::kLost) << "after 0.2 s";
-  EXPECT_EQ(BareCorner(0.3, 1, 20).statuses.back(), TrackStatus::kLost) << "too little to go on by";
-  EXPECT_EQ(BareCorner(0.3, 2).statuses.back(), TrackStatus::kLost) << "a second one";
-}
-
 TEST(Step, AFrameThatShowsLittleNeedsASixthOfItsKeypoints) {
   const auto last_status = [](int min_inliers_sparse) {
     SlamConfig config = settings({});
