@@ -25,10 +25,10 @@ struct Baseline {
   std::vector<RunFigures> runs = {};
 };
 
-/// One line per run, so that a change of one run is a change of one line.
-/// "slam.xi: 1.5 -> 3" for each setting that differs; of a baseline without settings none is known.
+/// "slam/xi: 1.5 -> 3.0" for each setting that differs; a baseline without settings tells of none.
 std::vector<std::string> changed_settings(const Baseline& before, const Baseline& now);
 
+/// One line per run, so that a change of one run is a change of one line.
 std::string to_text(const Baseline& baseline);
 void save_baseline(const Baseline& baseline, const std::filesystem::path& file);
 
