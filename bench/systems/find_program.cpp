@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
+#include <cstdio>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -37,17 +37,17 @@ std::string first_program(const std::string& command) {
   return {};
 }
 
-/// The file that the shell starts by a word without a slash; empty where PATH has none.
-std::filesystem::path on_path(const std::string& word) {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path != nullptr ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::filesystem::path file = std::filesystem::path(folder) / word;
-    std::error_code error;
-    if (std::filesystem::is_regular_file(file, error) && access(file.c_str(), X_OK) == 0)
-      return file;
+/// What the shell says that it starts by a word without a slash: a path from PATH, the name of one
+/// of its own words, or nothing.
+std::string what_the_shell_starts(const std::string& word) {
+  const std::string question = expand_command("command -v {word} 2>/dev/null", {{"word", word}});
+  std::string answer;
+  if (std::FILE* shell = popen(question.c_str(), "r"); shell != nullptr) {
+    for (int c = std::fgetc(shell); c != EOF && c != '\n'; c = std::fgetc(shell))
+      answer += static_cast<char>(c);
+    pclose(shell);
   }
-  return {};
+  return answer;
 }
 
 /// A command cut where the shell may cut it, and at '='; without the files that it writes to by
@@ -83,10 +83,7 @@ void require_program(const OutsideProgram& program) {
     if (access(file.c_str(), X_OK) != 0) refuse("it may not be executed");
     return;
   }
-  // The shell knows its own words, and PATH.
-  const std::string question =
-      expand_command("command -v {word} >/dev/null 2>&1", {{"word", word}});
-  if (std::system(question.c_str()) != 0) refuse("no such program on PATH");
+  if (what_the_shell_starts(word).empty()) refuse("no such program on PATH");
 }
 
 std::vector<ProgramFile> files_of(const OutsideProgram& program) {
@@ -100,7 +97,9 @@ std::vector<ProgramFile> files_of(const OutsideProgram& program) {
       files.push_back({word, file});
   };
   const std::string first = first_program(program.command);
-  if (first.find('/') == std::string::npos && !first.empty()) add(first, on_path(first));
+  if (first.find('/') == std::string::npos && !first.empty())
+    if (const std::filesystem::path file = what_the_shell_starts(first); file.is_absolute())
+      add(first, file);
   for (const std::string& word : pieces(program.command)) add(word, program.folder / word);
   for (const std::string& input : program.inputs) add(input, program.folder / input);
   return files;
