@@ -9,6 +9,7 @@
 
 #include "robots/navigation/plan.hpp"
 #include "sim/motion/path.hpp"
+#include "sim/motion/start.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/random.hpp"
 
@@ -98,13 +99,15 @@ Tour planned(const Scene& scene, const Robot& robot, const Tour& tour) {
     if ((goal.position_m - here_m).norm() > grid.resolution_m) {
       const auto way = drivable_way(grid, here_m, goal.position_m, robot.footprint_radius_m);
       if (!way) {
-        const std::string line = goal.line > 0 ? fmt::format(":{}", goal.line) : "";
+        const std::string outside = outside_rooms(scene, goal.position_m);
         throw InputError(fmt::format(
-            "{}{}: waypoint {}: [{:.2f}, {:.2f}] cannot be reached{}: no way from [{:.2f}, {:.2f}] "
+            "{}: waypoint {}: [{:.2f}, {:.2f}] cannot be reached{}: no way from [{:.2f}, {:.2f}] "
             "has room for a robot of {:.2f} m radius",
-            tour.file.string(), line, i + 1, goal.position_m.x(), goal.position_m.y(),
-            occupant_near(grid, scene, goal.position_m, robot.footprint_radius_m), here_m.x(),
-            here_m.y(), robot.footprint_radius_m));
+            file_and_line(tour.file, goal.line), i + 1, goal.position_m.x(), goal.position_m.y(),
+            !outside.empty()
+                ? outside
+                : occupant_near(grid, scene, goal.position_m, robot.footprint_radius_m),
+            here_m.x(), here_m.y(), robot.footprint_radius_m));
       }
       for (std::size_t k = 1; k + 1 < way->size(); ++k) {
         Waypoint passage;

@@ -106,6 +106,7 @@ CommandScript load_commands(const std::filesystem::path& file) {
   const Start start = read_start(yaml);
   script.start_m = start.place_m;
   script.start_heading_rad = start.heading_rad;
+  script.start_line = start.line;
   script.reflex = yaml.boolean("reflex", true);
   YamlReader list = yaml.at("commands");
   for (YamlReader& item : list.items()) {
@@ -137,7 +138,7 @@ CommandedDrive drive(const Scene& scene, const Robot& robot, const CommandScript
   const int steps_per_frame = static_cast<int>(std::ceil(kStepRate_hz / robot.camera.rate_hz));
   const double step_s = 1.0 / (robot.camera.rate_hz * steps_per_frame);
   PlanarWorld world(scene, robot, script.start_m, script.start_heading_rad, step_s);
-  check_start(world, scene, script.start_m, script.file.string());
+  check_start(world, scene, script.start_m, file_and_line(script.file, script.start_line));
   for (const MovingObstacle& other : others) world.add(other);
   std::optional<Reflex> reflex;
   if (script.reflex) reflex.emplace(scene, robot);

@@ -26,6 +26,7 @@ struct CommandScript {
   std::filesystem::path file;  ///< where it came from, for messages
   Eigen::Vector2d start_m = Eigen::Vector2d::Zero();
   double start_heading_rad = 0;
+  int start_line = 0;  ///< in the file, for messages; 0 = none
   bool reflex = true;  ///< the external-collision reflex is awake
   std::vector<VelocityCommand> commands;
 };

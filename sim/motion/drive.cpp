@@ -40,7 +40,7 @@ class Driver {
         heading_rad_(tour.start_heading_rad),
         correction_(robot.limits, world_.step_s()),
         meter_(world_.step_s()) {
-    check_start(world_, scene, tour.start_m, tour.file.string());
+    check_start(world_, scene, tour.start_m, file_and_line(tour.file, tour.start_line));
     record();
   }
 
@@ -61,13 +61,12 @@ class Driver {
 
   [[noreturn]] void fail(std::size_t index, const Eigen::Vector2d& goal_m) {
     const Waypoint& w = tour_.waypoints[index];
-    const std::string line = w.line > 0 ? fmt::format(":{}", w.line) : "";
     throw InputError(
-        fmt::format("{}{}: waypoint {}: [{:.2f}, {:.2f}] cannot be reached: the robot is stuck at "
+        fmt::format("{}: waypoint {}: [{:.2f}, {:.2f}] cannot be reached{}: the robot is stuck at "
                     "[{:.2f}, {:.2f}] m{}, on its way to [{:.2f}, {:.2f}]",
-                    tour_.file.string(), line, index + 1, w.position_m.x(), w.position_m.y(),
-                    state_.position_m.x(), state_.position_m.y(), against(scene_, last_touched_),
-                    goal_m.x(), goal_m.y()));
+                    file_and_line(tour_.file, w.line), index + 1, w.position_m.x(),
+                    w.position_m.y(), outside_rooms(scene_, w.position_m), state_.position_m.x(),
+                    state_.position_m.y(), against(scene_, last_touched_), goal_m.x(), goal_m.y()));
   }
 
   /// Drives a stretch and waits until its end is reached, which is returned.

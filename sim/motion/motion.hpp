@@ -31,6 +31,7 @@ struct Tour {
   std::filesystem::path file;  ///< where it came from, for messages
   Eigen::Vector2d start_m = Eigen::Vector2d::Zero();
   double start_heading_rad = 0.0;
+  int start_line = 0;  ///< in the file, for messages; 0 = none
   // A tour may be driven more gently than the robot could; never faster.
   std::optional<double> max_velocity_m_per_s;
   std::optional<double> max_turn_rad_per_s;

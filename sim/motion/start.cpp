@@ -24,11 +24,23 @@ Eigen::Vector2d read_place(const YamlReader& yaml) {
 
 Start read_start(YamlReader& motion) {
   YamlReader yaml = motion.at("start");
+  const YamlReader position = yaml.at("position");
   const Start start{
-      .place_m = read_place(yaml.at("position")),
-      .heading_rad = yaml.number("heading_deg", -360.0, 360.0) * (std::numbers::pi / 180.0)};
+      .place_m = read_place(position),
+      .heading_rad = yaml.number("heading_deg", -360.0, 360.0) * (std::numbers::pi / 180.0),
+      .line = position.line()};
   yaml.finish();
   return start;
+}
+
+std::string file_and_line(const std::filesystem::path& file, int line) {
+  return line > 0 ? fmt::format("{}:{}", file.string(), line) : file.string();
+}
+
+std::string outside_rooms(const Scene& scene, const Eigen::Vector2d& place_m) {
+  const auto holds = [&](const Room& room) { return room.contains(place_m); };
+  if (scene.rooms.empty() || std::ranges::any_of(scene.rooms, holds)) return "";
+  return ", as it lies in no room of " + scene.name;
 }
 
 std::string against(const Scene& scene, InstanceId id) {
@@ -44,9 +56,8 @@ void check_start(PlanarWorld& world, const Scene& scene, const Eigen::Vector2d& 
   if (contact.penetration_m > kDeepStart_m)
     throw InputError(fmt::format("{}: the robot would stand {:.0f} mm inside something{}", place,
                                  1e3 * contact.penetration_m, against(scene, contact.instance)));
-  const auto holds = [&](const Room& room) { return room.contains(start_m); };
-  if (!scene.rooms.empty() && std::ranges::none_of(scene.rooms, holds))
-    throw InputError(fmt::format("{}: lies in no room of {}", place, scene.name));
+  if (const std::string outside = outside_rooms(scene, start_m); !outside.empty())
+    throw InputError(fmt::format("{}: the robot cannot stand there{}", place, outside));
 }
 
 }  // namespace mh

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "scenes/scene.hpp"
@@ -17,13 +18,20 @@ Eigen::Vector2d read_place(const YamlReader& yaml);
 struct Start {
   Eigen::Vector2d place_m;
   double heading_rad = 0;
+  int line = 0;  ///< in the file
 };
 Start read_start(YamlReader& motion);
+
+/// "FILE:LINE", or "FILE" where the line is 0: where a message's place begins.
+std::string file_and_line(const std::filesystem::path& file, int line);
+
+/// ", as it lies in no room of SCENE", or "" where it lies in one or the scene has none.
+std::string outside_rooms(const Scene& scene, const Eigen::Vector2d& place_m);
 
 /// " against NAME", or "" where the instance is none.
 std::string against(const Scene& scene, InstanceId instance);
 
-/// @param where  file and the like, for the message
+/// @param where  file and line, for the message
 /// @throws InputError if the base would stand inside something, or outside the rooms of a scene
 /// that has rooms.
 void check_start(PlanarWorld& world, const Scene& scene, const Eigen::Vector2d& start_m,

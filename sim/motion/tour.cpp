@@ -43,6 +43,7 @@ Tour load_tour(const std::filesystem::path& file) {
   const Start start = read_start(yaml);
   tour.start_m = start.place_m;
   tour.start_heading_rad = start.heading_rad;
+  tour.start_line = start.line;
   if (const auto speed = yaml.find("speed_m_per_s"))
     tour.max_velocity_m_per_s = speed->as_double(0.01, 5.0);
   if (const auto turn = yaml.find("turn_deg_per_s"))

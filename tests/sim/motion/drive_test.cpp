@@ -161,11 +161,27 @@ TEST(Drive, SaysWhereTheRobotIsStuckAndAgainstWhat) {
       << error;
 }
 
+TEST(Drive, SaysThatAWaypointLiesOutsideTheRooms) {
+  Tour tour = tour_of({to(3, 2), to(18, 2)});
+  tour.waypoints[1].line = 9;
+  for (const bool plan : {false, true}) {
+    tour.plan = plan;
+    const std::string error = refusal(empty_room(), tour);
+    EXPECT_NE(error.find("test.yaml:9: waypoint 2: [18.00, 2.00] cannot be reached, as it lies in "
+                         "no room of empty room: "),
+              std::string::npos)
+        << error;
+  }
+}
+
 TEST(Drive, RefusesAStartInsideSomethingOrOutsideTheHouse) {
   Scene scene = empty_room();
   add_box(scene, "sofa", {2.1F, 1, 0}, {3, 3, 0.8F});
-  EXPECT_NE(refusal(scene, tour_of({to(2, 5)})).find("inside something against sofa"),
-            std::string::npos);
+  Tour inside = tour_of({to(2, 5)});
+  inside.start_line = 4;
+  const std::string error = refusal(scene, inside);
+  EXPECT_NE(error.find("test.yaml:4: start ["), std::string::npos) << error;
+  EXPECT_NE(error.find("inside something against sofa"), std::string::npos) << error;
   Tour outside = tour_of({to(2, 5)});
   outside.start_m = {-3, 0};
   EXPECT_NE(refusal(empty_room(), outside).find("lies in no room of empty room"),
