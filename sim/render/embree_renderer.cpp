@@ -21,7 +21,7 @@ namespace {
 
 // Packets are traced a tile at a time and then shaded: the hierarchy and the shading do not push
 // each other out of the caches, and the rays are long in memory when the tracer loads them.
-constexpr int kTileWidth = 64, kTileHeight = 16;
+constexpr int kTileWidth = 32, kTileHeight = 8;
 constexpr int kPackets = kTileWidth * kTileHeight / kLanes;
 constexpr float kDepth16PerM = 5000.0F;
 
@@ -37,16 +37,34 @@ inline __m256 up_to_white(__m256 linear) {
   return _mm256_min_ps(_mm256_max_ps(linear, _mm256_setzero_ps()), _mm256_set1_ps(1.0F));
 }
 
-/// Two linear colours to sRGB by srgb_table().
-inline void encode(__m256 linear, const std::uint8_t* table, Rgb8* to) {
-  const __m256i level =
-      _mm256_cvtps_epi32(_mm256_mul_ps(up_to_white(linear), _mm256_set1_ps(kSrgbTableMax)));
-  const __m256i packed = _mm256_packus_epi32(level, level);
-  const auto first = static_cast<std::uint64_t>(_mm256_extract_epi64(packed, 0));
-  const auto second = static_cast<std::uint64_t>(_mm256_extract_epi64(packed, 2));
-  to[0] = {table[first & 0xFFFF], table[first >> 16 & 0xFFFF], table[first >> 32 & 0xFFFF]};
-  to[1] = {table[second & 0xFFFF], table[second >> 16 & 0xFFFF], table[second >> 32 & 0xFFFF]};
+/// Four linear colours, two and two, to sRGB by srgb_table(). They are put together in registers:
+/// what is stored in bytes and loaded in words has to wait for memory.
+inline void encode(__m256 two, __m256 next_two, const std::uint8_t* table, Rgb8* to) {
+  const auto level = [](__m256 linear) {
+    return _mm256_cvtps_epi32(_mm256_mul_ps(up_to_white(linear), _mm256_set1_ps(kSrgbTableMax)));
+  };
+  const __m256i levels = _mm256_packus_epi32(level(two), level(next_two));
+  const auto look_up = [&](long long of_pixel) -> std::uint64_t {
+    const auto at = static_cast<std::uint64_t>(of_pixel);
+    return table[at & 0xFFFF] | table[at >> 16 & 0xFFFF] << 8 | table[at >> 32 & 0xFFFF] << 16;
+  };
+  const std::uint64_t third = look_up(_mm256_extract_epi64(levels, 1));
+  const std::uint64_t eight_bytes = look_up(_mm256_extract_epi64(levels, 0)) |
+                                    look_up(_mm256_extract_epi64(levels, 2)) << 24 | third << 48;
+  const auto four_bytes =
+      static_cast<std::uint32_t>(third >> 16 | look_up(_mm256_extract_epi64(levels, 3)) << 8);
+  static_assert(sizeof(Rgb8) == 3);
+  auto* bytes = reinterpret_cast<std::uint8_t*>(to);
+  std::memcpy(bytes, &eight_bytes, 8);
+  std::memcpy(bytes + 8, &four_bytes, 4);
 }
+
+/// What a packet's lanes show, and the picture that it goes to.
+template <class T>
+struct Output {
+  const std::array<T, kLanes>& lanes;
+  Grid2d<T>& grid;
+};
 
 /// What a thread works with.
 struct Bench {
@@ -210,28 +228,28 @@ class EmbreeRenderer final : public Renderer {
   }
 
   /// Puts a packet's lanes where they belong; those outside of the picture nowhere.
-  template <class T>
-  static void copy(const std::array<T, kLanes>& lanes, int x0, int y0, Grid2d<T>& to) {
-    const auto columns = static_cast<std::size_t>(std::min(kSide, to.width() - x0));
-    const int rows = std::min(kSide, to.height() - y0);
-    for (int y = 0; y < rows; ++y) {
-      T* row = &to(x0, y0 + y);
-      const T* from = lanes.data() + kSide * y;
-      if (columns == kSide)
-        std::copy_n(from, kSide, row);  // of a fixed size: one move
-      else
-        std::copy_n(from, columns, row);
-    }
+  template <class... T>
+  static void copy(int x0, int y0, int width, int height, Output<T>... outputs) {
+    const auto copy_columns = [&](auto columns) {
+      for (int y = 0; y < std::min(kSide, height - y0); ++y) {
+        const int to = (y0 + y) * width + x0;
+        (std::copy_n(outputs.lanes.data() + kSide * y, columns, outputs.grid.data() + to), ...);
+      }
+    };
+    if (width - x0 >= kSide)
+      copy_columns(std::integral_constant<int, kSide>());  // of a fixed size: one move
+    else
+      copy_columns(width - x0);
   }
 
   static void write(const Radiance& light, const Seen& seen, int x0, int y0, RenderedFrame& frame) {
     const std::uint8_t* table = srgb_table();
     std::array<Rgb8, kLanes> colour;
-    for (std::size_t i = 0; i < kLanes; i += 2) encode(light.of[i / 2], table, &colour[i]);
-    copy(colour, x0, y0, frame.colour);
-    copy(seen.depth_m, x0, y0, frame.depth_m);
-    copy(seen.class_id, x0, y0, frame.classes);
-    copy(seen.instance, x0, y0, frame.instances);
+    for (std::size_t i = 0; i < kLanes; i += 4)
+      encode(light.of[i / 2], light.of[i / 2 + 1], table, &colour[i]);
+    copy(x0, y0, frame.colour.width(), frame.colour.height(), Output{colour, frame.colour},
+         Output{seen.depth_m, frame.depth_m}, Output{seen.class_id, frame.classes},
+         Output{seen.instance, frame.instances});
   }
 
   bool any_extra() const {
@@ -250,7 +268,7 @@ class EmbreeRenderer final : public Renderer {
     point.fill(Eigen::Vector3f::Zero());
     face.fill(kNoFace);
     for (std::size_t i = 0; i < kLanes; ++i) {
-      if (!shading_.hit(seen, i)) continue;
+      if (hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
       const float depth = seen.depth_m[i];
       const float units = depth * kDepth16PerM + 0.5F;
       depth16[i] = units < 65536.0F ? static_cast<std::uint16_t>(units) : std::uint16_t{0};
@@ -259,10 +277,11 @@ class EmbreeRenderer final : public Renderer {
       point[i] = {ray.org_x[i] + depth * ray.dir_x[i], ray.org_y[i] + depth * ray.dir_y[i],
                   ray.org_z[i] + depth * ray.dir_z[i]};
     }
-    if (config_.extra.depth16) copy(depth16, x0, y0, frame.depth16);
-    if (config_.extra.faces) copy(face, x0, y0, frame.faces);
-    if (config_.extra.barycentric) copy(barycentric, x0, y0, frame.barycentric);
-    if (config_.extra.points) copy(point, x0, y0, frame.points_m);
+    const int w = frame.colour.width(), h = frame.colour.height();
+    if (config_.extra.depth16) copy(x0, y0, w, h, Output{depth16, frame.depth16});
+    if (config_.extra.faces) copy(x0, y0, w, h, Output{face, frame.faces});
+    if (config_.extra.barycentric) copy(x0, y0, w, h, Output{barycentric, frame.barycentric});
+    if (config_.extra.points) copy(x0, y0, w, h, Output{point, frame.points_m});
   }
 
   /// Averages the colours of a packet's edge pixels over their samples, in linear light.
@@ -291,10 +310,10 @@ class EmbreeRenderer final : public Renderer {
                                         srgb_to_linear(colour.b), 0.0F);
       const __m128 sum = _mm_add_ps(
           centre, _mm_add_ps(_mm256_castps256_ps128(two), _mm256_extractf128_ps(two, 1)));
-      std::array<Rgb8, 2> mean;
-      encode(_mm256_castps128_ps256(_mm_mul_ps(sum, _mm_set1_ps(1.0F / 3.0F))), srgb_table(),
-             mean.data());
-      colour = mean[0];
+      const __m256 mean = _mm256_castps128_ps256(_mm_mul_ps(sum, _mm_set1_ps(1.0F / 3.0F)));
+      std::array<Rgb8, 4> encoded;
+      encode(mean, mean, srgb_table(), encoded.data());
+      colour = encoded[0];
     }
   }
 

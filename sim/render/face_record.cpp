@@ -91,20 +91,27 @@ FaceRecords::FaceRecords(const Scene& scene, const std::vector<std::uint32_t>& o
   const bool textured = std::any_of(surfaces.begin(), surfaces.end(), [](const Surface& surface) {
     return surface.texture != TextureTable::kWhite;
   });
-  records_.reserve(order.size() + 1);
-  if (textured) face_textures_.reserve(order.size() + 1);
+  if (textured)
+    textured_faces_.reserve(order.size() + 1);
+  else
+    plain_faces_.reserve(order.size() + 1);
   for (const std::uint32_t face : order) {
-    const std::size_t material = scene.materials.empty() ? 0 : scene.material_of[face];
-    records_.push_back(make_record(scene, surfaces[material], face, exposure));
-    if (textured) face_textures_.push_back(make_texture(scene, surfaces[material], face));
+    const Surface& surface = surfaces[scene.materials.empty() ? 0 : scene.material_of[face]];
+    const FaceRecord record = make_record(scene, surface, face, exposure);
+    if (textured)
+      textured_faces_.push_back({record, make_texture(scene, surface, face)});
+    else
+      plain_faces_.push_back(record);
   }
   Vector3f sky = Vector3f::Zero();
   for (const Light& light : scene.lights)
     if (light.kind == Light::Kind::kSky) sky += light.colour * exposure;
   FaceRecord nothing;
   store_halves(nothing.emission, sky.cwiseMin(1.0F));
-  records_.push_back(nothing);
-  if (textured) face_textures_.emplace_back();
+  if (textured)
+    textured_faces_.push_back({nothing, {}});
+  else
+    plain_faces_.push_back(nothing);
 }
 
 }  // namespace mh

@@ -36,23 +36,40 @@ struct alignas(32) FaceTexture {
 };
 static_assert(sizeof(FaceTexture) == 32);
 
+/// Both, in one line of the cache.
+struct alignas(64) TexturedFace {
+  FaceRecord record;
+  FaceTexture texture;
+};
+
 /// Records of the faces of a scene, and the pictures that they refer to.
 class FaceRecords {
  public:
   /// @param order  faces in the order in which their records are wanted
   FaceRecords(const Scene& scene, const std::vector<std::uint32_t>& order, float exposure);
 
-  /// By place in `order`; one more at the end is what a ray sees that hits nothing: the sky's
-  /// light, class void, instance 0.
-  const FaceRecord* data() const { return records_.data(); }
-  int nothing() const { return static_cast<int>(records_.size()) - 1; }
-  /// Likewise; empty where no face has a texture.
-  const std::vector<FaceTexture>& face_textures() const { return face_textures_; }
+  /// Whether any face has a texture.
+  bool textured() const { return !textured_faces_.empty(); }
+  /// By place in `order`, stride() bytes from one to the next.
+  const FaceRecord* data() const {
+    return textured() ? &textured_faces_.front().record : plain_faces_.data();
+  }
+  std::size_t stride() const { return textured() ? sizeof(TexturedFace) : sizeof(FaceRecord); }
+  /// Where one lies last that is no face's, but what a ray sees that hits nothing: the sky's light,
+  /// class void, instance 0.
+  int nothing() const {
+    return static_cast<int>(textured() ? textured_faces_.size() : plain_faces_.size()) - 1;
+  }
+  /// Of one of data(), where any face has a texture.
+  static const FaceTexture& texture_of(const FaceRecord* record) {
+    return reinterpret_cast<const TexturedFace*>(record)->texture;
+  }
   const TextureTable& textures() const { return textures_; }
 
  private:
-  std::vector<FaceRecord> records_;
-  std::vector<FaceTexture> face_textures_;
+  // One of the two is filled.
+  std::vector<FaceRecord> plain_faces_;
+  std::vector<TexturedFace> textured_faces_;
   TextureTable textures_;
 };
 

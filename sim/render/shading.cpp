@@ -8,21 +8,25 @@ namespace mh {
 void Shading::find_records(const Packet& packet, Seen& seen) const {
   const RTCHit16& hit = packet.rays.hit;
   const __m256i first = (__m256i)load8(first_faces_.data());
+  const __m256i records = _mm256_set1_epi64x(reinterpret_cast<std::intptr_t>(records_.data()));
+  const __m256i stride = _mm256_set1_epi64x(static_cast<std::int64_t>(records_.stride()));
+  const auto store_four = [&](const FaceRecord** to, __m128i indices) {
+    const __m256i bytes = _mm256_mul_epu32(_mm256_cvtepu32_epi64(indices), stride);
+    _mm256_store_si256(reinterpret_cast<__m256i*>(to), _mm256_add_epi64(records, bytes));
+  };
   for (std::size_t i = 0; i < kLanes; i += 8) {
     const Int8 geometry = load8(hit.geomID + i);
     const Int8 miss = geometry == splat(-1);
     const Int8 place =
         load8(hit.primID + i) + (Int8)_mm256_permutevar8x32_epi32(first, (__m256i)geometry);
-    store8(seen.record.data() + i, miss ? splat(records_.nothing()) : place);
+    const auto index = (__m256i)(miss ? splat(records_.nothing()) : place);
+    store_four(seen.record.data() + i, _mm256_castsi256_si128(index));
+    store_four(seen.record.data() + i + 4, _mm256_extracti128_si256(index, 1));
     const Float8 depth = load8(packet.rays.ray.tfar + i);
     _mm256_store_ps(seen.depth_m.data() + i, miss ? splat(0.0F) : depth);
   }
-  for (const int index : seen.record)
-    _mm_prefetch(reinterpret_cast<const char*>(records_.data() + index), _MM_HINT_T0);
-  if (records_.face_textures().empty()) return;
-  for (const int index : seen.record)
-    _mm_prefetch(reinterpret_cast<const char*>(records_.face_textures().data() + index),
-                 _MM_HINT_T0);
+  for (const FaceRecord* record : seen.record)
+    _mm_prefetch(reinterpret_cast<const char*>(record), _MM_HINT_T0);
 }
 
 void Shading::find_texels(const Packet& packet, float pixel_area, Seen& seen) const {
@@ -30,17 +34,16 @@ void Shading::find_texels(const Packet& packet, float pixel_area, Seen& seen) co
   const RTCRay16& ray = packet.rays.ray;
   for (std::size_t i = 0; i < kLanes; i += 8) {
     for (std::size_t k = 0; k < 8; ++k) {
-      const FaceRecord& record = records_.data()[seen.record[i + k]];
+      const FaceRecord& record = *seen.record[i + k];
       seen.instance[i + k] = record.instance;
       seen.class_id[i + k] = static_cast<ClassId>(record.class_id);
     }
     seen.textured[i / 8] = false;
-    if (records_.face_textures().empty()) continue;
+    if (!records_.textured()) continue;
     std::array<const float*, 8> place, size;
     std::uint32_t textures = 0;
     for (std::size_t k = 0; k < 8; ++k) {
-      const FaceTexture& face =
-          records_.face_textures()[static_cast<std::size_t>(seen.record[i + k])];
+      const FaceTexture& face = FaceRecords::texture_of(seen.record[i + k]);
       place[k] = &face.u;
       size[k] = &face.du2;
       textures |= face.texture;
@@ -69,7 +72,7 @@ Radiance Shading::shade(const Packet& packet, const Seen& seen) const {
   for (std::size_t i = 0; i < kLanes; i += 2) {
     __m256 gain[2], rest[2];
     for (std::size_t k = 0; k < 2; ++k) {
-      const FaceRecord& record = records_.data()[seen.record[i + k]];
+      const FaceRecord& record = *seen.record[i + k];
       const __m256 u = _mm256_broadcast_ss(packet.rays.hit.u + i + k);
       const __m256 v = _mm256_broadcast_ss(packet.rays.hit.v + i + k);
       // Halves of registers: gain and its first step; its second step and the emission.

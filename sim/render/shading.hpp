@@ -11,7 +11,7 @@ namespace mh {
 
 /// What the sixteen rays of a packet hit, on its way to the picture.
 struct Seen {
-  alignas(32) std::array<int, kLanes> record;  // index of FaceRecord
+  alignas(32) std::array<const FaceRecord*, kLanes> record;
   alignas(32) std::array<float, kLanes> depth_m;
   std::array<InstanceId, kLanes> instance;
   std::array<ClassId, kLanes> class_id;
@@ -38,11 +38,6 @@ class Shading {
   void find_texels(const Packet& packet, float pixel_area, Seen& seen) const;
   /// Step 3: linear RGB x exposure, not below 0.
   Radiance shade(const Packet& packet, const Seen& seen) const;
-
-  /// Whether a lane hit anything.
-  bool hit(const Seen& seen, std::size_t lane) const {
-    return seen.record[lane] != records_.nothing();
-  }
 
  private:
   std::array<std::uint32_t, 8> first_faces_;  // by geometry
