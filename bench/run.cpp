@@ -170,6 +170,12 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
   check_names(suite, specs);
   check_all_inputs(specs);
 
+  std::set<std::string> warned;
+  for (const RunSpec& spec : specs)
+    if (spec.system.kind == SystemKind::kOutside && warned.insert(spec.system.name).second)
+      if (const std::string warning = unseen_program(spec.system.outside); !warning.empty())
+        options.say(warning);
+
   std::vector<Job> mine;
   std::vector<std::pair<std::string, std::string>> plan;
   for (std::size_t i = 0; i < specs.size(); ++i) {

@@ -241,6 +241,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
       held_out.put(system, p, end, lists(run, QuerySet::kHeldOut), work);
       if (second_tour) second_tour->put(system, p, end, lists(run, QuerySet::kSecondTour), work);
     }
+    system.finish();
     run.times = system.times();
   }
 

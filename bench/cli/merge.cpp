@@ -8,6 +8,7 @@
 #include "bench/cli/finish.hpp"
 #include "bench/run.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
 
 namespace mh::cli {
 namespace {
@@ -20,14 +21,25 @@ struct Options {
   bool json = false;
 };
 
+/// What of a file or a folder the output does not hold yet. Each file is there whole or not at all,
+/// so that a copy that met a full disk goes on where it stopped.
+void copy_missing(const fs::path& from, const fs::path& to) {
+  if (fs::is_directory(from)) {
+    make_output_folder(to);
+    for (const auto& entry : fs::directory_iterator(from))
+      copy_missing(entry.path(), to / entry.path().filename());
+  } else if (fs::is_regular_file(from) && !fs::exists(to)) {
+    write_atomically(to, read_file(from));
+  }
+}
+
 /// Folders of runs and pictures that the output does not hold yet.
 void copy_files(const fs::path& from, const fs::path& to) {
   for (const auto& entry : fs::directory_iterator(from)) {
     const std::string name = entry.path().filename().string();
     const bool run = entry.is_directory() && fs::exists(entry.path() / "estimate.tum");
     const bool views = name.starts_with("views") && name.ends_with(".png");
-    if ((run || views) && !fs::exists(to / name))
-      fs::copy(entry.path(), to / name, fs::copy_options::recursive);
+    if (run || views) copy_missing(entry.path(), to / name);
   }
 }
 

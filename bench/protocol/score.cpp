@@ -82,14 +82,14 @@ QueryScore score(const QueryAnswer& answer, const TimedPose& truth,
                .success = answer.world_from_camera.has_value()};
   if (!s.success) return s;
   const SE3& estimate = *answer.world_from_camera;
-  const SE3 aligned = truth_from_estimate * estimate;
-  s.aligned_distance_m = (aligned.translation() - truth.world_from_camera.translation()).norm();
   if (anchor) {
+    const SE3 aligned = truth_from_estimate * estimate;
+    s.aligned_distance_m = (aligned.translation() - truth.world_from_camera.translation()).norm();
     const SE3 expected = local_truth(*anchor, truth.world_from_camera);
     s.distance_m = (estimate.translation() - expected.translation()).norm();
     s.angle_deg = angle_between_rad(estimate, expected) * 180.0 / std::numbers::pi;
     s.correct =
-        s.distance_m <= config.correct_distance_m && s.angle_deg <= config.correct_angle_deg;
+        *s.distance_m <= config.correct_distance_m && *s.angle_deg <= config.correct_angle_deg;
   }
   s.wrong = !s.correct;
   return s;

@@ -51,12 +51,12 @@ struct QueryScore {
   QueryAnswer answer;
   Stamp stamp_ns = 0;
   SE3 true_world_from_camera;
-  bool success = false;           ///< a pose was returned (the paper's measure)
-  bool correct = false;           ///< and lies within the limits of the protocol
-  bool wrong = false;             ///< returned, and outside them (or nothing to compare with)
-  double distance_m = 0;          ///< to the local truth; 0 unless success
-  double angle_deg = 0;           ///< to the local truth; 0 unless success
-  double aligned_distance_m = 0;  ///< to the truth after aligning the whole trajectory by SE(3)
+  bool success = false;  ///< a pose was returned (the paper's measure)
+  bool correct = false;  ///< and lies within the limits of the protocol
+  bool wrong = false;    ///< returned, and outside them (or nothing to compare with)
+  // Absent where nothing was answered, or nothing was mapped that an answer may be compared with.
+  std::optional<double> distance_m, angle_deg;  ///< to the local truth
+  std::optional<double> aligned_distance_m;     ///< to the truth after aligning the trajectory
 };
 
 /// @param truth_from_estimate  global SE(3) alignment of the mapping trajectory

@@ -142,9 +142,9 @@ Json query_json(const QueryScore& q, SystemKind system) {
                {"truth", pose_json(q.true_world_from_camera)}};
   if (q.success) {
     json["estimate"] = pose_json(*q.answer.world_from_camera);
-    json["distance_m"] = q.distance_m;
-    json["angle_deg"] = q.angle_deg;
-    json["aligned_distance_m"] = q.aligned_distance_m;
+    json["distance_m"] = number(q.distance_m);
+    json["angle_deg"] = number(q.angle_deg);
+    json["aligned_distance_m"] = number(q.aligned_distance_m);
   }
   if (const auto& c = q.answer.candidates)
     json["candidates"] = {{"keyframes", count_json(c->keyframes)},

@@ -68,6 +68,11 @@ Comparison resample(std::string what, std::span<const PairedDifference> pairs, s
   return c;
 }
 
+/// Of `independent` signs the least two-sided p is 2 of all patterns.
+void note_least_p(Comparison& c, std::size_t independent) {
+  if (std::ldexp(2.0, -static_cast<int>(independent)) > 0.05) c.detectable = INFINITY;
+}
+
 }  // namespace
 
 double median(std::vector<double> values) {
@@ -95,15 +100,44 @@ Comparison compare_paired(std::string what, std::span<const PairedDifference> qu
       2, static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(queries.size())))));
   std::vector<double> means;
   Comparison c = resample(std::move(what), queries, block, shares, seed, resamples, means);
-  if (means.empty()) return c;
-  const double count = static_cast<double>(means.size());
-  const auto not_above =
-      static_cast<double>(std::upper_bound(means.begin(), means.end(), 0.0) - means.begin());
-  const auto below =
-      static_cast<double>(std::lower_bound(means.begin(), means.end(), 0.0) - means.begin());
-  const double one_sided = std::min(not_above, count - below);
-  c.p = std::min(1.0, 2.0 * (one_sided + 1.0) / (count + 1.0));
+  std::vector<double> sums;  // of blocks in which anything is known
+  for (std::size_t first = 0; first < queries.size(); first += block) {
+    const auto part = queries.subspan(first, std::min(block, queries.size() - first));
+    if (std::ranges::none_of(part, &PairedDifference::present)) continue;
+    sums.push_back(0);
+    for (const PairedDifference& q : part) sums.back() += q.present ? q.difference : 0.0;
+  }
+  if (!means.empty()) c.p = sign_flip(sums, seed);
+  note_least_p(c, sums.size());
   return c;
+}
+
+double sign_flip(std::span<const double> sums, std::uint64_t seed) {
+  constexpr std::size_t kMostExact = 14;
+  constexpr std::uint64_t kDraws = 20000;
+  double total = 0, size = 0;
+  for (const double sum : sums) {
+    total += sum;
+    size += std::abs(sum);
+  }
+  // Patterns that give the same mean must count, whatever order their sums are rounded in.
+  const double limit = std::abs(total) - 1e-12 * size;
+  const bool exact = sums.size() <= kMostExact;
+  const std::uint64_t patterns = exact ? std::uint64_t{1} << sums.size() : kDraws;
+  const RandomStream signs = RandomStream(seed).fork(0x51675);  // not the bootstrap's
+  std::uint64_t hits = 0;
+  for (std::uint64_t pattern = 0; pattern < patterns; ++pattern) {
+    const RandomStream draw = signs.fork(pattern);
+    std::uint64_t bits = pattern;
+    double flipped = 0;
+    for (std::size_t k = 0; k < sums.size(); ++k, bits >>= 1) {
+      if (!exact && k % 64 == 0) bits = draw.bits(k / 64);
+      flipped += (bits & 1) != 0 ? -sums[k] : sums[k];
+    }
+    hits += std::abs(flipped) >= limit ? 1 : 0;
+  }
+  const double drawn = exact ? 0 : 1;
+  return (drawn + static_cast<double>(hits)) / (drawn + static_cast<double>(patterns));
 }
 
 Comparison compare_scenes(std::string what, std::span<const PairedDifference> scenes, bool shares,
@@ -118,6 +152,7 @@ Comparison compare_scenes(std::string what, std::span<const PairedDifference> sc
   std::vector<double> means;
   Comparison c = resample(std::move(what), known, 1, shares, seed, resamples, means);
   if (!means.empty()) c.p = wilcoxon_signed_rank(differences);
+  note_least_p(c, c.pairs);
   return c;
 }
 

@@ -160,10 +160,8 @@ QuerySummary summarize(std::span<const QueryScore> queries) {
     s.correct += q.correct;
     s.wrong += q.wrong;
     s.attempts += q.answer.attempts;
-    if (q.success) {
-      distances.push_back(q.distance_m);
-      aligned.push_back(q.aligned_distance_m);
-    }
+    if (q.distance_m) distances.push_back(*q.distance_m);
+    if (q.aligned_distance_m) aligned.push_back(*q.aligned_distance_m);
   }
   s.queries = static_cast<double>(queries.size());
   for (double* share : {&s.success, &s.correct, &s.wrong, &s.attempts}) *share /= s.queries;
@@ -267,9 +265,7 @@ std::vector<Family> compare_systems(const Suite& suite, std::span<const Row> row
 
 Comparison compare_distances(const Row& first, const Row& second, QuerySet set, std::string what,
                              std::uint64_t seed) {
-  const auto distance = [](const QueryScore& q) {
-    return q.success ? std::optional(q.distance_m) : std::nullopt;
-  };
+  const auto distance = [](const QueryScore& q) { return q.distance_m; };
   return compare_paired(std::move(what), differences(first, second, set, distance), false, seed);
 }
 

@@ -302,15 +302,12 @@ void put_queries(SQLite::Database& db, const std::string& key, const RunResult& 
         const auto told = [](bool is, std::string_view text) {
           return is ? std::optional(std::string(text)) : std::nullopt;
         };
-        const auto measured = [&](double value) {
-          return q.success ? std::optional(value) : std::nullopt;
-        };
         row << key << static_cast<std::int64_t>(p) << name(set)
             << static_cast<std::int64_t>(q.answer.index) << q.stamp_ns << std::int64_t{q.success}
             << std::int64_t{q.correct} << std::int64_t{q.wrong}
             << told(is_told(kind, q.answer.stage), name(q.answer.stage))
             << std::int64_t{q.answer.attempts} << std::int64_t{q.answer.blank_frames}
-            << measured(q.distance_m) << measured(q.angle_deg) << measured(q.aligned_distance_m)
+            << q.distance_m << q.angle_deg << q.aligned_distance_m
             << counted(&CandidateCounts::keyframes) << counted(&CandidateCounts::c1)
             << counted(&CandidateCounts::c2) << counted(&CandidateCounts::c3)
             << counted(&CandidateCounts::final) << (c ? std::optional(c->label_mass) : std::nullopt)
@@ -324,7 +321,9 @@ void put_queries(SQLite::Database& db, const std::string& key, const RunResult& 
 QueryScore query_at(SQLite::Statement& s) {
   // Columns of `queries` from `frame` on.
   const auto integer = [&](int i) { return s.getColumn(i).getInt(); };
-  const auto real = [&](int i) { return s.getColumn(i).getDouble(); };  // 0 of null
+  const auto known = [&](int i) {
+    return s.getColumn(i).isNull() ? std::nullopt : std::optional(s.getColumn(i).getDouble());
+  };
   QueryScore q;
   q.answer.index = static_cast<std::size_t>(s.getColumn(0).getInt64());
   q.stamp_ns = s.getColumn(1).getInt64();
@@ -338,16 +337,16 @@ QueryScore query_at(SQLite::Statement& s) {
                             RelocalizationStage::kInliers, RelocalizationStage::kVerified});
   q.answer.attempts = integer(6);
   q.answer.blank_frames = integer(7);
-  q.distance_m = real(8);
-  q.angle_deg = real(9);
-  q.aligned_distance_m = real(10);
+  q.distance_m = known(8);
+  q.angle_deg = known(9);
+  q.aligned_distance_m = known(10);
   const auto count = [&](int i) { return s.getColumn(i).isNull() ? kUnknownCount : integer(i); };
   const CandidateCounts told{.keyframes = count(11),
                              .c1 = count(12),
                              .c2 = count(13),
                              .c3 = count(14),
                              .final = count(15),
-                             .label_mass = s.getColumn(16).isNull() ? std::nan("") : real(16)};
+                             .label_mass = known(16).value_or(std::nan(""))};
   for (const int number : {told.keyframes, told.c1, told.c2, told.c3, told.final})
     if (number != kUnknownCount) q.answer.candidates = told;
   q.true_world_from_camera = pose_at(s, 17);

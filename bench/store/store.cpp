@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/plan/runs.hpp"
 #include "bench/plan/spec_json.hpp"
 #include "bench/results/fingerprint.hpp"
 #include "bench/store/guard.hpp"
@@ -111,6 +112,30 @@ void enter_wal(SQLite::Database& db) {
   }
 }
 
+/// The columns of each table, in order.
+std::map<std::string, std::vector<std::string>> columns(SQLite::Database& db) {
+  std::map<std::string, std::vector<std::string>> of_table;
+  SQLite::Statement s(db,
+                      "SELECT m.name, c.name FROM sqlite_master m, pragma_table_info(m.name) c "
+                      "WHERE m.type = 'table' ORDER BY m.name, c.cid");
+  while (s.executeStep())
+    of_table[s.getColumn(0).getString()].push_back(s.getColumn(1).getString());
+  return of_table;
+}
+
+/// Merging copies whole rows, so that a column more or less is an error. Other tables do no harm.
+void require_columns(SQLite::Database& db, const fs::path& file) {
+  SQLite::Database fresh(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  fresh.exec(kSchema);
+  auto found = columns(db);
+  for (const auto& [table, expected] : columns(fresh))
+    if (found[table] != expected)
+      throw InputError(fmt::format(
+          "{}: does not hold what a results file must (the columns of the table '{}'): put back a "
+          "copy, or move it away and run again",
+          file.string(), table));
+}
+
 void open_schema(SQLite::Database& db, const fs::path& file) {
   const auto version = [&] { return db.execAndGet("PRAGMA user_version").getInt(); };
   if (version() > kSchemaVersion)
@@ -146,6 +171,7 @@ void open_schema(SQLite::Database& db, const fs::path& file) {
     throw InputError(
         fmt::format("{}: is damaged ({}): put back a copy, or move it away and run again",
                     file.string(), found));
+  require_columns(db, file);
 }
 
 nlohmann::ordered_json to_json(const SuiteOverrides& o) {
@@ -353,6 +379,12 @@ void Store::check_mergeable(const std::vector<fs::path>& files) {
     }
     if (suite.trials != first->first.trials)
       throw differs("was run with --trials", suite.trials, first->first.trials);
+    // A damaged run is found here, while its file can be named and nothing is written.
+    const std::map<std::string, std::string> key_of(keys.begin(), keys.end());
+    for (const RunSpec& spec : expand(suite))
+      if (const auto key = key_of.find(spec.name);
+          key != key_of.end() && store.status(key->second) == RunStatus::kDone)
+        store.load(key->second, spec);
     // Every part plans the whole suite, whatever its own share.
     if (keys.size() != planned.size())
       throw differs("number of runs:", keys.size(), planned.size());

@@ -81,7 +81,8 @@ class Store {
   /// @throws InputError if a run of one name was planned with different settings, code or input.
   std::size_t merge(const std::filesystem::path& other);
   /// What merging them all would find. @throws InputError as merge() does, or if they are results
-  /// of different suites, of one with different trials, or of other runs of it.
+  /// of different suites, of one with different trials, or of other runs of it, or if one of their
+  /// results is damaged.
   static void check_mergeable(const std::vector<std::filesystem::path>& files);
 
   /// Rows of a query, for exports: column names first.

@@ -97,10 +97,27 @@ std::string last_line(const fs::path& file) {
   _exit(127);
 }
 
+/// What the watcher does: waits until the process that holds the other end of the pipe is gone, and
+/// clears up after it. System calls alone, likewise.
+[[noreturn]] void watch(int pipe_end, pid_t group, const char* scratch) {
+  setpgid(0, 0);
+  sigset_t all;
+  sigfillset(&all);
+  sigprocmask(SIG_SETMASK, &all, nullptr);
+  if (dup2(pipe_end, 0) < 0) _exit(126);
+  close_range(1, ~0U, 0);
+  char byte = 0;
+  while (read(0, &byte, 1) < 0 && errno == EINTR) {
+  }
+  ::kill(-group, SIGKILL);
+  if (*scratch != '\0') execl("/bin/rm", "rm", "-rf", "--", scratch, static_cast<char*>(nullptr));
+  _exit(0);
+}
+
 }  // namespace
 
 ChildProcess::ChildProcess(const OutsideProgram& program, std::string command, Talk talk,
-                           fs::path log)
+                           fs::path log, const fs::path& scratch)
     : program_(program), command_(std::move(command)), log_(std::move(log)) {
   const auto machine = [&](std::string_view what) {
     throw MachineError(fmt::format("{}: {}: {}", program_.name, what, std::strerror(errno)));
@@ -131,6 +148,23 @@ ChildProcess::ChildProcess(const OutsideProgram& program, std::string command, T
     machine("no process could be started");
   }
   setpgid(pid_, pid_);  // by whoever comes first; the other fails, harmlessly
+  start_watcher(scratch);
+}
+
+void ChildProcess::start_watcher(const fs::path& scratch) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) == 0) {
+    watcher_ = fork();
+    if (watcher_ == 0) watch(ends[0], pid_, scratch.c_str());
+    close(ends[0]);
+    to_watcher_ = ends[1];
+  }
+  if (watcher_ > 0) return;
+  const int error = errno;
+  close_if_open(to_watcher_);
+  kill_group();
+  throw MachineError(
+      fmt::format("{}: no process could be started: {}", program_.name, std::strerror(error)));
 }
 
 ChildProcess::~ChildProcess() {
@@ -152,6 +186,14 @@ bool ChildProcess::try_reap(int options) {
 void ChildProcess::kill_group() {
   if (pid_ <= 0) return;
   kill(-pid_, SIGKILL);  // also what a command that has ended left behind
+  // The watcher goes before the number of the group may come round again.
+  if (watcher_ > 0) {
+    kill(watcher_, SIGKILL);
+    while (waitpid(watcher_, nullptr, 0) < 0 && errno == EINTR) {
+    }
+    watcher_ = -1;
+  }
+  close_if_open(to_watcher_);
   try_reap(0);
   pid_ = -1;
 }
@@ -233,6 +275,16 @@ void ChildProcess::wait_for_success(double limit_s) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   if (!WIFEXITED(status_) || WEXITSTATUS(status_) != 0) fail(ending());
+  kill_group();
+}
+
+void ChildProcess::finish(double limit_s) {
+  close_if_open(to_child_);
+  const auto deadline = after(limit_s);
+  while (!try_reap(WNOHANG) && Clock::now() <= deadline)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  if (reaped_ && (!WIFEXITED(status_) || WEXITSTATUS(status_) != 0))
+    fail(ending() + " after its input was closed");
   kill_group();
 }
 

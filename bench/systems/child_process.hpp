@@ -13,9 +13,8 @@
 namespace mh {
 
 /// A running outside program in a process group of its own, with time and memory limits. The group
-/// is killed when this object goes; the command itself also when the thread that started it ends,
-/// however that came about. Every failure is an OutsideError naming program, command, what
-/// it did and the last line that it wrote to its log.
+/// is killed when this object goes, or this process, however that came about. Every failure is an
+/// OutsideError naming program, command, what it did and the last line that it wrote to its log.
 class ChildProcess {
  public:
   enum class Talk { kNo, kOverPipes };
@@ -23,8 +22,9 @@ class ChildProcess {
   /// Starts `command` by /bin/sh in program.folder.
   /// @param talk  kOverPipes: send() and read_line() reach its standard input and output; kNo: it
   ///              reads nothing and its output goes to the log. Its errors always go to the log.
+  /// @param scratch  folder that is removed should this process die before the object goes
   ChildProcess(const OutsideProgram& program, std::string command, Talk talk,
-               std::filesystem::path log);
+               std::filesystem::path log, const std::filesystem::path& scratch = {});
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
@@ -35,6 +35,9 @@ class ChildProcess {
   std::string read_line(double limit_s, std::string_view doing);
   /// Waits for its end. Anything but exit code 0 within the limit is an error.
   void wait_for_success(double limit_s);
+  /// Closes its input, by which it is told to end, and kills it if it has not after the limit. Any
+  /// other end than exit code 0 is an error.
+  void finish(double limit_s);
 
   /// An OutsideError about what the program did: "exited with code 3". Ends the program.
   [[noreturn]] void fail(std::string_view what);
@@ -42,6 +45,7 @@ class ChildProcess {
  private:
   bool try_reap(int options);
   void kill_group();
+  void start_watcher(const std::filesystem::path& scratch);
   void check_memory(std::string_view doing);
   /// How it ended, for a program that closed its pipe; waits a moment for it to do so.
   std::string ending();
@@ -54,6 +58,8 @@ class ChildProcess {
   int status_ = 0;
   std::chrono::steady_clock::time_point next_look_;  ///< at its memory
   int to_child_ = -1, from_child_ = -1;
+  pid_t watcher_ = -1;
+  int to_watcher_ = -1;  ///< closed by the end of this process at the latest
   std::string unread_;
 };
 

@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr int kProtocol = 1;
+constexpr double kFarewell_s = 5;  // docs/outside_systems.md
 
 /// A folder of its own in memory where there is such a place, removed in the end.
 class ScratchFolder {
@@ -65,7 +66,8 @@ class Conversation {
   Conversation(const OutsideProgram& program, const Camera& camera, std::uint64_t seed,
                const fs::path& log)
       : answer_limit_s_(program.answer_limit_s),
-        child_(program, command(program, camera, seed), ChildProcess::Talk::kOverPipes, log) {
+        child_(program, command(program, camera, seed), ChildProcess::Talk::kOverPipes, log,
+               scratch_.path) {
     const Distortion& d = camera.distortion;
     Json classes_by_id = Json::array();
     for (const ClassInfo& info : classes()) classes_by_id.push_back(info.name);
@@ -141,6 +143,8 @@ class Conversation {
     return report;
   }
 
+  void finish() { child_.finish(kFarewell_s); }
+
   [[noreturn]] void fail(const std::string& what) {
     child_.fail(fmt::format("{}, answering {}", what, doing_));
   }
@@ -155,8 +159,16 @@ class Conversation {
 
   Json parse(const std::string& line) {
     Json answer;
+    std::vector<std::set<std::string>> keys;  // of the objects that are open, innermost last
+    std::string doubled;
+    const auto note_keys = [&](int, Json::parse_event_t event, const Json& parsed) {
+      if (event == Json::parse_event_t::object_start) keys.emplace_back();
+      if (event == Json::parse_event_t::object_end) keys.pop_back();
+      if (event == Json::parse_event_t::key && !keys.back().insert(parsed).second) doubled = parsed;
+      return true;
+    };
     try {
-      answer = Json::parse(line);
+      answer = Json::parse(line, note_keys);
     } catch (const Json::out_of_range&) {
       fail(fmt::format("wrote a number that is too large: '{}'", shortened(line)));
     } catch (const Json::exception&) {
@@ -170,6 +182,8 @@ class Conversation {
                        shortened(line)));
     }
     if (!answer.is_object()) fail(fmt::format("wrote no JSON object: '{}'", shortened(line)));
+    if (!doubled.empty())
+      fail(fmt::format("gave the key '{}' twice in '{}'", shortened(doubled), shortened(line)));
     return answer;
   }
 
@@ -182,9 +196,12 @@ class Conversation {
       fail(fmt::format("gave a pose of {}: expected [x, y, z, qx, qy, qz, qw]",
                        shortened(it->dump())));
     for (std::size_t k = 0; k < 7; ++k) {
-      if (!(*it)[k].is_number() || !std::isfinite((*it)[k].get<double>()))
-        fail(fmt::format("gave a pose that is not finite: {}", shortened(it->dump())));
+      if (!(*it)[k].is_number())
+        fail(fmt::format("gave a pose that is not of numbers: {}", shortened(it->dump())));
       v[k] = (*it)[k];
+      if (k < 3 && !(std::abs(v[k]) <= kFarthest_m))
+        fail(fmt::format("gave a pose more than {:g} m away: {}", kFarthest_m,
+                         shortened(it->dump())));
     }
     const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
     if (std::abs(rotation.norm() - 1.0) > 0.1)
@@ -207,7 +224,12 @@ class Conversation {
     for (const auto s : {RelocalizationStage::kNone, RelocalizationStage::kNoCandidate,
                          RelocalizationStage::kMatches, RelocalizationStage::kPnp,
                          RelocalizationStage::kInliers, RelocalizationStage::kVerified})
-      if (*it == std::string(name(s))) return s;
+      if (*it == std::string(name(s))) {
+        if (!answer["pose"].is_null() && s != RelocalizationStage::kNone &&
+            s != RelocalizationStage::kVerified)
+          fail(fmt::format("gave a pose and the stage \"{}\", which is one of failure", name(s)));
+        return s;
+      }
     fail(fmt::format("gave an unknown stage {}", shortened(it->dump())));
   }
 
@@ -218,12 +240,21 @@ class Conversation {
     for (const auto& [key, value] : it->items())
       if (!std::set<std::string>{"keyframes", "c1", "c2", "c3", "final"}.contains(key))
         fail(fmt::format("gave an unknown key 'candidates.{}'", shortened(key)));
-    return CandidateCounts{.keyframes = count(*it, "keyframes", kUnknownCount),
-                           .c1 = count(*it, "c1", kUnknownCount),
-                           .c2 = count(*it, "c2", kUnknownCount),
-                           .c3 = count(*it, "c3", kUnknownCount),
-                           .final = count(*it, "final", kUnknownCount),
-                           .label_mass = std::nan("")};
+    const CandidateCounts told{.keyframes = count(*it, "keyframes", kUnknownCount),
+                               .c1 = count(*it, "c1", kUnknownCount),
+                               .c2 = count(*it, "c2", kUnknownCount),
+                               .c3 = count(*it, "c3", kUnknownCount),
+                               .final = count(*it, "final", kUnknownCount),
+                               .label_mass = std::nan("")};
+    int left = kUnknownCount;
+    for (const int number : {told.keyframes, told.c1, told.c2, told.c3, told.final}) {
+      if (number == kUnknownCount) continue;
+      if (left != kUnknownCount && number > left)
+        fail(fmt::format("gave candidates of {}: a step cannot leave more than the one before it",
+                         shortened(it->dump())));
+      left = number;
+    }
+    return told;
   }
 
   const ScratchFolder scratch_;
@@ -269,6 +300,7 @@ class ConversationSystem : public System {
     frozen_ = true;
     if (const auto it = answer.find("trajectory"); it != answer.end()) take_trajectory(*it);
   }
+  void finish() override { talk_->finish(); }
   Trajectory trajectory() const override {
     Trajectory trajectory;
     for (const auto& [stamp_ns, pose] : poses_) trajectory.push_back({stamp_ns, pose});
@@ -300,6 +332,9 @@ class ConversationSystem : public System {
         talk_->fail(fmt::format("gave a bad trajectory: {}", error.what()));
       }
       for (const TimedPose& pose : trajectory) {
+        if (is_too_far(pose))
+          talk_->fail(fmt::format("gave a pose more than {:g} m away in its trajectory, at {}",
+                                  kFarthest_m, format_stamp(pose.stamp_ns)));
         if (!shown_.contains(pose.stamp_ns))
           talk_->fail(fmt::format("gave a pose at {} in its trajectory, a frame that it never saw",
                                   format_stamp(pose.stamp_ns)));

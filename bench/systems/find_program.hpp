@@ -11,8 +11,7 @@ namespace mh {
 
 /// Finds out before the work whether the first program of an outside command exists and may be
 /// executed, looked for as /bin/sh will: by its path from the program's folder, or on PATH. A
-/// command that begins with anything but a plain word (a variable, a quote, a bracket) is not
-/// judged.
+/// first word that is not understood (see files_of) is not judged.
 /// @throws InputError naming the suite's line, system, command and program.
 void require_program(const OutsideProgram& program);
 
@@ -22,9 +21,16 @@ struct ProgramFile {
   std::filesystem::path file;  ///< where it lies
 };
 
-/// The first program of the command, found as /bin/sh will find it; every other word of the command
-/// that names a regular file from the program's folder (what stands behind a '=' too); the inputs.
-/// Each once. What is not there or cannot be read is left out, and what is written to by '>'.
+/// The command's first program that is not one of the shell's own words, found as /bin/sh will find
+/// it; every other word of the command that names a regular file from the program's folder (what
+/// stands behind a '=' too); the inputs. Each once. Quotes, backslashes, a leading ~ and variables
+/// of the environment are understood. Left out: what is not there or cannot be read, what > or tee
+/// writes to, relative words behind a `cd`, and words with a placeholder, a pattern, a substitution
+/// or a variable that the command sets.
 std::vector<ProgramFile> files_of(const OutsideProgram& program);
+
+/// A warning where the first program of a command that names no inputs is not among its files: its
+/// results would outlive a change of it. Empty otherwise.
+std::string unseen_program(const OutsideProgram& program);
 
 }  // namespace mh

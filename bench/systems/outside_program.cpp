@@ -47,6 +47,10 @@ void check_limit(const OutsideProgram& program, std::string_view what, double va
 
 }  // namespace
 
+bool is_too_far(const TimedPose& pose) {
+  return !(pose.world_from_camera.translation().cwiseAbs().maxCoeff() <= kFarthest_m);
+}
+
 std::string shell_quoted(std::string_view value) {
   std::string result = "'";
   for (const char c : value) result += c == '\'' ? std::string("'\\''") : std::string(1, c);

@@ -26,8 +26,8 @@ std::vector<Stamp> write_dataset(const std::filesystem::path& folder, const Came
 /// @param out     folder for trajectory.txt and outside.log
 /// @returns the program's trajectory with the frames' own stamps
 /// @throws InputError if validate(program) does; OutsideError if the program fails, or its
-///         trajectory is missing, malformed, holds a number that is not finite, a stamp of no frame
-///         or two poses for one.
+///         trajectory is missing, malformed, holds a number that is not finite, a pose beyond
+///         kFarthest_m, a stamp of no frame or two poses for one.
 Trajectory run_on_dataset(const OutsideProgram& program, const std::filesystem::path& dataset,
                           std::span<const Stamp> stamps, std::uint64_t seed,
                           const std::filesystem::path& out);

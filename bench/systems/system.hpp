@@ -45,6 +45,8 @@ class System {
   virtual void reset() = 0;
   /// Ends the mapping. track, rewind and reset must not be called afterwards.
   virtual void freeze() = 0;
+  /// Ends the work; nothing but trajectory() may be called afterwards.
+  virtual void finish() {}
   /// Answers queries with other settings of the method than those it mapped with, from the next
   /// session on. Call freeze() first. A system that has no such settings passes it over.
   virtual void set_query_settings(const SemanticConfig&) {}

@@ -19,6 +19,7 @@ class TamperedSystem : public System {
   void rewind() override { inner_->rewind(); }
   void reset() override { inner_->reset(); }
   void freeze() override { inner_->freeze(); }
+  void finish() override { inner_->finish(); }
   void set_query_settings(const SemanticConfig& settings) override {
     inner_->set_query_settings(settings);
   }

@@ -41,6 +41,7 @@ class TimedSystem : public System {
   void rewind() override;
   void reset() override;
   void freeze() override;
+  void finish() override { inner_->finish(); }
   void set_query_settings(const SemanticConfig& settings) override;
   std::string save() const override { return inner_->save(); }
   void restore(const std::string& saved) override { inner_->restore(saved); }

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -327,6 +328,21 @@ TEST(BenchProcess, MergingAPartTwiceIsHarmless) {
       << errors();
   EXPECT_EQ(errors(), "merge: " + part + ": holds no result that is not here already\n");
   EXPECT_EQ(tables("twice"), undisturbed());
+}
+
+TEST(BenchProcess, APictureThatFoundNoRoomIsCopiedByTheNextMerge) {
+  undisturbed();
+  const fs::path part = test_folder() / "big_part", out = test_folder() / "limited";
+  fs::copy(test_folder() / "plain_run", part, fs::copy_options::recursive);
+  fs::resize_file(part / "views.png", 40'000'000);
+  const std::string merge =
+      " " MH_EXECUTABLE " merge " + out.string() + " " + part.string() + " >/dev/null 2>&1";
+  // A limit to the size of files stands for a full disk: 20 MB.
+  EXPECT_NE(std::system(("trap '' XFSZ; ulimit -f 40000; exec" + merge).c_str()), 0);
+  for (const auto& entry : fs::directory_iterator(out))
+    EXPECT_NE(entry.path().extension(), ".png") << entry.path();
+  EXPECT_EQ(std::system(("exec" + merge).c_str()), 0);
+  EXPECT_EQ(fs::file_size(out / "views.png"), 40'000'000u);
 }
 
 TEST(BenchProcess, PartsThatDoNotBelongTogetherAreRefusedAndLeaveNothing) {

@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/systems/child_process.hpp"
 #include "bench/systems/conversation.hpp"
 #include "bench/systems/recorded_run.hpp"
 #include "slam/core/files.hpp"
@@ -127,6 +128,8 @@ TEST_F(OutsideFaults, ATrajectoryThatIsNone) {
                "wrote 1 of 2 poses at stamps of no frame, the first at 2.500000000");
   EXPECT_HOLDS(trajectory_error(writes("2.9995 0 0 0 0 0 0 1\\n3 0 0 0 0 0 0 1\\n")),
                "wrote two poses for the frame at 3.000000000");
+  EXPECT_HOLDS(trajectory_error(writes("1 0 0 0 0 0 0 1\\n2 0 -1e200 0 0 0 0 1\\n")),
+               "wrote a pose more than 1e+06 m away, at 2.000000000");
 }
 
 TEST_F(OutsideFaults, StampsOfFewDigitsAreTheFramesOwn) {
@@ -168,14 +171,15 @@ TEST_F(OutsideFaults, WhatAProgramLeavesBehindIsEndedToo) {
 }
 
 TEST_F(OutsideFaults, ABenchThatIsKilledLeavesNothingRunning) {
-  const fs::path note = folder_ / "pid";
+  const fs::path note = folder_ / "pid", scratch = folder_ / "scratch";
+  fs::create_directories(scratch / "sub");
   const pid_t bench = fork();
   if (bench == 0) {
-    try {
-      run(program(OutsideMode::kTrajectory,
-                  "echo $$ > " + note.string() + "; exec sleep 60; : {trajectory}"));
-    } catch (const std::exception&) {
-    }
+    // What the command starts, too: the shell waits for it.
+    const std::string command = "sleep 60 & echo $! > " + note.string() + "; wait; : {trajectory}";
+    ChildProcess child(program(OutsideMode::kTrajectory, command), command, ChildProcess::Talk::kNo,
+                       folder_ / "log", scratch);
+    pause();
     _exit(0);
   }
   std::string text;
@@ -187,6 +191,25 @@ TEST_F(OutsideFaults, ABenchThatIsKilledLeavesNothingRunning) {
   kill(bench, SIGKILL);
   waitpid(bench, nullptr, 0);
   EXPECT_TRUE(ends_soon(std::stoi(text)));
+  for (int i = 0; i < 500 && fs::exists(scratch); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_FALSE(fs::exists(scratch));
+}
+
+TEST_F(OutsideFaults, AConversationIsGivenTimeToEndWell) {
+  const auto farewell = [&](const std::string& last_words) {
+    const OutsideProgram p =
+        program(OutsideMode::kConversation, R"(read -r line; echo '{"id":1,"protocol":1}'; )"
+                                            "read -r line; sleep 0.2; " +
+                                                last_words);
+    return error_of(p, [&] { make_conversation_system(p, camera_, 0, folder_ / "log")->finish(); });
+  };
+  const fs::path note = folder_ / "saved";
+  EXPECT_EQ(farewell("touch " + note.string()), "no error");
+  EXPECT_TRUE(fs::exists(note)) << "it had no time to save its map";
+  EXPECT_HOLDS(farewell("echo no room >&2; exit 3"),
+               "exited with code 3 after its input was closed; it last wrote: no room");
+  EXPECT_HOLDS(farewell("kill -SEGV $$"), "was killed by signal 11 after its input");
 }
 
 TEST_F(OutsideFaults, ConversationsThatDoNotBegin) {
@@ -220,7 +243,9 @@ TEST_F(OutsideFaults, AnswersThatAreNone) {
   EXPECT_HOLDS(answers("garbage"), "wrote what is no line of JSON: 'garbage'");
   EXPECT_HOLDS(answers(R"({"id":2,"pose":[NaN,0,0,0,0,0,1]})"), "a number that is not finite");
   EXPECT_HOLDS(answers(R"({"id":2,"pose":[1e999,0,0,0,0,0,1]})"), "a number that is too large");
-  EXPECT_HOLDS(answers(R"({"id":2,"pose":[null,0,0,0,0,0,1]})"), "gave a pose that is not finite");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[null,0,0,0,0,0,1]})"), "pose that is not of numbers");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,0,0,0,0,0,"1"]})"), "pose that is not of numbers");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,-1e7,0,0,0,0,1]})"), "a pose more than 1e+06 m away");
   EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,0,0,0,0,0]})"), "expected [x, y, z, qx, qy, qz, qw]");
   EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,0,0,0,0,0,2]})"), "quaternion has norm 2");
   EXPECT_HOLDS(answers(R"({"id":2})"), "neither a pose nor");
@@ -229,7 +254,12 @@ TEST_F(OutsideFaults, AnswersThatAreNone) {
   EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"mood":"good"})"), "unknown key 'mood'");
   EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"inliers":-1})"), "expected a count");
   EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"candidates":{"c4":1}})"), "'candidates.c4'");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"candidates":{"keyframes":3,"final":9}})"),
+               "a step cannot leave more than the one before it");
   EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"stage":"lunch"})"), "unknown stage");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,0,0,0,0,0,1],"stage":"no_candidate"})"),
+               "gave a pose and the stage \"no_candidate\"");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"pose":[0,0,0,0,0,0,1]})"), "the key 'pose' twice");
   EXPECT_HOLDS(answers(R"({"id":2,"error":"no memory"})"), "reported an error: \"no memory\"");
 }
 
@@ -252,6 +282,8 @@ TEST_F(OutsideFaults, AFinalTrajectoryHoldsShownFramesOnly) {
   EXPECT_HOLDS(freeze_error(R"(["0.000000008 4 0 0 0 0 0 1"])"),
                "gave a pose at 0.000000008 in its trajectory, a frame that it never saw");
   EXPECT_HOLDS(freeze_error(R"(["0.000000007 nan 0 0 0 0 0 1"])"), "trajectory:1: tx: 'nan'");
+  EXPECT_HOLDS(freeze_error(R"(["0.000000007 4e30 0 0 0 0 0 1"])"),
+               "a pose more than 1e+06 m away in its trajectory, at 0.000000007");
   EXPECT_HOLDS(freeze_error("7"), "no list of lines");
 }
 

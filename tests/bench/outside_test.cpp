@@ -142,7 +142,7 @@ TEST_F(OutsideOdometry, GoesThroughTheWholeProtocol) {
     const QueryScore q =
         mh::score(answer, path_[index],
                   nearest_mapped(estimate, path_, path_[index], NearestBy::kTime), SE3(), {});
-    EXPECT_TRUE(q.correct) << index << ": " << q.distance_m;
+    EXPECT_TRUE(q.correct) << index << ": " << q.distance_m.value_or(-1);
   }
 }
 

@@ -158,8 +158,8 @@ TEST(Score, ADriftedMapIsRightWhereItIsRightLocally) {
   answer.world_from_camera = drift * truth.world_from_camera;
   const QueryScore s = score(answer, truth, anchor, SE3(), {});
   EXPECT_TRUE(s.correct);
-  EXPECT_NEAR(s.distance_m, 0, 1e-12);
-  EXPECT_GT(s.aligned_distance_m, 1.0);  // no global alignment undoes the drift here
+  EXPECT_NEAR(s.distance_m.value(), 0, 1e-12);
+  EXPECT_GT(s.aligned_distance_m.value(), 1.0);  // no global alignment undoes the drift here
 }
 
 TEST(Score, TellsCorrectFromWrong) {
@@ -173,14 +173,22 @@ TEST(Score, TellsCorrectFromWrong) {
   };
   const QueryScore good = with(at(0.2, 0, 0.1));
   EXPECT_TRUE(good.success && good.correct && !good.wrong);
-  EXPECT_NEAR(good.distance_m, 0.2, 1e-12);
-  EXPECT_NEAR(good.angle_deg, 5.7296, 1e-3);
+  EXPECT_NEAR(good.distance_m.value(), 0.2, 1e-12);
+  EXPECT_NEAR(good.angle_deg.value(), 5.7296, 1e-3);
   const QueryScore far = with(at(0.3, 0, 0));
   EXPECT_TRUE(far.success && !far.correct && far.wrong);
   const QueryScore turned = with(at(0, 0, 0.2));
   EXPECT_TRUE(turned.success && !turned.correct && turned.wrong);
   const QueryScore none = with(std::nullopt);
   EXPECT_TRUE(!none.success && !none.correct && !none.wrong);
+}
+
+TEST(Score, AnAnswerWithoutAnyMapIsFalseAndItsDistanceUnknown) {
+  QueryAnswer answer;
+  answer.world_from_camera = at(5, 5, 0);
+  const QueryScore s = score(answer, {0, at(0, 0, 0)}, std::nullopt, SE3(), {});
+  EXPECT_TRUE(s.success && !s.correct && s.wrong);
+  EXPECT_FALSE(s.distance_m || s.angle_deg || s.aligned_distance_m);
 }
 
 }  // namespace

@@ -187,8 +187,8 @@ TEST(RunOne, CountsWhatHappened) {
   EXPECT_EQ(run.points[0].second_tour.size(), 3u);
   for (const QueryScore& q : run.points[0].held_out) {
     EXPECT_TRUE(q.success && q.correct);
-    EXPECT_LT(q.distance_m, 0.01);
-    EXPECT_GT(q.distance_m, 0.0);
+    EXPECT_LT(q.distance_m.value(), 0.01);
+    EXPECT_GT(q.distance_m.value(), 0.0);
   }
   EXPECT_GT(run.volume->leaf_count(), 0u);
 }

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "slam/core/random.hpp"
+
 namespace mh {
 namespace {
 
@@ -62,6 +64,56 @@ TEST(ComparePaired, TooFewPairsDecideNothing) {
   const Comparison c = compare_paired("x", few, true, 1);
   EXPECT_EQ(c.pairs, 3u);
   EXPECT_EQ(verdict(c), Verdict::kUndecided);
+}
+
+TEST(ComparePaired, FewBlocksCannotBeSignificantHoweverClear) {
+  // Blocks of two queries: five of them give 2 of 32 sign patterns at the least, six 2 of 64.
+  const Comparison five = compare_paired("x", all_equal_to(1, 10), true, 1);
+  EXPECT_DOUBLE_EQ(five.p, 2.0 / 32);
+  EXPECT_TRUE(std::isinf(five.detectable)) << "too few to detect anything";
+  const Comparison six = compare_paired("x", all_equal_to(1, 12), true, 1);
+  EXPECT_DOUBLE_EQ(six.p, 2.0 / 64);
+  EXPECT_DOUBLE_EQ(six.detectable, 3.0 / 12);
+  EXPECT_TRUE(std::isinf(compare_scenes("x", all_equal_to(1, 5), true, 1).detectable));
+}
+
+TEST(SignFlip, CountsThePatternsThatAreAsFarFromZero) {
+  // 2 + 1 - 1 = 2: of the eight sums +-2 +-1 +-1, six are 2 or 4 from zero.
+  EXPECT_DOUBLE_EQ(sign_flip(std::vector<double>{2, 1, -1}, 1), 6.0 / 8);
+  EXPECT_DOUBLE_EQ(sign_flip(std::vector<double>{0.1, 0.2, 0.3}, 1), 2.0 / 8);
+  EXPECT_EQ(sign_flip(std::vector<double>{0, 0}, 1), 1.0);
+  EXPECT_EQ(sign_flip({}, 1), 1.0);
+}
+
+TEST(SignFlip, DrawsAgreeWithTheNormalDistributionWherePatternsAreTooMany) {
+  std::vector<double> sums(100, 1.0);
+  for (std::size_t i = 0; i < 40; ++i) sums[2 * i] = -1.0;  // 60 against 40: two sigmas
+  EXPECT_NEAR(sign_flip(sums, 1), std::erfc(1.9 / std::sqrt(2.0)), 0.005);  // half a step nearer
+  EXPECT_EQ(sign_flip(sums, 1), sign_flip(sums, 1));
+  EXPECT_DOUBLE_EQ(sign_flip(std::vector<double>(100, 1.0), 1), 1.0 / 20001);
+}
+
+/// The share of 500 made-up comparisons without any difference in which one is claimed at 5 %.
+/// @param carried  share of each query's noise that its predecessor had, too
+double false_claims(std::size_t n, double carried) {
+  int claims = 0;
+  constexpr int kTrials = 500;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const RandomStream noise = RandomStream(7).fork(static_cast<std::uint64_t>(trial));
+    std::vector<PairedDifference> queries;
+    for (std::size_t i = 0; i < n; ++i)
+      queries.push_back({noise.normal(i + 1) + carried * noise.normal(i), true});
+    Comparison c[] = {compare_paired("x", queries, false, 1, 300)};
+    holm(c);
+    claims += verdict(c[0]) == Verdict::kUndecided ? 0 : 1;
+  }
+  return static_cast<double>(claims) / kTrials;
+}
+
+TEST(ComparePaired, ClaimsWhereNothingDiffersStayNearFivePercent) {
+  for (const std::size_t n : {6u, 20u, 74u})
+    for (const double carried : {0.0, 0.5, 1.0})
+      EXPECT_LE(false_claims(n, carried), 0.06) << n << " queries, " << carried;
 }
 
 TEST(ComparePaired, IsAFunctionOfItsSeed) {

@@ -8,12 +8,14 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "bench/jobs/pool.hpp"
 #include "bench/jobs/run_process.hpp"
+#include "bench/plan/runs.hpp"
 #include "bench/results/json.hpp"
 #include "bench/store/export.hpp"
 #include "slam/core/file_errors.hpp"
@@ -322,6 +324,39 @@ TEST_F(StoreFile, MergingTakesOverWhatIsMissingOnce) {
       all.rows("SELECT name, status FROM runs ORDER BY name"),
       (std::vector<std::vector<std::string>>{{"name", "status"}, {"x", "done"}, {"y", "done"}}));
   EXPECT_EQ(all.rows("SELECT * FROM queries").size(), 1u + 2 * 3);
+}
+
+TEST_F(StoreFile, ADamagedPartIsNamedBeforeAnythingIsMerged) {
+  const fs::path file = folder_ / "suite.yaml";
+  std::ofstream(file) << "environments: [{category: room, scene: r.yaml, mapping_tour: t.yaml}]\n"
+                         "robot: robot.yaml\nvocabulary: v.mhvoc\nlevels: [pepper.yaml]\n"
+                         "systems: [plain]\nlabels: [exact]\n";
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  const Suite s = parse_suite(text.str(), file, {}, false);
+  const std::string name = expand(s)[0].name;
+  const fs::path good = folder_ / "good.sqlite", bad = folder_ / "bad.sqlite";
+  for (const fs::path& part : {good, bad}) {
+    Store store(part);
+    store.plan(s, {}, {{name, "k"}});
+    store.put("k", some_run(name), {});
+  }
+  const auto refused = [&] {
+    try {
+      Store::check_mergeable({good, bad});
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(refused(), "no error");
+  SQLite::Database raw(bad.string(), SQLite::OPEN_READWRITE);
+  raw.exec("CREATE TABLE my_notes (text TEXT)");
+  EXPECT_EQ(refused(), "no error") << "it does no harm";
+  raw.exec("UPDATE runs SET result = substr(result, 1, 40)");
+  EXPECT_TRUE(refused().starts_with(bad.string() + ": run '" + name + "' is damaged")) << refused();
+  raw.exec("ALTER TABLE metrics DROP COLUMN value");
+  EXPECT_TRUE(refused().starts_with(bad.string() + ": does not hold what")) << refused();
 }
 
 TEST_F(StoreFile, MergingRefusesRunsOfOtherSettings) {

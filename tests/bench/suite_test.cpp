@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -283,6 +284,44 @@ TEST(FilesOf, TheFirstWordIsLookedForOnThePath) {
   ASSERT_EQ(files.size(), 1u);
   EXPECT_EQ(files[0].word, "sh");
   EXPECT_TRUE(files[0].file.is_absolute()) << files[0].file;
+}
+
+TEST_F(SuiteFile, TheProgramsOfACommandAreSeenAsTheShellReadsThem) {
+  fs::create_directories(folder_ / "sub");
+  fs::create_directories(folder_ / "sp ace");
+  for (const char* name : {"prog.sh", "sub/prog.sh", "sp ace/prog.sh", "log.txt"}) {
+    std::ofstream(folder_ / name) << "#!/bin/sh\n";
+    fs::permissions(folder_ / name, fs::perms::owner_all);
+  }
+  setenv("MH_TEST_FOLDER", folder_.c_str(), 1);
+  const auto seen = [&](const std::string& command) {
+    const OutsideProgram program{.name = "vo", .command = command, .folder = folder_};
+    std::string names;
+    for (const ProgramFile& file : files_of(program))
+      names += file.file.lexically_relative(folder_).string() + ";";
+    return names + (unseen_program(program).empty() ? "" : "warned");
+  };
+  for (const char* command :
+       {"./prog.sh", "$MH_TEST_FOLDER/prog.sh", "\"${MH_TEST_FOLDER}\"/prog.sh", "$PWD/prog.sh",
+        "exec './prog.sh' {seed}", "A=1 ./prog\\.sh", "cd sub && $MH_TEST_FOLDER/prog.sh 2>&1",
+        "./prog.sh | tee -a log.txt", "./prog.sh >| log.txt # sub/prog.sh"})
+    EXPECT_EQ(seen(command), "prog.sh;") << command;
+  for (const char* command : {"\"sp ace/prog.sh\"", "sp\\ ace/prog.sh", "'sp ace'/prog.sh"})
+    EXPECT_EQ(seen(command), "sp ace/prog.sh;") << command;
+  for (const char* command :
+       {"cd sub && ./prog.sh", "D=$MH_TEST_FOLDER; $D/prog.sh", "./{seed}.sh", "$(echo ./prog.sh)",
+        "`echo ./prog.sh`", "./pro?.sh", "$MH_NOT_SET/prog.sh", "cd `dirname x` && ./prog.sh"})
+    EXPECT_EQ(seen(command), "warned") << command;
+  EXPECT_EQ(seen("cd sub && echo ready"), "") << "the shell's own words alone";
+  OutsideProgram told{.name = "vo", .command = "cd sub && ./prog.sh", .folder = folder_};
+  told.inputs = {"sub/prog.sh"};
+  EXPECT_EQ(unseen_program(told), "");
+  ASSERT_EQ(files_of(told).size(), 1u);
+  EXPECT_EQ(files_of(told)[0].file, folder_ / "sub/prog.sh");
+  const std::string home = std::getenv("HOME") == nullptr ? "/" : std::getenv("HOME");
+  setenv("HOME", folder_.c_str(), 1);
+  EXPECT_EQ(seen("~/prog.sh"), "prog.sh;");
+  setenv("HOME", home.c_str(), 1);
 }
 
 TEST(Sobol, EachDyadicIntervalHoldsItsShare) {
