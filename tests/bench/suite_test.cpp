@@ -298,7 +298,7 @@ TEST_F(SuiteFile, TheProgramsOfACommandAreSeenAsTheShellReadsThem) {
     const OutsideProgram program{.name = "vo", .command = command, .folder = folder_};
     std::string names;
     for (const ProgramFile& file : files_of(program))
-      names += file.file.lexically_relative(folder_).string() + ";";
+      names += file.file.lexically_normal().lexically_relative(folder_).string() + ";";
     return names + (unseen_program(program).empty() ? "" : "warned");
   };
   for (const char* command :
