@@ -40,8 +40,8 @@ cv::Mat ids(const Grid2d<Id>& grid) {
 
 class ScanNetWriter : public SequenceWriter {
  public:
-  ScanNetWriter(fs::path folder, const Camera& camera, int png_compression)
-      : folder_(std::move(folder)), camera_(camera), png_compression_(png_compression) {
+  ScanNetWriter(fs::path folder, const Camera& camera, PngCompression png_compression)
+      : folder_(std::move(folder)), camera_(camera), png_(png_settings(png_compression)) {
     for (const char* part : {"color", "depth", "pose", "intrinsic", "label-filt", "instance-filt"})
       make_output_folder(folder_ / part);
   }
@@ -57,10 +57,9 @@ class ScanNetWriter : public SequenceWriter {
           const double units = std::round(static_cast<double>(m) * kScannetDepthPerMetre);
           return static_cast<std::uint16_t>(std::clamp(units, 0.0, 65535.0));
         });
-    const std::vector<int> png = {cv::IMWRITE_PNG_COMPRESSION, png_compression_};
-    write_picture(folder_ / "depth" / (name + ".png"), depth, png);
-    write_picture(folder_ / "label-filt" / (name + ".png"), ids(exact.classes), png);
-    write_picture(folder_ / "instance-filt" / (name + ".png"), ids(exact.instances), png);
+    write_picture(folder_ / "depth" / (name + ".png"), depth, png_);
+    write_picture(folder_ / "label-filt" / (name + ".png"), ids(exact.classes), png_);
+    write_picture(folder_ / "instance-filt" / (name + ".png"), ids(exact.instances), png_);
     write_atomically(folder_ / "pose" / (name + ".txt"), rows(matrix_of(world_from_camera)));
     count(index);
   }
@@ -107,16 +106,21 @@ class ScanNetWriter : public SequenceWriter {
 
   fs::path folder_;
   Camera camera_;
-  int png_compression_;
+  std::vector<int> png_;
   std::mutex mutex_;
   std::set<std::size_t> written_;
 };
 
 }  // namespace
 
+std::vector<int> png_settings(PngCompression compression) {
+  if (!compression) return {};
+  return {cv::IMWRITE_PNG_COMPRESSION, *compression};
+}
+
 std::unique_ptr<SequenceWriter> make_sequence_writer(std::string_view format,
                                                      const fs::path& folder, const Camera& camera,
-                                                     int png_compression) {
+                                                     PngCompression png_compression) {
   if (format == "tum") return std::make_unique<TumWriter>(folder, camera, png_compression);
   if (format == "scannet-frames")
     return std::make_unique<ScanNetWriter>(folder, camera, png_compression);

@@ -3,7 +3,9 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string_view>
+#include <vector>
 
 #include "sim/render/renderer.hpp"
 #include "slam/core/camera.hpp"
@@ -11,8 +13,11 @@
 
 namespace mh {
 
-/// Compression of PNG files, 0 (none) to 9. What each costs and saves: docs/rendering.md.
-inline constexpr int kPngCompression = 1;
+/// Compression of PNG files, 0 (none) to 9; none given: OpenCV's own, which packs runs of the
+/// difference to the left neighbour. What each costs and saves: docs/rendering.md.
+using PngCompression = std::optional<int>;
+/// As OpenCV wants it.
+std::vector<int> png_settings(PngCompression compression);
 
 /// Writes a sequence of frames with their truth into a folder. Each file is written whole or not at
 /// all. Safe to call from several threads at once; the bytes do not depend on the order.
@@ -39,6 +44,6 @@ class SequenceWriter {
 std::unique_ptr<SequenceWriter> make_sequence_writer(std::string_view format,
                                                      const std::filesystem::path& folder,
                                                      const Camera& camera,
-                                                     int png_compression = kPngCompression);
+                                                     PngCompression png_compression = {});
 
 }  // namespace mh

@@ -118,8 +118,8 @@ RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera
   return frame;
 }
 
-TumWriter::TumWriter(fs::path folder, const Camera& camera, int png_compression)
-    : folder_(std::move(folder)), camera_(camera), png_compression_(png_compression) {
+TumWriter::TumWriter(fs::path folder, const Camera& camera, PngCompression png_compression)
+    : folder_(std::move(folder)), camera_(camera), png_(png_settings(png_compression)) {
   for (const char* part : {"rgb", "depth", "label"}) {
     make_output_folder(folder_ / part);
     listed_[part];
@@ -131,7 +131,7 @@ fs::path TumWriter::file_of(const char* part, Stamp stamp_ns) const {
 }
 
 void TumWriter::write(const char* part, Stamp stamp_ns, const cv::Mat& picture) {
-  write_picture(file_of(part, stamp_ns), picture, {cv::IMWRITE_PNG_COMPRESSION, png_compression_});
+  write_picture(file_of(part, stamp_ns), picture, png_);
   const std::scoped_lock lock(mutex_);
   listed_[part].insert(stamp_ns);
 }

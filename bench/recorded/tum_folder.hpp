@@ -49,7 +49,7 @@ RgbdFrame read_frame(const RecordedFrame& frame, const RecordedCamera& camera);
 class TumWriter : public SequenceWriter {
  public:
   TumWriter(std::filesystem::path folder, const Camera& camera,
-            int png_compression = kPngCompression);
+            PngCompression png_compression = {});
   /// What a system may see and nothing else. label.txt lists the frames that have labels.
   void add(const RgbdFrame& frame);
   void add(std::size_t index, const RgbdFrame& frame, const RenderedFrame& exact,
@@ -65,7 +65,7 @@ class TumWriter : public SequenceWriter {
 
   std::filesystem::path folder_;
   Camera camera_;
-  int png_compression_;
+  std::vector<int> png_;
   std::mutex mutex_;                               ///< of what follows
   std::map<std::string, std::set<Stamp>> listed_;  ///< by part: whose pictures are there
   std::map<Stamp, SE3> truth_;
