@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <map>
 #include <set>
@@ -90,6 +91,23 @@ fs::path real_executable(const fs::path& executable) {
   return error ? executable : real;
 }
 
+/// Files that a finished run had written and that nobody makes again.
+void say_what_is_gone(const Suite& suite, const BenchResults& results,
+                      const BenchOptions& options) {
+  std::size_t runs = 0;
+  std::set<std::string> views;
+  for (const RunResult& run : results.runs) {
+    runs += fs::exists(options.out / run.spec.name / "estimate.tum") ? 0 : 1;
+    if (const std::string name = views_name(suite, run.spec); !fs::exists(options.out / name))
+      views.insert(name);
+  }
+  if (runs == 0 && views.empty()) return;
+  options.say(fmt::format(
+      "warning: {} of finished runs and {} of pictures are gone from {}; their results are kept, "
+      "another --out makes all of it anew",
+      counted(runs, "folder"), counted(views.size(), "sheet"), options.out.string()));
+}
+
 /// Processes at work per processor, of the last minute; 0 where it is unknown.
 double load_per_processor() {
   double load = 0;
@@ -97,13 +115,14 @@ double load_per_processor() {
   return load / std::max(1.0, static_cast<double>(sysconf(_SC_NPROCESSORS_ONLN)));
 }
 
+/// @param wall_s  of this process so far, as cpu_s is of it
 /// @param world_s, products_s  processor time besides what `run` knows of
-RunCost cost_of_this_process(const RunResult& run, double world_s, double products_s,
+RunCost cost_of_this_process(const RunResult& run, double wall_s, double world_s, double products_s,
                              const RunOrder& order) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return {
-      .wall_s = run.wall_s,
+      .wall_s = wall_s,
       .cpu_s = processor_time_s(),
       .slam_s = run.times.processor_s,
       .frames_s = world_s + run.frames_s,
@@ -159,7 +178,7 @@ BenchResults load_results(const Store& store, const Suite& suite) {
     else if (status == RunStatus::kFailed)
       results.failed.push_back({spec, store.error(key->second)});
     else
-      ++results.missing;
+      results.missing.push_back(spec.name);
   }
   return results;
 }
@@ -228,10 +247,13 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
     pool.progress = options.progress;
     work_off(store, std::move(mine), pool);
   }
-  return load_results(store, suite);
+  BenchResults results = load_results(store, suite);
+  if (!options.figures_alone) say_what_is_gone(suite, results, options);
+  return results;
 }
 
 void carry_out(const RunOrder& order) {
+  const auto start = std::chrono::steady_clock::now();
   const auto json = nlohmann::ordered_json::parse(read_file(order.description), nullptr, false);
   const RunSpec spec = run_spec_from_json(json);
   double world_s = 0, products_s = 0;
@@ -254,7 +276,10 @@ void carry_out(const RunOrder& order) {
     // One process makes the contact sheet; should two begin it, both write the same bytes.
     if (!fs::exists(order.folder / order.views)) write_views(order.folder / order.views, world);
   }
-  Store(order.store).put(order.key, run, cost_of_this_process(run, world_s, products_s, order));
+  const double wall_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  Store(order.store)
+      .put(order.key, run, cost_of_this_process(run, wall_s, world_s, products_s, order));
 }
 
 }  // namespace mh

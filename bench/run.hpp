@@ -42,9 +42,9 @@ struct BenchOptions {
 
 /// What a store holds of a suite.
 struct BenchResults {
-  std::vector<RunResult> runs;    ///< finished ones, in the order of expand(suite)
-  std::vector<FailedRun> failed;  ///< likewise
-  std::size_t missing = 0;        ///< neither: of other shards
+  std::vector<RunResult> runs;       ///< finished ones, in the order of expand(suite)
+  std::vector<FailedRun> failed;     ///< likewise
+  std::vector<std::string> missing;  ///< names of those that are neither: of other shards
 };
 
 /// Works off a suite into options.out / "results.sqlite". A finished run is never repeated.

@@ -2,7 +2,6 @@
 #include "bench/run_one.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <optional>
 
@@ -38,12 +37,6 @@ class WorkDone {
   std::size_t all_, furthest_ = 0;
   const std::function<void(double)>& tell_;
 };
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// @param spent_s  the processor time that making frames takes is added to it
 FrameSource frames_of(const SimulatedSequence& sequence, const RunTamper& tamper, double& spent_s) {
@@ -159,7 +152,6 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
 }
 
 RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools) {
-  const auto start = Clock::now();
   const RandomStream stream(spec.seed);
   const RunTamper& tamper = tools.tamper;
   const Camera& camera = world.robot.camera;
@@ -249,7 +241,6 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   // From just over the floor (noise of the depth at 4 m lies below) to the top of the head.
   if (run.volume) run.grid = run.volume->project(0.10, world.robot.height_m);
   run.map_digest = digest_bytes(run.grid.cells.data(), run.grid.cells.size(), digest(run.estimate));
-  run.wall_s = seconds_since(start);
   return run;
 }
 

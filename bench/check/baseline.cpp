@@ -53,8 +53,12 @@ std::vector<std::string> changed_settings(const Baseline& before, const Baseline
     return all.contains(key) ? all.at(key).dump() : std::string("none");
   };
   const auto note = [&](const std::string& key) {
+    std::string path = key.substr(1);  // of a JSON pointer, in which ~1 is a slash and ~0 a tilde
+    for (const auto& [escape, meant] : {std::pair("~1", "/"), std::pair("~0", "~")})
+      for (auto at = path.find(escape); at != std::string::npos; at = path.find(escape, at + 1))
+        path.replace(at, 2, meant);
     changed.push_back(
-        fmt::format("{}: {} -> {}", key.substr(1), shown(old_ones, key), shown(new_ones, key)));
+        fmt::format("{}: {} -> {}", path, shown(old_ones, key), shown(new_ones, key)));
   };
   for (const auto& [key, value] : old_ones.items())
     if (shown(new_ones, key) != value.dump()) note(key);

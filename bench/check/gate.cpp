@@ -131,6 +131,13 @@ const Tolerance* tolerance_for(const GateConfig& config, std::string_view scenar
 }
 
 /// Whether anything was ever asked of this measure: a scenario without a second tour has none.
+bool is_asked(const Pairing& pairing, const Measure& measure) {
+  return std::ranges::any_of(pairing.runs, [&](const auto& pair) {
+    return pair.first->values.contains(measure.name) || pair.second->values.contains(measure.name);
+  });
+}
+
+/// Whether it has a figure anywhere.
 bool occurs(const Pairing& pairing, const Measure& measure) {
   return std::ranges::any_of(pairing.runs, [&](const auto& pair) {
     return figure(*pair.first, measure.name) || figure(*pair.second, measure.name);
@@ -188,6 +195,9 @@ GateResult compare(std::span<const RunFigures> baseline, std::span<const RunFigu
       if (const Tolerance* tolerance = tolerance_for(config, pairing.scenario, measure.name))
         if (occurs(pairing, measure))
           result.changes.push_back(compare(pairing, measure, *tolerance));
+        else if (is_asked(pairing, measure))
+          result.not_measured.push_back(
+              fmt::format("{}, {}: {}", pairing.scenario, pairing.system, measure.name));
   }
   return result;
 }

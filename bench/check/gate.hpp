@@ -53,6 +53,8 @@ struct GateResult {
   std::size_t runs = 0;
   std::size_t identical = 0;              ///< runs whose digest is the baseline's
   std::vector<std::string> unrepeatable;  ///< runs that differ though program and machine do not
+  /// What has a tolerance but no figure, before or now: "corridor, plain-pepper: ate_rmse_m".
+  std::vector<std::string> not_measured = {};
   bool same_origin = false;  ///< program, machine and settings are those of the baseline
   std::vector<std::string> changed_settings = {};  ///< what the baseline was made with otherwise
   bool settings_known = true;                      ///< whether the baseline tells its settings

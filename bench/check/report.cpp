@@ -119,6 +119,10 @@ std::string gate_report(const GateResult& result, const std::string& suite) {
   text +=
       "would see: a true worsening of this size fails the gate with 80 % power; chance alone as it "
       "shows between the baseline's seeds\n\n";
+  if (!result.not_measured.empty()) {
+    text += "not measured, neither before nor now, whatever the tolerance:\n";
+    for (const std::string& what : result.not_measured) text += "  " + what + "\n";
+  }
   text += list(result, ChangeVerdict::kBetter,
                "better than the baseline (keep it with --update, or later loss goes unseen):");
   text += list(result, ChangeVerdict::kWorse, "worse than the baseline:");
@@ -159,6 +163,7 @@ Json gate_json(const GateResult& result, const std::string& suite) {
           {"same_origin", result.same_origin},
           {"changed_settings", result.changed_settings},
           {"unrepeatable", result.unrepeatable},
+          {"not_measured", result.not_measured},
           {"changes", changes}};
 }
 
@@ -191,6 +196,20 @@ std::string gate_junit(const GateResult& result, const std::string& suite) {
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"{}\" tests=\"{}\" "
       "failures=\"{}\">\n{}</testsuites>\n",
       escaped(suite), tests, failures, body);
+}
+
+std::string failures_junit(std::span<const FailedRun> failed, const std::string& suite) {
+  std::string cases;
+  for (const FailedRun& run : failed)
+    cases += fmt::format(
+        "    <testcase classname=\"{0}.runs\" name=\"{1}\">\n      <error message=\"{2}\"/>\n"
+        "    </testcase>\n",
+        escaped(suite), escaped(run.spec.name), escaped(run.error));
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"{0}\" tests=\"{1}\" "
+      "errors=\"{1}\">\n  <testsuite name=\"runs\" tests=\"{1}\" errors=\"{1}\">\n{2}"
+      "  </testsuite>\n</testsuites>\n",
+      escaped(suite), failed.size(), cases);
 }
 
 }  // namespace mh

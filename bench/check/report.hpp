@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 
 #include <nlohmann/json.hpp>
 
 #include "bench/check/gate.hpp"
+#include "bench/results/run_result.hpp"
 
 namespace mh {
 
@@ -19,5 +21,8 @@ nlohmann::ordered_json gate_json(const GateResult& result, const std::string& su
 /// The same as JUnit XML: a suite per scenario, a case per system and measure, and a case for the
 /// digests where they had to be equal.
 std::string gate_junit(const GateResult& result, const std::string& suite);
+
+/// JUnit XML of a gate that could not judge: an error per run that failed.
+std::string failures_junit(std::span<const FailedRun> failed, const std::string& suite);
 
 }  // namespace mh

@@ -34,19 +34,22 @@ fs::path baseline_file(const Options& options) {
 
 /// Runs the suite anew: nothing is taken from earlier results, light is shared among these runs
 /// only.
-Baseline measure(const Suite& suite, int jobs) {
+Baseline measure(const Suite& suite, const Options& of) {
   const TemporaryFolder folder(fs::temp_directory_path());
   Progress progress("check");
   const BenchOptions options{
       .out = folder.path(),
-      .jobs = jobs,
+      .jobs = of.jobs,
       .shard = {},
       .cache = {},
       .figures_alone = true,
       .say = [&](std::string_view stage) { progress.say(stage); },
       .progress = [&](double share, std::size_t, std::size_t) { progress.share(share); }};
   const BenchResults results = run_suite(suite, {}, options);
-  throw_failures(results.failed);
+  if (!results.failed.empty()) {
+    if (!of.junit.empty()) write_atomically(of.junit, failures_junit(results.failed, suite.name));
+    throw_failures(results.failed, results.failed.front().error, "");
+  }
   return {.suite = suite.name,
           .suite_digest = gate_suite_digest(suite),
           .origin = gate_origin(),
@@ -93,7 +96,7 @@ void run(const Options& options) {
         fmt::format("{}: check: tolerances: missing: nothing would be judged", options.suite));
   if (!options.junit.empty()) need_writable(options.junit);
   if (options.update) need_writable(baseline_file(options));
-  if (options.update) return update(options, suite, measure(suite, options.jobs));
+  if (options.update) return update(options, suite, measure(suite, options));
 
   const fs::path file = baseline_file(options);
   if (!fs::exists(file))
@@ -101,7 +104,7 @@ void run(const Options& options) {
         fmt::format("{}: cannot be read: no such baseline; --update makes one", file.string()));
   const Baseline baseline = load_baseline(file);  // before the work: a slip costs no minutes
   check_suite(baseline, file, suite.name, gate_suite_digest(suite));
-  const Baseline now = measure(suite, options.jobs);
+  const Baseline now = measure(suite, options);
   const GateResult result = judge(suite, baseline, now);
   tell(options, result, suite.name);
   if (!result.passed()) throw CheckFailed();

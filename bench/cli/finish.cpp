@@ -15,30 +15,29 @@ namespace mh::cli {
 
 void finish(const std::filesystem::path& out, const Suite& suite, const BenchResults& results,
             bool json) {
-  const std::string table = write_results(out, suite, results.runs, results.failed);
+  const std::string table =
+      write_results(out, suite, results.runs, results.failed, results.missing);
   if (json) {
-    fmt::print("{}\n", results_json(suite, results.runs, results.failed).dump(2));
+    fmt::print("{}\n", results_json(suite, results.runs, results.failed, results.missing).dump(2));
   } else {
     fmt::print("{}\n", table);
     if (!results.runs.empty()) fmt::print("{}\n", times_table(suite, results.runs));
-    if (results.missing > 0)
-      fmt::print("missing, of other shards (modelhouse merge): {}\n",
-                 counted(results.missing, "run"));
     fmt::print("results in {}\n", out.string());
   }
-  throw_failures(results.failed);
+  throw_failures(results.failed, fmt::format("why: see {}", (out / "table.txt").string()),
+                 "; --retry-failed tries again");
 }
 
-void throw_failures(const std::vector<FailedRun>& failed) {
+void throw_failures(const std::vector<FailedRun>& failed, const std::string& why,
+                    const std::string& advice) {
   if (failed.empty()) return;
   std::string others;
-  if (failed.size() > 1) others = fmt::format(" (and {} more)", failed.size() - 1);
-  const std::string told =
-      fmt::format("{}{} failed: {}", failed.front().spec.name, others, failed.front().error);
+  if (failed.size() > 1) others = fmt::format(" and {} more", failed.size() - 1);
+  const std::string told = fmt::format("{}{} failed; {}", failed.front().spec.name, others, why);
   if (std::all_of(failed.begin(), failed.end(),
                   [](const FailedRun& f) { return f.error.starts_with(kBadInputMark); }))
     throw InputError(told);
-  throw MachineError(told + "; --retry-failed tries again");
+  throw MachineError(told + advice);
 }
 
 }  // namespace mh::cli

@@ -13,7 +13,10 @@ void finish(const std::filesystem::path& out, const Suite& suite, const BenchRes
             bool json);
 
 /// Does nothing if there are none.
+/// @param why     where, or what, the cause is
+/// @param advice  what helps unless all of them met bad input
 /// @throws InputError if all of them met bad input, else MachineError, naming the first.
-void throw_failures(const std::vector<FailedRun>& failed);
+void throw_failures(const std::vector<FailedRun>& failed, const std::string& why,
+                    const std::string& advice);
 
 }  // namespace mh::cli

@@ -227,8 +227,8 @@ cv::Mat draw_sweep(const Suite& suite, std::span<const Row> rows, const SweepRes
 
   Canvas canvas(static_cast<int>(2 * kMargin + kColumns * kPanelWidth),
                 static_cast<int>(kHeader + static_cast<double>(blocks.size()) * block_height + 16));
-  canvas.text(fmt::format("{}: {}, {} labels, level {}, map: {}", suite.name,
-                          suite.systems[result.system].name, name(result.labels),
+  canvas.text(fmt::format("{}: {}, {}, level {}, map: {}", suite.name,
+                          suite.systems[result.system].name, with_labels(result.labels),
                           level_name(suite.levels[result.level]), name(suite.sweep.map)),
               {kMargin, 34}, 14, kInk, Canvas::Align::kLeft, true);
   for (std::size_t b = 0; b < blocks.size(); ++b) {

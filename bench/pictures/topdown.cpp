@@ -146,19 +146,34 @@ void draw_path(Canvas& canvas, const PlanView& view, const Trajectory& path, con
     if (path[i].stamp_ns - path[i - 1].stamp_ns > kGap_ns) continue;
     const Eigen::Vector3d a = plan_from * path[i - 1].world_from_camera.translation();
     const Eigen::Vector3d b = plan_from * path[i].world_from_camera.translation();
-    canvas.line(view(a.head<2>()), view(b.head<2>()), colour, thickness);
+    if (view.bounds.contain(a.head<2>()) && view.bounds.contain(b.head<2>()))
+      canvas.line(view(a.head<2>()), view(b.head<2>()), colour, thickness);
   }
 }
 
+/// The way from a point towards another as far as it lies on the plan.
+Eigen::Vector2d up_to_the_edge(const Bounds& bounds, const Eigen::Vector2d& from,
+                               const Eigen::Vector2d& to) {
+  double share = 1;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double way = to[axis] - from[axis];
+    const double room = (way > 0 ? bounds.high : bounds.low)[axis] - from[axis];
+    if (std::abs(way) > std::abs(room)) share = std::min(share, room / way);
+  }
+  return from + std::max(0.0, share) * (to - from);
+}
+
+/// An answer beyond the plan has no ring, but the line towards it.
 void draw_queries(Canvas& canvas, const PlanView& view, const std::vector<QueryScore>& queries,
                   const SE3& plan_from_estimate) {
   for (const QueryScore& q : queries) {
-    const cv::Point2d truth = view(q.true_world_from_camera.translation().head<2>());
+    const Eigen::Vector2d at = q.true_world_from_camera.translation().head<2>();
+    const cv::Point2d truth = view(at);
     if (q.success) {
-      const Eigen::Vector3d p = plan_from_estimate * q.answer.world_from_camera->translation();
-      const cv::Point2d estimate = view(p.head<2>());
-      if (q.wrong) canvas.line(truth, estimate, kBad, 1);
-      canvas.ring(estimate, 6.5, q.wrong ? kBad : kGood, 1.8);
+      const Eigen::Vector2d p =
+          (plan_from_estimate * q.answer.world_from_camera->translation()).head<2>();
+      if (q.wrong) canvas.line(truth, view(up_to_the_edge(view.bounds, at, p)), kBad, 1);
+      if (view.bounds.contain(p)) canvas.ring(view(p), 6.5, q.wrong ? kBad : kGood, 1.8);
     }
     canvas.cross(truth, 4.5, q.success ? kX : kMissed, 1.8);
   }
@@ -210,24 +225,36 @@ void draw_legend(Canvas& canvas, double y) {
   second.entry("map: occupied", patch(kMapOccupied));
 }
 
+/// A line of text from margin to margin, smaller where it would go beyond.
+void draw_line_of_text(Canvas& canvas, const std::string& text, double y, double size, Rgb8 colour,
+                       bool bold) {
+  const double room = (kWidth - 2 * kMargin) / Canvas::text_width(text, size, bold);
+  canvas.text(text, {kMargin, y}, size * std::min(1.0, room), colour, Canvas::Align::kLeft, bold);
+}
+
 void draw_header(Canvas& canvas, const World& world, const RunResult& run, QuerySet set) {
-  canvas.text(fmt::format("{}: {} system{}{}", run.spec.environment.name, run.spec.system.name,
-                          run.spec.system.kind == SystemKind::kPlain
-                              ? ""
-                              : fmt::format(", {} labels", name(run.spec.labels)),
-                          world.cut ? fmt::format(", first {}", counted(*run.spec.max_frames, "frame")) : ""),
-              {kMargin, 38}, 17, kInk, Canvas::Align::kLeft, true);
+  draw_line_of_text(
+      canvas,
+      fmt::format(
+          "{}: {} system{}{}", run.spec.environment.name, run.spec.system.name,
+          run.spec.system.kind == SystemKind::kPlain ? "" : ", " + with_labels(run.spec.labels),
+          world.cut ? fmt::format(", first {}", counted(*run.spec.max_frames, "frame")) : ""),
+      38, 17, kInk, true);
   const QuerySummary s = summarize(queries(run.points.front(), set));
+  const char* which = set == QuerySet::kHeldOut ? "held-out" : "second tour";
+  const std::string answers =
+      s.queries == 0 ? fmt::format("{}: nothing was asked", which)
+                     : fmt::format("{} ({}): {:.1f} % answered, {:.1f} % correct",
+                                   counted(static_cast<int>(s.queries), "query", "queries"), which,
+                                   100 * s.success, 100 * s.correct);
   const std::optional<double>& ate = run.trajectory.ate_rmse_m;
-  canvas.text(
-      fmt::format("level {}, trial {}; {} {:.1f} m driven; {} ({}): {:.1f} % answered, "
-                  "{:.1f} % correct; ATE {}, completeness {:.1f} %",
+  draw_line_of_text(
+      canvas,
+      fmt::format("level {}, trial {}; {} {:.1f} m driven; {}; ATE {}, completeness {:.1f} %",
                   level_name(run.spec.level), run.spec.trial, world.robot.name,
-                  world.mapping.length_m, counted(static_cast<int>(s.queries), "query", "queries"),
-                  set == QuerySet::kHeldOut ? "held-out" : "second tour", 100 * s.success,
-                  100 * s.correct, ate ? fmt::format("{:.3f} m", *ate) : "-",
+                  world.mapping.length_m, answers, ate ? fmt::format("{:.3f} m", *ate) : "-",
                   100 * run.trajectory.completeness),
-      {kMargin, 66}, 10.5, kFaint);
+      66, 10.5, kFaint, false);
 }
 
 }  // namespace

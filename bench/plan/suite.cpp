@@ -56,6 +56,9 @@ void replace_scene(Suite& suite, const fs::path& scene) {
 std::string_view name(LabelMode labels) {
   return name_of(labels, kLabels);
 }
+std::string with_labels(LabelMode labels) {
+  return labels == LabelMode::kNone ? "no labels" : std::string(name(labels)) + " labels";
+}
 std::string_view name(DropReset reset) {
   return name_of(reset, kResets);
 }

@@ -19,6 +19,8 @@
 namespace mh {
 
 std::string_view name(LabelMode labels);
+/// "exact labels", "no labels"
+std::string with_labels(LabelMode labels);
 std::string_view name(Overlap overlap);
 std::string_view name(DropReset reset);
 std::string_view name(QueryTruth truth);

@@ -33,6 +33,13 @@ RgbdFrame blank_frame(int width_px, int height_px, Stamp stamp_ns) {
           .semantics = {}};
 }
 
+bool is_blank(const RgbdFrame& frame) {
+  return std::all_of(frame.depth_m.begin(), frame.depth_m.end(),
+                     [](float depth_m) { return depth_m == 0; }) &&
+         std::all_of(frame.colour.begin(), frame.colour.end(),
+                     [](Rgb8 colour) { return colour == Rgb8{}; });
+}
+
 QueryAnswer query(const System& frozen, std::size_t index, const FrameSource& frames,
                   const ProtocolConfig& config, RandomStream stream, QueryMemo* memo) {
   const RandomStream noise = stream.fork(kNoise).fork(index);

@@ -28,6 +28,9 @@ struct QueryAnswer {
 /// A black picture without depth or labels: what the paper shows between test frames.
 RgbdFrame blank_frame(int width_px, int height_px, Stamp stamp_ns);
 
+/// Whether a frame shows nothing at all, as blank_frame() does.
+bool is_blank(const RgbdFrame& frame);
+
 /// Puts one test frame to a frozen system (section 3.2 of the paper): a fresh session, blank frames
 /// until it is lost, then the test frame up to config.query_attempts times or until a pose comes
 /// back. Noise and SLAM draw from streams keyed by (test frame, attempt) alone: the answer depends

@@ -328,7 +328,7 @@ Json comparison_json(const Comparison& c) {
 }  // namespace
 
 Json results_json(const Suite& suite, std::span<const RunResult> runs,
-                  std::span<const FailedRun> failed) {
+                  std::span<const FailedRun> failed, std::span<const std::string> missing) {
   const std::vector<Row> rows = make_rows(suite, runs, failed);
   Json run_list = Json::array(), row_list = Json::array(), comparisons = Json::array();
   for (const RunResult& run : runs) run_list.push_back(run_json(run));
@@ -363,7 +363,8 @@ Json results_json(const Suite& suite, std::span<const RunResult> runs,
       {"comparisons", comparisons},
       {"categories", categories},
       {"comparisons_over_scenes", over_scenes},
-      {"runs", run_list}};
+      {"runs", run_list},
+      {"missing", missing}};
 }
 
 Json reproduction_json(const Suite& suite, std::span<const RunResult> runs) {
@@ -411,7 +412,8 @@ Json times_json(std::span<const RunResult> runs) {
                     {"jobs", run.circumstances.jobs},
                     {"load_per_processor", run.circumstances.load},
                     {"track_ms", calls(run.times.track_ms)},
-                    {"relocalize_ms", calls(run.times.relocalize_ms)}});
+                    {"relocalize_ms", calls(run.times.relocalize_ms)},
+                    {"blank_ms", calls(run.times.blank_ms)}});
   }
   return {{"fingerprint", fingerprint_json()}, {"runs", list}};
 }

@@ -14,7 +14,8 @@ inline constexpr const char* kResultsFormat = "modelhouse-results-3";
 /// Everything about a suite's results that is a function of suite, binary and seeds: the resolved
 /// settings, digests, one entry per run with its queries, the rows of the table, the comparisons.
 nlohmann::ordered_json results_json(const Suite& suite, std::span<const RunResult> runs,
-                                    std::span<const FailedRun> failed = {});
+                                    std::span<const FailedRun> failed = {},
+                                    std::span<const std::string> missing = {});
 
 /// What it takes to make the results again: the command, which works from any folder, the commit
 /// and digest of the code, build and machine, the resolved suite, seeds and digests of the inputs.

@@ -118,14 +118,14 @@ std::vector<Comparison> compare(const std::vector<const Row*>& semantic,
   };
   for (const QuerySet set : kQuerySets) {
     const auto what = [&](const char* measure) {
-      return fmt::format("{}, {}, {} labels", measure, name(set), name(labels));
+      return fmt::format("{}, {}, {}", measure, name(set), with_labels(labels));
     };
     add(what("success"), share<&QuerySummary::success>, set, true, true, true);
     add(what("correct"), share<&QuerySummary::correct>, set, true, true, false);
     add(what("false"), share<&QuerySummary::wrong>, set, true, false, false);
     add(what("distance where both answer, m"), distance, set, false, false, true);
   }
-  add(fmt::format("ATE where both track, m, {} labels", name(labels)), ate, QuerySet::kHeldOut,
+  add(fmt::format("ATE where both track, m, {}", with_labels(labels)), ate, QuerySet::kHeldOut,
       false, false, true);
   return comparisons;
 }

@@ -98,7 +98,7 @@ std::vector<Comparison> compare_rows(const Row& semantic, const Row& plain, std:
   for (const QuerySet set : kQuerySets) {
     if (summary(semantic, set).queries == 0) continue;
     const auto label = [&](const char* what) {
-      return fmt::format("{}, {}, {} labels", what, name(set), name(semantic.labels));
+      return fmt::format("{}, {}, {}", what, name(set), with_labels(semantic.labels));
     };
     const auto success = [](const QueryScore& q) { return std::optional(q.success ? 1.0 : 0.0); };
     const auto correct = [](const QueryScore& q) { return std::optional(q.correct ? 1.0 : 0.0); };

@@ -278,9 +278,9 @@ std::string block_text(const Block& block) {
   const Suite& suite = block.suite;
   const Row& row = *block.rows.front();
   std::string text = fmt::format(
-      "\n{}, level {}, {} labels, {}{}{}\n",
+      "\n{}, level {}, {}, {}{}{}\n",
       suite.environments.size() > 1 ? suite.environments[row.environment].name : suite.name,
-      level_name(suite.levels[row.level]), name(row.labels), counted(suite.trials, "trial"),
+      level_name(suite.levels[row.level]), with_labels(row.labels), counted(suite.trials, "trial"),
       suite.trials == 1 ? "" : " (medians)", shortened(suite, block.all));
   text += rule(90) + table_2(block) + rule(90);
   for (const QuerySet set : kQuerySets)
@@ -387,9 +387,9 @@ std::string scenes_text(const Suite& suite, const std::vector<Row>& rows) {
   for (const CategoryRow& row : categories) {
     if (last == nullptr || last->level != row.level || last->labels != row.labels) {
       text += fmt::format(
-          "\n{}, level {}, {} labels, {}{}; per scene the median over trials, then the mean "
+          "\n{}, level {}, {}, {}{}; per scene the median over trials, then the mean "
           "over scenes\n",
-          suite.name, level_name(suite.levels[row.level]), name(row.labels),
+          suite.name, level_name(suite.levels[row.level]), with_labels(row.labels),
           counted(suite.trials, "trial"), shortened(suite, rows));
       text += fmt::format("  {:<{}}{:>7}  {:<{}}{:>9}{:>10}{:>11}", "environments",
                           category_width(suite), "scenes", "system", name_width(suite), "ATE m",
@@ -422,17 +422,17 @@ std::string best_points(const Suite& suite, const std::vector<Row>& rows) {
       const SemanticConfig at = settings_of(system, result.points[best->point]);
       const Comparison& c = best->to_reference;
       if (best->equals == result.points.size()) {
-        text += fmt::format("  {}, level {}, {} labels, {}: {:.2f}% at each of {} points\n",
-                            system.name, level_name(suite.levels[result.level]),
-                            name(result.labels), name(set),
-                            100 * summary(result.answers[best->point], set).correct, best->equals);
+        text += fmt::format("  {}, level {}, {}, {}: {:.2f}% at each of {} points\n", system.name,
+                            level_name(suite.levels[result.level]), with_labels(result.labels),
+                            name(set), 100 * summary(result.answers[best->point], set).correct,
+                            best->equals);
         continue;
       }
       text += fmt::format(
-          "  {}, level {}, {} labels, {}: gamma {:.4g}, xi {:.4g}, alpha {:.4g}, beta {:.4g}: "
+          "  {}, level {}, {}, {}: gamma {:.4g}, xi {:.4g}, alpha {:.4g}, beta {:.4g}: "
           "{:.2f}%, {}{}\n",
-          system.name, level_name(suite.levels[result.level]), name(result.labels), name(set),
-          at.gamma, at.xi, at.alpha, at.beta,
+          system.name, level_name(suite.levels[result.level]), with_labels(result.labels),
+          name(set), at.gamma, at.xi, at.alpha, at.beta,
           100 * summary(result.answers[best->point], set).correct,
           c.pairs == 0 ? std::string("-") : fmt::format("{:+.4f} {}", c.difference, interval(c)),
           best->equals > 1 ? fmt::format("; {} points are equal", best->equals) : "");
@@ -449,10 +449,10 @@ std::string sweep_text(const Suite& suite, const std::vector<Row>& rows) {
   for (const CategoryRow& row : categories) {
     if (row.category != kAllCategories) continue;
     if (last == nullptr || last->level != row.level || last->labels != row.labels) {
-      text +=
-          fmt::format("\n{}, level {}, {} labels, map: {}, {}{}\n", suite.name,
-                      level_name(suite.levels[row.level]), name(row.labels), name(suite.sweep.map),
-                      counted(suite.trials, "trial"), shortened(suite, rows));
+      text += fmt::format("\n{}, level {}, {}, map: {}, {}{}\n", suite.name,
+                          level_name(suite.levels[row.level]), with_labels(row.labels),
+                          name(suite.sweep.map), counted(suite.trials, "trial"),
+                          shortened(suite, rows));
       text += fmt::format("  {:<{}}{:>9}{:>9}{:>9}{:>9}", "system", name_width(suite), "gamma",
                           "xi", "alpha", "beta");
       for (const QuerySet set : kQuerySets)
@@ -491,6 +491,18 @@ std::string failures_text(std::span<const FailedRun> failed) {
   return text;
 }
 
+/// Which runs of the suite nobody has made yet.
+std::string missing_text(std::span<const std::string> missing) {
+  if (missing.empty()) return "";
+  constexpr std::size_t kMost = 10;
+  std::string text = fmt::format("\nmissing, so that the figures above are without {}:\n",
+                                 counted(missing.size(), "run"));
+  for (std::size_t i = 0; i < std::min(kMost, missing.size()); ++i)
+    text += fmt::format("  {}\n", missing[i]);
+  if (missing.size() > kMost) text += fmt::format("  and {} more\n", missing.size() - kMost);
+  return text;
+}
+
 /// Where the times come from: what other work did beside them shows in them.
 std::string circumstances(std::span<const RunResult> runs) {
   std::set<std::string> hosts, sittings;
@@ -519,13 +531,13 @@ std::string circumstances(std::span<const RunResult> runs) {
 }  // namespace
 
 std::string results_table(const Suite& suite, std::span<const RunResult> runs,
-                          std::span<const FailedRun> failed) {
+                          std::span<const FailedRun> failed, std::span<const std::string> missing) {
   const std::vector<Row> rows = make_rows(suite, runs, failed);
   return warning_of_cut(suite, runs) +
          (parameter_points(suite).size() > 1 ? sweep_text(suite, rows)
           : suite.environments.size() > 1    ? scenes_text(suite, rows)
                                              : place_text(suite, rows)) +
-         failures_text(failed);
+         failures_text(failed) + missing_text(missing);
 }
 
 std::string times_table(const Suite& suite, std::span<const RunResult> runs) {
@@ -533,7 +545,7 @@ std::string times_table(const Suite& suite, std::span<const RunResult> runs) {
   const auto label = [&](const Row& row) {
     const SystemSpec& system = suite.systems[row.system];
     std::string text = fmt::format("{}, {}", suite.environments[row.environment].name, system.name);
-    if (system.kind != SystemKind::kPlain) text += fmt::format(", {} labels", name(row.labels));
+    if (system.kind != SystemKind::kPlain) text += ", " + with_labels(row.labels);
     return text;
   };
   std::size_t width = 44;

@@ -35,8 +35,9 @@ void write_views(const fs::path& file, const World& world) {
 }
 
 std::string write_results(const fs::path& folder, const Suite& suite,
-                          std::span<const RunResult> runs, std::span<const FailedRun> failed) {
-  const std::string table = results_table(suite, runs, failed);
+                          std::span<const RunResult> runs, std::span<const FailedRun> failed,
+                          std::span<const std::string> missing) {
+  const std::string table = results_table(suite, runs, failed, missing);
   write_atomically(folder / "times.json", times_json(runs).dump(2) + "\n");
   write_atomically(folder / "reproduction.json", reproduction_json(suite, runs).dump(2) + "\n");
   write_atomically(folder / "times.txt", times_table(suite, runs));
@@ -46,7 +47,8 @@ std::string write_results(const fs::path& folder, const Suite& suite,
       write_picture(folder / sweep_picture_name(suite, result), draw_sweep(suite, rows, result));
   }
   write_atomically(folder / "table.txt", table);
-  write_atomically(folder / "results.json", results_json(suite, runs, failed).dump(2) + "\n");
+  write_atomically(folder / "results.json",
+                   results_json(suite, runs, failed, missing).dump(2) + "\n");
   return table;
 }
 

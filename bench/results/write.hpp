@@ -20,6 +20,7 @@ void write_views(const std::filesystem::path& file, const World& world);
 /// Writes what a suite's runs gave together: results.json, times.json, table.txt, times.txt.
 /// @returns the printed table.
 std::string write_results(const std::filesystem::path& folder, const Suite& suite,
-                          std::span<const RunResult> runs, std::span<const FailedRun> failed = {});
+                          std::span<const RunResult> runs, std::span<const FailedRun> failed = {},
+                          std::span<const std::string> missing = {});
 
 }  // namespace mh

@@ -424,6 +424,7 @@ void load_times(SQLite::Database& db, const std::string& key, RunResult& run) {
   if (!calls.is_object()) return;
   run.times.track_ms = calls.value("track_ms", std::vector<double>());
   run.times.relocalize_ms = calls.value("relocalize_ms", std::vector<double>());
+  run.times.blank_ms = calls.value("blank_ms", std::vector<double>());
 }
 
 }  // namespace
@@ -434,7 +435,9 @@ Json calls_json(const CallTimes& times) {
     for (const double ms : all) list.push_back(std::round(ms * 1e3) / 1e3);
     return list;
   };
-  return {{"track_ms", rounded(times.track_ms)}, {"relocalize_ms", rounded(times.relocalize_ms)}};
+  return {{"track_ms", rounded(times.track_ms)},
+          {"relocalize_ms", rounded(times.relocalize_ms)},
+          {"blank_ms", rounded(times.blank_ms)}};
 }
 
 void put_run(SQLite::Database& db, const std::string& key, const RunSpec& spec,

@@ -60,7 +60,21 @@ double resident_mb(pid_t group) {
   return pages * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0);
 }
 
-std::string last_line(const fs::path& file) {
+/// A text without the names of folders before their files, so that it is the same for any of them.
+std::string without_folders(std::string text, const std::vector<fs::path>& folders) {
+  for (const fs::path& folder : folders) {
+    if (folder.empty()) continue;
+    const std::string name = folder.string();
+    for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at)) {
+      const std::size_t end = at + name.size();
+      const bool whole = end == text.size() || text[end] != '/';
+      text.replace(at, name.size() + (whole ? 0 : 1), whole ? "." : "");
+    }
+  }
+  return text;
+}
+
+std::string last_line(const fs::path& file, const std::vector<fs::path>& folders) {
   std::ifstream in(file, std::ios::binary | std::ios::ate);
   if (!in) return {};
   constexpr std::streamoff kTail = 4096;
@@ -69,6 +83,7 @@ std::string last_line(const fs::path& file) {
   std::string line, last;
   while (std::getline(in, line))
     if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
+  last = without_folders(last, folders);
   constexpr std::size_t kMost = 200;
   if (last.size() > kMost) last = last.substr(0, kMost) + "...";
   for (char& c : last)
@@ -118,7 +133,7 @@ std::string last_line(const fs::path& file) {
 
 ChildProcess::ChildProcess(const OutsideProgram& program, std::string command, Talk talk,
                            fs::path log, const fs::path& scratch)
-    : program_(program), command_(std::move(command)), log_(std::move(log)) {
+    : program_(program), command_(std::move(command)), log_(std::move(log)), scratch_(scratch) {
   const auto machine = [&](std::string_view what) {
     throw MachineError(fmt::format("{}: {}: {}", program_.name, what, std::strerror(errno)));
   };
@@ -148,14 +163,14 @@ ChildProcess::ChildProcess(const OutsideProgram& program, std::string command, T
     machine("no process could be started");
   }
   setpgid(pid_, pid_);  // by whoever comes first; the other fails, harmlessly
-  start_watcher(scratch);
+  start_watcher();
 }
 
-void ChildProcess::start_watcher(const fs::path& scratch) {
+void ChildProcess::start_watcher() {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) == 0) {
     watcher_ = fork();
-    if (watcher_ == 0) watch(ends[0], pid_, scratch.c_str());
+    if (watcher_ == 0) watch(ends[0], pid_, scratch_.c_str());
     close(ends[0]);
     to_watcher_ = ends[1];
   }
@@ -200,8 +215,10 @@ void ChildProcess::kill_group() {
 
 void ChildProcess::fail(std::string_view what) {
   kill_group();
-  const std::string said = last_line(log_);
-  throw OutsideError(fmt::format("outside program '{}' ({}) {}{}", program_.name, command_, what,
+  const std::vector<fs::path> folders = {scratch_, log_.parent_path()};
+  const std::string said = last_line(log_, folders);
+  throw OutsideError(fmt::format("outside program '{}' ({}) {}{}", program_.name, program_.command,
+                                 without_folders(std::string(what), folders),
                                  said.empty() ? "" : "; it last wrote: " + said));
 }
 

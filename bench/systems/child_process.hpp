@@ -39,20 +39,22 @@ class ChildProcess {
   /// other end than exit code 0 is an error.
   void finish(double limit_s);
 
-  /// An OutsideError about what the program did: "exited with code 3". Ends the program.
+  /// An OutsideError about what the program did: "exited with code 3". Ends the program. Files in
+  /// the log's folder and in `scratch` are named relative to it: the same failure has the same
+  /// message wherever it happens.
   [[noreturn]] void fail(std::string_view what);
 
  private:
   bool try_reap(int options);
   void kill_group();
-  void start_watcher(const std::filesystem::path& scratch);
+  void start_watcher();
   void check_memory(std::string_view doing);
   /// How it ended, for a program that closed its pipe; waits a moment for it to do so.
   std::string ending();
 
   const OutsideProgram program_;
   const std::string command_;
-  const std::filesystem::path log_;
+  const std::filesystem::path log_, scratch_;
   pid_t pid_ = -1;
   bool reaped_ = false;
   int status_ = 0;

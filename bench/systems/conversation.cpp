@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/metrics/trajectory_io.hpp"
+#include "bench/protocol/query.hpp"
 #include "bench/recorded/frame_files.hpp"
 #include "bench/systems/child_process.hpp"
 #include "slam/core/files.hpp"
@@ -264,14 +265,6 @@ class Conversation {
   std::string doing_ = "hello";
   ChildProcess child_;
 };
-
-/// Whether a frame shows nothing at all, as blank_frame() does.
-bool is_blank(const RgbdFrame& frame) {
-  return std::all_of(frame.depth_m.begin(), frame.depth_m.end(),
-                     [](float depth_m) { return depth_m == 0; }) &&
-         std::all_of(frame.colour.begin(), frame.colour.end(),
-                     [](Rgb8 colour) { return colour == Rgb8{}; });
-}
 
 class ConversationSystem : public System {
  public:

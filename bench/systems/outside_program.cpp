@@ -40,6 +40,29 @@ std::string replace_placeholders(std::string_view text,
   return result;
 }
 
+/// The first placeholder within single quotes, or within double ones without a blank beside it, as
+/// it stands there: the quotes of its value would end the first kind and be letters in the second.
+/// A command for another shell ("sh -c") has blanks and may hold some. Empty if there is none.
+std::string quoted_placeholder(const std::string& command) {
+  for (std::size_t at = command.find_first_of("'\"\\"); at < command.size();
+       at = command.find_first_of("'\"\\", at)) {
+    if (command[at] == '\\') {
+      at += 2;
+      continue;
+    }
+    const std::size_t end = std::min(command.find(command[at], at + 1), command.size() - 1);
+    const std::string part = command.substr(at, end + 1 - at);
+    bool holds = false;
+    replace_placeholders(part, [&](std::string_view) {
+      holds = true;
+      return std::string();
+    });
+    if (holds && (part[0] == '\'' || part.find(' ') == std::string::npos)) return part;
+    at = end + 1;
+  }
+  return {};
+}
+
 void check_limit(const OutsideProgram& program, std::string_view what, double value, bool zero) {
   if (!std::isfinite(value) || value < 0 || (value == 0 && !zero))
     throw InputError(fmt::format("{}: {}: {} is out of range", program.name, what, value));
@@ -75,6 +98,8 @@ void validate(const OutsideProgram& program) {
     writes_trajectory |= word == "trajectory";
     return std::string();
   });
+  if (const std::string quoted = quoted_placeholder(program.command); !quoted.empty())
+    fail(fmt::format("{} stands within quotes: its value comes quoted", quoted));
   if (dataset && !writes_trajectory)
     fail("{trajectory} is missing: where is it to write its poses?");
   check_limit(program, "time limit", program.run_limit_s, false);

@@ -8,6 +8,8 @@
 #include <functional>
 #include <utility>
 
+#include "bench/protocol/query.hpp"
+
 namespace mh {
 namespace {
 
@@ -19,14 +21,15 @@ double ms_since(Clock::time_point start) {
 
 class TimedSession : public RelocalizationSession {
  public:
-  using Note = std::function<void(double wall_ms, double processor_s)>;
+  using Note = std::function<void(bool blank, double wall_ms, double processor_s)>;
   TimedSession(std::unique_ptr<RelocalizationSession> inner, Note note)
       : inner_(std::move(inner)), note_(std::move(note)) {}
   StepReport feed(const RgbdFrame& frame, RandomStream stream) override {
+    const bool blank = is_blank(frame);
     const auto start = Clock::now();
     const double processor_before_s = processor_time_s();
     StepReport report = inner_->feed(frame, stream);
-    note_(ms_since(start), processor_time_s() - processor_before_s);
+    note_(blank, ms_since(start), processor_time_s() - processor_before_s);
     return report;
   }
 
@@ -89,16 +92,16 @@ std::unique_ptr<RelocalizationSession> TimedSystem::open_session_with(QueryMemo&
 std::unique_ptr<RelocalizationSession> TimedSystem::timed(
     std::unique_ptr<RelocalizationSession> inner) const {
   return std::make_unique<TimedSession>(std::move(inner),
-                                        [this](double wall_ms, double processor_s) {
+                                        [this](bool blank, double wall_ms, double processor_s) {
                                           const std::lock_guard lock(mutex_);
-                                          relocalize_ms_.push_back(wall_ms);
+                                          (blank ? blank_ms_ : relocalize_ms_).push_back(wall_ms);
                                           relocalize_processor_s_ += processor_s;
                                         });
 }
 
 CallTimes TimedSystem::times() const {
   const std::lock_guard lock(mutex_);
-  return {track_ms_, relocalize_ms_, processor_s_ + relocalize_processor_s_};
+  return {track_ms_, relocalize_ms_, blank_ms_, processor_s_ + relocalize_processor_s_};
 }
 
 TimeSummary summarize(std::vector<double> times_ms) {

@@ -28,7 +28,8 @@ class ProcessorTimer {
 /// Wall time (ms) of every call that handled a frame, in call order.
 struct CallTimes {
   std::vector<double> track_ms;
-  std::vector<double> relocalize_ms;  ///< blank frames included
+  std::vector<double> relocalize_ms;  ///< of queries' own frames
+  std::vector<double> blank_ms;       ///< of the blank frames before them
   double processor_s = 0;             ///< of all calls but save and restore, in this process
 };
 
@@ -59,7 +60,7 @@ class TimedSystem : public System {
   mutable double processor_s_ = 0;
   std::vector<double> track_ms_;
   mutable std::mutex mutex_;  // sessions of one system may run side by side
-  mutable std::vector<double> relocalize_ms_;
+  mutable std::vector<double> relocalize_ms_, blank_ms_;
   mutable double relocalize_processor_s_ = 0;
 };
 

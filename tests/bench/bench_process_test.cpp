@@ -226,13 +226,41 @@ TEST(BenchProcess, CtrlCEndsEverythingAndKeepsWhatIsFinished) {
   EXPECT_EQ(tables("stopped"), undisturbed());
 }
 
+TEST(BenchProcess, ACheckWhoseRunsFailWritesThemIntoItsReport) {
+  const fs::path xml = test_folder() / "check.xml";
+  const fs::path suite = write_suite(
+      "failing", "[{name: vo, protocol: conversation, command: 'echo no map >&2; exit 3'}]",
+      "check: {tolerances: {completeness: 0.1}}\n");
+  EXPECT_EQ(run("check " + suite.string() + " --update --junit " + xml.string()), 3);
+  EXPECT_EQ(errors().find("--retry-failed"), std::string::npos) << errors();
+  EXPECT_NE(errors().find("no map"), std::string::npos) << errors();
+  EXPECT_NE(content(xml).find("<error message=\"outside program 'vo'"), std::string::npos)
+      << content(xml);
+}
+
+TEST(BenchProcess, AFolderThatWasDeletedIsToldOf) {
+  const fs::path suite = write_suite("deleted", "[plain]");
+  EXPECT_EQ(run(bench(suite, "deleted")), 0) << errors();
+  EXPECT_EQ(errors().find("gone"), std::string::npos) << errors();
+  fs::remove_all(test_folder() / "deleted" / "plain-pepper-0");
+  fs::remove(test_folder() / "deleted" / "views.png");
+  EXPECT_EQ(run(bench(suite, "deleted")), 0) << errors();
+  EXPECT_NE(errors().find("warning: 1 folder of finished runs and 1 sheet of pictures are gone"),
+            std::string::npos)
+      << errors();
+}
+
 TEST(BenchProcess, ACrashIsAFailureAndStaysOne) {
   const fs::path marks = test_folder() / "marks";
   const fs::path suite =
       write_suite("crash", "[plain, {name: crasher, protocol: conversation, command: 'echo x >>" +
                                marks.string() + "; kill -SEGV $$'}]");
   EXPECT_EQ(run(bench(suite, "crash")), 3);
-  EXPECT_NE(errors().find("crasher-exact-pepper-0"), std::string::npos) << errors();
+  const std::string told = errors();
+  const std::string why = "was killed by signal 11";
+  EXPECT_NE(told.find("crasher-exact-pepper-0 failed; why: see "), std::string::npos) << told;
+  EXPECT_NE(told.find(why), std::string::npos) << told;
+  EXPECT_EQ(told.find(why), told.rfind(why)) << "told twice: " << told;
   const std::string once = content(marks);
   EXPECT_EQ(run(bench(suite, "crash")), 3);
   EXPECT_EQ(content(marks), once) << "a failed run was repeated";

@@ -119,6 +119,19 @@ TEST_F(OutsideFaults, TrajectoryProgramsThatFail) {
   EXPECT_HOLDS(trajectory_error(elsewhere), "its folder cannot be entered");
 }
 
+TEST_F(OutsideFaults, AFailureReadsTheSameInAnyFolder) {
+  const std::string dataset = trajectory_error(
+      program(OutsideMode::kTrajectory,
+              "echo cannot open {trajectory} in $(dirname {trajectory}) >&2; exit 1"));
+  EXPECT_HOLDS(dataset, "(echo cannot open {trajectory} in");
+  EXPECT_HOLDS(dataset, "it last wrote: cannot open trajectory.txt in .");
+  EXPECT_EQ(trajectory_error(writes("what is this\\n")).find(folder_.string()), std::string::npos);
+  // Pictures lie in a folder whose name is drawn by chance.
+  const std::string picture =
+      track_error(says(R"(echo "$line" | sed 's/.*"colour":"//; s/".*//' >&2; exit 1)"));
+  EXPECT_HOLDS(picture, "it last wrote: colour.ppm");
+}
+
 TEST_F(OutsideFaults, ATrajectoryThatIsNone) {
   EXPECT_HOLDS(trajectory_error(writes("what is this\\n")),
                "trajectory.txt:1: pose: 3 values, expected 8");
@@ -303,6 +316,12 @@ TEST_F(OutsideFaults, CommandsAreCheckedBeforeTheyRun) {
   EXPECT_HOLDS(refused(OutsideMode::kConversation, "slam {dataset}"), "'{dataset}' is none of");
   EXPECT_EQ(refused(OutsideMode::kTrajectory, "a={b,c}; slam ${HOME} {trajectory}"), "no error");
   EXPECT_EQ(refused(OutsideMode::kConversation, "slam {settings} {seed}"), "no error");
+  for (const char* quoted : {"'{dataset}'", "\"{dataset}\"", "\"--data={dataset}\"",
+                             "sh -c 'slam {dataset}'", "'{dataset}"})
+    EXPECT_HOLDS(refused(OutsideMode::kTrajectory, quoted + std::string(" {trajectory}")),
+                 "stands within quotes: its value comes quoted");
+  EXPECT_EQ(refused(OutsideMode::kTrajectory, R"(sh -c "slam {dataset} it's" 'a b' {trajectory})"),
+            "no error");
   OutsideProgram p = program(OutsideMode::kConversation, "slam");
   p.answer_limit_s = 0;
   EXPECT_THROW(validate(p), InputError);

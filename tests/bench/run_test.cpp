@@ -15,6 +15,7 @@
 
 #include "bench/counted.hpp"
 #include "bench/pictures/sweep.hpp"
+#include "bench/pictures/topdown.hpp"
 #include "bench/results/json.hpp"
 #include "bench/results/scenes.hpp"
 #include "bench/results/table.hpp"
@@ -185,6 +186,8 @@ TEST(RunOne, CountsWhatHappened) {
   EXPECT_EQ(run.trajectory.completeness, 1.0);
   EXPECT_EQ(run.points[0].held_out.size(), 5u);
   EXPECT_EQ(run.points[0].second_tour.size(), 3u);
+  EXPECT_EQ(run.times.relocalize_ms.size(), 8u);
+  EXPECT_EQ(run.times.blank_ms.size(), 8u) << "told apart from the queries' own frames";
   for (const QueryScore& q : run.points[0].held_out) {
     EXPECT_TRUE(q.success && q.correct);
     EXPECT_LT(q.distance_m.value(), 0.01);
@@ -414,6 +417,55 @@ TEST(Results, FailedRunsAreToldInTheirRows) {
   // Nothing at all is left.
   const std::string nothing = results_table(place.suite, {}, failed);
   EXPECT_NE(nothing.find("   failed: 3 of 3 trials\n"), std::string::npos) << nothing;
+}
+
+TEST(Results, RunsThatNobodyHasMadeYetAreTold) {
+  const Place place;
+  std::vector<RunResult> runs = place.run();
+  const std::vector<std::string> missing = {runs.back().spec.name};
+  runs.pop_back();
+  const std::string table = results_table(place.suite, runs, {}, missing);
+  EXPECT_TRUE(table.ends_with("\nmissing, so that the figures above are without 1 run:\n  " +
+                              missing[0] + "\n"))
+      << table;
+  EXPECT_EQ(results_json(place.suite, runs, {}, missing)["missing"][0], missing[0]);
+  EXPECT_TRUE(results_json(place.suite, runs)["missing"].empty());
+  const std::vector<std::string> many(12, "x");
+  EXPECT_TRUE(results_table(place.suite, runs, {}, many).ends_with("  and 2 more\n"));
+}
+
+TEST(Results, RunsWithoutLabelsAreSaidToHaveNone) {
+  Place place;
+  place.suite.labels = {LabelMode::kNone};
+  const std::string table = results_table(place.suite, place.run());
+  EXPECT_NE(table.find("fake, level fake, no labels, 1 trial"), std::string::npos) << table;
+  EXPECT_EQ(table.find("none labels"), std::string::npos) << table;
+}
+
+TEST(Topdown, KeepsItsTextWithinTheMarginsAndItsAnswersOnThePlan) {
+  Place place;
+  place.suite.environments[0].name = "a corridor";
+  RunResult run = place.run()[0];
+  const auto drawn = [&] { return draw_topdown(place.world, run, QuerySet::kSecondTour); };
+  const auto ink = [](const cv::Mat& part) {
+    return cv::countNonZero(part.reshape(1) != 255);  // on white
+  };
+  QueryScore& q = run.points[0].second_tour[0];
+  q.correct = false;
+  q.wrong = true;
+  q.answer.world_from_camera = SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, 1, 1));
+  const cv::Mat near = drawn();
+  q.answer.world_from_camera = SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, 8, 1));
+  const cv::Mat far = drawn();
+  ASSERT_EQ(near.size(), far.size());
+  constexpr int kText = 80;  // title and subtitle; the plan begins below
+  EXPECT_EQ(cv::norm(near.rowRange(0, kText), far.rowRange(0, kText)), 0) << "drawn over the title";
+  EXPECT_GT(cv::norm(near, far), 0);
+  place.world.robot.name = std::string(200, 'w');
+  EXPECT_EQ(ink(drawn().rowRange(0, kText).colRange(1180, 1200)), 0) << "cut at the edge";
+  // Of a program that answers with a trajectory alone nothing was asked.
+  run.points[0].second_tour.clear();
+  EXPECT_GT(cv::norm(drawn().rowRange(0, kText), far.rowRange(0, kText)), 0);
 }
 
 TEST(Scenes, WhereRunsFailedItIsSaidOverHowManyScenesTheMeanIs) {

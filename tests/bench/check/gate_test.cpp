@@ -159,6 +159,40 @@ TEST(GateReport, NamesWhatMovedByHowMuchAndWhere) {
   EXPECT_FALSE(gate_json(result, "ci")["passed"].get<bool>());
 }
 
+TEST(GateReport, SaysWhatHasAToleranceAndNoFigure) {
+  auto before = five_runs(), after = five_runs();
+  for (auto* runs : {&before, &after})
+    for (RunFigures& run : *runs) run.values["ate_rmse_m"] = std::nullopt;
+  const GateResult result = compare(before, after, kConfig, false);
+  EXPECT_EQ(result.changes.size(), 1u);
+  EXPECT_EQ(result.not_measured, std::vector<std::string>{"corridor, plain-pepper: ate_rmse_m"});
+  EXPECT_TRUE(result.passed());
+  EXPECT_NE(gate_report(result, "ci").find("not measured, neither before nor now"),
+            std::string::npos);
+  EXPECT_EQ(gate_json(result, "ci")["not_measured"].size(), 1u);
+  for (auto* runs : {&before, &after})
+    for (RunFigures& run : *runs) run.values.erase("ate_rmse_m");
+  EXPECT_TRUE(compare(before, after, kConfig, false).not_measured.empty()) << "nobody asked";
+}
+
+TEST(GateReport, RunsThatFailedAreErrorsInJunit) {
+  FailedRun run;
+  run.spec.name = "room-vo-exact-0";
+  run.error = "exited with \"3\"";
+  const std::string xml = failures_junit(std::vector{run}, "ci");
+  EXPECT_NE(xml.find("<testsuites name=\"ci\" tests=\"1\" errors=\"1\">"), std::string::npos)
+      << xml;
+  EXPECT_NE(xml.find("name=\"room-vo-exact-0\">"), std::string::npos) << xml;
+  EXPECT_NE(xml.find("<error message=\"exited with &quot;3&quot;\"/>"), std::string::npos) << xml;
+}
+
+TEST(ChangedSettings, NameFilesAsTheyAre) {
+  const Baseline before{.settings = {{"vo", {{"mine/run~1.py", "a"}}}}},
+      now{.settings = {{"vo", {{"mine/run~1.py", "b"}}}}};
+  EXPECT_EQ(changed_settings(before, now),
+            std::vector<std::string>{"vo/mine/run~1.py: \"a\" -> \"b\""});
+}
+
 TEST(GateReport, JunitCountsAndEscapes) {
   auto before = five_runs(0.9), after = five_runs(0.7);
   for (auto* runs : {&before, &after})
