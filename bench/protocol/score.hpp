@@ -55,8 +55,8 @@ struct QueryScore {
   bool correct = false;  ///< and lies within the limits of the protocol
   bool wrong = false;    ///< returned, and outside them (or nothing to compare with)
   // Absent where nothing was answered, or nothing was mapped that an answer may be compared with.
-  std::optional<double> distance_m, angle_deg;  ///< to the local truth
-  std::optional<double> aligned_distance_m;     ///< to the truth after aligning the trajectory
+  std::optional<double> distance_m = {}, angle_deg = {};  ///< to the local truth
+  std::optional<double> aligned_distance_m = {};  ///< to the truth after aligning the trajectory
 };
 
 /// @param truth_from_estimate  global SE(3) alignment of the mapping trajectory
