@@ -247,9 +247,9 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
     pool.progress = options.progress;
     work_off(store, std::move(mine), pool);
   }
-  BenchResults results = load_results(store, suite);
-  if (!options.figures_alone) say_what_is_gone(suite, results, options);
-  return results;
+  BenchResults made = load_results(store, suite);
+  if (!options.figures_alone) say_what_is_gone(suite, made, options);
+  return made;
 }
 
 void carry_out(const RunOrder& order) {

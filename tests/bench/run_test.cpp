@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
 #include "bench/counted.hpp"
 #include "bench/pictures/sweep.hpp"

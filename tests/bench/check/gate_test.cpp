@@ -187,8 +187,9 @@ TEST(GateReport, RunsThatFailedAreErrorsInJunit) {
 }
 
 TEST(ChangedSettings, NameFilesAsTheyAre) {
-  const Baseline before{.settings = {{"vo", {{"mine/run~1.py", "a"}}}}},
-      now{.settings = {{"vo", {{"mine/run~1.py", "b"}}}}};
+  Baseline before, now;
+  before.settings["vo"]["mine/run~1.py"] = "a";
+  now.settings["vo"]["mine/run~1.py"] = "b";
   EXPECT_EQ(changed_settings(before, now),
             std::vector<std::string>{"vo/mine/run~1.py: \"a\" -> \"b\""});
 }
