@@ -69,7 +69,8 @@ std::string without_folders(std::string text, const std::vector<fs::path>& folde
     for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at)) {
       const std::size_t end = at + name.size();
       const bool whole = end == text.size() || text[end] != '/';
-      text.replace(at, name.size() + (whole ? 0 : 1), whole ? "." : "");
+      text.erase(at, name.size() + (whole ? 0 : 1));
+      if (whole) text.insert(at, 1, '.');
     }
   }
   return text;
