@@ -7,6 +7,7 @@
 namespace mh {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 /// so(3) -> 3x3 skew-symmetric matrix: hat(a) * b == a.cross(b).
 Eigen::Matrix3d hat(const Eigen::Vector3d& v);

@@ -143,6 +143,10 @@ template <class A, Either<Eigen::Vector3d> T>
 void fields(A& a, T& v) {
   a(v.x(), v.y(), v.z());
 }
+template <class A, Either<Matrix6d> T>
+void fields(A& a, T& m) {
+  for (Eigen::Index i = 0; i < 36; ++i) a(m(i / 6, i % 6));
+}
 template <class A, Either<Vector6d> T>
 void fields(A& a, T& v) {
   for (int i = 0; i < 6; ++i) a(v[i]);

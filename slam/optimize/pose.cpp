@@ -11,8 +11,6 @@
 namespace mh {
 namespace {
 
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-
 /// A step that lowers the cost by less than this share moves the pose by far less than the noise.
 constexpr double kRelativeDecrease = 1e-6;
 /// A cost at rounding level: (1e-9 sigma)^2 per observation.
@@ -76,19 +74,21 @@ bool is_singular(const Matrix6d& hessian) {
          !(pivots.minCoeff() > kSingularPivotRatio * pivots.maxCoeff());
 }
 
-/// Levenberg-Marquardt over a fixed inlier set. @returns false when the pose is undetermined.
-bool minimize(std::span<const PoseObservation> observations, std::span<const std::uint8_t> inlier,
-              const Camera& camera, const PoseConfig& config, bool robust, SE3& camera_from_world) {
+/// Levenberg-Marquardt over a fixed inlier set. @returns the normal equations' matrix, nothing when
+/// the pose is undetermined.
+std::optional<Matrix6d> minimize(std::span<const PoseObservation> observations,
+                                 std::span<const std::uint8_t> inlier, const Camera& camera,
+                                 const PoseConfig& config, bool robust, SE3& camera_from_world) {
   // Nearly Gauss-Newton; the damping acts once a step has failed.
   double damping = 1e-9;
   NormalEquations at_pose =
       linearize(observations, inlier, camera_from_world, camera, config, robust);
-  if (is_singular(at_pose.hessian)) return false;
+  if (is_singular(at_pose.hessian)) return std::nullopt;
   for (int iteration = 0; iteration < config.iterations; ++iteration) {
     Matrix6d damped = at_pose.hessian;
     damped.diagonal() *= 1.0 + damping;
     const Vector6d step = -damped.ldlt().solve(at_pose.gradient);
-    if (!step.allFinite()) return false;
+    if (!step.allFinite()) return std::nullopt;
     const SE3 trial = SE3::exp(step) * camera_from_world;
     // To first order the step lowers the cost by -gradient . step: where that is next to nothing,
     // take it and save the look at its result.
@@ -106,7 +106,8 @@ bool minimize(std::span<const PoseObservation> observations, std::span<const std
     damping = std::max(damping * 0.1, 1e-9);
     if (at_pose.cost <= kPerfectChi2 * static_cast<double>(observations.size())) break;
   }
-  return !is_singular(at_pose.hessian);
+  if (is_singular(at_pose.hessian)) return std::nullopt;
+  return at_pose.hessian;
 }
 
 }  // namespace
@@ -141,10 +142,13 @@ std::optional<PoseEstimate> estimate_pose(std::span<const PoseObservation> obser
     inlier[i] = (pose * observations[i].point_in_world).z() >= kMinimumDepth_m;
 
   int count = 0;
+  Matrix6d information;
   std::vector<std::uint8_t> regrouped;
   for (int round = 0; round < config.rounds; ++round) {
     const bool robust = 2 * round < config.rounds;
-    if (!minimize(observations, inlier, camera, config, robust, pose)) return std::nullopt;
+    const auto matrix = minimize(observations, inlier, camera, config, robust, pose);
+    if (!matrix) return std::nullopt;
+    information = *matrix;
     count = find_inliers(observations, pose, camera, config, regrouped);
     if (count < 3) return std::nullopt;
     const bool unchanged = regrouped == inlier;
@@ -153,8 +157,10 @@ std::optional<PoseEstimate> estimate_pose(std::span<const PoseObservation> obser
     if (unchanged && !robust) break;
   }
   if (count < needed) return std::nullopt;
-  return PoseEstimate{
-      .camera_from_world = pose.normalized(), .inlier = std::move(inlier), .inlier_count = count};
+  return PoseEstimate{.camera_from_world = pose.normalized(),
+                      .inlier = std::move(inlier),
+                      .inlier_count = count,
+                      .information = information};
 }
 
 }  // namespace mh

@@ -35,6 +35,9 @@ struct PoseEstimate {
   SE3 camera_from_world;
   std::vector<std::uint8_t> inlier;  ///< one per observation
   int inlier_count = 0;
+  /// Inverse covariance of a left perturbation (shift, turn; of the camera, in its own frame), by
+  /// the inliers' residuals alone: what bends the map itself is not in it.
+  Matrix6d information = Matrix6d::Zero();
 };
 
 /// Robust reprojection: argmin over T of sum rho(|pi(T X_i) - u_i|^2 / sigma_i^2), Huber rho in the

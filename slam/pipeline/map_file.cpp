@@ -25,10 +25,15 @@ void fields(A& a, T& last) {
   auto& [stamp_ns, camera_from_world, features, landmarks] = last;
   a(stamp_ns, camera_from_world, features, landmarks);
 }
+template <class A, Either<Motion> T>
+void fields(A& a, T& motion) {
+  auto& [velocity_per_s, pose_covariance, pose_velocity_covariance, velocity_covariance] = motion;
+  a(velocity_per_s, pose_covariance, pose_velocity_covariance, velocity_covariance);
+}
 template <class A, Either<Tracker> T>
 void fields(A& a, T& tracker) {
-  auto& [last, velocity_per_s, reference, frames_since_keyframe, coasting] = tracker;
-  a(last, velocity_per_s, reference, frames_since_keyframe, coasting);
+  auto& [last, velocity_per_s, motion, reference, frames_since_keyframe, coasting] = tracker;
+  a(last, velocity_per_s, motion, reference, frames_since_keyframe, coasting);
 }
 template <class A, Either<LoopMemory> T>
 void fields(A& a, T& memory) {

@@ -10,7 +10,7 @@
 
 namespace mh {
 
-inline constexpr std::uint32_t kMapFileVersion = 4;
+inline constexpr std::uint32_t kMapFileVersion = 5;
 
 /// A map file holds all of a SlamState but the vocabulary, which it names by its digest: a run that
 /// is saved and loaded in between goes on with the same bits as one that was not. Equal states

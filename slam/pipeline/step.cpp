@@ -90,11 +90,26 @@ SE3 predict(const Tracker& tracker, Stamp stamp_ns) {
   return SE3::exp(*tracker.velocity_per_s * elapsed_s) * tracker.last->camera_from_world;
 }
 
+int points_with_depth(const Features& features) {
+  return static_cast<int>(std::count_if(features.keypoints.begin(), features.keypoints.end(),
+                                        [](const Keypoint& k) { return k.depth_m > 0; }));
+}
+
 struct Located {
   TrackedPose tracked;
   KeyframeId reference;
   std::vector<LandmarkId> expected;
+  std::optional<Motion> motion = {};  ///< with this frame taken in
 };
+
+double seconds_since_last(const Tracker& tracker, Stamp stamp_ns) {
+  return static_cast<double>(stamp_ns - tracker.last->stamp_ns) / kSecond_ns;
+}
+
+bool is_sure(const Matrix6d& covariance, const TrackConfig& config) {
+  const PoseSigma sigma = worst_sigma(covariance);
+  return sigma.position_m <= config.sure_position_m && sigma.angle_rad <= config.sure_angle_rad;
+}
 
 std::optional<TrackedPose> search_everywhere(const SlamState& state, PreparedFrame& frame,
                                              RandomStream stream, const StepObservers& observers,
@@ -146,9 +161,8 @@ std::optional<Located> follow(const SlamState& state, const Tracker& tracker, Pr
                            state.map.standing(tracker.reference), tracker.last->camera_from_world,
                            context, at(report.matches, Matcher::kReferenceKeyframe));
   };
-  const int min_inliers =
-      tracker.coasting ? state.config.relocalize.min_inliers
-                       : inliers_needed(frame.features, state.config.track);
+  const int min_inliers = tracker.coasting ? state.config.relocalize.min_inliers
+                                           : inliers_needed(frame.features, state.config.track);
   // Where the motion is not known yet, appearance needs no guess.
   const bool moving = tracker.velocity_per_s.has_value();
   for (const bool use_motion : {moving, !moving}) {
@@ -165,6 +179,25 @@ std::optional<Located> follow(const SlamState& state, const Tracker& tracker, Pr
   return std::nullopt;
 }
 
+/// Takes a frame that followed the last one into the motion. Where the picture alone leaves its
+/// pose unsure (few points in a narrow strip: turning and shifting look alike), it is put between
+/// where it was seen and where the motion leads, each by its covariance.
+void weigh(Located& located, const Tracker& tracker, Stamp stamp_ns, const TrackConfig& config) {
+  const Matrix6d covariance = located.tracked.information.inverse();
+  const double elapsed_s = seconds_since_last(tracker, stamp_ns);
+  if (!tracker.motion || elapsed_s <= 0) {
+    located.motion = Motion::at_rest(covariance);
+    return;
+  }
+  SE3& pose = located.tracked.camera_from_world;
+  const SE3 predicted = tracker.motion->predict(tracker.last->camera_from_world, elapsed_s);
+  Motion motion = tracker.motion->after(elapsed_s);
+  const Vector6d off = motion.correct((pose * predicted.inverse()).log(), covariance);
+  located.tracked.unsure = !is_sure(covariance, config);
+  if (located.tracked.unsure) pose = SE3::exp(off) * predicted;
+  located.motion = motion;
+}
+
 /// Finds the camera of a frame in the map: from the frames before; where that does not hold,
 /// anywhere. Reads the map, never writes it.
 std::optional<Located> locate(const SlamState& state, const Tracker& tracker, PreparedFrame& frame,
@@ -174,6 +207,7 @@ std::optional<Located> locate(const SlamState& state, const Tracker& tracker, Pr
   const TrackContext context{state.map,    state.camera, config.features, config.semantics,
                              config.match, config.pose,  config.track,    observers.matches};
   if (auto located = follow(state, tracker, frame, context, observers, report)) {
+    weigh(*located, tracker, frame.stamp_ns, config.track);
     report.status = tracker.coasting ? TrackStatus::kRelocalized : TrackStatus::kTracked;
     return located;
   }
@@ -181,11 +215,33 @@ std::optional<Located> locate(const SlamState& state, const Tracker& tracker, Pr
   if (!found) return std::nullopt;
   auto located = confirm_in_local_map(state, frame, *found, config.relocalize.min_inliers, context,
                                       observers, report);
-  if (located)
+  if (located) {
+    located->motion = Motion::at_rest(located->tracked.information.inverse());
     report.status = TrackStatus::kRelocalized;
-  else
+  } else {
     report.relocalization = RelocalizationStage::kInliers;
+  }
   return located;
+}
+
+/// A frame placed by its motion alone, where the last one's points have left the picture: a corner
+/// so bare that a turn lets go of all it showed. The motion must be as sure as a picture must be,
+/// and what the frame shows itself enough to hold the next one.
+std::optional<Located> carry(const SlamState& state, const PreparedFrame& frame) {
+  const Tracker& tracker = state.tracker;
+  const TrackConfig& config = state.config.track;
+  if (!tracker.tracking() || !tracker.motion) return std::nullopt;
+  if (points_with_depth(frame.features) < config.min_inliers) return std::nullopt;
+  const double elapsed_s = seconds_since_last(tracker, frame.stamp_ns);
+  const Motion motion = tracker.motion->after(elapsed_s);
+  const SE3 guess = tracker.motion->predict(tracker.last->camera_from_world, elapsed_s);
+  if (!is_sure(motion.pose_covariance, config)) return std::nullopt;
+  if (count_that_can_be_found(*tracker.last, guess, state.map, state.camera) >= config.min_inliers)
+    return std::nullopt;
+  return Located{{guess, std::vector<LandmarkId>(frame.features.size())},
+                 state.map.standing(tracker.reference),
+                 {},
+                 motion};
 }
 
 /// The frame is lost. For a while the last tracked one still tells where to look for the next.
@@ -209,9 +265,11 @@ void update_velocity(Tracker& tracker, Stamp stamp_ns, const SE3& camera_from_wo
 
 /// What the next frame is matched against.
 void remember(Tracker& tracker, PreparedFrame&& frame, const SE3& camera_from_world,
-              std::vector<LandmarkId> landmarks, KeyframeId reference) {
+              std::vector<LandmarkId> landmarks, KeyframeId reference,
+              const std::optional<Motion>& motion) {
   tracker.last =
       LastFrame{frame.stamp_ns, camera_from_world, std::move(frame.features), std::move(landmarks)};
+  tracker.motion = motion;
   tracker.reference = reference;
   tracker.coasting = false;
 }
@@ -258,9 +316,7 @@ KeyframeId insert_keyframe(SlamState& state, PreparedFrame& frame, const SE3& ca
 
 StepReport initialize(SlamState& state, PreparedFrame frame, const StepObservers& observers,
                       StepReport report) {
-  const auto with_depth =
-      std::count_if(frame.features.keypoints.begin(), frame.features.keypoints.end(),
-                    [](const Keypoint& k) { return k.depth_m > 0; });
+  const int with_depth = points_with_depth(frame.features);
   if (with_depth < kMinInitialPoints) return report;
   const std::vector<LandmarkId> none(frame.features.size());
   const KeyframeId id =
@@ -268,8 +324,8 @@ StepReport initialize(SlamState& state, PreparedFrame frame, const StepObservers
   state.tracked_frames[frame.stamp_ns] = {id, SE3()};
   report.status = TrackStatus::kInitialized;
   report.world_from_camera = SE3();
-  report.inliers = static_cast<int>(with_depth);
-  remember(state.tracker, std::move(frame), SE3(), state.map.at(id).landmarks, id);
+  report.inliers = with_depth;
+  remember(state.tracker, std::move(frame), SE3(), state.map.at(id).landmarks, id, std::nullopt);
   return report;
 }
 
@@ -313,6 +369,10 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
 
   auto located = locate(state, state.tracker, prepared, stream, observers, report);
   if (!located) {
+    located = carry(state, prepared);
+    if (located) report.status = TrackStatus::kTracked;
+  }
+  if (!located) {
     lose(state.tracker, stamp_ns, state.config.track);
     return report;
   }
@@ -322,12 +382,14 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
 
   update_velocity(state.tracker, stamp_ns, located->tracked.camera_from_world);
   ++state.tracker.frames_since_keyframe;
+  const bool wants_keyframe =
+      needs_keyframe(located->tracked, prepared.features, state.map, located->reference,
+                     state.tracker.frames_since_keyframe, state.config.keyframe);
   KeyframeId reference = located->reference;
   SE3 camera_from_world = located->tracked.camera_from_world;
   std::vector<LandmarkId> landmarks = std::move(located->tracked.landmarks);
   report.inliers = located->tracked.inliers;
-  if (needs_keyframe({camera_from_world, landmarks, report.inliers}, prepared.features, state.map,
-                     reference, state.tracker.frames_since_keyframe, state.config.keyframe)) {
+  if (wants_keyframe) {
     reference = insert_keyframe(state, prepared, camera_from_world, landmarks, stream.fork(1),
                                 observers, report);
     camera_from_world = state.map.at(reference).camera_from_world;
@@ -340,7 +402,8 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
   report.world_from_camera = camera_from_world.inverse();
   state.tracked_frames[stamp_ns] = {
       reference, camera_from_world * state.map.camera_from_world(reference).inverse()};
-  remember(state.tracker, std::move(prepared), camera_from_world, std::move(landmarks), reference);
+  remember(state.tracker, std::move(prepared), camera_from_world, std::move(landmarks), reference,
+           located->motion);
   return report;
 }
 
@@ -364,7 +427,7 @@ StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& 
   update_velocity(tracker, frame.stamp_ns, located->tracked.camera_from_world);
   report.world_from_camera = located->tracked.camera_from_world.inverse();
   remember(tracker, std::move(prepared), located->tracked.camera_from_world,
-           std::move(located->tracked.landmarks), located->reference);
+           std::move(located->tracked.landmarks), located->reference, located->motion);
   return report;
 }
 

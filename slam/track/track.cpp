@@ -12,6 +12,7 @@ namespace mh {
 namespace {
 
 constexpr std::size_t kNeighboursOfEach = 10;
+constexpr double kNearest_m = 0.05;
 
 ProjectionTarget target_of(const Eigen::Vector3d& point_in_camera, const Keypoint& from,
                            const Descriptor& descriptor, const Camera& camera, float radius_px,
@@ -25,6 +26,33 @@ ProjectionTarget target_of(const Eigen::Vector3d& point_in_camera, const Keypoin
           .descriptor = &descriptor,
           .label = from.label,
           .angle_rad = from.angle_rad};
+}
+
+/// What the last frame knows of the world: a landmark, or what depth says of another keypoint.
+struct LastPoint {
+  Eigen::Vector3d position_in_world;
+  LandmarkId landmark;    // invalid = none
+  std::uint32_t feature;  // of the last frame
+};
+
+/// The last frame's points that a camera sees.
+std::vector<LastPoint> points_in_view(const LastFrame& last, const SE3& camera_from_world,
+                                      const Map& map, const Camera& camera) {
+  const SE3 world_from_last = last.camera_from_world.inverse();
+  std::vector<LastPoint> points;
+  for (std::uint32_t i = 0; i < last.features.size(); ++i) {
+    const Keypoint& keypoint = last.features.keypoints[i];
+    LandmarkId landmark = last.landmarks[i];
+    if (landmark.valid() && map.at(landmark).erased) landmark = {};
+    if (!landmark.valid() && keypoint.depth_m <= 0) continue;
+    const Eigen::Vector3d point = landmark.valid() ? map.at(landmark).position_in_world
+                                                   : unproject(keypoint, camera, world_from_last);
+    const Eigen::Vector3d in_camera = camera_from_world * point;
+    if (in_camera.z() < kNearest_m) continue;
+    const Eigen::Vector2d pixel = camera.project(in_camera);
+    if (camera.in_image(pixel.x(), pixel.y())) points.push_back({point, landmark, i});
+  }
+  return points;
 }
 
 /// Keyframes with the number of landmarks they share with the frame, most first, then earliest.
@@ -70,7 +98,8 @@ std::optional<TrackedPose> optimise_matches(const Query& query,
   }
   const auto estimate = estimate_pose(observations, guess, camera, pose);
   if (!estimate) return std::nullopt;
-  TrackedPose tracked{estimate->camera_from_world, std::vector<LandmarkId>(landmarks.size()), 0};
+  TrackedPose tracked{estimate->camera_from_world, std::vector<LandmarkId>(landmarks.size()), 0,
+                      estimate->information};
   for (std::size_t j = 0; j < feature_of.size(); ++j)
     if (estimate->inlier[j] != 0) {
       tracked.landmarks[feature_of[j]] = landmarks[feature_of[j]];
@@ -82,32 +111,12 @@ std::optional<TrackedPose> optimise_matches(const Query& query,
 std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& last, const SE3& guess,
                                         const TrackContext& context, MatcherCounts& counts) {
   const auto& [map, camera, features, semantics, match, pose, config, trace] = context;
-  const SE3 world_from_last = last.camera_from_world.inverse();
-
-  // The last frame's points: landmarks, and what depth says of its other keypoints.
-  struct Source {
-    Eigen::Vector3d point_in_world;
-    LandmarkId landmark;
-    std::uint32_t feature;  // of the last frame
-  };
-  std::vector<Source> sources;
+  const std::vector<LastPoint> points = points_in_view(last, guess, map, camera);
   std::vector<ProjectionTarget> targets;
-  for (std::uint32_t i = 0; i < last.features.size(); ++i) {
-    const Keypoint& keypoint = last.features.keypoints[i];
-    LandmarkId landmark = last.landmarks[i];
-    if (landmark.valid() && map.at(landmark).erased) landmark = {};
-    if (!landmark.valid() && keypoint.depth_m <= 0) continue;
-    const Eigen::Vector3d point = landmark.valid() ? map.at(landmark).position_in_world
-                                                   : unproject(keypoint, camera, world_from_last);
-    const Eigen::Vector3d in_camera = guess * point;
-    if (in_camera.z() < 0.05) continue;
-    const ProjectionTarget target =
-        target_of(in_camera, keypoint, last.features.descriptors[i], camera,
-                  static_cast<float>(config.search_radius_px), features);
-    if (!camera.in_image(target.u_px, target.v_px)) continue;
-    sources.push_back({point, landmark, i});
-    targets.push_back(target);
-  }
+  for (const LastPoint& p : points)
+    targets.push_back(target_of(guess * p.position_in_world, last.features.keypoints[p.feature],
+                                last.features.descriptors[p.feature], camera,
+                                static_cast<float>(config.search_radius_px), features));
 
   const std::vector<std::uint8_t> taken(query.features.size(), 0);
   const ProjectionGate gate{.max_distance = static_cast<float>(match.max_distance_loose),
@@ -115,7 +124,7 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
   // A guess that is far off finds little, or what does not fit together: search again in twice the
   // radius, then in four times.
   std::vector<std::int32_t> found;
-  std::vector<std::size_t> source_of;
+  std::vector<std::size_t> point_of;
   std::optional<PoseEstimate> estimate;
   constexpr int kSearches = 3;
   for (int search = 1; search <= kSearches && !estimate; ++search) {
@@ -123,14 +132,14 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
       for (ProjectionTarget& target : targets) target.radius_px *= 2.0F;
     found = match_by_projection(targets, query.features, query.grid, taken, gate,
                                 SemanticMatcher(semantics, counts));
-    source_of.clear();
+    point_of.clear();
     for (std::size_t t = 0; t < found.size(); ++t)
-      if (found[t] >= 0) source_of.push_back(t);
+      if (found[t] >= 0) point_of.push_back(t);
     const auto enough = static_cast<std::size_t>(2 * config.min_inliers_frame);
-    if (source_of.size() < enough && search < kSearches) continue;
+    if (point_of.size() < enough && search < kSearches) continue;
     std::vector<PoseObservation> observations;
-    for (const std::size_t t : source_of)
-      observations.push_back(observe(sources[t].point_in_world,
+    for (const std::size_t t : point_of)
+      observations.push_back(observe(points[t].position_in_world,
                                      query.features.keypoints[static_cast<std::size_t>(found[t])],
                                      camera, features));
     estimate = estimate_pose(observations, guess, camera, pose);
@@ -140,9 +149,9 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
   if (trace != nullptr) {
     std::vector<LandmarkId> landmarks;
     std::vector<std::uint32_t> others;
-    for (const Source& source : sources) {
-      landmarks.push_back(source.landmark);
-      others.push_back(source.feature);
+    for (const LastPoint& p : points) {
+      landmarks.push_back(p.landmark);
+      others.push_back(p.feature);
     }
     trace_projection(trace, Matcher::kMotionModel, {}, query.features, targets, found, landmarks,
                      others, semantics);
@@ -150,17 +159,28 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
   if (!estimate) return std::nullopt;
 
   TrackedPose tracked{estimate->camera_from_world, std::vector<LandmarkId>(query.features.size()),
-                      estimate->inlier_count};
-  for (std::size_t j = 0; j < source_of.size(); ++j) {
+                      estimate->inlier_count, estimate->information};
+  for (std::size_t j = 0; j < point_of.size(); ++j) {
     if (estimate->inlier[j] == 0) continue;
-    const Source& source = sources[source_of[j]];
-    const auto feature = static_cast<std::uint32_t>(found[source_of[j]]);
-    if (source.landmark.valid())
-      tracked.landmarks[feature] = source.landmark;
+    const LastPoint& p = points[point_of[j]];
+    const auto feature = static_cast<std::uint32_t>(found[point_of[j]]);
+    if (p.landmark.valid())
+      tracked.landmarks[feature] = p.landmark;
     else
-      tracked.passing.push_back({feature, source.point_in_world});
+      tracked.passing.push_back({feature, p.position_in_world});
   }
   return tracked;
+}
+
+int count_that_can_be_found(const LastFrame& last, const SE3& guess, const Map& map,
+                            const Camera& camera) {
+  const std::vector<LastPoint> points = points_in_view(last, guess, map, camera);
+  return static_cast<int>(std::count_if(points.begin(), points.end(), [&](const LastPoint& p) {
+    const Eigen::Vector2d pixel = camera.project(guess * p.position_in_world);
+    return pixel.x() >= kPatchReach_px && pixel.y() >= kPatchReach_px &&
+           pixel.x() < camera.width_px - kPatchReach_px &&
+           pixel.y() < camera.height_px - kPatchReach_px;
+  }));
 }
 
 std::optional<TrackedPose> track_reference(const Query& query, KeyframeId reference,
@@ -275,6 +295,9 @@ bool needs_keyframe(const TrackedPose& tracked, const Features& features, const 
     if (depth <= 0 || depth > config.close_depth_m) continue;
     ++(tracked.landmarks[i].valid() ? close_tracked : close_new);
   }
+  // Bundle adjustment knows nothing of the motion: as a keyframe, an unsure one would slip away.
+  // But where more is new than known, the next frame would find too little to hold by.
+  if (tracked.unsure && close_new <= close_tracked) return false;
   const bool thin = close_tracked < config.min_close_tracked && close_new > config.min_close_new;
   const bool drifted =
       tracked.inliers < config.min_tracked_share * static_cast<double>(reference_landmarks);

@@ -27,7 +27,9 @@ struct TrackedPose {
   SE3 camera_from_world;
   std::vector<LandmarkId> landmarks;  ///< per feature; inliers only
   int inliers = 0;
-  std::vector<PassingPoint> passing = {};  ///< inliers of the motion model without a landmark
+  Matrix6d information = Matrix6d::Zero();  ///< see PoseEstimate
+  bool unsure = false;                      ///< the picture alone does not fix the pose
+  std::vector<PassingPoint> passing = {};   ///< inliers of the motion model without a landmark
 };
 
 /// What every stage of tracking works with; references live as long as the step.
@@ -47,6 +49,12 @@ struct TrackContext {
 /// @returns nullopt below config.min_inliers_frame.
 std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& last, const SE3& guess,
                                         const TrackContext& context, MatcherCounts& counts);
+
+/// How many of the last frame's points (as in track_motion) the guess puts where a keypoint can be:
+/// if they are few, no frame there holds by the last one, however well its motion is known. The
+/// border is that of the finest level.
+int count_that_can_be_found(const LastFrame& last, const SE3& guess, const Map& map,
+                            const Camera& camera);
 
 /// The pose of a frame by appearance: words shared with the reference keyframe.
 /// @returns nullopt below config.min_inliers_frame.

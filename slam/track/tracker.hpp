@@ -8,6 +8,7 @@
 #include "slam/core/rgbd_frame.hpp"
 #include "slam/core/se3.hpp"
 #include "slam/features/features.hpp"
+#include "slam/track/motion.hpp"
 
 namespace mh {
 
@@ -23,6 +24,7 @@ struct LastFrame {
 struct Tracker {
   std::optional<LastFrame> last;           ///< none = lost for good (or nothing mapped yet)
   std::optional<Vector6d> velocity_per_s;  ///< twist of the camera, in its own frame
+  std::optional<Motion> motion;            ///< over all frames since tracking began
   KeyframeId reference;                    ///< keyframe that shares most landmarks
   int frames_since_keyframe = 0;
   bool coasting = false;  ///< lost since `last`, which is still worth a try

@@ -68,6 +68,25 @@ TEST(EstimatePose, RecoversTruthWithThirtyPercentOutliers) {
   }
 }
 
+TEST(EstimatePose, ItsInformationIsTheInverseCovarianceOfItsErrors) {
+  constexpr int kViews = 300;
+  const SE3 truth = true_pose();
+  PoseConfig every;  // the gates would cut the tails off
+  every.chi2_mono = every.chi2_stereo = 1e6;
+  double squared = 0;
+  for (std::uint64_t seed = 0; seed < kViews; ++seed) {
+    const RandomStream stream(seed);
+    auto observations = observe(80, truth, kCamera, stream.fork(0));
+    add_noise(observations, kCamera, stream.fork(1));
+    const auto estimate = estimate_pose(observations, truth, kCamera, every);
+    ASSERT_TRUE(estimate);
+    const Vector6d error = (estimate->camera_from_world * truth.inverse()).log();
+    squared += error.dot(estimate->information * error) / kViews;
+  }
+  // Chi-square of 6 degrees of freedom: mean 6, and of 300 such the mean is off by 0.2.
+  EXPECT_NEAR(squared, 6, 0.6);
+}
+
 TEST(EstimatePose, CountsItsInliersAndRejectsPointsBehindTheCamera) {
   const SE3 truth = true_pose();
   auto observations = observe(50, truth, kCamera, RandomStream(4));

@@ -121,7 +121,7 @@ TEST(MapFile, SaysWhatIsWrong) {
   EXPECT_EQ(complaint(""), "room.mhmap: is no map of Modelhouse's");
   std::string other = midway_bytes();
   other[8] = 9;
-  EXPECT_EQ(complaint(other), "room.mhmap: is a map of version 9, but this program reads 4");
+  EXPECT_EQ(complaint(other), "room.mhmap: is a map of version 9, but this program reads 5");
   EXPECT_NE(complaint(midway_bytes() + "x").find("too long"), std::string::npos);
   try {
     decode_slam(midway_bytes(), "room.mhmap", testing_support::box_room_vocabulary(2));

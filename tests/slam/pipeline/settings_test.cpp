@@ -22,6 +22,8 @@ SlamConfig unusual() {
   c.loop.enabled = false;
   c.loop.same_drift_rad = 1e-3;
   c.track.near_angle_rad = 0.7;
+  c.track.sure_position_m = 0.03;
+  c.track.sure_angle_rad = 0.02;
   return c;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -252,6 +253,90 @@ TEST(Step, ALostCameraIsLookedForNearItsLastPlaceForAWhile) {
   };
   EXPECT_EQ(after_a_blank(1.0, 3), TrackStatus::kRelocalized);
   EXPECT_EQ(after_a_blank(0.0, 3), TrackStatus::kLost);
+}
+
+/// Features of a frame of the drive, those of some columns alone.
+Features columns(int i, float first_px, float last_px) {
+  const SlamConfig config = settings({});
+  const Features all = extract(frame(i), BoxRoom::camera(), config.features);
+  Features some;
+  for (std::size_t f = 0; f < all.size(); ++f)
+    if (all.keypoints[f].u_px >= first_px && all.keypoints[f].u_px <= last_px) {
+      some.keypoints.push_back(all.keypoints[f]);
+      some.descriptors.push_back(all.descriptors[f]);
+    }
+  return some;
+}
+
+/// The camera turns to the left, by some 45 px in each step of six frames. First the picture shows
+/// what leaves it on the right, then what has come in on the left.
+struct BareCorner {
+  SlamState state;
+  std::vector<TrackStatus> statuses;
+
+  /// @param sure  times the default limits of a sure pose: six frames are a long step
+  explicit BareCorner(double sure, float last_px = 60) {
+    SlamConfig config = settings({});
+    config.relocalize.min_word_matches = 100'000;  // the whole map is of no help
+    config.track.sure_position_m *= sure;
+    config.track.sure_angle_rad *= sure;
+    state = make_slam(BoxRoom::camera(), config, vocabulary());
+    for (int k = 0; k < 6; ++k) show(6 * k, columns(6 * k, 0, 320));
+    show(36, columns(36, 265, 320));
+    show(42, columns(42, 0, last_px));
+  }
+
+  void show(int i, Features features) {
+    statuses.push_back(
+        step(state, i * kFrame_ns, std::move(features), RandomStream(1).fork(i)).status);
+  }
+};
+
+TEST(Step, MotionAlonePlacesAFrameThatCannotShowWhatTheLastOneDid) {
+  BareCorner corner(5);
+  EXPECT_EQ(corner.statuses.back(), TrackStatus::kTracked);
+  corner.show(48, columns(48, 0, 320));
+  EXPECT_EQ(corner.statuses.back(), TrackStatus::kTracked);
+  corner.state.map.check_invariants();
+  const SE3 world_from_origin = BoxRoom::round_trip(0, kTurnFrames);
+  const Trajectory estimate = trajectory(corner.state);
+  ASSERT_EQ(estimate.size(), 9U);
+  for (const int i : {42, 48}) {
+    const SE3 error = (world_from_origin * estimate[i / 6U].world_from_camera).inverse() *
+                      BoxRoom::round_trip(i, kTurnFrames);
+    // The last frame before it held by a strip of 55 px, in which turning and shifting look alike.
+    EXPECT_LT(error.translation().norm(), 0.07) << i;
+    EXPECT_LT(error.log().tail<3>().norm(), 0.03) << i;
+  }
+}
+
+TEST(Step, MotionAlonePlacesNoFrameThatItIsUnsureOfOrThatShowsNothing) {
+  EXPECT_EQ(BareCorner(1).statuses.back(), TrackStatus::kLost) << "0.2 s are too long";
+  EXPECT_EQ(BareCorner(5, 20).statuses.back(), TrackStatus::kLost) << "too little to go on by";
+}
+
+TEST(Step, WhereAPictureLeavesThePoseUnsureTheMotionHasItsSay) {
+  const auto worst_error_m = [](bool weighed) {
+    SlamConfig config = settings({});
+    config.track.sure_position_m = weighed ? 0.003 : 1000;
+    config.track.sure_angle_rad = weighed ? 0.002 : 3;
+    SlamState state = make_slam(BoxRoom::camera(), config, vocabulary());
+    const SE3 world_from_origin = BoxRoom::round_trip(0, kTurnFrames);
+    double worst = 0;
+    for (int i = 0; i < 20; ++i) {
+      const bool whole = i < 14;
+      const StepReport report =
+          step(state, i * kFrame_ns, columns(i, whole ? 0 : 250, 320), RandomStream(1).fork(i));
+      if (!report.world_from_camera) return HUGE_VAL;
+      const SE3 error = (world_from_origin * *report.world_from_camera).inverse() *
+                        BoxRoom::round_trip(i, kTurnFrames);
+      if (!whole) worst = std::max(worst, error.translation().norm());
+    }
+    return worst;
+  };
+  const double alone = worst_error_m(false), weighed = worst_error_m(true);
+  EXPECT_LT(weighed, 0.5 * alone) << "of " << alone;
+  EXPECT_LT(weighed, 0.02);
 }
 
 TEST(Step, AFrameThatShowsLittleNeedsASixthOfItsKeypoints) {
