@@ -17,11 +17,18 @@ struct Edge {
   int shared = 0;
 };
 
+/// The graph's edges with what they share today: a neighbour's count is of when it was last taken.
 std::vector<Edge> covisibility(const Map& map) {
   std::vector<Edge> edges;
-  for (const Keyframe& k : map.keyframes())
+  std::vector<int> shared(map.keyframes().size());
+  for (const Keyframe& k : map.keyframes()) {
+    std::fill(shared.begin(), shared.end(), 0);
+    for (const LandmarkId landmark : k.landmarks)
+      if (landmark.valid())
+        for (const Observation& o : map.at(landmark).observations) ++shared[o.keyframe.value];
     for (const Keyframe::Neighbour& n : k.covisible)
-      if (k.id < n.id) edges.push_back({k.id, n.id, n.shared});
+      if (k.id < n.id) edges.push_back({k.id, n.id, shared[n.id.value]});
+  }
   std::sort(edges.begin(), edges.end(),
             [](const Edge& x, const Edge& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
   return edges;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -252,6 +253,19 @@ Settings read_camera_info(YamlReader yaml) {
   return settings;
 }
 
+/// "key:value" as "key: value", line by line.
+std::string with_blanks_after_keys(const std::string& text) {
+  std::string result;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t end = std::min(line.find_first_of(": #\"'[{"), line.size());
+    if (end > 0 && end + 1 < line.size() && line[end] == ':' && line[end + 1] != ' ')
+      line.insert(end + 1, 1, ' ');
+    result += line + '\n';
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string format_settings(const Settings& settings) {
@@ -283,8 +297,11 @@ SlamConfig read_slam_config(YamlReader& yaml, SlamConfig config) {
 
 Settings parse_settings(std::string text, const std::string& name) {
   // OpenCV's own dialect begins with "%YAML:1.0", which is no YAML; its line stays, so that line
-  // numbers hold.
-  if (text.starts_with("%YAML:")) text[0] = '#';
+  // numbers hold. It also reads "key:value" without the blank, as in ORB-SLAM2's TUM1.yaml.
+  if (text.starts_with("%YAML:")) {
+    text[0] = '#';
+    text = with_blanks_after_keys(text);
+  }
   YamlReader yaml = YamlReader::parse(text, name);
   bool orb_slam = false, camera_info = false;
   for (const auto& [key, node] : YamlReader(yaml).entries()) {

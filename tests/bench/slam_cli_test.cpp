@@ -3,9 +3,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -83,6 +85,12 @@ TEST_F(SlamCommand, MapsAFolderAndSaysWhatCameOfIt) {
   const auto graph = nlohmann::json::parse(read_file(folder_ / "a/keyframes.json"));
   EXPECT_EQ(graph["keyframes"].size(), json["keyframes"]);
   EXPECT_FALSE(graph["edges"].empty());
+  std::map<int, int> landmarks;
+  for (const auto& k : graph["keyframes"]) landmarks[k["id"]] = k["landmarks"];
+  for (const auto& e : graph["edges"]) {
+    EXPECT_GT(e["shared"], 0);
+    EXPECT_LE(e["shared"], std::min(landmarks.at(e["a"]), landmarks.at(e["b"]))) << e;
+  }
   EXPECT_EQ(read_tum(folder_ / "a/estimate.tum").size(), 50U);
   EXPECT_EQ(read_kitti(folder_ / "a/estimate.kitti").size(), 50U);
   EXPECT_EQ(load_settings(folder_ / "a/settings.yaml").camera,

@@ -130,6 +130,7 @@ ORBextractor.iniThFAST: 21
 ORBextractor.minThFAST: 8
 
 Viewer.KeyFrameSize: 0.05
+Viewer.PointSize:2
 Viewer.ViewpointF: 500
 Somebody.Else: 3
 )";
