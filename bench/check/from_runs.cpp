@@ -113,23 +113,18 @@ std::string gate_suite_digest(const Suite& suite) {
 }
 
 nlohmann::ordered_json gate_settings(const Suite& suite) {
-  const auto file_digest = [](const std::filesystem::path& file) {
-    const std::string text = read_file(file);
-    return hex(digest_bytes(text.data(), text.size()));
-  };
   nlohmann::ordered_json settings = {{"slam", to_json(suite.semantics)},
-                                     {"vocabulary", file_digest(suite.vocabulary)}};
+                                     {"vocabulary", hex(digest_file(suite.vocabulary))}};
   for (const SystemSpec& system : suite.systems)
     if (system.kind == SystemKind::kOutside)
       for (const ProgramFile& file : files_of(system.outside))
-        settings[system.name][file.word] = file_digest(file.file);
+        settings[system.name][file.word] = hex(digest_file(file.file));
   return settings;
 }
 
 nlohmann::ordered_json gate_origin() {
-  const std::string program = read_file("/proc/self/exe");
   nlohmann::ordered_json origin = fingerprint_json();
-  origin["program"] = hex(digest_bytes(program.data(), program.size()));
+  origin["program"] = hex(digest_file("/proc/self/exe"));
   return origin;
 }
 

@@ -31,9 +31,7 @@ struct Options {
 };
 
 std::string digest_of_file(const std::string& file) {
-  if (file.empty()) return "";
-  const std::string text = read_file(file);
-  return hex(digest_bytes(text.data(), text.size()));
+  return file.empty() ? "" : hex(digest_file(file));
 }
 
 /// What decides the pictures: a folder is gone on with only where all of it is the same.

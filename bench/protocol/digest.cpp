@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/protocol/digest.hpp"
+#include "slam/core/files.hpp"
 
 #define XXH_INLINE_ALL
 #include <fmt/format.h>
@@ -28,6 +29,11 @@ std::uint64_t digest_pose(const SE3& pose, std::uint64_t seed) {
 
 std::uint64_t digest_bytes(const void* data, std::size_t size, std::uint64_t seed) {
   return XXH3_64bits_withSeed(data, size, seed);
+}
+
+std::uint64_t digest_file(const std::filesystem::path& file, std::uint64_t seed) {
+  const std::string content = read_file(file);
+  return digest_bytes(content.data(), content.size(), seed);
 }
 
 std::uint64_t digest(const RgbdFrame& frame) {

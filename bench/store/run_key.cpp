@@ -12,7 +12,6 @@
 #include "bench/results/fingerprint.hpp"
 #include "bench/store/code_version.hpp"
 #include "bench/systems/find_program.hpp"
-#include "slam/core/files.hpp"
 
 namespace mh {
 namespace {
@@ -42,10 +41,7 @@ std::uint64_t digest_source(const fs::path& source) {
     return digest_bytes(text.data(), text.size());
   }
   std::uint64_t sum = 0;
-  for (const fs::path& part : parts_of(source)) {
-    const std::string content = read_file(part);
-    sum = digest_bytes(content.data(), content.size(), sum);
-  }
+  for (const fs::path& part : parts_of(source)) sum = digest_file(part, sum);
   return sum;
 }
 
@@ -68,11 +64,9 @@ std::vector<InputDigest> digest_inputs(const RunSpec& spec) {
   add("vocabulary", spec.vocabulary);
   add("level", spec.level);
   if (spec.system.kind == SystemKind::kOutside)
-    for (const ProgramFile& file : files_of(spec.system.outside)) {
-      const std::string content = read_file(file.file);
-      inputs.push_back({fmt::format("{}: {}", spec.system.name, file.word),
-                        digest_bytes(content.data(), content.size())});
-    }
+    for (const ProgramFile& file : files_of(spec.system.outside))
+      inputs.push_back(
+          {fmt::format("{}: {}", spec.system.name, file.word), digest_file(file.file)});
   return inputs;
 }
 

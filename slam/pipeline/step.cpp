@@ -84,9 +84,13 @@ Query without_words(const PreparedFrame& frame) {
   return {frame.features, frame.grid, frame.words ? *frame.words : kNone};
 }
 
+double seconds_since_last(const Tracker& tracker, Stamp stamp_ns) {
+  return static_cast<double>(stamp_ns - tracker.last->stamp_ns) / kSecond_ns;
+}
+
 SE3 predict(const Tracker& tracker, Stamp stamp_ns) {
   if (!tracker.velocity_per_s) return tracker.last->camera_from_world;
-  const double elapsed_s = static_cast<double>(stamp_ns - tracker.last->stamp_ns) / kSecond_ns;
+  const double elapsed_s = seconds_since_last(tracker, stamp_ns);
   return SE3::exp(*tracker.velocity_per_s * elapsed_s) * tracker.last->camera_from_world;
 }
 
@@ -101,10 +105,6 @@ struct Located {
   std::vector<LandmarkId> expected;
   std::optional<Motion> motion = {};  ///< with this frame taken in
 };
-
-double seconds_since_last(const Tracker& tracker, Stamp stamp_ns) {
-  return static_cast<double>(stamp_ns - tracker.last->stamp_ns) / kSecond_ns;
-}
 
 bool is_sure(const Matrix6d& covariance, const TrackConfig& config) {
   const PoseSigma sigma = worst_sigma(covariance);
@@ -246,8 +246,7 @@ std::optional<Located> carry(const SlamState& state, const PreparedFrame& frame)
 
 /// The frame is lost. For a while the last tracked one still tells where to look for the next.
 void lose(Tracker& tracker, Stamp stamp_ns, const TrackConfig& config) {
-  const double lost_s =
-      tracker.last ? static_cast<double>(stamp_ns - tracker.last->stamp_ns) / kSecond_ns : HUGE_VAL;
+  const double lost_s = tracker.last ? seconds_since_last(tracker, stamp_ns) : HUGE_VAL;
   if (lost_s >= 0 && lost_s < config.coast_s)
     tracker.coasting = true;
   else
@@ -258,7 +257,7 @@ void lose(Tracker& tracker, Stamp stamp_ns, const TrackConfig& config) {
 void update_velocity(Tracker& tracker, Stamp stamp_ns, const SE3& camera_from_world) {
   tracker.velocity_per_s.reset();
   if (!tracker.last || stamp_ns <= tracker.last->stamp_ns) return;
-  const double elapsed_s = static_cast<double>(stamp_ns - tracker.last->stamp_ns) / kSecond_ns;
+  const double elapsed_s = seconds_since_last(tracker, stamp_ns);
   tracker.velocity_per_s =
       (camera_from_world * tracker.last->camera_from_world.inverse()).log() / elapsed_s;
 }
