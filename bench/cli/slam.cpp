@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -20,6 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+
+constexpr std::string_view kTum = "tum:", kScene = "scene:", kScannet = "scannet:";
 
 struct Options {
   std::string source, settings, vocabulary, out, map, save_map, truth;
@@ -56,7 +60,6 @@ struct Source {
 };
 
 Source open_source(const Options& options) {
-  constexpr std::string_view kTum = "tum:", kScene = "scene:", kScannet = "scannet:";
   const std::string& source = options.source;
   if (source.starts_with(kScene)) {
     if (options.tour.empty() || options.robot.empty())
@@ -91,6 +94,21 @@ Source open_source(const Options& options) {
   return {std::move(settings), std::move(frames)};
 }
 
+/// Tells which settings of --settings give way to the map's.
+void note_what_the_map_settles(const Options& options, const SlamConfig& of_map,
+                               Settings& settings) {
+  std::istringstream kept(format_slam_config(of_map)), asked(format_slam_config(settings.slam));
+  std::string list, section, line;
+  for (std::string other; std::getline(kept, line) && std::getline(asked, other);) {
+    if (!line.starts_with(' ')) section = line.substr(0, line.find(':'));
+    if (line != other)
+      list += fmt::format("{}{}.{}", list.empty() ? "" : ", ", section, line.substr(2));
+  }
+  if (!list.empty())
+    settings.notes.push_back(
+        fmt::format("{}: the map's own settings count: {}", options.settings, list));
+}
+
 /// A new state, or the one of the map file; the file's settings go before those of --settings.
 SlamState first_state(const Options& options, const std::shared_ptr<const Vocabulary>& vocabulary,
                       Settings& settings) {
@@ -101,6 +119,7 @@ SlamState first_state(const Options& options, const std::shared_ptr<const Vocabu
     state = load_slam(options.map, vocabulary);
     if (state.camera != settings.camera)
       throw InputError(fmt::format("{}: was made with another camera", options.map));
+    if (!options.settings.empty()) note_what_the_map_settles(options, state.config, settings);
     if (!options.run.resume) rewind(state);
   }
   SemanticConfig& semantics = state.config.semantics;
@@ -116,19 +135,38 @@ void check(const Options& options) {
     throw InputError("--localize needs a map: name one by --map");
   if (options.run.resume && options.map.empty())
     throw InputError("--resume needs a map: name one by --map");
+  if (options.source.starts_with(kScene)) return;
+  for (const auto& [name, value] : {std::pair("--tour", &options.tour),
+                                    {"--robot", &options.robot},
+                                    {"--level", &options.level}})
+    if (!value->empty())
+      throw InputError(fmt::format("{} {}: is for scene:FILE, but the source is '{}'", name, *value,
+                                   options.source));
+}
+
+/// @throws InputError if the sequence ends no later than what the map's run was fed.
+void need_something_left(const Options& options, const SlamState& state,
+                         const FrameSequence& frames) {
+  Stamp last_ns = -1;
+  for (std::size_t i = 0; i < frames.size(); ++i) last_ns = std::max(last_ns, frames.stamp_ns(i));
+  if (state.last_stamp_ns && last_ns <= *state.last_stamp_ns)
+    throw InputError(fmt::format(
+        "{}: nothing is left to go on with: it ends at {} s, and the run of {} was fed until {} s",
+        options.source, format_stamp(last_ns), options.map, format_stamp(*state.last_stamp_ns)));
 }
 
 void run(const Options& options) {
   check(options);
   const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
   Source source = open_source(options);
-  for (const std::string& note : source.settings.notes) fmt::print(stderr, "slam: {}\n", note);
   // Before the work: a slip costs no minutes.
   const std::optional<Trajectory> truth =
       options.truth.empty() ? source.frames->truth() : std::optional(read_tum(options.truth));
   const OutputFolder folder(options.out);
   if (!options.save_map.empty()) need_writable(options.save_map);
   SlamState state = first_state(options, vocabulary, source.settings);
+  if (options.run.resume) need_something_left(options, state, *source.frames);
+  for (const std::string& note : source.settings.notes) fmt::print(stderr, "slam: {}\n", note);
 
   Progress progress("slam");
   StageClock clock;
@@ -140,14 +178,16 @@ void run(const Options& options) {
     clock.end_frame();
     double ms = 0;
     for (const double stage_ms : clock.frames().back()) ms += stage_ms;
-    if (!so_far.frames.back().skipped) frame_ms.push_back(ms);
-    running_ms += ms;
+    if (!so_far.frames.back().skipped) {
+      frame_ms.push_back(ms);
+      running_ms += ms;
+    }
     const std::size_t all = std::min(options.run.count, source.frames->size());
     progress.share(static_cast<double>(done) / static_cast<double>(all),
-                   fmt::format("{} tracked, {}, {}, {:.1f} ms a frame", so_far.tracked,
+                   fmt::format("{} tracked, {}, {}, SLAM {:.1f} ms a frame", so_far.tracked,
                                counted(state.map.keyframe_count(), "keyframe"),
                                counted(state.map.landmark_count(), "landmark"),
-                               running_ms / static_cast<double>(done)));
+                               running_ms / std::max<double>(1, frame_ms.size())));
   };
   const SlamRun result =
       run_slam(state, *source.frames, options.run, RandomStream(options.seed), observers, watch);
@@ -181,9 +221,12 @@ void add_slam(CLI::App& app) {
   command->add_option("--vocabulary", options->vocabulary, "Vocabulary file")->required();
   command->add_option("--out", options->out, "Folder for the results")->required();
   command->add_option("--map", options->map, "Map file to begin with");
-  command->add_flag("--localize", options->run.localize, "The map stays as it is");
-  command->add_flag("--resume", options->run.resume,
-                    "Goes on with the sequence where the map's run stopped");
+  CLI::Option* localize =
+      command->add_flag("--localize", options->run.localize, "The map stays as it is");
+  command
+      ->add_flag("--resume", options->run.resume,
+                 "Goes on with the sequence where the map's run stopped")
+      ->excludes(localize);
   command->add_option("--save-map", options->save_map, "Map file to write");
   command->add_option("--truth", options->truth,
                       "True trajectory (TUM text); default: the folder's groundtruth.txt");
@@ -192,11 +235,13 @@ void add_slam(CLI::App& app) {
   command->add_option("--tour", options->tour, "scene: tour (YAML)");
   command->add_option("--robot", options->robot, "scene: robot (YAML)");
   command->add_option("--level", options->level, "scene: sensor level (YAML); without: no noise");
-  command->add_option("--gamma", options->gamma, "Weight of a label, equation 1")
-      ->check(number_between(0.0, 1e6));
-  command->add_option("--xi", options->xi, "Penalty of labels that differ, equation 2")
-      ->check(number_between(1.0, 1e6));
-  command->add_flag("--plain", options->plain, "Without semantics");
+  CLI::Option* gamma =
+      command->add_option("--gamma", options->gamma, "Weight of a label, equation 1")
+          ->check(number_between(0.0, 1e6));
+  CLI::Option* xi =
+      command->add_option("--xi", options->xi, "Penalty of labels that differ, equation 2")
+          ->check(number_between(1.0, 1e6));
+  command->add_flag("--plain", options->plain, "Without semantics")->excludes(gamma, xi);
   command->add_option("--seed", options->seed, "Seed of RANSAC and of a scene's noise")
       ->check(seed_number());
   command->add_flag_callback(

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -72,21 +73,37 @@ Json summary_json(const SlamReport& report) {
 
 void write_slam_files(const std::filesystem::path& folder, const SlamReport& report,
                       const Settings& settings) {
-  write_tum(folder / "estimate.tum", report.run.trajectory);
-  write_kitti(folder / "estimate.kitti", report.run.trajectory);
-  write_atomically(folder / "frames.csv", frames_csv(report.run));
-  write_atomically(folder / "landmarks.ply", landmarks_ply(report.state.map));
-  write_atomically(folder / "keyframes.ply", keyframes_ply(report.state.map));
-  write_atomically(folder / "keyframes.json", keyframes_json(report.state.map));
-  write_atomically(folder / "settings.yaml", format_settings(settings));
-  write_atomically(folder / "summary.json", summary_json(report).dump(2) + "\n");
+  const std::array<std::pair<const char*, std::string>, 8> files{
+      {{"estimate.tum", format_tum(report.run.trajectory)},
+       {"estimate.kitti", format_kitti(report.run.trajectory)},
+       {"frames.csv", frames_csv(report.run)},
+       {"landmarks.ply", landmarks_ply(report.state.map)},
+       {"keyframes.ply", keyframes_ply(report.state.map)},
+       {"keyframes.json", keyframes_json(report.state.map)},
+       {"settings.yaml", format_settings(settings)},
+       {"summary.json", summary_json(report).dump(2) + "\n"}}};
+  // All of them or none: where the disk is full, what an earlier run left stays as it was.
+  namespace fs = std::filesystem;
+  const fs::path fresh = folder / ".fresh";
+  try {
+    make_output_folder(fresh);
+    for (const auto& [name, content] : files) write_atomically(fresh / name, content);
+    for (const auto& [name, content] : files) fs::rename(fresh / name, folder / name);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(fresh, ignored);
+    throw;
+  }
+  fs::remove_all(fresh);
 }
 
 void print_slam_report(const SlamReport& report) {
   const SlamRun& run = report.run;
   for (const std::string& fault : run.faults) fmt::print("skipped: {}\n", fault);
-  fmt::print("{} of {} tracked ({:.1f} %); {} lost, {} skipped, {} relocalized\n",
-             run.tracked, counted(run.frames.size(), "frame"), 100 * run.completeness(), run.lost, run.skipped,
+  if (const int more = run.skipped - static_cast<int>(run.faults.size()); more > 0)
+    fmt::print("skipped: {} more\n", more);
+  fmt::print("{} of {} tracked ({:.1f} %); {} lost, {} skipped, {} relocalized\n", run.tracked,
+             counted(run.frames.size(), "frame"), 100 * run.completeness(), run.lost, run.skipped,
              run.relocalized);
   if (run.started_anew > 0)
     fmt::print("started anew {}: tracking was lost while the map was small\n",

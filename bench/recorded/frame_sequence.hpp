@@ -14,8 +14,8 @@
 
 namespace mh {
 
-/// Frames in the order of their stamps, wherever they come from: a recorded folder, a scene driven
-/// through. Equal indices give equal bits.
+/// Frames in the order in which they were taken, wherever they come from: a recorded folder, a scene
+/// driven through. Equal indices give equal bits. The stamps of a faulty recording may go back.
 class FrameSequence {
  public:
   virtual ~FrameSequence() = default;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -48,7 +49,11 @@ class Runner {
 
  private:
   StepReport process(const RgbdFrame& frame, RandomStream stream) {
-    if (options_.localize) return localize(state_, localizer_, frame, stream, observers_);
+    if (options_.localize) {
+      need_later(frame.stamp_ns, localized_ns_);
+      localized_ns_ = frame.stamp_ns;
+      return localize(state_, localizer_, frame, stream, observers_);
+    }
     const bool was_tracking = state_.tracker.tracking();
     StepReport report = step(state_, frame, stream, observers_);
     if (report.status != TrackStatus::kLost || !was_tracking ||
@@ -80,18 +85,17 @@ class Runner {
   RandomStream stream_;
   const StepObservers& observers_;
   Tracker localizer_;
+  std::optional<Stamp> localized_ns_;  // the last frame that was offered to localize()
 };
 
-/// The state's poses of frames that this run offered.
+/// The state's poses of frames that this run fed to it.
 Trajectory poses_of(const SlamState& state, const std::vector<FrameOutcome>& frames) {
+  std::set<Stamp> fed;
+  for (const FrameOutcome& frame : frames)
+    if (!frame.skipped) fed.insert(frame.stamp_ns);
   Trajectory all = trajectory(state), mine;
-  const auto offered = [&](const TimedPose& pose) {
-    const auto place = std::lower_bound(
-        frames.begin(), frames.end(), pose.stamp_ns,
-        [](const FrameOutcome& f, Stamp stamp_ns) { return f.stamp_ns < stamp_ns; });
-    return place != frames.end() && place->stamp_ns == pose.stamp_ns && !place->skipped;
-  };
-  std::copy_if(all.begin(), all.end(), std::back_inserter(mine), offered);
+  std::copy_if(all.begin(), all.end(), std::back_inserter(mine),
+               [&](const TimedPose& pose) { return fed.contains(pose.stamp_ns); });
   return mine;
 }
 

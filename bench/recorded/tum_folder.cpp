@@ -43,9 +43,10 @@ const Listed* nearest(const std::vector<Listed>& entries, Stamp stamp_ns) {
 }
 
 cv::Mat read_picture(const fs::path& file, int type, const Camera& camera) {
-  cv::Mat picture;
-  if (why_unreadable(file) == nullptr) picture = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
-  if (picture.empty()) throw InputError(fmt::format("{}: is missing or no picture", file.string()));
+  require_readable(file);
+  const cv::Mat picture = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
+  if (picture.empty())
+    throw InputError(fmt::format("{}: is no picture, or a damaged one", file.string()));
   if (picture.type() != type)
     throw InputError(fmt::format("{}: has the wrong number of bits or channels", file.string()));
   if (picture.cols != camera.width_px || picture.rows != camera.height_px)
@@ -79,7 +80,9 @@ RecordedCamera load_recorded_camera(const fs::path& file) {
 std::vector<RecordedFrame> load_tum_folder(const fs::path& folder) {
   const fs::path both = folder / "associations.txt";
   const bool associated = !fs::exists(folder / "rgb.txt") && fs::exists(both);
-  const std::vector<Listed> colour = read_list(associated ? both : folder / "rgb.txt");
+  const fs::path list = associated ? both : folder / "rgb.txt";
+  const std::vector<Listed> colour = read_list(list);
+  if (colour.empty()) throw InputError(fmt::format("{}: lists no picture", list.string()));
   const std::vector<Listed> depth =
       associated ? read_list(both, 2) : read_list(folder / "depth.txt");
   std::vector<Listed> labels;

@@ -28,8 +28,6 @@ std::vector<TumListEntry> parse_tum_list(const std::string& text, const std::str
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}:{}: {}", name, number, error.what()));
     }
-    if (entries.size() > 1 && entries.back().stamp_ns <= entries[entries.size() - 2].stamp_ns)
-      throw InputError(fmt::format("{}:{}: stamps must increase", name, number));
   }
   return entries;
 }

@@ -16,8 +16,9 @@ struct TumListEntry {
 };
 
 /// Parses "stamp file" lines, after so many words to skip; '#' begins a comment.
+/// Entries keep the list's order; their stamps need not increase.
 /// @param name  stands for the list in messages
-/// @throws InputError naming list and line: no file, no stamp, stamps that do not increase.
+/// @throws InputError naming list and line: no file, no stamp.
 std::vector<TumListEntry> parse_tum_list(const std::string& text, const std::string& name,
                                          int skip = 0);
 

@@ -18,8 +18,8 @@ void validate(const Camera& camera) {
   require(camera.height_px > 0, "height_px", camera.height_px);
   require(camera.fx_px > 0, "fx_px", camera.fx_px);
   require(camera.fy_px > 0, "fy_px", camera.fy_px);
-  require(camera.cx_px >= 0 && camera.cx_px < camera.width_px, "cx_px", camera.cx_px);
-  require(camera.cy_px >= 0 && camera.cy_px < camera.height_px, "cy_px", camera.cy_px);
+  require(camera.cx_px >= 0 && camera.cx_px <= camera.width_px - 1, "cx_px", camera.cx_px);
+  require(camera.cy_px >= 0 && camera.cy_px <= camera.height_px - 1, "cy_px", camera.cy_px);
   require(camera.rate_hz > 0, "rate_hz", camera.rate_hz);
   require(camera.baseline_m > 0, "baseline_m", camera.baseline_m);
   require(camera.disparity_sigma_px > 0, "disparity_sigma_px", camera.disparity_sigma_px);

@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <opencv2/calib3d.hpp>
 
 #include "slam/core/error.hpp"
 #include "slam/features/corners.hpp"
 #include "slam/features/describe.hpp"
 #include "slam/features/pyramid.hpp"
+#include "slam/features/undistort.hpp"
 
 namespace mh {
 namespace {
@@ -94,17 +94,12 @@ void append(const PyramidLevel& level, int octave, const Corner& corner, const R
 
 void undistort(const Camera& camera, std::vector<Keypoint>& keypoints) {
   if (camera.distortion.none() || keypoints.empty()) return;
-  const cv::Matx33d matrix(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0, 1);
-  const Distortion& d = camera.distortion;
-  const cv::Vec<double, 5> coefficients(d.k1, d.k2, d.p1, d.p2, d.k3);
-  std::vector<cv::Point2d> points;
+  std::vector<Eigen::Vector2d> points;
   for (const Keypoint& k : keypoints) points.emplace_back(k.u_px, k.v_px);
-  // Stops at 1/1000 px, far below what a corner is worth.
-  const cv::TermCriteria stop(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 40, 1e-3);
-  cv::undistortPoints(points, points, matrix, coefficients, cv::noArray(), matrix, stop);
+  undistort(camera, points);
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
-    keypoints[i].u_px = static_cast<float>(points[i].x);
-    keypoints[i].v_px = static_cast<float>(points[i].y);
+    keypoints[i].u_px = static_cast<float>(points[i].x());
+    keypoints[i].v_px = static_cast<float>(points[i].y());
   }
 }
 

@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/features/undistort.hpp"
 #include "slam/pipeline/settings_fields.hpp"
 
 namespace mh {
@@ -103,11 +106,13 @@ void read_distortion(YamlReader& yaml, const std::string& prefix, Camera& camera
                        .k3 = yaml.number_or(prefix + "k3", 0, -kMost, kMost)};
 }
 
-void check_camera(const Camera& camera, const std::string& file) {
+/// @param place  of the distortion
+void check_camera(const Camera& camera, const YamlReader& place) {
   try {
     validate(camera);
+    require_undistortable(camera);
   } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", file, error.what()));
+    place.fail(error.what());
   }
 }
 
@@ -121,17 +126,18 @@ void read_camera(YamlReader& yaml, Settings& settings) {
   c.height_px = static_cast<int>(camera.integer_or("height_px", c.height_px, 1, 100000));
   c.fx_px = camera.number("fx_px", 1, kMost);
   c.fy_px = camera.number("fy_px", 1, kMost);
-  c.cx_px = camera.number("cx_px", 0, kMost);
-  c.cy_px = camera.number("cy_px", 0, kMost);
+  c.cx_px = camera.number("cx_px", 0, c.width_px - 1);
+  c.cy_px = camera.number("cy_px", 0, c.height_px - 1);
   c.rate_hz = camera.number_or("rate_hz", c.rate_hz, 1e-3, kMost);
   c.baseline_m = camera.number_or("baseline_m", c.baseline_m, 1e-6, kMost);
   c.disparity_sigma_px = camera.number_or("disparity_sigma_px", c.disparity_sigma_px, 1e-6, kMost);
-  if (auto distortion = camera.find("distortion")) {
+  auto distortion = camera.find("distortion");
+  if (distortion) {
     read_distortion(*distortion, "", c);
     distortion->finish();
   }
   camera.finish();
-  check_camera(c, yaml.file());
+  check_camera(c, distortion ? *distortion : camera);
 }
 
 Settings read_own(YamlReader yaml) {
@@ -171,15 +177,42 @@ constexpr std::array<std::string_view, 21> kOrbSlamKeys{"Camera.fx",
                                                         "ORBextractor.iniThFAST",
                                                         "ORBextractor.minThFAST"};
 
-/// "Camera.x, Viewer.*": keys that nobody reads, those of the viewer as one.
-std::string unread_keys(YamlReader yaml) {
+/// What such files hold beside them without a section's name; all of it for other sensors.
+constexpr std::array<std::string_view, 4> kOrbSlamOthers{"Tbc", "Tlr", "loopClosing",
+                                                         "thFarPoints"};
+
+bool is_one_of(const auto& keys, std::string_view key) {
+  return std::find(keys.begin(), keys.end(), key) != keys.end();
+}
+
+/// A key of the sections that are read, or of none, must be known: a slip of the pen would leave
+/// the camera without its distortion. Other sections are somebody else's.
+void refuse_unknown_keys(YamlReader& yaml) {
+  for (const auto& [key, node] : yaml.entries()) {
+    if (key == "Camera.type") {
+      if (node.as_string() != "PinHole")
+        node.fail(fmt::format("'{}' is not PinHole", node.as_string()));
+      continue;
+    }
+    if (is_one_of(kOrbSlamKeys, key) || is_one_of(kOrbSlamOthers, key)) continue;
+    std::string section = key.substr(0, key.find('.'));
+    std::transform(section.begin(), section.end(), section.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (section == "camera" || section == "orbextractor" || key.find('.') == std::string::npos)
+      node.fail(fmt::format("is no key of ORB-SLAM2's settings (known: {})",
+                            fmt::join(kOrbSlamKeys, ", ")));
+  }
+}
+
+/// "Somebody.Else, Viewer.*": keys that nobody reads, those of the viewer as one.
+std::string unread_keys(YamlReader& yaml) {
   std::string list;
   const auto add = [&](const std::string& name) { list += (list.empty() ? "" : ", ") + name; };
   bool viewer = false;
   for (const auto& [key, node] : yaml.entries()) {
     if (key.starts_with("Viewer."))
       viewer = true;
-    else if (std::find(kOrbSlamKeys.begin(), kOrbSlamKeys.end(), key) == kOrbSlamKeys.end())
+    else if (!is_one_of(kOrbSlamKeys, key) && key != "Camera.type")
       add(key);
   }
   if (viewer) add("Viewer.*");
@@ -189,14 +222,17 @@ std::string unread_keys(YamlReader yaml) {
 Settings read_orb_slam(YamlReader yaml) {
   Settings settings;
   settings.has_camera = true;
+  refuse_unknown_keys(yaml);
   Camera& c = settings.camera;
-  c.fx_px = yaml.number("Camera.fx", 1, kMost);
-  c.fy_px = yaml.number("Camera.fy", 1, kMost);
-  c.cx_px = yaml.number("Camera.cx", 0, kMost);
-  c.cy_px = yaml.number("Camera.cy", 0, kMost);
-  read_distortion(yaml, "Camera.", c);
   c.width_px = static_cast<int>(yaml.integer_or("Camera.width", c.width_px, 1, 100000));
   c.height_px = static_cast<int>(yaml.integer_or("Camera.height", c.height_px, 1, 100000));
+  c.fx_px = yaml.number("Camera.fx", 1, kMost);
+  c.fy_px = yaml.number("Camera.fy", 1, kMost);
+  c.cx_px = yaml.number("Camera.cx", 0, c.width_px - 1);
+  c.cy_px = yaml.number("Camera.cy", 0, c.height_px - 1);
+  read_distortion(yaml, "Camera.", c);
+  const auto k1 = yaml.find("Camera.k1");
+  check_camera(c, k1 ? *k1 : yaml);
   c.rate_hz = yaml.number_or("Camera.fps", c.rate_hz, 1e-3, kMost);
   c.baseline_m = yaml.number_or("Camera.bf", c.baseline_m * c.fx_px, 1e-6, kMost) / c.fx_px;
   settings.depth_per_metre = yaml.number_or("DepthMapFactor", settings.depth_per_metre, 1e-3, 1e9);
@@ -223,7 +259,6 @@ Settings read_orb_slam(YamlReader yaml) {
   const std::string passed_over = unread_keys(yaml);
   if (!passed_over.empty())
     settings.notes.push_back(fmt::format("{}: passed over: {}", yaml.file(), passed_over));
-  check_camera(c, yaml.file());
   return settings;
 }
 
@@ -235,21 +270,23 @@ Settings read_camera_info(YamlReader yaml) {
   c.width_px = static_cast<int>(yaml.integer("image_width", 1, 100000));
   c.height_px = static_cast<int>(yaml.integer("image_height", 1, 100000));
   YamlReader matrix = yaml.at("camera_matrix");
-  const std::vector<double> k = matrix.at("data").as_numbers(9);
+  const YamlReader data = matrix.at("data");
+  const std::vector<double> k = data.as_numbers(9);
   c.fx_px = k[0];
   c.fy_px = k[4];
   c.cx_px = k[2];
   c.cy_px = k[5];
   if (const auto model = yaml.find("distortion_model"); model && model->as_string() != "plumb_bob")
     model->fail(fmt::format("'{}' is not plumb_bob", model->as_string()));
+  check_camera(c, data);
   if (auto distortion = yaml.find("distortion_coefficients")) {
-    const YamlReader data = distortion->at("data");
-    std::vector<double> d = data.as_numbers();
-    if (d.size() > 5) data.fail(fmt::format("{} coefficients; plumb_bob has 5", d.size()));
+    const YamlReader list = distortion->at("data");
+    std::vector<double> d = list.as_numbers();
+    if (d.size() > 5) list.fail(fmt::format("{} coefficients; plumb_bob has 5", d.size()));
     d.resize(5, 0.0);
     c.distortion = {.k1 = d[0], .k2 = d[1], .p1 = d[2], .p2 = d[3], .k3 = d[4]};
+    check_camera(c, list);
   }
-  check_camera(c, yaml.file());
   return settings;
 }
 

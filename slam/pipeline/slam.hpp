@@ -36,7 +36,8 @@ struct SlamState {
   std::optional<Stamp> last_stamp_ns;            ///< of the last frame fed
 };
 
-/// @throws InputError naming the field of camera or config that is out of range.
+/// @throws InputError naming the field of camera or config that is out of range, or a distortion that
+/// cannot be undone.
 SlamState make_slam(const Camera& camera, const SlamConfig& config,
                     std::shared_ptr<const Vocabulary> vocabulary);
 
@@ -51,6 +52,9 @@ StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream,
 /// @throws InputError if the stamp does not grow or there are not as many descriptors as keypoints.
 StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStream stream,
                 const StepObservers& observers = {});
+
+/// @throws InputError naming both if a frame's stamp is not later than the last one's.
+void need_later(Stamp stamp_ns, std::optional<Stamp> last_ns);
 
 /// The feed goes back: tracking counts as lost and earlier stamps are accepted; the map stays.
 void rewind(SlamState& state);

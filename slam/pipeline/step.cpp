@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
+#include "slam/features/undistort.hpp"
 #include "slam/loop/loop.hpp"
 #include "slam/map/local_mapping.hpp"
 #include "slam/pipeline/slam.hpp"
@@ -328,17 +329,18 @@ StepReport initialize(SlamState& state, PreparedFrame frame, const StepObservers
   return report;
 }
 
-void check_stamp(const SlamState& state, Stamp stamp_ns) {
-  if (state.last_stamp_ns && stamp_ns <= *state.last_stamp_ns)
-    throw InputError(fmt::format("frame at {} ns: stamps must grow, the last was {} ns", stamp_ns,
-                                 *state.last_stamp_ns));
-}
-
 }  // namespace
+
+void need_later(Stamp stamp_ns, std::optional<Stamp> last_ns) {
+  if (last_ns && stamp_ns <= *last_ns)
+    throw InputError(
+        fmt::format("frame at {} ns: stamps must grow, the last was {} ns", stamp_ns, *last_ns));
+}
 
 SlamState make_slam(const Camera& camera, const SlamConfig& config,
                     std::shared_ptr<const Vocabulary> vocabulary) {
   validate(camera);
+  require_undistortable(camera);
   validate(config);
   SlamState state;
   state.camera = camera;
@@ -349,13 +351,13 @@ SlamState make_slam(const Camera& camera, const SlamConfig& config,
 
 StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream,
                 const StepObservers& observers) {
-  check_stamp(state, frame.stamp_ns);
+  need_later(frame.stamp_ns, state.last_stamp_ns);
   return step(state, frame.stamp_ns, observed_features(frame, state, observers), stream, observers);
 }
 
 StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStream stream,
                 const StepObservers& observers) {
-  check_stamp(state, stamp_ns);
+  need_later(stamp_ns, state.last_stamp_ns);
   if (features.descriptors.size() != features.keypoints.size())
     throw InputError(fmt::format("frame at {} ns: {} keypoints, but {} descriptors", stamp_ns,
                                  features.keypoints.size(), features.descriptors.size()));

@@ -84,7 +84,35 @@ TEST_F(TumFolder, NamesWhatIsWrong) {
   std::ofstream(folder_ / "rgb.txt") << "0.1 a.png\n0.9 b.png\n";
   const auto frames = load_tum_folder(folder_);
   ASSERT_EQ(frames.size(), 1u);  // nothing was seen near 0.9 s
-  EXPECT_THROW(read_frame(frames[0], {camera_, 5000}), InputError);
+  const auto refused = [&](const std::string& part) {
+    try {
+      read_frame(frames[0], {camera_, 5000});
+      FAIL();
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  };
+  refused("a.png: cannot be read: no such file");
+  std::ofstream(folder_ / "a.png") << "no picture";
+  refused("a.png: is no picture, or a damaged one");
+  std::ofstream(folder_ / "rgb.txt") << "# nothing\n";
+  try {
+    load_tum_folder(folder_);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("rgb.txt: lists no picture"), std::string::npos);
+  }
+}
+
+TEST_F(TumFolder, KeepsTheOrderOfStampsThatGoBack) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "rgb.txt") << "0.1 a.png\n0.3 b.png\n0.2 c.png\n0.2 d.png\n";
+  std::ofstream(folder_ / "depth.txt") << "0.3 3.png\n0.2 2.png\n0.1 1.png\n";
+  const auto frames = load_tum_folder(folder_);
+  ASSERT_EQ(frames.size(), 4u);
+  EXPECT_EQ(frames[2].stamp_ns, 200'000'000);
+  EXPECT_EQ(frames[1].depth, folder_ / "3.png");
+  EXPECT_EQ(frames[3].colour, folder_ / "d.png");
 }
 
 TEST_F(TumFolder, ReadsAssociationsWhereTheListsAreMissing) {

@@ -192,6 +192,12 @@ TEST(RunSlam, StampsThatRepeatOrGoBackAreSkippedAndCounted) {
   EXPECT_EQ(result.skipped, 2);
   EXPECT_EQ(result.tracked, 28);
   EXPECT_NE(result.faults[0].find("stamps must grow"), std::string::npos);
+  // What was fed is what the trajectory has, though a stamp came twice; by localization, too.
+  EXPECT_EQ(result.trajectory.size(), 28U);
+  rewind(state);
+  const SlamRun found = run(state, offered, {.localize = true});
+  EXPECT_EQ(found.skipped, 2);
+  EXPECT_EQ(found.trajectory.size(), 28U);
 }
 
 TEST(RunSlam, AnEmptySequenceIsAnError) {

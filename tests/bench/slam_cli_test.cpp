@@ -128,6 +128,24 @@ TEST_F(SlamCommand, PicksUpAMapToGoOnOrToLocalize) {
   EXPECT_EQ(found["relocalized"], 1);
   EXPECT_EQ(found["map_digest"], summary("whole")["map_digest"]);
   EXPECT_NE(read_file(folder_ / "found/frames.csv").find(",verified,"), std::string::npos);
+
+  const std::string again = path("room") + " --out " + path("no") + " --map ";
+  expect_refused(again + path("whole.mhmap") + " --resume",
+                 "nothing is left to go on with: it ends at 1.633333317 s");
+  EXPECT_NE(err_.find("whole.mhmap"), std::string::npos) << err_;
+  EXPECT_NE(run(again + path("whole.mhmap") + " --resume --localize"), 0);
+
+  // The map's settings count: what was asked for otherwise is told.
+  std::string other = format_settings(load_settings(folder_ / "room/camera.yaml"));
+  other.replace(other.find("count: 1000"), 11, "count: 1500");
+  write_atomically(folder_ / "other.yaml", other);
+  ASSERT_EQ(run(path("room") + " --out " + path("told") + " --map " + path("half.mhmap") +
+                " --resume --frames 2 --settings " + path("other.yaml")),
+            0)
+      << err_;
+  EXPECT_NE(err_.find("other.yaml: the map's own settings count: features.count: 1000\n"),
+            std::string::npos)
+      << err_;
 }
 
 TEST_F(SlamCommand, RefusesWhatItCannotUse) {
@@ -138,6 +156,9 @@ TEST_F(SlamCommand, RefusesWhatItCannotUse) {
   expect_refused(path("room") + out + " --localize", "--localize needs a map");
   expect_refused(path("room") + out + " --settings " + path("room/rgb.txt"), "rgb.txt");
   expect_refused("scene:house.yaml" + out, "needs --tour and --robot");
+  expect_refused(path("room") + out + " --robot pepper.yaml",
+                 "--robot pepper.yaml: is for scene:FILE");
+  EXPECT_NE(run(path("room") + out + " --plain --gamma 2"), 0) << "the one undoes the other";
   std::ofstream(folder_ / "cut.mhmap") << "MHMAP\n";
   expect_refused(path("room") + out + " --map " + path("cut.mhmap"), "cut short");
   std::ofstream(folder_ / "bare.yaml") << "track: {min_inliers: 30}\n";

@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kCamera =
     "camera: {width_px: 320, height_px: 240, fx_px: 288, fy_px: 289, cx_px: 159.5, cy_px: 119.5,\n"
-    "         baseline_m: 0.06, distortion: {k1: 0.1, p2: -0.2}}\n";
+    "         baseline_m: 0.06, distortion: {k1: 0.1, p2: -0.02}}\n";
 
 SlamConfig unusual() {
   SlamConfig c;
@@ -55,7 +55,7 @@ TEST(Settings, TellsTheCameraAndLeavesTheRestAsItIs) {
   EXPECT_EQ(s.camera.width_px, 320);
   EXPECT_EQ(s.camera.fy_px, 289);
   EXPECT_EQ(s.camera.baseline_m, 0.06);
-  EXPECT_EQ(s.camera.distortion, (Distortion{.k1 = 0.1, .p2 = -0.2}));
+  EXPECT_EQ(s.camera.distortion, (Distortion{.k1 = 0.1, .p2 = -0.02}));
   EXPECT_EQ(s.depth_per_metre, 1000);
   EXPECT_TRUE(s.exchange_red_blue);
   SlamConfig expected;
@@ -89,10 +89,8 @@ TEST(Settings, NamesFileLinePlaceAndValue) {
             std::string::npos);
   EXPECT_NE(complaint("camera: {fx_px: 500}").find("'fy_px' is missing"), std::string::npos);
   EXPECT_NE(complaint("").find("the file holds nothing"), std::string::npos);
-  EXPECT_NE(
-      complaint("camera: {fx_px: 500, fy_px: 500, cx_px: 700, cy_px: 200}").find("cx_px = 700"),
-      std::string::npos)
-      << "a principal point outside the image";
+  EXPECT_EQ(complaint("camera: {fx_px: 500, fy_px: 500, cx_px: 700, cy_px: 200}"),
+            "s.yaml:1: camera.cx_px: 700 is outside [0, 639]");
 }
 
 TEST(Settings, TheDocsHaveThemAll) {
@@ -157,6 +155,43 @@ TEST(Settings, OrbSlamsFilesAreCheckedToo) {
   bad.replace(bad.find("517.306408"), 10, "-5");
   EXPECT_EQ(complaint(bad), "s.yaml:3: Camera.fx: -5 is outside [1, 1000000]");
   EXPECT_NE(complaint("Camera.fx: 500\n").find("'Camera.fy' is missing"), std::string::npos);
+  for (const auto& [key, slip] : {std::pair("Camera.k1", "Camera.K1"),
+                                  {"ORBextractor.nLevels", "ORBextractor.nLevel"},
+                                  {"DepthMapFactor", "DepthMapFactr"},
+                                  {"Camera.fps", "camera.fps"}}) {
+    bad = kTum1;
+    bad.replace(bad.find(key), std::string(key).size(), slip);
+    EXPECT_NE(complaint(bad).find(std::string(slip) + ": is no key of ORB-SLAM2's settings"),
+              std::string::npos)
+        << complaint(bad);
+  }
+  EXPECT_NE(complaint(std::string(kTum1) + "Camera.type: \"KannalaBrandt8\"\n")
+                .find("'KannalaBrandt8' is not PinHole"),
+            std::string::npos);
+  EXPECT_EQ(parse_settings(std::string(kTum1) + "Camera.type: \"PinHole\"\n", "s.yaml").camera,
+            parse_settings(kTum1, "s.yaml").camera);
+}
+
+TEST(Settings, ADistortionThatCannotBeUndoneIsRefused) {
+  const auto with = [](const char* distortion) {
+    return std::string("camera: {fx_px: 525, fy_px: 525, cx_px: 319.5, cy_px: 239.5,\n  ") +
+           "distortion: " + distortion + "}\n";
+  };
+  // So strong that the corners have no ray: the picture ends at 0.703 of the focal length.
+  EXPECT_EQ(
+      complaint(with("{k1: -0.3}")),
+      "s.yaml:2: camera.distortion: k1 -0.3, k2 0, p1 0, p2 0, k3 0: a distortion that cannot "
+      "be undone at pixel (0, 0)");
+  EXPECT_NE(complaint(with("{k1: 1e6}")).find("cannot be undone"), std::string::npos);
+  EXPECT_EQ(parse_settings(with("{k1: -0.2, p1: 0.01}"), "s.yaml").camera.distortion.k1, -0.2);
+  std::string bad = kTum1;
+  bad.replace(bad.find("-0.953104"), 9, "-9.53104");
+  EXPECT_NE(complaint(bad).find("s.yaml:8: Camera.k1: k1 0.262383, k2 -9.53104"), std::string::npos)
+      << complaint(bad);
+  EXPECT_NE(complaint("image_width: 640\nimage_height: 480\ncamera_matrix:\n  data: [525, 0, 320, "
+                      "0, 525, 240, 0, 0, 1]\ndistortion_coefficients:\n  data: [5]\n")
+                .find("s.yaml:6: distortion_coefficients.data: k1 5"),
+            std::string::npos);
 }
 
 }  // namespace
