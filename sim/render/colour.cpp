@@ -18,8 +18,8 @@ std::array<float, 256> make_decode_table() {
   return table;
 }
 
-std::array<std::uint8_t, kSrgbTableMax + 1> make_encode_table() {
-  std::array<std::uint8_t, kSrgbTableMax + 1> table{};
+std::array<std::uint8_t, kSrgbTableMax + 4> make_encode_table() {
+  std::array<std::uint8_t, kSrgbTableMax + 4> table{};
   for (int i = 0; i <= kSrgbTableMax; ++i) {
     const double l = static_cast<double>(i) / kSrgbTableMax;
     const double s = l <= 0.0031308 ? 12.92 * l : 1.055 * std::pow(l, 1.0 / 2.4) - 0.055;
@@ -29,9 +29,10 @@ std::array<std::uint8_t, kSrgbTableMax + 1> make_encode_table() {
 }
 
 const std::array<float, 256> kDecode = make_decode_table();
-const std::array<std::uint8_t, kSrgbTableMax + 1> kEncode = make_encode_table();
 
 }  // namespace
+
+const std::array<std::uint8_t, kSrgbTableMax + 4> kSrgbTable = make_encode_table();
 
 float srgb_to_linear(std::uint8_t value) {
   return kDecode[value];
@@ -43,11 +44,7 @@ Eigen::Vector3f srgb_to_linear(Rgb8 colour) {
 
 std::uint8_t linear_to_srgb(float linear) {
   const float clamped = std::clamp(linear, 0.0F, 1.0F);
-  return kEncode[static_cast<std::size_t>(clamped * kSrgbTableMax + 0.5F)];
-}
-
-const std::uint8_t* srgb_table() {
-  return kEncode.data();
+  return kSrgbTable[static_cast<std::size_t>(clamped * kSrgbTableMax + 0.5F)];
 }
 
 }  // namespace mh

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include <Eigen/Core>
 
 #include "slam/core/rgbd_frame.hpp"
@@ -15,9 +18,10 @@ Eigen::Vector3f srgb_to_linear(Rgb8 colour);
 /// steps are below a quarter of a grey level.
 std::uint8_t linear_to_srgb(float linear);
 
-/// The table behind linear_to_srgb: entry i stands for linear i / kSrgbTableMax.
+/// The table behind linear_to_srgb: entry i stands for linear i / kSrgbTableMax. Four bytes can be
+/// read from every entry on.
 inline constexpr int kSrgbTableMax = 16383;
-const std::uint8_t* srgb_table();
+extern const std::array<std::uint8_t, kSrgbTableMax + 4> kSrgbTable;
 
 /// Relative luminance of linear RGB; Rec. 709.
 inline float luminance(const Eigen::Vector3f& linear) {

@@ -11,6 +11,7 @@
 #include "sim/render/colour.hpp"
 #include "sim/render/edges.hpp"
 #include "sim/render/embree_scene.hpp"
+#include "sim/render/encode.hpp"
 #include "sim/render/packet.hpp"
 #include "sim/render/parallel.hpp"
 #include "sim/render/renderer.hpp"
@@ -32,37 +33,28 @@ constexpr std::size_t kEdgeSamples = kEdgeOffsets.size();
 constexpr std::array<Offset, 4> kQuarters = {
     {{-0.25F, -0.25F}, {0.25F, -0.25F}, {-0.25F, 0.25F}, {0.25F, 0.25F}}};
 
-/// Light within [0, 1]: what is brighter than white is white.
-inline __m256 up_to_white(__m256 linear) {
-  return _mm256_min_ps(_mm256_max_ps(linear, _mm256_setzero_ps()), _mm256_set1_ps(1.0F));
-}
-
-/// Four linear colours, two and two, to sRGB by srgb_table(). They are put together in registers:
-/// what is stored in bytes and loaded in words has to wait for memory.
-inline void encode(__m256 two, __m256 next_two, const std::uint8_t* table, Rgb8* to) {
-  const auto level = [](__m256 linear) {
-    return _mm256_cvtps_epi32(_mm256_mul_ps(up_to_white(linear), _mm256_set1_ps(kSrgbTableMax)));
+/// Instance and class of four faces.
+inline void name(const FaceRecord* const* records, InstanceId* instances, ClassId* classes) {
+  static_assert(offsetof(FaceRecord, instance) == 6 && offsetof(FaceRecord, class_id) == 14);
+  const auto names = [&](std::size_t i) {  // in the upper half of a word each
+    const auto* first = reinterpret_cast<const float*>(records[i]);
+    const auto* second = reinterpret_cast<const float*>(records[i + 1]);
+    return _mm_castps_si128(_mm_shuffle_ps(_mm_load_ps(first), _mm_load_ps(second), 0xDD));
   };
-  const __m256i levels = _mm256_packus_epi32(level(two), level(next_two));
-  const auto look_up = [&](long long of_pixel) -> std::uint64_t {
-    const auto at = static_cast<std::uint64_t>(of_pixel);
-    return table[at & 0xFFFF] | table[at >> 16 & 0xFFFF] << 8 | table[at >> 32 & 0xFFFF] << 16;
-  };
-  const std::uint64_t third = look_up(_mm256_extract_epi64(levels, 1));
-  const std::uint64_t eight_bytes = look_up(_mm256_extract_epi64(levels, 0)) |
-                                    look_up(_mm256_extract_epi64(levels, 2)) << 24 | third << 48;
-  const auto four_bytes =
-      static_cast<std::uint32_t>(third >> 16 | look_up(_mm256_extract_epi64(levels, 3)) << 8);
-  static_assert(sizeof(Rgb8) == 3);
-  auto* bytes = reinterpret_cast<std::uint8_t*>(to);
-  std::memcpy(bytes, &eight_bytes, 8);
-  std::memcpy(bytes + 8, &four_bytes, 4);
+  const __m128i mixed =
+      _mm_packus_epi32(_mm_srli_epi32(names(0), 16), _mm_srli_epi32(names(2), 16));
+  const __m128i sorted = _mm_shuffle_epi8(
+      mixed, _mm_setr_epi8(0, 1, 4, 5, 8, 9, 12, 13, 2, 6, 10, 14, -1, -1, -1, -1));
+  static_assert(sizeof(InstanceId) == 2 && sizeof(ClassId) == 1);
+  _mm_storel_epi64(reinterpret_cast<__m128i*>(instances), sorted);
+  const int four = _mm_extract_epi32(sorted, 2);
+  std::memcpy(classes, &four, 4);
 }
 
 /// What a packet's lanes show, and the picture that it goes to.
 template <class T>
 struct Output {
-  const std::array<T, kLanes>& lanes;
+  const T* lanes;
   Grid2d<T>& grid;
 };
 
@@ -230,26 +222,30 @@ class EmbreeRenderer final : public Renderer {
   /// Puts a packet's lanes where they belong; those outside of the picture nowhere.
   template <class... T>
   static void copy(int x0, int y0, int width, int height, Output<T>... outputs) {
-    const auto copy_columns = [&](auto columns) {
-      for (int y = 0; y < std::min(kSide, height - y0); ++y) {
+    const auto copy_rows = [&](auto rows, auto columns) {
+      for (int y = 0; y < rows; ++y) {
         const int to = (y0 + y) * width + x0;
-        (std::copy_n(outputs.lanes.data() + kSide * y, columns, outputs.grid.data() + to), ...);
+        (std::copy_n(outputs.lanes + kSide * y, columns, outputs.grid.data() + to), ...);
       }
     };
-    if (width - x0 >= kSide)
-      copy_columns(std::integral_constant<int, kSide>());  // of a fixed size: one move
-    else
-      copy_columns(width - x0);
+    if (width - x0 >= kSide && height - y0 >= kSide) {
+      constexpr std::integral_constant<int, kSide> kWhole;  // of a fixed size: single moves
+      copy_rows(kWhole, kWhole);
+    } else {
+      copy_rows(std::min(kSide, height - y0), std::min(kSide, width - x0));
+    }
   }
 
   static void write(const Radiance& light, const Seen& seen, int x0, int y0, RenderedFrame& frame) {
-    const std::uint8_t* table = srgb_table();
-    std::array<Rgb8, kLanes> colour;
-    for (std::size_t i = 0; i < kLanes; i += 4)
-      encode(light.of[i / 2], light.of[i / 2 + 1], table, &colour[i]);
-    copy(x0, y0, frame.colour.width(), frame.colour.height(), Output{colour, frame.colour},
-         Output{seen.depth_m, frame.depth_m}, Output{seen.class_id, frame.classes},
-         Output{seen.instance, frame.instances});
+    const int width = frame.colour.width(), height = frame.colour.height();
+    std::array<Rgb8, kLanes + kSpareAfterEncode> colour;
+    for (std::size_t i = 0; i < kLanes; i += 8) encode(&light.of[i / 2], &colour[i]);
+    std::array<InstanceId, kLanes> instance;
+    std::array<ClassId, kLanes> class_id;
+    for (std::size_t i = 0; i < kLanes; i += 4) name(&seen.record[i], &instance[i], &class_id[i]);
+    copy(x0, y0, width, height, Output{colour.data(), frame.colour},
+         Output{seen.depth_m.data(), frame.depth_m}, Output{class_id.data(), frame.classes},
+         Output{instance.data(), frame.instances});
   }
 
   bool any_extra() const {
@@ -278,10 +274,11 @@ class EmbreeRenderer final : public Renderer {
                   ray.org_z[i] + depth * ray.dir_z[i]};
     }
     const int w = frame.colour.width(), h = frame.colour.height();
-    if (config_.extra.depth16) copy(x0, y0, w, h, Output{depth16, frame.depth16});
-    if (config_.extra.faces) copy(x0, y0, w, h, Output{face, frame.faces});
-    if (config_.extra.barycentric) copy(x0, y0, w, h, Output{barycentric, frame.barycentric});
-    if (config_.extra.points) copy(x0, y0, w, h, Output{point, frame.points_m});
+    if (config_.extra.depth16) copy(x0, y0, w, h, Output{depth16.data(), frame.depth16});
+    if (config_.extra.faces) copy(x0, y0, w, h, Output{face.data(), frame.faces});
+    if (config_.extra.barycentric)
+      copy(x0, y0, w, h, Output{barycentric.data(), frame.barycentric});
+    if (config_.extra.points) copy(x0, y0, w, h, Output{point.data(), frame.points_m});
   }
 
   /// Averages the colours of a packet's edge pixels over their samples, in linear light.
@@ -311,8 +308,9 @@ class EmbreeRenderer final : public Renderer {
       const __m128 sum = _mm_add_ps(
           centre, _mm_add_ps(_mm256_castps256_ps128(two), _mm256_extractf128_ps(two, 1)));
       const __m256 mean = _mm256_castps128_ps256(_mm_mul_ps(sum, _mm_set1_ps(1.0F / 3.0F)));
-      std::array<Rgb8, 4> encoded;
-      encode(mean, mean, srgb_table(), encoded.data());
+      const __m256 means[] = {mean, mean, mean, mean};
+      std::array<Rgb8, 8 + kSpareAfterEncode> encoded;
+      encode(means, encoded.data());
       colour = encoded[0];
     }
   }

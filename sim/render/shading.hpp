@@ -13,8 +13,6 @@ namespace mh {
 struct Seen {
   alignas(32) std::array<const FaceRecord*, kLanes> record;
   alignas(32) std::array<float, kLanes> depth_m;
-  std::array<InstanceId, kLanes> instance;
-  std::array<ClassId, kLanes> class_id;
   std::array<bool, 2> textured;  // whether any of eight lanes is
   std::array<TextureTable::Lookup, 2> lookup;
 };
@@ -33,7 +31,7 @@ class Shading {
 
   /// Step 1: what was hit.
   void find_records(const Packet& packet, Seen& seen) const;
-  /// Step 2: instance and class, and which texels are wanted.
+  /// Step 2: which texels are wanted.
   /// @param pixel_area  of what a ray stands for, at unit depth
   void find_texels(const Packet& packet, float pixel_area, Seen& seen) const;
   /// Step 3: linear RGB x exposure, not below 0.

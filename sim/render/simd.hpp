@@ -27,6 +27,9 @@ inline Int8 load8(const unsigned* from) {
 inline void store8(int* to, Int8 value) {
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), (__m256i)value);
 }
+inline void store8(unsigned* to, Int8 value) {
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), (__m256i)value);
+}
 inline Float8 floor8(Float8 value) {
   return _mm256_floor_ps(value);
 }

@@ -76,36 +76,36 @@ std::uint32_t TextureTable::add(const Grid2d<Rgb8>& picture) {
   return first;
 }
 
-TextureTable::Lookup TextureTable::look_up(Float8 first, Float8 u, Float8 v, Float8 texels) const {
+TextureTable::Place TextureTable::place(Float8 first, Float8 u, Float8 v, Float8 texels) const {
   // Read as an integer, a float is its logarithm to base 2, near enough.
   const Float8 logarithm = to_float((Int8)texels) * 0x1.0p-23F - 127.0F;
   const Float8 level = clamp8(0.5F * logarithm, 0.0F, kMipLevels - 1);
   const Int8 whole = to_int(level);
-  const Float8 blend = level - to_float(whole);
-  alignas(32) std::array<int, 8> at;
-  store8(at.data(), (Int8)first + whole);
+  Place place{u - floor8(u), v - floor8(v), level - to_float(whole), {}};
+  store8(place.level.data(), (Int8)first + whole);
+  return place;
+}
+
+void TextureTable::look_up(const Place& place, Lookup& lookup) const {
   std::array<const float*, 8> fine_levels, coarse_levels;
   for (std::size_t i = 0; i < 8; ++i) {
-    fine_levels[i] = &levels_[static_cast<std::size_t>(at[i])].width;
-    coarse_levels[i] = &levels_[static_cast<std::size_t>(at[i]) + 1].width;
+    fine_levels[i] = &levels_[place.level[i]].width;
+    coarse_levels[i] = &levels_[place.level[i] + 1].width;
   }
-  u -= floor8(u);
-  v -= floor8(v);
-
-  struct Place {
+  struct Corner {
     Int8 texel, stride;
     Float8 right, down;  // shares of the neighbours
   };
-  const auto place = [&](const std::array<const float*, 8>& of) {
+  const auto corner = [&](const std::array<const float*, 8>& of) {
     const auto [width, height, offset, stride] = load_fields(of);
-    Float8 x = u * width - 0.5F, y = v * height - 0.5F;
+    Float8 x = place.u * width - 0.5F, y = place.v * height - 0.5F;
     x = x < 0.0F ? x + width : x;
     y = y < 0.0F ? y + height : y;
     const Int8 x0 = to_int(x), y0 = to_int(y);
-    return Place{(Int8)offset + y0 * (Int8)stride + x0, (Int8)stride, x - to_float(x0),
-                 y - to_float(y0)};
+    return Corner{(Int8)offset + y0 * (Int8)stride + x0, (Int8)stride, x - to_float(x0),
+                  y - to_float(y0)};
   };
-  const Place fine = place(fine_levels), coarse = place(coarse_levels);
+  const Corner fine = corner(fine_levels), coarse = corner(coarse_levels);
   // Cut towards zero, so that four shares of one never sum to more than it.
   const auto share = [](Float8 part) { return to_int(part * kOne); };
   const auto two = [](Int8 low, Int8 high) { return low | high << 16; };
@@ -116,25 +116,18 @@ TextureTable::Lookup TextureTable::look_up(Float8 first, Float8 u, Float8 v, Flo
     _mm256_store_si256(out, _mm256_permute2x128_si256(even, odd, 0x20));
     _mm256_store_si256(out + 1, _mm256_permute2x128_si256(even, odd, 0x31));
   };
-  Lookup lookup;
-  store8(lookup.fine.data(), fine.texel);
-  store8(lookup.coarse.data(), coarse.texel);
-  store8(lookup.fine_stride.data(), fine.stride);
-  store8(lookup.coarse_stride.data(), coarse.stride);
-  const Float8 of_fine = 1.0F - blend;
+  store8(lookup.texels[0].data(), fine.texel);
+  store8(lookup.texels[1].data(), fine.texel + fine.stride);
+  store8(lookup.texels[2].data(), coarse.texel);
+  store8(lookup.texels[3].data(), coarse.texel + coarse.stride);
+  const Float8 blend = place.blend, of_fine = 1.0F - blend;
   store(lookup.across, two(share(of_fine * (1.0F - fine.right)), share(of_fine * fine.right)),
         two(share(blend * (1.0F - coarse.right)), share(blend * coarse.right)));
   store(lookup.down, two(share(1.0F - fine.down), share(fine.down)),
         two(share(1.0F - coarse.down), share(coarse.down)));
-  for (std::size_t i = 0; i < 8; ++i) {
-    const std::uint16_t* f = texel(lookup.fine[i]);
-    const std::uint16_t* c = texel(lookup.coarse[i]);
-    _mm_prefetch(reinterpret_cast<const char*>(f), _MM_HINT_T0);
-    _mm_prefetch(reinterpret_cast<const char*>(f + 4 * lookup.fine_stride[i]), _MM_HINT_T0);
-    _mm_prefetch(reinterpret_cast<const char*>(c), _MM_HINT_T0);
-    _mm_prefetch(reinterpret_cast<const char*>(c + 4 * lookup.coarse_stride[i]), _MM_HINT_T0);
-  }
-  return lookup;
+  for (const std::array<unsigned, 8>& places : lookup.texels)
+    for (const unsigned at_texel : places)
+      _mm_prefetch(reinterpret_cast<const char*>(texel(at_texel)), _MM_HINT_T0);
 }
 
 }  // namespace mh

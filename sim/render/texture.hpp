@@ -39,18 +39,27 @@ class TextureTable {
 
   /// What eight lanes are to read.
   struct Lookup {
-    alignas(32) std::array<int, 8> fine, coarse;  // first texel
-    alignas(32) std::array<int, 8> fine_stride, coarse_stride;
+    /// The left ones of four pairs of texels: fine upper and lower, coarse upper and lower.
+    alignas(32) std::array<std::array<unsigned, 8>, 4> texels;
     /// Shares of 65536, four of 16 bits per lane. Across: fine left and right, coarse left and
     /// right, which sum to one; down: fine upper and lower, coarse upper and lower.
     alignas(32) std::array<std::uint64_t, 8> across, down;
   };
 
-  /// Trilinear lookup at (u, v).
+  /// Where eight lanes look.
+  struct Place {
+    Float8 u, v;   // within [0, 1)
+    Float8 blend;  // share of the coarser level
+    alignas(32) std::array<unsigned, 8> level;
+  };
+  /// Of a trilinear lookup at (u, v). Apart from look_up, so that one can go on while another
+  /// waits.
   /// @param first   add's results, as bits
   /// @param texels  of level 0 that a pixel covers; the level at which it would cover one is read:
   ///                half the logarithm to base 2, to within 0.05.
-  Lookup look_up(Float8 first, Float8 u, Float8 v, Float8 texels) const;
+  Place place(Float8 first, Float8 u, Float8 v, Float8 texels) const;
+  /// Asks for the texels, too.
+  void look_up(const Place& place, Lookup& lookup) const;
 
   /// The filtered colours of a lane and the next one: linear RGB, channel 3 = 0.
   __m256 filter2(const Lookup& lookup, std::size_t lane) const {
@@ -64,11 +73,9 @@ class TextureTable {
 
   /// The filtered colour of a lane, in 16-bit numbers.
   __m128i filter(const Lookup& lookup, std::size_t lane) const {
-    const std::uint16_t* fine = texel(lookup.fine[lane]);
-    const std::uint16_t* coarse = texel(lookup.coarse[lane]);
-    const __m256i upper = pairs(fine, coarse);
-    const __m256i lower =
-        pairs(fine + 4 * lookup.fine_stride[lane], coarse + 4 * lookup.coarse_stride[lane]);
+    const auto at = [&](std::size_t pair) { return texel(lookup.texels[pair][lane]); };
+    const __m256i upper = pairs(at(0), at(2));
+    const __m256i lower = pairs(at(1), at(3));
     const __m256i down = _mm256_set1_epi64x(static_cast<std::int64_t>(lookup.down[lane]));
     const __m256i across = _mm256_set1_epi64x(static_cast<std::int64_t>(lookup.across[lane]));
     const __m256i column =
@@ -87,7 +94,7 @@ class TextureTable {
     std::int32_t stride = 0;  // texels per row
   };
 
-  const std::uint16_t* texel(int index) const {
+  const std::uint16_t* texel(unsigned index) const {
     return texels_.data() + 4 * static_cast<std::size_t>(index);
   }
   /// Two neighbouring texels at each of two places.

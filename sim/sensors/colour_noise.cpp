@@ -46,7 +46,7 @@ void expose(Grid2d<Rgb8>& colour, const Camera& camera, const SensorConfig& conf
             RandomStream stream) {
   const std::array<Signal, 256> signals = signal_table(config);
   const auto& normals = normal_table();
-  const std::uint8_t* encode = srgb_table();
+  const std::uint8_t* encode = kSrgbTable.data();
   const auto scale = static_cast<float>(gain * kSrgbTableMax);
   std::vector<float> share(static_cast<std::size_t>(colour.width()), 1.0F);
   std::uint64_t pixel = 0;

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "sim/render/colour.hpp"
+#include "sim/render/encode.hpp"
 #include "sim/render/renderer.hpp"
 #include "tests/sim/scene_builder.hpp"
 
@@ -24,6 +28,27 @@ Grid2d<Rgb8> smooth_picture(int width, int height) {
                        static_cast<std::uint8_t>(30 + (x * 17 + y * 53) % 200),
                        static_cast<std::uint8_t>(20 + (x * 71 + y * 29) % 220)};
   return picture;
+}
+
+TEST(Encode, IsTheTableForEveryEntry) {
+  const auto expect = [](float red, float green, float blue) {
+    const __m256 two = _mm256_setr_ps(red, green, blue, 7.0F, blue, red, green, -7.0F);
+    const __m256 light[] = {two, two, two, two};
+    std::array<Rgb8, 8 + kSpareAfterEncode> encoded;
+    encode(light, encoded.data());
+    const auto of = [](float linear) { return linear_to_srgb(linear); };
+    for (std::size_t i = 0; i < 8; i += 2) {
+      ASSERT_EQ(encoded[i], (Rgb8{of(red), of(green), of(blue)})) << red;
+      ASSERT_EQ(encoded[i + 1], (Rgb8{of(blue), of(red), of(green)})) << red;
+    }
+  };
+  for (int i = 0; i <= kSrgbTableMax; ++i) {
+    const auto place = static_cast<float>(i), last = static_cast<float>(kSrgbTableMax);
+    // The entry itself, and both ends of what belongs to it.
+    expect(place / last, (place - 0.49F) / last, (place + 0.49F) / last);
+  }
+  expect(-1.0F, 1.5F, 1e30F);
+  expect(-0.0F, 1e-30F, std::numeric_limits<float>::infinity());
 }
 
 TEST(EmbreeRenderer, SmoothEdgesMixLightAndLeaveTheRestAlone) {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <immintrin.h>
+
+#include "sim/render/colour.hpp"
+
+namespace mh {
+
+/// Light within [0, 1]: what is brighter than white is white.
+inline __m256 up_to_white(__m256 linear) {
+  return _mm256_min_ps(_mm256_max_ps(linear, _mm256_setzero_ps()), _mm256_set1_ps(1.0F));
+}
+
+/// How many pixels after the last one encode() writes over.
+inline constexpr int kSpareAfterEncode = 2;
+
+/// Eight linear colours, two and two, to sRGB: the same as linear_to_srgb(), but that halves of the
+/// table's steps go to the even one. @param to  eight pixels and kSpareAfterEncode more
+inline void encode(const __m256* light, Rgb8* to) {
+  const auto* table = reinterpret_cast<const int*>(kSrgbTable.data());
+  const auto code = [&](__m256 linear) {
+    const __m256i level =
+        _mm256_cvtps_epi32(_mm256_mul_ps(up_to_white(linear), _mm256_set1_ps(kSrgbTableMax)));
+    return _mm256_and_si256(_mm256_i32gather_epi32(table, level, 1), _mm256_set1_epi32(0xFF));
+  };
+  // Pixels 0 2 4 6 and 1 3 5 7, four bytes each.
+  const __m256i mixed = _mm256_packus_epi16(_mm256_packus_epi32(code(light[0]), code(light[1])),
+                                            _mm256_packus_epi32(code(light[2]), code(light[3])));
+  const __m256i ordered =
+      _mm256_permutevar8x32_epi32(mixed, _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7));
+  const __m256i dense = _mm256_shuffle_epi8(
+      ordered, _mm256_setr_epi8(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1,  //
+                                0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1));
+  static_assert(sizeof(Rgb8) == 3);
+  auto* bytes = reinterpret_cast<std::uint8_t*>(to);
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(bytes), _mm256_castsi256_si128(dense));
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(bytes + 12), _mm256_extracti128_si256(dense, 1));
+}
+
+}  // namespace mh
