@@ -190,7 +190,7 @@ void add_render(CLI::App& app) {
       ->check(CLI::Range(1, 256));
   command
       ->add_option("--png-compression", options->png_compression,
-                   "0 to 9; without: run lengths of differences, half the time of 1")
+                   "0 (none) to 9 (smallest); without: 1")
       ->check(CLI::Range(0, 9));
   command->add_flag("--json", options->json, "Prints frames written and the time of each stage");
   command->footer(

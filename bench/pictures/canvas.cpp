@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "bench/pictures/png.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -120,6 +121,11 @@ cv::Mat colour_picture(const Grid2d<Rgb8>& colour) {
 
 void write_picture(const std::filesystem::path& file, const cv::Mat& picture,
                    const std::vector<int>& settings) {
+  if (file.extension() == ".png" && is_png_type(picture.type()) && !picture.empty()) {
+    const bool level_given = settings.size() == 2 && settings[0] == cv::IMWRITE_PNG_COMPRESSION;
+    write_atomically(file, level_given ? encode_png(picture, settings[1]) : encode_png(picture));
+    return;
+  }
   std::vector<unsigned char> bytes;
   if (!cv::haveImageWriter(file.string()) ||
       !cv::imencode(file.extension().string(), picture, bytes, settings))

@@ -13,10 +13,10 @@
 
 namespace mh {
 
-/// Compression of PNG files, 0 (none) to 9; none given: OpenCV's own, which packs runs of the
-/// difference to the left neighbour. What each costs and saves: docs/rendering.md.
+/// Compression of PNG files, 0 (none) to 9; none given: 1. What each costs and saves:
+/// docs/rendering.md.
 using PngCompression = std::optional<int>;
-/// As OpenCV wants it.
+/// As write_picture wants it.
 std::vector<int> png_settings(PngCompression compression);
 
 /// Writes a sequence of frames with their truth into a folder. Each file is written whole or not at
