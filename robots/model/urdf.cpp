@@ -2,12 +2,16 @@
 #include "robots/model/urdf.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <mutex>
+#include <set>
 
 #include <console_bridge/console.h>
 #include <fmt/format.h>
+#include <tinyxml2.h>
 #include <urdf_parser/urdf_parser.h>
 #include <Eigen/Eigenvalues>
 
@@ -31,10 +35,86 @@ class Messages : public console_bridge::OutputHandler {
   std::string first_;
 };
 
-urdf::ModelInterfaceSharedPtr parse(const std::filesystem::path& file) {
+/// Where in a file links and joints stand, which urdfdom does not tell, and whether they hang
+/// together. What lacks a name is left to urdfdom.
+class Places {
+ public:
+  Places(const std::string& text, const std::filesystem::path& file) : file_(file.string()) {
+    tinyxml2::XMLDocument document;
+    if (document.Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS)
+      throw InputError(
+          fmt::format("{}:{}: is no XML", file_, std::max(1, document.ErrorLineNum())));
+    const tinyxml2::XMLElement* robot = document.FirstChildElement("robot");
+    if (robot == nullptr) return;
+    for (auto* link = robot->FirstChildElement("link"); link != nullptr;
+         link = link->NextSiblingElement("link"))
+      if (const char* name = link->Attribute("name"))
+        line_of_link_.emplace(name, link->GetLineNum());
+    for (auto* joint = robot->FirstChildElement("joint"); joint != nullptr;
+         joint = joint->NextSiblingElement("joint"))
+      if (const char* name = joint->Attribute("name")) add_joint(*joint, name);
+    for (const std::string& link : hanging_) check_way_up(link);
+  }
+
+  [[noreturn]] void fail_at_link(const std::string& name, const std::string& what) const {
+    fail("link", name, line_of_link_, what);
+  }
+  [[noreturn]] void fail_at_joint(const std::string& name, const std::string& what) const {
+    fail("joint", name, line_of_joint_, what);
+  }
+
+ private:
+  struct Way {
+    std::string joint, parent;
+  };
+
+  void add_joint(const tinyxml2::XMLElement& joint, const std::string& name) {
+    line_of_joint_.emplace(name, joint.GetLineNum());
+    const auto link_at = [&](const char* end) -> std::string {
+      const tinyxml2::XMLElement* element = joint.FirstChildElement(end);
+      const char* link = element == nullptr ? nullptr : element->Attribute("link");
+      if (link == nullptr) return {};
+      if (!line_of_link_.contains(link))
+        fail_at_joint(name, fmt::format("its {} link '{}' is missing", end, link));
+      return link;
+    };
+    const std::string parent = link_at("parent"), child = link_at("child");
+    if (parent.empty() || child.empty()) return;
+    const auto [other, first] = way_up_.emplace(child, Way{name, parent});
+    if (!first)
+      fail_at_joint(name, fmt::format("link '{}' hangs on two joints, '{}' and '{}'", child,
+                                      other->second.joint, name));
+    hanging_.push_back(child);
+  }
+
+  void check_way_up(const std::string& link) const {
+    std::set<std::string> passed;
+    for (auto way = way_up_.find(link); way != way_up_.end();
+         way = way_up_.find(way->second.parent))
+      if (!passed.insert(way->first).second)
+        fail_at_joint(way->second.joint,
+                      fmt::format("link '{}' hangs in a circle of joints, no way leads to it from "
+                                  "a root",
+                                  way->first));
+  }
+
+  [[noreturn]] void fail(const char* kind, const std::string& name,
+                         const std::map<std::string, int>& lines, const std::string& what) const {
+    const auto line = lines.find(name);
+    throw InputError(fmt::format("{}{}: {} '{}': {}", file_,
+                                 line == lines.end() ? "" : fmt::format(":{}", line->second), kind,
+                                 name, what));
+  }
+
+  std::string file_;
+  std::map<std::string, int> line_of_link_, line_of_joint_;
+  std::map<std::string, Way> way_up_;  // by child
+  std::vector<std::string> hanging_;   // children, in the file's order
+};
+
+urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::filesystem::path& file) {
   static std::mutex one_at_a_time;  // urdfdom's messages go to one place for the whole process
   const std::scoped_lock lock(one_at_a_time);
-  const std::string text = read_file(file);
   Messages messages;
   urdf::ModelInterfaceSharedPtr model;
   try {
@@ -54,13 +134,11 @@ SE3 to_se3(const urdf::Pose& pose) {
           {pose.position.x, pose.position.y, pose.position.z}};
 }
 
-Link read_link(const urdf::Link& from, const std::filesystem::path& file) {
+Link read_link(const urdf::Link& from, const Places& places) {
   Link link{.name = from.name};
   if (!from.inertial) return link;
   const urdf::Inertial& body = *from.inertial;
-  const auto fail = [&](const std::string& what) {
-    throw InputError(fmt::format("{}: link '{}': {}", file.string(), from.name, what));
-  };
+  const auto fail = [&](const std::string& what) { places.fail_at_link(from.name, what); };
   if (!(body.mass >= 0) || std::isinf(body.mass))
     fail(fmt::format("its mass {} kg is not positive", body.mass));
   const SE3 link_from_body = to_se3(body.origin);
@@ -79,10 +157,8 @@ Link read_link(const urdf::Link& from, const std::filesystem::path& file) {
   return link;
 }
 
-Joint read_joint(const urdf::Joint& from, const std::filesystem::path& file) {
-  const auto fail = [&](const std::string& what) {
-    throw InputError(fmt::format("{}: joint '{}': {}", file.string(), from.name, what));
-  };
+Joint read_joint(const urdf::Joint& from, const Places& places) {
+  const auto fail = [&](const std::string& what) { places.fail_at_joint(from.name, what); };
   constexpr double kInf = std::numeric_limits<double>::infinity();
   Joint joint{.name = from.name,
               .parent = from.parent_link_name,
@@ -120,9 +196,9 @@ Joint read_joint(const urdf::Joint& from, const std::filesystem::path& file) {
   return joint;
 }
 
-/// Joints in an order in which each one's parent link is known before it.
-std::vector<Joint> from_root(std::vector<Joint> joints, const std::string& root,
-                             const std::filesystem::path& file) {
+/// Joints in an order in which each one's parent link is known before it. They are a tree
+/// (Places).
+std::vector<Joint> from_root(std::vector<Joint> joints, const std::string& root) {
   std::vector<Joint> ordered;
   std::vector<std::string> known{root};
   for (bool more = true; more && !joints.empty();) {
@@ -138,11 +214,7 @@ std::vector<Joint> from_root(std::vector<Joint> joints, const std::string& root,
       more = true;
     }
   }
-  if (!joints.empty())
-    throw InputError(
-        fmt::format("{}: joint '{}': link '{}' hangs in a circle of joints, no way "
-                    "leads to it from the root '{}'",
-                    file.string(), joints.front().name, joints.front().child, root));
+  assert(joints.empty());
   return ordered;
 }
 
@@ -182,18 +254,14 @@ SE3 KinematicTree::root_from(std::string_view link,
 }
 
 KinematicTree load_urdf(const std::filesystem::path& file) {
-  const urdf::ModelInterfaceSharedPtr model = parse(file);
+  const std::string text = read_file(file);
+  const Places places(text, file);
+  const urdf::ModelInterfaceSharedPtr model = parse(text, file);
   KinematicTree tree{.name = model->getName(), .root = model->getRoot()->name};
-  for (const auto& [name, link] : model->links_) tree.links.push_back(read_link(*link, file));
-  std::map<std::string, std::string> joint_of;  // by child
-  for (const auto& [name, joint] : model->joints_) {
-    const auto [other, first] = joint_of.emplace(joint->child_link_name, name);
-    if (!first)
-      throw InputError(fmt::format("{}: link '{}' hangs on two joints, '{}' and '{}'",
-                                   file.string(), joint->child_link_name, other->second, name));
-    tree.joints.push_back(read_joint(*joint, file));
-  }
-  tree.joints = from_root(std::move(tree.joints), tree.root, file);
+  for (const auto& [name, link] : model->links_) tree.links.push_back(read_link(*link, places));
+  for (const auto& [name, joint] : model->joints_)
+    tree.joints.push_back(read_joint(*joint, places));
+  tree.joints = from_root(std::move(tree.joints), tree.root);
   return tree;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robots/model/urdf.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -33,6 +34,14 @@ std::string refusal(const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return refusal_of(text.replace(at, from.size(), to));
+}
+
+/// The line of Pepper's URDF on which a text stands.
+std::string line_of(const std::string& what) {
+  const std::string text = read_file(kFolder + "pepper.urdf");
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<long>(at), '\n'));
 }
 
 TEST(LoadUrdf, PepperIsAsPublished) {
@@ -74,42 +83,51 @@ TEST(LoadUrdf, TheHeadMovesItsCameras) {
   EXPECT_THROW(tree.root_from("Tail"), InputError);
 }
 
+void expect_in(const std::string& part, const std::string& message) {
+  EXPECT_NE(message.find(part), std::string::npos) << message;
+}
+
 TEST(LoadUrdf, RefusesWhatIsNoRobot) {
-  EXPECT_NE(refusal("<child link=\"Neck\"/>", "<child link=\"Nekc\"/>").find("Nekc"),
-            std::string::npos);
-  EXPECT_NE(refusal("<parent link=\"Neck\"/>", "<parent link=\"Nekc\"/>").find("Nekc"),
-            std::string::npos);
-  EXPECT_NE(refusal("<mass value=\"11.6015\"/>", "<mass value=\"-11.6\"/>")
-                .find("link 'Tibia': its mass -11.6 kg is not positive"),
-            std::string::npos);
-  EXPECT_NE(refusal("ixx=\"0.129229\"", "ixx=\"9\"").find("link 'Tibia': no body has"),
-            std::string::npos);
-  EXPECT_NE(refusal("lower=\"-0.706858\"", "lower=\"0.9\"").find("joint 'HeadPitch'"),
-            std::string::npos);
-  EXPECT_NE(refusal_of("this is no XML").find("urdf_test.urdf: "), std::string::npos);
-  EXPECT_NE(refusal_of("<house/>").find("urdf_test.urdf: "), std::string::npos);
+  expect_in("urdf_test.urdf:" + line_of("<joint name=\"HeadYaw\"") +
+                ": joint 'HeadYaw': its child link 'Nekc' is missing",
+            refusal("<child link=\"Neck\"/>", "<child link=\"Nekc\"/>"));
+  expect_in("its parent link 'Nekc' is missing",
+            refusal("<parent link=\"Neck\"/>", "<parent link=\"Nekc\"/>"));
+  expect_in(
+      ":" + line_of("<link name=\"Tibia\"") + ": link 'Tibia': its mass -11.6 kg is not positive",
+      refusal("<mass value=\"11.6015\"/>", "<mass value=\"-11.6\"/>"));
+  expect_in("link 'Tibia': no body has", refusal("ixx=\"0.129229\"", "ixx=\"9\""));
+  expect_in(":" + line_of("<joint name=\"HeadPitch\"") + ": joint 'HeadPitch': its lower limit",
+            refusal("lower=\"-0.706858\"", "lower=\"0.9\""));
+  expect_in("urdf_test.urdf:1: is no XML", refusal_of("this is no XML"));
+  expect_in("urdf_test.urdf:2: is no XML", refusal_of("<robot name=\"r\">\n<link></robot>"));
+  expect_in("urdf_test.urdf:1: is no XML", refusal_of(""));
+  expect_in("urdf_test.urdf: ", refusal_of("<house/>"));
+  expect_in("urdf_test.urdf: ", refusal_of("<robot name=\"r\"/>"));
   EXPECT_THROW(load_urdf("/no/such.urdf"), InputError);
 }
 
 TEST(LoadUrdf, RefusesJointsInACircle) {
   const auto joint = [](const char* name, const char* parent, const char* child) {
     return std::string("<joint name=\"") + name + "\" type=\"fixed\"><parent link=\"" + parent +
-           "\"/><child link=\"" + child + "\"/></joint>";
+           "\"/><child link=\"" + child + "\"/></joint>\n";
   };
-  const std::string links = "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>";
+  const std::string links = "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>\n";
   const auto robot = [&](const std::string& joints) {
-    return refusal_of("<robot name=\"r\">" + links + joints + "</robot>");
+    return refusal_of("<robot name=\"r\">\n" + links + joints + "</robot>");
   };
   EXPECT_EQ(robot(joint("1", "a", "b") + joint("2", "b", "c")), "no error");
   // All in one circle: there is no root.
-  const std::string all = robot(joint("1", "a", "b") + joint("2", "b", "c") + joint("3", "c", "a"));
-  EXPECT_NE(all.find("root"), std::string::npos) << all;
+  expect_in("urdf_test.urdf:3: joint '1': link 'b' hangs in a circle",
+            robot(joint("1", "a", "b") + joint("2", "b", "c") + joint("3", "c", "a")));
   // Beside a root.
-  const std::string some = robot(joint("2", "b", "c") + joint("3", "c", "b"));
-  EXPECT_NE(some.find("circle"), std::string::npos) << some;
-  const std::string twice =
-      robot(joint("1", "a", "b") + joint("2", "a", "c") + joint("3", "b", "c"));
-  EXPECT_NE(twice.find("link 'c' hangs on two joints"), std::string::npos) << twice;
+  expect_in("urdf_test.urdf:3: joint '2': link 'c' hangs in a circle",
+            robot(joint("2", "b", "c") + joint("3", "c", "b")));
+  // On itself.
+  expect_in("urdf_test.urdf:4: joint '2': link 'c' hangs in a circle",
+            robot(joint("1", "a", "b") + joint("2", "c", "c")));
+  expect_in("urdf_test.urdf:5: joint '3': link 'c' hangs on two joints, '2' and '3'",
+            robot(joint("1", "a", "b") + joint("2", "a", "c") + joint("3", "b", "c")));
 }
 
 TEST(Robot, PepperFileAndUrdfAgree) {
