@@ -88,14 +88,11 @@ class Runner {
   std::optional<Stamp> localized_ns_;  // the last frame that was offered to localize()
 };
 
-/// The state's poses of frames that this run fed to it.
-Trajectory poses_of(const SlamState& state, const std::vector<FrameOutcome>& frames) {
-  std::set<Stamp> fed;
-  for (const FrameOutcome& frame : frames)
-    if (!frame.skipped) fed.insert(frame.stamp_ns);
+/// The state's poses at these moments.
+Trajectory poses_at(const SlamState& state, const std::set<Stamp>& moments) {
   Trajectory all = trajectory(state), mine;
   std::copy_if(all.begin(), all.end(), std::back_inserter(mine),
-               [&](const TimedPose& pose) { return fed.contains(pose.stamp_ns); });
+               [&](const TimedPose& pose) { return moments.contains(pose.stamp_ns); });
   return mine;
 }
 
@@ -122,9 +119,16 @@ SlamRun run_slam(SlamState& state, const FrameSequence& sequence, const SlamRunO
         "nothing could be mapped: none of {} showed 100 keypoints with depth to begin with",
         counted(run.frames.size(), "frame")));
   if (!options.localize) {
-    run.trajectory = poses_of(state, run.frames);
+    std::set<Stamp> fed;
+    for (const FrameOutcome& frame : run.frames)
+      if (!frame.skipped) fed.insert(frame.stamp_ns);
+    run.trajectory = poses_at(state, fed);
     // A map that was given up took its frames along.
     run.tracked = static_cast<int>(run.trajectory.size());
+    if (options.resume) {
+      for (std::size_t i = 0; i < first; ++i) fed.insert(sequence.stamp_ns(i));
+      run.trajectory = poses_at(state, fed);
+    }
     run.lost = static_cast<int>(run.frames.size()) - run.tracked - run.skipped;
   }
   return run;

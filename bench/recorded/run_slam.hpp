@@ -22,7 +22,8 @@ struct FrameOutcome {
 struct SlamRun {
   std::vector<FrameOutcome> frames;  ///< one for each that was offered
   std::vector<std::string> faults;   ///< why frames were skipped: the first few
-  Trajectory trajectory;             ///< of this run's frames; the world is the map's
+  /// Of this run's frames, of a resumed one also those before; the world is the map's.
+  Trajectory trajectory;
   int skipped = 0, tracked = 0, lost = 0, relocalized = 0, loops = 0;
   int started_anew = 0;  ///< times that a map of few keyframes was given up
 

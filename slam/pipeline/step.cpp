@@ -333,8 +333,9 @@ StepReport initialize(SlamState& state, PreparedFrame frame, const StepObservers
 
 void need_later(Stamp stamp_ns, std::optional<Stamp> last_ns) {
   if (last_ns && stamp_ns <= *last_ns)
-    throw InputError(
-        fmt::format("frame at {} ns: stamps must grow, the last was {} ns", stamp_ns, *last_ns));
+    throw InputError(fmt::format("frame at {:.6f} s: stamps must grow, the last was {:.6f} s",
+                                 static_cast<double>(stamp_ns) * 1e-9,
+                                 static_cast<double>(*last_ns) * 1e-9));
 }
 
 SlamState make_slam(const Camera& camera, const SlamConfig& config,

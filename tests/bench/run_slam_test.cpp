@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/metrics/evaluate.hpp"
+#include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "bench/systems/stage_clock.hpp"
 #include "slam/core/error.hpp"
@@ -222,11 +223,13 @@ TEST(RunSlam, ASmallMapIsGivenUpWhenTrackingIsLost) {
 TEST(RunSlam, ARunThatIsResumedFromAMapFileEndsAsOneThatWentThrough) {
   const auto sequence = frames_in_memory(BoxRoom::camera(), frames(0, 60));
   SlamState straight = start(), first = start();
-  run_slam(straight, *sequence, {}, RandomStream(7));
+  const SlamRun whole = run_slam(straight, *sequence, {}, RandomStream(7));
   run_slam(first, *sequence, {.count = 35}, RandomStream(7));
   SlamState second = decode_slam(encode_slam(first), "midway", vocabulary());
   const SlamRun rest = run_slam(second, *sequence, {.resume = true}, RandomStream(7));
   EXPECT_EQ(rest.frames.size(), 25U);
+  EXPECT_EQ(rest.tracked, 25);
+  EXPECT_EQ(format_tum(rest.trajectory), format_tum(whole.trajectory));
   EXPECT_EQ(encode_slam(second), encode_slam(straight));
 }
 

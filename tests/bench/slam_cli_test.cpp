@@ -118,6 +118,7 @@ TEST_F(SlamCommand, PicksUpAMapToGoOnOrToLocalize) {
             0)
       << err_;
   EXPECT_EQ(read_file(folder_ / "rest.mhmap"), read_file(folder_ / "whole.mhmap"));
+  EXPECT_EQ(read_file(folder_ / "rest/estimate.tum"), read_file(folder_ / "whole/estimate.tum"));
 
   ASSERT_EQ(run(path("room") + " --out " + path("found") + " --map " + path("whole.mhmap") +
                 " --localize"),
