@@ -59,27 +59,39 @@ struct Source {
   std::unique_ptr<FrameSequence> frames;
 };
 
+/// Settings for a source that brings its own camera and pictures' scale.
+Settings settings_beside(const Options& options, const FrameSequence& frames,
+                         std::vector<std::string> notes) {
+  Settings settings;
+  if (!options.settings.empty()) {
+    Settings named = load_settings(options.settings);
+    settings.slam = named.slam;
+    settings.notes = std::move(named.notes);
+    if (named.has_camera && named.camera != frames.camera())
+      settings.notes.push_back(
+          fmt::format("{}: its camera gives way to that of {}", options.settings, options.source));
+  }
+  settings.notes.insert(settings.notes.end(), notes.begin(), notes.end());
+  settings.camera = frames.camera();
+  return settings;
+}
+
 Source open_source(const Options& options) {
   const std::string& source = options.source;
   if (source.starts_with(kScene)) {
     if (options.tour.empty() || options.robot.empty())
       throw InputError(fmt::format("source '{}' needs --tour and --robot", source));
-    Settings settings;
-    if (!options.settings.empty()) settings = load_settings(options.settings);
     auto frames = open_scene({.scene = source.substr(kScene.size()),
                               .tour = options.tour,
                               .robot = options.robot,
                               .level = options.level,
                               .seed = options.seed});
-    settings.camera = frames->camera();
-    return {std::move(settings), std::move(frames)};
+    return {settings_beside(options, *frames, {}), std::move(frames)};
   }
   if (source.starts_with(kScannet)) {
-    Settings settings;
-    if (!options.settings.empty()) settings = load_settings(options.settings);
-    auto frames = open_scannet(source.substr(kScannet.size()), settings.notes);
-    settings.camera = frames->camera();
-    return {std::move(settings), std::move(frames)};
+    std::vector<std::string> notes;
+    auto frames = open_scannet(source.substr(kScannet.size()), notes);
+    return {settings_beside(options, *frames, notes), std::move(frames)};
   }
   const bool named = source.starts_with(kTum);
   const fs::path folder = named ? source.substr(kTum.size()) : source;
@@ -90,7 +102,7 @@ Source open_source(const Options& options) {
     throw InputError(
         fmt::format("{}: holds neither rgb.txt nor associations.txt", folder.string()));
   Settings settings = settings_for(options, folder);
-  auto frames = open_tum_folder(folder, settings);
+  auto frames = open_tum_folder(folder, settings, &settings.notes);
   return {std::move(settings), std::move(frames)};
 }
 
@@ -122,10 +134,11 @@ SlamState first_state(const Options& options, const std::shared_ptr<const Vocabu
     if (!options.settings.empty()) note_what_the_map_settles(options, state.config, settings);
     if (!options.run.resume) rewind(state);
   }
-  SemanticConfig& semantics = state.config.semantics;
+  SemanticConfig semantics = state.config.semantics;
   if (options.gamma) semantics.gamma = *options.gamma;
   if (options.xi) semantics.xi = *options.xi;
   if (options.plain) semantics = semantics.neutralised();
+  set_query_settings(state, semantics);
   settings.slam = state.config;
   return state;
 }
@@ -147,9 +160,11 @@ void check(const Options& options) {
 /// @throws InputError if the sequence ends no later than what the map's run was fed.
 void need_something_left(const Options& options, const SlamState& state,
                          const FrameSequence& frames) {
+  if (!state.last_stamp_ns)
+    throw InputError(fmt::format("{}: holds no run that could go on", options.map));
   Stamp last_ns = -1;
   for (std::size_t i = 0; i < frames.size(); ++i) last_ns = std::max(last_ns, frames.stamp_ns(i));
-  if (state.last_stamp_ns && last_ns <= *state.last_stamp_ns)
+  if (last_ns <= *state.last_stamp_ns)
     throw InputError(fmt::format(
         "{}: nothing is left to go on with: it ends at {} s, and the run of {} was fed until {} s",
         options.source, format_stamp(last_ns), options.map, format_stamp(*state.last_stamp_ns)));
@@ -163,6 +178,14 @@ void run(const Options& options) {
   const std::optional<Trajectory> truth =
       options.truth.empty() ? source.frames->truth() : std::optional(read_tum(options.truth));
   const OutputFolder folder(options.out);
+  for (const char* name : kSlamFiles) {
+    const fs::path file = fs::path(options.out) / name;
+    need_writable(file);
+    if (!options.save_map.empty() &&
+        fs::absolute(file).lexically_normal() == fs::absolute(options.save_map).lexically_normal())
+      throw InputError(
+          fmt::format("--save-map {}: will hold a result of its own", options.save_map));
+  }
   if (!options.save_map.empty()) need_writable(options.save_map);
   SlamState state = first_state(options, vocabulary, source.settings);
   if (options.run.resume) need_something_left(options, state, *source.frames);
@@ -174,7 +197,7 @@ void run(const Options& options) {
   double running_ms = 0;
   const StepObservers observers{.stage = [&](Stage stage, StageEvent e) { clock(stage, e); },
                                 .matches = nullptr};
-  const auto watch = [&](std::size_t done, const SlamRun& so_far) {
+  const auto watch = [&](std::size_t done, std::size_t all, const SlamRun& so_far) {
     clock.end_frame();
     double ms = 0;
     for (const double stage_ms : clock.frames().back()) ms += stage_ms;
@@ -182,7 +205,6 @@ void run(const Options& options) {
       frame_ms.push_back(ms);
       running_ms += ms;
     }
-    const std::size_t all = std::min(options.run.count, source.frames->size());
     progress.share(static_cast<double>(done) / static_cast<double>(all),
                    fmt::format("{} tracked, {}, {}, SLAM {:.1f} ms a frame", so_far.tracked,
                                counted(state.map.keyframe_count(), "keyframe"),
@@ -227,7 +249,7 @@ void add_slam(CLI::App& app) {
       ->add_flag("--resume", options->run.resume,
                  "Goes on with the sequence where the map's run stopped")
       ->excludes(localize);
-  command->add_option("--save-map", options->save_map, "Map file to write");
+  command->add_option("--save-map", options->save_map, "Map file to write")->excludes(localize);
   command->add_option("--truth", options->truth,
                       "True trajectory (TUM text); default: the folder's groundtruth.txt");
   command->add_option("--frames", options->run.count, "At most so many frames")

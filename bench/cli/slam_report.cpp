@@ -2,6 +2,7 @@
 #include "bench/cli/slam_report.hpp"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +20,7 @@
 namespace mh::cli {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 double peak_memory_mb() {
@@ -73,22 +75,23 @@ Json summary_json(const SlamReport& report) {
 
 void write_slam_files(const std::filesystem::path& folder, const SlamReport& report,
                       const Settings& settings) {
-  const std::array<std::pair<const char*, std::string>, 8> files{
-      {{"estimate.tum", format_tum(report.run.trajectory)},
-       {"estimate.kitti", format_kitti(report.run.trajectory)},
-       {"frames.csv", frames_csv(report.run)},
-       {"landmarks.ply", landmarks_ply(report.state.map)},
-       {"keyframes.ply", keyframes_ply(report.state.map)},
-       {"keyframes.json", keyframes_json(report.state.map)},
-       {"settings.yaml", format_settings(settings)},
-       {"summary.json", summary_json(report).dump(2) + "\n"}}};
-  // All of them or none: where the disk is full, what an earlier run left stays as it was.
-  namespace fs = std::filesystem;
-  const fs::path fresh = folder / ".fresh";
+  const std::array<std::string, kSlamFiles.size()> contents{format_tum(report.run.trajectory),
+                                                            format_kitti(report.run.trajectory),
+                                                            frames_csv(report.run),
+                                                            landmarks_ply(report.state.map),
+                                                            keyframes_ply(report.state.map),
+                                                            keyframes_json(report.state.map),
+                                                            format_settings(settings),
+                                                            summary_json(report).dump(2) + "\n"};
+  // First all beside their places, so that a disk that fills leaves what an earlier run wrote. Then
+  // the summary goes first and comes last: a folder without one was not finished.
+  const fs::path fresh = folder / fmt::format(".fresh.{}", getpid());
   try {
     make_output_folder(fresh);
-    for (const auto& [name, content] : files) write_atomically(fresh / name, content);
-    for (const auto& [name, content] : files) fs::rename(fresh / name, folder / name);
+    for (std::size_t i = 0; i < contents.size(); ++i)
+      write_atomically(fresh / kSlamFiles[i], contents[i]);
+    fs::remove(folder / kSlamFiles.back());
+    for (const char* name : kSlamFiles) fs::rename(fresh / name, folder / name);
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(fresh, ignored);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -23,8 +24,12 @@ struct SlamReport {
   std::uint64_t seed = 0;
 };
 
-/// Writes estimate.tum, estimate.kitti, frames.csv, landmarks.ply, keyframes.ply, keyframes.json,
-/// summary.json and settings.yaml.
+/// What write_slam_files() writes; the last one is there only if all are.
+inline constexpr std::array<const char*, 8> kSlamFiles{
+    "estimate.tum",  "estimate.kitti", "frames.csv",    "landmarks.ply",
+    "keyframes.ply", "keyframes.json", "settings.yaml", "summary.json"};
+
+/// @throws DiskFullError; what an earlier run wrote into the folder is still there then
 void write_slam_files(const std::filesystem::path& folder, const SlamReport& report,
                       const Settings& settings);
 void print_slam_report(const SlamReport& report);

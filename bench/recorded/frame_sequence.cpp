@@ -15,9 +15,10 @@ namespace {
 
 class TumSequence : public FrameSequence {
  public:
-  TumSequence(const std::filesystem::path& folder, const Settings& settings)
+  TumSequence(const std::filesystem::path& folder, const Settings& settings,
+              std::vector<std::string>* notes)
       : camera_{settings.camera, settings.depth_per_metre, settings.exchange_red_blue},
-        frames_(load_tum_folder(folder)) {
+        frames_(load_tum_folder(folder, notes)) {
     const auto truth = folder / "groundtruth.txt";
     if (std::filesystem::exists(truth)) truth_ = read_tum(truth);
   }
@@ -79,8 +80,9 @@ class MemorySequence : public FrameSequence {
 }  // namespace
 
 std::unique_ptr<FrameSequence> open_tum_folder(const std::filesystem::path& folder,
-                                               const Settings& settings) {
-  return std::make_unique<TumSequence>(folder, settings);
+                                               const Settings& settings,
+                                               std::vector<std::string>* notes) {
+  return std::make_unique<TumSequence>(folder, settings, notes);
 }
 
 std::unique_ptr<FrameSequence> open_scene(const SceneDrive& source) {

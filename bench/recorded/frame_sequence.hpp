@@ -14,8 +14,9 @@
 
 namespace mh {
 
-/// Frames in the order in which they were taken, wherever they come from: a recorded folder, a scene
-/// driven through. Equal indices give equal bits. The stamps of a faulty recording may go back.
+/// Frames in the order in which they were taken, wherever they come from: a recorded folder, a
+/// scene driven through. Equal indices give equal bits. The stamps of a faulty recording may go
+/// back.
 class FrameSequence {
  public:
   virtual ~FrameSequence() = default;
@@ -30,9 +31,11 @@ class FrameSequence {
 };
 
 /// A folder in TUM's layout, with the camera that the settings tell.
+/// @param notes  gets what was left out, a line each; may be null
 /// @throws InputError naming file and line.
 std::unique_ptr<FrameSequence> open_tum_folder(const std::filesystem::path& folder,
-                                               const Settings& settings);
+                                               const Settings& settings,
+                                               std::vector<std::string>* notes = nullptr);
 
 /// What is needed to see a scene.
 struct SceneDrive {

@@ -54,17 +54,29 @@ class Runner {
       localized_ns_ = frame.stamp_ns;
       return localize(state_, localizer_, frame, stream, observers_);
     }
-    const bool was_tracking = state_.tracker.tracking();
     StepReport report = step(state_, frame, stream, observers_);
-    if (report.status != TrackStatus::kLost || !was_tracking ||
+    const bool found_before = run.tracked > 0 || options_.resume;
+    if (report.status != TrackStatus::kLost || !found_before ||
         state_.map.keyframe_count() > options_.small_map)
       return report;
     SlamState anew = make_slam(state_.camera, state_.config, state_.vocabulary);
     StepReport first = step(anew, frame, stream, observers_);
     if (first.status != TrackStatus::kInitialized) return report;
     state_ = std::move(anew);
+    forget_tracked();
     ++run.started_anew;
     return first;
+  }
+
+  /// A map that is given up takes its frames along.
+  void forget_tracked() {
+    for (FrameOutcome& frame : run.frames) {
+      StepReport lost;
+      lost.keypoints = frame.report.keypoints;
+      frame.report = lost;
+    }
+    run.lost += run.tracked;
+    run.tracked = run.relocalized = run.loops = 0;
   }
 
   void count(const FrameOutcome& outcome) {
@@ -99,8 +111,7 @@ Trajectory poses_at(const SlamState& state, const std::set<Stamp>& moments) {
 }  // namespace
 
 SlamRun run_slam(SlamState& state, const FrameSequence& sequence, const SlamRunOptions& options,
-                 RandomStream stream, const StepObservers& observers,
-                 const std::function<void(std::size_t done, const SlamRun&)>& watch) {
+                 RandomStream stream, const StepObservers& observers, const SlamWatch& watch) {
   std::size_t first = std::min(options.first, sequence.size());
   if (options.resume && state.last_stamp_ns)
     while (first < sequence.size() && sequence.stamp_ns(first) <= *state.last_stamp_ns) ++first;
@@ -110,7 +121,7 @@ SlamRun run_slam(SlamState& state, const FrameSequence& sequence, const SlamRunO
   Runner runner(state, sequence, options, stream, observers);
   for (std::size_t i = first; i < last; ++i) {
     runner.offer(i);
-    if (watch) watch(i + 1 - first, runner.run);
+    if (watch) watch(i + 1 - first, last - first, runner.run);
   }
   SlamRun run = std::move(runner.run);
   if (run.skipped == static_cast<int>(run.frames.size())) throw InputError(run.faults.front());
@@ -122,14 +133,9 @@ SlamRun run_slam(SlamState& state, const FrameSequence& sequence, const SlamRunO
     std::set<Stamp> fed;
     for (const FrameOutcome& frame : run.frames)
       if (!frame.skipped) fed.insert(frame.stamp_ns);
-    run.trajectory = poses_at(state, fed);
-    // A map that was given up took its frames along.
-    run.tracked = static_cast<int>(run.trajectory.size());
-    if (options.resume) {
+    if (options.resume)
       for (std::size_t i = 0; i < first; ++i) fed.insert(sequence.stamp_ns(i));
-      run.trajectory = poses_at(state, fed);
-    }
-    run.lost = static_cast<int>(run.frames.size()) - run.tracked - run.skipped;
+    run.trajectory = poses_at(state, fed);
   }
   return run;
 }

@@ -39,16 +39,20 @@ struct SlamRunOptions {
   int small_map = 5;  ///< a map of at most so many keyframes is given up when tracking is lost
 };
 
+/// Told after each frame: how many are done, of how many, and what has come of them.
+using SlamWatch = std::function<void(std::size_t done, std::size_t all, const SlamRun&)>;
+
 /// Feeds a sequence to SLAM. A frame that cannot be read or does not fit the camera is skipped and
 /// counted. Frames reported lost are looked for in the whole map, one by one, until one is found;
 /// but where tracking is lost within a run whose map has at most options.small_map keyframes, it
-/// starts anew with the lost frame, as the original ORB-SLAM2 does: so little is soon made again,
-/// and a place that was seen for a moment may never come back.
-/// @param watch  called after each frame; may be empty.
+/// starts anew with the first lost frame that can begin a map, as the original ORB-SLAM2 does: so
+/// little is soon made again, and a place that was seen for a moment may never come back. Frames of
+/// the map that was given up count as lost.
+/// @param watch  may be empty
 /// @throws InputError if no frame at all could be read, or none could start a map.
 SlamRun run_slam(SlamState& state, const FrameSequence& sequence, const SlamRunOptions& options,
                  RandomStream stream, const StepObservers& observers = {},
-                 const std::function<void(std::size_t done, const SlamRun&)>& watch = {});
+                 const SlamWatch& watch = {});
 
 /// One line per frame: stamp, status, keypoints, inliers, whether it became a keyframe or closed a
 /// loop, and where relocalization ended, if it was tried, with the candidates after each step.

@@ -14,6 +14,7 @@
 #include "bench/pictures/canvas.hpp"
 #include "bench/recorded/scannet_folder.hpp"
 #include "bench/recorded/tum_folder.hpp"
+#include "scenes/scannet/files.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -88,7 +89,7 @@ class ScanNetWriter : public SequenceWriter {
       if (info.id != kVoid)
         labels += fmt::format("{0}\t{1}\t{1}\t0\t{2}\t{3}\n", info.id, info.name, info.nyu40,
                               classes()[info.nyu40].name);
-    write_atomically(folder_ / "labels.tsv", labels);
+    write_atomically(folder_ / kLabelTableV2, labels);
     // Named as the info file of an extracted .sens, which readers look into.
     write_atomically(
         folder_ / "_info.txt",

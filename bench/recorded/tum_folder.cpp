@@ -77,7 +77,8 @@ RecordedCamera load_recorded_camera(const fs::path& file) {
   return {settings.camera, settings.depth_per_metre, settings.exchange_red_blue};
 }
 
-std::vector<RecordedFrame> load_tum_folder(const fs::path& folder) {
+std::vector<RecordedFrame> load_tum_folder(const fs::path& folder,
+                                           std::vector<std::string>* notes) {
   const fs::path both = folder / "associations.txt";
   const bool associated = !fs::exists(folder / "rgb.txt") && fs::exists(both);
   const fs::path list = associated ? both : folder / "rgb.txt";
@@ -88,15 +89,20 @@ std::vector<RecordedFrame> load_tum_folder(const fs::path& folder) {
   std::vector<Listed> labels;
   if (fs::exists(folder / "label.txt")) labels = read_list(folder / "label.txt");
   std::vector<RecordedFrame> frames;
-  for (const Listed& picture : colour) {
-    const Listed* d = nearest(depth, picture.stamp_ns);
+  for (std::size_t i = 0; i < colour.size(); ++i) {
+    const Listed* d = associated ? &depth[i] : nearest(depth, colour[i].stamp_ns);
     if (d == nullptr) continue;
-    const Listed* l = nearest(labels, picture.stamp_ns);
-    frames.push_back({picture.stamp_ns, picture.file, d->file, l ? l->file : fs::path()});
+    const Listed* l = nearest(labels, colour[i].stamp_ns);
+    frames.push_back({colour[i].stamp_ns, colour[i].file, d->file, l ? l->file : fs::path()});
   }
   if (frames.empty())
     throw InputError(
         fmt::format("{}: no colour picture has a depth picture within 0.02 s", folder.string()));
+  if (notes != nullptr && frames.size() < colour.size())
+    notes->push_back(
+        fmt::format("{}: {} of {} colour pictures have no depth picture within 0.02 s "
+                    "and are left out",
+                    folder.string(), colour.size() - frames.size(), colour.size()));
   return frames;
 }
 

@@ -34,10 +34,13 @@ struct RecordedFrame {
   std::filesystem::path colour, depth, classes;  ///< classes: empty where the recording has none
 };
 
-/// Reads a folder in TUM's layout: rgb.txt and depth.txt (or associations.txt), and label.txt where
-/// it is there. Each colour picture gets the nearest depth picture within 0.02 s, as TUM's own
-/// association does; one without is left out. @throws InputError naming file and line.
-std::vector<RecordedFrame> load_tum_folder(const std::filesystem::path& folder);
+/// Reads a folder in TUM's layout: rgb.txt and depth.txt, without them associations.txt, and
+/// label.txt where it is there. Each colour picture gets the nearest depth picture within 0.02 s,
+/// as TUM's own association does, or the one beside which it is listed; one without is left out.
+/// @param notes  gets a line with the number of those left out; may be null
+/// @throws InputError naming file and line.
+std::vector<RecordedFrame> load_tum_folder(const std::filesystem::path& folder,
+                                           std::vector<std::string>* notes = nullptr);
 
 /// Reads the pictures of one frame. @throws InputError naming the picture.
 RgbdFrame read_frame(const RecordedFrame& frame, const RecordedCamera& camera);

@@ -17,20 +17,21 @@ struct Edge {
   int shared = 0;
 };
 
-/// The graph's edges with what they share today: a neighbour's count is of when it was last taken.
+/// All pairs that share enough today. (Keyframe::covisible is of when it was last taken, which is
+/// soon enough for mapping.)
 std::vector<Edge> covisibility(const Map& map) {
   std::vector<Edge> edges;
   std::vector<int> shared(map.keyframes().size());
   for (const Keyframe& k : map.keyframes()) {
+    if (k.erased) continue;
     std::fill(shared.begin(), shared.end(), 0);
     for (const LandmarkId landmark : k.landmarks)
       if (landmark.valid())
         for (const Observation& o : map.at(landmark).observations) ++shared[o.keyframe.value];
-    for (const Keyframe::Neighbour& n : k.covisible)
-      if (k.id < n.id) edges.push_back({k.id, n.id, shared[n.id.value]});
+    for (std::size_t other = k.id.value + 1; other < shared.size(); ++other)
+      if (shared[other] >= Map::kMinShared)
+        edges.push_back({k.id, map.keyframes()[other].id, shared[other]});
   }
-  std::sort(edges.begin(), edges.end(),
-            [](const Edge& x, const Edge& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
   return edges;
 }
 

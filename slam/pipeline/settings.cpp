@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -177,9 +178,10 @@ constexpr std::array<std::string_view, 21> kOrbSlamKeys{"Camera.fx",
                                                         "ORBextractor.iniThFAST",
                                                         "ORBextractor.minThFAST"};
 
-/// What such files hold beside them without a section's name; all of it for other sensors.
-constexpr std::array<std::string_view, 4> kOrbSlamOthers{"Tbc", "Tlr", "loopClosing",
-                                                         "thFarPoints"};
+/// What such files hold beside them: a kind of camera, of which ours is the one, and what is for
+/// other sensors.
+constexpr std::array<std::string_view, 6> kOrbSlamOthers{
+    "Camera.type", "Camera.bFishEye", "Tbc", "Tlr", "loopClosing", "thFarPoints"};
 
 bool is_one_of(const auto& keys, std::string_view key) {
   return std::find(keys.begin(), keys.end(), key) != keys.end();
@@ -189,11 +191,9 @@ bool is_one_of(const auto& keys, std::string_view key) {
 /// the camera without its distortion. Other sections are somebody else's.
 void refuse_unknown_keys(YamlReader& yaml) {
   for (const auto& [key, node] : yaml.entries()) {
-    if (key == "Camera.type") {
-      if (node.as_string() != "PinHole")
-        node.fail(fmt::format("'{}' is not PinHole", node.as_string()));
-      continue;
-    }
+    if (key == "Camera.type" && node.as_string() != "PinHole")
+      node.fail(fmt::format("'{}' is not PinHole", node.as_string()));
+    if (key == "Camera.bFishEye" && node.as_string() != "0") node.fail("a fish-eye is not known");
     if (is_one_of(kOrbSlamKeys, key) || is_one_of(kOrbSlamOthers, key)) continue;
     std::string section = key.substr(0, key.find('.'));
     std::transform(section.begin(), section.end(), section.begin(),
@@ -212,7 +212,7 @@ std::string unread_keys(YamlReader& yaml) {
   for (const auto& [key, node] : yaml.entries()) {
     if (key.starts_with("Viewer."))
       viewer = true;
-    else if (!is_one_of(kOrbSlamKeys, key) && key != "Camera.type")
+    else if (!is_one_of(kOrbSlamKeys, key) && !key.starts_with("Camera."))
       add(key);
   }
   if (viewer) add("Viewer.*");
@@ -233,9 +233,12 @@ Settings read_orb_slam(YamlReader yaml) {
   read_distortion(yaml, "Camera.", c);
   const auto k1 = yaml.find("Camera.k1");
   check_camera(c, k1 ? *k1 : yaml);
-  c.rate_hz = yaml.number_or("Camera.fps", c.rate_hz, 1e-3, kMost);
+  // Zeros stand for the original's own defaults.
+  const double rate_hz = yaml.number_or("Camera.fps", 0, 0, kMost);
+  if (rate_hz != 0) c.rate_hz = rate_hz;
   c.baseline_m = yaml.number_or("Camera.bf", c.baseline_m * c.fx_px, 1e-6, kMost) / c.fx_px;
-  settings.depth_per_metre = yaml.number_or("DepthMapFactor", settings.depth_per_metre, 1e-3, 1e9);
+  settings.depth_per_metre = yaml.number_or("DepthMapFactor", settings.depth_per_metre, 0, 1e9);
+  if (settings.depth_per_metre == 0) settings.depth_per_metre = 1;
   settings.exchange_red_blue = yaml.integer_or("Camera.RGB", 0, 0, 1) == 1;
   if (settings.exchange_red_blue)
     settings.notes.push_back(fmt::format(
@@ -269,9 +272,16 @@ Settings read_camera_info(YamlReader yaml) {
   Camera& c = settings.camera;
   c.width_px = static_cast<int>(yaml.integer("image_width", 1, 100000));
   c.height_px = static_cast<int>(yaml.integer("image_height", 1, 100000));
-  YamlReader matrix = yaml.at("camera_matrix");
-  const YamlReader data = matrix.at("data");
+  constexpr std::array kMatrixKeys{"rows", "cols", "data"};
+  const auto numbers = [&](YamlReader matrix) {
+    for (const char* key : kMatrixKeys) matrix.find(key);
+    matrix.finish();
+    return matrix.at("data");
+  };
+  const YamlReader data = numbers(yaml.at("camera_matrix"));
   const std::vector<double> k = data.as_numbers(9);
+  if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
+    data.fail("is no matrix [fx, 0, cx, 0, fy, cy, 0, 0, 1]");
   c.fx_px = k[0];
   c.fy_px = k[4];
   c.cx_px = k[2];
@@ -280,25 +290,35 @@ Settings read_camera_info(YamlReader yaml) {
     model->fail(fmt::format("'{}' is not plumb_bob", model->as_string()));
   check_camera(c, data);
   if (auto distortion = yaml.find("distortion_coefficients")) {
-    const YamlReader list = distortion->at("data");
+    const YamlReader list = numbers(*distortion);
     std::vector<double> d = list.as_numbers();
     if (d.size() > 5) list.fail(fmt::format("{} coefficients; plumb_bob has 5", d.size()));
     d.resize(5, 0.0);
     c.distortion = {.k1 = d[0], .k2 = d[1], .p1 = d[2], .p2 = d[3], .k3 = d[4]};
     check_camera(c, list);
   }
+  // Of use to stereo rigs and to people.
+  for (const char* key : {"camera_name", "rectification_matrix", "projection_matrix"})
+    yaml.find(key);
+  yaml.finish();
   return settings;
 }
 
-/// "key:value" as "key: value", line by line.
-std::string with_blanks_after_keys(const std::string& text) {
+/// OpenCV's own dialect as YAML, line by line: "key:value" becomes "key: value", and a line at the
+/// margin that stands there a second time, word for word, is left out.
+std::string without_dialect(const std::string& text) {
   std::string result;
+  std::set<std::string> seen;
   std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t end = std::min(line.find_first_of(": #\"'[{"), line.size());
-    if (end > 0 && end + 1 < line.size() && line[end] == ':' && line[end + 1] != ' ')
+  for (std::string line; std::getline(lines, line); result += line + '\n') {
+    while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) line.pop_back();
+    const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
+    const std::size_t end = std::min(line.find_first_of(": #\"'[{", begin), line.size());
+    if (end > begin && end + 1 < line.size() && line[end] == ':' && line[end + 1] != ' ')
       line.insert(end + 1, 1, ' ');
-    result += line + '\n';
+    if (begin == 0 && end > 0 && end + 1 < line.size() && line[end] == ':' &&
+        !seen.insert(line).second)
+      line.clear();
   }
   return result;
 }
@@ -334,10 +354,10 @@ SlamConfig read_slam_config(YamlReader& yaml, SlamConfig config) {
 
 Settings parse_settings(std::string text, const std::string& name) {
   // OpenCV's own dialect begins with "%YAML:1.0", which is no YAML; its line stays, so that line
-  // numbers hold. It also reads "key:value" without the blank, as in ORB-SLAM2's TUM1.yaml.
+  // numbers hold. ORB-SLAM2's TUM1.yaml has "key:value" without the blank, TUM3.yaml a key twice.
   if (text.starts_with("%YAML:")) {
     text[0] = '#';
-    text = with_blanks_after_keys(text);
+    text = without_dialect(text);
   }
   YamlReader yaml = YamlReader::parse(text, name);
   bool orb_slam = false, camera_info = false;

@@ -85,10 +85,10 @@ class LocalizeMemo {
 StepReport localize(const SlamState& frozen, const RgbdFrame& frame, RandomStream stream,
                     LocalizeMemo& memo);
 
-/// From now on the frozen map answers with these settings: its keyframes' vectors (equation 1) are
-/// weighed anew where gamma or the policy on void changes.
-/// @throws InputError naming the setting that is out of range.
-void set_query_settings(SlamState& frozen, const SemanticConfig& settings);
+/// From now on the map answers, and is gone on with, by these settings: its keyframes' vectors
+/// (equation 1) are weighed anew where gamma or the policy on void changes.
+/// @throws InputError naming the setting that is out of range; nothing has changed then.
+void set_query_settings(SlamState& state, const SemanticConfig& settings);
 
 /// Each tracked frame once (its last attempt), ordered by stamp, as its pose relative to its
 /// reference keyframe composed with that keyframe's pose now. The frame of reference is the first

@@ -495,17 +495,18 @@ StepReport localize(const SlamState& frozen, const RgbdFrame& frame, RandomStrea
   return report;
 }
 
-void set_query_settings(SlamState& frozen, const SemanticConfig& settings) {
-  SemanticConfig& own = frozen.config.semantics;
+void set_query_settings(SlamState& state, const SemanticConfig& settings) {
+  SemanticConfig& own = state.config.semantics;
   const bool same_vectors =
       settings.gamma == own.gamma && settings.void_is_a_label == own.void_is_a_label;
+  SlamConfig config = state.config;
+  config.semantics = settings;
+  validate(config);
   own = settings;
-  validate(frozen.config);
   if (same_vectors) return;
-  for (const Keyframe& keyframe : frozen.map.keyframes())
+  for (const Keyframe& keyframe : state.map.keyframes())
     if (!keyframe.erased)
-      frozen.map.set_words(keyframe.id,
-                           index_words(keyframe.features, *frozen.vocabulary, settings));
+      state.map.set_words(keyframe.id, index_words(keyframe.features, *state.vocabulary, settings));
 }
 
 Trajectory trajectory(const SlamState& state) {

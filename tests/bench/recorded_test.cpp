@@ -82,8 +82,11 @@ TEST_F(TumFolder, NamesWhatIsWrong) {
     EXPECT_NE(std::string(error.what()).find("rgb.txt:3"), std::string::npos) << error.what();
   }
   std::ofstream(folder_ / "rgb.txt") << "0.1 a.png\n0.9 b.png\n";
-  const auto frames = load_tum_folder(folder_);
+  std::vector<std::string> notes;
+  const auto frames = load_tum_folder(folder_, &notes);
   ASSERT_EQ(frames.size(), 1u);  // nothing was seen near 0.9 s
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_NE(notes[0].find("1 of 2 colour pictures have no depth picture"), std::string::npos);
   const auto refused = [&](const std::string& part) {
     try {
       read_frame(frames[0], {camera_, 5000});
@@ -122,6 +125,9 @@ TEST_F(TumFolder, ReadsAssociationsWhereTheListsAreMissing) {
   ASSERT_EQ(frames.size(), 2u);
   EXPECT_EQ(frames[1].colour, folder_ / "c.png");
   EXPECT_EQ(frames[1].depth, folder_ / "d.png");
+  // As listed, however far apart.
+  std::ofstream(folder_ / "associations.txt") << "0.1 a.png 0.2 b.png\n";
+  EXPECT_EQ(load_tum_folder(folder_)[0].depth, folder_ / "b.png");
   std::ofstream(folder_ / "associations.txt") << "0.1 a.png\n";
   EXPECT_THROW(load_tum_folder(folder_), InputError);
 }

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
+#include "bench/recorded/scannet_folder.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -139,8 +140,15 @@ TEST_F(RenderSequence, ScanNetsLayoutHoldsWhatWasSeen) {
   double fx = 0;
   std::ifstream(folder_ / "s" / "intrinsic" / "intrinsic_depth.txt") >> fx;
   EXPECT_EQ(fx, 50);
-  EXPECT_NE(read_file(folder_ / "s" / "labels.tsv").find("\n5\tchair\tchair\t0\t5\tchair\n"),
+  EXPECT_NE(read_file(folder_ / "s" / "scannetv2-labels.combined.tsv")
+                .find("\n5\tchair\tchair\t0\t5\tchair\n"),
             std::string::npos);
+  std::vector<std::string> notes;
+  const auto back = open_scannet(folder_ / "s", notes);
+  EXPECT_TRUE(notes.empty()) << notes[0];
+  const SemanticImage seen = back->frame(5).semantics;
+  ASSERT_FALSE(seen.index.empty());
+  EXPECT_EQ(seen.at(32, 24).most_probable(), exact.classes(32, 24));
   EXPECT_THROW(make_sequence_writer("kitti", folder_, camera_), InputError);
 }
 

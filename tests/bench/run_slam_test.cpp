@@ -218,6 +218,16 @@ TEST(RunSlam, ASmallMapIsGivenUpWhenTrackingIsLost) {
   EXPECT_EQ(starts.tracked, 20);
   EXPECT_EQ(starts.lost, 3) << "frames of a map that was given up are not tracked";
   EXPECT_EQ(starts.trajectory.size(), 20U);
+  EXPECT_EQ(starts.frames[1].report.status, TrackStatus::kLost) << "frames.csv says the same";
+
+  // Where the lost frame itself can begin no map, a later one does.
+  offered[3] = plain(0, 0.0F, 120);
+  offered[4] = plain(0, 0.0F, 121);
+  SlamState later = start();
+  const SlamRun late = run(later, offered);
+  EXPECT_EQ(late.started_anew, 1);
+  EXPECT_EQ(late.tracked, 18);
+  EXPECT_EQ(late.lost, 5);
 }
 
 TEST(RunSlam, ARunThatIsResumedFromAMapFileEndsAsOneThatWentThrough) {
@@ -265,7 +275,7 @@ TEST(Observers, ChangeNoBitAndSeeEveryStageAndMatcher) {
   const StepObservers observers{.stage = [&](Stage s, StageEvent e) { clock(s, e); },
                                 .matches = &trace};
   run_slam(seen, *sequence, {}, RandomStream(7), observers,
-           [&](std::size_t, const SlamRun&) { clock.end_frame(); });
+           [&](std::size_t, std::size_t, const SlamRun&) { clock.end_frame(); });
   EXPECT_EQ(encode_slam(seen), encode_slam(unseen));
 
   EXPECT_EQ(clock.frames().size(), 60U);

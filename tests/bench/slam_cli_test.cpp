@@ -149,6 +149,27 @@ TEST_F(SlamCommand, PicksUpAMapToGoOnOrToLocalize) {
       << err_;
 }
 
+TEST_F(SlamCommand, AMapAnswersByTheFactorsThatAreGiven) {
+  // Candidates are chosen by labels alone, of which a map that was made with gamma 0 has none: they
+  // are weighed anew.
+  std::string settings = format_settings(load_settings(folder_ / "room/camera.yaml"));
+  settings.replace(settings.find("overlap: augmented"), 18, "overlap: labels");
+  write_atomically(folder_ / "labels.yaml", settings);
+  ASSERT_EQ(run(path("room") + " --settings " + path("labels.yaml") + " --gamma 0 --out " +
+                path("g0") + " --save-map " + path("g0.mhmap")),
+            0)
+      << err_;
+  ASSERT_EQ(run(path("room") + " --map " + path("g0.mhmap") + " --localize --gamma 1 --out " +
+                path("g1")),
+            0)
+      << err_;
+  EXPECT_EQ(summary("g1")["tracked"], 50);
+  EXPECT_NE(run(path("room") + " --map " + path("g0.mhmap") + " --localize --save-map " +
+                path("g2.mhmap") + " --out " + path("g2")),
+            0)
+      << "there is nothing to save";
+}
+
 TEST_F(SlamCommand, RefusesWhatItCannotUse) {
   const std::string out = " --out " + path("no");
   expect_refused(path("nowhere") + out, "is no folder, nor scene:FILE");
@@ -175,6 +196,9 @@ TEST_F(SlamCommand, FindsBadFilesBeforeTheWork) {
   refused_at_once(" --truth " + path("nowhere.txt"), "nowhere.txt: cannot be read: no such file");
   refused_at_once(" --truth " + path("room/camera.yaml"), "camera.yaml:");
   refused_at_once(" --save-map " + path("room"), "room: cannot be written: it is a folder");
+  refused_at_once(" --save-map " + path("no/../no/summary.json"), "will hold a result of its own");
+  fs::create_directories(folder_ / "taken/frames.csv");
+  expect_refused(path("room") + " --out " + path("taken"), "frames.csv: cannot be written");
   refused_at_once(" --save-map " + path("words.mhvoc/map"), "words.mhvoc: cannot be made a folder");
 }
 

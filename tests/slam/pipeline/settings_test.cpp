@@ -170,6 +170,41 @@ TEST(Settings, OrbSlamsFilesAreCheckedToo) {
             std::string::npos);
   EXPECT_EQ(parse_settings(std::string(kTum1) + "Camera.type: \"PinHole\"\n", "s.yaml").camera,
             parse_settings(kTum1, "s.yaml").camera);
+
+  // As the original's other files have them: a key twice with one value, a matrix without blanks.
+  EXPECT_EQ(parse_settings(std::string(kTum1) + "Camera.width: 640\nCamera.bFishEye: 0\n" +
+                               "LEFT.D: !!opencv-matrix\n   rows: 1\n   cols: 2\n   dt: d\n" +
+                               "   data:[-0.28, 0.07]\n",
+                           "s.yaml")
+                .camera,
+            parse_settings(kTum1, "s.yaml").camera);
+  EXPECT_NE(complaint(std::string(kTum1) + "Camera.width: 320\n").find("stands twice"),
+            std::string::npos);
+  bad = kTum1;
+  bad.replace(bad.find("Camera.fps: 30.0"), 16, "Camera.fps: 0");
+  bad.replace(bad.find("DepthMapFactor: 5000.0"), 22, "DepthMapFactor: 0");
+  EXPECT_EQ(parse_settings(bad, "s.yaml").camera.rate_hz, 30);
+  EXPECT_EQ(parse_settings(bad, "s.yaml").depth_per_metre, 1);
+}
+
+TEST(Settings, RosCalibrationsAreReadStrictly) {
+  const std::string good =
+      "image_width: 640\nimage_height: 480\ncamera_name: kinect\ncamera_matrix:\n  rows: 3\n"
+      "  cols: 3\n  data: [525, 0, 320, 0, 526, 240, 0, 0, 1]\ndistortion_model: plumb_bob\n"
+      "distortion_coefficients:\n  rows: 1\n  cols: 5\n  data: [0.1, 0, 0, 0, 0]\n";
+  EXPECT_EQ(parse_settings(good, "s.yaml").camera.fy_px, 526);
+  EXPECT_EQ(parse_settings(good, "s.yaml").camera.distortion.k1, 0.1);
+  std::string bad = good;
+  bad.replace(bad.find("coefficients"), 12, "coefficents");
+  EXPECT_NE(complaint(bad).find("s.yaml:9: unknown key 'distortion_coefficents'"),
+            std::string::npos);
+  EXPECT_NE(complaint(good + "features: {count: 500}\n").find("unknown key 'features'"),
+            std::string::npos);
+  bad = good;
+  bad.replace(bad.find("525, 0, 320"), 11, "525, 9, 320");
+  EXPECT_NE(complaint(bad).find("s.yaml:7: camera_matrix.data: is no matrix [fx, 0, cx"),
+            std::string::npos)
+      << complaint(bad);
 }
 
 TEST(Settings, ADistortionThatCannotBeUndoneIsRefused) {
