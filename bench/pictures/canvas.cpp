@@ -111,11 +111,11 @@ cv::Mat Canvas::finish() const {
 
 cv::Mat colour_picture(const Grid2d<Rgb8>& colour) {
   cv::Mat picture(colour.height(), colour.width(), CV_8UC3);
-  for (int y = 0; y < colour.height(); ++y)
-    for (int x = 0; x < colour.width(); ++x) {
-      const Rgb8 c = colour(x, y);
-      picture.at<cv::Vec3b>(y, x) = {c.b, c.g, c.r};
-    }
+  unsigned char* to = picture.data;
+  for (const Rgb8 c : colour) {
+    to[0] = c.b, to[1] = c.g, to[2] = c.r;
+    to += 3;
+  }
   return picture;
 }
 

@@ -2,7 +2,6 @@
 #include "bench/recorded/frame_files.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -27,11 +26,6 @@ void write_pnm(const fs::path& file, const char* magic, int width, int height, i
 }
 
 }  // namespace
-
-std::uint16_t depth_units(float depth_m) {
-  return static_cast<std::uint16_t>(
-      std::clamp(std::round(kDepthPerMetre * static_cast<double>(depth_m)), 0.0, 65535.0));
-}
 
 Grid2d<ClassId> class_image(const SemanticImage& semantics) {
   std::vector<ClassId> class_of;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include "slam/core/camera.hpp"
@@ -12,7 +13,11 @@ namespace mh {
 inline constexpr double kDepthPerMetre = 5000;
 
 /// Value of a 16-bit depth pixel; 0 where nothing came back, 65535 beyond 13.1 m.
-std::uint16_t depth_units(float depth_m);
+inline std::uint16_t depth_units(float depth_m) {
+  // Cut after adding a half: what is not negative is rounded so, without a call per pixel.
+  const double units = kDepthPerMetre * static_cast<double>(depth_m) + 0.5;
+  return static_cast<std::uint16_t>(units < 65535.0 ? (units > 0.0 ? units : 0.0) : 65535.0);
+}
 /// The class of each pixel: the most probable one of its distribution.
 Grid2d<ClassId> class_image(const SemanticImage& semantics);
 
