@@ -132,6 +132,11 @@ std::vector<Factor> colour_factors() {
     return [=](SensorConfig& c) { c.shutter.motion_blur_on = true, c.shutter.exposure_s = s; };
   };
   const auto soft = [](double px) { return [=](SensorConfig& c) { c.lens_blur_px = px; }; };
+  const auto processed = [](double contrast, double sharpening) {
+    return [=](SensorConfig& c) {
+      c.lens_blur_px = 1.0, c.processing = {contrast, sharpening, 0.7};
+    };
+  };
   const auto rolling = [](double s) {
     return [=](SensorConfig& c) { c.shutter.rolling_shutter_on = true, c.shutter.readout_s = s; };
   };
@@ -149,6 +154,10 @@ std::vector<Factor> colour_factors() {
   return {
       {"motion blur", {"off", "20 ms", "66 ms"}, {kOff, blur(0.020), blur(0.066)}, 320},
       {"lens blur", {"off", "0.7 px", "2 px"}, {kOff, soft(0.7), soft(2.0)}, 200},
+      {"processing, of a lens blur of 1 px",
+       {"off", "contrast 0.5, sharpening 2", "contrast 1, sharpening 5"},
+       {processed(0, 0), processed(0.5, 2), processed(1, 5)},
+       200},
       {"rolling shutter", {"off", "26 ms", "100 ms"}, {kOff, rolling(0.0261), rolling(0.1)}},
       {"shot and read noise", {"off", "gain 1", "gain 16"}, {kOff, shot(1), shot(16)}, 200},
       {"vignetting", {"off", "half of cos^4", "cos^4"}, {kOff, vignetting(0.5), vignetting(1.0)}},

@@ -131,6 +131,8 @@ void laptop(Piece& piece);
 void picture(Piece& piece);
 void photo_frame(Piece& piece);
 void mirror(Piece& piece);
+void light_switch(Piece& piece);
+void wall_papers(Piece& piece);
 void clock(Piece& piece);
 void bottle(Piece& piece);
 void cup(Piece& piece);

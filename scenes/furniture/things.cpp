@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -117,6 +118,56 @@ void mirror(Piece& p) {
   p.mesh.max_edge_m = 0.12F;
   (void)w;
   (void)h;
+}
+
+void light_switch(Piece& p) {
+  const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
+  const MaterialId body = p.material("body", plain("plastic", {234, 234, 230}, 0.1, 126));
+  p.mesh.box(body, {-w / 2, -d / 2 + 0.005F, 0}, {w / 2, d / 2, h}, {.bevel_m = 0.002F});
+  // The rocker stands out at its top.
+  p.mesh.box(body, {-0.36F * w, -d / 2 + 0.002F, 0.14F * h},
+             {0.36F * w, -d / 2 + 0.0049F, 0.5F * h}, {.bevel_m = 0.0F});
+  p.mesh.box(body, {-0.36F * w, -d / 2, 0.51F * h}, {0.36F * w, -d / 2 + 0.0049F, 0.86F * h},
+             {.bevel_m = 0.0F});
+  for (const float z : {0.07F, 0.93F})  // its screws
+    p.mesh.cylinder(body, {0, -d / 2 + 0.005F, z * h}, {0, -d / 2 + 0.0035F, z * h}, 0.003F, 0.003F,
+                    8);
+}
+
+/// What people tape to walls and doors of cupboards: lists, calendars, photographs, drawings.
+void wall_papers(Piece& p) {
+  const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
+  const int columns = std::max(1, static_cast<int>(std::lround(w / 0.27F))),
+            rows = std::max(1, static_cast<int>(std::lround(h / 0.32F)));
+  const float cw = w / static_cast<float>(columns), ch = h / static_cast<float>(rows);
+  const MaterialId tape = p.fixed(plain("plastic", {206, 200, 176}, 0.1, 127));
+  MeshBuilder& m = p.mesh;
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const RandomStream r = p.random.fork(static_cast<std::uint64_t>(300 + 20 * j + i));
+      if (rows * columns > 2 && r.uniform(0) < 0.15) continue;
+      const auto part = static_cast<float>(r.uniform(1, 0.72, 0.97));
+      const float tall = r.uniform(2) < 0.7 ? 1.41F : 0.71F;  // sheets upright or across
+      const float sw = part * std::min(cw, ch / tall), sh = tall * sw;
+      const auto x = -w / 2 + cw * static_cast<float>(i) +
+                     static_cast<float>(r.uniform(3, 0.0, 1.0)) * (cw - sw);
+      const auto z =
+          ch * static_cast<float>(j) + static_cast<float>(r.uniform(4, 0.0, 1.0)) * (ch - sh);
+      const double what = r.uniform(5);
+      constexpr std::array<Rgb8, 4> kTones = {
+          {{236, 234, 228}, {240, 226, 150}, {196, 220, 236}, {96, 120, 140}}};
+      MaterialSpec print = plain(what < 0.5   ? "paper"
+                                 : what < 0.8 ? "poster"
+                                              : "painting",
+                                 kTones[r.below(6, 4)], 0.7, 5000 + r.below(7, 4000));
+      print.size_m = {sw, sh};
+      m.box(p.fixed(plain("plaster", {236, 234, 228}, 0.1, 128)), {x, d / 2 - 0.001F, z},
+            {x + sw, d / 2, z + sh}, {.bevel_m = 0.0F});
+      m.picture(p.fixed(print), {x, d / 2 - 0.0016F, z + sh}, {sw, 0, 0}, {0, 0, -sh});
+      m.box(tape, {x + 0.4F * sw, d / 2 - 0.0022F, z + sh - 0.014F},
+            {x + 0.4F * sw + std::min(0.05F, 0.2F * sw), d / 2 - 0.0017F, z + sh + 0.006F},
+            {.bevel_m = 0.0F});
+    }
 }
 
 void clock(Piece& p) {

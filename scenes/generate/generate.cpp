@@ -63,6 +63,8 @@ class Maker {
     for (const ItemRule& rule : grammar_.furniture)
       if (!place_rule(rule)) return false;
     add_extras();
+    fitting_ = true;
+    for (const ItemRule& rule : grammar_.fittings) place_rule(rule);
     return density_group(10.0 * layout_.object_count() / area) == group_ &&
            layout_.free_share() >= kLeastFree;
   }
@@ -73,6 +75,8 @@ class Maker {
             .yaml = text(name),
             .floor_area_m2 = layout_.floor_area_m2(),
             .objects = layout_.object_count(),
+            .fittings =
+                static_cast<int>(std::ranges::count(layout_.items(), true, &LayoutItem::fitting)),
             .free_share = layout_.free_share()};
   }
 
@@ -272,6 +276,7 @@ class Maker {
     item.kind = d.kind;
     item.size_m = d.size_m;
     item.materials = d.materials;
+    item.fitting = fitting_;
     item.name = fmt::format("{}_{}", d.kind->name, ++counts_[std::string(d.kind->name)]);
     if (d.kind->bulb && d.kind->mount != Mount::kCeiling) {
       const double power = dice_.number(0.12, 0.26);
@@ -286,7 +291,7 @@ class Maker {
     return added;
   }
 
-  bool full() const { return layout_.object_count() >= target_; }
+  bool full() const { return !fitting_ && layout_.object_count() >= target_; }
 
   /// @returns false if something that the room needs has no place
   bool place_rule(const ItemRule& rule) {
@@ -300,6 +305,10 @@ class Maker {
     }
     if (rule.place == Place::kWindow) {
       at_windows(common);
+      return true;
+    }
+    if (rule.place == Place::kDoor) {
+      at_doors(common);
       return true;
     }
     int placed = 0;
@@ -612,6 +621,26 @@ class Maker {
     }
   }
 
+  /// On the wall beside each door, on either side.
+  void at_doors(const Design& d) {
+    constexpr double kFrame_m = 0.1;
+    for (const WallOpening& door : std::vector(layout_.openings())) {
+      if (!door.door) continue;
+      const WallRun& wall = layout_.walls()[static_cast<std::size_t>(door.side)];
+      const double gap = kFrame_m + draw(dice_, d.rule->gap_m), half = 0.5 * d.size_m.x();
+      const bool before = dice_.chance(0.5);
+      for (const bool low : {before, !before}) {
+        LayoutItem item = item_of(d);
+        const Vector2d at = wall.place(low ? door.from_m - gap - half : door.to_m + gap + half,
+                                       d.size_m.y(), 0.002);
+        item.at_m = {whole_mm(at.x()), whole_mm(at.y())};
+        item.turn_deg = wall.turn_deg();
+        item.z_m = d.rule->z_m ? whole_mm(draw(dice_, *d.rule->z_m)) : 0.0;
+        if (add(item, d)) break;
+      }
+    }
+  }
+
   void add_extras() {
     std::vector<Design> designs;
     double total = 0;
@@ -762,6 +791,7 @@ class Maker {
   Layout layout_;
   int target_ = 0;
   bool aimed_ = false;
+  bool fitting_ = false;  // what is placed now are fittings
   std::vector<std::pair<std::string, std::string>> materials_;
   std::map<std::string, std::vector<Base>> bases_;
   std::map<std::string, int> counts_;

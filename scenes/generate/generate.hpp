@@ -32,8 +32,9 @@ struct GeneratedPlan {
   std::string room;  ///< which of the category's rooms: "bathroom", "gym"
   std::string yaml;  ///< see docs/formats.md, House
   double floor_area_m2 = 0;
-  int objects = 0;         ///< pieces, doors and windows
-  double free_share = 0;   ///< of the floor: where the robot can stand
+  int objects = 0;        ///< pieces, doors and windows
+  int fittings = 0;       ///< pieces that are not counted: switches, radiators, papers on walls
+  double free_share = 0;  ///< of the floor: where the robot can stand
   double objects_per_10_m2() const { return 10.0 * objects / floor_area_m2; }
 };
 GeneratedPlan generate_plan(const GeneratedReference& reference);

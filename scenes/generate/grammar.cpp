@@ -89,9 +89,9 @@ std::map<std::string, std::string> read_roles(YamlReader& yaml, const std::strin
 Place read_place(const YamlReader& yaml, bool belongs) {
   using enum Place;
   static const std::map<std::string, Place> alone = {
-      {"wall", kWall},       {"corner", kCorner}, {"centre", kCentre}, {"floor", kFloor},
-      {"hang", kHang},       {"rows", kRows},     {"aisles", kAisles}, {"window", kWindow},
-      {"ceiling", kCeiling}, {"on", kOnAny}};
+      {"wall", kWall}, {"corner", kCorner},   {"centre", kCentre}, {"floor", kFloor},
+      {"hang", kHang}, {"rows", kRows},       {"aisles", kAisles}, {"window", kWindow},
+      {"door", kDoor}, {"ceiling", kCeiling}, {"on", kOnAny}};
   static const std::map<std::string, Place> part = {
       {"on", kOn}, {"beside", kBeside}, {"front", kFront}, {"around", kAround}, {"above", kAbove}};
   const auto& names = belongs ? part : alone;
@@ -173,6 +173,8 @@ RoomGrammar read_room(YamlReader yaml) {
   for (const char* list : {"furniture", "extras"})
     for (YamlReader& rule : yaml.at(list).items())
       (list[0] == 'f' ? room.furniture : room.extras).push_back(read_rule(rule, false));
+  if (auto fittings = yaml.find("fittings"))
+    for (YamlReader& rule : fittings->items()) room.fittings.push_back(read_rule(rule, false));
   yaml.finish();
   return room;
 }

@@ -42,6 +42,7 @@ enum class Place {
   kRows,
   kAisles,
   kWindow,
+  kDoor,
   kCeiling,
   kOnAny,
   kOn,
@@ -88,6 +89,7 @@ struct RoomGrammar {
   DrawRange lamp_power{3.0, 5.0}, warmth{0.0, 1.0};
   std::map<std::string, std::string> roles;  ///< role -> palette, before Palettes::list_of_role
   std::vector<ItemRule> furniture, extras;
+  std::vector<ItemRule> fittings;  ///< come last and are not counted as objects
 };
 
 struct Category {

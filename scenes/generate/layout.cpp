@@ -63,7 +63,9 @@ Layout::Layout(double width_m, double depth_m, double height_m, std::optional<Fl
       blocked_(static_cast<int>(std::ceil(width_m / kCell_m)),
                static_cast<int>(std::ceil(depth_m / kCell_m)), 0) {
   const double w = width_m, d = depth_m;
-  walls_ = {{Side::kSouth, 0, 0, w}, {Side::kNorth, d, 0, w}, {Side::kWest, 0, 0, d},
+  walls_ = {{Side::kSouth, 0, 0, w},
+            {Side::kNorth, d, 0, w},
+            {Side::kWest, 0, 0, d},
             {Side::kEast, w, 0, d}};
   if (cut_) {
     const bool south = cut_->y0 <= 0, west = cut_->x0 <= 0;
@@ -73,8 +75,8 @@ Layout::Layout(double width_m, double depth_m, double height_m, std::optional<Fl
     (south ? along_y.from_m : along_y.to_m) = south ? cut_->y1 : cut_->y0;
     walls_.push_back({south ? Side::kSouth : Side::kNorth, south ? cut_->y1 : cut_->y0, cut_->x0,
                       cut_->x1, false});
-    walls_.push_back({west ? Side::kWest : Side::kEast, west ? cut_->x1 : cut_->x0, cut_->y0,
-                      cut_->y1, false});
+    walls_.push_back(
+        {west ? Side::kWest : Side::kEast, west ? cut_->x1 : cut_->x0, cut_->y0, cut_->y1, false});
   }
   for (int y = 0; y < blocked_.height(); ++y)
     for (int x = 0; x < blocked_.width(); ++x) {
@@ -97,7 +99,8 @@ double Layout::floor_area_m2() const {
 
 bool Layout::add_opening(const WallRun& wall, WallOpening opening) {
   constexpr double kApart_m = 0.2, kCorner_m = 0.12;
-  if (opening.from_m < wall.from_m + kCorner_m || opening.to_m > wall.to_m - kCorner_m) return false;
+  if (opening.from_m < wall.from_m + kCorner_m || opening.to_m > wall.to_m - kCorner_m)
+    return false;
   opening.side = wall.side;
   for (const WallOpening& other : openings_)
     if (other.side == opening.side && opening.from_m < other.to_m + kApart_m &&
@@ -105,9 +108,8 @@ bool Layout::add_opening(const WallRun& wall, WallOpening opening) {
       return false;
   if (opening.door) {
     const double middle = 0.5 * (opening.from_m + opening.to_m);
-    const Footprint swing =
-        footprint_of(wall.place(middle, kDoorSwing_m, 0), wall.turn_deg(),
-                     opening.to_m - opening.from_m + 0.1, kDoorSwing_m);
+    const Footprint swing = footprint_of(wall.place(middle, kDoorSwing_m, 0), wall.turn_deg(),
+                                         opening.to_m - opening.from_m + 0.1, kDoorSwing_m);
     if (!inside(swing)) return false;
     swings_.push_back(swing);
   }
@@ -234,7 +236,8 @@ double Layout::free_share() const {
 }
 
 int Layout::object_count() const {
-  return static_cast<int>(items_.size() + openings_.size());
+  const auto pieces = std::ranges::count(items_, false, &LayoutItem::fitting);
+  return static_cast<int>(pieces) + static_cast<int>(openings_.size());
 }
 
 }  // namespace mh

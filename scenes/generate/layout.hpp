@@ -45,12 +45,13 @@ struct LayoutItem {
   Eigen::Vector2d at_m = Eigen::Vector2d::Zero();  ///< world
   double z_m = 0, turn_deg = 0;
   Eigen::Vector3d size_m = Eigen::Vector3d::Ones();
-  std::optional<std::size_t> on;     ///< what carries it
+  std::optional<std::size_t> on;                      ///< what carries it
   Eigen::Vector2d on_at_m = Eigen::Vector2d::Zero();  ///< in the carrier's frame
   double on_turn_deg = 0;
-  bool on_board = false;             ///< stands in the carrier, not on its top
-  std::optional<std::size_t> under;  ///< what it is pushed under
-  bool covers_window = false;        ///< blinds
+  bool on_board = false;                         ///< stands in the carrier, not on its top
+  std::optional<std::size_t> under;              ///< what it is pushed under
+  bool covers_window = false;                    ///< blinds
+  bool fitting = false;                          ///< is no object of its own
   std::map<std::string, std::string> materials;  ///< role -> name of a material
   std::optional<Eigen::Vector3d> glow;
 
@@ -82,7 +83,7 @@ class Layout {
   std::optional<std::size_t> add(const LayoutItem& item, double front_m);
   /// The share of the floor where the robot can stand.
   double free_share() const;
-  /// Pieces, doors and windows: what counts as an object.
+  /// Pieces, doors and windows, without fittings: what counts as an object.
   int object_count() const;
 
  private:
@@ -102,7 +103,7 @@ class Layout {
   std::vector<LayoutItem> items_;
   std::vector<Footprint> swings_;  ///< of doors
   std::vector<Footprint> fronts_;  ///< floor before pieces, where only their own chairs stand
-  Grid2d<char> blocked_;  ///< where the robot's middle cannot be
+  Grid2d<char> blocked_;           ///< where the robot's middle cannot be
 };
 
 }  // namespace mh

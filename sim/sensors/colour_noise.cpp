@@ -8,6 +8,7 @@
 
 #include "sim/render/colour.hpp"
 #include "sim/sensors/normal_table.hpp"
+#include "sim/sensors/processing.hpp"
 
 namespace mh {
 namespace {
@@ -94,6 +95,7 @@ void develop(Grid2d<Rgb8>& colour, const Camera& camera, const SensorConfig& con
   if (config.shot_noise_on || config.vignetting_on || gain != 1.0)
     expose(colour, camera, config, gain, stream.fork(kShot));
   if (config.colour_noise_on) add_grey_noise(colour, config.colour_noise.sigma, stream);
+  process(colour, config.processing);
 }
 
 }  // namespace mh

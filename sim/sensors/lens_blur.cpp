@@ -6,24 +6,11 @@
 #include <vector>
 
 #include "sim/render/colour.hpp"
+#include "sim/sensors/gaussian.hpp"
 #include "sim/sensors/lens.hpp"
 
 namespace mh {
 namespace {
-
-/// Weights of the pixels 0, 1, 2, ... aside; the whole kernel sums to one.
-std::vector<float> gaussian(double sigma_px) {
-  const int radius = std::max(1, static_cast<int>(std::ceil(3.5 * sigma_px)));
-  std::vector<double> weights;
-  double sum = 0.0;
-  for (int k = 0; k <= radius; ++k) {
-    weights.push_back(std::exp(-0.5 * k * k / (sigma_px * sigma_px)));
-    sum += (k == 0 ? 1.0 : 2.0) * weights.back();
-  }
-  std::vector<float> kernel;
-  for (const double weight : weights) kernel.push_back(static_cast<float>(weight / sum));
-  return kernel;
-}
 
 using LightRow = std::vector<float>;  // a row, three channels beside one another
 
@@ -51,7 +38,7 @@ LightRow blurred_row(std::span<const Rgb8> row, const std::vector<float>& kernel
 
 void blur_by_lens(Grid2d<Rgb8>& colour, double sigma_px) {
   if (sigma_px <= 0.0 || colour.empty()) return;
-  const std::vector<float> kernel = gaussian(sigma_px);
+  const std::vector<float> kernel = gaussian_kernel(sigma_px);
   const int radius = static_cast<int>(kernel.size()) - 1, last = colour.height() - 1;
   std::vector<LightRow> rows;
   for (int y = 0; y <= last; ++y) rows.push_back(blurred_row(std::as_const(colour).row(y), kernel));

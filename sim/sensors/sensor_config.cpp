@@ -67,6 +67,14 @@ void read_colour(YamlReader& file, SensorConfig& config) {
     const double sigma_px = node.number("sigma_px", 0.0, 20.0);
     config.lens_blur_px = blurred ? sigma_px : 0.0;
   });
+  bool processed = false;
+  section(file, "processing", processed, [&](YamlReader& node) {
+    ProcessingConfig c;
+    c.contrast = node.number_or("contrast", c.contrast, 0.0, 1.0);
+    c.sharpening = node.number_or("sharpening", c.sharpening, 0.0, 20.0);
+    c.sharpening_px = above(node, "sharpening_px", c.sharpening_px, 0.0, 20.0);
+    if (processed) config.processing = c;
+  });
   section(file, "lens_distortion", config.lens_distortion_on, [&](YamlReader& node) {
     Distortion& d = config.lens_distortion;
     d.k1 = node.number_or("k1", d.k1, -2.0, 2.0);

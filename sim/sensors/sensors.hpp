@@ -95,6 +95,13 @@ struct VignettingConfig {
   double strength = 1.0;  ///< 0 to 1
 };
 
+/// What the camera does with its sensor's picture: see processing.hpp.
+struct ProcessingConfig {
+  double contrast = 0.0;       ///< of its tone curve, 0 to 1; 0 = none beyond sRGB
+  double sharpening = 0.0;     ///< 0 = none
+  double sharpening_px = 1.0;  ///< standard deviation of the blur that is compared with, above 0
+};
+
 struct SensorConfig {
   bool depth_noise_on = true;  ///< off: the exact depth at any range
   DepthNoiseConfig depth_noise;
@@ -107,7 +114,8 @@ struct SensorConfig {
   AutoExposureConfig auto_exposure;
   bool vignetting_on = false;
   VignettingConfig vignetting;
-  double lens_blur_px = 0.0;  ///< standard deviation of its point spread, 0 = none
+  ProcessingConfig processing;  ///< does nothing by itself
+  double lens_blur_px = 0.0;    ///< standard deviation of its point spread, 0 = none
   bool lens_distortion_on = false;
   Distortion lens_distortion;   ///< off: the camera's own, as it comes
   double depth_offset_s = 0.0;  ///< the depth is that of so much later than the stamp

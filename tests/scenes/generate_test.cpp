@@ -116,7 +116,7 @@ TEST_P(GeneratedScene, IsWholeAndCanBeWalked) {
   // Boxes, exactly: reading the plan refuses overlaps of more than 1 cm, here there are none.
   const HousePlan house = read_house_plan(YamlReader::parse(text, plan.name));
   EXPECT_EQ(static_cast<int>(house.items.size() + house.doorways.size() + house.windows.size()),
-            plan.objects);
+            plan.objects + plan.fittings);
   for (std::size_t i = 0; i < house.items.size(); ++i)
     for (std::size_t k = 0; k < i; ++k) {
       const ItemPlan &a = house.items[i], &b = house.items[k];

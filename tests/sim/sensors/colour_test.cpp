@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "sim/render/colour.hpp"
 #include "sim/sensors/lens.hpp"
+#include "sim/sensors/processing.hpp"
 #include "sim/sensors/sensors.hpp"
 
 namespace mh {
@@ -157,6 +159,91 @@ TEST(LensBlur, AnEvenPictureStaysAndZeroIsNothing) {
   const Grid2d<Rgb8> before = edge;
   blur_by_lens(edge, 0.0);
   EXPECT_EQ(edge, before);
+}
+
+TEST(Processing, SharpensEachFrequencyAsAnUnsharpMaskDoes) {
+  for (const double sigma : {0.65, 1.0, 2.0})
+    for (const int period : {4, 8, 20}) {
+      Grid2d<Rgb8> colour(160, 60);
+      const double step = 2.0 * std::numbers::pi / period;
+      const auto wave = [&](int x) { return std::sin(step * (x + 0.5)); };
+      for (int y = 0; y < 60; ++y)
+        for (int x = 0; x < 160; ++x) {
+          const auto v = static_cast<std::uint8_t>(std::lround(128 + 30 * wave(x)));
+          colour(x, y) = {v, v, v};
+        }
+      const auto amplitude = [&] {
+        double sum = 0;  // 40 to 119: whole periods, away from the borders
+        for (int x = 40; x < 120; ++x) sum += (colour(x, 30).g - 128.0) * wave(x);
+        return sum;
+      };
+      const double before = amplitude();
+      process(colour, {.sharpening = 1.5, .sharpening_px = sigma});
+      const double passed = std::exp(-2.0 * std::pow(std::numbers::pi * sigma / period, 2));
+      // 1 %: half a grey level of at least 50, all samples of a short wave alike.
+      EXPECT_NEAR(amplitude() / before, 1 + 1.5 * (1 - passed), 0.02) << sigma << " " << period;
+    }
+}
+
+TEST(Processing, AStepOvershootsAsMuchOnBothSidesAndOnlyNearIt) {
+  Grid2d<Rgb8> colour(40, 40, {100, 110, 120});
+  for (int y = 20; y < 40; ++y)
+    for (int x = 0; x < 40; ++x) colour(x, y) = {140, 150, 160};
+  process(colour, {.sharpening = 0.5, .sharpening_px = 1.0});
+  // The first row beyond a step of 40 lacks half of what the middle weight does not hold.
+  const double middle = 1.0 / (1 + 2 * (std::exp(-0.5) + std::exp(-2.0) + std::exp(-4.5)));
+  const int over = static_cast<int>(std::lround(0.5 * 40 * 0.5 * (1 - middle)));
+  EXPECT_NEAR(colour(20, 20).r, 140 + over, 1);
+  EXPECT_EQ(colour(20, 20).r - 140, 100 - colour(20, 19).r);
+  for (int y = 0; y < 40; ++y) {
+    EXPECT_EQ(colour(7, y), colour(30, y));
+    EXPECT_EQ(colour(7, y).g - colour(7, y).r, 10);  // the colour stays
+    EXPECT_EQ(colour(7, y).b - colour(7, y).g, 10);
+  }
+  EXPECT_EQ(colour(20, 15), (Rgb8{100, 110, 120}));
+  EXPECT_EQ(colour(20, 24), (Rgb8{140, 150, 160}));
+}
+
+TEST(Processing, AnEvenPictureStaysAndNoneIsNothing) {
+  Grid2d<Rgb8> even(20, 20, {90, 140, 255});
+  process(even, {.sharpening = 3.0, .sharpening_px = 0.7});
+  EXPECT_EQ(even, Grid2d<Rgb8>(20, 20, {90, 140, 255}));
+  Grid2d<Rgb8> edge(20, 20);
+  edge(3, 3) = {255, 0, 0};
+  const Grid2d<Rgb8> before = edge;
+  process(edge, {});
+  EXPECT_EQ(edge, before);
+}
+
+TEST(Processing, ItsToneCurveKeepsBothEndsAndSteepensTheMiddle) {
+  Grid2d<Rgb8> greys(256, 3);
+  for (int y = 0; y < 3; ++y)
+    for (int x = 0; x < 256; ++x) {
+      const auto v = static_cast<std::uint8_t>(x);
+      greys(x, y) = {v, v, v};
+    }
+  process(greys, {.contrast = 0.5});
+  EXPECT_EQ(greys(0, 1).g, 0);
+  EXPECT_EQ(greys(255, 1).g, 255);
+  // At a quarter 3/16 - 1/32 = 5/32 of full scale takes part with one half.
+  EXPECT_NEAR(greys(64, 1).g, 255 * 0.5 * (0.25 + 5.0 / 32.0), 1.0);
+  EXPECT_NEAR(greys(148, 1).g - greys(108, 1).g, 1.25 * 40, 1.0);
+  for (int x = 0; x < 255; ++x) EXPECT_LE(greys(x, 1).g, greys(x + 1, 1).g);
+}
+
+TEST(Processing, ComesAfterTheNoise) {
+  const RenderedFrame truth = grey_frame(120, {});
+  const auto sensed = [&](const SensorConfig& config) {
+    return sense(truth, {}, config, RandomStream(3), 0).colour;
+  };
+  SensorConfig config = nothing();
+  config.shot_noise_on = true;
+  Grid2d<Rgb8> noisy = sensed(config);
+  config.processing = {.contrast = 0.5, .sharpening = 1.0};
+  const Grid2d<Rgb8> sharp = sensed(config);
+  EXPECT_NE(sharp, noisy);
+  process(noisy, config.processing);
+  EXPECT_EQ(sharp, noisy);
 }
 
 TEST(BlankFrames, ComeAtTheirRateWithoutDepthColourAndLabels) {

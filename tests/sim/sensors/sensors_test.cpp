@@ -339,7 +339,7 @@ TEST(SensorLevels, AreFrozen) {
   };
   EXPECT_EQ(digest("ideal"), 0x7922bfb11bb41b6bU);
   EXPECT_EQ(digest("pepper"), 0xa8ef16bf06d441b7U);
-  EXPECT_EQ(digest("handheld"), 0x8e01036c7726d76aU);
+  EXPECT_EQ(digest("handheld"), 0xec83516b26ca15c5U);
 }
 
 TEST(SensorLevels, SayWhatTheirNamesSay) {
@@ -347,7 +347,8 @@ TEST(SensorLevels, SayWhatTheirNamesSay) {
   EXPECT_FALSE(ideal.depth_noise_on || ideal.colour_noise_on || ideal.shot_noise_on ||
                ideal.shutter.motion_blur_on || ideal.shutter.rolling_shutter_on ||
                ideal.auto_exposure_on || ideal.vignetting_on || ideal.lens_distortion_on);
-  EXPECT_EQ(ideal.lens_blur_px + ideal.depth_offset_s + ideal.blank_share + ideal.dropped_share,
+  EXPECT_EQ(ideal.processing.contrast + ideal.processing.sharpening + ideal.lens_blur_px +
+                ideal.depth_offset_s + ideal.blank_share + ideal.dropped_share,
             0.0);
 
   const SensorConfig pepper = load_sensor_config(level("pepper"));
@@ -363,6 +364,8 @@ TEST(SensorLevels, SayWhatTheirNamesSay) {
   const SensorConfig handheld = load_sensor_config(level("handheld"));
   EXPECT_TRUE(handheld.depth_noise_on && handheld.shot_noise_on && handheld.auto_exposure_on &&
               handheld.shutter.motion_blur_on && handheld.shutter.rolling_shutter_on);
+  EXPECT_TRUE(handheld.processing.contrast > 0 && handheld.processing.sharpening > 0);
+  EXPECT_EQ(pepper.processing.contrast + pepper.processing.sharpening, 0.0);
 }
 
 TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {
@@ -401,6 +404,9 @@ TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {
   third_line("auto_exposure: {target: 2}", "2");
   third_line("vignetting: {strength: 1.5}", "1.5");
   third_line("lens_blur: {sigma_px: -1}", "-1");
+  third_line("processing: {contrast: 2}", "2");
+  third_line("processing: {sharpening: -1}", "-1");
+  third_line("processing: {sharpening_px: 0}", "sharpening_px");
   third_line("lens_distortion: {k1: 7}", "7");
   third_line("lens_distortion: {k9: 0}", "k9");
   third_line("depth_offset: {enabled: true}", "offset_ms");
