@@ -216,7 +216,8 @@ class EmbreeRenderer final : public Renderer {
       shading_.find_records(packets[k], seen[k]);
     });
     for_each(
-        [&](std::size_t k, int, int) { shading_.find_texels(packets[k], pixel_area, seen[k]); });
+        [&](std::size_t k, int, int) { shading_.find_places(packets[k], pixel_area, seen[k]); });
+    for_each([&](std::size_t k, int, int) { shading_.find_texels(seen[k]); });
   }
 
   /// Puts a packet's lanes where they belong; those outside of the picture nowhere.
@@ -297,7 +298,8 @@ class EmbreeRenderer final : public Renderer {
     bvh_.intersect16(valid.data(), packet.rays, true);
     Seen seen;
     shading_.find_records(packet, seen);
-    shading_.find_texels(packet, view.pixel_width * view.pixel_height, seen);
+    shading_.find_places(packet, view.pixel_width * view.pixel_height, seen);
+    shading_.find_texels(seen);
     const Radiance light = light_of(packet, seen);
     for (std::size_t pixel = 0; pixel < count; ++pixel) {
       Rgb8& colour = frame.colour(edges[first + pixel].x, edges[first + pixel].y);

@@ -29,12 +29,11 @@ void Shading::find_records(const Packet& packet, Seen& seen) const {
     _mm_prefetch(reinterpret_cast<const char*>(record), _MM_HINT_T0);
 }
 
-void Shading::find_texels(const Packet& packet, float pixel_area, Seen& seen) const {
+void Shading::find_places(const Packet& packet, float pixel_area, Seen& seen) const {
   const RTCHit16& hit = packet.rays.hit;
   const RTCRay16& ray = packet.rays.ray;
   seen.textured = {};
   if (!records_.textured()) return;
-  std::array<TextureTable::Place, 2> places;
   for (std::size_t i = 0; i < kLanes; i += 8) {
     std::array<const float*, 8> place, size;
     std::uint32_t textures = 0;
@@ -57,11 +56,9 @@ void Shading::find_texels(const Packet& packet, float pixel_area, Seen& seen) co
                           load8(hit.Ng_z + i) * load8(ray.dir_z + i);
     const Float8 depth = load8(seen.depth_m.data() + i);
     const Float8 seen_texels = depth * depth * pixel_area * texels / abs8(facing);
-    places[i / 8] = records_.textures().place(texture, u + along1 * du1 + along2 * du2,
-                                              v + along1 * dv1 + along2 * dv2, seen_texels);
+    seen.place[i / 8] = records_.textures().place(texture, u + along1 * du1 + along2 * du2,
+                                                  v + along1 * dv1 + along2 * dv2, seen_texels);
   }
-  for (std::size_t half = 0; half < 2; ++half)
-    if (seen.textured[half]) records_.textures().look_up(places[half], seen.lookup[half]);
 }
 
 Radiance Shading::shade(const Packet& packet, const Seen& seen) const {

@@ -14,6 +14,7 @@ struct Seen {
   alignas(32) std::array<const FaceRecord*, kLanes> record;
   alignas(32) std::array<float, kLanes> depth_m;
   std::array<bool, 2> textured;  // whether any of eight lanes is
+  std::array<TextureTable::Place, 2> place;
   std::array<TextureTable::Lookup, 2> lookup;
 };
 
@@ -22,7 +23,7 @@ struct Radiance {
   __m256 of[kLanes / 2];  // lanes 2i and 2i + 1
 };
 
-/// Turns hits into light, in three steps, each of which asks early for the memory that the next one
+/// Turns hits into light, in four steps, each of which asks early for the memory that the next one
 /// needs: done for many packets one step after another, hardly any of them waits.
 class Shading {
  public:
@@ -31,10 +32,15 @@ class Shading {
 
   /// Step 1: what was hit.
   void find_records(const Packet& packet, Seen& seen) const;
-  /// Step 2: which texels are wanted.
+  /// Step 2: where in its texture.
   /// @param pixel_area  of what a ray stands for, at unit depth
-  void find_texels(const Packet& packet, float pixel_area, Seen& seen) const;
-  /// Step 3: linear RGB x exposure, not below 0.
+  void find_places(const Packet& packet, float pixel_area, Seen& seen) const;
+  /// Step 3: which texels are wanted.
+  void find_texels(Seen& seen) const {
+    for (std::size_t half = 0; half < 2; ++half)
+      if (seen.textured[half]) records_.textures().look_up(seen.place[half], seen.lookup[half]);
+  }
+  /// Step 4: linear RGB x exposure, not below 0.
   Radiance shade(const Packet& packet, const Seen& seen) const;
 
  private:

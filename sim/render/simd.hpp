@@ -47,6 +47,16 @@ inline Int8 to_int(Float8 value) {
   return __builtin_convertvector(value, Int8);
 }
 
+/// Whether a comparison holds in all lanes.
+inline bool all8(Int8 comparison) {
+  return _mm256_movemask_ps((__m256)comparison) == 0xFF;
+}
+
+/// Four fields, the same for all eight lanes.
+inline std::array<Float8, 4> spread_fields(const float* from) {
+  return {splat(from[0]), splat(from[1]), splat(from[2]), splat(from[3])};
+}
+
 /// Four fields of eight lanes, from one 16-byte piece of memory per lane.
 inline std::array<Float8, 4> load_fields(const std::array<const float*, 8>& from) {
   const auto pair = [&](std::size_t i) {

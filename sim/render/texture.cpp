@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/render/texture.hpp"
 
+#include <span>
+
 #include "sim/render/colour.hpp"
 
 namespace mh {
@@ -87,17 +89,26 @@ TextureTable::Place TextureTable::place(Float8 first, Float8 u, Float8 v, Float8
 }
 
 void TextureTable::look_up(const Place& place, Lookup& lookup) const {
-  std::array<const float*, 8> fine_levels, coarse_levels;
-  for (std::size_t i = 0; i < 8; ++i) {
-    fine_levels[i] = &levels_[place.level[i]].width;
-    coarse_levels[i] = &levels_[place.level[i] + 1].width;
+  // Width, height, offset and stride of the finer level, then of the coarser one.
+  std::array<std::array<Float8, 4>, 2> levels;
+  const Int8 level = load8(place.level.data());
+  const Level* first = &levels_[place.level[0]];
+  if (all8(level == splat(static_cast<int>(place.level[0])))) {  // mostly
+    for (std::size_t i = 0; i < 2; ++i) levels[i] = spread_fields(&first[i].width);
+  } else {
+    for (std::size_t i = 0; i < 2; ++i) {
+      std::array<const float*, 8> from;
+      for (std::size_t k = 0; k < 8; ++k) from[k] = &levels_[place.level[k] + i].width;
+      levels[i] = load_fields(from);
+    }
   }
+
   struct Corner {
     Int8 texel, stride;
     Float8 right, down;  // shares of the neighbours
   };
-  const auto corner = [&](const std::array<const float*, 8>& of) {
-    const auto [width, height, offset, stride] = load_fields(of);
+  const auto corner = [&](const std::array<Float8, 4>& of) {
+    const auto [width, height, offset, stride] = of;
     Float8 x = place.u * width - 0.5F, y = place.v * height - 0.5F;
     x = x < 0.0F ? x + width : x;
     y = y < 0.0F ? y + height : y;
@@ -105,7 +116,7 @@ void TextureTable::look_up(const Place& place, Lookup& lookup) const {
     return Corner{(Int8)offset + y0 * (Int8)stride + x0, (Int8)stride, x - to_float(x0),
                   y - to_float(y0)};
   };
-  const Corner fine = corner(fine_levels), coarse = corner(coarse_levels);
+  const Corner fine = corner(levels[0]), coarse = corner(levels[1]);
   // Cut towards zero, so that four shares of one never sum to more than it.
   const auto share = [](Float8 part) { return to_int(part * kOne); };
   const auto two = [](Int8 low, Int8 high) { return low | high << 16; };
@@ -125,7 +136,8 @@ void TextureTable::look_up(const Place& place, Lookup& lookup) const {
         two(share(blend * (1.0F - coarse.right)), share(blend * coarse.right)));
   store(lookup.down, two(share(1.0F - fine.down), share(fine.down)),
         two(share(1.0F - coarse.down), share(coarse.down)));
-  for (const std::array<unsigned, 8>& places : lookup.texels)
+  // The coarser level's lower row is mostly near its upper one, or another lane's.
+  for (const std::array<unsigned, 8>& places : std::span(lookup.texels).first(3))
     for (const unsigned at_texel : places)
       _mm_prefetch(reinterpret_cast<const char*>(texel(at_texel)), _MM_HINT_T0);
 }
