@@ -106,11 +106,13 @@ FloorRect read_cut(YamlReader yaml, const FloorRect& rect) {
   const std::string name = corner.as_string();
   const bool south = name.starts_with("south_"), west = name.ends_with("_west");
   if (name != fmt::format("{}_{}", south ? "south" : "north", west ? "west" : "east"))
-    corner.fail(fmt::format("'{}' is no corner; corners are south_west, south_east, north_west, "
-                            "north_east",
-                            name));
+    corner.fail(
+        fmt::format("'{}' is no corner; corners are south_west, south_east, north_west, "
+                    "north_east",
+                    name));
   const std::vector<double> n = size.as_numbers(2);
-  if (n[0] <= 0 || n[1] <= 0 || n[0] > rect.x1 - rect.x0 - kLeft || n[1] > rect.y1 - rect.y0 - kLeft)
+  if (n[0] <= 0 || n[1] <= 0 || n[0] > rect.x1 - rect.x0 - kLeft ||
+      n[1] > rect.y1 - rect.y0 - kLeft)
     size.fail(fmt::format("[{}, {}] is no part of the room that leaves {} m beside it", n[0], n[1],
                           kLeft));
   yaml.finish();
@@ -159,8 +161,7 @@ std::pair<double, double> read_span(const YamlReader& yaml) {
 /// The side of room a on which room b lies across one wall.
 std::optional<Side> side_between(const HousePlan& house, const RoomPlan& a, const RoomPlan& b) {
   for (const Side side : kSides) {
-    const double gap = std::abs(wall_at(a.rect, side) -
-                                wall_at(b.rect, opposite(side)));
+    const double gap = std::abs(wall_at(a.rect, side) - wall_at(b.rect, opposite(side)));
     const auto [a0, a1] = wall_span(a.rect, side);
     const auto [b0, b1] = wall_span(b.rect, side);
     if (std::abs(gap - house.wall_m) < 1e-6 && std::min(a1, b1) - std::max(a0, b0) > 0) return side;
@@ -180,7 +181,8 @@ std::pair<double, double> wall_span(const RoomPlan& room, Side side) {
 void check_in_wall(const YamlReader& yaml, const HousePlan& house, const OpeningPlan& opening) {
   auto [low, high] = wall_span(house.rooms[opening.room], opening.side);
   if (opening.other) {
-    const auto [other_low, other_high] = wall_span(house.rooms[*opening.other], opposite(opening.side));
+    const auto [other_low, other_high] =
+        wall_span(house.rooms[*opening.other], opposite(opening.side));
     low = std::max(low, other_low);
     high = std::min(high, other_high);
   }
@@ -480,7 +482,12 @@ double overlap_m(const std::array<Vector2d, 4>& a, const std::array<Vector2d, 4>
 HousePlan read_house_plan(YamlReader yaml) {
   HousePlan house;
   house.name = yaml.string("name");
-  house.extent = read_rect(yaml.at("extent_m"));
+  const YamlReader extent = yaml.at("extent_m");
+  house.extent = read_rect(extent);
+  constexpr double kMost_m = 500;
+  for (const double metres : {house.extent.x1 - house.extent.x0, house.extent.y1 - house.extent.y0})
+    if (metres > kMost_m)
+      extent.fail(fmt::format("is {} m long; {} m is the most", metres, kMost_m));
   house.height_m = yaml.number("height_m", 2.0, 10.0);
   house.wall_m = yaml.number("wall_thickness_m", 0.02, 1.0);
   house.detail = yaml.number_or("detail", house.detail, 0.5, 8.0);

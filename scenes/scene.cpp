@@ -14,6 +14,9 @@
 namespace mh {
 namespace {
 
+/// Beyond, single precision holds no metre, and ray tracers give up.
+constexpr float kFarthest_m = 1e7F;
+
 double polygon_area_m2(const std::vector<Eigen::Vector2d>& polygon_m) {
   double doubled = 0.0;
   for (std::size_t i = 0; i < polygon_m.size(); ++i) {
@@ -61,7 +64,10 @@ class Checker {
 
   void check_vertices() const {
     for (std::size_t i = 0; i < scene_.positions_m.size(); ++i)
-      if (!scene_.positions_m[i].allFinite()) fail("vertex {}: position is not finite", i);
+      if (!scene_.positions_m[i].allFinite())
+        fail("vertex {}: position is not finite", i);
+      else if (const float far_m = scene_.positions_m[i].cwiseAbs().maxCoeff(); far_m > kFarthest_m)
+        fail("vertex {}: lies {:g} m from the origin", i, far_m);
     for (std::size_t i = 0; i < scene_.uvs.size(); ++i)
       if (!scene_.uvs[i].allFinite()) fail("vertex {}: texture coordinate is not finite", i);
     for (std::size_t i = 0; i < scene_.light.size(); ++i)

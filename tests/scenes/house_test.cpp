@@ -322,6 +322,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"WrongType", "height_m: 2.5\n", "height_m: tall\n", "tall"},
         BadInput{"WrongTypeOfPiece", kTable, "at: here", "at"},
         BadInput{"NegativeSize", kTable, "at: [2.5, 1.3], size_m: [0.90, -0.60, 0.40]", "-0.6"},
+        BadInput{"HugeExtent", "extent_m: [0, 0, 9.3, 6.7]", "extent_m: [0, 0, 3676, 1945]",
+                 "500 m is the most"},
         BadInput{"TurnedRoom", "rect_m: [0, 0, 5.2, 3.9]", "rect_m: [5.2, 0, 0, 3.9]", "size"},
         BadInput{"RoomOutside", "rect_m: [5.3, 0, 9.3, 3.9]", "rect_m: [5.3, 0, 9.9, 3.9]",
                  "outside the house"},

@@ -40,6 +40,7 @@ TEST(ValidateScene, AcceptsAGoodSceneAndRefusesEveryFlaw) {
       [](Scene& s) { s.class_of.push_back(1); },
       [](Scene& s) { s.instance_of.clear(); },
       [](Scene& s) { s.positions_m[1].x() = NAN; },
+      [](Scene& s) { s.positions_m[1].y() = 1e30F; },
       [](Scene& s) { s.uvs[0].x() = INFINITY; },
       [](Scene& s) { s.light[0].x() = -1; },
       [](Scene& s) { s.triangles[0][2] = 3; },
