@@ -36,8 +36,8 @@ struct SlamState {
   std::optional<Stamp> last_stamp_ns;            ///< of the last frame fed
 };
 
-/// @throws InputError naming the field of camera or config that is out of range, or a distortion that
-/// cannot be undone.
+/// @throws InputError naming the field of camera or config that is out of range, or a distortion
+/// that cannot be undone.
 SlamState make_slam(const Camera& camera, const SlamConfig& config,
                     std::shared_ptr<const Vocabulary> vocabulary);
 
