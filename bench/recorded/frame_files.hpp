@@ -16,7 +16,8 @@ inline constexpr double kDepthPerMetre = 5000;
 inline std::uint16_t depth_units(float depth_m) {
   // Cut after adding a half: what is not negative is rounded so, without a call per pixel.
   const double units = kDepthPerMetre * static_cast<double>(depth_m) + 0.5;
-  return static_cast<std::uint16_t>(units < 65535.0 ? (units > 0.0 ? units : 0.0) : 65535.0);
+  if (!(units > 0.0)) return 0;  // no number counts as nothing
+  return static_cast<std::uint16_t>(units < 65535.0 ? units : 65535.0);
 }
 /// The class of each pixel: the most probable one of its distribution.
 Grid2d<ClassId> class_image(const SemanticImage& semantics);

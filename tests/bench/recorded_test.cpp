@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -116,6 +119,18 @@ TEST_F(TumFolder, KeepsTheOrderOfStampsThatGoBack) {
   EXPECT_EQ(frames[2].stamp_ns, 200'000'000);
   EXPECT_EQ(frames[1].depth, folder_ / "3.png");
   EXPECT_EQ(frames[3].colour, folder_ / "d.png");
+}
+
+TEST(DepthUnits, RoundToTheNearestAndKeepToSixteenBits) {
+  for (int i = 0; i < 200'000; ++i) {
+    const float depth_m = static_cast<float>(i) * 7e-5F;
+    const double units = std::round(kDepthPerMetre * static_cast<double>(depth_m));
+    ASSERT_EQ(depth_units(depth_m), static_cast<std::uint16_t>(std::min(units, 65535.0)))
+        << depth_m;
+  }
+  EXPECT_EQ(depth_units(-1.0F), 0);
+  EXPECT_EQ(depth_units(std::numeric_limits<float>::infinity()), 65535);
+  EXPECT_EQ(depth_units(std::numeric_limits<float>::quiet_NaN()), 0) << "nothing came back";
 }
 
 TEST_F(TumFolder, ReadsAssociationsWhereTheListsAreMissing) {
