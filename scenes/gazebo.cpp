@@ -4,7 +4,9 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <initializer_list>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -146,6 +148,8 @@ class WorldReader {
 
   Scene read() {
     require_readable(file_);
+    // What it has to say comes as errors; it would also print it.
+    sdf::Console::Instance()->SetQuiet(true);
     IncludeWalk().enter(file_);
     sdf::ParserConfig config;
     config.SetFindCallback([this](const std::string& uri) {
@@ -154,8 +158,6 @@ class WorldReader {
     });
     config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
     sdf::Root root;
-    // What it has to say comes as errors; it would also print it.
-    sdf::Console::Instance()->SetQuiet(true);
     const sdf::Errors errors = root.Load(file_.string(), config);
     if (!errors.empty())
       throw InputError(fmt::format("{}: {}", file_.string(), errors.front().Message()));
@@ -199,14 +201,16 @@ class WorldReader {
           world_from_model *
           resolved(link.SemanticPose(), file_.string() + ": link " + link.Name());
       for (std::uint64_t v = 0; v < link.VisualCount(); ++v)
-        add_visual(*link.VisualByIndex(v), world_from_link, parts);
+        add_visual(*link.VisualByIndex(v), name + "/" + link.Name(), world_from_link, parts);
     }
     for (std::uint64_t i = 0; i < model.ModelCount(); ++i)
       add_links(*model.ModelByIndex(i), name, world_from_model, parts);
   }
 
-  void add_visual(const sdf::Visual& visual, const Eigen::Affine3d& world_from_link, Scene& parts) {
-    const std::string what = fmt::format("{}: visual {}", file_.string(), visual.Name());
+  void add_visual(const sdf::Visual& visual, const std::string& link,
+                  const Eigen::Affine3d& world_from_link, Scene& parts) {
+    const std::string what =
+        fmt::format("{}: link {}: visual {}", file_.string(), link, visual.Name());
     Eigen::Affine3d world_from_visual = world_from_link * resolved(visual.SemanticPose(), what);
     const sdf::Geometry& geometry = *visual.Geom();
     const std::string name = fmt::format("{}_{}", visual.Name(), parts_++);
@@ -221,6 +225,7 @@ class WorldReader {
       append_part(parts, mesh_of(*found), world_from_visual, name);
       return;
     }
+    check_size(geometry, what);
     const auto shape = shape_of(geometry, visual.Material());
     if (shape)
       append_part(parts, *shape, world_from_visual, name, kVoid);
@@ -233,6 +238,24 @@ class WorldReader {
     const auto [place, is_new] = meshes_.try_emplace(file);
     if (is_new) place->second = load_mesh(file, warnings_, rules_);
     return place->second;
+  }
+
+  /// libsdformat lets any number pass.
+  static void check_size(const sdf::Geometry& geometry, const std::string& what) {
+    const auto need = [&](const char* shape, std::initializer_list<double> numbers) {
+      const auto sound = [](double v) { return std::isfinite(v) && v > 0.0; };
+      if (!std::ranges::all_of(numbers, sound))
+        throw InputError(fmt::format("{}: a {} of {}: its measures must be above 0", what, shape,
+                                     fmt::join(numbers, " x ")));
+    };
+    if (const auto* box = geometry.BoxShape())
+      need("box", {box->Size().X(), box->Size().Y(), box->Size().Z()});
+    else if (const auto* cylinder = geometry.CylinderShape())
+      need("cylinder", {cylinder->Radius(), cylinder->Length()});
+    else if (const auto* sphere = geometry.SphereShape())
+      need("sphere", {sphere->Radius()});
+    else if (const auto* plane = geometry.PlaneShape())
+      need("plane", {plane->Size().X(), plane->Size().Y()});
   }
 
   static std::optional<Scene> shape_of(const sdf::Geometry& geometry,

@@ -19,7 +19,9 @@
 
 namespace mh {
 
-Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings) {
+namespace {
+
+Scene load(const std::filesystem::path& file, std::vector<std::string>* warnings) {
   if (file.native().starts_with(kGeneratedPrefix))
     return generate_scene(parse_generated(file.native()));
   if (is_scannet_scene(file) || std::filesystem::is_directory(file))
@@ -35,6 +37,18 @@ Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* wa
       fmt::format("{}: unknown kind of scene: the ending must be .yaml, .ply, .obj, .glb, .gltf, "
                   ".dae, .sdf or .world",
                   file.string()));
+}
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings) {
+  try {
+    return load(file, warnings);
+  } catch (const InputError& error) {
+    const std::string_view what = error.what();
+    if (!what.starts_with("scene ")) throw;
+    throw InputError(fmt::format("{}: {}", file.string(), what));  // a scene knows no file
+  }
 }
 
 }  // namespace mh

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/picture_file.hpp"
 
+#include <zlib.h>
+
 #include <limits>
 #include <vector>
 
@@ -36,9 +38,47 @@ std::optional<PictureSize> jpeg_size(std::string_view bytes) {
   return std::nullopt;
 }
 
+/// Whether a JPEG's data go on to its end mark; within them a 0xff never stands before 0xd9.
+bool jpeg_is_whole(std::string_view bytes) {
+  std::size_t at = 2;
+  while (at + 2 <= bytes.size()) {
+    if (bytes[at] != '\xff') {  // data, or what a decoder would skip
+      at = bytes.find('\xff', at);
+      if (at == bytes.npos) return false;
+      continue;
+    }
+    const auto marker = static_cast<unsigned char>(bytes[at + 1]);
+    if (marker == 0xd9) return true;
+    const bool alone = marker <= 0x01 || (marker >= 0xd0 && marker <= 0xd8);
+    if (marker == 0xff)
+      ++at;
+    else if (alone)
+      at += 2;
+    else if (at + 4 <= bytes.size())
+      at += 2 + big_endian(bytes, at + 2, 2);
+    else
+      return false;
+  }
+  return false;
+}
+
+/// Walks a PNG's chunks to IEND and checks their sums.
+const char* png_fault(std::string_view bytes) {
+  for (std::size_t at = 8; at + 12 <= bytes.size();) {
+    const std::size_t length = big_endian(bytes, at, 4);
+    if (length > bytes.size() - at - 12) break;
+    const auto* typed = reinterpret_cast<const Bytef*>(bytes.data() + at + 4);
+    if (crc32(0, typed, static_cast<uInt>(length + 4)) != big_endian(bytes, at + 8 + length, 4))
+      return "is damaged: the sum of its bytes is wrong";
+    if (bytes.substr(at + 4, 4) == "IEND") return nullptr;
+    at += 12 + length;
+  }
+  return "is cut short";
+}
+
 /// Empty if the bytes hold no picture, or one too large.
 cv::Mat decode(std::string_view bytes) {
-  if (!announced_size(bytes) || claims_too_much(bytes)) return {};
+  if (!announced_size(bytes) || claims_too_much(bytes) || picture_fault(bytes)) return {};
   const cv::Mat view(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
   try {
     return cv::imdecode(view, cv::IMREAD_UNCHANGED);
@@ -61,6 +101,12 @@ std::optional<PictureSize> announced_size(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG\r\n\x1a\n") && bytes.size() >= 24)
     return PictureSize{big_endian(bytes, 16, 4), big_endian(bytes, 20, 4)};
   return std::nullopt;
+}
+
+const char* picture_fault(std::string_view bytes) {
+  if (bytes.starts_with("\xff\xd8")) return jpeg_is_whole(bytes) ? nullptr : "is cut short";
+  if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return png_fault(bytes);
+  return nullptr;
 }
 
 bool claims_too_much(std::string_view bytes) {

@@ -18,6 +18,11 @@ struct PictureSize {
 /// The size that a JPEG or PNG announces, without decoding it; nullopt if the bytes are neither.
 std::optional<PictureSize> announced_size(std::string_view bytes);
 
+/// What is wrong with a JPEG or PNG as a file, found without decoding it: "is cut short", or a
+/// PNG's wrong sum; nullptr if nothing, or if the bytes are neither. Decoders would show a picture
+/// whose end is grey, and tell it to stderr at most.
+const char* picture_fault(std::string_view bytes);
+
 /// Whether they announce more pixels than so few bytes can hold, or than anybody needs: to be
 /// refused before anything is allocated for them.
 bool claims_too_much(std::string_view bytes);

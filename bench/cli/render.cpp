@@ -142,6 +142,7 @@ void run(Options options) {
       progress.share(static_cast<double>(k) / static_cast<double>(count));
       return exact_frame(shutter, sensors, options.sequence, k);
     });
+    progress.share(1);
     return;
   }
   const auto writer =

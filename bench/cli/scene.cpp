@@ -166,6 +166,8 @@ nlohmann::ordered_json facts_json(const GeneratedReference& reference, const Gen
 
 void make(const Options& options) {
   const GeneratedReference reference{options.scene, options.seed};
+  if (options.scan_look && options.out.empty())
+    throw InputError("--scan-look writes a mesh: name its file by --out FILE.glb or FILE.ply");
   if (options.scan_look)
     need_ending(options, {".glb", ".ply"});
   else if (!options.out.empty())

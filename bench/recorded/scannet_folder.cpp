@@ -77,7 +77,11 @@ class ScannetSequence : public FrameSequence {
       : recording_(open_recording(path)),
         camera_(camera_of(recording_->info().depth)),
         pixels_(recording_->info()) {
-    validate(camera_);
+    try {
+      validate(camera_);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: depth {}", path.string(), error.what()));
+    }
     for (const ClassInfo& info : classes()) palette_.push_back(ClassDistribution::one_hot(info.id));
     std::error_code error;
     const fs::path folder = fs::is_directory(path, error) ? path : path.parent_path();
@@ -90,6 +94,7 @@ class ScannetSequence : public FrameSequence {
                                   folder.string(), kLabelTableV2, kLabelTableV1));
       return;
     }
+    note_missing_labels(notes);
     const LabelTable table = load_label_table(tables[0]);
     for (const auto& [id, class_id] : table.class_of_id)
       if (id < class_of_id_.size()) class_of_id_[id] = class_id;
@@ -130,6 +135,20 @@ class ScannetSequence : public FrameSequence {
   }
 
  private:
+  void note_missing_labels(std::vector<std::string>& notes) const {
+    std::size_t missing = 0;
+    std::uint32_t first = 0;
+    for (std::size_t i = size(); i-- > 0;)
+      if (const std::uint32_t number = recording_->number(i); !labels_->contains(number)) {
+        ++missing;
+        first = number;
+      }
+    if (missing > 0)
+      notes.push_back(
+          fmt::format("{}: {} of {} frames have no labels there (the first is frame {})",
+                      labels_->place(), missing, size(), first));
+  }
+
   Grid2d<Rgb8> colour_at(const Grid2d<Rgb8>& picture, const cv::Mat& columns,
                          const cv::Mat& rows) const {
     const cv::Mat full(picture.height(), picture.width(), CV_8UC3,
@@ -157,9 +176,9 @@ class ScannetSequence : public FrameSequence {
     const bool as_colour = ids.width() == lens.width_px && ids.height() == lens.height_px;
     const bool as_depth = ids.width() == camera_.width_px && ids.height() == camera_.height_px;
     if (!as_colour && !as_depth)
-      throw InputError(fmt::format("label-filt/{}.png: is {} x {}, the colour pictures are {} x {}",
-                                   number, ids.width(), ids.height(), lens.width_px,
-                                   lens.height_px));
+      throw InputError(fmt::format("{}: {}.png: is {} x {}, the colour pictures are {} x {}",
+                                   labels_->place(), number, ids.width(), ids.height(),
+                                   lens.width_px, lens.height_px));
     Grid2d<std::uint8_t> result(camera_.width_px, camera_.height_px, kVoid);
     for (int y = 0; y < result.height(); ++y)
       for (int x = 0; x < result.width(); ++x) {
@@ -185,12 +204,12 @@ Grid2d<std::uint16_t> widened(const Grid2d<Id>& ids) {
   return wide;
 }
 
+}  // namespace
+
 std::uint16_t millimetres(float depth_m) {
   const double units = std::round(kScannetDepthPerMetre * static_cast<double>(depth_m));
-  return units > 65535.0 ? std::uint16_t{0} : static_cast<std::uint16_t>(std::max(units, 0.0));
+  return units > 0.0 && units <= 65535.0 ? static_cast<std::uint16_t>(units) : std::uint16_t{0};
 }
-
-}  // namespace
 
 RecordedLens recorded_lens(const Camera& camera) {
   return {camera.width_px,

@@ -28,6 +28,9 @@ std::unique_ptr<FrameSequence> open_scannet(const std::filesystem::path& path,
 /// Of the 16-bit depth that is written.
 inline constexpr double kScannetDepthPerMetre = 1000;
 
+/// A depth in that unit; 0, none, beyond 65.5 m or where it is no number.
+std::uint16_t millimetres(float depth_m);
+
 /// What a recording says of a camera that is the device itself.
 RecordedLens recorded_lens(const Camera& camera);
 

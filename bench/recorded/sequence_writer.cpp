@@ -14,7 +14,9 @@
 #include "bench/pictures/canvas.hpp"
 #include "bench/recorded/scannet_folder.hpp"
 #include "bench/recorded/tum_folder.hpp"
+#include "scenes/picture_file.hpp"
 #include "scenes/scannet/files.hpp"
+#include "scenes/scannet/label_table.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -22,8 +24,6 @@ namespace mh {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int kJpegQuality = 95;
 
 std::string rows(const Eigen::Matrix4d& m) {
   std::string text;
@@ -50,14 +50,11 @@ class ScanNetWriter : public SequenceWriter {
   void add(std::size_t index, const RgbdFrame& frame, const RenderedFrame& exact,
            const SE3& world_from_camera) override {
     const std::string name = std::to_string(index);
-    write_picture(folder_ / "color" / (name + ".jpg"), colour_picture(frame.colour),
-                  {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+    write_atomically(folder_ / "color" / (name + ".jpg"),
+                     encode_jpeg(frame.colour, kRecordedJpegQuality));
     cv::Mat depth(frame.depth_m.height(), frame.depth_m.width(), CV_16UC1);
-    std::transform(
-        frame.depth_m.begin(), frame.depth_m.end(), depth.begin<std::uint16_t>(), [](float m) {
-          const double units = std::round(static_cast<double>(m) * kScannetDepthPerMetre);
-          return static_cast<std::uint16_t>(std::clamp(units, 0.0, 65535.0));
-        });
+    std::transform(frame.depth_m.begin(), frame.depth_m.end(), depth.begin<std::uint16_t>(),
+                   millimetres);
     write_picture(folder_ / "depth" / (name + ".png"), depth, png_);
     write_picture(folder_ / "label-filt" / (name + ".png"), ids(exact.classes), png_);
     write_picture(folder_ / "instance-filt" / (name + ".png"), ids(exact.instances), png_);
@@ -84,12 +81,7 @@ class ScanNetWriter : public SequenceWriter {
     write_atomically(folder_ / "intrinsic" / "intrinsic_depth.txt", k);
     write_atomically(folder_ / "intrinsic" / "extrinsic_color.txt", identity);
     write_atomically(folder_ / "intrinsic" / "extrinsic_depth.txt", identity);
-    std::string labels = "id\traw_category\tcategory\tcount\tnyu40id\tnyu40class\n";
-    for (const ClassInfo& info : classes())
-      if (info.id != kVoid)
-        labels += fmt::format("{0}\t{1}\t{1}\t0\t{2}\t{3}\n", info.id, info.name, info.nyu40,
-                              classes()[info.nyu40].name);
-    write_atomically(folder_ / kLabelTableV2, labels);
+    write_atomically(folder_ / kLabelTableV2, label_table_text());
     // Named as the info file of an extracted .sens, which readers look into.
     write_atomically(
         folder_ / "_info.txt",

@@ -13,7 +13,7 @@
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "bench/recorded/tum_list.hpp"
-#include "slam/core/file_errors.hpp"
+#include "scenes/picture_file.hpp"
 #include "slam/core/files.hpp"
 #include "slam/pipeline/settings.hpp"
 
@@ -43,8 +43,11 @@ const Listed* nearest(const std::vector<Listed>& entries, Stamp stamp_ns) {
 }
 
 cv::Mat read_picture(const fs::path& file, int type, const Camera& camera) {
-  require_readable(file);
-  const cv::Mat picture = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
+  const std::string bytes = read_file(file);
+  if (const char* fault = picture_fault(bytes))
+    throw InputError(fmt::format("{}: {}", file.string(), fault));
+  const cv::Mat view(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
+  const cv::Mat picture = bytes.empty() ? cv::Mat() : cv::imdecode(view, cv::IMREAD_UNCHANGED);
   if (picture.empty())
     throw InputError(fmt::format("{}: is no picture, or a damaged one", file.string()));
   if (picture.type() != type)

@@ -29,14 +29,17 @@ namespace {
 
 /// What is particular to a file format.
 struct Format {
-  bool ply = false, gltf = false, y_up = false;
+  bool ply = false, gltf = false, obj = false, y_up = false;
 };
 
 Format format_of(const fs::path& file) {
   std::string ending = file.extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
   const bool gltf = ending == ".glb" || ending == ".gltf";
-  return {.ply = ending == ".ply", .gltf = gltf, .y_up = gltf || ending == ".dae"};
+  return {.ply = ending == ".ply",
+          .gltf = gltf,
+          .obj = ending == ".obj",
+          .y_up = gltf || ending == ".dae"};
 }
 
 /// The class that a glTF node's extras name, by name or by number.
@@ -230,6 +233,27 @@ const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Form
   return *in;
 }
 
+/// assimp looks for an OBJ's materials in the file that mtllib names, then in one named as the OBJ,
+/// and goes without in silence.
+void warn_of_missing_materials(const fs::path& file, std::vector<std::string>* warnings) {
+  if (warnings == nullptr || fs::exists(fs::path(file).replace_extension(".mtl"))) return;
+  const HeldBytes held = map_file(file);
+  constexpr std::string_view kKey = "mtllib";
+  for (std::size_t at = 0; (at = held.view.find(kKey, at)) != held.view.npos; at += kKey.size()) {
+    std::string_view rest = held.view.substr(at + kKey.size());
+    const bool begins_line = at == 0 || held.view[at - 1] == '\n';
+    if (!begins_line || (!rest.starts_with(' ') && !rest.starts_with('\t'))) continue;
+    rest = rest.substr(0, rest.find_first_of("\r\n"));
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+    rest = rest.substr(0, rest.find_last_not_of(" \t") + 1);
+    std::error_code error;
+    if (!fs::exists(file.parent_path() / rest, error))
+      warnings->push_back(fmt::format("{}:{}: mtllib {} is missing: what it colours is grey",
+                                      file.string(),
+                                      1 + std::ranges::count(held.view.substr(0, at), '\n'), rest));
+  }
+}
+
 /// assimp gives a mesh without a material a grey one; vertex colours should show as they are.
 void whiten_default_material(const Format& format, Scene& scene) {
   if (scene.colours.empty() && scene.light.empty()) return;
@@ -270,11 +294,15 @@ Scene load_mesh(const fs::path& file, std::vector<std::string>* warnings, const 
   const Format format = format_of(file);
   if (format.ply) {
     const HeldBytes held = map_file(file);
-    if (is_plain_binary_ply(held.view))
-      return finished(scene_of(parse_ply(held.view, file.string()), file), file);
+    if (is_plain_binary_ply(held.view)) {
+      PlyMesh mesh = parse_ply(held.view, file.string());
+      warn_of_bytes_left(mesh, file, warnings);
+      return finished(scene_of(std::move(mesh), file), file);
+    }
   }
   Assimp::Importer importer;
   const aiScene& in = read(importer, file, format);
+  if (format.obj) warn_of_missing_materials(file, warnings);
   Scene scene;
   scene.name = file.stem().string();
   scene.materials = convert_materials(in, file, format.gltf, warnings);

@@ -27,8 +27,9 @@ namespace {
 constexpr Rgb8 kMissing{255, 0, 255};  // seen at once, and in no real room
 
 struct Picture {
-  Grid2d<Rgb8> colour;
-  Grid2d<std::uint8_t> opacity;  ///< empty if the file has none
+  Grid2d<Rgb8> colour{};
+  Grid2d<std::uint8_t> opacity{};       ///< empty if the file has none
+  const char* fault = "is no picture";  ///< why colour is empty, where it is
 };
 
 /// One channel as a picture of its own.
@@ -41,6 +42,8 @@ Grid2d<std::uint8_t> channel_of(const cv::Mat& picture, int channel) {
 
 /// The picture in these bytes; empty if they hold none.
 Picture decode(const void* data, std::size_t size) {
+  if (const char* fault = picture_fault({static_cast<const char*>(data), size}))
+    return {.fault = fault};
   if (size == 0 || size > std::numeric_limits<int>::max() ||
       claims_too_much({static_cast<const char*>(data), size}))
     return {};
@@ -77,7 +80,8 @@ Picture decode(const void* data, std::size_t size) {
 Picture convert_embedded(const aiTexture& texture) {
   if (texture.mHeight == 0) return decode(texture.pcData, texture.mWidth);
   const int width = static_cast<int>(texture.mWidth), height = static_cast<int>(texture.mHeight);
-  Picture picture{Grid2d<Rgb8>(width, height), Grid2d<std::uint8_t>(width, height)};
+  Picture picture{.colour = Grid2d<Rgb8>(width, height),
+                  .opacity = Grid2d<std::uint8_t>(width, height)};
   for (std::size_t i = 0; i < picture.colour.size(); ++i) {
     const aiTexel& t = texture.pcData[i];
     picture.colour.data()[i] = {t.r, t.g, t.b};
@@ -88,7 +92,7 @@ Picture convert_embedded(const aiTexture& texture) {
 
 Picture read_picture(const fs::path& path) {
   std::error_code error;
-  if (!fs::is_regular_file(path, error)) return {};
+  if (!fs::is_regular_file(path, error)) return {.fault = "is missing"};
   const std::string bytes = read_file(path);
   return decode(bytes.data(), bytes.size());
 }
@@ -168,8 +172,8 @@ Material convert(const aiScene& in, const aiMaterial& record, const fs::path& fi
   const auto find = [&](const aiString& name) {
     Picture picture = find_texture(in, name.C_Str(), file.parent_path());
     if (picture.colour.empty() && warnings)
-      warnings->push_back(fmt::format("{}: material {}: texture {} is missing or no picture",
-                                      file.string(), material.name, name.C_Str()));
+      warnings->push_back(fmt::format("{}: material {}: texture {} {}", file.string(),
+                                      material.name, name.C_Str(), picture.fault));
     return picture;
   };
   Picture picture = find(texture);

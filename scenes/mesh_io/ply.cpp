@@ -224,6 +224,8 @@ class BodyParser {
     }
     if (!has_vertices) fail("the header names no element 'vertex'");
     if (!has_faces) fail("the header names no element 'face'");
+    const std::size_t last = body_.substr(at_).find_last_not_of(" \t\r\n");
+    mesh_.bytes_left = last == body_.npos ? 0 : last + 1;
     return std::move(mesh_);
   }
 
@@ -335,8 +337,9 @@ class BodyParser {
     for (std::uint64_t face = 0; face < element.count; ++face) {
       if (usual && body_.size() - at_ >= 13 && body_[at_] == 3) {
         const char* at = body_.data() + at_ + 1;
-        add_triangle(face, {load<std::uint32_t>(at), load<std::uint32_t>(at + 4),
-                            load<std::uint32_t>(at + 8)});
+        add_triangle(
+            face, indices->type,
+            {load<std::uint32_t>(at), load<std::uint32_t>(at + 4), load<std::uint32_t>(at + 8)});
         at_ += 13;
       } else {
         read_face(element, indices, face);
@@ -344,9 +347,12 @@ class BodyParser {
     }
   }
 
-  void add_triangle(std::uint64_t face, const std::array<std::uint32_t, 3>& triangle) {
+  /// @pre type has 32 bits
+  void add_triangle(std::uint64_t face, Type type, const std::array<std::uint32_t, 3>& triangle) {
     for (const std::uint32_t vertex : triangle)
-      if (vertex >= vertices_) fail_index(face, vertex);
+      if (vertex >= vertices_)
+        fail_index(face, type == Type::kInt32 ? std::int64_t{static_cast<std::int32_t>(vertex)}
+                                              : std::int64_t{vertex});
     mesh_.triangles.push_back(triangle);
   }
 
@@ -387,6 +393,9 @@ class BodyParser {
       }
       const List list = read_list(element, property, face);
       if (&property != indices) continue;
+      // Nothing to be seen; and where a count is damaged, all that follows is read askew.
+      if (list.count < 3)
+        fail(fmt::format("face {} has {} corners: 3 are needed", face, list.count));
       const auto corner = [&](std::size_t k) {
         const double vertex = load_number(property.type, list.items + k * size_of(property.type));
         if (vertex < 0 || vertex >= static_cast<double>(vertices_))
@@ -446,6 +455,13 @@ PlyMesh parse_ply(std::string_view bytes, const std::string& name, const PlyPart
 PlyMesh read_ply(const std::filesystem::path& file, const PlyParts& parts) {
   const HeldBytes held = map_file(file);
   return parse_ply(held.view, file.string(), parts);
+}
+
+void warn_of_bytes_left(const PlyMesh& mesh, const std::filesystem::path& file,
+                        std::vector<std::string>* warnings) {
+  if (mesh.bytes_left > 0 && warnings != nullptr)
+    warnings->push_back(fmt::format("{}: {} bytes follow the last element and are not read",
+                                    file.string(), mesh.bytes_left));
 }
 
 std::string ply_bytes(const PlyMesh& mesh) {

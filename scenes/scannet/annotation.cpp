@@ -2,6 +2,7 @@
 #include "scenes/scannet/annotation.hpp"
 
 #include <limits>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -109,10 +110,16 @@ std::vector<std::uint32_t> parse_segments(std::string_view json, const std::stri
 
 std::vector<SegmentGroup> parse_aggregation(std::string_view json, const std::string& name) {
   std::vector<SegmentGroup> groups;
+  std::map<std::uint32_t, std::size_t> place_of;  // by objectId
   try {
     const Json root = Json::parse(json.begin(), json.end());
     for (const Json& item : root.at("segGroups")) try {
-        groups.push_back(read_group(item));
+        SegmentGroup group = read_group(item);
+        const auto [first, is_new] = place_of.try_emplace(group.object, groups.size());
+        if (!is_new)
+          throw InputError(fmt::format("objectId {} is that of segGroups[{}] already", group.object,
+                                       first->second));
+        groups.push_back(std::move(group));
       } catch (const std::exception& error) {
         throw InputError(fmt::format("segGroups[{}]: {}", groups.size(), error.what()));
       }

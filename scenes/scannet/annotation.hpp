@@ -21,7 +21,7 @@ struct SegmentGroup {
 std::vector<std::uint32_t> parse_segments(std::string_view json, const std::string& name);
 
 /// Reads *.aggregation.json.
-/// @throws InputError naming file and group.
+/// @throws InputError naming file and group: damaged JSON, an objectId that two groups have.
 std::vector<SegmentGroup> parse_aggregation(std::string_view json, const std::string& name);
 
 /// The two files' content, for the scene of that id.

@@ -15,7 +15,6 @@ namespace mh {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kJpegQuality = 92;
 
 std::string matrix_text(const Eigen::Matrix4d& matrix) {
   std::string text;
@@ -65,7 +64,7 @@ void save_extracted(const fs::path& folder, const RecordingInfo& info, std::size
     const RecordedMoment moment = frame_at(i);
     const double lost = -std::numeric_limits<double>::infinity();
     write_atomically(folder / "color" / fmt::format("{}.jpg", i),
-                     encode_jpeg(moment.colour, kJpegQuality));
+                     encode_jpeg(moment.colour, kRecordedJpegQuality));
     write_atomically(folder / "depth" / fmt::format("{}.png", i), encode_png(moment.depth));
     write_atomically(
         folder / "pose" / fmt::format("{}.txt", i),

@@ -21,6 +21,8 @@ namespace fs = std::filesystem;
 constexpr zip_uint64_t kLargestEntry = 1U << 28;
 
 Grid2d<std::uint16_t> decode(std::string_view bytes, const std::string& name) {
+  if (const char* fault = picture_fault(bytes))
+    throw InputError(fmt::format("{}: {}", name, fault));
   auto picture = decode_grey16(bytes);
   if (!picture) throw InputError(fmt::format("{}: is no picture of one channel", name));
   return std::move(*picture);
@@ -28,7 +30,10 @@ Grid2d<std::uint16_t> decode(std::string_view bytes, const std::string& name) {
 
 class LabelFolder : public LabelImages {
  public:
-  explicit LabelFolder(const fs::path& folder) : files_(folder, {".png"}) {}
+  explicit LabelFolder(const fs::path& folder)
+      : files_(folder, {".png"}), place_(folder.string()) {}
+  const std::string& place() const override { return place_; }
+  bool contains(std::uint32_t number) const override { return files_.contains(number); }
   std::optional<Grid2d<std::uint16_t>> read(std::uint32_t number) const override {
     if (!files_.contains(number)) return std::nullopt;
     const fs::path& file = files_.file(number);
@@ -37,6 +42,7 @@ class LabelFolder : public LabelImages {
 
  private:
   NumberedFiles files_;
+  std::string place_;
 };
 
 /// Whether an entry would land outside of the folder that a zip is unpacked into.
@@ -49,6 +55,8 @@ bool points_outside(const std::string& entry) {
 class LabelZip : public LabelImages {
  public:
   LabelZip(HeldBytes bytes, const std::string& name) : held_(std::move(bytes)), name_(name) {
+    // libzip takes nothing at all for a zip without entries.
+    if (held_.view.empty()) throw InputError(fmt::format("{}: is empty: no zip", name_));
     zip_error_t error;
     zip_error_init(&error);
     zip_source_t* source =
@@ -65,6 +73,8 @@ class LabelZip : public LabelImages {
     index_entries();
   }
 
+  const std::string& place() const override { return name_; }
+  bool contains(std::uint32_t number) const override { return entries_.contains(number); }
   std::optional<Grid2d<std::uint16_t>> read(std::uint32_t number) const override {
     const auto found = entries_.find(number);
     if (found == entries_.end()) return std::nullopt;

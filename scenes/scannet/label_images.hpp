@@ -18,6 +18,10 @@ namespace mh {
 class LabelImages {
  public:
   virtual ~LabelImages() = default;
+  /// The folder or zip that they lie in.
+  virtual const std::string& place() const = 0;
+  /// Whether a frame has one.
+  virtual bool contains(std::uint32_t number) const = 0;
   /// The picture of a frame; nullopt where there is none. @throws InputError if it is damaged.
   virtual std::optional<Grid2d<std::uint16_t>> read(std::uint32_t number) const = 0;
 };

@@ -47,8 +47,17 @@ class TableParser {
     const auto lines = lines_of(text);
     if (lines.empty()) fail(1, "is empty");
     read_header(cells_of(lines[0]));
-    for (std::size_t i = 1; i < lines.size(); ++i)
-      if (!lines[i].empty()) read_row(cells_of(lines[i]), i + 1);
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+      if (lines[i].empty()) continue;
+      const auto cells = cells_of(lines[i]);
+      // What follows the classes may be left out; where the file ends in the row, it was cut.
+      const bool ends_file = i + 1 == lines.size() && !text.ends_with('\n');
+      const std::size_t needed = ends_file ? columns_ : needed_;
+      if (cells.size() < needed)
+        fail(i + 1, fmt::format("is cut short: the row has {} cells, the header has {}",
+                                cells.size(), columns_));
+      read_row(cells, i + 1);
+    }
     if (table_.class_of_category.empty()) fail(1, "has no row");
     return std::move(table_);
   }
@@ -74,6 +83,8 @@ class TableParser {
     if (category_ == kNone) fail(1, "has neither a column 'raw_category' (v2) nor 'category' (v1)");
     if (nyu40_id_ == kNone && nyu40_class_ == kNone)
       fail(1, "has neither a column 'nyu40id' nor 'nyu40class'");
+    columns_ = names.size();
+    needed_ = std::min(nyu40_id_, nyu40_class_) + 1;
   }
 
   void read_row(const std::vector<std::string_view>& cells, std::size_t line) {
@@ -104,21 +115,21 @@ class TableParser {
 
   ClassId class_of(std::string_view own, std::string_view nyu40_id, std::string_view nyu40_class,
                    std::size_t line) const {
+    const auto id = number(nyu40_id, line, "NYU40 id");
+    if (id && *id > kLastNyu40) fail(line, fmt::format("{} is no NYU40 id", *id));
     if (!own.empty()) {
       const auto found = class_by_name(own);
       if (!found) fail(line, fmt::format("'{}' is no class", own.substr(0, 40)));
       return *found;
     }
-    if (const auto id = number(nyu40_id, line, "NYU40 id")) {
-      if (*id > kLastNyu40) fail(line, fmt::format("{} is no NYU40 id", *id));
-      return static_cast<ClassId>(*id);
-    }
+    if (id) return static_cast<ClassId>(*id);
     return class_by_name(nyu40_class).value_or(kVoid);
   }
 
   static constexpr std::size_t kNone = ~std::size_t{0};
   LabelTable table_;
   std::uint32_t rows_ = 0;
+  std::size_t columns_ = 0, needed_ = 0;  ///< of the header; up to the first that tells a class
   std::size_t category_ = kNone, id_ = kNone, nyu40_id_ = kNone, nyu40_class_ = kNone, own_ = kNone;
 };
 

@@ -37,6 +37,18 @@ struct VertexLabels {
   std::vector<InstanceId> instances;
 };
 
+struct Object {
+  InstanceId instance = 0;
+  std::optional<ClassId> class_id;  ///< nullopt where nobody knows its category
+};
+
+/// Which object a segment belongs to, and whether any vertex has it.
+struct Claim {
+  std::size_t object = 0;
+  bool in_mesh = false;
+};
+using Claims = std::unordered_map<std::uint32_t, Claim>;  // by segment; looked up, never walked
+
 class Loader {
  public:
   Loader(const ScannetFiles& files, std::vector<std::string>* warnings)
@@ -44,6 +56,7 @@ class Loader {
 
   Scene load() {
     PlyMesh mesh = read_ply(files_.mesh);
+    warn_of_bytes_left(mesh, files_.mesh, warnings_);
     if (mesh.triangles.empty())
       throw InputError(fmt::format("{}: has no faces to be seen", files_.mesh.string()));
     scene_.name = files_.scene_id;
@@ -94,13 +107,13 @@ class Loader {
                                    labels_.size(), scene_.positions_m.size()));
   }
 
-  /// Where the tables of both releases lie side by side, labels beyond NYU40 or a missing alignment
-  /// tell that the scene is of v1.
+  /// Where the tables of both releases lie side by side, a missing alignment tells that the scene
+  /// is of v1.
   void choose_table() {
     const std::vector<fs::path> tables = find_label_tables(files_.mesh.parent_path());
     greatest_label_ = labels_.empty() ? 0 : *std::ranges::max_element(labels_);
     if (tables.empty()) return;
-    const bool first = tables.size() == 1 || (greatest_label_ <= kLastNyu40 && aligned_);
+    const bool first = tables.size() == 1 || aligned_;
     table_ = load_label_table(first ? tables[0] : tables[1]);
   }
 
@@ -120,13 +133,16 @@ class Loader {
       throw InputError(fmt::format("{}: has segments of {} vertices, the mesh has {}",
                                    files_.segments.string(), segments.size(),
                                    scene_.positions_m.size()));
-    enter_objects(parse_aggregation(read_file(files_.aggregation), files_.aggregation.string()),
-                  segments, vertices);
+    const std::vector<SegmentGroup> groups =
+        parse_aggregation(read_file(files_.aggregation), files_.aggregation.string());
+    label_objects(enter_objects(groups), groups, segments, vertices);
     return vertices;
   }
 
   std::vector<ClassId> classes_of_labels() {
-    raw_ids_ = greatest_label_ > kLastNyu40 || (table_ && table_->release == ScannetRelease::kV1);
+    // Some aligned scenes of v2 (scene0270_00 and others) hold a few labels beyond NYU40.
+    raw_ids_ = (greatest_label_ > kLastNyu40 && !aligned_) ||
+               (table_ && table_->release == ScannetRelease::kV1);
     if (raw_ids_ && !table_)
       throw InputError(
           fmt::format("{}: holds label {}, which is no NYU40 id but one of a label table: neither "
@@ -137,7 +153,8 @@ class Loader {
     std::vector<bool> unknown(class_of.size(), false);
     for (std::uint32_t label = 1; label < class_of.size(); ++label) {
       if (!raw_ids_) {
-        class_of[label] = static_cast<ClassId>(label);
+        unknown[label] = label > kLastNyu40;
+        if (!unknown[label]) class_of[label] = static_cast<ClassId>(label);
         continue;
       }
       const auto found = table_->class_of_id.find(label);
@@ -151,8 +168,9 @@ class Loader {
       lost += unknown[labels_[v]];
     }
     if (lost > 0)
-      warn(fmt::format("{}: {} of {} vertices carry an id that {} lacks: unlabelled",
-                       labels_file_.string(), lost, labels_.size(), table_->file));
+      warn(fmt::format("{}: {} of {} vertices carry a label that {} lacks (up to {}): not used",
+                       labels_file_.string(), lost, labels_.size(),
+                       raw_ids_ ? table_->file : "NYU40", greatest_label_));
     return classes;
   }
 
@@ -164,16 +182,11 @@ class Loader {
     return found->second;
   }
 
-  void enter_objects(const std::vector<SegmentGroup>& groups,
-                     const std::vector<std::uint32_t>& segments, VertexLabels& vertices) {
-    struct Object {
-      InstanceId instance = 0;
-      std::optional<ClassId> class_id;
-    };
-    std::vector<Object> objects;
-    std::unordered_map<std::uint32_t, std::size_t> object_of_segment;  // looked up, never walked
+  /// @returns whose each segment is, as places in objects_
+  Claims enter_objects(const std::vector<SegmentGroup>& groups) {
+    Claims claims;
     std::set<std::string> unknown;
-    std::set<InstanceId> entered;
+    std::set<std::uint32_t> shared;
     std::size_t unlabelled = 0;
     for (const SegmentGroup& group : groups) {
       if (group.object > kLastObject)
@@ -184,36 +197,59 @@ class Loader {
         ++unlabelled;
         unknown.insert(group.category);
       }
-      if (entered.insert(object.instance).second)
-        scene_.instances.push_back(
-            {.id = object.instance,
-             .class_id = object.class_id.value_or(kVoid),
-             .name = group.name.empty() ? fmt::format("{}_{}", group.category, object.instance)
-                                        : group.name});
-      for (const std::uint32_t segment : group.segments)
-        object_of_segment[segment] = objects.size();
-      objects.push_back(object);
+      scene_.instances.push_back(
+          {.id = object.instance,
+           .class_id = object.class_id.value_or(kVoid),
+           .name = group.name.empty() ? fmt::format("{}_{}", group.category, object.instance)
+                                      : group.name});
+      for (const std::uint32_t segment : group.segments) {
+        const auto [claim, is_new] = claims.try_emplace(segment, Claim{objects_.size()});
+        if (!is_new && claim->second.object != objects_.size()) shared.insert(segment);
+        claim->second.object = objects_.size();
+      }
+      objects_.push_back(object);
     }
     std::ranges::sort(scene_.instances, {}, &Instance::id);
     make_names_unique();
     if (unlabelled > 0) warn_unlabelled(unlabelled, groups.size(), unknown);
+    if (!shared.empty())  // scene0217_00 of release v2 names all its objects twice
+      warn(
+          fmt::format("{}: {} of {} segments belong to several objects (such as segment {}): the "
+                      "last object counts",
+                      files_.aggregation.string(), shared.size(), claims.size(), *shared.begin()));
+    return claims;
+  }
 
+  /// Gives the vertices of every object's segments its instance and class.
+  void label_objects(Claims claims, const std::vector<SegmentGroup>& groups,
+                     const std::vector<std::uint32_t>& segments, VertexLabels& vertices) const {
     const bool labelled = !vertices.classes.empty();
     vertices.classes.resize(segments.size(), kVoid);
     vertices.instances.assign(segments.size(), 0);
     const Object* object = nullptr;
     for (std::size_t v = 0; v < segments.size(); ++v) {
       if (v == 0 || segments[v] != segments[v - 1]) {
-        const auto found = object_of_segment.find(segments[v]);
-        object = found == object_of_segment.end() ? nullptr : &objects[found->second];
+        const auto found = claims.find(segments[v]);
+        object = found == claims.end() ? nullptr : &objects_[found->second.object];
+        if (object != nullptr) found->second.in_mesh = true;
       }
       if (object == nullptr) continue;
       vertices.instances[v] = object->instance;
       if (!object->class_id)
         vertices.classes[v] = kVoid;
-      else if (!labelled || raw_ids_ || classes()[*object->class_id].nyu40 == vertices.classes[v])
+      else if (!labelled || raw_ids_ || labels_[v] > kLastNyu40 ||
+               classes()[*object->class_id].nyu40 == vertices.classes[v])
         vertices.classes[v] = *object->class_id;
     }
+    std::set<std::uint32_t> absent;
+    for (const SegmentGroup& group : groups)
+      for (const std::uint32_t segment : group.segments)
+        if (!claims.at(segment).in_mesh) absent.insert(segment);
+    if (!absent.empty())
+      warn(
+          fmt::format("{}: {} of the {} segments of its objects are no vertex's (such as segment "
+                      "{}): passed over",
+                      files_.aggregation.string(), absent.size(), claims.size(), *absent.begin()));
   }
 
   /// Names that people typed may repeat where a file of ours was changed by hand.
@@ -274,6 +310,7 @@ class Loader {
   std::uint16_t greatest_label_ = 0;
   bool raw_ids_ = false;  ///< labels are raw category ids
   std::optional<LabelTable> table_;
+  std::vector<Object> objects_;
 };
 
 }  // namespace

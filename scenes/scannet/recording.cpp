@@ -69,8 +69,8 @@ class ExtractedFolder : public Recording {
   RecordedMoment frame(std::size_t index) const override {
     const fs::path colour_file = colour_.file(numbers_[index]);
     const fs::path depth_file = depth_.file(numbers_[index]);
-    auto colour = decode_colour(read_file(colour_file));
-    auto depth = decode_grey16(read_file(depth_file));
+    auto colour = decode_colour(read_whole(colour_file));
+    auto depth = decode_grey16(read_whole(depth_file));
     if (!colour)
       throw InputError(fmt::format("{}: is no picture of 3 x 8 bits", colour_file.string()));
     if (!depth) throw InputError(fmt::format("{}: is no picture of 16 bits", depth_file.string()));
@@ -80,6 +80,13 @@ class ExtractedFolder : public Recording {
   }
 
  private:
+  static std::string read_whole(const fs::path& file) {
+    std::string bytes = read_file(file);
+    if (const char* fault = picture_fault(bytes))
+      throw InputError(fmt::format("{}: {}", file.string(), fault));
+    return bytes;
+  }
+
   PictureSize announced(const NumberedFiles& files) const {
     const fs::path file = files.file(numbers_.front());
     const auto size = announced_size(read_file(file));
@@ -154,13 +161,17 @@ RecordedLens lens_of(const Eigen::Matrix4d& intrinsics, const Eigen::Matrix4d& e
   return result;
 }
 
+bool is_rotation(const Eigen::Matrix3d& matrix) {
+  // Written with six decimals or as floats, so far from a rotation that the quaternion matters not.
+  constexpr double kTolerance = 1e-2;
+  const Eigen::Matrix3d square = matrix * matrix.transpose();
+  return square.isIdentity(kTolerance) && matrix.determinant() > 0;
+}
+
 std::optional<SE3> pose_of(const Eigen::Matrix4d& matrix, const std::string& what) {
   if (!matrix.allFinite()) return std::nullopt;
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
-  // Written with six decimals or as floats, so far from a rotation that the quaternion matters not.
-  constexpr double kTolerance = 1e-2;
-  const Eigen::Matrix3d square = rotation * rotation.transpose();
-  if (!square.isIdentity(kTolerance) || rotation.determinant() < 0)
+  if (!is_rotation(rotation))
     throw InputError(fmt::format("{}: the upper left 3 x 3 of a pose is no rotation", what));
   return SE3(Eigen::Quaterniond(rotation), matrix.topRightCorner<3, 1>());
 }

@@ -15,6 +15,9 @@
 
 namespace mh {
 
+/// Of the colour pictures that are written.
+inline constexpr int kRecordedJpegQuality = 95;
+
 /// One of a recording's two cameras: a pinhole, without distortion, pixel centres at integers.
 struct RecordedLens {
   int width_px = 0, height_px = 0;
@@ -61,6 +64,8 @@ std::unique_ptr<Recording> open_recording(const std::filesystem::path& path);
 /// none.
 RecordedLens lens_of(const Eigen::Matrix4d& intrinsics, const Eigen::Matrix4d& extrinsics,
                      int width_px, int height_px, const std::string& what);
+/// Whether it is a rotation, as far as files with few decimals tell.
+bool is_rotation(const Eigen::Matrix3d& matrix);
 /// A rigid transform; nullopt if any number is not finite, ScanNet's mark of an invalid frame.
 std::optional<SE3> pose_of(const Eigen::Matrix4d& matrix, const std::string& what);
 Eigen::Matrix4d intrinsics_of(const RecordedLens& lens);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/scannet/recording.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
@@ -26,6 +27,8 @@ Eigen::Matrix4d read_matrix(const std::string& text) {
   if (numbers >> more) throw InputError(fmt::format("'{}' follows the 16th number", more));
   if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
     throw InputError("the last row must be 0 0 0 1");
+  if (!is_rotation(matrix.topLeftCorner<3, 3>()))
+    throw InputError("the upper left 3 x 3 is no rotation: it squeezes, stretches or mirrors");
   return matrix;
 }
 

@@ -28,7 +28,6 @@ constexpr std::uint32_t kVersion = 4;
 constexpr std::uint64_t kLongestName = 4096;
 constexpr std::uint32_t kLongestSide_px = 16384;
 constexpr std::uint64_t kDeflateLimit = 1032;  // no deflate stream grows by more (zlib's manual)
-constexpr int kJpegQuality = 92;
 enum ColourKind : std::int32_t { kRawColour = 0, kPng = 1, kJpeg = 2 };
 enum DepthKind : std::int32_t { kRawDepth = 0, kZlib = 1 };
 
@@ -83,6 +82,7 @@ class SensFile : public Recording {
     Cursor cursor(held_.view, name_);
     const std::uint64_t frames = read_header(cursor);
     for (std::uint64_t i = 0; i < frames; ++i) frames_.push_back(read_record(cursor, i));
+    if (frames_.empty()) throw InputError(fmt::format("{}: holds no frame", name_));
     mend_stamps();
   }
 
@@ -191,8 +191,10 @@ class SensFile : public Recording {
     if (size->width != static_cast<std::uint32_t>(lens.width_px) ||
         size->height != static_cast<std::uint32_t>(lens.height_px))
       fail_size(size->width, size->height);
+    if (const char* fault = picture_fault(record.colour))
+      fail(index, fmt::format("the colour picture {}", fault));
     auto picture = decode_colour(record.colour);
-    if (!picture) fail(index, "the colour picture cannot be decoded");
+    if (!picture) fail(index, "the colour picture is none of 3 x 8 bits, or damaged");
     if (picture->width() != lens.width_px || picture->height() != lens.height_px)
       fail_size(static_cast<std::uint64_t>(picture->width()),
                 static_cast<std::uint64_t>(picture->height()));
@@ -316,7 +318,7 @@ void save_sens(const fs::path& file, const RecordingInfo& info, std::size_t fram
       const RecordedMoment moment = frame_at(i);
       if (!fits(moment.colour, info.colour) || !fits(moment.depth, info.depth))
         throw InputError(fmt::format("{}: frame {} has not the cameras' size", file.string(), i));
-      const std::string colour = encode_jpeg(moment.colour, kJpegQuality);
+      const std::string colour = encode_jpeg(moment.colour, kRecordedJpegQuality);
       const std::string depth = compressed(moment.depth);
       const double lost = -std::numeric_limits<double>::infinity();
       out.put(moment.world_from_device ? matrix_of(*moment.world_from_device)

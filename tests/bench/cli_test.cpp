@@ -230,11 +230,21 @@ TEST_F(CommandLine, AnOutputFolderThatCannotBeWrittenIsFoundBeforeTheWork) {
 
 TEST_F(CommandLine, PicturesAndSequencesGoWhereTheyCanBeRead) {
   expect_refused("scene preview " + house_ + " --out " + folder_.string(), folder_.string());
+  expect_refused("scene make bathroom --scan-look", "--out");
   const std::string render = "render " + house_ + " t.yaml --robot " + robot_ + " --out ";
   expect_refused(render + folder_.string() + " --frames 0", "--frames");
   expect_refused(render + folder_.string() + " --frames -1", "--frames");
   write("rgb.txt", "");
   expect_refused(render + folder_.string(), "holds a sequence already");
+}
+
+TEST_F(CommandLine, ARecordingInScannetsFormatEndsAtAHundredPerCent) {
+  const fs::path mesh = write("m.obj", "v 0 0 0\nv 5 0 0\nv 5 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n");
+  ASSERT_EQ(run("render " + mesh.string() + " --motion handheld:0 --robot " + robot_ +
+                " --frames 2 --format scannet --out " + (folder_ / "s").string()),
+            0)
+      << err_;
+  EXPECT_TRUE(err_.ends_with("100 %\n")) << err_;
 }
 
 TEST_F(CommandLine, ASceneBecomesAScannetFolderAndIsReadBack) {

@@ -12,6 +12,7 @@
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/pictures/slice.hpp"
 #include "bench/recorded/tum_folder.hpp"
+#include "scenes/picture_file.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
@@ -101,6 +102,9 @@ TEST_F(TumFolder, NamesWhatIsWrong) {
   refused("a.png: cannot be read: no such file");
   std::ofstream(folder_ / "a.png") << "no picture";
   refused("a.png: is no picture, or a damaged one");
+  const std::string whole = encode_png(Grid2d<std::uint8_t>(8, 6));
+  std::ofstream(folder_ / "a.png", std::ios::binary) << whole.substr(0, whole.size() - 12);
+  refused("a.png: is cut short");
   std::ofstream(folder_ / "rgb.txt") << "# nothing\n";
   try {
     load_tum_folder(folder_);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/recorded/frame_files.hpp"
+#include "bench/recorded/sequence_writer.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "scenes/scannet/frame_folder.hpp"
 #include "scenes/scannet/label_images.hpp"
@@ -84,6 +85,54 @@ TEST_F(ScannetFolder, WithoutALabelTableLabelsAreLeftOutWithANote) {
   EXPECT_TRUE(open_scannet(folder_ / "s", notes)->frame(0).semantics.index.empty());
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_TRUE(names(notes[0], {"labels are left out"}));
+}
+
+TEST_F(ScannetFolder, SaysWhichFileIsWrongAndWhichLabelsAreMissing) {
+  write_scannet_recording(folder_ / "s", camera_, 2, [&](std::size_t i) { return frame(i); });
+  const fs::path table = folder_ / "s" / "scannetv2-labels.combined.tsv";
+  // cx 15.5 lies within a width of 16 pixels, but half a pixel beyond the last one's centre.
+  std::string sens = read_file(folder_ / "s" / "s.sens");
+  const std::uint32_t width = 16;
+  const std::size_t depth_width = 4 + 8 + 10 + 4 * 64 + 8 + 8;  // behind the name "Modelhouse"
+  sens.replace(depth_width, 4, std::string(reinterpret_cast<const char*>(&width), 4));
+  const auto file = write("b/narrow.sens", sens);
+  std::vector<std::string> notes;
+  EXPECT_TRUE(names(error_of([&] { open_scannet(file, notes); }), {"narrow.sens", "depth camera"}));
+
+  const auto labelled = [&](const char* name, int label_width, std::uint32_t number) {
+    write(std::string(name) + "/a.sens", read_file(folder_ / "s" / "s.sens"));
+    write(std::string(name) + "/scannetv2-labels.combined.tsv", read_file(table));
+    const auto writer = write_label_folder(folder_ / name, "label-filt");
+    writer->add(number, Grid2d<std::uint16_t>(label_width, 24));
+    return folder_ / name;
+  };
+  const auto wrong = open_scannet(labelled("c", 10, 0), notes);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_TRUE(names(notes[0], {"c/label-filt", "1 of 2 frames", "frame 1"}));
+  EXPECT_TRUE(names(error_of([&] { wrong->frame(0); }), {"c/label-filt", "0.png", "10 x 24"}));
+  EXPECT_TRUE(wrong->frame(1).semantics.index.empty());
+  notes.clear();
+  open_scannet(labelled("d", 32, 7), notes);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_TRUE(names(notes[0], {"2 of 2 frames", "frame 0"}));
+}
+
+TEST_F(ScannetFolder, BothLayoutsHoldTheSamePictures) {
+  write_scannet_recording(folder_ / "s", camera_, 1, [&](std::size_t i) { return frame(i); });
+  const ExactFrame f = frame(0);
+  const auto writer = make_sequence_writer("scannet-frames", folder_ / "f", camera_);
+  writer->add(0, f.seen, f.exact, f.world_from_camera);
+  writer->finish();
+  const std::string sens = read_file(folder_ / "s" / "s.sens");
+  const std::string jpeg = read_file(folder_ / "f" / "color" / "0.jpg");
+  EXPECT_NE(sens.find(jpeg), sens.npos);
+  const auto packed = open_recording(folder_ / "s"), loose = open_recording(folder_ / "f");
+  EXPECT_EQ(packed->frame(0).depth, loose->frame(0).depth);
+  for (const char* kind : {"label-filt", "instance-filt"})
+    EXPECT_EQ(find_label_images(folder_ / "s", kind)->read(0),
+              find_label_images(folder_ / "f", kind)->read(0));
+  std::vector<std::string> notes;
+  EXPECT_EQ(open_scannet(folder_ / "f", notes)->frame(0).semantics.at(20, 12).most_probable(), 43);
 }
 
 /// Colour has twice the pixels, another centre, and stands 10 cm to the right: a point at depth z

@@ -16,6 +16,7 @@
 #include "scenes/materials/materials.hpp"
 #include "scenes/mesh_io/node_name.hpp"
 #include "scenes/mesh_io/subdivide.hpp"
+#include "scenes/picture_file.hpp"
 #include "scenes/srgb.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -230,6 +231,28 @@ TEST_F(MeshIo, ATextureThatIsNoPictureIsNamedAndMagenta) {
   ASSERT_EQ(warnings.size(), 2U);
   EXPECT_NE(warnings[0].find("text.png"), std::string::npos);
   EXPECT_NE(warnings[1].find("huge.png"), std::string::npos);
+}
+
+TEST_F(MeshIo, ACutTextureAndAMissingMtllibAreNamed) {
+  const std::string png = encode_png(Grid2d<std::uint8_t>(64, 64));
+  write("room.mtl", "newmtl cut\nmap_Kd cut.png\n");
+  write("cut.png", png.substr(0, png.size() / 2));
+  const std::string mesh =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\no a\nusemtl cut\nf 1/1 2/2 3/3\n";
+  std::vector<std::string> warnings;
+  testing::internal::CaptureStderr();
+  load_mesh(write("room.obj", "mtllib room.mtl\n" + mesh), &warnings);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // libpng would have its say
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("cut.png is cut short"), std::string::npos);
+  warnings.clear();
+  load_mesh(write("other.obj", "# mtllib no.mtl\nmtllib gone away.mtl \r\n" + mesh), &warnings);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("other.obj:2: mtllib gone away.mtl is missing"), std::string::npos);
+  warnings.clear();
+  load_mesh(write("room.obj", "mtllib gone.mtl\n" + mesh), &warnings);  // room.mtl is taken
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("cut.png"), std::string::npos);
 }
 
 TEST_F(MeshIo, WithoutAPlanEachFloorIsARoom) {

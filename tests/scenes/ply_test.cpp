@@ -71,7 +71,7 @@ TEST(Ply, TakesAnyTypeAndOrderAndPassesOverTheUnknown) {
           "comment made by hand\nelement camera 1\nproperty list ushort float matrix\n"
           "element vertex 5\nproperty double z\nproperty ushort label\nproperty double y\n"
           "property short quality\nproperty double x\nproperty float red\nproperty float green\n"
-          "property float blue\nelement face 3\nproperty uchar flag\n"
+          "property float blue\nelement face 2\nproperty uchar flag\n"
           "property list uint ushort vertex_index\nproperty list uchar float weights\n"
           "element edge 1\nproperty int a\nproperty int b\n") +
       [] {
@@ -84,14 +84,14 @@ TEST(Ply, TakesAnyTypeAndOrderAndPassesOverTheUnknown) {
           for (const std::uint16_t corner : corners) one += raw(corner);
           return one + raw(std::uint8_t{1}) + raw(0.25F);
         };
-        return body + face({0, 1, 2}) + face({0, 1}) + face({4, 3, 2, 1, 0}) + raw(1) + raw(2);
+        return body + face({0, 1, 2}) + face({4, 3, 2, 1, 0}) + raw(1) + raw(2);
       }();
   const PlyMesh mesh = parse_ply(bytes, "mesh.ply");
   ASSERT_EQ(mesh.positions_m.size(), 5U);
   EXPECT_EQ(mesh.positions_m[3], Eigen::Vector3f(23, 13, 3));
   EXPECT_EQ(mesh.colours[0], (Rgb8{255, 128, 0}));
   EXPECT_EQ(mesh.labels[4], 4);
-  // The line of two corners cannot be seen; the pentagon is a fan of three.
+  // The pentagon is a fan of three.
   const std::vector<std::array<std::uint32_t, 3>> expected = {
       {0, 1, 2}, {4, 3, 2}, {4, 2, 1}, {4, 1, 0}};
   EXPECT_EQ(mesh.triangles, expected);
@@ -108,12 +108,31 @@ TEST(Ply, NamesTheFaceAndTheVertexThatIsNotThere) {
   mesh.triangles[1][2] = 4;
   EXPECT_TRUE(names(error_of_ply(ply_bytes(mesh)), {"face 1", "vertex 4 of 4"}));
   mesh.triangles[1][2] = 0xffffffff;  // -1 in a file of signed numbers
-  EXPECT_TRUE(names(error_of_ply(ply_bytes(mesh)), {"face 1", "of 4"}));
+  EXPECT_TRUE(names(error_of_ply(ply_bytes(mesh)), {"face 1", "vertex -1 of 4"}));
   EXPECT_TRUE(names(error_of_ply(header("element vertex 1\n" + kPoint +
                                         "element face 1\n"
                                         "property list uchar char vertex_indices\n") +
                                  points(1) + raw(std::uint8_t{3}) + std::string("\0\0\xff", 3)),
                     {"face 0", "vertex -1 of 1"}));
+}
+
+TEST(Ply, NamesTheFaceOfTooFewCorners) {
+  for (const char corners : {'\0', '\1', '\2'}) {
+    std::string bytes = ply_bytes(square());
+    bytes[bytes.size() - 26] = corners;  // the first face's count
+    EXPECT_TRUE(names(error_of_ply(bytes), {"face 0", "corners: 3 are needed"}));
+  }
+}
+
+TEST(Ply, BytesBehindTheLastElementAreWarnedAbout) {
+  std::vector<std::string> warnings;
+  warn_of_bytes_left(parse_ply(ply_bytes(square()) + "\n", "mesh.ply"), "mesh.ply", &warnings);
+  EXPECT_TRUE(warnings.empty());
+  const PlyMesh mesh = parse_ply(ply_bytes(square()) + "more\n", "mesh.ply");
+  expect_same(mesh, square());
+  warn_of_bytes_left(mesh, "mesh.ply", &warnings);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(names(warnings[0], {"mesh.ply", "4 bytes"}));
 }
 
 TEST(Ply, NamesTheVertexThatIsNotFinite) {

@@ -144,6 +144,41 @@ TEST_F(SensFile, PicturesThatAreNotWhatTheHeaderSaysAreRefused) {
   EXPECT_TRUE(names(error(damaged), {"frame 0", "decompress"}));
 }
 
+TEST_F(SensFile, ACutColourPictureIsAnErrorNotHalfAPicture) {
+  const std::string whole = bytes();
+  const std::size_t jpeg = kDepthSize + 8;
+  std::uint64_t size = 0;
+  std::memcpy(&size, whole.data() + kDepthSize - 8, sizeof size);
+  const std::size_t picture = static_cast<std::size_t>(size);
+  for (const std::size_t kept : {picture - 1, picture - 2, picture - 20}) {
+    std::string cut = with(whole, kDepthSize - 8, std::uint64_t{kept});
+    cut.erase(jpeg + kept, picture - kept);
+    EXPECT_TRUE(names(error(cut), {"a.sens", "frame 0", "colour picture is cut short"})) << kept;
+  }
+  EXPECT_TRUE(names(error(with(whole, kCount, std::uint64_t{0})), {"a.sens", "no frame"}));
+}
+
+TEST(PictureFault, TellsWhatADecoderWouldHideOrPrint) {
+  const std::string jpeg = encode_jpeg(moment(0).colour, 90), png = encode_png(moment(0).depth);
+  EXPECT_EQ(picture_fault(jpeg), nullptr);
+  EXPECT_EQ(picture_fault(png), nullptr);
+  EXPECT_EQ(picture_fault(jpeg + "behind it"), nullptr);
+  EXPECT_EQ(picture_fault("P5 some other format"), nullptr);
+  for (std::size_t size = 2; size < jpeg.size(); size += 3)
+    EXPECT_STREQ(picture_fault(jpeg.substr(0, size)), "is cut short") << size;
+  for (std::size_t size = 8; size < png.size(); size += 3)
+    EXPECT_STREQ(picture_fault(png.substr(0, size)), "is cut short") << size;
+  std::string damaged = png;
+  damaged[50] ^= 1;
+  EXPECT_TRUE(names(picture_fault(damaged), {"sum"}));
+  EXPECT_FALSE(decode_grey16(damaged));
+  // The end mark of a thumbnail within the head does not end the picture.
+  const std::string thumbnail = std::string("\xff\xe1\0\6\xff\xd8\xff\xd9", 8);
+  const std::string with_thumbnail = jpeg.substr(0, 2) + thumbnail + jpeg.substr(2);
+  EXPECT_EQ(picture_fault(with_thumbnail), nullptr);
+  EXPECT_STREQ(picture_fault(with_thumbnail.substr(0, jpeg.size() - 20)), "is cut short");
+}
+
 TEST_F(SensFile, AJpegThatClaimsAnotherSizeIsNotDecoded) {
   std::string jpeg = encode_jpeg(moment(0).colour, 90);
   const std::size_t frame_header = jpeg.find("\xff\xc0");
@@ -205,6 +240,12 @@ TEST_F(Extracted, NamesTheFileThatIsWrong) {
   EXPECT_TRUE(names(error(), {"pose/0.txt", "number 6", "'x'"}));
   write("pose/0.txt", "-inf -inf -inf -inf -inf -inf -inf -inf -inf -inf -inf -inf 0 0 0 1\n");
   EXPECT_EQ(error(), "");
+  for (const char* file : {"color/1.jpg", "depth/1.png"}) {
+    const std::string whole = read_file(folder_ / file);
+    write(file, whole.substr(0, whole.size() - 15));
+    EXPECT_TRUE(names(error(), {file, "is cut short"}));
+    write(file, whole);
+  }
   write("color/1.jpg", "no picture");
   EXPECT_TRUE(names(error(), {"color/1.jpg"}));
   fs::remove(folder_ / "intrinsic/intrinsic_depth.txt");
@@ -234,6 +275,9 @@ TEST_F(LabelImagesOf, FoldersAndZipsReadBackTheSame) {
     EXPECT_EQ(images->read(0), ids(1163));
     EXPECT_EQ(images->read(40), ids(2));
     EXPECT_FALSE(images->read(1));
+    EXPECT_TRUE(images->contains(40));
+    EXPECT_FALSE(images->contains(1));
+    EXPECT_TRUE(names(images->place(), {zipped ? "s_2d-label-filt.zip" : "label-filt"}));
     EXPECT_EQ(find_label_images(place, "instance-filt"), nullptr);
   }
 }
@@ -269,6 +313,7 @@ TEST_F(LabelImagesOf, ZipsThatPointOutsideAreDamagedOrClaimTooMuchAreRefused) {
   EXPECT_TRUE(names(error(outside), {"/etc/passwd", "outside"}));
   EXPECT_TRUE(names(error(whole.substr(0, whole.size() / 2)), {"l.zip", "no zip"}));
   EXPECT_TRUE(names(error("no zip"), {"l.zip"}));
+  EXPECT_TRUE(names(error(""), {"l.zip", "empty"}));
   std::string claims = whole;  // the size in the central directory, 24 bytes behind its mark
   const std::size_t central = claims.find("PK\x01\x02");
   ASSERT_NE(central, claims.npos);

@@ -173,6 +173,29 @@ TEST_F(Scannet, CountsVerticesWhoseRawIdTheTableLacks) {
   EXPECT_TRUE(names(warnings[0], {"2 of 14 vertices", "scannet-labels.combined.tsv"}));
 }
 
+TEST_F(Scannet, CountsSegmentsOfSeveralObjectsAndSegmentsThatNoVertexHas) {
+  write_v2();
+  write("s/s.aggregation.json", R"({"segGroups":[{"objectId":0,"segments":[7,0],"label":"wall"},)"
+                                R"({"objectId":1,"segments":[0,12,13],"label":"office chair"}]})");
+  std::vector<std::string> warnings;
+  const Scene scene = load_scannet(folder_ / "s", &warnings);
+  EXPECT_EQ(scene.instance_of[4], 2);  // segment 0 belongs to the last that names it
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_TRUE(names(warnings[0], {"aggregation.json", "1 of 4 segments", "segment 0)"}));
+  EXPECT_TRUE(names(warnings[1], {"aggregation.json", "2 of the 4 segments", "segment 12)"}));
+}
+
+TEST_F(Scannet, LabelsBeyondNyu40InAnAlignedSceneGiveWayToTheObjects) {
+  write_v2();
+  write("scannet-labels.combined.tsv", kTableV1);  // an alignment tells that the scene is of v2
+  write_scene({1, 1, 50, 50, 0, 40, 50}, "axisAlignment = 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n");
+  std::vector<std::string> warnings;
+  const Scene scene = load_scannet(folder_ / "s", &warnings);
+  EXPECT_EQ(scene.class_of, (std::vector<ClassId>{1, 1, 1, 5, 5, 5, 5, 0, 0, 40, 40, 0}));
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_TRUE(names(warnings[0], {"labels.ply", "6 of 14 vertices", "NYU40", "up to 50"}));
+}
+
 TEST_F(Scannet, FilesThatDoNotFitTheMeshAreNamed) {
   write_v2();
   write("s/s_vh_clean_2.0.010000.segs.json", R"({"segIndices":[1,2,3]})");
@@ -212,7 +235,15 @@ TEST_F(Scannet, DamagedFilesAreNamedWithTheirPlace) {
   EXPECT_TRUE(names(error(), {"segGroups[0]", "-1"}));
   write("s/s.aggregation.json", R"({"segGroups":[{"objectId":65535,"segments":[],"label":"x"}]})");
   EXPECT_TRUE(names(error(), {"65535"}));
+  write("s/s.aggregation.json", R"({"segGroups":[{"objectId":3,"segments":[7],"label":"wall"},)"
+                                R"({"objectId":3,"segments":[0],"label":"office chair"}]})");
+  EXPECT_TRUE(names(error(), {"aggregation.json", "segGroups[1]", "objectId 3", "segGroups[0]"}));
   write_v2();
+  for (const char* matrix : {"0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 1", "2 0 0 0 0 2 0 0 0 0 2 0 0 0 0 1",
+                             "1 0 0 0 0 1 0 0 0 0 -1 0 0 0 0 1"}) {
+    write("s/s.txt", std::string("axisAlignment = ") + matrix + "\n");
+    EXPECT_TRUE(names(error(), {"s.txt:1", "axisAlignment", "no rotation"})) << matrix;
+  }
   write("s/s.txt", "a = b\naxisAlignment = 1 0 0\n");
   EXPECT_TRUE(names(error(), {"s.txt:2", "axisAlignment", "number 4"}));
   write("s/s.txt", "");
@@ -238,6 +269,23 @@ TEST(ScannetLabelTable, WithoutIdsRowsCountFromOne) {
   const LabelTable table = parse_label_table("category\tnyu40id\nwall\t1\nlamp\t35\n", "t");
   EXPECT_EQ(table.release, ScannetRelease::kV1);
   EXPECT_EQ(table.class_of_id.at(2), 35);
+}
+
+TEST(ScannetLabelTable, ARowThatWasCutIsNamed) {
+  const std::string table = kTableV2;
+  const auto error = [](const std::string& text) {
+    return error_of([&] { parse_label_table(text, "t.tsv"); });
+  };
+  EXPECT_EQ(error(table), "");
+  EXPECT_EQ(error(table.substr(0, table.size() - 1)), "");  // the last line needs no end
+  const std::size_t last = table.rfind("35\tmonitor");
+  for (std::size_t size = last + 1; size + 11 < table.size(); ++size)
+    EXPECT_TRUE(names(error(table.substr(0, size)), {"t.tsv:5"})) << size;
+  EXPECT_TRUE(names(error("id\traw_category\tcount\tnyu40id\n2\tchair\n1\twall\t9\t1\n"),
+                    {"t.tsv:2", "2 cells", "4"}));
+  // A file of ours: what a wrong id would hide behind is checked too.
+  EXPECT_TRUE(names(error("id\traw_category\tnyu40id\tmodelhouse\n2\tchair\t99\tchair\n"),
+                    {"t.tsv:2", "99"}));
 }
 
 TEST(ScannetLabelTable, ReadsItsOwnRowsBack) {

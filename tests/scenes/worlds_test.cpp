@@ -152,7 +152,9 @@ TEST_F(Worlds, IncludesThatLeadInACircleAreAnError) {
       write("w.sdf",
             "<?xml version='1.0'?><sdf version='1.7'><world name='w'><include><uri>model://a</uri>"
             "</include></world></sdf>");
+  testing::internal::CaptureStderr();
   const std::string error = error_of([&] { load_gazebo_world(world); });
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // libsdformat would have its say
   EXPECT_TRUE(names(error, {"w.sdf includes", "a/model.sdf", "b/model.sdf", "circle"}));
 }
 
@@ -169,7 +171,21 @@ TEST_F(Worlds, BadWorldsAreNamedWithTheirPlace) {
                           "<uri>model://gone/a.dae</uri></mesh></geometry></visual></link>"
                           "</model></sdf>"),
                     {"w.sdf", "visual v", "model://gone/a.dae"}));
+  const auto shape = [&](const std::string& inside) {
+    return error("<model name='m'><link name='l'><visual name='v'><geometry>" + inside +
+                 "</geometry></visual></link></model></sdf>");
+  };
+  for (const char* bad :
+       {"<box><size>-1 1 1</size></box>", "<box><size>1 0 1</size></box>",
+        "<cylinder><radius>0</radius><length>1</length></cylinder>",
+        "<cylinder><radius>1</radius><length>-1</length></cylinder>",
+        "<sphere><radius>-2</radius></sphere>", "<sphere><radius>nan</radius></sphere>",
+        "<plane><normal>0 0 1</normal><size>0 4</size></plane>"})
+    EXPECT_TRUE(names(shape(bad), {"w.sdf", "link m/l", "visual v", "above 0"})) << bad;
+  EXPECT_TRUE(names(shape("<box><size>-1 1 1</size></box>"), {"a box of -1 x 1 x 1"}));
   EXPECT_TRUE(names(error("<model name='m'><link name='l'/></model></sdf>"), {"nothing"}));
+  const auto world = write("e.world", "<sdf version='1.7'><world name='w'/></sdf>");
+  EXPECT_TRUE(names(error_of([&] { load_scene(world); }), {"e.world", "nothing to be seen"}));
   EXPECT_TRUE(names(error("<model name='m'><link name='l'><pose>1 2 x</pose></link></model></sdf>"),
                     {"w.sdf"}));
 }
