@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -82,6 +83,7 @@ class ScannetSequence : public FrameSequence {
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: depth {}", path.string(), error.what()));
     }
+    std::ranges::copy(recording_->notes(), std::back_inserter(notes));
     for (const ClassInfo& info : classes()) palette_.push_back(ClassDistribution::one_hot(info.id));
     std::error_code error;
     const fs::path folder = fs::is_directory(path, error) ? path : path.parent_path();

@@ -55,6 +55,12 @@ class ExtractedFolder : public Recording {
     info_.colour = read_lens("color", announced(colour_));
     info_.depth = read_lens("depth", announced(depth_));
     for (const std::uint32_t number : numbers_) poses_.push_back(read_pose(number));
+    note_lonely("color", colour_, depth_);
+    note_lonely("depth", depth_, colour_);
+    if (missing_poses_ > 0)
+      notes_.push_back(
+          fmt::format("{}: {} of {} frames have no file in pose/: their pose is unknown",
+                      folder_.string(), missing_poses_, numbers_.size()));
   }
 
   const RecordingInfo& info() const override { return info_; }
@@ -106,11 +112,26 @@ class ExtractedFolder : public Recording {
                    intrinsics.string());
   }
 
-  std::optional<SE3> read_pose(std::uint32_t number) const {
+  void note_lonely(const char* which, const NumberedFiles& files, const NumberedFiles& others) {
+    const std::vector<std::uint32_t> numbers = files.numbers();
+    const auto lonely = [&](std::uint32_t number) { return !others.contains(number); };
+    const auto first = std::ranges::find_if(numbers, lonely);
+    if (first != numbers.end())
+      notes_.push_back(
+          fmt::format("{}: {} of {} pictures have no partner in {}/ and are left out (the "
+                      "first is {})",
+                      (folder_ / which).string(), std::ranges::count_if(numbers, lonely),
+                      numbers.size(), &files == &colour_ ? "depth" : "color", *first));
+  }
+
+  std::optional<SE3> read_pose(std::uint32_t number) {
     const fs::path file = folder_ / "pose" / fmt::format("{}.txt", number);
     if (fs::exists(file)) return pose_of(read_matrix(file), file.string());
     const fs::path padded = folder_ / "pose" / fmt::format("{:06}.txt", number);
-    if (!fs::exists(padded)) return std::nullopt;
+    if (!fs::exists(padded)) {
+      ++missing_poses_;
+      return std::nullopt;
+    }
     return pose_of(read_matrix(padded), padded.string());
   }
 
@@ -128,6 +149,7 @@ class ExtractedFolder : public Recording {
   std::vector<std::uint32_t> numbers_;
   RecordingInfo info_;
   std::vector<std::optional<SE3>> poses_;
+  std::size_t missing_poses_ = 0;
 };
 
 /// The .sens files of a folder.

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -45,6 +46,8 @@ class Recording {
  public:
   virtual ~Recording() = default;
   virtual const RecordingInfo& info() const = 0;
+  /// What could not be used or was mended, one line each.
+  const std::vector<std::string>& notes() const { return notes_; }
   virtual std::size_t size() const = 0;
   virtual Stamp stamp_ns(std::size_t index) const = 0;
   /// The number by which label images name the frame: its place in the whole scan.
@@ -53,6 +56,9 @@ class Recording {
   virtual std::optional<SE3> world_from_device(std::size_t index) const = 0;
   /// @throws InputError naming file and frame if its pictures cannot be had.
   virtual RecordedMoment frame(std::size_t index) const = 0;
+
+ protected:
+  std::vector<std::string> notes_;
 };
 
 /// Opens a .sens file, a folder that holds one, or an extracted folder (color/ depth/ pose/

@@ -38,9 +38,11 @@ ScannetInfo parse_scannet_info(std::string_view text, const std::string& name) {
   ScannetInfo info;
   std::istringstream lines{std::string(text)};
   std::string line;
+  bool any = text.empty();
   for (int number = 1; std::getline(lines, line); ++number) {
     const std::size_t equals = line.find('=');
     if (equals == line.npos) continue;
+    any = true;
     const std::string key = trimmed(line.substr(0, equals));
     const std::string value = trimmed(line.substr(equals + 1));
     if (key == "sceneType") info.scene_type = value;
@@ -51,6 +53,7 @@ ScannetInfo parse_scannet_info(std::string_view text, const std::string& name) {
       throw InputError(fmt::format("{}:{}: axisAlignment: {}", name, number, error.what()));
     }
   }
+  if (!any) throw InputError(fmt::format("{}:1: no line is 'key = value'", name));
   return info;
 }
 

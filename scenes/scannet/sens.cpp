@@ -4,6 +4,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <cstring>
@@ -44,6 +45,7 @@ class Cursor {
       fail(fmt::format("is cut short: {} needs {} bytes, {} are left", what, size,
                        bytes_.size() - at_));
   }
+  std::size_t left() const { return bytes_.size() - at_; }
   template <class T>
   T take(const char* what) {
     need(sizeof(T), what);
@@ -84,6 +86,7 @@ class SensFile : public Recording {
     for (std::uint64_t i = 0; i < frames; ++i) frames_.push_back(read_record(cursor, i));
     if (frames_.empty()) throw InputError(fmt::format("{}: holds no frame", name_));
     mend_stamps();
+    note_bytes_left(cursor);
   }
 
   const RecordingInfo& info() const override { return info_; }
@@ -163,12 +166,31 @@ class SensFile : public Recording {
 
   /// Some recordings have no stamps, or equal ones: then frames count at 30 Hz.
   void mend_stamps() {
-    bool increase = true;
-    for (std::size_t i = 1; i < frames_.size(); ++i)
-      increase = increase && frames_[i].stamp_ns > frames_[i - 1].stamp_ns;
-    if (increase) return;
+    const auto back = std::ranges::adjacent_find(
+        frames_, [](Stamp a, Stamp b) { return a >= b; }, &FrameRecord::stamp_ns);
+    if (back == frames_.end()) return;
+    notes_.push_back(
+        fmt::format("{}: frame {} has no later stamp than the one before: frames "
+                    "count at 30 Hz",
+                    name_, back - frames_.begin() + 1));
     for (std::size_t i = 0; i < frames_.size(); ++i)
       frames_[i].stamp_ns = static_cast<Stamp>(i) * 1'000'000'000 / 30;
+  }
+
+  /// Behind the frames come inertial measurements, which are not used: five vectors of doubles and
+  /// a stamp each. Other bytes are a sign that the header counts too few frames.
+  void note_bytes_left(Cursor& cursor) {
+    constexpr std::size_t kMeasurement = 5 * 3 * sizeof(double) + sizeof(std::uint64_t);
+    const std::size_t left = cursor.left();
+    if (left == 0) return;
+    const bool counted = left >= sizeof(std::uint64_t);
+    const std::uint64_t count = counted ? cursor.take<std::uint64_t>("inertial measurements") : 0;
+    if (counted && cursor.left() % kMeasurement == 0 && cursor.left() / kMeasurement == count)
+      return;
+    notes_.push_back(
+        fmt::format("{}: the {} bytes behind frame {}, the last, are no whole number of inertial "
+                    "measurements and not read",
+                    name_, left, frames_.size() - 1));
   }
 
   [[noreturn]] void fail(std::size_t index, const std::string& what) const {

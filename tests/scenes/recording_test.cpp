@@ -198,6 +198,27 @@ TEST_F(SensFile, WithoutIncreasingStampsFramesCountAtThirtyHertz) {
   const auto recording = open_sens(hold(with(same, kStamps, std::uint64_t{1} << 40)), "a.sens");
   EXPECT_EQ(recording->stamp_ns(0), 0);
   EXPECT_EQ(recording->stamp_ns(2), 66'666'666);
+  ASSERT_EQ(recording->notes().size(), 1U);
+  EXPECT_TRUE(names(recording->notes()[0], {"a.sens", "frame 1", "30 Hz"}));
+}
+
+TEST_F(SensFile, BytesBehindTheFramesThatAreNoMeasurementsAreNoted) {
+  const std::string whole = bytes();
+  const auto notes = [](const std::string& bytes) {
+    return open_sens(hold(bytes), "a.sens")->notes();
+  };
+  EXPECT_TRUE(notes(whole).empty());
+  EXPECT_TRUE(notes(whole.substr(0, whole.size() - 8)).empty());  // some writers end here
+  std::string measured = with(whole, whole.size() - 8, std::uint64_t{2});
+  measured += std::string(2 * 128, 'm');
+  EXPECT_TRUE(notes(measured).empty());
+  for (const std::string& odd :
+       {whole.substr(0, whole.size() - 1), whole + "more", measured.substr(0, measured.size() - 1),
+        with(whole, kCount, std::uint64_t{2})}) {
+    const auto found = notes(odd);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_TRUE(names(found[0], {"a.sens", "bytes behind frame"}));
+  }
 }
 
 class Extracted : public TemporaryFolder {};
@@ -222,6 +243,9 @@ TEST_F(Extracted, TakesPartOfTheFramesAndPaddedNames) {
   EXPECT_EQ(recording->stamp_ns(1), 66'666'666);
   EXPECT_FALSE(recording->world_from_device(0));
   EXPECT_TRUE(recording->world_from_device(1));
+  ASSERT_EQ(recording->notes().size(), 2U);
+  EXPECT_TRUE(names(recording->notes()[0], {"color: 1 of 3 pictures", "depth/", "first is 0"}));
+  EXPECT_TRUE(names(recording->notes()[1], {"1 of 2 frames", "pose/"}));
 }
 
 TEST_F(Extracted, NamesTheFileThatIsWrong) {

@@ -246,6 +246,8 @@ TEST_F(Scannet, DamagedFilesAreNamedWithTheirPlace) {
   }
   write("s/s.txt", "a = b\naxisAlignment = 1 0 0\n");
   EXPECT_TRUE(names(error(), {"s.txt:2", "axisAlignment", "number 4"}));
+  write("s/s.txt", "no scene's\nfacts\n");
+  EXPECT_TRUE(names(error(), {"s.txt:1", "key = value"}));
   write("s/s.txt", "");
   write("scannetv2-labels.combined.tsv", "id\traw_category\tnyu40id\n1\twall\t41\n");
   EXPECT_TRUE(names(error(), {"combined.tsv:2", "41"}));
