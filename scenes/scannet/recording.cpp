@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -76,7 +78,11 @@ class ExtractedFolder : public Recording {
     const fs::path colour_file = colour_.file(numbers_[index]);
     const fs::path depth_file = depth_.file(numbers_[index]);
     auto colour = decode_colour(read_whole(colour_file));
-    auto depth = decode_grey16(read_whole(depth_file));
+    const std::string depth_bytes = read_whole(depth_file);
+    constexpr std::size_t kBits = 24;  // where a PNG tells them
+    if (depth_bytes.size() > kBits && depth_bytes[kBits] == 8)
+      throw InputError(fmt::format("{}: has 8 bits, depth needs 16", depth_file.string()));
+    auto depth = decode_grey16(depth_bytes);
     if (!colour)
       throw InputError(fmt::format("{}: is no picture of 3 x 8 bits", colour_file.string()));
     if (!depth) throw InputError(fmt::format("{}: is no picture of 16 bits", depth_file.string()));
@@ -171,11 +177,15 @@ RecordedLens lens_of(const Eigen::Matrix4d& intrinsics, const Eigen::Matrix4d& e
       intrinsics(1, 2), {}};
   const bool good = intrinsics.topLeftCorner<3, 3>().allFinite() && lens.fx_px > 0 &&
                     lens.fy_px > 0 && lens.fx_px < 1e6 && lens.fy_px < 1e6 && lens.cx_px >= 0 &&
-                    lens.cy_px >= 0 && lens.cx_px < width_px && lens.cy_px < height_px;
+                    lens.cy_px >= 0 && lens.cx_px <= width_px - 1 && lens.cy_px <= height_px - 1;
   if (!good)
     throw InputError(
         fmt::format("{}: fx {} fy {} cx {} cy {} are no intrinsics of a picture of {} x {}", what,
                     lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, width_px, height_px));
+  for (const auto& [row, column] : {std::pair{0, 1}, {1, 0}, {2, 0}, {2, 1}})
+    if (std::abs(intrinsics(row, column)) > 1e-6)
+      throw InputError(fmt::format("{}: row {}, column {} of the intrinsics is {}, a pinhole has 0",
+                                   what, row + 1, column + 1, intrinsics(row, column)));
   const auto placed = pose_of(extrinsics, what);
   if (!placed) throw InputError(fmt::format("{}: the extrinsics are not finite", what));
   RecordedLens result = lens;
@@ -195,6 +205,11 @@ std::optional<SE3> pose_of(const Eigen::Matrix4d& matrix, const std::string& wha
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
   if (!is_rotation(rotation))
     throw InputError(fmt::format("{}: the upper left 3 x 3 of a pose is no rotation", what));
+  if (!(matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).isZero(1e-6))
+    throw InputError(fmt::format("{}: the last row of a pose is not 0 0 0 1", what));
+  constexpr double kFarthest_m = 1e6;
+  if (const double far_m = matrix.topRightCorner<3, 1>().cwiseAbs().maxCoeff(); far_m > kFarthest_m)
+    throw InputError(fmt::format("{}: a pose lies {:g} m from the origin", what, far_m));
   return SE3(Eigen::Quaterniond(rotation), matrix.topRightCorner<3, 1>());
 }
 

@@ -260,6 +260,16 @@ TEST_F(Extracted, NamesTheFileThatIsWrong) {
   EXPECT_EQ(error(), "");
   write("pose/0.txt", "1 0 0 0 0 1 0 0 0 0 1\n");
   EXPECT_TRUE(names(error(), {"pose/0.txt", "11 numbers"}));
+  write("pose/0.txt", "1 0 0 0 0 1 0 0 0 0 1 0 5 5 5 5\n");
+  EXPECT_TRUE(names(error(), {"pose/0.txt", "last row"}));
+  write("pose/0.txt", "1 0 0 1e30 0 1 0 0 0 0 1 0 0 0 0 1\n");
+  EXPECT_TRUE(names(error(), {"pose/0.txt", "1e+30 m"}));
+  const std::string lens = read_file(folder_ / "intrinsic/intrinsic_depth.txt");
+  write("intrinsic/intrinsic_depth.txt", "10 1 3.5 0 0 10.5 2.5 0 0 0 1 0 0 0 0 1\n");
+  EXPECT_TRUE(names(error(), {"intrinsic_depth.txt", "row 1, column 2", "is 1"}));
+  write("intrinsic/intrinsic_depth.txt", "10 0 7.5 0 0 10.5 2.5 0 0 0 1 0 0 0 0 1\n");
+  EXPECT_TRUE(names(error(), {"intrinsic_depth.txt", "cx 7.5", "8 x 6"}));
+  write("intrinsic/intrinsic_depth.txt", lens);
   write("pose/0.txt", "1 0 0 0 0 x");
   EXPECT_TRUE(names(error(), {"pose/0.txt", "number 6", "'x'"}));
   write("pose/0.txt", "-inf -inf -inf -inf -inf -inf -inf -inf -inf -inf -inf -inf 0 0 0 1\n");
@@ -270,6 +280,10 @@ TEST_F(Extracted, NamesTheFileThatIsWrong) {
     EXPECT_TRUE(names(error(), {file, "is cut short"}));
     write(file, whole);
   }
+  const std::string depth = read_file(folder_ / "depth/1.png");
+  write("depth/1.png", encode_png(Grid2d<std::uint8_t>(8, 6)));
+  EXPECT_TRUE(names(error(), {"depth/1.png", "8 bits"}));
+  write("depth/1.png", depth);
   write("color/1.jpg", "no picture");
   EXPECT_TRUE(names(error(), {"color/1.jpg"}));
   fs::remove(folder_ / "intrinsic/intrinsic_depth.txt");
