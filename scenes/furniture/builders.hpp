@@ -119,7 +119,21 @@ void curtain(Piece& piece);
 void rug(Piece& piece);
 void towel(Piece& piece);
 void coat_rack(Piece& piece);
+void hook_rail(Piece& piece);
 void bag(Piece& piece);
+
+// fixtures.cpp
+void socket(Piece& piece);
+void trunking(Piece& piece);
+void dado_rail(Piece& piece);
+void pipes(Piece& piece);
+void towel_radiator(Piece& piece);
+void tile_panel(Piece& piece);
+void fuse_box(Piece& piece);
+void sign(Piece& piece);
+void calendar(Piece& piece);
+void bath_shelf(Piece& piece);
+void broom_rack(Piece& piece);
 
 // plants.cpp
 void plant_tall(Piece& piece);

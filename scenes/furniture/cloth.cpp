@@ -151,6 +151,65 @@ void coat_rack(Piece& p) {
   p.body();
 }
 
+void hook_rail(Piece& p) {
+  const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
+  const MaterialId wood = p.material("wood", oak());
+  const MaterialId metal = p.fixed(plain("brushed_metal", {150, 152, 156}, 0.3, 111));
+  constexpr std::array<Rgb8, 6> kTones = {{{70, 88, 124},
+                                           {150, 66, 52},
+                                           {206, 196, 176},
+                                           {92, 120, 100},
+                                           {60, 60, 66},
+                                           {190, 150, 80}}};
+  MeshBuilder& m = p.mesh;
+  const float y = d / 2, bar = h - 0.07F;
+  m.box(wood, {-w / 2, y - 0.018F, bar}, {w / 2, y, h}, {.bevel_m = 0.005F, .grain_axis = 0});
+  const int n = std::max(3, static_cast<int>(w / 0.17F));
+  const float pitch = w / static_cast<float>(n);
+  for (int i = 0; i < n; ++i) {
+    const float x = -w / 2 + (static_cast<float>(i) + 0.5F) * pitch, hook = y - 0.05F;
+    const std::array<Vector3f, 4> bent = {{{x, y - 0.016F, bar + 0.045F},
+                                           {x, hook + 0.01F, bar + 0.02F},
+                                           {x, hook, bar + 0.022F},
+                                           {x, hook - 0.008F, bar + 0.045F}}};
+    m.tube(metal, bent, 0.004F, 8);
+    const RandomStream r = p.random.fork(static_cast<std::uint64_t>(i));
+    const double what = r.uniform(0);
+    const auto long_m = bar * static_cast<float>(r.uniform(1, 0.55, 0.98));
+    const Rgb8 tone = kTones[r.below(2, kTones.size())];
+    if (what < 0.2) continue;
+    p.part(fmt::format("thing_{}", i + 1), what < 0.75 ? "clothes" : "bag");
+    if (what < 0.45 && i > 0 && i + 1 < n) {  // a coat
+      m.push(translation(0, y - 0.06F, 0));
+      garment(p, p.fixed(plain("fabric", tone, 0.4, 112)), x, bar + 0.01F, std::min(0.75F, long_m),
+              1.5F * pitch, 0.08F, false);
+      m.pop();
+    } else if (what < 0.75) {  // an apron or a scarf, gathered at the hook
+      m.sheet(p.fixed(plain(r.uniform(3) < 0.5 ? "curtain_fabric" : "fabric", tone, 0.5,
+                            113 + r.below(4, 90))),
+              [&](float s, float t) -> Vector3f {
+                const float open = 0.15F + 0.85F * std::sqrt(t);
+                const float fold = 0.014F * std::sin(19.0F * s) * (1.0F - 0.4F * t);
+                return {x + (s - 0.5F) * 0.92F * pitch * open, hook - 0.004F + fold,
+                        bar + 0.03F - t * long_m};
+              },
+              20, 14, {pitch, long_m});
+    } else {  // a bag on its strap
+      const MaterialId stuff = p.fixed(plain("leather", tone, 0.4, 114));
+      const float tall = std::min(0.30F, 0.5F * bar), top = bar + 0.02F - 0.45F * long_m;
+      const float low = std::max(0.01F, top - tall), half = 0.42F * pitch;
+      m.cushion(stuff, {x, hook, 0.5F * (low + top)}, {2 * half, 0.075F, top - low}, 0.025F);
+      for (const float s : {-1.0F, 1.0F}) {
+        const std::array<Vector3f, 3> strap = {{{x + 0.9F * s * half, hook, top - 0.03F},
+                                                {x + 0.5F * s * half, hook, 0.5F * (top + bar)},
+                                                {x, hook, bar + 0.025F}}};
+        m.tube(stuff, strap, 0.005F, 6);
+      }
+    }
+    p.body();
+  }
+}
+
 void bag(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId body = p.material("body", plain("leather", {120, 78, 50}, 0.5, 72));

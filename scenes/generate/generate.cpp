@@ -252,7 +252,7 @@ class Maker {
 
   // ---- furniture -----------------------------------------------------------------------------
 
-  /// What the pieces of one rule have in common.
+  /// What the pieces of one rule have in common, unless its kind is a varied one.
   struct Design {
     const ItemRule* rule;
     const FurnitureKind* kind;
@@ -271,12 +271,19 @@ class Maker {
     return result;
   }
 
+  /// For the i-th piece of a rule: sets match, but no two pictures or cushions are alike.
+  Design design_of_piece(const Design& common, int i) {
+    const bool varied =
+        std::ranges::find(palettes().varied, common.kind->name) != palettes().varied.end();
+    return i > 0 && varied ? design(*common.rule) : common;
+  }
+
   LayoutItem item_of(const Design& d) {
     LayoutItem item;
     item.kind = d.kind;
     item.size_m = d.size_m;
     item.materials = d.materials;
-    item.fitting = fitting_;
+    item.fitting = fitting_ || d.rule->fitting;
     item.name = fmt::format("{}_{}", d.kind->name, ++counts_[std::string(d.kind->name)]);
     if (d.kind->bulb && d.kind->mount != Mount::kCeiling) {
       const double power = dice_.number(0.12, 0.26);
@@ -303,6 +310,10 @@ class Maker {
       const int placed = rule.place == Place::kRows ? rows(common) : aisles(common);
       return placed > 0 || !rule.need;
     }
+    if (rule.place == Place::kAlong) {
+      for (int i = 0; i < count; ++i) along_wall(common);
+      return true;
+    }
     if (rule.place == Place::kWindow) {
       at_windows(common);
       return true;
@@ -313,7 +324,7 @@ class Maker {
     }
     int placed = 0;
     for (int i = 0; i < count && (placed == 0 || rule.need || !full()); ++i)
-      if (const auto index = place_one(common)) {
+      if (const auto index = place_one(design_of_piece(common, i))) {
         ++placed;
         place_parts(rule, *index);
       }
@@ -424,26 +435,28 @@ class Maker {
   void place_parts(const ItemRule& owner, std::size_t index) {
     for (const ItemRule& rule : owner.with) {
       const bool wanted = dice_.chance(rule.chance);
-      if (!rule.need && (!wanted || full())) continue;
+      if (!rule.need && (!wanted || (full() && !rule.fitting))) continue;
       const int count = draw_count(dice_, rule.count);
       const Design common = design(rule);
       if (rule.place == Place::kAround) {
         around(common, index, count);
         continue;
       }
-      for (int i = 0; i < count; ++i)
+      for (int i = 0; i < count; ++i) {
+        const Design d = design_of_piece(common, i);
         for (int t = 0; t < kTries; ++t) {
-          LayoutItem item = item_of(common);
-          const bool aimed = aim_part(common, index, item);
+          LayoutItem item = item_of(d);
+          const bool aimed = aim_part(d, index, item);
           if (!aimed) {
-            --counts_[std::string(common.kind->name)];
+            --counts_[std::string(d.kind->name)];
             continue;
           }
-          if (const auto added = add(item, common)) {
+          if (const auto added = add(item, d)) {
             place_parts(rule, *added);
             break;
           }
         }
+      }
     }
   }
 
@@ -641,6 +654,28 @@ class Maker {
     }
   }
 
+  /// Along some wall, wherever it is free: what goes round a room, in pieces between the furniture.
+  void along_wall(const Design& common) {
+    constexpr double kStep_m = 0.05, kLeast_m = 0.3, kCorner_m = 0.03;
+    const WallRun& wall = layout_.walls()[dice_.below(layout_.walls().size())];
+    Design d = common;
+    const double z = common.rule->z_m ? common.rule->z_m->low : 0.0;
+    for (double from = wall.from_m + kCorner_m; from + kLeast_m < wall.to_m;) {
+      double to = wall.to_m - kCorner_m;
+      bool placed = false;
+      for (; !placed && to - from >= kLeast_m; to -= kStep_m) {
+        d.size_m.x() = whole_mm(std::min(to - from, common.size_m.x()));
+        LayoutItem item = item_of(d);
+        const Vector2d at = wall.place(from + 0.5 * d.size_m.x(), d.size_m.y(), 0.002);
+        item.at_m = {whole_mm(at.x()), whole_mm(at.y())};
+        item.turn_deg = wall.turn_deg();
+        item.z_m = whole_mm(z);
+        placed = add(item, d).has_value();
+      }
+      from += placed ? d.size_m.x() + 0.006 : kStep_m;
+    }
+  }
+
   void add_extras() {
     std::vector<Design> designs;
     double total = 0;
@@ -655,7 +690,7 @@ class Maker {
       const int& there = counts_[std::string(d.kind->name)];
       const int count = draw_count(dice_, rule.count);
       for (int k = 0; k < count && !full() && there < rule.most; ++k)
-        if (const auto index = place_one(d)) place_parts(rule, *index);
+        if (const auto index = place_one(design_of_piece(d, k))) place_parts(rule, *index);
     }
   }
 
@@ -681,7 +716,7 @@ class Maker {
         item.glow = colour;
         placed += add(item, design_of_lamps) ? 1 : 0;
       }
-    night_ = dice_.chance(0.15);
+    dusk_ = dice_.chance(0.15);
     sun_turn_ = dice_.number(0, 360);
     sun_power_ = dice_.number(8, 17);
     sky_power_ = dice_.number(4, 10);
@@ -715,14 +750,16 @@ class Maker {
     out += fmt::format(
         "\ntrim: {}\nwindow_frame: {}\n"
         "garden: {{material: {}, distance_m: 11.0, height_m: 7.0, glow: {}}}\n",
-        trim_, frame_, garden_, night_ ? 0.002 : 0.03);
-    const double s = night_ ? 0.004 : 1.0, a = sun_turn_ * kDegree;
-    out += fmt::format(
-        "\nlights:\n  sun: {{direction: [{:.3f}, {:.3f}, -0.7], colour: [{:.3f}, {:.3f}, "
-        "{:.3f}]}}\n"
-        "  sky: {{colour: [{:.3f}, {:.3f}, {:.3f}]}}\n",
-        0.6 * std::cos(a), 0.6 * std::sin(a), s * sun_power_, s * 0.94 * sun_power_,
-        s * 0.82 * sun_power_, s * 0.86 * sky_power_, s * 0.97 * sky_power_, s * 1.15 * sky_power_);
+        trim_, frame_, garden_, dusk_ ? 0.012 : 0.03);
+    // At dusk the sun is down and the sky gives less, but windows are not black.
+    const double s = dusk_ ? 0.2 : 1.0, a = sun_turn_ * kDegree;
+    out += "\nlights:\n";
+    if (!dusk_)
+      out += fmt::format(
+          "  sun: {{direction: [{:.3f}, {:.3f}, -0.7], colour: [{:.3f}, {:.3f}, {:.3f}]}}\n",
+          0.6 * std::cos(a), 0.6 * std::sin(a), sun_power_, 0.94 * sun_power_, 0.82 * sun_power_);
+    out += fmt::format("  sky: {{colour: [{:.3f}, {:.3f}, {:.3f}]}}\n", s * 0.86 * sky_power_,
+                       s * 0.97 * sky_power_, s * 1.15 * sky_power_);
     return out;
   }
 
@@ -797,7 +834,7 @@ class Maker {
   std::map<std::string, int> counts_;
   std::string floor_, wall_, ceiling_, accent_, trim_, frame_, garden_;
   Side accent_side_ = Side::kSouth;
-  bool night_ = false;
+  bool dusk_ = false;
   double sun_turn_ = 0, sun_power_ = 0, sky_power_ = 0;
 };
 

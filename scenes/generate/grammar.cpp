@@ -68,6 +68,11 @@ Palettes read_palettes(YamlReader yaml) {
   };
   for (auto& [role, list] : yaml.at("roles").entries()) result.list_of_role[role] = known(list);
   for (const YamlReader& name : yaml.at("fresh").items()) result.fresh.push_back(known(name));
+  for (const YamlReader& name : yaml.at("varied").items()) {
+    if (find_furniture(name.as_string()) == nullptr)
+      name.fail(fmt::format("unknown kind of furniture '{}'", name.as_string()));
+    result.varied.push_back(name.as_string());
+  }
   yaml.finish();
   return result;
 }
@@ -89,9 +94,9 @@ std::map<std::string, std::string> read_roles(YamlReader& yaml, const std::strin
 Place read_place(const YamlReader& yaml, bool belongs) {
   using enum Place;
   static const std::map<std::string, Place> alone = {
-      {"wall", kWall}, {"corner", kCorner},   {"centre", kCentre}, {"floor", kFloor},
-      {"hang", kHang}, {"rows", kRows},       {"aisles", kAisles}, {"window", kWindow},
-      {"door", kDoor}, {"ceiling", kCeiling}, {"on", kOnAny}};
+      {"wall", kWall},     {"corner", kCorner}, {"centre", kCentre},   {"floor", kFloor},
+      {"hang", kHang},     {"along", kAlong},   {"rows", kRows},       {"aisles", kAisles},
+      {"window", kWindow}, {"door", kDoor},     {"ceiling", kCeiling}, {"on", kOnAny}};
   static const std::map<std::string, Place> part = {
       {"on", kOn}, {"beside", kBeside}, {"front", kFront}, {"around", kAround}, {"above", kAbove}};
   const auto& names = belongs ? part : alone;
@@ -112,6 +117,7 @@ ItemRule read_rule(YamlReader yaml, bool belongs) {
   known(kinds, rule.kinds);
   rule.place = read_place(yaml.at("place"), belongs);
   rule.need = yaml.boolean("need", false);
+  rule.fitting = yaml.boolean("fitting", false);
   rule.chance = yaml.number_or("chance", 1.0, 0.0, 1.0);
   rule.weight = yaml.number_or("weight", 1.0, 0.0, 100.0);
   rule.most = static_cast<int>(yaml.number_or("most", rule.most, 1, 1000));

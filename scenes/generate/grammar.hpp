@@ -25,11 +25,12 @@ struct PaletteEntry {
 };
 
 /// Named lists of stuff, which list a part of furniture is made from where nothing else is said,
-/// and the lists that are drawn from anew for each piece (pictures: no two alike).
+/// the lists that are drawn from anew for each piece (pictures: no two alike), and the kinds of
+/// furniture of which a rule's pieces differ in size and stuff, where those of others are a set.
 struct Palettes {
   std::map<std::string, std::vector<PaletteEntry>> lists;
   std::map<std::string, std::string> list_of_role;
-  std::vector<std::string> fresh;
+  std::vector<std::string> fresh, varied;
 };
 
 /// Where a piece is put. The second row is of pieces that belong to another (ItemRule::with).
@@ -39,6 +40,7 @@ enum class Place {
   kCentre,
   kFloor,
   kHang,
+  kAlong,
   kRows,
   kAisles,
   kWindow,
@@ -55,10 +57,11 @@ enum class Place {
 struct ItemRule {
   std::vector<std::string> kinds;  ///< one is drawn
   Place place = Place::kWall;
-  bool need = false;    ///< an environment without it is drawn anew
-  double chance = 1.0;  ///< of being tried at all
-  double weight = 1.0;  ///< among extras
-  int most = 1000;      ///< extras: pieces of its kind in the whole room
+  bool need = false;     ///< an environment without it is drawn anew
+  double chance = 1.0;   ///< of being tried at all
+  double weight = 1.0;   ///< among extras
+  int most = 1000;       ///< extras: pieces of its kind in the whole room
+  bool fitting = false;  ///< is no object of its own, wherever its rule stands
   DrawRange count{1, 1};
   std::optional<std::array<DrawRange, 3>> size_m;  ///< none: the kind's usual size, nearly
   std::optional<DrawRange> z_m;   ///< height above floor (on, around: the carrier's foot)

@@ -14,7 +14,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kDoorSwing_m = 0.95;    // floor that a door sweeps, and where one enters
 constexpr double kRobotHeight_m = 1.25;  // what hangs higher is in nobody's way
 constexpr double kFlat_m = 0.03;         // rugs
-constexpr double kPlay_m = 0.004;        // between neighbours: rounding must not make them overlap
+constexpr double kApart_m = 0.004;       // neighbours: rounding must not make them overlap
 
 Footprint rectangle(const FloorRect& r) {
   return {{{r.x0, r.y0}, {r.x1, r.y0}, {r.x1, r.y1}, {r.x0, r.y1}}};
@@ -60,8 +60,8 @@ Layout::Layout(double width_m, double depth_m, double height_m, std::optional<Fl
     : rect_{0, 0, width_m, depth_m},
       height_m_(height_m),
       cut_(cut),
-      blocked_(static_cast<int>(std::ceil(width_m / kCell_m)),
-               static_cast<int>(std::ceil(depth_m / kCell_m)), 0) {
+      room_m_(static_cast<int>(std::ceil(width_m / kCell_m)),
+              static_cast<int>(std::ceil(depth_m / kCell_m)), 0.0F) {
   const double w = width_m, d = depth_m;
   walls_ = {{Side::kSouth, 0, 0, w},
             {Side::kNorth, d, 0, w},
@@ -78,13 +78,12 @@ Layout::Layout(double width_m, double depth_m, double height_m, std::optional<Fl
     walls_.push_back(
         {west ? Side::kWest : Side::kEast, west ? cut_->x1 : cut_->x0, cut_->y0, cut_->y1, false});
   }
-  for (int y = 0; y < blocked_.height(); ++y)
-    for (int x = 0; x < blocked_.width(); ++x) {
+  for (int y = 0; y < room_m_.height(); ++y)
+    for (int x = 0; x < room_m_.width(); ++x) {
       const Vector2d p = cell_centre(x, y);
-      const bool near_wall = p.x() < kRobotRadius_m || p.x() > w - kRobotRadius_m ||
-                             p.y() < kRobotRadius_m || p.y() > d - kRobotRadius_m;
-      blocked_(x, y) = near_wall || (cut_ && distance_m(p, rectangle(*cut_)) < kRobotRadius_m);
+      room_m_(x, y) = static_cast<float>(std::min({p.x(), w - p.x(), p.y(), d - p.y()}));
     }
+  if (cut_) narrow(room_m_, rectangle(*cut_));
 }
 
 Vector2d Layout::cell_centre(int x, int y) const {
@@ -123,17 +122,27 @@ bool Layout::inside(const Footprint& footprint) const {
   return !cut_ || overlap_m(footprint, rectangle(*cut_)) <= 1e-9;
 }
 
+bool Layout::belong_together(const LayoutItem& item, std::size_t i) const {
+  const LayoutItem& other = items_[i];
+  if (item.under == i) return true;
+  // A chair's back is beside the table that it is pushed under, not beneath what is on it.
+  if (item.under && other.on == item.under) return true;
+  if (item.on && other.under == item.on) return true;
+  for (std::optional<std::size_t> below = item.on; below; below = items_[*below].on)
+    if (below == i) return true;
+  return false;
+}
+
 bool Layout::apart(const LayoutItem& item) const {
+  const auto is_rug = [](const LayoutItem& i) { return i.kind->name == "rug"; };
   for (std::size_t i = 0; i < items_.size(); ++i) {
     const LayoutItem& other = items_[i];
-    if (item.under == i || other.on != item.on) continue;
-    const bool flat = !item.on && (item.size_m.z() <= kFlat_m || other.size_m.z() <= kFlat_m);
     // Of two rugs neither lies on the other; everything else may stand on them.
-    if (flat && item.kind != other.kind) continue;
+    if (belong_together(item, i) || is_rug(item) != is_rug(other)) continue;
     const double low = std::max(item.z_m, other.z_m);
     const double high = std::min(item.z_m + item.size_m.z(), other.z_m + other.size_m.z());
-    if (high - low <= 0.0) continue;
-    if (overlap_m(item.footprint(), other.footprint()) > -kPlay_m) return false;
+    if (high - low <= 1e-9) continue;
+    if (overlap_m(item.footprint(), other.footprint()) > -kApart_m) return false;
   }
   return true;
 }
@@ -156,27 +165,30 @@ bool Layout::in_the_way(const LayoutItem& item) const {
   return !item.on && item.size_m.z() > kFlat_m && item.z_m < kRobotHeight_m;
 }
 
-void Layout::block(Grid2d<char>& grid, const Footprint& footprint) const {
+void Layout::narrow(Grid2d<float>& room, const Footprint& footprint) const {
+  constexpr double kReach_m = kRobotRadius_m + kPlay_m;  // what is farther hinders nobody
   double x0 = 1e30, y0 = 1e30, x1 = -1e30, y1 = -1e30;
   for (const Vector2d& p : footprint) {
     x0 = std::min(x0, p.x()), x1 = std::max(x1, p.x());
     y0 = std::min(y0, p.y()), y1 = std::max(y1, p.y());
   }
   const auto cell = [](double v) { return static_cast<int>(std::floor(v / kCell_m)); };
-  for (int y = std::max(0, cell(y0 - kRobotRadius_m));
-       y <= std::min(grid.height() - 1, cell(y1 + kRobotRadius_m)); ++y)
-    for (int x = std::max(0, cell(x0 - kRobotRadius_m));
-         x <= std::min(grid.width() - 1, cell(x1 + kRobotRadius_m)); ++x)
-      if (!grid(x, y) && distance_m(cell_centre(x, y), footprint) < kRobotRadius_m) grid(x, y) = 1;
+  for (int y = std::max(0, cell(y0 - kReach_m));
+       y <= std::min(room.height() - 1, cell(y1 + kReach_m)); ++y)
+    for (int x = std::max(0, cell(x0 - kReach_m));
+         x <= std::min(room.width() - 1, cell(x1 + kReach_m)); ++x)
+      if (room(x, y) > 0.9 * kRobotRadius_m)  // what is less stays too little
+        room(x, y) =
+            std::min(room(x, y), static_cast<float>(distance_m(cell_centre(x, y), footprint)));
 }
 
-bool Layout::connected(const Grid2d<char>& grid) const {
+bool Layout::connected(const Grid2d<float>& room, double radius_m) const {
   std::vector<std::pair<int, int>> stack;
-  Grid2d<char> seen(grid.width(), grid.height(), 0);
+  Grid2d<char> seen(room.width(), room.height(), 0);
   int free = 0, reached = 0;
-  for (int y = 0; y < grid.height(); ++y)
-    for (int x = 0; x < grid.width(); ++x) {
-      if (grid(x, y)) continue;
+  for (int y = 0; y < room.height(); ++y)
+    for (int x = 0; x < room.width(); ++x) {
+      if (room(x, y) < radius_m) continue;
       if (free++ == 0) {
         stack.emplace_back(x, y);
         seen(x, y) = 1;
@@ -189,8 +201,8 @@ bool Layout::connected(const Grid2d<char>& grid) const {
     constexpr std::array<std::pair<int, int>, 4> kSteps = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
     for (const auto& [dx, dy] : kSteps) {
       const int nx = x + dx, ny = y + dy;
-      if (nx < 0 || ny < 0 || nx >= grid.width() || ny >= grid.height()) continue;
-      if (grid(nx, ny) || seen(nx, ny)) continue;
+      if (nx < 0 || ny < 0 || nx >= room.width() || ny >= room.height()) continue;
+      if (room(nx, ny) < radius_m || seen(nx, ny)) continue;
       seen(nx, ny) = 1;
       stack.emplace_back(nx, ny);
     }
@@ -219,10 +231,15 @@ std::optional<std::size_t> Layout::add(const LayoutItem& item, double front_m) {
         if (in_the_way(other) && overlap_m(*front, other.footprint()) > 0) return std::nullopt;
     }
     if (hinders) {
-      Grid2d<char> after = blocked_;
-      block(after, footprint);
-      if (!connected(after)) return std::nullopt;
-      blocked_ = std::move(after);
+      Grid2d<float> after = room_m_;
+      narrow(after, footprint);
+      // Nowhere may it fit where it cannot come, and where it comes it has its play. Plans are in
+      // whole millimetres: whoever counts what fits exactly, or does not, finds the same.
+      constexpr double kTie_m = 0.0002;
+      for (const double radius : {kRobotRadius_m, kRobotRadius_m + kPlay_m})
+        for (const double tie : {-kTie_m, kTie_m})
+          if (!connected(after, radius + tie)) return std::nullopt;
+      room_m_ = std::move(after);
     }
     if (front) fronts_.push_back(*front);
   }
@@ -231,7 +248,8 @@ std::optional<std::size_t> Layout::add(const LayoutItem& item, double front_m) {
 }
 
 double Layout::free_share() const {
-  const auto free = std::count(blocked_.begin(), blocked_.end(), 0);
+  const auto free =
+      std::ranges::count_if(room_m_, [](float room) { return room >= kRobotRadius_m + kPlay_m; });
   return static_cast<double>(free) * kCell_m * kCell_m / floor_area_m2();
 }
 

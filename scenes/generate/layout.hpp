@@ -61,8 +61,9 @@ struct LayoutItem {
 /// A room while it is being furnished: what stands where, and that one can walk.
 class Layout {
  public:
-  static constexpr double kRobotRadius_m = 0.26 + 0.03;  ///< half of 0.52 m, and some play
-  static constexpr double kCell_m = 0.05;
+  static constexpr double kRobotRadius_m = 0.26;  ///< half of 0.52 m
+  static constexpr double kPlay_m = 0.03;         ///< that it has on each side of its ways
+  static constexpr double kCell_m = 0.02;
 
   /// @param cut  the corner that an L-shaped room lacks
   Layout(double width_m, double depth_m, double height_m, std::optional<FloorRect> cut);
@@ -79,20 +80,23 @@ class Layout {
   /// Whether an opening fits into a stretch of wall, apart from the others.
   bool add_opening(const WallRun& wall, WallOpening opening);
   /// Adds a piece if it stands in the room, overlaps nothing, leaves doors and windows, its own
-  /// front and those of others free, and all free floor stays one. @returns its index
+  /// front and those of others free, and all floor that the robot fits on stays one, also for one
+  /// that is wider by the play. @returns its index
   std::optional<std::size_t> add(const LayoutItem& item, double front_m);
-  /// The share of the floor where the robot can stand.
+  /// The share of the floor where the robot's middle can be, with its play.
   double free_share() const;
   /// Pieces, doors and windows, without fittings: what counts as an object.
   int object_count() const;
 
  private:
   bool inside(const Footprint& footprint) const;
+  /// Whether boxes may meet: something and what carries it, a chair and the table it is under.
+  bool belong_together(const LayoutItem& item, std::size_t i) const;
   bool apart(const LayoutItem& item) const;
   bool leaves_openings(const LayoutItem& item) const;
   bool in_the_way(const LayoutItem& item) const;  ///< of the robot
-  void block(Grid2d<char>& grid, const Footprint& footprint) const;
-  bool connected(const Grid2d<char>& grid) const;
+  void narrow(Grid2d<float>& room, const Footprint& footprint) const;
+  bool connected(const Grid2d<float>& room, double radius_m) const;
   Eigen::Vector2d cell_centre(int x, int y) const;
 
   FloorRect rect_;
@@ -103,7 +107,7 @@ class Layout {
   std::vector<LayoutItem> items_;
   std::vector<Footprint> swings_;  ///< of doors
   std::vector<Footprint> fronts_;  ///< floor before pieces, where only their own chairs stand
-  Grid2d<char> blocked_;           ///< where the robot's middle cannot be
+  Grid2d<float> room_m_;  ///< from a cell's middle to what is nearest, m, where that counts
 };
 
 }  // namespace mh
