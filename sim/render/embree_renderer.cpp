@@ -11,19 +11,17 @@
 #include "sim/render/colour.hpp"
 #include "sim/render/edges.hpp"
 #include "sim/render/embree_scene.hpp"
-#include "sim/render/encode.hpp"
 #include "sim/render/packet.hpp"
 #include "sim/render/parallel.hpp"
 #include "sim/render/renderer.hpp"
 #include "sim/render/shading.hpp"
+#include "sim/render/tile.hpp"
 
 namespace mh {
 namespace {
 
 // Packets are traced a tile at a time and then shaded: the hierarchy and the shading do not push
 // each other out of the caches, and the rays are long in memory when the tracer loads them.
-constexpr int kTileWidth = 32, kTileHeight = 8;
-constexpr int kPackets = kTileWidth * kTileHeight / kLanes;
 constexpr float kDepth16PerM = 5000.0F;
 
 // Where an edge pixel is sampled beside its centre: a third of it each, in columns and rows.
@@ -32,24 +30,6 @@ constexpr std::array<Offset, 2> kEdgeOffsets = {
 constexpr std::size_t kEdgeSamples = kEdgeOffsets.size();
 constexpr std::array<Offset, 4> kQuarters = {
     {{-0.25F, -0.25F}, {0.25F, -0.25F}, {-0.25F, 0.25F}, {0.25F, 0.25F}}};
-
-/// Instance and class of four faces.
-inline void name(const FaceRecord* const* records, InstanceId* instances, ClassId* classes) {
-  static_assert(offsetof(FaceRecord, instance) == 6 && offsetof(FaceRecord, class_id) == 14);
-  const auto names = [&](std::size_t i) {  // in the upper half of a word each
-    const auto* first = reinterpret_cast<const float*>(records[i]);
-    const auto* second = reinterpret_cast<const float*>(records[i + 1]);
-    return _mm_castps_si128(_mm_shuffle_ps(_mm_load_ps(first), _mm_load_ps(second), 0xDD));
-  };
-  const __m128i mixed =
-      _mm_packus_epi32(_mm_srli_epi32(names(0), 16), _mm_srli_epi32(names(2), 16));
-  const __m128i sorted = _mm_shuffle_epi8(
-      mixed, _mm_setr_epi8(0, 1, 4, 5, 8, 9, 12, 13, 2, 6, 10, 14, -1, -1, -1, -1));
-  static_assert(sizeof(InstanceId) == 2 && sizeof(ClassId) == 1);
-  _mm_storel_epi64(reinterpret_cast<__m128i*>(instances), sorted);
-  const int four = _mm_extract_epi32(sorted, 2);
-  std::memcpy(classes, &four, 4);
-}
 
 /// What a packet's lanes show, and the picture that it goes to.
 template <class T>
@@ -60,12 +40,13 @@ struct Output {
 
 /// What a thread works with.
 struct Bench {
-  explicit Bench(const View& view) : packets(kPackets), seen(kPackets) {
+  explicit Bench(const View& view) : packets(Tile::kPackets), seen(Tile::kPackets) {
     for (Packet& packet : packets) packet.start(view);
   }
   std::vector<Packet> packets;
   std::vector<Seen> seen;
   std::vector<Radiance> light;  // of supersampling
+  Tile tile;
   FlushDenormals flush;
 };
 struct EdgeBench {
@@ -130,11 +111,12 @@ class EmbreeRenderer final : public Renderer {
     check_projection(camera);
     const View view(camera, world_from_camera);
     RenderedFrame frame = empty_frame(view.width, view.height);
-    parallel_for((view.height + kTileHeight - 1) / kTileHeight, config_.threads,
+    parallel_for((view.height + Tile::kHeight - 1) / Tile::kHeight, config_.threads,
                  [&] { return Bench(view); },
                  [&](int row, Bench& bench) {
-                   for (int x = 0; x < view.width; x += kTileWidth)
-                     render_tile(view, x, row * kTileHeight, bench, frame);
+                   for (int x = 0; x < view.width; x += Tile::kWidth)
+                     render_tile(view, x, row * Tile::kHeight, bench, frame);
+                   _mm_sfence();
                  });
     if (config_.antialiasing != Antialiasing::kEdges) return frame;
     parallel_for((view.height + kEdgeBlock - 1) / kEdgeBlock, config_.threads,
@@ -151,10 +133,10 @@ class EmbreeRenderer final : public Renderer {
  private:
   RenderedFrame empty_frame(int w, int h) const {
     RenderedFrame frame;
-    frame.colour = Grid2d<Rgb8>(w, h);
-    frame.depth_m = Grid2d<float>(w, h);
-    frame.classes = Grid2d<ClassId>(w, h);
-    frame.instances = Grid2d<InstanceId>(w, h);
+    frame.colour = Grid2d<Rgb8>(w, h, Unfilled{});
+    frame.depth_m = Grid2d<float>(w, h, Unfilled{});
+    frame.classes = Grid2d<ClassId>(w, h, Unfilled{});
+    frame.instances = Grid2d<InstanceId>(w, h, Unfilled{});
     const ExtraOutputs& extra = config_.extra;
     if (extra.depth16) frame.depth16 = Grid2d<std::uint16_t>(w, h);
     if (extra.faces) frame.faces = Grid2d<std::uint32_t>(w, h, kNoFace);
@@ -171,22 +153,19 @@ class EmbreeRenderer final : public Renderer {
   }
 
   void render_tile(const View& view, int x0, int y0, Bench& bench, RenderedFrame& frame) const {
-    const int x1 = std::min(x0 + kTileWidth, view.width);
-    const int y1 = std::min(y0 + kTileHeight, view.height);
+    const int count = std::min(Tile::kPackets, (view.width - x0 + kSide - 1) / kSide);
     const auto for_each = [&](const auto& work) {
-      std::size_t k = 0;
-      for (int y = y0; y < y1; y += kSide)
-        for (int x = x0; x < x1; x += kSide, ++k) work(k, x, y);
+      for (int k = 0; k < count; ++k) work(static_cast<std::size_t>(k), x0 + kSide * k);
     };
     const float pixel_area = view.pixel_width * view.pixel_height;
     std::vector<Packet>& packets = bench.packets;
     std::vector<Seen>& seen = bench.seen;
     const bool supersample = config_.antialiasing == Antialiasing::kSupersample;
     if (supersample) {
-      bench.light.assign(kPackets, Radiance{});
+      bench.light.assign(Tile::kPackets, Radiance{});
       for (const Offset& offset : kQuarters) {
-        trace_tile(view, for_each, offset, 0.25F * pixel_area, bench);
-        for_each([&](std::size_t k, int, int) {
+        trace_tile(view, y0, for_each, offset, 0.25F * pixel_area, bench);
+        for_each([&](std::size_t k, int) {
           const Radiance light = light_of(packets[k], seen[k]);
           for (std::size_t i = 0; i < kLanes / 2; ++i)
             bench.light[k].of[i] =
@@ -195,29 +174,29 @@ class EmbreeRenderer final : public Renderer {
         });
       }
     }
-    trace_tile(view, for_each, {}, pixel_area, bench);
-    for_each([&](std::size_t k, int x, int y) {
-      write(supersample ? bench.light[k] : light_of(packets[k], seen[k]), seen[k], x, y, frame);
-      if (any_extra()) write_extra(packets[k], seen[k], x, y, frame);
+    trace_tile(view, y0, for_each, {}, pixel_area, bench);
+    for_each([&](std::size_t k, int x) {
+      bench.tile.set(k, supersample ? bench.light[k] : light_of(packets[k], seen[k]), seen[k]);
+      if (any_extra()) write_extra(packets[k], seen[k], x, y0, frame);
     });
+    bench.tile.store(x0, y0, frame);
   }
 
   template <class ForEach>
-  void trace_tile(const View& view, const ForEach& for_each, const Offset& offset, float pixel_area,
-                  Bench& bench) const {
+  void trace_tile(const View& view, int y0, const ForEach& for_each, const Offset& offset,
+                  float pixel_area, Bench& bench) const {
     alignas(64) std::array<int, kLanes> all;
     all.fill(-1);
     std::vector<Packet>& packets = bench.packets;
     std::vector<Seen>& seen = bench.seen;
-    for_each([&](std::size_t k, int x, int y) { packets[k].aim(view, x, y, offset); });
+    for_each([&](std::size_t k, int x) { packets[k].aim(view, x, y0, offset); });
     // The records that a packet asks for arrive while the next one is traced.
-    for_each([&](std::size_t k, int, int) {
+    for_each([&](std::size_t k, int) {
       bvh_.intersect16(all.data(), packets[k].rays, true);
       shading_.find_records(packets[k], seen[k]);
     });
-    for_each(
-        [&](std::size_t k, int, int) { shading_.find_places(packets[k], pixel_area, seen[k]); });
-    for_each([&](std::size_t k, int, int) { shading_.find_texels(seen[k]); });
+    for_each([&](std::size_t k, int) { shading_.find_places(packets[k], pixel_area, seen[k]); });
+    for_each([&](std::size_t k, int) { shading_.find_texels(seen[k]); });
   }
 
   /// Puts a packet's lanes where they belong; those outside of the picture nowhere.
@@ -235,18 +214,6 @@ class EmbreeRenderer final : public Renderer {
     } else {
       copy_rows(std::min(kSide, height - y0), std::min(kSide, width - x0));
     }
-  }
-
-  static void write(const Radiance& light, const Seen& seen, int x0, int y0, RenderedFrame& frame) {
-    const int width = frame.colour.width(), height = frame.colour.height();
-    std::array<Rgb8, kLanes + kSpareAfterEncode> colour;
-    for (std::size_t i = 0; i < kLanes; i += 8) encode(&light.of[i / 2], &colour[i]);
-    std::array<InstanceId, kLanes> instance;
-    std::array<ClassId, kLanes> class_id;
-    for (std::size_t i = 0; i < kLanes; i += 4) name(&seen.record[i], &instance[i], &class_id[i]);
-    copy(x0, y0, width, height, Output{colour.data(), frame.colour},
-         Output{seen.depth_m.data(), frame.depth_m}, Output{class_id.data(), frame.classes},
-         Output{instance.data(), frame.instances});
   }
 
   bool any_extra() const {
@@ -311,8 +278,8 @@ class EmbreeRenderer final : public Renderer {
           centre, _mm_add_ps(_mm256_castps256_ps128(two), _mm256_extractf128_ps(two, 1)));
       const __m256 mean = _mm256_castps128_ps256(_mm_mul_ps(sum, _mm_set1_ps(1.0F / 3.0F)));
       const __m256 means[] = {mean, mean, mean, mean};
-      std::array<Rgb8, 8 + kSpareAfterEncode> encoded;
-      encode(means, encoded.data());
+      std::array<Rgb8, 16> encoded;
+      encode(means, &encoded[0], &encoded[8]);
       colour = encoded[0];
     }
   }

@@ -12,12 +12,13 @@ inline __m256 up_to_white(__m256 linear) {
   return _mm256_min_ps(_mm256_max_ps(linear, _mm256_setzero_ps()), _mm256_set1_ps(1.0F));
 }
 
-/// How many pixels after the last one encode() writes over.
-inline constexpr int kSpareAfterEncode = 2;
+/// How many bytes after the last one of each row encode() writes over.
+inline constexpr std::size_t kSpareAfterEncode = 4;
 
 /// Eight linear colours, two and two, to sRGB: the same as linear_to_srgb(), but that halves of the
-/// table's steps go to the even one. @param to  eight pixels and kSpareAfterEncode more
-inline void encode(const __m256* light, Rgb8* to) {
+/// table's steps go to the even one.
+/// @param first, second  where the first and the last four pixels go, and kSpareAfterEncode more
+inline void encode(const __m256* light, Rgb8* first, Rgb8* second) {
   const auto* table = reinterpret_cast<const int*>(kSrgbTable.data());
   const auto code = [&](__m256 linear) {
     const __m256i level =
@@ -33,9 +34,8 @@ inline void encode(const __m256* light, Rgb8* to) {
       ordered, _mm256_setr_epi8(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1,  //
                                 0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1));
   static_assert(sizeof(Rgb8) == 3);
-  auto* bytes = reinterpret_cast<std::uint8_t*>(to);
-  _mm_storeu_si128(reinterpret_cast<__m128i*>(bytes), _mm256_castsi256_si128(dense));
-  _mm_storeu_si128(reinterpret_cast<__m128i*>(bytes + 12), _mm256_extracti128_si256(dense, 1));
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(first), _mm256_castsi256_si128(dense));
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(second), _mm256_extracti128_si256(dense, 1));
 }
 
 }  // namespace mh

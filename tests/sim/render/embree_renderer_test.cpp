@@ -35,7 +35,7 @@ TEST(Encode, IsTheTableForEveryEntry) {
     const __m256 two = _mm256_setr_ps(red, green, blue, 7.0F, blue, red, green, -7.0F);
     const __m256 light[] = {two, two, two, two};
     std::array<Rgb8, 8 + kSpareAfterEncode> encoded;
-    encode(light, encoded.data());
+    encode(light, &encoded[0], &encoded[4]);
     const auto of = [](float linear) { return linear_to_srgb(linear); };
     for (std::size_t i = 0; i < 8; i += 2) {
       ASSERT_EQ(encoded[i], (Rgb8{of(red), of(green), of(blue)})) << red;
@@ -71,6 +71,29 @@ TEST(EmbreeRenderer, SmoothEdgesMixLightAndLeaveTheRestAlone) {
   for (int x = 0; x < camera.width_px; ++x)
     if (x != 320) {
       EXPECT_EQ(smooth.colour(x, 240), sharp.colour(x, 240)) << x;
+    }
+}
+
+TEST(EmbreeRenderer, APictureOfAnySizeIsACutOfALargerOne) {
+  Scene scene = plain_scene();
+  scene.materials[0].texture = smooth_picture(64, 64);
+  add_quad(scene, {-1, -1, 2}, {4, 0, 1}, {0, 2, 0}, 3, 2, 0, 5);
+  const auto renderer = make_embree_renderer(scene, {.antialiasing = Antialiasing::kNone});
+  Camera camera;
+  camera.cx_px = 0, camera.cy_px = 0;
+  const RenderedFrame whole = renderer->render(camera, kIdentity);
+  for (const int width : {1, 3, 31, 63, 64, 65, 96, 128, 600})
+    for (const int height : {1, 4, 5, 30}) {
+      camera.width_px = width, camera.height_px = height;
+      const RenderedFrame cut = renderer->render(camera, kIdentity);
+      ASSERT_EQ(cut.colour.size(), static_cast<std::size_t>(width * height));
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+          ASSERT_EQ(cut.colour(x, y), whole.colour(x, y)) << width << "x" << height;
+          ASSERT_EQ(cut.depth_m(x, y), whole.depth_m(x, y)) << width << "x" << height;
+          ASSERT_EQ(cut.classes(x, y), whole.classes(x, y)) << width << "x" << height;
+          ASSERT_EQ(cut.instances(x, y), whole.instances(x, y)) << width << "x" << height;
+        }
     }
 }
 
