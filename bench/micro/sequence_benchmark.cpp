@@ -16,6 +16,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <opencv2/core/utility.hpp>
 
 #include "bench/recorded/render_sequence.hpp"
 #include "bench/world/travel.hpp"
@@ -141,6 +142,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: sequence_benchmark SCENE MOTION ROBOT LEVEL OUT [frames]\n");
     return 2;
   }
+  cv::setNumThreads(1);  // as `modelhouse` does
   try {
     return mh::run(given);
   } catch (const std::exception& error) {

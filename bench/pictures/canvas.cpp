@@ -110,12 +110,10 @@ cv::Mat Canvas::finish() const {
 }
 
 cv::Mat colour_picture(const Grid2d<Rgb8>& colour) {
-  cv::Mat picture(colour.height(), colour.width(), CV_8UC3);
-  unsigned char* to = picture.data;
-  for (const Rgb8 c : colour) {
-    to[0] = c.b, to[1] = c.g, to[2] = c.r;
-    to += 3;
-  }
+  static_assert(sizeof(Rgb8) == 3);
+  const cv::Mat rgb(colour.height(), colour.width(), CV_8UC3, const_cast<Rgb8*>(colour.data()));
+  cv::Mat picture;
+  cv::cvtColor(rgb, picture, cv::COLOR_RGB2BGR);
   return picture;
 }
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <opencv2/core/mat.hpp>
@@ -42,6 +43,15 @@ class Canvas {
 
 /// The same picture as 8-bit BGR.
 cv::Mat colour_picture(const Grid2d<Rgb8>& colour);
+
+/// A grid of numbers of 8 or 16 bits as a grey picture in the same memory: for reading, and no
+/// longer than the grid is there.
+template <class Number>
+cv::Mat grey_picture(const Grid2d<Number>& grid) {
+  static_assert(std::is_unsigned_v<Number> && sizeof(Number) <= 2);
+  return {grid.height(), grid.width(), sizeof(Number) == 1 ? CV_8UC1 : CV_16UC1,
+          const_cast<Number*>(grid.data())};
+}
 
 /// Writes a picture, in the format that the file's ending tells, whole or not at all.
 /// @param settings  of the format, as cv::imencode takes them

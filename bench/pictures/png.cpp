@@ -4,18 +4,18 @@
 #include <libdeflate.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstdint>
 #include <memory>
 #include <new>
 #include <string_view>
-#include <utility>
 #include <vector>
+
+#include <opencv2/imgproc.hpp>
 
 namespace mh {
 namespace {
-
-using Bytes = std::vector<std::uint8_t>;
 
 void append_be32(std::string& out, std::size_t value) {
   for (const int shift : {24, 16, 8, 0}) out += static_cast<char>(value >> shift & 0xFF);
@@ -29,44 +29,54 @@ void append_chunk(std::string& out, std::string_view name, std::string_view data
   append_be32(out, libdeflate_crc32(0, out.data() + begin, out.size() - begin));
 }
 
-/// A row in the file's order: RGB, and of 16 bits the upper byte first.
-void read_row(const cv::Mat& picture, int y, Bytes& row) {
-  const std::uint8_t* from = picture.ptr(y);
-  if (picture.type() == CV_8UC1) {
-    std::copy_n(from, row.size(), row.begin());
-  } else if (picture.type() == CV_16UC1) {
-    for (std::size_t i = 0; i < row.size(); i += 2) row[i] = from[i + 1], row[i + 1] = from[i];
-  } else {
-    for (std::size_t i = 0; i < row.size(); i += 3)
-      row[i] = from[i + 2], row[i + 1] = from[i + 1], row[i + 2] = from[i];
-  }
-}
-
-/// All rows, each behind the number of its filter (0 none, 2 less the row above).
-Bytes filtered(const cv::Mat& picture) {
-  const bool less_above = picture.depth() == CV_8U;
+/// All rows in the file's order (RGB, and of 16 bits the upper byte first), each behind the number
+/// of its filter: 2, less the row above, for 8 bits, and 0, none, for 16.
+std::vector<std::uint8_t> filtered(const cv::Mat& picture) {
+  cv::Mat pixels = picture;
+  if (picture.type() == CV_8UC3) cv::cvtColor(picture, pixels, cv::COLOR_BGR2RGB);
   const std::size_t width = static_cast<std::size_t>(picture.cols) * picture.elemSize();
-  Bytes row(width), above(width), out((width + 1) * static_cast<std::size_t>(picture.rows));
+  std::vector<std::uint8_t> out((width + 1) * static_cast<std::size_t>(picture.rows));
   std::uint8_t* to = out.data();
   for (int y = 0; y < picture.rows; ++y) {
-    read_row(picture, y, row);
-    *to++ = less_above ? 2 : 0;
-    for (std::size_t i = 0; i < width; ++i)
-      to[i] = static_cast<std::uint8_t>(row[i] - (less_above ? above[i] : 0));
+    const std::uint8_t* row = pixels.ptr(y);
+    const std::uint8_t* above = y > 0 ? pixels.ptr(y - 1) : nullptr;
+    const bool bytes = picture.depth() == CV_8U;
+    *to++ = bytes ? 2 : 0;
+    if (!bytes)
+      for (std::size_t i = 0; i < width; i += 2) to[i] = row[i + 1], to[i + 1] = row[i];
+    else if (above == nullptr)
+      std::copy_n(row, width, to);
+    else
+      for (std::size_t i = 0; i < width; ++i) to[i] = static_cast<std::uint8_t>(row[i] - above[i]);
     to += width;
-    std::swap(row, above);
   }
   return out;
 }
 
-std::string packed(const Bytes& bytes, int level) {
-  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
-      libdeflate_alloc_compressor(level), libdeflate_free_compressor);
+struct FreeCompressor {
+  void operator()(libdeflate_compressor* compressor) const {
+    libdeflate_free_compressor(compressor);
+  }
+};
+
+/// One per thread and level, made when it is first wanted: making it costs as much as packing a
+/// small picture does.
+libdeflate_compressor* compressor_of(int level) {
+  thread_local std::array<std::unique_ptr<libdeflate_compressor, FreeCompressor>, 10> compressors;
+  auto& compressor = compressors.at(static_cast<std::size_t>(level));
+  if (compressor == nullptr) compressor.reset(libdeflate_alloc_compressor(level));
   if (compressor == nullptr) throw std::bad_alloc();
-  std::string out(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()), '\0');
-  out.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), out.data(),
-                                      out.size()));
-  return out;
+  return compressor.get();
+}
+
+/// Appends a chunk of packed bytes.
+void append_packed(std::string& file, const std::vector<std::uint8_t>& bytes, int level) {
+  libdeflate_compressor* compressor = compressor_of(level);
+  const std::size_t most = libdeflate_zlib_compress_bound(compressor, bytes.size());
+  const auto packed = std::make_unique_for_overwrite<char[]>(most);
+  const std::size_t size =
+      libdeflate_zlib_compress(compressor, bytes.data(), bytes.size(), packed.get(), most);
+  append_chunk(file, "IDAT", {packed.get(), size});
 }
 
 }  // namespace
@@ -85,7 +95,7 @@ std::string encode_png(const cv::Mat& picture, int level) {
   header += std::string(3, '\0');  // the one way to pack, the one set of filters, not interlaced
   std::string file = "\x89PNG\r\n\x1A\n";
   append_chunk(file, "IHDR", header);
-  append_chunk(file, "IDAT", packed(filtered(picture), level));
+  append_packed(file, filtered(picture), level);
   append_chunk(file, "IEND", {});
   return file;
 }

@@ -32,13 +32,6 @@ std::string rows(const Eigen::Matrix4d& m) {
   return text;
 }
 
-template <class Id>
-cv::Mat ids(const Grid2d<Id>& grid) {
-  cv::Mat picture(grid.height(), grid.width(), CV_16UC1);
-  std::copy(grid.begin(), grid.end(), picture.begin<std::uint16_t>());
-  return picture;
-}
-
 class ScanNetWriter : public SequenceWriter {
  public:
   ScanNetWriter(fs::path folder, const Camera& camera, PngCompression png_compression)
@@ -53,11 +46,13 @@ class ScanNetWriter : public SequenceWriter {
     write_atomically(folder_ / "color" / (name + ".jpg"),
                      encode_jpeg(frame.colour, kRecordedJpegQuality));
     cv::Mat depth(frame.depth_m.height(), frame.depth_m.width(), CV_16UC1);
-    std::transform(frame.depth_m.begin(), frame.depth_m.end(), depth.begin<std::uint16_t>(),
+    std::transform(frame.depth_m.begin(), frame.depth_m.end(), depth.ptr<std::uint16_t>(),
                    millimetres);
     write_picture(folder_ / "depth" / (name + ".png"), depth, png_);
-    write_picture(folder_ / "label-filt" / (name + ".png"), ids(exact.classes), png_);
-    write_picture(folder_ / "instance-filt" / (name + ".png"), ids(exact.instances), png_);
+    cv::Mat labels;  // of 16 bits in this layout
+    grey_picture(exact.classes).convertTo(labels, CV_16U);
+    write_picture(folder_ / "label-filt" / (name + ".png"), labels, png_);
+    write_picture(folder_ / "instance-filt" / (name + ".png"), grey_picture(exact.instances), png_);
     write_atomically(folder_ / "pose" / (name + ".txt"), rows(matrix_of(world_from_camera)));
     count(index);
   }

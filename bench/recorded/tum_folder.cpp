@@ -150,16 +150,14 @@ void TumWriter::write(const char* part, Stamp stamp_ns, const cv::Mat& picture) 
 
 void TumWriter::add_pictures(const RgbdFrame& frame) {
   cv::Mat depth(frame.depth_m.height(), frame.depth_m.width(), CV_16UC1);
-  std::transform(frame.depth_m.begin(), frame.depth_m.end(), depth.begin<std::uint16_t>(),
+  std::transform(frame.depth_m.begin(), frame.depth_m.end(), depth.ptr<std::uint16_t>(),
                  depth_units);
   write("rgb", frame.stamp_ns, colour_picture(frame.colour));
   write("depth", frame.stamp_ns, depth);
 }
 
 void TumWriter::add_labels(Stamp stamp_ns, const Grid2d<ClassId>& classes) {
-  cv::Mat label(classes.height(), classes.width(), CV_8UC1);
-  std::copy(classes.begin(), classes.end(), label.begin<std::uint8_t>());
-  write("label", stamp_ns, label);
+  write("label", stamp_ns, grey_picture(classes));
 }
 
 void TumWriter::add(const RgbdFrame& frame) {
@@ -172,10 +170,7 @@ void TumWriter::add(std::size_t, const RgbdFrame& frame, const RenderedFrame& ex
   fs::create_directories(folder_ / "instance");
   add_pictures(frame);
   add_labels(frame.stamp_ns, exact.classes);
-  const Grid2d<InstanceId>& instances = exact.instances;
-  cv::Mat instance(instances.height(), instances.width(), CV_16UC1);
-  std::copy(instances.begin(), instances.end(), instance.begin<std::uint16_t>());
-  write("instance", frame.stamp_ns, instance);
+  write("instance", frame.stamp_ns, grey_picture(exact.instances));
   const std::scoped_lock lock(mutex_);
   truth_[frame.stamp_ns] = world_from_camera;
 }
