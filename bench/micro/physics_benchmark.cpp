@@ -40,7 +40,7 @@ Outcome drive_about(PlanarWorld& world, const Robot& robot,
     const auto k = static_cast<std::uint64_t>(d);
     const double heading = draw.uniform(4 * k + 1, -M_PI, M_PI);
     world.place(starts[draw.below(4 * k, starts.size())], heading);
-    JerkLimiter limiter(robot.limits, kStep_s,
+    JerkLimiter limiter(commandable(robot.limits), kStep_s,
                         robot.equipment ? &robot.equipment->wheels : nullptr);
     const JerkLimiter::Velocity command{
         .m_per_s = robot.limits.max_velocity_m_per_s *
@@ -121,10 +121,7 @@ int main(int argc, char** argv) {
   fmt::print("hardest acceleration     {:.4f} of {} m/s2\n", first.acceleration,
              l.max_acceleration_m_per_s2);
   if (l.max_jerk_m_per_s3)
-    fmt::print(
-        "highest jerk             {:.3f} of {} m/s3 (Bullet keeps velocities in single "
-        "precision: 0.01 m/s3)\n",
-        first.jerk, *l.max_jerk_m_per_s3);
+    fmt::print("highest jerk             {:.3f} of {} m/s3\n", first.jerk, *l.max_jerk_m_per_s3);
   fmt::print("second run               {}\n", same ? "the same bits" : "DIFFERS");
   return same ? 0 : 1;
 }

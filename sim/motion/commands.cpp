@@ -147,11 +147,7 @@ CommandedDrive drive(const Scene& scene, const Robot& robot, const CommandScript
   HeadJoint pitch{.joint = &equipment.tree.joint(equipment.head_pitch)};
   const SE3 camera_from_base_at_rest =
       equipment.tree.root_from(equipment.depth_camera_link).inverse();
-  // A hair below what the physics cuts off, which would be a jerk.
-  BaseLimits limits = robot.limits;
-  limits.max_velocity_m_per_s *= 0.9995;
-  limits.max_turn_rad_per_s *= 0.9995;
-  JerkLimiter limiter(limits, step_s, &equipment.wheels);
+  JerkLimiter limiter(commandable(robot.limits), step_s, &equipment.wheels);
   PeakMeter meter(step_s);
   CommandedDrive result;
   BaseState state = world.state();

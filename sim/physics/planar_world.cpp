@@ -336,6 +336,17 @@ struct PlanarWorld::Impl {
   }
 };
 
+BaseLimits commandable(BaseLimits limits) {
+  for (double* velocity : {&limits.max_velocity_m_per_s, &limits.max_turn_rad_per_s})
+    *velocity *= 0.9995;
+  for (double* change :
+       {&limits.max_acceleration_m_per_s2, &limits.max_turn_acceleration_rad_per_s2})
+    *change *= 0.99;
+  for (std::optional<double>* jerk : {&limits.max_jerk_m_per_s3, &limits.max_turn_jerk_rad_per_s3})
+    if (*jerk) **jerk *= 0.95;
+  return limits;
+}
+
 PlanarWorld::PlanarWorld(const Scene& scene, const Robot& robot, const Eigen::Vector2d& start_m,
                          double start_heading_rad, double step_s)
     : impl_(std::make_unique<Impl>(scene, robot, start_m, start_heading_rad, step_s)) {

@@ -8,16 +8,13 @@
 namespace mh::test {
 
 /// The base as Bullet moved it kept every limit.
-/// @param of_jerk  share of the limits of jerk that may be used
-inline void expect_limits_kept(const DrivePeaks& peaks, const BaseLimits& limits,
-                               double of_jerk = 1.0) {
+inline void expect_limits_kept(const DrivePeaks& peaks, const BaseLimits& limits) {
   EXPECT_LE(peaks.m_per_s, limits.max_velocity_m_per_s);
   EXPECT_LE(peaks.rad_per_s, limits.max_turn_rad_per_s);
-  // Physics itself cuts off what is more, in single precision.
-  EXPECT_LE(peaks.m_per_s2, limits.max_acceleration_m_per_s2 * (1 + 2e-4));
-  EXPECT_LE(peaks.rad_per_s2, limits.max_turn_acceleration_rad_per_s2 * (1 + 2e-4));
-  EXPECT_LE(peaks.m_per_s3, limits.max_jerk_m_per_s3.value() * of_jerk);
-  EXPECT_LE(peaks.rad_per_s3, limits.max_turn_jerk_rad_per_s3.value() * of_jerk);
+  EXPECT_LE(peaks.m_per_s2, limits.max_acceleration_m_per_s2);
+  EXPECT_LE(peaks.rad_per_s2, limits.max_turn_acceleration_rad_per_s2);
+  EXPECT_LE(peaks.m_per_s3, limits.max_jerk_m_per_s3.value());
+  EXPECT_LE(peaks.rad_per_s3, limits.max_turn_jerk_rad_per_s3.value());
 }
 
 }  // namespace mh::test
