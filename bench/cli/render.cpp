@@ -9,6 +9,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/motion_option.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/plan/suite.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/recorded/render_sequence.hpp"
 #include "bench/world/travel.hpp"
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::string scene, robot, camera, level, walk, out, format = "tum", renderer = "embree";
+  std::string labels = "exact";
   MotionOption motion;
   RenderSequenceOptions sequence;
   PngCompression png_compression;
@@ -51,6 +53,7 @@ std::string settings_of(const Options& o, const Scene& scene, const Trajectory& 
                                  {"renderer", o.renderer},
                                  {"every", o.sequence.every},
                                  {"seed", o.sequence.seed}};
+  if (o.sequence.labels != LabelMode::kExact) json["labels"] = name(o.sequence.labels);
   if (o.png_compression) json["png_compression"] = *o.png_compression;
   if (o.sequence.frames != SIZE_MAX) json["frames"] = o.sequence.frames;
   return json.dump(2) + "\n";
@@ -100,6 +103,8 @@ Trajectory path_of(const MountedCamera& mounted, const Equipment& e, DrivenPath 
 void run(Options options) {
   const std::string& motion = options.motion.given();
   const fs::path out = options.out;
+  for (const LabelMode mode : {LabelMode::kExact, LabelMode::kBoxes, LabelMode::kDetector})
+    if (options.labels == name(mode)) options.sequence.labels = mode;
   refuse_older_sequence(out);
   make_renderer(options.renderer, Scene{});  // a machine that lacks it says so at once
   const OutputFolder folder(out);
@@ -136,11 +141,10 @@ void run(Options options) {
              : Shutter(renderer, camera, path, sensors);
   const Camera camera_told = recorded_camera(shutter.camera(), options.sequence);
   if (options.format == "scannet") {  // one file for all: frames in order, one by one
-    const std::size_t last = std::min(options.sequence.frames, shutter.path().size());
-    const std::size_t count = (last + options.sequence.every - 1) / options.sequence.every;
-    write_scannet_recording(out, camera_told, count, [&](std::size_t k) {
-      progress.share(static_cast<double>(k) / static_cast<double>(count));
-      return exact_frame(shutter, sensors, options.sequence, k);
+    const std::vector<std::size_t> wanted = moments(shutter, sensors, options.sequence);
+    write_scannet_recording(out, camera_told, wanted.size(), [&](std::size_t k) {
+      progress.share(static_cast<double>(k) / static_cast<double>(wanted.size()));
+      return exact_frame(shutter, sensors, options.sequence, wanted[k]);
     });
     progress.share(1);
     return;
@@ -184,6 +188,11 @@ void add_render(CLI::App& app) {
   command->add_option("--every", options->sequence.every, "Every n-th frame only")
       ->check(CLI::Range(1, 100000000));
   command->add_option("--renderer", options->renderer, "embree (default) or osmesa");
+  command
+      ->add_option("--labels", options->labels,
+                   "exact (default), boxes or detector: what `label` holds, faults of the level "
+                   "with it")
+      ->check(CLI::IsMember({"exact", "boxes", "detector"}));
   command->add_option("--seed", options->sequence.seed, "Seed of the noise")->check(seed_number());
   command
       ->add_option("--threads", options->sequence.threads,

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
@@ -130,6 +132,16 @@ void write_picture(const std::filesystem::path& file, const cv::Mat& picture,
     throw InputError(
         fmt::format("{}: cannot be written: no format of pictures ends so", file.string()));
   write_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+bool is_whole_picture(const std::filesystem::path& file) {
+  const std::string_view end = file.extension() == ".png" ? std::string_view("IEND\xAE\x42\x60\x82")
+                                                          : std::string_view("\xFF\xD9");
+  std::ifstream in(file, std::ios::binary);
+  std::string last(end.size(), '\0');
+  in.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
+  in.read(last.data(), static_cast<std::streamsize>(last.size()));
+  return in.good() && last == end;
 }
 
 }  // namespace mh

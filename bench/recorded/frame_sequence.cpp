@@ -41,14 +41,18 @@ class SceneSequence : public FrameSequence {
       : sensors_(sensors),
         noise_(source.seed),
         shutter_(make_scene_renderer(scene), robot.camera,
-                 travel(scene, robot, source.tour.string()).camera, sensors) {}
+                 travel(scene, robot, source.tour.string()).camera, sensors),
+        arriving_(arriving(shutter_.path().size(), sensors, RandomStream(source.seed))) {}
   const Camera& camera() const override { return shutter_.camera(); }
-  std::size_t size() const override { return shutter_.path().size(); }
-  Stamp stamp_ns(std::size_t index) const override { return shutter_.path()[index].stamp_ns; }
+  std::size_t size() const override { return arriving_.size(); }
+  Stamp stamp_ns(std::size_t index) const override {
+    return shutter_.path()[arriving_[index]].stamp_ns;
+  }
   RgbdFrame frame(std::size_t index) const override {
-    const TimedPose& pose = shutter_.path()[index];
-    const RandomStream noise = noise_.fork(index);
-    const Shutter::Exposed exposed = shutter_.expose(index);
+    const std::size_t i = arriving_[index];
+    const TimedPose& pose = shutter_.path()[i];
+    const RandomStream noise = noise_.fork(i);
+    const Shutter::Exposed exposed = shutter_.expose(i);
     RgbdFrame frame = sense(exposed.seen, camera(), sensors_, noise, pose.stamp_ns, exposed.gain);
     frame.semantics =
         sense_labels(exposed.seen, LabelMode::kExact, sensors_, pose.world_from_camera, noise);
@@ -60,6 +64,7 @@ class SceneSequence : public FrameSequence {
   SensorConfig sensors_;
   RandomStream noise_;
   Shutter shutter_;
+  std::vector<std::size_t> arriving_;  // of the shutter's path
 };
 
 class MemorySequence : public FrameSequence {

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "bench/recorded/frame_files.hpp"
+
 namespace mh {
 
 Camera recorded_camera(Camera camera, const RenderSequenceOptions& options) {
@@ -17,14 +19,32 @@ Camera recorded_camera(Camera camera, const RenderSequenceOptions& options) {
   return camera;
 }
 
+std::vector<std::size_t> moments(const Shutter& shutter, const SensorConfig& sensors,
+                                 const RenderSequenceOptions& options) {
+  const std::size_t last = std::min(options.frames, shutter.path().size());
+  std::vector<std::size_t> wanted = arriving(last, sensors, RandomStream(options.seed));
+  std::erase_if(wanted, [&](std::size_t i) { return i % options.every != 0; });
+  return wanted;
+}
+
 ExactFrame exact_frame(const Shutter& shutter, const SensorConfig& sensors,
-                       const RenderSequenceOptions& options, std::size_t k) {
-  const std::size_t i = k * options.every;
+                       const RenderSequenceOptions& options, std::size_t i) {
   const TimedPose& pose = shutter.path()[i];
+  const RandomStream noise = RandomStream(options.seed).fork(i);
   Shutter::Exposed exposed = shutter.expose(i);
-  RgbdFrame seen = sense(exposed.seen, shutter.camera(), sensors,
-                         RandomStream(options.seed).fork(i), pose.stamp_ns, exposed.gain);
-  return {std::move(seen), std::move(exposed.seen), pose.world_from_camera};
+  RgbdFrame seen =
+      sense(exposed.seen, shutter.camera(), sensors, noise, pose.stamp_ns, exposed.gain);
+  RenderedFrame exact = std::move(exposed.seen);
+  const bool labels_are_exact = options.labels == LabelMode::kExact && sensors.blank_share == 0.0 &&
+                                sensors.labels.noise == LabelNoiseConfig{};
+  if (!labels_are_exact) {
+    const SemanticImage labels =
+        sense_labels(exact, options.labels, sensors, pose.world_from_camera, noise);
+    exact.classes = labels.index.empty()
+                        ? Grid2d<ClassId>(exact.classes.width(), exact.classes.height(), kVoid)
+                        : class_image(labels);
+  }
+  return {std::move(seen), std::move(exact), pose.world_from_camera};
 }
 
 RenderedSequence render_sequence(const Shutter& shutter, const SensorConfig& sensors,
@@ -34,8 +54,8 @@ RenderedSequence render_sequence(const Shutter& shutter, const SensorConfig& sen
   const auto seconds = [](Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double>(to - from).count();
   };
-  const std::size_t last = std::min(options.frames, shutter.path().size());
-  const std::size_t count = (last + options.every - 1) / options.every;
+  const std::vector<std::size_t> wanted = moments(shutter, sensors, options);
+  const std::size_t count = wanted.size();
   RenderedSequence result;
   std::atomic<std::size_t> next = 0;
   std::mutex mutex;
@@ -44,13 +64,13 @@ RenderedSequence render_sequence(const Shutter& shutter, const SensorConfig& sen
 
   const auto work = [&] {
     for (std::size_t k = next++; k < count; k = next++) try {
-        const TimedPose& pose = shutter.path()[k * options.every];
+        const TimedPose& pose = shutter.path()[wanted[k]];
         const bool there =
             options.resume && writer.resume(k, pose.stamp_ns, pose.world_from_camera);
         double render_s = 0, encode_s = 0;
         if (!there) {
           const auto start = Clock::now();
-          const ExactFrame frame = exact_frame(shutter, sensors, options, k);
+          const ExactFrame frame = exact_frame(shutter, sensors, options, wanted[k]);
           const auto rendered = Clock::now();
           writer.add(k, frame.seen, frame.exact, frame.world_from_camera);
           render_s = seconds(start, rendered);

@@ -13,17 +13,23 @@ namespace mh {
 struct RenderSequenceOptions {
   std::size_t frames = SIZE_MAX;  ///< at most so many of the path
   std::size_t every = 1;          ///< every n-th of them only
-  std::uint64_t seed = 0;         ///< of the sensors' noise
-  int threads = 2;                ///< each works on a frame of its own, from rays to files
-  bool resume = false;            ///< leaves out frames that are there already
+  LabelMode labels = LabelMode::kExact;
+  std::uint64_t seed = 0;  ///< of the sensors' noise
+  int threads = 2;         ///< each works on a frame of its own, from rays to files
+  bool resume = false;     ///< leaves out frames that are there already
 };
 
 /// The camera as the sequence tells of it: with `every`, its rate is that of the frames kept.
 Camera recorded_camera(Camera camera, const RenderSequenceOptions& options);
 
-/// The k-th frame that is asked for, with the truth.
+/// Which moments of the shutter's path are asked for and arrive, in order.
+std::vector<std::size_t> moments(const Shutter& shutter, const SensorConfig& sensors,
+                                 const RenderSequenceOptions& options);
+
+/// The frame of the path's i-th moment, with the truth; its classes are the labels as they arrive:
+/// each pixel's most probable one, void where there are none.
 ExactFrame exact_frame(const Shutter& shutter, const SensorConfig& sensors,
-                       const RenderSequenceOptions& options, std::size_t k);
+                       const RenderSequenceOptions& options, std::size_t i);
 
 struct RenderedSequence {
   std::size_t frames = 0;   ///< written by this run

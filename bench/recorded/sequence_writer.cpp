@@ -59,11 +59,11 @@ class ScanNetWriter : public SequenceWriter {
 
   bool resume(std::size_t index, Stamp, const SE3&) override {
     const std::string name = std::to_string(index);
-    const std::array files = {
+    const std::array pictures = {
         folder_ / "color" / (name + ".jpg"), folder_ / "depth" / (name + ".png"),
-        folder_ / "label-filt" / (name + ".png"), folder_ / "instance-filt" / (name + ".png"),
-        folder_ / "pose" / (name + ".txt")};
-    if (!std::ranges::all_of(files, [](const fs::path& file) { return fs::exists(file); }))
+        folder_ / "label-filt" / (name + ".png"), folder_ / "instance-filt" / (name + ".png")};
+    if (!std::ranges::all_of(pictures, is_whole_picture) ||
+        !fs::exists(folder_ / "pose" / (name + ".txt")))
       return false;
     count(index);
     return true;

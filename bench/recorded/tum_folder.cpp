@@ -177,8 +177,8 @@ void TumWriter::add(std::size_t, const RgbdFrame& frame, const RenderedFrame& ex
 
 bool TumWriter::resume(std::size_t, Stamp stamp_ns, const SE3& world_from_camera) {
   constexpr std::array kParts = {"rgb", "depth", "label", "instance"};
-  if (!std::ranges::all_of(kParts,
-                           [&](const char* part) { return fs::exists(file_of(part, stamp_ns)); }))
+  if (!std::ranges::all_of(
+          kParts, [&](const char* part) { return is_whole_picture(file_of(part, stamp_ns)); }))
     return false;
   const std::scoped_lock lock(mutex_);
   for (const char* part : kParts) listed_[part].insert(stamp_ns);

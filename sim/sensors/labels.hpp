@@ -49,6 +49,7 @@ struct LabelNoiseConfig {
                            ///< nearest neighbour in the picture
   double dropout = 0.0;    ///< share of instances that carry no label (no box, in those modes)
   int erosion_px = 0;      ///< pixels within so many px of a border between labels become void
+  friend bool operator==(const LabelNoiseConfig&, const LabelNoiseConfig&) = default;
 };
 
 /// Labels' faults depend on what is looked at and from where, as a network's do: each is decided by

@@ -128,13 +128,20 @@ SE3 pose_at(const Trajectory& path, std::size_t i, double after_s) {
   return from * SE3::exp(share * (from.inverse() * to).log());
 }
 
+std::vector<std::size_t> arriving(std::size_t frames, const SensorConfig& config,
+                                  RandomStream stream) {
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < frames; ++i)
+    if (stream.fork(kDropped).uniform(i) >= config.dropped_share) indices.push_back(i);
+  if (indices.empty() && frames > 0) indices.push_back(0);
+  return indices;
+}
+
 Trajectory arriving_frames(const Trajectory& path, const SensorConfig& config,
                            RandomStream stream) {
-  Trajectory arriving;
-  for (std::size_t i = 0; i < path.size(); ++i)
-    if (stream.fork(kDropped).uniform(i) >= config.dropped_share) arriving.push_back(path[i]);
-  if (arriving.empty()) arriving.push_back(path.front());
-  return arriving;
+  Trajectory frames;
+  for (const std::size_t i : arriving(path.size(), config, stream)) frames.push_back(path[i]);
+  return frames;
 }
 
 Camera with_lens(Camera camera, const SensorConfig& config) {

@@ -16,7 +16,10 @@ namespace mh {
 /// by a constant twist; before the first and after the last it rests.
 SE3 pose_at(const Trajectory& path, std::size_t i, double after_s);
 
-/// The frames of a path that arrive. Draws are keyed by the frame's index.
+/// Which of so many frames arrive, at least the first. Draws are keyed by the frame's index.
+std::vector<std::size_t> arriving(std::size_t frames, const SensorConfig& config,
+                                  RandomStream stream);
+/// The frames of a path that arrive.
 Trajectory arriving_frames(const Trajectory& path, const SensorConfig& config, RandomStream stream);
 
 /// Takes the pictures along a path: what falls on the sensors during each frame, before their

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
+#include "bench/recorded/frame_files.hpp"
 #include "bench/recorded/scannet_folder.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "scenes/scannet/label_table.hpp"
@@ -96,6 +97,54 @@ TEST_F(RenderSequence, GoesOnWhereItWasStopped) {
   EXPECT_GT(result_.resumed, 0U);
   EXPECT_EQ(result_.resumed + result_.frames, 6U);
   EXPECT_EQ(gone_on, whole);
+}
+
+TEST_F(RenderSequence, MakesAnewWhatWasCutOff) {
+  for (const char* layout : {"tum", "scannet-frames"}) {
+    const std::string name = layout;
+    const auto whole = rendered(layout, name.c_str(), {});
+    std::size_t k = 0;
+    for (const auto& [file, bytes] : whole) {  // every fourth picture, by another cut each
+      const std::string ending = fs::path(file).extension();
+      if ((ending != ".png" && ending != ".jpg") || k++ % 4 != 0) continue;
+      fs::resize_file(folder_ / name / file, bytes.size() * (k % 3) / 3);
+    }
+    EXPECT_EQ(rendered(layout, name.c_str(), {.resume = true}), whole);
+    EXPECT_GE(result_.frames, 4U) << layout;
+  }
+}
+
+TEST_F(RenderSequence, DroppedFramesAreLeftOutAndTheOthersAreTheSame) {
+  const auto whole = rendered("tum", "whole", {});
+  sensors_.dropped_share = 0.4;
+  const auto part = rendered("tum", "part", {});
+  EXPECT_LT(result_.frames, 12U);
+  EXPECT_GT(result_.frames, 2U);
+  for (const auto& [file, bytes] : part)
+    if (file.ends_with(".png")) {
+      EXPECT_EQ(bytes, whole.at(file)) << file;
+    }
+}
+
+TEST_F(RenderSequence, LabelsAreThoseThatArrive) {
+  const RenderedFrame truth = shutter_->expose(3).seen;
+  const auto labels = [&](const RenderSequenceOptions& options) {
+    return exact_frame(*shutter_, sensors_, options, 3).exact.classes;
+  };
+  EXPECT_EQ(labels({}), truth.classes);
+  EXPECT_EQ(labels({.labels = LabelMode::kBoxes}),
+            class_image(label_image(truth, LabelMode::kBoxes)));
+  sensors_.labels.noise.dropout = 1.0;  // no instance is labelled
+  const Grid2d<ClassId> without = labels({});
+  for (int y = 0; y < camera_.height_px; ++y)
+    for (int x = 0; x < camera_.width_px; ++x)
+      if (truth.instances(x, y) != 0) {
+        ASSERT_EQ(without(x, y), kVoid);
+      }
+  sensors_.blank_share = 1.0;
+  const ExactFrame blank = exact_frame(*shutter_, sensors_, {}, 3);
+  EXPECT_EQ(blank.exact.classes, Grid2d<ClassId>(camera_.width_px, camera_.height_px, kVoid));
+  EXPECT_EQ(blank.exact.instances, truth.instances);
 }
 
 TEST_F(RenderSequence, EveryNthFrameComesAtAnNthOfTheRate) {
