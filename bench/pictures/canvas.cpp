@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <string_view>
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "bench/pictures/png.hpp"
+#include "scenes/picture_file.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -135,13 +134,9 @@ void write_picture(const std::filesystem::path& file, const cv::Mat& picture,
 }
 
 bool is_whole_picture(const std::filesystem::path& file) {
-  const std::string_view end = file.extension() == ".png" ? std::string_view("IEND\xAE\x42\x60\x82")
-                                                          : std::string_view("\xFF\xD9");
-  std::ifstream in(file, std::ios::binary);
-  std::string last(end.size(), '\0');
-  in.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
-  in.read(last.data(), static_cast<std::streamsize>(last.size()));
-  return in.good() && last == end;
+  if (!std::filesystem::exists(file)) return false;
+  const std::string bytes = read_file(file);
+  return announced_size(bytes) && picture_fault(bytes) == nullptr;
 }
 
 }  // namespace mh

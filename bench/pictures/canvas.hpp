@@ -59,7 +59,7 @@ cv::Mat grey_picture(const Grid2d<Number>& grid) {
 void write_picture(const std::filesystem::path& file, const cv::Mat& bgr,
                    const std::vector<int>& settings = {});
 
-/// Whether a PNG or JPEG file is there and ends as such a file does.
+/// Whether a PNG or JPEG file is there and as whole as picture_fault() can tell.
 bool is_whole_picture(const std::filesystem::path& file);
 
 }  // namespace mh
