@@ -32,8 +32,9 @@ void append_chunk(std::string& out, std::string_view name, std::string_view data
 /// All rows in the file's order (RGB, and of 16 bits the upper byte first), each behind the number
 /// of its filter: 2, less the row above, for 8 bits, and 0, none, for 16.
 std::vector<std::uint8_t> filtered(const cv::Mat& picture) {
-  cv::Mat pixels = picture;
-  if (picture.type() == CV_8UC3) cv::cvtColor(picture, pixels, cv::COLOR_BGR2RGB);
+  cv::Mat rgb;
+  if (picture.type() == CV_8UC3) cv::cvtColor(picture, rgb, cv::COLOR_BGR2RGB);
+  const cv::Mat& pixels = rgb.empty() ? picture : rgb;
   const std::size_t width = static_cast<std::size_t>(picture.cols) * picture.elemSize();
   std::vector<std::uint8_t> out((width + 1) * static_cast<std::size_t>(picture.rows));
   std::uint8_t* to = out.data();

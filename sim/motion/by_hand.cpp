@@ -151,7 +151,7 @@ std::vector<double> walking_speed(const HandheldConfig& config, std::size_t fram
   for (std::uint64_t bout = 0; speed.size() < frames; ++bout) {
     const bool pause = bout % 2 == 1;
     const double s = pause ? stream.uniform(3 * bout, 0.3, 1.2) + 4 * kGait_s
-                           : stream.uniform(3 * bout, 2.0, 6.0);
+                           : stream.uniform(3 * bout, 3.0, 9.0);
     const double v = config.walking_m_per_s * std::exp(0.35 * stream.normal(3 * bout + 1));
     speed.insert(speed.end(), static_cast<std::size_t>(std::lround(s * rate_hz)), pause ? 0.0 : v);
   }
