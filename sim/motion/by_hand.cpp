@@ -142,21 +142,19 @@ class Way {
   std::vector<double> s_m_;
 };
 
-constexpr double kGait_s = 0.25;  // standard deviation in time of what stopping and starting take
-
 /// How fast the feet go in each frame: bouts of walking, pauses between them.
 std::vector<double> walking_speed(const HandheldConfig& config, std::size_t frames, double rate_hz,
                                   RandomStream stream) {
   std::vector<double> speed;
   for (std::uint64_t bout = 0; speed.size() < frames; ++bout) {
     const bool pause = bout % 2 == 1;
-    const double s = pause ? stream.uniform(3 * bout, 0.3, 1.2) + 4 * kGait_s
-                           : stream.uniform(3 * bout, 3.0, 9.0);
+    const double s =
+        pause ? stream.uniform(3 * bout, 0.3, 1.2) : stream.uniform(3 * bout, 2.0, 6.0);
     const double v = config.walking_m_per_s * std::exp(0.35 * stream.normal(3 * bout + 1));
     speed.insert(speed.end(), static_cast<std::size_t>(std::lround(s * rate_hz)), pause ? 0.0 : v);
   }
   speed.resize(frames);
-  return smoothed(speed, kGait_s * rate_hz);
+  return smoothed(speed, 0.25 * rate_hz);
 }
 
 /// A view that ends nearer than this shows little, by the square of what is left.
