@@ -11,7 +11,9 @@
 #include <chrono>
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <set>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -38,7 +40,8 @@ namespace fs = std::filesystem;
 /// scenes read, tours driven. Generated scenes and motions are valid by construction.
 void check_places(const std::vector<Job>& jobs, const std::function<void(std::string_view)>& say) {
   std::set<std::string> programs;
-  std::map<fs::path, std::set<std::pair<fs::path, fs::path>>> drives;  // of each scene: robot, tour
+  // Of each scene: robot, tour, walk.
+  std::map<fs::path, std::set<std::tuple<fs::path, fs::path, std::optional<fs::path>>>> drives;
   for (const Job& job : jobs) {
     const RunSpec& spec = job.spec;
     if (spec.system.kind == SystemKind::kOutside && programs.insert(spec.system.name).second)
@@ -46,19 +49,24 @@ void check_places(const std::vector<Job>& jobs, const std::function<void(std::st
     const Environment& e = spec.environment;
     if (e.walk) load_walk(*e.walk);
     if (e.sensors) load_sensor_config(*e.sensors);
-    const auto note = [&](const fs::path& scene, const std::optional<fs::path>& tour) {
+    const auto note = [&](const fs::path& scene, const std::optional<fs::path>& tour,
+                          const std::optional<fs::path>& walk = {}) {
       if (is_generated(scene)) return;
       auto& of_scene = drives[scene];
-      if (tour && !is_generated(*tour)) of_scene.insert({e.robot, *tour});
+      if (tour && !is_generated(*tour)) of_scene.insert({e.robot, *tour, walk});
     };
-    note(e.scene, e.mapping_tour);
+    note(e.scene, e.mapping_tour, e.walk);
     note(e.scene, e.kidnapped_tour);
     note(e.query_scene.value_or(e.scene), e.query_tour);
   }
   for (const auto& [file, of_scene] : drives) {
     say(fmt::format("checking {}", file.string()));
     const Scene scene = load_scene(file);
-    for (const auto& [robot, tour] : of_scene) travel(scene, load_robot(robot), tour);
+    for (const auto& [robot, tour, walk] : of_scene) {
+      std::vector<MovingObstacle> others;
+      if (walk) others.push_back(as_obstacle(scene, load_walk(*walk)));
+      travel(scene, load_robot(robot), tour, others);
+    }
   }
 }
 

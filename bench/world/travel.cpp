@@ -2,6 +2,8 @@
 #include "bench/world/travel.hpp"
 
 #include <charconv>
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -76,21 +78,58 @@ void check_motion(const std::string& motion) {
   if (parsed.kind == Motion::Kind::kCommands) load_commands(parsed.file);
 }
 
-DrivenPath travel(const Scene& scene, const Robot& robot, const std::string& motion) {
+bool is_driven(const std::string& motion) {
+  const Motion::Kind kind = parse(motion).kind;
+  return kind != Motion::Kind::kHandheld && kind != Motion::Kind::kReplay;
+}
+
+std::string note_on(const std::string& motion, const Robot& robot) {
+  const Motion parsed = parse(motion);
+  if (parsed.kind != Motion::Kind::kTour) return "";
+  const Tour tour = load_tour(parsed.file);
+  constexpr double kDegreesPerRad = 180 / std::numbers::pi;
+  const auto slower = [&](const char* key, double asked, double limit) {
+    return asked <= limit ? ""
+                          : fmt::format("{}: {} {:g} is more than robot '{}' does: {:g}",
+                                        parsed.file.string(), key, asked, robot.name, limit);
+  };
+  if (tour.max_velocity_m_per_s)
+    if (const std::string note =
+            slower("speed_m_per_s", *tour.max_velocity_m_per_s, robot.limits.max_velocity_m_per_s);
+        !note.empty())
+      return note;
+  if (!tour.max_turn_rad_per_s) return "";
+  return slower("turn_deg_per_s", kDegreesPerRad * *tour.max_turn_rad_per_s,
+                kDegreesPerRad * robot.limits.max_turn_rad_per_s);
+}
+
+MovingObstacle as_obstacle(const Scene& scene, const Walk& walk, double from_s) {
+  return {.radius_m = kWalkerRadius_m,
+          .height_m = kWalkerHeight_m,
+          .instance = walker_instance(scene),
+          .path = [=](double time_s) -> Eigen::Vector2d {
+            return world_from_walker(walk, std::llround(1e9 * (from_s + time_s)))
+                .translation()
+                .head<2>();
+          }};
+}
+
+DrivenPath travel(const Scene& scene, const Robot& robot, const std::string& motion,
+                  const std::vector<MovingObstacle>& others) {
   const Motion parsed = parse(motion);
   switch (parsed.kind) {
     case Motion::Kind::kAuto:
-      return drive(scene, robot, automatic_tour(scene, robot, {.seed = parsed.seed}));
+      return drive(scene, robot, automatic_tour(scene, robot, {.seed = parsed.seed}), others);
     case Motion::Kind::kHandheld:
       return scan_by_hand(scene, robot.camera, {.seed = parsed.seed, .frames = parsed.frames});
     case Motion::Kind::kReplay:
       return replay(scene, robot.camera, read_tum(parsed.file), parsed.file.string());
     case Motion::Kind::kCommands:
-      return drive(scene, robot, load_commands(parsed.file)).path;
+      return drive(scene, robot, load_commands(parsed.file), others).path;
     case Motion::Kind::kTour:
       break;
   }
-  return drive(scene, robot, load_tour(parsed.file));
+  return drive(scene, robot, load_tour(parsed.file), others);
 }
 
 }  // namespace mh

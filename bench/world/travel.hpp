@@ -3,10 +3,12 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "robots/model/robot.hpp"
 #include "scenes/scene.hpp"
 #include "sim/motion/motion.hpp"
+#include "sim/world/walker.hpp"
 
 namespace mh {
 
@@ -18,8 +20,19 @@ namespace mh {
 /// - `replay:FILE`: a recorded trajectory in TUM's format (replay);
 /// - `commands:FILE`: a script of velocity commands (load_commands).
 /// The second and third also as suites write them, `generated:auto:SEED`.
+/// @param others  that move about; only a driven motion meets them
 /// @throws InputError if there is no such motion, a file is bad or the way is blocked.
-DrivenPath travel(const Scene& scene, const Robot& robot, const std::string& motion);
+DrivenPath travel(const Scene& scene, const Robot& robot, const std::string& motion,
+                  const std::vector<MovingObstacle>& others = {});
+
+/// Whether the robot drives, moved by physics; else a camera is moved without it.
+bool is_driven(const std::string& motion);
+
+/// What the robot does not do as the motion's file asks, for the user; "" if nothing.
+std::string note_on(const std::string& motion, const Robot& robot);
+
+/// The walker as the physics meets him, from a time of his walk on.
+MovingObstacle as_obstacle(const Scene& scene, const Walk& walk, double from_s = 0);
 
 /// Whether `motion` can be read: what can be told without the scene. @throws InputError if not.
 void check_motion(const std::string& motion);

@@ -156,10 +156,19 @@ World build_world(const RunSpec& spec, int threads, const Cache& cache, const Sa
     path.camera = arriving_frames(path.camera, world.sensors, same_for_every_trial);
     path.base = arriving_frames(path.base, world.sensors, same_for_every_trial);
   };
-  world.mapping = travel(*scene, world.robot, environment.mapping_tour);
-  if (kidnapped_tour)
-    world.mapping = joined(std::move(world.mapping), drive(*scene, world.robot, *kidnapped_tour),
-                           world.robot.camera.rate_hz);
+  const double rate_hz = world.robot.camera.rate_hz;
+  const auto walker = [&](std::size_t frames_before) {
+    std::vector<MovingObstacle> others;
+    if (walk)
+      others.push_back(as_obstacle(*scene, *walk, static_cast<double>(frames_before) / rate_hz));
+    return others;
+  };
+  world.mapping = travel(*scene, world.robot, environment.mapping_tour, walker(0));
+  if (kidnapped_tour) {
+    const DrivenPath elsewhere =
+        drive(*scene, world.robot, *kidnapped_tour, walker(world.mapping.camera.size()));
+    world.mapping = joined(std::move(world.mapping), elsewhere, rate_hz);
+  }
   lose_frames(world.mapping);
   shorten(world.mapping);
   if (!environment.query_tour) return world;

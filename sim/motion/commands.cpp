@@ -3,14 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
 
 #include "robots/model/wheel_base.hpp"
-#include "robots/navigation/floor_grid.hpp"
+#include "scenes/band.hpp"
 #include "sim/motion/peaks.hpp"
 #include "sim/motion/start.hpp"
+#include "sim/physics/outline.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/yaml.hpp"
 
@@ -21,7 +23,6 @@ using Eigen::Vector2d;
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kStepRate_hz = 240.0;  // physics steps per second, at least
-constexpr double kReflexCell_m = 0.025;
 
 Vector2d turned(const Vector2d& v, double angle_rad) {
   return {std::cos(angle_rad) * v.x() - std::sin(angle_rad) * v.y(),
@@ -32,49 +33,89 @@ Vector2d turned(const Vector2d& v, double angle_rad) {
 class Reflex {
  public:
   Reflex(const Scene& scene, const Robot& robot)
-      : grid_(make_floor_grid(scene, {.resolution_m = kReflexCell_m, .top_m = robot.height_m})),
+      : outline_(floor_outline(scene, kBandBottom_m, static_cast<float>(robot.height_m))),
         radius_m_(robot.footprint_radius_m),
         zone_(robot.equipment->reflex),
-        limits_(robot.limits) {}
+        brake_m_per_s2_(kBraking * robot.limits.max_acceleration_m_per_s2),
+        // From where the fastest robot has to slow down.
+        reach_m_(radius_m_ + zone_.aside_m + zone_.ahead_m + soft_m() +
+                 robot.limits.max_velocity_m_per_s * robot.limits.max_velocity_m_per_s /
+                     (2 * brake_m_per_s2_)) {}
 
   double allowed_m_per_s(const Vector2d& place_m, const Vector2d& direction,
                          const std::vector<std::pair<Vector2d, double>>& others) const {
-    // Speed is shed at half the limit: the jerk limit delays the braking.
-    const double brake = 0.5 * limits_.max_acceleration_m_per_s2;
-    const double farthest_m =
-        zone_.ahead_m + limits_.max_velocity_m_per_s * limits_.max_velocity_m_per_s / (2 * brake);
-    double free_m = farthest_m;  // from the shell to the nearest thing ahead
-    const auto consider = [&](const Vector2d& p, double size_m) {
+    const auto ahead_and_aside = [&](const Vector2d& p) {
       const Vector2d away = p - place_m;
-      const double ahead = away.dot(direction);
-      const double aside = std::abs(direction.x() * away.y() - direction.y() * away.x());
-      if (ahead <= 0 || aside > radius_m_ + zone_.aside_m + size_m) return;
-      const double shell_m =
-          std::sqrt(std::max(0.0, (radius_m_ + size_m) * (radius_m_ + size_m) - aside * aside));
-      free_m = std::min(free_m, ahead - shell_m);
+      return Vector2d(direction.dot(away), direction.x() * away.y() - direction.y() * away.x());
     };
-    const double reach_m = radius_m_ + farthest_m;
-    const auto span = [&](double middle, double origin, int size) {
-      const auto at = [&](double m) {
-        return std::clamp(static_cast<int>(std::lround((m - origin) / grid_.resolution_m)), 0,
-                          size - 1);
-      };
-      return std::pair{at(middle - reach_m), at(middle + reach_m)};
-    };
-    const auto [x0, x1] = span(place_m.x(), grid_.origin_m.x(), grid_.occupant.width());
-    const auto [y0, y1] = span(place_m.y(), grid_.origin_m.y(), grid_.occupant.height());
-    for (int y = y0; y <= y1; ++y)
-      for (int x = x0; x <= x1; ++x)
-        if (grid_.occupant(x, y) != 0) consider(grid_.centre_of({x, y}), 0.5 * kReflexCell_m);
-    for (const auto& [p, size_m] : others) consider(p, size_m);
-    return std::sqrt(2 * brake * std::max(0.0, free_m - zone_.ahead_m));
+    double free_m = reach_m_;  // from the shell to the nearest thing ahead
+    for (const OutlineEdge& edge : outline_) {
+      const Vector2d a = edge.a_m.cast<double>(), b = edge.b_m.cast<double>();
+      const Vector2d low = a.cwiseMin(b) - place_m, high = a.cwiseMax(b) - place_m;
+      if (low.maxCoeff() > reach_m_ || high.minCoeff() < -reach_m_) continue;
+      free_m = std::min(free_m, way_to_edge_m(ahead_and_aside(a), ahead_and_aside(b)));
+    }
+    for (const auto& [p, size_m] : others)
+      free_m = std::min(free_m, way_to_disc_m(ahead_and_aside(p), size_m));
+    const double left_m = std::max(0.0, free_m - zone_.ahead_m);
+    // Braking at a constant rate would end in a jerk: the last of it fades away.
+    if (left_m < soft_m()) return kFade_per_s * left_m;
+    return std::sqrt(2 * brake_m_per_s2_ * (left_m - 0.5 * soft_m()));
   }
 
  private:
-  FloorGrid grid_;
+  // Less than the base can do: the jerk limit delays the braking.
+  static constexpr double kBraking = 0.5;
+  static constexpr double kFade_per_s = 2.0;
+  static constexpr double kNever_m = std::numeric_limits<double>::infinity();
+
+  /// On the last of the way speed is kFade_per_s of what is left; here both rules brake alike.
+  double soft_m() const { return brake_m_per_s2_ / (kFade_per_s * kFade_per_s); }
+
+  /// How far the base can go until the point is level with its shell.
+  double way_to_point_m(const Vector2d& p, double radius_m) const {
+    return p.x() - std::sqrt(std::max(0.0, radius_m * radius_m - p.y() * p.y()));
+  }
+
+  double way_to_disc_m(const Vector2d& middle, double size_m) const {
+    const double reach_m = radius_m_ + size_m;
+    if (middle.x() <= 0 || std::abs(middle.y()) >= reach_m + zone_.aside_m) return kNever_m;
+    return way_to_point_m(middle, reach_m);
+  }
+
+  /// The same for the edge from a to b: of what lies ahead of the base's middle and not too far
+  /// aside. All are metres ahead and to the left of the base's middle.
+  double way_to_edge_m(const Vector2d& a, const Vector2d& b) const {
+    const Vector2d d = b - a;
+    double from = 0, to = 1;
+    const auto keep_positive = [&](double at_a, double change) {
+      if (change == 0 && at_a <= 0) to = -1;
+      if (change > 0) from = std::max(from, -at_a / change);
+      if (change < 0) to = std::min(to, -at_a / change);
+    };
+    const double half_m = radius_m_ + zone_.aside_m;
+    keep_positive(a.x(), d.x());
+    keep_positive(half_m - a.y(), -d.y());
+    keep_positive(half_m + a.y(), d.y());
+    if (from >= to) return kNever_m;
+    const auto way_m = [&](double t) {
+      return way_to_point_m(a + std::clamp(t, from, to) * d, radius_m_);
+    };
+    double nearest_m = std::min(way_m(from), way_m(to));
+    if (d.y() == 0) return nearest_m;
+    // Where the edge leaves the shell's width, and where it lies along the shell.
+    const double slant = d.x() / d.y();
+    for (const double aside_m :
+         {-radius_m_, radius_m_, -radius_m_ * slant / std::sqrt(1 + slant * slant)})
+      nearest_m = std::min(nearest_m, way_m((aside_m - a.y()) / d.y()));
+    return nearest_m;
+  }
+
+  std::vector<OutlineEdge> outline_;
   double radius_m_;
   CollisionReflex zone_;
-  BaseLimits limits_;
+  double brake_m_per_s2_;
+  double reach_m_;
 };
 
 /// A joint on its way to where it should be.
@@ -138,8 +179,8 @@ CommandedDrive drive(const Scene& scene, const Robot& robot, const CommandScript
   const int steps_per_frame = static_cast<int>(std::ceil(kStepRate_hz / robot.camera.rate_hz));
   const double step_s = 1.0 / (robot.camera.rate_hz * steps_per_frame);
   PlanarWorld world(scene, robot, script.start_m, script.start_heading_rad, step_s);
-  check_start(world, scene, script.start_m, file_and_line(script.file, script.start_line));
   for (const MovingObstacle& other : others) world.add(other);
+  check_start(world, scene, script.start_m, file_and_line(script.file, script.start_line));
   std::optional<Reflex> reflex;
   if (script.reflex) reflex.emplace(scene, robot);
 

@@ -29,7 +29,8 @@ constexpr double kPatience_s = 3.0;  // for the last centimetre of an arrival
 /// A robot on its tour: steps the physics, keeps the record.
 class Driver {
  public:
-  Driver(const Scene& scene, const Robot& robot, const Tour& tour)
+  Driver(const Scene& scene, const Robot& robot, const Tour& tour,
+         const std::vector<MovingObstacle>& others)
       : scene_(scene),
         robot_(robot),
         tour_(tour),
@@ -40,6 +41,7 @@ class Driver {
         heading_rad_(tour.start_heading_rad),
         correction_(robot.limits, world_.step_s()),
         meter_(world_.step_s()) {
+    for (const MovingObstacle& other : others) world_.add(other);
     check_start(world_, scene, tour.start_m, file_and_line(tour.file, tour.start_line));
     record();
   }
@@ -167,12 +169,13 @@ Robot restrained(Robot robot, const Tour& tour) {
 
 }  // namespace
 
-DrivenPath drive(const Scene& scene, const Robot& robot, const Tour& tour) {
+DrivenPath drive(const Scene& scene, const Robot& robot, const Tour& tour,
+                 const std::vector<MovingObstacle>& others) {
   if (tour.waypoints.empty())
     throw InputError(fmt::format("{}: the tour has no waypoints", tour.file.string()));
-  if (tour.plan) return drive(scene, robot, planned(scene, robot, tour));
+  if (tour.plan) return drive(scene, robot, planned(scene, robot, tour), others);
   const Robot driven = restrained(robot, tour);
-  return Driver(scene, driven, tour).run();
+  return Driver(scene, driven, tour, others).run();
 }
 
 }  // namespace mh

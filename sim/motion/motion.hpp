@@ -9,6 +9,7 @@
 
 #include "robots/model/robot.hpp"
 #include "scenes/scene.hpp"
+#include "sim/physics/planar_world.hpp"
 #include "slam/core/trajectory.hpp"
 
 namespace mh {
@@ -40,8 +41,9 @@ struct Tour {
 };
 
 /// Reads a tour (YAML): `name`; `start: {position: [x, y], heading_deg}`; optional
-/// `speed_m_per_s`, `turn_deg_per_s`, `plan` (true or false); `waypoints`, a list of mappings with any of `to: [x, y]`,
-/// `heading_deg`, `face: travel | [x, y]`, `turn_deg`, `pause_s`. Without `to` it stays in place.
+/// `speed_m_per_s`, `turn_deg_per_s`, `plan` (true or false); `waypoints`, a list of mappings with
+/// any of `to: [x, y]`, `heading_deg`, `face: travel | [x, y]`, `turn_deg`, `pause_s`. Without `to`
+/// it stays in place.
 /// @throws InputError naming file, line, field and value.
 Tour load_tour(const std::filesystem::path& file);
 
@@ -65,11 +67,14 @@ struct DrivenPath {
   DrivePeaks peaks;             ///< all 0 where no physics moved the camera
 };
 
-/// Drives the robot through the scene with Bullet, along the reference_motion of the tour, velocity,
-/// acceleration and (where the robot has such a limit) jerk limited, and samples the camera. Stamps are round(i * 1e9 / rate). The base comes from Bullet's body, the camera from
-/// the base and base_from_camera; nothing is added. Ways are planned first where the tour says so.
+/// Drives the robot through the scene with Bullet, along the reference_motion of the tour,
+/// velocity, acceleration and (where the robot has such a limit) jerk limited, and samples the
+/// camera. Stamps are round(i * 1e9 / rate). The base comes from Bullet's body, the camera from the
+/// base and base_from_camera; nothing is added. Ways are planned first where the tour says so.
+/// @param others  that move about; who runs into the robot pushes it, a tour waits for nobody
 /// @throws InputError naming tour, waypoint, place and what stands in the way if a waypoint is not
 /// reached, or if the start pose is inside something or outside the rooms.
-DrivenPath drive(const Scene& scene, const Robot& robot, const Tour& tour);
+DrivenPath drive(const Scene& scene, const Robot& robot, const Tour& tour,
+                 const std::vector<MovingObstacle>& others = {});
 
 }  // namespace mh

@@ -13,6 +13,13 @@ namespace {
 
 constexpr double kDeepStart_m = 1e-3;
 
+std::string name_of(const Scene& scene, InstanceId id) {
+  if (id == 0) return "something";
+  for (const Instance& instance : scene.instances)
+    if (instance.id == id) return instance.name;
+  return "somebody who walks about";
+}
+
 }  // namespace
 
 Eigen::Vector2d read_place(const YamlReader& yaml) {
@@ -44,9 +51,7 @@ std::string outside_rooms(const Scene& scene, const Eigen::Vector2d& place_m) {
 }
 
 std::string against(const Scene& scene, InstanceId id) {
-  for (const Instance& instance : scene.instances)
-    if (instance.id == id && id != 0) return " against " + instance.name;
-  return "";
+  return id == 0 ? "" : " against " + name_of(scene, id);
 }
 
 void check_start(PlanarWorld& world, const Scene& scene, const Eigen::Vector2d& start_m,
@@ -54,8 +59,8 @@ void check_start(PlanarWorld& world, const Scene& scene, const Eigen::Vector2d& 
   const auto place = fmt::format("{}: start [{:.2f}, {:.2f}]", where, start_m.x(), start_m.y());
   const Contact contact = world.contact();
   if (contact.penetration_m > kDeepStart_m)
-    throw InputError(fmt::format("{}: the robot would stand {:.0f} mm inside something{}", place,
-                                 1e3 * contact.penetration_m, against(scene, contact.instance)));
+    throw InputError(fmt::format("{}: the robot would stand {:.0f} mm inside {}", place,
+                                 1e3 * contact.penetration_m, name_of(scene, contact.instance)));
   if (const std::string outside = outside_rooms(scene, start_m); !outside.empty())
     throw InputError(fmt::format("{}: the robot cannot stand there{}", place, outside));
 }

@@ -28,7 +28,7 @@ std::string file_and_line(const std::filesystem::path& file, int line);
 /// ", as it lies in no room of SCENE", or "" where it lies in one or the scene has none.
 std::string outside_rooms(const Scene& scene, const Eigen::Vector2d& place_m);
 
-/// " against NAME", or "" where the instance is none.
+/// " against NAME", or "" where the instance is none. One that the scene has not moves about.
 std::string against(const Scene& scene, InstanceId instance);
 
 /// @param where  file and line, for the message

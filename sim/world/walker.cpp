@@ -158,6 +158,12 @@ Scene build_walker(const Vector3f& light) {
   return scene;
 }
 
+InstanceId walker_instance(const Scene& scene) {
+  const int last = scene.instances.empty() ? 0 : scene.instances.back().id;
+  assert(last < std::numeric_limits<InstanceId>::max());
+  return static_cast<InstanceId>(last + 1);
+}
+
 WalkedScene::WalkedScene(const Scene& scene, std::shared_ptr<const Renderer> renderer,
                          float exposure, Walk walk)
     : scene_(std::move(renderer)), walk_(std::move(walk)) {
@@ -165,9 +171,7 @@ WalkedScene::WalkedScene(const Scene& scene, std::shared_ptr<const Renderer> ren
   // Smoothed edges would mix the void around him into his outline.
   walker_ = make_embree_renderer(build_walker(mean_light(scene)),
                                  {.exposure = exposure, .antialiasing = Antialiasing::kNone});
-  const int last = scene.instances.empty() ? 0 : scene.instances.back().id;
-  assert(last < std::numeric_limits<InstanceId>::max());
-  instance_ = static_cast<InstanceId>(last + 1);
+  instance_ = walker_instance(scene);
 }
 
 WalkedScene::~WalkedScene() = default;

@@ -33,6 +33,9 @@ Scene build_walker(const Eigen::Vector3f& light);
 inline constexpr double kWalkerRadius_m = 0.22;
 inline constexpr double kWalkerHeight_m = 1.72;
 
+/// The walker's instance in a scene: one above its own.
+InstanceId walker_instance(const Scene& scene);
+
 /// A scene with somebody walking through it. The two are rendered apart and merged by depth, so
 /// the walker hides what is behind him and is hidden by what is before him; he casts no shadow and
 /// takes no light from the place where he stands, but the scene's mean.
@@ -53,7 +56,7 @@ class WalkedScene {
  private:
   std::shared_ptr<const Renderer> scene_;
   std::unique_ptr<const Renderer> walker_;
-  InstanceId instance_;  ///< the walker's, one above the scene's
+  InstanceId instance_;  ///< the walker's
   Walk walk_;
 };
 

@@ -91,12 +91,49 @@ TEST(Commands, TheReflexStopsTheRobotFortyCentimetresBeforeAWall) {
   const CommandedDrive careful = drive(empty_room(), pepper(), script_of({east}, true));
   const CommandedDrive bold = drive(empty_room(), pepper(), script_of({east}, false));
   const double careful_x = careful.path.base.back().world_from_camera.translation().x();
-  EXPECT_NEAR(careful_x, 10 - 0.26 - 0.40, 0.04);  // the grid's cell
+  EXPECT_NEAR(careful_x, 10 - 0.26 - 0.40, 2e-3);
   EXPECT_EQ(careful.path.contact_time_s, 0.0);
   EXPECT_GT(careful.reflex_time_s, 1.0);
   EXPECT_NEAR(bold.path.base.back().world_from_camera.translation().x(), 10 - 0.26, 5e-3);
   EXPECT_GT(bold.path.contact_time_s, 1.0);
   EXPECT_LE(bold.path.max_penetration_m, 5e-3);
+}
+
+TEST(Commands, TheReflexKeepsItsDistanceAtAnySpeedAndSlant) {
+  const Robot robot = pepper();
+  const double ahead_m = robot.equipment->reflex.ahead_m;
+  for (const double speed : {0.1, 0.3, 0.55})
+    for (const double heading_deg : {0.0, 10.0, 33.0}) {
+      CommandScript script = script_of({{.duration_s = 60, .forward_m_per_s = speed}}, true);
+      script.start_heading_rad = heading_deg * M_PI / 180;
+      const double x =
+          drive(empty_room(), robot, script).path.base.back().world_from_camera.translation().x();
+      // Along the way, until the shell's foremost point of the wall would touch, or what is less
+      // than aside_m beside the way would be level with the middle.
+      const double slant = std::tan(script.start_heading_rad), half_m = 0.26 + 0.10;
+      const double touch_m = (10 - x - 0.26) / std::cos(script.start_heading_rad);
+      const double level_m = (10 - x) / std::cos(script.start_heading_rad) - half_m * slant;
+      EXPECT_NEAR(std::min(touch_m, level_m), ahead_m, 2e-3) << speed << " " << heading_deg;
+      EXPECT_GE(std::min(touch_m, level_m), ahead_m - 1e-4) << speed << " " << heading_deg;
+    }
+}
+
+TEST(Commands, TheReflexLooksTenCentimetresAside) {
+  for (const auto& [gap_m, stops] : {std::pair(0.095F, true), std::pair(0.105F, false)})
+    for (const float side : {-1.0F, 1.0F}) {
+      Scene scene = empty_room();
+      const float near = 5 + side * (0.26F + gap_m), far = 5 + side * 0.8F;
+      add_box(scene, "post", {6.5F, std::min(near, far), 0}, {6.6F, std::max(near, far), 1});
+      const double x =
+          drive(scene, pepper(), script_of({{.duration_s = 8, .forward_m_per_s = 0.4}}, true))
+              .path.base.back()
+              .world_from_camera.translation()
+              .x();
+      if (stops)
+        EXPECT_NEAR(x, 6.5 - 0.40, 2e-3) << side;
+      else
+        EXPECT_GT(x, 7.5) << side;
+    }
 }
 
 TEST(Commands, TheReflexLetsPassWhatIsAsideAndStopsForAPerson) {
@@ -152,6 +189,18 @@ TEST(Commands, AStartInsideFurnitureIsRefused) {
   Scene scene = empty_room();
   add_box(scene, "sofa", {5.1F, 4, 0}, {6, 6, 0.8F});
   EXPECT_THROW(drive(scene, pepper(), script_of({{.duration_s = 1}})), InputError);
+}
+
+TEST(Commands, AStartInsideAPersonIsRefused) {
+  const MovingObstacle person{.instance = 99,
+                              .path = [](double) { return Eigen::Vector2d(5.1, 5); }};
+  try {
+    drive(empty_room(), pepper(), script_of({{.duration_s = 1}}), {person});
+    FAIL() << "the robot started in a person";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("mm inside somebody who walks about"), std::string::npos)
+        << e.what();
+  }
 }
 
 TEST(ReadSensors, LasersAndSonarsMeasureTheRoom) {

@@ -174,6 +174,34 @@ TEST(Drive, SaysThatAWaypointLiesOutsideTheRooms) {
   }
 }
 
+TEST(Drive, WhoWalksIntoTheRobotPushesItAsideAndItFindsItsWayBack) {
+  const auto comes_along = [](double y_m) {
+    return MovingObstacle{.instance = 99, .path = [=](double time_s) {
+                            return Eigen::Vector2d(8 - 0.5 * time_s, y_m);
+                          }};
+  };
+  Tour tour = tour_of({to(8, 2)});
+  const DrivenPath alone = drive(empty_room(), pepper(), tour);
+  const DrivenPath missed = drive(empty_room(), pepper(), tour, {comes_along(2.5)});
+  ASSERT_EQ(missed.base.size(), alone.base.size());
+  for (std::size_t i = 0; i < alone.base.size(); ++i)
+    ASSERT_EQ(missed.base[i].world_from_camera.translation(),
+              alone.base[i].world_from_camera.translation());
+  const DrivenPath touched = drive(empty_room(), pepper(), tour, {comes_along(2.475)});
+  EXPECT_GT(touched.contact_time_s, 0);
+  EXPECT_LE(touched.max_penetration_m, 5e-3);
+  EXPECT_NEAR(touched.base.back().world_from_camera.translation().x(), 8, 0.01);
+  // Somebody who stands in the way stops the tour, which says why.
+  const MovingObstacle stands{.instance = 99, .path = [](double) { return Eigen::Vector2d(5, 2); }};
+  try {
+    drive(empty_room(), pepper(), tour, {stands});
+    FAIL() << "the robot drove through a person";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("m against somebody who walks about"), std::string::npos)
+        << e.what();
+  }
+}
+
 TEST(Drive, RefusesAStartInsideSomethingOrOutsideTheHouse) {
   Scene scene = empty_room();
   add_box(scene, "sofa", {2.1F, 1, 0}, {3, 3, 0.8F});
@@ -181,7 +209,7 @@ TEST(Drive, RefusesAStartInsideSomethingOrOutsideTheHouse) {
   inside.start_line = 4;
   const std::string error = refusal(scene, inside);
   EXPECT_NE(error.find("test.yaml:4: start ["), std::string::npos) << error;
-  EXPECT_NE(error.find("inside something against sofa"), std::string::npos) << error;
+  EXPECT_NE(error.find("mm inside sofa"), std::string::npos) << error;
   Tour outside = tour_of({to(2, 5)});
   outside.start_m = {-3, 0};
   EXPECT_NE(refusal(empty_room(), outside).find("lies in no room of empty room"),
