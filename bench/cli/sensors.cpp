@@ -36,7 +36,7 @@ void sheet(const Options& options) {
   const SensorSheets sheets = draw_sensor_sheets(scene, make_scene_renderer(scene));
   for (const auto& [name, picture] :
        {std::pair("colour.png", sheets.colour), std::pair("depth.png", sheets.depth),
-        std::pair("labels.png", sheets.labels)}) {
+        std::pair("frames.png", sheets.frames), std::pair("labels.png", sheets.labels)}) {
     const fs::path file = fs::path(options.out) / name;
     write_picture(file, picture);
     fmt::print("{}\n", file.string());

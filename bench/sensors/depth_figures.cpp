@@ -44,23 +44,30 @@ double axial_sigma(double distance_m, double angle_rad) {
 }
 
 /// From how often the last pixel before the edge of a wall misses it: it strays by more than half a
-/// pixel with a probability of erfc(0.5 / sigma / sqrt 2) / 2.
+/// pixel with a probability of erfc(0.5 / sigma / sqrt 2) / 2. The wall is a fence around the
+/// middle of the picture, where an angle is what it is said to be; each angle has random numbers of
+/// its own.
 double lateral_sigma(double angle_rad) {
+  constexpr int kBoard = 8, kFirst = 256, kEnd = 384;  // px; a board, a gap, a board
   SensorConfig config = depth_only();
   config.depth_noise.lateral = true;
   RenderedFrame truth = leaning(2.0, angle_rad);
   for (int y = 0; y < kCamera.height_px; ++y)
-    for (int x = 320; x < kCamera.width_px; ++x) truth.depth_m(x, y) = 0.0F;
-  double missing = 0, rows = 0;
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
-    const RgbdFrame frame = sense(truth, kCamera, config, RandomStream(seed), 0);
-    for (int y = 215; y < 265; ++y, ++rows) missing += frame.depth_m(319, y) == 0.0F;
+    for (int x = 0; x < kCamera.width_px; ++x)
+      if (x < kFirst || x >= kEnd || x / kBoard % 2 != 0) truth.depth_m(x, y) = 0.0F;
+  double missing = 0, edges = 0;
+  const RandomStream own = RandomStream(1).fork(static_cast<std::uint64_t>(1e6 * angle_rad));
+  for (std::uint64_t k = 0; k < 200; ++k) {
+    const RgbdFrame frame = sense(truth, kCamera, config, own.fork(k), 0);
+    for (int y = 215; y < 265; ++y)
+      for (int x = kFirst + kBoard - 1; x < kEnd; x += 2 * kBoard, ++edges)
+        missing += frame.depth_m(x, y) == 0.0F;
   }
   double low = 0.1, high = 5.0;
   while (high - low > 1e-4) {
     const double sigma = 0.5 * (low + high);
     const double expected = 0.5 * std::erfc(0.5 / sigma / std::numbers::sqrt2);
-    (expected < missing / rows ? low : high) = sigma;
+    (expected < missing / edges ? low : high) = sigma;
   }
   return low;
 }

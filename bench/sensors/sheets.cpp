@@ -26,12 +26,22 @@ constexpr double kHeader = 70;
 constexpr std::size_t kMiddle = 30;  // of the path's frames
 constexpr Rgb8 kInk = {40, 43, 50}, kGrey = {110, 115, 125};
 
+/// What is looked at, where a model has no dial for its strength.
+struct Look {
+  double baseline = 1;       ///< times the sensor's own
+  double far = 1;            ///< the scene is so many times as large
+  int pixel = 1;             ///< so many times as wide
+  double eye_m = 0;          ///< above the floor; 0 = as the view is
+  bool over_colour = false;  ///< edges of the depth over the colour picture
+};
+
 /// One factor: what it is called, and what makes it mild and strong.
 struct Factor {
   std::string name;
   std::array<std::string, 3> captions;
   std::array<std::function<void(SensorConfig&)>, 3> settings;
   int crop_px = 640;  ///< width of the part that is shown, from the middle
+  std::array<Look, 3> looks = {};
 };
 
 using Set = std::function<void(SensorConfig&)>;
@@ -106,6 +116,27 @@ cv::Mat depth_picture(const Grid2d<float>& depth_m, const Camera& camera) {
   return picture;
 }
 
+/// The colour picture in grey with the depth's edges in red: they lie on the things' own where both
+/// are of the same moment.
+cv::Mat edges_over_colour(const Grid2d<float>& depth_m, const Grid2d<Rgb8>& colour) {
+  constexpr double kJump = 0.08;  // share of the distance
+  constexpr int kReach_px = 2;
+  cv::Mat picture = colour_picture(colour);
+  const auto jumps = [&](float a, float b) {
+    return std::abs(a - b) > kJump * std::min(a, b) && a > 0 && b > 0;
+  };
+  for (int y = 0; y < picture.rows; ++y)
+    for (int x = 0; x < picture.cols; ++x) {
+      cv::Vec3b& pixel = picture.at<cv::Vec3b>(y, x);
+      const auto grey = static_cast<std::uint8_t>((pixel[0] + pixel[1] + pixel[2]) / 3);
+      const float z = depth_m(x, y);
+      const bool edge = jumps(z, depth_m(std::min(x + kReach_px, picture.cols - 1), y)) ||
+                        jumps(z, depth_m(x, std::min(y + kReach_px, picture.rows - 1)));
+      pixel = edge ? cv::Vec3b(30, 30, 235) : cv::Vec3b(grey, grey, grey);
+    }
+  return picture;
+}
+
 /// Class colours over the grey picture; void is the picture itself.
 cv::Mat label_picture(const SemanticImage& labels, const Grid2d<Rgb8>& colour) {
   cv::Mat picture = colour_picture(colour);
@@ -127,6 +158,13 @@ cv::Mat label_picture(const SemanticImage& labels, const Grid2d<Rgb8>& colour) {
 std::vector<Factor> colour_factors() {
   const auto shot = [](double gain) {
     return [=](SensorConfig& c) { c.shot_noise_on = true, c.shot_noise.gain = gain; };
+  };
+  const auto gaussian = [](double sigma) {
+    return [=](SensorConfig& c) { c.colour_noise_on = true, c.colour_noise.sigma = sigma; };
+  };
+  const auto read = [](double share) {
+    // So large a well that its own noise, the shot noise, is small beside that of reading.
+    return [=](SensorConfig& c) { c.shot_noise_on = true, c.shot_noise = {1e6, 1e6 * share, 1.0}; };
   };
   const auto blur = [](double s) {
     return [=](SensorConfig& c) { c.shutter.motion_blur_on = true, c.shutter.exposure_s = s; };
@@ -159,6 +197,14 @@ std::vector<Factor> colour_factors() {
        {processed(0, 0), processed(0.5, 2), processed(1, 5)},
        200},
       {"rolling shutter", {"off", "26 ms", "100 ms"}, {kOff, rolling(0.0261), rolling(0.1)}},
+      {"colour noise (Gaussian)",
+       {"off", "0.7 %", "5 %"},
+       {kOff, gaussian(0.007), gaussian(0.05)},
+       200},
+      {"read noise alone",
+       {"off", "1 % of a white pixel", "5 % of a white pixel"},
+       {kOff, read(0.01), read(0.05)},
+       200},
       {"shot and read noise", {"off", "gain 1", "gain 16"}, {kOff, shot(1), shot(16)}, 200},
       {"vignetting", {"off", "half of cos^4", "cos^4"}, {kOff, vignetting(0.5), vignetting(1.0)}},
       {"lens distortion",
@@ -180,6 +226,7 @@ std::vector<Factor> depth_factors() {
   const Set axial = noise([](DepthNoiseConfig& d) { d.axial = true; });
   const Set lateral = noise([](DepthNoiseConfig& d) { d.lateral = true; });
   const Set steps = noise([](DepthNoiseConfig& d) { d.quantisation = true; });
+  const Set grazing = noise([](DepthNoiseConfig& d) { d.grazing_holes = true; });
   const Set shadow = noise([](DepthNoiseConfig& d) { d.projector_shadow = true; });
   const Set range = noise([](DepthNoiseConfig& d) { d.min_range_m = 0.4, d.max_range_m = 8.0; });
   const Set short_range =
@@ -192,15 +239,40 @@ std::vector<Factor> depth_factors() {
     d = DepthNoiseConfig{};
     d.projector_shadow = true;
   });
+  const Look over_colour{.over_colour = true};
   const auto offset = [](double s) { return [=](SensorConfig& c) { c.depth_offset_s = s; }; };
   return {
-      {"axial noise, steps",
-       {"off", "noise (Nguyen et al.)", "steps (Khoshelham, Elberink)"},
-       {kOff, axial, steps},
-       320},
-      {"edges", {"off", "lateral noise", "projector's shadow"}, {kOff, lateral, shadow}, 320},
+      {"axial noise",
+       {"off", "on", "on, in a room three times as large"},
+       {kOff, axial, axial},
+       320,
+       {Look{}, Look{}, Look{.far = 3}}},
+      {"steps of disparity",
+       {"off", "on", "on, in a room three times as large"},
+       {kOff, steps, steps},
+       320,
+       {Look{}, Look{}, Look{.far = 3}}},
+      {"lateral noise: ragged edges",
+       {"off", "on", "on, at 320 x 240 pixels"},
+       {kOff, lateral, lateral},
+       200,
+       {Look{}, Look{}, Look{.pixel = 2}}},
+      {"shadow of the projector",
+       {"off", "on", "on, projector twice as far from the camera"},
+       {kOff, shadow, shadow},
+       320,
+       {Look{}, Look{}, Look{.baseline = 2}}},
+      {"holes at grazing angles",
+       {"off, 0.2 m above the floor", "on, where the other views are", "on, 0.2 m above the floor"},
+       {kOff, grazing, grazing},
+       640,
+       {Look{.eye_m = 0.2}, Look{}, Look{.eye_m = 0.2}}},
       {"range", {"off", "0.4 to 8 m", "0.8 to 3.5 m"}, {kOff, range, short_range}},
-      {"behind the colour", {"off", "20 ms", "100 ms"}, {kOff, offset(0.020), offset(0.100)}},
+      {"later than the colour: edges of the depth over the colour",
+       {"off", "20 ms", "100 ms"},
+       {kOff, offset(0.020), offset(0.100)},
+       640,
+       {over_colour, over_colour, over_colour}},
       {"together", {"off", "without shadow", "Xtion"}, {kOff, most, all}},
   };
 }
@@ -228,7 +300,7 @@ std::vector<Factor> label_factors() {
 
 /// The rows of one sheet; `show` makes the picture of one setting.
 cv::Mat draw(const std::string& title, const std::vector<Factor>& factors,
-             const std::function<cv::Mat(const SensorConfig&)>& show) {
+             const std::function<cv::Mat(const SensorConfig&, const Look&)>& show) {
   const double row = kTileHeight + 2 * kCaption + kGap;
   Canvas canvas(static_cast<int>(2 * kMargin + 3 * kTileWidth + 2 * kGap),
                 static_cast<int>(kHeader + static_cast<double>(factors.size()) * row + kMargin));
@@ -240,7 +312,9 @@ cv::Mat draw(const std::string& title, const std::vector<Factor>& factors,
       SensorConfig config = everything_off();
       factor.settings[k](config);
       const double x = kMargin + static_cast<double>(k) * (kTileWidth + kGap);
-      const cv::Mat whole = show(config);
+      cv::Mat whole = show(config, factor.looks[k]);
+      if (const int pixel = factor.looks[k].pixel; pixel > 1)
+        cv::resize(whole, whole, {}, pixel, pixel, cv::INTER_NEAREST);
       const int w = factor.crop_px, h = w * 3 / 4;
       cv::Mat part;
       cv::resize(whole({(whole.cols - w) / 2, (whole.rows - h) / 2, w, h}), part, {800, 600}, 0, 0,
@@ -253,6 +327,53 @@ cv::Mat draw(const std::string& title, const std::vector<Factor>& factors,
   return canvas.finish();
 }
 
+/// Successive frames, one row for each strength of each factor; what is lost is marked.
+cv::Mat draw_frames(const std::function<cv::Mat(std::size_t frame, const SensorConfig&)>& show,
+                    RandomStream stream) {
+  constexpr std::size_t kFrames = 10;
+  constexpr double kWidth = 120, kHeight = 90, kStep = 122;
+  constexpr Rgb8 kLost = {205, 50, 40}, kEmpty = {236, 238, 241};
+  const auto blank = [](double share) { return [=](SensorConfig& c) { c.blank_share = share; }; };
+  const auto dropped = [](double share) {
+    return [=](SensorConfig& c) { c.dropped_share = share; };
+  };
+  const std::vector<Factor> factors = {
+      {"blank frames", {"off", "15 %", "50 %"}, {kOff, blank(0.15), blank(0.5)}},
+      {"dropped frames", {"off", "15 %", "50 %"}, {kOff, dropped(0.15), dropped(0.5)}},
+  };
+  constexpr double kRow = kHeight + kCaption + 4;
+  Canvas canvas(static_cast<int>(2 * kMargin + 3 * kTileWidth + 2 * kGap),
+                static_cast<int>(kHeader + 2 * (3 * kRow + 40) + kMargin));
+  canvas.text("Frames: one after another; red is lost", {kMargin, 40}, 15, kInk,
+              Canvas::Align::kLeft, true);
+  double y = kHeader;
+  for (const Factor& factor : factors) {
+    canvas.text(factor.name, {kMargin, y + 12}, 10.5, kInk, Canvas::Align::kLeft, true);
+    y += kCaption;
+    for (std::size_t k = 0; k < 3; ++k, y += kRow) {
+      SensorConfig config = everything_off();
+      factor.settings[k](config);
+      const std::vector<std::size_t> come = arriving(kFrames, config, stream);
+      for (std::size_t i = 0; i < kFrames; ++i) {
+        const double x = kMargin + static_cast<double>(i) * kStep;
+        const cv::Mat picture = show(kMiddle - kFrames / 2 + i, config);
+        const bool arrives = std::ranges::find(come, i) != come.end();
+        if (arrives) {
+          canvas.picture(picture, x, y, kWidth, kHeight);
+        } else {
+          canvas.fill(x, y, kWidth, kHeight, kEmpty);
+          canvas.cross({x + kWidth / 2, y + kHeight / 2}, 12, kLost, 3);
+        }
+        if (!arrives || cv::countNonZero(picture.reshape(1)) == 0)
+          canvas.fill(x, y + kHeight - 5, kWidth, 5, kLost);
+      }
+      canvas.text(factor.captions[k], {kMargin, y + kHeight + 14}, 8.5, kGrey);
+    }
+    y += 40 - kCaption;
+  }
+  return canvas.finish();
+}
+
 }  // namespace
 
 SensorSheets draw_sensor_sheets(const Scene& scene, std::shared_ptr<const Renderer> renderer) {
@@ -260,22 +381,52 @@ SensorSheets draw_sensor_sheets(const Scene& scene, std::shared_ptr<const Render
   const Trajectory path = motion_through(busiest_view(scene, *renderer, camera));
   const SE3& pose = path[kMiddle].world_from_camera;
   const RandomStream stream(1);
-  const auto frame = [&](const SensorConfig& config) {
-    const Shutter shutter(renderer, camera, path, config);
-    const Shutter::Exposed exposed = shutter.expose(kMiddle);
-    return sense(exposed.seen, shutter.camera(), config, stream, 0, exposed.gain);
+  const auto frame = [&](const SensorConfig& config, const Look& look) {
+    Camera seen_by = camera;
+    seen_by.baseline_m *= look.baseline;
+    seen_by.width_px /= look.pixel, seen_by.height_px /= look.pixel;
+    seen_by.fx_px /= look.pixel, seen_by.fy_px /= look.pixel;
+    seen_by.cx_px = (seen_by.cx_px + 0.5) / look.pixel - 0.5;
+    seen_by.cy_px = (seen_by.cy_px + 0.5) / look.pixel - 0.5;
+    Trajectory way = path;
+    if (look.eye_m > 0)
+      for (TimedPose& p : way) {
+        Eigen::Vector3d eye = p.world_from_camera.translation();
+        eye.z() = look.eye_m;
+        p.world_from_camera = SE3(p.world_from_camera.rotation(), eye);
+      }
+    const Shutter shutter(renderer, seen_by, way, config);
+    Shutter::Exposed exposed = shutter.expose(kMiddle);
+    const auto scale_depth = [&](Grid2d<float>& depth_m, double by) {
+      for (float& z : depth_m) z = static_cast<float>(by * z);
+    };
+    scale_depth(exposed.seen.depth_m, look.far);
+    RgbdFrame sensed = sense(exposed.seen, shutter.camera(), config, stream, 0, exposed.gain);
+    scale_depth(sensed.depth_m, 1 / look.far);
+    return sensed;
   };
   SensorSheets sheets;
   sheets.colour = draw("Colour: forward at 0.4 m/s while turning at 1 rad/s", colour_factors(),
-                       [&](const SensorConfig& c) { return colour_picture(frame(c).colour); });
-  sheets.depth =
-      draw("Depth: near red, far blue, black without return", depth_factors(),
-           [&](const SensorConfig& c) { return depth_picture(frame(c).depth_m, camera); });
+                       [&](const SensorConfig& c, const Look& look) {
+                         return colour_picture(frame(c, look).colour);
+                       });
+  sheets.depth = draw("Depth: near red, far blue, black without return", depth_factors(),
+                      [&](const SensorConfig& c, const Look& look) {
+                        const RgbdFrame seen = frame(c, look);
+                        return look.over_colour ? edges_over_colour(seen.depth_m, seen.colour)
+                                                : depth_picture(seen.depth_m, camera);
+                      });
+  sheets.frames = draw_frames(
+      [&](std::size_t i, const SensorConfig& c) {
+        const RenderedFrame seen = renderer->render(camera, path[i].world_from_camera);
+        return colour_picture(sense(seen, camera, c, stream.fork(i), 0).colour);
+      },
+      RandomStream(6));  // in ten frames this one loses some at either share
 
   const RenderedFrame truth = renderer->render(camera, pose);
   std::vector<Factor> factors = label_factors();
-  sheets.labels =
-      draw("Labels: class colours over the picture", factors, [&](const SensorConfig& c) {
+  sheets.labels = draw(
+      "Labels: class colours over the picture", factors, [&](const SensorConfig& c, const Look&) {
         return label_picture(sense_labels(truth, LabelMode::kExact, c, pose, stream), truth.colour);
       });
   // The detector's rows go below: exact boxes, one network and another.
@@ -283,7 +434,7 @@ SensorSheets draw_sensor_sheets(const Scene& scene, std::shared_ptr<const Render
                          {"exact boxes", "YOLOv3-like", "another such network"},
                          {[](SensorConfig& c) { c.labels.seed = 100; }, kOff,
                           [](SensorConfig& c) { c.labels.seed = 7; }}};
-  const cv::Mat more = draw("", {detectors}, [&](const SensorConfig& c) {
+  const cv::Mat more = draw("", {detectors}, [&](const SensorConfig& c, const Look&) {
     const LabelMode mode = c.labels.seed == 100 ? LabelMode::kBoxes : LabelMode::kDetector;
     return label_picture(sense_labels(truth, mode, c, pose, stream), truth.colour);
   });
