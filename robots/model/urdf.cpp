@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <set>
+#include <utility>
 
 #include <console_bridge/console.h>
 #include <fmt/format.h>
@@ -35,6 +36,20 @@ class Messages : public console_bridge::OutputHandler {
   std::string first_;
 };
 
+/// Parses a URDF. @returns the model, or what is wrong with it
+std::pair<urdf::ModelInterfaceSharedPtr, std::string> try_urdf(const std::string& text) {
+  static std::mutex one_at_a_time;  // urdfdom's messages go to one place for the whole process
+  const std::scoped_lock lock(one_at_a_time);
+  Messages messages;
+  try {
+    urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
+    if (model && messages.first().empty()) return {model, ""};
+  } catch (const std::exception& e) {
+    return {nullptr, e.what()};
+  }
+  return {nullptr, messages.first().empty() ? "is no URDF" : messages.first()};
+}
+
 /// Where in a file links and joints stand, which urdfdom does not tell, and whether they hang
 /// together. What lacks a name is left to urdfdom.
 class Places {
@@ -46,10 +61,15 @@ class Places {
           fmt::format("{}:{}: is no XML", file_, std::max(1, document.ErrorLineNum())));
     const tinyxml2::XMLElement* robot = document.FirstChildElement("robot");
     if (robot == nullptr) return;
+    for (auto* material = robot->FirstChildElement("material"); material != nullptr;
+         material = material->NextSiblingElement("material"))
+      materials_ += text_of(*material);
     for (auto* link = robot->FirstChildElement("link"); link != nullptr;
          link = link->NextSiblingElement("link"))
-      if (const char* name = link->Attribute("name"))
+      if (const char* name = link->Attribute("name")) {
         line_of_link_.emplace(name, link->GetLineNum());
+        links_.emplace_back(name, text_of(*link));
+      }
     for (auto* joint = robot->FirstChildElement("joint"); joint != nullptr;
          joint = joint->NextSiblingElement("joint"))
       if (const char* name = joint->Attribute("name")) add_joint(*joint, name);
@@ -62,14 +82,37 @@ class Places {
   [[noreturn]] void fail_at_joint(const std::string& name, const std::string& what) const {
     fail("joint", name, line_of_joint_, what);
   }
+  /// Throws what urdfdom says, with the first link or joint that it says it of.
+  [[noreturn]] void fail_somewhere(const std::string& what) const {
+    const auto wrong_with = [&](const std::string& part) {
+      return try_urdf("<robot name=\"r\">" + materials_ + part + "</robot>").second;
+    };
+    for (const auto& [name, text] : links_)
+      if (const std::string wrong = wrong_with(text); !wrong.empty()) fail_at_link(name, wrong);
+    for (const auto& [name, text] : joints_)
+      if (const std::string wrong = wrong_with(text); !wrong.empty()) fail_at_joint(name, wrong);
+    throw InputError(fmt::format("{}: {}", file_, what));
+  }
 
  private:
   struct Way {
     std::string joint, parent;
   };
 
+  static std::string text_of(const tinyxml2::XMLElement& element) {
+    tinyxml2::XMLPrinter printer(nullptr, true);
+    element.Accept(&printer);
+    return printer.CStr();
+  }
+
   void add_joint(const tinyxml2::XMLElement& joint, const std::string& name) {
     line_of_joint_.emplace(name, joint.GetLineNum());
+    if (const tinyxml2::XMLElement* limit = joint.FirstChildElement("limit")) {
+      const bool lower = limit->Attribute("lower") != nullptr;
+      if (lower != (limit->Attribute("upper") != nullptr))
+        fail_at_joint(name, lower ? "its limit has a lower end but no upper"
+                                  : "its limit has an upper end but no lower");
+    }
     const auto link_at = [&](const char* end) -> std::string {
       const tinyxml2::XMLElement* element = joint.FirstChildElement(end);
       const char* link = element == nullptr ? nullptr : element->Attribute("link");
@@ -80,6 +123,9 @@ class Places {
     };
     const std::string parent = link_at("parent"), child = link_at("child");
     if (parent.empty() || child.empty()) return;
+    const auto stub = [](const std::string& link) { return "<link name=\"" + link + "\"/>"; };
+    joints_.emplace_back(name,
+                         stub(parent) + (child == parent ? "" : stub(child)) + text_of(joint));
     const auto [other, first] = way_up_.emplace(child, Way{name, parent});
     if (!first)
       fail_at_joint(name, fmt::format("link '{}' hangs on two joints, '{}' and '{}'", child,
@@ -108,25 +154,12 @@ class Places {
 
   std::string file_;
   std::map<std::string, int> line_of_link_, line_of_joint_;
-  std::map<std::string, Way> way_up_;  // by child
-  std::vector<std::string> hanging_;   // children, in the file's order
+  // Each as a URDF of its own would hold it.
+  std::string materials_;
+  std::vector<std::pair<std::string, std::string>> links_, joints_;  // name, text
+  std::map<std::string, Way> way_up_;                                // by child
+  std::vector<std::string> hanging_;  // children, in the file's order
 };
-
-urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::filesystem::path& file) {
-  static std::mutex one_at_a_time;  // urdfdom's messages go to one place for the whole process
-  const std::scoped_lock lock(one_at_a_time);
-  Messages messages;
-  urdf::ModelInterfaceSharedPtr model;
-  try {
-    model = urdf::parseURDF(text);
-  } catch (const std::exception& e) {
-    throw InputError(fmt::format("{}: {}", file.string(), e.what()));
-  }
-  if (!model || !messages.first().empty())
-    throw InputError(fmt::format("{}: {}", file.string(),
-                                 messages.first().empty() ? "is no URDF" : messages.first()));
-  return model;
-}
 
 SE3 to_se3(const urdf::Pose& pose) {
   const auto& q = pose.rotation;
@@ -134,8 +167,31 @@ SE3 to_se3(const urdf::Pose& pose) {
           {pose.position.x, pose.position.y, pose.position.z}};
 }
 
+/// What a shape says of its size that no body has; "" if nothing.
+std::string wrong_size(const urdf::GeometrySharedPtr& shape) {
+  if (!shape) return "";
+  std::vector<std::pair<const char*, double>> sizes;
+  if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(shape.get()))
+    sizes = {{"radius of its sphere", sphere->radius}};
+  if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(shape.get()))
+    sizes = {{"radius of its cylinder", cylinder->radius},
+             {"length of its cylinder", cylinder->length}};
+  if (const auto* box = dynamic_cast<const urdf::Box*>(shape.get()))
+    for (const double side : {box->dim.x, box->dim.y, box->dim.z})
+      sizes.emplace_back("side of its box", side);
+  for (const auto& [what, size_m] : sizes)
+    if (!(size_m >= 0) || std::isinf(size_m)) return fmt::format("the {} is {} m", what, size_m);
+  return "";
+}
+
 Link read_link(const urdf::Link& from, const Places& places) {
   Link link{.name = from.name};
+  const auto check = [&](const urdf::GeometrySharedPtr& shape) {
+    if (const std::string wrong = wrong_size(shape); !wrong.empty())
+      places.fail_at_link(from.name, wrong);
+  };
+  for (const auto& visual : from.visual_array) check(visual->geometry);
+  for (const auto& collision : from.collision_array) check(collision->geometry);
   if (!from.inertial) return link;
   const urdf::Inertial& body = *from.inertial;
   const auto fail = [&](const std::string& what) { places.fail_at_link(from.name, what); };
@@ -256,7 +312,8 @@ SE3 KinematicTree::root_from(std::string_view link,
 KinematicTree load_urdf(const std::filesystem::path& file) {
   const std::string text = read_file(file);
   const Places places(text, file);
-  const urdf::ModelInterfaceSharedPtr model = parse(text, file);
+  const auto [model, wrong] = try_urdf(text);
+  if (!model) places.fail_somewhere(wrong);
   KinematicTree tree{.name = model->getName(), .root = model->getRoot()->name};
   for (const auto& [name, link] : model->links_) tree.links.push_back(read_link(*link, places));
   for (const auto& [name, joint] : model->joints_)

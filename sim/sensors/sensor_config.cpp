@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <functional>
 
+#include <fmt/format.h>
+
 #include "sim/sensors/sensors.hpp"
 #include "slam/core/yaml.hpp"
 
@@ -23,8 +25,7 @@ void section(YamlReader& file, const char* key, bool& on,
 /// A number above a bound that itself is none.
 double above(YamlReader& node, const char* key, double fallback, double bound, double max) {
   const double value = node.number_or(key, fallback, bound, max);
-  if (value <= bound)
-    node.at(key).fail(std::string(key) + " must be above " + std::to_string(bound));
+  if (value <= bound) node.at(key).fail(fmt::format("{:g} is not above {:g}", value, bound));
   return value;
 }
 

@@ -99,6 +99,20 @@ TEST(LoadUrdf, RefusesWhatIsNoRobot) {
   expect_in("link 'Tibia': no body has", refusal("ixx=\"0.129229\"", "ixx=\"9\""));
   expect_in(":" + line_of("<joint name=\"HeadPitch\"") + ": joint 'HeadPitch': its lower limit",
             refusal("lower=\"-0.706858\"", "lower=\"0.9\""));
+  // What urdfdom finds has a place, too.
+  const std::string tibia = ":" + line_of("<link name=\"Tibia\"") + ": link 'Tibia': ";
+  expect_in(tibia + "Inertial: mass [nan]",
+            refusal("<mass value=\"11.6015\"/>", "<mass value=\"nan\"/>"));
+  const std::string head = ":" + line_of("<joint name=\"HeadPitch\"") + ": joint 'HeadPitch': ";
+  expect_in(head, refusal("lower=\"-0.706858\"", "lower=\"x\""));
+  expect_in(head + "its limit has an upper end but no lower", refusal("lower=\"-0.706858\"", ""));
+  const auto sphere = [](const char* radius) {
+    return refusal_of(std::string("<robot name=\"r\">\n<link name=\"a\"><visual><geometry><sphere "
+                                  "radius=\"") +
+                      radius + "\"/></geometry></visual></link></robot>");
+  };
+  EXPECT_EQ(sphere("0.1"), "no error");
+  expect_in("urdf_test.urdf:2: link 'a': the radius of its sphere is -0.1 m", sphere("-0.1"));
   expect_in("urdf_test.urdf:1: is no XML", refusal_of("this is no XML"));
   expect_in("urdf_test.urdf:2: is no XML", refusal_of("<robot name=\"r\">\n<link></robot>"));
   expect_in("urdf_test.urdf:1: is no XML", refusal_of(""));

@@ -396,7 +396,7 @@ TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {
     EXPECT_NE(told.find(named), std::string::npos) << told;
   };
   third_line("motion_blur: {exposure_s: 0.02}", "exposure_s");
-  third_line("motion_blur: {exposure_ms: 0}", "exposure_ms");
+  third_line("motion_blur: {exposure_ms: 0}", "exposure_ms: 0 is not above 0");
   third_line("motion_blur: {exposure_ms: 2000}", "2000");
   third_line("rolling_shutter: {readout_ms: -1}", "-1");
   third_line("shot_noise: {well_e: 0}", "well_e");
