@@ -2,6 +2,8 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -21,7 +23,7 @@ namespace mh::cli {
 namespace {
 
 struct Options {
-  std::string scene, robot, out;
+  std::string scene, robot, walk, out;
   MotionOption motion;
   std::uint64_t seed = 0;
   bool sensors = false;
@@ -32,15 +34,27 @@ void run(const Options& options) {
   const std::string& motion = options.motion.given();
   if (options.sensors && options.out.empty())
     throw InputError("--sensors needs --out: a folder to write them into");
+  check_motion(motion);
+  const bool driven = is_driven(motion);
+  for (const auto& [given, option] :
+       {std::pair(options.sensors, "--sensors"), std::pair(!options.walk.empty(), "--walk")})
+    if (given && !driven)
+      throw InputError(fmt::format(
+          "{}: motion '{}' moves a camera by hand, no robot drives along it", option, motion));
   const std::filesystem::path out = options.out;
   std::optional<OutputFolder> folder;
   if (!options.out.empty()) folder.emplace(out);
   const Robot robot = load_robot(options.robot);
-  check_motion(motion);
+  const std::optional<Walk> walk =
+      options.walk.empty() ? std::nullopt : std::optional(load_walk(options.walk));
   const Scene scene = load_scene(options.scene);
-  const DrivenPath path = travel(scene, robot, motion);
+  std::vector<MovingObstacle> others;
+  if (walk) others.push_back(as_obstacle(scene, *walk));
+  if (const std::string note = note_on(motion, robot); !note.empty())
+    fmt::print(stderr, "modelhouse: warning: {}\n", note);
+  const DrivenPath path = travel(scene, robot, motion, others);
   if (options.sensors)
-    write_readings(out, robot, read_sensors(scene, robot, path.base, options.seed));
+    write_readings(out, robot, read_sensors(scene, robot, path.base, options.seed, others));
   if (!options.out.empty()) {
     write_tum(out / "camera.tum", path.camera);
     write_tum(out / "base.tum", path.base);
@@ -51,22 +65,26 @@ void run(const Options& options) {
           : static_cast<double>(path.camera.back().stamp_ns - path.camera.front().stamp_ns) * 1e-9;
   const double turned_deg = path.turned_in_place_rad * 180 / std::numbers::pi;
   if (options.json) {
-    const nlohmann::ordered_json json = {{"tour", motion},
-                                         {"frames", path.camera.size()},
-                                         {"duration_s", seconds},
-                                         {"length_m", path.length_m},
-                                         {"turned_in_place_deg", turned_deg},
-                                         {"contact_time_s", path.contact_time_s},
-                                         {"max_penetration_m", path.max_penetration_m},
-                                         {"peaks",
-                                          {{"m_per_s", path.peaks.m_per_s},
-                                           {"m_per_s2", path.peaks.m_per_s2},
-                                           {"m_per_s3", path.peaks.m_per_s3},
-                                           {"rad_per_s", path.peaks.rad_per_s},
-                                           {"rad_per_s2", path.peaks.rad_per_s2},
-                                           {"rad_per_s3", path.peaks.rad_per_s3},
-                                           {"rim_m_per_s", path.peaks.rim_m_per_s}}}};
+    const DrivePeaks& peaks = path.peaks;
+    nlohmann::ordered_json json = {{"tour", motion},
+                                   {"frames", path.camera.size()},
+                                   {"duration_s", seconds},
+                                   {"length_m", path.length_m},
+                                   {"turned_in_place_deg", turned_deg},
+                                   {"contact_time_s", path.contact_time_s},
+                                   {"max_penetration_m", path.max_penetration_m},
+                                   {"peaks", nullptr}};
+    if (driven)
+      json["peaks"] = {{"m_per_s", peaks.m_per_s},        {"m_per_s2", peaks.m_per_s2},
+                       {"m_per_s3", peaks.m_per_s3},      {"rad_per_s", peaks.rad_per_s},
+                       {"rad_per_s2", peaks.rad_per_s2},  {"rad_per_s3", peaks.rad_per_s3},
+                       {"rim_m_per_s", peaks.rim_m_per_s}};
     fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  if (!driven) {
+    fmt::print("{}: {} in {:.1f} s, {:.2f} m moved\n", motion, counted(path.camera.size(), "frame"),
+               seconds, path.length_m);
     return;
   }
   fmt::print(
@@ -85,9 +103,13 @@ void add_drive(CLI::App& app) {
   command->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
   options->motion.add_to(*command);
   command->add_option("--robot", options->robot, "Robot (YAML)")->required();
+  command->add_option("--walk", options->walk,
+                      "Somebody who walks about meanwhile (YAML); reflex and sensors notice him");
   command->add_option("--out", options->out, "Folder for camera.tum and base.tum");
-  command->add_flag("--sensors", options->sensors,
-                    "Also writes wheel odometry, lasers, sonars, bumpers and IMU into --out");
+  command->add_flag(
+      "--sensors", options->sensors,
+      "Also writes wheel odometry, lasers, sonars, bumpers and IMU into --out; not for "
+      "motions by hand, which no robot makes");
   command->add_option("--seed", options->seed, "Seed of the odometry's errors")
       ->check(seed_number());
   command->add_flag("--json", options->json, "Prints JSON");

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <chrono>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -100,6 +103,14 @@ Trajectory path_of(const MountedCamera& mounted, const Equipment& e, DrivenPath 
   return std::move(path.camera);
 }
 
+void print_json(const RenderedSequence& done) {
+  fmt::print("{}\n", nlohmann::ordered_json({{"frames", done.frames},
+                                             {"resumed", done.resumed},
+                                             {"render_s", done.render_s},
+                                             {"encode_s", done.encode_s}})
+                         .dump(2));
+}
+
 void run(Options options) {
   const std::string& motion = options.motion.given();
   const fs::path out = options.out;
@@ -122,7 +133,11 @@ void run(Options options) {
   const Scene scene = load_lit_scene(options.scene, options.sequence.threads);
   const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene, options.renderer);
   progress.say(fmt::format("moving along {}", motion));
-  DrivenPath driven = travel(scene, robot, motion);
+  if (const std::string note = note_on(motion, robot); !note.empty())
+    progress.say("warning: " + note);
+  std::vector<MovingObstacle> others;
+  if (walk) others.push_back(as_obstacle(scene, *walk));
+  DrivenPath driven = travel(scene, robot, motion, others);
   const Camera camera = mounted != nullptr ? mounted->camera : robot.camera;
   const Trajectory path = mounted != nullptr
                               ? path_of(*mounted, *robot.equipment, std::move(driven))
@@ -142,11 +157,23 @@ void run(Options options) {
   const Camera camera_told = recorded_camera(shutter.camera(), options.sequence);
   if (options.format == "scannet") {  // one file for all: frames in order, one by one
     const std::vector<std::size_t> wanted = moments(shutter, sensors, options.sequence);
+    using Clock = std::chrono::steady_clock;
+    const auto seconds_since = [](Clock::time_point start) {
+      return std::chrono::duration<double>(Clock::now() - start).count();
+    };
+    const Clock::time_point start = Clock::now();
+    RenderedSequence done{.frames = wanted.size()};
     write_scannet_recording(out, camera_told, wanted.size(), [&](std::size_t k) {
       progress.share(static_cast<double>(k) / static_cast<double>(wanted.size()));
-      return exact_frame(shutter, sensors, options.sequence, wanted[k]);
+      const Clock::time_point begun = Clock::now();
+      ExactFrame frame = exact_frame(shutter, sensors, options.sequence, wanted[k]);
+      done.render_s += seconds_since(begun);
+      return frame;
     });
+    done.encode_s = seconds_since(start) - done.render_s;
     progress.share(1);
+    progress.end();
+    if (options.json) print_json(done);
     return;
   }
   const auto writer =
@@ -154,12 +181,7 @@ void run(Options options) {
   const RenderedSequence done = render_sequence(shutter, sensors, *writer, options.sequence,
                                                 [&](double share) { progress.share(share); });
   progress.end();
-  if (options.json)
-    fmt::print("{}\n", nlohmann::ordered_json({{"frames", done.frames},
-                                               {"resumed", done.resumed},
-                                               {"render_s", done.render_s},
-                                               {"encode_s", done.encode_s}})
-                           .dump(2));
+  if (options.json) print_json(done);
 }
 
 }  // namespace
@@ -175,8 +197,12 @@ void add_render(CLI::App& app) {
   command->add_option("--camera", options->camera,
                       "Another of the robot's cameras, by its name in the robot's file");
   command->add_option("--level", options->level, "Sensor level (YAML); without: no noise");
-  command->add_option("--walk", options->walk, "Somebody who walks about meanwhile (YAML)");
-  command->add_option("--out", options->out, "Folder to write; goes on where it was stopped")
+  command->add_option("--walk", options->walk,
+                      "Somebody who walks about meanwhile (YAML); a robot that drives meets him");
+  command
+      ->add_option("--out", options->out,
+                   "Folder to write; goes on where it was stopped (scannet: anew, as a .sens is "
+                   "written in one go)")
       ->required();
   command
       ->add_option("--format", options->format,

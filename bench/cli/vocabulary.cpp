@@ -32,7 +32,8 @@ Vocabulary load_timed(const std::string& file) {
   const auto start = std::chrono::steady_clock::now();
   Vocabulary vocabulary = Vocabulary::load(file);
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-  fmt::print("{}: {}, ready in {:.1f} ms\n", file, counted(vocabulary.size(), "word"), took.count());
+  fmt::print("{}: {}, ready in {:.1f} ms\n", file, counted(vocabulary.size(), "word"),
+             took.count());
   return vocabulary;
 }
 
@@ -77,8 +78,8 @@ void print_score(const Vocabulary& vocabulary, const Options& options) {
     queries = load_placed_views(folder_of(options.queries), camera, options.score);
   const VocabularyScore score =
       score_vocabulary(vocabulary, views, queries, camera.camera, options.score);
-  fmt::print("  frames  {}, {}, {:.0f} different words in each\n",
-             counted(score.views, "view"), counted(score.queries, "query", "queries"), score.words_per_view);
+  fmt::print("  frames  {}, {}, {:.0f} different words in each\n", counted(score.views, "view"),
+             counted(score.queries, "query", "queries"), score.words_per_view);
   if (score.label_mass)
     fmt::print("  labels  hold {:.1f} % of a frame's mass at gamma = 1\n", 100 * *score.label_mass);
   fmt::print(

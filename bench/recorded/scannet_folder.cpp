@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/recorded/scannet_folder.hpp"
 
+#include <signal.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <cstdlib>
 #include <iterator>
 #include <utility>
 
@@ -199,6 +203,19 @@ class ScannetSequence : public FrameSequence {
   std::vector<ClassDistribution> palette_;
 };
 
+/// Removes what processes that are no more left of files whose names begin so (write_atomically).
+void remove_leavings(const fs::path& folder, const std::string& name) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string file = entry.path().filename().string();
+    const auto mark = file.find(".tmp.");
+    if (!file.starts_with("." + name) || mark == std::string::npos) continue;
+    const auto dot = file.rfind('.', mark - 1);
+    const int process = std::atoi(file.c_str() + dot + 1);
+    if (process > 0 && kill(process, 0) != 0 && errno == ESRCH) fs::remove(entry.path(), error);
+  }
+}
+
 template <class Id>
 Grid2d<std::uint16_t> widened(const Grid2d<Id>& ids) {
   Grid2d<std::uint16_t> wide(ids.width(), ids.height());
@@ -232,6 +249,7 @@ void write_scannet_recording(const fs::path& folder, const Camera& camera, std::
   make_output_folder(folder);
   const fs::path full = fs::absolute(folder).lexically_normal();
   const std::string name = (full.has_filename() ? full : full.parent_path()).filename().string();
+  remove_leavings(folder, name);
   const RecordedLens lens = recorded_lens(camera);
   const RecordingInfo info{.sensor = "Modelhouse",
                            .colour = lens,

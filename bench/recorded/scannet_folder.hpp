@@ -43,7 +43,8 @@ struct ExactFrame {
 
 /// Writes a recording as ScanNet releases one: NAME.sens, NAME_2d-label-filt.zip (our class ids as
 /// raw category ids), NAME_2d-instance-filt.zip and the label table that explains them; NAME is the
-/// folder's. One camera stands for both; depth beyond 65.5 m is none.
+/// folder's. One camera stands for both; depth beyond 65.5 m is none. Each file appears when it is
+/// whole; what a process that was killed left of them is removed.
 /// @param frame_at  called once per index, in order
 /// @throws InputError if it cannot be written.
 void write_scannet_recording(const std::filesystem::path& folder, const Camera& camera,

@@ -38,6 +38,7 @@ int write_all(const fs::path& file, std::string_view content) {
 }  // namespace
 
 void make_output_folder(const fs::path& folder) {
+  if (folder.empty()) throw InputError("the folder to write has an empty name");
   std::error_code error;
   fs::create_directories(folder, error);
   if (error == std::errc::no_space_on_device) throw_unwritable(folder, ENOSPC);

@@ -224,6 +224,7 @@ TEST_F(CommandLine, AnOutputFolderThatCannotBeWrittenIsFoundBeforeTheWork) {
   EXPECT_EQ(err_.find("scene"), std::string::npos) << "work had begun: " << err_;
   expect_refused("render " + house_ + " t.yaml --robot " + robot_ + " --out " + below, below);
   expect_refused("scene preview " + house_ + " --out " + below + "/a.png", below);
+  expect_refused("render " + house_ + " t.yaml --robot " + robot_ + " --out ''", "an empty name");
   expect_refused("vocabulary train --out " + below + "/a.mhvoc", below);
   EXPECT_EQ(content(file), "x");
 }
@@ -240,11 +241,21 @@ TEST_F(CommandLine, PicturesAndSequencesGoWhereTheyCanBeRead) {
 
 TEST_F(CommandLine, ARecordingInScannetsFormatEndsAtAHundredPerCent) {
   const fs::path mesh = write("m.obj", "v 0 0 0\nv 5 0 0\nv 5 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n");
-  ASSERT_EQ(run("render " + mesh.string() + " --motion handheld:0 --robot " + robot_ +
-                " --frames 2 --format scannet --out " + (folder_ / "s").string()),
-            0)
-      << err_;
+  const std::string command = "render " + mesh.string() + " --motion handheld:0 --robot " + robot_ +
+                              " --frames 2 --format scannet --json --out " +
+                              (folder_ / "s").string();
+  ASSERT_EQ(run(command), 0) << err_;
   EXPECT_TRUE(err_.ends_with("100 %\n")) << err_;
+  EXPECT_EQ(nlohmann::json::parse(out_)["frames"], 2) << out_;
+  // What a process left that was killed, and what one holds that is at work (number 1 is).
+  const pid_t gone = fork();
+  if (gone == 0) _exit(0);
+  waitpid(gone, nullptr, 0);
+  const fs::path left = write("s/.s." + std::to_string(gone) + ".tmp.sens", "half");
+  const fs::path held = write("s/.s.1.tmp.sens", "half");
+  ASSERT_EQ(run(command), 0) << err_;
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_TRUE(fs::exists(held));
 }
 
 TEST_F(CommandLine, ASceneBecomesAScannetFolderAndIsReadBack) {
@@ -278,6 +289,62 @@ TEST_F(CommandLine, ATourThatCannotBeDriven) {
                      (folder_ / "out").string(),
                  "tour.yaml");
   EXPECT_EQ(files_left(), 1u);  // tour.yaml itself
+}
+
+TEST_F(CommandLine, APersonInTheWayStopsADriveAndIsSeenBySensors) {
+  const fs::path mesh = write("m.obj", "v 0 0 0\nv 9 0 0\nv 9 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n");
+  const fs::path script = write("forward.yaml",
+                                "name: forward\nstart: {position: [1, 2], heading_deg: 0}\n"
+                                "commands: [{for_s: 12, forward_m_per_s: 0.4}]\n");
+  const fs::path walk = write("walk.yaml", "path: [[4, 2], [4, 2.05]]\nspeed_m_per_s: 0.01\n");
+  const fs::path out = folder_ / "out";
+  const auto drive = [&](const std::string& more) {
+    EXPECT_EQ(run("drive " + mesh.string() + " --motion commands:" + script.string() + " --robot " +
+                  robot_ + " --json" + more),
+              0)
+        << err_;
+    return nlohmann::json::parse(out_)["length_m"].get<double>();
+  };
+  EXPECT_GT(drive(""), 4.0);
+  EXPECT_NEAR(drive(" --walk " + walk.string() + " --sensors --out " + out.string()),
+              3 - 0.26 - 0.22 - 0.40, 0.01);
+  const std::string sonars = content(out / "sonars.csv");
+  const std::string last = sonars.substr(sonars.rfind('\n', sonars.size() - 2) + 1);
+  const double front_m = std::stod(last.substr(last.find(',') + 1));
+  EXPECT_NEAR(front_m, 0.26 + 0.40 - 0.07, 0.04) << last;
+  const std::string render = "render " + mesh.string() + " --motion commands:" + script.string() +
+                             " --robot " + robot_ + " --every 100 --out ";
+  ASSERT_EQ(run(render + (folder_ / "alone").string()), 0) << err_;
+  ASSERT_EQ(run(render + (folder_ / "met").string() + " --walk " + walk.string()), 0) << err_;
+  EXPECT_NE(content(folder_ / "alone/groundtruth.txt"), content(folder_ / "met/groundtruth.txt"));
+}
+
+TEST_F(CommandLine, ATourFasterThanTheRobotIsTold) {
+  const fs::path mesh = write("m.obj", "v 0 0 0\nv 9 0 0\nv 9 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n");
+  for (const auto& [speed, told] : {std::pair("3", true), std::pair("0.3", false)}) {
+    const fs::path tour = write("t.yaml", std::string("name: t\nspeed_m_per_s: ") + speed +
+                                              "\nstart: {position: [1, 2], heading_deg: 0}\n"
+                                              "waypoints: [{to: [3, 2]}]\n");
+    ASSERT_EQ(run("drive " + mesh.string() + " " + tour.string() + " --robot " + robot_), 0)
+        << err_;
+    EXPECT_EQ(err_.find("t.yaml: speed_m_per_s 3 is more than robot 'pepper' does: 0.55") !=
+                  std::string::npos,
+              told)
+        << err_;
+  }
+}
+
+TEST_F(CommandLine, WhatIsCarriedByHandHasNoRobotsSensors) {
+  const fs::path mesh = write("m.obj", "v 0 0 0\nv 5 0 0\nv 5 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n");
+  const std::string drive = "drive " + mesh.string() + " --motion handheld:0 --robot " + robot_;
+  const std::string out = " --out " + (folder_ / "out").string();
+  expect_refused(drive + out + " --sensors", "--sensors: motion 'handheld:0'");
+  expect_refused(drive + out + " --walk w.yaml", "--walk: motion 'handheld:0'");
+  EXPECT_EQ(files_left(), 1U);  // the mesh
+  ASSERT_EQ(run(drive + " --json"), 0) << err_;
+  EXPECT_TRUE(nlohmann::json::parse(out_)["peaks"].is_null()) << out_;
+  ASSERT_EQ(run(drive), 0) << err_;
+  EXPECT_NE(out_.find(" m moved\n"), std::string::npos) << out_;
 }
 
 TEST_F(CommandLine, AnUndeterminedErrorIsNotZero) {
