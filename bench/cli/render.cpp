@@ -145,7 +145,11 @@ void run(Options options) {
 
   const std::string settings = settings_of(options, scene, path);
   if (fs::exists(out / "render.json")) {
-    if (read_file(out / "render.json") != settings) refuse_folder(out);
+    if (read_file(out / "render.json") != settings)
+      throw InputError(fmt::format(
+          "{}: holds a sequence already, made otherwise (its render.json tells how); name another "
+          "folder",
+          out.string()));
     options.sequence.resume = true;
   }
   write_atomically(out / "render.json", settings);

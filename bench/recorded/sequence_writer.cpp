@@ -57,13 +57,14 @@ class ScanNetWriter : public SequenceWriter {
     count(index);
   }
 
-  bool resume(std::size_t index, Stamp, const SE3&) override {
+  bool resume(std::size_t index, Stamp, const SE3& world_from_camera) override {
     const std::string name = std::to_string(index);
+    const fs::path pose = folder_ / "pose" / (name + ".txt");
     const std::array pictures = {
         folder_ / "color" / (name + ".jpg"), folder_ / "depth" / (name + ".png"),
         folder_ / "label-filt" / (name + ".png"), folder_ / "instance-filt" / (name + ".png")};
-    if (!std::ranges::all_of(pictures, is_whole_picture) ||
-        !fs::exists(folder_ / "pose" / (name + ".txt")))
+    if (!std::ranges::all_of(pictures, is_whole_picture) || !fs::exists(pose) ||
+        read_file(pose) != rows(matrix_of(world_from_camera)))
       return false;
     count(index);
     return true;

@@ -109,6 +109,7 @@ TEST_F(RenderSequence, MakesAnewWhatWasCutOff) {
       if ((ending != ".png" && ending != ".jpg") || k++ % 5 != 0) continue;
       fs::resize_file(folder_ / name / file, bytes.size() * (k % 3) / 3);
     }
+    if (name == "scannet-frames") fs::resize_file(folder_ / name / "pose" / "7.txt", 0);
     EXPECT_EQ(rendered(layout, name.c_str(), {.resume = true}), whole);
     EXPECT_GE(result_.frames, 4U) << layout;
   }
