@@ -694,6 +694,17 @@ class Maker {
     }
   }
 
+  /// In an L-shaped room, from beside the missing corner to the middle of the arm that is left.
+  Vector2d beside_cut(const Vector2d& at_m) const {
+    if (!layout_.cut()) return at_m;
+    const FloorRect &room = layout_.rect(), &cut = *layout_.cut();
+    const bool beside_x = at_m.y() > cut.y0 && at_m.y() < cut.y1;
+    const bool beside_y = at_m.x() > cut.x0 && at_m.x() < cut.x1;
+    if (beside_x == beside_y) return at_m;  // in neither arm, or in the corner itself
+    if (beside_x) return {0.5 * (cut.x0 > room.x0 ? room.x0 + cut.x0 : cut.x1 + room.x1), at_m.y()};
+    return {at_m.x(), 0.5 * (cut.y0 > room.y0 ? room.y0 + cut.y0 : cut.y1 + room.y1)};
+  }
+
   bool add_lamps() {
     const FloorRect& r = layout_.rect();
     const double area = layout_.floor_area_m2();
@@ -710,11 +721,17 @@ class Maker {
     int placed = 0;
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
-        LayoutItem item = item_of(design_of_lamps);
-        item.at_m = {whole_mm(r.x0 + (i + 0.5) * w / nx), whole_mm(r.y0 + (j + 0.5) * d / ny)};
-        item.z_m = whole_mm(layout_.height_m() - item.size_m.z());
-        item.glow = colour;
-        placed += add(item, design_of_lamps) ? 1 : 0;
+        const Vector2d at(r.x0 + (i + 0.5) * w / nx, r.y0 + (j + 0.5) * d / ny);
+        for (const Vector2d& place : {at, beside_cut(at)}) {
+          LayoutItem item = item_of(design_of_lamps);
+          item.at_m = {whole_mm(place.x()), whole_mm(place.y())};
+          item.z_m = whole_mm(layout_.height_m() - item.size_m.z());
+          item.glow = colour;
+          if (add(item, design_of_lamps)) {
+            ++placed;
+            break;
+          }
+        }
       }
     dusk_ = dice_.chance(0.15);
     sun_turn_ = dice_.number(0, 360);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
@@ -113,6 +114,38 @@ TEST(Generate, WhereverTheRobotFitsItCanCome) {
       EXPECT_EQ(parts_m2(house, 0.26).size(), 1U) << plan.name;
       EXPECT_EQ(parts_m2(house, 0.29).size(), 1U) << plan.name << " with play";
     }
+}
+
+/// How far it is from a point of the floor to the nearest ceiling lamp that shines on it, m.
+double lamp_m(const HousePlan& house, const Eigen::Vector2d& p) {
+  const std::optional<FloorRect>& cut = house.rooms[0].cut;
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const ItemPlan& item : house.items) {
+    if (item.kind->mount != Mount::kCeiling || !item.glow) continue;
+    const Eigen::Vector2d way = item.position_m.head<2>() - p;
+    bool hidden = false;
+    for (int k = 0; cut && k <= 50; ++k) hidden |= cut->contains(p + way * (k / 50.0));
+    if (!hidden) nearest_m = std::min(nearest_m, way.norm());
+  }
+  return nearest_m;
+}
+
+// Hallway 1 once had an arm of five metres without a lamp: in the grid, half of it was in a wall.
+TEST(Generate, LampsLightBothArmsOfLShapedRooms) {
+  int rooms = 0;
+  for (const Category& category : categories())
+    for (int i = 0; i < category.count; ++i) {
+      const GeneratedPlan plan = generate_plan({category.name, static_cast<std::uint64_t>(i)});
+      const HousePlan house = read_house_plan(YamlReader::parse(plan.yaml, plan.name));
+      const RoomPlan& room = house.rooms[0];
+      if (!room.cut) continue;
+      ++rooms;
+      for (double y = room.rect.y0 + 0.1; y < room.rect.y1; y += 0.2)
+        for (double x = room.rect.x0 + 0.1; x < room.rect.x1; x += 0.2)
+          if (!room.cut->contains({x, y}))
+            ASSERT_LT(lamp_m(house, {x, y}), 4.0) << plan.name << " at " << x << ", " << y;
+    }
+  EXPECT_GE(rooms, 20);
 }
 
 TEST(Generate, PicturesOfOneRuleDiffer) {
