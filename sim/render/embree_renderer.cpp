@@ -102,6 +102,7 @@ class EmbreeRenderer final : public Renderer {
  public:
   EmbreeRenderer(const Scene& scene, const RenderConfig& config)
       : config_(config),
+        lit_(!scene.light.empty()),
         bvh_(scene, config.threads, config.portable),
         shading_(scene, bvh_, config.exposure) {
     if (std::ranges::any_of(scene.materials, &Material::is_pane)) panes_.emplace(scene, config);
@@ -137,6 +138,7 @@ class EmbreeRenderer final : public Renderer {
     frame.depth_m = Grid2d<float>(w, h, Unfilled{});
     frame.classes = Grid2d<ClassId>(w, h, Unfilled{});
     frame.instances = Grid2d<InstanceId>(w, h, Unfilled{});
+    if (lit_) frame.exposure = config_.exposure;
     const ExtraOutputs& extra = config_.extra;
     if (extra.depth16) frame.depth16 = Grid2d<std::uint16_t>(w, h);
     if (extra.faces) frame.faces = Grid2d<std::uint32_t>(w, h, kNoFace);
@@ -285,6 +287,7 @@ class EmbreeRenderer final : public Renderer {
   }
 
   RenderConfig config_;
+  bool lit_;
   EmbreeScene bvh_;
   Shading shading_;
   std::optional<Panes> panes_;

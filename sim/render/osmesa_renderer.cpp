@@ -104,7 +104,8 @@ struct Batch {
 
 class OsmesaRenderer final : public Renderer {
  public:
-  OsmesaRenderer(const Scene& scene, const RenderConfig& config) : gl_(context_.gl()) {
+  OsmesaRenderer(const Scene& scene, const RenderConfig& config)
+      : gl_(context_.gl()), exposure_(scene.light.empty() ? 0.0F : config.exposure) {
     const OffscreenContext::Current current(context_);
     has_panes_ = std::ranges::any_of(scene.materials, &Material::is_pane);
     make_program(
@@ -136,6 +137,7 @@ class OsmesaRenderer final : public Renderer {
       if (!batch.pane) draw(batch);
     if (has_panes_) draw_panes();
     RenderedFrame frame = read_back(camera.width_px, camera.height_px);
+    frame.exposure = exposure_;
     check("draw");
     return frame;
   }
@@ -434,6 +436,7 @@ class OsmesaRenderer final : public Renderer {
 
   OffscreenContext context_;
   const Gl& gl_;
+  float exposure_;  // of pictures, see RenderedFrame
   GLuint program_ = 0;
   std::vector<Batch> batches_;
   bool has_panes_ = false;

@@ -24,6 +24,9 @@ struct RenderedFrame {
   Grid2d<float> depth_m;         ///< along the optical axis; 0 = nothing hit
   Grid2d<ClassId> classes;       ///< kVoid where nothing was hit
   Grid2d<InstanceId> instances;  ///< 0 where nothing was hit
+  /// Linear radiance that is white in the picture is 1 / exposure; 0: the scene shows colours of
+  /// its own and no light, so that nothing tells how bright it is.
+  float exposure = 0.0F;
 
   // On request (ExtraOutputs), else empty.
   Grid2d<std::uint16_t> depth16{};  ///< 5000 per metre as in TUM's files; 0 beyond 13.1 m

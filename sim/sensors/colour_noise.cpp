@@ -90,6 +90,11 @@ void add_grey_noise(Grid2d<Rgb8>& colour, double sigma, RandomStream stream) {
 
 }  // namespace
 
+double analogue_gain(const ShotNoiseConfig& config, float exposure) {
+  if (config.gain_at_exposure <= 0.0 || exposure <= 0.0F) return config.gain;
+  return std::max(1.0, config.gain * static_cast<double>(exposure) / config.gain_at_exposure);
+}
+
 void develop(Grid2d<Rgb8>& colour, const Camera& camera, const SensorConfig& config, double gain,
              RandomStream stream) {
   if (config.shot_noise_on || config.vignetting_on || gain != 1.0)

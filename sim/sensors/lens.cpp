@@ -84,6 +84,7 @@ Lens::Lens(const Camera& camera)
 RenderedFrame Lens::bend(RenderedFrame picture) const {
   if (source_.empty()) return picture;
   RenderedFrame bent{{width_, height_}, {width_, height_}, {width_, height_}, {width_, height_}};
+  bent.exposure = picture.exposure;
   const auto last_x = static_cast<float>(pinhole_.width_px - 1);
   const auto last_y = static_cast<float>(pinhole_.height_px - 1);
   for (std::size_t i = 0; i < source_.size(); ++i) {

@@ -29,7 +29,9 @@ RgbdFrame sense(const RenderedFrame& truth, const Camera& camera, const SensorCo
   frame.depth_m = config.depth_noise_on
                       ? noisy_depth(truth.depth_m, camera, config.depth_noise, stream.fork(kDepth))
                       : truth.depth_m;
-  develop(frame.colour, camera, config, gain, stream.fork(kColour));
+  SensorConfig set = config;
+  set.shot_noise.gain = analogue_gain(config.shot_noise, truth.exposure);
+  develop(frame.colour, camera, set, gain, stream.fork(kColour));
   return frame;
 }
 

@@ -53,6 +53,7 @@ void read_colour(YamlReader& file, SensorConfig& config) {
     c.well_e = above(node, "well_e", c.well_e, 0.0, 1e7);
     c.read_noise_e = node.number_or("read_noise_e", c.read_noise_e, 0.0, 1e6);
     c.gain = node.number_or("gain", c.gain, 1.0, 1000.0);
+    c.gain_at_exposure = node.number_or("gain_at_exposure", c.gain_at_exposure, 0.0, 1e6);
   });
   section(file, "auto_exposure", config.auto_exposure_on, [&](YamlReader& node) {
     AutoExposureConfig& c = config.auto_exposure;

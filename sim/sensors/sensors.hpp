@@ -61,7 +61,14 @@ struct ShotNoiseConfig {
   double well_e = 3981.0;  ///< electrons of a white pixel at gain 1, above 0
   double read_noise_e = 1.6;
   double gain = 1.0;  ///< analogue: a white pixel holds well_e / gain electrons; 1 or more
+  /// The exposure (RenderedFrame) that takes this gain; others take theirs in proportion: dark
+  /// rooms are noisier. 0: all take this one.
+  double gain_at_exposure = 0.0;
 };
+
+/// The gain that a picture of this exposure takes: never below 1, where a camera exposes for less
+/// time instead. A picture of unknown exposure (0) takes that of the configuration.
+double analogue_gain(const ShotNoiseConfig& config, float exposure);
 
 /// When light is collected, from the true motion. Row y of h is exposed for exposure_s around
 /// stamp + ((y + 1/2) / h - 1/2) readout_s: the stamp is the middle of the picture's exposure.

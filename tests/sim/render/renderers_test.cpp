@@ -327,6 +327,9 @@ TEST_P(BothRenderers, OutputIsAlbedoTimesLightTimesExposurePlusEmission) {
   EXPECT_NEAR(seen.r, linear_to_srgb(1.5F * grey * grey * 0.5F), 1);
   EXPECT_NEAR(seen.g, linear_to_srgb(1.5F * (grey * 0.25F + 0.1F)), 1);
   EXPECT_NEAR(seen.b, linear_to_srgb(1.5F * 0.05F), 1);
+  EXPECT_EQ(frame.exposure, 1.5F);
+  scene.light.clear();
+  EXPECT_EQ(make(scene, {.exposure = 1.5F})->render(Camera{}, kIdentity).exposure, 0.0F);
 }
 
 TEST_P(BothRenderers, RefusesACameraWithoutSizeOrFocalLength) {

@@ -59,6 +59,28 @@ TEST(ShotNoise, SignalToNoiseIsThatOfTheElectrons) {
   EXPECT_NEAR(20.0 * std::log10(published.well_e / published.read_noise_e), 68.0, 0.2);
 }
 
+TEST(ShotNoise, DarkerScenesTakeMoreGain) {
+  SensorConfig config = nothing();
+  config.shot_noise_on = true;
+  config.shot_noise.gain = 2.0;
+  RenderedFrame truth = grey_frame(118);
+  const auto taken = [&](float exposure) {
+    truth.exposure = exposure;
+    return sense(truth, {}, config, RandomStream(1), 0).colour;
+  };
+  EXPECT_EQ(taken(3.0F), taken(0.5F));  // not asked for
+  config.shot_noise.gain_at_exposure = 0.5;
+  const auto at_gain = [&](double gain) {
+    SensorConfig plain = config;
+    plain.shot_noise = {.gain = gain};
+    return sense(truth, {}, plain, RandomStream(1), 0).colour;
+  };
+  EXPECT_EQ(taken(0.5F), at_gain(2.0));
+  EXPECT_EQ(taken(1.5F), at_gain(6.0));
+  EXPECT_EQ(taken(0.01F), at_gain(1.0));
+  EXPECT_EQ(taken(0.0F), at_gain(2.0));  // nothing tells how dark it is
+}
+
 TEST(Vignetting, FallsOffWithTheFourthPowerOfTheCosine) {
   SensorConfig config = nothing();
   config.vignetting_on = true;
@@ -114,7 +136,9 @@ TEST(Lens, EveryPixelShowsWhatItsRayMeets) {
       picture.depth_m(x, y) = static_cast<float>(3.0 + wide.unproject(x, y, 1.0).x());
       picture.colour(x, y).g = static_cast<std::uint8_t>(128 + 90 * wide.unproject(x, y, 1.0).y());
     }
+  picture.exposure = 0.7F;
   const RenderedFrame bent = lens.bend(picture);
+  EXPECT_EQ(bent.exposure, 0.7F);
   ASSERT_EQ(bent.colour.width(), camera.width_px);
   for (int y = 0; y < 480; y += 7)
     for (int x = 0; x < 640; x += 7) {

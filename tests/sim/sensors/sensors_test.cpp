@@ -339,7 +339,7 @@ TEST(SensorLevels, AreFrozen) {
   };
   EXPECT_EQ(digest("ideal"), 0x7922bfb11bb41b6bU);
   EXPECT_EQ(digest("pepper"), 0xa8ef16bf06d441b7U);
-  EXPECT_EQ(digest("handheld"), 0x3a5869e5fb05915fU);
+  EXPECT_EQ(digest("handheld"), 0xf4981728dd7ff120U);
 }
 
 TEST(SensorLevels, SayWhatTheirNamesSay) {
@@ -364,6 +364,8 @@ TEST(SensorLevels, SayWhatTheirNamesSay) {
   const SensorConfig handheld = load_sensor_config(level("handheld"));
   EXPECT_TRUE(handheld.depth_noise_on && handheld.shot_noise_on && handheld.auto_exposure_on &&
               handheld.shutter.motion_blur_on && handheld.shutter.rolling_shutter_on);
+  EXPECT_GT(handheld.shot_noise.gain_at_exposure, 0);
+  EXPECT_EQ(pepper.shot_noise.gain_at_exposure, 0);
   EXPECT_TRUE(handheld.processing.contrast > 0 && handheld.processing.sharpening > 0);
   EXPECT_EQ(pepper.processing.contrast + pepper.processing.sharpening, 0.0);
 }
@@ -401,6 +403,7 @@ TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {
   third_line("rolling_shutter: {readout_ms: -1}", "-1");
   third_line("shot_noise: {well_e: 0}", "well_e");
   third_line("shot_noise: {gain: 0.5}", "0.5");
+  third_line("shot_noise: {gain_at_exposure: -1}", "-1");
   third_line("auto_exposure: {target: 2}", "2");
   third_line("vignetting: {strength: 1.5}", "1.5");
   third_line("lens_blur: {sigma_px: -1}", "-1");
