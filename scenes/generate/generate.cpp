@@ -694,15 +694,41 @@ class Maker {
     }
   }
 
-  /// In an L-shaped room, from beside the missing corner to the middle of the arm that is left.
+  /// What an L-shaped room has beside its missing corner.
+  struct Arm {
+    Vector2d middle_m, end_m;
+  };
+  /// The one west or east of the corner, then the one south or north of it.
+  std::array<Arm, 2> arms(const FloorRect& cut) const {
+    const FloorRect& room = layout_.rect();
+    const double x = 0.5 * (cut.x0 > room.x0 ? room.x0 + cut.x0 : cut.x1 + room.x1),
+                 y = 0.5 * (cut.y0 > room.y0 ? room.y0 + cut.y0 : cut.y1 + room.y1);
+    return {{{{x, 0.5 * (cut.y0 + cut.y1)}, {x, cut.y0 > room.y0 ? room.y1 : room.y0}},
+             {{0.5 * (cut.x0 + cut.x1), y}, {cut.x0 > room.x0 ? room.x1 : room.x0, y}}}};
+  }
+
+  /// From beside the missing corner, if there is one, to the middle of that arm.
   Vector2d beside_cut(const Vector2d& at_m) const {
     if (!layout_.cut()) return at_m;
-    const FloorRect &room = layout_.rect(), &cut = *layout_.cut();
+    const FloorRect& cut = *layout_.cut();
     const bool beside_x = at_m.y() > cut.y0 && at_m.y() < cut.y1;
     const bool beside_y = at_m.x() > cut.x0 && at_m.x() < cut.x1;
     if (beside_x == beside_y) return at_m;  // in neither arm, or in the corner itself
-    if (beside_x) return {0.5 * (cut.x0 > room.x0 ? room.x0 + cut.x0 : cut.x1 + room.x1), at_m.y()};
-    return {at_m.x(), 0.5 * (cut.y0 > room.y0 ? room.y0 + cut.y0 : cut.y1 + room.y1)};
+    if (beside_x) return {arms(cut)[0].middle_m.x(), at_m.y()};
+    return {at_m.x(), arms(cut)[1].middle_m.y()};
+  }
+
+  /// Whether a lamp shines on it round no corner.
+  bool is_lit(const Vector2d& at_m) const {
+    constexpr double kFar_m = 4.0;
+    constexpr int kSteps = 50;
+    return std::ranges::any_of(layout_.items(), [&](const LayoutItem& item) {
+      if (!item.glow) return false;
+      const Vector2d way = item.at_m - at_m;
+      for (int k = 0; layout_.cut() && k <= kSteps; ++k)
+        if (layout_.cut()->contains(at_m + way * k / kSteps)) return false;
+      return way.norm() < kFar_m;
+    });
   }
 
   bool add_lamps() {
@@ -718,26 +744,28 @@ class Maker {
     const Design design_of_lamps = design(rule);
     const double power = draw(dice_, grammar_.lamp_power), warm = draw(dice_, grammar_.warmth);
     const Vector3d colour(power, power * (1.0 - 0.14 * warm), power * (1.0 - 0.42 * warm));
+    const auto hang = [&](const Vector2d& at) {
+      LayoutItem item = item_of(design_of_lamps);
+      item.at_m = {whole_mm(at.x()), whole_mm(at.y())};
+      item.z_m = whole_mm(layout_.height_m() - item.size_m.z());
+      item.glow = colour;
+      return add(item, design_of_lamps).has_value();
+    };
     int placed = 0;
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
         const Vector2d at(r.x0 + (i + 0.5) * w / nx, r.y0 + (j + 0.5) * d / ny);
-        for (const Vector2d& place : {at, beside_cut(at)}) {
-          LayoutItem item = item_of(design_of_lamps);
-          item.at_m = {whole_mm(place.x()), whole_mm(place.y())};
-          item.z_m = whole_mm(layout_.height_m() - item.size_m.z());
-          item.glow = colour;
-          if (add(item, design_of_lamps)) {
-            ++placed;
-            break;
-          }
-        }
+        placed += hang(at) || hang(beside_cut(at)) ? 1 : 0;
       }
+    if (placed == 0) return false;
+    if (layout_.cut())
+      for (const Arm& arm : arms(*layout_.cut()))
+        if (!is_lit(arm.end_m)) hang(arm.middle_m);
     dusk_ = dice_.chance(0.15);
     sun_turn_ = dice_.number(0, 360);
     sun_power_ = dice_.number(8, 17);
     sky_power_ = dice_.number(4, 10);
-    return placed > 0;
+    return true;
   }
 
   // ---- as text -------------------------------------------------------------------------------

@@ -131,20 +131,25 @@ double lamp_m(const HousePlan& house, const Eigen::Vector2d& p) {
 }
 
 // Hallway 1 once had an arm of five metres without a lamp: in the grid, half of it was in a wall.
+// Hallway 45 is too small for a second place in the grid.
 TEST(Generate, LampsLightBothArmsOfLShapedRooms) {
-  int rooms = 0;
+  std::vector<GeneratedReference> references = {{"hallway", 45}};
   for (const Category& category : categories())
-    for (int i = 0; i < category.count; ++i) {
-      const GeneratedPlan plan = generate_plan({category.name, static_cast<std::uint64_t>(i)});
-      const HousePlan house = read_house_plan(YamlReader::parse(plan.yaml, plan.name));
-      const RoomPlan& room = house.rooms[0];
-      if (!room.cut) continue;
-      ++rooms;
-      for (double y = room.rect.y0 + 0.1; y < room.rect.y1; y += 0.2)
-        for (double x = room.rect.x0 + 0.1; x < room.rect.x1; x += 0.2)
-          if (!room.cut->contains({x, y}))
-            ASSERT_LT(lamp_m(house, {x, y}), 4.0) << plan.name << " at " << x << ", " << y;
-    }
+    for (int i = 0; i < category.count; ++i)
+      references.push_back({category.name, static_cast<std::uint64_t>(i)});
+  int rooms = 0;
+  for (const GeneratedReference& reference : references) {
+    const GeneratedPlan plan = generate_plan(reference);
+    const HousePlan house = read_house_plan(YamlReader::parse(plan.yaml, plan.name));
+    const RoomPlan& room = house.rooms[0];
+    if (!room.cut) continue;
+    ++rooms;
+    for (double y = room.rect.y0 + 0.1; y < room.rect.y1; y += 0.2)
+      for (double x = room.rect.x0 + 0.1; x < room.rect.x1; x += 0.2)
+        if (!room.cut->contains({x, y})) {
+          ASSERT_LT(lamp_m(house, {x, y}), 4.0) << plan.name << " at " << x << ", " << y;
+        }
+  }
   EXPECT_GE(rooms, 20);
 }
 
