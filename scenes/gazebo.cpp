@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <sdf/sdf.hh>
 
+#include "scenes/guard.hpp"
 #include "scenes/mesh_builder.hpp"
 #include "scenes/mesh_io/label_rules.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
@@ -328,7 +329,9 @@ class WorldReader {
 }  // namespace
 
 Scene load_gazebo_world(const fs::path& file, std::vector<std::string>* warnings) {
-  return WorldReader(file, warnings).read();
+  return load_guarded(file, warnings, [&](std::vector<std::string>* told) {
+    return WorldReader(file, told).read();
+  });
 }
 
 }  // namespace mh

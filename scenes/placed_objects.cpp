@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/guard.hpp"
 #include "scenes/mesh_io/instances_in.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/placed_scene_file.hpp"
@@ -93,13 +94,15 @@ bool is_placed_scene(const fs::path& yaml) {
 Scene load_placed_scene(const fs::path& yaml, std::vector<std::string>* warnings) {
   const PlacedScene placed =
       read_placed_scene(YamlReader::load(yaml), yaml.parent_path(), yaml.stem().string());
-  Scene scene;
-  scene.name = placed.name;
-  for (const PlacedObject& object : placed.objects)
-    append_part(scene, load_mesh(object.file, warnings, placed.rules), object.scene_from_object,
-                object.name, object.class_id);
-  finish_parts(scene);
-  return scene;
+  return load_guarded(yaml, warnings, [&](std::vector<std::string>* told) {
+    Scene scene;
+    scene.name = placed.name;
+    for (const PlacedObject& object : placed.objects)
+      append_part(scene, load_mesh(object.file, told, placed.rules), object.scene_from_object,
+                  object.name, object.class_id);
+    finish_parts(scene);
+    return scene;
+  });
 }
 
 }  // namespace mh

@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "scenes/guard.hpp"
 #include "scenes/mesh_io/instances_in.hpp"
 #include "scenes/mesh_io/label_rules.hpp"
 #include "scenes/mesh_io/labels_file.hpp"
@@ -288,18 +289,9 @@ Scene finished(Scene scene, const fs::path& file) {
   return scene;
 }
 
-}  // namespace
-
-Scene load_mesh(const fs::path& file, std::vector<std::string>* warnings, const LabelRules& rules) {
-  const Format format = format_of(file);
-  if (format.ply) {
-    const HeldBytes held = map_file(file);
-    if (is_plain_binary_ply(held.view)) {
-      PlyMesh mesh = parse_ply(held.view, file.string());
-      warn_of_bytes_left(mesh, file, warnings);
-      return finished(scene_of(std::move(mesh), file), file);
-    }
-  }
+/// Through assimp.
+Scene load_foreign(const fs::path& file, const Format& format, const LabelRules& rules,
+                   std::vector<std::string>* warnings) {
   Assimp::Importer importer;
   const aiScene& in = read(importer, file, format);
   if (format.obj) warn_of_missing_materials(file, warnings);
@@ -314,6 +306,23 @@ Scene load_mesh(const fs::path& file, std::vector<std::string>* warnings, const 
   if (scene.uvs.empty())
     for (Material& material : scene.materials) material.texture = {};
   return finished(std::move(scene), file);
+}
+
+}  // namespace
+
+Scene load_mesh(const fs::path& file, std::vector<std::string>* warnings, const LabelRules& rules) {
+  const Format format = format_of(file);
+  if (format.ply) {
+    const HeldBytes held = map_file(file);
+    if (is_plain_binary_ply(held.view)) {
+      PlyMesh mesh = parse_ply(held.view, file.string());
+      warn_of_bytes_left(mesh, file, warnings);
+      return finished(scene_of(std::move(mesh), file), file);
+    }
+  }
+  return load_guarded(file, warnings, [&](std::vector<std::string>* told) {
+    return load_foreign(file, format, rules, told);
+  });
 }
 
 }  // namespace mh

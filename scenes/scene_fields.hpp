@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// How a scene becomes bytes and back. One list of fields per type serves both directions; its
+// brackets name every field, so that it does not compile once one is added that has no place here.
+
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "scenes/scene.hpp"
+
+namespace mh::scene_fields {
+
+template <class T, class U>
+concept Either = std::same_as<std::remove_const_t<T>, U>;
+
+template <class Archive, Either<Material> T>
+void fields(Archive& archive, T& material) {
+  auto& [name, base_colour, texture, opacity, tile_m, emission, transmission] = material;
+  archive(name, base_colour, texture, opacity, tile_m, emission, transmission);
+}
+
+template <class Archive, Either<Instance> T>
+void fields(Archive& archive, T& instance) {
+  auto& [id, class_id, name, min_m, max_m] = instance;
+  archive(id, class_id, name, min_m, max_m);
+}
+
+template <class Archive, Either<Light> T>
+void fields(Archive& archive, T& light) {
+  auto& [kind, position_m, direction, radius_m, angular_radius_rad, colour] = light;
+  archive(kind, position_m, direction, radius_m, angular_radius_rad, colour);
+}
+
+template <class Archive, Either<Room> T>
+void fields(Archive& archive, T& room) {
+  auto& [name, polygon_m] = room;
+  archive(name, polygon_m);
+}
+
+template <class Archive, Either<Scene> T>
+void fields(Archive& archive, T& scene) {
+  auto& [name, positions_m, uvs, colours, light, triangles, material_of, class_of, instance_of,
+         materials, instances, lights, rooms] = scene;
+  archive(name, positions_m, uvs, colours, light, triangles, material_of, class_of, instance_of,
+          materials, instances, lights, rooms);
+}
+
+/// Types that are stored as they lie in memory; Eigen's vectors are not trivial, but plain numbers.
+template <class T>
+inline constexpr bool kPlain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>;
+template <class T, int N>
+inline constexpr bool kPlain<Eigen::Matrix<T, N, 1>> = N > 0;
+
+template <class T>
+concept Sequence = requires(T items) {
+  items.resize(std::size_t{1});
+  items.data();
+};
+
+template <class T>
+inline constexpr bool kIsGrid = false;
+template <class T>
+inline constexpr bool kIsGrid<Grid2d<T>> = true;
+
+/// Sends values through anything that has bytes(const void*, size).
+template <class Out>
+class Sender {
+ public:
+  explicit Sender(Out& out) : out_(out) {}
+
+  template <class... T>
+  void operator()(const T&... values) {
+    (put(values), ...);
+  }
+
+ private:
+  template <class T>
+  void put(const T& value) {
+    if constexpr (kPlain<T>) {
+      out_.bytes(&value, sizeof value);
+    } else if constexpr (kIsGrid<T>) {
+      (*this)(value.width(), value.height());
+      out_.bytes(value.data(), value.size() * sizeof *value.data());
+    } else if constexpr (Sequence<T>) {
+      put(std::uint64_t{value.size()});
+      if constexpr (kPlain<typename T::value_type>)
+        out_.bytes(value.data(), value.size() * sizeof(typename T::value_type));
+      else
+        for (const auto& item : value) put(item);
+    } else {
+      fields(*this, value);
+    }
+  }
+
+  Out& out_;
+};
+
+/// Takes them from anything that has bytes(void*, size), straight into their place.
+template <class In>
+class Receiver {
+ public:
+  explicit Receiver(In& in) : in_(in) {}
+
+  template <class... T>
+  void operator()(T&... values) {
+    (get(values), ...);
+  }
+
+ private:
+  template <class T>
+  void get(T& value) {
+    if constexpr (kPlain<T>) {
+      in_.bytes(&value, sizeof value);
+    } else if constexpr (kIsGrid<T>) {
+      int width = 0, height = 0;
+      (*this)(width, height);
+      value = T(width, height, Unfilled{});
+      in_.bytes(value.data(), value.size() * sizeof *value.data());
+    } else if constexpr (Sequence<T>) {
+      std::uint64_t size = 0;
+      get(size);
+      value.resize(size);
+      if constexpr (kPlain<typename T::value_type>)
+        in_.bytes(value.data(), size * sizeof(typename T::value_type));
+      else
+        for (auto& item : value) get(item);
+    } else {
+      fields(*this, value);
+    }
+  }
+
+  In& in_;
+};
+
+}  // namespace mh::scene_fields
