@@ -23,6 +23,7 @@
 #include "scenes/placed_objects.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
+#include "slam/core/files.hpp"
 
 namespace mh {
 namespace {
@@ -45,11 +46,10 @@ std::vector<fs::path> folders_of_environment() {
 /// The file or folder that a URI means, seen from a folder; nullopt if there is none.
 std::optional<fs::path> find_uri(const std::string& uri, const fs::path& folder) {
   std::error_code error;
-  const auto there = [&](const fs::path& path) { return fs::exists(path, error); };
   const std::size_t mark = uri.find("://");
   if (mark == uri.npos || uri.starts_with("file://")) {
     const fs::path path(mark == uri.npos ? uri : uri.substr(mark + 3));
-    if (there(folder / path)) return folder / path;  // an absolute path stays itself
+    if (is_there(folder / path)) return folder / path;  // an absolute path stays itself
     return std::nullopt;
   }
   const fs::path named(uri.substr(mark + 3));
@@ -62,21 +62,26 @@ std::optional<fs::path> find_uri(const std::string& uri, const fs::path& folder)
   }
   std::ranges::move(folders_of_environment(), std::back_inserter(places));
   for (const fs::path& base : places)
-    if (there(base / named)) return base / named;
+    if (is_there(base / named)) return base / named;
   // package://NAME/a/b: NAME is wherever somebody put it, and may not be a folder's name.
   if (!uri.starts_with("package://")) return std::nullopt;
   for (fs::path rest = named; rest.has_parent_path();) {
     rest = rest.lexically_relative(*rest.begin());
     for (const fs::path& base : places)
-      if (there(base / rest)) return base / rest;
+      if (is_there(base / rest)) return base / rest;
   }
   return std::nullopt;
 }
 
 /// The SDF file of an include: a file, or a model's folder with a model.config.
 fs::path file_of_include(const fs::path& found) {
-  std::error_code error;
-  return fs::is_directory(found, error) ? fs::path(sdf::getModelFilePath(found.string())) : found;
+  if (!is_folder(found)) return found;
+  for (const char* config : {"model.config", "manifest.xml"})
+    if (is_file(found / config)) {
+      read_file(found / config);  // libsdformat opens it itself: to be noted
+      break;
+    }
+  return fs::path(sdf::getModelFilePath(found.string()));
 }
 
 /// Follows includes before libsdformat does, which would follow a circle for ever.
@@ -95,7 +100,8 @@ class IncludeWalk {
       throw InputError(fmt::format("{}: more than {} includes", own.string(), kMostFiles));
     open_.push_back(own);
     tinyxml2::XMLDocument document;
-    if (document.LoadFile(own.c_str()) != tinyxml2::XML_SUCCESS)
+    const std::string text = read_file(own);
+    if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
       throw InputError(fmt::format("{}:{}: is no SDF that can be read: {}", own.string(),
                                    std::max(document.ErrorLineNum(), 1), document.ErrorName()));
     visit(document.RootElement(), own);

@@ -16,6 +16,7 @@
 #include "scenes/scannet/files.hpp"
 #include "scenes/scannet/scannet.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
 
 namespace mh {
 
@@ -24,8 +25,7 @@ namespace {
 Scene load(const std::filesystem::path& file, std::vector<std::string>* warnings) {
   if (file.native().starts_with(kGeneratedPrefix))
     return generate_scene(parse_generated(file.native()));
-  if (is_scannet_scene(file) || std::filesystem::is_directory(file))
-    return load_scannet(file, warnings);
+  if (is_scannet_scene(file) || is_folder(file)) return load_scannet(file, warnings);
   constexpr std::array<std::string_view, 5> kMeshes = {".dae", ".glb", ".gltf", ".obj", ".ply"};
   std::string ending = file.extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "slam/core/files.hpp"
+
 namespace mh {
 
 std::optional<ClassId> LabelRules::find(std::initializer_list<std::string_view> names) const {
@@ -27,11 +29,9 @@ LabelRules read_label_rules(YamlReader yaml) {
 }
 
 LabelRules find_label_rules(const std::filesystem::path& mesh) {
-  std::error_code error;
   for (const auto& file : {std::filesystem::path(mesh).replace_extension(".labels.yaml"),
                            mesh.parent_path() / "labels.yaml"})
-    if (std::filesystem::is_regular_file(file, error))
-      return read_label_rules(YamlReader::load(file));
+    if (is_file(file)) return read_label_rules(YamlReader::load(file));
   return {};
 }
 

@@ -17,10 +17,12 @@
 #include "scenes/mesh_io/materials_in.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/mesh_io/node_name.hpp"
+#include "scenes/mesh_io/noted_files.hpp"
 #include "scenes/mesh_io/ply.hpp"
 #include "scenes/srgb.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
+#include "slam/core/files.hpp"
 #include "slam/core/held_bytes.hpp"
 
 namespace mh {
@@ -224,6 +226,7 @@ class Gatherer {
 
 const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Format& format) {
   require_readable(file);
+  importer.SetIOHandler(new NotedFiles);  // which is the importer's from now on
   // No step that reorders vertices or faces: labels beside a PLY count on their order.
   const unsigned steps =
       format.ply ? unsigned{aiProcess_Triangulate} : aiProcess_Triangulate | aiProcess_GlobalScale;
@@ -282,7 +285,7 @@ Scene scene_of(PlyMesh mesh, const fs::path& file) {
 Scene finished(Scene scene, const fs::path& file) {
   if (scene.triangles.empty())
     throw InputError(fmt::format("{}: has no faces to be seen", file.string()));
-  if (format_of(file).ply && fs::exists(labels_path(file))) load_labels(scene, labels_path(file));
+  if (format_of(file).ply && is_there(labels_path(file))) load_labels(scene, labels_path(file));
   find_boxes(scene);
   if (scene.rooms.empty()) rooms_from_floors(scene);
   validate(scene);

@@ -91,8 +91,7 @@ Picture convert_embedded(const aiTexture& texture) {
 }
 
 Picture read_picture(const fs::path& path) {
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) return {.fault = "is missing"};
+  if (!is_file(path)) return {.fault = "is missing"};
   const std::string bytes = read_file(path);
   return decode(bytes.data(), bytes.size());
 }

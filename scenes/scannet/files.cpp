@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
 
 namespace mh {
 namespace {
@@ -27,10 +28,8 @@ bool is_mesh_name(const fs::path& file) {
 
 std::vector<std::string> ids_in(const fs::path& folder) {
   std::vector<std::string> ids;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-    if (is_mesh_name(entry.path())) ids.push_back(id_of_mesh(entry.path()));
-  std::ranges::sort(ids);
+  for (const std::string& name : list_folder(folder, fmt::format("?*{}", kMeshEnding)))
+    ids.push_back(id_of_mesh(name));
   return ids;
 }
 
@@ -52,17 +51,15 @@ ScannetFiles::ScannetFiles(const fs::path& folder, const std::string& id)
       info(folder / (id + ".txt")) {}
 
 bool is_scannet_scene(const fs::path& path) {
-  std::error_code error;
-  if (fs::is_directory(path, error)) return !ids_in(path).empty();
+  if (is_folder(path)) return !ids_in(path).empty();
   if (!is_mesh_name(path)) return false;
   const ScannetFiles files(path.parent_path(), id_of_mesh(path));
-  return fs::exists(files.segments, error) || fs::exists(files.labels, error);
+  return is_there(files.segments) || is_there(files.labels);
 }
 
 ScannetFiles find_scannet_files(const fs::path& path) {
   if (is_mesh_name(path)) return {path.parent_path(), id_of_mesh(path)};
-  std::error_code error;
-  if (!fs::is_directory(path, error))
+  if (!is_folder(path))
     throw InputError(
         fmt::format("{}: is neither a folder nor a mesh of a ScanNet scene", path.string()));
   const std::vector<std::string> ids = ids_in(path);
@@ -80,10 +77,9 @@ std::vector<fs::path> find_label_tables(const fs::path& folder) {
   constexpr int kLevels = 4;
   fs::path place = named(folder);
   std::vector<fs::path> tables;
-  std::error_code error;
   for (int level = 0; level < kLevels && tables.empty(); ++level, place = place.parent_path())
     for (const char* name : {kLabelTableV2, kLabelTableV1})
-      if (fs::is_regular_file(place / name, error)) tables.push_back(place / name);
+      if (is_file(place / name)) tables.push_back(place / name);
   return tables;
 }
 

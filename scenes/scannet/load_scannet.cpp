@@ -26,11 +26,6 @@ namespace fs = std::filesystem;
 constexpr std::uint16_t kLastNyu40 = 40;
 constexpr std::uint32_t kLastObject = 65534;  // its instance is the last of 16 bits
 
-bool is_there(const fs::path& file) {
-  std::error_code error;
-  return fs::exists(file, error);
-}
-
 /// What is known of the vertices; empty where nothing is.
 struct VertexLabels {
   std::vector<ClassId> classes;

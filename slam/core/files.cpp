@@ -2,8 +2,11 @@
 #include "slam/core/files.hpp"
 
 #include <fcntl.h>
+#include <fnmatch.h>
 #include <unistd.h>
+#include <xxhash.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <sstream>
@@ -13,6 +16,7 @@
 
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
+#include "slam/core/read_record.hpp"
 
 namespace mh {
 namespace fs = std::filesystem;
@@ -33,6 +37,25 @@ int write_all(const fs::path& file, std::string_view content) {
   }
   if (close(descriptor) != 0 && error == 0) error = errno;
   return error;
+}
+
+FileObservation::Kind look_at(const fs::path& path) {
+  std::error_code error;
+  const auto kind = [&] {
+    switch (fs::status(path, error).type()) {
+      case fs::file_type::regular:
+        return FileObservation::Kind::kFile;
+      case fs::file_type::directory:
+        return FileObservation::Kind::kFolder;
+      case fs::file_type::not_found:
+      case fs::file_type::none:
+        return FileObservation::Kind::kAbsent;
+      default:
+        return FileObservation::Kind::kOther;
+    }
+  }();
+  ReadScope::report(FileObservation{kind, path});
+  return kind;
 }
 
 }  // namespace
@@ -79,12 +102,48 @@ void write_atomically(const fs::path& file, std::string_view content) {
 }
 
 std::string read_file(const fs::path& file) {
-  require_readable(file);
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(fmt::format("{}: cannot be read", file.string()));
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+  const char* reason = why_unreadable(file);
+  std::ifstream in;
+  if (reason == nullptr) in.open(file, std::ios::binary);
+  if (!in.is_open()) {
+    report_absent(file);
+    throw InputError(fmt::format("{}: cannot be read{}{}", file.string(), reason ? ": " : "",
+                                 reason ? reason : ""));
+  }
+  std::ostringstream stream;
+  stream << in.rdbuf();
+  std::string text = std::move(stream).str();
+  report_read(file, text);
+  return text;
+}
+
+bool is_file(const fs::path& path) {
+  return look_at(path) == FileObservation::Kind::kFile;
+}
+
+bool is_folder(const fs::path& path) {
+  return look_at(path) == FileObservation::Kind::kFolder;
+}
+
+bool is_there(const fs::path& path) {
+  return look_at(path) != FileObservation::Kind::kAbsent;
+}
+
+std::vector<std::string> list_folder(const fs::path& folder, const std::string& pattern) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    std::string name = entry.path().filename().string();
+    if (fnmatch(pattern.c_str(), name.c_str(), FNM_PERIOD) == 0) names.push_back(std::move(name));
+  }
+  std::ranges::sort(names);
+  if (ReadScope::is_open()) {
+    std::string all;
+    for (const std::string& name : names) all.append(name).push_back('\0');
+    ReadScope::report(
+        {FileObservation::Kind::kListed, folder / pattern, XXH3_64bits(all.data(), all.size())});
+  }
+  return names;
 }
 
 }  // namespace mh

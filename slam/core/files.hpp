@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace mh {
 
@@ -20,7 +21,21 @@ void write_atomically(const std::filesystem::path& file,
                       const std::function<void(const std::filesystem::path&)>& write);
 void write_atomically(const std::filesystem::path& file, std::string_view content);
 
+// Readers of scenes, robots, levels and the like see the file system through these four (and
+// map_file, YamlReader) alone: a ReadScope (slam/core/read_record.hpp) notes what they saw, and the
+// keys of results hold that.
+
 /// Whole content of a file. @throws InputError naming it.
 std::string read_file(const std::filesystem::path& file);
+
+/// Whether there is a file (or a link to one), a folder, anything of that name.
+bool is_file(const std::filesystem::path& path);
+bool is_folder(const std::filesystem::path& path);
+bool is_there(const std::filesystem::path& path);
+
+/// The names in a folder that match a pattern (* ? [...], as a shell's), sorted; none where there
+/// is no such folder.
+std::vector<std::string> list_folder(const std::filesystem::path& folder,
+                                     const std::string& pattern);
 
 }  // namespace mh

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "slam/core/error.hpp"
+#include "slam/core/read_record.hpp"
 
 namespace mh {
 namespace {
@@ -52,6 +53,7 @@ HeldBytes hold(std::string bytes) {
 
 HeldBytes map_file(const std::filesystem::path& file, MapPages pages) {
   const auto refusal = [&](const char* reason) {
+    report_absent(file);
     return InputError(fmt::format("{}: cannot be read: {}", file.string(), reason));
   };
   const FileDescriptor descriptor(file);
@@ -61,14 +63,19 @@ HeldBytes map_file(const std::filesystem::path& file, MapPages pages) {
   if (S_ISDIR(status.st_mode)) throw refusal("it is a folder");
   if (!S_ISREG(status.st_mode)) throw refusal("it is no file");
   const auto size = static_cast<std::size_t>(status.st_size);
-  if (size == 0) return {};  // nothing to map
+  if (size == 0) {  // nothing to map
+    report_read(file, {});
+    return {};
+  }
   void* const start = mmap(nullptr, size, PROT_READ,
                            pages == MapPages::kAtOnce ? MAP_PRIVATE | MAP_POPULATE : MAP_PRIVATE,
                            descriptor.value(), 0);
   if (start == MAP_FAILED) throw refusal(reason_of(errno));
-  return {std::shared_ptr<const void>(
-              start, [size](const void* p) { munmap(const_cast<void*>(p), size); }),
-          {static_cast<const char*>(start), size}};
+  HeldBytes held{std::shared_ptr<const void>(
+                     start, [size](const void* p) { munmap(const_cast<void*>(p), size); }),
+                 {static_cast<const char*>(start), size}};
+  report_read(file, held.view);
+  return held;
 }
 
 }  // namespace mh

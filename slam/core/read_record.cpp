@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/core/read_record.hpp"
+
+#include <xxhash.h>
+
+#include <cstring>
+
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+
+void append_bytes(std::string& out, std::uint64_t value) {
+  out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+void append_bytes(std::string& out, std::string_view text) {
+  append_bytes(out, std::uint64_t{text.size()});
+  out += text;
+}
+
+/// Takes values from the front of bytes.
+class Taker {
+ public:
+  explicit Taker(std::string_view bytes) : rest_(bytes) {}
+
+  std::uint64_t number() {
+    const std::string_view bytes = take(sizeof(std::uint64_t));
+    std::uint64_t value = 0;
+    std::memcpy(&value, bytes.data(), sizeof value);
+    return value;
+  }
+  std::string_view text() { return take(number()); }
+  bool is_done() const { return rest_.empty(); }
+
+ private:
+  std::string_view take(std::uint64_t size) {
+    if (size > rest_.size()) throw InputError("record of what was read: is cut short");
+    const std::string_view taken = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    return taken;
+  }
+
+  std::string_view rest_;
+};
+
+}  // namespace
+
+void ReadRecord::append(const ReadRecord& more) {
+  observations.insert(observations.end(), more.observations.begin(), more.observations.end());
+}
+
+std::uint64_t digest(const ReadRecord& record) {
+  std::string bytes;
+  for (const FileObservation& o : record.observations) {
+    append_bytes(bytes, static_cast<std::uint64_t>(o.kind));
+    // A folder may be called by another name, or ".".
+    append_bytes(bytes, o.kind == FileObservation::Kind::kFolder ? "" : o.path.filename().string());
+    append_bytes(bytes, o.digest);
+  }
+  return XXH3_64bits(bytes.data(), bytes.size());
+}
+
+std::string encode(const ReadRecord& record) {
+  std::string bytes;
+  for (const FileObservation& o : record.observations) {
+    append_bytes(bytes, static_cast<std::uint64_t>(o.kind));
+    append_bytes(bytes, o.path.native());
+    append_bytes(bytes, o.digest);
+  }
+  return bytes;
+}
+
+ReadRecord decode_read_record(std::string_view bytes) {
+  ReadRecord record;
+  for (Taker taker(bytes); !taker.is_done();) {
+    const std::uint64_t kind = taker.number();
+    if (kind > static_cast<std::uint64_t>(FileObservation::Kind::kRead))
+      throw InputError("record of what was read: has an unknown kind of observation");
+    const std::string path(taker.text());
+    record.observations.push_back({static_cast<FileObservation::Kind>(kind), path, taker.number()});
+  }
+  return record;
+}
+
+thread_local ReadScope* ReadScope::innermost_ = nullptr;
+
+ReadScope::ReadScope() : outer_(innermost_) {
+  innermost_ = this;
+}
+
+ReadScope::~ReadScope() {
+  innermost_ = outer_;
+}
+
+void ReadScope::report(const FileObservation& observation) {
+  for (ReadScope* scope = innermost_; scope != nullptr; scope = scope->outer_)
+    scope->record_.observations.push_back(observation);
+}
+
+void ReadScope::report(const ReadRecord& record) {
+  for (const FileObservation& observation : record.observations) report(observation);
+}
+
+void report_read(const std::filesystem::path& file, std::string_view content) {
+  if (ReadScope::is_open())
+    ReadScope::report(
+        {FileObservation::Kind::kRead, file, XXH3_64bits(content.data(), content.size())});
+}
+
+void report_absent(const std::filesystem::path& file) {
+  if (ReadScope::is_open()) ReadScope::report({FileObservation::Kind::kAbsent, file});
+}
+
+}  // namespace mh
