@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/core/se3.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "slam/core/random.hpp"
@@ -12,6 +14,74 @@ Vector6d random_tangent(RandomStream stream, double scale) {
   Vector6d tangent;
   for (int i = 0; i < 6; ++i) tangent[i] = stream.uniform(i, -scale, scale);
   return tangent;
+}
+
+using Matrix3l = Eigen::Matrix<long double, 3, 3>;
+
+/// The power series sum of hat(phi)^k / (k + first)! in extended precision, which knows nothing of
+/// angles: first = 0 is exp, first = 1 is V of the translation.
+Matrix3l power_series(const Eigen::Vector3d& phi, int first) {
+  const Matrix3l skew = hat(phi).cast<long double>();
+  Matrix3l sum = Matrix3l::Identity(), term = Matrix3l::Identity();
+  for (int k = 1; k <= 40; ++k) {
+    term = term * skew / static_cast<long double>(k + first);
+    sum += term;
+  }
+  return sum;
+}
+
+/// Angles on both sides of where the code changes from series to closed form, and far from there.
+constexpr double kAngles_rad[] = {
+    0,    1e-12, 1e-8, 3e-6, 9.999e-6, 1e-5 * (1 - 1e-12), 1e-5, 1e-5 * (1 + 1e-12), 1.001e-5,
+    1e-4, 1e-2,  0.7,  2.0,  3.1};
+
+// The axes have no zero component: each entry of both matrices takes part. Tolerance: a few units
+// in the last place of 1. The closed form of the turn loses (1 - cos) / angle^2 to cancellation: an
+// error of half a unit over angle^2, times angle^2 again.
+TEST(Se3, ExpIsItsPowerSeriesOnBothSidesOfTheSwitch) {
+  for (const double angle_rad : kAngles_rad)
+    for (const Eigen::Vector3d& axis :
+         {Eigen::Vector3d(1, -2, 0.5), Eigen::Vector3d(-0.3, 0.2, 1)}) {
+      const Eigen::Vector3d phi = angle_rad * axis.normalized();
+      const Matrix3l error = so3_exp(phi).cast<long double>() - power_series(phi, 0);
+      EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-15L) << angle_rad;
+    }
+}
+
+// V's closed form divides the cancelled 1 - cos by angle^2 and multiplies with angle once: at
+// 1e-5 rad it is good to 1e-16 / 1e-5 = 1e-11, where its second-order term is 1.7e-11. So the law
+// is of the largest error that this allows.
+TEST(Se3, TranslationOfExpIsItsPowerSeriesOnBothSidesOfTheSwitch) {
+  const Eigen::Vector3d rho(0.7, -1.1, 0.4);
+  for (const double angle_rad : kAngles_rad)
+    for (const Eigen::Vector3d& axis :
+         {Eigen::Vector3d(1, -2, 0.5), Eigen::Vector3d(-0.3, 0.2, 1)}) {
+      const Eigen::Vector3d phi = angle_rad * axis.normalized();
+      const Vector6d tangent = (Vector6d() << rho, phi).finished();
+      const Eigen::Matrix<long double, 3, 1> error =
+          SE3::exp(tangent).translation().cast<long double>() -
+          power_series(phi, 1) * rho.cast<long double>();
+      const double bound = angle_rad < 1e-5 ? 1e-15 : 1e-15 + 2e-16 / angle_rad;
+      EXPECT_LT(error.cwiseAbs().maxCoeff(), bound) << angle_rad;
+    }
+}
+
+// The rotation is made by the power series, so that an error of so3_exp cannot hide one here.
+TEST(Se3, LogUndoesThePowerSeriesOnBothSidesOfTheSwitch) {
+  const Eigen::Vector3d rho(0.7, -1.1, 0.4);
+  for (const double angle_rad : kAngles_rad)
+    for (const Eigen::Vector3d& axis :
+         {Eigen::Vector3d(1, -2, 0.5), Eigen::Vector3d(-0.3, 0.2, 1)}) {
+      const Eigen::Vector3d phi = angle_rad * axis.normalized();
+      const Eigen::Matrix3d rotation = power_series(phi, 0).cast<double>();
+      const Eigen::Vector3d translation =
+          (power_series(phi, 1) * rho.cast<long double>()).cast<double>();
+      EXPECT_LT((so3_log(rotation) - phi).norm(), 2e-15) << angle_rad;
+      const Vector6d tangent = SE3(rotation, translation).log();
+      const double bound = angle_rad < 1e-5 ? 2e-15 : 4e-15 + 1e-15 / angle_rad;
+      EXPECT_LT((tangent.head<3>() - rho).norm(), bound) << angle_rad;
+      EXPECT_LT((tangent.tail<3>() - phi).norm(), 2e-15) << angle_rad;
+    }
 }
 
 TEST(Se3, LogInvertsExpFromTinyToLargeAngles) {
