@@ -42,6 +42,33 @@ TEST(Map, CovisibilityCountsSharedLandmarks) {
   EXPECT_EQ(map.at(KeyframeId{0}).covisible.size(), 1U);
 }
 
+TEST(Map, FifteenSharedLandmarksMakeNeighboursAndFourteenDoNot) {
+  for (const std::uint32_t shared : {14U, 15U}) {
+    Map map;
+    for (int i = 0; i < 2; ++i) map.add(keyframe_with(40));
+    for (std::uint32_t i = 0; i < shared; ++i)
+      map.add_observation(map.add_landmark({0.1 * i, 0, 2}, KeyframeId{0}, i), KeyframeId{1}, i);
+    map.update_covisibility(KeyframeId{0});
+    for (const KeyframeId id : {KeyframeId{0}, KeyframeId{1}})
+      EXPECT_EQ(map.at(id).covisible.size(), shared == 15 ? 1U : 0U);
+  }
+}
+
+TEST(Map, CovisibleAreByWhatTheyShareThenById) {
+  Map map;
+  for (int i = 0; i < 5; ++i) map.add(keyframe_with(100));
+  const std::uint32_t shared[] = {0, 16, 17, 16, 17};  // of keyframe 0 with the others
+  std::uint32_t feature = 0;
+  for (const std::uint32_t other : {4U, 3U, 2U, 1U})
+    for (std::uint32_t i = 0; i < shared[other]; ++i, ++feature)
+      map.add_observation(map.add_landmark({0.1 * i, 0, 2}, KeyframeId{0}, feature),
+                          KeyframeId{other}, i);
+  for (const std::uint32_t last : {4U, 3U, 2U, 1U, 0U}) map.update_covisibility(KeyframeId{last});
+  std::vector<std::uint32_t> order;
+  for (const Keyframe::Neighbour& n : map.at(KeyframeId{0}).covisible) order.push_back(n.id.value);
+  EXPECT_EQ(order, (std::vector<std::uint32_t>{2, 4, 1, 3}));
+}
+
 TEST(Map, FuseMovesObservationsAndKeepsInvariants) {
   Map map = chain();
   const LandmarkId from = map.at(KeyframeId{0}).landmarks[3];

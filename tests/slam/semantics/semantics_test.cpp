@@ -131,6 +131,32 @@ TEST(SelectCandidates, ASharedBestIsKeptOnceWithItsLargestSum) {
   EXPECT_DOUBLE_EQ(selection.candidates[0].score, 1.6);
 }
 
+// Of neighbours that are equally similar equation 5 takes the least id, in whatever order they
+// come, itself among them.
+TEST(SelectCandidates, OfEquallySimilarNeighboursTheLeastIsTaken) {
+  const std::vector<int> keyframes{5};
+  for (std::vector<int> neighbours : {std::vector{5, 7, 3, 4}, {3, 4, 5, 7}, {7, 4, 3, 5}}) {
+    const auto selection = select_candidates(
+        std::span<const int>(keyframes), [](int) { return 1; }, [&](int) { return neighbours; },
+        [](int k) { return k == 7 ? 0.1 : 0.4; }, 0.5, 0.75);
+    ASSERT_EQ(selection.candidates.size(), 1U);
+    EXPECT_EQ(selection.candidates[0].keyframe, 3);
+    EXPECT_DOUBLE_EQ(selection.candidates[0].score, 1.3);
+  }
+}
+
+// A keyframe whose neighbourhood is like nothing at all stands for itself or for its least
+// neighbour, and equation 6 drops it beside any that is.
+TEST(SelectCandidates, AScoreOfNothingIsDropped) {
+  const std::vector<int> keyframes{2, 3};
+  const auto selection = select_candidates(
+      std::span<const int>(keyframes), [](int) { return 1; }, [](int k) { return std::vector{k}; },
+      [](int k) { return k == 2 ? 0.0 : 1e-9; }, 0.5, 0.75);
+  EXPECT_EQ(selection.c3, 2);
+  ASSERT_EQ(selection.candidates.size(), 1U);
+  EXPECT_EQ(selection.candidates[0].keyframe, 3);
+}
+
 TEST(SelectCandidates, NothingSharedGivesNothing) {
   const std::vector<int> keyframes{0, 1};
   const auto selection = select_candidates(
