@@ -52,6 +52,8 @@ class FakeSystem : public System {
   std::function<int(Stamp frame)> answers_at = [](Stamp) { return 1; };
   /// Told the stream of every frame that a session is shown.
   std::function<void(RandomStream)> on_query = [](RandomStream) {};
+  /// Changes what is reported of the n-th showing of a test frame (n = 1, 2, ...).
+  std::function<void(int attempt, StepReport& report)> on_report = [](int, StepReport&) {};
   /// How many blank frames are still believed to be tracked.
   int believes_blanks = 0;
 
@@ -81,6 +83,7 @@ class FakeSession : public RelocalizationSession {
     const bool found = ++attempts_ == system_.answers_at(frame.stamp_ns);
     report.relocalization = found ? RelocalizationStage::kVerified : RelocalizationStage::kMatches;
     report.candidates = CandidateCounts{.keyframes = 10, .c1 = 9, .c2 = 4, .c3 = 3, .final = 1};
+    system_.on_report(attempts_, report);
     if (!found) return report;
     report.status = TrackStatus::kRelocalized;
     // A pose that depends on the draws and on nothing else: what the permutation law needs.

@@ -2,7 +2,9 @@
 #include "bench/protocol/query.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -57,6 +59,37 @@ TEST(Query, GivesUpAfterFiveAttemptsAndNamesTheStage) {
   EXPECT_FALSE(answer.world_from_camera);
   EXPECT_EQ(answer.attempts, 5);
   EXPECT_EQ(answer.stage, RelocalizationStage::kMatches);
+}
+
+TEST(Query, CandidatesAreThoseOfTheFirstAttemptAndPairsAreSummed) {
+  FakeSystem system = mapped();
+  system.answers_at = [](Stamp) { return 3; };
+  system.on_report = [](int attempt, StepReport& report) {
+    report.candidates->final = 10 + attempt;
+    report.matches[2].compared = attempt;
+  };
+  const QueryAnswer answer = query(system, 59, fake_frame, {}, RandomStream(1));
+  ASSERT_TRUE(answer.candidates);
+  EXPECT_EQ(answer.candidates->final, 11);
+  EXPECT_EQ(answer.matches[2].compared, 1 + 2 + 3);
+  // Where the first tells none, none are known.
+  system.on_report = [](int attempt, StepReport& report) {
+    if (attempt == 1) report.candidates.reset();
+  };
+  EXPECT_FALSE(query(system, 59, fake_frame, {}, RandomStream(1)).candidates);
+}
+
+TEST(Query, TheDigestOfMatchingIsOfEveryAttempt) {
+  FakeSystem system = mapped();
+  system.answers_at = [](Stamp) { return 3; };
+  std::set<std::uint64_t> seen;
+  for (const int changed : {0, 1, 2, 3}) {  // 0: none
+    system.on_report = [&](int attempt, StepReport& report) {
+      if (attempt == changed) report.matches[0].compared = 1;
+    };
+    seen.insert(query(system, 59, fake_frame, {}, RandomStream(1)).matching_digest);
+  }
+  EXPECT_EQ(seen.size(), 4u);
 }
 
 TEST(Query, ShowsBlankFramesUntilLost) {
@@ -160,6 +193,40 @@ TEST(Score, ADriftedMapIsRightWhereItIsRightLocally) {
   EXPECT_TRUE(s.correct);
   EXPECT_NEAR(s.distance_m.value(), 0, 1e-12);
   EXPECT_GT(s.aligned_distance_m.value(), 1.0);  // no global alignment undoes the drift here
+}
+
+// Worked by hand. The anchor's estimate stands at (10, 0) and looks along y; really it stood at the
+// origin and looked along x. From there the query lies 2 m ahead: (10, 2) in the map. The answer
+// is 0.12 m beside that and 0.16 m above. The alignment moves everything by -9 in x: the answer
+// comes to (1.12, 2), which is sqrt(0.88^2 + 2^2 + 0.16^2) from the true (2, 0).
+TEST(Score, DistanceAngleAndAlignedDistanceAreThoseWorkedByHand) {
+  const double right_angle = std::numbers::pi / 2;
+  const Anchor anchor{at(10, 0, right_angle), at(0, 0, 0), 0};
+  const TimedPose truth{0, at(2, 0, 0)};
+  QueryAnswer answer;
+  answer.world_from_camera =
+      SE3(at(10.12, 2, right_angle + 0.05).rotation(), Eigen::Vector3d(10.12, 2, 1.16));
+  const SE3 truth_from_estimate(Eigen::Matrix3d::Identity(), Eigen::Vector3d(-9, 0, 0));
+  const QueryScore s = score(answer, truth, anchor, truth_from_estimate, {});
+  EXPECT_NEAR(s.distance_m.value(), 0.2, 1e-12);
+  EXPECT_NEAR(s.angle_deg.value(), 0.05 * 180 / std::numbers::pi, 1e-9);
+  EXPECT_NEAR(s.aligned_distance_m.value(), std::sqrt(0.88 * 0.88 + 4 + 0.16 * 0.16), 1e-12);
+  EXPECT_TRUE(s.correct);
+}
+
+// Both limits are inclusive.
+TEST(Score, AnAnswerAtExactlyTheLimitsIsCorrect) {
+  ProtocolConfig config;
+  config.correct_distance_m = 0.25;
+  const Anchor anchor{SE3(), SE3(), 0};
+  QueryAnswer answer;
+  const auto correct = [&](double x_m) {
+    answer.world_from_camera = SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(x_m, 0, 0));
+    return score(answer, {0, SE3()}, anchor, SE3(), config).correct;
+  };
+  config.correct_angle_deg = 0;
+  EXPECT_TRUE(correct(0.25));
+  EXPECT_FALSE(correct(std::nextafter(0.25, 1.0)));
 }
 
 TEST(Score, TellsCorrectFromWrong) {
