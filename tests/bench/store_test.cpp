@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -324,6 +325,34 @@ TEST_F(StoreFile, MergingTakesOverWhatIsMissingOnce) {
       all.rows("SELECT name, status FROM runs ORDER BY name"),
       (std::vector<std::vector<std::string>>{{"name", "status"}, {"x", "done"}, {"y", "done"}}));
   EXPECT_EQ(all.rows("SELECT * FROM queries").size(), 1u + 2 * 3);
+}
+
+TEST_F(StoreFile, MergingNeverPutsAFailureInThePlaceOfAResultNorOneFailureInThatOfAnother) {
+  const Suite s = suite();
+  const std::vector<std::pair<std::string, std::string>> plan = {{"x", "kx"}};
+  int files = 0;
+  const auto store_with = [&](bool done, double shift_m, const std::string& error) {
+    Store store(folder_ / fmt::format("{}.sqlite", files++));
+    store.plan(s, {}, plan);
+    done ? store.put("kx", some_run("x", shift_m), {})
+         : store.put_failure("kx", some_run("x").spec, error, {});
+    return store;
+  };
+  const auto merged = [&](Store first, const Store& second) {
+    const std::size_t taken = first.merge(second.file());
+    return std::tuple(taken, first.status("kx").value(), first.error("kx"),
+                      first.rows("SELECT * FROM queries").size() - 1);
+  };
+  EXPECT_EQ(merged(store_with(true, 0, ""), store_with(false, 0, "crashed")),
+            std::tuple(0u, RunStatus::kDone, "", 3u));
+  EXPECT_EQ(merged(store_with(false, 0, "crashed"), store_with(true, 0, "")),
+            std::tuple(1u, RunStatus::kDone, "", 3u));
+  EXPECT_EQ(merged(store_with(false, 0, "first"), store_with(false, 0, "second")),
+            std::tuple(0u, RunStatus::kFailed, "first", 0u));
+  Store here = store_with(true, 1, "");
+  EXPECT_EQ(here.merge(store_with(true, 2, "").file()), 0u);
+  EXPECT_EQ(here.load("kx", some_run("x").spec).truth[0].world_from_camera.translation().x(), 1)
+      << "what is here stays";
 }
 
 TEST_F(StoreFile, ADamagedPartIsNamedBeforeAnythingIsMerged) {
