@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace mh {
+
+/// What the program would say of itself, were it another build.
+struct OtherBuild {
+  std::string code = "1", commit = "a", compiler = "12.2";
+};
+extern OtherBuild other_build;
+
+}  // namespace mh
