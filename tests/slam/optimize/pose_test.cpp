@@ -160,6 +160,18 @@ TEST(SolvePnpRansac, FindsThePoseAmongFiftyPercentOutliers) {
   }
 }
 
+// Three different observations, whichever are drawn, give the pose at once where none is wrong.
+TEST(SolvePnpRansac, WithoutOutliersOneDrawIsEnough) {
+  const SE3 truth = true_pose();
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const auto observations = observe(10, truth, kCamera, RandomStream(seed).fork(0));
+    const auto estimate = solve_pnp_ransac(observations, kCamera, {.max_iterations = 1},
+                                           RandomStream(seed).fork(1));
+    ASSERT_TRUE(estimate) << seed;
+    EXPECT_EQ(estimate->inlier_count, 10) << seed;
+  }
+}
+
 TEST(SolvePnpRansac, IsExactWithoutNoise) {
   const SE3 truth = true_pose();
   const auto observations = observe(30, truth, kCamera, RandomStream(9));
