@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -125,8 +124,9 @@ Grid2d<std::uint8_t> opacity_of_mask(const Picture& mask, const Grid2d<Rgb8>& te
   Grid2d<std::uint8_t> opacity(texture.width(), texture.height());
   for (int y = 0; y < opacity.height(); ++y)
     for (int x = 0; x < opacity.width(); ++x) {
-      const int from_x = x * mask.colour.width() / opacity.width();
-      const int from_y = y * mask.colour.height() / opacity.height();
+      const auto from_x = static_cast<int>(std::int64_t{x} * mask.colour.width() / opacity.width());
+      const auto from_y =
+          static_cast<int>(std::int64_t{y} * mask.colour.height() / opacity.height());
       opacity(x, y) =
           mask.opacity.empty() ? mask.colour(from_x, from_y).g : mask.opacity(from_x, from_y);
     }
@@ -197,19 +197,19 @@ std::string gltf_json(const fs::path& file) {
   return bytes.substr(20, size);
 }
 
-/// KHR_materials_emissive_strength by material name: assimp drops it.
-std::map<std::string, float> emissive_strengths(const fs::path& file) {
+/// KHR_materials_emissive_strength of each material, in the file's order, which assimp keeps: it
+/// drops the strengths. Empty where none has any.
+std::vector<float> emissive_strengths(const fs::path& file) {
   using Json = nlohmann::json;
-  std::map<std::string, float> strengths;
+  std::vector<float> strengths;
   const std::string text = gltf_json(file);
   if (text.find("KHR_materials_emissive_strength") == text.npos) return strengths;
   const Json json = Json::parse(text, nullptr, false);  // assimp has told what is wrong with it
   const Json::json_pointer place("/extensions/KHR_materials_emissive_strength/emissiveStrength");
-  for (const Json& material : json.value("materials", Json::array()))
-    if (material.contains(place) && material.at(place).is_number() && material.contains("name") &&
-        material.at("name").is_string())
-      strengths[material.at("name").get<std::string>()] =
-          std::clamp(material.at(place).get<float>(), 0.0F, 1e6F);
+  for (const Json& material : json.value("materials", Json::array())) {
+    const bool told = material.contains(place) && material.at(place).is_number();
+    strengths.push_back(told ? std::clamp(material.at(place).get<float>(), 0.0F, 1e6F) : 1.0F);
+  }
   return strengths;
 }
 
@@ -221,10 +221,9 @@ std::vector<Material> convert_materials(const aiScene& in, const fs::path& file,
   for (unsigned i = 0; i < in.mNumMaterials; ++i)
     materials.push_back(convert(in, *in.mMaterials[i], file, linear_colours, warnings));
   if (!linear_colours) return materials;
-  const std::map<std::string, float> strengths = emissive_strengths(file);
-  for (Material& material : materials)
-    if (const auto found = strengths.find(material.name); found != strengths.end())
-      material.emission *= found->second;
+  const std::vector<float> strengths = emissive_strengths(file);
+  for (std::size_t i = 0; i < std::min(strengths.size(), materials.size()); ++i)
+    materials[i].emission *= strengths[i];
   return materials;
 }
 

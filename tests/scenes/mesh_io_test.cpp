@@ -217,6 +217,47 @@ TEST_F(MeshIo, AMaskBesideAnObjTextureCutsHoles) {
   EXPECT_EQ(leaf.opacity(1, 0), 255);
 }
 
+TEST_F(MeshIo, AMaskCutsTheSameHolesIntoAVeryWideTexture) {
+  constexpr int kWidth = 60000;  // squared, more than 31 bits hold
+  Grid2d<std::uint8_t> texture(kWidth, 1, 200), mask(kWidth, 1, 0);
+  for (int x = 0; x < kWidth; ++x) mask(x, 0) = x % 7 == 0 ? 0 : 255;
+  write("leaf.mtl", "newmtl leaf\nmap_Kd wide.png\nmap_d mask.png\n");
+  write("wide.png", encode_png(texture));
+  write("mask.png", encode_png(mask));
+  const auto file = write("leaf.obj",
+                          "mtllib leaf.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+                          "usemtl leaf\nf 1/1 2/2 3/3\n");
+  const Scene scene = load_mesh(file);
+  const Grid2d<std::uint8_t>& opacity = scene.materials[scene.material_of[0]].opacity;
+  ASSERT_EQ(opacity.width(), kWidth);
+  EXPECT_TRUE(std::equal(opacity.begin(), opacity.end(), mask.begin()));
+}
+
+TEST_F(MeshIo, TwoGltfMaterialsOfOneNameGlowEachAsItSays) {
+  const auto material = [](const std::string& red, const std::string& strength) {
+    return R"({"name":"lamp","emissiveFactor":[)" + red +
+           R"(,0,0],"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":)" +
+           strength + "}}}";
+  };
+  const float corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  write("lamps.bin", {reinterpret_cast<const char*>(corners), sizeof corners});
+  const auto file = write(
+      "lamps.gltf",
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0},)"
+      R"({"attributes":{"POSITION":0},"material":1},{"attributes":{"POSITION":0},"material":2}]}],)"
+      R"("buffers":[{"uri":"lamps.bin","byteLength":36}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,)"
+      R"("componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],"materials":[)" +
+          material("1", "8") + R"(,{"name":"lamp","emissiveFactor":[0.5,0,0]},)" +
+          material("0.25", "3") + "]}");
+  const Scene scene = load_mesh(file);
+  std::vector<float> reds;
+  for (const std::uint16_t of_face : scene.material_of)
+    reds.push_back(scene.materials[of_face].emission.x());
+  EXPECT_EQ(reds, (std::vector<float>{8.0F, 0.5F, 0.75F}));
+}
+
 TEST_F(MeshIo, ATextureThatIsNoPictureIsNamedAndMagenta) {
   write("room.mtl", "newmtl text\nmap_Kd text.png\nnewmtl huge\nmap_Kd huge.png\n");
   write("text.png", "this is no picture");
