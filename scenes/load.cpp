@@ -42,8 +42,9 @@ Scene load(const std::filesystem::path& file, std::vector<std::string>* warnings
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings) {
+  std::vector<std::string> unheard;  // the same is looked at whether or not anybody listens
   try {
-    return load(file, warnings);
+    return load(file, warnings != nullptr ? warnings : &unheard);
   } catch (const InputError& error) {
     const std::string_view what = error.what();
     if (!what.starts_with("scene ")) throw;

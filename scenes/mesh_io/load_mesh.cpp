@@ -240,7 +240,7 @@ const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Form
 /// assimp looks for an OBJ's materials in the file that mtllib names, then in one named as the OBJ,
 /// and goes without in silence.
 void warn_of_missing_materials(const fs::path& file, std::vector<std::string>* warnings) {
-  if (warnings == nullptr || fs::exists(fs::path(file).replace_extension(".mtl"))) return;
+  if (warnings == nullptr || is_there(fs::path(file).replace_extension(".mtl"))) return;
   const HeldBytes held = map_file(file);
   constexpr std::string_view kKey = "mtllib";
   for (std::size_t at = 0; (at = held.view.find(kKey, at)) != held.view.npos; at += kKey.size()) {
@@ -250,8 +250,7 @@ void warn_of_missing_materials(const fs::path& file, std::vector<std::string>* w
     rest = rest.substr(0, rest.find_first_of("\r\n"));
     rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
     rest = rest.substr(0, rest.find_last_not_of(" \t") + 1);
-    std::error_code error;
-    if (!fs::exists(file.parent_path() / rest, error))
+    if (!is_there(file.parent_path() / rest))
       warnings->push_back(fmt::format("{}:{}: mtllib {} is missing: what it colours is grey",
                                       file.string(),
                                       1 + std::ranges::count(held.view.substr(0, at), '\n'), rest));

@@ -3,6 +3,9 @@
 
 #include <fstream>
 #include <functional>
+#include <regex>
+#include <set>
+#include <sstream>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -115,6 +118,28 @@ TEST(ReadRecord, SurvivesTheWayToAnotherProcess) {
   EXPECT_EQ(decode_read_record(""), ReadRecord{});
   for (std::size_t size = 1; size < 24; ++size)
     EXPECT_THROW(decode_read_record(std::string_view(bytes).substr(0, size)), InputError);
+}
+
+// A reader that opens or looks for files past the recorder makes results that are silently old.
+TEST(ReadScope, NoReaderLooksAtFilesPastIt) {
+  const std::regex past(
+      R"(ifstream|fopen|imread|LoadFile|directory_iterator|zip_open\(|(fs|filesystem)::(exists|is_\w+|status)\()");
+  // Recordings, whose frames are no part of a key, and what writes.
+  const std::set<std::string> allowed = {"frame_folder.cpp", "label_images.cpp", "recording.cpp"};
+  std::size_t files = 0;
+  for (const char* part : {"scenes", "robots", "sim"})
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(MH_SOURCE_DIR) / part)) {
+      const std::string ending = entry.path().extension().string();
+      if ((ending != ".cpp" && ending != ".hpp") ||
+          allowed.contains(entry.path().filename().string()))
+        continue;
+      ++files;
+      std::istringstream lines(read_file(entry.path()));
+      for (std::string line; std::getline(lines, line);)
+        EXPECT_FALSE(std::regex_search(line.substr(0, line.find("//")), past))
+            << entry.path() << ": " << line;
+    }
+  EXPECT_GT(files, 100U);
 }
 
 TEST(ListFolder, GivesWhatMatchesSorted) {
