@@ -25,9 +25,9 @@
 #include "bench/run_one.hpp"
 #include "bench/store/run_key.hpp"
 #include "bench/systems/find_program.hpp"
+#include "bench/world/inputs.hpp"
 #include "bench/world/travel.hpp"
 #include "bench/world/world.hpp"
-#include "scenes/load.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -38,7 +38,8 @@ namespace fs = std::filesystem;
 
 /// Whether what the runs name can be worked with, each once: outside programs can be started,
 /// scenes read, tours driven. Generated scenes and motions are valid by construction.
-void check_places(const std::vector<Job>& jobs, const std::function<void(std::string_view)>& say) {
+void check_places(const std::vector<Job>& jobs, InputReader& inputs,
+                  const std::function<void(std::string_view)>& say) {
   std::set<std::string> programs;
   // Of each scene: robot, tour, walk.
   std::map<fs::path, std::set<std::tuple<fs::path, fs::path, std::optional<fs::path>>>> drives;
@@ -47,8 +48,6 @@ void check_places(const std::vector<Job>& jobs, const std::function<void(std::st
     if (spec.system.kind == SystemKind::kOutside && programs.insert(spec.system.name).second)
       require_program(spec.system.outside);
     const Environment& e = spec.environment;
-    if (e.walk) load_walk(*e.walk);
-    if (e.sensors) load_sensor_config(*e.sensors);
     const auto note = [&](const fs::path& scene, const std::optional<fs::path>& tour,
                           const std::optional<fs::path>& walk = {}) {
       if (is_generated(scene)) return;
@@ -61,22 +60,12 @@ void check_places(const std::vector<Job>& jobs, const std::function<void(std::st
   }
   for (const auto& [file, of_scene] : drives) {
     say(fmt::format("checking {}", file.string()));
-    const Scene scene = load_scene(file);
+    const std::shared_ptr<const Scene> scene = inputs.scene(file);
     for (const auto& [robot, tour, walk] : of_scene) {
       std::vector<MovingObstacle> others;
-      if (walk) others.push_back(as_obstacle(scene, load_walk(*walk)));
-      travel(scene, load_robot(robot), tour, others);
+      if (walk) others.push_back(as_obstacle(*scene, load_walk(*walk)));
+      travel(*scene, load_robot(robot), tour, others);
     }
-  }
-}
-
-/// Everything that can be told before the work, once per file.
-void check_all_inputs(const std::vector<RunSpec>& specs) {
-  std::set<std::pair<std::string, fs::path>> seen;
-  std::set<fs::path> vocabularies;
-  for (const RunSpec& spec : specs) {
-    if (seen.insert({spec.environment.name, spec.level}).second) check_inputs(spec);
-    if (vocabularies.insert(spec.vocabulary).second) Vocabulary::load(spec.vocabulary);
   }
 }
 
@@ -114,6 +103,20 @@ void say_what_is_gone(const Suite& suite, const BenchResults& results,
       "warning: {} of finished runs and {} of pictures are gone from {}; their results are kept, "
       "another --out makes all of it anew",
       counted(runs, "folder"), counted(views.size(), "sheet"), options.out.string()));
+}
+
+/// Where a scene was changed and changed back, the files that lie there are of the run in between:
+/// they go with its result, which is made anew, or from beside a failure.
+void forget_what_is_not_shown(Store& store, const std::vector<Job>& jobs, const fs::path& out) {
+  for (const Job& job : jobs) {
+    const fs::path folder = out / job.spec.name;
+    const auto status = store.status(job.key);
+    if (!status || !shows_another_run(folder, job.key)) continue;
+    if (status == RunStatus::kDone)
+      store.forget(job.key);
+    else
+      remove_run(folder);
+  }
 }
 
 /// Processes at work per processor, of the last minute; 0 where it is unknown.
@@ -195,7 +198,6 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
                        const BenchOptions& options) {
   const std::vector<RunSpec> specs = expand(suite);
   check_names(suite, specs);
-  check_all_inputs(specs);
 
   std::set<std::string> warned;
   for (const RunSpec& spec : specs)
@@ -203,10 +205,11 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
       if (const std::string warning = unseen_program(spec.system.outside); !warning.empty())
         options.say(warning);
 
+  std::optional<InputReader> inputs(std::in_place, options.say);
   std::vector<Job> mine;
   std::vector<std::pair<std::string, std::string>> plan;
   for (std::size_t i = 0; i < specs.size(); ++i) {
-    plan.emplace_back(specs[i].name, run_key(specs[i]));
+    plan.emplace_back(specs[i].name, run_key(specs[i], inputs->inputs_of(specs[i])));
     if (i % options.shard.of + 1 == options.shard.index)
       mine.push_back({specs[i], plan.back().second});
   }
@@ -215,9 +218,11 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
     Store before(results);
     if (options.retry_failed)
       for (const Job& job : mine) before.forget_failure(job.key);
+    if (!options.figures_alone) forget_what_is_not_shown(before, mine, options.out);
     std::erase_if(mine, [&](const Job& job) { return before.status(job.key).has_value(); });
   }
-  check_places(mine, options.say);  // bad input leaves no file
+  check_places(mine, *inputs, options.say);  // bad input leaves no file
+  inputs.reset();                            // it holds a scene
 
   Store store(results);
   store.plan(suite, overrides, plan);
@@ -269,8 +274,13 @@ void carry_out(const RunOrder& order) {
     const ProcessorTimer timer(world_s);
     return build_world(spec, order.jobs, Cache(order.cache), order.say);
   }();
+  if (run_key(spec, world.inputs) != order.key)
+    throw InputChanged(fmt::format(
+        "{}: a file that it reads was changed after the suite was begun: start the suite again",
+        spec.name));
   const fs::path folder = order.folder / spec.name;
   make_output_folder(folder);
+  if (!order.figures_alone) remove_run(folder);
   const RunResult run = run_one(spec, world,
                                 {.folder = folder,
                                  .progress = order.progress,
@@ -280,9 +290,9 @@ void carry_out(const RunOrder& order) {
                                  .maps = Cache(order.maps)});
   if (!order.figures_alone) {
     const ProcessorTimer timer(products_s);
-    write_run(folder, world, run);
+    write_run(folder, world, run, order.key);
     // One process makes the contact sheet; should two begin it, both write the same bytes.
-    if (!fs::exists(order.folder / order.views)) write_views(order.folder / order.views, world);
+    write_views(order.folder / order.views, world, spec);
   }
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -12,6 +12,7 @@
 #include "bench/plan/suite.hpp"
 #include "bench/results/run_result.hpp"
 #include "bench/store/store.hpp"
+#include "slam/core/error.hpp"
 
 namespace mh {
 
@@ -38,6 +39,11 @@ struct BenchOptions {
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(double, std::size_t, std::size_t)> progress =
       [](double, std::size_t, std::size_t) {};  ///< as PoolOptions::progress
+};
+
+/// A file changed while the runs that read it were at work.
+struct InputChanged : InputError {
+  using InputError::InputError;
 };
 
 /// What a store holds of a suite.

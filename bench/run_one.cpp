@@ -201,7 +201,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     if (!tools.maps.folder().empty() && tools.occupancy &&
         spec.system.kind != SystemKind::kOutside) {
       bool mapped = false;
-      const std::string kept = tools.maps.get("map", map_key(spec), [&] {
+      const std::string kept = tools.maps.get("map", map_key(spec, world.inputs), [&] {
         map_now();
         mapped = true;
         return encode(FinishedMap{system.save(), run.mapping, run.volume});

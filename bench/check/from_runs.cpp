@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/check/from_runs.hpp"
 
+#include <algorithm>
+#include <optional>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "bench/plan/spec_json.hpp"
@@ -8,6 +12,7 @@
 #include "bench/results/fingerprint.hpp"
 #include "bench/results/summary.hpp"
 #include "bench/systems/find_program.hpp"
+#include "bench/world/inputs.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
@@ -57,8 +62,17 @@ std::string content(std::string_view what, const std::filesystem::path& file) {
   return fmt::format("{}={};", what, hex(digest_bytes(text.data(), text.size())));
 }
 
-std::string content(std::string_view what, const std::optional<std::filesystem::path>& file) {
-  return file ? content(what, *file) : fmt::format("{}=none;", what);
+/// The same of something that a run reads, with every file that it names.
+std::string content(const char* what, const std::optional<std::filesystem::path>& source,
+                    const std::vector<InputDigest>& inputs) {
+  if (!source) return fmt::format("{}=none;", what);
+  if (is_generated(*source)) return content(what, *source);
+  std::string text;
+  for (const FileDigest& file : std::ranges::find(inputs, what, &InputDigest::name)->files)
+    text += file.file == source->filename()
+                ? fmt::format("{}={};", what, hex(file.digest))
+                : fmt::format("{}/{}={};", what, file.file, hex(file.digest));
+  return text;
 }
 
 }  // namespace
@@ -103,12 +117,18 @@ std::string gate_suite_digest(const Suite& suite) {
   for (const SystemSpec& system : suite.systems) text += fmt::format("system={};", system.name);
   for (const LabelMode labels : suite.labels) text += fmt::format("labels={};", name(labels));
   for (const auto& level : suite.levels) text += content(level_name(level), level);
-  for (const Environment& e : suite.environments)
-    text += fmt::format("environment={};", e.name) + content("scene", e.scene) +
-            content("robot", e.robot) + content("mapping_tour", e.mapping_tour) +
-            content("kidnapped_tour", e.kidnapped_tour) + content("query_tour", e.query_tour) +
-            content("query_scene", e.query_scene) + content("sensors", e.sensors) +
-            content("walk", e.walk);
+  InputReader reader;
+  for (const Environment& e : suite.environments) {
+    const std::vector<InputDigest> inputs = reader.inputs_of(e);
+    text += fmt::format("environment={};", e.name);
+    for (const auto& [what, source] :
+         {std::pair("scene", std::optional(e.scene)), std::pair("robot", std::optional(e.robot)),
+          std::pair("mapping_tour", std::optional(e.mapping_tour)),
+          std::pair("kidnapped_tour", e.kidnapped_tour), std::pair("query_tour", e.query_tour),
+          std::pair("query_scene", e.query_scene), std::pair("sensors", e.sensors),
+          std::pair("walk", e.walk)})
+      text += content(what, source, inputs);
+  }
   return hex(digest_bytes(text.data(), text.size()));
 }
 

@@ -16,9 +16,9 @@ namespace mh {
 RunFigures figures(const RunResult& run);
 std::vector<RunFigures> figures(std::span<const RunResult> runs);
 
-/// Names what the runs of a suite are made of: places (by the content of their files), systems,
-/// labels, seeds and protocol. What a change under test may change (the method's settings, the
-/// vocabulary, tolerances) is no part of it.
+/// Names what the runs of a suite are made of: places (by the content of all files that are read
+/// for them), systems, labels, seeds and protocol. What a change under test may change (the
+/// method's settings, the vocabulary, tolerances) is no part of it.
 std::string gate_suite_digest(const Suite& suite);
 
 /// What a change to the program may change along with it: the section `slam`, the digests of the

@@ -15,6 +15,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/jobs/pool.hpp"
 #include "bench/jobs/run_process.hpp"
+#include "bench/run.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
 
@@ -84,6 +85,8 @@ int run(int argc, char** argv) {
                "modelhouse: interrupted; what is finished is kept, the same command goes on with "
                "it\n");
     return kInterrupted;
+  } catch (const mh::InputChanged& error) {
+    return fail(mh::kInputChangedCode, error.what());
   } catch (const mh::InputError& error) {
     return fail(kBadInput, error.what());
   } catch (const std::invalid_argument& error) {

@@ -15,6 +15,7 @@
 #include "bench/plan/suite.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/recorded/render_sequence.hpp"
+#include "bench/world/inputs.hpp"
 #include "bench/world/travel.hpp"
 #include "bench/world/world.hpp"
 #include "sim/sensors/shutter.hpp"
@@ -40,13 +41,15 @@ std::string digest_of_file(const std::string& file) {
 }
 
 /// What decides the pictures: a folder is gone on with only where all of it is the same.
-std::string settings_of(const Options& o, const Scene& scene, const Trajectory& path) {
+/// @param robot  all that was read for it, its URDF included
+std::string settings_of(const Options& o, const Scene& scene, const Trajectory& path,
+                        const InputDigest& robot) {
   nlohmann::ordered_json json = {{"scene", o.scene},
                                  {"scene_digest", hex(digest(scene))},
                                  {"motion", o.motion.given()},
                                  {"path_digest", hex(digest(path))},
                                  {"robot", o.robot},
-                                 {"robot_digest", digest_of_file(o.robot)},
+                                 {"robot_digest", hex(robot.digest)},
                                  {"camera", o.camera},
                                  {"level", o.level},
                                  {"level_digest", digest_of_file(o.level)},
@@ -119,7 +122,9 @@ void run(Options options) {
   refuse_older_sequence(out);
   make_renderer(options.renderer, Scene{});  // a machine that lacks it says so at once
   const OutputFolder folder(out);
-  const Robot robot = load_robot(options.robot);
+  std::vector<InputDigest> inputs;
+  const Robot robot =
+      noted(inputs, "robot", options.robot, [&] { return load_robot(options.robot); });
   const MountedCamera* const mounted = find_camera(options, robot);
   check_motion(motion);
   SensorConfig sensors;
@@ -143,7 +148,7 @@ void run(Options options) {
                               ? path_of(*mounted, *robot.equipment, std::move(driven))
                               : std::move(driven.camera);
 
-  const std::string settings = settings_of(options, scene, path);
+  const std::string settings = settings_of(options, scene, path, inputs.front());
   if (fs::exists(out / "render.json")) {
     if (read_file(out / "render.json") != settings)
       throw InputError(fmt::format(

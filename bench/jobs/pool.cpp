@@ -17,6 +17,7 @@
 
 #include "bench/jobs/run_process.hpp"
 #include "bench/plan/spec_json.hpp"
+#include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 
@@ -217,6 +218,11 @@ class Pool {
       throw DiskFullError(end.message.empty()
                               ? job.spec.name + ": the disk is full: make room and run again"
                               : end.message);
+    }
+    if (end.code == kInputChangedCode && ended.cut_off.empty()) {
+      give_up();
+      store_.release(job.key);
+      throw InputError(end.message);
     }
     const std::string error = describe(ended, end);
     store_.put_failure(job.key, job.spec, error, end.cost);

@@ -15,6 +15,8 @@ namespace mh {
 
 /// What a run's process returns when it met a full disk: no fault of the run.
 inline constexpr int kDiskFullCode = 4;
+/// That it read other files than those that its key was made of.
+inline constexpr int kInputChangedCode = 5;
 /// ... or bad input that shows in the work alone.
 inline constexpr int kBadInputCode = 2;
 

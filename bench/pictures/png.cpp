@@ -101,4 +101,30 @@ std::string encode_png(const cv::Mat& picture, int level) {
   return file;
 }
 
+std::string with_text(std::string png, std::string_view keyword, std::string_view text) {
+  constexpr std::size_t kEnd_bytes = 12;  // the chunk IEND
+  assert(png.size() > kEnd_bytes && png.substr(png.size() - 8, 4) == "IEND");
+  std::string chunk, content(keyword);
+  content += '\0';
+  content += text;
+  append_chunk(chunk, "tEXt", content);
+  return png.insert(png.size() - kEnd_bytes, chunk);
+}
+
+std::string text_in(std::string_view png, std::string_view keyword) {
+  constexpr std::size_t kHead_bytes = 8, kChunk_bytes = 12;  // length, name and sum of a chunk
+  for (std::size_t at = kHead_bytes; at + kChunk_bytes <= png.size();) {
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+      length = length << 8 | static_cast<unsigned char>(png[at + i]);
+    if (length > png.size() - at - kChunk_bytes) break;
+    const std::string_view content = png.substr(at + 8, length);
+    if (png.substr(at + 4, 4) == "tEXt" && content.starts_with(keyword) &&
+        content.size() > keyword.size() && content[keyword.size()] == '\0')
+      return std::string(content.substr(keyword.size() + 1));
+    at += kChunk_bytes + length;
+  }
+  return {};
+}
+
 }  // namespace mh

@@ -382,19 +382,20 @@ Json reproduction_json(const Suite& suite, std::span<const RunResult> runs) {
   }
   command += fmt::format(" --trials {}", suite.trials);
   if (suite.max_frames) command += fmt::format(" --frames {}", *suite.max_frames);
-  Json seeds = Json::array(), inputs = Json::object();
+  Json seeds = Json::array(), inputs = Json::object(), files = Json::object();
   for (int trial = 0; trial < suite.trials; ++trial)
     seeds.push_back(suite.seed + static_cast<std::uint64_t>(trial));
   for (const RunResult& run : runs)
     for (const InputDigest& input : run.place.inputs)
       inputs[run.spec.environment.name][input.name] = hex(input.digest);
-  return {{"command", command},
-          {"commit", built_commit()},
-          {"code", code_of_run()},
-          {"build_and_machine", fingerprint_json()},
-          {"suite", suite_json(suite)},
-          {"seeds", seeds},
-          {"inputs", inputs}};
+  for (const RunResult& run : runs)
+    for (const InputDigest& input : run.place.inputs)
+      for (const FileDigest& file : input.files)
+        files[run.spec.environment.name][input.name][file.file] = hex(file.digest);
+  return {{"command", command},         {"commit", built_commit()},
+          {"code", code_of_run()},      {"build_and_machine", fingerprint_json()},
+          {"suite", suite_json(suite)}, {"seeds", seeds},
+          {"inputs", inputs},           {"files", files}};
 }
 
 Json times_json(std::span<const RunResult> runs) {

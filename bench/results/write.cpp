@@ -6,32 +6,76 @@
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "bench/pictures/contact_sheet.hpp"
+#include "bench/pictures/png.hpp"
 #include "bench/pictures/sweep.hpp"
 #include "bench/pictures/topdown.hpp"
+#include "bench/protocol/digest.hpp"
 #include "bench/results/json.hpp"
 #include "bench/results/table.hpp"
+#include "bench/store/code_version.hpp"
+#include "bench/store/run_key.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
 namespace fs = std::filesystem;
 
-void write_run(const fs::path& folder, const World& world, const RunResult& run) {
+namespace {
+
+constexpr const char* kMadeOf = "modelhouse";  ///< keyword of what a picture was made of
+
+void write_marked(const fs::path& file, const cv::Mat& picture, const std::string& made_of) {
+  write_atomically(file, with_text(encode_png(picture), kMadeOf, made_of));
+}
+
+std::string mark_of(const fs::path& picture) {
+  return fs::is_regular_file(picture) ? text_in(read_file(picture), kMadeOf) : std::string();
+}
+
+/// What decides a contact sheet. Levels, which may lose other frames, share one.
+std::string identity_of_views(const World& world, const RunSpec& spec) {
+  std::string text = fmt::format("{} {} ", code_of_run(),
+                                 spec.max_frames ? std::to_string(*spec.max_frames) : "all");
+  for (const InputDigest& input : world.inputs)
+    for (const char* seen : {"scene", "robot", "mapping_tour", "kidnapped_tour"})
+      if (input.name == seen) text += fmt::format("{} {} ", seen, hex(input.digest));
+  return text_key(text);
+}
+
+}  // namespace
+
+void remove_run(const fs::path& folder) {
+  std::error_code error;
+  for (const char* file : {"topdown.png", "topdown_second_tour.png", "truth.tum", "estimate.tum",
+                           "map.bt", "map.pgm", "map.yaml"})
+    fs::remove(folder / file, error);
+}
+
+bool shows_another_run(const fs::path& folder, const std::string& key) {
+  return fs::exists(folder / "estimate.tum") && mark_of(folder / "topdown.png") != key;
+}
+
+void write_run(const fs::path& folder, const World& world, const RunResult& run,
+               const std::string& key) {
   make_output_folder(folder);
   write_tum(folder / "truth.tum", world.mapping.camera);
   write_tum(folder / "estimate.tum", run.estimate);
   run.volume->save_bt(folder / "map.bt");
   save_map_server(run.grid, folder / "map");
-  write_picture(folder / "topdown.png", draw_topdown(world, run, QuerySet::kHeldOut));
   if (world.second)
     write_picture(folder / "topdown_second_tour.png",
                   draw_topdown(world, run, QuerySet::kSecondTour));
+  // Last: it tells that all are there.
+  write_marked(folder / "topdown.png", draw_topdown(world, run, QuerySet::kHeldOut), key);
 }
 
-void write_views(const fs::path& file, const World& world) {
-  write_picture(file,
-                draw_contact_sheet(
-                    fmt::format("{}, along the mapping tour", world.scene->name),
-                    views_along(world.mapping.camera, *world.renderer, world.robot.camera, 6)));
+void write_views(const fs::path& file, const World& world, const RunSpec& spec) {
+  const std::string identity = identity_of_views(world, spec);
+  if (mark_of(file) == identity) return;
+  write_marked(
+      file,
+      draw_contact_sheet(fmt::format("{}, along the mapping tour", world.scene->name),
+                         views_along(world.mapping.camera, *world.renderer, world.robot.camera, 6)),
+      identity);
 }
 
 std::string write_results(const fs::path& folder, const Suite& suite,

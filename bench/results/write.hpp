@@ -11,11 +11,18 @@
 namespace mh {
 
 /// Writes what is large about a run into its folder: truth.tum, estimate.tum, map.bt, map.pgm,
-/// map.yaml and topdown.png. Each file appears whole or not at all.
-void write_run(const std::filesystem::path& folder, const World& world, const RunResult& run);
+/// map.yaml and topdown.png, which holds the run's key. Each file appears whole or not at all.
+void write_run(const std::filesystem::path& folder, const World& world, const RunResult& run,
+               const std::string& key);
+/// Removes what write_run() writes, nothing else: another run's files must not stand beside the
+/// result of one that fails, or that is under way.
+void remove_run(const std::filesystem::path& folder);
+/// Whether a folder holds files of write_run(), and not those of the run of that key.
+bool shows_another_run(const std::filesystem::path& folder, const std::string& key);
 
-/// The contact sheet of an environment.
-void write_views(const std::filesystem::path& file, const World& world);
+/// The contact sheet of an environment, unless the one that is there was made of the same scene,
+/// robot, way and code.
+void write_views(const std::filesystem::path& file, const World& world, const RunSpec& spec);
 
 /// Writes what a suite's runs gave together: results.json, times.json, table.txt, times.txt.
 /// @returns the printed table.

@@ -134,7 +134,11 @@ PathFacts path_from_json(const Json& p) {
 
 Json place_json(const PlaceFacts& p) {
   Json inputs = Json::array();
-  for (const InputDigest& input : p.inputs) inputs.push_back({input.name, hex(input.digest)});
+  for (const InputDigest& input : p.inputs) {
+    Json files = Json::array();
+    for (const FileDigest& file : input.files) files.push_back({file.file, hex(file.digest)});
+    inputs.push_back({input.name, hex(input.digest), files});
+  }
   return {{"scene", p.scene},
           {"robot", p.robot},
           {"scene_digest", hex(p.scene_digest)},
@@ -159,7 +163,12 @@ PlaceFacts place_from_json(const Json& p) {
                    .cut = p.at("cut"),
                    .inputs = {}};
   if (!p.at("second").is_null()) place.second = path_from_json(p.at("second"));
-  for (const Json& input : p.at("inputs")) place.inputs.push_back({input[0], from_hex(input[1])});
+  for (const Json& input : p.at("inputs")) {
+    place.inputs.push_back({input[0], from_hex(input[1])});
+    if (input.size() < 3) continue;  // of an older version, which kept no list of files
+    for (const Json& file : input[2])
+      place.inputs.back().files.push_back({file[0], from_hex(file[1])});
+  }
   return place;
 }
 

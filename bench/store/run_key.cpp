@@ -3,82 +3,24 @@
 
 #include <xxhash.h>
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "bench/plan/spec_json.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/results/fingerprint.hpp"
 #include "bench/store/code_version.hpp"
-#include "bench/systems/find_program.hpp"
 
 namespace mh {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The file, and for a mesh what lies beside it under the same name.
-std::vector<fs::path> parts_of(const fs::path& file) {
-  std::vector<fs::path> parts = {file};
-  const std::string ending = file.extension().string();
-  if (ending == ".yaml" || ending == ".yml") return parts;
-  const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const fs::path name = entry.path().filename();
-    if (entry.is_regular_file(error) && name != file.filename() &&
-        name.string().starts_with(file.stem().string() + "."))
-      parts.push_back(entry.path());
-  }
-  std::sort(parts.begin() + 1, parts.end());
-  return parts;
-}
-
-std::uint64_t digest_source(const fs::path& source) {
-  if (is_generated(source)) {
-    const std::string text = source.string();
-    return digest_bytes(text.data(), text.size());
-  }
-  std::uint64_t sum = 0;
-  for (const fs::path& part : parts_of(source)) sum = digest_file(part, sum);
-  return sum;
-}
-
-}  // namespace
-
-std::vector<InputDigest> digest_inputs(const RunSpec& spec) {
-  const Environment& e = spec.environment;
-  std::vector<InputDigest> inputs;
-  const auto add = [&](std::string name, const fs::path& source) {
-    inputs.push_back({std::move(name), digest_source(source)});
-  };
-  add("scene", e.scene);
-  add("robot", e.robot);
-  add("mapping_tour", e.mapping_tour);
-  if (e.query_tour) add("query_tour", *e.query_tour);
-  if (e.query_scene) add("query_scene", *e.query_scene);
-  if (e.kidnapped_tour) add("kidnapped_tour", *e.kidnapped_tour);
-  if (e.sensors) add("sensors", *e.sensors);
-  if (e.walk) add("walk", *e.walk);
-  add("vocabulary", spec.vocabulary);
-  add("level", spec.level);
-  if (spec.system.kind == SystemKind::kOutside)
-    for (const ProgramFile& file : files_of(spec.system.outside))
-      inputs.push_back(
-          {fmt::format("{}: {}", spec.system.name, file.word), digest_file(file.file)});
-  return inputs;
-}
-
-namespace {
-
 /// All that determines a result, by content instead of by names and paths.
-nlohmann::ordered_json determining(const RunSpec& spec) {
+nlohmann::ordered_json determining(const RunSpec& spec, std::span<const InputDigest> inputs) {
   nlohmann::ordered_json json = to_json(spec);
   if (spec.system.kind == SystemKind::kOutside) json["system"]["outside"].erase("folder");
   for (const char* named : {"name", "environment", "level", "vocabulary"}) json.erase(named);
-  for (const InputDigest& input : digest_inputs(spec))
-    json["inputs"][input.name] = hex(input.digest);
+  for (const InputDigest& input : inputs) json["inputs"][input.name] = hex(input.digest);
   json["code"] = code_of_run();
   json["build"] = build_json();
   return json;
@@ -86,12 +28,12 @@ nlohmann::ordered_json determining(const RunSpec& spec) {
 
 }  // namespace
 
-std::string run_key(const RunSpec& spec) {
-  return text_key(determining(spec).dump());
+std::string run_key(const RunSpec& spec, std::span<const InputDigest> inputs) {
+  return text_key(determining(spec, inputs).dump());
 }
 
-std::string map_key(const RunSpec& spec) {
-  nlohmann::ordered_json json = determining(spec);
+std::string map_key(const RunSpec& spec, std::span<const InputDigest> inputs) {
+  nlohmann::ordered_json json = determining(spec, inputs);
   json.erase("points");
   json.erase("trial");  // the seed tells
   json["system"].erase("name");

@@ -1,26 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
-#include <vector>
 
 #include "bench/results/run_result.hpp"
 
 namespace mh {
 
-/// Digests of the content of the files that a run reads. Beside a mesh, the files that share its
-/// name (labels, materials) are part of it.
-/// @throws InputError naming a file that cannot be read.
-std::vector<InputDigest> digest_inputs(const RunSpec& spec);
-
 /// xxh3-128, 32 hexadecimal digits, of everything that determines a run's result: its resolved
-/// settings without names and paths, the digests of its input files, the code, the compiler and the
+/// settings without names and paths, the digests of its inputs, the code, the compiler and the
 /// libraries that compute.
-std::string run_key(const RunSpec& spec);
+/// @param inputs  what was read for it (bench/world/inputs.hpp)
+std::string run_key(const RunSpec& spec, std::span<const InputDigest> inputs);
 
 /// The same of a run's finished map: what only its queries depend on is left out, so that runs
 /// which differ in nothing else share it.
-std::string map_key(const RunSpec& spec);
+std::string map_key(const RunSpec& spec, std::span<const InputDigest> inputs);
 
 /// The spec as it is kept beside a result: names instead of paths, so that it is the same wherever
 /// the files lie.

@@ -338,7 +338,12 @@ void Store::put_failure(const std::string& key, const RunSpec& spec, const std::
 
 void Store::forget_failure(const std::string& key) {
   guarded(file_, [&] {
-    if (status(key) != RunStatus::kFailed) return;
+    if (status(key) == RunStatus::kFailed) forget(key);
+  });
+}
+
+void Store::forget(const std::string& key) {
+  guarded(file_, [&] {
     SQLite::Transaction transaction = writing(*database_);
     forget_rows(*database_, key);
     transaction.commit();

@@ -71,6 +71,8 @@ class Store {
   void put_failure(const std::string& key, const RunSpec& spec, const std::string& error,
                    const RunCost& cost);
   void forget_failure(const std::string& key);
+  /// Takes a result out, so that it is made anew.
+  void forget(const std::string& key);
 
   /// A finished run; `spec` supplies names and paths. Without its volume and grid.
   RunResult load(const std::string& key, const RunSpec& spec) const;

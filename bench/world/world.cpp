@@ -13,8 +13,8 @@
 #include "bench/results/fingerprint.hpp"
 #include "bench/store/code_version.hpp"
 #include "bench/store/run_key.hpp"
+#include "bench/world/inputs.hpp"
 #include "bench/world/travel.hpp"
-#include "scenes/generate/generate.hpp"
 #include "scenes/load.hpp"
 #include "sim/render/bake.hpp"
 #include "sim/sensors/shutter.hpp"
@@ -119,34 +119,40 @@ PlaceFacts facts(const World& world) {
   return f;
 }
 
-void check_inputs(const RunSpec& spec) {
-  const Environment& environment = spec.environment;
-  if (is_generated(environment.scene)) parse_generated(environment.scene.string());
-  load_robot(environment.robot);
-  load_sensor_config(spec.level);
-  check_motion(environment.mapping_tour);
-  if (environment.query_tour) check_motion(*environment.query_tour);
-}
+namespace {
 
-World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say) {
+/// With the inputs of everything but an outside program.
+World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say) {
   const Environment& environment = spec.environment;
-  check_inputs(spec);
   World world;
-  world.inputs = digest_inputs(spec);
+  const auto input = [&](const char* name, const std::filesystem::path& source, auto&& load) {
+    return noted(world.inputs, name, source, load);
+  };
   const auto shorten = [&](DrivenPath& path) {
     if (spec.max_frames && cut(path, *spec.max_frames)) world.cut = true;
   };
-  world.robot = load_robot(environment.robot);
-  world.vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(spec.vocabulary));
-  world.sensors = load_sensor_config(environment.sensors.value_or(spec.level));
+  world.robot = input("robot", environment.robot, [&] { return load_robot(environment.robot); });
+  world.vocabulary = std::make_shared<const Vocabulary>(
+      input("vocabulary", spec.vocabulary, [&] { return Vocabulary::load(spec.vocabulary); }));
+  world.sensors = input("level", spec.level, [&] { return load_sensor_config(spec.level); });
+  if (environment.sensors)
+    world.sensors = input("sensors", *environment.sensors,
+                          [&] { return load_sensor_config(*environment.sensors); });
   world.robot.camera = with_lens(world.robot.camera, world.sensors);
   std::optional<Tour> kidnapped_tour;
-  if (environment.kidnapped_tour) kidnapped_tour = load_tour(*environment.kidnapped_tour);
+  if (environment.kidnapped_tour)
+    kidnapped_tour = input("kidnapped_tour", *environment.kidnapped_tour,
+                           [&] { return load_tour(*environment.kidnapped_tour); });
   std::optional<Walk> walk;
-  if (environment.walk) walk = load_walk(*environment.walk);
+  if (environment.walk)
+    walk = input("walk", *environment.walk, [&] { return load_walk(*environment.walk); });
 
-  auto scene =
-      std::make_shared<const Scene>(load_lit_scene(environment.scene, threads, cache, say));
+  const auto lit_scene = [&](const char* name, const std::filesystem::path& file) {
+    Scene scene = input(name, file, [&] { return load_scene(file); });
+    light_scene(scene, threads, cache, say);
+    return std::make_shared<const Scene>(std::move(scene));
+  };
+  const auto scene = lit_scene("scene", environment.scene);
   world.scene = scene;
   world.renderer = make_scene_renderer(*scene);
   if (walk) world.walked = make_walked_scene(*scene, world.renderer, *walk);
@@ -163,7 +169,9 @@ World build_world(const RunSpec& spec, int threads, const Cache& cache, const Sa
       others.push_back(as_obstacle(*scene, *walk, static_cast<double>(frames_before) / rate_hz));
     return others;
   };
-  world.mapping = travel(*scene, world.robot, environment.mapping_tour, walker(0));
+  world.mapping = input("mapping_tour", environment.mapping_tour, [&] {
+    return travel(*scene, world.robot, environment.mapping_tour, walker(0));
+  });
   if (kidnapped_tour) {
     const DrivenPath elsewhere =
         drive(*scene, world.robot, *kidnapped_tour, walker(world.mapping.camera.size()));
@@ -174,14 +182,24 @@ World build_world(const RunSpec& spec, int threads, const Cache& cache, const Sa
   if (!environment.query_tour) return world;
 
   if (environment.query_scene) {
-    world.second_scene = std::make_shared<const Scene>(
-        load_lit_scene(*environment.query_scene, threads, cache, say));
+    world.second_scene = lit_scene("query_scene", *environment.query_scene);
     world.second_renderer = make_scene_renderer(*world.second_scene);
   }
-  world.second = travel(world.second_scene ? *world.second_scene : *scene, world.robot,
-                        *environment.query_tour);
+  world.second = input("query_tour", *environment.query_tour, [&] {
+    return travel(world.second_scene ? *world.second_scene : *scene, world.robot,
+                  *environment.query_tour);
+  });
   lose_frames(*world.second);
   shorten(*world.second);
+  return world;
+}
+
+}  // namespace
+
+World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say) {
+  World world = build(spec, threads, cache, say);
+  std::ranges::move(inputs_of_program(spec), std::back_inserter(world.inputs));
+  std::ranges::sort(world.inputs, {}, &InputDigest::name);
   return world;
 }
 

@@ -32,9 +32,9 @@ struct World {
   std::shared_ptr<const Renderer> second_renderer;  ///< of that scene, likewise
   std::shared_ptr<const WalkedScene> walked;        ///< who walks about during the mapping; or null
   std::shared_ptr<const Vocabulary> vocabulary;
-  SensorConfig sensors;  ///< the level
-  bool cut = false;      ///< the tours were cut after RunSpec::max_frames
-  std::vector<InputDigest> inputs;
+  SensorConfig sensors;             ///< the level
+  bool cut = false;                 ///< the tours were cut after RunSpec::max_frames
+  std::vector<InputDigest> inputs;  ///< what was read to build it, by name
 };
 
 /// What results tell of it.
@@ -76,9 +76,5 @@ std::shared_ptr<const WalkedScene> make_walked_scene(const Scene& scene,
 /// takes long: baking.
 /// @throws InputError if a file is bad or a tour cannot be driven.
 World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say);
-
-/// Whether robot, level, tours and generated sources of a run can be read: what can be told within
-/// a second. @throws InputError if not.
-void check_inputs(const RunSpec& spec);
 
 }  // namespace mh

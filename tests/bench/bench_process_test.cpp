@@ -41,14 +41,16 @@ const fs::path& test_folder() {
   return folder.path;
 }
 
+const std::string kRoom = MH_SOURCE_DIR "/bench/scenarios/room.yaml";
+
 /// A suite of three short runs, or of what `systems` says.
 fs::path write_suite(const std::string& name = "small",
-                     const std::string& systems = "[semantic, plain]",
-                     const std::string& more = "") {
+                     const std::string& systems = "[semantic, plain]", const std::string& more = "",
+                     const std::string& scene = kRoom) {
   const std::string root = MH_SOURCE_DIR;
   const fs::path file = test_folder() / (name + ".yaml");
-  std::ofstream(file) << "environments:\n- {category: room, scene: " << root
-                      << "/bench/scenarios/room.yaml, mapping_tour: " << root
+  std::ofstream(file) << "environments:\n- {category: room, scene: " << scene
+                      << ", mapping_tour: " << root
                       << "/bench/scenarios/tours/room.yaml, query_tour: " << root
                       << "/bench/scenarios/tours/room_query.yaml}\nrobot: " << root
                       << "/bench/scenarios/robot.yaml\nvocabulary: " << root
@@ -248,6 +250,79 @@ TEST(BenchProcess, AFolderThatWasDeletedIsToldOf) {
   EXPECT_NE(errors().find("warning: 1 folder of finished runs and 1 sheet of pictures are gone"),
             std::string::npos)
       << errors();
+}
+
+// What a scene names counts as the scene itself: its results are made anew, in this folder and in
+// others that share its cache, and no picture of the old one stays.
+TEST(BenchProcess, AReplacedMeshMakesResultsMapsAndPicturesAnew) {
+  const fs::path folder = test_folder() / "replaced_mesh";
+  fs::create_directories(folder);
+  for (const char* room : {"room", "room_evening"})
+    ASSERT_EQ(run("scene convert " MH_SOURCE_DIR "/bench/scenarios/" + std::string(room) +
+                  ".yaml --out " + (folder / room).string() + ".glb"),
+              0)
+        << errors();
+  std::ofstream(folder / "scene.yaml") << "name: room\nobjects: [{file: mesh.glb}]\n";
+  const fs::path suite = write_suite("replaced", "[semantic]", "", folder / "scene.yaml");
+  const auto put = [&](const char* room) {
+    fs::copy_file(folder / (std::string(room) + ".glb"), folder / "mesh.glb",
+                  fs::copy_options::overwrite_existing);
+  };
+  const auto made_in = [&](const std::string& out, const std::string& to_do) {
+    EXPECT_EQ(run(bench_with_kept_maps(suite, out)), 0) << errors();
+    EXPECT_NE(errors().find("2 runs, " + to_do + " of them to do"), std::string::npos) << errors();
+    std::string all = tables(out);
+    for (const char* picture : {"views.png", "semantic-exact-pepper-0/topdown.png"}) {
+      EXPECT_TRUE(fs::exists(test_folder() / out / picture)) << picture;
+      all += content(test_folder() / out / picture);
+    }
+    return all;
+  };
+  put("room");
+  const std::string before = made_in("replaced", "2");
+  std::ofstream(test_folder() / "replaced/semantic-exact-pepper-0/notes.txt") << "mine";
+  put("room_evening");
+  const std::string after = made_in("replaced", "2");
+  EXPECT_NE(after, before);
+  EXPECT_EQ(made_in("replaced_elsewhere", "2"), after) << "a map of the old scene answered";
+  fs::remove_all(test_folder() / "cache" / "map");
+  EXPECT_EQ(made_in("replaced_without_maps", "2"), after);
+  put("room");  // its results are there, its pictures are not
+  EXPECT_EQ(made_in("replaced", "2"), before);
+  EXPECT_EQ(made_in("replaced", "0"), before);
+  EXPECT_EQ(content(test_folder() / "replaced/semantic-exact-pepper-0/notes.txt"), "mine");
+}
+
+TEST(BenchProcess, AnEditedAnnotationOfAScanMakesItsRunsAnew) {
+  const fs::path scan = test_folder() / "scan";
+  ASSERT_EQ(run("scene convert " + kRoom + " --format scannet --out " + scan.string()), 0)
+      << errors();
+  const fs::path suite = write_suite("scanned", "[semantic]", "", scan / "scan_vh_clean_2.ply");
+  EXPECT_EQ(run(bench_with_kept_maps(suite, "scanned")), 0) << errors();
+  EXPECT_EQ(run(bench_with_kept_maps(suite, "scanned")), 0) << errors();
+  EXPECT_NE(errors().find("2 runs, 0 of them to do"), std::string::npos) << errors();
+  std::string text = content(scan / "scan.aggregation.json");
+  const auto at = text.find("chair");
+  ASSERT_NE(at, std::string::npos);
+  std::ofstream(scan / "scan.aggregation.json") << text.replace(at, 5, "table");
+  EXPECT_EQ(run(bench_with_kept_maps(suite, "scanned")), 0) << errors();
+  EXPECT_NE(errors().find("2 runs, 2 of them to do"), std::string::npos) << errors();
+  const std::string sheet = content(test_folder() / "scanned" / "reproduction.json");
+  for (const char* file : {"scan_vh_clean_2.ply", "scan.aggregation.json", "room.yaml"})
+    EXPECT_NE(sheet.find(file), std::string::npos) << file;
+}
+
+TEST(BenchProcess, AFileThatChangesDuringTheWorkEndsIt) {
+  const fs::path scene = test_folder() / "changing.yaml";
+  fs::copy_file(kRoom, scene);
+  const fs::path suite =
+      write_suite("changing",
+                  "[{name: vo, protocol: conversation, command: 'echo \"# x\" >>" + scene.string() +
+                      "; exit 3'}, plain]",
+                  "", scene);
+  EXPECT_EQ(run(bench(suite, "changing", "--jobs 1")), 2) << errors();
+  EXPECT_NE(errors().find("a file that it reads was changed"), std::string::npos) << errors();
+  EXPECT_EQ(errors().find("plain-pepper-0: failed"), std::string::npos) << errors();
 }
 
 TEST(BenchProcess, ACrashIsAFailureAndStaysOne) {

@@ -6,6 +6,8 @@
 
 #include "slam/core/random.hpp"
 
+#include "scenes/picture_file.hpp"
+
 namespace mh {
 namespace {
 
@@ -43,6 +45,20 @@ TEST_P(Png, PicturesThatAreNoWholePieceOfMemory) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Types, Png, testing::Values(CV_8UC1, CV_8UC3, CV_16UC1));
+
+TEST(PngText, IsFoundAgainAndLeavesThePictureAsItWas) {
+  const cv::Mat picture = some_picture(40, 30, CV_8UC3);
+  const std::string plain = encode_png(picture), marked = with_text(plain, "made of", "a b");
+  EXPECT_EQ(text_in(marked, "made of"), "a b");
+  EXPECT_EQ(text_in(marked, "made"), "");
+  EXPECT_EQ(text_in(plain, "made of"), "");
+  EXPECT_EQ(text_in("no picture", "made of"), "");
+  EXPECT_EQ(picture_fault(marked), nullptr);
+  const std::vector<char> bytes(marked.begin(), marked.end());
+  EXPECT_EQ(cv::norm(cv::imdecode(bytes, cv::IMREAD_UNCHANGED), picture, cv::NORM_INF), 0.0);
+  for (std::size_t size = 0; size < marked.size(); ++size)
+    text_in(std::string_view(marked).substr(0, size), "made of");  // no harm in a cut file
+}
 
 TEST(PngTypes, OthersAreLeftToOpenCv) {
   EXPECT_TRUE(is_png_type(CV_16UC1));

@@ -13,6 +13,7 @@
 #include "bench/plan/runs.hpp"
 #include "bench/store/run_key.hpp"
 #include "bench/systems/find_program.hpp"
+#include "bench/world/inputs.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -254,9 +255,12 @@ TEST_F(SuiteFile, AnOutsideProgramsRunIsNamedByWhatItsFilesHold) {
         << more << "]}\n";
     const RunSpec run = expand(load_suite(folder_ / "suite.yaml")).front();
     std::string names;
-    for (const InputDigest& input : digest_inputs(run))
-      if (input.name.starts_with("vo: ")) names += input.name.substr(4) + " ";
-    return std::pair(run_key(run), names);
+    const std::vector<InputDigest> inputs = inputs_of_program(run);
+    for (const InputDigest& input : inputs) {
+      EXPECT_TRUE(input.name.starts_with("vo: ")) << input.name;
+      names += input.name.substr(4) + " ";
+    }
+    return std::pair(run_key(run, inputs), names);
   };
   const auto before = key_and_inputs();
   EXPECT_EQ(before.second, "./slam slam.py words.txt weights ");

@@ -11,6 +11,7 @@
 #include "bench/check/baseline.hpp"
 #include "bench/check/from_runs.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
 
 namespace mh {
 namespace {
@@ -37,23 +38,29 @@ TEST(GateConfig, SlipsAreNamed) {
     EXPECT_THROW(read(text), InputError) << text;
 }
 
-/// A suite over files that hold next to nothing.
+/// A suite over a scene of one triangle.
 class GateDigest : public testing::Test {
  protected:
   GateDigest()
       : folder_(std::filesystem::temp_directory_path() / ("mh_gate_" + std::to_string(getpid()))) {
     std::filesystem::create_directories(folder_);
-    for (const char* name : {"house", "later", "robot", "tour", "level", "words", "walk"})
-      write(name, name);
+    const std::string root = MH_SOURCE_DIR "/bench/scenarios/";
+    for (const char* name : {"house.obj", "later.obj"})
+      write(name, "mtllib look.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+    write("look.mtl", "newmtl a\nKd 1 0 0\n");
+    write("robot", read_file(root + "robot.yaml"));
+    write("tour", read_file(root + "tours/room.yaml"));
+    write("walk", read_file(root + "walk.yaml"));
+    for (const char* name : {"level", "words"}) write(name, name);
   }
   ~GateDigest() override { std::filesystem::remove_all(folder_); }
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
   }
-  std::string digest(const std::string& more = "", const std::string& scene = "house") const {
+  std::string digest(const std::string& more = "", const std::string& scene = "house.obj") const {
     write("suite.yaml",
           "environments: [{category: hall, scene: " + scene +
-              ", mapping_tour: tour, query_tour: tour, query_scene: later, walk: walk}]\n"
+              ", mapping_tour: tour, query_tour: tour, query_scene: later.obj, walk: walk}]\n"
               "robot: robot\nvocabulary: words\nlevels: [level]\nsystems: [plain]\n"
               "labels: [exact]\n" +
               more);
@@ -64,10 +71,12 @@ class GateDigest : public testing::Test {
 
 TEST_F(GateDigest, SeesEachFileAndSettingThatMakesTheRuns) {
   const std::string before = digest();
-  for (const char* name : {"house", "later", "robot", "tour", "level", "walk"}) {
-    write(name, "changed");
+  for (const char* name :
+       {"house.obj", "later.obj", "look.mtl", "robot", "tour", "level", "walk"}) {
+    const std::string text = read_file(folder_ / name);
+    write(name, text + "# changed\n");
     EXPECT_NE(digest(), before) << name;
-    write(name, name);
+    write(name, text);
     EXPECT_EQ(digest(), before) << name;
   }
   EXPECT_NE(digest("trials: 3"), before);

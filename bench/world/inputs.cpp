@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/world/inputs.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "bench/protocol/digest.hpp"
+#include "bench/systems/find_program.hpp"
+#include "bench/world/travel.hpp"
+#include "robots/model/robot.hpp"
+#include "scenes/generate/generate.hpp"
+#include "scenes/load.hpp"
+#include "sim/motion/motion.hpp"
+#include "sim/sensors/sensors.hpp"
+#include "sim/world/walker.hpp"
+#include "slam/vocabulary/vocabulary.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Seen from the folder of what names it, so that it is the same wherever that lies.
+std::string name_from(const fs::path& source, const fs::path& file) {
+  if (is_generated(source)) return file.filename().string();
+  std::error_code error;
+  const fs::path absolute = fs::absolute(source, error).lexically_normal();
+  const fs::path folder = fs::is_directory(source, error) ? absolute : absolute.parent_path();
+  return fs::absolute(file, error).lexically_normal().lexically_relative(folder).generic_string();
+}
+
+}  // namespace
+
+InputDigest input_of(std::string name, const fs::path& source, const ReadRecord& record) {
+  InputDigest input{.name = std::move(name), .digest = digest(record)};
+  if (is_generated(source)) {
+    const std::string text = source.string();
+    input.digest = digest_bytes(text.data(), text.size(), input.digest);
+  }
+  for (const FileObservation& o : record.observations)
+    if (o.kind == FileObservation::Kind::kRead)
+      input.files.push_back({name_from(source, o.path), o.digest});
+  std::ranges::sort(input.files);
+  const auto repeated = std::ranges::unique(input.files);
+  input.files.erase(repeated.begin(), repeated.end());
+  return input;
+}
+
+std::vector<InputDigest> inputs_of_program(const RunSpec& spec) {
+  std::vector<InputDigest> inputs;
+  if (spec.system.kind != SystemKind::kOutside) return inputs;
+  for (const ProgramFile& file : files_of(spec.system.outside)) {
+    const std::uint64_t content = digest_file(file.file);
+    inputs.push_back({fmt::format("{}: {}", spec.system.name, file.word), content, {}});
+  }
+  return inputs;
+}
+
+std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
+  std::vector<InputDigest> inputs;
+  const auto add = [&](const char* name, const char* kind, const std::optional<fs::path>& source,
+                       const std::function<void(const fs::path&)>& load) {
+    if (source) inputs.push_back(read(name, kind, *source, load));
+  };
+  const auto load_place = [this](const fs::path& file) {
+    if (is_generated(file)) {  // of nothing but its name, and dear to make
+      parse_generated(file.string());
+      return;
+    }
+    scene_.reset();  // to be noted, it has to be read
+    scene(file);
+  };
+  const auto read_motion = [](const fs::path& motion) { check_motion(motion); };
+  add("robot", "robot", e.robot, [](const fs::path& file) { load_robot(file); });
+  add("sensors", "level", e.sensors, [](const fs::path& file) { load_sensor_config(file); });
+  add("mapping_tour", "motion", e.mapping_tour, read_motion);
+  add("query_tour", "motion", e.query_tour, read_motion);
+  add("kidnapped_tour", "tour", e.kidnapped_tour, [](const fs::path& file) { load_tour(file); });
+  add("walk", "walk", e.walk, [](const fs::path& file) { load_walk(file); });
+  add("scene", "scene", e.scene, load_place);
+  add("query_scene", "scene", e.query_scene, load_place);
+  return inputs;
+}
+
+std::vector<InputDigest> InputReader::inputs_of(const RunSpec& spec) {
+  std::vector<InputDigest> inputs = inputs_of(spec.environment);
+  inputs.push_back(
+      read("level", "level", spec.level, [](const fs::path& file) { load_sensor_config(file); }));
+  inputs.push_back(read("vocabulary", "vocabulary", spec.vocabulary,
+                        [](const fs::path& file) { Vocabulary::load(file); }));
+  const auto [of_program, is_new] = of_program_.try_emplace(spec.system.name);
+  if (is_new) of_program->second = inputs_of_program(spec);
+  std::ranges::copy(of_program->second, std::back_inserter(inputs));
+  std::ranges::sort(inputs, {}, &InputDigest::name);
+  return inputs;
+}
+
+std::shared_ptr<const Scene> InputReader::scene(const fs::path& file) {
+  if (scene_ == nullptr || scene_file_ != file) {
+    say_(fmt::format("reading {}", file.string()));
+    scene_.reset();  // before the next: two may be more than there is memory for
+    scene_ = std::make_shared<const Scene>(load_scene(file));
+    scene_file_ = file;
+  }
+  return scene_;
+}
+
+InputDigest InputReader::read(const char* name, const char* kind, const fs::path& source,
+                              const std::function<void(const fs::path&)>& load) {
+  const std::pair key(std::string(kind), source);
+  auto known = known_.find(key);
+  if (known == known_.end()) {
+    const ReadScope scope;
+    load(source);
+    known = known_.emplace(key, input_of(kind, source, scope.record())).first;
+  }
+  InputDigest input = known->second;
+  input.name = name;
+  return input;
+}
+
+}  // namespace mh
