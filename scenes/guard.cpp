@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scenes/scene_fields.hpp"
+#include "slam/core/read_record.hpp"
 
 namespace mh {
 
@@ -17,12 +18,16 @@ Scene load_guarded(const std::filesystem::path& file, std::vector<std::string>* 
   }
   std::vector<std::string> told;
   Scene scene;
+  std::string read;  // what the child read: its scopes are not ours
   const auto work = [&]() -> std::function<void(PipeWriter&)> {
+    const ReadScope scope;
     scene = load(&told);
-    return [&](PipeWriter& out) { scene_fields::Sender{out}(told, scene); };
+    read = encode(scope.record());
+    return [&](PipeWriter& out) { scene_fields::Sender{out}(told, scene, read); };
   };
-  const auto receive = [&](PipeReader& in) { scene_fields::Receiver{in}(told, scene); };
+  const auto receive = [&](PipeReader& in) { scene_fields::Receiver{in}(told, scene, read); };
   in_child(file, limits, work, receive);
+  ReadScope::report(decode_read_record(read));
   if (warnings != nullptr) std::ranges::move(told, std::back_inserter(*warnings));
   return scene;
 }

@@ -4,12 +4,15 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <stdexcept>
 #include <vector>
 
 #include "scenes/mesh_io/mesh_io.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/read_record.hpp"
 #include "tests/scenes/temporary_folder.hpp"
 
 namespace mh {
@@ -57,6 +60,23 @@ class Guard : public TemporaryFolder {
     return error_of([&] { load_guarded("a/b.dae", nullptr, load, limits); });
   }
 };
+
+TEST_F(Guard, WhatTheChildReadIsNotedHere) {
+  const auto file = write("a.txt", "a"), absent = folder_ / "b.txt";
+  const auto load = [&](Warnings*) {
+    read_file(file);
+    is_there(absent);
+    return full_scene();
+  };
+  const ReadScope guarded;
+  load_guarded(file, nullptr, load);
+  const ReadScope here;
+  load(nullptr);
+  EXPECT_EQ(here.record().observations.size(), 2U);
+  EXPECT_EQ(guarded.record().observations.size(), 4U) << "both loads";
+  EXPECT_TRUE(std::equal(here.record().observations.begin(), here.record().observations.end(),
+                         guarded.record().observations.begin()));
+}
 
 TEST_F(Guard, EveryFieldOfASceneComesBack) {
   const pid_t here = getpid();
