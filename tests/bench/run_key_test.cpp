@@ -5,13 +5,16 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "bench/plan/spec_json.hpp"
+#include "bench/world/inputs.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
 #include "tests/bench/other_build.hpp"
 
 namespace mh {
@@ -20,6 +23,34 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Pointer = Json::json_pointer;
 namespace fs = std::filesystem;
+
+/// What a run would read if each of its sources were one file, of whatever content.
+std::vector<InputDigest> inputs_of(const RunSpec& spec) {
+  std::vector<InputDigest> inputs = inputs_of_program(spec);
+  const auto add = [&](const char* name, const std::optional<fs::path>& source) {
+    if (source) noted(inputs, name, *source, [&] { return read_file(*source); });
+  };
+  const Environment& e = spec.environment;
+  add("scene", e.scene);
+  add("robot", e.robot);
+  add("mapping_tour", e.mapping_tour);
+  add("query_tour", e.query_tour);
+  add("query_scene", e.query_scene);
+  add("kidnapped_tour", e.kidnapped_tour);
+  add("sensors", e.sensors);
+  add("walk", e.walk);
+  add("level", spec.level);
+  add("vocabulary", spec.vocabulary);
+  return inputs;
+}
+
+std::string run_key_of(const RunSpec& spec) {
+  return run_key(spec, inputs_of(spec));
+}
+
+std::string map_key_of(const RunSpec& spec) {
+  return map_key(spec, inputs_of(spec));
+}
 
 /// A run's description with everything that may stand in one, and files of one content each.
 class RunKey : public testing::Test {
@@ -109,14 +140,14 @@ class RunKey : public testing::Test {
 const std::set<std::string> kNames = {"/name", "/environment/name", "/environment/category"};
 
 TEST_F(RunKey, ChangesWithEveryFieldOfARunButItsNames) {
-  ASSERT_EQ(run_key(ours_), run_key(ours_));
-  EXPECT_EQ(free_places(ours_, run_key), kNames);
+  ASSERT_EQ(run_key_of(ours_), run_key_of(ours_));
+  EXPECT_EQ(free_places(ours_, run_key_of), kNames);
 }
 
 TEST_F(RunKey, ChangesWithEveryFieldOfAnOutsideProgramButItsFolder) {
   std::set<std::string> free = kNames;
   free.insert("/system/outside/folder");
-  EXPECT_EQ(free_places(theirs_, run_key), free);
+  EXPECT_EQ(free_places(theirs_, run_key_of), free);
 }
 
 TEST_F(RunKey, OfAMapLeavesOutWhatOnlyItsQueriesDependOn) {
@@ -127,60 +158,60 @@ TEST_F(RunKey, OfAMapLeavesOutWhatOnlyItsQueriesDependOn) {
   const Json places = to_json(ours_).flatten();
   for (const auto& [place, value] : places.items())
     if (place.starts_with("/points/")) free.insert(place);
-  EXPECT_EQ(free_places(ours_, map_key), free);
+  EXPECT_EQ(free_places(ours_, map_key_of), free);
 }
 
 TEST_F(RunKey, ChangesWithAPointOrAnInputMoreAndWithWhatIsNotThere) {
-  const std::string before = run_key(ours_);
+  const std::string before = run_key_of(ours_);
   RunSpec changed = ours_;
   changed.points.push_back(changed.points[0]);
-  EXPECT_NE(run_key(changed), before);
+  EXPECT_NE(run_key_of(changed), before);
   changed = ours_;
   changed.max_frames.reset();
-  EXPECT_NE(run_key(changed), before);
-  EXPECT_NE(map_key(changed), map_key(ours_));
+  EXPECT_NE(run_key_of(changed), before);
+  EXPECT_NE(map_key_of(changed), map_key_of(ours_));
   for (const auto field :
        {&Environment::query_tour, &Environment::query_scene, &Environment::kidnapped_tour,
         &Environment::sensors, &Environment::walk}) {
     changed = ours_;
     (changed.environment.*field).reset();
-    EXPECT_NE(run_key(changed), before);
+    EXPECT_NE(run_key_of(changed), before);
   }
   changed = theirs_;
   changed.system.outside.inputs.clear();
-  EXPECT_NE(run_key(changed), run_key(theirs_));
+  EXPECT_NE(run_key_of(changed), run_key_of(theirs_));
 }
 
 // One file in the stead of another: both are read, so each counts under its own name.
 TEST_F(RunKey, TellsWhichFileIsWhich) {
   RunSpec changed = ours_;
   std::swap(changed.environment.query_tour, changed.environment.kidnapped_tour);
-  EXPECT_NE(run_key(changed), run_key(ours_));
+  EXPECT_NE(run_key_of(changed), run_key_of(ours_));
   changed = ours_;
   std::swap(changed.level, changed.vocabulary);
-  EXPECT_NE(run_key(changed), run_key(ours_));
+  EXPECT_NE(run_key_of(changed), run_key_of(ours_));
 }
 
 TEST_F(RunKey, ChangesWithTheContentOfEachFileAndNotWithItsPlace) {
   for (const char* name :
        {"scene.yaml", "robot.yaml", "mapping_tour.yaml", "query_tour.yaml", "query_scene.yaml",
         "kidnapped_tour.yaml", "sensors.yaml", "walk.yaml", "pepper.yaml", "words"}) {
-    const std::string before = run_key(ours_);
+    const std::string before = run_key_of(ours_);
     std::ofstream(folder_ / name) << name << " edited";
-    EXPECT_NE(run_key(ours_), before) << name;
+    EXPECT_NE(run_key_of(ours_), before) << name;
     std::ofstream(folder_ / name) << name;
-    EXPECT_EQ(run_key(ours_), before) << name;
+    EXPECT_EQ(run_key_of(ours_), before) << name;
   }
   const fs::path moved = folder_ / "moved";
   fs::create_directories(moved);
   RunSpec elsewhere = ours_;
   elsewhere.level = moved / "pepper.yaml";
   fs::copy(ours_.level, elsewhere.level);
-  EXPECT_EQ(run_key(elsewhere), run_key(ours_));
+  EXPECT_EQ(run_key_of(elsewhere), run_key_of(ours_));
 }
 
 TEST_F(RunKey, ChangesWithTheCodeAndTheBuildAndNotWithTheCommit) {
-  for (const auto& key : {run_key, map_key}) {
+  for (const auto& key : {run_key_of, map_key_of}) {
     other_build = {};
     const std::string before = key(ours_);
     other_build.code = "2";
