@@ -117,7 +117,8 @@ void print_json(const RenderedSequence& done) {
 void run(Options options) {
   const std::string& motion = options.motion.given();
   const fs::path out = options.out;
-  for (const LabelMode mode : {LabelMode::kExact, LabelMode::kBoxes, LabelMode::kDetector})
+  for (const LabelMode mode :
+       {LabelMode::kExact, LabelMode::kAnnotated, LabelMode::kBoxes, LabelMode::kDetector})
     if (options.labels == name(mode)) options.sequence.labels = mode;
   refuse_older_sequence(out);
   make_renderer(options.renderer, Scene{});  // a machine that lacks it says so at once
@@ -225,9 +226,9 @@ void add_render(CLI::App& app) {
   command->add_option("--renderer", options->renderer, "embree (default) or osmesa");
   command
       ->add_option("--labels", options->labels,
-                   "exact (default), boxes or detector: what `label` holds, faults of the level "
-                   "with it")
-      ->check(CLI::IsMember({"exact", "boxes", "detector"}));
+                   "exact (default), annotated, boxes or detector: what `label` holds, faults of "
+                   "the level with it")
+      ->check(CLI::IsMember({"exact", "annotated", "boxes", "detector"}));
   command->add_option("--seed", options->sequence.seed, "Seed of the noise")->check(seed_number());
   command
       ->add_option("--threads", options->sequence.threads,

@@ -112,8 +112,9 @@ RunSpec read(const Json& json) {
   spec.level = json.at("level").get<std::string>();
   spec.vocabulary = json.at("vocabulary").get<std::string>();
   spec.system = system_from_json(json.at("system"));
-  spec.labels = named(json.at("labels"), {LabelMode::kNone, LabelMode::kExact, LabelMode::kBoxes,
-                                          LabelMode::kDetector});
+  spec.labels =
+      named(json.at("labels"), {LabelMode::kNone, LabelMode::kExact, LabelMode::kAnnotated,
+                                LabelMode::kBoxes, LabelMode::kDetector});
   spec.trial = json.at("trial");
   spec.seed = json.at("seed");
   spec.mapping = semantics_from_json(json.at("mapping"));

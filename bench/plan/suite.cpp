@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Names<LabelMode, 4> kLabels{{{"exact", LabelMode::kExact},
+constexpr Names<LabelMode, 5> kLabels{{{"exact", LabelMode::kExact},
+                                       {"annotated", LabelMode::kAnnotated},
                                        {"boxes", LabelMode::kBoxes},
                                        {"detector", LabelMode::kDetector},
                                        {"none", LabelMode::kNone}}};

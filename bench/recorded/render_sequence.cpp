@@ -31,11 +31,11 @@ ExactFrame exact_frame(const Shutter& shutter, const SensorConfig& sensors,
                        const RenderSequenceOptions& options, std::size_t i) {
   const TimedPose& pose = shutter.path()[i];
   const RandomStream noise = RandomStream(options.seed).fork(i);
-  Shutter::Exposed exposed = shutter.expose(i);
+  Shutter::Exposed exposed = shutter.expose(i, options.labels);
   RgbdFrame seen =
       sense(exposed.seen, shutter.camera(), sensors, noise, pose.stamp_ns, exposed.gain);
   RenderedFrame exact = std::move(exposed.seen);
-  const bool labels_are_exact = options.labels == LabelMode::kExact && sensors.blank_share == 0.0 &&
+  const bool labels_are_exact = is_per_pixel(options.labels) && sensors.blank_share == 0.0 &&
                                 sensors.labels.noise == LabelNoiseConfig{};
   if (!labels_are_exact) {
     const SemanticImage labels =

@@ -90,7 +90,7 @@ void sort_for_painting(std::vector<VisibleObject>& objects) {
 
 SemanticImage label_image(const RenderedFrame& truth, LabelMode mode) {
   if (mode == LabelMode::kNone) return {};
-  if (mode == LabelMode::kExact) return {truth.classes, one_hot_palette()};
+  if (is_per_pixel(mode)) return {truth.classes, one_hot_palette()};
   return boxes_image(truth, visible_objects(truth));
 }
 

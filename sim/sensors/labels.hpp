@@ -9,10 +9,18 @@
 
 namespace mh {
 
-/// How labels come to the frame. kExact: one-hot class per pixel. kBoxes: the exact bounding box of
-/// the visible pixels of each instance of a COCO class is filled with its class, all else is
-/// background. kDetector: as a network would draw those boxes, see DetectorConfig. kNone: none.
-enum class LabelMode { kNone, kExact, kBoxes, kDetector };
+/// How labels come to the frame. kExact: one-hot class per pixel, of what the color image shows
+/// there: where its rows are read out one after another, so are the labels (Shutter). kAnnotated:
+/// the same of one instant, the stamp, as if a labeled mesh were drawn at the frame's pose (so
+/// ScanNet's are made). kBoxes: the bounding box of the visible pixels of each instance of a COCO
+/// class is filled with its class, all else is background. kDetector: as a network would draw those
+/// boxes, see DetectorConfig. kNone: none.
+enum class LabelMode { kNone, kExact, kAnnotated, kBoxes, kDetector };
+
+/// Each pixel has the class of what is seen there, not a box's.
+inline bool is_per_pixel(LabelMode mode) {
+  return mode == LabelMode::kExact || mode == LabelMode::kAnnotated;
+}
 
 /// A detector needs to see this much of an object before its box counts.
 inline constexpr int kMinBoxPixels = 100;

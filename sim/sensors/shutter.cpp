@@ -71,6 +71,12 @@ class Rows {
     const double end = std::min(middle + 0.5 * exposure_s_, time_s(k) + 0.5 * step_s_);
     return std::max(0.0, end - begin);
   }
+  /// The picture that stands for the middle of row y's exposure.
+  int middle_picture(int y) const {
+    const double middle_s = ((y + 0.5) / height_ - 0.5) * readout_s_;
+    return std::clamp(static_cast<int>(std::floor(middle_s / step_s_ + 0.5 * pictures_)), 0,
+                      pictures_ - 1);
+  }
   /// What share of row y's light picture k stands for.
   double weight(int k, int y) const {
     return overlap_s(k, y) / collected_s_[static_cast<std::size_t>(y)];
@@ -164,10 +170,10 @@ Shutter::Shutter(std::shared_ptr<const Renderer> renderer, const Camera& camera,
     : Shutter([renderer = std::move(renderer)](Stamp) { return renderer; }, camera, std::move(path),
               config) {}
 
-Shutter::Exposed Shutter::expose(std::size_t i) const {
+Shutter::Exposed Shutter::expose(std::size_t i, LabelMode labels) const {
   assert(i < path_.size());
   RenderedFrame picture = render(lens_.pinhole(), i, 0.0);
-  blur(picture, i);
+  blur(picture, i, labels);
   if (config_.depth_offset_s != 0.0)
     picture.depth_m = render(lens_.pinhole(), i, config_.depth_offset_s).depth_m;
   picture = lens_.bend(std::move(picture));
@@ -180,7 +186,7 @@ RenderedFrame Shutter::render(const Camera& pinhole, std::size_t i, double after
   return scene_(stamp_ns)->render(pinhole, pose_at(path_, i, after_s));
 }
 
-void Shutter::blur(RenderedFrame& picture, std::size_t i) const {
+void Shutter::blur(RenderedFrame& picture, std::size_t i, LabelMode labels) const {
   const ShutterConfig& config = config_.shutter;
   const double duration_s = Rows::duration_s(config);
   if (duration_s <= 0.0) return;
@@ -204,11 +210,15 @@ void Shutter::blur(RenderedFrame& picture, std::size_t i) const {
     Camera strip = camera;
     strip.height_px = last - first;
     strip.cy_px -= first;
-    Grid2d<Rgb8> colour;
-    if (!middle) colour = render(strip, i, rows.time_s(k)).colour;
-    for (int y = first; y < last; ++y)
-      sum.add_row(y, middle ? picture.colour.row(y) : std::as_const(colour).row(y - first),
+    RenderedFrame part;
+    if (!middle) part = render(strip, i, rows.time_s(k));
+    for (int y = first; y < last; ++y) {
+      sum.add_row(y, middle ? picture.colour.row(y) : std::as_const(part.colour).row(y - first),
                   static_cast<float>(rows.weight(k, y)));
+      if (middle || labels == LabelMode::kAnnotated || rows.middle_picture(y) != k) continue;
+      std::ranges::copy(part.classes.row(y - first), picture.classes.row(y).begin());
+      std::ranges::copy(part.instances.row(y - first), picture.instances.row(y).begin());
+    }
   }
   sum.write(picture.colour);
 }

@@ -36,10 +36,13 @@ class Shutter {
           const SensorConfig& config);
 
   struct Exposed {
-    RenderedFrame seen;  ///< depth, classes and instances of the stamp (depth: plus its offset)
-    double gain = 1.0;   ///< of the exposure control, not yet applied
+    /// Depth is that of the stamp plus its offset, all rows at once. Classes and instances of a row
+    /// are those of the middle of its exposure, from the picture of the motion that is nearest in
+    /// time, at most half of ShutterConfig::step_px away; for kAnnotated they are the stamp's.
+    RenderedFrame seen;
+    double gain = 1.0;  ///< of the exposure control, not yet applied
   };
-  Exposed expose(std::size_t i) const;
+  Exposed expose(std::size_t i, LabelMode labels = LabelMode::kExact) const;
 
   const Trajectory& path() const { return path_; }
   /// The camera as SLAM should know it: with the lens that the level puts before it.
@@ -47,7 +50,7 @@ class Shutter {
 
  private:
   RenderedFrame render(const Camera& pinhole, std::size_t i, double after_s) const;
-  void blur(RenderedFrame& picture, std::size_t i) const;
+  void blur(RenderedFrame& picture, std::size_t i, LabelMode labels) const;
   std::vector<double> exposure_gains() const;
 
   SceneAt scene_;

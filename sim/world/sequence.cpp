@@ -24,7 +24,7 @@ SimulatedSequence::SimulatedSequence(std::shared_ptr<const Renderer> renderer, C
 
 SimulatedFrame SimulatedSequence::at(std::size_t i, RandomStream attempt) const {
   const TimedPose& moment = path()[i];
-  const Shutter::Exposed exposed = shutter_.expose(i);
+  const Shutter::Exposed exposed = shutter_.expose(i, labels_);
   RgbdFrame frame =
       sense(exposed.seen, camera(), sensors_, attempt.fork(i), moment.stamp_ns, exposed.gain);
   frame.semantics =

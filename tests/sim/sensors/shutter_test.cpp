@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/render/colour.hpp"
@@ -122,7 +123,7 @@ TEST(MotionBlur, ACameraAtRestSeesTheExactPictureAndRendersItOnce) {
   EXPECT_EQ(seen.colour, scene->render(small_camera(), SE3()).colour);
 }
 
-TEST(MotionBlur, LeavesDepthClassesAndInstancesAtTheStamp) {
+TEST(MotionBlur, AloneLeavesDepthClassesAndInstancesAtTheStamp) {
   const auto scene = std::make_shared<Edge>();
   const Trajectory path = sliding(2.0);
   const RenderedFrame seen = Shutter(scene, small_camera(), path, blurring(0.033)).expose(1).seen;
@@ -148,6 +149,71 @@ TEST(RollingShutter, SlantsAnUprightEdgeBySpeedTimesReadout) {
     EXPECT_NEAR(edge_px(colour, 60), 80.0, 0.6) << speed;  // the middle row is that of the stamp
     for (int y = 0; y < 120; ++y) ASSERT_LT(squared_smear_px(colour, y), 1.2);  // sharp in each row
   }
+}
+
+/// Two upright surfaces that meet in one edge, white and black, of classes 1 and 2; a camera that
+/// pans over it at 2 rad/s, and what it sees under rolling shutter and blur.
+class PannedEdge : public testing::Test {
+ protected:
+  PannedEdge() {
+    Scene scene = test::plain_scene();
+    scene.materials.push_back(scene.materials.front());
+    scene.materials.back().base_colour = {0, 0, 0};
+    test::add_quad(scene, {-4, -3, 2}, {4, 0, 0}, {0, 6, 0}, 1, 1, 0);
+    test::add_quad(scene, {0, -3, 2}, {4, 0, 0}, {0, 6, 0}, 2, 2, 1);
+    renderer_ = make_embree_renderer(scene);
+    for (int i = 0; i < 5; ++i) {
+      const Eigen::AngleAxisd turn(2.0 * (i - 2) / 30.0, Eigen::Vector3d::UnitY());
+      path_.push_back({i * Stamp{33'333'333}, SE3(turn.toRotationMatrix(), {0, 0, 0})});
+    }
+    config_.shutter.motion_blur_on = config_.shutter.rolling_shutter_on = true;
+    config_.shutter.exposure_s = 0.010;
+  }
+  RenderedFrame seen(LabelMode labels) const {
+    return Shutter(renderer_, Camera{}, path_, config_).expose(2, labels).seen;
+  }
+  /// By how many pixels the labels' border in a row lies beside the two pixels that the color's
+  /// edge is between; the border is where class and instance change, from 1 to 2 and once.
+  static double astray_px(const RenderedFrame& frame, int y) {
+    const auto classes = frame.classes.row(y);
+    const auto border = std::ranges::find(classes, 2) - classes.begin();
+    for (int x = 0; x < frame.classes.width(); ++x) {
+      EXPECT_EQ(frame.classes(x, y), x < border ? 1 : 2);
+      EXPECT_EQ(frame.instances(x, y), frame.classes(x, y));
+    }
+    // edge_px counts from the outer side of the first pixel, as the border does.
+    return std::max(0.0, std::abs(edge_px(frame.colour, y) - static_cast<double>(border)) - 0.5);
+  }
+  std::shared_ptr<const Renderer> renderer_;
+  Trajectory path_;
+  SensorConfig config_;
+};
+
+TEST_F(PannedEdge, ExactLabelsFollowTheColorRowByRow) {
+  const RenderedFrame frame = seen(LabelMode::kExact);
+  for (int y = 0; y < frame.colour.height(); ++y) ASSERT_LE(astray_px(frame, y), 1.0) << y;
+  // 2 rad/s for 26.1 ms at a focal length of 525 px: the labels' edge leans as far as the color's.
+  const auto border = [&](int y) {
+    return std::ranges::find(frame.classes.row(y), 2) - frame.classes.row(y).begin();
+  };
+  EXPECT_NEAR(static_cast<double>(border(0) - border(479)), 2.0 * 0.0261 * 525, 2.0);
+}
+
+TEST_F(PannedEdge, AnnotatedLabelsAreThoseOfTheStamp) {
+  const RenderedFrame frame = seen(LabelMode::kAnnotated);
+  const RenderedFrame still = renderer_->render(Camera{}, path_[2].world_from_camera);
+  EXPECT_EQ(frame.classes, still.classes);
+  EXPECT_EQ(frame.instances, still.instances);
+  EXPECT_GT(astray_px(frame, 0), 10.0);
+  EXPECT_GT(astray_px(frame, 479), 10.0);
+  EXPECT_LE(astray_px(frame, 240), 1.0);
+}
+
+TEST_F(PannedEdge, LabelsTouchNeitherColorNorDepth) {
+  const RenderedFrame exact = seen(LabelMode::kExact), annotated = seen(LabelMode::kAnnotated);
+  EXPECT_EQ(exact.colour, annotated.colour);
+  EXPECT_EQ(exact.depth_m, annotated.depth_m);
+  EXPECT_NE(exact.classes, annotated.classes);
 }
 
 TEST(RollingShutter, AloneCostsAboutOnePictureMore) {
