@@ -106,22 +106,23 @@ Source open_source(const Options& options) {
   return {std::move(settings), std::move(frames)};
 }
 
-/// Tells which settings of --settings give way to the map's.
-void note_what_the_map_settles(const Options& options, const SlamConfig& of_map,
-                               Settings& settings) {
-  std::istringstream kept(format_slam_config(of_map)), asked(format_slam_config(settings.slam));
+/// What --settings may change of a map's run: how a lost camera is looked for. The rest has formed
+/// the map, and what is named of it gives way, which a note tells.
+void apply_settings(const Options& options, SlamConfig& of_map, std::vector<std::string>& notes) {
+  const SlamConfig asked = load_settings(options.settings, of_map).slam;
+  of_map.relocalize = asked.relocalize;
+  std::istringstream kept(format_slam_config(of_map)), wanted(format_slam_config(asked));
   std::string list, section, line;
-  for (std::string other; std::getline(kept, line) && std::getline(asked, other);) {
+  for (std::string other; std::getline(kept, line) && std::getline(wanted, other);) {
     if (!line.starts_with(' ')) section = line.substr(0, line.find(':'));
     if (line != other)
       list += fmt::format("{}{}.{}", list.empty() ? "" : ", ", section, line.substr(2));
   }
   if (!list.empty())
-    settings.notes.push_back(
-        fmt::format("{}: the map's own settings count: {}", options.settings, list));
+    notes.push_back(fmt::format("{}: the map's own settings count: {}", options.settings, list));
 }
 
-/// A new state, or the one of the map file; the file's settings go before those of --settings.
+/// A new state, or the one of the map file.
 SlamState first_state(const Options& options, const std::shared_ptr<const Vocabulary>& vocabulary,
                       Settings& settings) {
   SlamState state;
@@ -131,7 +132,7 @@ SlamState first_state(const Options& options, const std::shared_ptr<const Vocabu
     state = load_slam(options.map, vocabulary);
     if (state.camera != settings.camera)
       throw InputError(fmt::format("{}: was made with another camera", options.map));
-    if (!options.settings.empty()) note_what_the_map_settles(options, state.config, settings);
+    if (!options.settings.empty()) apply_settings(options, state.config, settings.notes);
     if (!options.run.resume) rewind(state);
   }
   SemanticConfig semantics = state.config.semantics;

@@ -141,8 +141,7 @@ void read_camera(YamlReader& yaml, Settings& settings) {
   check_camera(c, distortion ? *distortion : camera);
 }
 
-Settings read_own(YamlReader yaml) {
-  Settings settings;
+Settings read_own(YamlReader yaml, Settings settings) {
   read_camera(yaml, settings);
   if (auto pictures = yaml.find("pictures")) {
     settings.depth_per_metre =
@@ -219,8 +218,7 @@ std::string unread_keys(YamlReader& yaml) {
   return list;
 }
 
-Settings read_orb_slam(YamlReader yaml) {
-  Settings settings;
+Settings read_orb_slam(YamlReader yaml, Settings settings) {
   settings.has_camera = true;
   refuse_unknown_keys(yaml);
   Camera& c = settings.camera;
@@ -266,8 +264,7 @@ Settings read_orb_slam(YamlReader yaml) {
 }
 
 /// A calibration as ROS' camera_calibration writes it; lens distortion as plumb_bob.
-Settings read_camera_info(YamlReader yaml) {
-  Settings settings;
+Settings read_camera_info(YamlReader yaml, Settings settings) {
   settings.has_camera = true;
   Camera& c = settings.camera;
   c.width_px = static_cast<int>(yaml.integer("image_width", 1, 100000));
@@ -352,7 +349,7 @@ SlamConfig read_slam_config(YamlReader& yaml, SlamConfig config) {
   return config;
 }
 
-Settings parse_settings(std::string text, const std::string& name) {
+Settings parse_settings(std::string text, const std::string& name, const SlamConfig& base) {
   // OpenCV's own dialect begins with "%YAML:1.0", which is no YAML; its line stays, so that line
   // numbers hold. ORB-SLAM2's TUM1.yaml has "key:value" without the blank, TUM3.yaml a key twice.
   if (text.starts_with("%YAML:")) {
@@ -365,12 +362,15 @@ Settings parse_settings(std::string text, const std::string& name) {
     orb_slam = orb_slam || key.starts_with("Camera.");
     camera_info = camera_info || key == "camera_matrix";
   }
-  if (camera_info) return read_camera_info(std::move(yaml));
-  return orb_slam ? read_orb_slam(std::move(yaml)) : read_own(std::move(yaml));
+  Settings settings;
+  settings.slam = base;
+  if (camera_info) return read_camera_info(std::move(yaml), std::move(settings));
+  return orb_slam ? read_orb_slam(std::move(yaml), std::move(settings))
+                  : read_own(std::move(yaml), std::move(settings));
 }
 
-Settings load_settings(const std::filesystem::path& file) {
-  return parse_settings(read_file(file), file.string());
+Settings load_settings(const std::filesystem::path& file, const SlamConfig& base) {
+  return parse_settings(read_file(file), file.string(), base);
 }
 
 }  // namespace mh

@@ -24,10 +24,11 @@ struct Settings {
 
 /// Reads our own settings (sections camera, pictures and those of SlamConfig, all optional; a
 /// camera needs its focal lengths and centre), a settings file of ORB-SLAM2 (`Camera.fx: ...`), or
-/// a ROS camera_info (`camera_matrix: ...`), which are told by their keys. @throws InputError
-/// "file:line: place: value".
-Settings load_settings(const std::filesystem::path& file);
-Settings parse_settings(std::string text, const std::string& name);
+/// a ROS camera_info (`camera_matrix: ...`), which are told by their keys.
+/// @param base  what SLAM's parameters are where the file is silent
+/// @throws InputError "file:line: place: value".
+Settings load_settings(const std::filesystem::path& file, const SlamConfig& base = {});
+Settings parse_settings(std::string text, const std::string& name, const SlamConfig& base = {});
 
 /// Camera, pictures and every setting of SLAM, as a file that load_settings() takes back bit for
 /// bit.

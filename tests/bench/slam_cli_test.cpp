@@ -149,6 +149,36 @@ TEST_F(SlamCommand, PicksUpAMapToGoOnOrToLocalize) {
       << err_;
 }
 
+TEST_F(SlamCommand, AMapIsSearchedByTheSettingsOfRelocalizationThatAreGiven) {
+  ASSERT_EQ(run(path("room") + " --frames 30 --out " + path("mapped") + " --save-map " +
+                path("mapped.mhmap")),
+            0)
+      << err_;
+  // A thousand inliers are more than any frame has: nothing is found.
+  const std::string camera = format_settings(load_settings(folder_ / "room/camera.yaml"));
+  write_atomically(folder_ / "strict.yaml", camera.substr(0, camera.find("features:")) +
+                                                "relocalize:\n  min_inliers: 1000\n");
+  const auto localized = [&](const std::string& map, const std::string& out,
+                             const std::string& settings) {
+    EXPECT_EQ(run(path("room") + " --map " + path(map) + " --localize --frames 5 --out " +
+                  path(out) + settings),
+              0)
+        << err_;
+    return summary(out)["tracked"];
+  };
+  EXPECT_EQ(localized("mapped.mhmap", "by_map", ""), 5);
+  EXPECT_EQ(localized("mapped.mhmap", "strictly", " --settings " + path("strict.yaml")), 0);
+  EXPECT_EQ(err_.find("the map's own settings count"), std::string::npos) << err_;
+  EXPECT_EQ(load_settings(folder_ / "strictly/settings.yaml").slam.relocalize.min_inliers, 1000);
+  // What the file is silent about stays the map's.
+  EXPECT_EQ(
+      run(path("room") + " --map " + path("mapped.mhmap") + " --resume --save-map " +
+          path("strict.mhmap") + " --out " + path("on") + " --settings " + path("strict.yaml")),
+      0)
+      << err_;
+  EXPECT_EQ(localized("strict.mhmap", "kept", " --settings " + path("room/camera.yaml")), 0);
+}
+
 TEST_F(SlamCommand, AMapAnswersByTheFactorsThatAreGiven) {
   // Candidates are chosen by labels alone, of which a map that was made with gamma 0 has none: they
   // are weighed anew.
