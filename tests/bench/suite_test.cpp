@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/plan/runs.hpp"
+#include "bench/plan/spec_json.hpp"
 #include "bench/store/run_key.hpp"
 #include "bench/systems/find_program.hpp"
 #include "bench/world/inputs.hpp"
@@ -95,6 +96,15 @@ TEST_F(SuiteFile, ExpandsToOneRunPerSystemLabelsLevelTrialAndThePlainOnce) {
   EXPECT_EQ(runs[2].name, "plain-pepper-0");
   EXPECT_EQ(runs[2].labels, LabelMode::kNone);
   EXPECT_EQ(runs[5].trial, 1);
+}
+
+TEST_F(SuiteFile, EveryKindOfLabelsReachesARunOfItsOwn) {
+  const std::vector<RunSpec> runs =
+      expand(load("", "[pepper.yaml]", "[exact, annotated, boxes, detector]"));
+  ASSERT_EQ(runs.size(), 5u);  // and the plain one
+  for (const RunSpec& run : runs) EXPECT_EQ(run_spec_from_json(to_json(run)).labels, run.labels);
+  EXPECT_EQ(runs[1].name, "semantic-annotated-pepper-0");
+  EXPECT_EQ(runs[1].labels, LabelMode::kAnnotated);
 }
 
 struct BadLine {
