@@ -120,9 +120,11 @@ void fields(C& c, Visit& v) {
 
 template <Either<RelocalizeConfig> C, class Visit>
 void fields(C& c, Visit& v) {
-  auto& [min_word_matches, min_inliers, ransac] = c;
+  auto& [min_word_matches, min_inliers, disparity_sigma_px, ransac] = c;
   v("min_word_matches", min_word_matches, kPoints, "with a candidate keyframe");
   v("min_inliers", min_inliers, kPoints, "to accept a pose");
+  v("disparity_sigma_px", disparity_sigma_px, {0, 1000},
+    "how far a true pair's depth strays; at least the camera's own");
   fields(ransac, v);
 }
 

@@ -241,7 +241,9 @@ RelocalizationResult relocalize(const Query& query, const Map& map, const Camera
   const auto selection = select_keyframes(map, query.words.vector, semantics);
   std::vector<KeyframeId> candidates;
   for (const auto& candidate : selection.candidates) candidates.push_back(candidate.keyframe);
-  RelocalizationResult result = try_candidates(query, candidates, map, camera, features, semantics,
+  Camera lenient = camera;
+  lenient.disparity_sigma_px = std::max(camera.disparity_sigma_px, config.disparity_sigma_px);
+  RelocalizationResult result = try_candidates(query, candidates, map, lenient, features, semantics,
                                                match, config, stream, counts, {}, trace, memo);
   result.candidates = {.keyframes = map.keyframe_count(),
                        .c1 = selection.c1,

@@ -22,6 +22,13 @@ namespace mh {
 struct RelocalizeConfig {
   int min_word_matches = 15;
   int min_inliers = 50;  ///< to accept a pose
+  /// How far the disparity of a true pair strays (one standard deviation, beside the keypoint's own
+  /// as in Camera) before the pose is refined on the local map; at least the camera's own counts.
+  /// The camera's tells of one reading. Here the landmark comes from another reading (0.1 px), the
+  /// pose from a handful of points (1 cm at 1.4 m: 0.2 px), and color and depth were neither taken
+  /// at the same moment nor is a structured-light sensor free of warp (0.2 px): 0.3 px together,
+  /// which is what pairs of real recordings show (docs/slam.md).
+  double disparity_sigma_px = 0.3;
   RansacConfig ransac;
 };
 
@@ -94,7 +101,8 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
                                     AttemptMemo* memo = nullptr);
 
 /// Finds the camera in the map without any guess: Algorithm 1 chooses the candidates, in order of
-/// score.
+/// score. Depth is weighed by config.disparity_sigma_px: the pose is one to begin from, which the
+/// local map, weighing depth as the camera does, has to confirm.
 RelocalizationResult relocalize(const Query& query, const Map& map, const Camera& camera,
                                 const FeatureConfig& features, const SemanticConfig& semantics,
                                 const MatchConfig& match, const RelocalizeConfig& config,
