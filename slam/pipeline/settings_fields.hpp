@@ -94,8 +94,8 @@ void fields(C& c, Visit& v) {
 template <Either<TrackConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [min_inliers, min_inliers_sparse, min_inliers_frame, search_radius_px, local_radius_px,
-         local_keyframes, near_distance_m, near_angle_rad, sure_position_m, sure_angle_rad,
-         coast_s] = c;
+         local_keyframes, near_distance_m, near_angle_rad, sure_position_m, sure_angle_rad, coast_s,
+         readout_s] = c;
   v("min_inliers", min_inliers, kPoints, "after the local map, to count as tracked");
   v("min_inliers_sparse", min_inliers_sparse, kPoints,
     "where that is more than a sixth of the keypoints");
@@ -108,6 +108,7 @@ void fields(C& c, Visit& v) {
   v("sure_position_m", sure_position_m, kLength_m, "a pose less sure than this by its picture or");
   v("sure_angle_rad", sure_angle_rad, kAngle_rad, "than this is weighed against the motion");
   v("coast_s", coast_s, {0, 10}, "so long a lost camera is looked for near its last place");
+  v("readout_s", readout_s, {0, 1}, "of a rolling shutter, first row to last; 0: all at once");
 }
 
 template <Either<RansacConfig> C, class Visit>

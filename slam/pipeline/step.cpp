@@ -9,6 +9,7 @@
 #include "slam/loop/loop.hpp"
 #include "slam/map/local_mapping.hpp"
 #include "slam/pipeline/slam.hpp"
+#include "slam/track/rolling_shutter.hpp"
 #include "slam/track/track.hpp"
 
 namespace mh {
@@ -48,7 +49,12 @@ Features observed_features(const RgbdFrame& frame, const SlamState& state,
   return extract(frame, state.camera, state.config.features);
 }
 
-PreparedFrame prepare(Stamp stamp_ns, Features features, const Camera& camera) {
+/// @param tracker  that of the frames before, which tells how a rolling shutter moved
+PreparedFrame prepare(Stamp stamp_ns, Features features, const SlamState& state,
+                      const Tracker& tracker) {
+  const Camera& camera = state.camera;
+  if (tracker.tracking() && tracker.velocity_per_s)
+    straighten(features.keypoints, camera, *tracker.velocity_per_s, state.config.track.readout_s);
   FeatureGrid grid(features.keypoints, camera);
   return {stamp_ns, std::move(features), std::move(grid), std::nullopt};
 }
@@ -363,7 +369,7 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
     throw InputError(fmt::format("frame at {} ns: {} keypoints, but {} descriptors", stamp_ns,
                                  features.keypoints.size(), features.descriptors.size()));
   state.last_stamp_ns = stamp_ns;
-  PreparedFrame prepared = prepare(stamp_ns, std::move(features), state.camera);
+  PreparedFrame prepared = prepare(stamp_ns, std::move(features), state, state.tracker);
   StepReport report;
   report.keypoints = static_cast<int>(prepared.features.size());
   state.tracked_frames.erase(stamp_ns);
@@ -417,7 +423,7 @@ void rewind(SlamState& state) {
 StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& frame,
                     RandomStream stream, const StepObservers& observers) {
   PreparedFrame prepared =
-      prepare(frame.stamp_ns, observed_features(frame, frozen, observers), frozen.camera);
+      prepare(frame.stamp_ns, observed_features(frame, frozen, observers), frozen, tracker);
   StepReport report;
   report.keypoints = static_cast<int>(prepared.features.size());
   auto located = locate(frozen, tracker, prepared, stream, observers, report);
@@ -455,7 +461,7 @@ StepReport localize(const SlamState& frozen, const RgbdFrame& frame, RandomStrea
   const SlamConfig& config = frozen.config;
   if (!known.frame)
     known.frame =
-        prepare(frame.stamp_ns, extract(frame, frozen.camera, config.features), frozen.camera);
+        prepare(frame.stamp_ns, extract(frame, frozen.camera, config.features), frozen, Tracker{});
   if (known.gamma != config.semantics.gamma) known.frame->words.reset();
   known.gamma = config.semantics.gamma;
 

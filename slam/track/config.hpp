@@ -24,6 +24,9 @@ struct TrackConfig {
   double sure_position_m = 0.015;  ///< a pose less sure than this (one standard deviation) or
   double sure_angle_rad = 0.01;    ///< than this by its picture alone is weighed against the motion
   double coast_s = 1.0;  ///< a lost camera is looked for so long where its motion would take it
+  /// From the first row to the last of a rolling shutter, whose middle row is of the stamp; 0: all
+  /// rows are.
+  double readout_s = 0;
 };
 
 }  // namespace mh

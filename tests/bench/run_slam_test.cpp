@@ -348,13 +348,13 @@ class TumFr1Rpy : public testing::Test {
   SlamState state;
 };
 
-// The original ORB-SLAM2 tracks all of them at 0.0257 m.
+// The original ORB-SLAM2 tracks all of them at 0.0257 m; without the readout time it is 0.0164 m.
 TEST_F(TumFr1Rpy, IsTrackedWholeAndMoreAccuratelyThanByOrbSlam2) {
   const SlamRun result = run_slam(state, *sequence, {}, RandomStream(0));
   EXPECT_EQ(result.tracked, 200);
   EXPECT_EQ(result.started_anew, 0);
   const Evaluation score = evaluate(*sequence->truth(), result.trajectory);
-  EXPECT_LE(score.ape_translation_m.rmse, 0.0165);
+  EXPECT_LE(score.ape_translation_m.rmse, 0.0155);
   EXPECT_EQ(score.pairs, 200U);
 }
 
