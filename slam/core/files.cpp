@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <system_error>
 
@@ -58,6 +59,22 @@ FileObservation::Kind look_at(const fs::path& path) {
   return kind;
 }
 
+/// A new empty file in a folder: nobody else's has its name.
+/// @param name  of (process, number)
+/// @returns nullopt, and errno, if none can be made
+template <class Name>
+std::optional<fs::path> new_file(const fs::path& folder, const Name& name) {
+  for (int number = 0;; ++number) {
+    const fs::path file = folder / name(getpid(), number);
+    const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0) {
+      close(descriptor);
+      return file;
+    }
+    if (errno != EEXIST) return std::nullopt;
+  }
+}
+
 }  // namespace
 
 void make_output_folder(const fs::path& folder) {
@@ -68,29 +85,34 @@ void make_output_folder(const fs::path& folder) {
   if (error || !fs::is_directory(folder))
     throw InputError(fmt::format("{}: cannot be made a folder{}", folder.string(),
                                  error ? ": " + error.message() : ""));
-  const fs::path probe = folder / fmt::format(".probe.{}", getpid());
-  const int failed = write_all(probe, "x");
-  fs::remove(probe, error);
+  const auto probe = new_file(folder, [](pid_t process, int number) {
+    return fmt::format(".probe.{}.{}", process, number);
+  });
+  const int failed = probe ? write_all(*probe, "x") : errno;
+  if (probe) fs::remove(*probe, error);
   if (failed == 0) return;
   if (failed == ENOSPC || failed == EDQUOT) throw_unwritable(folder, failed);
   throw InputError(fmt::format("{}: cannot be written to", folder.string()));
 }
 
 void write_atomically(const fs::path& file, const std::function<void(const fs::path&)>& write) {
-  const fs::path temporary = file.parent_path() / fmt::format(".{}.{}.tmp{}", file.stem().string(),
-                                                              getpid(), file.extension().string());
   std::error_code error;
   // A rename would put a file in the place of a device such as /dev/stdout.
   if (fs::exists(file, error) && !fs::is_regular_file(file, error))
     throw InputError(fmt::format("{}: cannot be written: it is {}", file.string(),
                                  fs::is_directory(file, error) ? "a folder" : "no file"));
+  const auto temporary = new_file(file.parent_path(), [&](pid_t process, int number) {
+    return fmt::format(".{}.{}.{}.tmp{}", file.stem().string(), process, number,
+                       file.extension().string());
+  });
+  if (!temporary) throw_unwritable(file, errno);
   try {
-    write(temporary);
-    if (!fs::exists(temporary, error)) throw_unwritable(file, 0);
-    fs::rename(temporary, file, error);
+    write(*temporary);
+    if (!fs::exists(*temporary, error)) throw_unwritable(file, 0);
+    fs::rename(*temporary, file, error);
     if (error) throw_unwritable(file, error.value());
   } catch (...) {
-    fs::remove(temporary, error);
+    fs::remove(*temporary, error);
     throw;
   }
 }

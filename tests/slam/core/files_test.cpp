@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/core/files.hpp"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -40,10 +42,38 @@ TEST(WriteAtomically, AFullDiskIsNoBadInput) {
   const fs::path file = folder / "result.json";
   write_atomically(file, "old");
   // What is written to the temporary meets a full disk.
-  fs::create_symlink("/dev/full", folder / fmt::format(".result.{}.tmp.json", getpid()));
-  EXPECT_THROW(write_atomically(file, "new"), DiskFullError);
+  EXPECT_THROW(write_atomically(file,
+                                [](const fs::path& temporary) {
+                                  fs::remove(temporary);
+                                  fs::create_symlink("/dev/full", temporary);
+                                  const int full = open(temporary.c_str(), O_WRONLY | O_CLOEXEC);
+                                  const bool failed = write(full, "new", 3) < 0;
+                                  const int error = failed ? errno : 0;
+                                  close(full);
+                                  throw_unwritable(temporary, error);
+                                }),
+               DiskFullError);
   EXPECT_EQ(read_file(file), "old");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << "a temporary was left behind";
+}
+
+TEST(WriteAtomically, TakesNoNameThatIsTaken) {
+  const fs::path folder = fs::path(testing::TempDir()) / "near_names";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  const fs::path elsewhere = folder / "elsewhere";
+  for (const fs::path& mine :
+       {folder / fmt::format(".result.{}.0.tmp.json", getpid()),
+        folder / fmt::format(".probe.{}.0", getpid()), folder / ".result.json", elsewhere})
+    std::ofstream(mine) << "mine";
+  fs::create_symlink(elsewhere, folder / fmt::format(".result.{}.1.tmp.json", getpid()));
+  make_output_folder(folder);
+  write_atomically(folder / "result.json", "new");
+  EXPECT_EQ(read_file(folder / "result.json"), "new");
+  int mine = 0;
+  for (const auto& entry : fs::directory_iterator(folder))
+    mine += read_file(entry.path()) == "mine" ? 1 : 0;
+  EXPECT_EQ(mine, 5);
 }
 
 TEST(WriteAtomically, PutsNoFileInThePlaceOfAnythingElse) {
