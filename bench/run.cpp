@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/run.hpp"
 
-#include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
-#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <map>
@@ -25,6 +22,7 @@
 #include "bench/run_one.hpp"
 #include "bench/store/run_key.hpp"
 #include "bench/systems/find_program.hpp"
+#include "bench/temporary_folder.hpp"
 #include "bench/world/inputs.hpp"
 #include "bench/world/travel.hpp"
 #include "bench/world/world.hpp"
@@ -144,28 +142,6 @@ RunCost cost_of_this_process(const RunResult& run, double wall_s, double world_s
 }
 
 }  // namespace
-
-TemporaryFolder::TemporaryFolder(const fs::path& parent) {
-  static std::atomic<int> count = 0;
-  char host[256] = {};
-  gethostname(host, sizeof host - 1);
-  const std::string ours = fmt::format(".work.{}.", host);
-  // What a process left that was killed.
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(parent, error)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(ours)) continue;
-    const int process = std::atoi(name.c_str() + ours.size());
-    if (process > 0 && kill(process, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), error);
-  }
-  path_ = parent / fmt::format("{}{}.{}", ours, getpid(), count++);
-  make_output_folder(path_);
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code error;
-  fs::remove_all(path_, error);
-}
 
 Shard parse_shard(const std::string& text) {
   Shard shard;

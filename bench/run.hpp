@@ -61,19 +61,6 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
 /// What the store holds of the suite that was planned last.
 BenchResults load_results(const Store& store, const Suite& suite);
 
-/// A hidden folder that goes when it is left; one that a killed process left goes with the next.
-class TemporaryFolder {
- public:
-  explicit TemporaryFolder(const std::filesystem::path& parent);
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// One run in this process, start to end: builds its world, works it off, writes its files into
 /// folder / its name, and puts it into the store. What a process of the pool does.
 struct RunOrder {

@@ -13,6 +13,7 @@
 #include "bench/cli/progress.hpp"
 #include "bench/counted.hpp"
 #include "bench/run.hpp"
+#include "bench/temporary_folder.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 

@@ -2,7 +2,6 @@
 #include "bench/cli/slam_report.hpp"
 
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +13,7 @@
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/systems/timed.hpp"
+#include "bench/temporary_folder.hpp"
 #include "slam/core/files.hpp"
 #include "slam/pipeline/export.hpp"
 
@@ -85,19 +85,11 @@ void write_slam_files(const std::filesystem::path& folder, const SlamReport& rep
                                                             summary_json(report).dump(2) + "\n"};
   // First all beside their places, so that a disk that fills leaves what an earlier run wrote. Then
   // the summary goes first and comes last: a folder without one was not finished.
-  const fs::path fresh = folder / fmt::format(".fresh.{}", getpid());
-  try {
-    make_output_folder(fresh);
-    for (std::size_t i = 0; i < contents.size(); ++i)
-      write_atomically(fresh / kSlamFiles[i], contents[i]);
-    fs::remove(folder / kSlamFiles.back());
-    for (const char* name : kSlamFiles) fs::rename(fresh / name, folder / name);
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(fresh, ignored);
-    throw;
-  }
-  fs::remove_all(fresh);
+  const TemporaryFolder fresh(folder);
+  for (std::size_t i = 0; i < contents.size(); ++i)
+    write_atomically(fresh.path() / kSlamFiles[i], contents[i]);
+  fs::remove(folder / kSlamFiles.back());
+  for (const char* name : kSlamFiles) fs::rename(fresh.path() / name, folder / name);
 }
 
 void print_slam_report(const SlamReport& report) {

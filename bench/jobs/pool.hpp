@@ -15,6 +15,7 @@ namespace mh {
 /// is kept.
 struct Interrupted {
   int signal = 0;
+  bool goes_on = true;  ///< whether the same command finds what is finished
 };
 
 /// A run and the key of its result.

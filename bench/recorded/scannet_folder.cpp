@@ -1,24 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/recorded/scannet_folder.hpp"
 
-#include <signal.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
+#include "bench/temporary_folder.hpp"
 #include "scenes/scannet/files.hpp"
 #include "scenes/scannet/label_images.hpp"
 #include "scenes/scannet/label_table.hpp"
 #include "scenes/scannet/sens.hpp"
-#include "slam/core/error.hpp"
+#include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
@@ -203,19 +200,6 @@ class ScannetSequence : public FrameSequence {
   std::vector<ClassDistribution> palette_;
 };
 
-/// Removes what processes that are no more left of files whose names begin so (write_atomically).
-void remove_leavings(const fs::path& folder, const std::string& name) {
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string file = entry.path().filename().string();
-    const auto mark = file.find(".tmp.");
-    if (!file.starts_with("." + name) || mark == std::string::npos) continue;
-    const auto dot = file.rfind('.', mark - 1);
-    const int process = std::atoi(file.c_str() + dot + 1);
-    if (process > 0 && kill(process, 0) != 0 && errno == ESRCH) fs::remove(entry.path(), error);
-  }
-}
-
 template <class Id>
 Grid2d<std::uint16_t> widened(const Grid2d<Id>& ids) {
   Grid2d<std::uint16_t> wide(ids.width(), ids.height());
@@ -246,19 +230,19 @@ std::unique_ptr<FrameSequence> open_scannet(const fs::path& path, std::vector<st
 
 void write_scannet_recording(const fs::path& folder, const Camera& camera, std::size_t frames,
                              const std::function<ExactFrame(std::size_t index)>& frame_at) {
-  make_output_folder(folder);
+  const TemporaryFolder work(folder);  // whole files alone get their names
   const fs::path full = fs::absolute(folder).lexically_normal();
   const std::string name = (full.has_filename() ? full : full.parent_path()).filename().string();
-  remove_leavings(folder, name);
+  const std::array names = {name + "_2d-label-filt.zip", name + "_2d-instance-filt.zip",
+                            name + ".sens"};
   const RecordedLens lens = recorded_lens(camera);
   const RecordingInfo info{.sensor = "Modelhouse",
                            .colour = lens,
                            .depth = lens,
                            .depth_per_metre = kScannetDepthPerMetre};
-  const auto labels = write_label_zip(folder / (name + "_2d-label-filt.zip"), "label-filt");
-  const auto instances =
-      write_label_zip(folder / (name + "_2d-instance-filt.zip"), "instance-filt");
-  save_sens(folder / (name + ".sens"), info, frames, [&](std::size_t index) {
+  const auto labels = write_label_zip(work.path() / names[0], "label-filt");
+  const auto instances = write_label_zip(work.path() / names[1], "instance-filt");
+  save_sens(work.path() / names[2], info, frames, [&](std::size_t index) {
     ExactFrame frame = frame_at(index);
     labels->add(static_cast<std::uint32_t>(index), widened(frame.exact.classes));
     instances->add(static_cast<std::uint32_t>(index), frame.exact.instances);
@@ -271,6 +255,11 @@ void write_scannet_recording(const fs::path& folder, const Camera& camera, std::
   });
   labels->finish();
   instances->finish();
+  for (const std::string& file : names) {
+    std::error_code error;
+    fs::rename(work.path() / file, folder / file, error);
+    if (error) throw_unwritable(folder / file, error.value());
+  }
   write_atomically(folder / kLabelTableV2, label_table_text());
 }
 

@@ -9,6 +9,7 @@
 #include "bench/counted.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/results/json.hpp"
+#include "bench/temporary_folder.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
@@ -121,7 +122,13 @@ Verification verify(const Suite& suite, const SuiteOverrides& overrides, BenchOp
     options.progress = [&](double share, std::size_t done, std::size_t failed) {
       tell(share_before + 0.5 * share, done, failed);
     };
-    BenchResults results = run_suite(suite, overrides, options);
+    BenchResults results;
+    try {
+      results = run_suite(suite, overrides, options);
+    } catch (Interrupted& interrupted) {
+      interrupted.goes_on = false;
+      throw;
+    }
     if (!results.failed.empty())
       throw MachineError(
           fmt::format("{}: {}", results.failed.front().spec.name, results.failed.front().error));
