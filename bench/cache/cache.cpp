@@ -6,15 +6,20 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <fstream>
 #include <optional>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "bench/protocol/digest.hpp"
+#include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
@@ -32,10 +37,45 @@ std::string pack(std::string_view content) {
   return packed.append(content);
 }
 
+// The Cache Directory Tagging Specification: programs for backups leave such a folder out.
+constexpr const char* kMarker = "CACHEDIR.TAG";
+constexpr std::string_view kMarkerText =
+    "Signature: 8a477f597d28d172789f06886806bc55\n"
+    "# The cache of modelhouse. It removes entries of its own from here, and nothing else.\n";
+
+/// A file or folder itself, not what a link names.
+bool is_own_file(const fs::path& file) {
+  std::error_code error;
+  return fs::symlink_status(file, error).type() == fs::file_type::regular;
+}
+bool is_own_folder(const fs::path& folder) {
+  std::error_code error;
+  return fs::symlink_status(folder, error).type() == fs::file_type::directory;
+}
+
+bool is_key(std::string_view name) {
+  return !name.empty() && name.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+/// A key, or the name under which write_atomically() begins with one (".KEY.1234.tmp").
+bool is_entry_name(std::string_view name) {
+  if (!name.starts_with('.')) return is_key(name);
+  return name.find(".tmp") != std::string_view::npos &&
+         is_key(name.substr(1, name.find('.', 1) - 1));
+}
+
+/// Whether a file begins as every entry does.
+bool has_magic(const fs::path& file) {
+  std::string head(kMagic.size(), '\0');
+  return is_own_file(file) &&
+         std::ifstream(file, std::ios::binary)
+             .read(head.data(), static_cast<std::streamsize>(head.size())) &&
+         head == kMagic;
+}
+
 /// nullopt where the file is missing, cut short or damaged.
 std::optional<std::string> unpack(const fs::path& file) {
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) return std::nullopt;
+  if (!is_own_file(file)) return std::nullopt;
   std::string packed;
   try {
     packed = read_file(file);
@@ -81,44 +121,77 @@ fs::path Cache::default_folder() {
   return {};
 }
 
+fs::path Cache::own_folder() const {
+  if (folder_.empty()) throw InputError("no folder for a cache");
+  const fs::path own = folder_ / kOwnFolder;
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(own, error))) {
+    make_output_folder(folder_);
+    // Complete before it has its name: another process meets none or the whole.
+    std::string fresh = (folder_ / fmt::format(".{}-XXXXXX", kOwnFolder)).string();
+    if (mkdtemp(fresh.data()) == nullptr) throw_unwritable(own, errno);
+    fs::permissions(fresh, fs::perms::all & ~fs::perms::group_write & ~fs::perms::others_write,
+                    error);
+    write_atomically(fs::path(fresh) / kMarker, kMarkerText);
+    if (rename(fresh.c_str(), own.c_str()) != 0) fs::remove_all(fresh, error);
+  }
+  if (!is_own_folder(own) || !is_own_file(own / kMarker) || read_file(own / kMarker) != kMarkerText)
+    throw InputError(fmt::format("{}: is no cache of modelhouse's ({} is not in it): left alone",
+                                 own.string(), kMarker));
+  return own;
+}
+
 std::string Cache::why_unwritable() const {
   constexpr std::size_t kProbe_bytes = 1 << 20;
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  const fs::path probe = folder_ / fmt::format("probe-{}", getpid());
   try {
+    const fs::path probe = own_folder() / fmt::format("probe-{}", getpid());
     write_atomically(probe, std::string(kProbe_bytes, '\0'));
+    std::error_code error;
+    fs::remove(probe, error);
   } catch (const std::exception& e) {
     return e.what();
   }
-  fs::remove(probe, error);
   return {};
 }
 
 std::string Cache::get(std::string_view kind, std::string_view key,
                        const std::function<std::string()>& make) const {
+  assert(is_key(key));
+  fs::path own;
+  try {
+    own = own_folder();
+  } catch (const std::exception&) {
+    return make();
+  }
   std::error_code error;
-  if (folder_.empty()) return make();
-  const fs::path file = folder_ / kind / key;
-  fs::create_directories(file.parent_path(), error);
-  fs::create_directories(folder_ / "locks", error);
+  for (const fs::path& folder : {own / kind, own / "locks"}) {
+    fs::create_directory(folder, error);
+    if (!is_own_folder(folder)) return make();
+  }
+  const fs::path file = own / kind / key;
   // A bounded number of lock files: two entries may share one, which costs a wait at worst.
-  const EntryLock lock(folder_ / "locks" / fmt::format("{}-{}", kind, key.substr(0, 2)));
+  const EntryLock lock(own / "locks" / fmt::format("{}-{}", kind, key.substr(0, 2)));
   if (auto content = unpack(file)) {
     fs::last_write_time(file, fs::file_time_type::clock::now(), error);
     return *std::move(content);
   }
   std::string content = make();
   try {
+    // What does not begin as an entry does may be anybody's.
+    const fs::path aside = file.string() + ".found";
+    if (fs::exists(fs::symlink_status(file, error)) && !has_magic(file)) {
+      if (fs::exists(fs::symlink_status(aside, error))) return content;
+      fs::rename(file, aside);
+    }
     write_atomically(file, pack(content));
-    keep_within_bounds();
+    keep_within_bounds(own);
   } catch (const std::exception&) {
     // Nothing is kept then; the work goes on.
   }
   return content;
 }
 
-void Cache::keep_within_bounds() const {
+void Cache::keep_within_bounds(const fs::path& own) const {
   struct Entry {
     fs::file_time_type read;
     fs::path file;
@@ -127,10 +200,13 @@ void Cache::keep_within_bounds() const {
   std::vector<Entry> entries;
   std::uintmax_t all = 0;
   std::error_code error;
-  for (const auto& entry : fs::recursive_directory_iterator(folder_, error)) {
-    if (!entry.is_regular_file(error) || entry.path().parent_path().filename() == "locks") continue;
-    entries.push_back({entry.last_write_time(error), entry.path(), entry.file_size(error)});
-    all += entries.back().bytes;
+  for (const auto& kind : fs::directory_iterator(own, error)) {
+    if (!is_own_folder(kind.path())) continue;
+    for (const auto& entry : fs::directory_iterator(kind.path(), error)) {
+      if (!is_entry_name(entry.path().filename().string()) || !has_magic(entry.path())) continue;
+      entries.push_back({entry.last_write_time(error), entry.path(), entry.file_size(error)});
+      all += entries.back().bytes;
+    }
   }
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.read != b.read ? a.read < b.read : a.file < b.file;
