@@ -155,6 +155,7 @@ Shard parse_shard(const std::string& text) {
 
 BenchResults load_results(const Store& store, const Suite& suite) {
   std::map<std::string, std::string> key_of;
+  store.check();
   for (auto& [name, key] : store.planned_keys()) key_of[name] = key;
   BenchResults results;
   for (const RunSpec& spec : expand(suite)) {
@@ -192,6 +193,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
   const fs::path results = options.out / "results.sqlite";
   if (fs::exists(results)) {
     Store before(results);
+    before.check();
     if (options.retry_failed)
       for (const Job& job : mine) before.forget_failure(job.key);
     if (!options.figures_alone) forget_what_is_not_shown(before, mine, options.out);

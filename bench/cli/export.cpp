@@ -16,7 +16,7 @@ struct Options {
 };
 
 void run(const Options& options) {
-  const Store store = Store::open_existing(options.store);
+  const Store store = Store::open_to_read(options.store);
   load_results(store, store.planned_suite());  // a damaged row is no row of a table
   const std::string text = options.format == "csv"    ? export_csv(store)
                            : options.format == "json" ? export_json(store)

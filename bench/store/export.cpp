@@ -81,7 +81,7 @@ std::string export_json(const Store& store) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (std::size_t r = 1; r < rows.size(); ++r) {
       nlohmann::ordered_json object;
-      for (std::size_t c = 0; c < rows[r].size(); ++c)
+      for (std::size_t c = 0; c + 1 < rows[r].size(); ++c)  // the digest stands last
         object[std::get<std::string>(rows[0][c])] = to_json(rows[r][c]);
       list.push_back(std::move(object));
     }

@@ -11,6 +11,7 @@
 #include "bench/plan/spec_json.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/results/summary.hpp"
+#include "bench/store/row_digest.hpp"
 #include "bench/store/run_key.hpp"
 #include "slam/core/error.hpp"
 
@@ -51,7 +52,7 @@ T named(const std::string& word, std::initializer_list<T> values) {
 class Insert {
  public:
   Insert(SQLite::Database& db, const std::string& table, int columns)
-      : statement_(db, insert(table, columns)) {}
+      : statement_(db, insert_row(table, columns)) {}
   Insert& operator<<(const std::string& text) {
     statement_.bind(next_++, text);
     return *this;
@@ -93,11 +94,6 @@ class Insert {
   }
 
  private:
-  static std::string insert(const std::string& table, int columns) {
-    std::string marks = "?";
-    for (int i = 1; i < columns; ++i) marks += ", ?";
-    return fmt::format("INSERT INTO {} VALUES ({})", table, marks);
-  }
   SQLite::Statement statement_;
   int next_ = 1;
 };

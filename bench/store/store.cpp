@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/store/store.hpp"
 
+#include <fcntl.h>
 #include <sqlite3.h>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include <map>
 #include <thread>
 
+#include <SQLiteCpp/Backup.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -19,8 +21,10 @@
 #include "bench/results/fingerprint.hpp"
 #include "bench/store/guard.hpp"
 #include "bench/store/result_rows.hpp"
+#include "bench/store/row_digest.hpp"
 #include "bench/store/schema.hpp"
-#include "slam/core/error.hpp"
+#include "bench/temporary_folder.hpp"
+#include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
@@ -62,11 +66,7 @@ InputError made_otherwise(const fs::path& file, const std::string& run, const fs
 
 void put_cost(SQLite::Database& db, const std::string& key, const RunCost& cost,
               const std::string& calls) {
-  SQLite::Statement s(
-      db,
-      "INSERT OR REPLACE INTO times (key, wall_s, cpu_s, slam_s, frames_s, max_rss_mb, host, "
-      "finished, fingerprint, calls, products_s, sitting, jobs, load) "
-      "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SQLite::Statement s(db, insert_row("times", 14, "INSERT OR REPLACE"));
   s.bind(1, key);
   s.bind(2, cost.wall_s);
   s.bind(3, cost.cpu_s);
@@ -112,23 +112,13 @@ void enter_wal(SQLite::Database& db) {
   }
 }
 
-/// The columns of each table, in order.
-std::map<std::string, std::vector<std::string>> columns(SQLite::Database& db) {
-  std::map<std::string, std::vector<std::string>> of_table;
-  SQLite::Statement s(db,
-                      "SELECT m.name, c.name FROM sqlite_master m, pragma_table_info(m.name) c "
-                      "WHERE m.type = 'table' ORDER BY m.name, c.cid");
-  while (s.executeStep())
-    of_table[s.getColumn(0).getString()].push_back(s.getColumn(1).getString());
-  return of_table;
-}
-
-/// Merging copies whole rows, so that a column more or less is an error. Other tables do no harm.
-void require_columns(SQLite::Database& db, const fs::path& file) {
+/// Merging copies whole rows, so that a column more or less is an error, and one of another type
+/// would give other numbers. Other tables do no harm.
+void require_schema(SQLite::Database& db, const fs::path& file) {
   SQLite::Database fresh(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   fresh.exec(kSchema);
-  auto found = columns(db);
-  for (const auto& [table, expected] : columns(fresh))
+  auto found = schema_texts(db);
+  for (const auto& [table, expected] : schema_texts(fresh))
     if (found[table] != expected)
       throw InputError(fmt::format(
           "{}: does not hold what a results file must (the columns of the table '{}'): put back a "
@@ -136,17 +126,42 @@ void require_columns(SQLite::Database& db, const fs::path& file) {
           file.string(), table));
 }
 
-void open_schema(SQLite::Database& db, const fs::path& file) {
-  const auto version = [&] { return db.execAndGet("PRAGMA user_version").getInt(); };
-  if (version() > kSchemaVersion)
+int version_of(SQLite::Database& db) {
+  return db.execAndGet("PRAGMA user_version").getInt();
+}
+
+void refuse_newer(SQLite::Database& db, const fs::path& file) {
+  if (const int version = version_of(db); version > kSchemaVersion)
     throw InputError(
         fmt::format("{}: has schema {}, this version of modelhouse reads up to {}: use a newer one",
-                    file.string(), version(), kSchemaVersion));
+                    file.string(), version, kSchemaVersion));
+}
+
+/// SQLite's own look at its pages; rows are for require_whole_rows().
+void require_whole_pages(SQLite::Database& db, const fs::path& file) {
+  if (const std::string found = db.execAndGet("PRAGMA quick_check(1)").getString(); found != "ok")
+    throw InputError(
+        fmt::format("{}: is damaged ({}): put back a copy, or move it away and run again",
+                    file.string(), found));
+}
+
+void bring_up_to_date(SQLite::Database& db) {
+  SQLite::Transaction transaction = writing(db);
+  const int version = version_of(db);
+  if (version >= kSchemaVersion) return;  // another process was quicker
+  if (version == 1) db.exec(kFromSchema1);
+  rebuild_with_digests(db);
+  db.exec(fmt::format("PRAGMA user_version = {}", kSchemaVersion));
+  transaction.commit();
+}
+
+void open_schema(SQLite::Database& db, const fs::path& file) {
+  refuse_newer(db, file);
   enter_wal(db);
   db.exec("PRAGMA synchronous = FULL");
-  if (version() == 0) {
+  if (version_of(db) == 0) {
     SQLite::Transaction transaction = writing(db);
-    if (version() == 0) {  // no other process was quicker
+    if (version_of(db) == 0) {  // no other process was quicker
       if (db.execAndGet("SELECT count(*) FROM sqlite_master").getInt() != 0)
         throw InputError(fmt::format("{}: is a database, but no results file", file.string()));
       db.exec(kSchema);
@@ -154,24 +169,30 @@ void open_schema(SQLite::Database& db, const fs::path& file) {
     }
     transaction.commit();
   }
-  if (version() < kSchemaVersion) {
-    SQLite::Transaction transaction = writing(db);
-    // Likewise.
-    if (version() == 1) {
-      db.exec(kFromSchema1);
-      db.exec("PRAGMA user_version = 2");
-    }
-    if (version() == 2) {
-      db.exec(kFromSchema2);
-      db.exec("PRAGMA user_version = 3");
-    }
-    transaction.commit();
-  }
-  if (const std::string found = db.execAndGet("PRAGMA quick_check(1)").getString(); found != "ok")
-    throw InputError(
-        fmt::format("{}: is damaged ({}): put back a copy, or move it away and run again",
-                    file.string(), found));
-  require_columns(db, file);
+  require_whole_pages(db, file);
+  if (version_of(db) < kSchemaVersion) bring_up_to_date(db);
+  require_schema(db, file);
+}
+
+/// Whether SQLite may write the file and, beside it, its log.
+bool may_be_written(const fs::path& file) {
+  const fs::path folder = fs::absolute(file).parent_path();
+  return faccessat(AT_FDCWD, file.c_str(), W_OK, AT_EACCESS) == 0 &&
+         faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) == 0;
+}
+
+fs::path log_of(const fs::path& file) {
+  return file.string() + "-wal";
+}
+
+/// The name under which SQLite opens a file that nobody writes, without a lock or a log.
+std::string as_immutable(const fs::path& file) {
+  std::string name = "file:";
+  for (const char c : fs::absolute(file).string())
+    name += std::string_view("%?#").find(c) == std::string_view::npos
+                ? std::string(1, c)
+                : fmt::format("%{:02X}", static_cast<unsigned>(c));
+  return name + "?immutable=1";
 }
 
 nlohmann::ordered_json to_json(const SuiteOverrides& o) {
@@ -195,32 +216,83 @@ SuiteOverrides overrides_from_json(const nlohmann::json& json) {
 Store::Store(fs::path file) : file_(std::move(file)) {
   guarded(file_, [&] {
     database_ = std::make_unique<SQLite::Database>(
-        file_.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusy_ms);
+        fs::absolute(file_).string(),
+        SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE | SQLite::OPEN_URI, kBusy_ms);
+    add_row_digest(*database_);
     open_schema(*database_, file_);
   });
 }
+Store::Store() = default;
 Store::~Store() = default;
 Store::Store(Store&&) noexcept = default;
 
-Store Store::open_existing(const fs::path& file) {
+Store Store::open_to_read(const fs::path& file) {
   const fs::path found = fs::is_directory(file) ? file / "results.sqlite" : file;
   if (!fs::is_regular_file(found))
     throw InputError(fmt::format("{}: cannot be read: no such results file", found.string()));
-  return Store(found);
+  require_readable(found);
+  Store store;
+  store.file_ = found;
+  guarded(found, [&] { store.open_unchanged(); });
+  return store;
+}
+
+void Store::open_unchanged() {
+  const auto open = [&](const std::string& name) {
+    opened_ = name;
+    database_ = std::make_unique<SQLite::Database>(name, SQLite::OPEN_READWRITE | SQLite::OPEN_URI,
+                                                   kBusy_ms);
+    add_row_digest(*database_);
+  };
+  const auto copy_to = [&] {
+    copy_ = std::make_unique<TemporaryFolder>(fs::temp_directory_path());
+    return copy_->path() / "results.sqlite";
+  };
+  std::error_code error;
+  if (may_be_written(file_)) {
+    open(fs::absolute(file_).string());
+  } else if (const auto left = fs::file_size(log_of(file_), error); error || left == 0) {
+    open(as_immutable(file_));
+  } else {  // what stands in the log has to be put into some file
+    const fs::path copy = copy_to();
+    write_atomically(copy, read_file(file_));
+    write_atomically(log_of(copy), read_file(log_of(file_)));
+    open(copy.string());
+  }
+  refuse_newer(*database_, file_);
+  require_whole_pages(*database_, file_);
+  if (version_of(*database_) < kSchemaVersion) {
+    if (version_of(*database_) == 0)
+      throw InputError(fmt::format("{}: is a database, but no results file", file_.string()));
+    const std::unique_ptr<SQLite::Database> old = std::move(database_);
+    const fs::path copy = copy_to();
+    {
+      SQLite::Database fresh(copy.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+      SQLite::Backup(fresh, *old).executeStep(-1);
+    }
+    open(copy.string());
+    bring_up_to_date(*database_);
+  }
+  require_schema(*database_, file_);
+}
+
+void Store::check() const {
+  guarded(file_, [&] { require_whole_rows(*database_, file_); });
 }
 
 void Store::plan(const Suite& suite, const SuiteOverrides& overrides,
                  const std::vector<std::pair<std::string, std::string>>& key_of_name) {
   guarded(file_, [&] {
     SQLite::Transaction transaction = writing(*database_);
-    SQLite::Statement s(*database_, "INSERT OR REPLACE INTO suite VALUES (1, ?, ?, ?, ?)");
-    s.bind(1, suite.name);
-    s.bind(2, fs::absolute(suite.file).lexically_normal().string());
-    s.bind(3, read_file(suite.file));
-    s.bind(4, to_json(overrides).dump());
+    SQLite::Statement s(*database_, insert_row("suite", 5, "INSERT OR REPLACE"));
+    s.bind(1, 1);
+    s.bind(2, suite.name);
+    s.bind(3, fs::absolute(suite.file).lexically_normal().string());
+    s.bind(4, read_file(suite.file));
+    s.bind(5, to_json(overrides).dump());
     s.exec();
     database_->exec("DELETE FROM plan");
-    SQLite::Statement row(*database_, "INSERT INTO plan VALUES (?, ?, ?)");
+    SQLite::Statement row(*database_, insert_row("plan", 3));
     int position = 0;
     for (const auto& [name, key] : key_of_name) {
       row.bind(1, position++);
@@ -364,7 +436,8 @@ void Store::check_mergeable(const std::vector<fs::path>& files) {
   std::map<std::string, std::pair<std::string, fs::path>> planned;  // of each run: key, first file
   std::optional<std::pair<Suite, fs::path>> first;
   for (const fs::path& file : files) {
-    const Store store = open_existing(file);
+    const Store store = open_to_read(file);
+    store.check();
     const auto keys = store.planned_keys();
     if (keys.empty()) continue;
     const Suite suite = store.planned_suite();
@@ -400,11 +473,12 @@ void Store::check_mergeable(const std::vector<fs::path>& files) {
 }
 
 std::size_t Store::merge(const fs::path& other) {
-  const Store source = open_existing(other);
+  const Store source = open_to_read(other);
+  source.check();
   return guarded(file_, [&] {
     std::size_t taken = 0;
     SQLite::Statement attach(*database_, "ATTACH ? AS other");
-    attach.bind(1, source.file().string());
+    attach.bind(1, source.opened_);
     attach.exec();
     {
       SQLite::Transaction transaction = writing(*database_);

@@ -20,6 +20,8 @@ class Database;
 
 namespace mh {
 
+class TemporaryFolder;
+
 /// What a run cost; differs from one execution to the next.
 struct RunCost {
   double wall_s = 0;
@@ -44,8 +46,12 @@ class Store {
   explicit Store(std::filesystem::path file);
   ~Store();
   Store(Store&&) noexcept;
-  /// Opens a file that must be there. @throws InputError if it is not.
-  static Store open_existing(const std::filesystem::path& file);
+  /// Opens a file, or the one in a folder, without changing it: it may lie where nothing can be
+  /// written, and one of an older schema is brought up to date in a copy.
+  /// @throws InputError if it is not there.
+  static Store open_to_read(const std::filesystem::path& file);
+  /// @throws InputError naming file, table and row if a row is not what was put.
+  void check() const;
 
   /// Remembers the suite and which result belongs to which of its runs, in the place of what was
   /// remembered before. Results stay.
@@ -96,8 +102,13 @@ class Store {
   const std::filesystem::path& file() const { return file_; }
 
  private:
+  Store();
+  void open_unchanged();
+
   std::filesystem::path file_;
-  std::unique_ptr<SQLite::Database> database_;
+  std::string opened_;  ///< what SQLite opened to read: a copy's name, or one that says how
+  std::unique_ptr<TemporaryFolder> copy_;
+  std::unique_ptr<SQLite::Database> database_;  ///< closed before its copy goes
 };
 
 /// This moment, "2026-11-22T07:08:40Z".

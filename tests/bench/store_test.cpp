@@ -2,13 +2,18 @@
 #include "bench/store/store.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <signal.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <iterator>
+#include <map>
+#include <random>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -18,8 +23,10 @@
 #include "bench/jobs/run_process.hpp"
 #include "bench/plan/runs.hpp"
 #include "bench/results/json.hpp"
+#include "bench/run.hpp"
 #include "bench/store/export.hpp"
 #include "slam/core/file_errors.hpp"
+#include "slam/core/files.hpp"
 
 namespace mh {
 namespace {
@@ -102,8 +109,173 @@ class StoreFile : public testing::Test {
     return s;
   }
 
+  /// A suite of one run that a store's text of it gives again.
+  Suite whole_suite() const {
+    const fs::path file = folder_ / "suite.yaml";
+    std::ofstream(file) << "environments: [{category: room, scene: r.yaml, mapping_tour: t.yaml}]\n"
+                           "robot: robot.yaml\nvocabulary: v.mhvoc\nlevels: [pepper.yaml]\n"
+                           "systems: [plain]\nlabels: [exact]\ntrials: 3\n";
+    return parse_suite(read_file(file), file, {}, false);
+  }
+  /// A finished run, a failed one and one that is missing.
+  void write_results(const fs::path& file) const {
+    const Suite s = whole_suite();
+    const auto specs = expand(s);
+    Store store(file);
+    store.plan(s, {}, {{specs[0].name, "k0"}, {specs[1].name, "k1"}, {specs[2].name, "k2"}});
+    RunResult run = some_run(specs[0].name);
+    for (int i = 2; i < 60; ++i) run.truth.push_back({33 * i, run.truth[1].world_from_camera});
+    store.put("k0", run, {.wall_s = 2, .max_rss_mb = 12});
+    store.put_failure("k1", some_run(specs[1].name).spec, "ended by signal 11", {});
+  }
+  /// What a user gets of a file: its exports and what the table is made of.
+  static std::string exports(const fs::path& file) {
+    const Store store = Store::open_to_read(file);
+    const Suite planned = store.planned_suite();
+    const BenchResults results = load_results(store, planned);
+    return export_json(store) + export_csv(store) + export_latex(store) +
+           results_json(planned, results.runs, results.failed, results.missing).dump();
+  }
+  std::map<std::string, std::string> files() const {
+    std::map<std::string, std::string> found;
+    for (const auto& entry : fs::directory_iterator(folder_))
+      found[entry.path().filename().string()] = read_file(entry.path());
+    return found;
+  }
+
   fs::path folder_;
 };
+
+TEST_F(StoreFile, NoFlippedByteChangesWhatIsExported) {
+  const fs::path good = folder_ / "good.sqlite", bad = folder_ / "bad.sqlite";
+  write_results(good);
+  ASSERT_FALSE(fs::exists(good.string() + "-wal")) << "the file holds all";
+  const std::string bytes = read_file(good), expected = exports(good);
+  ASSERT_NE(expected.find("ended by signal 11"), std::string::npos);
+  std::mt19937 random(18);
+  int refused = 0;
+  for (int flip = 0; flip < 500; ++flip) {
+    const std::size_t at = random() % bytes.size();
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ (1 + random() % 255));
+    std::ofstream(bad, std::ios::binary) << damaged;
+    try {
+      EXPECT_EQ(exports(bad), expected) << "byte " << at << " was flipped";
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find(bad.string()), 0u) << error.what();
+      ++refused;
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << "byte " << at << ": no InputError: " << error.what();
+    }
+    fs::remove(bad.string() + "-wal");
+    fs::remove(bad.string() + "-shm");
+  }
+  EXPECT_GT(refused, 100);
+}
+
+TEST_F(StoreFile, AChangedValueOfAnyTableIsNamed) {
+  const fs::path file = folder_ / "r.sqlite";
+  for (const std::string change :
+       {"UPDATE suite SET name = 'other'", "UPDATE plan SET position = 7 WHERE position = 2",
+        "UPDATE runs SET seed = 5 WHERE status = 'done'", "UPDATE points SET alpha = 0.125",
+        "UPDATE metrics SET value = value + 1 WHERE name = 'completeness'",
+        "UPDATE calls SET status = 'lost' WHERE call = 1",
+        "UPDATE frames SET tx = 0 WHERE frame = 1",
+        "UPDATE queries SET correct = 0 WHERE correct = 1", "UPDATE times SET wall_s = 1"}) {
+    fs::remove(file);
+    write_results(file);
+    EXPECT_NO_THROW(exports(file));
+    SQLite::Database(file.string(), SQLite::OPEN_READWRITE).exec(change);
+    const std::string table = change.substr(7, change.find(' ', 7) - 7);
+    try {
+      exports(file);
+      ADD_FAILURE() << change;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("of its table '" + table + "'"), std::string::npos)
+          << error.what();
+    }
+    EXPECT_THROW(Store(folder_ / "all.sqlite").merge(file), InputError);
+  }
+}
+
+/// As a user who is not root, while it lives; root may write everywhere.
+class AsNobody {
+ public:
+  AsNobody() { failed_ = geteuid() == 0 && seteuid(65534) != 0; }
+  ~AsNobody() {
+    if (getuid() == 0 && seteuid(0) != 0) std::abort();
+  }
+  bool failed() const { return failed_; }
+
+ private:
+  bool failed_;
+};
+
+TEST_F(StoreFile, AFileThatMayOnlyBeReadIsExportedAndMerged) {
+  const fs::path file = folder_ / "sealed" / "r 100%?.sqlite";
+  fs::create_directories(file.parent_path());
+  write_results(file);
+  const std::string expected = exports(file), bytes = read_file(file);
+  fs::permissions(folder_, fs::perms::all);
+  const auto try_it = [&] {
+    fs::permissions(file, fs::perms::owner_read | fs::perms::others_read);
+    fs::permissions(file.parent_path(), fs::perms(0555));
+    const AsNobody nobody;
+    ASSERT_FALSE(nobody.failed());
+    EXPECT_EQ(exports(file), expected);
+    Store all(folder_ / "all.sqlite");
+    EXPECT_EQ(all.merge(file), 2u);
+    EXPECT_EQ(exports(folder_ / "all.sqlite"), expected);
+  };
+  try_it();
+  EXPECT_EQ(std::distance(fs::directory_iterator(file.parent_path()), {}), 1) << "nothing beside";
+  EXPECT_EQ(read_file(file), bytes);
+
+  // The same, left by a process that was killed: part of it stands in the log.
+  for (const char* name : {"all.sqlite", "all.sqlite-wal", "all.sqlite-shm"})
+    fs::remove(folder_ / name);
+  fs::permissions(file.parent_path(), fs::perms::all);
+  fs::remove(file);
+  if (const pid_t writer = fork(); writer == 0) {
+    write_results(file);
+    Store store(file);
+    store.put_failure("k9", some_run("x").spec, "in the log", {});
+    kill(getpid(), SIGKILL);
+  } else {
+    waitpid(writer, nullptr, 0);
+  }
+  const fs::path log = file.string() + "-wal";
+  ASSERT_GT(fs::file_size(log), 0u);
+  fs::remove(file.string() + "-shm");
+  fs::permissions(log, fs::perms::owner_read | fs::perms::others_read);
+  fs::permissions(file, fs::perms::owner_read | fs::perms::others_read);
+  fs::permissions(file.parent_path(), fs::perms(0555));
+  {
+    const AsNobody nobody;
+    EXPECT_EQ(Store::open_to_read(file).error("k9"), "in the log");
+    EXPECT_EQ(Store(folder_ / "all.sqlite").merge(file), 3u);
+  }
+  fs::permissions(file.parent_path(), fs::perms::all);
+}
+
+TEST_F(StoreFile, AnOlderFileIsReadWithoutBeingChanged) {
+  const fs::path file = folder_ / "r.sqlite";
+  write_results(file);
+  const std::string expected = exports(file);
+  {
+    SQLite::Database raw(file.string(), SQLite::OPEN_READWRITE);
+    for (const char* table :
+         {"suite", "plan", "runs", "points", "metrics", "calls", "frames", "queries", "times"})
+      raw.exec(fmt::format("ALTER TABLE {} DROP COLUMN digest", table));
+    raw.exec("PRAGMA user_version = 3");
+  }
+  const auto before = files();
+  EXPECT_EQ(exports(file), expected);
+  EXPECT_EQ(files(), before);
+  Store(folder_ / "all.sqlite").merge(file);
+  EXPECT_EQ(exports(folder_ / "all.sqlite"), expected);
+  EXPECT_EQ(read_file(file), before.at("r.sqlite"));
+}
 
 TEST_F(StoreFile, ARunComesBackAsItWas) {
   Store store(folder_ / "r.sqlite");
@@ -211,15 +383,20 @@ TEST_F(StoreFile, AFileOfSchema1IsTakenOverAndMerges) {
     raw.exec(
         "CREATE TABLE points (key TEXT NOT NULL, point INTEGER NOT NULL, gamma REAL NOT NULL, xi "
         "REAL NOT NULL, alpha REAL NOT NULL, beta REAL NOT NULL, overlap TEXT NOT NULL, "
-        "void_is_a_label INTEGER NOT NULL, PRIMARY KEY (key, point)) WITHOUT ROWID");
+        "void_is_a_label INTEGER NOT NULL, digest INTEGER, PRIMARY KEY (key, point)) WITHOUT "
+        "ROWID");
     raw.exec("INSERT INTO points SELECT * FROM p");
     raw.exec("DROP TABLE p");
+    for (const char* table :
+         {"suite", "plan", "runs", "points", "metrics", "calls", "frames", "queries", "times"})
+      raw.exec(fmt::format("ALTER TABLE {} DROP COLUMN digest", table));
     for (const char* column : {"products_s", "sitting", "jobs", "load"})
       raw.exec(fmt::format("ALTER TABLE times DROP COLUMN {}", column));
     raw.exec("PRAGMA user_version = 1");
   }
   Store old(file), fresh(folder_ / "fresh.sqlite");
-  EXPECT_EQ(old.rows("PRAGMA user_version")[1][0], "3");
+  EXPECT_EQ(old.rows("PRAGMA user_version")[1][0], "4");
+  old.check();
   EXPECT_EQ(old.rows("SELECT key, alpha FROM points")[1],
             (std::vector<std::string>{"kx", exact(SemanticConfig{}.alpha)}));
   EXPECT_EQ(old.rows("SELECT * FROM queries").size(), 1u + 3);
@@ -356,13 +533,7 @@ TEST_F(StoreFile, MergingNeverPutsAFailureInThePlaceOfAResultNorOneFailureInThat
 }
 
 TEST_F(StoreFile, ADamagedPartIsNamedBeforeAnythingIsMerged) {
-  const fs::path file = folder_ / "suite.yaml";
-  std::ofstream(file) << "environments: [{category: room, scene: r.yaml, mapping_tour: t.yaml}]\n"
-                         "robot: robot.yaml\nvocabulary: v.mhvoc\nlevels: [pepper.yaml]\n"
-                         "systems: [plain]\nlabels: [exact]\n";
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  const Suite s = parse_suite(text.str(), file, {}, false);
+  const Suite s = whole_suite();
   const std::string name = expand(s)[0].name;
   const fs::path good = folder_ / "good.sqlite", bad = folder_ / "bad.sqlite";
   for (const fs::path& part : {good, bad}) {
@@ -383,7 +554,9 @@ TEST_F(StoreFile, ADamagedPartIsNamedBeforeAnythingIsMerged) {
   raw.exec("CREATE TABLE my_notes (text TEXT)");
   EXPECT_EQ(refused(), "no error") << "it does no harm";
   raw.exec("UPDATE runs SET result = substr(result, 1, 40)");
-  EXPECT_TRUE(refused().starts_with(bad.string() + ": run '" + name + "' is damaged")) << refused();
+  EXPECT_EQ(refused(), bad.string() +
+                           ": is damaged: row (k) of its table 'runs': put back a copy, or move it "
+                           "away and run again");
   raw.exec("ALTER TABLE metrics DROP COLUMN value");
   EXPECT_TRUE(refused().starts_with(bad.string() + ": does not hold what")) << refused();
 }

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/store/row_digest.hpp"
+
+#include <sqlite3.h>
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "bench/protocol/digest.hpp"
+#include "bench/store/schema.hpp"
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+
+template <class T>
+void append(std::string& bytes, char tag, T value) {
+  bytes += tag;
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+void append(std::string& bytes, sqlite3_value* value) {
+  constexpr double kExact = 9e15;  // whole numbers up to here are exact
+  switch (sqlite3_value_type(value)) {
+    case SQLITE_INTEGER:
+      return append(bytes, 'n', static_cast<std::int64_t>(sqlite3_value_int64(value)));
+    case SQLITE_FLOAT: {
+      // A column of whole numbers stores 12.0 as 12, one of reals 12 as 12.0.
+      const double number = sqlite3_value_double(value);
+      if (std::abs(number) < kExact && number == std::floor(number))
+        return append(bytes, 'n', static_cast<std::int64_t>(number));
+      return append(bytes, 'r', number);
+    }
+    case SQLITE_NULL:
+      bytes += '0';
+      return;
+    default: {
+      const bool text = sqlite3_value_type(value) == SQLITE_TEXT;
+      const auto* content =
+          text ? static_cast<const void*>(sqlite3_value_text(value)) : sqlite3_value_blob(value);
+      const int size = sqlite3_value_bytes(value);
+      append(bytes, text ? 't' : 'b', size);
+      if (content != nullptr)
+        bytes.append(static_cast<const char*>(content), static_cast<std::size_t>(size));
+    }
+  }
+}
+
+void row_digest(sqlite3_context* context, int count, sqlite3_value** values) {
+  std::string bytes;
+  for (int i = 0; i < count; ++i) append(bytes, values[i]);
+  sqlite3_result_int64(context,
+                       static_cast<sqlite3_int64>(digest_bytes(bytes.data(), bytes.size())));
+}
+
+struct Columns {
+  std::string values;  ///< "'plan', position, name, key": what row_digest() is called with
+  std::string key;     ///< "position || ', ' || name": what names a row
+};
+
+Columns columns_of(SQLite::Database& db, const std::string& table) {
+  Columns columns{fmt::format("'{}'", table), ""};
+  SQLite::Statement s(db, "SELECT name, pk FROM pragma_table_info(?) ORDER BY cid");
+  s.bind(1, table);
+  while (s.executeStep()) {
+    const std::string name = s.getColumn(0).getString();
+    if (name == "digest") continue;
+    columns.values += ", \"" + name + "\"";
+    if (s.getColumn(1).getInt() > 0)
+      columns.key += (columns.key.empty() ? "" : " || ', ' || ") + ("\"" + name + "\"");
+  }
+  return columns;
+}
+
+std::string printable(std::string text) {
+  constexpr std::size_t kMost = 120;
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) > '~') c = '?';
+  return text.size() > kMost ? text.substr(0, kMost) + "..." : text;
+}
+
+}  // namespace
+
+void add_row_digest(SQLite::Database& db) {
+  db.createFunction("row_digest", -1, true, nullptr, row_digest, nullptr, nullptr, nullptr);
+}
+
+std::string insert_row(const std::string& table, int values, const char* verb) {
+  std::string marks = "?1";
+  for (int i = 2; i <= values; ++i) marks += fmt::format(", ?{}", i);
+  return fmt::format("{0} INTO {1} VALUES ({2}, row_digest('{1}', {2}))", verb, table, marks);
+}
+
+void require_whole_rows(SQLite::Database& db, const std::filesystem::path& file) {
+  for (const std::string table : kDigestedTables) {
+    const Columns columns = columns_of(db, table);
+    SQLite::Statement s(db, fmt::format("SELECT {} FROM {} WHERE digest IS NOT row_digest({}) "
+                                        "LIMIT 1",
+                                        columns.key, table, columns.values));
+    if (s.executeStep())
+      throw InputError(fmt::format(
+          "{}: is damaged: row ({}) of its table '{}': put back a copy, or move it away and run "
+          "again",
+          file.string(), printable(s.getColumn(0).getString()), table));
+  }
+}
+
+std::map<std::string, std::string> schema_texts(SQLite::Database& db) {
+  std::map<std::string, std::string> texts;
+  SQLite::Statement s(db, "SELECT name, sql FROM sqlite_master WHERE type = 'table'");
+  while (s.executeStep()) texts[s.getColumn(0).getString()] = s.getColumn(1).getString();
+  return texts;
+}
+
+void rebuild_with_digests(SQLite::Database& db) {
+  SQLite::Database fresh(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  fresh.exec(kSchema);
+  const auto texts = schema_texts(fresh);
+  for (const std::string table : kDigestedTables) {
+    db.exec(fmt::format("ALTER TABLE {0} RENAME TO old_{0}", table));
+    db.exec(texts.at(table));
+    db.exec(fmt::format("INSERT INTO {0} SELECT *, row_digest({1}) FROM old_{0}", table,
+                        columns_of(db, table).values));
+    db.exec(fmt::format("DROP TABLE old_{}", table));
+  }
+}
+
+}  // namespace mh

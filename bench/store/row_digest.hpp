@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+namespace mh {
+
+// Each row of a results file but those of `claims` carries, as its last column, a digest of its
+// table's name and its other values: SQLite has no checksums, and a flipped bit in a number is a
+// number.
+
+/// The tables whose rows carry one, in the order of the schema.
+inline constexpr const char* kDigestedTables[] = {"suite", "plan",   "runs",    "points", "metrics",
+                                                  "calls", "frames", "queries", "times"};
+
+/// Makes the SQL function row_digest(table, value, ...) known to a connection: a 64-bit integer. A
+/// number's digest is that of its value: 3 and 3.0 have the same.
+void add_row_digest(SQLite::Database& db);
+
+/// "INSERT INTO plan VALUES (?1, ?2, ?3, row_digest('plan', ?1, ?2, ?3))" of so many values.
+std::string insert_row(const std::string& table, int values, const char* verb = "INSERT");
+
+/// Looks at every row. @throws InputError naming file, table and the first row whose digest is not
+/// that of its values.
+void require_whole_rows(SQLite::Database& db, const std::filesystem::path& file);
+
+/// Makes each table of an older file one of today's schema, its rows with their digests.
+void rebuild_with_digests(SQLite::Database& db);
+
+/// The text that created each table of a database, by its name.
+std::map<std::string, std::string> schema_texts(SQLite::Database& db);
+
+}  // namespace mh
