@@ -12,6 +12,7 @@
 #include "bench/systems/conversation.hpp"
 #include "bench/systems/finished_map.hpp"
 #include "bench/systems/ours.hpp"
+#include "bench/systems/program_folder.hpp"
 #include "bench/systems/recorded_run.hpp"
 #include "bench/systems/tampered.hpp"
 #include "sim/world/sequence.hpp"
@@ -130,11 +131,14 @@ Trajectory run_recorded(const RunSpec& spec, const SimulatedSequence& mapping,
   std::vector<std::size_t> offered;
   for (std::size_t i = 0; i < mapping.size(); ++i)
     if (!is_test_frame(i, spec.protocol)) offered.push_back(i);
-  const std::filesystem::path dataset = folder / "dataset";
+  ProgramFolder given(folder);
   const std::vector<Stamp> stamps =
-      write_dataset(dataset, mapping.camera(), offered.size(),
+      write_dataset(given.path() / "dataset", mapping.camera(), offered.size(),
                     [&](std::size_t i) { return frames(offered[i], mapping_noise(stream, 0)); });
-  return run_on_dataset(spec.system.outside, dataset, stamps, spec.seed, folder);
+  Trajectory trajectory =
+      run_on_dataset(spec.system.outside, given.path(), stamps, spec.seed, folder / "outside.log");
+  given.move_to_run();
+  return trajectory;
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ Json to_json(const SystemSpec& system) {
                        {"run_limit_s", p.run_limit_s},
                        {"answer_limit_s", p.answer_limit_s},
                        {"memory_limit_mb", p.memory_limit_mb},
+                       {"disk_limit_mb", p.disk_limit_mb},
                        {"inputs", p.inputs}};
   return json;
 }
@@ -52,6 +53,7 @@ SystemSpec system_from_json(const Json& json) {
         .run_limit_s = p.at("run_limit_s"),
         .answer_limit_s = p.at("answer_limit_s"),
         .memory_limit_mb = p.at("memory_limit_mb"),
+        .disk_limit_mb = p.at("disk_limit_mb"),
         .inputs = p.at("inputs").get<std::vector<std::string>>()};
   }
   return system;

@@ -46,6 +46,7 @@ SystemSpec read_system(YamlReader node, const SuitePaths& paths) {
   program.answer_limit_s =
       node.number_or("answer_limit_s", program.answer_limit_s, 0.01, kLongest_s);
   program.memory_limit_mb = node.number_or("memory_limit_mb", program.memory_limit_mb, 0.0, 1e9);
+  program.disk_limit_mb = node.number_or("disk_limit_mb", program.disk_limit_mb, 0.0, 1e9);
   if (const auto inputs = node.find("inputs"))
     for (const YamlReader& input : inputs->items()) {
       named_file(input, paths);

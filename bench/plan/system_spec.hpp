@@ -25,8 +25,8 @@ struct SystemSpec {
 };
 
 /// `semantic`, `plain`, or a mapping {name, command, protocol: trajectory |
-/// conversation} with `run_limit_s`, `answer_limit_s`, `memory_limit_mb` where the defaults do not
-/// do, and `inputs`, a list of files. The command runs in the suite's folder.
+/// conversation} with `run_limit_s`, `answer_limit_s`, `memory_limit_mb`, `disk_limit_mb` where the
+/// defaults do not do, and `inputs`, a list of files. The command runs in the suite's folder.
 /// @throws InputError naming file, line, field and value; an input that must exist and does not.
 SystemSpec read_system(YamlReader node, const SuitePaths& paths);
 

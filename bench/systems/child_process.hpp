@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sys/types.h>
-
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "bench/systems/outside_program.hpp"
+#include "bench/systems/watcher.hpp"
 
 namespace mh {
 
-/// A running outside program in a process group of its own, with time and memory limits. The group
-/// is killed when this object goes, or this process, however that came about. Every failure is an
-/// OutsideError naming program, command, what it did and the last line that it wrote to its log.
+/// A running outside program under a watcher, with limits of time, memory and what it writes. It
+/// and all that it started are ended when this object goes, or this process, however that came
+/// about (watcher.hpp says what may escape). Every failure is an OutsideError naming program,
+/// command, what it did and the last line that it wrote to its log.
 class ChildProcess {
  public:
   enum class Talk { kNo, kOverPipes };
@@ -22,9 +23,11 @@ class ChildProcess {
   /// Starts `command` by /bin/sh in program.folder.
   /// @param talk  kOverPipes: send() and read_line() reach its standard input and output; kNo: it
   ///              reads nothing and its output goes to the log. Its errors always go to the log.
-  /// @param scratch  folder that is removed should this process die before the object goes
+  /// @param log     beyond 64 MB the program is stopped
+  /// @param folder  what the program may write into: counts against its limit, and is removed
+  ///                should this process die before the object goes
   ChildProcess(const OutsideProgram& program, std::string command, Talk talk,
-               std::filesystem::path log, const std::filesystem::path& scratch = {});
+               const std::filesystem::path& log, const std::filesystem::path& folder);
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
@@ -40,28 +43,23 @@ class ChildProcess {
   void finish(double limit_s);
 
   /// An OutsideError about what the program did: "exited with code 3". Ends the program. Files in
-  /// the log's folder and in `scratch` are named relative to it: the same failure has the same
+  /// the log's folder and in `folder` are named relative to it: the same failure has the same
   /// message wherever it happens.
   [[noreturn]] void fail(std::string_view what);
 
  private:
-  bool try_reap(int options);
-  void kill_group();
-  void start_watcher();
-  void check_memory(std::string_view doing);
-  /// How it ended, for a program that closed its pipe; waits a moment for it to do so.
-  std::string ending();
+  void check_limits(std::string_view doing);
+  /// How it ended; waits for it to do so.
+  std::string ending(int wait_ms);
+  bool ended_well();
 
   const OutsideProgram program_;
   const std::string command_;
-  const std::filesystem::path log_, scratch_;
-  pid_t pid_ = -1;
-  bool reaped_ = false;
-  int status_ = 0;
-  std::chrono::steady_clock::time_point next_look_;  ///< at its memory
+  const std::filesystem::path log_, folder_;
+  double size_before_mb_ = 0;                        ///< of the folder
+  std::chrono::steady_clock::time_point next_look_;  ///< at its limits
   int to_child_ = -1, from_child_ = -1;
-  pid_t watcher_ = -1;
-  int to_watcher_ = -1;  ///< closed by the end of this process at the latest
+  std::optional<Watcher> watcher_;
   std::string unread_;
 };
 

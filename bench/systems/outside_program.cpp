@@ -105,6 +105,7 @@ void validate(const OutsideProgram& program) {
   check_limit(program, "time limit", program.run_limit_s, false);
   check_limit(program, "time limit of an answer", program.answer_limit_s, false);
   check_limit(program, "memory limit", program.memory_limit_mb, true);
+  check_limit(program, "disk limit", program.disk_limit_mb, true);
 }
 
 std::string expand_command(

@@ -36,7 +36,8 @@ struct OutsideProgram {
   std::filesystem::path folder = ".";  ///< where the command runs
   double run_limit_s = 3600;           ///< wall time of a whole run in trajectory mode, > 0
   double answer_limit_s = 60;          ///< wall time of one answer in a conversation, > 0
-  double memory_limit_mb = 0;  ///< resident, the program and its children together; 0 = none
+  double memory_limit_mb = 0;          ///< resident, the program and all that it started; 0 = none
+  double disk_limit_mb = 4096;  ///< each file that it writes, and its folder's growth; 0 = none
   /// Files that it reads besides those that the command names, relative to its folder.
   std::vector<std::string> inputs = {};
   std::string place = {};  ///< "suite.yaml:12", for messages; empty: not of a file

@@ -74,21 +74,19 @@ std::vector<Stamp> write_dataset(const fs::path& folder, const Camera& camera, s
   return stamps;
 }
 
-Trajectory run_on_dataset(const OutsideProgram& program, const fs::path& dataset,
-                          std::span<const Stamp> stamps, std::uint64_t seed, const fs::path& out) {
+Trajectory run_on_dataset(const OutsideProgram& program, const fs::path& folder,
+                          std::span<const Stamp> stamps, std::uint64_t seed, const fs::path& log) {
   validate(program);
-  make_output_folder(out);
-  const fs::path folder = fs::absolute(dataset);
-  const fs::path trajectory = fs::absolute(out) / "trajectory.txt";
-  fs::remove(trajectory);  // of an older run
+  const fs::path place = fs::absolute(folder), dataset = place / "dataset";
+  const fs::path trajectory = place / "trajectory.txt";
   const std::string command =
-      expand_command(program.command, {{"dataset", folder.string()},
-                                       {"associations", (folder / "associations.txt").string()},
-                                       {"settings", (folder / "camera.yaml").string()},
-                                       {"labels", (folder / "label.txt").string()},
+      expand_command(program.command, {{"dataset", dataset.string()},
+                                       {"associations", (dataset / "associations.txt").string()},
+                                       {"settings", (dataset / "camera.yaml").string()},
+                                       {"labels", (dataset / "label.txt").string()},
                                        {"trajectory", trajectory.string()},
                                        {"seed", std::to_string(seed)}});
-  ChildProcess child(program, command, ChildProcess::Talk::kNo, fs::absolute(out) / "outside.log");
+  ChildProcess child(program, command, ChildProcess::Talk::kNo, fs::absolute(log), place);
   child.wait_for_success(program.run_limit_s);
   if (!fs::exists(trajectory)) child.fail("ended well but wrote no trajectory");
   try {

@@ -21,15 +21,17 @@ std::vector<Stamp> write_dataset(const std::filesystem::path& folder, const Came
                                  std::size_t count,
                                  const std::function<RgbdFrame(std::size_t)>& frame);
 
-/// Runs an outside program in trajectory mode over write_dataset()'s folder, under its limits.
+/// Runs an outside program in trajectory mode, under its limits.
+/// @param folder  holds write_dataset()'s folder as `dataset` and nothing else; the program is to
+///                write its trajectory.txt there
 /// @param stamps  of the dataset's frames, increasing
-/// @param out     folder for trajectory.txt and outside.log
+/// @param log     file for what the program says; beyond the folder
 /// @returns the program's trajectory with the frames' own stamps
 /// @throws InputError if validate(program) does; OutsideError if the program fails, or its
 ///         trajectory is missing, malformed, holds a number that is not finite, a pose beyond
 ///         kFarthest_m, a stamp of no frame or two poses for one.
-Trajectory run_on_dataset(const OutsideProgram& program, const std::filesystem::path& dataset,
+Trajectory run_on_dataset(const OutsideProgram& program, const std::filesystem::path& folder,
                           std::span<const Stamp> stamps, std::uint64_t seed,
-                          const std::filesystem::path& out);
+                          const std::filesystem::path& log);
 
 }  // namespace mh

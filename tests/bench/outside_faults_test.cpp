@@ -9,12 +9,14 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <set>
 #include <thread>
 
 #include <gtest/gtest.h>
 
 #include "bench/systems/child_process.hpp"
 #include "bench/systems/conversation.hpp"
+#include "bench/systems/program_folder.hpp"
 #include "bench/systems/recorded_run.hpp"
 #include "slam/core/files.hpp"
 #include "tests/bench/fake_system.hpp"
@@ -28,7 +30,7 @@ class OutsideFaults : public testing::Test {
  protected:
   OutsideFaults() : folder_(fs::temp_directory_path() / ("mh_faults_" + std::to_string(getpid()))) {
     fs::remove_all(folder_);
-    fs::create_directories(folder_ / "data");
+    fs::create_directories(folder_ / "out");
     camera_.width_px = camera_.height_px = 2;
     camera_.cx_px = camera_.cy_px = 0.5;
   }
@@ -62,7 +64,13 @@ class OutsideFaults : public testing::Test {
   }
   Trajectory run(const OutsideProgram& p) {
     const std::vector<Stamp> stamps = {1'000'000'000, 2'000'000'000, 3'000'000'000};
-    return run_on_dataset(p, folder_ / "data", stamps, 0, folder_ / "out");
+    ProgramFolder given(folder_ / "out");
+    fs::create_directories(given.path() / "dataset");
+    std::ofstream(given.path() / "dataset" / "rgb.txt") << "# stamp (s) file\n";
+    Trajectory trajectory =
+        run_on_dataset(p, given.path(), stamps, 0, folder_ / "out" / "outside.log");
+    given.move_to_run();
+    return trajectory;
   }
   OutsideProgram writes(const std::string& poses) const {
     return program(OutsideMode::kTrajectory, "printf '" + poses + "' > {trajectory}");
@@ -82,6 +90,35 @@ class OutsideFaults : public testing::Test {
   std::string hello_error(const std::string& command) {
     const OutsideProgram p = program(OutsideMode::kConversation, command);
     return error_of(p, [&] { make_conversation_system(p, camera_, 0, folder_ / "log"); });
+  }
+
+  /// An empty folder for the numbers of processes.
+  fs::path pids() const {
+    fs::remove_all(folder_ / "pids");
+    fs::create_directories(folder_ / "pids");
+    return folder_ / "pids";
+  }
+  /// How many of the processes that noted their numbers there do not end soon; forgets them.
+  int left_running() const {
+    int left = 0, all = 0;
+    for (const std::string& name : names_in(folder_ / "pids")) {
+      ++all;
+      left += ends_soon(std::stoi(name)) ? 0 : 1;
+    }
+    EXPECT_EQ(all, 4);
+    pids();
+    return left;
+  }
+  static std::set<std::string> names_in(const fs::path& folder) {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder))
+      names.insert(entry.path().filename().string());
+    return names;
+  }
+  static bool comes_soon(const fs::path& file) {
+    for (int i = 0; i < 1000 && !fs::exists(file); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return fs::exists(file);
   }
 
   /// Whether a process is gone within seconds, or a zombie that some init has yet to bury.
@@ -176,37 +213,139 @@ TEST_F(OutsideFaults, TimeAndMemoryAreLimited) {
   EXPECT_HOLDS(trajectory_error(glutton), "its limit is 50 MB");
 }
 
+/// Starts processes that nothing of a group or a session holds, that do not listen to SIGTERM, and
+/// whose parents are gone; notes their numbers in the folder PIDS when all of them run.
+const std::string kEscapes =
+    "sleeper='trap \"\" TERM HUP INT; echo $$ > $PIDS/$$; while :; do sleep 60; done'; "
+    "sh -c \"$sleeper\" & setsid sh -c \"$sleeper\" & (setsid sh -c \"$sleeper\" &) ; "
+    "(setsid sh -c \"(setsid sh -c '$sleeper' &) ; exit 0\" &) ; "
+    "while [ $(ls $PIDS | wc -l) -lt 4 ]; do sleep 0.02; done";
+
 TEST_F(OutsideFaults, WhatAProgramLeavesBehindIsEndedToo) {
-  const fs::path note = folder_ / "pid";
-  run(program(OutsideMode::kTrajectory,
-              "sleep 60 & echo $! > " + note.string() + "; echo 1 0 0 0 0 0 0 1 > {trajectory}"));
-  EXPECT_TRUE(ends_soon(std::stoi(read_file(note))));
+  const std::string start = "export PIDS=" + pids().string() + "; " + kEscapes;
+  run(program(OutsideMode::kTrajectory, start + "; echo 1 0 0 0 0 0 0 1 > {trajectory}"));
+  EXPECT_EQ(left_running(), 0);
+  EXPECT_HOLDS(
+      trajectory_error(program(OutsideMode::kTrajectory, start + "; exit 3; {trajectory}")),
+      "exited with code 3");
+  EXPECT_EQ(left_running(), 0);
+  OutsideProgram slow = program(OutsideMode::kTrajectory, start + "; sleep 60; : {trajectory}");
+  slow.run_limit_s = 1.5;
+  EXPECT_HOLDS(trajectory_error(slow), "was still running after 1.5 s");
+  EXPECT_EQ(left_running(), 0);
+  EXPECT_HOLDS(track_error(says(start + "; exit 3")), "exited with code 3 during track");
+  EXPECT_EQ(left_running(), 0);
 }
 
 TEST_F(OutsideFaults, ABenchThatIsKilledLeavesNothingRunning) {
-  const fs::path note = folder_ / "pid", scratch = folder_ / "scratch";
+  const fs::path scratch = folder_ / "scratch";
   fs::create_directories(scratch / "sub");
+  pids();
   const pid_t bench = fork();
   if (bench == 0) {
-    // What the command starts, too: the shell waits for it.
-    const std::string command = "sleep 60 & echo $! > " + note.string() + "; wait; : {trajectory}";
+    const std::string command = "export PIDS=" + (folder_ / "pids").string() + "; " + kEscapes +
+                                "; touch " + (folder_ / "all").string() + "; sleep 60";
     ChildProcess child(program(OutsideMode::kTrajectory, command), command, ChildProcess::Talk::kNo,
                        folder_ / "log", scratch);
     pause();
     _exit(0);
   }
-  std::string text;
-  for (int i = 0; i < 500 && !text.ends_with('\n'); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    if (fs::exists(note)) text = read_file(note);
-  }
-  ASSERT_TRUE(text.ends_with('\n'));
+  EXPECT_TRUE(comes_soon(folder_ / "all"));
   kill(bench, SIGKILL);
   waitpid(bench, nullptr, 0);
-  EXPECT_TRUE(ends_soon(std::stoi(text)));
+  EXPECT_EQ(left_running(), 0);
   for (int i = 0; i < 500 && fs::exists(scratch); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   EXPECT_FALSE(fs::exists(scratch));
+}
+
+TEST_F(OutsideFaults, MemoryOfASessionOfItsOwnCounts) {
+  OutsideProgram glutton =
+      program(OutsideMode::kTrajectory, "setsid tail /dev/zero & sleep 60; : {trajectory}");
+  glutton.memory_limit_mb = 50;
+  EXPECT_HOLDS(trajectory_error(glutton), "its limit is 50 MB");
+}
+
+TEST_F(OutsideFaults, AProgramThatKillsItsWatcherFails) {
+  EXPECT_HOLDS(trajectory_error(
+                   program(OutsideMode::kTrajectory, "kill -9 $PPID; sleep 60; : {trajectory}")),
+               "was lost: the process that watched it was killed");
+}
+
+TEST_F(OutsideFaults, WhatIsSaidIsBounded) {
+  const auto start = std::chrono::steady_clock::now();
+  // 3 GB, were it let.
+  EXPECT_HOLDS(trajectory_error(program(OutsideMode::kTrajectory,
+                                        "yes 'all is well' | head -c 3000000000; : {trajectory}")),
+               "wrote more than 64 MB to its log, the limit");
+  EXPECT_LT(fs::file_size(folder_ / "out" / "outside.log"), std::uintmax_t{65} << 20);
+  EXPECT_HOLDS(read_file(folder_ / "out" / "outside.log"), "wrote too much and was stopped");
+  EXPECT_HOLDS(track_error(says("yes >&2")), "wrote more than 64 MB to its log, the limit");
+  EXPECT_LT(fs::file_size(folder_ / "log"), std::uintmax_t{65} << 20);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+  // Less than that is kept to the last byte, also what it wrote just before its end.
+  run(program(OutsideMode::kTrajectory,
+              "yes 1234567 | head -c 8000000; echo 1 0 0 0 0 0 0 1 > {trajectory}"));
+  EXPECT_EQ(fs::file_size(folder_ / "out" / "outside.log"), 8000000u);
+}
+
+TEST_F(OutsideFaults, WhatIsWrittenIsBounded) {
+  const auto writes_much = [&](const std::string& command) {
+    OutsideProgram p = program(OutsideMode::kTrajectory, "cd $(dirname {trajectory}); " + command);
+    p.disk_limit_mb = 5;
+    return trajectory_error(p);
+  };
+  EXPECT_HOLDS(writes_much("exec head -c 8000000 /dev/zero > map"),
+               "wrote a file of more than 5 MB, its limit");
+  EXPECT_LE(fs::file_size(folder_ / "out" / "outside" / "map"), 5u << 20);
+  EXPECT_HOLDS(writes_much("sh -c 'head -c 8000000 /dev/zero > map'"),
+               "wrote a file of more than 5 MB, its limit");
+  EXPECT_HOLDS(writes_much("for i in 1 2 3 4; do head -c 4000000 /dev/zero > $i; done; sleep 60"),
+               "MB into its folder during its run, its limit is 5 MB");
+}
+
+TEST_F(OutsideFaults, ARunMeetsNothingOfAnEarlierOne) {
+  const fs::path out = folder_ / "out", kept = out / "outside";
+  const std::string look =
+      "find $(dirname {trajectory}) $(dirname $(dirname {trajectory})); touch $(dirname "
+      "{trajectory})/map.bin $(dirname {trajectory})/edited; echo 1 0 0 0 0 0 0 1 > {trajectory}";
+  const auto look_about = [&] {
+    run(program(OutsideMode::kTrajectory, look));
+    return read_file(out / "outside.log");
+  };
+  std::ofstream(out / "truth.tum") << "the truth of an earlier run";
+  const std::string first = look_about();
+  EXPECT_HOLDS(first, "dataset/rgb.txt");
+  EXPECT_EQ(first.find("truth"), std::string::npos) << first;
+  const std::set<std::string> all = {"dataset", "edited", "map.bin", "trajectory.txt",
+                                     ProgramFolder::kList};
+  EXPECT_EQ(names_in(kept), all);
+  // In its place comes the next one, which has not seen it.
+  std::ofstream(kept / "trajectory.txt", std::ios::app) << "# read by hand\n";
+  fs::remove(kept / "trajectory.txt");
+  const std::string second = look_about();
+  EXPECT_EQ(second.find("map.bin"), std::string::npos) << second;
+  EXPECT_EQ(names_in(kept), all);
+  EXPECT_EQ(names_in(out), (std::set<std::string>{"outside", "outside.log", "truth.tum"}));
+  // What the program did not make stays where it is, and so does what somebody changed.
+  const fs::path elsewhere = folder_ / "elsewhere";
+  fs::create_directory(elsewhere);
+  for (const char* file : {"map.bin", "rgb.txt", "photograph.jpg"})
+    std::ofstream(elsewhere / file) << "mine";
+  std::ofstream(kept / "notes.txt") << "mine";
+  std::ofstream(kept / "edited") << "mine";
+  fs::remove_all(kept / "dataset");
+  fs::create_directory_symlink(elsewhere, kept / "dataset");
+  std::ofstream(kept / ProgramFolder::kList, std::ios::app)
+      << "4 0 ../../elsewhere/map.bin\n../../elsewhere/\n";
+  look_about();
+  EXPECT_EQ(names_in(kept), (std::set<std::string>{"dataset", "edited", "notes.txt"}));
+  EXPECT_EQ(read_file(kept / "edited"), "mine");
+  EXPECT_EQ(names_in(elsewhere), (std::set<std::string>{"map.bin", "photograph.jpg", "rgb.txt"}));
+  EXPECT_EQ(names_in(out / "outside.2"), all);
+  look_about();
+  EXPECT_EQ(names_in(out / "outside.2"), all);
+  EXPECT_FALSE(fs::exists(out / "outside.3"));
 }
 
 TEST_F(OutsideFaults, AConversationIsGivenTimeToEndWell) {

@@ -183,13 +183,14 @@ TEST_F(OutsideOdometry, BothModesGiveOneTrajectoryAndTheTruthStaysOutside) {
     if (!is_test_frame(i, {})) offered.push_back(i);
   const RandomStream noise = mapping_noise(RandomStream(1), 0);
   const std::vector<Stamp> stamps =
-      write_dataset(folder_ / "data", camera(), offered.size(),
+      write_dataset(folder_ / "given" / "dataset", camera(), offered.size(),
                     [&](std::size_t k) { return frame(offered[k], noise); });
   OutsideProgram program{.name = "vo"};
   // `find` writes the names of all that the program is given to standard output: its log.
   program.command = "find {dataset} && " + std::string(VO_RUN_DATASET) +
                     " {dataset} {associations} {settings} {trajectory}";
-  const Trajectory recorded = run_on_dataset(program, folder_ / "data", stamps, 0, folder_);
+  const Trajectory recorded =
+      run_on_dataset(program, folder_ / "given", stamps, 0, folder_ / "outside.log");
   EXPECT_EQ(recorded.size(), 87u);
   EXPECT_LT(*score_trajectory(recorded, path_, offered.size()).ate_rmse_m, 0.05);
   EXPECT_EQ(digest(recorded), digest(mapped(converse())->trajectory()));
