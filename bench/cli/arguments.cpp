@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/cli/arguments.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <exception>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,6 +17,9 @@
 #include "slam/core/files.hpp"
 
 namespace mh::cli {
+
+namespace fs = std::filesystem;
+
 namespace {
 
 /// The whole text as a number, or nothing.
@@ -49,26 +56,73 @@ CLI::Validator seed_number() {
       "", "seed");
 }
 
-void need_writable(const std::filesystem::path& file) {
+void need_writable(const fs::path& file, const std::vector<fs::path>& read) {
   std::error_code error;
-  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
-    throw InputError(
-        fmt::format("{}: cannot be written: it is {}", file.string(),
-                    std::filesystem::is_directory(file, error) ? "a folder" : "no file"));
-  make_output_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."));
+  if (fs::exists(file, error) && !fs::is_regular_file(file, error))
+    throw InputError(fmt::format("{}: cannot be written: it is {}", file.string(),
+                                 fs::is_directory(file, error) ? "a folder" : "no file"));
+  for (const fs::path& input : read)
+    if (fs::equivalent(file, input, error) && !error)
+      throw InputError(
+          fmt::format("{}: is read by this command: name another file to write", file.string()));
+  make_output_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
 }
 
-OutputFolder::OutputFolder(const std::filesystem::path& folder) {
+namespace {
+
+constexpr const char* kMark = ".modelhouse";
+constexpr std::string_view kMarkHead = "Written here, and replaced when it is written anew, by:\n";
+
+std::string mark_in(const fs::path& folder) {
+  const fs::path file = folder / kMark;
   std::error_code error;
-  for (std::filesystem::path p = folder; !p.empty() && !std::filesystem::exists(p, error);
-       p = p.parent_path())
+  if (!fs::exists(fs::symlink_status(file, error))) return {};
+  std::string mark = read_file(file);
+  if (!mark.starts_with(kMarkHead))
+    throw InputError(
+        fmt::format("{}: is no file of modelhouse's: name another folder", file.string()));
+  return mark;
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const fs::path& folder, const std::string& command,
+                           std::vector<std::string> names)
+    : folder_(folder), names_(std::move(names)) {
+  const std::string line = "modelhouse " + command + "\n", mark = mark_in(folder);
+  const bool ours = mark.find("\n" + line) != std::string::npos;
+  std::error_code error;
+  if (!ours)
+    for (const std::string& name : names_)
+      if (fs::exists(fs::symlink_status(folder / name, error)))
+        throw InputError(
+            fmt::format("{}: is there already, and not from `modelhouse {}`: name another folder",
+                        (folder / name).string(), command));
+  for (fs::path p = folder; !p.empty() && !fs::exists(p, error); p = p.parent_path())
     made_.push_back(p);
   make_output_folder(folder);
+  if (ours) return;
+  write_atomically(folder / kMark, (mark.empty() ? std::string(kMarkHead) : mark) + line);
+  mark_before_ = mark;
+}
+
+bool OutputFolder::holds_any() const {
+  std::error_code error;
+  return std::any_of(names_.begin(), names_.end(), [&](const std::string& name) {
+    return fs::exists(fs::symlink_status(folder_ / name, error));
+  });
 }
 
 OutputFolder::~OutputFolder() {
-  std::error_code error;  // a folder that holds something stays
-  for (const std::filesystem::path& folder : made_) std::filesystem::remove(folder, error);
+  std::error_code error;
+  if (mark_before_ && !holds_any()) {
+    try {
+      if (!mark_before_->empty()) write_atomically(folder_ / kMark, *mark_before_);
+    } catch (const std::exception&) {  // what stands there does no harm
+    }
+    if (mark_before_->empty()) fs::remove(folder_ / kMark, error);
+  }
+  for (const fs::path& made : made_) fs::remove(made, error);  // one that holds something stays
 }
 
 }  // namespace mh::cli

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -16,20 +18,32 @@ CLI::Validator number_between(double least, double greatest);
 CLI::Validator seed_number();
 
 /// Finds out before the work whether a file can be written there; makes its folder.
+/// @param read  what the command reads: none of it is overwritten
 /// @throws InputError naming file or folder; DiskFullError.
-void need_writable(const std::filesystem::path& file);
+void need_writable(const std::filesystem::path& file,
+                   const std::vector<std::filesystem::path>& read = {});
 
 /// The folder that a command writes into, made before the work: one that cannot be written costs no
-/// minutes. Work that is refused before it wrote anything leaves no empty folder.
+/// minutes. Work that is refused before it wrote anything leaves no empty folder. A file in it,
+/// `.modelhouse`, names the commands that wrote there: what they wrote they may replace.
 class OutputFolder {
  public:
-  /// @throws as make_output_folder()
-  explicit OutputFolder(const std::filesystem::path& folder);
+  /// @param command  "drive", as the user calls it
+  /// @param names    of what it is going to write there
+  /// @throws InputError if something of such a name is there that the command did not write; as
+  ///         make_output_folder()
+  OutputFolder(const std::filesystem::path& folder, const std::string& command,
+               std::vector<std::string> names);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
  private:
+  bool holds_any() const;
+
+  const std::filesystem::path folder_;
+  const std::vector<std::string> names_;
+  std::optional<std::string> mark_before_;   // what .modelhouse held; engaged if it was changed
   std::vector<std::filesystem::path> made_;  // innermost first
 };
 

@@ -51,7 +51,7 @@ void run(const Options& options) {
   bench.time_limit_s = options.time_limit_s;
   bench.memory_limit_mb = options.memory_limit_mb;
   bench.retry_failed = options.retry_failed;
-  const OutputFolder folder(bench.out);
+  const OutputFolder folder(bench.out, "bench", names_written(bench.out, suite));
 
   Progress progress("bench");
   bench.say = [&](std::string_view stage) { progress.say(stage); };

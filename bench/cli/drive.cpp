@@ -43,7 +43,11 @@ void run(const Options& options) {
           "{}: motion '{}' moves a camera by hand, no robot drives along it", option, motion));
   const std::filesystem::path out = options.out;
   std::optional<OutputFolder> folder;
-  if (!options.out.empty()) folder.emplace(out);
+  if (!options.out.empty()) {
+    std::vector<std::string> names{"camera.tum", "base.tum"};
+    if (options.sensors) names.insert(names.end(), kReadingFiles.begin(), kReadingFiles.end());
+    folder.emplace(out, "drive", std::move(names));
+  }
   const Robot robot = load_robot(options.robot);
   const std::optional<Walk> walk =
       options.walk.empty() ? std::nullopt : std::optional(load_walk(options.walk));

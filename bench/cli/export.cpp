@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/run.hpp"
 #include "bench/store/export.hpp"
@@ -16,6 +17,9 @@ struct Options {
 };
 
 void run(const Options& options) {
+  if (!options.out.empty())
+    need_writable(options.out,
+                  {options.store, std::filesystem::path(options.store) / "results.sqlite"});
   const Store store = Store::open_to_read(options.store);
   load_results(store, store.planned_suite());  // a damaged row is no row of a table
   const std::string text = options.format == "csv"    ? export_csv(store)

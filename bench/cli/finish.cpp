@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "bench/counted.hpp"
+#include "bench/plan/runs.hpp"
 #include "bench/results/json.hpp"
 #include "bench/results/table.hpp"
 #include "bench/results/write.hpp"
@@ -26,6 +27,20 @@ void finish(const std::filesystem::path& out, const Suite& suite, const BenchRes
   }
   throw_failures(results.failed, fmt::format("why: see {}", (out / "table.txt").string()),
                  "; --retry-failed tries again");
+}
+
+std::vector<std::string> names_written(const std::filesystem::path& out, const Suite& suite) {
+  if (std::filesystem::exists(out / "results.sqlite")) return {};
+  std::vector<std::string> names{"table.txt",  "times.txt",         "results.json",
+                                 "times.json", "reproduction.json", "views.png"};
+  for (const Environment& e : suite.environments)
+    names.push_back(fmt::format("views-{}.png", e.name));
+  for (const RunSpec& spec : expand(suite)) {
+    names.push_back(spec.name);
+    // As sweep_picture_name() has it: that of a run without its trial.
+    names.push_back(fmt::format("sweep-{}.png", spec.name.substr(0, spec.name.rfind('-'))));
+  }
+  return names;
 }
 
 void throw_failures(const std::vector<FailedRun>& failed, const std::string& why,

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "bench/run.hpp"
 
@@ -11,6 +13,10 @@ namespace mh::cli {
 /// @throws as throw_failures(), after everything was written.
 void finish(const std::filesystem::path& out, const Suite& suite, const BenchResults& results,
             bool json);
+
+/// The names that `bench` and `merge` give to what they write into a folder; none where a results
+/// file shows that they did so before.
+std::vector<std::string> names_written(const std::filesystem::path& out, const Suite& suite);
 
 /// Does nothing if there are none.
 /// @param why     where, or what, the cause is

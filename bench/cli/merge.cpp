@@ -53,7 +53,9 @@ void run(const Options& options) {
       throw InputError(fmt::format("{}: holds no results.sqlite", in));
   }
   Store::check_mergeable(all);  // a part that is refused leaves nothing
-  const OutputFolder folder(options.out);
+  const OutputFolder folder(
+      options.out, "bench",
+      names_written(options.out, Store::open_to_read(all.back()).planned_suite()));
   Store store(results);
   for (const std::string& in : options.in) {
     const bool itself = fs::equivalent(in, options.out);

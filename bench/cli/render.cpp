@@ -18,6 +18,7 @@
 #include "bench/world/inputs.hpp"
 #include "bench/world/travel.hpp"
 #include "bench/world/world.hpp"
+#include "scenes/scannet/files.hpp"
 #include "sim/sensors/shutter.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -80,6 +81,29 @@ void refuse_older_sequence(const fs::path& folder) {
     if (entry.path().extension() == ".sens") refuse_folder(folder);
 }
 
+/// Besides pictures; none in a folder whose render.json tells what is there.
+std::vector<std::string> names_written(const fs::path& out) {
+  if (fs::exists(out / "render.json")) return {};
+  const fs::path full = fs::absolute(out).lexically_normal();
+  const std::string name = (full.has_filename() ? full : full.parent_path()).filename().string();
+  std::vector<std::string> names{"associations.txt",
+                                 "groundtruth.txt",
+                                 "camera.yaml",
+                                 "camera_info.yaml",
+                                 "_info.txt",
+                                 kLabelTableV2,
+                                 name + "_2d-label-filt.zip",
+                                 name + "_2d-instance-filt.zip",
+                                 name + ".sens"};
+  for (const std::string part : {"rgb", "depth", "label", "instance"}) {
+    names.push_back(part);
+    names.push_back(part + ".txt");
+  }
+  for (const char* part : {"color", "pose", "intrinsic", "label-filt", "instance-filt"})
+    names.emplace_back(part);
+  return names;
+}
+
 /// The camera that is asked for, and its path: one beside the robot's own hangs where the URDF has
 /// it, and moves with the head.
 /// The camera named by --camera; nullptr for the robot's own.
@@ -122,7 +146,7 @@ void run(Options options) {
     if (options.labels == name(mode)) options.sequence.labels = mode;
   refuse_older_sequence(out);
   make_renderer(options.renderer, Scene{});  // a machine that lacks it says so at once
-  const OutputFolder folder(out);
+  const OutputFolder folder(out, "render", names_written(out));
   std::vector<InputDigest> inputs;
   const Robot robot =
       noted(inputs, "robot", options.robot, [&] { return load_robot(options.robot); });

@@ -21,6 +21,7 @@
 #include "scenes/generate/grammar.hpp"
 #include "scenes/house.hpp"
 #include "scenes/load.hpp"
+#include "scenes/mesh_io/labels_file.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/scannet/scannet.hpp"
 #include "sim/render/scan_look.hpp"
@@ -89,7 +90,7 @@ void info(const Options& options) {
 void preview(const Options& options) {
   if (fs::path(options.out).extension() != ".png" || fs::is_directory(options.out))
     throw InputError(fmt::format("{}: must name a file that ends in .png", options.out));
-  need_writable(options.out);
+  need_writable(options.out, {options.scenes.begin(), options.scenes.end()});
   std::vector<std::string> names = options.scenes;
   for (const Category& category : categories())
     for (int i = 0; i < options.each; ++i)
@@ -112,11 +113,20 @@ void preview(const Options& options) {
   write_picture(options.out, draw_gallery(gallery, kColumns, !options.no_captions));
 }
 
+/// Also the labels that are written beside a PLY: they take the place of nothing else.
+void need_mesh_writable(const fs::path& out, const std::vector<fs::path>& read) {
+  need_writable(out, read);
+  const fs::path labels = labels_path(out);
+  if (out.extension() == ".ply" && fs::exists(labels) && !is_labels_file(labels))
+    throw InputError(fmt::format(
+        "{}: is there already, and would be overwritten: name another --out", labels.string()));
+}
+
 void need_ending(const Options& options, const std::vector<std::string>& endings) {
   const std::string ending = fs::path(options.out).extension().string();
   if (std::ranges::find(endings, ending) == endings.end())
     throw InputError(fmt::format("{}: must end in {}", options.out, fmt::join(endings, " or ")));
-  need_writable(options.out);
+  need_mesh_writable(options.out, {});
 }
 
 /// As somebody who walks through it with a depth camera would scan it.
@@ -144,11 +154,12 @@ void convert(const Options& options) {
         "{}: must end in .ply or .glb, or name a folder for a ScanNet scene", options.out));
   if (!folder && ending != "." + format)
     throw InputError(fmt::format("{}: must end in .{}", options.out, format));
-  folder ? make_output_folder(options.out) : need_writable(options.out);
   if (!folder) {
+    need_mesh_writable(options.out, {options.scene});
     write_mesh(load(options.scene), options.out);
     return;
   }
+  const OutputFolder made(options.out, "scene convert", saved_scannet_names(options.out));
   Scene scene = load(options.scene);
   light_scene(scene, kThreads);
   save_scannet(scene, options.out);

@@ -21,7 +21,7 @@ struct Options {
 };
 
 void plot(const Options& options) {
-  const OutputFolder folder(options.out);
+  const OutputFolder folder(options.out, "sensors plot", {"figures.png"});
   const fs::path file = fs::path(options.out) / "figures.png";
   std::vector<Plot> plots = depth_figures();
   for (const auto& more : {light_figures(), label_figures()})
@@ -31,7 +31,8 @@ void plot(const Options& options) {
 }
 
 void sheet(const Options& options) {
-  const OutputFolder folder(options.out);
+  const OutputFolder folder(options.out, "sensors sheet",
+                            {"colour.png", "depth.png", "frames.png", "labels.png"});
   const Scene scene = load_lit_scene(options.scene, 2);
   const SensorSheets sheets = draw_sensor_sheets(scene, make_scene_renderer(scene));
   for (const auto& [name, picture] :

@@ -171,6 +171,14 @@ void need_something_left(const Options& options, const SlamState& state,
         options.source, format_stamp(last_ns), options.map, format_stamp(*state.last_stamp_ns)));
 }
 
+/// A map may take the place of a map, of nothing else.
+void need_no_other_file(const fs::path& map) {
+  std::error_code error;
+  if (fs::exists(map, error) && fs::file_size(map, error) > 0 && !is_map_file(map))
+    throw InputError(
+        fmt::format("--save-map {}: is a file, but no map: name another", map.string()));
+}
+
 void run(const Options& options) {
   check(options);
   const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
@@ -178,7 +186,7 @@ void run(const Options& options) {
   // Before the work: a slip costs no minutes.
   const std::optional<Trajectory> truth =
       options.truth.empty() ? source.frames->truth() : std::optional(read_tum(options.truth));
-  const OutputFolder folder(options.out);
+  const OutputFolder folder(options.out, "slam", {kSlamFiles.begin(), kSlamFiles.end()});
   for (const char* name : kSlamFiles) {
     const fs::path file = fs::path(options.out) / name;
     need_writable(file);
@@ -187,7 +195,11 @@ void run(const Options& options) {
       throw InputError(
           fmt::format("--save-map {}: will hold a result of its own", options.save_map));
   }
-  if (!options.save_map.empty()) need_writable(options.save_map);
+  if (!options.save_map.empty()) {
+    need_writable(options.save_map,
+                  {options.vocabulary, options.settings, options.truth, options.source});
+    need_no_other_file(options.save_map);
+  }
   SlamState state = first_state(options, vocabulary, source.settings);
   if (options.run.resume) need_something_left(options, state, *source.frames);
   for (const std::string& note : source.settings.notes) fmt::print(stderr, "slam: {}\n", note);

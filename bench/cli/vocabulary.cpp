@@ -39,7 +39,7 @@ Vocabulary load_timed(const std::string& file) {
 
 void train(Options& options) {
   const std::filesystem::path out = options.out;
-  need_writable(out);
+  need_writable(out, {options.list});
   if (!options.list.empty()) options.training.pictures = load_picture_list(options.list);
   Progress progress("vocabulary");
   const Vocabulary vocabulary = train_vocabulary(options.training, [&](int done, int total) {
@@ -52,7 +52,7 @@ void train(Options& options) {
 }
 
 void convert(const Options& options) {
-  need_writable(options.out);
+  need_writable(options.out, {options.file});
   const Vocabulary vocabulary = load_timed(options.file);
   vocabulary.save(options.out);
   load_timed(options.out);

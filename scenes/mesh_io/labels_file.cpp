@@ -89,6 +89,10 @@ fs::path labels_path(const fs::path& mesh) {
   return fs::path(mesh).replace_extension(".labels.json");
 }
 
+bool is_labels_file(const fs::path& file) {
+  return read_file(file).find(fmt::format("\"format\":\"{}\"", kFormat)) != std::string::npos;
+}
+
 void save_labels(const Scene& scene, const fs::path& file) {
   Json instances = Json::array(), rooms = Json::array();
   for (const Instance& instance : scene.instances)

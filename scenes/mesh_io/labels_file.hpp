@@ -10,6 +10,9 @@ namespace mh {
 /// room.ply -> room.labels.json
 std::filesystem::path labels_path(const std::filesystem::path& mesh);
 
+/// Whether a file says of itself that it is of the kind that save_labels() writes.
+bool is_labels_file(const std::filesystem::path& file);
+
 /// Writes class and instance per face, the instances and the rooms; see save_scannet_ply.
 void save_labels(const Scene& scene, const std::filesystem::path& file);
 

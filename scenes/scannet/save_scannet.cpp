@@ -130,7 +130,21 @@ bool has_more_than_vertices_show(const Scene& scene) {
   });
 }
 
+ScannetFiles saved_files(const fs::path& folder) {
+  const fs::path full = fs::absolute(folder).lexically_normal();
+  return {folder, (full.has_filename() ? full : full.parent_path()).filename().string()};
+}
+
 }  // namespace
+
+std::vector<std::string> saved_scannet_names(const fs::path& folder) {
+  const ScannetFiles files = saved_files(folder);
+  std::vector<std::string> names{kLabelTableV2};
+  for (const fs::path& file :
+       {files.mesh, files.labels, files.segments, files.aggregation, files.info})
+    names.push_back(file.filename().string());
+  return names;
+}
 
 void save_scannet(const Scene& scene, const fs::path& folder, float max_edge_m) {
   validate(scene);
@@ -141,9 +155,8 @@ void save_scannet(const Scene& scene, const fs::path& folder, float max_edge_m) 
   const std::vector<std::uint32_t> segments = connected_segments(parted);
 
   make_output_folder(folder);
-  const fs::path full = fs::absolute(folder).lexically_normal();
-  const std::string id = (full.has_filename() ? full : full.parent_path()).filename().string();
-  const ScannetFiles files(folder, id);
+  const ScannetFiles files = saved_files(folder);
+  const std::string& id = files.scene_id;
   PlyMesh mesh{.positions_m = parted.positions_m,
                .colours = seen_colours(parted),
                .labels = {},

@@ -15,14 +15,17 @@ namespace mh {
 /// the object (objectId + 1) whose segments it belongs to, the last one where several claim it. Its
 /// class is the one that the label table gives the object's category; where it belongs to none, the
 /// mesh's own `label` counts, a raw category id in v1. In v2 that label is an NYU40 id and goes
-/// before the category where the two differ. A face takes the class, and the instance, that most of its vertices have;
-/// where all three differ, the first vertex counts. Objects of a category that the table lacks are
-/// unlabelled.
+/// before the category where the two differ. A face takes the class, and the instance, that most of
+/// its vertices have; where all three differ, the first vertex counts. Objects of a category that
+/// the table lacks are unlabelled.
 ///
 /// The mesh alone is a scene too. What is missing or unknown is told by `warnings`, with counts.
 /// @throws InputError naming file and place where a file is damaged or does not fit the mesh.
 Scene load_scannet(const std::filesystem::path& folder,
                    std::vector<std::string>* warnings = nullptr);
+
+/// What save_scannet() writes into that folder.
+std::vector<std::string> saved_scannet_names(const std::filesystem::path& folder);
 
 /// Writes a scene as a folder of ScanNet's release v2, so that its tools can read it: mesh, labels,
 /// segments, aggregation, txt and label table. The scene's id is the folder's name. Textures and

@@ -9,6 +9,8 @@
 //   u64      xxh3-64 of all bytes before
 #include "slam/pipeline/map_file.hpp"
 
+#include <fstream>
+
 #include <fmt/format.h>
 #include <xxhash.h>
 
@@ -166,6 +168,13 @@ SlamState decode_slam(const std::string& bytes, const std::string& name,
   content(state.last_stamp_ns);
   content.require(content.at_end(), "it goes on after its end");
   return state;
+}
+
+bool is_map_file(const std::filesystem::path& file) {
+  std::string start(archive::kMagic.size(), '\0');
+  std::ifstream in(file, std::ios::binary);
+  return in.read(start.data(), static_cast<std::streamsize>(start.size())) &&
+         start == archive::kMagic;
 }
 
 void save_slam(const std::filesystem::path& file, const SlamState& state) {

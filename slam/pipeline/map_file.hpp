@@ -22,6 +22,9 @@ std::string encode_slam(const SlamState& state);
 SlamState decode_slam(const std::string& bytes, const std::string& name,
                       std::shared_ptr<const Vocabulary> vocabulary);
 
+/// Whether a file begins as a map file does.
+bool is_map_file(const std::filesystem::path& file);
+
 /// The same to and from a file; it is written whole or not at all.
 void save_slam(const std::filesystem::path& file, const SlamState& state);
 SlamState load_slam(const std::filesystem::path& file,

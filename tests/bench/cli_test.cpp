@@ -247,15 +247,73 @@ TEST_F(CommandLine, ARecordingInScannetsFormatEndsAtAHundredPerCent) {
   ASSERT_EQ(run(command), 0) << err_;
   EXPECT_TRUE(err_.ends_with("100 %\n")) << err_;
   EXPECT_EQ(nlohmann::json::parse(out_)["frames"], 2) << out_;
-  // What a process left that was killed, and what one holds that is at work (number 1 is).
-  const pid_t gone = fork();
-  if (gone == 0) _exit(0);
-  waitpid(gone, nullptr, 0);
-  const fs::path left = write("s/.s." + std::to_string(gone) + ".tmp.sens", "half");
-  const fs::path held = write("s/.s.1.tmp.sens", "half");
+  // A second time, with files of somebody else's beside it.
+  const std::string sens = content(folder_ / "s/s.sens");
+  ASSERT_GT(sens.size(), 1000u);
+  for (const char* name : {"s/.s.4194305.tmp.sens", "s/s.sens.old", "s/.office.txt"})
+    write(name, "mine");
   ASSERT_EQ(run(command), 0) << err_;
-  EXPECT_FALSE(fs::exists(left));
-  EXPECT_TRUE(fs::exists(held));
+  for (const char* name : {"s/.s.4194305.tmp.sens", "s/s.sens.old", "s/.office.txt"})
+    EXPECT_EQ(content(folder_ / name), "mine") << name;
+  EXPECT_EQ(content(folder_ / "s/s.sens"), sens);
+}
+
+TEST_F(CommandLine, NobodysFilesAreOverwritten) {
+  const fs::path mesh = write("m.obj", "v 0 0 0\nv 5 0 0\nv 5 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n");
+  const std::string m = mesh.string(), f = folder_.string() + "/";
+  const auto refuses_beside = [&](const std::string& command, const std::string& name) {
+    const std::string out = "out_" + std::to_string(files_left());
+    fs::create_directories((folder_ / out / name).parent_path());
+    write(out + "/" + name, "mine");
+    write(out + "/" + name + ".bak", "mine");
+    expect_refused(command + " --out " + f + out,
+                   out + "/" + name.substr(0, name.find('/')) + ": is there already");
+    EXPECT_EQ(content(folder_ / out / name), "mine");
+    EXPECT_EQ(content(folder_ / out / (name + ".bak")), "mine");
+    EXPECT_FALSE(fs::exists(folder_ / out / ".modelhouse"));
+  };
+  const std::string tour = std::string(MH_SOURCE_DIR) + "/scenes/model_house/tours/query.yaml";
+  refuses_beside("drive " + house_ + " " + tour + " --robot " + robot_, "camera.tum");
+  refuses_beside("drive " + house_ + " " + tour + " --sensors --robot " + robot_, "imu.csv");
+  const std::string render = "render " + m + " --motion handheld:0 --frames 1 --robot " + robot_;
+  refuses_beside(render, "camera.yaml");
+  refuses_beside(render, "groundtruth.txt");
+  refuses_beside(render + " --format scannet", "scannetv2-labels.combined.tsv");
+  refuses_beside("sensors sheet " + m, "depth.png");
+  const std::string suite =
+      "bench " + std::string(MH_SOURCE_DIR) + "/bench/suites/ci.yaml --frames 5 --trials 1";
+  refuses_beside(suite, "table.txt");
+  refuses_beside(suite, "results.json");
+  refuses_beside(suite, "blank_corridor-plain-pepper-0/truth.tum");
+  // A scene of ScanNet's, which conversion would replace.
+  write("scene0000_00.txt", "mine");
+  fs::create_directory(folder_ / "scene0000_00");
+  write("scene0000_00/scene0000_00_vh_clean_2.ply", "mine");
+  expect_refused("scene convert " + m + " --out " + f + "scene0000_00", "is there already");
+  EXPECT_EQ(content(folder_ / "scene0000_00/scene0000_00_vh_clean_2.ply"), "mine");
+  // What is read.
+  ASSERT_EQ(run("scene convert " + m + " --out " + f + "m.glb"), 0) << err_;
+  const std::string glb = content(folder_ / "m.glb");
+  expect_refused("scene convert " + f + "m.glb --out " + f + "./m.glb", "is read by this command");
+  EXPECT_EQ(content(folder_ / "m.glb"), glb);
+  write("scan.labels.json", "mine");
+  expect_refused("scene convert " + m + " --out " + f + "scan.ply", "scan.labels.json: is there");
+  EXPECT_FALSE(fs::exists(folder_ / "scan.ply"));
+  EXPECT_EQ(content(folder_ / "scan.labels.json"), "mine");
+  ASSERT_EQ(run("scene convert " + m + " --out " + f + "own.ply"), 0) << err_;
+  ASSERT_EQ(run("scene convert " + m + " --out " + f + "own.ply"), 0) << err_;
+  // What a command wrote itself it writes again, and leaves what lies beside.
+  const std::string again = "scene convert " + m + " --out " + f + "converted";
+  ASSERT_EQ(run(again), 0) << err_;
+  write("converted/notes.txt", "mine");
+  ASSERT_EQ(run(again), 0) << err_;
+  EXPECT_EQ(content(folder_ / "converted/notes.txt"), "mine");
+  // The mark of another command does not count, nor does a file of its name that is none.
+  expect_refused("render " + m + " --motion handheld:0 --frames 1 --format scannet --robot " +
+                     robot_ + " --out " + f + "converted",
+                 "is there already");
+  write("converted/.modelhouse", "mine");
+  expect_refused(again, "is no file of modelhouse's");
 }
 
 TEST_F(CommandLine, ASceneBecomesAScannetFolderAndIsReadBack) {
