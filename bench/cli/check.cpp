@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
+#include "bench/cache/cache.hpp"
 #include "bench/check/baseline.hpp"
 #include "bench/check/from_runs.hpp"
 #include "bench/check/report.hpp"
@@ -12,6 +14,7 @@
 #include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/counted.hpp"
+#include "bench/protocol/digest.hpp"
 #include "bench/run.hpp"
 #include "bench/temporary_folder.hpp"
 #include "slam/core/error.hpp"
@@ -33,20 +36,57 @@ fs::path baseline_file(const Options& options) {
   return fs::path(options.suite).replace_extension(".baseline.json");
 }
 
-/// Runs the suite anew: nothing is taken from earlier results, light is shared among these runs
-/// only.
+/// Where an interrupted check of that suite leaves what it finished, for the same command; nullopt
+/// where there is no place for it, or another process works there.
+std::optional<OwnedFolder> place_for(const fs::path& suite) {
+  const fs::path cache = Cache::default_folder();
+  if (cache.empty()) return std::nullopt;
+  const std::string name = fs::weakly_canonical(suite).string();
+  const fs::path place = cache / "check" / hex(digest_bytes(name.data(), name.size()));
+  try {
+    make_output_folder(place.parent_path());
+    if (auto left = OwnedFolder::take(place)) {
+      if (!fs::exists(place / "results.sqlite")) return left;
+      try {
+        Store::open_to_read(place).check();
+        return left;
+      } catch (const InputError&) {
+        left->remove();  // damaged: nothing is lost but time
+      }
+    }
+    return OwnedFolder::make(place);
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+}
+
+/// Runs the suite; nothing is taken from earlier results but those of the same check that was
+/// interrupted, light is shared among these runs only.
 Baseline measure(const Suite& suite, const Options& of) {
-  const TemporaryFolder folder(fs::temp_directory_path());
+  std::optional<OwnedFolder> place = place_for(suite.file);
+  std::optional<TemporaryFolder> folder;
+  if (!place) folder.emplace(fs::temp_directory_path());
   Progress progress("check");
   const BenchOptions options{
-      .out = folder.path(),
+      .out = place ? place->path() : folder->path(),
       .jobs = of.jobs,
       .shard = {},
       .cache = {},
+      .retry_failed = true,
       .figures_alone = true,
       .say = [&](std::string_view stage) { progress.say(stage); },
       .progress = [&](double share, std::size_t, std::size_t) { progress.share(share); }};
-  const BenchResults results = run_suite(suite, {}, options);
+  BenchResults results;
+  try {
+    results = run_suite(suite, {}, options);
+  } catch (Interrupted& interrupted) {
+    interrupted.goes_on = place.has_value();
+    throw;
+  } catch (...) {
+    if (place && !fs::exists(place->path() / "results.sqlite")) place->remove();
+    throw;
+  }
+  if (place) place->remove();
   if (!results.failed.empty()) {
     if (!of.junit.empty()) write_atomically(of.junit, failures_junit(results.failed, suite.name));
     throw_failures(results.failed, results.failed.front().error, "");
@@ -95,8 +135,8 @@ void run(const Options& options) {
   if (suite.gate.tolerances.empty() && suite.gate.of_scenario.empty())
     throw InputError(
         fmt::format("{}: check: tolerances: missing: nothing would be judged", options.suite));
-  if (!options.junit.empty()) need_writable(options.junit);
-  if (options.update) need_writable(baseline_file(options));
+  if (!options.junit.empty()) need_writable(options.junit, {options.suite, baseline_file(options)});
+  if (options.update) need_writable(baseline_file(options), {options.suite});
   if (options.update) return update(options, suite, measure(suite, options));
 
   const fs::path file = baseline_file(options);

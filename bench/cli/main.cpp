@@ -55,8 +55,8 @@ int run(int argc, char** argv) {
   app.footer(
       "Example:\n  modelhouse bench bench/suites/model_house.yaml --jobs 2\n"
       "Exit codes: 0 good; 1 the work ran and its check failed; 2 bad usage or bad input;\n"
-      "3 the machine or an outside program failed it; 130 interrupted, the same command goes on "
-      "with it.");
+      "3 the machine or an outside program failed it; 130 interrupted; it says whether "
+      "the\nsame command goes on with what is finished.");
   mh::cli::add_bench(app);
   mh::cli::add_run_one(app);
   mh::cli::add_merge(app);
@@ -80,10 +80,10 @@ int run(int argc, char** argv) {
     return fail(kBadInput, error.what());
   } catch (const mh::cli::CheckFailed&) {
     return kCheckFailed;
-  } catch (const mh::Interrupted&) {
-    fmt::print(stderr,
-               "modelhouse: interrupted; what is finished is kept, the same command goes on with "
-               "it\n");
+  } catch (const mh::Interrupted& interrupted) {
+    fmt::print(stderr, "modelhouse: interrupted; {}\n",
+               interrupted.goes_on ? "what is finished is kept, the same command goes on with it"
+                                   : "nothing is kept, the same command begins anew");
     return kInterrupted;
   } catch (const mh::InputChanged& error) {
     return fail(mh::kInputChangedCode, error.what());

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -30,13 +31,26 @@ std::string content(const fs::path& file) {
 const fs::path& test_folder() {
   static const struct Folder {
     fs::path path = fs::temp_directory_path() / ("mh_process_" + std::to_string(getpid()));
+    static fs::path shared() { return MH_TEST_CACHE "/modelhouse-cache"; }
     Folder() {
-      fs::create_directories(path / "cache");
       // Baked light is shared by all tests (its key holds scene and code), maps are not.
-      fs::create_directories(fs::path(MH_TEST_CACHE) / "light");
-      fs::create_directory_symlink(fs::path(MH_TEST_CACHE) / "light", path / "cache" / "light");
+      fs::create_directories(path / "cache");
+      std::error_code none_yet;
+      fs::copy(shared(), path / "cache" / shared().filename(), fs::copy_options::recursive,
+               none_yet);
     }
-    ~Folder() { fs::remove_all(path); }
+    ~Folder() {
+      const fs::path own = path / "cache" / shared().filename();
+      fs::remove_all(own / "map");
+      std::error_code no_matter;
+      fs::create_directories(shared().parent_path(), no_matter);
+      // Under its name only when it is whole: other tests run meanwhile.
+      fs::rename(own, shared(), no_matter);
+      for (const auto& entry : fs::directory_iterator(own / "light", no_matter))
+        if (!fs::exists(shared() / "light" / entry.path().filename()))
+          fs::rename(entry.path(), shared() / "light" / entry.path().filename(), no_matter);
+      fs::remove_all(path);
+    }
   } folder;
   return folder.path;
 }
@@ -111,12 +125,23 @@ std::string bench_with_kept_maps(const fs::path& suite, const std::string& out,
 
 /// The same, but every run has to map.
 std::string bench(const fs::path& suite, const std::string& out, const std::string& more = "") {
-  fs::remove_all(test_folder() / "cache" / "map");
+  fs::remove_all(test_folder() / "cache" / "modelhouse-cache" / "map");
   return bench_with_kept_maps(suite, out, more);
 }
 
 int run(const std::string& arguments) {
   return Command(arguments).wait();
+}
+
+/// How many runs a results file holds.
+int runs_in(const fs::path& folder) {
+  if (!fs::exists(folder / "results.sqlite")) return 0;
+  const fs::path list = test_folder() / "runs.csv";
+  const std::string command = std::string(MH_EXECUTABLE) + " export " + folder.string() +
+                              " --out " + list.string() + " 2> /dev/null";
+  if (std::system(command.c_str()) != 0) return 0;
+  const std::string text = content(list);
+  return static_cast<int>(std::count(text.begin(), text.end(), '\n')) - 1;  // its head
 }
 
 std::string errors() {
@@ -228,6 +253,47 @@ TEST(BenchProcess, CtrlCEndsEverythingAndKeepsWhatIsFinished) {
   EXPECT_EQ(tables("stopped"), undisturbed());
 }
 
+TEST(BenchProcess, ACheckThatIsInterruptedGoesOn) {
+  const fs::path place = test_folder() / "home" / "modelhouse" / "check";
+  setenv("XDG_CACHE_HOME", (test_folder() / "home").c_str(), 1);
+  const fs::path suite = write_suite("gate", "[semantic, plain]",
+                                     "check: {tolerances: {completeness: 0.1}}\ntrials: 2\n");
+  const std::string check = "check " + suite.string() + " --update";
+  const auto interrupted = [&](int number) {
+    Command command(check);
+    for (int i = 0; i < 6000 && command.running(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      std::error_code none_yet;
+      for (const auto& entry : fs::directory_iterator(place, none_yet))
+        if (runs_in(entry.path()) > 0) {
+          command.signal(number);
+          return command.wait();
+        }
+    }
+    return 0;
+  };
+  EXPECT_EQ(interrupted(SIGINT), 130);
+  EXPECT_NE(errors().find("the same command goes on with it"), std::string::npos) << errors();
+  const int finished = runs_in(fs::directory_iterator(place)->path());
+  EXPECT_GE(finished, 1);
+  ASSERT_LT(finished, 6);
+  EXPECT_EQ(run(check), 0) << errors();
+  EXPECT_NE(errors().find("6 runs, " + std::to_string(6 - finished) + " of them to do"),
+            std::string::npos)
+      << errors();
+  EXPECT_TRUE(fs::is_empty(place)) << "it is removed once the check is done";
+  const std::string baseline = content(fs::path(suite).replace_extension(".baseline.json"));
+  EXPECT_EQ(run(check), 0) << errors();
+  EXPECT_NE(errors().find("6 runs, 6 of them to do"), std::string::npos) << errors();
+  EXPECT_EQ(content(fs::path(suite).replace_extension(".baseline.json")), baseline);
+
+  // Killed outright it goes on as well.
+  EXPECT_EQ(interrupted(SIGKILL), -SIGKILL);
+  EXPECT_EQ(run(check), 0) << errors();
+  EXPECT_EQ(errors().find("6 runs, 6 of them to do"), std::string::npos) << errors();
+  EXPECT_EQ(content(fs::path(suite).replace_extension(".baseline.json")), baseline);
+}
+
 TEST(BenchProcess, ACheckWhoseRunsFailWritesThemIntoItsReport) {
   const fs::path xml = test_folder() / "check.xml";
   const fs::path suite = write_suite(
@@ -238,6 +304,28 @@ TEST(BenchProcess, ACheckWhoseRunsFailWritesThemIntoItsReport) {
   EXPECT_NE(errors().find("no map"), std::string::npos) << errors();
   EXPECT_NE(content(xml).find("<error message=\"outside program 'vo'"), std::string::npos)
       << content(xml);
+}
+
+TEST(BenchProcess, AnOutsideProgramThatIsRunAgainMeetsNeitherTruthNorLeavings) {
+  const auto suite_that = [](const std::string& does) {
+    return write_suite("again", "[{name: vo, protocol: trajectory, command: '" + does +
+                                    "; find $(dirname $(dirname {trajectory})); touch $(dirname "
+                                    "{trajectory})/leaving; echo \"#\" > {trajectory}'}]");
+  };
+  const fs::path run_folder = test_folder() / "again" / "vo-exact-pepper-0";
+  EXPECT_EQ(run(bench(suite_that("true"), "again")), 0) << errors();
+  EXPECT_TRUE(fs::exists(run_folder / "truth.tum"));
+  EXPECT_TRUE(fs::exists(run_folder / "outside" / "leaving"));
+  std::ofstream(run_folder / "outside" / "notes.txt") << "mine";
+  EXPECT_EQ(run(bench(suite_that(":"), "again")), 0) << errors();
+  const std::string seen = content(run_folder / "outside.log");
+  EXPECT_NE(seen.find("/dataset/rgb.txt"), std::string::npos) << seen;
+  for (const char* never : {"truth", "leaving", "notes", "estimate"})
+    EXPECT_EQ(seen.find(never), std::string::npos) << never << " in " << seen;
+  EXPECT_EQ(content(run_folder / "outside" / "notes.txt"), "mine");
+  EXPECT_TRUE(fs::exists(run_folder / "outside.2" / "trajectory.txt"));
+  for (const auto& entry : fs::directory_iterator(test_folder() / "again"))
+    EXPECT_FALSE(entry.path().filename().string().starts_with(".work.")) << entry.path();
 }
 
 TEST(BenchProcess, AFolderThatWasDeletedIsToldOf) {
