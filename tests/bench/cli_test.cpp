@@ -11,6 +11,7 @@
 #include <sstream>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -337,6 +338,51 @@ TEST_F(CommandLine, ASceneBecomesAScannetFolderAndIsReadBack) {
   expect_refused("slam scannet:" + (folder_ / "nowhere").string() + slam, "nowhere");
   expect_refused("slam scannet:" + out + slam, "no ScanNet recording");
   expect_refused("slam scannet:" + write("a.sens", "text").string() + slam, "a.sens");
+}
+
+/// As the table of statistics prints a number.
+std::string printed(double v) {
+  return std::abs(v) >= 1000 ? fmt::format("{:.0f}", v) : fmt::format("{:.3g}", v);
+}
+
+// Five frames of two scenes are two and three, and the table says what the JSON says.
+TEST_F(CommandLine, StatisticsOfScenesShareTheFramesAndPrintWhatTheyMeasured) {
+  const fs::path mesh = write("m.obj",
+                              "v 0 0 0\nv 9 0 0\nv 9 5 0\nv 0 5 0\nv 0 0 2\nv 9 0 2\n"
+                              "o floor\nf 1 2 3 4\no wall\nf 1 2 6 5\n");
+  const std::string root = MH_SOURCE_DIR;
+  const std::string command = "scene statistics " + mesh.string() + " " + mesh.string() +
+                              " --frames 5 --robot " + robot_ + " --level " + root +
+                              "/sim/sensors/levels/handheld.yaml --reference " + root +
+                              "/assets/real_frames.yaml";
+  ASSERT_EQ(run(command + " --json"), 0) << err_;
+  const auto json = nlohmann::ordered_json::parse(out_);
+  ASSERT_EQ(json["places"].size(), 2u);
+  EXPECT_EQ(json["places"][0]["frames"], 2);
+  EXPECT_EQ(json["places"][1]["frames"], 3);
+  EXPECT_EQ(json["places"][0]["scene"], mesh.string());
+  ASSERT_EQ(run(command), 0) << err_;
+  EXPECT_EQ(out_.rfind("5 frames of 2 places; percentiles 5 / 25 / 50 / 75 / 95\n", 0), 0u) << out_;
+  std::istringstream lines(out_);
+  std::string line;
+  for (const auto& [key, quantity] : json["quantities"].items()) {
+    EXPECT_TRUE(json["places"][0].contains(key)) << key;
+    while (std::getline(lines, line) && line.rfind("  generated ", 0) != 0) {
+    }
+    for (const char* row : {"percentiles", "real"}) {
+      std::istringstream words(line);
+      std::string word;
+      words >> word;
+      double last = -1e300;
+      for (const double value : quantity[row]) {
+        words >> word;
+        EXPECT_EQ(word, printed(value)) << key << ": " << line;
+        EXPECT_GE(value, last) << key;
+        last = value;
+      }
+      std::getline(lines, line);  // the real frames stand below
+    }
+  }
 }
 
 TEST_F(CommandLine, ATourThatCannotBeDriven) {

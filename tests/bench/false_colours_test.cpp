@@ -18,6 +18,15 @@ TEST(ClassColour, AnyTwoClassesCanBeTold) {
 TEST(ColourDistance, IsThatOfCieLab) {
   EXPECT_NEAR(colour_distance({255, 255, 255}, {0, 0, 0}), 100, 0.1);
   EXPECT_EQ(colour_distance({9, 8, 7}, {9, 8, 7}), 0);
+  // sRGB's corners in CIELAB under D65: red (53.24, 80.09, 67.20), green (87.73, -86.18, 83.18),
+  // blue (32.30, 79.19, -107.86); a middle grey (53.59, 0, 0).
+  EXPECT_NEAR(colour_distance({255, 0, 0}, {0, 0, 0}), 117.3, 0.2);
+  EXPECT_NEAR(colour_distance({0, 255, 0}, {0, 0, 0}), 148.5, 0.2);
+  EXPECT_NEAR(colour_distance({0, 0, 255}, {0, 0, 0}), 137.7, 0.2);
+  EXPECT_NEAR(colour_distance({255, 0, 0}, {0, 255, 0}), 170.6, 0.2);
+  EXPECT_NEAR(colour_distance({255, 0, 0}, {0, 0, 255}), 176.3, 0.2);
+  EXPECT_NEAR(colour_distance({128, 128, 128}, {0, 0, 0}), 53.59, 0.05);
+  EXPECT_NEAR(colour_distance({10, 10, 10}, {0, 0, 0}), 2.74, 0.02) << "the straight part";
 }
 
 TEST(DepthColours, NothingThatReturnedIsNearlyAsBlackAsWhatDidNot) {

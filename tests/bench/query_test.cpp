@@ -92,6 +92,27 @@ TEST(Query, TheDigestOfMatchingIsOfEveryAttempt) {
   EXPECT_EQ(seen.size(), 4u);
 }
 
+TEST(Query, TheDigestsOfPosesAndImagesAreOfEveryAttempt) {
+  FakeSystem system = mapped();
+  system.answers_at = [](Stamp) { return 3; };
+  std::set<std::uint64_t> poses, images;
+  for (const int changed : {0, 1, 2}) {  // 0: none; a pose of a lost system is one, too
+    system.on_report = [&](int attempt, StepReport& report) {
+      if (attempt == changed) report.world_from_camera = SE3();
+    };
+    poses.insert(query(system, 59, fake_frame, {}, RandomStream(1)).pose_digest);
+    int shown = 0;
+    const auto tampered = [&](std::size_t index, RandomStream noise) {
+      RgbdFrame frame = fake_frame(index, noise);
+      if (++shown == changed) frame.colour(0, 0).b = 255;
+      return frame;
+    };
+    images.insert(query(system, 59, tampered, {}, RandomStream(1)).image_digest);
+  }
+  EXPECT_EQ(poses.size(), 3u);
+  EXPECT_EQ(images.size(), 3u);
+}
+
 TEST(Query, ShowsBlankFramesUntilLost) {
   FakeSystem system = mapped();
   system.believes_blanks = 4;

@@ -7,6 +7,7 @@ import hashlib
 import json
 import os
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -26,6 +27,7 @@ KINDS = ('relation', 'arithmetic', 'constant', 'arguments', 'statement')
 KIND_OF = {'logic': 'relation'}
 LONGEST_TEST_S, LEAST_LIMIT_S, TIMES_SLOWER = 600, 60, 10
 MOST_COMPARED = 12  # object files
+MOST_MEMORY = 8 << 30  # bytes, of a test
 EQUAL, CAUGHT, SURVIVED, NO_MUTANT = 'equal', 'caught', 'survived', 'does not compile'
 
 
@@ -202,23 +204,31 @@ class Experience:
             return LONGEST_TEST_S
         return min(LONGEST_TEST_S, max(LEAST_LIMIT_S, TIMES_SLOWER * self.passed_s[test]))
 
-    def likeliest_first(self, tests, inputs, name):
-        def nearness(test):
-            best = 0
-            for source in inputs[test]:
-                if source.startswith('tests/'):
-                    common = os.path.commonprefix(
-                        [Path(source).parts[1:-1], Path(name).parts[:-1]])
-                    same_name = Path(source).stem == Path(name).stem + '_test'
-                    best = max(best, 2 * len(common) + 3 * same_name)
-            return best
+    def likeliest_first(self, copy, tests, name):
+        """Tests that stand in the same folder, include the file's header or one beside it, or caught
+        something there; the quicker first."""
+        folder, header = os.path.dirname(name), str(Path(name).with_suffix('.hpp'))
+
+        def nearness(source):
+            common = os.path.commonprefix([Path(source).parts[1:-1], Path(name).parts[:-1]])
+            included = set(re.findall(r'#include "([^"]+)"', (copy.tree / source).read_text()))
+            return (2 * len(common) + 6 * (header in included)
+                    + 2 * any(os.path.dirname(i) == folder for i in included))
 
         def key(test):
-            folder = self.catches.get(test, {})
-            caught = 3 * folder.get(name, 0) + folder.get(os.path.dirname(name), 0)
-            return (-(caught + nearness(test)) / (1 + self.passed_s.get(test, 20) / 20),
-                    len(inputs[test]), test)
+            caught = self.catches.get(test, {})
+            likely = 3 * caught.get(name, 0) + caught.get(folder, 0) + max(
+                [nearness(source) for source in copy.tests[test] if source.startswith('tests/')],
+                default=0)
+            return -likely / (1 + self.passed_s.get(test, 20) / 20), len(copy.tests[test]), test
         return sorted(tests, key=key)
+
+
+def bound():
+    """A mistake may ask for all memory, or write without end."""
+    for what, most in ((resource.RLIMIT_AS, MOST_MEMORY), (resource.RLIMIT_FSIZE, MOST_MEMORY // 8),
+                       (resource.RLIMIT_CORE, 0)):
+        resource.setrlimit(what, (most, most))
 
 
 def outcome(copy, test, limit_s):
@@ -227,7 +237,8 @@ def outcome(copy, test, limit_s):
     with copy.log.open('wb') as out:
         process = subprocess.Popen(
             [copy.build / test, '--gtest_brief=1', '--gtest_fail_fast'], cwd=copy.tree, stdout=out,
-            stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True)
+            stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True,
+            preexec_fn=bound)
         try:
             status = process.wait(limit_s)
         except subprocess.TimeoutExpired:
@@ -239,7 +250,7 @@ def outcome(copy, test, limit_s):
     return ('' if status == 0 else failed[1] if failed else f'ended with {status}'), took
 
 
-def judge(copy, mutant, experience):
+def judge(copy, mutant, experience, most_tests):
     """Verdict and what noticed. The copy's sources are as they were afterwards."""
     file = copy.tree / mutant.file
     content = file.read_text()
@@ -262,8 +273,8 @@ def judge(copy, mutant, experience):
         if compared and all(filecmp.cmp(copy.build / o, kept / o, shallow=False)
                             for o in compared):
             return EQUAL, 'the same object code'
-        tests = copy.tests_of(mutant.file, objects)
-        for test in experience.likeliest_first(tests, copy.tests, mutant.file):
+        tests = experience.likeliest_first(copy, copy.tests_of(mutant.file, objects), mutant.file)
+        for test in tests[:most_tests]:
             if not copy.ninja(test):
                 if 'error:' in copy.log.read_text(errors='replace'):
                     return NO_MUTANT, ''
@@ -282,7 +293,7 @@ def judge(copy, mutant, experience):
                     of_test[place] = of_test.get(place, 0) + 1
                 return CAUGHT, f'{test}: {failure}'
             experience.passed_s[test] = max(took, experience.passed_s.get(test, 0))
-        return SURVIVED, ', '.join(tests)
+        return SURVIVED, ', '.join(tests[:most_tests])
     finally:
         file.write_text(content)
         experience.save()
@@ -298,6 +309,9 @@ def arguments():
     parser.add_argument('--jobs', type=int, default=os.cpu_count(), help='compiler processes')
     parser.add_argument('--minutes', type=float, default=float('inf'),
                         help='begins no mutant after that')
+    parser.add_argument('--tests', type=int, metavar='N',
+                        help='runs the N likeliest test executables alone (default: all); what '
+                        'survives them may not survive the others')
     parser.add_argument('--again', action='store_true',
                         help='tries the survivors of the results once more, and no others')
     parser.add_argument('--list', action='store_true', help='prints what would be tried, in order')
@@ -328,7 +342,7 @@ def main():
             '# A later line of one id counts in the place of an earlier one.\n')
 
     def try_out(mutant):
-        verdict, by = judge(copy, mutant, experience)
+        verdict, by = judge(copy, mutant, experience, args.tests)
         results.add(head, verdict=verdict, kind=mutant.kind, id=mutant.id,
                     place=f'{mutant.file}:{mutant.line}', change=mutant.change(), by=by,
                     commit=copy.head[:7])
