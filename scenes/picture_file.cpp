@@ -3,6 +3,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -79,7 +80,8 @@ const char* png_fault(std::string_view bytes) {
 /// Empty if the bytes hold no picture, or one too large.
 cv::Mat decode(std::string_view bytes) {
   if (!announced_size(bytes) || claims_too_much(bytes) || picture_fault(bytes)) return {};
-  const cv::Mat view(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
+  const std::string quiet = without_remarks(bytes);
+  const cv::Mat view(1, static_cast<int>(quiet.size()), CV_8UC1, const_cast<char*>(quiet.data()));
   try {
     return cv::imdecode(view, cv::IMREAD_UNCHANGED);
   } catch (const cv::Exception&) {
@@ -107,6 +109,22 @@ const char* picture_fault(std::string_view bytes) {
   if (bytes.starts_with("\xff\xd8")) return jpeg_is_whole(bytes) ? nullptr : "is cut short";
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return png_fault(bytes);
   return nullptr;
+}
+
+std::string without_remarks(std::string_view bytes) {
+  constexpr std::size_t kSignature = 8, kFrame = 12;  // length, type and sum of a chunk
+  if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) return std::string(bytes);
+  std::string kept(bytes.substr(0, kSignature));
+  for (std::size_t at = kSignature; at + kFrame <= bytes.size();) {
+    const std::size_t length =
+        std::min<std::size_t>(big_endian(bytes, at, 4), bytes.size() - at - kFrame);
+    const std::string_view type = bytes.substr(at + 4, 4);
+    // A capital first letter: a picture is none without it; tRNS is its opacity.
+    if ((type[0] >= 'A' && type[0] <= 'Z') || type == "tRNS")
+      kept += bytes.substr(at, kFrame + length);
+    at += kFrame + length;
+  }
+  return kept;
 }
 
 bool claims_too_much(std::string_view bytes) {

@@ -27,6 +27,10 @@ const char* picture_fault(std::string_view bytes);
 /// refused before anything is allocated for them.
 bool claims_too_much(std::string_view bytes);
 
+/// The same picture without what a PNG says beside it (colour profiles, texts, times): no decoder
+/// here heeds that, and libpng prints its opinion of it to stderr. Other bytes stay as they are.
+std::string without_remarks(std::string_view bytes);
+
 /// Decodes a picture of three 8-bit channels; nullopt if the bytes hold none.
 std::optional<Grid2d<Rgb8>> decode_colour(std::string_view bytes);
 /// Decodes a picture of one channel, 8 or 16 bits; nullopt if the bytes hold none.

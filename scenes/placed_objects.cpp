@@ -9,7 +9,9 @@
 #include "scenes/guard.hpp"
 #include "scenes/mesh_io/instances_in.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
+#include "scenes/mesh_io/picture_in.hpp"
 #include "scenes/placed_scene_file.hpp"
+#include "scenes/thin_pictures.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/yaml.hpp"
 
@@ -82,6 +84,7 @@ void append_part(Scene& scene, Scene part, const Eigen::Affine3d& scene_from_par
 void finish_parts(Scene& scene) {
   if (scene.triangles.empty())
     throw InputError(fmt::format("scene {}: has nothing to be seen", scene.name));
+  thin_pictures(scene);
   find_boxes(scene);
   rooms_from_floors(scene);
   validate(scene);
@@ -97,9 +100,10 @@ Scene load_placed_scene(const fs::path& yaml, std::vector<std::string>* warnings
   return load_guarded(yaml, warnings, [&](std::vector<std::string>* told) {
     Scene scene;
     scene.name = placed.name;
+    PictureStore pictures;
     for (const PlacedObject& object : placed.objects)
-      append_part(scene, load_mesh(object.file, told, placed.rules), object.scene_from_object,
-                  object.name, object.class_id);
+      append_part(scene, load_mesh(object.file, told, placed.rules, {.pictures = &pictures}),
+                  object.scene_from_object, object.name, object.class_id);
     finish_parts(scene);
     return scene;
   });

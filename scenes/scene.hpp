@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "slam/core/grid2d.hpp"
+#include "scenes/shared_grid.hpp"
 #include "slam/core/labels.hpp"
 #include "slam/core/rgbd_frame.hpp"
 
@@ -24,10 +24,10 @@ inline constexpr std::uint8_t kOpaqueFrom = 128;
 struct Material {
   std::string name;
   Rgb8 base_colour{255, 255, 255};  ///< sRGB; multiplies the texture and the vertex colours
-  Grid2d<Rgb8> texture;             ///< sRGB; empty = base_colour alone
+  SharedGrid<Rgb8> texture;         ///< sRGB; empty = base_colour alone
   /// How opaque each texel is: what is below kOpaqueFrom is a hole. Empty = opaque; else as large
   /// as the texture.
-  Grid2d<std::uint8_t> opacity{};
+  SharedGrid<std::uint8_t> opacity{};
   Eigen::Vector2f tile_m{1.0F, 1.0F};  ///< physical size of one repeat of the texture, where known
   Eigen::Vector3f emission =
       Eigen::Vector3f::Zero();  ///< linear radiance added to what is reflected
@@ -46,14 +46,15 @@ struct Instance {
 };
 
 struct Light {
-  enum class Kind { kSun, kSphere, kSky };
+  enum class Kind { kSun, kSphere, kSky, kAmbient };
   Kind kind = Kind::kSphere;
   Eigen::Vector3f position_m = Eigen::Vector3f::Zero();  ///< sphere: centre
   Eigen::Vector3f direction = {0.0F, 0.0F, -1.0F};       ///< sun: the way its light travels, unit
   float radius_m = 0.05F;                                ///< sphere: radius
   float angular_radius_rad = 0.00465F;                   ///< sun: half its apparent size
   /// Linear RGB. Sun: irradiance on a surface facing it; sky: radiance of rays that leave the
-  /// scene; sphere: radiant intensity (irradiance at 1 m).
+  /// scene; sphere: radiant intensity (irradiance at 1 m); ambient: irradiance / pi that reaches
+  /// every surface, for want of anything better.
   Eigen::Vector3f colour = Eigen::Vector3f::Ones();
 };
 

@@ -4,9 +4,11 @@
 // How a scene becomes bytes and back. One list of fields per type serves both directions; its
 // brackets name every field, so that it does not compile once one is added that has no place here.
 
+#include <algorithm>
 #include <concepts>
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -67,6 +69,14 @@ inline constexpr bool kIsGrid = false;
 template <class T>
 inline constexpr bool kIsGrid<Grid2d<T>> = true;
 
+/// Pictures that materials share are sent once, in the order in which they are first met.
+template <class T>
+inline constexpr bool kIsShared = false;
+template <class T>
+inline constexpr bool kIsShared<SharedGrid<T>> = true;
+using KnownPictures =
+    std::tuple<std::vector<SharedGrid<Rgb8>>, std::vector<SharedGrid<std::uint8_t>>>;
+
 /// Sends values through anything that has bytes(const void*, size).
 template <class Out>
 class Sender {
@@ -83,6 +93,13 @@ class Sender {
   void put(const T& value) {
     if constexpr (kPlain<T>) {
       out_.bytes(&value, sizeof value);
+    } else if constexpr (kIsShared<T>) {
+      auto& known = std::get<std::vector<T>>(pictures_);
+      const auto place = std::ranges::find(known, value.identity(), &T::identity);
+      put(static_cast<std::uint64_t>(place - known.begin()));
+      if (place != known.end()) return;
+      known.push_back(value);
+      put(value.grid());
     } else if constexpr (kIsGrid<T>) {
       (*this)(value.width(), value.height());
       out_.bytes(value.data(), value.size() * sizeof *value.data());
@@ -98,6 +115,7 @@ class Sender {
   }
 
   Out& out_;
+  KnownPictures pictures_;
 };
 
 /// Takes them from anything that has bytes(void*, size), straight into their place.
@@ -116,6 +134,17 @@ class Receiver {
   void get(T& value) {
     if constexpr (kPlain<T>) {
       in_.bytes(&value, sizeof value);
+    } else if constexpr (kIsShared<T>) {
+      auto& known = std::get<std::vector<T>>(pictures_);
+      std::uint64_t place = 0;
+      get(place);
+      if (place >= known.size()) {
+        std::remove_cvref_t<decltype(value.grid())> grid;
+        get(grid);
+        known.emplace_back(std::move(grid));
+        place = known.size() - 1;
+      }
+      value = known[place];
     } else if constexpr (kIsGrid<T>) {
       int width = 0, height = 0;
       (*this)(width, height);
@@ -135,6 +164,7 @@ class Receiver {
   }
 
   In& in_;
+  KnownPictures pictures_;
 };
 
 }  // namespace mh::scene_fields

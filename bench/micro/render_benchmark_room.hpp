@@ -42,13 +42,14 @@ class BenchmarkRoom {
     for (std::uint64_t m = 0; m < 4; ++m) {
       Material material;
       material.name = "noise_" + std::to_string(m);
-      material.texture = Grid2d<Rgb8>(1024, 1024);
+      Grid2d<Rgb8> texture(1024, 1024);
       for (int y = 0; y < 1024; ++y)
         for (int x = 0; x < 1024; ++x) {
           const std::uint64_t block = static_cast<std::uint64_t>(y / 2 * 512 + x / 2);
           const auto grey = static_cast<std::uint8_t>(stream.fork(m).below(block, 256));
-          material.texture(x, y) = {grey, static_cast<std::uint8_t>(255 - grey), 128};
+          texture(x, y) = {grey, static_cast<std::uint8_t>(255 - grey), 128};
         }
+      material.texture = std::move(texture);
       scene_.materials.push_back(material);
     }
     scene_.name = "benchmark";

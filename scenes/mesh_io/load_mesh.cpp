@@ -11,6 +11,8 @@
 #include <set>
 
 #include "scenes/guard.hpp"
+#include "scenes/mesh_io/collada.hpp"
+#include "scenes/mesh_io/glow.hpp"
 #include "scenes/mesh_io/instances_in.hpp"
 #include "scenes/mesh_io/label_rules.hpp"
 #include "scenes/mesh_io/labels_file.hpp"
@@ -32,7 +34,7 @@ namespace {
 
 /// What is particular to a file format.
 struct Format {
-  bool ply = false, gltf = false, obj = false, y_up = false;
+  bool ply = false, gltf = false, obj = false, dae = false, y_up = false;
 };
 
 Format format_of(const fs::path& file) {
@@ -42,6 +44,7 @@ Format format_of(const fs::path& file) {
   return {.ply = ending == ".ply",
           .gltf = gltf,
           .obj = ending == ".obj",
+          .dae = ending == ".dae",
           .y_up = gltf || ending == ".dae"};
 }
 
@@ -224,13 +227,20 @@ class Gatherer {
   bool ours_ = false, any_uvs_ = false, any_colours_ = false, any_light_ = false;
 };
 
-const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Format& format) {
+const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Format& format,
+                    const MeshUse& use) {
   require_readable(file);
   importer.SetIOHandler(new NotedFiles);  // which is the importer's from now on
   // No step that reorders vertices or faces: labels beside a PLY count on their order.
   const unsigned steps =
       format.ply ? unsigned{aiProcess_Triangulate} : aiProcess_Triangulate | aiProcess_GlobalScale;
-  const aiScene* in = importer.ReadFile(file.string(), steps);
+  const aiScene* in = nullptr;
+  if (format.dae) {
+    const std::string text = repaired_collada(map_file(file).view, use.in_gazebo);
+    in = importer.ReadFileFromMemory(text.data(), text.size(), steps, "dae");
+  } else {
+    in = importer.ReadFile(file.string(), steps);
+  }
   if (in == nullptr || in->mRootNode == nullptr)
     throw InputError(fmt::format("{}: is no mesh that can be read: {}", file.string(),
                                  importer.GetErrorString()));
@@ -293,18 +303,22 @@ Scene finished(Scene scene, const fs::path& file) {
 
 /// Through assimp.
 Scene load_foreign(const fs::path& file, const Format& format, const LabelRules& rules,
-                   std::vector<std::string>* warnings) {
+                   const MeshUse& use, std::vector<std::string>* warnings) {
   Assimp::Importer importer;
-  const aiScene& in = read(importer, file, format);
+  const aiScene& in = read(importer, file, format, use);
   if (format.obj) warn_of_missing_materials(file, warnings);
   Scene scene;
   scene.name = file.stem().string();
-  scene.materials = convert_materials(in, file, format.gltf, warnings);
+  PictureStore own_pictures;
+  MaterialsIn materials = convert_materials(
+      in, file, format.gltf, use.pictures == nullptr ? own_pictures : *use.pictures, warnings);
+  scene.materials = std::move(materials.materials);
   LabelRules all_rules = rules;
   const LabelRules beside = find_label_rules(file);
   all_rules.rules.insert(all_rules.rules.end(), beside.rules.begin(), beside.rules.end());
   Gatherer(in, file, format, all_rules, scene).run();
   whiten_default_material(format, scene);
+  spread_glow(scene, materials.glow);
   if (scene.uvs.empty())
     for (Material& material : scene.materials) material.texture = {};
   return finished(std::move(scene), file);
@@ -312,7 +326,8 @@ Scene load_foreign(const fs::path& file, const Format& format, const LabelRules&
 
 }  // namespace
 
-Scene load_mesh(const fs::path& file, std::vector<std::string>* warnings, const LabelRules& rules) {
+Scene load_mesh(const fs::path& file, std::vector<std::string>* warnings, const LabelRules& rules,
+                const MeshUse& use) {
   const Format format = format_of(file);
   if (format.ply) {
     const HeldBytes held = map_file(file);
@@ -323,7 +338,7 @@ Scene load_mesh(const fs::path& file, std::vector<std::string>* warnings, const 
     }
   }
   return load_guarded(file, warnings, [&](std::vector<std::string>* told) {
-    return load_foreign(file, format, rules, told);
+    return load_foreign(file, format, rules, use, told);
   });
 }
 

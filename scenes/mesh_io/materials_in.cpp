@@ -8,12 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
-#include "scenes/picture_file.hpp"
+#include "scenes/find_file.hpp"
 #include "scenes/srgb.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -25,82 +22,39 @@ namespace {
 
 constexpr Rgb8 kMissing{255, 0, 255};  // seen at once, and in no real room
 
-struct Picture {
-  Grid2d<Rgb8> colour{};
-  Grid2d<std::uint8_t> opacity{};       ///< empty if the file has none
-  const char* fault = "is no picture";  ///< why colour is empty, where it is
-};
-
-/// One channel as a picture of its own.
-Grid2d<std::uint8_t> channel_of(const cv::Mat& picture, int channel) {
-  Grid2d<std::uint8_t> values(picture.cols, picture.rows);
-  cv::Mat out(picture.rows, picture.cols, CV_8UC1, values.data());
-  cv::extractChannel(picture, out, channel);
-  return values;
-}
-
-/// The picture in these bytes; empty if they hold none.
-Picture decode(const void* data, std::size_t size) {
-  if (const char* fault = picture_fault({static_cast<const char*>(data), size}))
-    return {.fault = fault};
-  if (size == 0 || size > std::numeric_limits<int>::max() ||
-      claims_too_much({static_cast<const char*>(data), size}))
-    return {};
-  const cv::Mat bytes(1, static_cast<int>(size), CV_8UC1, const_cast<void*>(data));
-  cv::Mat stored;
-  try {
-    stored = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception&) {  // a size beyond OpenCV's limits
-    return {};
-  }
-  if (stored.empty()) return {};
-  if (stored.depth() == CV_16U) stored.convertTo(stored, CV_8U, 1.0 / 257.0);
-  if (stored.depth() != CV_8U) return {};
-  Picture picture;
-  picture.colour = Grid2d<Rgb8>(stored.cols, stored.rows);
-  cv::Mat rgb(stored.rows, stored.cols, CV_8UC3, picture.colour.data());
-  switch (stored.channels()) {
-    case 1:
-      cv::cvtColor(stored, rgb, cv::COLOR_GRAY2RGB);
-      break;
-    case 3:
-      cv::cvtColor(stored, rgb, cv::COLOR_BGR2RGB);
-      break;
-    case 4:
-      cv::cvtColor(stored, rgb, cv::COLOR_BGRA2RGB);
-      picture.opacity = channel_of(stored, 3);
-      break;
-    default:
-      return {};
-  }
-  return picture;
-}
-
-Picture convert_embedded(const aiTexture& texture) {
-  if (texture.mHeight == 0) return decode(texture.pcData, texture.mWidth);
+PictureIn convert_embedded(const aiTexture& texture, PictureStore& pictures) {
+  if (texture.mHeight == 0)
+    return pictures.decode({reinterpret_cast<const char*>(texture.pcData), texture.mWidth});
   const int width = static_cast<int>(texture.mWidth), height = static_cast<int>(texture.mHeight);
-  Picture picture{.colour = Grid2d<Rgb8>(width, height),
-                  .opacity = Grid2d<std::uint8_t>(width, height)};
-  for (std::size_t i = 0; i < picture.colour.size(); ++i) {
+  Grid2d<Rgb8> colour(width, height);
+  Grid2d<std::uint8_t> opacity(width, height);
+  for (std::size_t i = 0; i < colour.size(); ++i) {
     const aiTexel& t = texture.pcData[i];
-    picture.colour.data()[i] = {t.r, t.g, t.b};
-    picture.opacity.data()[i] = t.a;
+    colour.data()[i] = {t.r, t.g, t.b};
+    opacity.data()[i] = t.a;
   }
-  return picture;
+  return {.colour = std::move(colour), .opacity = std::move(opacity)};
 }
 
-Picture read_picture(const fs::path& path) {
-  if (!is_file(path)) return {.fault = "is missing"};
-  const std::string bytes = read_file(path);
-  return decode(bytes.data(), bytes.size());
+/// Where a picture lies that a file beside `folder` names: there, or, as Gazebo looks for it, by
+/// its name alone in the places where models have their textures.
+fs::path place_of_picture(const fs::path& named, const fs::path& folder) {
+  if (is_file(folder / named)) return folder / named;
+  for (const fs::path& place :
+       {named, fs::path(named.filename()), "../materials/textures" / named.filename(),
+        "../textures" / named.filename(), "textures" / named.filename()})
+    if (const auto found = find_any_case(folder / place)) return *found;
+  return folder / named;
 }
 
-Picture find_texture(const aiScene& in, const std::string& name, const fs::path& folder) {
+PictureIn find_texture(const aiScene& in, const std::string& name, const fs::path& folder,
+                       PictureStore& pictures) {
   if (const aiTexture* embedded = in.GetEmbeddedTexture(name.c_str()))
-    return convert_embedded(*embedded);
+    return convert_embedded(*embedded, pictures);
   std::string portable = name;
   std::ranges::replace(portable, '\\', '/');
-  return read_picture(folder / portable);
+  if (portable.starts_with("file://")) portable.erase(0, std::strlen("file://"));
+  return pictures.read(place_of_picture(portable, folder));
 }
 
 Rgb8 convert_colour(const aiColor4D& c, bool linear) {
@@ -119,7 +73,7 @@ bool has_holes(const aiMaterial& record) {
 }
 
 /// A mask of its own (OBJ's map_d) as opacity, in the size of the texture that it belongs to.
-Grid2d<std::uint8_t> opacity_of_mask(const Picture& mask, const Grid2d<Rgb8>& texture) {
+Grid2d<std::uint8_t> opacity_of_mask(const PictureIn& mask, const Grid2d<Rgb8>& texture) {
   if (mask.colour.empty() || texture.empty()) return {};
   Grid2d<std::uint8_t> opacity(texture.width(), texture.height());
   for (int y = 0; y < opacity.height(); ++y)
@@ -152,6 +106,7 @@ Eigen::Vector3f transmission_of(const aiMaterial& record, const aiColor4D& base)
 }
 
 Material convert(const aiScene& in, const aiMaterial& record, const fs::path& file, bool linear,
+                 PictureStore& pictures, SharedGrid<Rgb8>& glow,
                  std::vector<std::string>* warnings) {
   Material material;
   material.name = record.GetName().C_Str();
@@ -164,25 +119,30 @@ Material convert(const aiScene& in, const aiMaterial& record, const fs::path& fi
     material.emission = {std::max(0.0F, emission.r), std::max(0.0F, emission.g),
                          std::max(0.0F, emission.b)};
   material.transmission = transmission_of(record, base);
-  aiString texture;
-  if (record.GetTexture(aiTextureType_BASE_COLOR, 0, &texture) != aiReturn_SUCCESS &&
-      record.GetTexture(aiTextureType_DIFFUSE, 0, &texture) != aiReturn_SUCCESS)
-    return material;
   const auto find = [&](const aiString& name) {
-    Picture picture = find_texture(in, name.C_Str(), file.parent_path());
+    PictureIn picture = find_texture(in, name.C_Str(), file.parent_path(), pictures);
     if (picture.colour.empty() && warnings)
       warnings->push_back(fmt::format("{}: material {}: texture {} {}", file.string(),
                                       material.name, name.C_Str(), picture.fault));
     return picture;
   };
-  Picture picture = find(texture);
+  aiString texture;
+  if (!material.emission.isZero() &&
+      record.GetTexture(aiTextureType_EMISSIVE, 0, &texture) == aiReturn_SUCCESS) {
+    glow = find(texture).colour;
+    if (glow.empty()) material.emission.setZero();
+  }
+  if (record.GetTexture(aiTextureType_BASE_COLOR, 0, &texture) != aiReturn_SUCCESS &&
+      record.GetTexture(aiTextureType_DIFFUSE, 0, &texture) != aiReturn_SUCCESS)
+    return material;
+  const PictureIn picture = find(texture);
   if (picture.colour.empty()) material.base_colour = kMissing;
-  material.texture = std::move(picture.colour);
+  material.texture = picture.colour;
   aiString mask;
   if (record.GetTexture(aiTextureType_OPACITY, 0, &mask) == aiReturn_SUCCESS && mask != texture)
     material.opacity = opacity_of_mask(find(mask), material.texture);
   else if (has_holes(record))
-    material.opacity = std::move(picture.opacity);
+    material.opacity = picture.opacity;
   const auto opaque = [](std::uint8_t level) { return level >= kOpaqueFrom; };
   if (std::ranges::all_of(material.opacity, opaque)) material.opacity = {};
   return material;
@@ -215,16 +175,19 @@ std::vector<float> emissive_strengths(const fs::path& file) {
 
 }  // namespace
 
-std::vector<Material> convert_materials(const aiScene& in, const fs::path& file,
-                                        bool linear_colours, std::vector<std::string>* warnings) {
-  std::vector<Material> materials;
+MaterialsIn convert_materials(const aiScene& in, const fs::path& file, bool linear_colours,
+                              PictureStore& pictures, std::vector<std::string>* warnings) {
+  MaterialsIn out;
+  out.glow.resize(in.mNumMaterials);
+  std::vector<Material>& materials = out.materials;
   for (unsigned i = 0; i < in.mNumMaterials; ++i)
-    materials.push_back(convert(in, *in.mMaterials[i], file, linear_colours, warnings));
-  if (!linear_colours) return materials;
+    materials.push_back(
+        convert(in, *in.mMaterials[i], file, linear_colours, pictures, out.glow[i], warnings));
+  if (!linear_colours) return out;
   const std::vector<float> strengths = emissive_strengths(file);
   for (std::size_t i = 0; i < std::min(strengths.size(), materials.size()); ++i)
     materials[i].emission *= strengths[i];
-  return materials;
+  return out;
 }
 
 }  // namespace mh

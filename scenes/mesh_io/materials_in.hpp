@@ -5,17 +5,25 @@
 #include <string>
 #include <vector>
 
+#include "scenes/mesh_io/picture_in.hpp"
 #include "scenes/scene.hpp"
 
 struct aiScene;
 
 namespace mh {
 
+struct MaterialsIn {
+  std::vector<Material> materials;
+  std::vector<SharedGrid<Rgb8>> glow;  ///< of each, what its emission is multiplied with; or empty
+};
+
 /// Converts the materials of a file that assimp has read, one to one.
 /// @param file              where textures are looked for (its folder) and what warnings name.
 /// @param linear_colours    whether the file's colours are linear (glTF) or sRGB.
+/// @param pictures          decodes the textures and keeps them
 /// @param warnings          one line for every texture that is missing; may be null.
-std::vector<Material> convert_materials(const aiScene& in, const std::filesystem::path& file,
-                                        bool linear_colours, std::vector<std::string>* warnings);
+MaterialsIn convert_materials(const aiScene& in, const std::filesystem::path& file,
+                              bool linear_colours, PictureStore& pictures,
+                              std::vector<std::string>* warnings);
 
 }  // namespace mh

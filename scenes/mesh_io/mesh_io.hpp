@@ -10,6 +10,14 @@
 
 namespace mh {
 
+class PictureStore;
+
+/// What a mesh file is read for.
+struct MeshUse {
+  PictureStore* pictures = nullptr;  ///< keeps the textures for other files of the same scene
+  bool in_gazebo = false;            ///< Collada's up axis means nothing: z is up
+};
+
 /// Reads a mesh file through assimp: PLY, glTF/GLB, OBJ, DAE (and what else assimp knows). The
 /// result is z-up: glTF and DAE, which are y-up, are turned; the others are taken as they are.
 ///
@@ -35,7 +43,7 @@ namespace mh {
 /// @throws InputError for a missing file, no mesh, no faces, positions that are not finite, or
 /// labels that do not fit the mesh.
 Scene load_mesh(const std::filesystem::path& file, std::vector<std::string>* warnings = nullptr,
-                const LabelRules& rules = {});
+                const LabelRules& rules = {}, const MeshUse& use = {});
 
 /// Writes a ScanNet-like mesh: binary little-endian PLY with x y z (float) and red green blue alpha
 /// (uchar, sRGB) per vertex, faces as `uchar int vertex_indices`. The colour of a vertex is what

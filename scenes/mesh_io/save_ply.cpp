@@ -3,7 +3,6 @@
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/mesh_io/ply.hpp"
 #include "scenes/mesh_io/seen_colours.hpp"
-#include "scenes/mesh_io/subdivide.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
@@ -11,15 +10,12 @@ namespace fs = std::filesystem;
 
 void save_scannet_ply(const Scene& scene, const fs::path& file, float max_edge_m) {
   validate(scene);
-  if (max_edge_m > 0.0F) {
-    save_scannet_ply(subdivide(scene, max_edge_m), file, 0.0F);
-    return;
-  }
-  write_atomically(file, ply_bytes({.positions_m = scene.positions_m,
-                                    .colours = seen_colours(scene),
+  const Scene parted = split_for_colours(scene, max_edge_m);
+  write_atomically(file, ply_bytes({.positions_m = parted.positions_m,
+                                    .colours = seen_colours(parted),
                                     .labels = {},
-                                    .triangles = scene.triangles}));
-  save_labels(scene, labels_path(file));
+                                    .triangles = parted.triangles}));
+  save_labels(parted, labels_path(file));
 }
 
 }  // namespace mh

@@ -1,16 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/mesh_io/seen_colours.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
+#include "scenes/mesh_io/subdivide.hpp"
 #include "scenes/srgb.hpp"
 
 namespace mh {
 namespace {
 
-/// Linear colour of a texture that repeats, bilinear between texel centres.
+Rgb8 seen_colour(const Scene& scene, std::uint32_t vertex, const Material& material) {
+  Eigen::Array3f colour = linear_from_srgb(material.base_colour).array();
+  if (!material.texture.empty())
+    colour *= sample_texture(material.texture, scene.uvs[vertex]).array();
+  if (!scene.colours.empty()) colour *= linear_from_srgb(scene.colours[vertex]).array();
+  if (!scene.light.empty()) colour *= scene.light[vertex].array();
+  return srgb_from_linear((colour + material.emission.array()).matrix().eval());
+}
+
+}  // namespace
+
 Eigen::Vector3f sample_texture(const Grid2d<Rgb8>& texture, const Eigen::Vector2f& uv) {
   const float x = (uv.x() - std::floor(uv.x())) * static_cast<float>(texture.width()) - 0.5F;
   const float y = (uv.y() - std::floor(uv.y())) * static_cast<float>(texture.height()) - 0.5F;
@@ -24,16 +36,13 @@ Eigen::Vector3f sample_texture(const Grid2d<Rgb8>& texture, const Eigen::Vector2
          ty * ((1 - tx) * texel(left, top + 1) + tx * texel(left + 1, top + 1));
 }
 
-Rgb8 seen_colour(const Scene& scene, std::uint32_t vertex, const Material& material) {
-  Eigen::Array3f colour = linear_from_srgb(material.base_colour).array();
-  if (!material.texture.empty())
-    colour *= sample_texture(material.texture, scene.uvs[vertex]).array();
-  if (!scene.colours.empty()) colour *= linear_from_srgb(scene.colours[vertex]).array();
-  if (!scene.light.empty()) colour *= scene.light[vertex].array();
-  return srgb_from_linear((colour + material.emission.array()).matrix().eval());
+Scene split_for_colours(const Scene& scene, float max_edge_m) {
+  const auto has_texture = [](const Material& material) { return !material.texture.empty(); };
+  if (max_edge_m <= 0.0F ||
+      (scene.light.empty() && std::ranges::none_of(scene.materials, has_texture)))
+    return scene;
+  return subdivide(scene, max_edge_m);
 }
-
-}  // namespace
 
 std::vector<Rgb8> seen_colours(const Scene& scene) {
   constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();

@@ -8,7 +8,6 @@
 
 #include "scenes/mesh_io/ply.hpp"
 #include "scenes/mesh_io/seen_colours.hpp"
-#include "scenes/mesh_io/subdivide.hpp"
 #include "scenes/scannet/annotation.hpp"
 #include "scenes/scannet/files.hpp"
 #include "scenes/scannet/label_table.hpp"
@@ -123,13 +122,6 @@ std::string info_text() {
          "numColorFrames = 0\nnumDepthFrames = 0\nnumIMUmeasurements = 0\n";
 }
 
-/// Splitting helps colours that lie in a texture; those of vertices it would only repeat.
-bool has_more_than_vertices_show(const Scene& scene) {
-  return !scene.light.empty() || std::ranges::any_of(scene.materials, [](const Material& material) {
-    return !material.texture.empty();
-  });
-}
-
 ScannetFiles saved_files(const fs::path& folder) {
   const fs::path full = fs::absolute(folder).lexically_normal();
   return {folder, (full.has_filename() ? full : full.parent_path()).filename().string()};
@@ -148,9 +140,7 @@ std::vector<std::string> saved_scannet_names(const fs::path& folder) {
 
 void save_scannet(const Scene& scene, const fs::path& folder, float max_edge_m) {
   validate(scene);
-  Scene parted = max_edge_m > 0.0F && has_more_than_vertices_show(scene)
-                     ? subdivide(scene, max_edge_m)
-                     : scene;
+  Scene parted = split_for_colours(scene, max_edge_m);
   const std::vector<Owner> owner = part_owners(parted);
   const std::vector<std::uint32_t> segments = connected_segments(parted);
 

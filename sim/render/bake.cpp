@@ -111,8 +111,10 @@ class Baker {
         rough_(whole_packets((config.samples + 1) / 2)),
         shadow_(whole_packets(std::max(1, config.sun_samples))) {
     valid_.fill(-1);
-    for (const Light& light : scene.lights)
+    for (const Light& light : scene.lights) {
       if (light.kind == Light::Kind::kSky) sky_ += light.colour;
+      if (light.kind == Light::Kind::kAmbient) ambient_ += light.colour;
+    }
     find_albedo();
     find_glow();
   }
@@ -149,6 +151,8 @@ class Baker {
       const Vector3f other = direct_light(v, -1.0F) + gather(v, -1.0F, config_.bounces).light;
       if (luminance(light[v]) <= kDarkShare * luminance(other)) light[v] = other;
     });
+    if (!ambient_.isZero(0.0F))
+      for (Vector3f& at_vertex : light) at_vertex += ambient_;
     return light;
   }
 
@@ -197,7 +201,7 @@ class Baker {
     Vector3f irradiance = Vector3f::Zero();
     for (std::size_t l = 0; l < scene_.lights.size(); ++l) {
       const Light& light = scene_.lights[l];
-      if (light.kind == Light::Kind::kSky) continue;
+      if (light.kind == Light::Kind::kSky || light.kind == Light::Kind::kAmbient) continue;
       const Turn turn = random_turn(RandomStream(config_.seed).fork(1000 + l), v);
       irradiance +=
           light.colour * (light.kind == Light::Kind::kSun ? sun_share(light, v, side, turn)
@@ -379,7 +383,7 @@ class Baker {
   alignas(64) std::array<int, kLanes> valid_{};
   Colours albedo_;  // by material
   Colours glow_;    // by face
-  Vector3f sky_ = Vector3f::Zero();
+  Vector3f sky_ = Vector3f::Zero(), ambient_ = Vector3f::Zero();
   Colours leaving_;  // by vertex, of the round before
 };
 

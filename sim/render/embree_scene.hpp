@@ -39,7 +39,7 @@ struct CutOuts {
     std::uint16_t material = 0;
   };
   std::vector<Face> faces;                       // by primitive
-  std::vector<Grid2d<std::uint8_t>> opacity_of;  // by material
+  std::vector<SharedGrid<std::uint8_t>> opacity_of;  // by material
   bool is_hole(unsigned primitive, float u, float v) const;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 
 #include "sim/render/colour.hpp"
 
@@ -27,9 +28,23 @@ struct Surface {
   Vector3f emission = Vector3f::Zero();  // linear x exposure
 };
 
+/// Each picture once, however many materials show it: where it is, by identity.
+std::map<const void*, std::uint32_t> add_textures(const Scene& scene, TextureTable& textures) {
+  std::map<const void*, std::uint32_t> place_of;  // never iterated
+  std::vector<const Grid2d<Rgb8>*> pictures;
+  for (const Material& material : scene.materials)
+    if (!material.texture.empty() && place_of.try_emplace(material.texture.identity()).second)
+      pictures.push_back(&material.texture.grid());
+  textures.reserve(pictures);
+  for (const Grid2d<Rgb8>* picture : pictures) place_of.at(picture) = textures.add(*picture);
+  return place_of;
+}
+
 /// One per material, at least one. Without texture coordinates the textures are left out: their
 /// mean colours go into the faces' records.
 std::vector<Surface> make_surfaces(const Scene& scene, float exposure, TextureTable& textures) {
+  std::map<const void*, std::uint32_t> place_of;
+  if (!scene.uvs.empty()) place_of = add_textures(scene, textures);
   std::vector<Surface> surfaces;
   for (const Material& material : scene.materials) {
     Surface& surface = surfaces.emplace_back();
@@ -39,7 +54,7 @@ std::vector<Surface> make_surfaces(const Scene& scene, float exposure, TextureTa
     if (scene.uvs.empty()) {
       surface.base = surface.base.cwiseProduct(mean_linear(material.texture));
     } else {
-      surface.texture = textures.add(material.texture);
+      surface.texture = place_of.at(material.texture.identity());
       surface.texels = static_cast<float>(material.texture.size());
     }
   }

@@ -1,50 +1,91 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/render/texture.hpp"
 
-#include <span>
+#include <cmath>
+#include <limits>
 
 #include "sim/render/colour.hpp"
+#include "slam/core/error.hpp"
 
 namespace mh {
 namespace {
 
 using Picture = Grid2d<Eigen::Vector3f>;
 
-/// Halves the width by area averages; an odd width gives each result a share of three texels.
-Picture halve_width(const Picture& in) {
-  const int width = std::max(1, in.width() / 2);
-  Picture out(width, in.height(), Eigen::Vector3f::Zero());
-  const double step = static_cast<double>(in.width()) / width;
-  for (int x = 0; x < width; ++x) {
-    const double begin = x * step, end = begin + step;
-    for (int sx = static_cast<int>(begin); sx < in.width() && sx < end; ++sx) {
-      const double covered = std::min<double>(end, sx + 1) - std::max<double>(begin, sx);
-      const float weight = static_cast<float>(covered / step);
-      for (int y = 0; y < in.height(); ++y) out(x, y) += weight * in(sx, y);
+/// What makes a texel of a row of half the length: an odd length gives each a share of three.
+struct Halved {
+  explicit Halved(int length) : before(length), after(std::max(1, length / 2)) {}
+
+  /// Calls add(place, share) for each texel that place `at` of the shorter row takes part of.
+  template <class Add>
+  void each(int at, const Add& add) const {
+    const double step = static_cast<double>(before) / after;
+    const double begin = at * step, end = begin + step;
+    for (int from = static_cast<int>(begin); from < before && from < end; ++from) {
+      const double covered = std::min<double>(end, from + 1) - std::max<double>(begin, from);
+      add(from, static_cast<float>(covered / step));
     }
   }
+
+  int before, after;
+};
+
+/// Half the size by area averages, of a picture that `texel(x, y)` tells.
+template <class Texel>
+Picture halve(int width, int height, const Texel& texel) {
+  const Halved across(width), down(height);
+  Picture out(across.after, down.after, Eigen::Vector3f::Zero());
+  std::vector<Eigen::Vector3f> row(static_cast<std::size_t>(across.after));
+  for (int y = 0; y < down.after; ++y)
+    down.each(y, [&](int from_y, float share_y) {
+      for (int x = 0; x < across.after; ++x) {
+        Eigen::Vector3f& sum = row[static_cast<std::size_t>(x)].setZero();
+        across.each(x, [&](int from_x, float share) { sum += share * texel(from_x, from_y); });
+      }
+      for (int x = 0; x < across.after; ++x)
+        out(x, y) += share_y * row[static_cast<std::size_t>(x)];
+    });
   return out;
 }
 
-Picture transpose(const Picture& in) {
-  Picture out(in.height(), in.width(), Eigen::Vector3f::Zero());
-  for (int y = 0; y < in.height(); ++y)
-    for (int x = 0; x < in.width(); ++x) out(y, x) = in(x, y);
-  return out;
+/// Every level below a picture's own, the finest first.
+template <class Visit>
+void for_each_coarser_level(const Grid2d<Rgb8>& picture, const Visit& visit) {
+  if (picture.size() <= 1) return;
+  Picture level = halve(picture.width(), picture.height(),
+                        [&](int x, int y) { return srgb_to_linear(picture(x, y)); });
+  for (int count = 2;; ++count) {
+    visit(level);
+    if (level.size() <= 1 || count == kMipLevels) return;
+    level = halve(level.width(), level.height(),
+                  [&](int x, int y) -> const Eigen::Vector3f& { return level(x, y); });
+  }
 }
 
-Picture halve(const Picture& in) {
-  return transpose(halve_width(transpose(halve_width(in))));
+std::uint16_t sixteen_bits(float linear) {
+  return static_cast<std::uint16_t>(std::lround(linear * 65535.0F));
 }
 
-void append_wrapped(std::vector<std::uint16_t>& texels, const Picture& picture) {
-  for (int y = 0; y <= picture.height(); ++y)
-    for (int x = 0; x <= picture.width(); ++x) {
-      const Eigen::Vector3f& c = picture(x % picture.width(), y % picture.height());
-      for (int k = 0; k < 3; ++k)
-        texels.push_back(static_cast<std::uint16_t>(std::lround(c[k] * 65535.0F)));
-      texels.push_back(0);
+/// @param texel  of (x, y), as linear RGB
+template <class Texel>
+void append_wrapped(std::vector<std::uint16_t>& texels, int width, int height, const Texel& texel) {
+  for (int y = 0; y <= height; ++y)
+    for (int x = 0; x <= width; ++x) {
+      const Eigen::Vector3f& c = texel(x % width, y % height);
+      for (int k = 0; k < 3; ++k) texels.push_back(sixteen_bits(c[k]));
     }
+}
+
+/// Texels that a picture takes with all its levels.
+std::size_t texels_of(const Grid2d<Rgb8>& picture) {
+  std::size_t sum = 0;
+  int width = picture.width(), height = picture.height();
+  for (int level = 0; level < kMipLevels; ++level) {
+    sum += (static_cast<std::size_t>(width) + 1) * (static_cast<std::size_t>(height) + 1);
+    if (width == 1 && height == 1) break;
+    width = std::max(1, width / 2), height = std::max(1, height / 2);
+  }
+  return sum;
 }
 
 }  // namespace
@@ -62,18 +103,34 @@ std::vector<Grid2d<Eigen::Vector3f>> mip_pyramid(const Grid2d<Rgb8>& picture) {
   levels.emplace_back(picture.width(), picture.height(), Eigen::Vector3f::Zero());
   for (int y = 0; y < picture.height(); ++y)
     for (int x = 0; x < picture.width(); ++x) levels[0](x, y) = srgb_to_linear(picture(x, y));
-  while (levels.back().size() > 1 && levels.size() < kMipLevels)
-    levels.push_back(halve(levels.back()));
+  for_each_coarser_level(picture, [&](const Picture& level) { levels.push_back(level); });
   return levels;
+}
+
+void TextureTable::reserve(std::span<const Grid2d<Rgb8>* const> pictures) {
+  std::size_t texels = texels_.size() / 3;
+  for (const Grid2d<Rgb8>* picture : pictures) texels += texels_of(*picture);
+  if (texels > std::numeric_limits<std::int32_t>::max())
+    throw InputError("the scene's textures are too large: more than 2^31 texels");
+  texels_.reserve(3 * texels + kBehind);
 }
 
 std::uint32_t TextureTable::add(const Grid2d<Rgb8>& picture) {
   const auto first = static_cast<std::uint32_t>(levels_.size());
-  for (const Picture& level : mip_pyramid(picture)) {
-    levels_.push_back({static_cast<float>(level.width()), static_cast<float>(level.height()),
-                       static_cast<std::int32_t>(texels_.size() / 4), level.width() + 1});
-    append_wrapped(texels_, level);
-  }
+  const auto begin_level = [&](int width, int height) {
+    levels_.push_back({static_cast<float>(width), static_cast<float>(height),
+                       static_cast<std::int32_t>(texels_.size() / 3), width + 1});
+  };
+  if (!texels_.empty()) texels_.resize(texels_.size() - kBehind);
+  begin_level(picture.width(), picture.height());
+  append_wrapped(texels_, picture.width(), picture.height(),
+                 [&](int x, int y) { return srgb_to_linear(picture(x, y)); });
+  for_each_coarser_level(picture, [&](const Picture& level) {
+    begin_level(level.width(), level.height());
+    append_wrapped(texels_, level.width(), level.height(),
+                   [&](int x, int y) -> const Eigen::Vector3f& { return level(x, y); });
+  });
+  texels_.resize(texels_.size() + kBehind);
   levels_.resize(first + kMipLevels + 1, levels_.back());
   return first;
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -24,9 +25,10 @@ std::vector<Grid2d<Eigen::Vector3f>> mip_pyramid(const Grid2d<Rgb8>& picture);
 /// The pictures of a scene with their mip pyramids, filtered in linear light. They repeat. Texel
 /// centres lie at half-integers, (u, v) = (0, 0) is the outer corner of the first texel.
 ///
-/// Laid out for lookups without branches: texels are four 16-bit channels (the fourth unused), each
-/// level has a copy of its first column and row at its end, so that the neighbours of a lookup are
-/// a 16-byte load each, and the last level is repeated, so that the next coarser one always exists.
+/// Laid out for lookups without branches: texels are three 16-bit channels, each level has a copy
+/// of its first column and row at its end, so that the neighbours of a lookup are one load of 16
+/// bytes each (the last four mean nothing), and the last level is repeated, so that the next
+/// coarser one always exists.
 class TextureTable {
  public:
   /// A texture of one white texel, which every table has.
@@ -34,6 +36,9 @@ class TextureTable {
 
   TextureTable() { add(Grid2d<Rgb8>(1, 1, {255, 255, 255})); }
 
+  /// Makes room for pictures about to be added, so that the table never holds more than they need.
+  /// @throws InputError if there are more texels than it can count.
+  void reserve(std::span<const Grid2d<Rgb8>* const> pictures);
   /// @returns where the picture's level 0 is in the table.
   std::uint32_t add(const Grid2d<Rgb8>& picture);
 
@@ -70,6 +75,7 @@ class TextureTable {
 
  private:
   static constexpr float kOne = 65535.0F;
+  static constexpr std::size_t kBehind = 2;
 
   /// The filtered colour of a lane, in 16-bit numbers.
   __m128i filter(const Lookup& lookup, std::size_t lane) const {
@@ -85,7 +91,9 @@ class TextureTable {
         _mm256_mulhi_epu16(column, _mm256_shuffle_epi8(across, spread(0, 2, 4, 6)));
     const __m128i left_right =
         _mm_add_epi16(_mm256_castsi256_si128(shares), _mm256_extracti128_si256(shares, 1));
-    return _mm_add_epi16(left_right, _mm_srli_si128(left_right, 8));
+    // Left texel's three channels and the right one's: channel 3 of the sum means nothing.
+    const __m128i sum = _mm_add_epi16(left_right, _mm_srli_si128(left_right, 6));
+    return _mm_blend_epi16(sum, _mm_setzero_si128(), 1 << 3);
   }
 
   struct Level {
@@ -95,7 +103,7 @@ class TextureTable {
   };
 
   const std::uint16_t* texel(unsigned index) const {
-    return texels_.data() + 4 * static_cast<std::size_t>(index);
+    return texels_.data() + 3 * static_cast<std::size_t>(index);
   }
   /// Two neighbouring texels at each of two places.
   static __m256i pairs(const std::uint16_t* a, const std::uint16_t* b) {
@@ -103,16 +111,18 @@ class TextureTable {
         _mm256_castsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(a))),
         _mm_loadu_si128(reinterpret_cast<const __m128i*>(b)), 1);
   }
-  /// Picks the 16-bit number at byte a, b, c, d for the four channels of each of four texels.
+  /// Picks the 16-bit number at byte a, b, c, d for the three channels of each of four texels; 0
+  /// behind each two.
   static __m256i spread(int a, int b, int c, int d) {
     const auto twice = [](int at) { return static_cast<short>(at | (at + 1) << 8); };
-    return _mm256_setr_epi16(twice(a), twice(a), twice(a), twice(a), twice(b), twice(b), twice(b),
-                             twice(b), twice(c), twice(c), twice(c), twice(c), twice(d), twice(d),
-                             twice(d), twice(d));
+    constexpr short kZero = -1;
+    return _mm256_setr_epi16(twice(a), twice(a), twice(a), twice(b), twice(b), twice(b), kZero,
+                             kZero, twice(c), twice(c), twice(c), twice(d), twice(d), twice(d),
+                             kZero, kZero);
   }
 
   std::vector<Level> levels_;
-  std::vector<std::uint16_t> texels_;
+  std::vector<std::uint16_t> texels_;  // and kBehind more, lest a load reads beyond
 };
 
 }  // namespace mh

@@ -44,8 +44,9 @@ Scene full_scene() {
       .rooms = {{.name = "room", .polygon_m = {{0, 0}, {1, 0}, {1, 1}}}}};
   Material& all = scene.materials[1];
   all.base_colour = {9, 8, 7};
-  all.texture = Grid2d<Rgb8>(200, 100, {1, 2, 3});  // more than one turn of the pipe
-  all.texture(199, 99) = {5, 6, 7};
+  Grid2d<Rgb8> texture(200, 100, {1, 2, 3});  // more than one turn of the pipe
+  texture(199, 99) = {5, 6, 7};
+  all.texture = texture;
   all.opacity = Grid2d<std::uint8_t>(200, 100, 130);
   all.tile_m = {2, 3};
   all.emission = {0.1F, 0.2F, 0.3F};

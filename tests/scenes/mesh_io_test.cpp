@@ -161,9 +161,10 @@ TEST_F(MeshIo, GlbReadBackIsTheSameScene) {
 TEST_F(MeshIo, HolesOfATextureSurviveAGlb) {
   Scene scene = example_scene();
   Material& leaf = scene.materials[0];
-  leaf.opacity = Grid2d<std::uint8_t>(leaf.texture.width(), leaf.texture.height(), 255);
-  leaf.opacity(3, 2) = 0;
-  leaf.opacity(4, 2) = kOpaqueFrom - 1;
+  Grid2d<std::uint8_t> opacity(leaf.texture.width(), leaf.texture.height(), 255);
+  opacity(3, 2) = 0;
+  opacity(4, 2) = kOpaqueFrom - 1;
+  leaf.opacity = opacity;
   save_glb(scene, folder_ / "leaf.glb");
   const Scene read = load_mesh(folder_ / "leaf.glb");
   const auto& same = *std::ranges::find(read.materials, leaf.name, &Material::name);

@@ -70,7 +70,7 @@ TEST(DigestScene, SeesEveryVisibleChangeAndNothingElse) {
       [](Scene& s) { std::swap(s.triangles[0][0], s.triangles[0][1]); },
       [](Scene& s) { s.class_of[0] = 6; },
       [](Scene& s) { s.instance_of[0] = 0; },
-      [](Scene& s) { s.materials[0].texture(1, 1).b = 1; },
+      [](Scene& s) { s.materials[0].texture = Grid2d<Rgb8>(2, 2, {0, 0, 1}); },
       [](Scene& s) { s.materials[0].texture = Grid2d<Rgb8>(4, 1); },
       [](Scene& s) { s.materials[0].base_colour.r = 3; },
       [](Scene& s) { s.materials[0].emission.x() = 1; },

@@ -105,10 +105,23 @@ TEST(BakeLight, ClosedBoxOfConstantGlowIsTheGeometricSeries) {
   }
 }
 
+TEST(BakeLight, AmbientLightReachesEverySurfaceAlike) {
+  Scene scene = floor_scene();
+  add_quad(scene, {-2, -2, 0.01F}, {4, 0, 0}, {0, 4, 0}, 2, 1, 0, 40);  // lies on the floor
+  scene.lights.push_back(sphere_lamp({0, 0, 1.5F}, 2.0F));
+  Scene with = scene;
+  with.lights.push_back({.kind = Light::Kind::kAmbient, .colour = {0.5F, 0.25F, 0.125F}});
+  bake_light(scene);
+  bake_light(with);
+  for (std::size_t v = 0; v < scene.light.size(); ++v)
+    ASSERT_EQ(with.light[v], scene.light[v] + Vector3f(0.5F, 0.25F, 0.125F));
+}
+
 TEST(BakeLight, ColourOfATextureBleedsByItsMean) {
   Scene scene = plain_scene();
-  scene.materials[0].texture = Grid2d<Rgb8>(2, 1);
-  scene.materials[0].texture(0, 0) = {255, 0, 0};
+  Grid2d<Rgb8> half_red(2, 1);
+  half_red(0, 0) = {255, 0, 0};
+  scene.materials[0].texture = half_red;
   scene.materials[0].emission = {1, 1, 1};
   add_box(scene, {0, 0, 0}, {2, 2, 2}, true, 1, 1, 0, 4);
   bake_light(scene, {.bounces = 1});

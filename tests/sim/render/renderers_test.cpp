@@ -72,10 +72,11 @@ TEST_P(BothRenderers, LooksThroughTheHolesOfACutOut) {
   Material fence;
   fence.name = "fence";
   fence.texture = Grid2d<Rgb8>(4, 2, {250, 250, 250});
-  fence.opacity = Grid2d<std::uint8_t>(4, 2, 255);
-  fence.opacity(1, 0) = kOpaqueFrom - 1;
-  fence.opacity(2, 1) = 0;
-  fence.opacity(3, 1) = kOpaqueFrom;
+  Grid2d<std::uint8_t> opacity(4, 2, 255);
+  opacity(1, 0) = kOpaqueFrom - 1;
+  opacity(2, 1) = 0;
+  opacity(3, 1) = kOpaqueFrom;
+  fence.opacity = opacity;
   scene.materials.push_back(fence);
   const std::size_t before = scene.triangles.size();
   add_quad(scene, {-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, 2, 2);
@@ -305,9 +306,10 @@ TEST_P(BothRenderers, MagnifiedTextureIsBilinearInLinearLight) {
 
 TEST_P(BothRenderers, FarTextureShowsItsMeanInLinearLight) {
   Scene scene = plain_scene();
-  Grid2d<Rgb8>& texture = scene.materials[0].texture = Grid2d<Rgb8>(64, 64);
+  Grid2d<Rgb8> texture(64, 64);
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x) texture(x, y) = (x + y) % 2 ? Rgb8{255, 255, 255} : Rgb8{0, 0, 0};
+  scene.materials[0].texture = texture;
   add_quad(scene, {-50, -50, 10}, {100, 0, 0}, {0, 100, 0}, 1, 1);
   for (auto& uv : scene.uvs) uv *= 1000.0F;  // 10 cm per repeat: some 12 texels per pixel
   const RenderedFrame frame = make(scene)->render(Camera{}, kIdentity);
@@ -346,10 +348,11 @@ TEST_P(BothRenderers, RefusesACameraWithoutSizeOrFocalLength) {
 TEST_P(BothRenderers, CheckerboardHasItsColoursCellByCell) {
   // 8 x 6 cells of 8 x 8 texels; 80 px per cell, so that a pixel covers a tenth of a texel.
   Scene scene = plain_scene();
-  Grid2d<Rgb8>& texture = scene.materials[0].texture = Grid2d<Rgb8>(64, 48);
+  Grid2d<Rgb8> texture(64, 48);
   for (int y = 0; y < 48; ++y)
     for (int x = 0; x < 64; ++x)
       texture(x, y) = (x / 8 + y / 8) % 2 ? Rgb8{250, 240, 230} : Rgb8{20, 30, 40};
+  scene.materials[0].texture = texture;
   add_quad(scene, {-0.64F, -0.48F, 2}, {1.28F, 0, 0}, {0, 0.96F, 0}, 1, 1);
   const Camera camera{.fx_px = 1000, .fy_px = 1000, .distortion = {}};
   const RenderedFrame frame = make(scene)->render(camera, kIdentity);
@@ -367,9 +370,10 @@ TEST_P(BothRenderers, TexelsPerPixelChooseTheMipLevel) {
   // between the two the contrast fades with the share of level 1.
   const auto contrast = [&](double texels_per_pixel) {
     Scene scene = plain_scene();
-    Grid2d<Rgb8>& texture = scene.materials[0].texture = Grid2d<Rgb8>(64, 64);
+    Grid2d<Rgb8> texture(64, 64);
     for (int y = 0; y < 64; ++y)
       for (int x = 0; x < 64; ++x) texture(x, y) = x % 2 ? Rgb8{255, 255, 255} : Rgb8{0, 0, 0};
+    scene.materials[0].texture = texture;
     add_quad(scene, {-5, -5, 1}, {10, 0, 0}, {0, 10, 0}, 1, 1);
     const Camera camera{.fx_px = 500, .fy_px = 500, .distortion = {}};
     const double texels_per_m = texels_per_pixel * 500.0;

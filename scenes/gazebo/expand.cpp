@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/gazebo/expand.hpp"
+
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <set>
+#include <sstream>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "scenes/gazebo/find.hpp"
+#include "scenes/gazebo/look.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh::gazebo {
+namespace fs = std::filesystem;
+using tinyxml2::XMLDocument;
+using tinyxml2::XMLElement;
+
+namespace {
+
+constexpr std::size_t kMostIncludes = 10000;
+constexpr std::size_t kDeepest = 64;  // includes or models within each other
+
+constexpr const char* kSun =
+    "<sdf version='1.9'><light type='directional' name='sun'><pose>0 0 10 0 0 0</pose>"
+    "<diffuse>0.8 0.8 0.8 1</diffuse><direction>-0.5 0.1 -0.9</direction></light></sdf>";
+constexpr const char* kGroundPlane =
+    "<sdf version='1.9'><model name='ground_plane'><link name='link'><visual name='visual'>"
+    "<geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry>"
+    "<material><diffuse>0.7 0.7 0.7 1</diffuse></material></visual></link></model></sdf>";
+
+std::string text_of(const XMLElement* element) {
+  const char* text = element == nullptr ? nullptr : element->GetText();
+  if (text == nullptr) return {};
+  std::string_view trimmed = text;
+  const auto first = trimmed.find_first_not_of(" \t\r\n");
+  if (first == trimmed.npos) return {};
+  return std::string(trimmed.substr(first, trimmed.find_last_not_of(" \t\r\n") - first + 1));
+}
+
+/// A name that libsdformat lets pass.
+std::string sound_name(const char* given) {
+  std::string name = given == nullptr ? "" : given;
+  for (std::size_t at; (at = name.find("::")) != name.npos; name[at] = '_') name.erase(at, 1);
+  while (name.starts_with("__") && name.ends_with("__")) name.erase(0, 2);
+  if (name.empty()) return "unnamed";
+  return name == "world" ? "world_" : name;
+}
+
+/// A file's XML and what its parts are read with.
+struct Source {
+  fs::path file;
+  XMLDocument document;
+  bool has_frames = false;         ///< before 1.7, a pose's frame meant nothing
+  std::set<std::string> referred;  ///< names that relative_to and attached_to name
+};
+
+void gather_references(const XMLElement* element, std::set<std::string>& names) {
+  for (; element != nullptr; element = element->NextSiblingElement()) {
+    for (const char* attribute : {"relative_to", "attached_to"})
+      if (const char* name = element->Attribute(attribute)) names.insert(name);
+    gather_references(element->FirstChildElement(), names);
+  }
+}
+
+class Expander {
+ public:
+  Expander(const fs::path& world, ToldOnce& told)
+      : world_(world), told_(told), finder_(world), looks_(finder_, told) {}
+
+  Expanded run() {
+    XMLElement* root = out_.NewElement("sdf");
+    out_.InsertEndChild(root);
+    root->SetAttribute("version", "1.9");
+    XMLElement* world = root->InsertNewChildElement("world");
+    world->SetAttribute("name", "w");
+    const Source& source = read(world_);
+    std::error_code error;
+    open_.push_back(fs::weakly_canonical(world_, error));
+    Names names;
+    for (const XMLElement& part : children(*source.document.RootElement()))
+      if (std::string_view(part.Name()) == "world")
+        add_parts(part, source, *world, names);
+      else
+        add_part(part, source, *world, names);
+    tinyxml2::XMLPrinter printer(nullptr, true);
+    out_.Print(&printer);
+    return {.sdf = printer.CStr(), .visuals = visuals_};
+  }
+
+ private:
+  using Names = std::set<std::string>;  // taken in a scope
+
+  /// A range over an element's child elements.
+  struct Children {
+    const XMLElement* first;
+    struct Iterator {
+      const XMLElement* at;
+      const XMLElement& operator*() const { return *at; }
+      Iterator& operator++() {
+        at = at->NextSiblingElement();
+        return *this;
+      }
+      bool operator!=(const Iterator& other) const { return at != other.at; }
+    };
+    Iterator begin() const { return {first}; }
+    Iterator end() const { return {nullptr}; }
+  };
+  static Children children(const XMLElement& element) { return {element.FirstChildElement()}; }
+
+  [[noreturn]] static void fail(const Source& source, const XMLElement& at,
+                                const std::string& what) {
+    throw InputError(fmt::format("{}:{}: {}", source.file.string(), at.GetLineNum(), what));
+  }
+
+  static std::unique_ptr<Source> parsed(const fs::path& file, const std::string& text) {
+    auto made = std::make_unique<Source>();
+    Source& source = *made;
+    source.file = file;
+    if (source.document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
+      throw InputError(fmt::format("{}:{}: is no SDF that can be read: {}", file.string(),
+                                   std::max(source.document.ErrorLineNum(), 1),
+                                   source.document.ErrorName()));
+    const XMLElement* root = source.document.RootElement();
+    if (root == nullptr ||
+        (std::strcmp(root->Name(), "sdf") != 0 && std::strcmp(root->Name(), "gazebo") != 0))
+      throw InputError(fmt::format("{}: is no SDF: its root is no <sdf>", file.string()));
+    const char* version = root->Attribute("version");
+    int major = 1, minor = 0;
+    std::sscanf(version == nullptr ? "1.9" : version, "%d.%d", &major, &minor);
+    constexpr int kFramesSince = 7;
+    source.has_frames = major > 1 || minor >= kFramesSince;
+    gather_references(root, source.referred);
+    return made;
+  }
+
+  const Source& read(const fs::path& file) {
+    std::unique_ptr<Source>& source = sources_[file];
+    if (!source) source = parsed(file, read_file(file));
+    return *source;
+  }
+
+  std::string free_name(const char* given, Names& names) const {
+    const std::string name = sound_name(given);
+    std::string free = name;
+    for (int copy = 2; !names.insert(free).second; ++copy) free = fmt::format("{}_{}", name, copy);
+    return free;
+  }
+
+  void add_parts(const XMLElement& parent, const Source& source, XMLElement& out, Names& names) {
+    for (const XMLElement& part : children(parent)) add_part(part, source, out, names);
+  }
+
+  /// What stands in a world, a model or a file.
+  void add_part(const XMLElement& part, const Source& source, XMLElement& out, Names& names) {
+    const std::string_view kind = part.Name();
+    if (kind == "include")
+      add_include(part, source, out, names);
+    else if (kind == "model")
+      add_model(part, source, out, names, nullptr);
+    else if (kind == "link")
+      add_link(part, source, out, names);
+    else if (kind == "light")
+      add_light(part, source, out, names);
+    else if (kind == "frame")
+      add_frame(part, source, out, names);
+    else if (kind == "joint")
+      add_joint(part, source, out, names);
+    else if (kind == "scene")
+      add_scene(part, out);
+    else if (kind == "actor" || kind == "population" || kind == "road")
+      told_.tell(fmt::format("{}: {}: is not shown", source.file.string(), kind));
+  }
+
+  void add_include(const XMLElement& include, const Source& source, XMLElement& out, Names& names) {
+    const std::string uri = text_of(include.FirstChildElement("uri"));
+    if (uri.empty()) fail(source, include, "an include without a uri");
+    if (++includes_ > kMostIncludes)
+      fail(source, include, fmt::format("more than {} includes", kMostIncludes));
+    const auto found = finder_.find(uri, source.file);
+    const auto target = found ? Finder::model_file(*found) : std::nullopt;
+    if (target)
+      add_file(*target, include, source, out, names);
+    else if (const char* built_in = built_in_model(uri))
+      add_models(*parsed(source.file, built_in), include, out, names);
+    else
+      told_.tell(fmt::format("{}:{}: include {}: {}: left out", source.file.string(),
+                             include.FirstChildElement("uri")->GetLineNum(), uri,
+                             found ? fmt::format("the folder {} holds no model", found->string())
+                             : uri.starts_with("http") ? "is not in Fuel's cache"
+                                                       : "there is no such model"));
+  }
+
+  /// model://sun and model://ground_plane, also by Fuel's names.
+  static const char* built_in_model(const std::string& uri) {
+    std::string name = uri;
+    while (name.ends_with('/')) name.pop_back();
+    name = name.substr(name.rfind('/') + 1);
+    std::ranges::transform(name, name.begin(), [](unsigned char c) {
+      return c == ' ' ? '_' : static_cast<char>(std::tolower(c));
+    });
+    if (name == "sun") return kSun;
+    return name == "ground_plane" || name == "ground%20plane" ? kGroundPlane : nullptr;
+  }
+
+  void add_file(const fs::path& file, const XMLElement& include, const Source& from,
+                XMLElement& out, Names& names) {
+    std::error_code error;
+    const fs::path own = fs::weakly_canonical(file, error);
+    const bool circle = std::ranges::find(open_, own) != open_.end();
+    if (circle || open_.size() >= kDeepest) {
+      std::string chain;
+      for (const fs::path& step : open_) chain += step.string() + " includes ";
+      if (!circle) fail(from, include, fmt::format("more than {} includes deep", kDeepest));
+      throw InputError(fmt::format("{}{}: the includes lead in a circle", chain, own.string()));
+    }
+    open_.push_back(own);
+    add_models(read(file), include, out, names);
+    open_.pop_back();
+  }
+
+  void add_models(const Source& source, const XMLElement& include, XMLElement& out, Names& names) {
+    for (const XMLElement& part : children(*source.document.RootElement())) {
+      const std::string_view kind = part.Name();
+      if (kind == "model")
+        add_model(part, source, out, names, &include);
+      else if (kind == "light")
+        add_light(part, source, out, names, &include);
+    }
+  }
+
+  void add_model(const XMLElement& model, const Source& source, XMLElement& out, Names& names,
+                 const XMLElement* include) {
+    if (++depth_ > kDeepest) fail(source, model, fmt::format("models nested {} deep", kDeepest));
+    XMLElement* copy = out.InsertNewChildElement("model");
+    const std::string told_name =
+        include == nullptr ? "" : text_of(include->FirstChildElement("name"));
+    copy->SetAttribute(
+        "name",
+        free_name(told_name.empty() ? model.Attribute("name") : told_name.c_str(), names).c_str());
+    const XMLElement* pose = model.FirstChildElement("pose");
+    const std::string placed =
+        include == nullptr ? "" : text_of(include->FirstChildElement("placement_frame"));
+    if (!placed.empty())
+      copy->SetAttribute("placement_frame", placed.c_str());
+    else if (const char* frame = model.Attribute("placement_frame"))
+      copy->SetAttribute("placement_frame", frame);
+    if (include != nullptr && include->FirstChildElement("pose") != nullptr)
+      pose = include->FirstChildElement("pose");
+    if (pose != nullptr) add_pose(*pose, source, *copy);
+    Names inner;
+    add_parts(model, source, *copy, inner);
+    // libsdformat wants at least one link, or models.
+    if (copy->FirstChildElement("link") == nullptr && copy->FirstChildElement("model") == nullptr)
+      copy->InsertNewChildElement("link")->SetAttribute("name", "empty");
+    --depth_;
+  }
+
+  void add_link(const XMLElement& link, const Source& source, XMLElement& out, Names& names) {
+    XMLElement* copy = out.InsertNewChildElement("link");
+    copy->SetAttribute("name", free_name(link.Attribute("name"), names).c_str());
+    Names inner;
+    for (const XMLElement& part : children(link)) {
+      const std::string_view kind = part.Name();
+      if (kind == "pose")
+        add_pose(part, source, *copy);
+      else if (kind == "visual")
+        add_visual(part, source, *copy, inner);
+      else if (kind == "light")
+        add_light(part, source, *copy, inner);
+    }
+  }
+
+  void add_visual(const XMLElement& visual, const Source& source, XMLElement& out, Names& names) {
+    const XMLElement* geometry = visual.FirstChildElement("geometry");
+    const XMLElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
+    while (shape != nullptr && std::strcmp(shape->Name(), "empty") == 0)
+      shape = shape->NextSiblingElement();
+    if (shape == nullptr) return;
+    const char* given = visual.Attribute("name");
+    const std::string what = fmt::format("{}: link {}: visual {}", source.file.string(),
+                                         path_of(out), given == nullptr ? "" : given);
+    const std::string uri = text_of(shape->FirstChildElement("uri"));
+    const bool is_mesh = std::strcmp(shape->Name(), "mesh") == 0;
+    const auto mesh = is_mesh ? finder_.find(uri, source.file) : std::nullopt;
+    if (is_mesh && !mesh) {
+      told_.tell(fmt::format("{}: mesh {}: there is no such file: left out", what, uri));
+      return;
+    }
+    XMLElement* copy = out.InsertNewChildElement("visual");
+    copy->SetAttribute("name", free_name(given, names).c_str());
+    if (const XMLElement* pose = visual.FirstChildElement("pose")) add_pose(*pose, source, *copy);
+    if (const std::string clear = text_of(visual.FirstChildElement("transparency")); !clear.empty())
+      copy->InsertNewChildElement("transparency")->SetText(clear.c_str());
+    XMLElement* shown = copy->InsertNewChildElement("geometry");
+    shown->InsertEndChild(shape->DeepClone(&out_));
+    if (mesh)
+      shown->FirstChildElement("mesh")->FirstChildElement("uri")->SetText(mesh->string().c_str());
+    if (const XMLElement* material = visual.FirstChildElement("material"))
+      looks_.write(*material, source.file, *copy->InsertNewChildElement("material"));
+    ++visuals_;
+  }
+
+  /// MODEL/.../LINK of a link in the output.
+  static std::string path_of(const XMLElement& link) {
+    std::string path = link.Attribute("name");
+    for (const tinyxml2::XMLNode* up = link.Parent(); up != nullptr && up->ToElement() != nullptr;
+         up = up->Parent())
+      if (std::strcmp(up->Value(), "model") == 0)
+        path = fmt::format("{}/{}", up->ToElement()->Attribute("name"), path);
+    return path;
+  }
+
+  void add_light(const XMLElement& light, const Source& source, XMLElement& out, Names& names,
+                 const XMLElement* include = nullptr) {
+    if (std::strcmp(out.Name(), "model") == 0) return;  // only worlds and links have lights
+    XMLElement* copy = light.DeepClone(&out_)->ToElement();
+    out.InsertEndChild(copy);
+    copy->SetAttribute("name", free_name(light.Attribute("name"), names).c_str());
+    if (copy->Attribute("type") == nullptr) copy->SetAttribute("type", "point");
+    while (XMLElement* pose = copy->FirstChildElement("pose")) copy->DeleteChild(pose);
+    const XMLElement* placed = include == nullptr ? nullptr : include->FirstChildElement("pose");
+    if (placed == nullptr) placed = light.FirstChildElement("pose");
+    if (placed != nullptr) add_pose(*placed, source, *copy);
+  }
+
+  void add_frame(const XMLElement& frame, const Source& source, XMLElement& out, Names& names) {
+    if (!source.has_frames) return;
+    XMLElement* copy = out.InsertNewChildElement("frame");
+    copy->SetAttribute("name", free_name(frame.Attribute("name"), names).c_str());
+    if (const char* to = frame.Attribute("attached_to")) copy->SetAttribute("attached_to", to);
+    if (const XMLElement* pose = frame.FirstChildElement("pose")) add_pose(*pose, source, *copy);
+  }
+
+  /// Joints do not show, but poses may be told relative to one.
+  void add_joint(const XMLElement& joint, const Source& source, XMLElement& out, Names& names) {
+    const char* name = joint.Attribute("name");
+    if (!source.has_frames || name == nullptr || !source.referred.contains(name)) return;
+    XMLElement* copy = out.InsertNewChildElement("joint");
+    copy->SetAttribute("name", free_name(name, names).c_str());
+    copy->SetAttribute("type", "fixed");
+    for (const char* end : {"parent", "child"})
+      copy->InsertNewChildElement(end)->SetText(text_of(joint.FirstChildElement(end)).c_str());
+    if (const XMLElement* pose = joint.FirstChildElement("pose")) add_pose(*pose, source, *copy);
+  }
+
+  /// The light that reaches everything.
+  void add_scene(const XMLElement& scene, XMLElement& out) {
+    const std::string ambient = text_of(scene.FirstChildElement("ambient"));
+    if (ambient.empty() || out.FirstChildElement("scene") != nullptr) return;
+    out.InsertNewChildElement("scene")->InsertNewChildElement("ambient")->SetText(ambient.c_str());
+  }
+
+  void add_pose(const XMLElement& pose, const Source& source, XMLElement& out) {
+    const std::string text = text_of(&pose);
+    std::istringstream numbers(text);
+    std::string word;
+    constexpr int kNumbers = 6;
+    int count = 0;
+    for (; numbers >> word; ++count) {
+      char* end = nullptr;
+      if (!std::isfinite(std::strtod(word.c_str(), &end)) || *end != '\0')
+        fail(source, pose, fmt::format("pose: '{}' is no pose", text));
+    }
+    if (count == 0) return;
+    XMLElement* copy = out.InsertNewChildElement("pose");
+    std::string whole = text;
+    for (; count < kNumbers; ++count) whole += " 0";
+    copy->SetText(whole.c_str());
+    if (!source.has_frames) return;
+    for (const char* name : {"relative_to", "degrees", "rotation_format"})
+      if (const char* value = pose.Attribute(name); value != nullptr && *value != '\0')
+        copy->SetAttribute(name, value);
+  }
+
+  fs::path world_;
+  ToldOnce& told_;
+  Finder finder_;
+  LookWriter looks_;
+  XMLDocument out_;
+  std::map<fs::path, std::unique_ptr<Source>> sources_;
+  std::vector<fs::path> open_;
+  std::size_t includes_ = 0, depth_ = 0, visuals_ = 0;
+};
+
+}  // namespace
+
+Expanded expand(const fs::path& world, ToldOnce& told) {
+  return Expander(world, told).run();
+}
+
+}  // namespace mh::gazebo

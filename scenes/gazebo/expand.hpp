@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "scenes/gazebo/told_once.hpp"
+
+namespace mh::gazebo {
+
+/// A world as one SDF document that can be shown: what it includes stands in its place, each URI
+/// seen from the file that names it and written as a path; names are unique; materials of Ogre
+/// scripts are written as `diffuse` and albedo map. Left out is what does not show (inertia,
+/// collisions, sensors, plugins, joints that nobody refers to).
+///
+/// Where model://sun and model://ground_plane are not there, they are a light from above and a grey
+/// plane of 100 m. Other models and meshes that are not there are left out and told.
+/// @param visuals  how many visuals it holds
+/// @throws InputError naming file and place: no XML, includes in a circle or more than 10,000.
+struct Expanded {
+  std::string sdf;
+  std::size_t visuals = 0;
+};
+Expanded expand(const std::filesystem::path& world, ToldOnce& told);
+
+}  // namespace mh::gazebo

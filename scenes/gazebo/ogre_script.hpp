@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mh::gazebo {
+
+/// What a material of an Ogre script shows, of the little that is read.
+struct OgreMaterial {
+  std::string name;
+  std::optional<std::array<float, 4>> diffuse;  ///< RGBA
+  std::string texture;                          ///< a file's name; empty if it has none
+};
+
+/// Reads the materials of an Ogre script: of each the first pass's `diffuse` and the first
+/// `texture`, else those of its parent (`material A : B`). All else is passed over.
+std::vector<OgreMaterial> parse_ogre_script(std::string_view script);
+
+/// The plain colours that Gazebo ships as "Gazebo/NAME"; nullopt for other names.
+std::optional<OgreMaterial> stock_material(std::string_view name);
+
+}  // namespace mh::gazebo

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <sdf/Geometry.hh>
+
+#include "scenes/scene.hpp"
+
+namespace mh::gazebo {
+
+/// What is wrong with a shape's measures; nullopt if nothing. libsdformat lets any number pass.
+std::optional<std::string> fault_of(const sdf::Geometry& geometry);
+
+/// A box, capsule, cylinder, ellipsoid, plane or sphere as one object, about its own origin;
+/// nullopt for other kinds. A texture covers each side once.
+std::optional<Scene> shape_of(const sdf::Geometry& geometry, const Material& look);
+
+}  // namespace mh::gazebo

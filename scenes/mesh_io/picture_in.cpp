@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/mesh_io/picture_in.hpp"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <limits>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "scenes/picture_file.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/held_bytes.hpp"
+
+namespace mh {
+namespace {
+
+/// One channel as a picture of its own.
+Grid2d<std::uint8_t> channel_of(const cv::Mat& picture, int channel) {
+  Grid2d<std::uint8_t> values(picture.cols, picture.rows);
+  cv::Mat out(picture.rows, picture.cols, CV_8UC1, values.data());
+  cv::extractChannel(picture, out, channel);
+  return values;
+}
+
+PictureIn decoded(std::string_view bytes) {
+  if (const char* fault = picture_fault(bytes)) return {.fault = fault};
+  if (bytes.empty() || bytes.size() > std::numeric_limits<int>::max() || claims_too_much(bytes))
+    return {};
+  const std::string quiet = without_remarks(bytes);
+  const cv::Mat view(1, static_cast<int>(quiet.size()), CV_8UC1, const_cast<char*>(quiet.data()));
+  cv::Mat stored;
+  try {
+    stored = cv::imdecode(view, cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception&) {  // a size beyond OpenCV's limits
+    return {};
+  }
+  if (stored.empty()) return {};
+  if (stored.depth() == CV_16U) stored.convertTo(stored, CV_8U, 1.0 / 257.0);
+  if (stored.depth() != CV_8U) return {};
+  Grid2d<Rgb8> colour(stored.cols, stored.rows, Unfilled{});
+  cv::Mat rgb(stored.rows, stored.cols, CV_8UC3, colour.data());
+  PictureIn picture;
+  switch (stored.channels()) {
+    case 1:
+      cv::cvtColor(stored, rgb, cv::COLOR_GRAY2RGB);
+      break;
+    case 3:
+      cv::cvtColor(stored, rgb, cv::COLOR_BGR2RGB);
+      break;
+    case 4:
+      cv::cvtColor(stored, rgb, cv::COLOR_BGRA2RGB);
+      picture.opacity = channel_of(stored, 3);
+      break;
+    default:
+      return {};
+  }
+  picture.colour = std::move(colour);
+  return picture;
+}
+
+}  // namespace
+
+PictureIn PictureStore::decode(std::string_view bytes) {
+  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
+  const auto [place, is_new] = decoded_.try_emplace({hash.high64, hash.low64});
+  if (is_new) place->second = decoded(bytes);
+  return place->second;
+}
+
+PictureIn PictureStore::read(const std::filesystem::path& file) {
+  if (!is_file(file)) return {.fault = "is missing"};
+  return decode(map_file(file).view);
+}
+
+}  // namespace mh

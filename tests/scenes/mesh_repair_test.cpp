@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is mended on the way in, and what files of one scene share.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "scenes/load.hpp"
+#include "scenes/mesh_io/collada.hpp"
+#include "scenes/mesh_io/mesh_io.hpp"
+#include "scenes/picture_file.hpp"
+#include "tests/scenes/temporary_folder.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MeshRepair : public TemporaryFolder {
+ protected:
+  /// A square of two triangles; the lower one shows the picture's left half, the upper its right.
+  fs::path write_square(const std::string& name, const std::string& look) const {
+    write(name + ".mtl", "newmtl look\n" + look);
+    return write(name + ".obj",
+                 "mtllib " + name +
+                     ".mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+                     "vt 0.05 0.1\nvt 0.3 0.1\nvt 0.3 0.9\nvt 0.65 0.1\nvt 0.9 0.9\nvt 0.65 0.9\n"
+                     "usemtl look\nf 1/1 2/2 3/3\nf 1/4 3/5 4/6\n");
+  }
+};
+
+std::string ppm(int width, int height, const std::string& texels) {
+  return "P6\n" + std::to_string(width) + " " + std::to_string(height) + "\n255\n" + texels;
+}
+
+/// One triangle of one material; `color` is what stands between the tags.
+std::string collada(const std::string& color, const std::string& positions) {
+  return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><up_axis>Z_UP</up_axis></asset>
+<library_effects><effect id="e"><profile_COMMON><technique sid="c"><phong><diffuse><color sid="d">)" +
+         color +
+         R"(</color></diffuse></phong></technique></profile_COMMON></effect></library_effects>
+<library_materials><material id="m" name="m"><instance_effect url="#e"/></material></library_materials>
+<library_geometries><geometry id="g" name="g"><mesh>
+<source id="p"><float_array id="pa" count="9">)" +
+         positions + R"(</float_array><technique_common><accessor source="#pa" count="3" stride="3">
+<param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1" material="m"><input semantic="VERTEX" source="#v" offset="0"/><p>
+ 0 1 2</p></triangles></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n" name="chair_1"><instance_geometry url="#g">
+<bind_material><technique_common><instance_material symbol="m" target="#m"/></technique_common></bind_material>
+</instance_geometry></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
+TEST_F(MeshRepair, ColladaMayHaveBlanksBeforeItsNumbers) {
+  const Scene clean = load_mesh(write("a.dae", collada("1 0.5 0 1", "0 0 0 1 0 0 0 1 0")));
+  ASSERT_EQ(clean.triangles.size(), 1U);
+  EXPECT_EQ(clean.materials[clean.material_of[0]].base_colour, (Rgb8{255, 128, 0}));
+  for (const char* blank : {" ", "\n\t\t  ", "\r\n"}) {
+    const std::string color = std::string(blank) + "1 0.5  0\t1" + blank;
+    const std::string positions = std::string(blank) + "0 0 0\n1 0 0\n0 1 0" + blank;
+    EXPECT_EQ(digest(load_mesh(write("b.dae", collada(color, positions)))), digest(clean));
+  }
+  EXPECT_EQ(repaired_collada("<a> \n x </a> <b> -1 </b>  "), "<a> \n x </a> <b>-1 </b>  ");
+  EXPECT_EQ(repaired_collada(""), "");
+}
+
+TEST_F(MeshRepair, FilesOfOneSceneShareOnePictureInMemory) {
+  const std::string texture = ppm(2, 1, std::string("\x10\x20\x30\x40\x50\x60", 6));
+  write("paint.ppm", texture);
+  write("copy.ppm", texture);  // another file, the same picture
+  write_square("a", "map_Kd paint.ppm\n");
+  write_square("b", "map_Kd copy.ppm\n");
+  const Scene scene = load_scene(write("room.yaml",
+                                       "objects:\n  - {file: a.obj}\n  - {file: b.obj}\n"
+                                       "  - {file: a.obj, name: c}\n"));
+  std::vector<const void*> pictures;
+  for (const std::uint16_t material : scene.material_of)
+    pictures.push_back(scene.materials[material].texture.identity());
+  ASSERT_EQ(pictures.size(), 6U);
+  EXPECT_NE(pictures[0], nullptr);
+  EXPECT_EQ(std::ranges::count(pictures, pictures[0]), 6);
+}
+
+TEST_F(MeshRepair, PicturesFinerThanAnybodySeesAreShrunk) {
+  // 1024 texels: on a meter they stay, on 4 cm (0.04 mm each) they are halved until 0.6 mm.
+  std::string texels;
+  for (int i = 0; i < 1024 * 4; ++i) texels += std::string(3, i % 2 == 0 ? '\0' : '\xff');
+  write("fine.ppm", ppm(1024, 4, texels));
+  write("m.mtl", "newmtl look\nmap_Kd fine.ppm\n");
+  write("m.obj",
+        "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 0.00390625 0\nv 0 0.00390625 0\n"
+        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl look\nf 1/1 2/2 3/3 4/4\n");
+  const auto width = [&](const char* scale) {
+    const Scene scene = load_scene(
+        write("s.yaml", std::string("objects:\n  - {file: m.obj, scale: ") + scale + "}\n"));
+    return scene.materials[scene.material_of[0]].texture.width();
+  };
+  EXPECT_EQ(width("1"), 1024);
+  EXPECT_EQ(width("0.6"), 512);
+  EXPECT_EQ(width("0.04"), 64);
+  const Scene scene = load_scene(folder_ / "s.yaml");
+  // Area averages in linear light: half of white is sRGB 188.
+  EXPECT_EQ(scene.materials[scene.material_of[0]].texture(30, 0), (Rgb8{188, 188, 188}));
+}
+
+TEST_F(MeshRepair, EmissionIsMultipliedByItsTexture) {
+  // Left black, right linear one half (sRGB 188).
+  std::string texels;
+  for (int y = 0; y < 10; ++y)
+    for (int x = 0; x < 20; ++x) texels += std::string(3, x < 10 ? '\0' : '\xbc');
+  write("glow.ppm", ppm(20, 10, texels));
+  const Scene scene = load_mesh(write_square("lamp", "Kd 0 0 0\nKe 2 2 1\nmap_Ke glow.ppm\n"));
+  ASSERT_EQ(scene.triangles.size(), 2U);
+  const auto emission = [&](std::size_t face) {
+    return scene.materials[scene.material_of[face]].emission;
+  };
+  EXPECT_TRUE(emission(0).isZero()) << emission(0).transpose();
+  EXPECT_LT((emission(1) - Eigen::Vector3f(1, 1, 0.5F)).norm(), 0.06F) << emission(1).transpose();
+  // Without a texture all of it glows; with one that is not there nothing does, and it is told.
+  const Scene plain = load_mesh(write_square("plain", "Ke 2 2 1\n"));
+  for (const std::uint16_t material : plain.material_of)
+    EXPECT_EQ(plain.materials[material].emission, Eigen::Vector3f(2, 2, 1));
+  std::vector<std::string> warnings;
+  const Scene gone = load_mesh(write_square("gone", "Ke 2 2 1\nmap_Ke none.ppm\n"), &warnings);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(names(warnings[0], {"none.ppm", "missing"}));
+  EXPECT_TRUE(gone.materials[gone.material_of[0]].emission.isZero());
+}
+
+TEST_F(MeshRepair, APlyOfAScanWithoutTexturesKeepsItsFaces) {
+  Scene scan;
+  scan.name = "scan";
+  scan.positions_m = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
+  scan.colours = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}};
+  scan.triangles = {{0, 1, 2}};
+  scan.material_of = {0};
+  scan.class_of = {0};
+  scan.instance_of = {0};
+  scan.materials = {{.name = "scan", .texture = {}}};
+  scan.instances = {};
+  save_scannet_ply(scan, folder_ / "scan.ply");
+  const Scene same = load_mesh(folder_ / "scan.ply");
+  EXPECT_EQ(same.triangles, scan.triangles);
+  EXPECT_EQ(same.colours, scan.colours);
+}
+
+TEST(PictureFile, WhatAPngSaysBesideThePictureIsNotHeard) {
+  const std::string png = encode_png(Grid2d<std::uint8_t>(3, 2, 77));
+  const std::string damaged_profile("\0\0\0\x05iCCPx\0\0zz\x6b\x4f\x36\x1c", 17);
+  constexpr std::size_t kBehindHeader = 8 + 25;
+  const std::string remark = png.substr(0, kBehindHeader) +
+                             std::string("\0\0\0\4tEXtab\0c\xa0\x12\x2a\x3d", 16) +
+                             png.substr(kBehindHeader);
+  EXPECT_EQ(without_remarks(remark), png);
+  EXPECT_EQ(
+      without_remarks(png.substr(0, kBehindHeader) + damaged_profile + png.substr(kBehindHeader)),
+      png);
+  EXPECT_EQ(without_remarks("no PNG"), "no PNG");
+  for (std::size_t size = 0; size < png.size(); ++size) without_remarks(png.substr(0, size));
+}
+
+}  // namespace
+}  // namespace mh
