@@ -155,7 +155,6 @@ Shard parse_shard(const std::string& text) {
 
 BenchResults load_results(const Store& store, const Suite& suite) {
   std::map<std::string, std::string> key_of;
-  store.check();
   for (auto& [name, key] : store.planned_keys()) key_of[name] = key;
   BenchResults results;
   for (const RunSpec& spec : expand(suite)) {
@@ -238,6 +237,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
     pool.progress = options.progress;
     work_off(store, std::move(mine), pool);
   }
+  store.check();
   BenchResults made = load_results(store, suite);
   if (!options.figures_alone) say_what_is_gone(suite, made, options);
   return made;

@@ -48,7 +48,7 @@ std::optional<OwnedFolder> place_for(const fs::path& suite) {
     if (auto left = OwnedFolder::take(place)) {
       if (!fs::exists(place / "results.sqlite")) return left;
       try {
-        Store::open_to_read(place).check();
+        Store::open_to_read(place);
         return left;
       } catch (const InputError&) {
         left->remove();  // damaged: nothing is lost but time

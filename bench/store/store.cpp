@@ -274,6 +274,7 @@ void Store::open_unchanged() {
     bring_up_to_date(*database_);
   }
   require_schema(*database_, file_);
+  require_whole_rows(*database_, file_);
 }
 
 void Store::check() const {
@@ -437,7 +438,6 @@ void Store::check_mergeable(const std::vector<fs::path>& files) {
   std::optional<std::pair<Suite, fs::path>> first;
   for (const fs::path& file : files) {
     const Store store = open_to_read(file);
-    store.check();
     const auto keys = store.planned_keys();
     if (keys.empty()) continue;
     const Suite suite = store.planned_suite();
@@ -474,7 +474,6 @@ void Store::check_mergeable(const std::vector<fs::path>& files) {
 
 std::size_t Store::merge(const fs::path& other) {
   const Store source = open_to_read(other);
-  source.check();
   return guarded(file_, [&] {
     std::size_t taken = 0;
     SQLite::Statement attach(*database_, "ATTACH ? AS other");

@@ -47,8 +47,9 @@ class Store {
   ~Store();
   Store(Store&&) noexcept;
   /// Opens a file, or the one in a folder, without changing it: it may lie where nothing can be
-  /// written, and one of an older schema is brought up to date in a copy.
-  /// @throws InputError if it is not there.
+  /// written, and one of an older schema is brought up to date in a copy. (A log that a killed
+  /// process left beside it is taken in, as SQLite does.)
+  /// @throws InputError if it is not there; as check()
   static Store open_to_read(const std::filesystem::path& file);
   /// @throws InputError naming file, table and row if a row is not what was put.
   void check() const;
