@@ -7,10 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "scenes/find_file.hpp"
+#include "scenes/mesh_io/emissive_strength.hpp"
 #include "scenes/srgb.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -146,31 +145,6 @@ Material convert(const aiScene& in, const aiMaterial& record, const fs::path& fi
   const auto opaque = [](std::uint8_t level) { return level >= kOpaqueFrom; };
   if (std::ranges::all_of(material.opacity, opaque)) material.opacity = {};
   return material;
-}
-
-/// The JSON of a .gltf, or of a .glb's first chunk.
-std::string gltf_json(const fs::path& file) {
-  std::string bytes = read_file(file);
-  if (!bytes.starts_with("glTF") || bytes.size() < 20) return bytes;
-  std::uint32_t size = 0;
-  std::memcpy(&size, bytes.data() + 12, sizeof size);
-  return bytes.substr(20, size);
-}
-
-/// KHR_materials_emissive_strength of each material, in the file's order, which assimp keeps: it
-/// drops the strengths. Empty where none has any.
-std::vector<float> emissive_strengths(const fs::path& file) {
-  using Json = nlohmann::json;
-  std::vector<float> strengths;
-  const std::string text = gltf_json(file);
-  if (text.find("KHR_materials_emissive_strength") == text.npos) return strengths;
-  const Json json = Json::parse(text, nullptr, false);  // assimp has told what is wrong with it
-  const Json::json_pointer place("/extensions/KHR_materials_emissive_strength/emissiveStrength");
-  for (const Json& material : json.value("materials", Json::array())) {
-    const bool told = material.contains(place) && material.at(place).is_number();
-    strengths.push_back(told ? std::clamp(material.at(place).get<float>(), 0.0F, 1e6F) : 1.0F);
-  }
-  return strengths;
 }
 
 }  // namespace

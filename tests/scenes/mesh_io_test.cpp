@@ -244,19 +244,21 @@ TEST_F(MeshIo, TwoGltfMaterialsOfOneNameGlowEachAsItSays) {
   write("lamps.bin", {reinterpret_cast<const char*>(corners), sizeof corners});
   const auto file = write(
       "lamps.gltf",
-      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
-      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0},)"
-      R"({"attributes":{"POSITION":0},"material":1},{"attributes":{"POSITION":0},"material":2}]}],)"
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
+      R"("nodes":[{"mesh":0,"children":[1]},{"mesh":1}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":1}]},)"
+      R"({"primitives":[{"attributes":{"POSITION":0},"material":3},)"
+      R"({"attributes":{"POSITION":0},"material":2}]}],)"
       R"("buffers":[{"uri":"lamps.bin","byteLength":36}],)"
       R"("bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,)"
       R"("componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],"materials":[)" +
-          material("1", "8") + R"(,{"name":"lamp","emissiveFactor":[0.5,0,0]},)" +
-          material("0.25", "3") + "]}");
+          material("1", "100") + "," + material("1", "8") +
+          R"(,{"name":"lamp","emissiveFactor":[0.5,0,0]},)" + material("1", "3") + "]}");
   const Scene scene = load_mesh(file);
   std::vector<float> reds;
   for (const std::uint16_t of_face : scene.material_of)
     reds.push_back(scene.materials[of_face].emission.x());
-  EXPECT_EQ(reds, (std::vector<float>{8.0F, 0.5F, 0.75F}));
+  EXPECT_EQ(reds, (std::vector<float>{8.0F, 3.0F, 0.5F}));
 }
 
 TEST_F(MeshIo, ATextureThatIsNoPictureIsNamedAndMagenta) {
