@@ -39,8 +39,11 @@ namespace fs = std::filesystem;
 void check_places(const std::vector<Job>& jobs, InputReader& inputs,
                   const std::function<void(std::string_view)>& say) {
   std::set<std::string> programs;
-  // Of each scene: robot, tour, walk.
-  std::map<fs::path, std::set<std::tuple<fs::path, fs::path, std::optional<fs::path>>>> drives;
+  struct Uses {
+    std::set<std::tuple<fs::path, fs::path, std::optional<fs::path>>> drives;  // robot, tour, walk
+    std::set<LabelMode> labels;
+  };
+  std::map<std::pair<fs::path, SceneFrame>, Uses> uses_of;  // of each scene
   for (const Job& job : jobs) {
     const RunSpec& spec = job.spec;
     if (spec.system.kind == SystemKind::kOutside && programs.insert(spec.system.name).second)
@@ -49,17 +52,22 @@ void check_places(const std::vector<Job>& jobs, InputReader& inputs,
     const auto note = [&](const fs::path& scene, const std::optional<fs::path>& tour,
                           const std::optional<fs::path>& walk = {}) {
       if (is_generated(scene)) return;
-      auto& of_scene = drives[scene];
-      if (tour && !is_generated(*tour)) of_scene.insert({e.robot, *tour, walk});
+      Uses& uses = uses_of[{scene, e.frame}];
+      uses.labels.insert(spec.labels);
+      if (tour && !is_generated(*tour)) uses.drives.insert({e.robot, *tour, walk});
     };
     note(e.scene, e.mapping_tour, e.walk);
     note(e.scene, e.kidnapped_tour);
     note(e.query_scene.value_or(e.scene), e.query_tour);
   }
-  for (const auto& [file, of_scene] : drives) {
+  for (const auto& [place, uses] : uses_of) {
+    const auto& [file, frame] = place;
     say(fmt::format("checking {}", file.string()));
-    const std::shared_ptr<const Scene> scene = inputs.scene(file);
-    for (const auto& [robot, tour, walk] : of_scene) {
+    const std::shared_ptr<const Scene> scene = inputs.scene(file, frame);
+    for (const LabelMode labels : uses.labels)
+      if (const std::string warning = check_labels(*scene, labels); !warning.empty())
+        say("warning: " + warning);
+    for (const auto& [robot, tour, walk] : uses.drives) {
       std::vector<MovingObstacle> others;
       if (walk) others.push_back(as_obstacle(*scene, load_walk(*walk)));
       travel(*scene, load_robot(robot), tour, others);

@@ -243,7 +243,9 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
 
   const ProcessorTimer timer(run.products_s);
   // From just over the floor (noise of the depth at 4 m lies below) to the top of the head.
-  if (run.volume) run.grid = run.volume->project(0.10, world.robot.height_m);
+  const double floor_z_m = world.scene->floor.middle_m.z();
+  if (run.volume)
+    run.grid = run.volume->project(floor_z_m + 0.10, floor_z_m + world.robot.height_m);
   run.map_digest = digest_bytes(run.grid.cells.data(), run.grid.cells.size(), digest(run.estimate));
   return run;
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "scenes/floor.hpp"
+
 namespace mh {
 namespace {
 
@@ -33,6 +35,9 @@ void for_each_face_in_band(
     for (const std::uint32_t v : scene.triangles[face]) polygon.push_back(scene.positions_m[v]);
     const auto [low, high] = std::minmax({polygon[0].z(), polygon[1].z(), polygon[2].z()});
     if (high < bottom_m || low > top_m) continue;
+    if (static_cast<double>(high) <= kHighestFloor_m &&
+        static_cast<double>(low) >= -kDeepestFloor_m && is_walked_on(scene.class_of[face]))
+      continue;
     if (low < bottom_m) polygon = clip(polygon, bottom_m, 1.0F);
     if (high > top_m) polygon = clip(polygon, top_m, -1.0F);
     if (polygon.size() >= 3) visit(face, polygon);

@@ -9,13 +9,12 @@
 namespace mh {
 
 /// Hands out the part of every face that lies between two heights, as a convex polygon; faces that
-/// miss the band are left out.
+/// miss the band are left out, and so is the floor (faces of a class that is walked on, near z =
+/// 0).
+/// @pre the scene's floor is z = 0 (LevelScene)
 /// @param polygon  three to five corners, m, world, in the face's order
 void for_each_face_in_band(
     const Scene& scene, float bottom_m, float top_m,
     const std::function<void(std::size_t face, std::span<const Eigen::Vector3f> polygon)>& visit);
-
-/// What is wholly lower than this (rugs, thresholds) is driven over.
-inline constexpr float kBandBottom_m = 0.03F;
 
 }  // namespace mh

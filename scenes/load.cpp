@@ -8,6 +8,7 @@
 #include <cctype>
 #include <string_view>
 
+#include "scenes/floor.hpp"
 #include "scenes/gazebo.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/house.hpp"
@@ -22,17 +23,52 @@ namespace mh {
 
 namespace {
 
-Scene load(const std::filesystem::path& file, std::vector<std::string>* warnings) {
+/// A house has its floor at z = 0, however it is looked at.
+Scene built(Scene house, const std::filesystem::path& file, const SceneFrame& frame) {
+  if (frame.up == UpAxis::kY)
+    throw InputError(fmt::format("{}: up: y: a house is built with z up", file.string()));
+  if (frame.floor_z_m) house.floor.middle_m.z() = *frame.floor_z_m;
+  return house;
+}
+
+/// What a file of others lacks: a floor, and a room where there is none.
+Scene settled(Scene scene, const SceneFrame& frame, std::vector<std::string>* warnings) {
+  if (const auto found = find_floor(scene, frame.floor_z_m, warnings)) {
+    scene.floor = found->floor;
+    if (scene.rooms.empty() && *scene.floor.area_m2 > 0) scene.rooms.push_back(found->room);
+  } else if (!scene.positions_m.empty()) {  // nowhere to stand: things lie on what is lowest
+    const auto z = [](const Eigen::Vector3f& p) { return p.z(); };
+    scene.floor.middle_m.z() = static_cast<double>(std::ranges::min(scene.positions_m, {}, z).z());
+    scene.floor.area_m2 = 0;
+  }
+  return scene;
+}
+
+Scene turned(Scene scene, const SceneFrame& frame) {
+  if (frame.up == UpAxis::kY) turn_y_up(scene);
+  return scene;
+}
+
+Scene load(const std::filesystem::path& file, std::vector<std::string>* warnings,
+           const SceneFrame& frame) {
   if (file.native().starts_with(kGeneratedPrefix))
-    return generate_scene(parse_generated(file.native()));
-  if (is_scannet_scene(file) || is_folder(file)) return load_scannet(file, warnings);
+    return built(generate_scene(parse_generated(file.native())), file, frame);
+  if (is_scannet_scene(file) || is_folder(file))
+    return settled(turned(load_scannet(file, warnings), frame), frame, warnings);
   constexpr std::array<std::string_view, 5> kMeshes = {".dae", ".glb", ".gltf", ".obj", ".ply"};
   std::string ending = file.extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  if (std::ranges::find(kMeshes, ending) != kMeshes.end()) return load_mesh(file, warnings);
-  if (ending == ".yaml" || ending == ".yml")
-    return is_placed_scene(file) ? load_placed_scene(file, warnings) : load_house(file);
-  if (ending == ".sdf" || ending == ".world") return load_gazebo_world(file, warnings);
+  if (std::ranges::find(kMeshes, ending) != kMeshes.end())
+    return settled(load_turned_mesh(file, frame.up, warnings), frame, warnings);
+  if (ending == ".yaml" || ending == ".yml") {
+    if (!is_placed_scene(file)) return built(load_house(file), file, frame);
+    SceneFrame told = placed_frame(file);
+    if (frame.up) told.up = frame.up;
+    if (frame.floor_z_m) told.floor_z_m = frame.floor_z_m;
+    return settled(load_placed_scene(file, warnings, told.up), told, warnings);
+  }
+  if (ending == ".sdf" || ending == ".world")
+    return settled(turned(load_gazebo_world(file, warnings), frame), frame, warnings);
   throw InputError(
       fmt::format("{}: unknown kind of scene: the ending must be .yaml, .ply, .obj, .glb, .gltf, "
                   ".dae, .sdf or .world",
@@ -41,10 +77,11 @@ Scene load(const std::filesystem::path& file, std::vector<std::string>* warnings
 
 }  // namespace
 
-Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings) {
+Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings,
+                 const SceneFrame& frame) {
   std::vector<std::string> unheard;  // the same is looked at whether or not anybody listens
   try {
-    return load(file, warnings != nullptr ? warnings : &unheard);
+    return load(file, warnings != nullptr ? warnings : &unheard, frame);
   } catch (const InputError& error) {
     const std::string_view what = error.what();
     if (!what.starts_with("scene ")) throw;

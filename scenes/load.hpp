@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenes/scene.hpp"
+#include "scenes/scene_frame.hpp"
 
 namespace mh {
 
@@ -13,8 +14,13 @@ namespace mh {
 /// lists objects, a scene of mesh files (load_placed_scene); .ply .obj .glb .gltf .dae are meshes
 /// (load_mesh), .sdf .world are Gazebo's (load_gazebo_world). A folder is a ScanNet scene
 /// (load_scannet), "generated:CATEGORY:SEED" is made by code (generate_scene).
-/// @param warnings where to append what could be mended; may be null.
-/// @throws InputError if the file is missing, damaged or of another ending.
-Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings = nullptr);
+///
+/// Files of others get a floor (find_floor), and a room where they have none: the box around it.
+/// @param warnings  where to append what could be mended; may be null.
+/// @param frame     what the user tells of the file's frame
+/// @throws InputError if the file is missing, damaged or of another ending, or `frame` turns a
+/// house.
+Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings = nullptr,
+                 const SceneFrame& frame = {});
 
 }  // namespace mh

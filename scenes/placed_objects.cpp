@@ -6,11 +6,15 @@
 
 #include <fmt/format.h>
 
+#include "scenes/floor.hpp"
 #include "scenes/guard.hpp"
 #include "scenes/mesh_io/instances_in.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
+#include "scenes/mesh_io/node_name.hpp"
 #include "scenes/mesh_io/picture_in.hpp"
 #include "scenes/placed_scene_file.hpp"
+#include "scenes/scannet/files.hpp"
+#include "scenes/scannet/scannet.hpp"
 #include "scenes/thin_pictures.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/yaml.hpp"
@@ -53,6 +57,30 @@ std::vector<InstanceId> enter_objects(Scene& scene, const Scene& part, const std
   return renamed;
 }
 
+PlacedScene read(const fs::path& yaml) {
+  return read_placed_scene(YamlReader::load(yaml), yaml.parent_path(), yaml.stem().string());
+}
+
+/// A mesh, or a ScanNet scene with its labels. Where the file says of nothing what it is, the
+/// object's name may.
+Scene load_object(const PlacedObject& object, const PlacedScene& placed, std::optional<UpAxis> up,
+                  std::vector<std::string>* warnings, PictureStore* pictures) {
+  if (is_scannet_scene(object.file)) {
+    Scene scan = load_scannet(object.file, warnings);
+    if ((object.up ? object.up : up) == UpAxis::kY) turn_y_up(scan);
+    return scan;
+  }
+  Scene part = load_turned_mesh(object.file, object.up ? object.up : up, warnings, placed.rules,
+                                {.pictures = pictures});
+  const auto is_void = [](ClassId id) { return id == kVoid; };
+  if (std::ranges::all_of(part.class_of, is_void)) {
+    const ClassId named = placed.rules.find({object.name}).value_or(guess_class(object.name));
+    std::ranges::fill(part.class_of, named);
+    for (Instance& instance : part.instances) instance.class_id = named;
+  }
+  return part;
+}
+
 }  // namespace
 
 void append_part(Scene& scene, Scene part, const Eigen::Affine3d& scene_from_part,
@@ -90,20 +118,24 @@ void finish_parts(Scene& scene) {
   validate(scene);
 }
 
+SceneFrame placed_frame(const fs::path& yaml) {
+  return read(yaml).frame;
+}
+
 bool is_placed_scene(const fs::path& yaml) {
   return YamlReader::load(yaml).has("objects");
 }
 
-Scene load_placed_scene(const fs::path& yaml, std::vector<std::string>* warnings) {
-  const PlacedScene placed =
-      read_placed_scene(YamlReader::load(yaml), yaml.parent_path(), yaml.stem().string());
+Scene load_placed_scene(const fs::path& yaml, std::vector<std::string>* warnings,
+                        std::optional<UpAxis> up) {
+  const PlacedScene placed = read(yaml);
   return load_guarded(yaml, warnings, [&](std::vector<std::string>* told) {
     Scene scene;
     scene.name = placed.name;
     PictureStore pictures;
     for (const PlacedObject& object : placed.objects)
-      append_part(scene, load_mesh(object.file, told, placed.rules, {.pictures = &pictures}),
-                  object.scene_from_object, object.name, object.class_id);
+      append_part(scene, load_object(object, placed, up, told, &pictures), object.scene_from_object,
+                  object.name, object.class_id);
     finish_parts(scene);
     return scene;
   });

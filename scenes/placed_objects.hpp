@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "scenes/scene.hpp"
+#include "scenes/scene_frame.hpp"
 
 namespace mh {
 
@@ -28,8 +29,13 @@ bool is_placed_scene(const std::filesystem::path& yaml);
 
 /// Reads a scene of mesh files, each put in its place: see PlacedScene.
 /// @param warnings  where to append what could be mended; may be null
+/// @param up        of files whose objects tell nothing else
 /// @throws InputError "file:line: place: value".
 Scene load_placed_scene(const std::filesystem::path& yaml,
-                        std::vector<std::string>* warnings = nullptr);
+                        std::vector<std::string>* warnings = nullptr,
+                        std::optional<UpAxis> up = {});
+
+/// What the YAML file tells of the frame of all its objects.
+SceneFrame placed_frame(const std::filesystem::path& yaml);
 
 }  // namespace mh

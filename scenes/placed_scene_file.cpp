@@ -35,6 +35,7 @@ PlacedObject read_object(YamlReader yaml, const fs::path& folder) {
   }
   plan.scene_from_object.linear() = rotation * scale.asDiagonal();
   plan.scene_from_object.translation() = position_m;
+  plan.up = read_scene_frame(yaml).up;
   yaml.finish();
   return plan;
 }
@@ -45,6 +46,7 @@ PlacedScene read_placed_scene(YamlReader yaml, const fs::path& folder, const std
   PlacedScene scene;
   scene.name = yaml.string("name", name);
   if (const auto labels = yaml.find("labels")) scene.rules = read_label_rules(*labels);
+  scene.frame = read_scene_frame(yaml);
   std::set<std::string> names;
   for (const YamlReader& item : yaml.at("objects").items()) {
     scene.objects.push_back(read_object(item, folder));

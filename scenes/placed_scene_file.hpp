@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "scenes/mesh_io/label_rules.hpp"
+#include "scenes/scene_frame.hpp"
 #include "slam/core/labels.hpp"
 #include "slam/core/yaml.hpp"
 
@@ -20,6 +21,7 @@ struct PlacedObject {
   std::filesystem::path file;
   Eigen::Affine3d scene_from_object = Eigen::Affine3d::Identity();
   std::optional<ClassId> class_id;  ///< of the whole file; nullopt = what the file itself tells
+  std::optional<UpAxis> up;         ///< of the file
 };
 
 /// What a YAML file tells of mesh files, each to be put in its place:
@@ -33,9 +35,13 @@ struct PlacedObject {
 ///       position_m: [0, -2.4, 0]      # optional
 ///       rpy_deg: [0, 0, 180]          # optional: about the fixed axes x, y, z, in this order
 ///       scale: 1                      # optional: one number, or three
+///       up: y                         # optional: which way is up in the file; else as below
+///   up: z                             # optional: in all files that tell nothing else
+///   floor_z_m: 0                      # optional: where the floor lies, else it is looked for
 struct PlacedScene {
   std::string name;
   LabelRules rules;
+  SceneFrame frame;
   std::vector<PlacedObject> objects;
 };
 

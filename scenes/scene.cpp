@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <type_traits>
@@ -166,6 +167,8 @@ bool Room::contains(const Eigen::Vector2d& place_m) const {
 }
 
 double Scene::floor_area_m2() const {
+  const bool planned = !rooms.empty() && !std::ranges::any_of(rooms, &Room::is_box);
+  if (floor.area_m2 && !planned) return *floor.area_m2;
   double sum = 0.0;
   for (const Room& room : rooms) sum += polygon_area_m2(room.polygon_m);
   return sum;

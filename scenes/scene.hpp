@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,7 +62,21 @@ struct Light {
 struct Room {
   std::string name;
   std::vector<Eigen::Vector2d> polygon_m;  ///< inner floor outline, counter-clockwise
+  bool is_box = false;  ///< no plan was there: the polygon is only the box around a floor
   bool contains(const Eigen::Vector2d& place_m) const;
+};
+
+/// The plane that one stands and drives on. Houses that are made here have it at z = 0; for files
+/// it is found (scenes/floor.hpp).
+struct Floor {
+  Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();  ///< a place on it
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();       ///< its normal
+  /// What reaches no higher above it is part of it: rugs, thresholds, the bumps of a scan.
+  double rough_m = 0.03;
+  std::optional<double> area_m2 = {};  ///< of its faces seen from above, each place once
+
+  /// Whether the floor is the plane z = 0.
+  bool is_level_zero() const { return middle_m.z() == 0.0 && up == Eigen::Vector3d::UnitZ(); }
 };
 
 /// What there is to see: one indexed triangle mesh with a material, a class and an instance per
@@ -87,8 +102,10 @@ struct Scene {
   std::vector<Instance> instances;  ///< ordered by id; ids are 1 .. n, gaps allowed
   std::vector<Light> lights;
   std::vector<Room> rooms;  ///< empty for meshes that came without a plan
+  Floor floor;
 
-  double floor_area_m2() const;  ///< summed over rooms
+  /// Of the rooms; without a plan, of the floor's faces.
+  double floor_area_m2() const;
 };
 
 /// Checks every index and size. @throws InputError naming what is inconsistent.

@@ -40,16 +40,22 @@ void fields(Archive& archive, T& light) {
 
 template <class Archive, Either<Room> T>
 void fields(Archive& archive, T& room) {
-  auto& [name, polygon_m] = room;
-  archive(name, polygon_m);
+  auto& [name, polygon_m, is_box] = room;
+  archive(name, polygon_m, is_box);
+}
+
+template <class Archive, Either<Floor> T>
+void fields(Archive& archive, T& floor) {
+  auto& [middle_m, up, rough_m, area_m2] = floor;
+  archive(middle_m, up, rough_m, area_m2);
 }
 
 template <class Archive, Either<Scene> T>
 void fields(Archive& archive, T& scene) {
   auto& [name, positions_m, uvs, colours, light, triangles, material_of, class_of, instance_of,
-         materials, instances, lights, rooms] = scene;
+         materials, instances, lights, rooms, floor] = scene;
   archive(name, positions_m, uvs, colours, light, triangles, material_of, class_of, instance_of,
-          materials, instances, lights, rooms);
+          materials, instances, lights, rooms, floor);
 }
 
 /// Types that are stored as they lie in memory; Eigen's vectors are not trivial, but plain numbers.

@@ -8,6 +8,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/cli/scene_option.hpp"
 #include "bench/run.hpp"
 
 namespace mh::cli {
@@ -20,6 +21,7 @@ struct Options {
   std::optional<int> trials;
   std::optional<std::size_t> frames;
   std::optional<std::string> scene;
+  SceneFrameOption frame;
   std::string shard = "1/1";
   std::string cache;
   bool no_cache = false;
@@ -41,6 +43,7 @@ void run(const Options& options) {
   overrides.trials = options.trials;
   overrides.max_frames = options.frames;
   if (options.scene) overrides.scene = *options.scene;
+  overrides.frame = options.frame.frame();
   const Suite suite = load_suite(options.suite, overrides);
   BenchOptions bench;
   bench.shard = parse_shard(options.shard);
@@ -79,6 +82,7 @@ void add_bench(CLI::App& app) {
       ->add_option("--frames", options->frames, "Cuts the tours after N frames, for a quick look")
       ->check(CLI::Range(1, 100000000));
   command->add_option("--scene", options->scene, "Another scene or mesh file in the suite's place");
+  options->frame.add_to(*command);
   command->add_option("--shard", options->shard,
                       "i/n: takes run i, i + n, ... alone; `merge` puts them together");
   command->add_option("--cache", options->cache,

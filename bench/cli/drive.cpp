@@ -11,11 +11,13 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/motion_option.hpp"
+#include "bench/cli/scene_option.hpp"
 #include "bench/counted.hpp"
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/robot_readings.hpp"
 #include "bench/world/travel.hpp"
 #include "robots/model/robot.hpp"
+#include "scenes/floor.hpp"
 #include "scenes/load.hpp"
 #include "slam/core/error.hpp"
 
@@ -25,6 +27,7 @@ namespace {
 struct Options {
   std::string scene, robot, walk, out;
   MotionOption motion;
+  SceneFrameOption frame;
   std::uint64_t seed = 0;
   bool sensors = false;
   bool json = false;
@@ -51,14 +54,21 @@ void run(const Options& options) {
   const Robot robot = load_robot(options.robot);
   const std::optional<Walk> walk =
       options.walk.empty() ? std::nullopt : std::optional(load_walk(options.walk));
-  const Scene scene = load_scene(options.scene);
+  std::vector<std::string> warnings;
+  const Scene scene = load_scene(options.scene, &warnings, options.frame.frame());
+  print_warnings(warnings);
   std::vector<MovingObstacle> others;
   if (walk) others.push_back(as_obstacle(scene, *walk));
   if (const std::string note = note_on(motion, robot); !note.empty())
     fmt::print(stderr, "modelhouse: warning: {}\n", note);
   const DrivenPath path = travel(scene, robot, motion, others);
-  if (options.sensors)
-    write_readings(out, robot, read_sensors(scene, robot, path.base, options.seed, others));
+  if (options.sensors) {
+    const LevelScene level(scene);
+    Trajectory base = path.base;
+    for (TimedPose& pose : base)
+      pose.world_from_camera = level.world_from_level().inverse() * pose.world_from_camera;
+    write_readings(out, robot, read_sensors(*level, robot, base, options.seed, others));
+  }
   if (!options.out.empty()) {
     write_tum(out / "camera.tum", path.camera);
     write_tum(out / "base.tum", path.base);
@@ -106,6 +116,7 @@ void add_drive(CLI::App& app) {
       app.add_subcommand("drive", "Drives the robot through a scene, or moves a camera by hand.");
   command->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
   options->motion.add_to(*command);
+  options->frame.add_to(*command);
   command->add_option("--robot", options->robot, "Robot (YAML)")->required();
   command->add_option("--walk", options->walk,
                       "Somebody who walks about meanwhile (YAML); reflex and sensors notice him");

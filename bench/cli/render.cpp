@@ -12,6 +12,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/motion_option.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/cli/scene_option.hpp"
 #include "bench/plan/suite.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/recorded/render_sequence.hpp"
@@ -32,6 +33,7 @@ struct Options {
   std::string scene, robot, camera, level, walk, out, format = "tum", renderer = "embree";
   std::string labels = "exact";
   MotionOption motion;
+  SceneFrameOption frame;
   RenderSequenceOptions sequence;
   PngCompression png_compression;
   bool json = false;
@@ -160,7 +162,13 @@ void run(Options options) {
 
   Progress progress("render");
   progress.say(fmt::format("scene {}", options.scene));
-  const Scene scene = load_lit_scene(options.scene, options.sequence.threads);
+  std::vector<std::string> warnings;
+  const Scene scene = load_lit_scene(
+      options.scene, options.sequence.threads, Cache(), [](std::string_view) {}, &warnings,
+      options.frame.frame());
+  if (std::string warning = check_labels(scene, options.sequence.labels); !warning.empty())
+    warnings.push_back(std::move(warning));
+  for (const std::string& warning : warnings) progress.say("warning: " + warning);
   const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene, options.renderer);
   progress.say(fmt::format("moving along {}", motion));
   if (const std::string note = note_on(motion, robot); !note.empty())
@@ -227,6 +235,7 @@ void add_render(CLI::App& app) {
       "Writes what a camera sees on its way through a scene, with labels, instances and poses.");
   command->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
   options->motion.add_to(*command);
+  options->frame.add_to(*command);
   command->add_option("--robot", options->robot, "Robot (YAML): base and camera")->required();
   command->add_option("--camera", options->camera,
                       "Another of the robot's cameras, by its name in the robot's file");

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <set>
 
 #include <fmt/format.h>
@@ -11,6 +13,7 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
+#include "bench/cli/scene_option.hpp"
 #include "bench/counted.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "bench/pictures/contact_sheet.hpp"
@@ -20,6 +23,7 @@
 #include "scenes/generate/generate.hpp"
 #include "scenes/generate/grammar.hpp"
 #include "scenes/house.hpp"
+#include "scenes/labelled.hpp"
 #include "scenes/load.hpp"
 #include "scenes/mesh_io/labels_file.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
@@ -36,25 +40,46 @@ constexpr int kThreads = 2;  // for baking light; changes no bit
 
 struct Options {
   std::string scene, out, format;
+  SceneFrameOption frame;
   std::vector<std::string> scenes;  ///< preview
   bool scan_look = false;           ///< make
   int each = 0;                     ///< preview: so many of each category
   bool no_captions = false;
   std::uint64_t seed = 0;
-  bool json = false;
+  bool json = false, suggest_labels = false;
 };
 
 /// Loads and says on stderr what had to be mended.
-Scene load(const std::string& file) {
+Scene load(const std::string& file, const SceneFrameOption& frame) {
   std::vector<std::string> warnings;
-  Scene scene = load_scene(file, &warnings);
-  for (const std::string& warning : warnings)
-    fmt::print(stderr, "modelhouse: warning: {}\n", warning);
+  Scene scene = load_scene(file, &warnings, frame.frame());
+  print_warnings(warnings);
   return scene;
 }
 
+double slope_deg(const Floor& floor) {
+  return std::acos(std::min(1.0, floor.up.z())) * 180 / std::numbers::pi;
+}
+
+/// How much has a class, and the most that has none.
+void print_labelled(const LabelledSurface& surface) {
+  constexpr std::size_t kTold = 5;
+  fmt::print("  labelled   {:.1f} % of {:.1f} m2 of surface\n", 100 * surface.share(),
+             surface.area_m2);
+  for (std::size_t i = 0; i < std::min(kTold, surface.unlabelled.size()); ++i)
+    fmt::print("             {:>8.1f} m2 without a class: {}\n", surface.unlabelled[i].area_m2,
+               surface.unlabelled[i].pattern);
+  if (surface.unlabelled.size() > kTold)
+    fmt::print("             {} more: --suggest-labels\n", surface.unlabelled.size() - kTold);
+}
+
 void info(const Options& options) {
-  const Scene scene = load(options.scene);
+  const Scene scene = load(options.scene, options.frame);
+  const LabelledSurface surface = survey_labels(scene);
+  if (options.suggest_labels) {
+    fmt::print("{}", suggested_labels(surface));
+    return;
+  }
   std::map<ClassId, int> objects;
   for (const Instance& instance : scene.instances) ++objects[instance.class_id];
   if (options.json) {
@@ -64,12 +89,16 @@ void info(const Options& options) {
     for (const Room& room : scene.rooms) rooms.push_back(room.name);
     const nlohmann::ordered_json json = {{"name", scene.name},
                                          {"floor_area_m2", scene.floor_area_m2()},
+                                         {"floor_z_m", scene.floor.middle_m.z()},
+                                         {"floor_slope_deg", slope_deg(scene.floor)},
                                          {"rooms", rooms},
                                          {"triangles", scene.triangles.size()},
                                          {"vertices", scene.positions_m.size()},
                                          {"materials", scene.materials.size()},
                                          {"objects", scene.instances.size()},
                                          {"classes", by_class},
+                                         {"surface_m2", surface.area_m2},
+                                         {"labelled_share", surface.share()},
                                          {"digest", hex(digest(scene))}};
     fmt::print("{}\n", json.dump(2));
     return;
@@ -77,6 +106,11 @@ void info(const Options& options) {
   fmt::print("{}\n  floor      {:.2f} m2 in {}\n", scene.name, scene.floor_area_m2(),
              counted(scene.rooms.size(), "room"));
   for (const Room& room : scene.rooms) fmt::print("             {}\n", room.name);
+  if (!scene.floor.is_level_zero())
+    fmt::print("             at z = {:.3f} m{}\n", scene.floor.middle_m.z(),
+               slope_deg(scene.floor) > 0
+                   ? fmt::format(", sloping by {:.1f} deg", slope_deg(scene.floor))
+                   : "");
   fmt::print("  triangles  {}\n  vertices   {}\n  materials  {}\n  lights     {}\n",
              scene.triangles.size(), scene.positions_m.size(), scene.materials.size(),
              scene.lights.size());
@@ -84,6 +118,7 @@ void info(const Options& options) {
              counted(objects.size(), "class", "classes"));
   for (const auto& [id, count] : objects)
     fmt::print("             {:>4}  {}\n", count, classes()[id].name);
+  print_labelled(surface);
   fmt::print("  digest     {}\n", hex(digest(scene)));
 }
 
@@ -98,7 +133,7 @@ void preview(const Options& options) {
   if (names.empty()) throw InputError("preview: name a scene, or give --each");
   std::vector<View> gallery;
   for (const std::string& name : names) {
-    Scene scene = load(name);
+    Scene scene = load(name, options.frame);
     light_scene(scene, kThreads);
     const auto renderer = make_scene_renderer(scene);
     std::vector<View> views = views_of(scene, *renderer);
@@ -156,11 +191,11 @@ void convert(const Options& options) {
     throw InputError(fmt::format("{}: must end in .{}", options.out, format));
   if (!folder) {
     need_mesh_writable(options.out, {options.scene});
-    write_mesh(load(options.scene), options.out);
+    write_mesh(load(options.scene, options.frame), options.out);
     return;
   }
   const OutputFolder made(options.out, "scene convert", saved_scannet_names(options.out));
-  Scene scene = load(options.scene);
+  Scene scene = load(options.scene, options.frame);
   light_scene(scene, kThreads);
   save_scannet(scene, options.out);
 }
@@ -244,7 +279,10 @@ void add_scene(CLI::App& app) {
 
   CLI::App* i = command->add_subcommand("info", "Prints area, triangles, objects and classes.");
   i->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
+  options->frame.add_to(*i);
   i->add_flag("--json", options->json, "Prints JSON");
+  i->add_flag("--suggest-labels", options->suggest_labels,
+              "Prints a labels.yaml to fill: the names of what has no class, the largest first");
   i->footer("Example:\n  modelhouse scene info scenes/model_house/house.yaml --json");
   i->callback([options] { info(*options); });
 
@@ -269,6 +307,7 @@ void add_scene(CLI::App& app) {
   CLI::App* p = command->add_subcommand(
       "preview", "Draws a contact sheet: colour, depth, labels of one scene, or a view of each.");
   p->add_option("scenes", options->scenes, "Scenes: files, or generated:CATEGORY:SEED");
+  options->frame.add_to(*p);
   p->add_option("--each", options->each, "So many generated scenes of every category")
       ->check(CLI::Range(1, 1000));
   p->add_flag("--no-captions", options->no_captions,
@@ -281,6 +320,7 @@ void add_scene(CLI::App& app) {
 
   CLI::App* c = command->add_subcommand("convert", "Writes a scene as a mesh, light baked in.");
   c->add_option("scene", options->scene, "Scene (YAML), mesh file or ScanNet folder")->required();
+  options->frame.add_to(*c);
   c->add_option(
        "--out", options->out,
        "Mesh to write: .ply (ScanNet-like) or .glb; or a folder, to become a ScanNet scene")

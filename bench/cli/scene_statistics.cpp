@@ -10,13 +10,14 @@
 
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/cli/scene_option.hpp"
 #include "bench/counted.hpp"
 #include "bench/realism/survey.hpp"
 #include "bench/recorded/tum_folder.hpp"
+#include "bench/world/travel.hpp"
 #include "bench/world/world.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/generate/grammar.hpp"
-#include "sim/motion/by_hand.hpp"
 #include "sim/world/sequence.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
@@ -59,9 +60,12 @@ cv::Mat grey_of(const Grid2d<Rgb8>& colour) {
 MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const Options& options,
                             const Robot& robot, const SensorConfig& sensors) {
   constexpr std::size_t kAround = 3;  // poses before and after a moment: what blurs it
-  const Scene scene = load_lit_scene(name, options.threads, Cache(options.cache));
+  std::vector<std::string> warnings;
+  const Scene scene = load_lit_scene(
+      name, options.threads, Cache(options.cache), [](std::string_view) {}, &warnings);
+  print_warnings(warnings);
   const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene);
-  const Trajectory scan = scan_by_hand(scene, robot.camera).camera;
+  const Trajectory scan = travel(scene, robot, "handheld").camera;
   MeasuredPlace place{.name = name, .frames = {}};
   for (std::size_t k = 0; k < frames; ++k) {
     const std::size_t at = (2 * k + 1) * scan.size() / (2 * frames);

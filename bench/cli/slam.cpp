@@ -10,6 +10,7 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/cli/scene_option.hpp"
 #include "bench/cli/slam_report.hpp"
 #include "bench/counted.hpp"
 #include "bench/metrics/trajectory_io.hpp"
@@ -27,6 +28,7 @@ constexpr std::string_view kTum = "tum:", kScene = "scene:", kScannet = "scannet
 
 struct Options {
   std::string source, settings, vocabulary, out, map, save_map, truth;
+  SceneFrameOption frame;
   std::string tour, robot, level;
   std::optional<double> gamma, xi;
   bool plain = false;
@@ -81,12 +83,15 @@ Source open_source(const Options& options) {
   if (source.starts_with(kScene)) {
     if (options.tour.empty() || options.robot.empty())
       throw InputError(fmt::format("source '{}' needs --tour and --robot", source));
+    std::vector<std::string> notes;
     auto frames = open_scene({.scene = source.substr(kScene.size()),
                               .tour = options.tour,
                               .robot = options.robot,
                               .level = options.level,
-                              .seed = options.seed});
-    return {settings_beside(options, *frames, {}), std::move(frames)};
+                              .seed = options.seed,
+                              .frame = options.frame.frame()},
+                             &notes);
+    return {settings_beside(options, *frames, notes), std::move(frames)};
   }
   if (source.starts_with(kScannet)) {
     std::vector<std::string> notes;
@@ -270,6 +275,7 @@ void add_slam(CLI::App& app) {
   command->add_option("--tour", options->tour, "scene: tour (YAML)");
   command->add_option("--robot", options->robot, "scene: robot (YAML)");
   command->add_option("--level", options->level, "scene: sensor level (YAML); without: no noise");
+  options->frame.add_to(*command);
   CLI::Option* gamma =
       command->add_option("--gamma", options->gamma, "Weight of a label, equation 1")
           ->check(number_between(0.0, 1e6));

@@ -14,6 +14,7 @@
 
 #include "robots/model/wheel_base.hpp"
 #include "robots/navigation/floor_grid.hpp"
+#include "scenes/floor.hpp"
 #include "scenes/load.hpp"
 #include "sim/physics/planar_world.hpp"
 #include "slam/core/random.hpp"
@@ -84,7 +85,9 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: physics_benchmark SCENE ROBOT [DRIVES]\n");
     return 2;
   }
-  const Scene scene = load_scene(argv[1]);
+  const Scene loaded = load_scene(argv[1]);
+  const LevelScene level(loaded);
+  const Scene& scene = *level;
   const Robot robot = load_robot(argv[2]);
   const int drives = argc > 3 ? std::atoi(argv[3]) : 1000;
   const FloorGrid grid = make_floor_grid(scene, {.top_m = robot.height_m});

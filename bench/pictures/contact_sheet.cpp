@@ -15,6 +15,7 @@
 
 #include "bench/pictures/canvas.hpp"
 #include "bench/pictures/false_colours.hpp"
+#include "bench/pictures/viewpoints.hpp"
 
 namespace mh {
 namespace {
@@ -159,6 +160,12 @@ std::vector<View> views_along(const Trajectory& path, const Renderer& renderer,
 std::vector<View> views_of(const Scene& scene, const Renderer& renderer) {
   const Camera camera = wide_camera();
   std::vector<View> views;
+  if (scene.rooms.empty() || std::ranges::any_of(scene.rooms, &Room::is_box)) {
+    constexpr std::size_t kViews = 6;
+    for (const SE3& pose : viewpoints(scene, renderer, camera, kViews))
+      views.push_back(shoot(fmt::format("view {}", views.size() + 1), renderer, camera, pose));
+    return views;
+  }
   for (const Room& room : scene.rooms) {
     const Eigen::Vector2d middle = heart(room);
     std::vector<CornerView> corners;
@@ -176,20 +183,6 @@ std::vector<View> views_of(const Scene& scene, const Renderer& renderer) {
     });
     for (std::size_t i = 0; i < std::min<std::size_t>(2, corners.size()); ++i)
       views.push_back(std::move(corners[i].view));
-  }
-  if (!views.empty()) return views;
-
-  Eigen::Vector3f low = Eigen::Vector3f::Constant(std::numeric_limits<float>::max()), high = -low;
-  for (const Eigen::Vector3f& p : scene.positions_m) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const Eigen::Vector3d centre = (0.5F * (low + high)).cast<double>();
-  const Eigen::Vector3d eye(centre.x(), centre.y(), std::min<double>(low.z() + kEye_m, centre.z()));
-  for (int k = 0; k < 6; ++k) {
-    const double a = k * std::numbers::pi / 3;
-    views.push_back(shoot(fmt::format("{} deg", 60 * k), renderer, camera,
-                          look_at(eye, eye + Eigen::Vector3d(std::cos(a), std::sin(a), -0.15))));
   }
   return views;
 }

@@ -32,7 +32,7 @@ std::vector<View> views_along(const Trajectory& path, const Renderer& renderer,
                               const Camera& camera, std::size_t count);
 
 /// Exact pictures that show a scene to a person: each room from the two corners at eye height that
-/// show most of what stands in it, or turns around the middle where the scene has no rooms.
+/// show most of what stands in it; without a plan, from where most is to be seen (viewpoints).
 std::vector<View> views_of(const Scene& scene, const Renderer& renderer);
 
 /// A camera at `eye` that looks at `target`, upright.

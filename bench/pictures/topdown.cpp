@@ -261,8 +261,9 @@ void draw_header(Canvas& canvas, const World& world, const RunResult& run, Query
 
 cv::Mat draw_topdown(const World& world, const RunResult& run, QuerySet set) {
   const Bounds bounds = area_of_interest(world);
-  const std::vector<SliceSegment> walls = slice(*world.scene, kWallCut_m);
-  const std::vector<SliceSegment> furniture = slice(*world.scene, kFurnitureCut_m);
+  const double floor_z_m = world.scene->floor.middle_m.z();
+  const std::vector<SliceSegment> walls = slice(*world.scene, floor_z_m + kWallCut_m);
+  const std::vector<SliceSegment> furniture = slice(*world.scene, floor_z_m + kFurnitureCut_m);
   const PlanView view = fit(bounds);
   const double plan_height = (bounds.high.y() - bounds.low.y()) * view.px_per_m;
   Canvas canvas(kWidth, static_cast<int>(kHeader + plan_height + kFooter + 20));

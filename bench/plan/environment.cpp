@@ -10,6 +10,7 @@
 
 #include "bench/plan/names.hpp"
 #include "scenes/generate/generate.hpp"
+#include "scenes/scannet/files.hpp"
 #include "slam/core/file_errors.hpp"
 
 namespace mh {
@@ -38,6 +39,13 @@ fs::path read_source(const YamlReader& node, const SuitePaths& paths, int index)
   return resolve(text, node, paths);
 }
 
+/// A scene: a source, or a ScanNet scene's folder.
+fs::path read_scene(const YamlReader& node, const SuitePaths& paths, int index) {
+  fs::path folder = (paths.folder / with_index(node.as_string(), index)).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();  // "scene0000_00/"
+  return is_scannet_scene(folder) ? folder : read_source(node, paths, index);
+}
+
 /// A tour: a source, or a motion by its name alone (bench/world/travel.hpp).
 fs::path read_tour(const YamlReader& node, const SuitePaths& paths, int index) {
   const std::string text = with_index(node.as_string(), index);
@@ -62,6 +70,7 @@ std::vector<Environment> read_entry(YamlReader node, const SuitePaths& paths,
   if (query_scene && !query_tour) query_scene->fail("needs a query_tour");
   const auto kidnapped_tour = node.find("kidnapped_tour");
   const auto sensors = node.find("sensors"), walk = node.find("walk");
+  const SceneFrame frame = read_scene_frame(node);
   const auto robot = node.find("robot");
   if (!robot && !default_robot) node.at("robot");  // tells that it is missing
   node.finish();
@@ -70,13 +79,14 @@ std::vector<Environment> read_entry(YamlReader node, const SuitePaths& paths,
   for (int i = 0; i < count; ++i) {
     Environment e{.name = with_index(name, i),
                   .category = category,
-                  .scene = read_source(scene, paths, i),
+                  .scene = read_scene(scene, paths, i),
                   .robot = robot ? named_file(*robot, paths) : *default_robot,
                   .mapping_tour = tour ? read_tour(*tour, paths, i) : fs::path("generated:auto:0"),
+                  .frame = frame,
                   .query_tour = {}};
     check_folder_name(node, e.name);
     if (query_tour) e.query_tour = read_tour(*query_tour, paths, i);
-    if (query_scene) e.query_scene = read_source(*query_scene, paths, i);
+    if (query_scene) e.query_scene = read_scene(*query_scene, paths, i);
     if (kidnapped_tour) e.kidnapped_tour = named_file(*kidnapped_tour, paths);
     if (sensors) e.sensors = named_file(*sensors, paths);
     if (walk) e.walk = named_file(*walk, paths);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/scene_frame.hpp"
 #include "slam/core/yaml.hpp"
 
 namespace mh {
@@ -18,6 +19,7 @@ struct Environment {
   std::string name;      ///< unique in its suite, fit for a folder
   std::string category;  ///< over which means are taken: "bathroom"
   std::filesystem::path scene, robot, mapping_tour;
+  SceneFrame frame = {};                            ///< of the scenes' files
   std::optional<std::filesystem::path> query_tour;  ///< the second tour; none: held-out frames only
   // What a scenario changes.
   std::optional<std::filesystem::path> query_scene = {};  ///< of the second tour; none: the scene

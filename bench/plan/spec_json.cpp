@@ -69,16 +69,18 @@ std::optional<std::filesystem::path> path_from_json(const Json& json) {
 }
 
 Json to_json(const Environment& e) {
-  return {{"name", e.name},
-          {"category", e.category},
-          {"scene", e.scene.string()},
-          {"robot", e.robot.string()},
-          {"mapping_tour", e.mapping_tour.string()},
-          {"query_tour", path_json(e.query_tour)},
-          {"query_scene", path_json(e.query_scene)},
-          {"kidnapped_tour", path_json(e.kidnapped_tour)},
-          {"sensors", path_json(e.sensors)},
-          {"walk", path_json(e.walk)}};
+  Json json = {{"name", e.name},
+               {"category", e.category},
+               {"scene", e.scene.string()},
+               {"robot", e.robot.string()},
+               {"mapping_tour", e.mapping_tour.string()},
+               {"query_tour", path_json(e.query_tour)},
+               {"query_scene", path_json(e.query_scene)},
+               {"kidnapped_tour", path_json(e.kidnapped_tour)},
+               {"sensors", path_json(e.sensors)},
+               {"walk", path_json(e.walk)}};
+  if (e.frame != SceneFrame{}) json["frame"] = to_json(e.frame);
+  return json;
 }
 
 Environment environment_from_json(const Json& json) {
@@ -87,6 +89,7 @@ Environment environment_from_json(const Json& json) {
           .scene = json.at("scene").get<std::string>(),
           .robot = json.at("robot").get<std::string>(),
           .mapping_tour = json.at("mapping_tour").get<std::string>(),
+          .frame = json.contains("frame") ? scene_frame_from_json(json.at("frame")) : SceneFrame{},
           .query_tour = path_from_json(json.at("query_tour")),
           .query_scene = path_from_json(json.at("query_scene")),
           .kidnapped_tour = path_from_json(json.at("kidnapped_tour")),
@@ -127,6 +130,13 @@ RunSpec read(const Json& json) {
 }
 
 }  // namespace
+
+Json to_json(const SceneFrame& frame) {
+  Json json = Json::object();
+  if (frame.up) json["up"] = name(*frame.up);
+  if (frame.floor_z_m) json["floor_z_m"] = *frame.floor_z_m;
+  return json;
+}
 
 Json to_json(const SemanticConfig& s) {
   return {{"gamma", s.gamma},           {"xi", s.xi},
@@ -172,6 +182,13 @@ SemanticConfig semantics_from_json(const Json& s) {
       .beta = s.at("beta"),
       .overlap = named(s.at("overlap"), {Overlap::kLabels, Overlap::kAugmented, Overlap::kWords}),
       .void_is_a_label = s.at("void_is_a_label")};
+}
+
+SceneFrame scene_frame_from_json(const Json& json) {
+  SceneFrame frame;
+  if (json.contains("up")) frame.up = up_axis(json.at("up").get<std::string>());
+  if (json.contains("floor_z_m")) frame.floor_z_m = json.at("floor_z_m").get<double>();
+  return frame;
 }
 
 RunSpec run_spec_from_json(const Json& json) {

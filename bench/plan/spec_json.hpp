@@ -9,11 +9,14 @@ namespace mh {
 
 nlohmann::ordered_json to_json(const SemanticConfig& settings);
 nlohmann::ordered_json to_json(const ProtocolConfig& protocol);
+/// Only what is told: nothing told is {}.
+nlohmann::ordered_json to_json(const SceneFrame& frame);
 /// Everything about a run, its paths as they are: what a process of its own is given.
 nlohmann::ordered_json to_json(const RunSpec& spec);
 
 /// The other way. @throws InputError if it was not made by to_json.
 SemanticConfig semantics_from_json(const nlohmann::ordered_json& json);
+SceneFrame scene_frame_from_json(const nlohmann::ordered_json& json);
 RunSpec run_spec_from_json(const nlohmann::ordered_json& json);
 
 }  // namespace mh

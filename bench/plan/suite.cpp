@@ -7,6 +7,7 @@
 
 #include "bench/check/gate_config.hpp"
 #include "bench/plan/names.hpp"
+#include "scenes/scannet/files.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
@@ -44,12 +45,11 @@ ProtocolConfig read_protocol(YamlReader node) {
   return c;
 }
 
-void replace_scene(Suite& suite, const fs::path& scene) {
+Environment& only_environment(Suite& suite, const char* option) {
   if (suite.environments.size() != 1)
-    throw InputError(fmt::format("{}: --scene needs a suite of one environment, this has {}",
-                                 suite.file.string(), suite.environments.size()));
-  suite.environments.front().scene = scene;
-  suite.scene_replaced = true;
+    throw InputError(fmt::format("{}: {} needs a suite of one environment, this has {}",
+                                 suite.file.string(), option, suite.environments.size()));
+  return suite.environments.front();
 }
 
 }  // namespace
@@ -116,9 +116,15 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   yaml.finish();
 
   if (overrides.scene) {
-    if (files_must_exist) require_readable(*overrides.scene);
-    replace_scene(suite, *overrides.scene);
+    if (files_must_exist && !is_scannet_scene(*overrides.scene)) require_readable(*overrides.scene);
+    Environment& environment = only_environment(suite, "--scene");
+    environment.scene = *overrides.scene;
+    environment.frame = {};
+    suite.scene_replaced = true;
   }
+  if (overrides.frame.up) only_environment(suite, "--up").frame.up = overrides.frame.up;
+  if (overrides.frame.floor_z_m)
+    only_environment(suite, "--floor-z").frame.floor_z_m = overrides.frame.floor_z_m;
   if (overrides.trials) suite.trials = *overrides.trials;
   suite.max_frames = overrides.max_frames;
   return suite;

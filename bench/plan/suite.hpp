@@ -50,6 +50,7 @@ struct Suite {
 /// What the command line may put in the place of a suite's own settings.
 struct SuiteOverrides {
   std::optional<std::filesystem::path> scene = {};
+  SceneFrame frame = {};  ///< of that scene, else of the suite's only one
   std::optional<int> trials = {};
   std::optional<std::size_t> max_frames = {};
 };

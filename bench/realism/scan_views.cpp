@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kClearance_m = 0.3, kFlat_m = 0.03;
+constexpr double kClearance_m = 0.3;
 
 /// Distance to the walls from inside, below 0 outside.
 double depth_inside(const Room& room, const Vector2d& p) {
@@ -36,7 +36,9 @@ bool is_free(const Scene& scene, const Vector3d& eye) {
     const std::string_view name = classes()[instance.class_id].name;
     if (name == "wall" || name == "floor" || name == "ceiling" || name == "otherstructure")
       return false;
-    if (instance.max_m.z() <= kFlat_m || instance.min_m.z() > eye.z() + kClearance_m) return false;
+    if (instance.max_m.z() <= scene.floor.middle_m.z() + scene.floor.rough_m ||
+        instance.min_m.z() > eye.z() + kClearance_m)
+      return false;
     const Eigen::Vector2d low = instance.min_m.head<2>().cast<double>(),
                           high = instance.max_m.head<2>().cast<double>();
     return (eye.head<2>() - eye.head<2>().cwiseMax(low).cwiseMin(high)).norm() < kClearance_m;
@@ -57,7 +59,7 @@ std::vector<SE3> scan_views(const Scene& scene, std::uint64_t seed, std::size_t 
     Vector2d low = room.polygon_m.front(), high = low;
     for (const Vector2d& p : room.polygon_m) low = low.cwiseMin(p), high = high.cwiseMax(p);
     const double x = dice.number(low.x(), high.x()), y = dice.number(low.y(), high.y());
-    const Vector3d eye(x, y, dice.number(1.1, 1.6));
+    const Vector3d eye(x, y, scene.floor.middle_m.z() + dice.number(1.1, 1.6));
     const double yaw = dice.number(-std::numbers::pi, std::numbers::pi);
     const double pitch = dice.number(-30, 12) * kDegree;
     // Four numbers that nothing needs: without them a seed would give other views.

@@ -90,12 +90,15 @@ std::unique_ptr<FrameSequence> open_tum_folder(const std::filesystem::path& fold
   return std::make_unique<TumSequence>(folder, settings, notes);
 }
 
-std::unique_ptr<FrameSequence> open_scene(const SceneDrive& source) {
+std::unique_ptr<FrameSequence> open_scene(const SceneDrive& source,
+                                          std::vector<std::string>* notes) {
   SensorConfig sensors;
   sensors.depth_noise_on = sensors.colour_noise_on = false;
   if (!source.level.empty()) sensors = load_sensor_config(source.level);
   const Robot robot = load_robot(source.robot);
-  return std::make_unique<SceneSequence>(source, robot, load_lit_scene(source.scene, 2), sensors);
+  const Scene scene = load_lit_scene(
+      source.scene, 2, Cache(), [](std::string_view) {}, notes, source.frame);
+  return std::make_unique<SceneSequence>(source, robot, scene, sensors);
 }
 
 std::unique_ptr<FrameSequence> frames_in_memory(const Camera& camera,

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "scenes/scene_frame.hpp"
 #include "slam/core/camera.hpp"
 #include "slam/core/rgbd_frame.hpp"
 #include "slam/core/trajectory.hpp"
@@ -42,11 +43,14 @@ struct SceneDrive {
   std::filesystem::path scene, tour, robot;
   std::filesystem::path level;  ///< of the sensors; empty = no noise
   std::uint64_t seed = 0;       ///< of the noise
+  SceneFrame frame = {};
 };
 
 /// A scene seen by a robot along a tour, with exact labels, rendered as it is asked for.
+/// @param notes  gets what could be mended in the scene, a line each; may be null
 /// @throws InputError naming file and place.
-std::unique_ptr<FrameSequence> open_scene(const SceneDrive& source);
+std::unique_ptr<FrameSequence> open_scene(const SceneDrive& source,
+                                          std::vector<std::string>* notes = nullptr);
 
 /// Frames that lie in memory.
 std::unique_ptr<FrameSequence> frames_in_memory(const Camera& camera,

@@ -380,6 +380,11 @@ Json reproduction_json(const Suite& suite, std::span<const RunResult> runs) {
     command +=
         " --scene " + (is_generated(scene) ? shell_quoted(scene.string()) : from_anywhere(scene));
   }
+  if (suite.environments.size() == 1) {
+    const SceneFrame& frame = suite.environments.front().frame;
+    if (frame.up) command += fmt::format(" --up {}", name(*frame.up));
+    if (frame.floor_z_m) command += fmt::format(" --floor-z {}", *frame.floor_z_m);
+  }
   command += fmt::format(" --trials {}", suite.trials);
   if (suite.max_frames) command += fmt::format(" --frames {}", *suite.max_frames);
   Json seeds = Json::array(), inputs = Json::object(), files = Json::object();

@@ -62,7 +62,7 @@ SE3 busiest_view(const Scene& scene, const Renderer& renderer, const Camera& cam
     Eigen::Vector2d middle = Eigen::Vector2d::Zero();
     for (const Eigen::Vector2d& corner : room.polygon_m)
       middle += corner / static_cast<double>(room.polygon_m.size());
-    eyes.emplace_back(middle.x(), middle.y(), 1.1);
+    eyes.emplace_back(middle.x(), middle.y(), scene.floor.middle_m.z() + 1.1);
   }
   if (eyes.empty()) {
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();

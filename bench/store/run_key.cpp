@@ -21,6 +21,7 @@ nlohmann::ordered_json determining(const RunSpec& spec, std::span<const InputDig
   if (spec.system.kind == SystemKind::kOutside) json["system"]["outside"].erase("folder");
   for (const char* named : {"name", "environment", "level", "vocabulary"}) json.erase(named);
   for (const InputDigest& input : inputs) json["inputs"][input.name] = hex(input.digest);
+  if (spec.environment.frame != SceneFrame{}) json["scene_frame"] = to_json(spec.environment.frame);
   json["code"] = code_of_run();
   json["build"] = build_json();
   return json;

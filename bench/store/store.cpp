@@ -196,11 +196,13 @@ std::string as_immutable(const fs::path& file) {
 }
 
 nlohmann::ordered_json to_json(const SuiteOverrides& o) {
-  return {
+  nlohmann::ordered_json json = {
       {"scene", o.scene ? nlohmann::ordered_json(fs::absolute(*o.scene).string())
                         : nlohmann::ordered_json()},
       {"trials", o.trials ? nlohmann::ordered_json(*o.trials) : nlohmann::ordered_json()},
       {"frames", o.max_frames ? nlohmann::ordered_json(*o.max_frames) : nlohmann::ordered_json()}};
+  if (o.frame != SceneFrame{}) json["scene_frame"] = to_json(o.frame);
+  return json;
 }
 
 SuiteOverrides overrides_from_json(const nlohmann::json& json) {
@@ -208,6 +210,7 @@ SuiteOverrides overrides_from_json(const nlohmann::json& json) {
   if (!json.at("scene").is_null()) o.scene = json.at("scene").get<std::string>();
   if (!json.at("trials").is_null()) o.trials = json.at("trials").get<int>();
   if (!json.at("frames").is_null()) o.max_frames = json.at("frames").get<std::size_t>();
+  if (json.contains("scene_frame")) o.frame = scene_frame_from_json(json.at("scene_frame"));
   return o;
 }
 

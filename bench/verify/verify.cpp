@@ -2,6 +2,8 @@
 #include "bench/verify/verify.hpp"
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -112,6 +114,10 @@ ExecutionDigests digests(const Suite& suite, std::span<const RunResult> runs) {
 }
 
 Verification verify(const Suite& suite, const SuiteOverrides& overrides, BenchOptions options) {
+  // Both executions read the same files and would warn of the same.
+  options.say = [say = options.say, told = std::set<std::string>()](std::string_view what) mutable {
+    if (!what.starts_with("warning: ") || told.emplace(what).second) say(what);
+  };
   const auto tell = std::exchange(options.progress, [](double, std::size_t, std::size_t) {});
   const auto execute = [&](int jobs, double share_before) {
     options.say(fmt::format("executing with {}", counted(jobs, "job")));

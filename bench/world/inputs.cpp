@@ -64,13 +64,13 @@ std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
                        const std::function<void(const fs::path&)>& load) {
     if (source) inputs.push_back(read(name, kind, *source, load));
   };
-  const auto load_place = [this](const fs::path& file) {
+  const auto load_place = [&](const fs::path& file) {
     if (is_generated(file)) {  // of nothing but its name, and dear to make
       parse_generated(file.string());
       return;
     }
     scene_.reset();  // to be noted, it has to be read
-    scene(file);
+    scene(file, e.frame);
   };
   const auto read_motion = [](const fs::path& motion) { check_motion(motion); };
   add("robot", "robot", e.robot, [](const fs::path& file) { load_robot(file); });
@@ -97,12 +97,15 @@ std::vector<InputDigest> InputReader::inputs_of(const RunSpec& spec) {
   return inputs;
 }
 
-std::shared_ptr<const Scene> InputReader::scene(const fs::path& file) {
-  if (scene_ == nullptr || scene_file_ != file) {
+std::shared_ptr<const Scene> InputReader::scene(const fs::path& file, const SceneFrame& frame) {
+  if (scene_ == nullptr || scene_source_ != std::pair(file, frame)) {
     say_(fmt::format("reading {}", file.string()));
-    scene_.reset();  // before the next: two may be more than there is memory for
-    scene_ = std::make_shared<const Scene>(load_scene(file));
-    scene_file_ = file;
+    scene_.reset();                     // before the next: two may be more than there is memory for
+    std::vector<std::string> warnings;  // told here alone: the runs load it again
+    scene_ = std::make_shared<const Scene>(load_scene(file, &warnings, frame));
+    scene_source_ = {file, frame};
+    for (const std::string& warning : warnings)
+      if (warned_.insert(warning).second) say_("warning: " + warning);
   }
   return scene_;
 }

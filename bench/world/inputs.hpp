@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -47,8 +48,9 @@ class InputReader {
   /// Those of its place alone: neither level nor vocabulary nor program.
   std::vector<InputDigest> inputs_of(const Environment& environment);
 
-  /// A scene by its file, not lit; the one that was asked for last is kept.
-  std::shared_ptr<const Scene> scene(const std::filesystem::path& file);
+  /// A scene by its file, not lit; the one that was asked for last is kept. What had to be mended
+  /// in it is said, a line each, once.
+  std::shared_ptr<const Scene> scene(const std::filesystem::path& file, const SceneFrame& frame);
 
  private:
   InputDigest read(const char* name, const char* kind, const std::filesystem::path& source,
@@ -57,7 +59,8 @@ class InputReader {
   std::map<std::pair<std::string, std::filesystem::path>, InputDigest> known_;  // by kind, source
   std::map<std::string, std::vector<InputDigest>> of_program_;  // by the system's name
   std::function<void(std::string_view)> say_;
-  std::filesystem::path scene_file_;
+  std::pair<std::filesystem::path, SceneFrame> scene_source_;
+  std::set<std::string> warned_;
   std::shared_ptr<const Scene> scene_;
 };
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "bench/metrics/trajectory_io.hpp"
+#include "scenes/floor.hpp"
 #include "scenes/generate/generate.hpp"
 #include "sim/motion/automatic.hpp"
 #include "sim/motion/by_hand.hpp"
@@ -69,6 +70,24 @@ Motion parse(const std::string& motion) {
   return result;
 }
 
+/// @pre the scene's floor is z = 0
+DrivenPath travel_on_level(const Scene& scene, const Robot& robot, const Motion& motion,
+                           const std::vector<MovingObstacle>& others) {
+  switch (motion.kind) {
+    case Motion::Kind::kAuto:
+      return drive(scene, robot, automatic_tour(scene, robot, {.seed = motion.seed}), others);
+    case Motion::Kind::kHandheld:
+      return scan_by_hand(scene, robot.camera, {.seed = motion.seed, .frames = motion.frames});
+    case Motion::Kind::kReplay:
+      return replay(scene, robot.camera, read_tum(motion.file), motion.file.string());
+    case Motion::Kind::kCommands:
+      return drive(scene, robot, load_commands(motion.file), others).path;
+    case Motion::Kind::kTour:
+      break;
+  }
+  return drive(scene, robot, load_tour(motion.file), others);
+}
+
 }  // namespace
 
 void check_motion(const std::string& motion) {
@@ -116,20 +135,13 @@ MovingObstacle as_obstacle(const Scene& scene, const Walk& walk, double from_s) 
 
 DrivenPath travel(const Scene& scene, const Robot& robot, const std::string& motion,
                   const std::vector<MovingObstacle>& others) {
-  const Motion parsed = parse(motion);
-  switch (parsed.kind) {
-    case Motion::Kind::kAuto:
-      return drive(scene, robot, automatic_tour(scene, robot, {.seed = parsed.seed}), others);
-    case Motion::Kind::kHandheld:
-      return scan_by_hand(scene, robot.camera, {.seed = parsed.seed, .frames = parsed.frames});
-    case Motion::Kind::kReplay:
-      return replay(scene, robot.camera, read_tum(parsed.file), parsed.file.string());
-    case Motion::Kind::kCommands:
-      return drive(scene, robot, load_commands(parsed.file), others).path;
-    case Motion::Kind::kTour:
-      break;
-  }
-  return drive(scene, robot, load_tour(parsed.file), others);
+  const LevelScene level(scene);
+  DrivenPath path = travel_on_level(*level, robot, parse(motion), others);
+  if (scene.floor.is_level_zero()) return path;
+  for (Trajectory* poses : {&path.camera, &path.base})
+    for (TimedPose& pose : *poses)
+      pose.world_from_camera = level.world_from_level() * pose.world_from_camera;
+  return path;
 }
 
 }  // namespace mh

@@ -19,6 +19,7 @@ namespace mh {
 ///   the place;
 /// - `replay:FILE`: a recorded trajectory in TUM's format (replay);
 /// - `commands:FILE`: a script of velocity commands (load_commands).
+/// Places of tours and heights over the floor are told in the floor's frame (world_from_floor).
 /// The second and third also as suites write them, `generated:auto:SEED`.
 /// @param others  that move about; only a driven motion meets them
 /// @throws InputError if there is no such motion, a file is bad or the way is blocked.

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/counted.hpp"
 #include "bench/metrics/errors.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/results/fingerprint.hpp"
@@ -18,6 +19,7 @@
 #include "scenes/load.hpp"
 #include "sim/render/bake.hpp"
 #include "sim/sensors/shutter.hpp"
+#include "sim/sensors/visible_objects.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -80,10 +82,25 @@ void light_scene(Scene& scene, int threads, const Cache& cache, const Say& say) 
 }
 
 Scene load_lit_scene(const std::filesystem::path& file, int threads, const Cache& cache,
-                     const Say& say) {
-  Scene scene = load_scene(file);
+                     const Say& say, std::vector<std::string>* warnings, const SceneFrame& frame) {
+  Scene scene = load_scene(file, warnings, frame);
   light_scene(scene, threads, cache, say);
   return scene;
+}
+
+std::string check_labels(const Scene& scene, LabelMode labels) {
+  if (labels != LabelMode::kBoxes && labels != LabelMode::kDetector) return "";
+  if (std::ranges::all_of(scene.instance_of, [](InstanceId id) { return id == 0; }))
+    throw InputError(fmt::format(
+        "{}: labels '{}' are boxes around objects, and its faces belong to none: all would be "
+        "background; use 'exact' or 'none'",
+        scene.name, name(labels)));
+  const auto& of = scene.instances;
+  if (std::ranges::any_of(of, [](const Instance& i) { return is_coco(i.class_id); })) return "";
+  return fmt::format(
+      "{}: none of its {} is of a class that a detector knows: labels '{}' are background "
+      "everywhere",
+      scene.name, counted(of.size(), "object"), name(labels));
 }
 
 std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene, std::string_view renderer) {
@@ -139,16 +156,15 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
     world.sensors = input("sensors", *environment.sensors,
                           [&] { return load_sensor_config(*environment.sensors); });
   world.robot.camera = with_lens(world.robot.camera, world.sensors);
-  std::optional<Tour> kidnapped_tour;
   if (environment.kidnapped_tour)
-    kidnapped_tour = input("kidnapped_tour", *environment.kidnapped_tour,
-                           [&] { return load_tour(*environment.kidnapped_tour); });
+    input("kidnapped_tour", *environment.kidnapped_tour,
+          [&] { return load_tour(*environment.kidnapped_tour); });
   std::optional<Walk> walk;
   if (environment.walk)
     walk = input("walk", *environment.walk, [&] { return load_walk(*environment.walk); });
 
   const auto lit_scene = [&](const char* name, const std::filesystem::path& file) {
-    Scene scene = input(name, file, [&] { return load_scene(file); });
+    Scene scene = input(name, file, [&] { return load_scene(file, nullptr, environment.frame); });
     light_scene(scene, threads, cache, say);
     return std::make_shared<const Scene>(std::move(scene));
   };
@@ -172,9 +188,9 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   world.mapping = input("mapping_tour", environment.mapping_tour, [&] {
     return travel(*scene, world.robot, environment.mapping_tour, walker(0));
   });
-  if (kidnapped_tour) {
-    const DrivenPath elsewhere =
-        drive(*scene, world.robot, *kidnapped_tour, walker(world.mapping.camera.size()));
+  if (environment.kidnapped_tour) {
+    const DrivenPath elsewhere = travel(*scene, world.robot, environment.kidnapped_tour->string(),
+                                        walker(world.mapping.camera.size()));
     world.mapping = joined(std::move(world.mapping), elsewhere, rate_hz);
   }
   lose_frames(world.mapping);

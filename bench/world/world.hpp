@@ -13,8 +13,10 @@
 #include "bench/results/run_result.hpp"
 #include "robots/model/robot.hpp"
 #include "scenes/scene.hpp"
+#include "scenes/scene_frame.hpp"
 #include "sim/motion/motion.hpp"
 #include "sim/render/renderer.hpp"
+#include "sim/sensors/labels.hpp"
 #include "sim/sensors/sensors.hpp"
 #include "sim/world/walker.hpp"
 #include "slam/vocabulary/vocabulary.hpp"
@@ -57,9 +59,17 @@ void light_scene(
     const Say& say = [](std::string_view) {});
 
 /// A scene ready to be looked at: loaded and lit. @throws InputError naming file and place.
+/// @param warnings, frame  as of load_scene
 Scene load_lit_scene(
     const std::filesystem::path& file, int threads, const Cache& cache = Cache(),
-    const Say& say = [](std::string_view) {});
+    const Say& say = [](std::string_view) {}, std::vector<std::string>* warnings = nullptr,
+    const SceneFrame& frame = {});
+
+/// Whether boxes can be drawn in a scene, by a detector or exactly: that needs objects.
+/// @returns a warning where it has some, but none of a class that a detector knows (COCO's); else
+/// ""
+/// @throws InputError where it has no objects, so that all would be background.
+std::string check_labels(const Scene& scene, LabelMode labels);
 
 /// A renderer with the exposure that suits the scene; one that shows its own colours unlit is shown
 /// as it is.

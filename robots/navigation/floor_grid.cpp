@@ -8,10 +8,11 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include "scenes/band.hpp"
+#include "scenes/floor.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
@@ -20,14 +21,17 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3f;
 
-constexpr double kFloorReach_m = 0.1;    // floor this near counts as floor: closes gaps of twice it
-constexpr float kDeepestFloor_m = 0.3F;  // scanned floors are not level
-constexpr double kLevel = 0.85;          // cosine of the slope up to which a face is floor
+constexpr double kFloorReach_m = 0.1;  // floor this near counts as floor: closes gaps of twice it
+constexpr double kLevel = 0.85;        // cosine of the slope up to which a face is floor
 constexpr int kMostCells = 4096;
 
-bool is_floor(const std::array<Vector3f, 3>& p) {
+bool is_floor(const Scene& scene, std::size_t face, const std::array<Vector3f, 3>& p) {
+  const double highest_m =
+      is_walked_on(scene.class_of[face]) ? kHighestFloor_m : scene.floor.rough_m;
   for (const Vector3f& corner : p)
-    if (corner.z() > kBandBottom_m || corner.z() < -kDeepestFloor_m) return false;
+    if (corner.z() > static_cast<float>(highest_m) ||
+        corner.z() < -static_cast<float>(kDeepestFloor_m))
+      return false;
   const Eigen::Vector3d n = (p[1] - p[0]).cross(p[2] - p[0]).cast<double>();
   return std::abs(n.z()) >= kLevel * n.norm() && n.norm() > 0;
 }
@@ -50,11 +54,14 @@ Bounds floor_bounds(const Scene& scene) {
   Bounds floor, rooms;
   for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
     const auto p = corners(scene, face);
-    if (!is_floor(p)) continue;
+    if (!is_floor(scene, face, p)) continue;
     for (const Vector3f& corner : p) floor.include(corner.head<2>().cast<double>());
   }
   if (!(floor.low.array() < floor.high.array()).all())
-    throw InputError(fmt::format("{}: has no level floor near z = 0 to stand on", scene.name));
+    throw InputError(
+        fmt::format("{}: has no level floor to stand on: if there is one, tell its "
+                    "height by floor_z_m (--floor-z)",
+                    scene.name));
   for (const Room& room : scene.rooms)
     for (const Vector2d& corner : room.polygon_m) rooms.include(corner);
   if (scene.rooms.empty()) return floor;
@@ -198,7 +205,7 @@ FloorGrid make_floor_grid(const Scene& scene, const FloorGridConfig& config) {
   Grid2d<std::uint8_t> floor(w, h), blocked(w, h);
   for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
     const auto p = corners(scene, face);
-    if (is_floor(p)) for_each_cell(grid, p, [&](int x, int y) { floor(x, y) = 1; });
+    if (is_floor(scene, face, p)) for_each_cell(grid, p, [&](int x, int y) { floor(x, y) = 1; });
   }
   const Grid2d<float> to_floor = distances(floor);
   const auto inside = [&](int x, int y) {
@@ -208,7 +215,7 @@ FloorGrid make_floor_grid(const Scene& scene, const FloorGridConfig& config) {
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x)
       blocked(x, y) = to_floor(x, y) * config.resolution_m > kFloorReach_m || !inside(x, y);
-  for_each_face_in_band(scene, static_cast<float>(config.bottom_m),
+  for_each_face_in_band(scene, static_cast<float>(config.bottom_m.value_or(scene.floor.rough_m)),
                         static_cast<float>(config.top_m),
                         [&](std::size_t face, std::span<const Vector3f> polygon) {
                           for_each_cell(grid, polygon, [&](int x, int y) {

@@ -13,8 +13,9 @@ namespace mh {
 struct FloorGridConfig {
   double resolution_m = 0.04;  ///< side of a cell, 0.005 to 1
   // What is wholly above or below is no obstacle.
-  double bottom_m = 0.03;  ///< above rugs and thresholds, as in PlanarWorld
-  double top_m = 1.21;     ///< the robot's height
+  /// None: above the floor's roughness (rugs, thresholds), as in PlanarWorld.
+  std::optional<double> bottom_m = {};
+  double top_m = 1.21;  ///< the robot's height
 };
 
 /// The floor of a scene from above: how far each cell is from the nearest place where nothing can
@@ -41,8 +42,10 @@ struct FloorGrid {
 };
 
 /// Draws every face between the floor and the robot's head as an obstacle (each cell that it
-/// touches) and every level face near z = 0 as floor; gaps of up to 0.2 m in the floor, as scanned
-/// meshes have, are closed. Where the scene has rooms, nothing beyond their bounds counts as floor.
+/// touches) and every face of the floor, which is level and near z = 0, as floor; gaps of up to 0.2
+/// m in the floor, as scanned meshes have, are closed. Where the scene has rooms, nothing beyond
+/// their bounds counts as floor.
+/// @pre the scene's floor is z = 0 (LevelScene)
 /// @throws InputError if there is no floor, or it is larger than 4096 cells either way.
 FloorGrid make_floor_grid(const Scene& scene, const FloorGridConfig& config = {});
 

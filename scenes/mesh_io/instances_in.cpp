@@ -30,10 +30,12 @@ void rooms_from_floors(Scene& scene) {
     const Eigen::Vector3f size = instance.max_m - instance.min_m;
     if (instance.class_id != floor || size.x() * size.y() < kLeastRoom_m2) continue;
     const Eigen::Vector3d low = instance.min_m.cast<double>(), high = instance.max_m.cast<double>();
-    scene.rooms.push_back(
-        {.name = instance.name.substr(0, instance.name.find('/')),
-         .polygon_m = {
-             {low.x(), low.y()}, {high.x(), low.y()}, {high.x(), high.y()}, {low.x(), high.y()}}});
+    scene.rooms.push_back({.name = instance.name.substr(0, instance.name.find('/')),
+                           .polygon_m = {{low.x(), low.y()},
+                                         {high.x(), low.y()},
+                                         {high.x(), high.y()},
+                                         {low.x(), high.y()}},
+                           .is_box = true});
   }
 }
 

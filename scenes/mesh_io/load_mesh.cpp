@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "scenes/floor.hpp"
 #include "scenes/guard.hpp"
 #include "scenes/mesh_io/collada.hpp"
 #include "scenes/mesh_io/glow.hpp"
@@ -21,6 +22,7 @@
 #include "scenes/mesh_io/node_name.hpp"
 #include "scenes/mesh_io/noted_files.hpp"
 #include "scenes/mesh_io/ply.hpp"
+#include "scenes/mesh_io/ply_labels.hpp"
 #include "scenes/srgb.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
@@ -80,9 +82,23 @@ std::optional<InstanceId> extra_instance(const aiMetadata& extras) {
 NodeLabel label_of(const aiNode& node) {
   NodeLabel label = parse_node_name(node.mName.C_Str());
   if (node.mMetaData == nullptr) return label;
-  if (const auto id = extra_class(*node.mMetaData)) label.class_id = *id;
+  if (const auto id = extra_class(*node.mMetaData)) {
+    label.class_id = *id;
+    label.is_told = true;
+  }
   if (const auto id = extra_instance(*node.mMetaData)) label.instance = *id;
   return label;
+}
+
+/// What the names around a node tell that its own does not: of the mesh, then of the nodes above,
+/// the nearest first, but for "floor", which is what storeys are called. The uppermost is named by
+/// the file's writer or the file.
+ClassId guess_around(const aiNode& node, const aiMesh& mesh) {
+  ClassId found = guess_class(mesh.mName.C_Str());
+  for (const aiNode* above = node.mParent; found == kVoid && above != nullptr && above->mParent;
+       above = above->mParent)
+    if (const ClassId id = label_of(*above).class_id; id != class_by_name("floor")) found = id;
+  return found;
 }
 
 /// Walks the nodes of a file and gathers their meshes into one scene.
@@ -124,6 +140,7 @@ class Gatherer {
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
       const aiMesh& mesh = *in_.mMeshes[node.mMeshes[i]];
       NodeLabel label = label_of(node);
+      if (!label.is_told && label.class_id == kVoid) label.class_id = guess_around(node, mesh);
       if (const auto told = rules_.find({label.name, mesh.mName.C_Str(), material_name(mesh)}))
         label.class_id = *told;
       const auto [place, is_new] = instance_of.try_emplace(label.class_id, InstanceId{0});
@@ -275,8 +292,8 @@ void whiten_default_material(const Format& format, Scene& scene) {
       material.base_colour = {255, 255, 255};
 }
 
-/// A PLY's vertices as a scene that knows no objects.
-Scene scene_of(PlyMesh mesh, const fs::path& file) {
+/// A PLY as a scene that knows the objects that the PLY tells.
+Scene scene_of(PlyMesh mesh, const fs::path& file, std::vector<std::string>* warnings) {
   Scene scene;
   scene.name = file.stem().string();
   scene.positions_m = std::move(mesh.positions_m);
@@ -287,6 +304,7 @@ Scene scene_of(PlyMesh mesh, const fs::path& file) {
   scene.class_of.assign(faces, kVoid);
   scene.instance_of.assign(faces, 0);
   scene.materials.push_back({.name = "vertex colours", .texture = {}});
+  if (!is_there(labels_path(file))) label_ply(scene, mesh, file, warnings);
   return scene;
 }
 
@@ -331,15 +349,27 @@ Scene load_mesh(const fs::path& file, std::vector<std::string>* warnings, const 
   const Format format = format_of(file);
   if (format.ply) {
     const HeldBytes held = map_file(file);
-    if (is_plain_binary_ply(held.view)) {
+    if (is_plain_ply(held.view)) {
       PlyMesh mesh = parse_ply(held.view, file.string());
       warn_of_bytes_left(mesh, file, warnings);
-      return finished(scene_of(std::move(mesh), file), file);
+      return finished(scene_of(std::move(mesh), file, warnings), file);
     }
   }
   return load_guarded(file, warnings, [&](std::vector<std::string>* told) {
     return load_foreign(file, format, rules, use, told);
   });
+}
+
+Scene load_turned_mesh(const fs::path& file, std::optional<UpAxis> up,
+                       std::vector<std::string>* warnings, const LabelRules& rules,
+                       const MeshUse& use) {
+  Scene scene = load_mesh(file, warnings, rules, use);
+  const bool turned = format_of(file).y_up;
+  if (up && (*up == UpAxis::kY) != turned) turn_y_up(scene, turned);
+  if (!up && !turned && warnings != nullptr && looks_y_up(scene))
+    warnings->push_back(
+        fmt::format("{}: looks as if y were up: try up: y (--up y)", file.string()));
+  return scene;
 }
 
 }  // namespace mh

@@ -7,6 +7,7 @@
 
 #include "scenes/mesh_io/label_rules.hpp"
 #include "scenes/scene.hpp"
+#include "scenes/scene_frame.hpp"
 
 namespace mh {
 
@@ -44,6 +45,11 @@ struct MeshUse {
 /// labels that do not fit the mesh.
 Scene load_mesh(const std::filesystem::path& file, std::vector<std::string>* warnings = nullptr,
                 const LabelRules& rules = {}, const MeshUse& use = {});
+
+/// The same of a file whose way up is told.
+Scene load_turned_mesh(const std::filesystem::path& file, std::optional<UpAxis> up,
+                       std::vector<std::string>* warnings = nullptr, const LabelRules& rules = {},
+                       const MeshUse& use = {});
 
 /// Writes a ScanNet-like mesh: binary little-endian PLY with x y z (float) and red green blue alpha
 /// (uchar, sRGB) per vertex, faces as `uchar int vertex_indices`. The colour of a vertex is what

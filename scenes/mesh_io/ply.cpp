@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -12,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/mesh_io/ply_header.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/held_bytes.hpp"
 
@@ -21,185 +21,14 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "values are read and written as they lie");
 
-enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
-
-std::optional<Type> type_by_name(std::string_view name) {
-  constexpr std::pair<std::string_view, Type> kNames[] = {
-      {"char", Type::kInt8},     {"int8", Type::kInt8},     {"uchar", Type::kUint8},
-      {"uint8", Type::kUint8},   {"short", Type::kInt16},   {"int16", Type::kInt16},
-      {"ushort", Type::kUint16}, {"uint16", Type::kUint16}, {"int", Type::kInt32},
-      {"int32", Type::kInt32},   {"uint", Type::kUint32},   {"uint32", Type::kUint32},
-      {"float", Type::kFloat},   {"float32", Type::kFloat}, {"double", Type::kDouble},
-      {"float64", Type::kDouble}};
-  for (const auto& [known, type] : kNames)
-    if (known == name) return type;
-  return std::nullopt;
-}
-
-std::size_t size_of(Type type) {
-  switch (type) {
-    case Type::kInt8:
-    case Type::kUint8:
-      return 1;
-    case Type::kInt16:
-    case Type::kUint16:
-      return 2;
-    case Type::kInt32:
-    case Type::kUint32:
-    case Type::kFloat:
-      return 4;
-    case Type::kDouble:
-      return 8;
-  }
-  return 0;
-}
-
-template <class T>
-T load(const char* at) {
-  T value;
-  std::memcpy(&value, at, sizeof value);
-  return value;
-}
-
-/// Any scalar as a number that holds it exactly.
-double load_number(Type type, const char* at) {
-  switch (type) {
-    case Type::kInt8:
-      return load<std::int8_t>(at);
-    case Type::kUint8:
-      return load<std::uint8_t>(at);
-    case Type::kInt16:
-      return load<std::int16_t>(at);
-    case Type::kUint16:
-      return load<std::uint16_t>(at);
-    case Type::kInt32:
-      return load<std::int32_t>(at);
-    case Type::kUint32:
-      return load<std::uint32_t>(at);
-    case Type::kFloat:
-      return load<float>(at);
-    case Type::kDouble:
-      return load<double>(at);
-  }
-  return 0;
-}
-
-struct Property {
-  std::string name;
-  Type type = Type::kInt8;           ///< of the value, or of a list's items
-  std::optional<Type> count_type{};  ///< set for a list
-  std::size_t offset = 0;            ///< within the record; lists have none
-};
-
-struct Element {
-  std::string name;
-  std::uint64_t count = 0;
-  std::vector<Property> properties;
-  bool has_list = false;
-  std::size_t stride = 0;  ///< bytes of a record; without lists only
-
-  const Property* find(std::string_view wanted) const {
-    const auto found = std::ranges::find(properties, wanted, &Property::name);
-    return found == properties.end() ? nullptr : &*found;
-  }
-};
-
-struct Header {
-  bool binary_little_endian = false;
-  std::vector<Element> elements;
-  std::size_t size = 0;  ///< bytes up to and with the line end of end_header
-};
-
-/// Splits a header line at blanks.
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  std::size_t at = 0;
-  while ((at = line.find_first_not_of(" \t\r", at)) != line.npos) {
-    const std::size_t end = std::min(line.find_first_of(" \t\r", at), line.size());
-    words.push_back(line.substr(at, end - at));
-    at = end;
-  }
-  return words;
-}
-
-class HeaderParser {
- public:
-  HeaderParser(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
-
-  Header parse() {
-    if (!bytes_.starts_with("ply\n") && !bytes_.starts_with("ply\r\n"))
-      throw InputError(fmt::format("{}:1: is no PLY: the first line must be 'ply'", name_));
-    next_line();
-    for (;;) {
-      const auto words = words_of(next_line());
-      if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
-      if (words[0] == "end_header") break;
-      if (words[0] == "format" && words.size() == 3)
-        header_.binary_little_endian = words[1] == "binary_little_endian" && words[2] == "1.0";
-      else if (words[0] == "element" && words.size() == 3)
-        add_element(words);
-      else if (words[0] == "property")
-        add_property(words);
-      else
-        fail(fmt::format("'{}' is no line of a PLY header", words[0].substr(0, 40)));
-    }
-    header_.size = at_;
-    return std::move(header_);
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(fmt::format("{}:{}: {}", name_, line_, what));
-  }
-
-  std::string_view next_line() {
-    const std::size_t end = bytes_.find('\n', at_);
-    ++line_;
-    if (end == bytes_.npos || end - at_ > 4096) fail("the header has no end_header");
-    const std::string_view line = bytes_.substr(at_, end - at_);
-    at_ = end + 1;
-    return line;
-  }
-
-  void add_element(const std::vector<std::string_view>& words) {
-    Element element{.name = std::string(words[1]), .count = 0, .properties = {}};
-    const char* end = words[2].data() + words[2].size();
-    const auto [stop, error] = std::from_chars(words[2].data(), end, element.count);
-    if (error != std::errc() || stop != end)
-      fail(fmt::format("'{}' is no number of elements", words[2].substr(0, 40)));
-    header_.elements.push_back(std::move(element));
-  }
-
-  Type type_of(std::string_view word) const {
-    const auto type = type_by_name(word);
-    if (!type) fail(fmt::format("'{}' is no type", word.substr(0, 40)));
-    return *type;
-  }
-
-  void add_property(const std::vector<std::string_view>& words) {
-    if (header_.elements.empty()) fail("a property before the first element");
-    Element& element = header_.elements.back();
-    if (words.size() == 5 && words[1] == "list") {
-      const Type count_type = type_of(words[2]);
-      if (count_type == Type::kFloat || count_type == Type::kDouble)
-        fail("a list counts in whole numbers");
-      element.has_list = true;
-      element.properties.push_back({std::string(words[4]), type_of(words[3]), count_type});
-    } else if (words.size() == 3) {
-      const Type type = type_of(words[1]);
-      element.properties.push_back({std::string(words[2]), type, {}, element.stride});
-      element.stride += size_of(type);
-    } else {
-      fail("a property needs a type and a name");
-    }
-  }
-
-  std::string_view bytes_;
-  const std::string& name_;
-  Header header_;
-  std::size_t at_ = 0;
-  int line_ = 0;
-};
+using ply::Element;
+using ply::Encoding;
+using ply::Header;
+using ply::load;
+using ply::load_number;
+using ply::Property;
+using ply::size_of;
+using ply::Type;
 
 /// Reads the elements after the header.
 class BodyParser {
@@ -263,7 +92,14 @@ class BodyParser {
       read_positions(begin, element.stride, axes);
       read_colours(begin, element);
     }
-    if (parts_.labels) read_labels(begin, element);
+    if (!parts_.labels) return;
+    const auto ids = [&](std::string_view property, auto& values) {
+      if (const Property* found = element.find(property))
+        read_ids(begin, element.stride, *found, values);
+    };
+    ids("label", mesh_.labels);
+    ids("NYU40", mesh_.nyu40);
+    ids("objectId", mesh_.objects);
   }
 
   void read_positions(const char* begin, std::size_t stride,
@@ -306,21 +142,24 @@ class BodyParser {
     }
   }
 
-  void read_labels(const char* begin, const Element& element) {
-    const Property* label = element.find("label");
-    if (label == nullptr) return;
-    mesh_.labels.resize(vertices_);
+  template <class T>
+  void read_ids(const char* begin, std::size_t stride, const Property& property,
+                std::vector<T>& ids) const {
+    ids.resize(vertices_);
     for (std::size_t i = 0; i < vertices_; ++i) {
-      const char* at = begin + i * element.stride + label->offset;
-      if (label->type == Type::kUint16) {
-        mesh_.labels[i] = load<std::uint16_t>(at);
-        continue;
-      }
-      const double value = load_number(label->type, at);
-      if (!(value >= 0 && value <= 65535) || value != std::floor(value))
-        fail(fmt::format("vertex {} has label {}, which is no 16-bit id", i, value));
-      mesh_.labels[i] = static_cast<std::uint16_t>(value);
+      const char* at = begin + i * stride + property.offset;
+      ids[i] = property.type == Type::kUint16
+                   ? static_cast<T>(load<std::uint16_t>(at))
+                   : id_of<T>(load_number(property.type, at), property, "vertex", i);
     }
+  }
+
+  template <class T>
+  T id_of(double value, const Property& property, const char* what, std::uint64_t i) const {
+    if (!(value >= 0 && value <= std::numeric_limits<T>::max()) || value != std::floor(value))
+      fail(fmt::format("{} {} has {} {}, which is no {}-bit id", what, i, property.name, value,
+                       8 * sizeof(T)));
+    return static_cast<T>(value);
   }
 
   void read_faces(const Element& element) {
@@ -385,9 +224,12 @@ class BodyParser {
   }
 
   void read_face(const Element& element, const Property* indices, std::uint64_t face) {
+    std::optional<std::uint32_t> object;
     for (const Property& property : element.properties) {
       if (!property.count_type) {
         need_bytes(size_of(property.type), element, face);
+        if (parts_.labels && property.name == "object_id")
+          object = object_of(load_number(property.type, body_.data() + at_), property, face);
         at_ += size_of(property.type);
         continue;
       }
@@ -405,6 +247,12 @@ class BodyParser {
       for (std::size_t k = 2; k < list.count; ++k)
         mesh_.triangles.push_back({corner(0), corner(k - 1), corner(k)});
     }
+    if (object) mesh_.face_objects.resize(mesh_.triangles.size(), *object);
+  }
+
+  /// Negative ids stand for no object.
+  std::uint32_t object_of(double value, const Property& property, std::uint64_t face) const {
+    return value < 0 ? kNoObject : id_of<std::uint32_t>(value, property, "face", face);
   }
 
   void skip(const Element& element) {
@@ -432,24 +280,27 @@ class BodyParser {
 
 }  // namespace
 
-bool is_plain_binary_ply(std::string_view bytes) {
+bool is_plain_ply(std::string_view bytes) {
   try {
     const std::string name;
-    const Header header = HeaderParser(bytes, name).parse();
-    for (const Element& element : header.elements)
+    const Header header = ply::parse_header(bytes, name);
+    for (const Element& element : header.elements) {
+      if (element.name == "tristrips") return false;
       for (const char* uv : {"s", "u", "texture_u", "texcoord"})
         if (element.find(uv) != nullptr) return false;
-    return header.binary_little_endian;
-  } catch (const InputError&) {
-    return false;
+    }
+  } catch (const InputError&) {  // parse_ply tells it
   }
+  return true;
 }
 
 PlyMesh parse_ply(std::string_view bytes, const std::string& name, const PlyParts& parts) {
-  const Header header = HeaderParser(bytes, name).parse();
-  if (!header.binary_little_endian)
-    throw InputError(fmt::format("{}: its format must be binary_little_endian 1.0", name));
-  return BodyParser(bytes.substr(header.size), name, parts).parse(header);
+  const Header header = ply::parse_header(bytes, name);
+  const std::string_view body = bytes.substr(header.size);
+  if (header.encoding == Encoding::kLittleEndian)
+    return BodyParser(body, name, parts).parse(header);
+  const std::string rewritten = ply::as_little_endian(body, header, name);
+  return BodyParser(rewritten, name, parts).parse(header);
 }
 
 PlyMesh read_ply(const std::filesystem::path& file, const PlyParts& parts) {

@@ -19,23 +19,31 @@ struct PlyMesh {
   std::vector<Eigen::Vector3f> positions_m;
   std::vector<Rgb8> colours;          ///< sRGB, one per vertex; empty if the file has none
   std::vector<std::uint16_t> labels;  ///< vertex property `label`; empty if the file has none
+  // Of other data sets; empty if the file has none.
+  std::vector<std::uint16_t> nyu40{};         ///< vertex property `NYU40` (3RScan)
+  std::vector<std::uint32_t> objects{};       ///< vertex property `objectId` (3RScan)
+  std::vector<std::uint32_t> face_objects{};  ///< face property `object_id` (Replica), per triangle
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< larger polygons become fans
   std::size_t bytes_left = 0;  ///< behind the last element, blanks apart; a whole file has none
 };
 
+/// What stands in face_objects for a face of no object.
+inline constexpr std::uint32_t kNoObject = 0xffffffffU;
+
 /// What to read of it.
 struct PlyParts {
-  bool geometry = true;  ///< positions, colours, triangles
+  bool geometry = true;  ///< positions, colours, triangles and their objects
   bool labels = true;
 };
 
-/// Whether these bytes begin a PLY that parse_ply reads: binary, little-endian, without texture
-/// coordinates. Whatever else is assimp's to read.
-bool is_plain_binary_ply(std::string_view bytes);
+/// Whether parse_ply reads a PLY that begins with these bytes, or tells what is wrong with its
+/// header: texture coordinates and triangle strips are assimp's to read.
+bool is_plain_ply(std::string_view bytes);
 
-/// Reads such a PLY in one pass over its bytes, some 15 times as fast as a general reader, and
-/// keeps `label`, which assimp drops. Properties may have any type and order; unknown properties
-/// and elements are passed over.
+/// Reads a PLY, text or binary of either byte order. Little-endian ones are read in one pass over
+/// their bytes, some 15 times as fast as a general reader; the others are brought into that form
+/// first. Labels are kept, which assimp drops. Properties may have any type and order; unknown
+/// properties and elements are passed over.
 /// @param name  stands for the file in messages
 /// @throws InputError naming file, element and value: a header that is none, fewer bytes than it
 /// announces, positions that are not finite, faces of fewer than 3 corners or that name a vertex

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/mesh_io/node_name.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -97,7 +98,10 @@ class TableParser {
     const auto id =
         id_ == kNone ? std::optional(rows_) : number(cell(id_), line, "raw category id");
     if (!id) fail(line, "the raw category id is missing");
-    const ClassId class_id = class_of(cell(own_), cell(nyu40_id_), cell(nyu40_class_), line);
+    ClassId class_id = class_of(cell(own_), cell(nyu40_id_), cell(nyu40_class_), line);
+    // What people typed may name a class that NYU40 lumps together with others.
+    if (const auto named = class_of_noun(category); named && is_finer(*named, class_id))
+      class_id = *named;
     table_.class_of_category.emplace(category, class_id);
     table_.class_of_id.emplace(*id, class_id);
   }

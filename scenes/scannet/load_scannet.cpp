@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "scenes/mesh_io/instances_in.hpp"
+#include "scenes/mesh_io/node_name.hpp"
 #include "scenes/mesh_io/ply.hpp"
 #include "scenes/scannet/annotation.hpp"
 #include "scenes/scannet/files.hpp"
@@ -233,7 +234,8 @@ class Loader {
       if (!object->class_id)
         vertices.classes[v] = kVoid;
       else if (!labelled || raw_ids_ || labels_[v] > kLastNyu40 ||
-               classes()[*object->class_id].nyu40 == vertices.classes[v])
+               classes()[*object->class_id].nyu40 == vertices.classes[v] ||
+               is_finer(*object->class_id, vertices.classes[v]))
         vertices.classes[v] = *object->class_id;
     }
     std::set<std::uint32_t> absent;

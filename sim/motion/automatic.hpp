@@ -17,6 +17,7 @@ struct AutomaticTourConfig {
 /// A tour through all of the floor that the robot can reach (the largest connected part of it): a
 /// look around at the start, a round trip through places spread over it, back to the start facing
 /// as at first. Another seed begins elsewhere and visits other places.
+/// @pre the scene's floor is z = 0 (LevelScene), as of all motions
 /// @throws InputError if the scene has no floor, or no room on it for the robot.
 Tour automatic_tour(const Scene& scene, const Robot& robot, const AutomaticTourConfig& config = {});
 

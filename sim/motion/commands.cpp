@@ -33,7 +33,8 @@ Vector2d turned(const Vector2d& v, double angle_rad) {
 class Reflex {
  public:
   Reflex(const Scene& scene, const Robot& robot)
-      : outline_(floor_outline(scene, kBandBottom_m, static_cast<float>(robot.height_m))),
+      : outline_(floor_outline(scene, static_cast<float>(scene.floor.rough_m),
+                               static_cast<float>(robot.height_m))),
         radius_m_(robot.footprint_radius_m),
         zone_(robot.equipment->reflex),
         brake_m_per_s2_(kBraking * robot.limits.max_acceleration_m_per_s2),

@@ -53,10 +53,11 @@ BaseLimits commandable(BaseLimits limits);
 /// A robot's base in a scene, moved by Bullet: a rigid upright cylinder that slides on the floor
 /// and turns about its axis; walls and furniture stop it by their outline from above. It is driven
 /// by impulses whose size respects BaseLimits, so that its velocity and (contacts apart)
-/// acceleration never exceed them. What lies wholly below 3 cm or above the robot's head is no
-/// obstacle. Deterministic: the same steps give the same bits.
+/// acceleration never exceed them. What lies wholly within the floor's roughness (3 cm) or above
+/// the robot's head is no obstacle. Deterministic: the same steps give the same bits.
 class PlanarWorld {
  public:
+  /// @pre the scene's floor is z = 0 (LevelScene)
   /// @param step_s duration of one step; contacts stay shallow for steps up to 1/200 s.
   PlanarWorld(const Scene& scene, const Robot& robot, const Eigen::Vector2d& start_m,
               double start_heading_rad, double step_s = 1.0 / 240.0);

@@ -44,8 +44,9 @@ std::vector<Bounds> places(const Scene& scene) {
   std::vector<Bounds> places;
   for (const Room& room : scene.rooms) {
     Bounds bounds{{}, &room};
+    const float eye_m = static_cast<float>(scene.floor.middle_m.z()) + kEyeM;
     for (const Eigen::Vector2d& p : room.polygon_m)
-      bounds.box.extend(Vector3f(static_cast<float>(p.x()), static_cast<float>(p.y()), kEyeM));
+      bounds.box.extend(Vector3f(static_cast<float>(p.x()), static_cast<float>(p.y()), eye_m));
     places.push_back(bounds);
   }
   if (!places.empty()) return places;

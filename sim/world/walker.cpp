@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "scenes/floor.hpp"
 #include "scenes/mesh_builder.hpp"
 #include "slam/core/yaml.hpp"
 
@@ -172,12 +173,14 @@ WalkedScene::WalkedScene(const Scene& scene, std::shared_ptr<const Renderer> ren
   walker_ = make_embree_renderer(build_walker(mean_light(scene)),
                                  {.exposure = exposure, .antialiasing = Antialiasing::kNone});
   instance_ = walker_instance(scene);
+  world_from_floor_ = world_from_floor(scene.floor);
 }
 
 WalkedScene::~WalkedScene() = default;
 
 std::shared_ptr<const Renderer> WalkedScene::at(Stamp stamp_ns) const {
-  return std::make_shared<Moment>(*scene_, *walker_, instance_, world_from_walker(walk_, stamp_ns));
+  return std::make_shared<Moment>(*scene_, *walker_, instance_,
+                                  world_from_floor_ * world_from_walker(walk_, stamp_ns));
 }
 
 }  // namespace mh

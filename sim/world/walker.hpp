@@ -36,7 +36,7 @@ inline constexpr double kWalkerHeight_m = 1.72;
 /// The walker's instance in a scene: one above its own.
 InstanceId walker_instance(const Scene& scene);
 
-/// A scene with somebody walking through it. The two are rendered apart and merged by depth, so
+/// A scene with somebody walking over its floor. The two are rendered apart and merged by depth, so
 /// the walker hides what is behind him and is hidden by what is before him; he casts no shadow and
 /// takes no light from the place where he stands, but the scene's mean.
 class WalkedScene {
@@ -57,7 +57,8 @@ class WalkedScene {
   std::shared_ptr<const Renderer> scene_;
   std::unique_ptr<const Renderer> walker_;
   InstanceId instance_;  ///< the walker's
-  Walk walk_;
+  Walk walk_;            ///< in the floor's frame
+  SE3 world_from_floor_;
 };
 
 }  // namespace mh

@@ -187,6 +187,27 @@ TEST_F(SuiteFile, EnvironmentsAreListedCountedOrFoundInFiles) {
   EXPECT_EQ(expand(suite)[3].name, "hall-1-plain-pepper-0");
 }
 
+TEST_F(SuiteFile, SceneMayBeAScannetFolderWithAFrame) {
+  fs::create_directories(folder_ / "scans/s");
+  std::ofstream(folder_ / "scans/s/s_vh_clean_2.ply") << "ply";
+  const auto key = [&](const std::string& keys) {
+    std::ofstream(folder_ / "suite.yaml")
+        << "environments:\n- {category: scan, scene: scans/s/, robot: robot.yaml" << keys
+        << "}\nvocabulary: words\nlevels: [pepper.yaml]\nsystems: [plain]\nlabels: [exact]\n";
+    const Suite suite = load_suite(folder_ / "suite.yaml");
+    EXPECT_EQ(suite.environments[0].scene, folder_ / "scans/s");
+    const RunSpec spec = expand(suite)[0];
+    EXPECT_EQ(run_spec_from_json(to_json(spec)).environment.frame, spec.environment.frame);
+    return std::pair(spec.environment.frame, run_key(spec, {}));
+  };
+  const auto [none, plain_key] = key("");
+  EXPECT_EQ(none, SceneFrame{});
+  const auto [frame, told_key] = key(", up: y, floor_z_m: 0.05");
+  EXPECT_EQ(frame, (SceneFrame{.up = UpAxis::kY, .floor_z_m = 0.05}));
+  EXPECT_NE(told_key, plain_key);
+  EXPECT_NE(key(", floor_z_m: 0.06").second, told_key);
+}
+
 TEST_F(SuiteFile, RefusesEnvironmentsThatAreNone) {
   const auto message = [&](const std::string& list) -> std::string {
     std::ofstream(folder_ / "suite.yaml") << "environments: " << list << "\nvocabulary: words\n";
@@ -209,6 +230,8 @@ TEST_F(SuiteFile, RefusesEnvironmentsThatAreNone) {
             std::string::npos);
   EXPECT_NE(message("[{category: a, scene: house.yaml, mapping_tour: tour.yaml}]")
                 .find("key 'robot' is missing"),
+            std::string::npos);
+  EXPECT_NE(message("[{category: a, up: x, " + rest + "}]").find("'x' is neither y nor z"),
             std::string::npos);
   EXPECT_NE(message("[{files: '*.nothing'}]").find("no file matches"), std::string::npos);
 }

@@ -11,9 +11,12 @@
 #include <fstream>
 #include <map>
 #include <numbers>
+#include <set>
 
+#include "scenes/labelled.hpp"
 #include "scenes/load.hpp"
 #include "scenes/materials/materials.hpp"
+#include "scenes/mesh_io/class_words.hpp"
 #include "scenes/mesh_io/node_name.hpp"
 #include "scenes/mesh_io/subdivide.hpp"
 #include "scenes/picture_file.hpp"
@@ -539,14 +542,114 @@ TEST(NodeName, RoundTrip) {
   }
 }
 
-TEST(NodeName, GuessesClassFromTheFirstWordsOfTheLastPart) {
-  EXPECT_EQ(guess_class("kitchen/night_stand_2"), *class_by_name("night stand"));
-  EXPECT_EQ(guess_class("Chair.003"), *class_by_name("chair"));
-  EXPECT_EQ(guess_class("sofa left"), *class_by_name("sofa"));
-  EXPECT_EQ(guess_class("wooden_table_02"), *class_by_name("table"));
-  EXPECT_EQ(guess_class("wooden_bookshelf_worn"), *class_by_name("bookshelf"));
-  EXPECT_EQ(guess_class("table/gadget"), kVoid);
-  EXPECT_EQ(guess_class(""), kVoid);
+TEST(NodeName, GuessesClassFromTheNounOfTheLastPart) {
+  const std::pair<const char*, const char*> kNames[] = {
+      {"kitchen/night_stand_2", "night stand"},
+      {"Chair.003", "chair"},
+      {"sofa left", "sofa"},
+      {"wooden_table_02", "table"},
+      {"wooden_bookshelf_worn", "bookshelf"},
+      {"table/gadget", "void"},
+      {"", "void"},
+      // CamelCase, digits, vendors' prefixes.
+      {"KitchenTable_01", "table"},
+      {"aws_robomaker_residential_NightStand_01", "night stand"},
+      {"FloorB_01", "floor"},
+      {"TVCabinet_01", "cabinet"},
+      {"TV_02", "television"},
+      {"SM_Chair2Left", "chair"},
+      // Plurals and synonyms.
+      {"Chairs", "chair"},
+      {"boxes_3", "box"},
+      {"bookshelves", "bookshelf"},
+      {"Couch", "sofa"},
+      {"fridge_white", "refridgerator"},
+      {"telly", "television"},
+      {"lamp_stand", "lamp"},
+      {"LampStand", "lamp"},
+      {"nightstand", "night stand"},
+      {"coffeeTable", "table"},
+      {"Wardrobe_01", "cabinet"},
+      {"DeskPortraitA_02", "picture"},
+      {"GroundB_01", "floor"},
+      {"books", "books"},
+      {"wall_clock", "clock"},
+      {"microwaveOven", "microwave"},
+      // Two classes: the noun.
+      {"floor_01_walls", "wall"},
+      {"hospital_floor_02_ceiling", "ceiling"},
+      {"table_lamp", "lamp"},
+      {"floor lamp", "lamp"},
+      {"shower_curtain", "shower curtain"},
+      {"chair_and_table", "chair"},
+      {"table_with_chairs", "table"},
+      {"box_of_books", "box"},
+      {"window_frame", "window"},
+      // Words that only look like one.
+      {"portable_gadget", "void"},
+      {"bedroom", "void"},
+      {"Bed_Room", "void"},
+      {"floor_plan", "void"},
+      {"background", "void"},
+  };
+  for (const auto& [name, class_name] : kNames)
+    EXPECT_EQ(classes()[guess_class(name)].name, class_name) << name;
+}
+
+TEST(NodeName, WordsOfTheListNameClassesAndStandOnce) {
+  std::set<std::string_view> words;
+  for (const ClassWord& word : kClassWords) {
+    EXPECT_TRUE(class_by_name(word.class_name)) << word.class_name;
+    EXPECT_TRUE(words.insert(word.words).second) << word.words;
+    EXPECT_EQ(classes()[guess_class(word.words)].name, word.class_name) << word.words;
+  }
+}
+
+TEST_F(MeshIo, NamesAroundANodeHelpWhereItsOwnTellsNothing) {
+  // Three nodes: of a mesh that is named; below a group that is; below a storey.
+  const char* gltf = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+    "nodes":[{"name":"root","children":[1,2,4,6]},{"name":"Cube","mesh":0},
+             {"name":"Walls","children":[3]},{"name":"Cube.001","mesh":1},
+             {"name":"first_floor","children":[5]},{"name":"Cube.002","mesh":1},
+             {"name":"Cube.003","mesh":1}],
+    "meshes":[{"name":"BigSofa","primitives":[{"attributes":{"POSITION":0}}]},
+              {"name":"Mesh","primitives":[{"attributes":{"POSITION":0}}]}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",
+                  "min":[0,0,0],"max":[1,1,0]}],
+    "bufferViews":[{"buffer":0,"byteLength":36}],
+    "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+  std::ofstream(folder_ / "room.gltf") << gltf;
+  const Scene scene = load_mesh(folder_ / "room.gltf");
+  std::map<std::string, std::string_view> class_of;
+  for (const Instance& instance : scene.instances)
+    class_of[instance.name] = classes()[instance.class_id].name;
+  EXPECT_EQ(class_of["Cube"], "sofa");
+  EXPECT_EQ(class_of["Cube.001"], "wall");
+  EXPECT_EQ(class_of["Cube.002"], "void");
+  EXPECT_EQ(class_of["Cube.003"], "void");
+}
+
+TEST_F(MeshIo, LabelsThatAreSuggestedLoadAsTheyAreAndWhenFilled) {
+  std::ofstream(folder_ / "room.obj") << "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nv 1 0 0\nv 0 1 0\n"
+                                         "o gizmo_01\nf 1 2 3\no gizmo_02\nf 1 2 4\n"
+                                         "o w[1]dget\nf 1 5 6\no chair\nf 1 5 4\n";
+  const Scene before = load_mesh(folder_ / "room.obj");
+  const LabelledSurface surface = survey_labels(before);
+  EXPECT_NEAR(surface.area_m2, 2 + 2 + 0.5 + 1, 1e-6);
+  EXPECT_NEAR(surface.share(), 1 / 5.5, 1e-6);
+  ASSERT_EQ(surface.unlabelled.size(), 2U);
+  EXPECT_EQ(surface.unlabelled[0].pattern, "gizmo*");
+  EXPECT_NEAR(surface.unlabelled[0].area_m2, 4, 1e-6);
+  std::string text = suggested_labels(surface);
+  std::ofstream(folder_ / "labels.yaml") << text;
+  EXPECT_EQ(load_mesh(folder_ / "room.obj").class_of, before.class_of);
+  for (const char* name : {"table", "clock"})
+    text.replace(text.find("void", text.find('"')), 4, name);
+  std::ofstream(folder_ / "labels.yaml") << text;
+  const Scene after = load_mesh(folder_ / "room.obj");
+  EXPECT_EQ(survey_labels(after).share(), 1.0);
+  EXPECT_EQ(after.class_of[0], *class_by_name("table"));
+  EXPECT_EQ(after.class_of[2], *class_by_name("clock"));
 }
 
 }  // namespace

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
+#include "scenes/mesh_io/mesh_io.hpp"
 #include "tests/scenes/temporary_folder.hpp"
 
 namespace mh {
@@ -55,7 +57,7 @@ TEST(Ply, ReadsBackWhatItWrote) {
   PlyMesh plain = square();
   plain.labels.clear();
   expect_same(parse_ply(ply_bytes(plain), "mesh.ply"), plain);
-  EXPECT_TRUE(is_plain_binary_ply(ply_bytes(plain)));
+  EXPECT_TRUE(is_plain_ply(ply_bytes(plain)));
 }
 
 TEST(Ply, ReadsLabelsAlone) {
@@ -162,14 +164,127 @@ TEST(Ply, CountsThatOverflowAreRefusedBeforeAnythingIsAllocated) {
 
 TEST(Ply, SaysWhatIsWrongWithAHeader) {
   EXPECT_TRUE(names(error_of_ply("hello\n"), {"mesh.ply:1", "no PLY"}));
-  EXPECT_TRUE(names(error_of_ply("ply\nformat ascii 1.0\nend_header\n"), {"binary_little_endian"}));
+  EXPECT_TRUE(names(error_of_ply("ply\nformat ascii 2.0\nend_header\n"), {":2", "'ascii 2.0'"}));
+  EXPECT_TRUE(names(error_of_ply("ply\nend_header\n"), {":2", "no format"}));
   EXPECT_TRUE(names(error_of_ply(header("property float x\n")), {"mesh.ply:3", "first element"}));
   EXPECT_TRUE(names(error_of_ply(header("element vertex 1\nproperty quux x\n")), {":4", "quux"}));
   EXPECT_TRUE(names(error_of_ply(header("element vertex 0\nproperty float x\n")), {"'y'"}));
   EXPECT_TRUE(names(error_of_ply(header("element vertex 0\n" + kPoint)), {"'face'"}));
   EXPECT_TRUE(names(error_of_ply(header("element face 0\n" + kList)), {"before the vertices"}));
-  EXPECT_FALSE(is_plain_binary_ply("ply\nformat ascii 1.0\nend_header\n"));
-  EXPECT_FALSE(is_plain_binary_ply(header("element vertex 0\nproperty float s\n")));
+  EXPECT_TRUE(is_plain_ply("ply\nformat ascii 1.0\n"));  // cut: parse_ply tells it
+  EXPECT_FALSE(is_plain_ply(header("element vertex 0\nproperty float s\n")));
+}
+
+/// The square as text.
+std::string square_as_text() {
+  return "ply\nformat ascii 1.0\nelement vertex 4\n" + kPoint +
+         "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty ushort label\n"
+         "element face 2\n" +
+         kList +
+         "end_header\n"
+         "0 0 0 1 2 3 0\n1 0 0 255 0 0 5\n 1 1 0 0 255 0 40\r\n0 +1 5e-1 9 8 7 1163\n"
+         "3 0 1 2\n3 0 2 3\n";
+}
+
+TEST(Ply, ReadsTextAndBigEndianAlike) {
+  expect_same(parse_ply(square_as_text(), "mesh.ply"), square());
+  std::string big = "ply\nformat binary_big_endian 1.0\nelement vertex 3\n" + kPoint +
+                    "property ushort label\nelement face 1\n" + kList + "end_header\n";
+  const auto append = [&](auto value) {
+    std::string bytes = raw(value);
+    std::ranges::reverse(bytes);
+    big += bytes;
+  };
+  for (const int i : {0, 1, 2}) {
+    for (int axis = 0; axis < 3; ++axis) append(static_cast<float>(i * axis));
+    append(static_cast<std::uint16_t>(300 + i));
+  }
+  append(std::uint8_t{3});
+  for (const std::int32_t i : {2, 1, 0}) append(i);
+  const PlyMesh mesh = parse_ply(big, "mesh.ply");
+  EXPECT_EQ(mesh.positions_m[2], Eigen::Vector3f(0, 2, 4));
+  EXPECT_EQ(mesh.labels, (std::vector<std::uint16_t>{300, 301, 302}));
+  EXPECT_EQ(mesh.triangles[0], (std::array<std::uint32_t, 3>{2, 1, 0}));
+}
+
+TEST(Ply, CutAnywhereIsToldInEveryEncoding) {
+  const std::string text = square_as_text();
+  for (std::size_t size = 4; size + 3 < text.size(); ++size)  // the last index is one digit
+    EXPECT_FALSE(error_of_ply(text.substr(0, size)).empty()) << size;
+  std::string wrong = text;
+  wrong.replace(wrong.find("5e-1"), 4, "half");
+  EXPECT_TRUE(names(error_of_ply(wrong), {"'half' is no number", "record 3 of 4", "vertex"}));
+  wrong = text;
+  wrong.replace(wrong.find("1163"), 4, "99999");
+  EXPECT_TRUE(names(error_of_ply(wrong), {"99999", "range"}));
+  EXPECT_TRUE(names(error_of_ply("ply\nformat ascii 1.0\nelement vertex 999999999\n" + kPoint +
+                                 "end_header\n0 0 0\n"),
+                    {"cut short"}));
+}
+
+class LabelledPly : public TemporaryFolder {};
+
+TEST_F(LabelledPly, ReplicasFacesAreOfTheirObjects) {
+  // Two squares of object 7, one of object 3, one of none.
+  std::string text = "ply\nformat ascii 1.0\nelement vertex 4\n" + kPoint + "element face 4\n" +
+                     kList + "property int object_id\nend_header\n" +
+                     "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+                     "4 0 1 2 3 7\n4 0 1 2 3 3\n4 0 1 2 3 7\n4 0 1 2 3 -1\n";
+  write("scene/mesh_semantic.ply", text);
+  std::vector<std::string> warnings;
+  const Scene bare = load_mesh(folder_ / "scene/mesh_semantic.ply", &warnings);
+  EXPECT_EQ(bare.instance_of, (std::vector<InstanceId>{8, 8, 4, 4, 8, 8, 0, 0}));
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(names(warnings[0], {"mesh_semantic.ply", "info_semantic.json"}));
+  write("scene/info_semantic.json",
+        R"({"classes":[{"id":1,"name":"tv-screen"}],"objects":[
+            {"class_id":1,"class_name":"tv-screen","id":7},{"class_id":9,"class_name":"indoor-plant","id":3}]})");
+  warnings.clear();
+  const Scene scene = load_mesh(folder_ / "scene/mesh_semantic.ply", &warnings);
+  EXPECT_TRUE(warnings.empty());
+  const ClassId tv = *class_by_name("tv"), plant = *class_by_name("potted plant");
+  EXPECT_EQ(scene.class_of, (std::vector<ClassId>{tv, tv, plant, plant, tv, tv, 0, 0}));
+  ASSERT_EQ(scene.instances.size(), 2U);
+  EXPECT_EQ(scene.instances[0].name, "indoor-plant_4");
+  EXPECT_EQ(scene.instances[1].class_id, tv);
+  write("scene/info_semantic.json", "{");
+  EXPECT_TRUE(names(error_of([&] { load_mesh(folder_ / "scene/mesh_semantic.ply"); }),
+                    {"info_semantic.json"}));
+  write("scene/mesh_semantic.ply", text.replace(text.find(" 7\n"), 3, " 65541\n"));
+  EXPECT_TRUE(names(error_of([&] { load_mesh(folder_ / "scene/mesh_semantic.ply"); }), {"65541"}));
+}
+
+TEST_F(LabelledPly, ThreeRScansVerticesAreOfTheirObjects) {
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 5\n" + kPoint +
+      "property ushort objectId\nproperty ushort globalId\nproperty uchar NYU40\n"
+      "element face 3\n" +
+      kList + "end_header\n" +
+      "0 0 0 1 35 2\n1 0 0 1 35 2\n1 1 0 1 35 2\n0 1 0 4 9 40\n0 2 0 4 9 40\n"
+      "3 0 1 2\n3 2 3 4\n3 1 2 3\n";
+  write("labels.instances.annotated.v2.ply", text);
+  write("semseg.v2.json",
+        R"({"scan_id":"x","segGroups":[{"id":1,"objectId":1,"label":"floor","segments":[1]},
+            {"id":4,"objectId":4,"label":"microwave","segments":[4]}]})");
+  const Scene scene = load_mesh(folder_ / "labels.instances.annotated.v2.ply");
+  EXPECT_EQ(scene.instance_of, (std::vector<InstanceId>{1, 4, 1}));
+  EXPECT_EQ(scene.class_of, (std::vector<ClassId>{2, *class_by_name("microwave"), 2}));
+  ASSERT_EQ(scene.instances.size(), 2U);
+  EXPECT_EQ(scene.instances[0].name, "floor_1");
+  EXPECT_EQ(scene.instances[1].name, "microwave_4");
+}
+
+TEST_F(LabelledPly, LabelsAloneAreNyu40) {
+  PlyMesh mesh = square();
+  mesh.labels = {5, 5, 5, 1163};
+  write("mesh.ply", ply_bytes(mesh));
+  std::vector<std::string> warnings;
+  mesh.labels = {5, 1163, 1163, 1163};
+  EXPECT_EQ(load_mesh(folder_ / "mesh.ply").class_of, (std::vector<ClassId>{5, 5}));
+  write("mesh.ply", ply_bytes(mesh));
+  EXPECT_EQ(load_mesh(folder_ / "mesh.ply", &warnings).class_of, (std::vector<ClassId>{0, 0}));
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(names(warnings[0], {"mesh.ply", "2 faces", "no NYU40 id"}));
 }
 
 }  // namespace

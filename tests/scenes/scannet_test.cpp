@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 
@@ -131,6 +133,49 @@ TEST_F(Scannet, TellsTheReleasesApartWhereBothTablesLieSideBySide) {
   expect_strip(load_scannet(folder_ / "s"));
   write_v2();
   expect_strip(load_scannet(folder_ / "s"));
+}
+
+TEST_F(Scannet, CategoriesThatNyu40LumpsTogetherKeepTheirClass) {
+  const LabelTable table = parse_label_table(
+      "id\traw_category\tnyu40id\tnyu40class\n1\tmicrowave\t40\totherprop\n"
+      "2\twall clock\t40\totherprop\n3\tlaptop computer\t40\totherprop\n4\tcoffee cups\t40\t\n"
+      "5\toven mitt\t40\t\n6\tlaptop bag\t37\tbag\n7\tmonitor\t40\t\n8\tclock\t\t\n",
+      "t.tsv");
+  const auto class_of = [&](std::uint32_t id) { return classes()[table.class_of_id.at(id)].name; };
+  EXPECT_EQ(class_of(1), "microwave");
+  EXPECT_EQ(class_of(2), "clock");
+  EXPECT_EQ(class_of(3), "laptop");
+  EXPECT_EQ(class_of(4), "cup");
+  EXPECT_EQ(class_of(5), "otherprop");
+  EXPECT_EQ(class_of(6), "bag");
+  EXPECT_EQ(class_of(7), "otherprop");
+  EXPECT_EQ(class_of(8), "void");
+
+  write_v2();  // the chair becomes a microwave: labels say 40
+  write("scannetv2-labels.combined.tsv",
+        std::string(kTableV2) + "99\tmicrowave\tmicrowave\t9\t40\t7\tmicrowave\totherprop\n");
+  write_scene({1, 1, 40, 40, 0, 40, 40}, "axisAlignment = 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n");
+  std::string aggregation = kAggregation;
+  aggregation.replace(aggregation.find("office chair"), 12, "microwave");
+  write("s/s.aggregation.json", aggregation);
+  const Scene scene = load_scannet(folder_ / "s");
+  const ClassId microwave = *class_by_name("microwave");
+  EXPECT_EQ(scene.instances[1].class_id, microwave);
+  EXPECT_EQ(std::ranges::count(scene.class_of, microwave), 4);
+}
+
+TEST_F(Scannet, KeepsItsLabelsWhereItIsPlaced) {
+  write_v2();
+  for (const char* file : {"s/s_vh_clean_2.ply", "s"}) {
+    write("place.yaml",
+          fmt::format("objects:\n  - {{file: {}, name: scan, position_m: [1, 2, 3]}}\n", file));
+    const Scene alone = load_scannet(folder_ / "s");
+    const Scene scene = load_scene(folder_ / "place.yaml");
+    EXPECT_EQ(scene.class_of, alone.class_of);
+    EXPECT_EQ(scene.instance_of, alone.instance_of);
+    EXPECT_EQ(scene.instances[1].name, "scan/office chair_2");
+    EXPECT_TRUE(scene.positions_m[0].isApprox(alone.positions_m[0] + Eigen::Vector3f(1, 2, 3)));
+  }
 }
 
 TEST_F(Scannet, OpensAsAnySceneByFolderAndByMesh) {

@@ -44,21 +44,23 @@ TEST(Outline, LeavesOutWhatIsBetweenTwoFaces) {
 /// Distance on the floor to the nearest face between the heights: all of them, one by one.
 double distance_m(const Scene& scene, float top_m, const Vector2d& p) {
   double least = 1e9;
-  for_each_face_in_band(scene, kBandBottom_m, top_m, [&](std::size_t, auto polygon) {
-    bool left = true, right = true;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const Vector2d
-          a = polygon[i].template head<2>().template cast<double>(),
-          b = polygon[(i + 1) % polygon.size()].template head<2>().template cast<double>(),
-          u = b - a, v = p - a;
-      const double t = u.squaredNorm() > 0 ? std::clamp(v.dot(u) / u.squaredNorm(), 0.0, 1.0) : 0.0;
-      least = std::min(least, (v - t * u).norm());
-      const double side = u.x() * v.y() - u.y() * v.x();
-      left = left && side > 0;
-      right = right && side < 0;
-    }
-    if (left || right) least = 0;  // below or above it
-  });
+  for_each_face_in_band(
+      scene, static_cast<float>(scene.floor.rough_m), top_m, [&](std::size_t, auto polygon) {
+        bool left = true, right = true;
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+          const Vector2d
+              a = polygon[i].template head<2>().template cast<double>(),
+              b = polygon[(i + 1) % polygon.size()].template head<2>().template cast<double>(),
+              u = b - a, v = p - a;
+          const double t =
+              u.squaredNorm() > 0 ? std::clamp(v.dot(u) / u.squaredNorm(), 0.0, 1.0) : 0.0;
+          least = std::min(least, (v - t * u).norm());
+          const double side = u.x() * v.y() - u.y() * v.x();
+          left = left && side > 0;
+          right = right && side < 0;
+        }
+        if (left || right) least = 0;  // below or above it
+      });
   return least;
 }
 

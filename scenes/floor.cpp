@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/floor.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <Eigen/Dense>
+
+#include "scenes/mesh_io/instances_in.hpp"
+
+namespace mh {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr double kCell_m = 0.05;
+constexpr double kMostCells = 1000;  // either way
+constexpr float kLevel = 0.7F;       // cosine of a face's slope: scans are rough, see below
+constexpr float kUpright = 0.05F;    // fewer: an upright face has no place seen from above
+constexpr float kHeadroom_m = 1.0F;  // less above a surface: nobody stands on it
+constexpr float kLayer_m = 0.1F;     // surfaces nearer than this are one
+constexpr double kBin_m = 0.05;      // of the histogram of heights
+constexpr double kLeast_m2 = 1.0;    // of a floor
+constexpr double kLarge = 0.25;      // of the largest level surface
+constexpr double kMostBelow = 0.25;  // of the scene's surface: a seat is no floor
+constexpr double kSteepest_rad = 2.0 * std::numbers::pi / 180;
+constexpr double kLevelFloor_rad = 0.1 * std::numbers::pi / 180;  // less is a scan's error
+constexpr double kLevelFloor_m = 1e-3;
+
+/// What is met above one place.
+struct Sample {
+  std::uint32_t cell = 0;
+  float z_m = 0;
+  bool level = false, labelled = false;
+};
+
+Vector3f corner(const Scene& scene, std::size_t face, std::size_t k) {
+  return scene.positions_m[scene.triangles[face][k]];
+}
+
+/// Twice the face's area along its normal.
+Vector3f normal_of(const Scene& scene, std::size_t face) {
+  const Vector3f a = corner(scene, face, 0);
+  return (corner(scene, face, 1) - a).cross(corner(scene, face, 2) - a);
+}
+
+/// The scene seen from above, as columns over a grid.
+class Columns {
+ public:
+  explicit Columns(const Scene& scene) {
+    const Eigen::AlignedBox2f box = place_of(scene);
+    low_ = box.min().cast<double>();
+    const Vector2d size = box.sizes().cast<double>();
+    cell_m_ = std::max(kCell_m, size.maxCoeff() / kMostCells);
+    width_ = static_cast<int>(std::ceil(size.x() / cell_m_)) + 1;
+    height_ = static_cast<int>(std::ceil(size.y() / cell_m_)) + 1;
+    for (std::size_t face = 0; face < scene.triangles.size(); ++face) add(scene, face);
+    std::ranges::sort(samples, [](const Sample& a, const Sample& b) {
+      return std::tie(a.cell, a.z_m) < std::tie(b.cell, b.z_m);
+    });
+  }
+
+  Vector3d point(const Sample& sample) const {
+    const int x = static_cast<int>(sample.cell) % width_,
+              y = static_cast<int>(sample.cell) / width_;
+    return {low_.x() + (x + 0.5) * cell_m_, low_.y() + (y + 0.5) * cell_m_,
+            static_cast<double>(sample.z_m)};
+  }
+  double cell_m2() const { return cell_m_ * cell_m_; }
+  /// How much of the ground these samples cover, each place once.
+  double area_m2(const std::vector<Sample>& some) const {
+    std::size_t cells = 0;
+    for (std::size_t i = 0; i < some.size(); ++i)
+      cells += i == 0 || some[i].cell != some[i - 1].cell;
+    return static_cast<double>(cells) * cell_m2();
+  }
+
+  Room room_around(const std::vector<Sample>& some, const std::string& name) const {
+    Eigen::AlignedBox2d box;
+    for (const Sample& sample : some) box.extend(point(sample).head<2>());
+    if (box.isEmpty()) return {.name = name, .polygon_m = {}, .is_box = true};
+    const Vector2d low = box.min().array() - 0.5 * cell_m_,
+                   high = box.max().array() + 0.5 * cell_m_;
+    return {.name = name,
+            .polygon_m = {low, {high.x(), low.y()}, high, {low.x(), high.y()}},
+            .is_box = true};
+  }
+
+  /// Those of a class that is walked on.
+  std::vector<Sample> labelled() const {
+    std::vector<Sample> some;
+    std::ranges::copy_if(samples, std::back_inserter(some), &Sample::labelled);
+    return some;
+  }
+  /// Those that one could stand on: level, and nothing for a while above.
+  std::vector<Sample> standable() const {
+    std::vector<Sample> some;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (!samples[i].level) continue;
+      const bool topmost = i + 1 == samples.size() || samples[i + 1].cell != samples[i].cell;
+      if (topmost || samples[i + 1].z_m - samples[i].z_m > kHeadroom_m) some.push_back(samples[i]);
+    }
+    return some;
+  }
+
+  std::vector<Sample> samples;  ///< by cell, then upwards
+
+ private:
+  /// Where things stand: a plane that reaches to the horizon has most of its area elsewhere.
+  static Eigen::AlignedBox2f place_of(const Scene& scene) {
+    Eigen::AlignedBox2f things, all;
+    for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
+      const Vector3f n = normal_of(scene, face);
+      const bool level = std::abs(n.z()) >= 0.98F * n.norm();
+      for (std::size_t k = 0; k < 3; ++k) {
+        all.extend(corner(scene, face, k).head<2>());
+        if (!level) things.extend(corner(scene, face, k).head<2>());
+      }
+    }
+    return things.isEmpty() || things.sizes().minCoeff() < 0.5F ? all : things;
+  }
+
+  /// Samples a face at the middles of cells; a middle on an edge belongs to one face alone.
+  void add(const Scene& scene, std::size_t face) {
+    const Vector3f n = normal_of(scene, face);
+    const float norm = n.norm();
+    if (!(std::abs(n.z()) > kUpright * norm)) return;
+    std::array<Vector2d, 3> p;
+    std::array<double, 3> z;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector3d at = corner(scene, face, k).cast<double>();
+      p[k] = (at.head<2>() - low_) / cell_m_ - Vector2d(0.5, 0.5);  // in cells' middles
+      z[k] = at.z();
+    }
+    if (n.z() < 0) std::swap(p[1], p[2]), std::swap(z[1], z[2]);
+    const Vector2d least = p[0].cwiseMin(p[1]).cwiseMin(p[2]),
+                   most = p[0].cwiseMax(p[1]).cwiseMax(p[2]);
+    const auto from = [](double v) { return static_cast<int>(std::max(0.0, std::ceil(v))); };
+    const auto to = [](double v, int end) {
+      return static_cast<int>(std::min<double>(end - 1, std::floor(v)));
+    };
+    const bool labelled = is_walked_on(scene.class_of[face]);
+    for (int y = from(least.y()); y <= to(most.y(), height_); ++y)
+      for (int x = from(least.x()); x <= to(most.x(), width_); ++x) {
+        std::array<double, 3> share{};
+        bool inside = true;
+        for (std::size_t k = 0; k < 3 && inside; ++k) {
+          const Vector2d &a = p[(k + 1) % 3], &b = p[(k + 2) % 3];
+          const Vector2d side = b - a;
+          share[k] = side.x() * (y - a.y()) - side.y() * (x - a.x());
+          const bool ours = side.y() < 0 || (side.y() == 0 && side.x() > 0);
+          inside = share[k] > 0 || (share[k] == 0 && ours);
+        }
+        if (!inside) continue;
+        const double sum = share[0] + share[1] + share[2];
+        const double height = z[0] + (share[1] * (z[1] - z[0]) + share[2] * (z[2] - z[0])) / sum;
+        samples.push_back({static_cast<std::uint32_t>(y * width_ + x), static_cast<float>(height),
+                           std::abs(n.z()) >= kLevel * norm, labelled});
+      }
+  }
+
+  Vector2d low_;
+  double cell_m_ = kCell_m;
+  int width_ = 0, height_ = 0;
+};
+
+/// The height of the lowest surface that is large; nullopt if none is.
+std::optional<double> lowest_large(const std::vector<Sample>& some, double cell_m2) {
+  if (some.empty()) return std::nullopt;
+  const auto [low, high] = std::ranges::minmax(some, {}, &Sample::z_m);
+  const double base = std::floor(static_cast<double>(low.z_m) / kBin_m) - 1;
+  const auto bin = [&](float z) {
+    return static_cast<std::size_t>(std::floor(static_cast<double>(z) / kBin_m) - base);
+  };
+  std::vector<std::size_t> count(bin(high.z_m) + 2, 0);
+  for (const Sample& sample : some) ++count[bin(sample.z_m)];
+  // Three bins: a floor is no surface of one height.
+  std::vector<std::size_t> window(count.size(), 0);
+  for (std::size_t i = 1; i + 1 < count.size(); ++i)
+    window[i] = count[i - 1] + count[i] + count[i + 1];
+  const auto most = static_cast<double>(std::ranges::max(window));
+  const double enough = std::max(kLeast_m2 / cell_m2, kLarge * most);
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    if (static_cast<double>(window[i]) < enough) continue;
+    while (i + 1 < window.size() && window[i + 1] > window[i]) ++i;  // its middle
+    std::vector<float> heights;
+    for (const Sample& sample : some)
+      if (bin(sample.z_m) + 1 >= i && bin(sample.z_m) <= i + 1) heights.push_back(sample.z_m);
+    std::ranges::nth_element(heights,
+                             heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2));
+    return static_cast<double>(heights[heights.size() / 2]);
+  }
+  return std::nullopt;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+/// z = middle.z + slope . ((x, y) - middle).
+struct Plane {
+  Vector3d middle_m = Vector3d::Zero();
+  Vector2d slope = Vector2d::Zero();
+  double above(const Vector3d& p) const {
+    return p.z() - middle_m.z() - slope.dot((p - middle_m).head<2>());
+  }
+};
+
+/// Least squares over the points within reach of the plane; its height is the median then.
+Plane refitted(const std::vector<Vector3d>& points, const Plane& plane, double reach_m,
+               bool may_slope) {
+  std::vector<Vector3d> near;
+  for (const Vector3d& p : points)
+    if (std::abs(plane.above(p)) <= reach_m) near.push_back(p);
+  if (near.empty()) return plane;
+  Plane result;
+  for (const Vector3d& p : near) result.middle_m += p / static_cast<double>(near.size());
+  result.middle_m.z() = plane.middle_m.z();
+  if (may_slope) {
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Vector3d right = Vector3d::Zero();
+    for (const Vector3d& p : near) {
+      const Vector3d row((p - result.middle_m).x(), (p - result.middle_m).y(), 1.0);
+      normal += row * row.transpose();
+      right += row * (p.z() - result.middle_m.z());
+    }
+    const Vector3d solution = normal.ldlt().solve(right);
+    if (solution.allFinite()) result.slope = solution.head<2>();
+  }
+  std::vector<double> heights;
+  for (const Vector3d& p : near) heights.push_back(result.above(p));
+  result.middle_m.z() += median(std::move(heights));
+  return result;
+}
+
+/// Whether more of the scene lies below the plane than may lie below a floor: a table's top and a
+/// sofa's seat are none.
+bool too_much_below(const Scene& scene, const Plane& plane) {
+  double below = 0, above = 0, all = 0;
+  for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
+    const auto area = static_cast<double>(normal_of(scene, face).norm());
+    std::array<double, 3> away;
+    for (std::size_t k = 0; k < 3; ++k)
+      away[k] = plane.above(corner(scene, face, k).cast<double>());
+    all += area;
+    if (std::ranges::min(away) < -kLayer_m && std::ranges::max(away) < kLayer_m) below += area;
+    if (std::ranges::max(away) > kLayer_m) above += area;
+  }
+  return below > kMostBelow * all || below > above;
+}
+
+/// Five standard deviations of the corners of its faces: of a scan's many thousand none then stands
+/// out by noise.
+double roughness_m(const Scene& scene, const Plane& plane) {
+  std::vector<double> away;
+  for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
+    const Vector3f n = normal_of(scene, face);
+    std::array<double, 3> of;
+    for (std::size_t k = 0; k < 3; ++k)
+      of[k] = std::abs(plane.above(corner(scene, face, k).cast<double>()));
+    if (std::abs(n.z()) >= kLevel * n.norm() && std::ranges::max(of) < kHighestFloor_m)
+      away.insert(away.end(), of.begin(), of.end());
+  }
+  return away.empty() ? 0.03 : std::clamp(5 * 1.4826 * median(std::move(away)), 0.03, 0.12);
+}
+
+Plane fitted(const std::vector<Vector3d>& points, double z_m, std::vector<std::string>* warnings,
+             const std::string& name) {
+  Plane plane;
+  plane.middle_m.z() = z_m;
+  for (const double reach_m : {0.15, 0.1, 0.1, 0.08, 0.08, 0.08})
+    plane = refitted(points, plane, reach_m, true);
+  const double slope_rad = std::atan(plane.slope.norm());
+  if (slope_rad >= kLevelFloor_rad && slope_rad <= kSteepest_rad) return plane;
+  if (slope_rad > kSteepest_rad && warnings != nullptr)
+    warnings->push_back(fmt::format(
+        "{}: its floor slopes by {:.1f} degrees: taken as level (up to 2 degrees are followed)",
+        name, slope_rad * 180 / std::numbers::pi));
+  plane = {};
+  plane.middle_m.z() = z_m;
+  for (int i = 0; i < 3; ++i) plane = refitted(points, plane, 0.1, false);
+  if (std::abs(plane.middle_m.z()) < kLevelFloor_m) plane.middle_m.z() = 0;
+  return plane;
+}
+
+double level_area(const Scene& scene, int axis) {
+  double sum = 0;
+  for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
+    const Vector3f n = normal_of(scene, face);
+    if (std::abs(n[axis]) >= 0.98F * n.norm()) sum += static_cast<double>(n.norm());
+  }
+  return sum;
+}
+
+}  // namespace
+
+bool is_walked_on(ClassId class_id) {
+  static const std::array walked_on = {class_by_name("floor"), class_by_name("floor mat")};
+  return std::ranges::find(walked_on, std::optional(class_id)) != walked_on.end();
+}
+
+std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> floor_z_m,
+                                     std::vector<std::string>* warnings) {
+  const Columns columns(scene);
+  std::vector<Sample> some = columns.labelled();
+  const bool labelled = columns.area_m2(some) >= kLeast_m2;
+  if (!labelled) some = columns.standable();
+  const std::optional<double> z_m = floor_z_m ? floor_z_m : lowest_large(some, columns.cell_m2());
+  if (!z_m) return std::nullopt;
+
+  std::vector<Vector3d> points;
+  for (const Sample& sample : some) points.push_back(columns.point(sample));
+  Plane plane;
+  plane.middle_m.z() = *z_m;
+  if (!floor_z_m) plane = fitted(points, *z_m, warnings, scene.name);
+  if (!floor_z_m && !labelled && too_much_below(scene, plane)) return std::nullopt;
+
+  Floor floor;
+  floor.middle_m = plane.middle_m;
+  floor.up = Vector3d(-plane.slope.x(), -plane.slope.y(), 1.0).normalized();
+  floor.rough_m = roughness_m(scene, plane);
+  std::erase_if(some, [&](const Sample& sample) {
+    const double above = plane.above(columns.point(sample));
+    return above > (labelled ? kHighestFloor_m : floor.rough_m) || above < -kDeepestFloor_m;
+  });
+  floor.area_m2 = columns.area_m2(some);
+  return FoundFloor{floor, columns.room_around(some, scene.name)};
+}
+
+bool looks_y_up(const Scene& scene) {
+  double floor_up = 0, floor_aside = 0;
+  Eigen::AlignedBox3f box;
+  for (const Vector3f& p : scene.positions_m) box.extend(p);
+  for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
+    if (!is_walked_on(scene.class_of[face])) continue;
+    const Vector3f n = normal_of(scene, face).cwiseAbs();
+    floor_up += static_cast<double>(n.z());
+    floor_aside += static_cast<double>(n.y());
+  }
+  if (0.5 * std::max(floor_up, floor_aside) >= kLeast_m2) return floor_aside > 2 * floor_up;
+  // A room is lower than it is wide, and most of what is level in it is floor, ceiling and tables.
+  const Vector3f size = box.isEmpty() ? Vector3f::Zero().eval() : Vector3f(box.sizes());
+  return size.z() > 3.2F && size.y() > 1.8F && size.y() < 0.9F * std::min(size.x(), size.z()) &&
+         level_area(scene, 1) > level_area(scene, 2);
+}
+
+void turn_y_up(Scene& scene, bool back) {
+  const auto turn = [back](Vector3f& p) {
+    p = back ? Vector3f(p.x(), p.z(), -p.y()) : Vector3f(p.x(), -p.z(), p.y());
+  };
+  std::ranges::for_each(scene.positions_m, turn);
+  for (Light& light : scene.lights) turn(light.position_m), turn(light.direction);
+  find_boxes(scene);
+  scene.rooms.clear();
+  rooms_from_floors(scene);
+}
+
+SE3 world_from_floor(const Floor& floor) {
+  const Eigen::Matrix3d rotation =
+      Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), floor.up).toRotationMatrix();
+  const Vector3d flat(floor.middle_m.x(), floor.middle_m.y(), 0.0);
+  if (floor.up == Vector3d::UnitZ())
+    return {Eigen::Matrix3d::Identity(), {0.0, 0.0, floor.middle_m.z()}};
+  return {rotation, floor.middle_m - rotation * flat};
+}
+
+LevelScene::LevelScene(const Scene& scene) : scene_(scene) {
+  if (scene.floor.is_level_zero()) return;
+  world_from_level_ = world_from_floor(scene.floor);
+  const SE3 level_from_world = world_from_level_.inverse();
+  copy_.emplace();
+  copy_->name = scene.name;
+  copy_->triangles = scene.triangles;
+  copy_->class_of = scene.class_of;
+  copy_->instance_of = scene.instance_of;
+  copy_->instances = scene.instances;
+  copy_->rooms = scene.rooms;
+  copy_->floor.rough_m = scene.floor.rough_m;
+  copy_->floor.area_m2 = scene.floor.area_m2;
+  copy_->positions_m.reserve(scene.positions_m.size());
+  for (const Vector3f& p : scene.positions_m)
+    copy_->positions_m.push_back((level_from_world * p.cast<double>().eval()).cast<float>());
+  find_boxes(*copy_);
+}
+
+}  // namespace mh

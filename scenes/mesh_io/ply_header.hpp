@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mh::ply {
+
+enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
+
+/// Bytes of a value.
+std::size_t size_of(Type type);
+
+/// A value as it lies in memory, however it is aligned.
+template <class T>
+T load(const char* at) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  return value;
+}
+
+/// Any scalar as a number that holds it exactly.
+double load_number(Type type, const char* at);
+
+struct Property {
+  std::string name;
+  Type type = Type::kInt8;           ///< of the value, or of a list's items
+  std::optional<Type> count_type{};  ///< set for a list
+  std::size_t offset = 0;            ///< within the record; lists have none
+};
+
+struct Element {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<Property> properties;
+  bool has_list = false;
+  std::size_t stride = 0;  ///< bytes of a record; without lists only
+
+  const Property* find(std::string_view wanted) const {
+    const auto found = std::ranges::find(properties, wanted, &Property::name);
+    return found == properties.end() ? nullptr : &*found;
+  }
+};
+
+enum class Encoding { kText, kLittleEndian, kBigEndian };
+
+struct Header {
+  std::optional<Encoding> encoding;
+  std::vector<Element> elements;
+  std::size_t size = 0;  ///< bytes up to and with the line end of end_header
+};
+
+/// What the bytes of a PLY announce. @param name  stands for the file in messages
+/// @throws InputError naming the line.
+Header parse_header(std::string_view bytes, const std::string& name);
+
+/// A body of another encoding as it would be in binary, little-endian.
+/// @throws InputError naming element and record: what is cut short, no number, or too large for its
+/// type.
+std::string as_little_endian(std::string_view body, const Header& header, const std::string& name);
+
+}  // namespace mh::ply

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/mesh_io/ply_labels.hpp"
+
+#include <array>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "scenes/mesh_io/node_name.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+constexpr std::uint16_t kLastNyu40 = 40;
+constexpr std::uint32_t kLastObject = 65534;  // its instance is the last of 16 bits
+
+/// What a file beside the mesh calls its objects.
+using Names = std::map<std::uint32_t, std::string>;
+
+/// Reads {list: [{id: 3, name: "chair"}, ...]}; empty where none of the files is there.
+Names read_names(std::initializer_list<fs::path> files, const char* list, const char* id,
+                 const char* name) {
+  Names names;
+  for (const fs::path& file : files) {
+    if (!is_file(file)) continue;
+    try {
+      const Json json = Json::parse(read_file(file));
+      for (const Json& item : json.at(list))
+        if (item.at(id).is_number_unsigned() && item.at(id).get<std::uint64_t>() <= kLastObject)
+          names[item.at(id).get<std::uint32_t>()] = item.at(name).get<std::string>();
+    } catch (const Json::exception& wrong) {
+      throw InputError(fmt::format("{}: {}", file.string(), wrong.what()));
+    }
+    return names;
+  }
+  return names;
+}
+
+class Labeller {
+ public:
+  Labeller(Scene& scene, const fs::path& file, std::vector<std::string>* warnings)
+      : scene_(scene), file_(file), warnings_(warnings) {}
+
+  void by_face(const std::vector<std::uint32_t>& objects) {
+    const fs::path folder = file_.parent_path();
+    const Names names =
+        read_names({folder / "info_semantic.json", folder / "habitat" / "info_semantic.json"},
+                   "objects", "id", "class_name");
+    if (names.empty()) warn("has objects, but no info_semantic.json beside it tells their classes");
+    for (std::size_t face = 0; face < scene_.triangles.size(); ++face) {
+      if (objects[face] == kNoObject) continue;
+      scene_.instance_of[face] = object(objects[face]);
+      const auto named = names.find(objects[face]);
+      if (named != names.end()) scene_.class_of[face] = class_named(named->second);
+    }
+    enter_objects(names);
+  }
+
+  void by_vertex(const std::vector<std::uint16_t>& nyu40,
+                 const std::vector<std::uint32_t>& objects) {
+    const fs::path folder = file_.parent_path();
+    const Names names = objects.empty()
+                            ? Names{}
+                            : read_names({folder / "semseg.v2.json", folder / "semseg.json"},
+                                         "segGroups", "objectId", "label");
+    for (std::size_t face = 0; face < scene_.triangles.size(); ++face) {
+      const auto& [a, b, c] = scene_.triangles[face];
+      if (!nyu40.empty())
+        scene_.class_of[face] = nyu40_class(most(std::array{nyu40[a], nyu40[b], nyu40[c]}));
+      if (objects.empty()) continue;
+      const std::uint32_t most_have = most(std::array{objects[a], objects[b], objects[c]});
+      if (most_have == 0) continue;  // 3RScan counts objects from 1
+      scene_.instance_of[face] = object(most_have - 1);
+      if (const auto named = names.find(most_have); named != names.end())
+        refine(scene_.class_of[face], named->second);
+    }
+    Names shifted;
+    for (const auto& [id, name] : names)
+      if (id > 0) shifted[id - 1] = name;
+    enter_objects(shifted);
+    if (unknown_ > 0)
+      warn(fmt::format("{} faces carry a label that is no NYU40 id: not used", unknown_));
+  }
+
+ private:
+  void warn(const std::string& what) const {
+    if (warnings_ != nullptr) warnings_->push_back(fmt::format("{}: {}", file_.string(), what));
+  }
+
+  /// What most of three values are; the first where all differ.
+  template <class T>
+  static T most(const std::array<T, 3>& values) {
+    return values[1] == values[2] && values[0] != values[1] ? values[1] : values[0];
+  }
+
+  ClassId nyu40_class(std::uint16_t id) {
+    if (id <= kLastNyu40) return static_cast<ClassId>(id);
+    ++unknown_;
+    return kVoid;
+  }
+
+  /// The class of a name; looked up once.
+  ClassId class_named(const std::string& name) {
+    const auto [place, is_new] = class_of_name_.try_emplace(name, kVoid);
+    if (is_new) place->second = guess_class(name);
+    return place->second;
+  }
+
+  /// A class that NYU40 lumps together with others is kept by its name.
+  void refine(ClassId& id, const std::string& name) {
+    const ClassId named = class_named(name);
+    if (id == kVoid || is_finer(class_of_noun(name).value_or(kVoid), id)) id = named;
+  }
+
+  InstanceId object(std::uint32_t id) {
+    if (id > kLastObject)
+      throw InputError(
+          fmt::format("{}: object {} is more than {}", file_.string(), id, kLastObject));
+    return static_cast<InstanceId>(id + 1);
+  }
+
+  /// The objects that have faces; each has the class of its first.
+  void enter_objects(const Names& names) {
+    std::map<InstanceId, ClassId> found;
+    for (std::size_t face = 0; face < scene_.triangles.size(); ++face)
+      if (scene_.instance_of[face] != 0)
+        found.try_emplace(scene_.instance_of[face], scene_.class_of[face]);
+    for (const auto& [id, class_id] : found) {
+      const auto named = names.find(id - 1U);
+      scene_.instances.push_back(
+          {.id = id,
+           .class_id = class_id,
+           .name = fmt::format("{}_{}", named == names.end() ? "object" : named->second, id)});
+    }
+  }
+
+  Scene& scene_;
+  const fs::path& file_;
+  std::vector<std::string>* warnings_;
+  std::map<std::string, ClassId> class_of_name_;
+  std::size_t unknown_ = 0;
+};
+
+}  // namespace
+
+void label_ply(Scene& scene, const PlyMesh& mesh, const fs::path& file,
+               std::vector<std::string>* warnings) {
+  Labeller labeller(scene, file, warnings);
+  if (!mesh.face_objects.empty())
+    labeller.by_face(mesh.face_objects);
+  else if (!mesh.nyu40.empty() || !mesh.objects.empty() || !mesh.labels.empty())
+    labeller.by_vertex(mesh.nyu40.empty() ? mesh.labels : mesh.nyu40, mesh.objects);
+}
+
+}  // namespace mh

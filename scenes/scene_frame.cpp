@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/scene_frame.hpp"
+
+#include <fmt/format.h>
+
+namespace mh {
+
+std::optional<UpAxis> up_axis(std::string_view name) {
+  if (name == "y") return UpAxis::kY;
+  if (name == "z") return UpAxis::kZ;
+  return std::nullopt;
+}
+
+std::string_view name(UpAxis up) {
+  return up == UpAxis::kY ? "y" : "z";
+}
+
+SceneFrame read_scene_frame(YamlReader& yaml) {
+  SceneFrame frame;
+  if (const auto up = yaml.find("up")) {
+    frame.up = up_axis(up->as_string());
+    if (!frame.up) up->fail(fmt::format("'{}' is neither y nor z", up->as_string()));
+  }
+  if (const auto z = yaml.find("floor_z_m"))
+    frame.floor_z_m = z->as_double(-kFarthestFloor_m, kFarthestFloor_m);
+  return frame;
+}
+
+}  // namespace mh
