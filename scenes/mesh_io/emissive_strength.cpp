@@ -72,7 +72,8 @@ std::vector<float> emissive_strengths(const std::filesystem::path& file) {
   if (text.find(kExtension) == text.npos) return strengths;
   try {
     const Json gltf = Json::parse(text);
-    for (const std::size_t material : MaterialOrder(gltf).materials())
+    const MaterialOrder order(gltf);
+    for (const std::size_t material : order.materials())
       strengths.push_back(strength_of(gltf.at("materials").at(material)));
   } catch (const Json::exception&) {
     return {};  // assimp, which has read it, has told what is wrong with it
