@@ -1,7 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/mesh_io/collada.hpp"
 
+#include <algorithm>
+
 namespace mh {
+namespace {
+
+/// How long the comment, hole or tag of a polygon with holes is that begins here; 0 for all else.
+std::size_t size_of_unread(std::string_view text) {
+  const auto up_to = [&](std::string_view end) {
+    const std::size_t found = text.find(end);
+    return found == text.npos ? text.size() : found + end.size();
+  };
+  if (text.starts_with("<!--")) return up_to("-->");
+  if (text.starts_with("<h>")) return up_to("</h>");
+  return text.starts_with("<ph>") || text.starts_with("</ph>") ? up_to(">") : 0;
+}
+
+}  // namespace
 
 std::string repaired_collada(std::string_view text, bool z_is_up) {
   constexpr std::string_view kBlank = " \t\r\n";
@@ -9,13 +25,17 @@ std::string repaired_collada(std::string_view text, bool z_is_up) {
   std::string repaired;
   repaired.reserve(text.size());
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t tag_end = text.find('>', at);
-    if (tag_end == text.npos) {
-      repaired += text.substr(at);
-      break;
+    const std::size_t tag = std::min(text.find('<', at), text.size());
+    repaired += text.substr(at, tag - at);
+    const std::string_view rest = text.substr(tag);
+    if (rest.empty()) break;
+    if (const std::size_t unread = size_of_unread(rest)) {
+      at = tag + unread;
+      continue;
     }
-    repaired += text.substr(at, tag_end + 1 - at);
-    at = tag_end + 1;
+    const std::size_t size = std::min(rest.find('>'), rest.size() - 1) + 1;
+    repaired += rest.substr(0, size);
+    at = tag + size;
     const std::size_t content = text.find_first_not_of(kBlank, at);
     if (content != text.npos && kNumberStart.find(text[content]) != kNumberStart.npos) at = content;
   }

@@ -6,8 +6,8 @@
 
 namespace mh {
 
-/// A Collada file as assimp can read it: blanks before a list of numbers, which it takes for the
-/// list's end, are left out. All else stays as it is.
+/// A Collada file as assimp can read it. Left out is what it refuses files for: blanks before a
+/// list of numbers, comments, holes of polygons (which are filled). All else stays as it is.
 /// @param z_is_up  whatever the file says of its up axis, as Gazebo takes it
 std::string repaired_collada(std::string_view text, bool z_is_up = false);
 

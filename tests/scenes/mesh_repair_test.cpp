@@ -64,6 +64,27 @@ TEST_F(MeshRepair, ColladaMayHaveBlanksBeforeItsNumbers) {
   }
   EXPECT_EQ(repaired_collada("<a> \n x </a> <b> -1 </b>  "), "<a> \n x </a> <b>-1 </b>  ");
   EXPECT_EQ(repaired_collada(""), "");
+  EXPECT_EQ(repaired_collada("a<b> 1"), "a<b>1");
+  EXPECT_EQ(repaired_collada("<a"), "<a");
+}
+
+TEST_F(MeshRepair, ColladaMayHaveCommentsAndPolygonsWithHoles) {
+  const std::string clean = collada("1 0.5 0 1", "0 0 0 1 0 0 0 1 0");
+  const auto with = [&](std::string from, const std::string& to) {
+    std::string text = clean;
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, text.npos);
+    return load_mesh(write("c.dae", text.replace(at, from.size(), to)));
+  };
+  const std::uint64_t seen = digest(load_mesh(write("a.dae", clean)));
+  EXPECT_EQ(digest(with("<vertices id=\"v\">", "<vertices id=\"v\"><!-- <input/> -->")), seen);
+  const std::string triangles =
+      clean.substr(clean.find("<triangles"), clean.find("</triangles>") - clean.find("<triangles"));
+  EXPECT_EQ(with(triangles + "</triangles>",
+                 "<polygons count=\"1\" material=\"m\"><input semantic=\"VERTEX\" source=\"#v\" "
+                 "offset=\"0\"/><ph><p>0 1 2</p><h>2 1 0</h></ph></polygons>")
+                .triangles.size(),
+            1U);
 }
 
 TEST_F(MeshRepair, FilesOfOneSceneShareOnePictureInMemory) {
