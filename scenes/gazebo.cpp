@@ -175,9 +175,11 @@ class WorldReader {
         std::vector<std::string> warnings;
         place->second =
             load_mesh(file, &warnings, rules_, {.pictures = &pictures_, .in_gazebo = true});
-        for (std::string& warning : warnings) told_.tell(std::move(warning));
+        for (const std::string& warning : warnings) told_.tell(warning);
       } catch (const InputError& error) {
-        told_.tell(fmt::format("{}: left out", error.what()));
+        const std::string what = error.what();
+        const bool is_named = what.find(file.string()) != what.npos;  // a scene knows no file
+        told_.tell(fmt::format("{}{}: left out", is_named ? "" : file.string() + ": ", what));
       }
     }
     return place->second ? &*place->second : nullptr;

@@ -196,7 +196,8 @@ class Expander {
                              include.FirstChildElement("uri")->GetLineNum(), uri,
                              found ? fmt::format("the folder {} holds no model", found->string())
                              : uri.starts_with("http") ? "is not in Fuel's cache"
-                                                       : "there is no such model"));
+                                                       : "there is no such model"),
+                 "include " + uri);
   }
 
   /// model://sun and model://ground_plane, also by Fuel's names.
@@ -292,7 +293,8 @@ class Expander {
     const bool is_mesh = std::strcmp(shape->Name(), "mesh") == 0;
     const auto mesh = is_mesh ? finder_.find(uri, source.file) : std::nullopt;
     if (is_mesh && !mesh) {
-      told_.tell(fmt::format("{}: mesh {}: there is no such file: left out", what, uri));
+      told_.tell(fmt::format("{}: mesh {}: there is no such file: left out", what, uri),
+                 source.file.string() + uri);
       return;
     }
     XMLElement* copy = out.InsertNewChildElement("visual");

@@ -2,6 +2,7 @@
 #include "scenes/gazebo/look.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -13,23 +12,29 @@ namespace mh::gazebo {
 /// Warnings, each once with the number of times that it was given.
 class ToldOnce {
  public:
-  void tell(std::string what) {
-    const auto place = std::ranges::find(told_, what, &Entry::first);
+  void tell(const std::string& what) { tell(what, what); }
+
+  /// @param thing  what the warning is about; of several warnings about it the first stands
+  void tell(const std::string& what, const std::string& thing) {
+    const auto place = std::ranges::find(told_, thing, &Entry::thing);
     if (place != told_.end())
-      ++place->second;
+      ++place->times;
     else
-      told_.emplace_back(std::move(what), 1);
+      told_.push_back({thing, what, 1});
   }
 
   /// In the order in which they were first given.
   void hand_over(std::vector<std::string>* warnings) const {
     if (warnings == nullptr) return;
-    for (const auto& [what, times] : told_)
+    for (const auto& [thing, what, times] : told_)
       warnings->push_back(times == 1 ? what : fmt::format("{} ({} times)", what, times));
   }
 
  private:
-  using Entry = std::pair<std::string, int>;
+  struct Entry {
+    std::string thing, what;
+    int times;
+  };
   std::vector<Entry> told_;
 };
 

@@ -82,6 +82,7 @@ TEST_F(GazeboWorld, LoadsWithWarningsWhatDoesNotMatterToAPicture) {
       model("box", link(box(1) + gone + gone)) +  // of the same name
       model("a::b", link(box(1) + box(1))) +      // a name that SDF forbids, visuals alike
       model("empty", "") + "<include><uri>model://absent</uri></include>" +
+      "\n<include><uri>model://absent</uri></include>" +
       "<include><uri>https://fuel.gazebosim.org/1.0/someone/models/absent</uri></include>" +
       model("flat", link("<visual name='v'><geometry><box><size>1 1 0</size></box></geometry>"
                          "</visual><visual name='h'><geometry><heightmap><uri>x</uri></heightmap>"
@@ -90,7 +91,7 @@ TEST_F(GazeboWorld, LoadsWithWarningsWhatDoesNotMatterToAPicture) {
   EXPECT_EQ(scene.instances.size(), 3U);
   EXPECT_NO_THROW(instance(scene, "box_2"));
   EXPECT_TRUE(told({"w.world", "model://gone/a.dae", "no such file", "(2 times)"}));
-  EXPECT_TRUE(told({"w.world:2", "model://absent", "no such model", "left out"}));
+  EXPECT_TRUE(told({"w.world:2", "model://absent", "no such model", "left out (2 times)"}));
   EXPECT_TRUE(told({"fuel.gazebosim.org", "Fuel's cache"}));
   EXPECT_TRUE(told({"a box of 1 x 1 x 0", "above 0", "left out"}));
   EXPECT_TRUE(told({"visual h", "kind of shape is not shown"}));
