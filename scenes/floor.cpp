@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 #include <Eigen/Dense>
@@ -55,7 +57,8 @@ Vector3f normal_of(const Scene& scene, std::size_t face) {
 class Columns {
  public:
   explicit Columns(const Scene& scene) {
-    const Eigen::AlignedBox2f box = place_of(scene);
+    const auto [things, box] = extents(scene);
+    things_ = things;
     low_ = box.min().cast<double>();
     const Vector2d size = box.sizes().cast<double>();
     cell_m_ = std::max(kCell_m, size.maxCoeff() / kMostCells);
@@ -93,38 +96,52 @@ class Columns {
             .is_box = true};
   }
 
-  /// Those of a class that is walked on.
+  /// Those of a class that is walked on; of two with less than headroom between them the upper one:
+  /// a house's floor and not the ground below it.
   std::vector<Sample> labelled() const {
     std::vector<Sample> some;
     std::ranges::copy_if(samples, std::back_inserter(some), &Sample::labelled);
-    return some;
+    return with_headroom(some);
   }
   /// Those that one could stand on: level, and nothing for a while above.
   std::vector<Sample> standable() const {
-    std::vector<Sample> some;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (!samples[i].level) continue;
-      const bool topmost = i + 1 == samples.size() || samples[i + 1].cell != samples[i].cell;
-      if (topmost || samples[i + 1].z_m - samples[i].z_m > kHeadroom_m) some.push_back(samples[i]);
-    }
+    std::vector<Sample> some = with_headroom(samples);
+    std::erase_if(some, [&](const Sample& s) { return !s.level || !among_things(s); });
     return some;
+  }
+  /// Whether it lies where things stand: a plane that reaches to the horizon has most of its area
+  /// elsewhere.
+  bool among_things(const Sample& sample) const {
+    return things_.contains(point(sample).head<2>().cast<float>().eval());
   }
 
   std::vector<Sample> samples;  ///< by cell, then upwards
 
  private:
-  /// Where things stand: a plane that reaches to the horizon has most of its area elsewhere.
-  static Eigen::AlignedBox2f place_of(const Scene& scene) {
-    Eigen::AlignedBox2f things, all;
+  static std::vector<Sample> with_headroom(const std::vector<Sample>& all) {
+    std::vector<Sample> some;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (i + 1 == all.size() || all[i + 1].cell != all[i].cell ||
+          all[i + 1].z_m - all[i].z_m > kHeadroom_m)
+        some.push_back(all[i]);
+    return some;
+  }
+
+  /// Where things stand, and that together with what is labelled as floor.
+  static std::pair<Eigen::AlignedBox2f, Eigen::AlignedBox2f> extents(const Scene& scene) {
+    Eigen::AlignedBox2f things, labelled, all;
     for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
       const Vector3f n = normal_of(scene, face);
       const bool level = std::abs(n.z()) >= 0.98F * n.norm();
       for (std::size_t k = 0; k < 3; ++k) {
-        all.extend(corner(scene, face, k).head<2>());
-        if (!level) things.extend(corner(scene, face, k).head<2>());
+        const Eigen::Vector2f p = corner(scene, face, k).head<2>();
+        all.extend(p);
+        if (!level) things.extend(p);
+        if (is_walked_on(scene.class_of[face])) labelled.extend(p);
       }
     }
-    return things.isEmpty() || things.sizes().minCoeff() < 0.5F ? all : things;
+    if (things.isEmpty() || things.sizes().minCoeff() < 0.5F) things = all;
+    return {things, things.merged(labelled)};
   }
 
   /// Samples a face at the middles of cells; a middle on an edge belongs to one face alone.
@@ -166,6 +183,7 @@ class Columns {
       }
   }
 
+  Eigen::AlignedBox2f things_;
   Vector2d low_;
   double cell_m_ = kCell_m;
   int width_ = 0, height_ = 0;
@@ -314,11 +332,15 @@ std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> f
   std::vector<Sample> some = columns.labelled();
   const bool labelled = columns.area_m2(some) >= kLeast_m2;
   if (!labelled) some = columns.standable();
-  const std::optional<double> z_m = floor_z_m ? floor_z_m : lowest_large(some, columns.cell_m2());
+  std::vector<Sample> inner;
+  std::ranges::copy_if(some, std::back_inserter(inner),
+                       [&](const Sample& sample) { return columns.among_things(sample); });
+  if (columns.area_m2(inner) < kLeast_m2) inner = some;  // things stand elsewhere
+  const std::optional<double> z_m = floor_z_m ? floor_z_m : lowest_large(inner, columns.cell_m2());
   if (!z_m) return std::nullopt;
 
   std::vector<Vector3d> points;
-  for (const Sample& sample : some) points.push_back(columns.point(sample));
+  for (const Sample& sample : inner) points.push_back(columns.point(sample));
   Plane plane;
   plane.middle_m.z() = *z_m;
   if (!floor_z_m) plane = fitted(points, *z_m, warnings, scene.name);

@@ -99,14 +99,15 @@ TEST_P(Labelled, OfTwoLevelsTheLowerIsTheFloorUnlessItIsSmall) {
   }
 }
 
-TEST(FindFloor, SlabIsTheFloorAndNotThePlaneBelowIt) {
-  const ScannedRoom room{.floor_z_m = 0.2, .noise_m = 0, .labelled = false};
+TEST_P(Labelled, SlabIsTheFloorAndNotThePlaneBelowIt) {
+  const ScannedRoom room{.floor_z_m = 0.2, .noise_m = 0, .labelled = GetParam()};
   Scene scene = room.build();
   ScannedRoom::add_sheet(scene, {-50, -50, 0}, {100, 0, 0}, {0, 100, 0}, 1);
   const auto found = find_floor(scene);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->floor.middle_m.z(), 0.2, 1e-6);
-  EXPECT_NEAR(*found->floor.area_m2, 30, 0.6);
+  // Labelled, all of the ground is floor; else what lies where things stand.
+  EXPECT_NEAR(*found->floor.area_m2, GetParam() ? 1e4 : 30, GetParam() ? 50 : 0.6);
 }
 
 TEST(FindFloor, ThingAloneHasNone) {
