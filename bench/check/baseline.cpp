@@ -7,6 +7,8 @@
 
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/json_number.hpp"
+#include "slam/core/text_file.hpp"
 
 namespace mh {
 namespace {
@@ -27,7 +29,7 @@ Json run_json(const RunFigures& run) {
 RunFigures read_run(const Json& json) {
   RunFigures run{.scenario = json.at("scenario").get<std::string>(),
                  .system = json.at("system").get<std::string>(),
-                 .seed = json.at("seed").get<std::uint64_t>(),
+                 .seed = whole_number<std::uint64_t>(json.at("seed")),
                  .digest = json.at("digest").get<std::string>()};
   for (const auto& [name, value] : json.at("values").items())
     run.values[name] = value.is_null() ? std::nullopt : std::optional(value.get<double>());
@@ -85,7 +87,7 @@ void save_baseline(const Baseline& baseline, const std::filesystem::path& file) 
 }
 
 Baseline load_baseline(const std::filesystem::path& file) {
-  const Json json = Json::parse(read_file(file), nullptr, false);
+  const Json json = Json::parse(read_text(file), nullptr, false);
   if (!json.is_object() || !json.contains("format") || !json["format"].is_string())
     throw InputError(
         fmt::format("{}: is no baseline: it should be JSON as `modelhouse check "
@@ -97,7 +99,7 @@ Baseline load_baseline(const std::filesystem::path& file) {
                                  file.string(), format, kBaselineFormat));
   try {
     return read(json);
-  } catch (const Json::exception& e) {
+  } catch (const std::exception& e) {  // of the JSON, or of a number in it
     throw InputError(fmt::format("{}: is damaged: {}", file.string(), e.what()));
   }
 }

@@ -13,6 +13,7 @@
 #include "bench/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/text_file.hpp"
 
 namespace mh {
 namespace {
@@ -155,7 +156,7 @@ Trajectory parse_tum(const std::string& text, const std::string& name) {
 }
 
 Trajectory read_tum(const std::filesystem::path& file) {
-  return parse_tum(read_file(file), file.string());
+  return parse_tum(read_text(file), file.string());
 }
 
 std::string format_tum(const Trajectory& trajectory) {
@@ -197,7 +198,7 @@ Trajectory parse_kitti(const std::string& text, const std::string& name, Stamp p
 }
 
 Trajectory read_kitti(const std::filesystem::path& file, Stamp period_ns) {
-  return parse_kitti(read_file(file), file.string(), period_ns);
+  return parse_kitti(read_text(file), file.string(), period_ns);
 }
 
 std::string format_kitti(const Trajectory& trajectory) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
+#include "slam/core/json_number.hpp"
 
 namespace mh {
 namespace {
@@ -125,7 +126,8 @@ RunSpec read(const Json& json) {
   spec.mapping = semantics_from_json(json.at("mapping"));
   for (const Json& point : json.at("points")) spec.points.push_back(semantics_from_json(point));
   spec.protocol = protocol_from_json(json.at("protocol"));
-  if (!json.at("max_frames").is_null()) spec.max_frames = json.at("max_frames").get<std::size_t>();
+  if (!json.at("max_frames").is_null())
+    spec.max_frames = whole_number<std::size_t>(json.at("max_frames"));
   return spec;
 }
 

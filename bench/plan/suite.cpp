@@ -10,7 +10,7 @@
 #include "scenes/scannet/files.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
-#include "slam/core/files.hpp"
+#include "slam/core/text_file.hpp"
 
 namespace mh {
 namespace {
@@ -71,7 +71,7 @@ std::string level_name(const fs::path& level) {
 }
 
 Suite load_suite(const fs::path& file, const SuiteOverrides& overrides) {
-  return parse_suite(read_file(file), file, overrides);
+  return parse_suite(read_text(file), file, overrides);
 }
 
 Suite parse_suite(const std::string& content, const fs::path& file, const SuiteOverrides& overrides,

@@ -26,6 +26,7 @@
 #include "bench/temporary_folder.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/json_number.hpp"
 
 namespace mh {
 namespace {
@@ -208,8 +209,8 @@ nlohmann::ordered_json to_json(const SuiteOverrides& o) {
 SuiteOverrides overrides_from_json(const nlohmann::json& json) {
   SuiteOverrides o;
   if (!json.at("scene").is_null()) o.scene = json.at("scene").get<std::string>();
-  if (!json.at("trials").is_null()) o.trials = json.at("trials").get<int>();
-  if (!json.at("frames").is_null()) o.max_frames = json.at("frames").get<std::size_t>();
+  if (!json.at("trials").is_null()) o.trials = whole_number<int>(json.at("trials"));
+  if (!json.at("frames").is_null()) o.max_frames = whole_number<std::size_t>(json.at("frames"));
   if (json.contains("scene_frame")) o.frame = scene_frame_from_json(json.at("scene_frame"));
   return o;
 }

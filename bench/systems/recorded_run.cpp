@@ -13,6 +13,7 @@
 #include "bench/recorded/tum_folder.hpp"
 #include "bench/systems/child_process.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/text_file.hpp"
 
 namespace mh {
 namespace {
@@ -30,7 +31,7 @@ std::optional<Stamp> frame_of(Stamp stamp_ns, std::span<const Stamp> frames) {
 
 /// A file without poses is an answer too: completeness 0.
 bool tracked_nothing(const fs::path& trajectory) {
-  std::istringstream lines(read_file(trajectory));
+  std::istringstream lines(read_text(trajectory));
   for (std::string line; std::getline(lines, line);)
     if (line.find_first_not_of(" \t\r") < line.find('#')) return false;
   return true;

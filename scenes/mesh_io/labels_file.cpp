@@ -7,6 +7,8 @@
 
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/json_number.hpp"
+#include "slam/core/text_file.hpp"
 
 namespace mh {
 namespace fs = std::filesystem;
@@ -40,10 +42,10 @@ void read_runs(Scene& scene, const Json& runs) {
   scene.class_of.clear();
   scene.instance_of.clear();
   for (const Json& run : runs) {
-    const auto count = run.at(0).get<std::size_t>();
+    const auto count = whole_number<std::size_t>(run.at(0));
     if (count > scene.triangles.size() - scene.class_of.size())
       throw InputError("runs cover more faces than the mesh has");
-    scene.instance_of.insert(scene.instance_of.end(), count, run.at(1).get<InstanceId>());
+    scene.instance_of.insert(scene.instance_of.end(), count, whole_number<InstanceId>(run.at(1)));
     scene.class_of.insert(scene.class_of.end(), count, read_class(run.at(2)));
   }
   if (scene.class_of.size() != scene.triangles.size())
@@ -54,8 +56,8 @@ void read_runs(Scene& scene, const Json& runs) {
 void check_belongs(const Scene& scene, const Json& json) {
   if (json.at("format") != kFormat || json.at("version") != kVersion)
     throw InputError(fmt::format("not a {} file of version {}", kFormat, kVersion));
-  const auto vertices = json.at("vertices").get<std::size_t>();
-  const auto faces = json.at("faces").get<std::size_t>();
+  const auto vertices = whole_number<std::size_t>(json.at("vertices"));
+  const auto faces = whole_number<std::size_t>(json.at("faces"));
   if (vertices != scene.positions_m.size() || faces != scene.triangles.size())
     throw InputError(
         fmt::format("labels are for {} vertices and {} faces, but the mesh beside it has {} and {}",
@@ -68,7 +70,7 @@ void read(Scene& scene, const Json& json) {
   scene.instances.clear();
   for (const Json& item : json.at("instances")) {
     Instance instance;
-    instance.id = item.at(0).get<InstanceId>();
+    instance.id = whole_number<InstanceId>(item.at(0));
     instance.class_id = read_class(item.at(1));
     instance.name = item.at(2).get<std::string>();
     scene.instances.push_back(instance);
@@ -117,7 +119,7 @@ void save_labels(const Scene& scene, const fs::path& file) {
 
 void load_labels(Scene& scene, const fs::path& file) {
   try {
-    read(scene, Json::parse(read_file(file)));
+    read(scene, Json::parse(read_text(file)));
   } catch (const Json::exception& error) {
     throw InputError(fmt::format("{}: {}", file.string(), error.what()));
   } catch (const InputError& error) {

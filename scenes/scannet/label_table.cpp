@@ -10,7 +10,7 @@
 
 #include "scenes/mesh_io/node_name.hpp"
 #include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/core/text_file.hpp"
 
 namespace mh {
 namespace {
@@ -144,7 +144,7 @@ LabelTable parse_label_table(std::string_view text, const std::string& name) {
 }
 
 LabelTable load_label_table(const std::filesystem::path& file) {
-  return parse_label_table(read_file(file), file.string());
+  return parse_label_table(read_text(file), file.string());
 }
 
 std::string label_table_text() {

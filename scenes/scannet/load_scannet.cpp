@@ -17,8 +17,8 @@
 #include "scenes/scannet/scannet.hpp"
 #include "scenes/scannet/scene_info.hpp"
 #include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
 #include "slam/core/held_bytes.hpp"
+#include "slam/core/text_file.hpp"
 
 namespace mh {
 namespace {
@@ -79,7 +79,7 @@ class Loader {
 
   void align() {
     if (!is_there(files_.info)) return;
-    const ScannetInfo info = parse_scannet_info(read_file(files_.info), files_.info.string());
+    const ScannetInfo info = parse_scannet_info(read_text(files_.info), files_.info.string());
     aligned_ = info.aligned_from_scan.has_value();
     if (!aligned_) return;
     const Eigen::Matrix3d rotation = info.aligned_from_scan->topLeftCorner<3, 3>();
@@ -130,7 +130,7 @@ class Loader {
                                    files_.segments.string(), segments.size(),
                                    scene_.positions_m.size()));
     const std::vector<SegmentGroup> groups =
-        parse_aggregation(read_file(files_.aggregation), files_.aggregation.string());
+        parse_aggregation(read_text(files_.aggregation), files_.aggregation.string());
     label_objects(enter_objects(groups), groups, segments, vertices);
     return vertices;
   }

@@ -15,6 +15,7 @@
 #include "scenes/scannet/sens.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/text_file.hpp"
 
 namespace mh {
 namespace {
@@ -23,7 +24,7 @@ namespace fs = std::filesystem;
 
 /// Sixteen numbers of a text file, row by row; "-inf" is a number.
 Eigen::Matrix4d read_matrix(const fs::path& file) {
-  const std::string text = read_file(file);
+  const std::string text = read_text(file);
   std::istringstream words(text);
   Eigen::Matrix4d matrix;
   std::string word;

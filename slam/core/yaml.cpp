@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/files.hpp"
+#include "slam/core/text_file.hpp"
 
 namespace mh {
 namespace {
@@ -57,10 +57,16 @@ YamlReader::YamlReader(YAML::Node node, std::string file, std::string place)
     : node_(std::move(node)), file_(std::move(file)), place_(std::move(place)) {}
 
 YamlReader YamlReader::load(const std::filesystem::path& file) {
-  return parse(read_file(file), file.string());
+  return parse(read_text(file), file.string());
 }
 
 YamlReader YamlReader::parse(const std::string& text, const std::string& name) {
+  constexpr std::size_t kMostBytes = 4 << 20;  // yaml-cpp takes a second for each megabyte
+  if (text.size() > kMostBytes)
+    throw InputError(
+        fmt::format("{}: has {} bytes: no YAML that is meant for this program has more "
+                    "than {}",
+                    name, text.size(), kMostBytes));
   try {
     YAML::Node node = YAML::Load(text);
     Walk(name).visit(node);

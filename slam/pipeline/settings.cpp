@@ -12,7 +12,7 @@
 #include <fmt/ranges.h>
 
 #include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/core/text_file.hpp"
 #include "slam/features/undistort.hpp"
 #include "slam/pipeline/settings_fields.hpp"
 
@@ -370,7 +370,7 @@ Settings parse_settings(std::string text, const std::string& name, const SlamCon
 }
 
 Settings load_settings(const std::filesystem::path& file, const SlamConfig& base) {
-  return parse_settings(read_file(file), file.string(), base);
+  return parse_settings(read_text(file), file.string(), base);
 }
 
 }  // namespace mh

@@ -18,6 +18,7 @@
 
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/text_file.hpp"
 #include "slam/vocabulary/tree.hpp"
 #include "slam/vocabulary/vocabulary.hpp"
 
@@ -145,9 +146,10 @@ Vocabulary::Vocabulary(const VocabularyTree& tree) : Vocabulary(hold(encode(tree
 
 Vocabulary Vocabulary::load(const std::filesystem::path& file) {
   HeldBytes bytes = map_file(file);
-  const bool is_text = !bytes.view.empty() && bytes.view[0] >= '0' && bytes.view[0] <= '9';
+  const std::string_view text = without_mark(bytes.view, file);
+  const bool is_text = !text.empty() && text[0] >= '0' && text[0] <= '9';
   if (!is_text) return {std::move(bytes), file.string()};
-  return Vocabulary(read_dbow2_text(bytes.view, file.string()));
+  return Vocabulary(read_dbow2_text(text, file.string()));
 }
 
 void Vocabulary::save(const std::filesystem::path& file) const {

@@ -14,6 +14,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/held_bytes.hpp"
+#include "slam/core/text_file.hpp"
 
 namespace mh {
 namespace {
@@ -101,6 +102,25 @@ TEST(ReadFile, SaysWhetherItIsMissingOrAFolder) {
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_EQ(error_of(pipe), pipe.string() + ": cannot be read: it is no file");
   EXPECT_THROW(map_file(pipe), InputError);
+}
+
+TEST(ReadText, TakesTheMarkOfUtf8OffAndRefusesUtf16) {
+  const fs::path file = fs::path(testing::TempDir()) / "marked.txt";
+  for (const std::string& text : {std::string("1.0 a"), std::string(), std::string("\xef\xbb")}) {
+    write_atomically(file, "\xef\xbb\xbf" + text);
+    EXPECT_EQ(read_text(file), text);
+    write_atomically(file, text);
+    EXPECT_EQ(read_text(file), text);
+  }
+  for (const char* mark : {"\xff\xfe", "\xfe\xff"}) {
+    write_atomically(file, mark + std::string("1\0", 2));
+    try {
+      read_text(file);
+      ADD_FAILURE() << "was read";
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(), file.string() + ":1: is UTF-16 text: save it as UTF-8");
+    }
+  }
 }
 
 TEST(MakeOutputFolder, RefusesAPathThatIsAFile) {

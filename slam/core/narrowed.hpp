@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+namespace mh {
+
+/// A number that a file tells, as a To; nullopt where no To is exactly that number: what is too
+/// large, negative, broken or not finite.
+template <std::integral To, class From>
+requires std::is_arithmetic_v<From> std::optional<To> narrowed(From value) {
+  if constexpr (std::is_floating_point_v<From>) {
+    // One past the greatest To is a power of two, which any floating point type holds.
+    const From end = std::ldexp(From{1}, std::numeric_limits<To>::digits);
+    const From begin = std::is_signed_v<To> ? -end : From{0};
+    if (!(value >= begin && value < end) || value != std::trunc(value)) return std::nullopt;
+  } else if (!std::in_range<To>(value)) {
+    return std::nullopt;
+  }
+  return static_cast<To>(value);
+}
+
+}  // namespace mh
