@@ -17,7 +17,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/core/text_file.hpp"
 
 namespace mh {
 namespace {
@@ -84,6 +84,10 @@ class Places {
   }
   /// Throws what urdfdom says, with the first link or joint that it says it of.
   [[noreturn]] void fail_somewhere(const std::string& what) const {
+    // Each is parsed with all materials: with very many of both it is not worth the time.
+    constexpr std::size_t kMostBytes = 50'000'000;
+    if (materials_.size() * (links_.size() + joints_.size()) > kMostBytes)
+      throw InputError(fmt::format("{}: {}", file_, what));
     const auto wrong_with = [&](const std::string& part) {
       return try_urdf("<robot name=\"r\">" + materials_ + part + "</robot>").second;
     };
@@ -133,15 +137,16 @@ class Places {
     hanging_.push_back(child);
   }
 
-  void check_way_up(const std::string& link) const {
+  void check_way_up(const std::string& link) {
     std::set<std::string> passed;
-    for (auto way = way_up_.find(link); way != way_up_.end();
+    for (auto way = way_up_.find(link); way != way_up_.end() && !leads_up_.contains(way->first);
          way = way_up_.find(way->second.parent))
       if (!passed.insert(way->first).second)
         fail_at_joint(way->second.joint,
                       fmt::format("link '{}' hangs in a circle of joints, no way leads to it from "
                                   "a root",
                                   way->first));
+    leads_up_.merge(passed);
   }
 
   [[noreturn]] void fail(const char* kind, const std::string& name,
@@ -159,6 +164,7 @@ class Places {
   std::vector<std::pair<std::string, std::string>> links_, joints_;  // name, text
   std::map<std::string, Way> way_up_;                                // by child
   std::vector<std::string> hanging_;  // children, in the file's order
+  std::set<std::string> leads_up_;    // those of which check_way_up() knows it
 };
 
 SE3 to_se3(const urdf::Pose& pose) {
@@ -252,25 +258,31 @@ Joint read_joint(const urdf::Joint& from, const Places& places) {
   return joint;
 }
 
-/// Joints in an order in which each one's parent link is known before it. They are a tree
-/// (Places).
+/// Joints in an order in which each one's parent link is known before it: that of going through
+/// them again and again, taking each whose parent is known. They are a tree (Places).
 std::vector<Joint> from_root(std::vector<Joint> joints, const std::string& root) {
-  std::vector<Joint> ordered;
-  std::vector<std::string> known{root};
-  for (bool more = true; more && !joints.empty();) {
-    more = false;
-    for (auto joint = joints.begin(); joint != joints.end();) {
-      if (std::ranges::find(known, joint->parent) == known.end()) {
-        ++joint;
-        continue;
-      }
-      known.push_back(joint->child);
-      ordered.push_back(std::move(*joint));
-      joint = joints.erase(joint);
-      more = true;
-    }
+  std::multimap<std::string_view, std::size_t> below;  // by parent
+  for (std::size_t i = 0; i < joints.size(); ++i) below.emplace(joints[i].parent, i);
+  struct Taken {
+    std::size_t turn, joint;
+    auto operator<=>(const Taken&) const = default;
+  };
+  std::vector<Taken> taken;
+  const auto take_below = [&](std::string_view link, const auto& turn_of) {
+    const auto [begin, end] = below.equal_range(link);
+    for (auto found = begin; found != end; ++found)
+      taken.push_back({turn_of(found->second), found->second});
+  };
+  take_below(root, [](std::size_t) { return std::size_t{0}; });
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    const Taken above = taken[i];
+    take_below(joints[above.joint].child,
+               [&](std::size_t joint) { return above.turn + (joint < above.joint); });
   }
-  assert(joints.empty());
+  assert(taken.size() == joints.size());
+  std::ranges::sort(taken);
+  std::vector<Joint> ordered;
+  for (const Taken& next : taken) ordered.push_back(std::move(joints[next.joint]));
   return ordered;
 }
 
@@ -310,7 +322,7 @@ SE3 KinematicTree::root_from(std::string_view link,
 }
 
 KinematicTree load_urdf(const std::filesystem::path& file) {
-  const std::string text = read_file(file);
+  const std::string text = read_text(file);
   const Places places(text, file);
   const auto [model, wrong] = try_urdf(text);
   if (!model) places.fail_somewhere(wrong);

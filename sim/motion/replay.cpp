@@ -56,6 +56,12 @@ DrivenPath replay(const Scene& scene, const Camera& camera, const Trajectory& re
                   const std::string& name, const ReplayConfig& config) {
   if (recorded.size() < 2)
     throw InputError(fmt::format("{}: has fewer than two poses to replay", name));
+  constexpr double kLongest_s = 24 * 3600;
+  const double lasts_s =
+      static_cast<double>(recorded.back().stamp_ns - recorded.front().stamp_ns) * 1e-9;
+  if (lasts_s > kLongest_s)
+    throw InputError(
+        fmt::format("{}: lasts {:.0f} s, a replay at most {:.0f}", name, lasts_s, kLongest_s));
   const Trajectory path = at_rate(recorded, camera.rate_hz);
   double low_m = 1e9, high_m = -1e9;
   for (const TimedPose& pose : path) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstring>
 #include <sstream>
 #include <string>
 
@@ -36,10 +38,12 @@ Grid2d<std::uint8_t> read_pgm(const std::filesystem::path& file) {
       brightest != 255)
     throw InputError(fmt::format("{}: is no binary 8-bit PGM picture", file.string()));
   in.get();
-  Grid2d<std::uint8_t> picture(width, height);
-  in.read(reinterpret_cast<char*>(picture.data()), static_cast<std::streamsize>(picture.size()));
-  if (in.gcount() != static_cast<std::streamsize>(picture.size()))
+  const std::string_view pixels = std::string_view(content).substr(
+      std::min(content.size(), static_cast<std::size_t>(in.tellg())));
+  if (pixels.size() < static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
     throw InputError(fmt::format("{}: is cut short", file.string()));
+  Grid2d<std::uint8_t> picture(width, height);
+  std::memcpy(picture.data(), pixels.data(), picture.size());
   return picture;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <sstream>
@@ -18,6 +19,23 @@ constexpr const char* kMagic = "# Octomap OcTree binary file";
 
 octomap::point3d point(const Eigen::Vector3d& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+}
+
+/// Goes through the nodes of a binary tree as OctoMap would, which follows them to any depth.
+void check_depth(std::istream& in, unsigned deepest, const std::string& name) {
+  std::vector<int> children_left{1};  // by level, those that have children themselves
+  while (!children_left.empty()) {
+    if (children_left.back()-- == 0) {
+      children_left.pop_back();
+      continue;
+    }
+    if (children_left.size() > deepest)
+      throw InputError(fmt::format("{}: its tree is deeper than {} levels", name, deepest));
+    unsigned char bytes[2];
+    if (!in.read(reinterpret_cast<char*>(bytes), sizeof bytes)) return;       // is cut short
+    const unsigned pairs = bytes[0] | static_cast<unsigned>(bytes[1]) << 8U;  // 11: has children
+    children_left.push_back(std::popcount(pairs & pairs >> 1U & 0x5555U));
+  }
 }
 
 /// A leaf of the octree as a block of whole voxels: [low, high) along each axis, counted from the
@@ -226,7 +244,13 @@ OccupancyMapper OccupancyMapper::read_bt(std::istream& in, const std::string& na
   if (!in || !has_magic || type != "OcTree" || !(config.resolution_m > 0))
     throw InputError(fmt::format("{}: is no binary OctoMap file of an OcTree", name));
   OccupancyMapper mapper(config);
-  if (size > 0) mapper.impl_->tree.readBinaryData(in);
+  if (size > 0) {
+    const std::istream::pos_type begin = in.tellg();
+    check_depth(in, mapper.impl_->tree.getTreeDepth(), name);
+    in.clear();
+    in.seekg(begin);
+    mapper.impl_->tree.readBinaryData(in);
+  }
   mapper.impl_->pruned = true;
   if (!in || mapper.impl_->tree.size() != size)
     throw InputError(fmt::format("{}: is cut short", name));

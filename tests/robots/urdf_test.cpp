@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -142,6 +144,44 @@ TEST(LoadUrdf, RefusesJointsInACircle) {
             robot(joint("1", "a", "b") + joint("2", "c", "c")));
   expect_in("urdf_test.urdf:5: joint '3': link 'c' hangs on two joints, '2' and '3'",
             robot(joint("1", "a", "b") + joint("2", "a", "c") + joint("3", "b", "c")));
+}
+
+/// A robot of fixed joints (parent, child), named 0, 1, ... in their order.
+std::string robot_of(const std::vector<std::pair<std::string, std::string>>& joints) {
+  std::set<std::string> links;
+  std::string text;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const auto& [parent, child] = joints[i];
+    links.insert({parent, child});
+    text += "<joint name=\"j" + std::to_string(100'000 + i) + "\" type=\"fixed\"><parent link=\"" +
+            parent + "\"/><child link=\"" + child + "\"/></joint>\n";
+  }
+  for (const std::string& link : links) text += "<link name=\"" + link + "\"/>\n";
+  return "<robot name=\"r\">\n" + text + "</robot>";
+}
+
+TEST(LoadUrdf, JointsComeInTheOrderInWhichTheirParentsBecomeKnown) {
+  const std::string file = testing::TempDir() + "order_urdf_test.urdf";
+  // In the first turn a-b, a-c and b-f; in the second f-g, whose parent came after it, and d-h.
+  write_atomically(
+      file, robot_of({{"f", "g"}, {"h", "i"}, {"a", "b"}, {"a", "d"}, {"b", "f"}, {"d", "h"}}));
+  std::string children;
+  for (const Joint& joint : load_urdf(file).joints) children += joint.child;
+  EXPECT_EQ(children, "bdfhgi");
+}
+
+TEST(LoadUrdf, AChainOfManyLinksIsReadAtOnce) {
+  const std::string file = testing::TempDir() + "chain_urdf_test.urdf";
+  std::vector<std::pair<std::string, std::string>> joints;  // the last first: the worst order
+  const auto link = [](int i) { return std::string("l").append(std::to_string(i)); };
+  for (int i = 5000; i > 0; --i) joints.emplace_back(link(i - 1), link(i));
+  write_atomically(file, robot_of(joints));
+  const std::clock_t begin = std::clock();
+  const KinematicTree tree = load_urdf(file);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 5.0);  // was minutes
+  ASSERT_EQ(tree.joints.size(), 5000U);
+  EXPECT_EQ(tree.joints.front().child, "l1");
+  EXPECT_EQ(tree.joints.back().child, "l5000");
 }
 
 TEST(Robot, PepperFileAndUrdfAgree) {

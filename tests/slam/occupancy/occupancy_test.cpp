@@ -118,6 +118,9 @@ TEST(OccupancyMapper, ReloadedTreesAreEqual) {
   EXPECT_THROW(OccupancyMapper::load_bt(file), InputError);
   write_atomically(file, "nonsense");
   EXPECT_THROW(OccupancyMapper::load_bt(file), InputError);
+  const std::string head = "# Octomap OcTree binary file\nid OcTree\nsize 9\nres 0.1\ndata\n";
+  write_atomically(file, head + std::string(2'000'000, '\xff'));  // children of children of ...
+  EXPECT_THROW(OccupancyMapper::load_bt(file), InputError);
 }
 
 TEST(OccupancyMapper, OctoMapReadsTheFile) {
@@ -219,6 +222,10 @@ TEST(MapServer, RefusesWhatItCannotRead) {
   EXPECT_THROW(load_map_server(stem + ".yaml"), InputError);
   write_atomically(stem + ".pgm", "P5\n# a comment\n1 2\n255\nab");
   EXPECT_EQ(load_map_server(stem + ".yaml").cells.height(), 2);
+  write_atomically(stem + ".pgm", "P5\n65536 65536\n255\nab");  // 4 GB that are not there
+  EXPECT_THROW(load_map_server(stem + ".yaml"), InputError);
+  write_atomically(stem + ".pgm", "P5\n1 1\n255");
+  EXPECT_THROW(load_map_server(stem + ".yaml"), InputError);
   write_atomically(stem + ".yaml", "image: bad_map.pgm\nmode: raw\n" + rest);
   EXPECT_THROW(load_map_server(stem + ".yaml"), InputError);
 }
