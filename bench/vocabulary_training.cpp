@@ -9,15 +9,16 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 
+#include "scenes/picture_file.hpp"
 #include "scenes/training/training.hpp"
 #include "sim/render/bake.hpp"
 #include "sim/render/parallel.hpp"
 #include "sim/render/renderer.hpp"
 #include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
 #include "slam/core/random.hpp"
+#include "slam/core/text_file.hpp"
 
 namespace mh {
 namespace {
@@ -84,8 +85,7 @@ Images describe_room(const VocabularyTraining& config, std::uint64_t room) {
 }
 
 Images describe_file(const VocabularyTraining& config, const std::filesystem::path& file) {
-  const cv::Mat bgr = cv::imread(file.string(), cv::IMREAD_COLOR);
-  if (bgr.empty()) throw InputError(fmt::format("{}: cannot be read as a picture", file.string()));
+  const cv::Mat bgr = read_picture(file, PictureForm::kColour);
   Grid2d<Rgb8> picture(bgr.cols, bgr.rows);
   for (int y = 0; y < bgr.rows; ++y)
     for (int x = 0; x < bgr.cols; ++x) {
@@ -123,7 +123,7 @@ Images collect(int count, int threads, const std::function<void(int, int)>& prog
 }  // namespace
 
 std::vector<std::filesystem::path> load_picture_list(const std::filesystem::path& list) {
-  std::istringstream text(read_file(list));
+  std::istringstream text(read_text(list));
   std::vector<std::filesystem::path> pictures;
   std::string line;
   for (int number = 1; std::getline(text, line); ++number) {

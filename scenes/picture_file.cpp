@@ -7,8 +7,13 @@
 #include <limits>
 #include <vector>
 
+#include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/narrowed.hpp"
 
 namespace mh {
 namespace {
@@ -77,14 +82,20 @@ const char* png_fault(std::string_view bytes) {
   return "is cut short";
 }
 
-/// Empty if the bytes hold no picture, or one too large.
+/// Bytes of a decoded pixel, if the bytes are a JPEG or PNG.
+std::uint64_t bytes_per_pixel(std::string_view bytes) {
+  constexpr std::size_t kBits = 24, kColourType = 25;  // where a PNG tells them
+  if (bytes.starts_with("\xff\xd8") || bytes.size() <= kColourType) return 3;
+  const int type = bytes[kColourType];  // 0 grey, 2 colour, 3 palette; + 4 with opacity
+  return (type == 0 ? 1U : type >= 4 ? 4U : 3U) * (bytes[kBits] == 16 ? 2U : 1U);
+}
+
+/// Empty if the bytes hold no JPEG or PNG, or one that decode_picture() refuses.
 cv::Mat decode(std::string_view bytes) {
-  if (!announced_size(bytes) || claims_too_much(bytes) || picture_fault(bytes)) return {};
-  const std::string quiet = without_remarks(bytes);
-  const cv::Mat view(1, static_cast<int>(quiet.size()), CV_8UC1, const_cast<char*>(quiet.data()));
+  if (!announced_size(bytes)) return {};
   try {
-    return cv::imdecode(view, cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception&) {
+    return decode_picture(bytes);
+  } catch (const InputError&) {
     return {};
   }
 }
@@ -129,11 +140,45 @@ std::string without_remarks(std::string_view bytes) {
 
 bool claims_too_much(std::string_view bytes) {
   // A picture of one colour: deflate grows by 1032, a JPEG's blocks of 256 pixels take a few bytes.
-  constexpr std::uint64_t kMostPixels = 1U << 28, kMostPixelsPerByte = 2048;
+  constexpr std::uint64_t kMostPixels = 1U << 28, kMostPixelsPerByte = 2048, kMostBytes = 1U << 30;
   const auto size = announced_size(bytes);
   if (!size) return false;
   const std::uint64_t pixels = std::uint64_t{size->width} * size->height;
-  return pixels > kMostPixels || pixels / kMostPixelsPerByte > bytes.size();
+  return pixels > kMostPixels || pixels / kMostPixelsPerByte > bytes.size() ||
+         pixels * bytes_per_pixel(bytes) > kMostBytes;
+}
+
+cv::Mat decode_picture(std::string_view bytes, PictureForm form) {
+  const int flags = form == PictureForm::kStored   ? cv::IMREAD_UNCHANGED
+                    : form == PictureForm::kColour ? cv::IMREAD_COLOR
+                                                   : cv::IMREAD_GRAYSCALE;
+  if (const char* fault = picture_fault(bytes)) throw InputError(fault);
+  if (claims_too_much(bytes)) {
+    const auto size = announced_size(bytes);
+    throw InputError(
+        fmt::format("announces {} x {} pixels, more than its {} bytes can hold or anybody needs",
+                    size->width, size->height, bytes.size()));
+  }
+  const std::string quiet = without_remarks(bytes);
+  const auto count = narrowed<int>(quiet.size());
+  cv::Mat picture;
+  if (count && *count > 0) try {
+      const cv::Mat view(1, *count, CV_8UC1, const_cast<char*>(quiet.data()));
+      picture = cv::imdecode(view, flags);
+    } catch (const cv::Exception&) {  // beyond OpenCV's own limits
+    }
+  if (picture.empty()) throw InputError("is no picture, or a damaged one");
+  return picture;
+}
+
+cv::Mat read_picture(const std::filesystem::path& file, PictureForm form) {
+  try {
+    return decode_picture(read_file(file), form);
+  } catch (const InputError& error) {
+    const std::string_view what = error.what();
+    if (what.starts_with(file.string())) throw;
+    throw InputError(fmt::format("{}: {}", file.string(), what));
+  }
 }
 
 std::optional<Grid2d<Rgb8>> decode_colour(std::string_view bytes) {

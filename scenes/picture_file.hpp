@@ -2,12 +2,17 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "slam/core/grid2d.hpp"
 #include "slam/core/rgbd_frame.hpp"
+
+namespace cv {
+class Mat;
+}
 
 namespace mh {
 
@@ -30,6 +35,18 @@ bool claims_too_much(std::string_view bytes);
 /// The same picture without what a PNG says beside it (colour profiles, texts, times): no decoder
 /// here heeds that, and libpng prints its opinion of it to stderr. Other bytes stay as they are.
 std::string without_remarks(std::string_view bytes);
+
+/// What to make of a picture's pixels: channels (in OpenCV's order) and depth as stored, three of 8
+/// bits, or one of 8 bits.
+enum class PictureForm { kStored, kColour, kGrey };
+
+/// Decodes a picture of any kind that OpenCV reads; all that the program decodes comes through
+/// here.
+/// @throws InputError that says what is wrong with it, to be put behind a file's name: damaged, cut
+/// short, or announcing more than such a file can hold.
+cv::Mat decode_picture(std::string_view bytes, PictureForm form = PictureForm::kStored);
+/// The picture in a file. @throws InputError naming the file.
+cv::Mat read_picture(const std::filesystem::path& file, PictureForm form = PictureForm::kStored);
 
 /// Decodes a picture of three 8-bit channels; nullopt if the bytes hold none.
 std::optional<Grid2d<Rgb8>> decode_colour(std::string_view bytes);

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "bench/cli/commands.hpp"
@@ -18,9 +17,9 @@
 #include "bench/world/world.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/generate/grammar.hpp"
+#include "scenes/picture_file.hpp"
 #include "sim/world/sequence.hpp"
 #include "slam/core/error.hpp"
-#include "slam/core/file_errors.hpp"
 
 namespace mh::cli {
 namespace {
@@ -82,11 +81,7 @@ MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const O
 MeasuredPlace measure_recording(const fs::path& folder) {
   MeasuredPlace place{.name = folder.string(), .frames = {}};
   for (const RecordedFrame& frame : load_tum_folder(folder)) {
-    require_readable(frame.colour);
-    const cv::Mat grey = cv::imread(frame.colour.string(), cv::IMREAD_GRAYSCALE);
-    if (grey.empty())
-      throw InputError(fmt::format("{}: is no picture that can be read", frame.colour.string()));
-    place.frames.push_back(measure_image(grey));
+    place.frames.push_back(measure_image(read_picture(frame.colour, PictureForm::kGrey)));
   }
   return place;
 }

@@ -8,13 +8,14 @@
 #include <limits>
 
 #include <fmt/format.h>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "bench/recorded/tum_list.hpp"
 #include "scenes/picture_file.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/text_file.hpp"
 #include "slam/pipeline/settings.hpp"
 
 namespace mh {
@@ -28,33 +29,59 @@ using Listed = TumListEntry;
 
 /// Reads a list whose files lie beside it.
 std::vector<Listed> read_list(const fs::path& list, int skip = 0) {
-  std::vector<Listed> entries = parse_tum_list(read_file(list), list.string(), skip);
+  std::vector<Listed> entries = parse_tum_list(read_text(list), list.string(), skip);
   for (Listed& entry : entries) entry.file = list.parent_path() / entry.file;
   return entries;
 }
 
-const Listed* nearest(const std::vector<Listed>& entries, Stamp stamp_ns) {
-  const Listed* best = nullptr;
-  for (const Listed& entry : entries)
-    if (best == nullptr ||
-        std::abs(entry.stamp_ns - stamp_ns) < std::abs(best->stamp_ns - stamp_ns))
-      best = &entry;
-  return best != nullptr && std::abs(best->stamp_ns - stamp_ns) <= kMaxApart_ns ? best : nullptr;
-}
+/// Entries by their stamps, to be looked up by a moment.
+class ByStamp {
+ public:
+  explicit ByStamp(const std::vector<Listed>& entries) {
+    for (const Listed& entry : entries) sorted_.push_back(&entry);
+    std::ranges::stable_sort(sorted_, {}, &stamp_of);
+  }
 
-cv::Mat read_picture(const fs::path& file, int type, const Camera& camera) {
+  /// The entry nearest to a moment, the first of the list among equals; null if none is near.
+  const Listed* nearest(Stamp stamp_ns) const {
+    const Listed* best = nullptr;
+    const auto offer = [&](auto place) {  // the first of its stamp
+      place = std::ranges::lower_bound(sorted_, stamp_of(*place), {}, &stamp_of);
+      const Stamp apart_ns = std::abs((*place)->stamp_ns - stamp_ns);
+      if (apart_ns > kMaxApart_ns) return;
+      const Stamp best_ns =
+          best == nullptr ? kMaxApart_ns + 1 : std::abs(best->stamp_ns - stamp_ns);
+      if (apart_ns < best_ns || (apart_ns == best_ns && *place < best)) best = *place;
+    };
+    const auto after = std::ranges::lower_bound(sorted_, stamp_ns, {}, &stamp_of);
+    if (after != sorted_.begin()) offer(std::prev(after));
+    if (after != sorted_.end()) offer(after);
+    return best;
+  }
+
+ private:
+  static Stamp stamp_of(const Listed* entry) { return entry->stamp_ns; }
+  std::vector<const Listed*> sorted_;
+};
+
+/// A frame's picture. What it announces is looked at before anything is decoded.
+cv::Mat read_frame_picture(const fs::path& file, int type, const Camera& camera) {
   const std::string bytes = read_file(file);
-  if (const char* fault = picture_fault(bytes))
-    throw InputError(fmt::format("{}: {}", file.string(), fault));
-  const cv::Mat view(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
-  const cv::Mat picture = bytes.empty() ? cv::Mat() : cv::imdecode(view, cv::IMREAD_UNCHANGED);
-  if (picture.empty())
-    throw InputError(fmt::format("{}: is no picture, or a damaged one", file.string()));
+  const auto check_size = [&](std::int64_t width, std::int64_t height) {
+    if (width != camera.width_px || height != camera.height_px)
+      throw InputError(fmt::format("{}: is {} x {}, the camera has {} x {}", file.string(), width,
+                                   height, camera.width_px, camera.height_px));
+  };
+  if (const auto size = announced_size(bytes)) check_size(size->width, size->height);
+  cv::Mat picture;
+  try {
+    picture = decode_picture(bytes);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+  }
   if (picture.type() != type)
     throw InputError(fmt::format("{}: has the wrong number of bits or channels", file.string()));
-  if (picture.cols != camera.width_px || picture.rows != camera.height_px)
-    throw InputError(fmt::format("{}: is {} x {}, the camera has {} x {}", file.string(),
-                                 picture.cols, picture.rows, camera.width_px, camera.height_px));
+  check_size(picture.cols, picture.rows);
   return picture;
 }
 
@@ -91,11 +118,12 @@ std::vector<RecordedFrame> load_tum_folder(const fs::path& folder,
       associated ? read_list(both, 2) : read_list(folder / "depth.txt");
   std::vector<Listed> labels;
   if (fs::exists(folder / "label.txt")) labels = read_list(folder / "label.txt");
+  const ByStamp depth_at(depth), labels_at(labels);
   std::vector<RecordedFrame> frames;
   for (std::size_t i = 0; i < colour.size(); ++i) {
-    const Listed* d = associated ? &depth[i] : nearest(depth, colour[i].stamp_ns);
+    const Listed* d = associated ? &depth[i] : depth_at.nearest(colour[i].stamp_ns);
     if (d == nullptr) continue;
-    const Listed* l = nearest(labels, colour[i].stamp_ns);
+    const Listed* l = labels_at.nearest(colour[i].stamp_ns);
     frames.push_back({colour[i].stamp_ns, colour[i].file, d->file, l ? l->file : fs::path()});
   }
   if (frames.empty())
@@ -110,8 +138,8 @@ std::vector<RecordedFrame> load_tum_folder(const fs::path& folder,
 }
 
 RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera) {
-  const cv::Mat colour = read_picture(recorded.colour, CV_8UC3, camera.camera);
-  const cv::Mat depth = read_picture(recorded.depth, CV_16UC1, camera.camera);
+  const cv::Mat colour = read_frame_picture(recorded.colour, CV_8UC3, camera.camera);
+  const cv::Mat depth = read_frame_picture(recorded.depth, CV_16UC1, camera.camera);
   RgbdFrame frame;
   frame.stamp_ns = recorded.stamp_ns;
   frame.colour = Grid2d<Rgb8>(colour.cols, colour.rows);
@@ -126,7 +154,7 @@ RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera
     }
   if (!recorded.classes.empty())
     frame.semantics =
-        one_hot(read_picture(recorded.classes, CV_8UC1, camera.camera), recorded.classes);
+        one_hot(read_frame_picture(recorded.classes, CV_8UC1, camera.camera), recorded.classes);
   return frame;
 }
 

@@ -4,12 +4,11 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include <limits>
-
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "scenes/picture_file.hpp"
+#include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/held_bytes.hpp"
 
@@ -25,18 +24,12 @@ Grid2d<std::uint8_t> channel_of(const cv::Mat& picture, int channel) {
 }
 
 PictureIn decoded(std::string_view bytes) {
-  if (const char* fault = picture_fault(bytes)) return {.fault = fault};
-  if (bytes.empty() || bytes.size() > std::numeric_limits<int>::max() || claims_too_much(bytes))
-    return {};
-  const std::string quiet = without_remarks(bytes);
-  const cv::Mat view(1, static_cast<int>(quiet.size()), CV_8UC1, const_cast<char*>(quiet.data()));
   cv::Mat stored;
   try {
-    stored = cv::imdecode(view, cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception&) {  // a size beyond OpenCV's limits
-    return {};
+    stored = decode_picture(bytes);
+  } catch (const InputError& error) {
+    return {.fault = error.what()};
   }
-  if (stored.empty()) return {};
   if (stored.depth() == CV_16U) stored.convertTo(stored, CV_8U, 1.0 / 257.0);
   if (stored.depth() != CV_8U) return {};
   Grid2d<Rgb8> colour(stored.cols, stored.rows, Unfilled{});

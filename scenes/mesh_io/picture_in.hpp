@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -16,7 +17,7 @@ namespace mh {
 struct PictureIn {
   SharedGrid<Rgb8> colour{};
   SharedGrid<std::uint8_t> opacity{};   ///< empty if the file has none
-  const char* fault = "is no picture";  ///< why colour is empty, where it is
+  std::string fault = "is no picture";  ///< why colour is empty, where it is
 };
 
 /// The pictures of a scene's materials, each decoded once, however many files hold it and however

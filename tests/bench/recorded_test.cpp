@@ -14,6 +14,7 @@
 #include "bench/recorded/tum_folder.hpp"
 #include "scenes/picture_file.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/random.hpp"
 
 namespace mh {
 namespace {
@@ -105,6 +106,10 @@ TEST_F(TumFolder, NamesWhatIsWrong) {
   const std::string whole = encode_png(Grid2d<std::uint8_t>(8, 6));
   std::ofstream(folder_ / "a.png", std::ios::binary) << whole.substr(0, whole.size() - 12);
   refused("a.png: is cut short");
+  std::string huge = whole;  // its header announces 100000 x 100000 pixels
+  huge.replace(16, 8, std::string("\0\1\x86\xa0\0\1\x86\xa0", 8));
+  std::ofstream(folder_ / "a.png", std::ios::binary) << huge;
+  refused("a.png: is 100000 x 100000, the camera has 8 x 6");
   std::ofstream(folder_ / "rgb.txt") << "# nothing\n";
   try {
     load_tum_folder(folder_);
@@ -123,6 +128,35 @@ TEST_F(TumFolder, KeepsTheOrderOfStampsThatGoBack) {
   EXPECT_EQ(frames[2].stamp_ns, 200'000'000);
   EXPECT_EQ(frames[1].depth, folder_ / "3.png");
   EXPECT_EQ(frames[3].colour, folder_ / "d.png");
+}
+
+TEST_F(TumFolder, TakesTheNearestDepthAndTheFirstOfEquals) {
+  fs::create_directories(folder_);
+  // Stamps in tens of milliseconds, out of order and more than once; some lie as near on each side.
+  const RandomStream draw(7);
+  std::string colours, depths;
+  std::vector<Stamp> colour_ns, depth_ns;
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    colour_ns.push_back(static_cast<Stamp>(draw.below(2 * i, 200)) * 10'000'000);
+    depth_ns.push_back(static_cast<Stamp>(draw.below(2 * i + 1, 200)) * 10'000'000);
+    colours += format_stamp(colour_ns.back()) + " c.png\n";
+    depths += format_stamp(depth_ns.back()) + " " + std::to_string(i) + ".png\n";
+  }
+  std::ofstream(folder_ / "rgb.txt") << colours;
+  std::ofstream(folder_ / "depth.txt") << depths;
+  std::vector<std::string> wanted, found;
+  for (const Stamp stamp_ns : colour_ns) {
+    std::optional<std::size_t> best;
+    for (std::size_t i = 0; i < depth_ns.size(); ++i)
+      if (std::abs(depth_ns[i] - stamp_ns) <= 20'000'000 &&
+          (!best || std::abs(depth_ns[i] - stamp_ns) < std::abs(depth_ns[*best] - stamp_ns)))
+        best = i;
+    if (best) wanted.push_back(std::to_string(*best) + ".png");
+  }
+  for (const RecordedFrame& frame : load_tum_folder(folder_))
+    found.push_back(frame.depth.filename().string());
+  ASSERT_GT(wanted.size(), 20U);
+  EXPECT_EQ(found, wanted);
 }
 
 TEST(DepthUnits, RoundToTheNearestAndKeepToSixteenBits) {
