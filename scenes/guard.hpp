@@ -13,7 +13,8 @@ namespace mh {
 
 /// Runs a reader that leans on foreign parsers in a child process under limits and takes the scene
 /// over from it. A crash, a hang or a hunger for memory of theirs becomes an error in one line.
-/// A reader within a reader runs in the child of the outer one.
+/// A reader within a reader runs in the child of the outer one. What the child reads is noted here
+/// (ReadScope).
 /// @param file      the innermost such file stands in the message.
 /// @param warnings  where to append what `load` appended; may be null.
 /// @param load      reads the scene; it is given where to append warnings.

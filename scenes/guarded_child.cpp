@@ -2,7 +2,6 @@
 #include "scenes/guarded_child.hpp"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <pthread.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -12,7 +11,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -21,6 +19,7 @@
 
 #include <fmt/format.h>
 
+#include "slam/core/bytes_read.hpp"
 #include "slam/core/error.hpp"
 
 #if defined(__has_feature)
@@ -49,54 +48,54 @@ constexpr bool kMayFork = true;
 /// The first byte that a child sends.
 enum class Word : char { kDone = 'D', kInput = 'I', kMachine = 'M', kOther = 'E', kMemory = 'N' };
 
-struct EndedTooSoon {};
-struct TookTooLong {};
-
-std::int64_t now_ms() {
-  using namespace std::chrono;
-  return duration_cast<milliseconds>(steady_clock::now().time_since_epoch()).count();
-}
-
-void write_all(int descriptor, const char* data, std::size_t size) {
-  while (size > 0) {
-    const ssize_t written = write(descriptor, data, size);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) _exit(1);  // the parent is gone
-    data += written;
-    size -= static_cast<std::size_t>(written);
-  }
-}
-
-/// Memory that parent and child share: the name of the file that is being read.
-class SharedName {
- public:
-  SharedName() {
-    void* page = mmap(nullptr, kSize, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (page == MAP_FAILED) throw MachineError("no memory for the reader of a file");
-    text_ = static_cast<char*>(page);
-  }
-  ~SharedName() { munmap(text_, kSize); }
-  SharedName(const SharedName&) = delete;
-  SharedName& operator=(const SharedName&) = delete;
-
-  void set(const std::string& name) {
-    const std::size_t size = std::min(name.size(), kSize - 1);
-    std::memcpy(text_, name.data(), size);
-    text_[size] = '\0';
-  }
-  std::string get() const { return {text_, strnlen(text_, kSize - 1)}; }
-
- private:
-  static constexpr std::size_t kSize = 4096;
-  char* text_ = nullptr;
+/// What a child leaves where its parent finds it, whatever becomes of the child.
+struct Note {
+  char file[4000];           ///< that is being read, ended by a zero
+  std::int64_t processor_s;  ///< that it may take by now
+  std::uint64_t memory_bytes;
 };
 
-thread_local SharedName* t_name = nullptr;  // set in a child
-int g_child_pipe = -1;                      // likewise; for the handler below
+/// A note in memory that parent and child share.
+class SharedNote {
+ public:
+  SharedNote() {
+    void* page =
+        mmap(nullptr, sizeof(Note), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (page == MAP_FAILED) throw MachineError("no memory for the reader of a file");
+    note_ = static_cast<Note*>(page);
+  }
+  ~SharedNote() { munmap(note_, sizeof(Note)); }
+  SharedNote(const SharedNote&) = delete;
+  SharedNote& operator=(const SharedNote&) = delete;
+
+  Note* operator->() const { return note_; }
+  void set_file(const std::string& name) {
+    const std::size_t size = std::min(name.size(), sizeof note_->file - 1);
+    std::memcpy(note_->file, name.data(), size);
+    note_->file[size] = '\0';
+  }
+  std::string file() const { return {note_->file, strnlen(note_->file, sizeof note_->file - 1)}; }
+
+ private:
+  Note* note_ = nullptr;
+};
+
+thread_local SharedNote* t_note = nullptr;  // set in a child
+
+/// What a child's handlers need.
+struct Watch {
+  GuardLimits limits;
+  SharedNote* note = nullptr;
+  int pipe = -1;
+  std::uint64_t read_before = 0, mapped_before = 0;
+
+  std::uint64_t read_bytes() const { return g_bytes_read - read_before; }
+};
+Watch g_watch;
 
 void tell_of_memory() {
   const char word = static_cast<char>(Word::kMemory);
-  write_all(g_child_pipe, &word, 1);
+  write_to_parent(g_watch.pipe, &word, 1);
   _exit(0);
 }
 
@@ -125,23 +124,46 @@ void silence() {
   dup2(nowhere, STDERR_FILENO);
 }
 
+/// Comes every second of processor time from the first limit on.
+void on_processor_limit(int) {
+  const GuardLimits& limits = g_watch.limits;
+  (*g_watch.note)->processor_s =
+      limits.processor_s + static_cast<std::int64_t>(static_cast<double>(g_watch.read_bytes()) *
+                                                     1e-6 * limits.processor_s_per_mb);
+  struct rusage used {};
+  getrusage(RUSAGE_SELF, &used);
+  if (used.ru_utime.tv_sec + used.ru_stime.tv_sec < (*g_watch.note)->processor_s) return;
+  std::signal(SIGXCPU, SIG_DFL);
+  kill(getpid(), SIGXCPU);
+}
+
+/// Gives what has been read since its share of memory; then operator new tries again.
+void on_memory_limit() {
+  const std::uint64_t granted = (*g_watch.note)->memory_bytes;
+  const std::uint64_t allowed =
+      g_watch.limits.memory_bytes + g_watch.limits.memory_per_byte * g_watch.read_bytes();
+  if (allowed <= granted) tell_of_memory();
+  (*g_watch.note)->memory_bytes = allowed;
+  limit(RLIMIT_AS, g_watch.mapped_before + allowed);
+}
+
 void obey(const GuardLimits& limits) {
   // The parent decides when it is interrupted; if it dies, so does the child.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXCPU, SIG_DFL);
+  std::signal(SIGXCPU, on_processor_limit);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, static_cast<std::uint64_t>(limits.processor_s));
   if (kSanitized) return;
   silence();
-  limit(RLIMIT_AS, mapped_bytes() + limits.stack_bytes + limits.memory_bytes);
-  std::set_new_handler(tell_of_memory);
+  limit(RLIMIT_AS, g_watch.mapped_before + limits.memory_bytes);
+  std::set_new_handler(on_memory_limit);
 }
 
 struct ChildWork {
   const std::function<std::function<void(PipeWriter&)>()>& work;
-  SharedName& name;
+  SharedNote& note;
   int pipe;
 };
 
@@ -154,7 +176,7 @@ void say(PipeWriter& out, Word word, const char* text) {
 
 void* run_child(void* argument) {
   const auto& child = *static_cast<const ChildWork*>(argument);
-  t_name = &child.name;
+  t_note = &child.note;
   PipeWriter out(child.pipe);
   try {
     const auto send = child.work();
@@ -217,11 +239,11 @@ class Child {
   int pipe_;
 };
 
-std::string why_it_ended(std::optional<int> status, const GuardLimits& limits) {
+std::string why_it_ended(std::optional<int> status, const SharedNote& note) {
   if (!status || !WIFSIGNALED(*status)) return "its reader ended without a word";
   const int number = WTERMSIG(*status);
   if (number == SIGXCPU)
-    return fmt::format("its reader took more than {} s of processor time", limits.processor_s);
+    return fmt::format("its reader took more than {} s of processor time", note->processor_s);
   if (number == SIGKILL) return "its reader was killed, as the system does when memory runs out";
   return fmt::format("its reader crashed on it (signal {}: {})", number, strsignal(number));
 }
@@ -234,8 +256,7 @@ std::string read_text(PipeReader& in) {
   return text;
 }
 
-void hear(PipeReader& in, const SharedName& name, const GuardLimits& limits,
-          const std::function<void(PipeReader&)>& receive) {
+void hear(PipeReader& in, const SharedNote& note, const std::function<void(PipeReader&)>& receive) {
   Word word{};
   in.bytes(&word, 1);
   switch (word) {
@@ -247,75 +268,23 @@ void hear(PipeReader& in, const SharedName& name, const GuardLimits& limits,
       throw MachineError(read_text(in));
     case Word::kOther:
       throw InputError(
-          fmt::format("{}: cannot be read: its reader gave up: {}", name.get(), read_text(in)));
+          fmt::format("{}: cannot be read: its reader gave up: {}", note.file(), read_text(in)));
     case Word::kMemory:
       throw InputError(fmt::format("{}: cannot be read: its reader needs more than {:.3g} GB",
-                                   name.get(), static_cast<double>(limits.memory_bytes) / 1e9));
+                                   note.file(), static_cast<double>(note->memory_bytes) / 1e9));
   }
   throw EndedTooSoon();
 }
 
 }  // namespace
 
-void PipeWriter::bytes(const void* data, std::size_t size) {
-  constexpr std::size_t kLarge = 1U << 14;
-  if (size >= kLarge) {
-    flush();
-    write_all(descriptor_, static_cast<const char*>(data), size);
-    return;
-  }
-  waiting_.append(static_cast<const char*>(data), size);
-  if (waiting_.size() >= kLarge) flush();
-}
-
-void PipeWriter::flush() {
-  write_all(descriptor_, waiting_.data(), waiting_.size());
-  waiting_.clear();
-}
-
-PipeReader::PipeReader(int descriptor, int wall_s)
-    : descriptor_(descriptor), deadline_ms_(now_ms() + 1000 * std::int64_t{wall_s}) {}
-
-std::size_t PipeReader::some(char* to, std::size_t size) {
-  for (;;) {
-    const std::int64_t left_ms = deadline_ms_ - now_ms();
-    if (left_ms <= 0) throw TookTooLong();
-    pollfd ready{.fd = descriptor_, .events = POLLIN, .revents = 0};
-    if (poll(&ready, 1, static_cast<int>(std::min<std::int64_t>(left_ms, 60'000))) <= 0) continue;
-    const ssize_t got = read(descriptor_, to, size);
-    if (got > 0) return static_cast<std::size_t>(got);
-    if (got == 0 || errno != EINTR) throw EndedTooSoon();
-  }
-}
-
-void PipeReader::bytes(void* data, std::size_t size) {
-  constexpr std::size_t kBuffer = 1U << 14;
-  auto* to = static_cast<char*>(data);
-  while (size > 0) {
-    if (at_ == waiting_.size() && size >= kBuffer) {  // past the buffer
-      const std::size_t got = some(to, size);
-      to += got;
-      size -= got;
-      continue;
-    }
-    if (at_ == waiting_.size()) {
-      waiting_.resize(kBuffer);
-      waiting_.resize(some(waiting_.data(), waiting_.size()));
-      at_ = 0;
-    }
-    const std::size_t taken = std::min(size, waiting_.size() - at_);
-    std::memcpy(to, waiting_.data() + at_, taken);
-    at_ += taken;
-    to += taken;
-    size -= taken;
-  }
-}
-
 void in_child(const std::filesystem::path& file, const GuardLimits& limits,
               const std::function<std::function<void(PipeWriter&)>()>& work,
               const std::function<void(PipeReader&)>& receive) {
-  SharedName name;
-  name.set(file.string());
+  SharedNote note;
+  note.set_file(file.string());
+  note->processor_s = limits.processor_s;
+  note->memory_bytes = limits.memory_bytes;
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
     throw MachineError(fmt::format("{}: no pipe: {}", file.string(), std::strerror(errno)));
@@ -326,9 +295,9 @@ void in_child(const std::filesystem::path& file, const GuardLimits& limits,
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(1);
     close(ends[0]);
-    g_child_pipe = ends[1];
+    g_watch = {limits, &note, ends[1], g_bytes_read, mapped_bytes() + limits.stack_bytes};
     obey(limits);
-    run_on_own_stack({work, name, ends[1]}, limits.stack_bytes);
+    run_on_own_stack({work, note, ends[1]}, limits.stack_bytes);
     _exit(0);  // nothing of the parent's is flushed or cleared up twice
   }
   const int forked = errno;
@@ -340,30 +309,30 @@ void in_child(const std::filesystem::path& file, const GuardLimits& limits,
   }
   Child child(pid, ends[0]);
   const auto refuse = [&](const std::string& why) {
-    return InputError(fmt::format("{}: cannot be read: {}", name.get(), why));
+    return InputError(fmt::format("{}: cannot be read: {}", note.file(), why));
   };
   PipeReader in(child.pipe(), limits.wall_s);
   try {
-    hear(in, name, limits, receive);
+    hear(in, note, receive);
   } catch (const EndedTooSoon&) {
-    throw refuse(why_it_ended(child.wait(), limits));
+    throw refuse(why_it_ended(child.wait(), note));
   } catch (const TookTooLong&) {
     throw refuse(fmt::format("its reader took more than {} s", limits.wall_s));
   }
 }
 
 bool reads_here() {
-  return t_name != nullptr || !kMayFork;
+  return t_note != nullptr || !kMayFork;
 }
 
 ReadingInChild::ReadingInChild(const std::filesystem::path& file) {
-  if (t_name == nullptr) return;
-  outer_ = t_name->get();
-  t_name->set(file.string());
+  if (t_note == nullptr) return;
+  outer_ = t_note->file();
+  t_note->set_file(file.string());
 }
 
 ReadingInChild::~ReadingInChild() {
-  if (t_name != nullptr) t_name->set(outer_);
+  if (t_note != nullptr) t_note->set_file(outer_);
 }
 
 }  // namespace mh

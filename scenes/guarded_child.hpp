@@ -7,41 +7,18 @@
 #include <functional>
 #include <string>
 
+#include "scenes/child_pipe.hpp"
+
 namespace mh {
 
-/// What a reader of files may use before it is ended.
+/// What a reader of files may use before it is ended. Large files may take more.
 struct GuardLimits {
-  int processor_s = 60;                                 ///< whole seconds, at least 1
+  int processor_s = 8;                                  ///< whole seconds, at least 1
+  double processor_s_per_mb = 1.0;                      ///< more for each megabyte that it has read
   int wall_s = 600;                                     ///< for one that waits instead of working
-  std::uint64_t memory_bytes = std::uint64_t{8} << 30;  ///< on top of what this process has
+  std::uint64_t memory_bytes = std::uint64_t{4} << 30;  ///< on top of what this process has
+  std::uint64_t memory_per_byte = 50;                   ///< more for each byte that it has read
   std::size_t stack_bytes = std::size_t{512} << 20;     ///< for files that are nested deeply
-};
-
-/// The child's end of the pipe to its parent.
-class PipeWriter {
- public:
-  explicit PipeWriter(int descriptor) : descriptor_(descriptor) {}
-  void bytes(const void* data, std::size_t size);
-  void flush();
-
- private:
-  int descriptor_;
-  std::string waiting_;
-};
-
-/// The parent's end. What does not come makes it throw; in_child() tells the user why.
-class PipeReader {
- public:
-  PipeReader(int descriptor, int wall_s);
-  void bytes(void* data, std::size_t size);
-
- private:
-  std::size_t some(char* to, std::size_t size);
-
-  int descriptor_;
-  std::int64_t deadline_ms_;
-  std::string waiting_;
-  std::size_t at_ = 0;
 };
 
 /// Runs `work` in a child process, so that neither a crash nor a hang of it nor what it prints

@@ -17,6 +17,7 @@
 #include "scenes/mesh_io/instances_in.hpp"
 #include "scenes/mesh_io/label_rules.hpp"
 #include "scenes/mesh_io/labels_file.hpp"
+#include "scenes/mesh_io/large_faces.hpp"
 #include "scenes/mesh_io/materials_in.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/mesh_io/node_name.hpp"
@@ -28,6 +29,8 @@
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/held_bytes.hpp"
+#include "slam/core/narrowed.hpp"
+#include "slam/core/text_file.hpp"
 
 namespace mh {
 namespace fs = std::filesystem;
@@ -50,32 +53,24 @@ Format format_of(const fs::path& file) {
           .y_up = gltf || ending == ".dae"};
 }
 
+/// A number in a glTF node's extras; nullopt if there is none that a To holds.
+template <class To>
+std::optional<To> extra_number(const aiMetadata& extras, const char* key) {
+  double number = 0;
+  std::uint64_t unsigned_number = 0;
+  std::int32_t integer = 0;
+  if (extras.Get(key, number)) return narrowed<To>(number);
+  if (extras.Get(key, unsigned_number)) return narrowed<To>(unsigned_number);
+  if (extras.Get(key, integer)) return narrowed<To>(integer);
+  return std::nullopt;
+}
+
 /// The class that a glTF node's extras name, by name or by number.
 std::optional<ClassId> extra_class(const aiMetadata& extras) {
   aiString name;
   if (extras.Get("class", name)) return class_by_name(name.C_Str());
-  std::int32_t id = 0;
-  double number = 0;
-  if (extras.Get("class", number))
-    id = static_cast<std::int32_t>(number);
-  else if (!extras.Get("class", id))
-    return std::nullopt;
-  if (id < 0 || id >= static_cast<std::int32_t>(classes().size())) return std::nullopt;
-  return static_cast<ClassId>(id);
-}
-
-std::optional<InstanceId> extra_instance(const aiMetadata& extras) {
-  std::int32_t id = 0;
-  std::uint64_t unsigned_id = 0;
-  double number = 0;
-  if (extras.Get("instance", number))
-    id = static_cast<std::int32_t>(number);
-  else if (extras.Get("instance", unsigned_id))
-    id = static_cast<std::int32_t>(unsigned_id);
-  else if (!extras.Get("instance", id))
-    return std::nullopt;
-  if (id < 0 || id > 65535) return std::nullopt;
-  return static_cast<InstanceId>(id);
+  const auto id = extra_number<ClassId>(extras, "class");
+  return id && *id < classes().size() ? id : std::nullopt;
 }
 
 /// The label of a node: its extras first, then its name.
@@ -86,7 +81,7 @@ NodeLabel label_of(const aiNode& node) {
     label.class_id = *id;
     label.is_told = true;
   }
-  if (const auto id = extra_instance(*node.mMetaData)) label.instance = *id;
+  if (const auto id = extra_number<InstanceId>(*node.mMetaData, "instance")) label.instance = *id;
   return label;
 }
 
@@ -109,6 +104,10 @@ class Gatherer {
       : in_(in), file_(file), format_(format), rules_(rules), scene_(scene) {}
 
   void run() {
+    constexpr unsigned kMostMaterials = 1U << 16;  // material_of has 16 bits
+    if (in_.mNumMaterials > kMostMaterials)
+      throw InputError(fmt::format("{}: {} materials are more than {}", file_.string(),
+                                   in_.mNumMaterials, kMostMaterials));
     survey(*in_.mRootNode);
     reserve_ids(*in_.mRootNode);
     visit(*in_.mRootNode, aiMatrix4x4());
@@ -169,13 +168,19 @@ class Gatherer {
     if (format_.ply) return 0;
     if (label.instance == InstanceId{0}) return 0;
     const InstanceId id = label.instance ? *label.instance : free_id();
-    if (std::ranges::find(scene_.instances, id, &Instance::id) != scene_.instances.end()) return id;
-    Instance instance{.id = id, .class_id = label.class_id, .name = label.name};
-    if (instance.name.empty()) instance.name = "object";
-    for (int copy = 2; !names_.insert(instance.name).second; ++copy)
-      instance.name = fmt::format("{}_{}", label.name, copy);
-    scene_.instances.push_back(instance);
+    if (!entered_.insert(id).second) return id;
+    scene_.instances.push_back(
+        {.id = id, .class_id = label.class_id, .name = unique_name(label.name)});
     return id;
+  }
+
+  std::string unique_name(const std::string& wanted) {
+    const std::string base = wanted.empty() ? "object" : wanted;
+    std::string name = base;
+    // Counted on from the last copy: files of thousands of nodes of one name are seen.
+    for (int& copies = copies_of_.try_emplace(base, 1).first->second; !names_.insert(name).second;)
+      name = fmt::format("{}_{}", base, ++copies);
+    return name;
   }
 
   void add(const aiMesh& mesh, const aiMatrix4x4& world_from_node, ClassId class_id,
@@ -238,25 +243,31 @@ class Gatherer {
   const Format& format_;
   const LabelRules& rules_;
   Scene& scene_;
-  std::set<InstanceId> reserved_{0};
+  std::set<InstanceId> reserved_{0}, entered_;
   std::set<std::string> names_;
+  std::map<std::string, int> copies_of_;
   InstanceId next_id_ = 1;
   bool ours_ = false, any_uvs_ = false, any_colours_ = false, any_light_ = false;
 };
 
 const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Format& format,
-                    const MeshUse& use) {
+                    const MeshUse& use, std::vector<std::string>* warnings) {
   require_readable(file);
-  importer.SetIOHandler(new NotedFiles);  // which is the importer's from now on
+  if (format.obj) without_mark(map_file(file).view, file);  // throws of UTF-16
+  importer.SetIOHandler(new NotedFiles);                    // which is the importer's from now on
   // No step that reorders vertices or faces: labels beside a PLY count on their order.
   const unsigned steps =
       format.ply ? unsigned{aiProcess_Triangulate} : aiProcess_Triangulate | aiProcess_GlobalScale;
   const aiScene* in = nullptr;
   if (format.dae) {
     const std::string text = repaired_collada(map_file(file).view, use.in_gazebo);
-    in = importer.ReadFileFromMemory(text.data(), text.size(), steps, "dae");
+    in = importer.ReadFileFromMemory(text.data(), text.size(), 0, "dae");
   } else {
-    in = importer.ReadFile(file.string(), steps);
+    in = importer.ReadFile(file.string(), 0);
+  }
+  if (in != nullptr) {
+    cut_large_faces(*in, file, warnings);
+    in = importer.ApplyPostProcessing(steps);
   }
   if (in == nullptr || in->mRootNode == nullptr)
     throw InputError(fmt::format("{}: is no mesh that can be read: {}", file.string(),
@@ -323,7 +334,7 @@ Scene finished(Scene scene, const fs::path& file) {
 Scene load_foreign(const fs::path& file, const Format& format, const LabelRules& rules,
                    const MeshUse& use, std::vector<std::string>* warnings) {
   Assimp::Importer importer;
-  const aiScene& in = read(importer, file, format, use);
+  const aiScene& in = read(importer, file, format, use, warnings);
   if (format.obj) warn_of_missing_materials(file, warnings);
   Scene scene;
   scene.name = file.stem().string();

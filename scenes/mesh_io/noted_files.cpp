@@ -9,6 +9,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/held_bytes.hpp"
+#include "slam/core/text_file.hpp"
 
 namespace mh {
 namespace {
@@ -16,8 +17,8 @@ namespace {
 /// A mapped file as assimp reads it.
 class HeldStream : public Assimp::MemoryIOStream {
  public:
-  explicit HeldStream(HeldBytes bytes)
-      : MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes.view.data()), bytes.view.size()),
+  HeldStream(HeldBytes bytes, std::string_view part)
+      : MemoryIOStream(reinterpret_cast<const std::uint8_t*>(part.data()), part.size()),
         bytes_(std::move(bytes)) {}
 
  private:
@@ -32,7 +33,11 @@ bool NotedFiles::Exists(const char* file) const {
 
 Assimp::IOStream* NotedFiles::Open(const char* file, const char*) {
   try {
-    return new HeldStream(map_file(file));
+    HeldBytes bytes = map_file(file);
+    const std::string_view name = file;
+    const bool stumbles = name.ends_with(".obj") || name.ends_with(".mtl");  // over such a mark
+    const std::string_view part = stumbles ? without_mark(bytes.view, file) : bytes.view;
+    return new HeldStream(std::move(bytes), part);
   } catch (const InputError&) {
     return nullptr;
   }

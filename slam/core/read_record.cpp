@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "slam/core/bytes_read.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
@@ -103,6 +104,7 @@ void ReadScope::report(const ReadRecord& record) {
 }
 
 void report_read(const std::filesystem::path& file, std::string_view content) {
+  g_bytes_read += content.size();
   if (ReadScope::is_open())
     ReadScope::report(
         {FileObservation::Kind::kRead, file, XXH3_64bits(content.data(), content.size())});

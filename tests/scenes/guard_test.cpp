@@ -10,7 +10,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "scenes/mesh_io/mesh_io.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/read_record.hpp"
 #include "tests/scenes/temporary_folder.hpp"
@@ -53,6 +52,8 @@ Scene full_scene() {
   all.transmission = {0.4F, 0.5F, 0.6F};
   return scene;
 }
+
+namespace fs = std::filesystem;
 
 class Guard : public TemporaryFolder {
  protected:
@@ -103,6 +104,27 @@ TEST_F(Guard, EveryFieldOfASceneComesBack) {
   ASSERT_EQ(scene.rooms.size(), 1U);
   EXPECT_EQ(scene.rooms[0].name, "room");
   EXPECT_EQ(scene.rooms[0].polygon_m, wanted.rooms[0].polygon_m);
+}
+
+TEST_F(Guard, WhatTheChildReadsIsNotedHere) {
+  const fs::path first = write("first", "1"), second = write("second", "22");
+  ReadScope here;
+  read_file(first);
+  load_guarded("x", nullptr, [&](Warnings* told) {
+    return load_guarded("y", told, [&](Warnings*) {
+      read_file(second);
+      is_there(folder_ / "third");
+      return Scene();
+    });
+  });
+  ReadScope wanted;
+  read_file(first);
+  read_file(second);
+  is_there(folder_ / "third");
+  EXPECT_EQ(wanted.record().observations.size(), 3U);
+  ReadRecord twice = wanted.record();
+  twice.append(wanted.record());
+  EXPECT_EQ(here.record(), twice);  // which heard the other scope, too
 }
 
 TEST_F(Guard, ErrorsComeBackAsTheyWereThrown) {
@@ -158,6 +180,24 @@ TEST_F(Guard, WhoTakesTooMuchMemoryIsEnded) {
   };
   EXPECT_TRUE(names(error_of_load(hungry, {.memory_bytes = 200'000'000}),
                     {"a/b.dae: ", "needs more than 0.2 GB"}));
+}
+
+TEST_F(Guard, WhoReadsMoreMayTakeMore) {
+  const fs::path file = write("large", std::string(3'000'000, 'x'));
+  const auto reads = [&](Warnings*) {
+    EXPECT_EQ(read_file(file).size(), 3'000'000U);
+    const std::vector<char> much(150'000'000, 'x');
+    struct rusage used {};
+    do getrusage(RUSAGE_SELF, &used);
+    while (used.ru_utime.tv_sec + used.ru_stime.tv_sec < 2);
+    Scene scene;
+    scene.name = std::string(1, much.back());
+    return scene;
+  };
+  GuardLimits limits{.processor_s = 1, .memory_bytes = 100'000'000};
+  EXPECT_EQ(load_guarded("x", nullptr, reads, limits).name, "x");
+  limits.memory_per_byte = 1;
+  EXPECT_TRUE(names(error_of_load(reads, limits), {"needs more than 0.103 GB"}));
 }
 
 TEST_F(Guard, AChildHasItsOwnStack) {

@@ -449,6 +449,61 @@ TEST_F(MeshIo, BadFilesGiveOneErrorThatNamesThem) {
   EXPECT_THROW(load_scene(folder_ / "scene.xyz"), InputError);
 }
 
+TEST_F(MeshIo, APolygonOfVeryManyCornersIsAFan) {
+  constexpr int kCorners = 3000;
+  std::string text, face = "f";
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kCorners;
+    text += "v " + std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) + " 0\n";
+    face.append(" ").append(std::to_string(i + 1));
+  }
+  std::vector<std::string> warnings;
+  const Scene scene = load_mesh(write("disk.obj", text + "f 1 2 3\n" + face + "\n"), &warnings);
+  ASSERT_EQ(scene.triangles.size(), 1U + kCorners - 2);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("face of 3000 corners"), std::string::npos) << warnings[0];
+  double area = 0;
+  for (std::size_t t = 1; t < scene.triangles.size(); ++t) {
+    const auto& [a, b, c] = scene.triangles[t];
+    const auto& p = scene.positions_m;
+    area += 0.5 * (p[b] - p[a]).cast<double>().cross((p[c] - p[a]).cast<double>()).z();
+  }
+  EXPECT_NEAR(area, std::numbers::pi, 1e-4);  // coordinates have six digits
+}
+
+TEST_F(MeshIo, ObjectsOfOneNameAreCounted) {
+  const auto file =
+      write("same.gltf",
+            R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2,3,4,5]}],
+"nodes":[{"mesh":0,"name":"chair"},{"mesh":0,"name":"chair_2"},{"mesh":0,"name":"chair"},
+{"mesh":0,"name":"chair"},{"mesh":0,"name":"x#class=chair#instance=70000"},{"mesh":0,"name":"chair_2"}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":
+"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
+  std::vector<std::string> names;
+  for (const Instance& instance : load_mesh(file).instances) names.push_back(instance.name);
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"chair", "chair_2", "chair_3", "chair_4", "x", "chair_2_2"}));
+}
+
+TEST_F(MeshIo, ExtrasThatAreNoIdsAreNone) {
+  const auto file = write("extras.gltf",
+                          R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2,3]}],
+"nodes":[{"mesh":0,"name":"a","extras":{"instance":65541}},{"mesh":0,"name":"b","extras":{"instance":5.9}},
+{"mesh":0,"name":"c","extras":{"instance":9,"class":300}},{"mesh":0,"name":"d","extras":{"instance":-5}}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":
+"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
+  std::map<std::string, int> ids;
+  for (const Instance& instance : load_mesh(file).instances) {
+    ids[instance.name] = instance.id;
+    EXPECT_EQ(instance.class_id, kVoid);
+  }
+  EXPECT_EQ(ids, (std::map<std::string, int>{{"a", 1}, {"b", 2}, {"c", 9}, {"d", 3}}));
+}
+
 TEST_F(MeshIo, LabelsOfAnotherMeshAreRefused) {
   const Scene scene = example_scene();
   save_scannet_ply(scene, folder_ / "a.ply", 0.0F);
