@@ -106,27 +106,6 @@ TEST_F(Guard, EveryFieldOfASceneComesBack) {
   EXPECT_EQ(scene.rooms[0].polygon_m, wanted.rooms[0].polygon_m);
 }
 
-TEST_F(Guard, WhatTheChildReadsIsNotedHere) {
-  const fs::path first = write("first", "1"), second = write("second", "22");
-  ReadScope here;
-  read_file(first);
-  load_guarded("x", nullptr, [&](Warnings* told) {
-    return load_guarded("y", told, [&](Warnings*) {
-      read_file(second);
-      is_there(folder_ / "third");
-      return Scene();
-    });
-  });
-  ReadScope wanted;
-  read_file(first);
-  read_file(second);
-  is_there(folder_ / "third");
-  EXPECT_EQ(wanted.record().observations.size(), 3U);
-  ReadRecord twice = wanted.record();
-  twice.append(wanted.record());
-  EXPECT_EQ(here.record(), twice);  // which heard the other scope, too
-}
-
 TEST_F(Guard, ErrorsComeBackAsTheyWereThrown) {
   EXPECT_EQ(error_of_load([](Warnings*) -> Scene { throw InputError("b.dae:3: wrong"); }),
             "b.dae:3: wrong");
