@@ -103,16 +103,16 @@ class Columns {
     std::ranges::copy_if(samples, std::back_inserter(some), &Sample::labelled);
     return with_headroom(some);
   }
-  /// Those that one could stand on: level, and nothing for a while above.
+  /// Those that one could stand on, with nothing for a while above.
   std::vector<Sample> standable() const {
     std::vector<Sample> some = with_headroom(samples);
-    std::erase_if(some, [&](const Sample& s) { return !s.level || !among_things(s); });
+    std::erase_if(some, [&](const Sample& sample) { return !among_things(point(sample)); });
     return some;
   }
   /// Whether it lies where things stand: a plane that reaches to the horizon has most of its area
   /// elsewhere.
-  bool among_things(const Sample& sample) const {
-    return things_.contains(point(sample).head<2>().cast<float>().eval());
+  bool among_things(const Vector3d& p) const {
+    return things_.contains(p.head<2>().cast<float>().eval());
   }
 
   std::vector<Sample> samples;  ///< by cell, then upwards
@@ -262,13 +262,17 @@ Plane refitted(const std::vector<Vector3d>& points, const Plane& plane, double r
 
 /// Whether more of the scene lies below the plane than may lie below a floor: a table's top and a
 /// sofa's seat are none.
-bool too_much_below(const Scene& scene, const Plane& plane) {
+bool too_much_below(const Scene& scene, const Plane& plane, const Columns& columns) {
   double below = 0, above = 0, all = 0;
   for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
     const auto area = static_cast<double>(normal_of(scene, face).norm());
     std::array<double, 3> away;
     for (std::size_t k = 0; k < 3; ++k)
       away[k] = plane.above(corner(scene, face, k).cast<double>());
+    bool among_things = true;
+    for (std::size_t k = 0; k < 3; ++k)
+      among_things &= columns.among_things(corner(scene, face, k).cast<double>());
+    if (!among_things) continue;
     all += area;
     if (std::ranges::min(away) < -kLayer_m && std::ranges::max(away) < kLayer_m) below += area;
     if (std::ranges::max(away) > kLayer_m) above += area;
@@ -333,8 +337,9 @@ std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> f
   const bool labelled = columns.area_m2(some) >= kLeast_m2;
   if (!labelled) some = columns.standable();
   std::vector<Sample> inner;
-  std::ranges::copy_if(some, std::back_inserter(inner),
-                       [&](const Sample& sample) { return columns.among_things(sample); });
+  std::ranges::copy_if(some, std::back_inserter(inner), [&](const Sample& sample) {
+    return (labelled || sample.level) && columns.among_things(columns.point(sample));
+  });
   if (columns.area_m2(inner) < kLeast_m2) inner = some;  // things stand elsewhere
   const std::optional<double> z_m = floor_z_m ? floor_z_m : lowest_large(inner, columns.cell_m2());
   if (!z_m) return std::nullopt;
@@ -344,7 +349,7 @@ std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> f
   Plane plane;
   plane.middle_m.z() = *z_m;
   if (!floor_z_m) plane = fitted(points, *z_m, warnings, scene.name);
-  if (!floor_z_m && !labelled && too_much_below(scene, plane)) return std::nullopt;
+  if (!floor_z_m && !labelled && too_much_below(scene, plane, columns)) return std::nullopt;
 
   Floor floor;
   floor.middle_m = plane.middle_m;
