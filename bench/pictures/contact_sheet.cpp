@@ -47,7 +47,7 @@ void draw_depth_scale(Canvas& canvas, double x, double y, double width) {
   canvas.text(fmt::format("{} m", kNear_m), {x, y + 32}, 9);
   canvas.text(fmt::format("{} m and more", kFar_m), {x + width, y + 32}, 9, {40, 40, 40},
               Canvas::Align::kRight);
-  canvas.text("black: no return", {x + width / 2, y + 32}, 9, {40, 40, 40}, Canvas::Align::kCentre);
+  canvas.text("grey: no return", {x + width / 2, y + 32}, 9, {40, 40, 40}, Canvas::Align::kCentre);
 }
 
 constexpr int kLegendColumns = 7;

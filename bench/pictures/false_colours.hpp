@@ -9,14 +9,14 @@
 
 namespace mh {
 
-/// Depth as 8-bit BGR: near is red, far is a bright blue, no return is black, which the scale does
-/// not come near to (Turbo without its dark ends).
+/// Depth as 8-bit BGR: near is red, far is a bright blue (Turbo without its dark ends); no return is
+/// a light grey, which neither the scale nor a class comes near to.
 cv::Mat depth_colours(const Grid2d<float>& depth_m, float near_m, float far_m);
 /// The scale of depth_colours(), 256 x 1, near to far.
 cv::Mat depth_scale();
 
-/// The colour that a class has in pictures for people: that of classes(), or the nearest one that
-/// can be told from those of all lower ids. The same in every picture.
+/// The color that a class has in pictures for people, the same in every picture; color-blind people
+/// can tell any two that touch.
 Rgb8 class_colour(ClassId id);
 
 /// How different two colours look: their distance in CIE L*a*b* (1976). About 2 can just be seen.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -24,7 +26,10 @@ constexpr double kWallCut_m = 1.2, kFurnitureCut_m = 0.4;
 constexpr Rgb8 kInk{35, 38, 45}, kFaint{110, 115, 125}, kRoomName{140, 150, 165}, kWall{55, 58, 66},
     kFurniture{178, 172, 160};
 constexpr Rgb8 kMapFree{236, 241, 246}, kMapOccupied{172, 190, 208};
-constexpr Rgb8 kTruth{46, 125, 80}, kEstimate{226, 120, 30};
+// The true path is a broad pale band and the estimated one a thin dark line, so that either shows
+// where they lie on each other.
+constexpr Rgb8 kTruth{150, 205, 165}, kEstimate{196, 84, 10};
+constexpr double kTruthWidth = 5.5, kEstimateWidth = 1.3;
 constexpr Rgb8 kX{20, 70, 170}, kGood{165, 45, 165}, kBad{215, 25, 25}, kMissed{140, 140, 150};
 
 struct Bounds {
@@ -163,20 +168,60 @@ Eigen::Vector2d up_to_the_edge(const Bounds& bounds, const Eigen::Vector2d& from
   return from + std::max(0.0, share) * (to - from);
 }
 
+constexpr double kCross = 4.5, kRing = 6.5, kHeading = 15, kStroke = 1.8;
+
+/// A stroke from `inner` px beside a place on, the way that a camera (z forward) looks.
+void draw_heading(Canvas& canvas, const cv::Point2d& at, const SE3& plan_from_camera, double inner,
+                  Rgb8 colour) {
+  const Eigen::Vector2d forward = plan_from_camera.rotation().col(2).head<2>();
+  if (forward.norm() < 0.1) return;  // it looks up or down
+  const cv::Point2d way(forward.x() / forward.norm(), -forward.y() / forward.norm());
+  canvas.line(at + inner * way, at + kHeading * way, colour, kStroke);
+}
+
 /// An answer beyond the plan has no ring, but the line towards it.
+void draw_query(Canvas& canvas, const PlanView& view, const QueryScore& q,
+                const SE3& plan_from_estimate) {
+  const Eigen::Vector2d at = q.true_world_from_camera.translation().head<2>();
+  const cv::Point2d truth = view(at);
+  if (q.success) {
+    const Rgb8 colour = q.wrong ? kBad : kGood;
+    const SE3 plan_from_answer = plan_from_estimate * *q.answer.world_from_camera;
+    const Eigen::Vector2d p = plan_from_answer.translation().head<2>();
+    if (q.wrong) canvas.line(truth, view(up_to_the_edge(view.bounds, at, p)), kBad, 1);
+    if (view.bounds.contain(p)) {
+      canvas.ring(view(p), kRing, colour, kStroke);
+      draw_heading(canvas, view(p), plan_from_answer, kRing, colour);
+    }
+  }
+  const Rgb8 colour = q.success ? kX : kMissed;
+  draw_heading(canvas, truth, q.true_world_from_camera, 0, colour);
+  canvas.cross(truth, kCross, colour, kStroke);
+}
+
+/// Good answers first, failures over them: where many queries lie in one place, these are what the
+/// picture is looked at for.
 void draw_queries(Canvas& canvas, const PlanView& view, const std::vector<QueryScore>& queries,
                   const SE3& plan_from_estimate) {
-  for (const QueryScore& q : queries) {
-    const Eigen::Vector2d at = q.true_world_from_camera.translation().head<2>();
-    const cv::Point2d truth = view(at);
-    if (q.success) {
-      const Eigen::Vector2d p =
-          (plan_from_estimate * q.answer.world_from_camera->translation()).head<2>();
-      if (q.wrong) canvas.line(truth, view(up_to_the_edge(view.bounds, at, p)), kBad, 1);
-      if (view.bounds.contain(p)) canvas.ring(view(p), 6.5, q.wrong ? kBad : kGood, 1.8);
+  const auto rank = [](const QueryScore& q) { return !q.success ? 1 : q.wrong ? 2 : 0; };
+  for (int of = 0; of <= 2; ++of)
+    for (const QueryScore& q : queries)
+      if (rank(q) == of) draw_query(canvas, view, q, plan_from_estimate);
+}
+
+/// The farthest that the estimated path is from the true one, m; nullopt where they share no stamp.
+std::optional<double> farthest_apart_m(const Trajectory& truth, const Trajectory& estimate,
+                                       const SE3& plan_from_estimate) {
+  std::map<Stamp, Eigen::Vector3d> true_place;
+  for (const TimedPose& pose : truth)
+    true_place[pose.stamp_ns] = pose.world_from_camera.translation();
+  std::optional<double> farthest;
+  for (const TimedPose& pose : estimate)
+    if (const auto found = true_place.find(pose.stamp_ns); found != true_place.end()) {
+      const Eigen::Vector3d p = plan_from_estimate * pose.world_from_camera.translation();
+      farthest = std::max(farthest.value_or(0), (p - found->second).head<2>().norm());
     }
-    canvas.cross(truth, 4.5, q.success ? kX : kMissed, 1.8);
-  }
+  return farthest;
 }
 
 void draw_scale_bar(Canvas& canvas, const PlanView& view, double y) {
@@ -202,7 +247,8 @@ class Legend {
   double x_ = kMargin, y_;
 };
 
-void draw_legend(Canvas& canvas, double y) {
+/// @param apart  behind the estimated path: how far it is from the true one
+void draw_legend(Canvas& canvas, double y, const std::string& apart) {
   const auto stroke = [&](Rgb8 colour, double thickness) {
     return [&canvas, colour, thickness](cv::Point2d at) {
       canvas.line({at.x - 11, at.y}, {at.x + 11, at.y}, colour, thickness);
@@ -212,12 +258,24 @@ void draw_legend(Canvas& canvas, double y) {
     return [&canvas, colour](cv::Point2d at) { canvas.fill(at.x - 9, at.y - 7, 18, 14, colour); };
   };
   Legend first(canvas, y);
-  first.entry("mapping path, true", stroke(kTruth, 2));
-  first.entry("estimated", stroke(kEstimate, 2));
-  first.entry("query, true place", [&](cv::Point2d at) { canvas.cross(at, 4.5, kX, 1.8); });
-  first.entry("not answered", [&](cv::Point2d at) { canvas.cross(at, 4.5, kMissed, 1.8); });
-  first.entry("estimated place", [&](cv::Point2d at) { canvas.ring(at, 6.5, kGood, 1.8); });
-  first.entry("estimated, false", [&](cv::Point2d at) { canvas.ring(at, 6.5, kBad, 1.8); });
+  const auto query = [&](Rgb8 colour) {
+    return [&canvas, colour](cv::Point2d at) {
+      canvas.cross(at, kCross, colour, kStroke);
+      canvas.line(at, at + cv::Point2d(kHeading, 0), colour, kStroke);
+    };
+  };
+  const auto answer = [&](Rgb8 colour) {
+    return [&canvas, colour](cv::Point2d at) {
+      canvas.ring(at, kRing, colour, kStroke);
+      canvas.line(at + cv::Point2d(kRing, 0), at + cv::Point2d(kHeading, 0), colour, kStroke);
+    };
+  };
+  first.entry("query: true place, heading", query(kX));
+  first.entry("not answered", query(kMissed));
+  first.entry("answer", answer(kGood));
+  first.entry("false answer", answer(kBad));
+  first.entry("mapping path, true", stroke(kTruth, kTruthWidth));
+  first.entry("estimated" + apart, stroke(kEstimate, kEstimateWidth));
   Legend second(canvas, y + 28);
   second.entry(fmt::format("house cut at {} m", kWallCut_m), stroke(kWall, 2.5));
   second.entry(fmt::format("furniture at {} m", kFurnitureCut_m), stroke(kFurniture, 1.5));
@@ -271,12 +329,16 @@ cv::Mat draw_topdown(const World& world, const RunResult& run, QuerySet set) {
   draw_slice(canvas, view, furniture, kFurniture, 1.2);
   draw_slice(canvas, view, walls, kWall, 2.2);
   draw_room_names(canvas, view, *world.scene, marks(view, world, run, set, furniture));
-  draw_path(canvas, view, world.mapping.camera, SE3(), kTruth, 2.2);
-  draw_path(canvas, view, run.estimate, run.trajectory.dock_from_estimate, kEstimate, 1.1);
+  draw_path(canvas, view, world.mapping.camera, SE3(), kTruth, kTruthWidth);
+  draw_path(canvas, view, run.estimate, run.trajectory.dock_from_estimate, kEstimate,
+            kEstimateWidth);
   draw_queries(canvas, view, queries(run.points.front(), set), run.trajectory.dock_from_estimate);
   draw_header(canvas, world, run, set);
   const double legend_y = kHeader + plan_height + 36;
-  draw_legend(canvas, legend_y);
+  const auto apart_m =
+      farthest_apart_m(world.mapping.camera, run.estimate, run.trajectory.dock_from_estimate);
+  draw_legend(canvas, legend_y,
+              apart_m ? fmt::format(", at most {:.3f} m off", *apart_m) : std::string());
   draw_scale_bar(canvas, view, legend_y + 28);
   return canvas.finish();
 }
