@@ -258,7 +258,10 @@ void carry_out(const RunOrder& order) {
   double world_s = 0, products_s = 0;
   const World world = [&] {
     const ProcessorTimer timer(world_s);
-    return build_world(spec, order.jobs, Cache(order.cache), order.say);
+    const auto baked = [&](double share) {
+      order.status(fmt::format("light {:.0f} %", 100 * share));
+    };
+    return build_world(spec, order.jobs, Cache(order.cache), order.say, baked);
   }();
   if (run_key(spec, world.inputs) != order.key)
     throw InputChanged(fmt::format(
@@ -270,6 +273,7 @@ void carry_out(const RunOrder& order) {
   const RunResult run = run_one(spec, world,
                                 {.folder = folder,
                                  .progress = order.progress,
+                                 .status = order.status,
                                  .system = {},
                                  .tamper = {},
                                  .occupancy = !order.figures_alone,

@@ -37,8 +37,7 @@ struct BenchOptions {
   bool figures_alone = false;
   std::filesystem::path executable = "/proc/self/exe";  ///< has the subcommand `run-one`
   std::function<void(std::string_view)> say = [](std::string_view) {};
-  std::function<void(double, std::size_t, std::size_t)> progress =
-      [](double, std::size_t, std::size_t) {};  ///< as PoolOptions::progress
+  std::function<void(const PoolProgress&)> progress = [](const PoolProgress&) {};
 };
 
 /// A file changed while the runs that read it were at work.
@@ -75,6 +74,7 @@ struct RunOrder {
   bool figures_alone = false;  ///< as BenchOptions
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(double)> progress = [](double) {};
+  std::function<void(std::string_view)> status = [](std::string_view) {};  ///< as RunTools
 };
 void carry_out(const RunOrder& order);
 

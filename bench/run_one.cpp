@@ -5,6 +5,9 @@
 #include <map>
 #include <optional>
 
+#include <fmt/format.h>
+
+#include "bench/counted.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/results/occupancy.hpp"
 #include "bench/results/trajectory_score.hpp"
@@ -118,6 +121,12 @@ std::vector<std::vector<QueryScore>*> lists(RunResult& run, QuerySet set) {
   return all;
 }
 
+std::string status_of(const MappedFrame& call, std::size_t frames) {
+  return fmt::format("frame {} of {}{}{}", call.index + 1, frames,
+                     call.restart > 0 ? ", " + counted(call.restart, "restart") : "",
+                     call.status == TrackStatus::kLost ? ", lost" : "");
+}
+
 std::size_t pieces_of_work(const RunSpec& spec, const World& world) {
   std::size_t queries = test_frames(world.mapping.camera.size(), spec.protocol).size();
   if (world.second) queries += test_frames(world.second->camera.size(), spec.protocol).size();
@@ -127,14 +136,19 @@ std::size_t pieces_of_work(const RunSpec& spec, const World& world) {
 /// The mapping frames as a folder, and what an outside program made of them.
 Trajectory run_recorded(const RunSpec& spec, const SimulatedSequence& mapping,
                         const FrameSource& frames, RandomStream stream,
-                        const std::filesystem::path& folder) {
+                        const std::filesystem::path& folder,
+                        const std::function<void(std::string_view)>& status) {
   std::vector<std::size_t> offered;
   for (std::size_t i = 0; i < mapping.size(); ++i)
     if (!is_test_frame(i, spec.protocol)) offered.push_back(i);
   ProgramFolder given(folder);
   const std::vector<Stamp> stamps =
       write_dataset(given.path() / "dataset", mapping.camera(), offered.size(),
-                    [&](std::size_t i) { return frames(offered[i], mapping_noise(stream, 0)); });
+                    [&](std::size_t i) {
+                      status(fmt::format("writing frame {} of {}", i + 1, offered.size()));
+                      return frames(offered[i], mapping_noise(stream, 0));
+                    });
+  status(fmt::format("runs over {}", counted(offered.size(), "frame")));
   Trajectory trajectory =
       run_on_dataset(spec.system.outside, given.path(), stamps, spec.seed, folder / "outside.log");
   given.move_to_run();
@@ -179,7 +193,8 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   if (inner == nullptr) {  // a program that answers with a trajectory: nothing to ask it
     for (std::size_t i = 0; i < mapping.size(); ++i)
       run.mapping.offered += is_test_frame(i, spec.protocol) ? 0 : 1;
-    run.estimate = run_recorded(spec, mapping, frames, stream.fork(kMapping), tools.folder);
+    run.estimate =
+        run_recorded(spec, mapping, frames, stream.fork(kMapping), tools.folder, tools.status);
     run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
     integrate();
     run.points.resize(spec.points.size());
@@ -198,6 +213,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
                          const ProcessorTimer timer(run.products_s);
                          if (call.keyframe_added && tools.occupancy) depths.keep(frame);
                          work.reached(call.index + 1);
+                         tools.status(status_of(call, mapping.size()));
                        });
       take_trajectory();
       integrate();

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <string_view>
 
 #include "bench/results/run_result.hpp"
 #include "bench/systems/system.hpp"
@@ -31,11 +32,13 @@ struct RunTools {
   std::filesystem::path folder = ".";  ///< exists; an outside program's files go there
   /// Told how much of the work is done, in [0, 1]; a rewind takes nothing back.
   std::function<void(double)> progress = [](double) {};
+  /// Told where the mapping stands after each frame: "frame 120 of 4490, 2 restarts, lost".
+  std::function<void(std::string_view)> status = [](std::string_view) {};
   /// Makes the system in make_system()'s place: for tests.
   std::function<std::unique_ptr<System>(const RunSpec&, const World&)> system = {};
   RunTamper tamper = {};
   bool occupancy = true;  ///< false: RunResult::volume stays null and its grid empty
-  Cache maps = Cache();  ///< a finished map of the same mapping is taken from here, or kept here
+  Cache maps = Cache();   ///< a finished map of the same mapping is taken from here, or kept here
 };
 
 /// One run from the first frame to the last query: map the tour, freeze, score the trajectory, put

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "slam/core/suggest.hpp"
+
 namespace mh {
 namespace {
 
@@ -78,7 +80,8 @@ Materials read_materials(YamlReader yaml) {
     const YamlReader kind = entry.at("kind");
     spec.kind = kind.as_string();
     if (std::ranges::find(material_kinds(), spec.kind) == material_kinds().end())
-      kind.fail(fmt::format("unknown kind of material '{}'", spec.kind));
+      kind.fail(fmt::format("unknown kind of material '{}'{}", spec.kind,
+                            hint(spec.kind, words_of(material_kinds()))));
     if (const auto tone = entry.find("tone")) spec.tone = read_tone(*tone);
     spec.variation = entry.number_or("variation", spec.variation, 0.0, 1.0);
     spec.seed = static_cast<std::uint64_t>(entry.integer_or("seed", 0, 0, 1'000'000'000));
@@ -90,14 +93,18 @@ Materials read_materials(YamlReader yaml) {
 
 MaterialSpec material_by_name(const YamlReader& yaml, const Materials& materials) {
   const auto found = materials.find(yaml.as_string());
-  if (found == materials.end()) yaml.fail(fmt::format("unknown material '{}'", yaml.as_string()));
+  if (found == materials.end())
+    yaml.fail(fmt::format(
+        "unknown material '{}'{}", yaml.as_string(),
+        hint(yaml.as_string(), words_of(materials, [](const auto& m) { return m.first; }))));
   return found->second;
 }
 
 std::size_t room_by_name(const YamlReader& yaml, const std::vector<RoomPlan>& rooms) {
   for (std::size_t i = 0; i < rooms.size(); ++i)
     if (rooms[i].name == yaml.as_string()) return i;
-  yaml.fail(fmt::format("there is no room '{}'", yaml.as_string()));
+  yaml.fail(fmt::format("there is no room '{}'{}", yaml.as_string(),
+                        hint(yaml.as_string(), words_of(rooms, &RoomPlan::name))));
 }
 
 FloorRect read_cut(YamlReader yaml, const FloorRect& rect) {
@@ -326,7 +333,10 @@ ItemPlan read_item(YamlReader yaml, const HousePlan& house, std::size_t room,
     if (other.name == item.name) yaml.fail(fmt::format("a second piece is named '{}'", item.name));
   const YamlReader kind = yaml.at("kind");
   item.kind = find_furniture(kind.as_string());
-  if (!item.kind) kind.fail(fmt::format("unknown kind of furniture '{}'", kind.as_string()));
+  if (!item.kind)
+    kind.fail(fmt::format("unknown kind of furniture '{}'{}", kind.as_string(),
+                          hint(kind.as_string(), words_of(furniture_kinds(), &FurnitureKind::name),
+                               "modelhouse reference furniture lists all")));
   read_size(yaml, item);
 
   if (yaml.has("on")) {

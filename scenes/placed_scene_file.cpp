@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "slam/core/suggest.hpp"
+
 namespace mh {
 namespace {
 
@@ -22,7 +24,11 @@ PlacedObject read_object(YamlReader yaml, const fs::path& folder) {
   plan.name = yaml.string("name", plan.file.stem().string());
   if (const auto class_name = yaml.find("class")) {
     plan.class_id = class_by_name(class_name->as_string());
-    if (!plan.class_id) class_name->fail(fmt::format("'{}' is no class", class_name->as_string()));
+    if (!plan.class_id)
+      class_name->fail(
+          fmt::format("'{}' is no class{}", class_name->as_string(),
+                      hint(class_name->as_string(), words_of(classes(), &ClassInfo::name),
+                           "modelhouse reference classes lists all")));
   }
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero(), scale = Eigen::Vector3d::Ones();
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();

@@ -133,8 +133,8 @@ std::string gate_suite_digest(const Suite& suite) {
 }
 
 nlohmann::ordered_json gate_settings(const Suite& suite) {
-  nlohmann::ordered_json settings = {{"slam", to_json(suite.semantics)},
-                                     {"vocabulary", hex(digest_file(suite.vocabulary))}};
+  nlohmann::ordered_json settings = {{"slam", to_json(suite.semantics)}};
+  if (!suite.vocabulary.empty()) settings["vocabulary"] = hex(digest_file(suite.vocabulary));
   for (const SystemSpec& system : suite.systems)
     if (system.kind == SystemKind::kOutside)
       for (const ProgramFile& file : files_of(system.outside))

@@ -12,9 +12,11 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/suggest.hpp"
 
 namespace mh::cli {
 
@@ -54,6 +56,21 @@ CLI::Validator seed_number() {
                                   : fmt::format("'{}' is no whole number from 0 to 2^64 - 1", text);
       },
       "", "seed");
+}
+
+CLI::Validator one_of_words(std::vector<std::string> words) {
+  std::string described = fmt::format("{{{}}}", fmt::join(words, ","));
+  return CLI::Validator(
+      [words = std::move(words)](std::string& text) {
+        if (std::ranges::find(words, text) != words.end()) return std::string();
+        return fmt::format("'{}' is none of {}{}", text, fmt::join(words, ", "),
+                           did_you_mean(text, words));
+      },
+      std::move(described), "word");
+}
+
+void resolve(std::string& word, Shipped what) {
+  word = (what == Shipped::kScene ? find_scene(word) : find_shipped(word, what)).string();
 }
 
 void need_writable(const fs::path& file, const std::vector<fs::path>& read) {

@@ -8,6 +8,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "bench/plan/shipped.hpp"
+
 namespace mh::cli {
 
 /// A finite number from `least` to `greatest`. (CLI::Range takes "nan": it is neither too small nor
@@ -16,6 +18,13 @@ CLI::Validator number_between(double least, double greatest);
 
 /// A seed: a whole number from 0 to 2^64 - 1, where parsing alone would let others wrap round.
 CLI::Validator seed_number();
+
+/// One of some words; a slip is told the nearest of them.
+CLI::Validator one_of_words(std::vector<std::string> words);
+
+/// Puts the file that a word stands for in its place (find_shipped, find_scene for scenes); leaves
+/// an empty one alone.
+void resolve(std::string& word, Shipped what);
 
 /// Finds out before the work whether a file can be written there; makes its folder.
 /// @param read  what the command reads: none of it is overwritten

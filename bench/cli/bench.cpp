@@ -38,7 +38,9 @@ std::optional<std::filesystem::path> cache_folder(const Options& options) {
   return usual.empty() ? std::nullopt : std::optional(usual);
 }
 
-void run(const Options& options) {
+void run(Options options) {
+  resolve(options.suite, Shipped::kSuite);
+  if (options.scene) resolve(*options.scene, Shipped::kScene);
   SuiteOverrides overrides;
   overrides.trials = options.trials;
   overrides.max_frames = options.frames;
@@ -58,9 +60,7 @@ void run(const Options& options) {
 
   Progress progress("bench");
   bench.say = [&](std::string_view stage) { progress.say(stage); };
-  bench.progress = [&](double share, std::size_t done, std::size_t failed) {
-    progress.share(share, fmt::format("{} done, {} failed", done, failed));
-  };
+  bench.progress = [&](const PoolProgress& p) { show(progress, p); };
   const BenchResults results = run_suite(suite, overrides, bench);
   progress.end();
   finish(bench.out, suite, results, options.json);
@@ -72,16 +72,21 @@ void add_bench(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "bench", "Runs a suite: drives, maps, relocalizes, scores; prints the table.");
-  command->add_option("suite", options->suite, "Suite (YAML)")->required();
+  command->add_option("suite", options->suite, "Suite: a file (YAML), or the name of a shipped one")
+      ->required();
   command->add_option("--out", options->out, "Folder for the results (default: out/<suite>)");
   command->add_option("--jobs", options->jobs, "Runs at work at a time; never changes a result")
       ->check(CLI::Range(1, 1024));
-  command->add_option("--trials", options->trials, "Repeats with seeds 0 .. N-1")
+  command
+      ->add_option("--trials", options->trials,
+                   "Repeats with seeds 0 .. N-1 (default: the suite's)")
       ->check(CLI::Range(1, 1000));
   command
-      ->add_option("--frames", options->frames, "Cuts the tours after N frames, for a quick look")
+      ->add_option("--frames", options->frames,
+                   "Cuts the tours after N frames, for a quick look (default: all)")
       ->check(CLI::Range(1, 100000000));
-  command->add_option("--scene", options->scene, "Another scene or mesh file in the suite's place");
+  command->add_option("--scene", options->scene,
+                      "Another scene or mesh file (default: the suite's)");
   options->frame.add_to(*command);
   command->add_option("--shard", options->shard,
                       "i/n: takes run i, i + n, ... alone; `merge` puts them together");
@@ -95,8 +100,8 @@ void add_bench(CLI::App& app) {
       ->check(number_between(0.0, 1e9));
   command->add_flag("--json", options->json, "Prints results.json instead of the table");
   command->footer(
-      "Examples:\n  modelhouse bench bench/suites/model_house.yaml --jobs 2\n"
-      "  modelhouse bench bench/suites/model_house.yaml --scene house.glb --frames 600");
+      "Examples:\n  modelhouse bench model_house --jobs 2\n"
+      "  modelhouse bench my_suite.yaml --scene house.glb --frames 600");
   command->callback([options] { run(*options); });
 }
 

@@ -28,6 +28,7 @@ namespace fs = std::filesystem;
 struct Options {
   std::string suite, baseline, junit;
   int jobs = 1;
+  std::optional<std::size_t> frames;
   bool update = false, json = false;
 };
 
@@ -75,10 +76,12 @@ Baseline measure(const Suite& suite, const Options& of) {
       .retry_failed = true,
       .figures_alone = true,
       .say = [&](std::string_view stage) { progress.say(stage); },
-      .progress = [&](double share, std::size_t, std::size_t) { progress.share(share); }};
+      .progress = [&](const PoolProgress& p) { show(progress, p); }};
+  SuiteOverrides overrides;
+  overrides.max_frames = of.frames;
   BenchResults results;
   try {
-    results = run_suite(suite, {}, options);
+    results = run_suite(suite, overrides, options);
   } catch (Interrupted& interrupted) {
     interrupted.goes_on = place.has_value();
     throw;
@@ -130,8 +133,11 @@ void update(const Options& options, const Suite& suite, const Baseline& now) {
   fmt::print("{}: {} written\n", file.string(), counted(now.runs.size(), "run"));
 }
 
-void run(const Options& options) {
-  const Suite suite = load_suite(options.suite);
+void run(Options options) {
+  resolve(options.suite, Shipped::kSuite);
+  SuiteOverrides overrides;
+  overrides.max_frames = options.frames;
+  const Suite suite = load_suite(options.suite, overrides);
   if (suite.gate.tolerances.empty() && suite.gate.of_scenario.empty())
     throw InputError(
         fmt::format("{}: check: tolerances: missing: nothing would be judged", options.suite));
@@ -157,17 +163,25 @@ void add_check(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "check", "Runs a suite and compares it with committed figures: a gate for CI.");
-  command->add_option("suite", options->suite, "Suite (YAML) with a section `check`")->required();
+  command
+      ->add_option("suite", options->suite,
+                   "Suite with a section `check`: a file (YAML), or the name of a shipped one")
+      ->required();
   command->add_option("--baseline", options->baseline,
                       "Committed figures (default: the suite's name with .baseline.json)");
   command->add_option("--junit", options->junit, "Writes the findings as JUnit XML");
   command->add_option("--jobs", options->jobs, "Runs at work at a time; never changes a result")
       ->check(CLI::Range(1, 1024));
+  command
+      ->add_option("--frames", options->frames,
+                   "Cuts the tours after N frames; the baseline is then one of the same cut "
+                   "(default: all)")
+      ->check(CLI::Range(1, 100000000));
   command->add_flag("--update", options->update, "Rewrites the baseline and shows the difference");
   command->add_flag("--json", options->json, "Prints JSON");
   command->footer(
-      "Examples:\n  modelhouse check bench/suites/ci.yaml --jobs 2 --junit check.xml\n"
-      "  modelhouse check bench/suites/ci.yaml --jobs 2 --update\n"
+      "Examples:\n  modelhouse check ci --jobs 2 --junit check.xml\n"
+      "  modelhouse check my_suite.yaml --jobs 2 --update\n"
       "Exit code 1 where something got worse by more than its tolerance.");
   command->callback([options] { run(*options); });
 }

@@ -16,6 +16,7 @@ void add_evaluate(CLI::App& app);
 void add_export(CLI::App& app);
 void add_merge(CLI::App& app);
 void add_run_one(CLI::App& app);
+void add_reference(CLI::App& app);
 void add_render(CLI::App& app);
 void add_scene(CLI::App& app);
 void add_scene_statistics(CLI::App& scene);
@@ -23,5 +24,7 @@ void add_sensors(CLI::App& app);
 void add_slam(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_vocabulary(CLI::App& app);
+/// `completion` and `manual`, which are made from all of `app`.
+void add_declarations(CLI::App& app);
 
 }  // namespace mh::cli

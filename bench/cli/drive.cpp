@@ -25,7 +25,7 @@ namespace mh::cli {
 namespace {
 
 struct Options {
-  std::string scene, robot, walk, out;
+  std::string scene, robot = "pepper", walk, out;
   MotionOption motion;
   SceneFrameOption frame;
   std::uint64_t seed = 0;
@@ -33,7 +33,9 @@ struct Options {
   bool json = false;
 };
 
-void run(const Options& options) {
+void run(Options options) {
+  resolve(options.scene, Shipped::kScene);
+  resolve(options.robot, Shipped::kRobot);
   const std::string& motion = options.motion.given();
   if (options.sensors && options.out.empty())
     throw InputError("--sensors needs --out: a folder to write them into");
@@ -114,10 +116,13 @@ void add_drive(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("drive", "Drives the robot through a scene, or moves a camera by hand.");
-  command->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
+  command
+      ->add_option("scene", options->scene,
+                   "Scene (YAML), mesh file, or the name of a shipped scene")
+      ->required();
   options->motion.add_to(*command);
   options->frame.add_to(*command);
-  command->add_option("--robot", options->robot, "Robot (YAML)")->required();
+  command->add_option("--robot", options->robot, "Robot (YAML), or the name of a shipped one");
   command->add_option("--walk", options->walk,
                       "Somebody who walks about meanwhile (YAML); reflex and sensors notice him");
   command->add_option("--out", options->out, "Folder for camera.tum and base.tum");
@@ -129,8 +134,7 @@ void add_drive(CLI::App& app) {
       ->check(seed_number());
   command->add_flag("--json", options->json, "Prints JSON");
   command->footer(
-      "Example:\n  modelhouse drive scenes/model_house/house.yaml "
-      "scenes/model_house/tours/mapping.yaml --robot robots/pepper/pepper.yaml --out out/drive");
+      "Example:\n  modelhouse drive model_house model_house/query --robot pepper --out out/drive");
   command->callback([options] { run(*options); });
 }
 

@@ -159,21 +159,21 @@ void add_evaluate(CLI::App& app) {
       app.add_subcommand("evaluate", "Scores an estimated trajectory against the true one.");
   command->add_option("truth", options->truth, "True trajectory")->required();
   command->add_option("estimate", options->estimate, "Estimated trajectory")->required();
-  command->add_option("--align", options->align, "se3 (default), sim3, origin or none")
-      ->check(CLI::IsMember(kAlignments));
-  command->add_option("--format", options->format, "tum (default) or kitti, of both files")
-      ->check(CLI::IsMember({"tum", "kitti"}));
+  command->add_option("--align", options->align, "How the estimate is laid over the truth")
+      ->check(one_of_words({"se3", "sim3", "origin", "none"}));
+  command->add_option("--format", options->format, "Of both files")
+      ->check(one_of_words({"tum", "kitti"}));
   command
       ->add_option("--delta", options->deltas,
-                   "Step of the relative error: 30f (frames), 0.2m or 1s; default 1f 1s")
+                   "Step of the relative error: 30f (frames), 0.2m or 1s; one or more")
       ->expected(1, 100);
   command->add_flag("--all-pairs", options->all_pairs,
                     "Steps of frames start at every pose (those of metres and seconds always do)");
   command
       ->add_option("--max-difference", options->max_difference_s,
-                   "Stamps (s) that are taken for one moment, default 0.01")
+                   "Stamps (s) that are taken for one moment")
       ->check(number_between(0.0, 1e6));
-  command->add_option("--rate", options->rate_hz, "Poses per second of KITTI files, default 10")
+  command->add_option("--rate", options->rate_hz, "Poses per second of KITTI files")
       ->check(number_between(1e-3, 1e6));
   command->add_flag("--json", options->json, "Prints JSON");
   command->footer(

@@ -42,7 +42,7 @@ void add_export(CLI::App& app) {
       ->add_option("--format", options->format,
                    "csv: a line per run and parameter point; json: "
                    "every table; latex: the rows of the table")
-      ->check(CLI::IsMember({"csv", "json", "latex"}));
+      ->check(one_of_words({"csv", "json", "latex"}));
   command->add_option("--out", options->out, "File (default: standard output)");
   command->footer("Example:\n  modelhouse export out/model_house --format csv --out runs.csv");
   command->callback([options] { run(*options); });

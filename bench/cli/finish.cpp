@@ -43,6 +43,12 @@ std::vector<std::string> names_written(const std::filesystem::path& out, const S
   return names;
 }
 
+void show(Progress& progress, const PoolProgress& suite) {
+  std::string figures = fmt::format("{} done, {} failed", suite.done, suite.failed);
+  if (!suite.status.empty()) figures += ", " + suite.status;
+  progress.share(suite.share, figures, suite.to_go_s);
+}
+
 void throw_failures(const std::vector<FailedRun>& failed, const std::string& why,
                     const std::string& advice) {
   if (failed.empty()) return;

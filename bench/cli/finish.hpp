@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/cli/progress.hpp"
 #include "bench/run.hpp"
 
 namespace mh::cli {
@@ -17,6 +18,9 @@ void finish(const std::filesystem::path& out, const Suite& suite, const BenchRes
 /// The names that `bench` and `merge` give to what they write into a folder; none where a results
 /// file shows that they did so before.
 std::vector<std::string> names_written(const std::filesystem::path& out, const Suite& suite);
+
+/// Draws how far a suite has come.
+void show(Progress& progress, const PoolProgress& suite);
 
 /// Does nothing if there are none.
 /// @param why     where, or what, the cause is

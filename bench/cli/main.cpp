@@ -13,6 +13,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "bench/cli/commands.hpp"
+#include "bench/cli/declarations.hpp"
 #include "bench/jobs/pool.hpp"
 #include "bench/jobs/run_process.hpp"
 #include "bench/run.hpp"
@@ -45,6 +46,10 @@ int finish_output(int code) {
   return fail(kMachineFailed, "standard output: cannot be written" + why);
 }
 
+bool has_commands(const CLI::App& app) {
+  return !app.get_subcommands([](const CLI::App*) { return true; }).empty();
+}
+
 int run(int argc, char** argv) {
   // Same bits at any load: OpenCV must not split its work by the number of processors.
   cv::setNumThreads(1);
@@ -52,8 +57,9 @@ int run(int argc, char** argv) {
                "modelhouse");
   app.set_version_flag("--version", std::string("modelhouse ") + MH_VERSION);
   app.require_subcommand(1);
+  app.option_defaults()->always_capture_default();
   app.footer(
-      "Example:\n  modelhouse bench bench/suites/model_house.yaml --jobs 2\n"
+      "Example:\n  modelhouse bench model_house --jobs 2\n"
       "Exit codes: 0 good; 1 the work ran and its check failed; 2 bad usage or bad input;\n"
       "3 the machine or an outside program failed it; 130 interrupted; it says whether "
       "the\nsame command goes on with what is finished.");
@@ -70,14 +76,19 @@ int run(int argc, char** argv) {
   mh::cli::add_sensors(app);
   mh::cli::add_slam(app);
   mh::cli::add_vocabulary(app);
+  mh::cli::add_reference(app);
+  mh::cli::add_declarations(app);
   try {
     app.parse(argc, argv);
     return kGood;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty())
-      return fail(kBadInput, fmt::format("'{}' is no subcommand; see modelhouse --help", argv[1]));
-    return fail(kBadInput, error.what());
+    const CLI::App& at = mh::cli::reached(app);
+    if (app.remaining(true).empty() && has_commands(at)) {  // nothing was asked for
+      fmt::print("{}", app.help());
+      return kBadInput;
+    }
+    return fail(kBadInput, mh::cli::explain(error, app));
   } catch (const mh::cli::CheckFailed&) {
     return kCheckFailed;
   } catch (const mh::Interrupted& interrupted) {

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <filesystem>
 #include <string>
+#include <vector>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "bench/plan/shipped.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/suggest.hpp"
 
 namespace mh::cli {
 
@@ -16,14 +22,30 @@ struct MotionOption {
   void add_to(CLI::App& command) {
     command.add_option("tour", tour, "Tour (YAML); or --motion");
     command.add_option("--motion", motion,
-                       "TOUR.yaml, auto[:SEED], handheld[:SEED[:FRAMES]], replay:FILE.tum or "
+                       "TOUR.yaml, the name of a shipped tour, auto[:SEED], "
+                       "handheld[:SEED[:FRAMES]], replay:FILE.tum or "
                        "commands:FILE.yaml");
   }
-  /// @throws InputError unless exactly one of the two was given
-  const std::string& given() const {
+  /// The motion, a shipped tour's name replaced by its file.
+  /// @throws InputError unless exactly one of the two was given, or if a bare word is no motion
+  std::string given() const {
     if (motion.empty() == tour.empty())
       throw InputError("give the motion once: as TOUR or as --motion");
-    return motion.empty() ? tour : motion;
+    const std::string& word = motion.empty() ? tour : motion;
+    const std::vector<std::string> kinds = {"auto", "handheld", "replay", "commands"};
+    const std::string kind = word.substr(0, word.find(':'));
+    if (std::ranges::find(kinds, kind) != kinds.end()) return word;
+    if (is_bare_name(kind) && !shipped_or_there(word)) {
+      std::vector<std::string> valid = kinds;
+      for (const std::string& name : shipped_names(Shipped::kTour)) valid.push_back(name);
+      throw InputError(fmt::format("'{}' is no motion{}", word, hint(kind, valid)));
+    }
+    return find_shipped(word, Shipped::kTour).string();
+  }
+
+ private:
+  static bool shipped_or_there(const std::string& word) {
+    return std::filesystem::exists(word) || !shipped_file(word, Shipped::kTour).empty();
   }
 };
 

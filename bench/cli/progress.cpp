@@ -66,24 +66,31 @@ void Progress::say(std::string_view stage) {
 }
 
 void Progress::share(double done, std::string_view figures) {
-  done = std::clamp(done, 0.0, 1.0);
-  if (!started_) {
-    started_ = true;
-    first_share_ = done;
+  constexpr double kEnough = 0.05;
+  if (!first_share_) first_share_ = done;
+  if (!measured_from_ && done > *first_share_) {
+    measured_from_ = done;
     start_ = std::chrono::steady_clock::now();
   }
+  std::optional<double> to_go_s;
+  if (measured_from_ && done - *measured_from_ >= kEnough) {
+    const double elapsed =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    to_go_s = elapsed * (1 - done) / (done - *measured_from_);
+  }
+  share(done, figures, to_go_s);
+}
+
+void Progress::share(double done, std::string_view figures, std::optional<double> to_go_s) {
+  done = std::clamp(done, 0.0, 1.0);
   const int steps = terminal_ ? 200 : 10;
   // 0.3 * 10 and the like may fall just short of the step that they have reached.
   const int step = static_cast<int>(done * steps + 1e-9);
   if (step == last_step_ && (!terminal_ || figures == last_figures_)) return;
   last_step_ = step;
   last_figures_ = figures;
-  const double elapsed =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const std::string to_go =
-      done > first_share_ + 0.005 && done < 1
-          ? ", " + readable_time(elapsed * (1 - done) / (done - first_share_)) + " to go"
-          : "";
+      to_go_s && done < 1 ? ", " + readable_time(*to_go_s) + " to go" : std::string();
   if (terminal_) {
     // The last column stays free: some terminals wrap as soon as it is written.
     fmt::print(to_, "\r{}\x1b[K", bar_line(what_, done, to_go, figures, columns_of(to_) - 1));

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,9 +19,13 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void say(std::string_view stage);
-  /// @param done     in [0, 1]; the first call starts the clock
+  /// The time to go is told once a twentieth of the work was measured, from the first that was
+  /// done: preparations before it would make it look slow.
+  /// @param done     in [0, 1]
   /// @param figures  shown behind: how the work stands
   void share(double done, std::string_view figures = {});
+  /// The same where the caller knows better how long it will take; nullopt: nobody knows yet.
+  void share(double done, std::string_view figures, std::optional<double> to_go_s);
   /// Leaves the bar's line: what is printed next begins a line of its own.
   void end();
 
@@ -29,9 +34,7 @@ class Progress {
   std::FILE* to_;
   bool terminal_;
   bool line_open_ = false;
-  bool started_ = false;
-  double first_share_ =
-      0;  // what was done before the clock started takes no part in the time to go
+  std::optional<double> first_share_, measured_from_;
   int last_step_ = -1;
   std::string last_figures_;
   std::chrono::steady_clock::time_point start_;

@@ -30,7 +30,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string scene, robot, camera, level, walk, out, format = "tum", renderer = "embree";
+  std::string scene, robot = "pepper", camera, level, walk, out, format = "tum",
+                     renderer = "embree";
   std::string labels = "exact";
   MotionOption motion;
   SceneFrameOption frame;
@@ -141,6 +142,9 @@ void print_json(const RenderedSequence& done) {
 }
 
 void run(Options options) {
+  resolve(options.scene, Shipped::kScene);
+  resolve(options.robot, Shipped::kRobot);
+  resolve(options.level, Shipped::kLevel);
   const std::string& motion = options.motion.given();
   const fs::path out = options.out;
   for (const LabelMode mode :
@@ -163,9 +167,11 @@ void run(Options options) {
   Progress progress("render");
   progress.say(fmt::format("scene {}", options.scene));
   std::vector<std::string> warnings;
-  const Scene scene = load_lit_scene(
-      options.scene, options.sequence.threads, Cache(), [](std::string_view) {}, &warnings,
-      options.frame.frame());
+  const Scene scene = [&] {
+    Progress light("light");
+    return load_lit_scene(options.scene, options.sequence.threads, Cache(), {}, &warnings,
+                          options.frame.frame(), [&](double share) { light.share(share); });
+  }();
   if (std::string warning = check_labels(scene, options.sequence.labels); !warning.empty())
     warnings.push_back(std::move(warning));
   for (const std::string& warning : warnings) progress.say("warning: " + warning);
@@ -233,13 +239,18 @@ void add_render(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "render",
       "Writes what a camera sees on its way through a scene, with labels, instances and poses.");
-  command->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
+  command
+      ->add_option("scene", options->scene,
+                   "Scene (YAML), mesh file, or the name of a shipped scene")
+      ->required();
   options->motion.add_to(*command);
   options->frame.add_to(*command);
-  command->add_option("--robot", options->robot, "Robot (YAML): base and camera")->required();
+  command->add_option("--robot", options->robot,
+                      "Robot (YAML), or the name of a shipped one: base and camera");
   command->add_option("--camera", options->camera,
                       "Another of the robot's cameras, by its name in the robot's file");
-  command->add_option("--level", options->level, "Sensor level (YAML); without: no noise");
+  command->add_option("--level", options->level,
+                      "Sensor level (YAML), or the name of a shipped one; without: no noise");
   command->add_option("--walk", options->walk,
                       "Somebody who walks about meanwhile (YAML); a robot that drives meets him");
   command
@@ -249,32 +260,33 @@ void add_render(CLI::App& app) {
       ->required();
   command
       ->add_option("--format", options->format,
-                   "tum (default): folders and lists; scannet: .sens, label images; "
+                   "tum: folders and lists; scannet: .sens, label images; "
                    "scannet-frames: folders as extracted from a .sens")
-      ->check(CLI::IsMember({"tum", "scannet", "scannet-frames"}));
+      ->check(one_of_words({"tum", "scannet", "scannet-frames"}));
   command->add_option("--frames", options->sequence.frames, "At most so many frames of the path")
+      ->default_str("all")
       ->check(CLI::Range(1, 100000000));
   command->add_option("--every", options->sequence.every, "Every n-th frame only")
       ->check(CLI::Range(1, 100000000));
-  command->add_option("--renderer", options->renderer, "embree (default) or osmesa");
+  command->add_option("--renderer", options->renderer, "embree or osmesa")
+      ->check(one_of_words({"embree", "osmesa"}));
   command
       ->add_option("--labels", options->labels,
-                   "exact (default), annotated, boxes or detector: what `label` holds, faults of "
-                   "the level with it")
-      ->check(CLI::IsMember({"exact", "annotated", "boxes", "detector"}));
+                   "exact, annotated, boxes or detector: what `label` holds, faults of the level "
+                   "with it")
+      ->check(one_of_words({"exact", "annotated", "boxes", "detector"}));
   command->add_option("--seed", options->sequence.seed, "Seed of the noise")->check(seed_number());
   command
       ->add_option("--threads", options->sequence.threads,
-                   "Frames worked on side by side (2); never changes a byte")
+                   "Frames worked on side by side; never changes a byte")
       ->check(CLI::Range(1, 256));
   command
       ->add_option("--png-compression", options->png_compression,
-                   "0 (none) to 9 (smallest); without: 1")
+                   "0 (none) to 9 (smallest) (default: 1)")
       ->check(CLI::Range(0, 9));
   command->add_flag("--json", options->json, "Prints frames written and the time of each stage");
   command->footer(
-      "Example:\n  modelhouse render scenes/rooms/office.yaml --motion handheld:0 "
-      "--robot robots/pepper/pepper.yaml --level sim/sensors/levels/handheld.yaml "
+      "Example:\n  modelhouse render office --motion handheld:0 --level handheld "
       "--out out/sequence");
   command->callback([options] { run(*options); });
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
 #include <cstdio>
 #include <memory>
 
@@ -21,6 +22,7 @@ struct Options {
 void run(const Options& options) {
   if (options.parent != 0) die_with(options.parent);
   int last = -1;
+  std::chrono::steady_clock::time_point told;
   carry_out({.description = options.description,
              .store = options.store,
              .folder = options.folder,
@@ -42,6 +44,15 @@ void run(const Options& options) {
                    if (step == last) return;
                    last = step;
                    fmt::print("{:.4f}\n", share);
+                   std::fflush(stdout);
+                 },
+             .status =
+                 [&](std::string_view status) {
+                   constexpr auto kBetween = std::chrono::milliseconds(500);
+                   const auto now = std::chrono::steady_clock::now();
+                   if (now - told < kBetween) return;
+                   told = now;
+                   fmt::print("{}{}\n", kStatusMark, status);
                    std::fflush(stdout);
                  }});
 }

@@ -13,6 +13,7 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
+#include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/counted.hpp"
 #include "bench/pictures/canvas.hpp"
@@ -73,7 +74,8 @@ void print_labelled(const LabelledSurface& surface) {
     fmt::print("             {} more: --suggest-labels\n", surface.unlabelled.size() - kTold);
 }
 
-void info(const Options& options) {
+void info(Options options) {
+  resolve(options.scene, Shipped::kScene);
   const Scene scene = load(options.scene, options.frame);
   const LabelledSurface surface = survey_labels(scene);
   if (options.suggest_labels) {
@@ -132,18 +134,25 @@ void preview(const Options& options) {
       names.push_back(to_string({category.name, static_cast<std::uint64_t>(i)}));
   if (names.empty()) throw InputError("preview: name a scene, or give --each");
   std::vector<View> gallery;
+  Progress progress("preview");
   for (const std::string& name : names) {
-    Scene scene = load(name, options.frame);
-    light_scene(scene, kThreads);
+    const double before = static_cast<double>(gallery.size());
+    const auto all = static_cast<double>(names.size());
+    progress.share(before / all, name);
+    Scene scene = load(find_scene(name).string(), options.frame);
+    light_scene(scene, kThreads, Cache(), {},
+                [&](double share) { progress.share((before + 0.9 * share) / all, name); });
     const auto renderer = make_scene_renderer(scene);
     std::vector<View> views = views_of(scene, *renderer);
     if (names.size() == 1) {
       write_picture(options.out, draw_contact_sheet(scene.name, views));
+      progress.share(1);
       return;
     }
     gallery.push_back(std::move(views.front()));
     gallery.back().caption = name;
   }
+  progress.share(1);
   constexpr int kColumns = 4;
   write_picture(options.out, draw_gallery(gallery, kColumns, !options.no_captions));
 }
@@ -173,13 +182,23 @@ Scene scanned(const Scene& scene) {
   return scan_look(scene, *renderer, camera, scan_views(scene, 0, kViews));
 }
 
+/// Bakes its light, which takes a while, and tells how far that has come.
+void light(Scene& scene) {
+  Progress progress("light");
+  light_scene(scene, kThreads, Cache(), {}, [&](double share) { progress.share(share); });
+}
+
 void write_mesh(Scene scene, const fs::path& out, bool scan = false) {
-  light_scene(scene, kThreads);
-  if (scan) scene = scanned(scene);
+  light(scene);
+  if (scan) {
+    Progress("scan").say("90 views");
+    scene = scanned(scene);
+  }
   out.extension() == ".ply" ? save_scannet_ply(scene, out) : save_glb(scene, out);
 }
 
-void convert(const Options& options) {
+void convert(Options options) {
+  resolve(options.scene, Shipped::kScene);
   const std::string ending = fs::path(options.out).extension().string();
   std::string format = options.format;
   if (format.empty()) format = ending.empty() ? "scannet" : ending.substr(1);
@@ -196,7 +215,7 @@ void convert(const Options& options) {
   }
   const OutputFolder made(options.out, "scene convert", saved_scannet_names(options.out));
   Scene scene = load(options.scene, options.frame);
-  light_scene(scene, kThreads);
+  light(scene);
   save_scannet(scene, options.out);
 }
 
@@ -236,7 +255,9 @@ void make(const Options& options) {
 void list(const Options& options) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   std::array<int, kDensityGroups> total{};
-  int count = 0;
+  int count = 0, made = 0, wanted = 0;
+  for (const Category& category : categories()) wanted += category.count;
+  Progress progress("scene list");
   if (!options.json) {
     fmt::print("{:<18}{:>6}", "objects per 10 m2", "");
     for (int g = 0; g < kDensityGroups; ++g) fmt::print("{:>7}", density_group_name(g));
@@ -252,10 +273,12 @@ void list(const Options& options) {
       least = std::min(least, plan.floor_area_m2);
       most = std::max(most, plan.floor_area_m2);
       if (options.json) all.push_back(facts_json(reference, plan));
+      progress.share(static_cast<double>(++made) / wanted, category.name);
     }
     count += category.count;
     for (std::size_t g = 0; g < groups.size(); ++g) total[g] += groups[g];
     if (options.json) continue;
+    progress.end();
     fmt::print("{:<18}{:>6}", category.name, category.count);
     for (const int n : groups) fmt::print("{:>7}", n);
     fmt::print("   {:.1f} to {:.1f}\n", least, most);
@@ -275,15 +298,16 @@ void add_scene(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("scene", "Looks at scenes and converts them.");
   command->require_subcommand(1);
-  command->footer("Example:\n  modelhouse scene info scenes/model_house/house.yaml");
+  command->footer("Example:\n  modelhouse scene info model_house");
 
   CLI::App* i = command->add_subcommand("info", "Prints area, triangles, objects and classes.");
-  i->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
+  i->add_option("scene", options->scene, "Scene (YAML), mesh file, or the name of a shipped scene")
+      ->required();
   options->frame.add_to(*i);
   i->add_flag("--json", options->json, "Prints JSON");
   i->add_flag("--suggest-labels", options->suggest_labels,
               "Prints a labels.yaml to fill: the names of what has no class, the largest first");
-  i->footer("Example:\n  modelhouse scene info scenes/model_house/house.yaml --json");
+  i->footer("Example:\n  modelhouse scene info model_house --json");
   i->callback([options] { info(*options); });
 
   CLI::App* l = command->add_subcommand(
@@ -306,7 +330,8 @@ void add_scene(CLI::App& app) {
 
   CLI::App* p = command->add_subcommand(
       "preview", "Draws a contact sheet: colour, depth, labels of one scene, or a view of each.");
-  p->add_option("scenes", options->scenes, "Scenes: files, or generated:CATEGORY:SEED");
+  p->add_option("scenes", options->scenes,
+                "Scenes: files, names of shipped ones, or generated:CATEGORY:SEED");
   options->frame.add_to(*p);
   p->add_option("--each", options->each, "So many generated scenes of every category")
       ->check(CLI::Range(1, 1000));
@@ -314,12 +339,14 @@ void add_scene(CLI::App& app) {
               "Of several scenes: pictures alone, without their names below");
   p->add_option("--out", options->out, "Picture to write (PNG)")->required();
   p->footer(
-      "Example:\n  modelhouse scene preview scenes/model_house/house.yaml --out house.png\n"
+      "Example:\n  modelhouse scene preview model_house --out house.png\n"
       "  modelhouse scene preview --each 2 --out categories.png");
   p->callback([options] { preview(*options); });
 
   CLI::App* c = command->add_subcommand("convert", "Writes a scene as a mesh, light baked in.");
-  c->add_option("scene", options->scene, "Scene (YAML), mesh file or ScanNet folder")->required();
+  c->add_option("scene", options->scene,
+                "Scene (YAML), mesh file, ScanNet folder, or the name of a shipped scene")
+      ->required();
   options->frame.add_to(*c);
   c->add_option(
        "--out", options->out,
@@ -327,9 +354,9 @@ void add_scene(CLI::App& app) {
       ->required();
   c->add_option("--format", options->format,
                 "ply, glb or scannet; default: by the ending of --out, a folder without one")
-      ->check(CLI::IsMember({"ply", "glb", "scannet"}));
+      ->check(one_of_words({"ply", "glb", "scannet"}));
   c->footer(
-      "Examples:\n  modelhouse scene convert scenes/model_house/house.yaml --out house.glb\n"
+      "Examples:\n  modelhouse scene convert model_house --out house.glb\n"
       "  modelhouse scene convert house.glb --out out/scene0000_00 --format scannet");
   c->callback([options] { convert(*options); });
   add_scene_statistics(*command);

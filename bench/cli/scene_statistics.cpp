@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
@@ -144,8 +145,13 @@ void print_json(const std::vector<MeasuredPlace>& places, const RealFrames& real
   fmt::print("{}\n", json.dump(2));
 }
 
-void run(const Options& options) {
-  const std::vector<RealFrames> real = load_real_frames(options.reference);
+void run(Options options) {
+  resolve(options.level, Shipped::kLevel);
+  resolve(options.robot, Shipped::kRobot);
+  for (std::string& name : options.scenes) resolve(name, Shipped::kScene);
+  const std::vector<RealFrames> real =
+      load_real_frames(options.reference.empty() ? data_folder() / "assets/real_frames.yaml"
+                                                 : fs::path(options.reference));
   const Robot robot = load_robot(options.robot);
   const SensorConfig sensors = load_sensor_config(options.level);
   const std::vector<std::string> names = names_of(options);
@@ -168,29 +174,29 @@ void run(const Options& options) {
 
 void add_scene_statistics(CLI::App& scene) {
   auto options = std::make_shared<Options>();
-  options->level = "sim/sensors/levels/handheld.yaml";
-  options->robot = "robots/pepper/pepper.yaml";
-  options->reference = "assets/real_frames.yaml";
+  options->level = "handheld";
+  options->robot = "pepper";
   CLI::App* command = scene.add_subcommand(
       "statistics", "Measures rendered frames beside real ones: texture, blankness, sharpness.");
   command->add_option("scenes", options->scenes, "Scenes; without: those of every category");
-  command->add_option("--per-category", options->per_category, "Only so many of each category")
+  command
+      ->add_option("--per-category", options->per_category,
+                   "Only so many of each category (default: all)")
       ->check(CLI::Range(1, 1000));
   command->add_option("--frames", options->frames, "Frames of all scenes together")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  command->add_option("--level", options->level, "Sensor level (YAML)")->capture_default_str();
-  command->add_option("--robot", options->robot, "Whose camera (YAML)")->capture_default_str();
-  command->add_option("--reference", options->reference, "Figures of real frames (YAML)")
-      ->capture_default_str();
+      ->check(CLI::Range(1, 1000000));
+  command->add_option("--level", options->level,
+                      "Sensor level (YAML), or the name of a shipped one");
+  command->add_option("--robot", options->robot,
+                      "Whose camera (YAML), or the name of a shipped robot");
+  command->add_option("--reference", options->reference,
+                      "Figures of real frames (YAML) (default: the shipped ones)");
   command->add_option("--tum", options->tum, "Folder of real frames in TUM's layout, measured too");
   command->add_option("--jobs", options->threads, "Threads that bake light; changes no figure")
       ->check(CLI::Range(1, 1024));
   command->add_option("--cache", options->cache, "Folder that keeps baked light; none: bakes anew");
   command->add_flag("--json", options->json, "Prints JSON, with the median of each scene");
-  command->footer(
-      "Example:\n  modelhouse scene statistics --per-category 3 --frames 540\n"
-      "Paths are relative to where the command is run: the project's folder.");
+  command->footer("Example:\n  modelhouse scene statistics --per-category 3 --frames 540");
   command->callback([options] { run(*options); });
 }
 

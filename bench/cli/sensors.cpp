@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
+#include "bench/cli/progress.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "bench/sensors/figures.hpp"
 #include "bench/sensors/sheets.hpp"
@@ -23,17 +26,28 @@ struct Options {
 void plot(const Options& options) {
   const OutputFolder folder(options.out, "sensors plot", {"figures.png"});
   const fs::path file = fs::path(options.out) / "figures.png";
-  std::vector<Plot> plots = depth_figures();
-  for (const auto& more : {light_figures(), label_figures()})
-    plots.insert(plots.end(), more.begin(), more.end());
+  Progress progress("sensors plot");
+  std::vector<Plot> plots;
+  const std::array<std::pair<const char*, std::vector<Plot> (*)()>, 3> groups = {
+      {{"depth", depth_figures}, {"light", light_figures}, {"labels", label_figures}}};
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    progress.share(static_cast<double>(i) / groups.size(), groups[i].first);
+    for (Plot& plot : groups[i].second()) plots.push_back(std::move(plot));
+  }
+  progress.share(1);
+  progress.end();
   write_picture(file, draw_plots("Sensor models: published (lines) and measured (dots)", plots));
   fmt::print("{}\n", file.string());
 }
 
-void sheet(const Options& options) {
+void sheet(Options options) {
+  resolve(options.scene, Shipped::kScene);
   const OutputFolder folder(options.out, "sensors sheet",
                             {"colour.png", "depth.png", "frames.png", "labels.png"});
-  const Scene scene = load_lit_scene(options.scene, 2);
+  Progress light("light");
+  const Scene scene = load_lit_scene(options.scene, 2, Cache(), {}, nullptr, {},
+                                     [&](double share) { light.share(share); });
+  light.end();
   const SensorSheets sheets = draw_sensor_sheets(scene, make_scene_renderer(scene));
   for (const auto& [name, picture] :
        {std::pair("colour.png", sheets.colour), std::pair("depth.png", sheets.depth),
@@ -60,9 +74,10 @@ void add_sensors(CLI::App& app) {
 
   CLI::App* s = command->add_subcommand(
       "sheet", "Draws contact sheets of each factor: off, mild, strong; the same view each time.");
-  s->add_option("scene", options->scene, "Scene (YAML) or mesh file")->required();
+  s->add_option("scene", options->scene, "Scene (YAML), mesh file, or the name of a shipped scene")
+      ->required();
   s->add_option("--out", options->out, "Folder to write")->required();
-  s->footer("Example:\n  modelhouse sensors sheet scenes/model_house/house.yaml --out out/sensors");
+  s->footer("Example:\n  modelhouse sensors sheet model_house --out out/sensors");
   s->callback([options] { sheet(*options); });
 }
 

@@ -26,8 +26,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::string_view kTum = "tum:", kScene = "scene:", kScannet = "scannet:";
 
+constexpr const char* kUsualRobot = "pepper";
+
 struct Options {
-  std::string source, settings, vocabulary, out, map, save_map, truth;
+  std::string source, settings, vocabulary = "vocabulary", out, map, save_map, truth;
   SceneFrameOption frame;
   std::string tour, robot, level;
   std::optional<double> gamma, xi;
@@ -81,13 +83,13 @@ Settings settings_beside(const Options& options, const FrameSequence& frames,
 Source open_source(const Options& options) {
   const std::string& source = options.source;
   if (source.starts_with(kScene)) {
-    if (options.tour.empty() || options.robot.empty())
-      throw InputError(fmt::format("source '{}' needs --tour and --robot", source));
+    if (options.tour.empty()) throw InputError(fmt::format("source '{}' needs --tour", source));
+    const std::string robot = options.robot.empty() ? kUsualRobot : options.robot;
     std::vector<std::string> notes;
-    auto frames = open_scene({.scene = source.substr(kScene.size()),
-                              .tour = options.tour,
-                              .robot = options.robot,
-                              .level = options.level,
+    auto frames = open_scene({.scene = find_scene(source.substr(kScene.size())),
+                              .tour = find_shipped(options.tour, Shipped::kTour),
+                              .robot = find_shipped(robot, Shipped::kRobot),
+                              .level = find_shipped(options.level, Shipped::kLevel),
                               .seed = options.seed,
                               .frame = options.frame.frame()},
                              &notes);
@@ -184,8 +186,10 @@ void need_no_other_file(const fs::path& map) {
         fmt::format("--save-map {}: is a file, but no map: name another", map.string()));
 }
 
-void run(const Options& options) {
+void run(Options options) {
   check(options);
+  resolve(options.vocabulary, Shipped::kVocabulary);
+  resolve(options.settings, Shipped::kSettings);
   const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
   Source source = open_source(options);
   // Before the work: a slip costs no minutes.
@@ -256,9 +260,13 @@ void add_slam(CLI::App& app) {
       ->add_option("source", options->source,
                    "tum:FOLDER, FOLDER, scannet:FOLDER, scannet:FILE.sens or scene:FILE")
       ->required();
-  command->add_option("--settings", options->settings,
-                      "Settings (YAML), also ORB-SLAM2's; default: the folder's camera.yaml");
-  command->add_option("--vocabulary", options->vocabulary, "Vocabulary file")->required();
+  command->add_option(
+      "--settings", options->settings,
+
+      "Settings (YAML), also ORB-SLAM2's, or the name of shipped ones (default: the "
+      "folder's camera.yaml)");
+  command->add_option("--vocabulary", options->vocabulary,
+                      "Vocabulary file, or the name of the shipped one");
   command->add_option("--out", options->out, "Folder for the results")->required();
   command->add_option("--map", options->map, "Map file to begin with");
   CLI::Option* localize =
@@ -269,18 +277,26 @@ void add_slam(CLI::App& app) {
       ->excludes(localize);
   command->add_option("--save-map", options->save_map, "Map file to write")->excludes(localize);
   command->add_option("--truth", options->truth,
-                      "True trajectory (TUM text); default: the folder's groundtruth.txt");
+                      "True trajectory (TUM text) (default: the folder's groundtruth.txt)");
   command->add_option("--frames", options->run.count, "At most so many frames")
+      ->default_str("all")
       ->check(CLI::Range(1, 100000000));
-  command->add_option("--tour", options->tour, "scene: tour (YAML)");
-  command->add_option("--robot", options->robot, "scene: robot (YAML)");
-  command->add_option("--level", options->level, "scene: sensor level (YAML); without: no noise");
+  command->add_option("--tour", options->tour, "scene: tour (YAML), or the name of a shipped one");
+  command
+      ->add_option("--robot", options->robot, "scene: robot (YAML), or the name of a shipped one")
+      ->default_str(kUsualRobot);
+  command->add_option(
+      "--level", options->level,
+      "scene: sensor level (YAML), or the name of a shipped one; without: no noise");
   options->frame.add_to(*command);
-  CLI::Option* gamma =
-      command->add_option("--gamma", options->gamma, "Weight of a label, equation 1")
-          ->check(number_between(0.0, 1e6));
+  CLI::Option* gamma = command
+                           ->add_option("--gamma", options->gamma,
+                                        "Weight of a label, equation 1 (default: the settings')")
+                           ->check(number_between(0.0, 1e6));
   CLI::Option* xi =
-      command->add_option("--xi", options->xi, "Penalty of labels that differ, equation 2")
+      command
+          ->add_option("--xi", options->xi,
+                       "Penalty of labels that differ, equation 2 (default: the settings')")
           ->check(number_between(1.0, 1e6));
   command->add_flag("--plain", options->plain, "Without semantics")->excludes(gamma, xi);
   command->add_option("--seed", options->seed, "Seed of RANSAC and of a scene's noise")
@@ -293,8 +309,8 @@ void add_slam(CLI::App& app) {
       },
       "Prints every setting with its default, meaning and range");
   command->footer(
-      "Example:\n  modelhouse slam out/sequence --vocabulary assets/vocabulary.mhvoc "
-      "--out out/slam --save-map out/house.mhmap");
+      "Example:\n  modelhouse slam out/sequence --out out/slam "
+      " --save-map out/house.mhmap");
   command->callback([options] { run(*options); });
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cli/commands.hpp"
+#include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/verify/verify.hpp"
@@ -52,14 +53,15 @@ void print_table(const Verification& v) {
                                   : std::string("same input, same bits"));
 }
 
-void run(const Options& options) {
+void run(Options options) {
+  resolve(options.suite, Shipped::kSuite);
   SuiteOverrides overrides;
   overrides.max_frames = options.frames;
   const Suite suite = load_suite(options.suite, overrides);
   Progress progress("verify");
   BenchOptions bench;
   bench.say = [&](std::string_view stage) { progress.say(stage); };
-  bench.progress = [&](double share, std::size_t, std::size_t) { progress.share(share); };
+  bench.progress = [&](const PoolProgress& p) { show(progress, p); };
   const Verification v = verify(suite, overrides, bench);
   progress.end();
   options.json ? print_json(v) : print_table(v);
@@ -72,12 +74,13 @@ void add_verify(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "verify", "Runs a suite twice, with 1 and with 4 jobs, and compares every bit.");
-  command->add_option("suite", options->suite, "Suite (YAML)")->required();
-  command->add_option("--frames", options->frames, "Cuts the tours after N frames")
+  command->add_option("suite", options->suite, "Suite: a file (YAML), or the name of a shipped one")
+      ->required();
+  command->add_option("--frames", options->frames, "Cuts the tours after N frames (default: all)")
       ->check(CLI::Range(1, 100000000));
   command->add_flag("--json", options->json, "Prints JSON");
   command->footer(
-      "Example:\n  modelhouse verify bench/suites/model_house.yaml --frames 600\n"
+      "Example:\n  modelhouse verify model_house --frames 600\n"
       "Exit code 1 where a bit differs; the first frame and stage are named.");
   command->callback([options] { run(*options); });
 }

@@ -89,7 +89,9 @@ void print_score(const Vocabulary& vocabulary, const Options& options) {
       score.average_precision);
 }
 
-void info(const Options& options) {
+void info(Options options) {
+  resolve(options.file, Shipped::kVocabulary);
+  resolve(options.settings, Shipped::kSettings);
   const Vocabulary vocabulary = load_timed(options.file);
   std::vector<double> idf;
   for (WordId word = 0; word < vocabulary.size(); ++word) idf.push_back(vocabulary.idf(word));
@@ -112,7 +114,7 @@ void add_vocabulary(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("vocabulary", "Trains and shows visual vocabularies.");
   command->require_subcommand(1);
-  command->footer("Example:\n  modelhouse vocabulary info assets/vocabulary.mhvoc");
+  command->footer("Example:\n  modelhouse vocabulary info vocabulary");
 
   CLI::App* t = command->add_subcommand(
       "train", "Trains on rendered rooms and materials that no evaluation uses, or on pictures.");
@@ -139,7 +141,8 @@ void add_vocabulary(CLI::App& app) {
   c->callback([options] { convert(*options); });
 
   CLI::App* i = command->add_subcommand("info", "Prints size, weights, origin and digest.");
-  i->add_option("file", options->file, "Vocabulary file")->required();
+  i->add_option("file", options->file, "Vocabulary file, or the name of the shipped one")
+      ->required();
   auto* const frames = i->add_option("--frames", options->frames,
                                      "tum:FOLDER with poses: how well words find views of a place");
   i->add_option("--queries", options->queries, "tum:FOLDER to ask from, instead of the frames")
@@ -152,7 +155,7 @@ void add_vocabulary(CLI::App& app) {
   i->add_option("--overlap", options->score.min_overlap, "Share of a view that its neighbours see")
       ->check(number_between(0.01, 1.0));
   i->footer(
-      "Example:\n  modelhouse vocabulary info assets/vocabulary.mhvoc --frames tum:out/sequence "
+      "Example:\n  modelhouse vocabulary info vocabulary --frames tum:out/sequence "
       "--settings out/sequence/camera.yaml");
   i->callback([options] { info(*options); });
 }

@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/jobs/forecast.hpp"
 #include "bench/jobs/run_process.hpp"
 #include "bench/plan/spec_json.hpp"
 #include "slam/core/error.hpp"
@@ -169,8 +170,9 @@ class Pool {
     for (std::size_t i = 0; i < running_.size();) {
       Running& r = running_[i];
       const double before = r.process->share();
+      const std::string status = r.process->status();
       const auto end = r.process->poll();
-      news = news || end || r.process->share() != before;
+      news = news || end || r.process->share() != before || r.process->status() != status;
       for (const std::string& stage : r.process->take_stages())
         options_.say(fmt::format("{}: {}", r.what.job.spec.name, stage));
       if (!end) {
@@ -201,6 +203,7 @@ class Pool {
     if (end.good && store_.status(job.key) == RunStatus::kDone) {
       std::filesystem::remove(work_file(job, ".json"));
       std::filesystem::remove(work_file(job, ".log"));
+      forecast_.note(job.spec, end.cost.wall_s);
       note_end(true);
       return;
     }
@@ -251,13 +254,32 @@ class Pool {
     // The whole is done when every run is settled, not when the last one says that it is at its
     // end.
     const bool over = done_ + failed_ == all_;
-    options_.progress(over ? 1.0 : std::min(0.99, sum / static_cast<double>(all_)), done_, failed_);
+    PoolProgress progress{.share = over ? 1.0 : std::min(0.99, sum / static_cast<double>(all_)),
+                          .done = done_,
+                          .failed = failed_,
+                          .to_go_s = over ? std::nullopt : to_go_s(),
+                          .status = {}};
+    for (const Running& r : running_)
+      if (progress.status.empty() && !r.process->status().empty())
+        progress.status = fmt::format("{}: {}", r.what.job.spec.name, r.process->status());
+    options_.progress(progress);
+  }
+
+  std::optional<double> to_go_s() const {
+    std::vector<RunSpec> waiting;
+    std::vector<RunAtWork> at_work;
+    for (const Waiting& w : waiting_) waiting.push_back(w.job.spec);
+    for (const Running& r : running_)
+      at_work.push_back(
+          {r.what.job.spec, r.process->age_s(), r.process->working_s(), r.process->share()});
+    return forecast_.to_go_s(waiting, at_work, options_.jobs);
   }
 
   Store& store_;
   const PoolOptions& options_;
   std::size_t all_, done_ = 0, failed_ = 0;
   double need_mb_ = 0;  ///< of one run, as far as measured
+  Forecast forecast_;
   std::deque<Waiting> waiting_;
   std::vector<Running> running_;
 };

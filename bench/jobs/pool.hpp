@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,14 @@ struct Job {
 /// How the error of a run begins that met bad input: the user can mend it, not the machine.
 inline constexpr std::string_view kBadInputMark = "bad input: ";
 
+/// How far the work has come.
+struct PoolProgress {
+  double share = 0;  ///< of all runs done, in [0, 1]
+  std::size_t done = 0, failed = 0;
+  std::optional<double> to_go_s;  ///< nullopt while nothing is known to tell it from
+  std::string status;  ///< where a run at work stands: "plain-pepper-0: frame 120 of 4490, lost"
+};
+
 struct PoolOptions {
   int jobs = 1;                 ///< processes side by side; never changes a result
   double time_limit_s = 14400;  ///< wall time of one run; 0 = none
@@ -37,9 +46,7 @@ struct PoolOptions {
   std::function<std::vector<std::string>(const Job&, const std::filesystem::path& description)>
       arguments;
   std::function<void(std::string_view)> say = [](std::string_view) {};
-  /// Share of all runs done in [0, 1], runs done, runs failed.
-  std::function<void(double, std::size_t, std::size_t)> progress = [](double, std::size_t,
-                                                                      std::size_t) {};
+  std::function<void(const PoolProgress&)> progress = [](const PoolProgress&) {};
 };
 
 /// Works off the runs that the store does not hold yet, each in a process of its own, and returns

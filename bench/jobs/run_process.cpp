@@ -101,10 +101,14 @@ void RunProcess::read_shares() {
     unread_.erase(0, end + 1);
     char* rest = nullptr;
     const double share = std::strtod(line.c_str(), &rest);
-    if (!line.empty() && *rest == '\0')
+    if (!line.empty() && *rest == '\0') {
+      if (share_ == 0) first_share_ = std::chrono::steady_clock::now();
       share_ = share;
-    else
+    } else if (line.starts_with(kStatusMark)) {
+      status_ = line.substr(1);
+    } else {
       stages_.push_back(line);
+    }
   }
 }
 
@@ -134,6 +138,11 @@ std::optional<ProcessEnd> RunProcess::poll() {
 
 double RunProcess::age_s() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+double RunProcess::working_s() const {
+  if (share_ == 0) return 0;
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - first_share_).count();
 }
 
 double RunProcess::rss_mb() const {

@@ -20,6 +20,9 @@ inline constexpr int kInputChangedCode = 5;
 /// ... or bad input that shows in the work alone.
 inline constexpr int kBadInputCode = 2;
 
+/// How a line begins that tells where a run stands; the latest counts.
+inline constexpr char kStatusMark = '~';
+
 /// How a process ended.
 struct ProcessEnd {
   bool good = false;
@@ -48,7 +51,11 @@ class RunProcess {
   double share() const { return share_; }  ///< of its work done, as of the last poll
   /// The stages that it has told since they were taken last.
   std::vector<std::string> take_stages();
+  /// Where the run stands, in its own words; "" before it told.
+  const std::string& status() const { return status_; }
   double age_s() const;
+  /// Seconds since it told of work done for the first time: without light and other preparations.
+  double working_s() const;
   double rss_mb() const;
   int output() const { return output_; }  ///< readable when it told something
 
@@ -60,8 +67,9 @@ class RunProcess {
   int output_ = -1;
   std::string unread_;
   std::vector<std::string> stages_;
+  std::string status_;
   double share_ = 0;
-  std::chrono::steady_clock::time_point start_;
+  std::chrono::steady_clock::time_point start_, first_share_;
 };
 
 /// Called by such a process: it is killed when `parent` dies.

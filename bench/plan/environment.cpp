@@ -4,6 +4,7 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "scenes/generate/generate.hpp"
 #include "scenes/scannet/files.hpp"
 #include "slam/core/file_errors.hpp"
+#include "slam/core/suggest.hpp"
 
 namespace mh {
 namespace {
@@ -25,34 +27,50 @@ std::string with_index(std::string text, int index) {
   return text;
 }
 
-fs::path resolve(const std::string& text, const YamlReader& node, const SuitePaths& paths) {
+constexpr const char* kMotions[] = {"auto", "handheld"};
+
+/// What may have been meant by a word that names no file; nothing behind a path.
+std::string what_is_known(const std::string& text, Shipped what) {
+  const std::string word = what == Shipped::kTour ? text.substr(0, text.find(':')) : text;
+  if (!is_bare_name(word)) return "";
+  std::vector<std::string> known = shipped_names(what);
+  if (what == Shipped::kTour) known.insert(known.begin(), std::begin(kMotions), std::end(kMotions));
+  return hint(word, known);
+}
+
+fs::path resolve(const std::string& text, const YamlReader& node, const SuitePaths& paths,
+                 std::optional<Shipped> what) {
   const fs::path file = (paths.folder / text).lexically_normal();
+  std::error_code error;
+  if (what && !fs::exists(file, error))
+    if (const fs::path shipped = shipped_file(text, *what); !shipped.empty()) return shipped;
   if (const char* reason = paths.must_exist ? why_unreadable(file) : nullptr)
-    node.fail(fmt::format("'{}' cannot be read: {}", file.string(), reason));
+    node.fail(fmt::format("'{}' cannot be read: {}{}", file.string(), reason,
+                          what ? what_is_known(text, *what) : ""));
   return file;
 }
 
 /// A file, or something that code makes. `index` replaces {i}.
-fs::path read_source(const YamlReader& node, const SuitePaths& paths, int index) {
+fs::path read_source(const YamlReader& node, const SuitePaths& paths, int index, Shipped what) {
   const std::string text = with_index(node.as_string(), index);
   if (is_generated(text)) return text;
-  return resolve(text, node, paths);
+  return resolve(text, node, paths, what);
 }
 
 /// A scene: a source, or a ScanNet scene's folder.
 fs::path read_scene(const YamlReader& node, const SuitePaths& paths, int index) {
   fs::path folder = (paths.folder / with_index(node.as_string(), index)).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();  // "scene0000_00/"
-  return is_scannet_scene(folder) ? folder : read_source(node, paths, index);
+  return is_scannet_scene(folder) ? folder : read_source(node, paths, index, Shipped::kScene);
 }
 
 /// A tour: a source, or a motion by its name alone (bench/world/travel.hpp).
 fs::path read_tour(const YamlReader& node, const SuitePaths& paths, int index) {
   const std::string text = with_index(node.as_string(), index);
-  for (const char* motion : {"auto", "handheld"})
+  for (const char* motion : kMotions)
     if (text == motion || text.starts_with(motion + std::string(":")))
       return std::string(kGeneratedPrefix) + text;
-  return read_source(node, paths, index);
+  return read_source(node, paths, index, Shipped::kTour);
 }
 
 std::vector<Environment> read_entry(YamlReader node, const SuitePaths& paths,
@@ -80,15 +98,15 @@ std::vector<Environment> read_entry(YamlReader node, const SuitePaths& paths,
     Environment e{.name = with_index(name, i),
                   .category = category,
                   .scene = read_scene(scene, paths, i),
-                  .robot = robot ? named_file(*robot, paths) : *default_robot,
+                  .robot = robot ? named_file(*robot, paths, Shipped::kRobot) : *default_robot,
                   .mapping_tour = tour ? read_tour(*tour, paths, i) : fs::path("generated:auto:0"),
                   .frame = frame,
                   .query_tour = {}};
     check_folder_name(node, e.name);
     if (query_tour) e.query_tour = read_tour(*query_tour, paths, i);
     if (query_scene) e.query_scene = read_scene(*query_scene, paths, i);
-    if (kidnapped_tour) e.kidnapped_tour = named_file(*kidnapped_tour, paths);
-    if (sensors) e.sensors = named_file(*sensors, paths);
+    if (kidnapped_tour) e.kidnapped_tour = named_file(*kidnapped_tour, paths, Shipped::kTour);
+    if (sensors) e.sensors = named_file(*sensors, paths, Shipped::kLevel);
     if (walk) e.walk = named_file(*walk, paths);
     environments.push_back(std::move(e));
   }
@@ -115,8 +133,8 @@ bool is_generated(const fs::path& source) {
   return source.string().starts_with(kGeneratedPrefix);
 }
 
-fs::path named_file(const YamlReader& node, const SuitePaths& paths) {
-  return resolve(node.as_string(), node, paths);
+fs::path named_file(const YamlReader& node, const SuitePaths& paths, std::optional<Shipped> what) {
+  return resolve(node.as_string(), node, paths, what);
 }
 
 std::vector<Environment> read_environments(const YamlReader& list, const SuitePaths& paths,

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/plan/shipped.hpp"
 #include "scenes/scene_frame.hpp"
 #include "slam/core/yaml.hpp"
 
@@ -53,7 +54,9 @@ std::vector<Environment> read_environments(
     const YamlReader& list, const SuitePaths& paths,
     const std::optional<std::filesystem::path>& default_robot);
 
-/// The file that a suite names. @throws InputError at this place if it must exist and does not.
-std::filesystem::path named_file(const YamlReader& node, const SuitePaths& paths);
+/// The file that a suite names; where there is none, what is shipped under that name.
+/// @throws InputError at this place if it must exist and does not.
+std::filesystem::path named_file(const YamlReader& node, const SuitePaths& paths,
+                                 std::optional<Shipped> what = {});
 
 }  // namespace mh

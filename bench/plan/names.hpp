@@ -9,7 +9,9 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "slam/core/suggest.hpp"
 #include "slam/core/yaml.hpp"
 
 namespace mh {
@@ -37,9 +39,9 @@ template <class T, std::size_t N>
 T one_of(const YamlReader& node, const Names<T, N>& names) {
   const std::string word = node.as_string();
   if (const auto value = value_of(word, names)) return *value;
-  std::string known;
-  for (const auto& [name, value] : names) known += (known.empty() ? "" : ", ") + std::string(name);
-  node.fail(fmt::format("'{}' is none of {}", word, known));
+  const auto known = words_of(names, [](const auto& n) { return n.first; });
+  node.fail(
+      fmt::format("'{}' is none of {}{}", word, fmt::join(known, ", "), did_you_mean(word, known)));
 }
 
 /// The elements of a list. @throws InputError if there is none.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/plan/suite.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include <fmt/format.h>
@@ -23,6 +24,7 @@ constexpr Names<LabelMode, 5> kLabels{{{"exact", LabelMode::kExact},
                                        {"detector", LabelMode::kDetector},
                                        {"none", LabelMode::kNone}}};
 constexpr Names<DropReset, 2> kResets{{{"counter", DropReset::kCounter}, {"map", DropReset::kMap}}};
+constexpr Names<Published, 1> kPublished{{{"table2", Published::kTable2}}};
 constexpr Names<QueryTruth, 2> kTruths{
     {{"local", QueryTruth::kLocal}, {"interpolated", QueryTruth::kInterpolated}}};
 
@@ -58,7 +60,19 @@ std::string_view name(LabelMode labels) {
   return name_of(labels, kLabels);
 }
 std::string with_labels(LabelMode labels) {
-  return labels == LabelMode::kNone ? "no labels" : std::string(name(labels)) + " labels";
+  switch (labels) {
+    case LabelMode::kExact:
+      return "exact labels";
+    case LabelMode::kAnnotated:
+      return "annotated labels";
+    case LabelMode::kBoxes:
+      return "labels from boxes";
+    case LabelMode::kDetector:
+      return "labels from the detector";
+    case LabelMode::kNone:
+      break;
+  }
+  return "no labels";
 }
 std::string_view name(DropReset reset) {
   return name_of(reset, kResets);
@@ -84,12 +98,11 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   suite.name = yaml.string("name", file.stem().string());
   if (yaml.has("name")) check_folder_name(yaml.at("name"), suite.name);
   std::optional<fs::path> robot;
-  if (const auto node = yaml.find("robot")) robot = named_file(*node, paths);
+  if (const auto node = yaml.find("robot")) robot = named_file(*node, paths, Shipped::kRobot);
   suite.environments = read_environments(yaml.at("environments"), paths, robot);
-  suite.vocabulary = named_file(yaml.at("vocabulary"), paths);
   std::set<std::string> names;
   for (const YamlReader& level : items_of(yaml.at("levels"))) {
-    suite.levels.push_back(named_file(level, paths));
+    suite.levels.push_back(named_file(level, paths, Shipped::kLevel));
     if (!names.insert(level_name(suite.levels.back())).second)
       level.fail(fmt::format("'{}' stands twice", level_name(suite.levels.back())));
   }
@@ -99,10 +112,14 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
     if (!names.insert(suite.systems.back().name).second)
       system.fail(fmt::format("'{}' stands twice", suite.systems.back().name));
   }
+  if (yaml.has("vocabulary") || std::ranges::any_of(suite.systems, needs_vocabulary))
+    suite.vocabulary = named_file(yaml.at("vocabulary"), paths, Shipped::kVocabulary);
   for (const YamlReader& labels : items_of(yaml.at("labels")))
     add_once(suite.labels, one_of(labels, kLabels), labels);
   suite.trials = static_cast<int>(yaml.integer_or("trials", suite.trials, 1, 1000));
   suite.seed = static_cast<std::uint64_t>(yaml.integer_or("seed", 0, 0, INT64_MAX / 2));
+  if (const auto published = yaml.find("published"))
+    suite.published = one_of(*published, kPublished);
   if (const auto slam = yaml.find("slam")) suite.semantics = read_semantics(*slam);
   if (const auto sweep = yaml.find("parameters")) suite.sweep = read_sweep(*sweep, suite.semantics);
   if (const auto protocol = yaml.find("protocol")) suite.protocol = read_protocol(*protocol);

@@ -19,18 +19,21 @@
 namespace mh {
 
 std::string_view name(LabelMode labels);
-/// "exact labels", "no labels"
+/// "exact labels", "labels from boxes", "no labels"
 std::string with_labels(LabelMode labels);
 std::string_view name(Overlap overlap);
 std::string_view name(DropReset reset);
 std::string_view name(QueryTruth truth);
+
+/// A table of the paper that a suite is made after.
+enum class Published { kTable2 };
 
 /// A benchmark as data: the grid environments x systems x labels x levels x parameters x trials.
 struct Suite {
   std::string name;
   std::filesystem::path file;
   std::vector<Environment> environments;
-  std::filesystem::path vocabulary;
+  std::filesystem::path vocabulary;           ///< empty where none of the systems needs it
   std::vector<std::filesystem::path> levels;  ///< sensor settings; a level is named by its file
   std::vector<SystemSpec> systems;
   std::vector<LabelMode> labels;
@@ -42,6 +45,7 @@ struct Suite {
   /// The semantic system counts as not inferior where the interval of its success minus the plain
   /// one's stays above -margin. Stated in the suite, before anything is measured.
   std::optional<double> non_inferiority_margin;
+  std::optional<Published> published;     ///< whose figures stand beside those measured
   GateConfig gate;                        ///< what `modelhouse check` tolerates
   std::optional<std::size_t> max_frames;  ///< cuts the tours: for a quick look
   bool scene_replaced = false;            ///< by SuiteOverrides::scene

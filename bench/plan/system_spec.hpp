@@ -24,6 +24,11 @@ struct SystemSpec {
   OutsideProgram outside;  ///< of an outside program alone
 };
 
+/// Modelhouse's own systems do; an outside program brings what it needs.
+inline bool needs_vocabulary(const SystemSpec& system) {
+  return system.kind != SystemKind::kOutside;
+}
+
 /// `semantic`, `plain`, or a mapping {name, command, protocol: trajectory |
 /// conversation} with `run_limit_s`, `answer_limit_s`, `memory_limit_mb`, `disk_limit_mb` where the
 /// defaults do not do, and `inputs`, a list of files. The command runs in the suite's folder.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <opencv2/core/version.hpp>
 
+#include "bench/plan/shipped.hpp"
 #include "bench/plan/spec_json.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/protocol/loop_audit.hpp"
@@ -34,10 +35,17 @@ Json pose_json(const SE3& pose) {
   return Json::array({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
 }
 
-/// A path relative to the suite's folder, however the suite itself was named.
+/// A path relative to the suite's folder, however the suite itself was named; what another
+/// folder's suite takes of what is shipped, relative to that.
 std::string from_suite(const Suite& suite, const std::filesystem::path& file) {
   const auto here = std::filesystem::current_path();
   const auto folder = (here / suite.file).parent_path().lexically_normal();
+  const auto is_outside = [](const std::filesystem::path& relative) {
+    return relative.empty() || *relative.begin() == "..";
+  };
+  const std::filesystem::path shipped = file.lexically_relative(data_folder());
+  if (!is_outside(shipped) && is_outside(folder.lexically_relative(data_folder())))
+    return shipped.generic_string();
   return (here / file).lexically_normal().lexically_relative(folder).generic_string();
 }
 
@@ -77,19 +85,20 @@ Json suite_json(const Suite& suite) {
   for (const auto& level : suite.levels) levels.push_back(from_suite(suite, level));
   for (const SystemSpec& system : suite.systems) systems.push_back(system_json(system));
   for (const LabelMode mode : suite.labels) labels.push_back(name(mode));
-  return {{"name", suite.name},
-          {"environments", environments},
-          {"vocabulary", from_suite(suite, suite.vocabulary)},
-          {"levels", levels},
-          {"systems", systems},
-          {"labels", labels},
-          {"trials", suite.trials},
-          {"frames", suite.max_frames ? Json(*suite.max_frames) : Json()},
-          {"seed", suite.seed},
-          {"slam", to_json(suite.semantics)},
-          {"parameters", sweep_json(suite.sweep)},
-          {"non_inferiority_margin", number(suite.non_inferiority_margin)},
-          {"protocol", to_json(suite.protocol)}};
+  return {
+      {"name", suite.name},
+      {"environments", environments},
+      {"vocabulary", suite.vocabulary.empty() ? Json() : Json(from_suite(suite, suite.vocabulary))},
+      {"levels", levels},
+      {"systems", systems},
+      {"labels", labels},
+      {"trials", suite.trials},
+      {"frames", suite.max_frames ? Json(*suite.max_frames) : Json()},
+      {"seed", suite.seed},
+      {"slam", to_json(suite.semantics)},
+      {"parameters", sweep_json(suite.sweep)},
+      {"non_inferiority_margin", number(suite.non_inferiority_margin)},
+      {"protocol", to_json(suite.protocol)}};
 }
 
 Json path_json(const PathFacts& path) {

@@ -118,15 +118,17 @@ Verification verify(const Suite& suite, const SuiteOverrides& overrides, BenchOp
   options.say = [say = options.say, told = std::set<std::string>()](std::string_view what) mutable {
     if (!what.starts_with("warning: ") || told.emplace(what).second) say(what);
   };
-  const auto tell = std::exchange(options.progress, [](double, std::size_t, std::size_t) {});
+  const auto tell = std::exchange(options.progress, [](const PoolProgress&) {});
   const auto execute = [&](int jobs, double share_before) {
     options.say(fmt::format("executing with {}", counted(jobs, "job")));
     const TemporaryFolder folder(std::filesystem::temp_directory_path());
     options.out = folder.path();
     options.cache.reset();
     options.jobs = jobs;
-    options.progress = [&](double share, std::size_t done, std::size_t failed) {
-      tell(share_before + 0.5 * share, done, failed);
+    options.progress = [&](PoolProgress progress) {
+      progress.share = share_before + 0.5 * progress.share;
+      if (share_before == 0) progress.to_go_s.reset();  // the other half is yet to come
+      tell(progress);
     };
     BenchResults results;
     try {

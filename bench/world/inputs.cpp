@@ -88,8 +88,9 @@ std::vector<InputDigest> InputReader::inputs_of(const RunSpec& spec) {
   std::vector<InputDigest> inputs = inputs_of(spec.environment);
   inputs.push_back(
       read("level", "level", spec.level, [](const fs::path& file) { load_sensor_config(file); }));
-  inputs.push_back(read("vocabulary", "vocabulary", spec.vocabulary,
-                        [](const fs::path& file) { Vocabulary::load(file); }));
+  if (!spec.vocabulary.empty())
+    inputs.push_back(read("vocabulary", "vocabulary", spec.vocabulary,
+                          [](const fs::path& file) { Vocabulary::load(file); }));
   const auto [of_program, is_new] = of_program_.try_emplace(spec.system.name);
   if (is_new) of_program->second = inputs_of_program(spec);
   std::ranges::copy(of_program->second, std::back_inserter(inputs));

@@ -62,15 +62,16 @@ DrivenPath joined(DrivenPath first, const DrivenPath& second, double rate_hz) {
   return first;
 }
 
-void light_scene(Scene& scene, int threads, const Cache& cache, const Say& say) {
+void light_scene(Scene& scene, int threads, const Cache& cache, const Say& say,
+                 const BakeWatch& baked) {
   if (!scene.light.empty() || scene.lights.empty()) return;
   const BakeConfig config{.threads = threads};
   const std::string key = text_key(fmt::format(
       "{} {} {} {} {} {} {} {}", code_of_light(), fingerprint_json().dump(), hex(digest(scene)),
       config.samples, config.bounces, config.sun_samples, config.smoothing, config.seed));
   const std::string light = cache.get("light", key, [&] {
-    say(fmt::format("baking the light of {}", scene.name));
-    bake_light(scene, config);
+    if (say) say(fmt::format("baking the light of {}", scene.name));
+    bake_light(scene, config, baked);
     return std::string(reinterpret_cast<const char*>(scene.light.data()),
                        scene.light.size() * sizeof(Eigen::Vector3f));
   });
@@ -82,9 +83,10 @@ void light_scene(Scene& scene, int threads, const Cache& cache, const Say& say) 
 }
 
 Scene load_lit_scene(const std::filesystem::path& file, int threads, const Cache& cache,
-                     const Say& say, std::vector<std::string>* warnings, const SceneFrame& frame) {
+                     const Say& say, std::vector<std::string>* warnings, const SceneFrame& frame,
+                     const BakeWatch& baked) {
   Scene scene = load_scene(file, warnings, frame);
-  light_scene(scene, threads, cache, say);
+  light_scene(scene, threads, cache, say, baked);
   return scene;
 }
 
@@ -118,8 +120,8 @@ PlaceFacts facts(const World& world) {
                .robot = world.robot.name,
                .scene_digest = digest(*world.scene),
                .path_digest = digest(world.mapping.camera),
-               .vocabulary_digest = world.vocabulary->digest(),
-               .vocabulary_words = world.vocabulary->size(),
+               .vocabulary_digest = world.vocabulary ? world.vocabulary->digest() : 0,
+               .vocabulary_words = world.vocabulary ? world.vocabulary->size() : 0,
                .mapping = facts(world.mapping),
                .second = {},
                .cut = world.cut,
@@ -139,7 +141,8 @@ PlaceFacts facts(const World& world) {
 namespace {
 
 /// With the inputs of everything but an outside program.
-World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say) {
+World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
+            const BakeWatch& baked) {
   const Environment& environment = spec.environment;
   World world;
   const auto input = [&](const char* name, const std::filesystem::path& source, auto&& load) {
@@ -149,7 +152,8 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
     if (spec.max_frames && cut(path, *spec.max_frames)) world.cut = true;
   };
   world.robot = input("robot", environment.robot, [&] { return load_robot(environment.robot); });
-  world.vocabulary = std::make_shared<const Vocabulary>(
+  if (!spec.vocabulary.empty())
+    world.vocabulary = std::make_shared<const Vocabulary>(
       input("vocabulary", spec.vocabulary, [&] { return Vocabulary::load(spec.vocabulary); }));
   world.sensors = input("level", spec.level, [&] { return load_sensor_config(spec.level); });
   if (environment.sensors)
@@ -165,7 +169,7 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
 
   const auto lit_scene = [&](const char* name, const std::filesystem::path& file) {
     Scene scene = input(name, file, [&] { return load_scene(file, nullptr, environment.frame); });
-    light_scene(scene, threads, cache, say);
+    light_scene(scene, threads, cache, say, baked);
     return std::make_shared<const Scene>(std::move(scene));
   };
   const auto scene = lit_scene("scene", environment.scene);
@@ -212,8 +216,9 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
 
 }  // namespace
 
-World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say) {
-  World world = build(spec, threads, cache, say);
+World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
+                  const BakeWatch& baked) {
+  World world = build(spec, threads, cache, say, baked);
   std::ranges::move(inputs_of_program(spec), std::back_inserter(world.inputs));
   std::ranges::sort(world.inputs, {}, &InputDigest::name);
   return world;

@@ -15,6 +15,7 @@
 #include "scenes/scene.hpp"
 #include "scenes/scene_frame.hpp"
 #include "sim/motion/motion.hpp"
+#include "sim/render/bake.hpp"
 #include "sim/render/renderer.hpp"
 #include "sim/sensors/labels.hpp"
 #include "sim/sensors/sensors.hpp"
@@ -53,17 +54,17 @@ bool cut(DrivenPath& path, std::size_t max_frames);
 DrivenPath joined(DrivenPath first, const DrivenPath& second, double rate_hz);
 
 /// Gives a scene that has lamps but no baked light its light, from the cache where it is there.
-/// @param say  told when the light has to be baked
-void light_scene(
-    Scene& scene, int threads, const Cache& cache = Cache(),
-    const Say& say = [](std::string_view) {});
+/// @param say    told when the light has to be baked; may be empty
+/// @param baked  told the share that is baked, from any thread but never from two at once; may be
+///               empty
+void light_scene(Scene& scene, int threads, const Cache& cache = Cache(), const Say& say = {},
+                 const BakeWatch& baked = {});
 
 /// A scene ready to be looked at: loaded and lit. @throws InputError naming file and place.
 /// @param warnings, frame  as of load_scene
-Scene load_lit_scene(
-    const std::filesystem::path& file, int threads, const Cache& cache = Cache(),
-    const Say& say = [](std::string_view) {}, std::vector<std::string>* warnings = nullptr,
-    const SceneFrame& frame = {});
+Scene load_lit_scene(const std::filesystem::path& file, int threads, const Cache& cache = Cache(),
+                     const Say& say = {}, std::vector<std::string>* warnings = nullptr,
+                     const SceneFrame& frame = {}, const BakeWatch& baked = {});
 
 /// Whether boxes can be drawn in a scene, by a detector or exactly: that needs objects.
 /// @returns a warning where it has some, but none of a class that a detector knows (COCO's); else
@@ -85,6 +86,7 @@ std::shared_ptr<const WalkedScene> make_walked_scene(const Scene& scene,
 /// Loads scene, robot, vocabulary and level of a run, bakes the light, drives both tours. Says what
 /// takes long: baking.
 /// @throws InputError if a file is bad or a tour cannot be driven.
-World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say);
+World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
+                  const BakeWatch& baked = {});
 
 }  // namespace mh

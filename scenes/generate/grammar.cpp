@@ -4,10 +4,10 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "scenes/furniture/furniture.hpp"
 #include "scenes/generate/data.hpp"
+#include "slam/core/suggest.hpp"
 #include "slam/core/yaml.hpp"
 
 namespace mh {
@@ -218,7 +218,7 @@ const Category& category_by_name(std::string_view name) {
   const auto found = std::ranges::find(all, name, &Category::name);
   if (found != all.end()) return *found;
   throw InputError(
-      fmt::format("'{}' is no category; there are: {}", name, fmt::join(kCategoryNames, ", ")));
+      fmt::format("'{}' is no category{}", name, hint(name, words_of(kCategoryNames))));
 }
 
 }  // namespace mh

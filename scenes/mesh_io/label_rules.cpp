@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "slam/core/files.hpp"
+#include "slam/core/suggest.hpp"
 
 namespace mh {
 
@@ -22,7 +23,10 @@ LabelRules read_label_rules(YamlReader yaml) {
   for (const auto& [pattern, value] : yaml.entries()) {
     const std::string name = value.as_string();
     const auto class_id = class_by_name(name);
-    if (!class_id) value.fail(fmt::format("'{}' is no class", name));
+    if (!class_id)
+      value.fail(fmt::format("'{}' is no class{}", name,
+                             hint(name, words_of(classes(), &ClassInfo::name),
+                                  "modelhouse reference classes lists all")));
     rules.rules.push_back({pattern, *class_id});
   }
   return rules;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numbers>
 #include <stdexcept>
 
@@ -102,9 +103,10 @@ struct Gathered {
 
 class Baker {
  public:
-  Baker(const Scene& scene, const BakeConfig& config)
+  Baker(const Scene& scene, const BakeConfig& config, const BakeWatch& watch)
       : scene_(scene),
         config_(config),
+        watch_(watch),
         bvh_(scene, config.threads, config.portable, true),
         points_(scene),
         hemisphere_(whole_packets(config.samples)),
@@ -165,7 +167,16 @@ class Baker {
       const std::size_t begin = static_cast<std::size_t>(job) * kVerticesPerJob;
       const std::size_t end = std::min(points_.size(), begin + kVerticesPerJob);
       for (std::size_t v = begin; v < end; ++v) work(v);
+      note_job(jobs);
     });
+  }
+
+  /// Rounds over all vertices: lamps and suns, each bounce, and the backs of what stayed dark.
+  void note_job(int jobs_of_round) const {
+    if (!watch_) return;
+    const std::lock_guard lock(watching_);
+    const int rounds = config_.bounces + 3;
+    watch_(static_cast<double>(++jobs_done_) / (static_cast<double>(jobs_of_round) * rounds));
   }
 
   void find_albedo() {
@@ -376,6 +387,9 @@ class Baker {
 
   const Scene& scene_;
   const BakeConfig config_;
+  const BakeWatch& watch_;
+  mutable std::mutex watching_;
+  mutable int jobs_done_ = 0;
   EmbreeScene bvh_;
   BakePoints points_;
   VertexNeighbours neighbours_{scene_};
@@ -400,11 +414,11 @@ std::uint64_t digest(const BakeConfig& config) {
   return XXH3_64bits(fields.data(), sizeof(fields));
 }
 
-void bake_light(Scene& scene, const BakeConfig& config) {
+void bake_light(Scene& scene, const BakeConfig& config, const BakeWatch& watch) {
   if (config.samples < 1 || config.bounces < 0 || config.sun_samples < 0 || config.smoothing < 0)
     throw std::invalid_argument("bake_light: negative count, or samples is 0");
   validate(scene);
-  scene.light = Baker(scene, config).bake();
+  scene.light = Baker(scene, config, watch).bake();
 }
 
 }  // namespace mh

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+
 #include "scenes/scene.hpp"
 
 namespace mh {
@@ -14,6 +16,9 @@ struct BakeConfig {
   int threads = 2;        ///< never changes a bit of the result
   bool portable = false;  ///< pin Embree to AVX2, so that light agrees across processors
 };
+
+/// Told the share of the rays that are traced, in [0, 1].
+using BakeWatch = std::function<void(double)>;
 
 /// Digest (xxh3-64) of all that decides what bake_light makes of a scene: its code's version and
 /// the config without `threads`. With the scene's own digest, the key of a baked scene.
@@ -35,8 +40,9 @@ std::uint64_t digest(const BakeConfig& config);
 /// - Glowing faces cast no shadow for suns and lamps (lamp shades, window panes), and within reach
 ///   of a lamp's centre (three radii, at least 0.3 m) their glow is that lamp's, not counted twice.
 /// Deterministic: random numbers are counted by (seed, vertex).
+/// @param watch  may be empty; called from any thread, never from two at once
 /// @throws std::invalid_argument if a count is negative or samples is 0.
-void bake_light(Scene& scene, const BakeConfig& config = {});
+void bake_light(Scene& scene, const BakeConfig& config = {}, const BakeWatch& watch = {});
 
 /// The exposure (see RenderConfig) under which the median of what is seen comes out as
 /// `median_radiance` (linear; 0.2 is sRGB 124). Measured with rays from places in the rooms at the

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "slam/core/suggest.hpp"
 #include "slam/core/text_file.hpp"
 
 namespace mh {
@@ -101,7 +103,12 @@ std::optional<YamlReader> YamlReader::find(const std::string& key) {
 
 YamlReader YamlReader::at(const std::string& key) {
   if (auto child = find(key)) return *child;
-  fail(fmt::format("key '{}' is missing", key));
+  std::vector<std::string> others;
+  for (const auto& entry : node_)
+    if (!read_.contains(entry.first.Scalar())) others.push_back(entry.first.Scalar());
+  const auto slip = nearest_word(key, others);
+  fail(fmt::format("key '{}' is missing{}", key,
+                   slip ? fmt::format("; is '{}' meant to be it?", *slip) : ""));
 }
 
 std::vector<YamlReader> YamlReader::items() const {
@@ -197,11 +204,9 @@ void YamlReader::finish() const {
   for (const auto& entry : node_) {
     const std::string& key = entry.first.Scalar();
     if (read_.contains(key)) continue;
-    std::string known;
-    for (const std::string& k : read_) known += (known.empty() ? "" : ", ") + k;
-    throw InputError(fmt::format("{}:{}: unknown key '{}{}' (known here: {})", file_,
+    throw InputError(fmt::format("{}:{}: unknown key '{}{}' (known here: {}){}", file_,
                                  entry.first.Mark().line + 1, place_.empty() ? "" : place_ + ".",
-                                 key, known));
+                                 key, fmt::join(read_, ", "), did_you_mean(key, words_of(read_))));
   }
 }
 

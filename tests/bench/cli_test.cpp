@@ -8,8 +8,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
+#include <map>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -103,10 +107,147 @@ TEST_F(CommandLine, EveryCommandHasHelpWithAnExample) {
 }
 
 TEST_F(CommandLine, BadUsageIsRefused) {
-  expect_refused("", "A subcommand is required");
-  expect_refused("dance", "'dance' is no subcommand");
+  expect_refused("dance", "'dance' is no command of modelhouse");
   expect_refused("bench", "suite");
   expect_refused("bench x.yaml --jobs 0", "--jobs");
+}
+
+TEST_F(CommandLine, WithoutArgumentsItPrintsTheHelp) {
+  for (const char* command : {"", "scene", "vocabulary"}) {
+    EXPECT_EQ(run(std::string(command) + " --help"), 0);
+    const std::string help = out_;
+    EXPECT_EQ(run(command), 2) << command << ": nothing was done";
+    EXPECT_EQ(out_, help);
+    EXPECT_EQ(err_, "");
+  }
+}
+
+TEST_F(CommandLine, ASlipIsToldWhatItMayHaveMeant) {
+  for (const auto& [line, told] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"benhc model_house", "did you mean 'bench'? There are: bench, merge"},
+           {"scene inof x", "'inof' is no command of modelhouse scene; did you mean 'info'?"},
+           {"bench model_house --jbos 2",
+            "modelhouse bench takes no --jbos; did you mean '--jobs'?"},
+           {"drive model_house --robto pepper", "takes no --robto; did you mean '--robot'?"},
+           {"bench model_hose", "did you mean 'model_house'? There are: ci"},
+           {"export x --format cvs", "'cvs' is none of csv, json, latex; did you mean 'csv'?"},
+           {"evaluate a b --align se2", "did you mean 'se3'?"},
+           {"drive model_hose auto",
+            "no scene of that name is shipped; did you mean 'model_house'?"},
+           {"drive model_house auto --robot peper", "did you mean 'pepper'?"},
+           {"drive model_house handhled:0", "'handhled:0' is no motion; did you mean 'handheld'?"},
+           {"render model_house auto --level handhold --out o", "did you mean 'handheld'?"},
+           {"slam x --vocabulary vocabluary --out o", "did you mean 'vocabulary'?"},
+           {"scene make bathrom", "'bathrom' is no category; did you mean 'bathroom'?"},
+           {"reference furnitrue", "did you mean 'furniture'?"},
+           {"completion tcsh", "'tcsh' is none of bash, zsh, fish"}}) {
+    expect_refused(line, told);
+    EXPECT_EQ(out_, "") << line;
+  }
+  std::string house = content(house_);
+  house.replace(house.find("kind: sofa"), 10, "kind: soaf");
+  expect_refused("scene info " + write("house.yaml", house).string(),
+                 "unknown kind of furniture 'soaf'; did you mean 'sofa'?");
+  expect_refused("bench " + suite_with("systems", "[semantik]").string(),
+                 "'semantik' is none of semantic, plain; did you mean 'semantic'?");
+}
+
+TEST_F(CommandLine, DefaultsStandInTheHelp) {
+  for (const auto& [command, part] :
+       std::initializer_list<std::pair<const char*, const char*>>{{"bench", "=14400"},
+                                                                  {"bench", "default: out/<suite>"},
+                                                                  {"drive", "=pepper"},
+                                                                  {"render", "=exact"},
+                                                                  {"slam", "=vocabulary"},
+                                                                  {"slam", "=all"},
+                                                                  {"evaluate", "=se3"},
+                                                                  {"scene statistics", "=handheld"},
+                                                                  {"vocabulary train", "=5"}}) {
+    ASSERT_EQ(run(std::string(command) + " --help"), 0);
+    EXPECT_NE(out_.find(part), std::string::npos) << command << "\n" << out_;
+  }
+}
+
+/// Every name of an option that a command's help lists, and its commands.
+std::vector<std::string> names_in_help(const std::string& help) {
+  std::vector<std::string> names;
+  std::istringstream lines(help);
+  for (std::string line, section; std::getline(lines, line);) {
+    if (!line.starts_with(' ')) section = line;
+    std::istringstream words(line);
+    std::string word;
+    if (!line.starts_with("  ") || line.starts_with("   ") || !(words >> word)) continue;
+    if (section == "Subcommands:") names.push_back(word);
+    if (section != "Options:") continue;
+    std::istringstream forms(word);
+    for (std::string name; std::getline(forms, name, ',');) names.push_back(name);
+  }
+  return names;
+}
+
+TEST_F(CommandLine, CompletionAndManualListEveryCommandAndOption) {
+  ASSERT_EQ(run("manual"), 0);
+  std::string manual = out_;
+  for (auto at = manual.find("\\-"); at != std::string::npos; at = manual.find("\\-"))
+    manual.erase(at, 1);
+  std::map<std::string, std::string> scripts;
+  for (const char* shell : {"bash", "zsh", "fish"}) {
+    ASSERT_EQ(run(std::string("completion ") + shell), 0);
+    scripts[shell] = out_;
+  }
+  std::size_t options = 0, commands = 0;
+  std::vector<std::string> paths = {""};
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    ASSERT_EQ(run(paths[i] + " --help"), 0);
+    for (const std::string& name : names_in_help(out_)) {
+      const bool option = name.starts_with("-");
+      ++(option ? options : commands);
+      if (!option) paths.push_back(paths[i].empty() ? name : paths[i] + " " + name);
+      EXPECT_NE(manual.find(option ? name : "modelhouse " + paths.back()), std::string::npos)
+          << paths[i] << ": " << name;
+      for (const auto& [shell, script] : scripts) {
+        const std::string form = shell == "fish" && option
+                                     ? (name.starts_with("--") ? " -l " + name.substr(2) + " "
+                                                               : " -s " + name.substr(1) + " ")
+                                     : name;
+        EXPECT_NE(script.find(form), std::string::npos)
+            << shell << ", " << paths[i] << ": " << name;
+      }
+    }
+  }
+  EXPECT_GT(options, 100U);
+  EXPECT_GT(commands, 20U);
+}
+
+TEST_F(CommandLine, BashCompletesCommandsOptionsAndNames) {
+  ASSERT_EQ(run("completion bash"), 0);
+  const fs::path script = write("completion.bash", out_);
+  const auto completed = [&](const std::string& words) {
+    const fs::path said = folder_ / "said";
+    const std::string command = "bash -c 'source " + script.string() + "; COMP_WORDS=(" + words +
+                                "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _modelhouse; "
+                                "echo \"${COMPREPLY[@]}\"' >" +
+                                said.string();
+    EXPECT_EQ(std::system(command.c_str()), 0) << words;
+    return content(said);
+  };
+  EXPECT_EQ(completed("modelhouse ben"), "bench\n");
+  EXPECT_EQ(completed("modelhouse scene in"), "info\n");
+  EXPECT_EQ(completed("modelhouse bench --jo"), "--jobs\n");
+  EXPECT_EQ(completed("modelhouse bench model_house --jo"), "--jobs\n");
+  EXPECT_EQ(completed("modelhouse drive model_house --robot pe"), "pepper\n");
+  EXPECT_EQ(completed("modelhouse export out --format l"), "latex\n");
+  EXPECT_EQ(completed("modelhouse check c"), "ci\n");
+}
+
+TEST_F(CommandLine, ReferencePagesAreWhatTheCodeSays) {
+  for (const char* what : {"furniture", "materials", "classes", "robot"}) {
+    ASSERT_EQ(run(std::string("reference ") + what), 0);
+    EXPECT_GT(std::count(out_.begin(), out_.end(), '\n'), 20) << what;
+    EXPECT_EQ(out_,
+              content(fs::path(MH_SOURCE_DIR) / "docs/reference" / (what + std::string(".md"))))
+        << "make it anew: modelhouse reference " << what << " > docs/reference/" << what << ".md";
+  }
 }
 
 TEST_F(CommandLine, NumbersAreFiniteAndSeedsDoNotWrap) {
@@ -127,8 +268,8 @@ TEST_F(CommandLine, NumbersAreFiniteAndSeedsDoNotWrap) {
 }
 
 TEST_F(CommandLine, LostOutputIsTold) {
-  const std::string command =
-      std::string(MH_EXECUTABLE) + " scene list 2>" + (folder_ / "said").string() + " >/dev/full";
+  const std::string command = std::string(MH_EXECUTABLE) + " reference classes 2>" +
+                              (folder_ / "said").string() + " >/dev/full";
   const int status = std::system(command.c_str());
   EXPECT_EQ(WEXITSTATUS(status), 3);
   const std::string said = content(folder_ / "said");

@@ -8,7 +8,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdlib>
+#include <optional>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -41,6 +44,27 @@ TEST(Progress, OffATerminalIsALineEveryTenthWhateverTheFigures) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 11) << text;  // the first and every tenth
   EXPECT_NE(text.find("slam: 30 %"), std::string::npos) << text;
   EXPECT_NE(text.find("slam: 100 %; 1000 tracked\n"), std::string::npos) << text;
+}
+
+TEST(Progress, PreparationsDoNotMakeTheTimeToGoLonger) {
+  std::FILE* file = std::tmpfile();
+  ASSERT_NE(file, nullptr);
+  {
+    Progress progress("bench", file);
+    progress.share(0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1200));  // light is baked, say
+    progress.share(0.101);
+    progress.share(0.501);  // at once: as much again takes no second
+    progress.share(0.6, "", 95);
+    progress.share(0.7, "", std::nullopt);
+  }
+  std::string text(static_cast<std::size_t>(std::ftell(file)), '\0');
+  std::rewind(file);
+  ASSERT_EQ(std::fread(text.data(), 1, text.size(), file), text.size());
+  std::fclose(file);
+  EXPECT_EQ(text,
+            "bench: 0 %\nbench: 10 %\nbench: 50 %, 0 s to go\nbench: 60 %, 1 min 35 s to go\n"
+            "bench: 70 %\n");
 }
 
 TEST(Progress, OnATerminalClearsTheLineKeepsToItsWidthAndEndsIt) {

@@ -469,6 +469,45 @@ TEST(Topdown, KeepsItsTextWithinTheMarginsAndItsAnswersOnThePlan) {
   EXPECT_GT(cv::norm(drawn().rowRange(0, kText), far.rowRange(0, kText)), 0);
 }
 
+TEST(Topdown, FailuresLieOnTopHeadingsShowAndThePathsCanBeTold) {
+  Place place;
+  RunResult run = place.run()[0];
+  auto& asked = run.points[0].second_tour;
+  ASSERT_GE(asked.size(), 2U);
+  asked.resize(2);
+  Eigen::Matrix3d level;  // a camera that looks along x
+  level << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  const SE3 here(level, Eigen::Vector3d(0.5, 0.5, 1));
+  QueryScore answered = asked[0], failed = asked[0];
+  answered.success = answered.correct = true;
+  answered.wrong = failed.success = failed.correct = failed.wrong = false;
+  answered.true_world_from_camera = failed.true_world_from_camera = here;
+  answered.answer.world_from_camera = here;
+  const auto drawn = [&](const QueryScore& first, const QueryScore& second) {
+    asked = {first, second};
+    return draw_topdown(place.world, run, QuerySet::kSecondTour);
+  };
+  const cv::Mat picture = drawn(answered, failed);
+  const auto plan = picture.rowRange(80, picture.rows - 130);
+  const auto pixels_of = [&](const cv::Mat& of, cv::Scalar bgr) {
+    cv::Mat mask;
+    cv::inRange(of, bgr, bgr, mask);
+    return cv::countNonZero(mask);
+  };
+  EXPECT_EQ(cv::norm(picture, drawn(failed, answered)), 0) << "the order of queries decides";
+  EXPECT_GT(pixels_of(plan, {150, 140, 140}), 10) << "the failure is hidden";
+  QueryScore turned = failed;
+  turned.true_world_from_camera =
+      SE3(Eigen::AngleAxisd(1, Eigen::Vector3d::UnitZ()).toRotationMatrix() * level,
+          here.translation());
+  EXPECT_GT(cv::norm(picture, drawn(answered, turned)), 0) << "no heading";
+  run.estimate = place.world.mapping.camera;  // a path that is just right
+  run.trajectory.dock_from_estimate = SE3();
+  const cv::Mat both = drawn(answered, failed);
+  EXPECT_GT(pixels_of(both, {165, 205, 150}), 50) << "the true path is hidden";
+  EXPECT_GT(pixels_of(both, {10, 84, 196}), 50) << "the estimated path is hidden";
+}
+
 TEST(Scenes, WhereRunsFailedItIsSaidOverHowManyScenesTheMeanIs) {
   Place place;
   place.suite.labels = {LabelMode::kExact};
@@ -684,14 +723,18 @@ TEST(Counted, OneIsNotMany) {
 }
 
 TEST(ResultsTable, HasThePapersFormAndMarksASaturatedTable) {
-  const Place place;
+  Place place;
+  place.suite.published = Published::kTable2;
   const std::string table = results_table(place.suite, place.run());
-  for (const char* part :
-       {"Reloc. success (%)", "Average distance (m)", "published, other data",
-        "the paper's semantic system", "79.25", "0.0512", "71.43", "0.0945", "exact labels",
-        "boxes labels", "held-out frames", "second tour", "saturated", "undecided; too few pairs"})
+  for (const char* part : {"Reloc. success (%)", "Average distance (m)", "published, other data",
+                           "the paper's semantic system", "79.25", "0.0512", "71.43", "0.0945",
+                           "exact labels", "labels from boxes", "held-out frames", "second tour",
+                           "saturated", "undecided; too few pairs"})
     EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;
   EXPECT_EQ(table.find("is better"), std::string::npos) << table;
+  place.suite.published.reset();
+  EXPECT_EQ(results_table(place.suite, place.run()).find("published"), std::string::npos)
+      << "of a suite that reproduces no table of the paper";
 }
 
 }  // namespace

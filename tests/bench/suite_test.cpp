@@ -107,6 +107,57 @@ TEST_F(SuiteFile, EveryKindOfLabelsReachesARunOfItsOwn) {
   EXPECT_EQ(runs[1].labels, LabelMode::kAnnotated);
 }
 
+TEST_F(SuiteFile, TakesWhatIsShippedByItsName) {
+  std::ofstream(folder_ / "named.yaml")
+      << "environments:\n- {category: house, scene: model_house, mapping_tour: "
+         "model_house/mapping}\n"
+      << "robot: pepper\nvocabulary: vocabulary\nlevels: [pepper.yaml, ideal]\n"
+      << "systems: [plain]\nlabels: [none]\n";
+  const Suite suite = load_suite(folder_ / "named.yaml");
+  const fs::path root = MH_SOURCE_DIR;
+  EXPECT_EQ(suite.environments[0].scene, root / "scenes/model_house/house.yaml");
+  EXPECT_EQ(suite.environments[0].mapping_tour, root / "scenes/model_house/tours/mapping.yaml");
+  EXPECT_EQ(suite.environments[0].robot, root / "robots/pepper/pepper.yaml");
+  EXPECT_EQ(suite.vocabulary, root / "assets/vocabulary.mhvoc");
+  EXPECT_EQ(suite.levels[0], folder_ / "pepper.yaml") << "a file beside the suite goes first";
+  EXPECT_EQ(suite.levels[1], root / "sim/sensors/levels/ideal.yaml");
+  EXPECT_NE(error("", "[peper]").find("did you mean 'pepper'?"), std::string::npos);
+}
+
+TEST_F(SuiteFile, NeedsAVocabularyForOurOwnSystemsAlone) {
+  const auto load_with = [&](const std::string& systems) {
+    std::ofstream(folder_ / "suite.yaml")
+        << "environments:\n- {category: house, scene: house.yaml, mapping_tour: tour.yaml}\n"
+        << "robot: robot.yaml\nlevels: [pepper.yaml]\nlabels: [none]\nsystems: " << systems << "\n";
+    return load_suite(folder_ / "suite.yaml");
+  };
+  const Suite outside =
+      load_with("[{name: theirs, protocol: trajectory, command: 'cat {dataset} {trajectory}'}]");
+  EXPECT_TRUE(outside.vocabulary.empty());
+  ASSERT_EQ(expand(outside).size(), 1u);
+  EXPECT_THROW(load_with("[plain]"), InputError);
+}
+
+TEST_F(SuiteFile, AMisspeltMotionIsToldWhichOneWasMeant) {
+  std::ofstream(folder_ / "suite.yaml")
+      << "environments:\n- {category: house, scene: house.yaml, mapping_tour: 'handhled:0'}\n"
+      << "robot: robot.yaml\nvocabulary: words\nlevels: [pepper.yaml]\nsystems: [plain]\nlabels: "
+         "[none]\n";
+  try {
+    load_suite(folder_ / "suite.yaml");
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("did you mean 'handheld'? There are: auto, handheld, "),
+              std::string::npos)
+        << e.what();
+  }
+}
+
+TEST_F(SuiteFile, AMisspeltKeyIsToldWhichOneWasMeant) {
+  EXPECT_NE(error("protocoll: {}\n").find("did you mean 'protocol'?"), std::string::npos);
+  EXPECT_NE(error("", "[pepper.yaml]", "[exakt]").find("did you mean 'exact'?"), std::string::npos);
+}
+
 struct BadLine {
   const char* line;
   const char* message;  // must be part of the error

@@ -3,10 +3,17 @@
 
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <numbers>
+#include <set>
+#include <sstream>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
 
+#include "robots/model/robot_keys.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -75,6 +82,57 @@ TEST(LoadRobot, RefusesBadFilesWithFileLinePlaceAndValue) {
   EXPECT_NE(refusal("  rate_hz: 30.0", "  # rate").find("key 'rate_hz' is missing"),
             std::string::npos);
   EXPECT_THROW(load_robot("/no/such/robot.yaml"), InputError);
+}
+
+/// The node that "equipment.lasers.NAME" stands for in Pepper's file.
+YAML::Node node_at(YAML::Node node, const std::string& mapping) {
+  std::istringstream parts(mapping);
+  for (std::string part; std::getline(parts, part, '.');)
+    node.reset(part == "NAME" ? node.begin()->second : node[part]);
+  return node;
+}
+
+/// What load_robot() says of Pepper's file after an edit; "no error" if it is taken.
+std::string verdict(const YAML::Node& edited) {
+  std::ostringstream text;
+  text << edited;
+  const std::string file = testing::TempDir() + "robot_keys.yaml";
+  write_atomically(testing::TempDir() + "pepper.urdf",
+                   read_file(MH_SOURCE_DIR "/robots/pepper/pepper.urdf"));
+  write_atomically(file, text.str());
+  try {
+    load_robot(file);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+TEST(RobotKeys, AreThoseThatTheLoaderKnows) {
+  std::map<std::string, std::set<std::string>> told;
+  for (const RobotKey& key : robot_keys())
+    ASSERT_TRUE(told[std::string(key.mapping)].insert(std::string(key.key)).second) << key.key;
+  for (const auto& [mapping, keys] : told) {
+    YAML::Node robot = YAML::LoadFile(kPepper);
+    node_at(robot, mapping)["zzz"] = 1;
+    EXPECT_NE(verdict(robot).find(fmt::format("(known here: {})", fmt::join(keys, ", "))),
+              std::string::npos)
+        << mapping << ": " << verdict(robot);
+  }
+}
+
+TEST(RobotKeys, RangesAndWhatIsNeededAreTheLoaders) {
+  for (const RobotKey& key : robot_keys()) {
+    const std::string name(key.key);
+    YAML::Node without = YAML::LoadFile(kPepper);
+    node_at(without, std::string(key.mapping)).remove(name);
+    EXPECT_EQ(verdict(without) == "no error", !key.required) << key.mapping << '.' << name;
+    if (!key.value.starts_with('[')) continue;
+    YAML::Node huge = YAML::LoadFile(kPepper);
+    node_at(huge, std::string(key.mapping))[name] = 1000000000;
+    EXPECT_NE(verdict(huge).find(fmt::format("is outside {}", key.value)), std::string::npos)
+        << key.mapping << '.' << name << ": " << verdict(huge);
+  }
 }
 
 }  // namespace

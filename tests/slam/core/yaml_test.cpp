@@ -35,6 +35,15 @@ TEST(YamlReader, UnknownAndDoubledKeysAreErrors) {
               reader.finish();
             }),
             "f.yaml:2: unknown key 'c' (known here: a)");
+  EXPECT_EQ(error_of([] {
+              YamlReader reader = YamlReader::parse("labels: 1\nsede: 2\n", "f.yaml");
+              reader.number("labels");
+              reader.number_or("seed", 0);
+              reader.finish();
+            }),
+            "f.yaml:2: unknown key 'sede' (known here: labels, seed); did you mean 'seed'?");
+  EXPECT_EQ(error_of([] { YamlReader::parse("sytems: 1\n", "f.yaml").at("systems"); }),
+            "f.yaml:1: key 'systems' is missing; is 'sytems' meant to be it?");
   EXPECT_EQ(error_of([] { YamlReader::parse("a: 1\na: 2\n", "f.yaml"); }),
             "f.yaml:2: key 'a' stands twice");
 }
