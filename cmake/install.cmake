@@ -11,7 +11,24 @@ foreach(folder assets bench/scenarios bench/suites robots/pepper scenes/model_ho
                sim/sensors/levels)
   install(DIRECTORY ${folder}/ DESTINATION ${data_dir}/${folder})
 endforeach()
-install(FILES LICENSE README.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY examples/ DESTINATION ${data_dir}/examples PATTERN "__pycache__" EXCLUDE)
+install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
+
+# Manual page and completion say what this very program takes.
+set(made ${PROJECT_BINARY_DIR}/made)
+add_custom_command(TARGET modelhouse POST_BUILD
+  COMMAND $<TARGET_FILE:modelhouse> manual > ${made}/modelhouse.1
+  COMMAND $<TARGET_FILE:modelhouse> completion bash > ${made}/completion.bash
+  COMMAND $<TARGET_FILE:modelhouse> completion zsh > ${made}/completion.zsh
+  COMMAND $<TARGET_FILE:modelhouse> completion fish > ${made}/completion.fish)
+install(FILES ${made}/modelhouse.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${made}/completion.bash RENAME modelhouse
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES ${made}/completion.zsh RENAME _modelhouse
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+install(FILES ${made}/completion.fish RENAME modelhouse.fish
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 
 # Used as #include <modelhouse/semantics/augmented_vector.hpp>.
 install(DIRECTORY slam/semantics/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/modelhouse/semantics

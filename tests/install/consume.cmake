@@ -13,7 +13,36 @@ endfunction()
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${work}/made)
 file(RENAME ${work}/made ${work}/moved)
 set(data ${work}/moved/share/modelhouse)
-run(${work}/moved/bin/modelhouse scene info ${data}/scenes/model_house/house.yaml)
+
+# From anywhere the program finds what was installed with it, and not the sources it was made from.
+set(program ${work}/moved/bin/modelhouse)
+set(elsewhere ${work}/elsewhere)
+file(MAKE_DIRECTORY ${elsewhere})
+file(COPY_FILE ${data}/sim/sensors/levels/ideal.yaml ${data}/sim/sensors/levels/installed.yaml)
+run(${program} scene info model_house WORKING_DIRECTORY ${elsewhere})
+run(${program} drive model_house model_house/query --out drive WORKING_DIRECTORY ${elsewhere})
+execute_process(COMMAND ${program} render office auto --level instaled --out render
+                WORKING_DIRECTORY ${elsewhere} ERROR_VARIABLE told RESULT_VARIABLE code)
+if(NOT code EQUAL 2 OR NOT told MATCHES "did you mean 'installed'")
+  message(FATAL_ERROR "a level beside the installed ones was not found: ${told}")
+endif()
+run(${program} bench model_house --frames 40 --trials 1 --out bench --cache ${BUILD_DIR}/test_cache
+    WORKING_DIRECTORY ${elsewhere})
+file(STRINGS ${elsewhere}/bench/table.txt table)
+if(NOT table MATCHES "the paper's semantic system")
+  message(FATAL_ERROR "no table: ${table}")
+endif()
+
+# Documents, examples, manual page and completion are there, too.
+foreach(file doc/Modelhouse/README.md doc/Modelhouse/docs/tutorial.md
+             modelhouse/examples/python_slam/odometry.py man/man1/modelhouse.1
+             bash-completion/completions/modelhouse zsh/site-functions/_modelhouse
+             fish/vendor_completions.d/modelhouse.fish)
+  file(SIZE ${work}/moved/share/${file} size)
+  if(size EQUAL 0)
+    message(FATAL_ERROR "${file} was installed empty")
+  endif()
+endforeach()
 
 # What an installed suite names is installed, too.
 file(GLOB suites ${data}/bench/suites/*.yaml)

@@ -1,0 +1,79 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# follow.sh PAGE BUILD_DIR: does in a fresh clone what the ```bash blocks of a page say, line by line
+# as printed, in their order. A line whose comment tells minutes or hours ("# 15 min") is not run:
+# its program's help must know every option that it names. Lines with sudo are left out.
+set -euo pipefail
+
+root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd -P)
+page=$1
+build=$(realpath -- "$2")
+work=$build/tests/pages/$(basename -- "$page" .md)
+
+if grep -q python_slam "$root/$page" && ! /usr/bin/python3 -c 'import cv2' 2>/dev/null; then
+  echo "skipped: python3-opencv is not installed"
+  exit 77
+fi
+
+# The clone: every file that is or may become part of the repository, and what was built of it.
+rm -rf -- "$work"
+mkdir -p "$work/clone/build" "$work/home"
+if git -C "$root" rev-parse --git-dir >/dev/null 2>&1; then
+  git -C "$root" ls-files -z --cached --others --exclude-standard |
+    (cd "$root" && while IFS= read -r -d '' file; do [[ ! -e $file ]] || printf '%s\0' "$file"; done) |
+    tar -C "$root" --null -T - -c | tar -C "$work/clone" -x
+else
+  tar -C "$root" --exclude=./build --exclude=./out -c . | tar -C "$work/clone" -x
+fi
+ln -s "$build" "$work/clone/build/release"
+
+# Commands of the page, one a line: blocks joined, continued lines too.
+sed -n '/^```bash$/,/^```$/p' "$root/$page" | grep -v '^```' |
+  sed -e ':more' -e '/\\$/{N;s/\\\n[[:space:]]*//;b more' -e '}' >"$work/commands"
+[[ -s $work/commands ]] || { echo "$page holds no commands"; exit 1; }
+
+is_long() {
+  [[ $1 =~ \#.*[0-9][[:space:]](min|h)([^a-z]|$) ]]
+}
+
+# parse LINE: the line's program must know its options.
+parse() {
+  local words word help program=()
+  read -ra words <<<"${1%%#*}"
+  for word in "${words[@]}"; do
+    case $word in
+      -* | *.yaml | *=* | *\"* | */*.glb) break ;;
+    esac
+    program+=("$word")
+    [[ ${program[0]} == modelhouse && ${#program[@]} -lt 2 ]] || break
+  done
+  [[ ${program[0]} != tests/run.sh && ${program[0]} != bench/run.sh ]] || program=("bash" "${program[0]}")
+  help=$("${program[@]}" --help)
+  for word in "${words[@]}"; do
+    [[ $word != --?* ]] || grep -q -e "${word%%=*}" <<<"$help" || {
+      echo "'$word' is unknown to: ${program[*]} --help"
+      return 1
+    }
+  done
+}
+
+cd "$work/clone"
+export HOME=$work/home XDG_CACHE_HOME=$build/test_cache/home
+run=0 parsed=0
+while IFS= read -r line; do
+  [[ $line =~ ^[[:space:]]*(#.*)?$ || $line == sudo\ * ]] && continue
+  if is_long "$line"; then
+    echo "~ $line"
+    parse "$line"
+    parsed=$((parsed + 1))
+  else
+    echo "+ $line"
+    SECONDS=0
+    # In this shell, so that cd and export hold for the lines below.
+    eval "$line" </dev/null || { echo "failed: $line"; exit 1; }
+    echo "  ($SECONDS s)"
+    run=$((run + 1))
+  fi
+done <"$work/commands"
+echo "$page: $run lines run, $parsed parsed"
+((run > 0))
