@@ -157,6 +157,33 @@ TEST(MatchByWords, MatchesWithinNodesOnceAndByDominantRotation) {
   }
 }
 
+/// Matches of 40 features of which all turn by 0.5 rad but the last, which goes from one angle to
+/// another.
+std::size_t matches_with_last_turn(float from_rad, float to_rad) {
+  Frame a, b;
+  WordIndex words;
+  const RandomStream random(9);
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    const Descriptor d{random.bits(4 * i), random.bits(4 * i + 1), random.bits(4 * i + 2),
+                       random.bits(4 * i + 3)};
+    a.add(0, 0, d, kVoid, 0, i == 39 ? from_rad : 1.0F);
+    b.add(0, 0, d, kVoid, 0, i == 39 ? to_rad : 1.5F);
+    words.by_node.emplace_back(i, i);
+  }
+  MatcherCounts counts;
+  const std::vector<std::uint8_t> all(40, 1);
+  return match_by_words(a.features, words, all, b.features, words, all, 50, 0.75F,
+                        SemanticMatcher(SemanticConfig{}, counts))
+      .size();
+}
+
+TEST(MatchByWords, ATurnIsTheSameAcrossTheFullCircle) {
+  constexpr float kTurn = 6.2831853F;
+  EXPECT_EQ(matches_with_last_turn(6.0F, 6.5F - kTurn), 40U);
+  EXPECT_EQ(matches_with_last_turn(-0.2F, 0.3F), 40U);
+  EXPECT_EQ(matches_with_last_turn(3.0F, 2.5F), 39U) << "0.5 rad the other way";
+}
+
 TEST(MatchByWords, LabelsThatDisagreePayXi) {
   Frame a, b;
   WordIndex words;
