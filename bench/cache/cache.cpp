@@ -179,7 +179,8 @@ std::string Cache::get(std::string_view kind, std::string_view key,
   try {
     // What does not begin as an entry does may be anybody's.
     const fs::path aside = file.string() + ".found";
-    if (fs::exists(fs::symlink_status(file, error)) && !has_magic(file)) {
+    const bool nothing = is_own_file(file) && fs::file_size(file, error) == 0;
+    if (fs::exists(fs::symlink_status(file, error)) && !has_magic(file) && !nothing) {
       if (fs::exists(fs::symlink_status(aside, error))) return content;
       fs::rename(file, aside);
     }
