@@ -17,6 +17,7 @@
 #include "scenes/scannet/scannet.hpp"
 #include "scenes/scannet/scene_info.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
 #include "slam/core/held_bytes.hpp"
 #include "slam/core/text_file.hpp"
 
