@@ -9,6 +9,7 @@
 #include "bench/pictures/png.hpp"
 #include "bench/pictures/sweep.hpp"
 #include "bench/pictures/topdown.hpp"
+#include "bench/plan/spec_json.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/results/json.hpp"
 #include "bench/results/table.hpp"
@@ -33,7 +34,7 @@ std::string mark_of(const fs::path& picture) {
 
 /// What decides a contact sheet. Levels, which may lose other frames, share one.
 std::string identity_of_views(const World& world, const RunSpec& spec) {
-  std::string text = fmt::format("{} {} ", code_of_run(),
+  std::string text = fmt::format("{} {} {} ", code_of_run(), to_json(spec.environment.frame).dump(),
                                  spec.max_frames ? std::to_string(*spec.max_frames) : "all");
   for (const InputDigest& input : world.inputs)
     for (const char* seen : {"scene", "robot", "mapping_tour", "kidnapped_tour"})
