@@ -48,7 +48,7 @@ TEST(TrainingRoom, IsAClosedFurnishedRoomInMetres) {
 }
 
 TEST(TrainingPattern, FamiliesAndSeedsDiffer) {
-  std::vector<Grid2d<Rgb8>> seen;
+  std::vector<SharedGrid<Rgb8>> seen;
   for (const std::string_view family : training_patterns())
     for (const std::uint64_t seed : {1, 2}) {
       const Material material = make_training_pattern(family, seed);
