@@ -526,6 +526,25 @@ TEST_F(CommandLine, StatisticsOfScenesShareTheFramesAndPrintWhatTheyMeasured) {
   }
 }
 
+TEST_F(CommandLine, SheetsOfSensorsAreFourPicturesWhoseNamesArePrinted) {
+  const fs::path mesh = write("m.obj",
+                              "v 0 0 0\nv 9 0 0\nv 9 5 0\nv 0 5 0\nv 0 0 2\nv 9 0 2\n"
+                              "o floor\nf 1 2 3 4\no wall\nf 1 2 6 5\n");
+  const fs::path out = folder_ / "sheets";
+  ASSERT_EQ(run("sensors sheet " + mesh.string() + " --out " + out.string()), 0) << err_;
+  std::string names;
+  std::vector<std::string> pictures;
+  for (const char* name : {"colour.png", "depth.png", "frames.png", "labels.png"}) {
+    names += (out / name).string() + "\n";
+    pictures.push_back(content(out / name));
+    EXPECT_EQ(pictures.back().substr(1, 3), "PNG") << name;
+    EXPECT_GT(pictures.back().size(), 10000u) << name;
+  }
+  EXPECT_EQ(out_, names);
+  std::sort(pictures.begin(), pictures.end());
+  EXPECT_EQ(std::unique(pictures.begin(), pictures.end()), pictures.end()) << "each its own";
+}
+
 TEST_F(CommandLine, ATourThatCannotBeDriven) {
   const fs::path tour = write("tour.yaml",
                               "name: through_the_wall\nstart: {position: [2, 2], heading_deg: 0}\n"
