@@ -346,8 +346,8 @@ class OsmesaRenderer final : public Renderer {
     gl_.Viewport(0, 0, width, height);
     if (width == width_ && height == height_) return;
     width_ = width, height_ = height;
-    const std::array<GLenum, 4> formats = {has_panes_ ? GL_RGBA32F : GL_RGBA16, GL_RG16UI, GL_R32F,
-                                           GL_DEPTH_COMPONENT32F};
+    const GLenum color = has_panes_ ? GL_RGBA32F : GL_RGBA16;
+    const std::array<GLenum, 4> formats = {color, GL_RG16UI, GL_R32F, GL_DEPTH_COMPONENT32F};
     constexpr std::array<GLenum, 4> kPlaces = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
                                                GL_COLOR_ATTACHMENT2, GL_DEPTH_ATTACHMENT};
     for (std::size_t i = 0; i < 4; ++i) {

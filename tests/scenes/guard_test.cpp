@@ -40,7 +40,8 @@ Scene full_scene() {
                   .radius_m = 0.2F,
                   .angular_radius_rad = 0.3F,
                   .colour = {4, 5, 6}}},
-      .rooms = {{.name = "room", .polygon_m = {{0, 0}, {1, 0}, {1, 1}}}}};
+      .rooms = {{.name = "room", .polygon_m = {{0, 0}, {1, 0}, {1, 1}}}},
+      .floor = {.middle_m = {1, 2, 3}, .up = {0, 0.6, 0.8}, .rough_m = 0.07, .area_m2 = 12.5}};
   Material& all = scene.materials[1];
   all.base_colour = {9, 8, 7};
   Grid2d<Rgb8> texture(200, 100, {1, 2, 3});  // more than one turn of the pipe
@@ -104,6 +105,10 @@ TEST_F(Guard, EveryFieldOfASceneComesBack) {
   ASSERT_EQ(scene.rooms.size(), 1U);
   EXPECT_EQ(scene.rooms[0].name, "room");
   EXPECT_EQ(scene.rooms[0].polygon_m, wanted.rooms[0].polygon_m);
+  EXPECT_EQ(scene.floor.middle_m, wanted.floor.middle_m);
+  EXPECT_EQ(scene.floor.up, wanted.floor.up);
+  EXPECT_EQ(scene.floor.rough_m, wanted.floor.rough_m);
+  EXPECT_EQ(scene.floor.area_m2, wanted.floor.area_m2);
 }
 
 TEST_F(Guard, ErrorsComeBackAsTheyWereThrown) {

@@ -101,7 +101,7 @@ TEST_P(BothRenderers, LooksThroughTheHolesOfACutOut) {
 
 TEST_P(BothRenderers, SeesThroughPanesInTheirColours) {
   Scene scene = plane_at_two_metres();
-  const auto pane = [&](const Vector3f& transmission, double left, double z, double width) {
+  const auto pane = [&](const Vector3f& transmission, float left, float z, float width) {
     Material material;
     material.name = "pane " + std::to_string(scene.materials.size());
     material.transmission = transmission;
