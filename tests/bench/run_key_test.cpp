@@ -61,6 +61,7 @@ class RunKey : public testing::Test {
                                   .scene = file("scene.yaml"),
                                   .robot = file("robot.yaml"),
                                   .mapping_tour = file("mapping_tour.yaml"),
+                                  .frame = {.up = UpAxis::kY, .floor_z_m = 0.5},
                                   .query_tour = file("query_tour.yaml"),
                                   .query_scene = file("query_scene.yaml"),
                                   .kidnapped_tour = file("kidnapped_tour.yaml"),
@@ -101,8 +102,8 @@ class RunKey : public testing::Test {
   RunSpec with_another(const RunSpec& spec, const Pointer& place) const {
     const Json json = to_json(spec);
     const Json& old = json[place];
-    std::vector<Json> others = {other_,  "conversation", "boxes",        "plain",
-                                "words", "map",          "interpolated", 7};
+    std::vector<Json> others = {other_, "conversation", "boxes", "plain", "words",
+                                "map",  "interpolated", "z",     7};
     if (old.is_boolean()) others = {!old.get<bool>()};
     if (old.is_number_integer()) others = {old.get<int>() + 1};
     if (old.is_number_float()) others = {old.get<double>() + 0.125};
