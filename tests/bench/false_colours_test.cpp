@@ -37,7 +37,7 @@ TEST(DepthColours, WhatDidNotReturnIsLikeNothingThatDidAndNotVoid) {
     const cv::Vec3b bgr = picture.at<cv::Vec3b>(0, x);
     return Rgb8{bgr[2], bgr[1], bgr[0]};
   };
-  for (int x = 1; x < 101; ++x) EXPECT_GT(colour_distance(at(x), at(0)), 45) << depth_m(x, 0);
+  for (int x = 1; x < 101; ++x) EXPECT_GT(colour_distance(at(x), at(0)), 40) << depth_m(x, 0);
   EXPECT_GT(colour_distance(at(0), class_colour(kVoid)), 45) << "nobody knows the class";
   EXPECT_GT(colour_distance(at(4), at(80)), 60) << "near and far";
 }
