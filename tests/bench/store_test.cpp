@@ -218,7 +218,7 @@ TEST_F(StoreFile, AFileThatMayOnlyBeReadIsExportedAndMerged) {
   const std::string expected = exports(file), bytes = read_file(file);
   fs::permissions(folder_, fs::perms::all);
   const auto try_it = [&] {
-    fs::permissions(file, fs::perms::owner_read | fs::perms::others_read);
+    fs::permissions(file, fs::perms(0444));
     fs::permissions(file.parent_path(), fs::perms(0555));
     const AsNobody nobody;
     ASSERT_FALSE(nobody.failed());
@@ -247,8 +247,8 @@ TEST_F(StoreFile, AFileThatMayOnlyBeReadIsExportedAndMerged) {
   const fs::path log = file.string() + "-wal";
   ASSERT_GT(fs::file_size(log), 0u);
   fs::remove(file.string() + "-shm");
-  fs::permissions(log, fs::perms::owner_read | fs::perms::others_read);
-  fs::permissions(file, fs::perms::owner_read | fs::perms::others_read);
+  fs::permissions(log, fs::perms(0444));
+  fs::permissions(file, fs::perms(0444));
   fs::permissions(file.parent_path(), fs::perms(0555));
   {
     const AsNobody nobody;
