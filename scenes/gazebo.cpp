@@ -55,11 +55,15 @@ class WorldReader {
     const gazebo::Expanded expanded = gazebo::expand(file_, told_);
     sdf::ParserConfig config;
     config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
-    sdf::Root root;
-    for (const sdf::Error& error : root.LoadSdfString(expanded.sdf, config))
-      told_.tell(fmt::format("{}: {}", file_.string(), error.Message()));
     scene_.name = file_.stem().string();
-    if (const sdf::World* world = root.WorldByIndex(0)) add_world(*world);
+    for (const std::string& document : expanded.documents) {
+      sdf::Root root;
+      for (const sdf::Error& error : root.LoadSdfString(document, config))
+        told_.tell(fmt::format("{}: {}", file_.string(), error.Message()));
+      if (const sdf::World* world = root.WorldByIndex(0)) add_world(*world);
+    }
+    if (!scene_.lights.empty())
+      scene_.lights.push_back({.kind = Light::Kind::kAmbient, .colour = ambient_});
     if (visuals_ < expanded.visuals)
       told_.tell(fmt::format("{}: {} of {} visuals could not be read", file_.string(),
                              expanded.visuals - visuals_, expanded.visuals));
@@ -84,11 +88,9 @@ class WorldReader {
       add_model(*world.ModelByIndex(m), Eigen::Affine3d::Identity());
     for (std::uint64_t l = 0; l < world.LightCount(); ++l)
       add_light(*world.LightByIndex(l), Eigen::Affine3d::Identity());
-    if (scene_.lights.empty()) return;
     const auto ambient =
         world.Scene() == nullptr ? sdf::Scene().Ambient() : world.Scene()->Ambient();
-    scene_.lights.push_back(
-        {.kind = Light::Kind::kAmbient, .colour = {ambient.R(), ambient.G(), ambient.B()}});
+    ambient_ = {ambient.R(), ambient.G(), ambient.B()};
   }
 
   /// A pose that refers to something that is not there counts from its parent.
@@ -257,6 +259,7 @@ class WorldReader {
   gazebo::ToldOnce told_;
   LabelRules rules_;
   Scene scene_;
+  Eigen::Vector3f ambient_ = Eigen::Vector3f::Zero();
   PictureStore pictures_;
   std::map<fs::path, std::optional<Scene>> meshes_;
   std::size_t visuals_ = 0;

@@ -91,12 +91,40 @@ class Expander {
         add_parts(part, source, *world, names);
       else
         add_part(part, source, *world, names);
-    tinyxml2::XMLPrinter printer(nullptr, true);
-    out_.Print(&printer);
-    return {.sdf = printer.CStr(), .visuals = visuals_};
+    return {.documents = documents_of(*world), .visuals = visuals_};
   }
 
  private:
+  static std::string text_of_all(const XMLElement& element) {
+    tinyxml2::XMLPrinter printer(nullptr, true);
+    element.Accept(&printer);
+    return printer.CStr();
+  }
+
+  static std::vector<std::string> documents_of(const XMLElement& world) {
+    constexpr std::size_t kModelsAtOnce = 16;
+    const std::string head = "<sdf version='1.9'><world name='w'>", tail = "</world></sdf>";
+    bool refers = world.FirstChildElement("frame") != nullptr;
+    std::string scene;
+    std::vector<std::string> parts;
+    for (const XMLElement& part : children(world)) {
+      const XMLElement* pose = part.FirstChildElement("pose");
+      refers = refers || (pose != nullptr && pose->Attribute("relative_to") != nullptr);
+      if (std::string_view(part.Name()) == "scene")
+        scene = text_of_all(part);
+      else
+        parts.push_back(text_of_all(part));
+    }
+    std::vector<std::string> documents;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      if (documents.empty() || (!refers && i % kModelsAtOnce == 0))
+        documents.push_back(head + scene);
+      documents.back() += parts[i];
+    }
+    for (std::string& document : documents) document += tail;
+    return documents;
+  }
+
   using Names = std::set<std::string>;  // taken in a scope
 
   /// A range over an element's child elements.

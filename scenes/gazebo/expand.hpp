@@ -3,12 +3,14 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "scenes/gazebo/told_once.hpp"
 
 namespace mh::gazebo {
 
-/// A world as one SDF document that can be shown: what it includes stands in its place, each URI
+/// A world as SDF documents that can be shown one after the other (libsdformat takes 4 MB for each
+/// model of a document; one document where poses count from frames of the world): what it includes stands in its place, each URI
 /// seen from the file that names it and written as a path; names are unique; materials of Ogre
 /// scripts are written as `diffuse` and albedo map. Left out is what does not show (inertia,
 /// collisions, sensors, plugins, joints that nobody refers to).
@@ -18,7 +20,7 @@ namespace mh::gazebo {
 /// @param visuals  how many visuals it holds
 /// @throws InputError naming file and place: no XML, includes in a circle or more than 10,000.
 struct Expanded {
-  std::string sdf;
+  std::vector<std::string> documents;
   std::size_t visuals = 0;
 };
 Expanded expand(const std::filesystem::path& world, ToldOnce& told);
