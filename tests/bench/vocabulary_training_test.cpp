@@ -113,7 +113,7 @@ TEST_F(PictureList, FaultsAreNamed) {
   EXPECT_EQ(fault_of("# nothing\n"), list + ": names no picture");
   write_atomically(folder_ / "text.png", "no picture");
   EXPECT_EQ(fault_of("text.png"),
-            (folder_ / "text.png").string() + ": cannot be read as a picture");
+            (folder_ / "text.png").string() + ": is no picture, or a damaged one");
 }
 
 // A plane 2 m before the camera, seen from two places.
