@@ -84,7 +84,9 @@ std::vector<SE3> standing(const Scene& level) {
     const Grid2d<std::uint8_t> region = largest_region(grid, clearance_m);
     if (std::ranges::count(region, 1) * grid.resolution_m * grid.resolution_m < 0.25) continue;
     const auto look = [&](const Vector2d& from, const Vector3d& to) {
-      views.push_back(look_at({from.x(), from.y(), kEye_m}, to));
+      const double away_m = (to.head<2>() - from).norm();  // nobody stares at the ceiling
+      const double z_m = std::clamp(to.z(), kEye_m - 0.7 * away_m, kEye_m + 0.2 * away_m);
+      views.push_back(look_at({from.x(), from.y(), kEye_m}, {to.x(), to.y(), z_m}));
     };
     for (const Vector2d& place : spread_places(grid, region, 1.0, kPlaces, 0))
       for (int k = 0; k < kDirections; ++k) {
