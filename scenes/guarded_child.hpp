@@ -13,8 +13,8 @@ namespace mh {
 
 /// What a reader of files may use before it is ended. Large files may take more.
 struct GuardLimits {
-  int processor_s = 8;                                  ///< whole seconds, at least 1
-  double processor_s_per_mb = 1.0;                      ///< more for each megabyte that it has read
+  int processor_s = 6;                                  ///< whole seconds, at least 1
+  double processor_s_per_mb = 0.5;                      ///< more for each megabyte that it has read
   int wall_s = 600;                                     ///< for one that waits instead of working
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;  ///< on top of what this process has
   std::uint64_t memory_per_byte = 50;                   ///< more for each byte that it has read

@@ -178,7 +178,7 @@ TEST_F(Guard, WhoReadsMoreMayTakeMore) {
     scene.name = std::string(1, much.back());
     return scene;
   };
-  GuardLimits limits{.processor_s = 1, .memory_bytes = 100'000'000};
+  GuardLimits limits{.processor_s = 1, .processor_s_per_mb = 1.0, .memory_bytes = 100'000'000};
   EXPECT_EQ(load_guarded("x", nullptr, reads, limits).name, "x");
   limits.memory_per_byte = 1;
   EXPECT_TRUE(names(error_of_load(reads, limits), {"needs more than 0.103 GB"}));
