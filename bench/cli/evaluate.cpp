@@ -96,14 +96,16 @@ nlohmann::ordered_json to_json(const Evaluation& e, const std::string& align) {
           {"rpe", rpe}};
 }
 
+/// A trajectory that ran away is off by millions of meters.
+std::string cell(double error) {
+  return error < 1000 ? fmt::format("{:>10.5f}", error) : fmt::format("{:>10.2e}", error);
+}
+
 void print_row(const std::string& what, const ErrorStatistics& s) {
-  if (s.count == 0) {
-    fmt::print("{:<30}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}\n", what, "-", "-", "-", "-", "-",
-               "-", 0);
-    return;
-  }
-  fmt::print("{:<30}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}{:>9}\n", what, s.rmse,
-             s.mean, s.median, s.std, s.min, s.max, s.count);
+  fmt::print("{:<30}", what);
+  for (const double error : {s.rmse, s.mean, s.median, s.std, s.min, s.max})
+    fmt::print("{:>10}", s.count == 0 ? "-" : cell(error));
+  fmt::print("{:>9}\n", s.count);
 }
 
 /// Both files in one format. KITTI's lines have no stamps: line i of one belongs to line i of the

@@ -87,7 +87,8 @@ void refuse_older_sequence(const fs::path& folder) {
 /// Besides pictures; none in a folder whose render.json tells what is there.
 std::vector<std::string> names_written(const fs::path& out) {
   if (fs::exists(out / "render.json")) return {};
-  const fs::path full = fs::absolute(out).lexically_normal();
+  std::error_code error;  // an empty name is refused when the folder is made
+  const fs::path full = fs::absolute(out, error).lexically_normal();
   const std::string name = (full.has_filename() ? full : full.parent_path()).filename().string();
   std::vector<std::string> names{"associations.txt",
                                  "groundtruth.txt",
@@ -107,8 +108,6 @@ std::vector<std::string> names_written(const fs::path& out) {
   return names;
 }
 
-/// The camera that is asked for, and its path: one beside the robot's own hangs where the URDF has
-/// it, and moves with the head.
 /// The camera named by --camera; nullptr for the robot's own.
 const MountedCamera* find_camera(const Options& options, const Robot& robot) {
   if (options.camera.empty()) return nullptr;

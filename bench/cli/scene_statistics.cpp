@@ -34,6 +34,7 @@ struct Options {
   std::size_t frames = 600;
   int threads = 2;
   bool json = false;
+  SceneFrameOption frame;
 };
 
 std::vector<std::string> names_of(const Options& options) {
@@ -62,7 +63,8 @@ MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const O
   constexpr std::size_t kAround = 3;  // poses before and after a moment: what blurs it
   std::vector<std::string> warnings;
   const Scene scene = load_lit_scene(
-      name, options.threads, Cache(options.cache), [](std::string_view) {}, &warnings);
+      name, options.threads, Cache(options.cache), [](std::string_view) {}, &warnings,
+      options.frame.frame());
   print_warnings(warnings);
   const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene);
   const Trajectory scan = travel(scene, robot, "handheld").camera;
@@ -192,6 +194,7 @@ void add_scene_statistics(CLI::App& scene) {
   command->add_option("--reference", options->reference,
                       "Figures of real frames (YAML) (default: the shipped ones)");
   command->add_option("--tum", options->tum, "Folder of real frames in TUM's layout, measured too");
+  options->frame.add_to(*command);
   command->add_option("--jobs", options->threads, "Threads that bake light; changes no figure")
       ->check(CLI::Range(1, 1024));
   command->add_option("--cache", options->cache, "Folder that keeps baked light; none: bakes anew");

@@ -65,7 +65,7 @@ std::vector<RunSpec> expand(const Suite& suite) {
             for (const LabelMode mode : labels) {
               std::string run = suite.environments.size() > 1 ? environment.name + "-" : "";
               run += system.name;
-              if (system.kind != SystemKind::kPlain) run += fmt::format("-{}", name(mode));
+              if (mode != LabelMode::kNone) run += fmt::format("-{}", name(mode));
               run += fmt::format("-{}", level_name(level));
               if (studies.size() > 1) run += fmt::format("-p{:02}", s);
               runs.push_back({.name = run + fmt::format("-{}", trial),

@@ -48,7 +48,7 @@ def estimate_motion(before, now, k, distortion):
     found, rotation, translation, inliers = cv2.solvePnPRansac(
         points_before[[match.queryIdx for match in matches]],
         pixels[[match.trainIdx for match in matches]],
-        k, distortion, reprojectionError=2.0, iterationsCount=200)
+        k, distortion, reprojectionError=2.0, iterationsCount=200, flags=cv2.SOLVEPNP_SQPNP)
     if not found or inliers is None or len(inliers) < 15:
         return None
     now_from_before = np.eye(4)

@@ -401,7 +401,7 @@ TEST(BenchProcess, AnEditedAnnotationOfAScanMakesItsRunsAnew) {
 }
 
 TEST(BenchProcess, AFileThatChangesDuringTheWorkEndsIt) {
-  const fs::path scene = test_folder() / "changing.yaml";
+  const fs::path scene = test_folder() / "changed_room.yaml";
   fs::copy_file(kRoom, scene);
   const fs::path suite =
       write_suite("changing",
@@ -498,6 +498,44 @@ TEST(BenchProcess, BadInputFoundInTheWorkIsNoFailureOfTheMachine) {
   EXPECT_EQ(run(bench(test_folder() / "late.yaml", "late", "--scene " + mesh.string())), 2);
   EXPECT_NE(errors().find("bad input: "), std::string::npos) << errors();
   EXPECT_EQ(errors().find("--retry-failed"), std::string::npos) << errors();
+}
+
+TEST(BenchProcess, AScannetFolderIsASceneAndItsWarningsAreToldOnce) {
+  const fs::path scan = test_folder() / "scan0000_00";
+  ASSERT_EQ(run("scene convert " MH_SOURCE_DIR "/bench/scenarios/room.yaml --format scannet --out " + scan.string()),
+            0)
+      << errors();
+  fs::remove(scan / "scan0000_00.aggregation.json");
+  const std::string warning = "has no scan0000_00.aggregation.json";
+  const auto times_told = [&] {
+    std::size_t count = 0;
+    const std::string all = errors() + content(test_folder() / "stdout");
+    for (auto at = all.find(warning); at != all.npos; at = all.find(warning, at + 1)) ++count;
+    return count;
+  };
+  std::string suite = content(write_suite("scan", "[plain]"));
+  const std::string room = MH_SOURCE_DIR "/bench/scenarios/room.yaml";
+  suite.replace(suite.find(room), room.size(), "scan0000_00");
+  suite.replace(suite.find("[exact, boxes]"), 14, "[exact]");
+  std::ofstream(test_folder() / "scan.yaml") << suite;
+  EXPECT_EQ(run(bench(test_folder() / "scan.yaml", "scan", "--trials 2")), 0) << errors();
+  EXPECT_EQ(times_told(), 1U) << errors();
+  const std::string motion = " --motion handheld:0:30 --robot " MH_SOURCE_DIR
+                             "/bench/scenarios/robot.yaml --out " +
+                             (test_folder() / "out").string();
+  for (const std::string& command :
+       {"scene info " + scan.string(), "drive " + scan.string() + motion,
+        "render " + scan.string() + motion,
+        "verify " + (test_folder() / "scan.yaml").string() + " --frames 20"}) {
+    EXPECT_EQ(run(command), 0) << command << errors();
+    EXPECT_EQ(times_told(), 1U) << command << errors();
+  }
+  // Boxes are drawn around objects, and nobody knows which face belongs to which.
+  suite.replace(suite.find("[exact]"), 7, "[boxes]");
+  std::ofstream(test_folder() / "scan.yaml") << suite;
+  EXPECT_EQ(run(bench(test_folder() / "scan.yaml", "boxes")), 2);
+  EXPECT_NE(errors().find("labels 'boxes' are boxes around objects"), std::string::npos)
+      << errors();
 }
 
 TEST(BenchProcess, WhatIsRefusedLeavesNoFolder) {

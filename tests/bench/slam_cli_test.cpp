@@ -207,7 +207,7 @@ TEST_F(SlamCommand, RefusesWhatItCannotUse) {
   expect_refused(path("empty") + out, "holds neither rgb.txt nor associations.txt");
   expect_refused(path("room") + out + " --localize", "--localize needs a map");
   expect_refused(path("room") + out + " --settings " + path("room/rgb.txt"), "rgb.txt");
-  expect_refused("scene:house.yaml" + out, "needs --tour and --robot");
+  expect_refused("scene:house.yaml" + out, "source 'scene:house.yaml' needs --tour");
   expect_refused(path("room") + out + " --robot pepper.yaml",
                  "--robot pepper.yaml: is for scene:FILE");
   EXPECT_NE(run(path("room") + out + " --plain --gamma 2"), 0) << "the one undoes the other";
@@ -228,7 +228,7 @@ TEST_F(SlamCommand, FindsBadFilesBeforeTheWork) {
   refused_at_once(" --save-map " + path("room"), "room: cannot be written: it is a folder");
   refused_at_once(" --save-map " + path("no/../no/summary.json"), "will hold a result of its own");
   fs::create_directories(folder_ / "taken/frames.csv");
-  expect_refused(path("room") + " --out " + path("taken"), "frames.csv: cannot be written");
+  expect_refused(path("room") + " --out " + path("taken"), "frames.csv: is there already");
   refused_at_once(" --save-map " + path("words.mhvoc/map"), "words.mhvoc: cannot be made a folder");
 }
 
