@@ -23,6 +23,7 @@ void run(const Options& options) {
   if (options.parent != 0) die_with(options.parent);
   int last = -1;
   std::chrono::steady_clock::time_point told;
+  std::string last_stage;
   carry_out({.description = options.description,
              .store = options.store,
              .folder = options.folder,
@@ -48,10 +49,13 @@ void run(const Options& options) {
                  },
              .status =
                  [&](std::string_view status) {
+                   // Frames follow each other faster than anybody reads; a new stage is told at once.
                    constexpr auto kBetween = std::chrono::milliseconds(500);
                    const auto now = std::chrono::steady_clock::now();
-                   if (now - told < kBetween) return;
+                   const std::string begins(status.substr(0, status.find(' ')));
+                   if (begins == last_stage && now - told < kBetween) return;
                    told = now;
+                   last_stage = begins;
                    fmt::print("{}{}\n", kStatusMark, status);
                    std::fflush(stdout);
                  }});

@@ -115,7 +115,8 @@ ExecutionDigests digests(const Suite& suite, std::span<const RunResult> runs) {
 
 Verification verify(const Suite& suite, const SuiteOverrides& overrides, BenchOptions options) {
   // Both executions read the same files and would warn of the same.
-  options.say = [say = options.say, told = std::set<std::string>()](std::string_view what) mutable {
+  std::set<std::string> told;
+  options.say = [say = options.say, &told](std::string_view what) {
     if (!what.starts_with("warning: ") || told.emplace(what).second) say(what);
   };
   const auto tell = std::exchange(options.progress, [](const PoolProgress&) {});

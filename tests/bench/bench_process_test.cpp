@@ -513,7 +513,7 @@ TEST(BenchProcess, AScannetFolderIsASceneAndItsWarningsAreToldOnce) {
     for (auto at = all.find(warning); at != all.npos; at = all.find(warning, at + 1)) ++count;
     return count;
   };
-  std::string suite = content(write_suite("scan", "[plain]"));
+  std::string suite = content(write_suite("scan", "[semantic]"));
   const std::string room = MH_SOURCE_DIR "/bench/scenarios/room.yaml";
   suite.replace(suite.find(room), room.size(), "scan0000_00");
   suite.replace(suite.find("[exact, boxes]"), 14, "[exact]");
