@@ -237,7 +237,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
       map_now();
     }
     work.reached(mapping.size());
-    tools.status("asked where it is");
+    tools.status("queries");
 
     run.points.resize(spec.points.size());
     const QueryRound held_out(spec, mapping, NearestBy::kTime, tamper, run, stream.fork(kHeldOut));
