@@ -47,7 +47,7 @@ void draw_depth_scale(Canvas& canvas, double x, double y, double width) {
   canvas.text(fmt::format("{} m", kNear_m), {x, y + 32}, 9);
   canvas.text(fmt::format("{} m and more", kFar_m), {x + width, y + 32}, 9, {40, 40, 40},
               Canvas::Align::kRight);
-  canvas.text("grey: no return", {x + width / 2, y + 32}, 9, {40, 40, 40}, Canvas::Align::kCentre);
+  canvas.text("gray: no return", {x + width / 2, y + 32}, 9, {40, 40, 40}, Canvas::Align::kCentre);
 }
 
 constexpr int kLegendColumns = 7;
@@ -202,7 +202,7 @@ cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& vi
   canvas.text("without sensor noise", {width - kMargin, 42}, 9, {110, 115, 125},
               Canvas::Align::kRight);
   const auto column = [&](int k) { return kMargin + k * (kTileWidth + kGap); };
-  const std::array<const char*, 3> headings = {"colour", "depth", "labels"};
+  const std::array<const char*, 3> headings = {"color", "depth", "labels"};
   for (int k = 0; k < 3; ++k)
     canvas.text(headings[static_cast<std::size_t>(k)], {column(k), kHeader - 10}, 11);
 
