@@ -115,6 +115,8 @@ class Columns {
     return things_.contains(p.head<2>().cast<float>().eval());
   }
 
+  Eigen::AlignedBox2d things_m() const { return things_.cast<double>(); }
+
   std::vector<Sample> samples;  ///< by cell, then upwards
 
  private:
@@ -360,7 +362,22 @@ std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> f
     return above > (labelled ? kHighestFloor_m : floor.rough_m) || above < -kDeepestFloor_m;
   });
   floor.area_m2 = columns.area_m2(some);
-  return FoundFloor{floor, columns.room_around(some, scene.name)};
+  return FoundFloor{floor, columns.room_around(some, scene.name), columns.things_m()};
+}
+
+void end_rooms_near_things(std::vector<Room>& rooms, const Eigen::AlignedBox2d& things_m) {
+  constexpr double kMargin_m = 2.0;
+  if (things_m.isEmpty()) return;
+  const Vector2d low = things_m.min().array() - kMargin_m,
+                 high = things_m.max().array() + kMargin_m;
+  for (Room& room : rooms)
+    if (room.is_box)
+      for (Vector2d& corner : room.polygon_m) corner = corner.cwiseMax(low).cwiseMin(high);
+  const auto is_away = [](const Room& room) {  // all of it lay beyond
+    return room.is_box && room.polygon_m.size() == 4 &&
+           ((room.polygon_m[2] - room.polygon_m[0]).array() <= 0).any();
+  };
+  if (!std::ranges::all_of(rooms, is_away)) std::erase_if(rooms, is_away);
 }
 
 bool looks_y_up(const Scene& scene) {

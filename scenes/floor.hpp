@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "scenes/scene.hpp"
 #include "slam/core/se3.hpp"
 
@@ -17,11 +19,16 @@ bool is_walked_on(ClassId class_id);
 /// kDeepestFloor_m below: scanned floors sag and are rough.
 inline constexpr double kHighestFloor_m = 0.15, kDeepestFloor_m = 0.3;
 
-/// A floor and the box around its faces, as a room.
+/// A floor, the box around its faces as a room, and where things stand.
 struct FoundFloor {
   Floor floor;
   Room room;
+  Eigen::AlignedBox2d things_m;  ///< empty: nobody knows
 };
+
+/// Ends rooms that are boxes 2 m from where things stand: a ground that reaches to the horizon is
+/// floor, but nobody drives, scans or takes pictures far from all that there is to see.
+void end_rooms_near_things(std::vector<Room>& rooms, const Eigen::AlignedBox2d& things_m);
 
 /// Finds the floor of a scene that came without one: from faces of a class that is walked on, else
 /// the lowest large level surface with room above it to stand. Where there are two levels, the

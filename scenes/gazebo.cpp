@@ -76,7 +76,8 @@ class WorldReader {
     meshes_.clear();
     if (!scene_.lights.empty()) {
       const float edge_m = gazebo::edge_for_light_m(scene_);
-      scene_ = subdivide(std::move(scene_), edge_m);
+      constexpr std::size_t kEnoughFaces = 1'000'000;  // a road of 100 km is split lengthwise
+      scene_ = subdivide(std::move(scene_), edge_m, kEnoughFaces);
     }
     finish_parts(scene_);
     return std::move(scene_);
@@ -269,8 +270,11 @@ class WorldReader {
 }  // namespace
 
 Scene load_gazebo_world(const fs::path& file, std::vector<std::string>* warnings) {
-  return load_guarded(file, warnings,
-                      [&](std::vector<std::string>* told) { return WorldReader(file).read(told); });
+  // libsdformat takes 3 s for each megabyte of small models.
+  constexpr GuardLimits kLimits{.processor_s_per_mb = 5.0};
+  return load_guarded(
+      file, warnings, [&](std::vector<std::string>* told) { return WorldReader(file).read(told); },
+      kLimits);
 }
 
 }  // namespace mh

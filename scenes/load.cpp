@@ -7,6 +7,7 @@
 #include <array>
 #include <cctype>
 #include <string_view>
+#include <utility>
 
 #include "scenes/floor.hpp"
 #include "scenes/gazebo.hpp"
@@ -18,6 +19,7 @@
 #include "scenes/scannet/scannet.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/legible.hpp"
 
 namespace mh {
 
@@ -36,6 +38,7 @@ Scene settled(Scene scene, const SceneFrame& frame, std::vector<std::string>* wa
   if (const auto found = find_floor(scene, frame.floor_z_m, warnings)) {
     scene.floor = found->floor;
     if (scene.rooms.empty() && *scene.floor.area_m2 > 0) scene.rooms.push_back(found->room);
+    end_rooms_near_things(scene.rooms, found->things_m);
   } else if (!scene.positions_m.empty()) {  // nowhere to stand: things lie on what is lowest
     const auto z = [](const Eigen::Vector3f& p) { return p.z(); };
     scene.floor.middle_m.z() = static_cast<double>(std::ranges::min(scene.positions_m, {}, z).z());
@@ -47,6 +50,18 @@ Scene settled(Scene scene, const SceneFrame& frame, std::vector<std::string>* wa
 Scene turned(Scene scene, const SceneFrame& frame) {
   if (frame.up == UpAxis::kY) turn_y_up(scene);
   return scene;
+}
+
+void make_legible(std::string& text) {
+  if (!is_legible(text)) text = legible(std::move(text));
+}
+
+/// Names are printed and written into JSON, whatever somebody's file holds.
+void make_legible(Scene& scene) {
+  make_legible(scene.name);
+  for (Instance& instance : scene.instances) make_legible(instance.name);
+  for (Room& room : scene.rooms) make_legible(room.name);
+  for (Material& material : scene.materials) make_legible(material.name);
 }
 
 Scene load(const std::filesystem::path& file, std::vector<std::string>* warnings,
@@ -80,8 +95,12 @@ Scene load(const std::filesystem::path& file, std::vector<std::string>* warnings
 Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings,
                  const SceneFrame& frame) {
   std::vector<std::string> unheard;  // the same is looked at whether or not anybody listens
+  if (warnings == nullptr) warnings = &unheard;
   try {
-    return load(file, warnings != nullptr ? warnings : &unheard, frame);
+    Scene scene = load(file, warnings, frame);
+    make_legible(scene);
+    for (std::string& warning : *warnings) make_legible(warning);
+    return scene;
   } catch (const InputError& error) {
     const std::string_view what = error.what();
     if (!what.starts_with("scene ")) throw;

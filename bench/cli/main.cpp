@@ -8,6 +8,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <opencv2/core/utility.hpp>
@@ -19,6 +20,7 @@
 #include "bench/run.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
+#include "slam/core/legible.hpp"
 
 namespace {
 
@@ -32,7 +34,7 @@ enum ExitCode {
 
 int fail(int code, std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');
-  fmt::print(stderr, "modelhouse: error: {}\n", message);
+  fmt::print(stderr, "modelhouse: error: {}\n", mh::legible(std::move(message)));
   return code;
 }
 

@@ -122,7 +122,7 @@ std::vector<SE3> walking_around(const Scene& level) {
 struct Seen {
   SE3 pose;
   std::set<InstanceId> objects;
-  std::set<std::array<int, 3>> surface;  ///< cubes of half a metre
+  std::set<std::array<int, 3>> surface, ground;  ///< cubes of half a metre
   double share = 1;  ///< of the picture that is neither empty nor right before the lens
 };
 
@@ -130,7 +130,7 @@ Seen look(const Scene& scene, const Renderer& renderer, const Camera& camera, co
   constexpr float kNear_m = 0.6F;
   constexpr double kCube_m = 0.5;
   const RenderedFrame frame = renderer.render(camera, pose);
-  Seen seen{.pose = pose, .objects = {}, .surface = {}};
+  Seen seen{.pose = pose, .objects = {}, .surface = {}, .ground = {}};
   std::vector<std::size_t> pixels(65536, 0);
   std::size_t good = 0;
   for (int y = 0; y < camera.height_px; ++y)
@@ -141,8 +141,9 @@ Seen look(const Scene& scene, const Renderer& renderer, const Camera& camera, co
       ++pixels[frame.instances(x, y)];
       if (x % 3 != 0 || y % 3 != 0) continue;
       const Vector3d p = pose * camera.unproject(x, y, static_cast<double>(depth)) / kCube_m;
-      seen.surface.insert({static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y())),
-                           static_cast<int>(std::floor(p.z()))});
+      (is_walked_on(frame.classes(x, y)) ? seen.ground : seen.surface)
+          .insert({static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y())),
+                   static_cast<int>(std::floor(p.z()))});
     }
   seen.share = static_cast<double>(good) / static_cast<double>(frame.depth_m.size());
   for (const Instance& instance : scene.instances)
@@ -169,9 +170,10 @@ std::vector<SE3> viewpoints(const Scene& scene, const Renderer& renderer, const 
   for (const SE3& pose : candidates)
     views.push_back(look(scene, renderer, small, level.world_from_level() * pose));
 
+  constexpr double kObject = 10, kGround = 0.05;  // worth of one, in cubes of other surface
   std::vector<SE3> chosen;
   std::set<InstanceId> objects;
-  std::set<std::array<int, 3>> surface;
+  std::set<std::array<int, 3>> surface, ground;
   double first_worth = 0;
   while (chosen.size() < std::min(most, views.size())) {
     const Seen* best = nullptr;
@@ -181,8 +183,10 @@ std::vector<SE3> viewpoints(const Scene& scene, const Renderer& renderer, const 
         return [&known](const auto& key) { return !known.contains(key); };
       };
       const double worth =
-          view.share * (10.0 * std::ranges::count_if(view.objects, is_new(objects)) +
-                        std::ranges::count_if(view.surface, is_new(surface)));
+          view.share *
+          (kObject * static_cast<double>(std::ranges::count_if(view.objects, is_new(objects))) +
+           static_cast<double>(std::ranges::count_if(view.surface, is_new(surface))) +
+           kGround * static_cast<double>(std::ranges::count_if(view.ground, is_new(ground))));
       if (worth <= best_worth) continue;
       best_worth = worth;
       best = &view;
@@ -192,6 +196,7 @@ std::vector<SE3> viewpoints(const Scene& scene, const Renderer& renderer, const 
     chosen.push_back(best->pose);
     objects.insert(best->objects.begin(), best->objects.end());
     surface.insert(best->surface.begin(), best->surface.end());
+    ground.insert(best->ground.begin(), best->ground.end());
   }
   return chosen;
 }

@@ -102,7 +102,6 @@ class Expander {
   }
 
   static std::vector<std::string> documents_of(const XMLElement& world) {
-    constexpr std::size_t kModelsAtOnce = 16;
     const std::string head = "<sdf version='1.9'><world name='w'>", tail = "</world></sdf>";
     bool refers = world.FirstChildElement("frame") != nullptr;
     std::string scene;
@@ -115,9 +114,11 @@ class Expander {
       else
         parts.push_back(text_of_all(part));
     }
+    // libsdformat takes 4 MB for each model, and a tenth of a second for each document.
+    const std::size_t models_at_once = std::clamp<std::size_t>(parts.size() / 16, 16, 128);
     std::vector<std::string> documents;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      if (documents.empty() || (!refers && i % kModelsAtOnce == 0))
+      if (documents.empty() || (!refers && i % models_at_once == 0))
         documents.push_back(head + scene);
       documents.back() += parts[i];
     }
@@ -125,7 +126,9 @@ class Expander {
     return documents;
   }
 
-  using Names = std::set<std::string>;  // taken in a scope
+  /// Taken in a scope, with the number that the next copy of each may try: names of thousands of
+  /// one name are not to be tried one by one.
+  using Names = std::map<std::string, int>;
 
   /// A range over an element's child elements.
   struct Children {
@@ -149,7 +152,19 @@ class Expander {
     throw InputError(fmt::format("{}:{}: {}", source.file.string(), at.GetLineNum(), what));
   }
 
-  static std::unique_ptr<Source> parsed(const fs::path& file, const std::string& text) {
+  /// An XML declaration below a comment, as some released models have it, is no error of theirs
+  /// that matters here: it becomes blanks.
+  static void drop_late_declaration(std::string& text) {
+    const std::size_t at = text.find("<?xml");
+    if (at == 0 || at == text.npos || at > text.find("<sdf")) return;
+    const std::size_t end = std::min(text.find("?>", at), text.size() - 2) + 2;
+    std::ranges::replace_if(
+        text.begin() + static_cast<std::ptrdiff_t>(at),
+        text.begin() + static_cast<std::ptrdiff_t>(end), [](char c) { return c != '\n'; }, ' ');
+  }
+
+  static std::unique_ptr<Source> parsed(const fs::path& file, std::string text) {
+    drop_late_declaration(text);
     auto made = std::make_unique<Source>();
     Source& source = *made;
     source.file = file;
@@ -178,8 +193,11 @@ class Expander {
 
   std::string free_name(const char* given, Names& names) const {
     const std::string name = sound_name(given);
-    std::string free = name;
-    for (int copy = 2; !names.insert(free).second; ++copy) free = fmt::format("{}_{}", name, copy);
+    const auto [given_before, is_new] = names.try_emplace(name, 2);
+    if (is_new) return name;
+    std::string free;
+    do free = fmt::format("{}_{}", name, given_before->second++);
+    while (!names.try_emplace(free, 2).second);
     return free;
   }
 

@@ -24,6 +24,7 @@ std::string repaired_collada(std::string_view text, bool z_is_up) {
   constexpr std::string_view kNumberStart = "0123456789+-.";
   std::string repaired;
   repaired.reserve(text.size());
+  bool in_nameless_image = false;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t tag = std::min(text.find('<', at), text.size());
     repaired += text.substr(at, tag - at);
@@ -34,6 +35,11 @@ std::string repaired_collada(std::string_view text, bool z_is_up) {
       continue;
     }
     const std::size_t size = std::min(rest.find('>'), rest.size() - 1) + 1;
+    if (rest.starts_with("<image ") || rest.starts_with("<image>"))
+      in_nameless_image = rest[size - 2] != '/';
+    if (rest.starts_with("<init_from") || rest.starts_with("<data")) in_nameless_image = false;
+    if (rest.starts_with("</image>") && in_nameless_image)  // assimp refuses the whole file
+      repaired += "<init_from>that it does not name</init_from>";
     repaired += rest.substr(0, size);
     at = tag + size;
     const std::size_t content = text.find_first_not_of(kBlank, at);

@@ -103,9 +103,9 @@ bool split_all(Scene& scene, float max_edge_m) {
 
 }  // namespace
 
-Scene subdivide(Scene scene, float max_edge_m) {
+Scene subdivide(Scene scene, float max_edge_m, std::size_t enough_faces) {
   assert(max_edge_m > 0.0F);
-  while (split_all(scene, max_edge_m)) {
+  while (scene.triangles.size() < enough_faces && split_all(scene, max_edge_m)) {
   }
   return scene;
 }

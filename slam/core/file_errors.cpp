@@ -36,6 +36,13 @@ const char* why_unreadable(const fs::path& file) {
   }
 }
 
+void require_readable_at_once(const fs::path& file, std::uintmax_t bytes) {
+  if (bytes > kMostReadAtOnce_bytes)
+    throw InputError(fmt::format("{}: cannot be read: it has {:.1f} GB, {:.1f} GB is the most",
+                                 file.string(), static_cast<double>(bytes) * 1e-9,
+                                 static_cast<double>(kMostReadAtOnce_bytes) * 1e-9));
+}
+
 void require_readable(const fs::path& file) {
   if (const char* reason = why_unreadable(file))
     throw InputError(fmt::format("{}: cannot be read: {}", file.string(), reason));

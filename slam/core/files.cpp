@@ -132,6 +132,9 @@ std::string read_file(const fs::path& file) {
     throw InputError(fmt::format("{}: cannot be read{}{}", file.string(), reason ? ": " : "",
                                  reason ? reason : ""));
   }
+  std::error_code unknown;
+  const std::uintmax_t bytes = fs::file_size(file, unknown);
+  if (!unknown) require_readable_at_once(file, bytes);
   std::ostringstream stream;
   stream << in.rdbuf();
   std::string text = std::move(stream).str();

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "slam/core/error.hpp"
+#include "slam/core/file_errors.hpp"
 #include "slam/core/read_record.hpp"
 
 namespace mh {
@@ -63,6 +64,7 @@ HeldBytes map_file(const std::filesystem::path& file, MapPages pages) {
   if (S_ISDIR(status.st_mode)) throw refusal("it is a folder");
   if (!S_ISREG(status.st_mode)) throw refusal("it is no file");
   const auto size = static_cast<std::size_t>(status.st_size);
+  if (pages == MapPages::kAtOnce) require_readable_at_once(file, size);
   if (size == 0) {  // nothing to map
     report_read(file, {});
     return {};

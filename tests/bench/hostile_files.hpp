@@ -11,8 +11,9 @@ namespace mh {
 /// Files that no sound program wrote, and the command that is given them.
 struct HostileCase {
   std::string name;
-  std::map<std::string, std::string> files;  ///< content by name; a name ending in | is a pipe
-  std::string arguments;                     ///< {} stands for the folder of the files
+  /// Content by name; a name ending in | is a pipe, one in + has 100 GB of nothing behind it.
+  std::map<std::string, std::string> files;
+  std::string arguments;  ///< {} stands for the folder of the files
   std::string says;     ///< part of the one line that refuses it, or of the warning that passes it
   bool passes = false;  ///< it can be lived with: exit code 0
 };

@@ -158,6 +158,10 @@ void add_vocabularies(std::vector<HostileCase>& cases) {
   counts.replace(16, 48, std::string(48, '\xff'));
   info("of_2e32_words", counts, "v: ");
   info("empty", "", "v: ");
+  cases.push_back({"vocabulary_of_100_gigabytes",
+                   {{"v+", ours.substr(0, 64)}},
+                   "vocabulary info {}/v",
+                   "it has 107.4 GB"});
   info("of_20_to_the_10_words", "20 10 0 0\n99999999999 1 " + repeated("1 ", 32) + "1\n", "v:2: ");
   info("with_byte_999", "10 6 0 0\n0 1 " + repeated("999 ", 32) + "1\n", "v:2: ");
   info("in_utf16",

@@ -45,6 +45,12 @@ void add_ply(std::vector<HostileCase>& cases) {
   cases.push_back(scene("ply_of_2e64_faces", "a.ply",
                         ply_header("binary_little_endian", "3", "18446744073709551615") + points,
                         "cut short"));
+  cases.push_back(scene("ply_of_100_gigabytes", "a.ply+", triangle_ply(),
+                        "it has 107.4 GB, 4.3 GB is the most"));
+  cases.back().arguments.pop_back();
+  std::string obeyed = ascii;  // by a terminal
+  obeyed.replace(obeyed.find("property float z"), 16, "property \x1b[2J\xff z");
+  cases.push_back(scene("ply_that_clears_the_screen", "a.ply", obeyed, "a.ply:6: '?[2J?'"));
   std::string lists = ascii;
   lists.replace(lists.find("property float z"), 16, "property list uchar float z");
   cases.push_back(scene("ply_of_lists_for_positions", "a.ply", lists + "0 0 2 1 1\n", "a.ply: "));
@@ -86,6 +92,10 @@ void add_obj(std::vector<HostileCase>& cases) {
         return text;
       }(),
       "a.obj: "));
+  HostileCase unreadable = passing(scene("obj_of_names_that_are_no_text", "a.obj",
+                                         "o \xff\xfe\x1b[31mchair\n" + kPoints + "f 1 2 3\n", ""));
+  unreadable.arguments = "scene convert {}/a.obj --out {}/b.ply";
+  cases.push_back(unreadable);
   cases.push_back(scene("obj_of_zeros", "a.obj", std::string(100'000, '\0'), "a.obj: "));
   cases.push_back(
       scene("obj_names_vertex_1e19", "a.obj", kPoints + "f 99999999999999999999 2 3\n", "a.obj: "));

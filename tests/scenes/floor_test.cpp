@@ -110,6 +110,28 @@ TEST_P(Labelled, SlabIsTheFloorAndNotThePlaneBelowIt) {
   EXPECT_NEAR(*found->floor.area_m2, GetParam() ? 1e4 : 30, GetParam() ? 50 : 0.6);
 }
 
+TEST(FindFloor, RoomEndsNearWhatStandsOnAGroundToTheHorizon) {
+  Scene scene = ScannedRoom{.floor_z_m = 0, .noise_m = 0}.build();
+  ScannedRoom::add_sheet(scene, {-50, -50, 0}, {100, 0, 0}, {0, 100, 0}, 1);
+  const auto found = find_floor(scene);
+  ASSERT_TRUE(found);
+  const auto box = [](const Room& room) {
+    Eigen::AlignedBox2d all;
+    for (const Eigen::Vector2d& corner : room.polygon_m) all.extend(corner);
+    return all;
+  };
+  EXPECT_GT(box(found->room).sizes().minCoeff(), 99.0);
+  const Room plan{.name = "plan", .polygon_m = found->room.polygon_m};
+  const Room away{
+      .name = "away", .polygon_m = {{20, 20}, {30, 20}, {30, 30}, {20, 30}}, .is_box = true};
+  std::vector<Room> rooms = {found->room, plan, away};
+  end_rooms_near_things(rooms, found->things_m);
+  ASSERT_EQ(rooms.size(), 2U);  // what a plan tells stays as it is
+  EXPECT_LT((box(rooms[0]).min() - Eigen::Vector2d(-5, -4.5)).norm(), 1e-6);
+  EXPECT_LT((box(rooms[0]).max() - Eigen::Vector2d(5, 4.5)).norm(), 1e-6);
+  EXPECT_GT(box(rooms[1]).sizes().minCoeff(), 99.0);
+}
+
 TEST(FindFloor, ThingAloneHasNone) {
   Scene scene = ScannedRoom{}.build();
   scene.triangles.clear();

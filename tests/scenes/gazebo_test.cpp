@@ -97,6 +97,34 @@ TEST_F(GazeboWorld, LoadsWithWarningsWhatDoesNotMatterToAPicture) {
   EXPECT_TRUE(told({"visual h", "kind of shape is not shown"}));
 }
 
+TEST_F(GazeboWorld, DeclarationMayStandBelowAComment) {
+  const auto world = write("w.world",
+                           "<!-- made\nby hand -->\n<?xml version='1.0'?>\n<sdf version='1.5'>"
+                           "<world name='w'>" +
+                               model("box", link(box(1))) + "<what></world></sdf>");
+  EXPECT_TRUE(names(error_of([&] { load(world); }), {"w.world:4: "}));  // lines count as before
+  EXPECT_EQ(load(write("v.world", "<!-- -->\n<?xml version='1.0'?>\n<sdf version='1.5'>" +
+                                      model("box", link(box(1))) + "</sdf>"))
+                .instances.size(),
+            1U);
+}
+
+TEST_F(GazeboWorld, ThousandsOfOneNameAreNamedAtOnce) {
+  std::string lamps;  // one by one, 4.5 million names would be tried
+  for (int i = 0; i < 3000; ++i) lamps += "<light name='l' type='point'/>";
+  const Scene scene = load(write_world(model("box", link(box(1))) + lamps));
+  EXPECT_EQ(std::ranges::count(scene.lights, Light::Kind::kSphere, &Light::kind), 3000);
+}
+
+TEST_F(GazeboWorld, LightOnARoadOfAHundredKilometresIsCoarse) {
+  const Scene scene = load(write_world(
+      "<include><uri>model://sun</uri></include>" +
+      model("road", link("<visual name='v'><geometry><plane><normal>0 0 1</normal><size>100000 100"
+                         "</size></plane></geometry></visual>"))));
+  EXPECT_GT(scene.triangles.size(), 100'000U);
+  EXPECT_LT(scene.triangles.size(), 4'000'000U);
+}
+
 TEST_F(GazeboWorld, SunAndGroundPlaneAreBuiltInWhereTheyAreNotThere) {
   const auto world = write_world(
       "<include><uri>model://sun</uri></include><include><uri>model://ground_plane</uri></include>"

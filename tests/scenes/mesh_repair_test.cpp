@@ -68,6 +68,19 @@ TEST_F(MeshRepair, ColladaMayHaveBlanksBeforeItsNumbers) {
   EXPECT_EQ(repaired_collada("<a"), "<a");
 }
 
+TEST_F(MeshRepair, ColladaMayHaveAnImageThatNamesNoFile) {
+  const std::string image = "<image id=\"i\"><!--<init_from>a.png</init_from>--></image>";
+  EXPECT_EQ(repaired_collada(image),
+            "<image id=\"i\"><init_from>that it does not name</init_from></image>");
+  for (const std::string sound :
+       {"<image id=\"i\"/><b></b>", "<image><init_from>a.png</init_from></image>"})
+    EXPECT_EQ(repaired_collada(sound), sound);
+  std::string file = collada("1 0.5 0 1", "0 0 0 1 0 0 0 1 0");
+  const std::uint64_t clean = digest(load_mesh(write("a.dae", file)));
+  file.insert(file.find("<library_effects>"), "<library_images>" + image + "</library_images>");
+  EXPECT_EQ(digest(load_mesh(write("b.dae", file))), clean);
+}
+
 TEST_F(MeshRepair, ColladaMayHaveCommentsAndPolygonsWithHoles) {
   const std::string clean = collada("1 0.5 0 1", "0 0 0 1 0 0 0 1 0");
   const auto with = [&](std::string from, const std::string& to) {

@@ -36,6 +36,24 @@ TEST(WriteAtomically, KeepsTheOldFileWhenWritingFails) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << "a temporary was left behind";
 }
 
+TEST(ReadFile, MoreThanFourGigabytesAreNotReadAtOnce) {
+  const fs::path file = fs::path(testing::TempDir()) / "enormous";
+  std::ofstream{file};
+  fs::resize_file(file, kMostReadAtOnce_bytes + 1);  // of nothing: it takes no room
+  for (const auto& read :
+       {+[](const fs::path& f) { read_file(f); }, +[](const fs::path& f) { map_file(f); }}) {
+    try {
+      read(file);
+      ADD_FAILURE();
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(),
+                file.string() + ": cannot be read: it has 4.3 GB, 4.3 GB is the most");
+    }
+  }
+  EXPECT_EQ(map_file(file, MapPages::kAsTouched).view.size(), kMostReadAtOnce_bytes + 1);
+  fs::remove(file);
+}
+
 TEST(WriteAtomically, AFullDiskIsNoBadInput) {
   const fs::path folder = fs::path(testing::TempDir()) / "full_disk";
   fs::remove_all(folder);
