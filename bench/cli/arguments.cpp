@@ -73,15 +73,28 @@ void resolve(std::string& word, Shipped what) {
   word = (what == Shipped::kScene ? find_scene(word) : find_shipped(word, what)).string();
 }
 
+namespace {
+
+void need_other_file(const fs::path& file, const fs::path& input) {
+  std::error_code error;
+  if (fs::equivalent(file, input, error) && !error)
+    throw InputError(
+        fmt::format("{}: is read by this command: name another file to write", file.string()));
+}
+
+}  // namespace
+
+void need_not_read(const fs::path& file, const ReadRecord& record) {
+  for (const FileObservation& seen : record.observations)
+    if (seen.kind == FileObservation::Kind::kRead) need_other_file(file, seen.path);
+}
+
 void need_writable(const fs::path& file, const std::vector<fs::path>& read) {
   std::error_code error;
   if (fs::exists(file, error) && !fs::is_regular_file(file, error))
     throw InputError(fmt::format("{}: cannot be written: it is {}", file.string(),
                                  fs::is_directory(file, error) ? "a folder" : "no file"));
-  for (const fs::path& input : read)
-    if (fs::equivalent(file, input, error) && !error)
-      throw InputError(
-          fmt::format("{}: is read by this command: name another file to write", file.string()));
+  for (const fs::path& input : read) need_other_file(file, input);
   make_output_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
 }
 

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "bench/plan/shipped.hpp"
+#include "slam/core/read_record.hpp"
 
 namespace mh::cli {
 
@@ -31,6 +32,11 @@ void resolve(std::string& word, Shipped what);
 /// @throws InputError naming file or folder; DiskFullError.
 void need_writable(const std::filesystem::path& file,
                    const std::vector<std::filesystem::path>& read = {});
+
+/// Finds out, before anything is written, whether a file to be written is one that was read: of a
+/// scene that is every file it was loaded from.
+/// @throws InputError naming the file.
+void need_not_read(const std::filesystem::path& file, const ReadRecord& record);
 
 /// The folder that a command writes into, made before the work: one that cannot be written costs no
 /// minutes. Work that is refused before it wrote anything leaves no empty folder. A file in it,

@@ -38,6 +38,13 @@ std::optional<std::filesystem::path> cache_folder(const Options& options) {
   return usual.empty() ? std::nullopt : std::optional(usual);
 }
 
+/// A quick look does not take the place of the suite's own results.
+std::filesystem::path usual_folder(const Suite& suite) {
+  const std::string name =
+      suite.max_frames ? fmt::format("{}-first-{}", suite.name, *suite.max_frames) : suite.name;
+  return std::filesystem::path("out") / name;
+}
+
 void run(Options options) {
   resolve(options.suite, Shipped::kSuite);
   if (options.scene) resolve(*options.scene, Shipped::kScene);
@@ -49,8 +56,7 @@ void run(Options options) {
   const Suite suite = load_suite(options.suite, overrides);
   BenchOptions bench;
   bench.shard = parse_shard(options.shard);
-  bench.out = options.out.empty() ? std::filesystem::path("out") / suite.name
-                                  : std::filesystem::path(options.out);
+  bench.out = options.out.empty() ? usual_folder(suite) : std::filesystem::path(options.out);
   bench.jobs = options.jobs;
   bench.cache = cache_folder(options);
   bench.time_limit_s = options.time_limit_s;
@@ -74,7 +80,9 @@ void add_bench(CLI::App& app) {
       "bench", "Runs a suite: drives, maps, relocalizes, scores; prints the table.");
   command->add_option("suite", options->suite, "Suite: a file (YAML), or the name of a shipped one")
       ->required();
-  command->add_option("--out", options->out, "Folder for the results (default: out/<suite>)");
+  command->add_option(
+      "--out", options->out,
+      "Folder for the results (default: out/<suite>; with --frames N out/<suite>-first-N)");
   command->add_option("--jobs", options->jobs, "Runs at work at a time; never changes a result")
       ->check(CLI::Range(1, 1024));
   command

@@ -32,6 +32,7 @@
 #include "sim/render/scan_look.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/read_record.hpp"
 
 namespace mh::cli {
 namespace {
@@ -45,6 +46,7 @@ struct Options {
   std::vector<std::string> scenes;  ///< preview
   bool scan_look = false;           ///< make
   int each = 0;                     ///< preview: so many of each category
+  int per_room = 2;                 ///< preview: rows of one scene's sheet
   bool no_captions = false;
   std::uint64_t seed = 0;
   bool json = false, suggest_labels = false;
@@ -124,6 +126,12 @@ void info(Options options) {
   fmt::print("  digest     {}\n", hex(digest(scene)));
 }
 
+/// The first views of each room, at most so many.
+void keep_of_each_room(std::vector<View>& views, int count) {
+  std::map<std::string, int> kept;
+  std::erase_if(views, [&](const View& view) { return ++kept[view.caption] > count; });
+}
+
 void preview(const Options& options) {
   if (fs::path(options.out).extension() != ".png" || fs::is_directory(options.out))
     throw InputError(fmt::format("{}: must name a file that ends in .png", options.out));
@@ -139,12 +147,15 @@ void preview(const Options& options) {
     const double before = static_cast<double>(gallery.size());
     const auto all = static_cast<double>(names.size());
     progress.share(before / all, name);
+    const ReadScope reading;
     Scene scene = load(find_scene(name).string(), options.frame);
+    need_not_read(options.out, reading.record());
     light_scene(scene, kThreads, Cache(), {},
                 [&](double share) { progress.share((before + 0.9 * share) / all, name); });
     const auto renderer = make_scene_renderer(scene);
     std::vector<View> views = views_of(scene, *renderer);
     if (names.size() == 1) {
+      keep_of_each_room(views, options.per_room);
       write_picture(options.out, draw_contact_sheet(scene.name, views));
       progress.share(1);
       return;
@@ -210,11 +221,19 @@ void convert(Options options) {
     throw InputError(fmt::format("{}: must end in .{}", options.out, format));
   if (!folder) {
     need_mesh_writable(options.out, {options.scene});
-    write_mesh(load(options.scene, options.frame), options.out);
+    const ReadScope reading;
+    Scene scene = load(options.scene, options.frame);
+    need_not_read(options.out, reading.record());
+    if (format == "ply") need_not_read(labels_path(options.out), reading.record());
+    write_mesh(std::move(scene), options.out);
     return;
   }
-  const OutputFolder made(options.out, "scene convert", saved_scannet_names(options.out));
+  const std::vector<std::string> names = saved_scannet_names(options.out);
+  const OutputFolder made(options.out, "scene convert", names);
+  const ReadScope reading;
   Scene scene = load(options.scene, options.frame);
+  for (const std::string& written : names)
+    need_not_read(fs::path(options.out) / written, reading.record());
   light(scene);
   save_scannet(scene, options.out);
 }
@@ -321,7 +340,7 @@ void add_scene(CLI::App& app) {
   m->add_option("--seed", options->seed, "Another seed is another room")->check(seed_number());
   m->add_option("--out", options->out, "What to write: .yaml (a plan), .glb or .ply (a mesh, lit)");
   m->add_flag("--scan-look", options->scan_look,
-              "Writes what a hand-held scan of it would be: colours per vertex, holes, bumps");
+              "Writes what a hand-held scan of it would be: colors per vertex, holes, bumps");
   m->add_flag("--json", options->json, "Prints JSON");
   m->footer(
       "Example:\n  modelhouse scene make bathroom --seed 3 --out bathroom.yaml\n"
@@ -329,12 +348,15 @@ void add_scene(CLI::App& app) {
   m->callback([options] { make(*options); });
 
   CLI::App* p = command->add_subcommand(
-      "preview", "Draws a contact sheet: colour, depth, labels of one scene, or a view of each.");
+      "preview", "Draws a contact sheet: color, depth, labels of one scene, or a view of each.");
   p->add_option("scenes", options->scenes,
                 "Scenes: files, names of shipped ones, or generated:CATEGORY:SEED");
   options->frame.add_to(*p);
   p->add_option("--each", options->each, "So many generated scenes of every category")
       ->check(CLI::Range(1, 1000));
+  p->add_option("--per-room", options->per_room, "Of one scene: at most so many views of each room")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   p->add_flag("--no-captions", options->no_captions,
               "Of several scenes: pictures alone, without their names below");
   p->add_option("--out", options->out, "Picture to write (PNG)")->required();

@@ -113,7 +113,11 @@ std::string warning_of_cut(const Suite& suite, std::span<const RunResult> runs) 
       counted(*suite.max_frames, "frame"));
 }
 
+/// Empty where nobody was asked anything, as in a suite of outside trajectories.
 std::string table_2(const Block& block) {
+  const auto asked = [&](QuerySet set) { return most_queries(block.rows, set) > 0; };
+  if (block.suite.published != Published::kTable2 && std::ranges::none_of(kQuerySets, asked))
+    return "";
   std::string text =
       fmt::format("  {:<44}{:>22}{:>22}\n", "", "Reloc. success (%)", "Average distance (m)");
   for (const QuerySet set : kQuerySets) {
@@ -283,7 +287,7 @@ std::string block_text(const Block& block) {
       suite.environments.size() > 1 ? suite.environments[row.environment].name : suite.name,
       level_name(suite.levels[row.level]), with_labels(row.labels), counted(suite.trials, "trial"),
       suite.trials == 1 ? "" : " (medians)", shortened(suite, block.all));
-  text += rule(90) + table_2(block) + rule(90);
+  if (const std::string paper = table_2(block); !paper.empty()) text += rule(90) + paper + rule(90);
   for (const QuerySet set : kQuerySets)
     if (most_queries(block.rows, set) > 0)
       text += query_details(block, set) + candidate_details(block, set);

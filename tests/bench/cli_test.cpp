@@ -155,7 +155,8 @@ TEST_F(CommandLine, ASlipIsToldWhatItMayHaveMeant) {
 TEST_F(CommandLine, DefaultsStandInTheHelp) {
   for (const auto& [command, part] :
        std::initializer_list<std::pair<const char*, const char*>>{{"bench", "=14400"},
-                                                                  {"bench", "default: out/<suite>"},
+                                                                  {"bench", "out/<suite>-first-N"},
+                                                                  {"scene preview", "=2"},
                                                                   {"drive", "=pepper"},
                                                                   {"render", "=exact"},
                                                                   {"slam", "=vocabulary"},
@@ -427,6 +428,14 @@ TEST_F(CommandLine, NobodysFilesAreOverwritten) {
   refuses_beside(suite, "table.txt");
   refuses_beside(suite, "results.json");
   refuses_beside(suite, "blank_corridor-plain-pepper-0/truth.tum");
+  // A quick look has a folder of its own.
+  fs::create_directories(folder_ / "out/model_house-first-5");
+  write("out/model_house-first-5/table.txt", "mine");
+  const fs::path here = fs::current_path();
+  fs::current_path(folder_);
+  expect_refused("bench model_house --frames 5",
+                 "out/model_house-first-5/table.txt: is there already");
+  fs::current_path(here);
   // A scene of ScanNet's, which conversion would replace.
   write("scene0000_00.txt", "mine");
   fs::create_directory(folder_ / "scene0000_00");
@@ -438,6 +447,24 @@ TEST_F(CommandLine, NobodysFilesAreOverwritten) {
   const std::string glb = content(folder_ / "m.glb");
   expect_refused("scene convert " + f + "m.glb --out " + f + "./m.glb", "is read by this command");
   EXPECT_EQ(content(folder_ / "m.glb"), glb);
+  // So is what a scene names: a mesh that was placed, a texture, the folder of a scan.
+  const std::string placed = write("placed.yaml", "objects: [{file: m.glb, name: m}]").string();
+  expect_refused("scene convert " + placed + " --out " + f + "m.glb", "is read by this command");
+  EXPECT_EQ(content(folder_ / "m.glb"), glb);
+  ASSERT_EQ(run("scene preview " + m + " --out " + f + "wall.png"), 0) << err_;
+  const std::string wall = content(folder_ / "wall.png");
+  write("flat.mtl", "newmtl a\nmap_Kd wall.png\n");
+  const std::string flat = write("flat.obj",
+                                 "mtllib flat.mtl\nusemtl a\nv 0 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\n"
+                                 "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n")
+                               .string();
+  expect_refused("scene preview " + flat + " --out " + f + "wall.png", "is read by this command");
+  EXPECT_EQ(content(folder_ / "wall.png"), wall);
+  ASSERT_EQ(run("scene convert " + m + " --out " + f + "scan"), 0) << err_;
+  write("scan/scan.txt", content(folder_ / "scan/scan.txt") + "\n");
+  const std::string edited = content(folder_ / "scan/scan.txt");
+  expect_refused("scene convert " + f + "scan --out " + f + "scan", "is read by this command");
+  EXPECT_EQ(content(folder_ / "scan/scan.txt"), edited);
   write("scan.labels.json", "mine");
   expect_refused("scene convert " + m + " --out " + f + "scan.ply", "scan.labels.json: is there");
   EXPECT_FALSE(fs::exists(folder_ / "scan.ply"));

@@ -167,6 +167,16 @@ TEST_F(Figures, OfTheTextTablesHeadAreSuccessAndMeanDistance) {
   EXPECT_EQ(below(table, of_second, "plain"), (Cells{"plain", "80.00", "0.7000"}));
 }
 
+TEST_F(Figures, OfQueriesHaveNoHeadWhereNothingWasAsked) {
+  std::vector<RunResult> unasked(runs_.begin(), runs_.end());
+  for (RunResult& run : unasked) run.points[0] = {};
+  Suite outside = suite_;
+  outside.published.reset();
+  const std::string table = results_table(outside, unasked);
+  EXPECT_EQ(table.find("Reloc. success"), std::string::npos) << table;
+  EXPECT_NE(table.find("ATE m"), std::string::npos) << table;
+}
+
 TEST_F(Figures, OfCandidatesStandUnderTheirEquations) {
   const std::string table = results_table(suite_, runs_);
   const Cells held_out = {"held-out",    "keyframes",   "after eq. 3", "after eq. 4",
