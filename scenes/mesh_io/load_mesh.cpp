@@ -8,12 +8,15 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "scenes/floor.hpp"
 #include "scenes/guard.hpp"
 #include "scenes/mesh_io/collada.hpp"
 #include "scenes/mesh_io/glow.hpp"
+#include "scenes/mesh_io/gltf.hpp"
 #include "scenes/mesh_io/instances_in.hpp"
 #include "scenes/mesh_io/label_rules.hpp"
 #include "scenes/mesh_io/labels_file.hpp"
@@ -254,7 +257,10 @@ const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Form
                     const MeshUse& use, std::vector<std::string>* warnings) {
   require_readable(file);
   if (format.obj) without_mark(map_file(file).view, file);  // throws of UTF-16
-  importer.SetIOHandler(new NotedFiles);                    // which is the importer's from now on
+  std::optional<std::string> repaired;
+  if (format.gltf) repaired = repaired_gltf(map_file(file).view, file);
+  // The importer's from now on.
+  importer.SetIOHandler(repaired ? new NotedFiles(file, std::move(*repaired)) : new NotedFiles);
   // No step that reorders vertices or faces: labels beside a PLY count on their order.
   const unsigned steps =
       format.ply ? unsigned{aiProcess_Triangulate} : aiProcess_Triangulate | aiProcess_GlobalScale;

@@ -33,7 +33,7 @@ bool NotedFiles::Exists(const char* file) const {
 
 Assimp::IOStream* NotedFiles::Open(const char* file, const char*) {
   try {
-    HeldBytes bytes = map_file(file);
+    HeldBytes bytes = repaired_ && file_ == file ? hold(*repaired_) : map_file(file);
     const std::string_view name = file;
     const bool stumbles = name.ends_with(".obj") || name.ends_with(".mtl");  // over such a mark
     const std::string_view part = stumbles ? without_mark(bytes.view, file) : bytes.view;

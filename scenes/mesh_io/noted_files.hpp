@@ -4,16 +4,30 @@
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
 
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+
 namespace mh {
 
 /// Gives assimp regular files alone, the mesh and what it names, and notes each (ReadScope).
 class NotedFiles : public Assimp::IOSystem {
  public:
+  NotedFiles() = default;
+  /// @param repaired  what is read in the place of that file, which the caller has read
+  NotedFiles(std::filesystem::path file, std::string repaired)
+      : file_(std::move(file)), repaired_(std::move(repaired)) {}
+
   bool Exists(const char* file) const override;
   char getOsSeparator() const override { return '/'; }
   /// null if it cannot be read: assimp then tells, or goes without.
   Assimp::IOStream* Open(const char* file, const char* mode) override;
   void Close(Assimp::IOStream* stream) override { delete stream; }
+
+ private:
+  std::filesystem::path file_;
+  std::optional<std::string> repaired_;
 };
 
 }  // namespace mh

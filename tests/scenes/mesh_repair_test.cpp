@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 
 #include "scenes/load.hpp"
 #include "scenes/mesh_io/collada.hpp"
+#include "scenes/mesh_io/gltf.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/picture_file.hpp"
 #include "tests/scenes/temporary_folder.hpp"
@@ -66,6 +69,59 @@ TEST_F(MeshRepair, ColladaMayHaveBlanksBeforeItsNumbers) {
   EXPECT_EQ(repaired_collada(""), "");
   EXPECT_EQ(repaired_collada("a<b> 1"), "a<b>1");
   EXPECT_EQ(repaired_collada("<a"), "<a");
+}
+
+/// One triangle, binary if wanted; `more` are further members.
+std::string gltf(const std::string& more, const std::string& in_node = "",
+                 const std::string& in_accessor = "", bool binary = false) {
+  const std::string uri =
+      R"(,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA")";
+  std::string text =
+      R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0)" + in_node +
+      R"(}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)" +
+      R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3")" + in_accessor +
+      R"(}],"bufferViews":[{"buffer":0,"byteLength":36}],)" + R"("buffers":[{"byteLength":36)" +
+      (binary ? "" : uri) + "}]" + more + "}";
+  if (!binary) return text;
+  while (text.size() % 4 != 0) text += ' ';
+  const auto raw = [](const auto& value) {
+    return std::string(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  const auto number = [&](std::size_t n) { return raw(static_cast<std::uint32_t>(n)); };
+  return "glTF" + number(2) + number(20 + text.size() + 8 + 36) + number(text.size()) + "JSON" +
+         text + number(36) + std::string("BIN\0", 4) +
+         raw(std::array<float, 9>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+}
+
+TEST_F(MeshRepair, GltfIsReadWithoutItsAnimationsAndSkins) {
+  const std::string moved =
+      R"(,"animations":[{"channels":[],"samplers":[{"input":0,"output":0,"interpolation":1}]}])"
+      R"(,"skins":[{"joints":[0]}])";
+  for (const bool binary : {false, true}) {
+    const char* name = binary ? "a.glb" : "a.gltf";
+    const std::uint64_t clean = digest(load_mesh(write(name, gltf("", "", "", binary))));
+    EXPECT_EQ(digest(load_mesh(write(name, gltf(moved, R"(,"skin":0)", "", binary)))), clean);
+  }
+  EXPECT_FALSE(repaired_gltf(gltf(""), "a.gltf"));
+  for (const std::string none : {"", "glTF", "[", "{}", "[1]", "\xff"})
+    EXPECT_FALSE(repaired_gltf(none, "a.gltf")) << none;
+  const std::string whole = gltf(moved, "", "", true);
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_NO_THROW(repaired_gltf(whole.substr(0, size), "a.gltf"));
+}
+
+TEST_F(MeshRepair, GltfOfPlacesBeyondAnyBufferIsRefused) {
+  for (const char* offset : {"18446744073709551608", "-4", "0.5"}) {
+    try {
+      load_mesh(write("a.gltf", gltf("", "", std::string(",\"byteOffset\":") + offset)));
+      ADD_FAILURE() << offset;
+    } catch (const InputError& error) {
+      EXPECT_NE(
+          std::string(error.what()).find(std::string("a.gltf: accessors[0].byteOffset: ") + offset),
+          std::string::npos)
+          << error.what();
+    }
+  }
 }
 
 TEST_F(MeshRepair, ColladaMayHaveAnImageThatNamesNoFile) {
