@@ -4,8 +4,10 @@
 #include <assimp/MemoryIOWrapper.h>
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 
+#include "scenes/mesh_io/obj_text.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/held_bytes.hpp"
@@ -36,7 +38,11 @@ Assimp::IOStream* NotedFiles::Open(const char* file, const char*) {
     HeldBytes bytes = repaired_ && file_ == file ? hold(*repaired_) : map_file(file);
     const std::string_view name = file;
     const bool stumbles = name.ends_with(".obj") || name.ends_with(".mtl");  // over such a mark
-    const std::string_view part = stumbles ? without_mark(bytes.view, file) : bytes.view;
+    std::string_view part = stumbles ? without_mark(bytes.view, file) : bytes.view;
+    if (auto repaired = stumbles ? repaired_obj(part) : std::nullopt) {
+      bytes = hold(std::move(*repaired));
+      part = bytes.view;
+    }
     return new HeldStream(std::move(bytes), part);
   } catch (const InputError&) {
     return nullptr;

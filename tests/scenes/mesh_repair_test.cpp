@@ -10,6 +10,7 @@
 #include "scenes/mesh_io/collada.hpp"
 #include "scenes/mesh_io/gltf.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
+#include "scenes/mesh_io/obj_text.hpp"
 #include "scenes/picture_file.hpp"
 #include "tests/scenes/temporary_folder.hpp"
 
@@ -122,6 +123,21 @@ TEST_F(MeshRepair, GltfOfPlacesBeyondAnyBufferIsRefused) {
           << error.what();
     }
   }
+}
+
+TEST_F(MeshRepair, ObjMayLackZerosBeforePointsAndItsMaterialsBeAnisotropic) {
+  EXPECT_EQ(repaired_obj("v .5 -.5\t+.5e1 1.5\nf 1 2 3\nusemtl a .5\n v .1"),
+            "v 0.5 -0.5\t+0.5e1 1.5\nf 1 2 3\nusemtl a .5\n v 0.1");
+  EXPECT_EQ(repaired_obj("newmtl m\naniso 0.7\nKd .5 0 0\nanisor 1"), "newmtl m\n\nKd .5 0 0\n\n");
+  EXPECT_FALSE(repaired_obj(""));
+  EXPECT_FALSE(repaired_obj("v 0.5 1.5 -2.5\n"));
+  write("a.mtl", "newmtl m\nKd 1 0 0\naniso 0.7\nanisor 0.8\n");
+  const Scene scene = load_mesh(
+      write("a.obj", "mtllib a.mtl\nv 0 0 0\nv .5 0 0\nv 0 -.5e0 0\nusemtl m\nf 1 2 3\n"));
+  ASSERT_EQ(scene.positions_m.size(), 3U);
+  EXPECT_EQ(scene.positions_m[1], Eigen::Vector3f(0.5F, 0, 0));
+  EXPECT_EQ(scene.positions_m[2], Eigen::Vector3f(0, -0.5F, 0));
+  EXPECT_EQ(scene.materials[scene.material_of[0]].base_colour, (Rgb8{255, 0, 0}));
 }
 
 TEST_F(MeshRepair, ColladaMayHaveAnImageThatNamesNoFile) {
