@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "scenes/find_file.hpp"
+#include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh::gazebo {
@@ -109,7 +110,12 @@ std::optional<OgreMaterial> LookWriter::material_of(const XMLElement& script,
 
 const std::vector<OgreMaterial>& LookWriter::materials_in(const fs::path& script) {
   const auto [place, is_new] = scripts_.try_emplace(script);
-  if (is_new) place->second = parse_ogre_script(read_file(script));
+  if (!is_new) return place->second;
+  try {
+    place->second = parse_ogre_script(read_file(script));
+  } catch (const InputError& error) {
+    told_.tell(error.what());
+  }
   return place->second;
 }
 

@@ -210,6 +210,12 @@ std::vector<HostileCase> hostile_worlds() {
             "a.world: "),
       scene("sdf_includes_a_device", "a.world", world("<include><uri>/dev/zero</uri></include>"),
             ""),
+      passing(scene(
+          "sdf_script_is_a_pipe", "a.world",
+          world("<model name=\"m\"><link name=\"l\"><visual name=\"v\"><geometry><box><size>1 1 1"
+                "</size></box></geometry><material><script><uri>m.material</uri><name>X</name>"
+                "</script></material></visual></link></model>"),
+          "m.material: cannot be read: it is no file", {{"m.material|", ""}})),
       scene("sdf_of_zeros", "a.sdf", std::string(1000, '\0'), "a.sdf:"),
       scene("placed_alias_of_itself", "a.yaml", "objects: &a [*a]\n", "a.yaml:1: "),
       scene("placed_at_infinity", "a.yaml", "objects:\n  - {file: t.obj, scale: 1e300}\n",
