@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "bench/plan/names.hpp"
+#include "bench/world/travel.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/scannet/files.hpp"
 #include "slam/core/file_errors.hpp"
@@ -67,9 +68,15 @@ fs::path read_scene(const YamlReader& node, const SuitePaths& paths, int index) 
 /// A tour: a source, or a motion by its name alone (bench/world/travel.hpp).
 fs::path read_tour(const YamlReader& node, const SuitePaths& paths, int index) {
   const std::string text = with_index(node.as_string(), index);
-  for (const char* motion : kMotions)
-    if (text == motion || text.starts_with(motion + std::string(":")))
-      return std::string(kGeneratedPrefix) + text;
+  for (const char* motion : kMotions) {
+    if (text != motion && !text.starts_with(motion + std::string(":"))) continue;
+    try {
+      check_motion(text);
+    } catch (const InputError& error) {
+      node.fail(error.what());
+    }
+    return std::string(kGeneratedPrefix) + text;
+  }
   return read_source(node, paths, index, Shipped::kTour);
 }
 

@@ -153,6 +153,22 @@ TEST_F(SuiteFile, AMisspeltMotionIsToldWhichOneWasMeant) {
   }
 }
 
+TEST_F(SuiteFile, AMotionThatCannotBeIsNamedWithItsPlace) {
+  std::ofstream(folder_ / "suite.yaml")
+      << "environments:\n- {category: house, scene: house.yaml, mapping_tour: 'handheld:0:10'}\n"
+      << "robot: robot.yaml\nvocabulary: words\nlevels: [pepper.yaml]\nsystems: [plain]\nlabels: "
+         "[none]\n";
+  try {
+    load_suite(folder_ / "suite.yaml");
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("suite.yaml:2: environments[0].mapping_tour: hand-held "
+                                         "motion: frames: 10 is outside 30 to 100000"),
+              std::string::npos)
+        << e.what();
+  }
+}
+
 TEST_F(SuiteFile, AMisspeltKeyIsToldWhichOneWasMeant) {
   EXPECT_NE(error("protocoll: {}\n").find("did you mean 'protocol'?"), std::string::npos);
   EXPECT_NE(error("", "[pepper.yaml]", "[exakt]").find("did you mean 'exact'?"), std::string::npos);
