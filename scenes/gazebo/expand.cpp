@@ -8,7 +8,6 @@
 #include <cstring>
 #include <map>
 #include <memory>
-#include <set>
 #include <sstream>
 #include <string_view>
 
@@ -16,6 +15,7 @@
 
 #include "scenes/gazebo/find.hpp"
 #include "scenes/gazebo/look.hpp"
+#include "scenes/gazebo/source.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -53,22 +53,6 @@ std::string sound_name(const char* given) {
   while (name.starts_with("__") && name.ends_with("__")) name.erase(0, 2);
   if (name.empty()) return "unnamed";
   return name == "world" ? "world_" : name;
-}
-
-/// A file's XML and what its parts are read with.
-struct Source {
-  fs::path file;
-  XMLDocument document;
-  bool has_frames = false;         ///< before 1.7, a pose's frame meant nothing
-  std::set<std::string> referred;  ///< names that relative_to and attached_to name
-};
-
-void gather_references(const XMLElement* element, std::set<std::string>& names) {
-  for (; element != nullptr; element = element->NextSiblingElement()) {
-    for (const char* attribute : {"relative_to", "attached_to"})
-      if (const char* name = element->Attribute(attribute)) names.insert(name);
-    gather_references(element->FirstChildElement(), names);
-  }
 }
 
 class Expander {
@@ -152,42 +136,9 @@ class Expander {
     throw InputError(fmt::format("{}:{}: {}", source.file.string(), at.GetLineNum(), what));
   }
 
-  /// An XML declaration below a comment, as some released models have it, is no error of theirs
-  /// that matters here: it becomes blanks.
-  static void drop_late_declaration(std::string& text) {
-    const std::size_t at = text.find("<?xml");
-    if (at == 0 || at == text.npos || at > text.find("<sdf")) return;
-    const std::size_t end = std::min(text.find("?>", at), text.size() - 2) + 2;
-    std::ranges::replace_if(
-        text.begin() + static_cast<std::ptrdiff_t>(at),
-        text.begin() + static_cast<std::ptrdiff_t>(end), [](char c) { return c != '\n'; }, ' ');
-  }
-
-  static std::unique_ptr<Source> parsed(const fs::path& file, std::string text) {
-    drop_late_declaration(text);
-    auto made = std::make_unique<Source>();
-    Source& source = *made;
-    source.file = file;
-    if (source.document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-      throw InputError(fmt::format("{}:{}: is no SDF that can be read: {}", file.string(),
-                                   std::max(source.document.ErrorLineNum(), 1),
-                                   source.document.ErrorName()));
-    const XMLElement* root = source.document.RootElement();
-    if (root == nullptr ||
-        (std::strcmp(root->Name(), "sdf") != 0 && std::strcmp(root->Name(), "gazebo") != 0))
-      throw InputError(fmt::format("{}: is no SDF: its root is no <sdf>", file.string()));
-    const char* version = root->Attribute("version");
-    int major = 1, minor = 0;
-    std::sscanf(version == nullptr ? "1.9" : version, "%d.%d", &major, &minor);
-    constexpr int kFramesSince = 7;
-    source.has_frames = major > 1 || minor >= kFramesSince;
-    gather_references(root, source.referred);
-    return made;
-  }
-
   const Source& read(const fs::path& file) {
     std::unique_ptr<Source>& source = sources_[file];
-    if (!source) source = parsed(file, read_file(file));
+    if (!source) source = parse_source(file, read_file(file));
     return *source;
   }
 
@@ -236,7 +187,7 @@ class Expander {
     if (target)
       add_file(*target, include, source, out, names);
     else if (const char* built_in = built_in_model(uri))
-      add_models(*parsed(source.file, built_in), include, out, names);
+      add_models(*parse_source(source.file, built_in), include, out, names);
     else
       told_.tell(fmt::format("{}:{}: include {}: {}: left out", source.file.string(),
                              include.FirstChildElement("uri")->GetLineNum(), uri,

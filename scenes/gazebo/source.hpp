@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+
+#include <tinyxml2.h>
+
+namespace mh::gazebo {
+
+/// A file's XML and what its parts are read with.
+struct Source {
+  std::filesystem::path file;
+  tinyxml2::XMLDocument document;
+  bool has_frames = false;         ///< before 1.7, a pose's frame meant nothing
+  std::set<std::string> referred;  ///< names that relative_to and attached_to name
+};
+
+/// @throws InputError naming file and line if it is no SDF
+std::unique_ptr<Source> parse_source(const std::filesystem::path& file, std::string text);
+
+}  // namespace mh::gazebo
