@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/store/run_key.hpp"
 
+#include <fnmatch.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <set>
+#include <sstream>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -224,6 +228,52 @@ TEST_F(RunKey, ChangesWithTheCodeAndTheBuildAndNotWithTheCommit) {
     other_build.commit = "b";
     EXPECT_EQ(key(ours_), before) << "a commit that leaves the code as it is";
   }
+}
+
+/// The patterns that cmake/code_version.cmake digests for a run's key.
+std::set<std::string> digested_sources() {
+  const std::string script = read_file(fs::path(MH_SOURCE_DIR) / "cmake/code_version.cmake");
+  const std::string begin = "digest_of(RUN ";
+  const auto from = script.find(begin) + begin.size();
+  std::istringstream words(script.substr(from, script.find(')', from) - from));
+  std::set<std::string> patterns;
+  for (std::string word; words >> word;) patterns.insert(word);
+  return patterns;
+}
+
+bool is_digested(const std::string& file, const std::set<std::string>& patterns) {
+  return std::ranges::any_of(patterns, [&](const std::string& pattern) {
+    return fnmatch(pattern.c_str(), file.c_str(), 0) == 0;
+  });
+}
+
+// Code of the bench that a digested source includes decides results as well.
+TEST(CodeVersion, HoldsWhatItsSourcesInclude) {
+  // How a run is told of, named, cached and counted: the key's own fields, or no result at all.
+  const std::set<std::string> other = {"bench/cache/cache.hpp",     "bench/counted.hpp",
+                                       "bench/plan/runs.hpp",       "bench/results/fingerprint.hpp",
+                                       "bench/store/run_key.hpp",   "bench/store/code_version.hpp",
+                                       "bench/temporary_folder.hpp"};
+  const std::set<std::string> patterns = digested_sources();
+  ASSERT_TRUE(patterns.contains("slam/*.cpp"));
+  const fs::path root = MH_SOURCE_DIR;
+  int looked_at = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(root / "bench")) {
+    const std::string file = fs::relative(entry.path(), root).string();
+    if (!entry.is_regular_file() || !is_digested(file, patterns)) continue;
+    ++looked_at;
+    const std::string code = fs::path(file).replace_extension(".cpp").string();
+    EXPECT_TRUE(is_digested(code, patterns) || !fs::exists(root / code)) << code;
+    std::istringstream lines(read_file(entry.path()));
+    const std::string begin = "#include \"";
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with(begin + "bench/")) continue;
+      const std::string header = line.substr(begin.size(), line.rfind('"') - begin.size());
+      EXPECT_TRUE(is_digested(header, patterns) || other.contains(header))
+          << file << " includes " << header << ", which no run's key holds";
+    }
+  }
+  EXPECT_GT(looked_at, 40);
 }
 
 }  // namespace
