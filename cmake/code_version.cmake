@@ -30,7 +30,7 @@ digest_of(RUN slam/*.cpp slam/*.hpp scenes/*.cpp scenes/*.hpp scenes/categories/
           bench/world/*.hpp bench/run_one.cpp bench/run_one.hpp bench/results/occupancy.cpp
           bench/results/occupancy.hpp bench/results/run_result.hpp
           bench/results/trajectory_score.cpp bench/results/trajectory_score.hpp
-          bench/recorded/*.cpp bench/recorded/*.hpp bench/pictures/canvas.*
+          bench/recorded/*.cpp bench/recorded/*.hpp bench/pictures/canvas.* bench/pictures/png.*
           CMakeLists.txt)
 # Where git is not installed: what .git says, a worktree's included. Changes in files go unseen.
 function(commit_from_files variable)
