@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <span>
 
 #include <fmt/format.h>
 #include <sdf/sdf.hh>
@@ -53,15 +54,9 @@ class WorldReader {
     // What it has to say comes as errors; it would also print it.
     sdf::Console::Instance()->SetQuiet(true);
     const gazebo::Expanded expanded = gazebo::expand(file_, told_);
-    sdf::ParserConfig config;
-    config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
     scene_.name = file_.stem().string();
-    for (const std::string& document : expanded.documents) {
-      sdf::Root root;
-      for (const sdf::Error& error : root.LoadSdfString(document, config))
-        told_.tell(fmt::format("{}: {}", file_.string(), error.Message()));
-      if (const sdf::World* world = root.WorldByIndex(0)) add_world(*world);
-    }
+    const std::string scene = add_piece(expanded.scene, {}) ? expanded.scene : "";
+    for (const std::vector<std::string>& piece : expanded.pieces) add_piece(scene, piece);
     if (!scene_.lights.empty())
       scene_.lights.push_back({.kind = Light::Kind::kAmbient, .colour = ambient_});
     if (visuals_ < expanded.visuals)
@@ -84,6 +79,27 @@ class WorldReader {
   }
 
  private:
+  /// An element that libsdformat refuses takes its document with it: the others are read without
+  /// it.
+  /// @returns whether nothing was refused
+  bool add_piece(const std::string& scene, std::span<const std::string> elements) {
+    sdf::ParserConfig config;
+    config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
+    sdf::Root root;
+    const sdf::Errors errors = root.LoadSdfString(gazebo::document_of(scene, elements), config);
+    const sdf::World* world = root.WorldByIndex(0);
+    if (world == nullptr && elements.size() > 1) {
+      for (const auto half :
+           {elements.first(elements.size() / 2), elements.subspan(elements.size() / 2)})
+        add_piece(scene, half);
+      return false;
+    }
+    for (const sdf::Error& error : errors)
+      told_.tell(fmt::format("{}: {}", file_.string(), error.Message()));
+    if (world != nullptr) add_world(*world);
+    return world != nullptr;
+  }
+
   void add_world(const sdf::World& world) {
     for (std::uint64_t m = 0; m < world.ModelCount(); ++m)
       add_model(*world.ModelByIndex(m), Eigen::Affine3d::Identity());

@@ -248,7 +248,8 @@ class Legend {
 };
 
 /// @param apart  behind the estimated path: how far it is from the true one
-void draw_legend(Canvas& canvas, double y, const std::string& apart) {
+/// @param asked, mapped  whether there are queries and cells of a map to be told of
+void draw_legend(Canvas& canvas, double y, const std::string& apart, bool asked, bool mapped) {
   const auto stroke = [&](Rgb8 colour, double thickness) {
     return [&canvas, colour, thickness](cv::Point2d at) {
       canvas.line({at.x - 11, at.y}, {at.x + 11, at.y}, colour, thickness);
@@ -270,15 +271,18 @@ void draw_legend(Canvas& canvas, double y, const std::string& apart) {
       canvas.line(at + cv::Point2d(kRing, 0), at + cv::Point2d(kHeading, 0), colour, kStroke);
     };
   };
-  first.entry("query: true place, heading", query(kX));
-  first.entry("not answered", query(kMissed));
-  first.entry("answer", answer(kGood));
-  first.entry("false answer", answer(kBad));
+  if (asked) {
+    first.entry("query: true place, heading", query(kX));
+    first.entry("not answered", query(kMissed));
+    first.entry("answer", answer(kGood));
+    first.entry("false answer", answer(kBad));
+  }
   first.entry("mapping path, true", stroke(kTruth, kTruthWidth));
   first.entry("estimated" + apart, stroke(kEstimate, kEstimateWidth));
   Legend second(canvas, y + 28);
   second.entry(fmt::format("house cut at {} m", kWallCut_m), stroke(kWall, 2.5));
   second.entry(fmt::format("furniture at {} m", kFurnitureCut_m), stroke(kFurniture, 1.5));
+  if (!mapped) return;
   second.entry("map: free", patch(kMapFree));
   second.entry("map: occupied", patch(kMapOccupied));
 }
@@ -338,7 +342,8 @@ cv::Mat draw_topdown(const World& world, const RunResult& run, QuerySet set) {
   const auto apart_m =
       farthest_apart_m(world.mapping.camera, run.estimate, run.trajectory.dock_from_estimate);
   draw_legend(canvas, legend_y,
-              apart_m ? fmt::format(", at most {:.3f} m off", *apart_m) : std::string());
+              apart_m ? fmt::format(", at most {:.3f} m off", *apart_m) : std::string(),
+              !queries(run.points.front(), set).empty(), !run.grid.cells.empty());
   draw_scale_bar(canvas, view, legend_y + 28);
   return canvas.finish();
 }

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "scenes/gazebo/find.hpp"
 #include "scenes/gazebo/look.hpp"
@@ -27,6 +28,7 @@ using tinyxml2::XMLElement;
 namespace {
 
 constexpr std::size_t kMostIncludes = 10000;
+constexpr std::size_t kMostVisuals = 20'000;  // of a model: libsdformat takes 0.1 MB for each
 constexpr std::size_t kDeepest = 64;  // includes or models within each other
 
 constexpr const char* kSun =
@@ -75,7 +77,9 @@ class Expander {
         add_parts(part, source, *world, names);
       else
         add_part(part, source, *world, names);
-    return {.documents = documents_of(*world), .visuals = visuals_};
+    Expanded expanded{.scene = {}, .pieces = {}, .visuals = visuals_};
+    put_pieces(*world, expanded);
+    return expanded;
   }
 
  private:
@@ -85,29 +89,23 @@ class Expander {
     return printer.CStr();
   }
 
-  static std::vector<std::string> documents_of(const XMLElement& world) {
-    const std::string head = "<sdf version='1.9'><world name='w'>", tail = "</world></sdf>";
+  static void put_pieces(const XMLElement& world, Expanded& expanded) {
     bool refers = world.FirstChildElement("frame") != nullptr;
-    std::string scene;
-    std::vector<std::string> parts;
-    for (const XMLElement& part : children(world)) {
-      const XMLElement* pose = part.FirstChildElement("pose");
+    std::vector<std::string> elements;
+    for (const XMLElement& element : children(world)) {
+      const XMLElement* pose = element.FirstChildElement("pose");
       refers = refers || (pose != nullptr && pose->Attribute("relative_to") != nullptr);
-      if (std::string_view(part.Name()) == "scene")
-        scene = text_of_all(part);
+      if (std::string_view(element.Name()) == "scene")
+        expanded.scene = text_of_all(element);
       else
-        parts.push_back(text_of_all(part));
+        elements.push_back(text_of_all(element));
     }
     // libsdformat takes 4 MB for each model, and a tenth of a second for each document.
-    const std::size_t models_at_once = std::clamp<std::size_t>(parts.size() / 16, 16, 128);
-    std::vector<std::string> documents;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      if (documents.empty() || (!refers && i % models_at_once == 0))
-        documents.push_back(head + scene);
-      documents.back() += parts[i];
+    const std::size_t at_once = std::clamp<std::size_t>(elements.size() / 16, 16, 128);
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      if (expanded.pieces.empty() || (!refers && i % at_once == 0)) expanded.pieces.emplace_back();
+      expanded.pieces.back().push_back(std::move(elements[i]));
     }
-    for (std::string& document : documents) document += tail;
-    return documents;
   }
 
   /// Taken in a scope, with the number that the next copy of each may try: names of thousands of
@@ -238,6 +236,7 @@ class Expander {
   void add_model(const XMLElement& model, const Source& source, XMLElement& out, Names& names,
                  const XMLElement* include) {
     if (++depth_ > kDeepest) fail(source, model, fmt::format("models nested {} deep", kDeepest));
+    if (depth_ == 1) visuals_before_ = visuals_;
     XMLElement* copy = out.InsertNewChildElement("model");
     const std::string told_name =
         include == nullptr ? "" : text_of(include->FirstChildElement("name"));
@@ -305,7 +304,8 @@ class Expander {
       shown->FirstChildElement("mesh")->FirstChildElement("uri")->SetText(mesh->string().c_str());
     if (const XMLElement* material = visual.FirstChildElement("material"))
       looks_.write(*material, source.file, *copy->InsertNewChildElement("material"));
-    ++visuals_;
+    if (++visuals_ - visuals_before_ > kMostVisuals)
+      fail(source, visual, fmt::format("a model of more than {} visuals", kMostVisuals));
   }
 
   /// MODEL/.../LINK of a link in the output.
@@ -387,13 +387,18 @@ class Expander {
   XMLDocument out_;
   std::map<fs::path, std::unique_ptr<Source>> sources_;
   std::vector<fs::path> open_;
-  std::size_t includes_ = 0, depth_ = 0, visuals_ = 0;
+  std::size_t includes_ = 0, depth_ = 0, visuals_ = 0, visuals_before_ = 0;
 };
 
 }  // namespace
 
 Expanded expand(const fs::path& world, ToldOnce& told) {
   return Expander(world, told).run();
+}
+
+std::string document_of(const std::string& scene, std::span<const std::string> elements) {
+  return fmt::format("<sdf version='1.9'><world name='w'>{}{}</world></sdf>", scene,
+                     fmt::join(elements, ""));
 }
 
 }  // namespace mh::gazebo

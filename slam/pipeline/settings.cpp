@@ -204,18 +204,13 @@ void refuse_unknown_keys(YamlReader& yaml) {
 }
 
 /// "Somebody.Else, Viewer.*": keys that nobody reads, those of the viewer as one.
+/// Where a window stands (Viewer.*) is nothing that a user would miss.
 std::string unread_keys(YamlReader& yaml) {
-  std::string list;
-  const auto add = [&](const std::string& name) { list += (list.empty() ? "" : ", ") + name; };
-  bool viewer = false;
-  for (const auto& [key, node] : yaml.entries()) {
-    if (key.starts_with("Viewer."))
-      viewer = true;
-    else if (!is_one_of(kOrbSlamKeys, key) && !key.starts_with("Camera."))
-      add(key);
-  }
-  if (viewer) add("Viewer.*");
-  return list;
+  std::vector<std::string> unread;
+  for (const auto& [key, node] : yaml.entries())
+    if (!is_one_of(kOrbSlamKeys, key) && !key.starts_with("Camera.") && !key.starts_with("Viewer."))
+      unread.push_back(key);
+  return fmt::format("{}", fmt::join(unread, ", "));
 }
 
 Settings read_orb_slam(YamlReader yaml, Settings settings) {

@@ -216,6 +216,11 @@ std::vector<HostileCase> hostile_worlds() {
                 "</size></box></geometry><material><script><uri>m.material</uri><name>X</name>"
                 "</script></material></visual></link></model>"),
           "m.material: cannot be read: it is no file", {{"m.material|", ""}})),
+      scene("sdf_of_20001_boxes", "a.world",
+            world("<model name=\"m\"><link name=\"l\">" +
+                  repeated("<visual><geometry><box/></geometry></visual>", 20'001) +
+                  "</link></model>"),
+            "a model of more than 20000 visuals"),
       scene("sdf_of_zeros", "a.sdf", std::string(1000, '\0'), "a.sdf:"),
       scene("placed_alias_of_itself", "a.yaml", "objects: &a [*a]\n", "a.yaml:1: "),
       scene("placed_at_infinity", "a.yaml", "objects:\n  - {file: t.obj, scale: 1e300}\n",

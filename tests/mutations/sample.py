@@ -124,15 +124,15 @@ class Results:
 class Copy:
     """A worktree of its own, built like the project."""
 
-    def __init__(self, root, work, jobs):
+    def __init__(self, root, work, jobs, commit):
         self.tree, self.build, self.jobs = work / 'tree', work / 'tree/build/release', jobs
         self.log = work / 'log'
-        self.head = subprocess.run(['git', '-C', root, 'rev-parse', 'HEAD'], check=True, text=True,
+        self.head = subprocess.run(['git', '-C', root, 'rev-parse', commit], check=True, text=True,
                                    capture_output=True).stdout.strip()
         if not self.tree.exists():
             work.mkdir(parents=True, exist_ok=True)
             subprocess.run(['git', '-C', root, 'worktree', 'prune'], check=True)
-            self.run('git', '-C', root, 'worktree', 'add', '--quiet', '--detach', self.tree, 'HEAD')
+            self.run('git', '-C', root, 'worktree', 'add', '--quiet', '--detach', self.tree, self.head)
         self.run('git', '-C', self.tree, 'checkout', '--quiet', '--force', '--detach', self.head)
         if not (self.build / 'build.ninja').exists():
             # Of the library's containers: an index past the end ends the program.
@@ -310,6 +310,7 @@ def arguments():
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--results', type=Path, help='default: tests/mutations/sample_seedS.tsv')
     parser.add_argument('--work', type=Path, help='keeps the copy of the sources here')
+    parser.add_argument('--commit', default='HEAD', help='whose sources and tests (default HEAD)')
     parser.add_argument('--jobs', type=int, default=os.cpu_count(), help='compiler processes')
     parser.add_argument('--minutes', type=float, default=float('inf'),
                         help='begins no mutant after that')
@@ -339,7 +340,7 @@ def main():
     results = Results(args.results or HERE / f'sample_seed{args.seed}.tsv')
     os.environ.setdefault('CCACHE_BASEDIR', str(work.resolve()))
     os.environ['CCACHE_NOHASHDIR'] = '1'
-    copy = Copy(root, work.resolve(), args.jobs)
+    copy = Copy(root, work.resolve(), args.jobs, args.commit)
     experience = Experience(work / 'experience.json')
     order = draw(copy.tree, args.seed)
     head = (f'# tests/mutations/sample.sh --count {args.count} --seed {args.seed}\n'

@@ -109,6 +109,20 @@ TEST_F(GazeboWorld, DeclarationMayStandBelowAComment) {
             1U);
 }
 
+TEST_F(GazeboWorld, AnElementThatIsRefusedTakesNoOtherWithIt) {
+  std::string inside =
+      "<scene><ambient>none</ambient></scene><light type='point' name='bad'><diffuse>nan "
+      "x</diffuse>"
+      "</light>";
+  for (const char* name : {"a", "b", "c", "d", "e"})
+    inside += model(name, link("<visual name='v'><geometry><box><size>1 1 1</size></box></geometry>"
+                               "</visual>"));
+  const Scene scene = load(write_world(inside));
+  EXPECT_EQ(scene.instances.size(), 5U);
+  EXPECT_TRUE(told({"w.world", "diffuse"}));
+  EXPECT_TRUE(told({"w.world", "ambient"}));
+}
+
 TEST_F(GazeboWorld, ThousandsOfOneNameAreNamedAtOnce) {
   std::string lamps;  // one by one, 4.5 million names would be tried
   for (int i = 0; i < 3000; ++i) lamps += "<light name='l' type='point'/>";
