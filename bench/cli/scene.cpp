@@ -132,6 +132,17 @@ void keep_of_each_room(std::vector<View>& views, int count) {
   std::erase_if(views, [&](const View& view) { return ++kept[view.caption] > count; });
 }
 
+/// A scene's name and views of it, its light baked; the scene is gone when they are drawn.
+std::pair<std::string, std::vector<View>> see(const std::string& name, const Options& options,
+                                              const BakeWatch& baked) {
+  const ReadScope reading;
+  Scene scene = load(find_scene(name).string(), options.frame);
+  need_not_read(options.out, reading.record());
+  light_scene(scene, kThreads, Cache(), {}, baked);
+  const auto renderer = make_scene_renderer(scene);
+  return {scene.name, views_of(scene, *renderer)};
+}
+
 void preview(const Options& options) {
   if (fs::path(options.out).extension() != ".png" || fs::is_directory(options.out))
     throw InputError(fmt::format("{}: must name a file that ends in .png", options.out));
@@ -147,16 +158,11 @@ void preview(const Options& options) {
     const double before = static_cast<double>(gallery.size());
     const auto all = static_cast<double>(names.size());
     progress.share(before / all, name);
-    const ReadScope reading;
-    Scene scene = load(find_scene(name).string(), options.frame);
-    need_not_read(options.out, reading.record());
-    light_scene(scene, kThreads, Cache(), {},
-                [&](double share) { progress.share((before + 0.9 * share) / all, name); });
-    const auto renderer = make_scene_renderer(scene);
-    std::vector<View> views = views_of(scene, *renderer);
+    auto [title, views] = see(
+        name, options, [&](double share) { progress.share((before + 0.9 * share) / all, name); });
     if (names.size() == 1) {
       keep_of_each_room(views, options.per_room);
-      write_picture(options.out, draw_contact_sheet(scene.name, views));
+      write_picture(options.out, draw_contact_sheet(title, views));
       progress.share(1);
       return;
     }

@@ -57,7 +57,9 @@ TEST(Se3, TranslationOfExpIsItsPowerSeriesOnBothSidesOfTheSwitch) {
     for (const Eigen::Vector3d& axis :
          {Eigen::Vector3d(1, -2, 0.5), Eigen::Vector3d(-0.3, 0.2, 1)}) {
       const Eigen::Vector3d phi = angle_rad * axis.normalized();
-      const Vector6d tangent = (Vector6d() << rho, phi).finished();
+      Vector6d tangent;
+      tangent.head<3>() = rho;
+      tangent.tail<3>() = phi;
       const Eigen::Matrix<long double, 3, 1> error =
           SE3::exp(tangent).translation().cast<long double>() -
           power_series(phi, 1) * rho.cast<long double>();
