@@ -143,11 +143,10 @@ Trajectory run_recorded(const RunSpec& spec, const SimulatedSequence& mapping,
     if (!is_test_frame(i, spec.protocol)) offered.push_back(i);
   ProgramFolder given(folder);
   const std::vector<Stamp> stamps =
-      write_dataset(given.path() / "dataset", mapping.camera(), offered.size(),
-                    [&](std::size_t i) {
-                      status(fmt::format("writing frame {} of {}", i + 1, offered.size()));
-                      return frames(offered[i], mapping_noise(stream, 0));
-                    });
+      write_dataset(given.path() / "dataset", mapping.camera(), offered.size(), [&](std::size_t i) {
+        status(fmt::format("writing frame {} of {}", i + 1, offered.size()));
+        return frames(offered[i], mapping_noise(stream, 0));
+      });
   status(fmt::format("runs over {}", counted(offered.size(), "frame")));
   Trajectory trajectory =
       run_on_dataset(spec.system.outside, given.path(), stamps, spec.seed, folder / "outside.log");

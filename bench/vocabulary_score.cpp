@@ -130,7 +130,7 @@ VocabularyScore score_vocabulary(const Vocabulary& vocabulary, std::span<const P
     score.words_per_view += static_cast<double>(asked.words.size());
     label_mass += describe(query, vocabulary, 1.0).label_mass();
   }
-  if (score.queries == 0) throw InputError("vocabulary score: no view has a true neighbour");
+  if (score.queries == 0) throw InputError("vocabulary score: no view has a true neighbor");
   for (double* sum : {&score.precision, &score.average_precision, &score.chance,
                       &score.words_per_view, &label_mass})
     *sum /= score.queries;

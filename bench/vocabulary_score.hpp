@@ -37,12 +37,12 @@ struct VocabularyScoreConfig {
 /// How well words alone find the views of a place.
 struct VocabularyScore {
   int views = 0;                     ///< candidates
-  int queries = 0;                   ///< that have a true neighbour among their candidates
+  int queries = 0;                   ///< that have a true neighbor among their candidates
   double words_per_view = 0;         ///< different words, of the queries
   std::optional<double> label_mass;  ///< mean share of labels at gamma = 1; none without labels
   double precision = 0;              ///< share of queries whose most alike candidate is true
   double average_precision = 0;      ///< mean over queries (area under precision and recall)
-  double chance = 0;                 ///< mean share of true neighbours among candidates
+  double chance = 0;                 ///< mean share of true neighbors among candidates
 };
 
 /// Reads a folder in TUM's layout with its groundtruth.txt; pictures whose pose is not known to
@@ -52,7 +52,7 @@ std::vector<PlacedView> load_placed_views(const std::filesystem::path& folder,
                                           const VocabularyScoreConfig& config);
 
 /// Ranks the views by l1_similarity() to each query, equals by their order. Without queries, each
-/// view asks for the others. @throws InputError if no query has a true neighbour.
+/// view asks for the others. @throws InputError if no query has a true neighbor.
 VocabularyScore score_vocabulary(const Vocabulary& vocabulary, std::span<const PlacedView> views,
                                  std::span<const PlacedView> queries, const Camera& camera,
                                  const VocabularyScoreConfig& config);

@@ -46,11 +46,11 @@ std::vector<Descriptor> describe_picture(Grid2d<Rgb8> picture, const VocabularyT
   camera.width_px = picture.width();
   camera.height_px = picture.height();
   RgbdFrame frame;
-  frame.colour = std::move(picture);
+  frame.color = std::move(picture);
   return extract(frame, camera, config.features).descriptors;
 }
 
-/// Gaussian noise, the same on all channels of a pixel: features are found in grey.
+/// Gaussian noise, the same on all channels of a pixel: features are found in gray.
 void add_noise(Grid2d<Rgb8>& picture, double sigma, RandomStream random) {
   std::uint64_t pixel = 0;
   for (int y = 0; y < picture.height(); ++y)
@@ -77,7 +77,7 @@ Images describe_room(const VocabularyTraining& config, std::uint64_t room) {
   Images images;
   for (const SE3& world_from_camera :
        training_views(scene, random.fork(kViews).bits(room), config.views)) {
-    Grid2d<Rgb8> picture = renderer->render(config.camera, world_from_camera).colour;
+    Grid2d<Rgb8> picture = renderer->render(config.camera, world_from_camera).color;
     add_noise(picture, config.noise, noise.fork(images.size()));
     images.push_back(describe_picture(std::move(picture), config));
   }
@@ -85,7 +85,7 @@ Images describe_room(const VocabularyTraining& config, std::uint64_t room) {
 }
 
 Images describe_file(const VocabularyTraining& config, const std::filesystem::path& file) {
-  const cv::Mat bgr = read_picture(file, PictureForm::kColour);
+  const cv::Mat bgr = read_picture(file, PictureForm::kColor);
   Grid2d<Rgb8> picture(bgr.cols, bgr.rows);
   for (int y = 0; y < bgr.rows; ++y)
     for (int x = 0; x < bgr.cols; ++x) {

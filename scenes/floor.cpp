@@ -38,7 +38,7 @@ constexpr double kLevelFloor_m = 1e-3;
 struct Sample {
   std::uint32_t cell = 0;
   float z_m = 0;
-  bool level = false, labelled = false;
+  bool level = false, labeled = false;
 };
 
 Vector3f corner(const Scene& scene, std::size_t face, std::size_t k) {
@@ -96,9 +96,9 @@ class Columns {
 
   /// Those of a class that is walked on; of two with less than headroom between them the upper one:
   /// a house's floor and not the ground below it.
-  std::vector<Sample> labelled() const {
+  std::vector<Sample> labeled() const {
     std::vector<Sample> some;
-    std::ranges::copy_if(samples, std::back_inserter(some), &Sample::labelled);
+    std::ranges::copy_if(samples, std::back_inserter(some), &Sample::labeled);
     return with_headroom(some);
   }
   /// Those that one could stand on, with nothing for a while above.
@@ -127,9 +127,9 @@ class Columns {
     return some;
   }
 
-  /// Where things stand, and that together with what is labelled as floor.
+  /// Where things stand, and that together with what is labeled as floor.
   static std::pair<Eigen::AlignedBox2f, Eigen::AlignedBox2f> extents(const Scene& scene) {
-    Eigen::AlignedBox2f things, labelled, all;
+    Eigen::AlignedBox2f things, labeled, all;
     for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
       const Vector3f n = normal_of(scene, face);
       const bool level = std::abs(n.z()) >= 0.98F * n.norm();
@@ -137,11 +137,11 @@ class Columns {
         const Eigen::Vector2f p = corner(scene, face, k).head<2>();
         all.extend(p);
         if (!level) things.extend(p);
-        if (is_walked_on(scene.class_of[face])) labelled.extend(p);
+        if (is_walked_on(scene.class_of[face])) labeled.extend(p);
       }
     }
     if (things.isEmpty() || things.sizes().minCoeff() < 0.5F) things = all;
-    return {things, things.merged(labelled)};
+    return {things, things.merged(labeled)};
   }
 
   /// Samples a face at the middles of cells; a middle on an edge belongs to one face alone.
@@ -163,7 +163,7 @@ class Columns {
     const auto to = [](double v, int end) {
       return static_cast<int>(std::min<double>(end - 1, std::floor(v)));
     };
-    const bool labelled = is_walked_on(scene.class_of[face]);
+    const bool labeled = is_walked_on(scene.class_of[face]);
     for (int y = from(least.y()); y <= to(most.y(), height_); ++y)
       for (int x = from(least.x()); x <= to(most.x(), width_); ++x) {
         std::array<double, 3> share{};
@@ -179,7 +179,7 @@ class Columns {
         const double sum = share[0] + share[1] + share[2];
         const double height = z[0] + (share[1] * (z[1] - z[0]) + share[2] * (z[2] - z[0])) / sum;
         samples.push_back({static_cast<std::uint32_t>(y * width_ + x), static_cast<float>(height),
-                           std::abs(n.z()) >= kLevel * norm, labelled});
+                           std::abs(n.z()) >= kLevel * norm, labeled});
       }
   }
 
@@ -333,12 +333,12 @@ bool is_walked_on(ClassId class_id) {
 std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> floor_z_m,
                                      std::vector<std::string>* warnings) {
   const Columns columns(scene);
-  std::vector<Sample> some = columns.labelled();
-  const bool labelled = columns.area_m2(some) >= kLeast_m2;
-  if (!labelled) some = columns.standable();
+  std::vector<Sample> some = columns.labeled();
+  const bool labeled = columns.area_m2(some) >= kLeast_m2;
+  if (!labeled) some = columns.standable();
   std::vector<Sample> inner;
   std::ranges::copy_if(some, std::back_inserter(inner), [&](const Sample& sample) {
-    return (labelled || sample.level) && columns.among_things(columns.point(sample));
+    return (labeled || sample.level) && columns.among_things(columns.point(sample));
   });
   if (columns.area_m2(inner) < kLeast_m2) inner = some;  // things stand elsewhere
   const std::optional<double> z_m = floor_z_m ? floor_z_m : lowest_large(inner, columns.cell_m2());
@@ -349,7 +349,7 @@ std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> f
   Plane plane;
   plane.middle_m.z() = *z_m;
   if (!floor_z_m) plane = fitted(points, *z_m, warnings, scene.name);
-  if (!floor_z_m && !labelled && too_much_below(scene, plane, columns)) return std::nullopt;
+  if (!floor_z_m && !labeled && too_much_below(scene, plane, columns)) return std::nullopt;
 
   Floor floor;
   floor.middle_m = plane.middle_m;
@@ -357,7 +357,7 @@ std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> f
   floor.rough_m = roughness_m(scene, plane);
   std::erase_if(some, [&](const Sample& sample) {
     const double above = plane.above(columns.point(sample));
-    return above > (labelled ? kHighestFloor_m : floor.rough_m) || above < -kDeepestFloor_m;
+    return above > (labeled ? kHighestFloor_m : floor.rough_m) || above < -kDeepestFloor_m;
   });
   floor.area_m2 = columns.area_m2(some);
   return FoundFloor{floor, columns.room_around(some, scene.name), columns.things_m()};

@@ -50,7 +50,7 @@ bool looks_y_up(const Scene& scene);
 void turn_y_up(Scene& scene, bool back = false);
 
 /// The floor's own frame: z = 0 is the floor, x and y nearly the world's (a slope of 2 degrees
-/// shifts them by 0.6 mm per metre).
+/// shifts them by 0.6 mm per meter).
 SE3 world_from_floor(const Floor& floor);
 
 /// A scene as it lies before those who move on its floor: the scene itself where its floor is

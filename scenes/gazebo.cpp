@@ -58,7 +58,7 @@ class WorldReader {
     const std::string scene = add_piece(expanded.scene, {}) ? expanded.scene : "";
     for (const std::vector<std::string>& piece : expanded.pieces) add_piece(scene, piece);
     if (!scene_.lights.empty())
-      scene_.lights.push_back({.kind = Light::Kind::kAmbient, .colour = ambient_});
+      scene_.lights.push_back({.kind = Light::Kind::kAmbient, .color = ambient_});
     if (visuals_ < expanded.visuals)
       told_.tell(fmt::format("{}: {} of {} visuals could not be read", file_.string(),
                              expanded.visuals - visuals_, expanded.visuals));
@@ -230,7 +230,7 @@ class WorldReader {
     return part;
   }
 
-  /// A texture of the visual's own takes the place of the mesh's materials; a mere colour is that
+  /// A texture of the visual's own takes the place of the mesh's materials; a mere color is that
   /// of what has no texture.
   static void dress(Scene& mesh, const Material& look) {
     for (Material& material : mesh.materials)
@@ -243,11 +243,11 @@ class WorldReader {
   }
 
   Material look_of(const sdf::Visual& visual) {
-    Material look{.name = "colour", .texture = {}};
+    Material look{.name = "color", .texture = {}};
     float opacity = 1.0F - std::clamp(visual.Transparency(), 0.0F, 1.0F);
     if (const sdf::Material* material = visual.Material()) {
       const auto c = material->Diffuse();
-      look.base_colour = {level_of(c.R()), level_of(c.G()), level_of(c.B())};
+      look.base_color = {level_of(c.R()), level_of(c.G()), level_of(c.B())};
       opacity *= std::clamp(c.A(), 0.0F, 1.0F);
       const auto e = material->Emissive();
       look.emission = Eigen::Vector3f(e.R(), e.G(), e.B()).cwiseMax(0.0F);
@@ -258,7 +258,7 @@ class WorldReader {
     // As for materials of meshes: alpha 0 is more often a mistake than something invisible.
     if (opacity > 0.0F && opacity <= 0.5F) {
       const Eigen::Vector3f tint =
-          Eigen::Vector3f(look.base_colour.r, look.base_colour.g, look.base_colour.b) / 255.0F;
+          Eigen::Vector3f(look.base_color.r, look.base_color.g, look.base_color.b) / 255.0F;
       look.transmission = Eigen::Vector3f::Constant(1.0F - opacity) + opacity * tint;
     }
     return look;
@@ -266,9 +266,9 @@ class WorldReader {
 
   void put_texture(const fs::path& file, Material& look) {
     const PictureIn picture = pictures_.read(file);
-    if (picture.colour.empty())
+    if (picture.color.empty())
       told_.tell(fmt::format("{}: texture {} {}", file_.string(), file.string(), picture.fault));
-    look.texture = picture.colour;
+    look.texture = picture.color;
     look.opacity = picture.opacity;
   }
 

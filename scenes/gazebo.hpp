@@ -10,8 +10,8 @@
 namespace mh {
 
 /// Reads a Gazebo world or model (SDF), through libsdformat: what its visuals show, which are mesh
-/// files, boxes, capsules, cylinders, ellipsoids, planes and spheres, with their colors and textures
-/// (PBR's albedo maps, Ogre scripts). Each top-level model is an object; its class, and
+/// files, boxes, capsules, cylinders, ellipsoids, planes and spheres, with their colors and
+/// textures (PBR's albedo maps, Ogre scripts). Each top-level model is an object; its class, and
 /// that of a mesh's parts where the model's own name tells none, comes from labels.yaml beside the
 /// world or from names (see LabelRules and load_mesh).
 ///

@@ -14,7 +14,7 @@ namespace {
 
 void add_lamp_light(const ItemPlan& item, Scene& scene) {
   if (!item.kind->bulb || !item.glow) return;
-  Light light{.kind = Light::Kind::kSphere, .colour = *item.glow};
+  Light light{.kind = Light::Kind::kSphere, .color = *item.glow};
   light.position_m = item.position_m.cast<float>();
   light.position_m.z() += *item.kind->bulb * static_cast<float>(item.size_m.z());
   light.radius_m = item.kind->mount == Mount::kCeiling ? 0.06F : 0.03F;

@@ -65,7 +65,7 @@ Rgb8 read_tone(const YamlReader& yaml) {
           static_cast<std::uint8_t>(n[2])};
 }
 
-Eigen::Vector3f read_light_colour(const YamlReader& yaml) {
+Eigen::Vector3f read_light_color(const YamlReader& yaml) {
   const std::vector<double> n = yaml.as_numbers(3);
   for (const double v : n)
     if (v < 0) yaml.fail(fmt::format("{} is negative; light cannot be", v));
@@ -361,7 +361,7 @@ ItemPlan read_item(YamlReader yaml, const HousePlan& house, std::size_t room,
   read_item_materials(yaml, materials, item);
   if (const auto glow = yaml.find("glow")) {
     if (!item.kind->bulb) glow->fail(fmt::format("a {} gives no light", item.kind->name));
-    item.glow = read_light_colour(*glow);
+    item.glow = read_light_color(*glow);
   }
   yaml.finish();
   return item;
@@ -426,11 +426,11 @@ void read_lights(YamlReader yaml, HousePlan& house) {
     if (way.norm() < 1e-6 || way.z() >= 0) direction.fail("must point downwards");
     house.sun = Light{.kind = Light::Kind::kSun,
                       .direction = way.normalized().cast<float>(),
-                      .colour = read_light_colour(sun->at("colour"))};
+                      .color = read_light_color(sun->at("color"))};
     sun->finish();
   }
   if (auto sky = yaml.find("sky")) {
-    house.sky = Light{.kind = Light::Kind::kSky, .colour = read_light_colour(sky->at("colour"))};
+    house.sky = Light{.kind = Light::Kind::kSky, .color = read_light_color(sky->at("color"))};
     sky->finish();
   }
   yaml.finish();
@@ -495,9 +495,9 @@ HousePlan read_house_plan(YamlReader yaml) {
   const YamlReader extent = yaml.at("extent_m");
   house.extent = read_rect(extent);
   constexpr double kMost_m = 500;
-  for (const double metres : {house.extent.x1 - house.extent.x0, house.extent.y1 - house.extent.y0})
-    if (metres > kMost_m)
-      extent.fail(fmt::format("is {} m long; {} m is the most", metres, kMost_m));
+  for (const double meters : {house.extent.x1 - house.extent.x0, house.extent.y1 - house.extent.y0})
+    if (meters > kMost_m)
+      extent.fail(fmt::format("is {} m long; {} m is the most", meters, kMost_m));
   house.height_m = yaml.number("height_m", 2.0, 10.0);
   house.wall_m = yaml.number("wall_thickness_m", 0.02, 1.0);
   house.detail = yaml.number_or("detail", house.detail, 0.5, 8.0);

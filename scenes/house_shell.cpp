@@ -140,9 +140,7 @@ void build_room(const HousePlan& house, std::size_t index, MaterialId trim, Mesh
     x_stops = {static_cast<float>(room.cut->x0), static_cast<float>(room.cut->x1)};
     y_stops = {static_cast<float>(room.cut->y0), static_cast<float>(room.cut->y1)};
   }
-  const auto missing = [&](float x, float y) {
-    return room.cut && room.cut->contains({x, y});
-  };
+  const auto missing = [&](float x, float y) { return room.cut && room.cut->contains({x, y}); };
   mesh.begin_instance(room.name + "/floor", class_id("floor"));
   mesh.panel(mesh.material(room.floor), Vector3f::Zero(), Vector3f::UnitX(), Vector3f::UnitY(),
              breaks(x0, x1, fine, x_stops), breaks(y0, y1, fine, y_stops), missing);
@@ -336,12 +334,12 @@ void build_garden(const HousePlan& house, const GardenPlan& garden, MeshBuilder&
     const MaterialId id =
         sunlit ? mesh.material(spec) : mesh.material(spec, glow * Vector3f(0.85F, 1.0F, 1.0F));
     const std::uint8_t tone = sunlit ? 124 : 146;
-    mesh.scene().materials[id].base_colour = {tone, tone, tone};
+    mesh.scene().materials[id].base_color = {tone, tone, tone};
     return id;
   };
   const MaterialId lawn = mesh.material(
       {.name = "lawn", .kind = "carpet", .tone = {96, 118, 66}, .variation = 0.6, .seed = 98});
-  mesh.scene().materials[lawn].base_colour = {88, 88, 88};
+  mesh.scene().materials[lawn].base_color = {88, 88, 88};
   mesh.resume_instance(0);
   FloorRect far{x0, y0, x1, y1};
   for (const Side side : kSides) {

@@ -296,13 +296,13 @@ void MeshBuilder::panel(MaterialId material, const Vector3f& origin, const Vecto
       }
 }
 
-void MeshBuilder::disc(MaterialId material, const Vector3f& centre,
+void MeshBuilder::disc(MaterialId material, const Vector3f& center,
                        const std::vector<Vector3f>& ring, bool flip) {
   const auto [a, b] = across((ring[1] - ring[0]).cross(ring[2] - ring[1]).normalized());
-  const auto uv = [a = a, b = b, &centre](const Vector3f& p) {
-    return Vector2f((p - centre).dot(a), (p - centre).dot(b));
+  const auto uv = [a = a, b = b, &center](const Vector3f& p) {
+    return Vector2f((p - center).dot(a), (p - center).dot(b));
   };
-  const std::uint32_t middle = vertex(material, centre, {0, 0});
+  const std::uint32_t middle = vertex(material, center, {0, 0});
   std::vector<std::uint32_t> rim;
   for (const Vector3f& p : ring) rim.push_back(vertex(material, p, uv(p)));
   for (std::size_t k = 0; k < ring.size(); ++k) {
@@ -343,7 +343,7 @@ void MeshBuilder::cylinder(MaterialId material, const Vector3f& a, const Vector3
   }
 }
 
-void MeshBuilder::lathe(MaterialId material, const Vector3f& centre,
+void MeshBuilder::lathe(MaterialId material, const Vector3f& center,
                         std::span<const Vector2f> profile, int sides) {
   float widest = 0.0F;
   for (const Vector2f& p : profile) widest = std::max(widest, p.x());
@@ -355,7 +355,7 @@ void MeshBuilder::lathe(MaterialId material, const Vector3f& centre,
       const Vector2f c = on_circle(k, sides) * profile[j].x();
       const float round = kTau * widest * static_cast<float>(k) / static_cast<float>(sides);
       grid.push_back(
-          vertex(material, centre + Vector3f(c.x(), c.y(), profile[j].y()), {round, -way}));
+          vertex(material, center + Vector3f(c.x(), c.y(), profile[j].y()), {round, -way}));
     }
   }
   grid_faces(material, grid, sides, static_cast<int>(profile.size()) - 1, false);
@@ -429,7 +429,7 @@ void MeshBuilder::tube(MaterialId material, std::span<const Vector3f> points,
   if (radii_m.back() > 1e-4F) disc(material, points.back(), last_ring, false);
 }
 
-void MeshBuilder::cushion(MaterialId material, const Vector3f& centre, const Vector3f& size_m,
+void MeshBuilder::cushion(MaterialId material, const Vector3f& center, const Vector3f& size_m,
                           float radius_m, float bulge_m, float edge_m) {
   const Vector3f half = 0.5F * size_m;
   const float radius = std::min(radius_m, half.minCoeff());
@@ -456,7 +456,7 @@ void MeshBuilder::cushion(MaterialId material, const Vector3f& centre, const Vec
     if (out.norm() < 1e-6F) p = cube;
     const Vector3f share = p.cwiseQuotient(half);
     p.z() += bulge_m * share.z() * (1.0F - share.x() * share.x()) * (1.0F - share.y() * share.y());
-    const std::uint32_t id = vertex(material, centre + p, soft_uv(p + centre));
+    const std::uint32_t id = vertex(material, center + p, soft_uv(p + center));
     welded.emplace(i, id);
     return id;
   };

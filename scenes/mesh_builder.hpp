@@ -25,9 +25,9 @@ struct BoxStyle {
   int grain_axis = -1;     ///< 0, 1, 2: u (the grain of wood) runs along x, y, z; -1: the longest
 };
 
-/// Builds shapes into a Scene. Shapes are given in metres in the current frame (see push); their
-/// texture coordinates are kept in metres and divided by the material's tile when finished.
-/// Neighbouring faces of one shape share their points bit for bit, so that no ray slips between
+/// Builds shapes into a Scene. Shapes are given in meters in the current frame (see push); their
+/// texture coordinates are kept in meters and divided by the material's tile when finished.
+/// Neighboring faces of one shape share their points bit for bit, so that no ray slips between
 /// them. Faces wind counter-clockwise seen from outside.
 class MeshBuilder {
  public:
@@ -58,7 +58,7 @@ class MeshBuilder {
   void beam(MaterialId material, const Eigen::Vector3f& a, const Eigen::Vector3f& b, float width_m,
             float depth_m, const Eigen::Vector3f& side = {1, 0, 0});
   /// A flat parallelogram seen from the side where u runs right and v runs down; texture
-  /// coordinates start in `corner` (upper left) with uv0 and end with uv0 + uv_size, metres in the
+  /// coordinates start in `corner` (upper left) with uv0 and end with uv0 + uv_size, meters in the
   /// picture; without uv_size the parallelogram's own size, so that pictures appear once.
   void picture(MaterialId material, const Eigen::Vector3f& corner, const Eigen::Vector3f& right,
                const Eigen::Vector3f& down, const Eigen::Vector2f& uv0 = {0, 0},
@@ -69,12 +69,12 @@ class MeshBuilder {
              const Eigen::Vector3f& v_axis, std::span<const float> u_breaks,
              std::span<const float> v_breaks,
              const std::function<bool(float u, float v)>& leave_out = nullptr);
-  /// Round body between two centres (a cone if the radii differ); caps close it.
+  /// Round body between two centers (a cone if the radii differ); caps close it.
   void cylinder(MaterialId material, const Eigen::Vector3f& a, const Eigen::Vector3f& b,
                 float radius_a_m, float radius_b_m, int sides = 16, bool caps = true);
-  /// Revolves a profile of (radius, height) around the z axis through `centre`, listed so that
+  /// Revolves a profile of (radius, height) around the z axis through `center`, listed so that
   /// the outside lies to the right of its way (upwards: outwards).
-  void lathe(MaterialId material, const Eigen::Vector3f& centre,
+  void lathe(MaterialId material, const Eigen::Vector3f& center,
              std::span<const Eigen::Vector2f> profile, int sides = 24);
   /// A polygon in the xy plane (counter-clockwise, star-shaped about its mean) extruded in z.
   void prism(MaterialId material, std::span<const Eigen::Vector2f> outline, float z0_m, float z1_m);
@@ -84,7 +84,7 @@ class MeshBuilder {
   void tube(MaterialId material, std::span<const Eigen::Vector3f> points, float radius_m,
             int sides = 8);
   /// A soft box: edges rounded by radius_m, the top and bottom swollen by bulge_m.
-  void cushion(MaterialId material, const Eigen::Vector3f& centre, const Eigen::Vector3f& size_m,
+  void cushion(MaterialId material, const Eigen::Vector3f& center, const Eigen::Vector3f& size_m,
                float radius_m, float bulge_m = 0.0F, float edge_m = 0.07F);
   /// A surface point(s, t), s and t in [0, 1], with nu x nv cells; size_m is its size in texture.
   void sheet(MaterialId material, const std::function<Eigen::Vector3f(float, float)>& point, int nu,
@@ -106,7 +106,7 @@ class MeshBuilder {
                        const Eigen::Vector2f& uv);
   void triangle(MaterialId material, std::uint32_t a, std::uint32_t b, std::uint32_t c);
   void grid_faces(MaterialId material, const Grid& grid, int nu, int nv, bool flip);
-  void disc(MaterialId material, const Eigen::Vector3f& centre,
+  void disc(MaterialId material, const Eigen::Vector3f& center,
             const std::vector<Eigen::Vector3f>& ring, bool flip);
   int cells(float length_m) const;
 

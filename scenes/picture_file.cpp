@@ -84,9 +84,9 @@ const char* png_fault(std::string_view bytes) {
 
 /// Bytes of a decoded pixel, if the bytes are a JPEG or PNG.
 std::uint64_t bytes_per_pixel(std::string_view bytes) {
-  constexpr std::size_t kBits = 24, kColourType = 25;  // where a PNG tells them
-  if (bytes.starts_with("\xff\xd8") || bytes.size() <= kColourType) return 3;
-  const int type = bytes[kColourType];  // 0 grey, 2 colour, 3 palette; + 4 with opacity
+  constexpr std::size_t kBits = 24, kColorType = 25;  // where a PNG tells them
+  if (bytes.starts_with("\xff\xd8") || bytes.size() <= kColorType) return 3;
+  const int type = bytes[kColorType];  // 0 gray, 2 color, 3 palette; + 4 with opacity
   return (type == 0 ? 1U : type >= 4 ? 4U : 3U) * (bytes[kBits] == 16 ? 2U : 1U);
 }
 
@@ -139,7 +139,7 @@ std::string without_remarks(std::string_view bytes) {
 }
 
 bool claims_too_much(std::string_view bytes) {
-  // A picture of one colour: deflate grows by 1032, a JPEG's blocks of 256 pixels take a few bytes.
+  // A picture of one color: deflate grows by 1032, a JPEG's blocks of 256 pixels take a few bytes.
   constexpr std::uint64_t kMostPixels = 1U << 28, kMostPixelsPerByte = 2048, kMostBytes = 1U << 30;
   const auto size = announced_size(bytes);
   if (!size) return false;
@@ -149,9 +149,9 @@ bool claims_too_much(std::string_view bytes) {
 }
 
 cv::Mat decode_picture(std::string_view bytes, PictureForm form) {
-  const int flags = form == PictureForm::kStored   ? cv::IMREAD_UNCHANGED
-                    : form == PictureForm::kColour ? cv::IMREAD_COLOR
-                                                   : cv::IMREAD_GRAYSCALE;
+  const int flags = form == PictureForm::kStored  ? cv::IMREAD_UNCHANGED
+                    : form == PictureForm::kColor ? cv::IMREAD_COLOR
+                                                  : cv::IMREAD_GRAYSCALE;
   if (const char* fault = picture_fault(bytes)) throw InputError(fault);
   if (claims_too_much(bytes)) {
     const auto size = announced_size(bytes);
@@ -181,7 +181,7 @@ cv::Mat read_picture(const std::filesystem::path& file, PictureForm form) {
   }
 }
 
-std::optional<Grid2d<Rgb8>> decode_colour(std::string_view bytes) {
+std::optional<Grid2d<Rgb8>> decode_color(std::string_view bytes) {
   const cv::Mat bgr = decode(bytes);
   if (bgr.empty() || bgr.type() != CV_8UC3) return std::nullopt;
   Grid2d<Rgb8> picture(bgr.cols, bgr.rows);
@@ -190,12 +190,12 @@ std::optional<Grid2d<Rgb8>> decode_colour(std::string_view bytes) {
   return picture;
 }
 
-std::optional<Grid2d<std::uint16_t>> decode_grey16(std::string_view bytes) {
-  const cv::Mat grey = decode(bytes);
-  if (grey.empty() || (grey.type() != CV_8UC1 && grey.type() != CV_16UC1)) return std::nullopt;
-  Grid2d<std::uint16_t> picture(grey.cols, grey.rows);
-  cv::Mat out(grey.rows, grey.cols, CV_16UC1, picture.data());
-  grey.convertTo(out, CV_16U);
+std::optional<Grid2d<std::uint16_t>> decode_gray16(std::string_view bytes) {
+  const cv::Mat gray = decode(bytes);
+  if (gray.empty() || (gray.type() != CV_8UC1 && gray.type() != CV_16UC1)) return std::nullopt;
+  Grid2d<std::uint16_t> picture(gray.cols, gray.rows);
+  cv::Mat out(gray.rows, gray.cols, CV_16UC1, picture.data());
+  gray.convertTo(out, CV_16U);
   return picture;
 }
 
@@ -207,15 +207,15 @@ std::string encode_jpeg(const Grid2d<Rgb8>& picture, int quality) {
 }
 
 std::string encode_png(const Grid2d<std::uint16_t>& picture) {
-  const cv::Mat grey(picture.height(), picture.width(), CV_16UC1,
+  const cv::Mat gray(picture.height(), picture.width(), CV_16UC1,
                      const_cast<std::uint16_t*>(picture.data()));
-  return encode(".png", grey, {cv::IMWRITE_PNG_COMPRESSION, 3});
+  return encode(".png", gray, {cv::IMWRITE_PNG_COMPRESSION, 3});
 }
 
 std::string encode_png(const Grid2d<std::uint8_t>& picture) {
-  const cv::Mat grey(picture.height(), picture.width(), CV_8UC1,
+  const cv::Mat gray(picture.height(), picture.width(), CV_8UC1,
                      const_cast<std::uint8_t*>(picture.data()));
-  return encode(".png", grey, {cv::IMWRITE_PNG_COMPRESSION, 3});
+  return encode(".png", gray, {cv::IMWRITE_PNG_COMPRESSION, 3});
 }
 
 }  // namespace mh

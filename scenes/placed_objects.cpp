@@ -93,7 +93,7 @@ void append_part(Scene& scene, Scene part, const Eigen::Affine3d& scene_from_par
   const std::vector<InstanceId> renamed = enter_objects(scene, part, prefix);
 
   append_values(scene.uvs, before, part.uvs, count, Eigen::Vector2f::Zero().eval());
-  append_values(scene.colours, before, part.colours, count, Rgb8{255, 255, 255});
+  append_values(scene.colors, before, part.colors, count, Rgb8{255, 255, 255});
   append_values(scene.light, before, part.light, count, Eigen::Vector3f::Ones().eval());
   for (const Eigen::Vector3f& p : part.positions_m)
     scene.positions_m.push_back((scene_from_part * p.cast<double>()).cast<float>());

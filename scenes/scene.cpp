@@ -15,7 +15,7 @@
 namespace mh {
 namespace {
 
-/// Beyond, single precision holds no metre, and ray tracers give up.
+/// Beyond, single precision holds no meter, and ray tracers give up.
 constexpr float kFarthest_m = 1e7F;
 
 double polygon_area_m2(const std::vector<Eigen::Vector2d>& polygon_m) {
@@ -55,7 +55,7 @@ class Checker {
   void check_sizes() const {
     const std::size_t vertices = scene_.positions_m.size();
     if (!scene_.uvs.empty()) same_size(scene_.uvs.size(), vertices, "uvs");
-    if (!scene_.colours.empty()) same_size(scene_.colours.size(), vertices, "colours");
+    if (!scene_.colors.empty()) same_size(scene_.colors.size(), vertices, "colors");
     if (!scene_.light.empty()) same_size(scene_.light.size(), vertices, "light");
     const std::size_t faces = scene_.triangles.size();
     same_size(scene_.material_of.size(), faces, "material_of");
@@ -183,14 +183,14 @@ std::uint64_t digest(const Scene& scene) {
   Digest all;
   all.array(scene.positions_m);
   all.array(scene.uvs);
-  all.array(scene.colours);
+  all.array(scene.colors);
   all.array(scene.light);
   all.array(scene.triangles);
   all.array(scene.material_of);
   all.array(scene.class_of);
   all.array(scene.instance_of);
   for (const Material& material : scene.materials) {
-    all.value(material.base_colour);
+    all.value(material.base_color);
     all.value(material.texture.width());
     all.array(material.texture.data(), material.texture.size());
     all.vector(material.emission);
@@ -207,7 +207,7 @@ std::uint64_t digest(const Scene& scene) {
     all.vector(light.direction);
     all.value(light.radius_m);
     all.value(light.angular_radius_rad);
-    all.vector(light.colour);
+    all.vector(light.color);
   }
   return all.result();
 }

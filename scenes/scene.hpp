@@ -24,8 +24,8 @@ inline constexpr std::uint8_t kOpaqueFrom = 128;
 /// v grows downwards in the picture; the texture repeats.
 struct Material {
   std::string name;
-  Rgb8 base_colour{255, 255, 255};  ///< sRGB; multiplies the texture and the vertex colours
-  SharedGrid<Rgb8> texture;         ///< sRGB; empty = base_colour alone
+  Rgb8 base_color{255, 255, 255};  ///< sRGB; multiplies the texture and the vertex colors
+  SharedGrid<Rgb8> texture;        ///< sRGB; empty = base_color alone
   /// How opaque each texel is: what is below kOpaqueFrom is a hole. Empty = opaque; else as large
   /// as the texture.
   SharedGrid<std::uint8_t> opacity{};
@@ -49,14 +49,14 @@ struct Instance {
 struct Light {
   enum class Kind { kSun, kSphere, kSky, kAmbient };
   Kind kind = Kind::kSphere;
-  Eigen::Vector3f position_m = Eigen::Vector3f::Zero();  ///< sphere: centre
+  Eigen::Vector3f position_m = Eigen::Vector3f::Zero();  ///< sphere: center
   Eigen::Vector3f direction = {0.0F, 0.0F, -1.0F};       ///< sun: the way its light travels, unit
   float radius_m = 0.05F;                                ///< sphere: radius
   float angular_radius_rad = 0.00465F;                   ///< sun: half its apparent size
   /// Linear RGB. Sun: irradiance on a surface facing it; sky: radiance of rays that leave the
   /// scene; sphere: radiant intensity (irradiance at 1 m); ambient: irradiance / pi that reaches
   /// every surface, for want of anything better.
-  Eigen::Vector3f colour = Eigen::Vector3f::Ones();
+  Eigen::Vector3f color = Eigen::Vector3f::Ones();
 };
 
 struct Room {
@@ -80,14 +80,14 @@ struct Floor {
 };
 
 /// What there is to see: one indexed triangle mesh with a material, a class and an instance per
-/// face. World frame z up, metres. Faces are seen and lit from both sides.
+/// face. World frame z up, meters. Faces are seen and lit from both sides.
 struct Scene {
   std::string name;
 
-  // Per vertex. uvs and colours are empty where the source has none; all sizes match otherwise.
+  // Per vertex. uvs and colors are empty where the source has none; all sizes match otherwise.
   std::vector<Eigen::Vector3f> positions_m;
   std::vector<Eigen::Vector2f> uvs;
-  std::vector<Rgb8> colours;  ///< sRGB
+  std::vector<Rgb8> colors;  ///< sRGB
   /// Baked light, linear RGB: irradiance / pi, so that outgoing radiance = albedo * light.
   /// Empty = unlit: shown at full albedo.
   std::vector<Eigen::Vector3f> light;

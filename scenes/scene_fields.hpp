@@ -22,8 +22,8 @@ concept Either = std::same_as<std::remove_const_t<T>, U>;
 
 template <class Archive, Either<Material> T>
 void fields(Archive& archive, T& material) {
-  auto& [name, base_colour, texture, opacity, tile_m, emission, transmission] = material;
-  archive(name, base_colour, texture, opacity, tile_m, emission, transmission);
+  auto& [name, base_color, texture, opacity, tile_m, emission, transmission] = material;
+  archive(name, base_color, texture, opacity, tile_m, emission, transmission);
 }
 
 template <class Archive, Either<Instance> T>
@@ -34,8 +34,8 @@ void fields(Archive& archive, T& instance) {
 
 template <class Archive, Either<Light> T>
 void fields(Archive& archive, T& light) {
-  auto& [kind, position_m, direction, radius_m, angular_radius_rad, colour] = light;
-  archive(kind, position_m, direction, radius_m, angular_radius_rad, colour);
+  auto& [kind, position_m, direction, radius_m, angular_radius_rad, color] = light;
+  archive(kind, position_m, direction, radius_m, angular_radius_rad, color);
 }
 
 template <class Archive, Either<Room> T>
@@ -52,9 +52,9 @@ void fields(Archive& archive, T& floor) {
 
 template <class Archive, Either<Scene> T>
 void fields(Archive& archive, T& scene) {
-  auto& [name, positions_m, uvs, colours, light, triangles, material_of, class_of, instance_of,
+  auto& [name, positions_m, uvs, colors, light, triangles, material_of, class_of, instance_of,
          materials, instances, lights, rooms, floor] = scene;
-  archive(name, positions_m, uvs, colours, light, triangles, material_of, class_of, instance_of,
+  archive(name, positions_m, uvs, colors, light, triangles, material_of, class_of, instance_of,
           materials, instances, lights, rooms, floor);
 }
 

@@ -14,7 +14,7 @@ constexpr std::array kMeasures = {
     Measure{"ate_rmse_m", kLess, "m", ""},
     Measure{"rpe_frame_rmse_m", kLess, "m", ""},
     Measure{"restarts", kLess, "", ""},
-    Measure{"penalised", kLess, "", ""},
+    Measure{"penalized", kLess, "", ""},
     Measure{"dropped", kLess, "", ""},
     Measure{"held_out.success", kMore, "", "held_out.queries"},
     Measure{"held_out.correct", kMore, "", "held_out.queries"},

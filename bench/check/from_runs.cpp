@@ -40,10 +40,10 @@ std::string run_digest(const RunResult& run) {
 }
 
 /// Share of the pairs compared with the local map whose labels disagree: what labels are worth.
-std::optional<double> penalised(MatchCounts matches) {
+std::optional<double> penalized(MatchCounts matches) {
   const MatcherCounts& c = at(matches, Matcher::kLocalMap);
   if (c.compared == 0) return std::nullopt;
-  return static_cast<double>(c.penalised) / static_cast<double>(c.compared);
+  return static_cast<double>(c.penalized) / static_cast<double>(c.compared);
 }
 
 void add_queries(const std::string& set, const QuerySummary& s, RunFigures& figures) {
@@ -91,7 +91,7 @@ RunFigures figures(const RunResult& run) {
   values["ate_rmse_m"] = run.trajectory.ate_rmse_m;
   values["rpe_frame_rmse_m"] = run.trajectory.rpe_frame_rmse_m;
   values["restarts"] = run.mapping.restarts;
-  values["penalised"] = penalised(run.mapping.matches);
+  values["penalized"] = penalized(run.mapping.matches);
   values["dropped"] = static_cast<double>(run.mapping.dropped.size());
   if (!run.points.empty())
     for (const QuerySet set : kQuerySets)

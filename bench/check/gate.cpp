@@ -80,9 +80,9 @@ double standard_deviation(const std::vector<std::optional<double>>& values) {
   for (const auto& value : values)
     if (value) known.push_back(*value);
   if (known.size() < 2) return 0;
-  const double centre = mean(known);
+  const double center = mean(known);
   double sum = 0;
-  for (const double value : known) sum += (value - centre) * (value - centre);
+  for (const double value : known) sum += (value - center) * (value - center);
   return std::sqrt(sum / static_cast<double>(known.size() - 1));
 }
 

@@ -68,15 +68,14 @@ Baseline measure(const Suite& suite, const Options& of) {
   std::optional<TemporaryFolder> folder;
   if (!place) folder.emplace(fs::temp_directory_path());
   Progress progress("check");
-  const BenchOptions options{
-      .out = place ? place->path() : folder->path(),
-      .jobs = of.jobs,
-      .shard = {},
-      .cache = {},
-      .retry_failed = true,
-      .figures_alone = true,
-      .say = [&](std::string_view stage) { progress.say(stage); },
-      .progress = [&](const PoolProgress& p) { show(progress, p); }};
+  const BenchOptions options{.out = place ? place->path() : folder->path(),
+                             .jobs = of.jobs,
+                             .shard = {},
+                             .cache = {},
+                             .retry_failed = true,
+                             .figures_alone = true,
+                             .say = [&](std::string_view stage) { progress.say(stage); },
+                             .progress = [&](const PoolProgress& p) { show(progress, p); }};
   SuiteOverrides overrides;
   overrides.max_frames = of.frames;
   BenchResults results;

@@ -52,7 +52,7 @@ RpeDelta parse_delta(const std::string& text, bool all_pairs) {
   if (unit == "f")
     delta.unit = DeltaUnit::kFrames;
   else if (unit == "m")
-    delta.unit = DeltaUnit::kMetres;
+    delta.unit = DeltaUnit::kMeters;
   else if (unit == "s")
     delta.unit = DeltaUnit::kSeconds;
   else
@@ -170,7 +170,7 @@ void add_evaluate(CLI::App& app) {
                    "Step of the relative error: 30f (frames), 0.2m or 1s; one or more")
       ->expected(1, 100);
   command->add_flag("--all-pairs", options->all_pairs,
-                    "Steps of frames start at every pose (those of metres and seconds always do)");
+                    "Steps of frames start at every pose (those of meters and seconds always do)");
   command
       ->add_option("--max-difference", options->max_difference_s,
                    "Stamps (s) that are taken for one moment")

@@ -6,7 +6,7 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
-#include "bench/pictures/false_colours.hpp"
+#include "bench/pictures/false_colors.hpp"
 #include "robots/model/robot_keys.hpp"
 #include "scenes/furniture/furniture.hpp"
 #include "scenes/materials/materials.hpp"
@@ -71,7 +71,7 @@ std::string class_table() {
       "pictures of labels.\n\n| id | class | in NYU40 files | in COCO's 80 | color "
       "|\n|---|---|---|---|---|\n";
   for (const ClassInfo& info : classes()) {
-    const Rgb8 color = class_colour(info.id);
+    const Rgb8 color = class_color(info.id);
     text += fmt::format("| {} | {} | {} | {} | `#{:02x}{:02x}{:02x}` |\n", info.id, info.name,
                         info.nyu40, info.coco80 < 0 ? "-" : std::to_string(info.coco80), color.r,
                         color.g, color.b);

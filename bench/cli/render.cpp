@@ -158,7 +158,7 @@ void run(Options options) {
   const MountedCamera* const mounted = find_camera(options, robot);
   check_motion(motion);
   SensorConfig sensors;
-  sensors.depth_noise_on = sensors.colour_noise_on = false;
+  sensors.depth_noise_on = sensors.color_noise_on = false;
   if (!options.level.empty()) sensors = load_sensor_config(options.level);
   std::optional<Walk> walk;
   if (!options.walk.empty()) walk = load_walk(options.walk);

@@ -49,7 +49,8 @@ void run(const Options& options) {
                  },
              .status =
                  [&](std::string_view status) {
-                   // Frames follow each other faster than anybody reads; a new stage is told at once.
+                   // Frames follow each other faster than anybody reads; a new stage is told at
+                   // once.
                    constexpr auto kBetween = std::chrono::milliseconds(500);
                    const auto now = std::chrono::steady_clock::now();
                    const std::string begins(status.substr(0, status.find(' ')));

@@ -24,7 +24,7 @@
 #include "scenes/generate/generate.hpp"
 #include "scenes/generate/grammar.hpp"
 #include "scenes/house.hpp"
-#include "scenes/labelled.hpp"
+#include "scenes/labeled.hpp"
 #include "scenes/load.hpp"
 #include "scenes/mesh_io/labels_file.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
@@ -65,21 +65,21 @@ double slope_deg(const Floor& floor) {
 }
 
 /// How much has a class, and the most that has none.
-void print_labelled(const LabelledSurface& surface) {
+void print_labeled(const LabeledSurface& surface) {
   constexpr std::size_t kTold = 5;
-  fmt::print("  labelled   {:.1f} % of {:.1f} m2 of surface\n", 100 * surface.share(),
+  fmt::print("  labeled   {:.1f} % of {:.1f} m2 of surface\n", 100 * surface.share(),
              surface.area_m2);
-  for (std::size_t i = 0; i < std::min(kTold, surface.unlabelled.size()); ++i)
-    fmt::print("             {:>8.1f} m2 without a class: {}\n", surface.unlabelled[i].area_m2,
-               surface.unlabelled[i].pattern);
-  if (surface.unlabelled.size() > kTold)
-    fmt::print("             {} more: --suggest-labels\n", surface.unlabelled.size() - kTold);
+  for (std::size_t i = 0; i < std::min(kTold, surface.unlabeled.size()); ++i)
+    fmt::print("             {:>8.1f} m2 without a class: {}\n", surface.unlabeled[i].area_m2,
+               surface.unlabeled[i].pattern);
+  if (surface.unlabeled.size() > kTold)
+    fmt::print("             {} more: --suggest-labels\n", surface.unlabeled.size() - kTold);
 }
 
 void info(Options options) {
   resolve(options.scene, Shipped::kScene);
   const Scene scene = load(options.scene, options.frame);
-  const LabelledSurface surface = survey_labels(scene);
+  const LabeledSurface surface = survey_labels(scene);
   if (options.suggest_labels) {
     fmt::print("{}", suggested_labels(surface));
     return;
@@ -102,7 +102,7 @@ void info(Options options) {
                                          {"objects", scene.instances.size()},
                                          {"classes", by_class},
                                          {"surface_m2", surface.area_m2},
-                                         {"labelled_share", surface.share()},
+                                         {"labeled_share", surface.share()},
                                          {"digest", hex(digest(scene))}};
     fmt::print("{}\n", json.dump(2));
     return;
@@ -122,7 +122,7 @@ void info(Options options) {
              counted(objects.size(), "class", "classes"));
   for (const auto& [id, count] : objects)
     fmt::print("             {:>4}  {}\n", count, classes()[id].name);
-  print_labelled(surface);
+  print_labeled(surface);
   fmt::print("  digest     {}\n", hex(digest(scene)));
 }
 

@@ -26,7 +26,7 @@ struct SceneFrameOption {
         ->check(CLI::IsMember({"y", "z"}));
     command
         .add_option("--floor-z", floor_z_m,
-                    "Height of the scene's floor in metres; without: it is looked for")
+                    "Height of the scene's floor in meters; without: it is looked for")
         ->check(number_between(-kFarthestFloor_m, kFarthestFloor_m));
   }
   SceneFrame frame() const {

@@ -49,12 +49,12 @@ std::vector<std::string> names_of(const Options& options) {
   return names;
 }
 
-cv::Mat grey_of(const Grid2d<Rgb8>& colour) {
+cv::Mat gray_of(const Grid2d<Rgb8>& color) {
   // cv::Mat does not write through this view.
-  const cv::Mat rgb(colour.height(), colour.width(), CV_8UC3, const_cast<Rgb8*>(colour.data()));
-  cv::Mat grey;
-  cv::cvtColor(rgb, grey, cv::COLOR_RGB2GRAY);
-  return grey;
+  const cv::Mat rgb(color.height(), color.width(), CV_8UC3, const_cast<Rgb8*>(color.data()));
+  cv::Mat gray;
+  cv::cvtColor(rgb, gray, cv::COLOR_RGB2GRAY);
+  return gray;
 }
 
 /// Moments of a scan of it by hand, evenly over its length, as the level's sensors see them.
@@ -75,8 +75,7 @@ MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const O
     const auto from = scan.begin() + static_cast<std::ptrdiff_t>(first);
     const SimulatedSequence moment(renderer, robot.camera, Trajectory(from, from + 2 * kAround + 1),
                                    sensors, LabelMode::kNone);
-    place.frames.push_back(
-        measure_image(grey_of(moment.at(kAround, RandomStream(k)).frame.colour)));
+    place.frames.push_back(measure_image(gray_of(moment.at(kAround, RandomStream(k)).frame.color)));
   }
   return place;
 }
@@ -84,7 +83,7 @@ MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const O
 MeasuredPlace measure_recording(const fs::path& folder) {
   MeasuredPlace place{.name = folder.string(), .frames = {}};
   for (const RecordedFrame& frame : load_tum_folder(folder)) {
-    place.frames.push_back(measure_image(read_picture(frame.colour, PictureForm::kGrey)));
+    place.frames.push_back(measure_image(read_picture(frame.color, PictureForm::kGray)));
   }
   return place;
 }

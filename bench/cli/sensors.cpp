@@ -43,14 +43,14 @@ void plot(const Options& options) {
 void sheet(Options options) {
   resolve(options.scene, Shipped::kScene);
   const OutputFolder folder(options.out, "sensors sheet",
-                            {"colour.png", "depth.png", "frames.png", "labels.png"});
+                            {"color.png", "depth.png", "frames.png", "labels.png"});
   Progress light("light");
   const Scene scene = load_lit_scene(options.scene, 2, Cache(), {}, nullptr, {},
                                      [&](double share) { light.share(share); });
   light.end();
   const SensorSheets sheets = draw_sensor_sheets(scene, make_scene_renderer(scene));
   for (const auto& [name, picture] :
-       {std::pair("colour.png", sheets.colour), std::pair("depth.png", sheets.depth),
+       {std::pair("color.png", sheets.color), std::pair("depth.png", sheets.depth),
         std::pair("frames.png", sheets.frames), std::pair("labels.png", sheets.labels)}) {
     const fs::path file = fs::path(options.out) / name;
     write_picture(file, picture);

@@ -152,7 +152,7 @@ void add_vocabulary(CLI::App& app) {
   frames->needs(settings);
   i->add_option("--every", options->score.every, "Every n-th frame only")
       ->check(CLI::Range(1, 1000000));
-  i->add_option("--overlap", options->score.min_overlap, "Share of a view that its neighbours see")
+  i->add_option("--overlap", options->score.min_overlap, "Share of a view that its neighbors see")
       ->check(number_between(0.01, 1.0));
   i->footer(
       "Example:\n  modelhouse vocabulary info vocabulary --frames tum:out/sequence "

@@ -54,7 +54,7 @@ std::vector<Eigen::Vector3d> positions(const Trajectory& trajectory) {
   return result;
 }
 
-Eigen::Vector3d centre_of(std::span<const Eigen::Vector3d> points) {
+Eigen::Vector3d center_of(std::span<const Eigen::Vector3d> points) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& point : points) sum += point;
   return sum / static_cast<double>(points.size());
@@ -81,14 +81,14 @@ std::optional<Similarity> umeyama(std::span<const Eigen::Vector3d> source,
   assert(source.size() == target.size());
   if (source.empty()) return std::nullopt;
   const auto count = static_cast<double>(source.size());
-  const Eigen::Vector3d source_centre = centre_of(source);  // (34)
-  const Eigen::Vector3d target_centre = centre_of(target);  // (35)
+  const Eigen::Vector3d source_center = center_of(source);  // (34)
+  const Eigen::Vector3d target_center = center_of(target);  // (35)
   double source_variance = 0;                               // (36)
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();     // (38)
   for (std::size_t i = 0; i < source.size(); ++i) {
-    const Eigen::Vector3d s = source[i] - source_centre;
+    const Eigen::Vector3d s = source[i] - source_center;
     source_variance += s.squaredNorm() / count;
-    covariance += (target[i] - target_centre) * s.transpose() / count;
+    covariance += (target[i] - target_center) * s.transpose() / count;
   }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -102,7 +102,7 @@ std::optional<Similarity> umeyama(std::span<const Eigen::Vector3d> source,
   Similarity result;
   result.rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();          // (40)
   if (with_scale) result.scale = values.dot(sign) / source_variance;                        // (42)
-  result.translation_m = target_centre - result.scale * (result.rotation * source_centre);  // (41)
+  result.translation_m = target_center - result.scale * (result.rotation * source_center);  // (41)
   return result;
 }
 

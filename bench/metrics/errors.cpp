@@ -21,11 +21,11 @@ double step_length_m(const Trajectory& trajectory, std::size_t i) {
       .norm();
 }
 
-/// How far along each pose lies, in the delta's unit (metres or seconds), from the first one.
+/// How far along each pose lies, in the delta's unit (meters or seconds), from the first one.
 std::vector<double> progress(const Trajectory& trajectory, DeltaUnit unit) {
   std::vector<double> along(trajectory.size(), 0.0);
   for (std::size_t i = 1; i < trajectory.size(); ++i)
-    along[i] = unit == DeltaUnit::kMetres
+    along[i] = unit == DeltaUnit::kMeters
                    ? along[i - 1] + step_length_m(trajectory, i)
                    : static_cast<double>(trajectory[i].stamp_ns - trajectory[0].stamp_ns) * 1e-9;
   return along;

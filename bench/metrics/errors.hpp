@@ -40,7 +40,7 @@ ErrorStatistics ape_rotation(const Trajectory& truth, const Trajectory& estimate
 
 enum class DeltaUnit {
   kFrames,   ///< matched poses, however far apart in time
-  kMetres,   ///< length of the estimate's path between the poses
+  kMeters,   ///< length of the estimate's path between the poses
   kSeconds,  ///< by the estimate's stamps
 };
 
@@ -49,13 +49,13 @@ struct RpeDelta {
   double value = 1;  ///< > 0; a whole number for frames
   DeltaUnit unit = DeltaUnit::kFrames;
   /// Every pose starts a pair, or (frames only) each pair starts where the last one ended: 0 and
-  /// delta, delta and 2 delta, ... Metres and seconds always use all pairs.
+  /// delta, delta and 2 delta, ... Meters and seconds always use all pairs.
   bool all_pairs = false;
-  /// Metres and seconds: a start counts if some later pose lies within this share of the delta.
+  /// Meters and seconds: a start counts if some later pose lies within this share of the delta.
   double tolerance = 0.1;
 };
 
-/// Index pairs (start, end), ordered by start. For metres and seconds the end is the later pose
+/// Index pairs (start, end), ordered by start. For meters and seconds the end is the later pose
 /// whose path length or time from the start is nearest to the delta, the earlier of equals.
 /// @throws InputError if the value is not positive, or for frames not whole.
 std::vector<std::pair<std::size_t, std::size_t>> delta_pairs(const Trajectory& estimate,

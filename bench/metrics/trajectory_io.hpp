@@ -10,7 +10,7 @@ namespace mh {
 
 /// TUM RGB-D trajectory text: one pose per line, `stamp tx ty tz qx qy qz qw` (s, m, camera to
 /// world), '#' begins a comment. Stamps are read exactly, digit by digit, to nanoseconds;
-/// quaternions are normalised.
+/// quaternions are normalized.
 /// @throws InputError "file:line: place: value" on a wrong count of numbers, a number that is none
 /// or not finite, a negative stamp, a quaternion whose norm is more than 0.1 from 1, a stamp that
 /// does not increase, or a file without poses.

@@ -18,7 +18,7 @@ const RgbdFrame kFrame = testing::frame_of(kImage);
 const FeatureConfig kConfig;
 
 std::vector<PyramidLevel> pyramid() {
-  return make_pyramid(kFrame.colour, kConfig, 2 * kPatchReach_px + 1);
+  return make_pyramid(kFrame.color, kConfig, 2 * kPatchReach_px + 1);
 }
 
 void opencv_orb(benchmark::State& state) {

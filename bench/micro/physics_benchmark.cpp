@@ -95,7 +95,7 @@ int main(int argc, char** argv) {
   std::vector<Eigen::Vector2d> starts;
   for (int y = 0; y < region.height(); ++y)
     for (int x = 0; x < region.width(); ++x)
-      if (region(x, y) != 0) starts.push_back(grid.centre_of({x, y}));
+      if (region(x, y) != 0) starts.push_back(grid.center_of({x, y}));
   if (starts.empty()) {
     fmt::print(stderr, "the robot fits nowhere\n");
     return 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Agreement of the ray tracer and the rasteriser over random views of five scenes, beside the
+// Agreement of the ray tracer and the rasterizer over random views of five scenes, beside the
 // limits that docs/rendering.md states. Usage: render_agreement [--portable] [views per scene]
 #include <algorithm>
 #include <cstdlib>
@@ -49,10 +49,10 @@ std::vector<Scene> five_scenes() {
 
 void print(std::string_view name, const Agreement& a) {
   fmt::print(
-      "{:<24} class {:.4f} %  instance {:.4f} % + {:.4f} % ties  colour {:.3f} %  depth {:.2e} m "
+      "{:<24} class {:.4f} %  instance {:.4f} % + {:.4f} % ties  color {:.3f} %  depth {:.2e} m "
       "({:.1f} % of pixels outside silhouettes)\n",
       name, 100 * a.class_share(), 100 * a.instance_share(), 100 * a.tie_share(),
-      100 * a.colour_share(), a.depth_rmse_m(),
+      100 * a.color_share(), a.depth_rmse_m(),
       100.0 * static_cast<double>(a.smooth) / static_cast<double>(a.pixels));
 }
 
@@ -74,8 +74,8 @@ int run(bool portable, int views) {
   print("all", all);
   const bool good = all.class_share() >= 0.9999 &&
                     all.instance_share() + all.tie_share() >= 0.9999 &&
-                    all.colour_share() >= 0.995 && all.depth_rmse_m() <= 1e-4;
-  fmt::print("wanted: class and instance (ties apart) 99.99 %, colour 99.5 %, depth 1e-4 m: {}\n",
+                    all.color_share() >= 0.995 && all.depth_rmse_m() <= 1e-4;
+  fmt::print("wanted: class and instance (ties apart) 99.99 %, color 99.5 %, depth 1e-4 m: {}\n",
              good ? "good" : "MISSED");
   return good ? 0 : 1;
 }

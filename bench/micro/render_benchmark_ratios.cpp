@@ -120,8 +120,8 @@ Scene without_textures(Scene scene) {
   scene.uvs.clear();
   const RandomStream stream(3);
   for (std::size_t v = 0; v < scene.positions_m.size(); ++v) {
-    const auto grey = static_cast<std::uint8_t>(stream.below(v, 256));
-    scene.colours.push_back({grey, static_cast<std::uint8_t>(255 - grey), 128});
+    const auto gray = static_cast<std::uint8_t>(stream.below(v, 256));
+    scene.colors.push_back({gray, static_cast<std::uint8_t>(255 - gray), 128});
   }
   for (Material& material : scene.materials) material.texture = {};
   return scene;
@@ -142,11 +142,11 @@ int run(bool portable, int repeats) {
   std::vector<Contestant> contestants = {
       {"trace only", [&](const SE3& pose) { tracer.trace(camera, pose, false); }},
       {"trace only, one ray at a time", [&](const SE3& pose) { tracer.trace(camera, pose, true); }},
-      picture("vertex colours", make(without_textures(room), 1, Antialiasing::kNone)),
+      picture("vertex colors", make(without_textures(room), 1, Antialiasing::kNone)),
       picture("textured", make(room, 1, Antialiasing::kNone)),
       picture("textured, edges smoothed", make(room, 1, Antialiasing::kEdges)),
       picture("textured, 2 x 2 supersampled", make(room, 1, Antialiasing::kSupersample)),
-      picture("vertex colours, 2 threads", make(without_textures(room), 2, Antialiasing::kNone)),
+      picture("vertex colors, 2 threads", make(without_textures(room), 2, Antialiasing::kNone)),
       picture("textured, 2 threads", make(room, 2, Antialiasing::kNone)),
       picture("ten times the triangles, textured",
               make(BenchmarkRoom::tenfold(), 1, Antialiasing::kNone)),
@@ -154,7 +154,7 @@ int run(bool portable, int repeats) {
   bool osmesa = true;
   try {
     contestants.push_back(
-        picture("OSMesa, vertex colours", make_osmesa_renderer(without_textures(room))));
+        picture("OSMesa, vertex colors", make_osmesa_renderer(without_textures(room))));
     contestants.push_back(picture("OSMesa, textured", make_osmesa_renderer(room)));
   } catch (const MachineError& error) {
     fmt::print("{}\n", error.what());
@@ -165,11 +165,11 @@ int run(bool portable, int repeats) {
   race(contestants, repeats);
 
   const auto ms = [&](std::size_t i) { return contestants[i].median(&Cost::thread_ms); };
-  const double trace = ms(0), each = ms(1), colour = ms(2), textured = ms(3);
-  print_ratio("vertex colours, full output : trace only", colour / trace, "<=", 1.3);
+  const double trace = ms(0), each = ms(1), color = ms(2), textured = ms(3);
+  print_ratio("vertex colors, full output : trace only", color / trace, "<=", 1.3);
   print_ratio("textured and lit, full output : trace only", textured / trace, "<=", 2.0);
   print_ratio("edges smoothed : not", ms(4) / textured, "<=", 1.5);
-  print_ratio("one ray at a time + same shading : vertex colours", (each + colour - trace) / colour,
+  print_ratio("one ray at a time + same shading : vertex colors", (each + color - trace) / color,
               ">=", portable ? 3.0 : 4.0);
   print_ratio("one ray at a time + same shading : textured", (each + textured - trace) / textured,
               ">=", portable ? 3.0 : 4.0);
@@ -181,7 +181,7 @@ int run(bool portable, int repeats) {
       print_ratio(what, ratio(&Cost::wall_ms), ">=", portable ? 5.0 : 8.0);
       fmt::print("{:<66} {:6.2f}\n", "  the same in work of all threads", ratio(&Cost::process_ms));
     };
-    against_osmesa("OSMesa : vertex colours, 2 threads each, time on the wall", 9, 6);
+    against_osmesa("OSMesa : vertex colors, 2 threads each, time on the wall", 9, 6);
     against_osmesa("OSMesa : textured, 2 threads each, time on the wall", 10, 7);
   }
   print_ratio("ten times the triangles : textured", ms(8) / textured, "<=", 2.5);

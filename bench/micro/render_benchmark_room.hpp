@@ -46,8 +46,8 @@ class BenchmarkRoom {
       for (int y = 0; y < 1024; ++y)
         for (int x = 0; x < 1024; ++x) {
           const std::uint64_t block = static_cast<std::uint64_t>(y / 2 * 512 + x / 2);
-          const auto grey = static_cast<std::uint8_t>(stream.fork(m).below(block, 256));
-          texture(x, y) = {grey, static_cast<std::uint8_t>(255 - grey), 128};
+          const auto gray = static_cast<std::uint8_t>(stream.fork(m).below(block, 256));
+          texture(x, y) = {gray, static_cast<std::uint8_t>(255 - gray), 128};
         }
       material.texture = std::move(texture);
       scene_.materials.push_back(material);

@@ -25,7 +25,7 @@ Scene wavy_floor(std::uint32_t n) {
     for (std::uint32_t i = 0; i <= n; ++i) {
       const float x = 0.01F * static_cast<float>(i), y = 0.01F * static_cast<float>(j);
       scene.positions_m.emplace_back(x, y, 0.02F * std::sin(9.0F * x) * std::cos(7.0F * y));
-      scene.colours.push_back({static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), 90});
+      scene.colors.push_back({static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), 90});
     }
   const std::uint32_t tiles = (n + 49) / 50;
   for (std::uint32_t t = 0; t < tiles * tiles; ++t)

@@ -35,7 +35,7 @@ Trajectory turning(double rad_per_s) {
 
 SensorConfig nothing() {
   SensorConfig config;
-  config.depth_noise_on = config.colour_noise_on = false;
+  config.depth_noise_on = config.color_noise_on = false;
   return config;
 }
 
@@ -71,8 +71,8 @@ BENCHMARK_CAPTURE(sensing, depth_noise, [](SensorConfig& c) {
 BENCHMARK_CAPTURE(sensing, depth_noise_with_shadow, [](SensorConfig& c) {
   c.depth_noise_on = c.depth_noise.projector_shadow = true;
 })->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(sensing, grey_noise, [](SensorConfig& c) {
-  c.colour_noise_on = true;
+BENCHMARK_CAPTURE(sensing, gray_noise, [](SensorConfig& c) {
+  c.color_noise_on = true;
 })->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(sensing, shot_noise, [](SensorConfig& c) {
   c.shot_noise_on = true;

@@ -83,17 +83,17 @@ void run(const Options& options) {
   std::size_t tracked = 0, keyframes = 0, loops = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const RgbdFrame frame = read_frame(frames[i], camera);
-    const cv::Mat colour(frame.colour.height(), frame.colour.width(), CV_8UC3,
-                         const_cast<Rgb8*>(frame.colour.data()));
-    // Grey in advance: what cv::ORB would spend on it is not held against us.
-    cv::Mat grey;
-    cv::cvtColor(colour, grey, cv::COLOR_RGB2GRAY);
+    const cv::Mat color(frame.color.height(), frame.color.width(), CV_8UC3,
+                        const_cast<Rgb8*>(frame.color.data()));
+    // Gray in advance: what cv::ORB would spend on it is not held against us.
+    cv::Mat gray;
+    cv::cvtColor(color, gray, cv::COLOR_RGB2GRAY);
     std::vector<cv::KeyPoint> keypoints;
     cv::Mat descriptors;
     const RandomStream stream = RandomStream(0).fork(i);
     Tracker tracker = state.tracker;
     time_into(times.orb,
-              [&] { orb->detectAndCompute(grey, cv::noArray(), keypoints, descriptors); });
+              [&] { orb->detectAndCompute(gray, cv::noArray(), keypoints, descriptors); });
     time_into(times.extraction,
               [&] { static_cast<void>(extract(frame, state.camera, config.features)); });
     // Tracking alone is localisation in the map as it stands: step() does the same and then maps.

@@ -48,35 +48,35 @@ Canvas::Canvas(int width_px, int height_px, Rgb8 background)
       height_(height_px),
       large_(height_px * kZoom, width_px * kZoom, CV_8UC3, bgr(background)) {}
 
-void Canvas::fill(double x, double y, double width, double height, Rgb8 colour) {
-  // Edges are rounded, not the size: neighbouring cells of a grid leave no gap.
+void Canvas::fill(double x, double y, double width, double height, Rgb8 color) {
+  // Edges are rounded, not the size: neighboring cells of a grid leave no gap.
   const auto edge = [](double v) { return static_cast<int>(std::lround(v * kZoom)); };
   const cv::Rect rect(cv::Point(edge(x), edge(y)), cv::Point(edge(x + width), edge(y + height)));
   const cv::Rect inside = rect & cv::Rect(0, 0, large_.cols, large_.rows);
-  if (inside.area() > 0) large_(inside).setTo(bgr(colour));
+  if (inside.area() > 0) large_(inside).setTo(bgr(color));
 }
 
-void Canvas::line(cv::Point2d from, cv::Point2d to, Rgb8 colour, double thickness) {
-  cv::line(large_, fixed(from), fixed(to), bgr(colour), stroke(thickness), cv::LINE_AA,
+void Canvas::line(cv::Point2d from, cv::Point2d to, Rgb8 color, double thickness) {
+  cv::line(large_, fixed(from), fixed(to), bgr(color), stroke(thickness), cv::LINE_AA,
            kFractionBits);
 }
 
-void Canvas::ring(cv::Point2d centre, double radius, Rgb8 colour, double thickness) {
-  cv::circle(large_, fixed(centre),
-             static_cast<int>(std::lround(radius * kZoom * (1 << kFractionBits))), bgr(colour),
+void Canvas::ring(cv::Point2d center, double radius, Rgb8 color, double thickness) {
+  cv::circle(large_, fixed(center),
+             static_cast<int>(std::lround(radius * kZoom * (1 << kFractionBits))), bgr(color),
              stroke(thickness), cv::LINE_AA, kFractionBits);
 }
 
-void Canvas::disc(cv::Point2d centre, double radius, Rgb8 colour) {
-  cv::circle(large_, fixed(centre),
-             static_cast<int>(std::lround(radius * kZoom * (1 << kFractionBits))), bgr(colour),
+void Canvas::disc(cv::Point2d center, double radius, Rgb8 color) {
+  cv::circle(large_, fixed(center),
+             static_cast<int>(std::lround(radius * kZoom * (1 << kFractionBits))), bgr(color),
              cv::FILLED, cv::LINE_AA, kFractionBits);
 }
 
-void Canvas::cross(cv::Point2d centre, double half, Rgb8 colour, double thickness) {
+void Canvas::cross(cv::Point2d center, double half, Rgb8 color, double thickness) {
   const cv::Point2d up(half, half), down(half, -half);
-  line(centre - up, centre + up, colour, thickness);
-  line(centre - down, centre + down, colour, thickness);
+  line(center - up, center + up, color, thickness);
+  line(center - down, center + down, color, thickness);
 }
 
 double Canvas::text_width(const std::string& text, double size, bool bold) {
@@ -85,15 +85,15 @@ double Canvas::text_width(const std::string& text, double size, bool bold) {
          static_cast<double>(kZoom);
 }
 
-void Canvas::text(const std::string& text, cv::Point2d at, double size, Rgb8 colour, Align align,
+void Canvas::text(const std::string& text, cv::Point2d at, double size, Rgb8 color, Align align,
                   bool bold) {
   const double width = text_width(text, size, bold);
-  if (align == Align::kCentre) at.x -= width / 2;
+  if (align == Align::kCenter) at.x -= width / 2;
   if (align == Align::kRight) at.x -= width;
   cv::putText(
       large_, text,
       {static_cast<int>(std::lround(at.x * kZoom)), static_cast<int>(std::lround(at.y * kZoom))},
-      kFont, font_scale(size), bgr(colour), font_stroke(size, bold), cv::LINE_AA);
+      kFont, font_scale(size), bgr(color), font_stroke(size, bold), cv::LINE_AA);
 }
 
 void Canvas::picture(const cv::Mat& bgr_picture, double x, double y, double width, double height) {
@@ -110,9 +110,9 @@ cv::Mat Canvas::finish() const {
   return small;
 }
 
-cv::Mat colour_picture(const Grid2d<Rgb8>& colour) {
+cv::Mat color_picture(const Grid2d<Rgb8>& color) {
   static_assert(sizeof(Rgb8) == 3);
-  const cv::Mat rgb(colour.height(), colour.width(), CV_8UC3, const_cast<Rgb8*>(colour.data()));
+  const cv::Mat rgb(color.height(), color.width(), CV_8UC3, const_cast<Rgb8*>(color.data()));
   cv::Mat picture;
   cv::cvtColor(rgb, picture, cv::COLOR_RGB2BGR);
   return picture;

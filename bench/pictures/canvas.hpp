@@ -21,14 +21,14 @@ class Canvas {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  void fill(double x, double y, double width, double height, Rgb8 colour);
-  void line(cv::Point2d from, cv::Point2d to, Rgb8 colour, double thickness);
-  void ring(cv::Point2d centre, double radius, Rgb8 colour, double thickness);
-  void disc(cv::Point2d centre, double radius, Rgb8 colour);
-  void cross(cv::Point2d centre, double half, Rgb8 colour, double thickness);  ///< an 'x'
-  enum class Align { kLeft, kCentre, kRight };
+  void fill(double x, double y, double width, double height, Rgb8 color);
+  void line(cv::Point2d from, cv::Point2d to, Rgb8 color, double thickness);
+  void ring(cv::Point2d center, double radius, Rgb8 color, double thickness);
+  void disc(cv::Point2d center, double radius, Rgb8 color);
+  void cross(cv::Point2d center, double half, Rgb8 color, double thickness);  ///< an 'x'
+  enum class Align { kLeft, kCenter, kRight };
   /// Text with its baseline at y; `size` is the height of a capital letter.
-  void text(const std::string& text, cv::Point2d at, double size, Rgb8 colour = {40, 40, 40},
+  void text(const std::string& text, cv::Point2d at, double size, Rgb8 color = {40, 40, 40},
             Align align = Align::kLeft, bool bold = false);
   static double text_width(const std::string& text, double size, bool bold = false);
   /// Puts a picture (8-bit BGR) into a rectangle.
@@ -42,12 +42,12 @@ class Canvas {
 };
 
 /// The same picture as 8-bit BGR.
-cv::Mat colour_picture(const Grid2d<Rgb8>& colour);
+cv::Mat color_picture(const Grid2d<Rgb8>& color);
 
-/// A grid of numbers of 8 or 16 bits as a grey picture in the same memory: for reading, and no
+/// A grid of numbers of 8 or 16 bits as a gray picture in the same memory: for reading, and no
 /// longer than the grid is there.
 template <class Number>
-cv::Mat grey_picture(const Grid2d<Number>& grid) {
+cv::Mat gray_picture(const Grid2d<Number>& grid) {
   static_assert(std::is_unsigned_v<Number> && sizeof(Number) <= 2);
   return {grid.height(), grid.width(), sizeof(Number) == 1 ? CV_8UC1 : CV_16UC1,
           const_cast<Number*>(grid.data())};

@@ -14,7 +14,7 @@
 #include <Eigen/Geometry>
 
 #include "bench/pictures/canvas.hpp"
-#include "bench/pictures/false_colours.hpp"
+#include "bench/pictures/false_colors.hpp"
 #include "bench/pictures/viewpoints.hpp"
 
 namespace mh {
@@ -22,14 +22,14 @@ namespace {
 
 constexpr double kMargin = 30, kGap = 12, kCaption = 22, kHeader = 92;
 constexpr double kTileWidth = 400;
-constexpr float kNear_m = 0.4F, kFar_m = 8.0F;  // range of the false colours
+constexpr float kNear_m = 0.4F, kFar_m = 8.0F;  // range of the false colors
 constexpr double kEye_m = 1.45;                 // of a person who sits or a child who stands
 
 cv::Mat class_picture(const Grid2d<ClassId>& labels) {
-  Grid2d<Rgb8> colours(labels.width(), labels.height());
+  Grid2d<Rgb8> colors(labels.width(), labels.height());
   for (int y = 0; y < labels.height(); ++y)
-    for (int x = 0; x < labels.width(); ++x) colours(x, y) = class_colour(labels(x, y));
-  return colour_picture(colours);
+    for (int x = 0; x < labels.width(); ++x) colors(x, y) = class_color(labels(x, y));
+  return color_picture(colors);
 }
 
 std::vector<ClassId> classes_seen(const std::vector<View>& views) {
@@ -47,7 +47,7 @@ void draw_depth_scale(Canvas& canvas, double x, double y, double width) {
   canvas.text(fmt::format("{} m", kNear_m), {x, y + 32}, 9);
   canvas.text(fmt::format("{} m and more", kFar_m), {x + width, y + 32}, 9, {40, 40, 40},
               Canvas::Align::kRight);
-  canvas.text("gray: no return", {x + width / 2, y + 32}, 9, {40, 40, 40}, Canvas::Align::kCentre);
+  canvas.text("gray: no return", {x + width / 2, y + 32}, 9, {40, 40, 40}, Canvas::Align::kCenter);
 }
 
 constexpr int kLegendColumns = 7;
@@ -59,14 +59,14 @@ void draw_class_legend(Canvas& canvas, const std::vector<ClassId>& list, double 
   for (std::size_t i = 0; i < list.size(); ++i) {
     const double left = x + column * static_cast<double>(i % kLegendColumns);
     const double top = y + kLegendRow * static_cast<double>(i / kLegendColumns);
-    canvas.fill(left, top, 16, 14, class_colour(list[i]));
+    canvas.fill(left, top, 16, 14, class_color(list[i]));
     canvas.text(std::string(classes()[list[i]].name), {left + 23, top + 12}, 9.5);
   }
 }
 
 View shoot(std::string caption, const Renderer& renderer, const Camera& camera, const SE3& pose) {
   RenderedFrame frame = renderer.render(camera, pose);
-  return {std::move(caption), std::move(frame.colour), std::move(frame.depth_m),
+  return {std::move(caption), std::move(frame.color), std::move(frame.depth_m),
           std::move(frame.classes)};
 }
 
@@ -98,7 +98,7 @@ CornerView shoot_corner(const Scene& scene, const Room& room, const Renderer& re
     std::nth_element(depths.begin(), tenth, depths.end());
     corner.near_m = *tenth;
   }
-  corner.view = {room.name, std::move(frame.colour), std::move(frame.depth_m),
+  corner.view = {room.name, std::move(frame.color), std::move(frame.depth_m),
                  std::move(frame.classes)};
   return corner;
 }
@@ -189,7 +189,7 @@ std::vector<View> views_of(const Scene& scene, const Renderer& renderer) {
 
 cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& views) {
   const double tile_height =
-      views.empty() ? 300 : kTileWidth * views[0].colour.height() / views[0].colour.width();
+      views.empty() ? 300 : kTileWidth * views[0].color.height() / views[0].color.width();
   const double width = 2 * kMargin + 3 * kTileWidth + 2 * kGap;
   const std::vector<ClassId> seen = classes_seen(views);
   const double legend_rows =
@@ -208,8 +208,8 @@ cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& vi
 
   double y = kHeader;
   for (const View& view : views) {
-    canvas.picture(colour_picture(view.colour), column(0), y, kTileWidth, tile_height);
-    canvas.picture(depth_colours(view.depth_m, kNear_m, kFar_m), column(1), y, kTileWidth,
+    canvas.picture(color_picture(view.color), column(0), y, kTileWidth, tile_height);
+    canvas.picture(depth_colors(view.depth_m, kNear_m, kFar_m), column(1), y, kTileWidth,
                    tile_height);
     canvas.picture(class_picture(view.classes), column(2), y, kTileWidth, tile_height);
     canvas.text(view.caption, {column(0), y + tile_height + 14}, 8.5, {110, 115, 125});
@@ -223,7 +223,7 @@ cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& vi
 cv::Mat draw_gallery(const std::vector<View>& views, int columns, bool captions) {
   const double below = captions ? kCaption : kGap;
   const double tile_height =
-      views.empty() ? 300 : kTileWidth * views[0].colour.height() / views[0].colour.width();
+      views.empty() ? 300 : kTileWidth * views[0].color.height() / views[0].color.width();
   const auto rows =
       (views.size() + static_cast<std::size_t>(columns) - 1) / static_cast<std::size_t>(columns);
   Canvas canvas(static_cast<int>(2 * kMargin + columns * kTileWidth + (columns - 1) * kGap),
@@ -233,7 +233,7 @@ cv::Mat draw_gallery(const std::vector<View>& views, int columns, bool captions)
         kMargin + static_cast<double>(i % static_cast<std::size_t>(columns)) * (kTileWidth + kGap);
     const double y = kMargin + static_cast<double>(i / static_cast<std::size_t>(columns)) *
                                    (tile_height + below);
-    canvas.picture(colour_picture(views[i].colour), x, y, kTileWidth, tile_height);
+    canvas.picture(color_picture(views[i].color), x, y, kTileWidth, tile_height);
     if (captions) canvas.text(views[i].caption, {x, y + tile_height + 14}, 9.5, {60, 64, 72});
   }
   return canvas.finish();

@@ -15,16 +15,16 @@ namespace mh {
 /// One row of a contact sheet.
 struct View {
   std::string caption;
-  Grid2d<Rgb8> colour;
+  Grid2d<Rgb8> color;
   Grid2d<float> depth_m;
   Grid2d<ClassId> classes;
 };
 
-/// Rows of colour, depth in false colour and labels in class colours, with a depth scale and the
+/// Rows of color, depth in false color and labels in class colors, with a depth scale and the
 /// names of the classes seen.
 cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& views);
 
-/// The colours of many views, `columns` in a row, with or without their captions.
+/// The colors of many views, `columns` in a row, with or without their captions.
 cv::Mat draw_gallery(const std::vector<View>& views, int columns, bool captions);
 
 /// Exact pictures from a few poses spread evenly over a path.

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kPanelWidth = 440, kPanelHeight = 320, kMargin = 24, kHeader = 64;
 constexpr int kColumns = 3;
-constexpr Rgb8 kInk = {40, 43, 50}, kPale = {225, 228, 233}, kGrey = {110, 115, 125};
-constexpr std::array<Rgb8, 5> kColours = {
+constexpr Rgb8 kInk = {40, 43, 50}, kPale = {225, 228, 233}, kGray = {110, 115, 125};
+constexpr std::array<Rgb8, 5> kColors = {
     {{31, 119, 180}, {214, 39, 40}, {44, 160, 44}, {255, 127, 14}, {148, 103, 189}}};
 
 /// A range of round numbers that holds the values, and the step between its marks.
@@ -52,18 +52,18 @@ void draw_panel(Canvas& canvas, const Plot& plot, double x0, double y0) {
                        bottom - up.share(y) * (bottom - top));
   };
   canvas.text(plot.title, {x0 + 8, y0 + 16}, 10, kInk, Canvas::Align::kLeft, true);
-  canvas.text(plot.y_label, {x0 + 8, y0 + 34}, 8, kGrey);
-  canvas.text(plot.x_label, {(left + right) / 2, y0 + kPanelHeight - 10}, 8, kGrey,
-              Canvas::Align::kCentre);
+  canvas.text(plot.y_label, {x0 + 8, y0 + 34}, 8, kGray);
+  canvas.text(plot.x_label, {(left + right) / 2, y0 + kPanelHeight - 10}, 8, kGray,
+              Canvas::Align::kCenter);
   for (double v = across.low; v < across.high + 0.5 * across.step; v += across.step) {
     canvas.line(at(v, up.low), at(v, up.high), kPale, 0.5);
     canvas.text(fmt::format("{:g}", std::abs(v) < 1e-12 ? 0.0 : v),
-                at(v, up.low) + cv::Point2d(0, 14), 7.5, kGrey, Canvas::Align::kCentre);
+                at(v, up.low) + cv::Point2d(0, 14), 7.5, kGray, Canvas::Align::kCenter);
   }
   for (double v = up.low; v < up.high + 0.5 * up.step; v += up.step) {
     canvas.line(at(across.low, v), at(across.high, v), kPale, 0.5);
     canvas.text(fmt::format("{:g}", std::abs(v) < 1e-12 ? 0.0 : v),
-                at(across.low, v) + cv::Point2d(-6, 3), 7.5, kGrey, Canvas::Align::kRight);
+                at(across.low, v) + cv::Point2d(-6, 3), 7.5, kGray, Canvas::Align::kRight);
   }
   // The legend keeps clear of where the first curve begins.
   const bool begins_high = !plot.series.empty() && !plot.series[0].points.empty() &&
@@ -72,19 +72,19 @@ void draw_panel(Canvas& canvas, const Plot& plot, double x0, double y0) {
   double legend = top + 10;
   for (std::size_t s = 0; s < plot.series.size(); ++s) {
     const Series& series = plot.series[s];
-    const Rgb8 colour = kColours[(s / 2) % kColours.size()];
+    const Rgb8 color = kColors[(s / 2) % kColors.size()];
     for (std::size_t i = 0; i < series.points.size(); ++i) {
       const cv::Point2d here = at(series.points[i].x, series.points[i].y);
       if (series.dots) {
-        canvas.disc(here, 2.6, colour);
+        canvas.disc(here, 2.6, color);
       } else if (i > 0) {
-        canvas.line(at(series.points[i - 1].x, series.points[i - 1].y), here, colour, 1.2);
+        canvas.line(at(series.points[i - 1].x, series.points[i - 1].y), here, color, 1.2);
       }
     }
     if (series.dots)
-      canvas.disc({legend_x + 16, legend - 3}, 2.6, colour);
+      canvas.disc({legend_x + 16, legend - 3}, 2.6, color);
     else
-      canvas.line({legend_x + 8, legend - 3}, {legend_x + 24, legend - 3}, colour, 1.2);
+      canvas.line({legend_x + 8, legend - 3}, {legend_x + 24, legend - 3}, color, 1.2);
     canvas.text(series.name, {legend_x + 30, legend}, 7.5, kInk);
     legend += 14;
   }

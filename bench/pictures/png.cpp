@@ -92,7 +92,7 @@ std::string encode_png(const cv::Mat& picture, int level) {
   append_be32(header, static_cast<std::size_t>(picture.cols));
   append_be32(header, static_cast<std::size_t>(picture.rows));
   header += static_cast<char>(picture.depth() == CV_16U ? 16 : 8);  // bits
-  header += static_cast<char>(picture.channels() == 3 ? 2 : 0);     // colour or grey
+  header += static_cast<char>(picture.channels() == 3 ? 2 : 0);     // color or gray
   header += std::string(3, '\0');  // the one way to pack, the one set of filters, not interlaced
   std::string file = "\x89PNG\r\n\x1A\n";
   append_chunk(file, "IHDR", header);

@@ -8,7 +8,7 @@
 
 namespace mh {
 
-/// Whether encode_png knows this type of pixel: grey or BGR of 8 bits, grey of 16.
+/// Whether encode_png knows this type of pixel: gray or BGR of 8 bits, gray of 16.
 bool is_png_type(int opencv_type);
 
 /// A PNG file of a picture. Rows of 8 bits are packed as differences to the row above, those of 16

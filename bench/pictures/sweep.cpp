@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPanelWidth = 400, kPanelHeight = 340, kMargin = 24, kHeader = 62, kFooter = 30;
 constexpr int kColumns = 3;
-constexpr Rgb8 kInk = {40, 43, 50}, kGrey = {110, 115, 125}, kFrame = {214, 39, 40};
+constexpr Rgb8 kInk = {40, 43, 50}, kGray = {110, 115, 125}, kFrame = {214, 39, 40};
 constexpr Rgb8 kWhite = {255, 255, 255};
 
 struct Shades {
@@ -85,10 +85,10 @@ struct Box {
 void draw_names(Canvas& canvas, const Box& box, const std::string& title, std::string_view across,
                 std::string_view up) {
   canvas.text(title, {box.left, box.top - 12}, 9.5, kInk, Canvas::Align::kLeft, true);
-  canvas.text(std::string(across), {(box.left + box.right) / 2, box.bottom + 34}, 9, kGrey,
-              Canvas::Align::kCentre);
+  canvas.text(std::string(across), {(box.left + box.right) / 2, box.bottom + 34}, 9, kGray,
+              Canvas::Align::kCenter);
   if (!up.empty())
-    canvas.text(std::string(up), {box.left - 8, box.top - 12}, 9, kGrey, Canvas::Align::kRight);
+    canvas.text(std::string(up), {box.left - 8, box.top - 12}, 9, kGray, Canvas::Align::kRight);
 }
 
 /// A cell per point.
@@ -114,11 +114,11 @@ void draw_grid(Canvas& canvas, cv::Point2d corner, const SweepResult& result,
   draw_names(canvas, box, title, across, up);
   for (std::size_t i = 0; i < xs.size(); ++i)
     canvas.text(fmt::format("{:g}", xs[i]),
-                {box.left + width * (static_cast<double>(i) + 0.5), box.bottom + 16}, 8, kGrey,
-                Canvas::Align::kCentre);
+                {box.left + width * (static_cast<double>(i) + 0.5), box.bottom + 16}, 8, kGray,
+                Canvas::Align::kCenter);
   for (std::size_t i = 0; i < ys.size() && !up.empty(); ++i)
     canvas.text(fmt::format("{:g}", ys[i]),
-                {box.left - 8, box.bottom - height * (static_cast<double>(i) + 0.5) + 4}, 8, kGrey,
+                {box.left - 8, box.bottom - height * (static_cast<double>(i) + 0.5) + 4}, 8, kGray,
                 Canvas::Align::kRight);
   for (std::size_t i = 0; i < result.points.size(); ++i) {
     if (!values.of[i]) continue;
@@ -127,7 +127,7 @@ void draw_grid(Canvas& canvas, cv::Point2d corner, const SweepResult& result,
     canvas.fill(at.x, at.y, width, height, measure.shades.at(share));
     canvas.text(fmt::format("{:.{}f}", *values.of[i], measure.digits),
                 {at.x + width / 2, at.y + height / 2 + 4}, 8.5, share > 0.5 ? kWhite : kInk,
-                Canvas::Align::kCentre);
+                Canvas::Align::kCenter);
   }
   if (!framed) return;
   const cv::Point2d a = corner_of(result.points[*framed]), b(a.x + width, a.y + height);
@@ -160,7 +160,7 @@ void draw_dots(Canvas& canvas, cv::Point2d corner, const SweepResult& result,
   draw_names(canvas, box, title, across, up);
   canvas.fill(box.left, box.top, box.right - box.left, box.bottom - box.top, {246, 247, 249});
   const auto number = [&](double value, cv::Point2d where, Canvas::Align align) {
-    canvas.text(fmt::format("{:.3g}", value), where, 8, kGrey, align);
+    canvas.text(fmt::format("{:.3g}", value), where, 8, kGray, align);
   };
   number(xs.front(), {box.left, box.bottom + 16}, Canvas::Align::kLeft);
   number(xs.back(), {box.right, box.bottom + 16}, Canvas::Align::kRight);
@@ -254,7 +254,7 @@ cv::Mat draw_sweep(const Suite& suite, std::span<const Row> rows, const SweepRes
                 9, kInk);
   }
   canvas.text("framed: most correct answers, chosen by these same queries: confirm it on others",
-              {kMargin + 8, static_cast<double>(canvas.height()) - 10}, 8, kGrey);
+              {kMargin + 8, static_cast<double>(canvas.height()) - 10}, 8, kGray);
   return canvas.finish();
 }
 

@@ -61,7 +61,7 @@ Bounds area_of_interest(const World& world) {
   return bounds;
 }
 
-/// From metres seen from above (x right, y up) to pixels.
+/// From meters seen from above (x right, y up) to pixels.
 struct PlanView {
   Bounds bounds;
   double px_per_m = 1;
@@ -85,18 +85,18 @@ void draw_grid(Canvas& canvas, const PlanView& view, const OccupancyGrid& grid) 
   for (int y = 0; y < grid.cells.height(); ++y)
     for (int x = 0; x < grid.cells.width(); ++x) {
       const std::int8_t value = grid.cells(x, y);
-      if (value == kUnknown || !view.bounds.contain(grid.centre_m(x, y))) continue;
-      const cv::Point2d centre = view(grid.centre_m(x, y));
-      canvas.fill(centre.x - cell / 2, centre.y - cell / 2, cell, cell,
+      if (value == kUnknown || !view.bounds.contain(grid.center_m(x, y))) continue;
+      const cv::Point2d center = view(grid.center_m(x, y));
+      canvas.fill(center.x - cell / 2, center.y - cell / 2, cell, cell,
                   value == kOccupied ? kMapOccupied : kMapFree);
     }
 }
 
 void draw_slice(Canvas& canvas, const PlanView& view, const std::vector<SliceSegment>& segments,
-                Rgb8 colour, double thickness) {
+                Rgb8 color, double thickness) {
   for (const SliceSegment& s : segments)
     if (view.bounds.contain(s.from_m) && view.bounds.contain(s.to_m))
-      canvas.line(view(s.from_m), view(s.to_m), colour, thickness);
+      canvas.line(view(s.from_m), view(s.to_m), color, thickness);
 }
 
 /// What a name should not be written over.
@@ -139,20 +139,20 @@ void draw_room_names(Canvas& canvas, const PlanView& view, const Scene& scene,
         nearest = distance;
         best = {x, y};
       }
-    canvas.text(label, best, kCapital, kRoomName, Canvas::Align::kCentre);
+    canvas.text(label, best, kCapital, kRoomName, Canvas::Align::kCenter);
   }
 }
 
 /// A path seen from above; a gap in time breaks the line.
 void draw_path(Canvas& canvas, const PlanView& view, const Trajectory& path, const SE3& plan_from,
-               Rgb8 colour, double thickness) {
+               Rgb8 color, double thickness) {
   constexpr Stamp kGap_ns = 250'000'000;
   for (std::size_t i = 1; i < path.size(); ++i) {
     if (path[i].stamp_ns - path[i - 1].stamp_ns > kGap_ns) continue;
     const Eigen::Vector3d a = plan_from * path[i - 1].world_from_camera.translation();
     const Eigen::Vector3d b = plan_from * path[i].world_from_camera.translation();
     if (view.bounds.contain(a.head<2>()) && view.bounds.contain(b.head<2>()))
-      canvas.line(view(a.head<2>()), view(b.head<2>()), colour, thickness);
+      canvas.line(view(a.head<2>()), view(b.head<2>()), color, thickness);
   }
 }
 
@@ -172,11 +172,11 @@ constexpr double kCross = 4.5, kRing = 6.5, kHeading = 15, kStroke = 1.8;
 
 /// A stroke from `inner` px beside a place on, the way that a camera (z forward) looks.
 void draw_heading(Canvas& canvas, const cv::Point2d& at, const SE3& plan_from_camera, double inner,
-                  Rgb8 colour) {
+                  Rgb8 color) {
   const Eigen::Vector2d forward = plan_from_camera.rotation().col(2).head<2>();
   if (forward.norm() < 0.1) return;  // it looks up or down
   const cv::Point2d way(forward.x() / forward.norm(), -forward.y() / forward.norm());
-  canvas.line(at + inner * way, at + kHeading * way, colour, kStroke);
+  canvas.line(at + inner * way, at + kHeading * way, color, kStroke);
 }
 
 /// An answer beyond the plan has no ring, but the line towards it.
@@ -185,18 +185,18 @@ void draw_query(Canvas& canvas, const PlanView& view, const QueryScore& q,
   const Eigen::Vector2d at = q.true_world_from_camera.translation().head<2>();
   const cv::Point2d truth = view(at);
   if (q.success) {
-    const Rgb8 colour = q.wrong ? kBad : kGood;
+    const Rgb8 color = q.wrong ? kBad : kGood;
     const SE3 plan_from_answer = plan_from_estimate * *q.answer.world_from_camera;
     const Eigen::Vector2d p = plan_from_answer.translation().head<2>();
     if (q.wrong) canvas.line(truth, view(up_to_the_edge(view.bounds, at, p)), kBad, 1);
     if (view.bounds.contain(p)) {
-      canvas.ring(view(p), kRing, colour, kStroke);
-      draw_heading(canvas, view(p), plan_from_answer, kRing, colour);
+      canvas.ring(view(p), kRing, color, kStroke);
+      draw_heading(canvas, view(p), plan_from_answer, kRing, color);
     }
   }
-  const Rgb8 colour = q.success ? kX : kMissed;
-  draw_heading(canvas, truth, q.true_world_from_camera, 0, colour);
-  canvas.cross(truth, kCross, colour, kStroke);
+  const Rgb8 color = q.success ? kX : kMissed;
+  draw_heading(canvas, truth, q.true_world_from_camera, 0, color);
+  canvas.cross(truth, kCross, color, kStroke);
 }
 
 /// Good answers first, failures over them: where many queries lie in one place, these are what the
@@ -228,7 +228,7 @@ void draw_scale_bar(Canvas& canvas, const PlanView& view, double y) {
   const double right = kWidth - kMargin, left = right - view.px_per_m;
   canvas.line({left, y}, {right, y}, kInk, 2);
   for (const double x : {left, right}) canvas.line({x, y - 5}, {x, y + 5}, kInk, 2);
-  canvas.text("1 m", {0.5 * (left + right), y - 9}, 10, kInk, Canvas::Align::kCentre);
+  canvas.text("1 m", {0.5 * (left + right), y - 9}, 10, kInk, Canvas::Align::kCenter);
 }
 
 /// Entries of the legend from left to right, each a symbol and a word.
@@ -250,25 +250,25 @@ class Legend {
 /// @param apart  behind the estimated path: how far it is from the true one
 /// @param asked, mapped  whether there are queries and cells of a map to be told of
 void draw_legend(Canvas& canvas, double y, const std::string& apart, bool asked, bool mapped) {
-  const auto stroke = [&](Rgb8 colour, double thickness) {
-    return [&canvas, colour, thickness](cv::Point2d at) {
-      canvas.line({at.x - 11, at.y}, {at.x + 11, at.y}, colour, thickness);
+  const auto stroke = [&](Rgb8 color, double thickness) {
+    return [&canvas, color, thickness](cv::Point2d at) {
+      canvas.line({at.x - 11, at.y}, {at.x + 11, at.y}, color, thickness);
     };
   };
-  const auto patch = [&](Rgb8 colour) {
-    return [&canvas, colour](cv::Point2d at) { canvas.fill(at.x - 9, at.y - 7, 18, 14, colour); };
+  const auto patch = [&](Rgb8 color) {
+    return [&canvas, color](cv::Point2d at) { canvas.fill(at.x - 9, at.y - 7, 18, 14, color); };
   };
   Legend first(canvas, y);
-  const auto query = [&](Rgb8 colour) {
-    return [&canvas, colour](cv::Point2d at) {
-      canvas.cross(at, kCross, colour, kStroke);
-      canvas.line(at, at + cv::Point2d(kHeading, 0), colour, kStroke);
+  const auto query = [&](Rgb8 color) {
+    return [&canvas, color](cv::Point2d at) {
+      canvas.cross(at, kCross, color, kStroke);
+      canvas.line(at, at + cv::Point2d(kHeading, 0), color, kStroke);
     };
   };
-  const auto answer = [&](Rgb8 colour) {
-    return [&canvas, colour](cv::Point2d at) {
-      canvas.ring(at, kRing, colour, kStroke);
-      canvas.line(at + cv::Point2d(kRing, 0), at + cv::Point2d(kHeading, 0), colour, kStroke);
+  const auto answer = [&](Rgb8 color) {
+    return [&canvas, color](cv::Point2d at) {
+      canvas.ring(at, kRing, color, kStroke);
+      canvas.line(at + cv::Point2d(kRing, 0), at + cv::Point2d(kHeading, 0), color, kStroke);
     };
   };
   if (asked) {
@@ -288,10 +288,10 @@ void draw_legend(Canvas& canvas, double y, const std::string& apart, bool asked,
 }
 
 /// A line of text from margin to margin, smaller where it would go beyond.
-void draw_line_of_text(Canvas& canvas, const std::string& text, double y, double size, Rgb8 colour,
+void draw_line_of_text(Canvas& canvas, const std::string& text, double y, double size, Rgb8 color,
                        bool bold) {
   const double room = (kWidth - 2 * kMargin) / Canvas::text_width(text, size, bold);
-  canvas.text(text, {kMargin, y}, size * std::min(1.0, room), colour, Canvas::Align::kLeft, bold);
+  canvas.text(text, {kMargin, y}, size * std::min(1.0, room), color, Canvas::Align::kLeft, bold);
 }
 
 void draw_header(Canvas& canvas, const World& world, const RunResult& run, QuerySet set) {

@@ -122,7 +122,7 @@ std::vector<SE3> walking_around(const Scene& level) {
 struct Seen {
   SE3 pose;
   std::set<InstanceId> objects;
-  std::set<std::array<int, 3>> surface, ground;  ///< cubes of half a metre
+  std::set<std::array<int, 3>> surface, ground;  ///< cubes of half a meter
   double share = 1;  ///< of the picture that is neither empty nor right before the lens
 };
 

@@ -14,7 +14,7 @@ enum class QueryTruth {
   kLocal,  ///< the nearest mapped frame's estimate, carried on by the true motion to the query
   /// Between the estimates of the mapped frames before and after, by time (section 3.2 of the
   /// paper: "based on the camera poses with neighboring frames"). Needs no truth at all, but takes
-  /// the estimates' own errors for it. Where there are no two near neighbours: kLocal.
+  /// the estimates' own errors for it. Where there are no two near neighbors: kLocal.
   kInterpolated,
 };
 

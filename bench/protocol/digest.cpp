@@ -38,7 +38,7 @@ std::uint64_t digest_file(const std::filesystem::path& file, std::uint64_t seed)
 
 std::uint64_t digest(const RgbdFrame& frame) {
   std::uint64_t d = digest_value(frame.stamp_ns, 0);
-  d = digest_grid(frame.colour, d);
+  d = digest_grid(frame.color, d);
   d = digest_grid(frame.depth_m, d);
   d = digest_grid(frame.semantics.index, d);
   for (const ClassDistribution& distribution : frame.semantics.palette) {
@@ -65,7 +65,7 @@ std::uint64_t digest_of_matching(const StepReport& report) {
                          report.keyframe_added ? 1 : 0, static_cast<int>(report.relocalization)};
   std::uint64_t d = digest_value(numbers, 0);
   for (const MatcherCounts& counts : report.matches) {
-    const std::int64_t c[] = {counts.compared, counts.penalised, counts.rejected_by_xi,
+    const std::int64_t c[] = {counts.compared, counts.penalized, counts.rejected_by_xi,
                               counts.ratio_helped};
     d = digest_value(c, d);
   }

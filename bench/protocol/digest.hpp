@@ -16,7 +16,7 @@ namespace mh {
 std::uint64_t digest_bytes(const void* data, std::size_t size, std::uint64_t seed = 0);
 /// Of a file's bytes. @throws InputError if it cannot be read.
 std::uint64_t digest_file(const std::filesystem::path& file, std::uint64_t seed = 0);
-std::uint64_t digest(const RgbdFrame& frame);  ///< stamp, colour, depth and labels
+std::uint64_t digest(const RgbdFrame& frame);  ///< stamp, color, depth and labels
 std::uint64_t digest(const std::optional<SE3>& pose);
 std::uint64_t digest(const Trajectory& trajectory);
 /// Everything that a step said of its matching and relocalizing, the pose apart.

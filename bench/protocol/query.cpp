@@ -16,7 +16,7 @@ std::uint64_t chain(std::uint64_t sum, std::uint64_t next) {
 
 /// Shows blank frames until the session reports that it is lost.
 int lose(RelocalizationSession& session, const RgbdFrame& like, int at_most, RandomStream stream) {
-  const RgbdFrame blank = blank_frame(like.colour.width(), like.colour.height(), like.stamp_ns);
+  const RgbdFrame blank = blank_frame(like.color.width(), like.color.height(), like.stamp_ns);
   for (int shown = 1; shown <= at_most; ++shown)
     if (session.feed(blank, stream.fork(static_cast<std::uint64_t>(shown))).status ==
         TrackStatus::kLost)
@@ -28,7 +28,7 @@ int lose(RelocalizationSession& session, const RgbdFrame& like, int at_most, Ran
 
 RgbdFrame blank_frame(int width_px, int height_px, Stamp stamp_ns) {
   return {.stamp_ns = stamp_ns,
-          .colour = Grid2d<Rgb8>(width_px, height_px),
+          .color = Grid2d<Rgb8>(width_px, height_px),
           .depth_m = Grid2d<float>(width_px, height_px),
           .semantics = {}};
 }
@@ -36,8 +36,8 @@ RgbdFrame blank_frame(int width_px, int height_px, Stamp stamp_ns) {
 bool is_blank(const RgbdFrame& frame) {
   return std::all_of(frame.depth_m.begin(), frame.depth_m.end(),
                      [](float depth_m) { return depth_m == 0; }) &&
-         std::all_of(frame.colour.begin(), frame.colour.end(),
-                     [](Rgb8 colour) { return colour == Rgb8{}; });
+         std::all_of(frame.color.begin(), frame.color.end(),
+                     [](Rgb8 color) { return color == Rgb8{}; });
 }
 
 QueryAnswer query(const System& frozen, std::size_t index, const FrameSource& frames,

@@ -55,7 +55,7 @@ std::optional<SE3> interpolated_pose(const Trajectory& estimate, Stamp stamp_ns)
   if (after == estimate.begin() || after == estimate.end()) return std::nullopt;
   const TimedPose& before = *std::prev(after);
   const Stamp gap_ns = after->stamp_ns - before.stamp_ns;
-  if (gap_ns > kMaxNeighbourGap_ns) return std::nullopt;
+  if (gap_ns > kMaxNeighborGap_ns) return std::nullopt;
   const double share =
       static_cast<double>(stamp_ns - before.stamp_ns) / static_cast<double>(gap_ns);
   const SE3& a = before.world_from_camera;

@@ -31,17 +31,17 @@ SE3 local_truth(const Anchor& anchor, const SE3& true_world_from_camera);
 std::optional<Anchor> nearest_mapped(const Trajectory& estimate, const Trajectory& mapping_truth,
                                      const TimedPose& true_query, NearestBy by);
 
-/// Neighbours in time that a pose may be interpolated between lie at most this far apart: held-out
+/// Neighbors in time that a pose may be interpolated between lie at most this far apart: held-out
 /// frames miss one frame or two, and beyond that an interpolation says nothing.
-inline constexpr Stamp kMaxNeighbourGap_ns = 500'000'000;
+inline constexpr Stamp kMaxNeighborGap_ns = 500'000'000;
 
 /// Where the query camera is in the system's own map by the paper's estimate: between its
-/// neighbours in time among the mapped frames, position linearly, rotation along the shortest turn.
-/// nullopt if one of them is missing or they lie more than kMaxNeighbourGap_ns apart.
+/// neighbors in time among the mapped frames, position linearly, rotation along the shortest turn.
+/// nullopt if one of them is missing or they lie more than kMaxNeighborGap_ns apart.
 std::optional<SE3> interpolated_pose(const Trajectory& estimate, Stamp stamp_ns);
 
 /// The anchor that config.truth asks for. Interpolation is for held-out frames: a query found by
-/// place has no neighbours in time, and is compared as by kLocal.
+/// place has no neighbors in time, and is compared as by kLocal.
 std::optional<Anchor> find_anchor(const Trajectory& estimate, const Trajectory& mapping_truth,
                                   const TimedPose& true_query, NearestBy by,
                                   const ProtocolConfig& config);

@@ -15,15 +15,15 @@ namespace {
 constexpr int kWidth = 640, kHeight = 480;
 constexpr int kFirstRing = 8, kLastRing = 159;  // cycles per 480 pixels
 
-double corners(const cv::Mat& grey, int threshold) {
+double corners(const cv::Mat& gray, int threshold) {
   std::vector<cv::KeyPoint> found;
-  cv::FAST(grey, found, threshold, true);
+  cv::FAST(gray, found, threshold, true);
   return static_cast<double>(found.size());
 }
 
-double keypoints(const cv::Mat& grey) {
+double keypoints(const cv::Mat& gray) {
   std::vector<cv::KeyPoint> found;
-  cv::ORB::create(2000, 1.2F, 8, 31, 0, 2, cv::ORB::HARRIS_SCORE, 31, 20)->detect(grey, found);
+  cv::ORB::create(2000, 1.2F, 8, 31, 0, 2, cv::ORB::HARRIS_SCORE, 31, 20)->detect(gray, found);
   return static_cast<double>(found.size());
 }
 
@@ -41,16 +41,16 @@ double blank_share(const cv::Mat& gradient) {
   int blank = 0, cells = 0;
   for (int y = 0; y < kHeight; y += kCellHeight)
     for (int x = 0; x < kWidth; x += kCellWidth, ++cells)
-      blank += percentile(values_of(gradient(cv::Rect(x, y, kCellWidth, kCellHeight))), 0.95) <
-                       kBlank
-                   ? 1
-                   : 0;
+      blank +=
+          percentile(values_of(gradient(cv::Rect(x, y, kCellWidth, kCellHeight))), 0.95) < kBlank
+              ? 1
+              : 0;
   return static_cast<double>(blank) / cells;
 }
 
-double spectrum_slope(const cv::Mat& grey) {
+double spectrum_slope(const cv::Mat& gray) {
   constexpr int n = kHeight;
-  cv::Mat middle = grey(cv::Rect((kWidth - n) / 2, 0, n, n)).clone();
+  cv::Mat middle = gray(cv::Rect((kWidth - n) / 2, 0, n, n)).clone();
   middle -= cv::mean(middle)[0];
   std::vector<float> window(n);
   for (int i = 0; i < n; ++i)
@@ -58,7 +58,8 @@ double spectrum_slope(const cv::Mat& grey) {
         static_cast<float>(0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * i / (n - 1)));
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x)
-      middle.at<float>(y, x) *= window[static_cast<std::size_t>(y)] * window[static_cast<std::size_t>(x)];
+      middle.at<float>(y, x) *=
+          window[static_cast<std::size_t>(y)] * window[static_cast<std::size_t>(x)];
   cv::Mat spectrum;
   cv::dft(middle, spectrum, cv::DFT_COMPLEX_OUTPUT);
   std::vector<double> power(n, 0.0);
@@ -98,11 +99,11 @@ double percentile(std::vector<double> values, double share) {
 }
 
 ImageStatistics measure_image(const cv::Mat& picture) {
-  cv::Mat grey = picture;
-  if (grey.cols != kWidth || grey.rows != kHeight)
-    cv::resize(picture, grey, {kWidth, kHeight}, 0, 0, cv::INTER_AREA);
+  cv::Mat gray = picture;
+  if (gray.cols != kWidth || gray.rows != kHeight)
+    cv::resize(picture, gray, {kWidth, kHeight}, 0, 0, cv::INTER_AREA);
   cv::Mat smooth, across, down, gradient, laplacian;
-  grey.convertTo(smooth, CV_32F);
+  gray.convertTo(smooth, CV_32F);
   cv::Sobel(smooth, across, CV_32F, 1, 0, 3, 1.0 / 8);
   cv::Sobel(smooth, down, CV_32F, 0, 1, 3, 1.0 / 8);
   cv::magnitude(across, down, gradient);
@@ -110,9 +111,9 @@ ImageStatistics measure_image(const cv::Mat& picture) {
   cv::Scalar mean, deviation;
   cv::meanStdDev(laplacian, mean, deviation);
   const std::vector<double> gradients = values_of(gradient);
-  return {corners(grey, 20),
-          corners(grey, 7),
-          keypoints(grey),
+  return {corners(gray, 20),
+          corners(gray, 7),
+          keypoints(gray),
           percentile(gradients, 0.5),
           percentile(gradients, 0.95),
           blank_share(gradient),

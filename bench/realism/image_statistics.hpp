@@ -21,7 +21,7 @@ inline constexpr std::array<ImageQuantity, kImageQuantityCount> kImageQuantities
     {"fast_20", "FAST corners, threshold 20"},
     {"fast_7", "FAST corners, threshold 7"},
     {"orb", "ORB keypoints, at most 2000"},
-    {"gradient_median", "gradient, median (grey levels/px)"},
+    {"gradient_median", "gradient, median (gray levels/px)"},
     {"gradient_p95", "gradient, 95th percentile"},
     {"blank_cells", "share of blank 40x30 cells"},
     {"spectrum_slope", "slope of the power spectrum"},
@@ -35,11 +35,11 @@ inline constexpr std::array<ImageQuantity, kImageQuantityCount> kImageQuantities
 ///   gradients are below 3;
 /// - the slope of log power over log frequency from 8 to 159 cycles, averaged over rings, of the
 ///   middle 480x480 under a Hann window;
-/// - the variance of the 4-neighbour Laplacian.
-/// @param grey 8 bits, one channel, not empty
-ImageStatistics measure_image(const cv::Mat& grey);
+/// - the variance of the 4-neighbor Laplacian.
+/// @param gray 8 bits, one channel, not empty
+ImageStatistics measure_image(const cv::Mat& gray);
 
-/// The value below which that share of a list lies, interpolated between neighbours; NaN if empty.
+/// The value below which that share of a list lies, interpolated between neighbors; NaN if empty.
 double percentile(std::vector<double> values, double share);
 
 }  // namespace mh

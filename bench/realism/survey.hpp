@@ -29,10 +29,10 @@ std::vector<RealFrames> load_real_frames(const std::filesystem::path& file);
 
 /// How one quantity of places compares to real frames.
 struct RealismRow {
-  std::array<double, 5> ours;  ///< percentiles over all frames
-  double median_of_places = 0;  ///< of the places' medians
-  bool in_range = false;        ///< it lies between the real frames' 25th and 75th percentile
-  double spread_ratio = 0;      ///< 5th to 95th percentile over frames: ours / theirs
+  std::array<double, 5> ours;        ///< percentiles over all frames
+  double median_of_places = 0;       ///< of the places' medians
+  bool in_range = false;             ///< it lies between the real frames' 25th and 75th percentile
+  double spread_ratio = 0;           ///< 5th to 95th percentile over frames: ours / theirs
   std::vector<std::size_t> outside;  ///< places whose median is beyond their 5th or 95th
 };
 RealismRow compare(const std::vector<MeasuredPlace>& places, const RealFrames& real,

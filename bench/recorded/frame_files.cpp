@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A portable any-map: `magic` P5 (grey) or P6 (colour).
+/// A portable any-map: `magic` P5 (gray) or P6 (color).
 void write_pnm(const fs::path& file, const char* magic, int width, int height, int greatest,
                const void* pixels, std::size_t bytes) {
   std::ofstream out(file, std::ios::binary);
@@ -39,9 +39,9 @@ Grid2d<ClassId> class_image(const SemanticImage& semantics) {
 
 FrameFiles show(const RgbdFrame& frame, const fs::path& folder) {
   static_assert(sizeof(Rgb8) == 3);
-  const int width = frame.colour.width(), height = frame.colour.height();
-  FrameFiles files{folder / "colour.ppm", folder / "depth.pgm", {}};
-  write_pnm(files.colour, "P6", width, height, 255, frame.colour.data(), 3 * frame.colour.size());
+  const int width = frame.color.width(), height = frame.color.height();
+  FrameFiles files{folder / "color.ppm", folder / "depth.pgm", {}};
+  write_pnm(files.color, "P6", width, height, 255, frame.color.data(), 3 * frame.color.size());
   std::vector<std::uint8_t> depth(2 * frame.depth_m.size());
   for (std::size_t i = 0; i < frame.depth_m.size(); ++i) {
     const std::uint16_t units = depth_units(frame.depth_m.data()[i]);
@@ -60,7 +60,7 @@ std::string settings_text(const Camera& camera) {
   const Distortion& d = camera.distortion;
   return fmt::format(
       "%YAML:1.0\n"
-      "# Written by Modelhouse. Pixel centres at integers; depth is metric and registered.\n"
+      "# Written by Modelhouse. Pixel centers at integers; depth is metric and registered.\n"
       // '#' keeps a decimal point in whole numbers: some readers refuse an integer here.
       "Camera.fx: {:#}\nCamera.fy: {:#}\nCamera.cx: {:#}\nCamera.cy: {:#}\n"
       "Camera.k1: {:#}\nCamera.k2: {:#}\nCamera.p1: {:#}\nCamera.p2: {:#}\nCamera.k3: {:#}\n"
@@ -75,7 +75,7 @@ std::string settings_text(const Camera& camera) {
       "Viewer.ViewpointF: 500\n",
       camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, d.k1, d.k2, d.p1, d.p2, d.k3,
       camera.width_px, camera.height_px, camera.rate_hz, camera.baseline_m * camera.fx_px,
-      kDepthPerMetre);
+      kDepthPerMeter);
 }
 
 std::string camera_info_text(const Camera& camera) {

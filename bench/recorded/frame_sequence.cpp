@@ -17,7 +17,7 @@ class TumSequence : public FrameSequence {
  public:
   TumSequence(const std::filesystem::path& folder, const Settings& settings,
               std::vector<std::string>* notes)
-      : camera_{settings.camera, settings.depth_per_metre, settings.exchange_red_blue},
+      : camera_{settings.camera, settings.depth_per_meter, settings.exchange_red_blue},
         frames_(load_tum_folder(folder, notes)) {
     const auto truth = folder / "groundtruth.txt";
     if (std::filesystem::exists(truth)) truth_ = read_tum(truth);
@@ -93,7 +93,7 @@ std::unique_ptr<FrameSequence> open_tum_folder(const std::filesystem::path& fold
 std::unique_ptr<FrameSequence> open_scene(const SceneDrive& source,
                                           std::vector<std::string>* notes) {
   SensorConfig sensors;
-  sensors.depth_noise_on = sensors.colour_noise_on = false;
+  sensors.depth_noise_on = sensors.color_noise_on = false;
   if (!source.level.empty()) sensors = load_sensor_config(source.level);
   const Robot robot = load_robot(source.robot);
   const Scene scene = load_lit_scene(

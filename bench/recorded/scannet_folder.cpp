@@ -34,16 +34,15 @@ Camera camera_of(const RecordedLens& lens) {
   return camera;
 }
 
-/// Where the colour camera sees what the depth camera's pixels see.
-class ColourPixels {
+/// Where the color camera sees what the depth camera's pixels see.
+class ColorPixels {
  public:
-  explicit ColourPixels(const RecordingInfo& info)
+  explicit ColorPixels(const RecordingInfo& info)
       : info_(info),
-        colour_from_depth_(info.colour.device_from_camera.inverse() *
-                           info.depth.device_from_camera),
-        parallax_(colour_from_depth_.translation().norm() > 1e-6) {}
+        color_from_depth_(info.color.device_from_camera.inverse() * info.depth.device_from_camera),
+        parallax_(color_from_depth_.translation().norm() > 1e-6) {}
 
-  /// Column and row in the colour picture, one of each per pixel of the depth picture. Where the
+  /// Column and row in the color picture, one of each per pixel of the depth picture. Where the
   /// cameras stand apart, a pixel without depth counts as far away.
   void find(const Grid2d<std::uint16_t>& depth, cv::Mat& columns, cv::Mat& rows) const {
     columns.create(depth.height(), depth.width(), CV_32FC1);
@@ -58,18 +57,18 @@ class ColourPixels {
 
  private:
   Eigen::Vector2d find(int x, int y, std::uint16_t depth) const {
-    const RecordedLens &from = info_.depth, &to = info_.colour;
+    const RecordedLens &from = info_.depth, &to = info_.color;
     const Eigen::Vector3d ray((x - from.cx_px) / from.fx_px, (y - from.cy_px) / from.fy_px, 1.0);
-    Eigen::Vector3d seen = colour_from_depth_.rotation() * ray;
+    Eigen::Vector3d seen = color_from_depth_.rotation() * ray;
     if (parallax_ && depth > 0)
-      seen += colour_from_depth_.translation() * (info_.depth_per_metre / depth);
+      seen += color_from_depth_.translation() * (info_.depth_per_meter / depth);
     constexpr double kNowhere = -1e6;
     if (seen.z() <= 1e-6) return {kNowhere, kNowhere};
     return {to.fx_px * seen.x() / seen.z() + to.cx_px, to.fy_px * seen.y() / seen.z() + to.cy_px};
   }
 
   const RecordingInfo& info_;
-  SE3 colour_from_depth_;
+  SE3 color_from_depth_;
   bool parallax_;
 };
 
@@ -113,10 +112,10 @@ class ScannetSequence : public FrameSequence {
     pixels_.find(moment.depth, columns, rows);
     RgbdFrame frame;
     frame.stamp_ns = moment.stamp_ns;
-    frame.colour = colour_at(moment.colour, columns, rows);
+    frame.color = color_at(moment.color, columns, rows);
     frame.depth_m = Grid2d<float>(camera_.width_px, camera_.height_px);
     std::ranges::transform(moment.depth, frame.depth_m.begin(), [&](std::uint16_t units) {
-      return static_cast<float>(units / recording_->info().depth_per_metre);
+      return static_cast<float>(units / recording_->info().depth_per_meter);
     });
     if (labels_ == nullptr) return frame;
     const std::uint32_t number = recording_->number(index);
@@ -152,8 +151,8 @@ class ScannetSequence : public FrameSequence {
                       labels_->place(), missing, size(), first));
   }
 
-  Grid2d<Rgb8> colour_at(const Grid2d<Rgb8>& picture, const cv::Mat& columns,
-                         const cv::Mat& rows) const {
+  Grid2d<Rgb8> color_at(const Grid2d<Rgb8>& picture, const cv::Mat& columns,
+                        const cv::Mat& rows) const {
     const cv::Mat full(picture.height(), picture.width(), CV_8UC3,
                        const_cast<Rgb8*>(picture.data()));
     Grid2d<Rgb8> result(camera_.width_px, camera_.height_px);
@@ -164,7 +163,7 @@ class ScannetSequence : public FrameSequence {
     }
     cv::Mat smaller;
     cv::resize(full, smaller, out.size(), 0, 0, cv::INTER_AREA);
-    // Pixel centres lie at integers: they move by half a pixel when pixels grow.
+    // Pixel centers lie at integers: they move by half a pixel when pixels grow.
     const double sx = static_cast<double>(camera_.width_px) / picture.width();
     const double sy = static_cast<double>(camera_.height_px) / picture.height();
     const cv::Mat x = (columns + 0.5) * sx - 0.5, y = (rows + 0.5) * sy - 0.5;
@@ -172,21 +171,21 @@ class ScannetSequence : public FrameSequence {
     return result;
   }
 
-  /// Label images have the colour picture's pixels; some tools store them with the depth's.
+  /// Label images have the color picture's pixels; some tools store them with the depth's.
   Grid2d<std::uint8_t> classes_at(const Grid2d<std::uint16_t>& ids, std::uint32_t number,
                                   const cv::Mat& columns, const cv::Mat& rows) const {
-    const RecordedLens& lens = recording_->info().colour;
-    const bool as_colour = ids.width() == lens.width_px && ids.height() == lens.height_px;
+    const RecordedLens& lens = recording_->info().color;
+    const bool as_color = ids.width() == lens.width_px && ids.height() == lens.height_px;
     const bool as_depth = ids.width() == camera_.width_px && ids.height() == camera_.height_px;
-    if (!as_colour && !as_depth)
-      throw InputError(fmt::format("{}: {}.png: is {} x {}, the colour pictures are {} x {}",
+    if (!as_color && !as_depth)
+      throw InputError(fmt::format("{}: {}.png: is {} x {}, the color pictures are {} x {}",
                                    labels_->place(), number, ids.width(), ids.height(),
                                    lens.width_px, lens.height_px));
     Grid2d<std::uint8_t> result(camera_.width_px, camera_.height_px, kVoid);
     for (int y = 0; y < result.height(); ++y)
       for (int x = 0; x < result.width(); ++x) {
-        const int u = as_colour ? cvRound(columns.at<float>(y, x)) : x;
-        const int v = as_colour ? cvRound(rows.at<float>(y, x)) : y;
+        const int u = as_color ? cvRound(columns.at<float>(y, x)) : x;
+        const int v = as_color ? cvRound(rows.at<float>(y, x)) : y;
         if (ids.contains(u, v)) result(x, y) = class_of_id_[ids(u, v)];
       }
     return result;
@@ -194,7 +193,7 @@ class ScannetSequence : public FrameSequence {
 
   std::unique_ptr<Recording> recording_;
   Camera camera_;
-  ColourPixels pixels_;
+  ColorPixels pixels_;
   std::unique_ptr<LabelImages> labels_;
   std::array<ClassId, 65536> class_of_id_{};
   std::vector<ClassDistribution> palette_;
@@ -209,8 +208,8 @@ Grid2d<std::uint16_t> widened(const Grid2d<Id>& ids) {
 
 }  // namespace
 
-std::uint16_t millimetres(float depth_m) {
-  const double units = std::round(kScannetDepthPerMetre * static_cast<double>(depth_m));
+std::uint16_t millimeters(float depth_m) {
+  const double units = std::round(kScannetDepthPerMeter * static_cast<double>(depth_m));
   return units > 0.0 && units <= 65535.0 ? static_cast<std::uint16_t>(units) : std::uint16_t{0};
 }
 
@@ -237,9 +236,9 @@ void write_scannet_recording(const fs::path& folder, const Camera& camera, std::
                             name + ".sens"};
   const RecordedLens lens = recorded_lens(camera);
   const RecordingInfo info{.sensor = "Modelhouse",
-                           .colour = lens,
+                           .color = lens,
                            .depth = lens,
-                           .depth_per_metre = kScannetDepthPerMetre};
+                           .depth_per_meter = kScannetDepthPerMeter};
   const auto labels = write_label_zip(work.path() / names[0], "label-filt");
   const auto instances = write_label_zip(work.path() / names[1], "instance-filt");
   save_sens(work.path() / names[2], info, frames, [&](std::size_t index) {
@@ -247,10 +246,10 @@ void write_scannet_recording(const fs::path& folder, const Camera& camera, std::
     labels->add(static_cast<std::uint32_t>(index), widened(frame.exact.classes));
     instances->add(static_cast<std::uint32_t>(index), frame.exact.instances);
     RecordedMoment moment{.stamp_ns = frame.seen.stamp_ns,
-                          .colour = std::move(frame.seen.colour),
+                          .color = std::move(frame.seen.color),
                           .depth = Grid2d<std::uint16_t>(camera.width_px, camera.height_px),
                           .world_from_device = frame.world_from_camera};
-    std::ranges::transform(frame.seen.depth_m, moment.depth.begin(), millimetres);
+    std::ranges::transform(frame.seen.depth_m, moment.depth.begin(), millimeters);
     return moment;
   });
   labels->finish();

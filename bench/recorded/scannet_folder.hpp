@@ -15,8 +15,8 @@
 namespace mh {
 
 /// A ScanNet recording as a sequence: a .sens file, the folder of one, or an extracted folder (see
-/// open_recording). Frames are those of the depth camera: each of its pixels takes the colour that
-/// the colour camera saw there, so that depths stay as measured; the colour picture is first
+/// open_recording). Frames are those of the depth camera: each of its pixels takes the color that
+/// the color camera saw there, so that depths stay as measured; the color picture is first
 /// averaged down to the depth picture's resolution. Labels come from label-filt beside the
 /// recording, through the label table. The truth leaves invalid frames out; SLAM is offered them
 /// like any other, for their pictures are sound.
@@ -26,10 +26,10 @@ std::unique_ptr<FrameSequence> open_scannet(const std::filesystem::path& path,
                                             std::vector<std::string>& notes);
 
 /// Of the 16-bit depth that is written.
-inline constexpr double kScannetDepthPerMetre = 1000;
+inline constexpr double kScannetDepthPerMeter = 1000;
 
 /// A depth in that unit; 0, none, beyond 65.5 m or where it is no number.
-std::uint16_t millimetres(float depth_m);
+std::uint16_t millimeters(float depth_m);
 
 /// What a recording says of a camera that is the device itself.
 RecordedLens recorded_lens(const Camera& camera);

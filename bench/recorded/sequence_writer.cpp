@@ -44,15 +44,15 @@ class ScanNetWriter : public SequenceWriter {
            const SE3& world_from_camera) override {
     const std::string name = std::to_string(index);
     write_atomically(folder_ / "color" / (name + ".jpg"),
-                     encode_jpeg(frame.colour, kRecordedJpegQuality));
+                     encode_jpeg(frame.color, kRecordedJpegQuality));
     cv::Mat depth(frame.depth_m.height(), frame.depth_m.width(), CV_16UC1);
     std::transform(frame.depth_m.begin(), frame.depth_m.end(), depth.ptr<std::uint16_t>(),
-                   millimetres);
+                   millimeters);
     write_picture(folder_ / "depth" / (name + ".png"), depth, png_);
     cv::Mat labels;  // of 16 bits in this layout
-    grey_picture(exact.classes).convertTo(labels, CV_16U);
+    gray_picture(exact.classes).convertTo(labels, CV_16U);
     write_picture(folder_ / "label-filt" / (name + ".png"), labels, png_);
-    write_picture(folder_ / "instance-filt" / (name + ".png"), grey_picture(exact.instances), png_);
+    write_picture(folder_ / "instance-filt" / (name + ".png"), gray_picture(exact.instances), png_);
     write_atomically(folder_ / "pose" / (name + ".txt"), rows(matrix_of(world_from_camera)));
     count(index);
   }
@@ -84,7 +84,7 @@ class ScanNetWriter : public SequenceWriter {
         fmt::format("m_versionNumber = 4\nm_sensorName = Modelhouse\nm_colorWidth = {0}\n"
                     "m_colorHeight = {1}\nm_depthWidth = {0}\nm_depthHeight = {1}\n"
                     "m_depthShift = {2}\nm_frames.size = {3}\n",
-                    camera_.width_px, camera_.height_px, kScannetDepthPerMetre, written_.size()));
+                    camera_.width_px, camera_.height_px, kScannetDepthPerMeter, written_.size()));
   }
 
  private:

@@ -36,7 +36,7 @@ class SequenceWriter {
 };
 
 /// By name: "tum" (see TumWriter) or "scannet-frames", the layout that ScanNet's SensReader
-/// extracts: color/N.jpg, depth/N.png (16 bit, 1000 per metre), pose/N.txt (camera to world),
+/// extracts: color/N.jpg, depth/N.png (16 bit, 1000 per meter), pose/N.txt (camera to world),
 /// intrinsic/, and as in its 2D annotation label-filt/N.png (16 bit, class ids) and
 /// instance-filt/N.png (16 bit); scannetv2-labels.combined.tsv gives the class of each id, and
 /// NYU40's.

@@ -104,7 +104,7 @@ SemanticImage one_hot(const cv::Mat& ids, const fs::path& file) {
 
 RecordedCamera load_recorded_camera(const fs::path& file) {
   const Settings settings = load_settings(file);
-  return {settings.camera, settings.depth_per_metre, settings.exchange_red_blue};
+  return {settings.camera, settings.depth_per_meter, settings.exchange_red_blue};
 }
 
 std::vector<RecordedFrame> load_tum_folder(const fs::path& folder,
@@ -112,45 +112,45 @@ std::vector<RecordedFrame> load_tum_folder(const fs::path& folder,
   const fs::path both = folder / "associations.txt";
   const bool associated = !fs::exists(folder / "rgb.txt") && fs::exists(both);
   const fs::path list = associated ? both : folder / "rgb.txt";
-  const std::vector<Listed> colour = read_list(list);
-  if (colour.empty()) throw InputError(fmt::format("{}: lists no picture", list.string()));
+  const std::vector<Listed> color = read_list(list);
+  if (color.empty()) throw InputError(fmt::format("{}: lists no picture", list.string()));
   const std::vector<Listed> depth =
       associated ? read_list(both, 2) : read_list(folder / "depth.txt");
   std::vector<Listed> labels;
   if (fs::exists(folder / "label.txt")) labels = read_list(folder / "label.txt");
   const ByStamp depth_at(depth), labels_at(labels);
   std::vector<RecordedFrame> frames;
-  for (std::size_t i = 0; i < colour.size(); ++i) {
-    const Listed* d = associated ? &depth[i] : depth_at.nearest(colour[i].stamp_ns);
+  for (std::size_t i = 0; i < color.size(); ++i) {
+    const Listed* d = associated ? &depth[i] : depth_at.nearest(color[i].stamp_ns);
     if (d == nullptr) continue;
-    const Listed* l = labels_at.nearest(colour[i].stamp_ns);
-    frames.push_back({colour[i].stamp_ns, colour[i].file, d->file, l ? l->file : fs::path()});
+    const Listed* l = labels_at.nearest(color[i].stamp_ns);
+    frames.push_back({color[i].stamp_ns, color[i].file, d->file, l ? l->file : fs::path()});
   }
   if (frames.empty())
     throw InputError(
-        fmt::format("{}: no colour picture has a depth picture within 0.02 s", folder.string()));
-  if (notes != nullptr && frames.size() < colour.size())
+        fmt::format("{}: no color picture has a depth picture within 0.02 s", folder.string()));
+  if (notes != nullptr && frames.size() < color.size())
     notes->push_back(
-        fmt::format("{}: {} of {} colour pictures have no depth picture within 0.02 s "
+        fmt::format("{}: {} of {} color pictures have no depth picture within 0.02 s "
                     "and are left out",
-                    folder.string(), colour.size() - frames.size(), colour.size()));
+                    folder.string(), color.size() - frames.size(), color.size()));
   return frames;
 }
 
 RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera) {
-  const cv::Mat colour = read_frame_picture(recorded.colour, CV_8UC3, camera.camera);
+  const cv::Mat color = read_frame_picture(recorded.color, CV_8UC3, camera.camera);
   const cv::Mat depth = read_frame_picture(recorded.depth, CV_16UC1, camera.camera);
   RgbdFrame frame;
   frame.stamp_ns = recorded.stamp_ns;
-  frame.colour = Grid2d<Rgb8>(colour.cols, colour.rows);
-  frame.depth_m = Grid2d<float>(colour.cols, colour.rows);
-  for (int y = 0; y < colour.rows; ++y)
-    for (int x = 0; x < colour.cols; ++x) {
-      const cv::Vec3b bgr = colour.at<cv::Vec3b>(y, x);
-      frame.colour(x, y) = {bgr[2], bgr[1], bgr[0]};
-      if (camera.exchange_red_blue) frame.colour(x, y) = {bgr[0], bgr[1], bgr[2]};
+  frame.color = Grid2d<Rgb8>(color.cols, color.rows);
+  frame.depth_m = Grid2d<float>(color.cols, color.rows);
+  for (int y = 0; y < color.rows; ++y)
+    for (int x = 0; x < color.cols; ++x) {
+      const cv::Vec3b bgr = color.at<cv::Vec3b>(y, x);
+      frame.color(x, y) = {bgr[2], bgr[1], bgr[0]};
+      if (camera.exchange_red_blue) frame.color(x, y) = {bgr[0], bgr[1], bgr[2]};
       frame.depth_m(x, y) =
-          static_cast<float>(depth.at<std::uint16_t>(y, x) / camera.depth_per_metre);
+          static_cast<float>(depth.at<std::uint16_t>(y, x) / camera.depth_per_meter);
     }
   if (!recorded.classes.empty())
     frame.semantics =
@@ -180,12 +180,12 @@ void TumWriter::add_pictures(const RgbdFrame& frame) {
   cv::Mat depth(frame.depth_m.height(), frame.depth_m.width(), CV_16UC1);
   std::transform(frame.depth_m.begin(), frame.depth_m.end(), depth.ptr<std::uint16_t>(),
                  depth_units);
-  write("rgb", frame.stamp_ns, colour_picture(frame.colour));
+  write("rgb", frame.stamp_ns, color_picture(frame.color));
   write("depth", frame.stamp_ns, depth);
 }
 
 void TumWriter::add_labels(Stamp stamp_ns, const Grid2d<ClassId>& classes) {
-  write("label", stamp_ns, grey_picture(classes));
+  write("label", stamp_ns, gray_picture(classes));
 }
 
 void TumWriter::add(const RgbdFrame& frame) {
@@ -198,7 +198,7 @@ void TumWriter::add(std::size_t, const RgbdFrame& frame, const RenderedFrame& ex
   fs::create_directories(folder_ / "instance");
   add_pictures(frame);
   add_labels(frame.stamp_ns, exact.classes);
-  write("instance", frame.stamp_ns, grey_picture(exact.instances));
+  write("instance", frame.stamp_ns, gray_picture(exact.instances));
   const std::scoped_lock lock(mutex_);
   truth_[frame.stamp_ns] = world_from_camera;
 }

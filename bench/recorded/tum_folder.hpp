@@ -21,21 +21,21 @@ namespace mh {
 /// What a recorded sequence needs to be read.
 struct RecordedCamera {
   Camera camera;
-  double depth_per_metre = kDepthPerMetre;  ///< value of a depth pixel one metre away
+  double depth_per_meter = kDepthPerMeter;  ///< value of a depth pixel one meter away
   bool exchange_red_blue = false;           ///< the files' first channel is blue
 };
 
 /// The camera of a settings file, our own or ORB-SLAM2's: see load_settings(). @throws InputError.
 RecordedCamera load_recorded_camera(const std::filesystem::path& file);
 
-/// One moment of a recording: colour and depth pictures that belong together.
+/// One moment of a recording: color and depth pictures that belong together.
 struct RecordedFrame {
-  Stamp stamp_ns = 0;                            ///< of the colour picture
-  std::filesystem::path colour, depth, classes;  ///< classes: empty where the recording has none
+  Stamp stamp_ns = 0;                           ///< of the color picture
+  std::filesystem::path color, depth, classes;  ///< classes: empty where the recording has none
 };
 
 /// Reads a folder in TUM's layout: rgb.txt and depth.txt, without them associations.txt, and
-/// label.txt where it is there. Each colour picture gets the nearest depth picture within 0.02 s,
+/// label.txt where it is there. Each color picture gets the nearest depth picture within 0.02 s,
 /// as TUM's own association does, or the one beside which it is listed; one without is left out.
 /// @param notes  gets a line with the number of those left out; may be null
 /// @throws InputError naming file and line.
@@ -45,7 +45,7 @@ std::vector<RecordedFrame> load_tum_folder(const std::filesystem::path& folder,
 /// Reads the pictures of one frame. @throws InputError naming the picture.
 RgbdFrame read_frame(const RecordedFrame& frame, const RecordedCamera& camera);
 
-/// Writes sequences in TUM's layout: rgb/ and depth/ (16 bit, 5000 per metre), label/ (class ids, 8
+/// Writes sequences in TUM's layout: rgb/ and depth/ (16 bit, 5000 per meter), label/ (class ids, 8
 /// bit), their lists, associations.txt, camera.yaml and camera_info.yaml; with truth also instance/
 /// (16 bit), its list and groundtruth.txt. The lists appear with finish(), so that a folder without
 /// them was not finished.

@@ -127,7 +127,7 @@ Json matches_json(const MatchCounts& matches) {
   for (std::size_t m = 0; m < matches.size(); ++m) {
     const MatcherCounts& c = matches[m];
     all[std::string(name(static_cast<Matcher>(m)))] = {{"compared", c.compared},
-                                                       {"penalised", c.penalised},
+                                                       {"penalized", c.penalized},
                                                        {"rejected_by_xi", c.rejected_by_xi},
                                                        {"ratio_helped", c.ratio_helped}};
   }

@@ -60,9 +60,9 @@ Comparison resample(std::string what, std::span<const PairedDifference> pairs, s
   c.low = at(0.025);
   c.high = at(0.975);
   double variance = 0;
-  const double centre =
+  const double center =
       std::accumulate(means.begin(), means.end(), 0.0) / static_cast<double>(means.size());
-  for (const double m : means) variance += (m - centre) * (m - centre);
+  for (const double m : means) variance += (m - center) * (m - center);
   c.detectable = (1.96 + 0.84) * std::sqrt(variance / (static_cast<double>(means.size()) - 1.0));
   if (shares) c.detectable = std::max(c.detectable, 3.0 / static_cast<double>(c.pairs));
   return c;

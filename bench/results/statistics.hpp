@@ -56,7 +56,7 @@ Comparison compare_scenes(std::string what, std::span<const PairedDifference> sc
 /// the seed.
 double sign_flip(std::span<const double> sums, std::uint64_t seed);
 
-/// Mean difference of two systems over the queries of one house. Neighbouring queries see the same
+/// Mean difference of two systems over the queries of one house. Neighboring queries see the same
 /// place, so blocks of max(2, n^(1/3)) consecutive ones are taken together: the interval is that of
 /// a circular block bootstrap (Politis and Romano, 1992), p that of sign_flip() over the sums of
 /// blocks that do not overlap. Fewer than 6 such blocks cannot be significant: 2 of 32 patterns are

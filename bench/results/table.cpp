@@ -23,7 +23,7 @@ std::string title(QuerySet set) {
   return set == QuerySet::kHeldOut ? "held-out frames (the paper's way)" : "second tour";
 }
 
-std::string metres(const std::optional<double>& value, int digits = 4) {
+std::string meters(const std::optional<double>& value, int digits = 4) {
   return value ? fmt::format("{:.{}f}", *value, digits) : std::string("-");
 }
 
@@ -130,7 +130,7 @@ std::string table_2(const Block& block) {
       const bool saturated = block.system(row).kind == SystemKind::kPlain && s.success > kSaturated;
       text += fmt::format(
           "    {:<{}}{:>22}{:>22}{}{}\n", block.system(row).name, name_width(block.suite, 42),
-          s.queries > 0 ? fmt::format("{:.2f}", 100 * s.success) : "-", metres(s.distance_mean_m),
+          s.queries > 0 ? fmt::format("{:.2f}", 100 * s.success) : "-", meters(s.distance_mean_m),
           saturated ? "   saturated" : "", lacking(block.suite, *row));
     }
   }
@@ -152,8 +152,8 @@ std::string query_details(const Block& block, QuerySet set) {
     text += fmt::format(
         "  {:<{}}{:>9}{:>10}{:>9}{:>10}{:>11}{:>12}{:>10}\n", block.system(row).name, width,
         percent(s, &QuerySummary::success), percent(s, &QuerySummary::correct),
-        percent(s, &QuerySummary::wrong), metres(s.distance_mean_m), metres(s.distance_median_m),
-        metres(s.aligned_distance_mean_m), s.queries > 0 ? fmt::format("{:.2f}", s.attempts) : "-");
+        percent(s, &QuerySummary::wrong), meters(s.distance_mean_m), meters(s.distance_median_m),
+        meters(s.aligned_distance_mean_m), s.queries > 0 ? fmt::format("{:.2f}", s.attempts) : "-");
   }
   return text;
 }
@@ -219,8 +219,8 @@ std::string mapping_details(const Block& block) {
     };
     text += fmt::format(
         "  {:<{}}{:>10}{:>14}{:>11}{:>12}{:>11}{:>10}{:>9}{}\n", block.system(row).name, width,
-        metres(t.ate_rmse_m), metres(t.ate_first_pose_m), metres(t.rpe_frame_rmse_m, 5),
-        metres(t.rpe_second_rmse_m, 5), cell("{:.2f}%", 100 * t.completeness),
+        meters(t.ate_rmse_m), meters(t.ate_first_pose_m), meters(t.rpe_frame_rmse_m, 5),
+        meters(t.rpe_second_rmse_m, 5), cell("{:.2f}%", 100 * t.completeness),
         cell("{:.0f}", row->restarts), cell("{:.0f}", row->dropped), lacking(block.suite, *row));
   }
   return text;
@@ -230,15 +230,15 @@ std::string penalties(const Block& block) {
   std::string text;
   for (const Row* row : block.rows) {
     if (block.system(row).kind != SystemKind::kSemantic || row->trials.empty()) continue;
-    text += "  pairs penalised by xi (of those compared; rejected by it; ratio tests it helped)\n";
+    text += "  pairs penalized by xi (of those compared; rejected by it; ratio tests it helped)\n";
     for (std::size_t m = 0; m < row->matches.size(); ++m) {
       const MatcherCounts& c = row->matches[m];
-      const double share = c.compared > 0 ? 100.0 * static_cast<double>(c.penalised) /
+      const double share = c.compared > 0 ? 100.0 * static_cast<double>(c.penalized) /
                                                 static_cast<double>(c.compared)
                                           : 0.0;
       text +=
           fmt::format("    {:<26}{:>14}  ({:5.1f}% of {}; {}; {})\n", name(static_cast<Matcher>(m)),
-                      c.penalised, share, c.compared, c.rejected_by_xi, c.ratio_helped);
+                      c.penalized, share, c.compared, c.rejected_by_xi, c.ratio_helped);
     }
   }
   return text;
@@ -254,7 +254,7 @@ std::string common_ate(const Block& block) {
   if (semantic == nullptr || plain == nullptr) return "";
   const auto [a, b] = ate_over_common_frames(*semantic, *plain);
   return fmt::format("  ATE over the frames that both tracked, m: semantic {}, plain {}\n",
-                     metres(a), metres(b));
+                     meters(a), meters(b));
 }
 
 /// "[-0.0123, +0.0456]"; "-" where too few pairs leave it open.
@@ -355,13 +355,13 @@ std::string category_line(const Suite& suite, const CategoryRow& row,
   std::string text =
       fmt::format("  {:<{}}{:>7}  {:<{}}{:>9}{:>10}{:>11}", row.category, category_width(suite),
                   row.scenes, suite.systems[row.system].name, name_width(suite),
-                  metres(row.ate_rmse_m), metres(row.rpe_frame_rmse_m, 5),
+                  meters(row.ate_rmse_m), meters(row.rpe_frame_rmse_m, 5),
                   row.scenes > 0 ? fmt::format("{:.2f}%", 100 * row.completeness) : "-");
   for (const QuerySet set : kQuerySets) {
     const QuerySummary& s = summary(row, set);
     if (asked(all, set))
       text += fmt::format("{:>13}{:>11}{:>9}", percent(s, &QuerySummary::success),
-                          percent(s, &QuerySummary::correct), metres(s.distance_mean_m));
+                          percent(s, &QuerySummary::correct), meters(s.distance_mean_m));
   }
   const bool saturated =
       suite.systems[row.system].kind == SystemKind::kPlain && row.held_out.success > kSaturated;
@@ -479,7 +479,7 @@ std::string sweep_text(const Suite& suite, const std::vector<Row>& rows) {
         text +=
             fmt::format("{:>13}{:>11}{:>10}{:>9}{:>11}", percent(s, &QuerySummary::success),
                         percent(s, &QuerySummary::correct), percent(s, &QuerySummary::wrong),
-                        metres(s.distance_mean_m), s.final ? fmt::format("{:.2f}", *s.final) : "-");
+                        meters(s.distance_mean_m), s.final ? fmt::format("{:.2f}", *s.final) : "-");
     }
     text += lacking(row) + "\n";
     last = &row;

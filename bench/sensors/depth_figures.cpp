@@ -26,7 +26,7 @@ RenderedFrame leaning(double distance_m, double angle_rad) {
 /// Depth faults one at a time: everything off but what the caller switches on.
 SensorConfig depth_only() {
   SensorConfig config;
-  config.colour_noise_on = false;
+  config.color_noise_on = false;
   config.depth_noise = no_depth_noise();
   return config;
 }
@@ -105,7 +105,7 @@ Plot lateral_over_angle() {
 Plot step_over_distance() {
   const auto step = [](double z) {
     SensorConfig config = depth_only();
-    config.depth_noise.quantisation = true;
+    config.depth_noise.quantization = true;
     const RgbdFrame frame = sensed(leaning(z, 0.9), config);
     // The two values that enclose the distance.
     float below = 0.0F, above = 1e6F;

@@ -41,14 +41,14 @@ struct Spread {
   double sigma() const { return std::sqrt(std::max(0.0, square / n - sum / n * (sum / n))); }
 };
 
-inline RenderedFrame blank(float depth_m, std::uint8_t grey = 128) {
+inline RenderedFrame blank(float depth_m, std::uint8_t gray = 128) {
   const int w = kCamera.width_px, h = kCamera.height_px;
-  return {{w, h, {grey, grey, grey}}, {w, h, depth_m}, {w, h}, {w, h}};
+  return {{w, h, {gray, gray, gray}}, {w, h, depth_m}, {w, h}, {w, h}};
 }
 
 inline SensorConfig clean() {
   SensorConfig config;
-  config.depth_noise_on = config.colour_noise_on = false;
+  config.depth_noise_on = config.color_noise_on = false;
   return config;
 }
 

@@ -5,7 +5,7 @@
 
 #include "bench/sensors/figure_tools.hpp"
 #include "bench/sensors/figures.hpp"
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 #include "sim/sensors/lens.hpp"
 #include "sim/sensors/shutter.hpp"
 
@@ -24,9 +24,9 @@ class Edge : public Renderer {
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x) {
         const Eigen::Vector3d p = world_from_camera * camera.unproject(x, y, kDepthM);
-        const std::uint8_t grey =
+        const std::uint8_t gray =
             linear_to_srgb(static_cast<float>(0.5 - p.x() / kDepthM * camera.fx_px));
-        frame.colour(x, y) = {grey, grey, grey};
+        frame.color(x, y) = {gray, gray, gray};
       }
     return frame;
   }
@@ -45,7 +45,7 @@ Grid2d<Rgb8> passing_the_edge(double speed_m_per_s, const SensorConfig& config, 
     path.push_back(
         {(i + 2) * Stamp{33'333'333},
          SE3(Eigen::Matrix3d::Identity(), {from_m + speed_m_per_s * i * 0.033333333, 0, 0})});
-  return Shutter(std::make_shared<Edge>(), narrow_camera(), path, config).expose(2).seen.colour;
+  return Shutter(std::make_shared<Edge>(), narrow_camera(), path, config).expose(2).seen.color;
 }
 
 /// The width over which the edge is smeared, from the variance of its slope; where the edge falls
@@ -58,10 +58,10 @@ double smear_px(double speed_m_per_s, double exposure_s) {
   double squared = 0.0;
   for (int k = 0; k < kPlaces; ++k) {
     const double from_m = Edge::kDepthM / kCamera.fx_px * k / kPlaces;
-    const Grid2d<Rgb8> colour = passing_the_edge(speed_m_per_s, config, from_m);
+    const Grid2d<Rgb8> color = passing_the_edge(speed_m_per_s, config, from_m);
     double mean = 0.0, square = 0.0;
-    for (int x = 0; x + 1 < colour.width(); ++x) {
-      const double drop = srgb_to_linear(colour(x, 45).r) - srgb_to_linear(colour(x + 1, 45).r);
+    for (int x = 0; x + 1 < color.width(); ++x) {
+      const double drop = srgb_to_linear(color(x, 45).r) - srgb_to_linear(color(x + 1, 45).r);
       mean += drop * x;
       square += drop * x * x;
     }
@@ -87,13 +87,13 @@ Plot slant_over_speed() {
   const auto slant = [](double v) {
     SensorConfig config = clean();
     config.shutter.rolling_shutter_on = true;
-    const Grid2d<Rgb8> colour = passing_the_edge(v, config, 0.0);
+    const Grid2d<Rgb8> color = passing_the_edge(v, config, 0.0);
     const auto edge = [&](int y) {
       double light = 0.0;
-      for (const Rgb8& c : colour.row(y)) light += srgb_to_linear(c.r);
+      for (const Rgb8& c : color.row(y)) light += srgb_to_linear(c.r);
       return light;
     };
-    return (edge(0) - edge(colour.height() - 1)) * 90.0 / 89.0;
+    return (edge(0) - edge(color.height() - 1)) * 90.0 / 89.0;
   };
   return {"Rolling shutter, 2 m away",
           "speed, m/s",
@@ -114,10 +114,9 @@ Plot noise_over_light() {
       SensorConfig config = clean();
       config.shot_noise_on = true;
       config.shot_noise.gain = gain;
-      const std::uint8_t grey = linear_to_srgb(static_cast<float>(light));
+      const std::uint8_t gray = linear_to_srgb(static_cast<float>(light));
       Spread spread;
-      for (const Rgb8& c : sensed(blank(2.0F, grey), config).colour)
-        spread.add(srgb_to_linear(c.g));
+      for (const Rgb8& c : sensed(blank(2.0F, gray), config).color) spread.add(srgb_to_linear(c.g));
       return 20.0 * std::log10(spread.sum / spread.n / spread.sigma());
     };
     const std::string name = gain == 1.0 ? "OV5640: 36 dB at white" : "the same, 8 x gain";
@@ -136,7 +135,7 @@ Plot fall_off_over_angle() {
     const auto y = static_cast<int>(
         std::lround(kCamera.cy_px + kCamera.fy_px * std::tan(a * kDegree) / std::numbers::sqrt2));
     const RgbdFrame frame = sensed(blank(2.0F, 230), config);
-    return srgb_to_linear(frame.colour(std::min(x, 639), std::min(y, 479)).g) /
+    return srgb_to_linear(frame.color(std::min(x, 639), std::min(y, 479)).g) /
            srgb_to_linear(std::uint8_t{230});
   };
   return {"Vignetting",
@@ -146,13 +145,13 @@ Plot fall_off_over_angle() {
            measured("measured", {0, 5, 10, 15, 20, 25, 30}, share)}};
 }
 
-/// A grey wall that is three times as bright where the camera has passed x = 0.
+/// A gray wall that is three times as bright where the camera has passed x = 0.
 class Lamp : public Renderer {
  public:
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
     const int w = camera.width_px, h = camera.height_px;
-    const std::uint8_t grey = linear_to_srgb(world_from_camera.translation().x() < 0 ? 0.1F : 0.3F);
-    return {{w, h, {grey, grey, grey}}, {w, h, 2.0F}, {w, h, 1}, {w, h, 1}};
+    const std::uint8_t gray = linear_to_srgb(world_from_camera.translation().x() < 0 ? 0.1F : 0.3F);
+    return {{w, h, {gray, gray, gray}}, {w, h, 2.0F}, {w, h, 1}, {w, h, 1}};
   }
 };
 

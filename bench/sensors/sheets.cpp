@@ -15,7 +15,7 @@
 
 #include "bench/pictures/canvas.hpp"
 #include "bench/pictures/contact_sheet.hpp"
-#include "bench/pictures/false_colours.hpp"
+#include "bench/pictures/false_colors.hpp"
 #include "sim/sensors/shutter.hpp"
 
 namespace mh {
@@ -24,15 +24,15 @@ namespace {
 constexpr double kTileWidth = 400, kTileHeight = 300, kGap = 10, kMargin = 24, kCaption = 20;
 constexpr double kHeader = 70;
 constexpr std::size_t kMiddle = 30;  // of the path's frames
-constexpr Rgb8 kInk = {40, 43, 50}, kGrey = {110, 115, 125};
+constexpr Rgb8 kInk = {40, 43, 50}, kGray = {110, 115, 125};
 
 /// What is looked at, where a model has no dial for its strength.
 struct Look {
-  double baseline = 1;       ///< times the sensor's own
-  double far = 1;            ///< the scene is so many times as large
-  int pixel = 1;             ///< so many times as wide
-  double eye_m = 0;          ///< above the floor; 0 = as the view is
-  bool over_colour = false;  ///< edges of the depth over the colour picture
+  double baseline = 1;      ///< times the sensor's own
+  double far = 1;           ///< the scene is so many times as large
+  int pixel = 1;            ///< so many times as wide
+  double eye_m = 0;         ///< above the floor; 0 = as the view is
+  bool over_color = false;  ///< edges of the depth over the color picture
 };
 
 /// One factor: what it is called, and what makes it mild and strong.
@@ -49,7 +49,7 @@ const Set kOff = [](SensorConfig&) {};
 
 SensorConfig everything_off() {
   SensorConfig config;
-  config.depth_noise_on = config.colour_noise_on = false;
+  config.depth_noise_on = config.color_noise_on = false;
   config.depth_noise = no_depth_noise();
   return config;
 }
@@ -99,11 +99,11 @@ Trajectory motion_through(const SE3& pose) {
   return path;
 }
 
-/// False colours for the distance, shaded as if lit from the left, so that its noise can be seen;
+/// False colors for the distance, shaded as if lit from the left, so that its noise can be seen;
 /// black without return.
 cv::Mat depth_picture(const Grid2d<float>& depth_m, const Camera& camera) {
   const int w = depth_m.width(), h = depth_m.height();
-  cv::Mat picture = depth_colours(depth_m, 0.5F, 6.0F);
+  cv::Mat picture = depth_colors(depth_m, 0.5F, 6.0F);
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       const float z = depth_m(x, y), next = depth_m(std::min(x + 2, w - 1), y);
@@ -116,51 +116,51 @@ cv::Mat depth_picture(const Grid2d<float>& depth_m, const Camera& camera) {
   return picture;
 }
 
-/// The colour picture in grey with the depth's edges in red: they lie on the things' own where both
+/// The color picture in gray with the depth's edges in red: they lie on the things' own where both
 /// are of the same moment.
-cv::Mat edges_over_colour(const Grid2d<float>& depth_m, const Grid2d<Rgb8>& colour) {
+cv::Mat edges_over_color(const Grid2d<float>& depth_m, const Grid2d<Rgb8>& color) {
   constexpr double kJump = 0.08;  // share of the distance
   constexpr int kReach_px = 2;
-  cv::Mat picture = colour_picture(colour);
+  cv::Mat picture = color_picture(color);
   const auto jumps = [&](float a, float b) {
     return std::abs(a - b) > kJump * std::min(a, b) && a > 0 && b > 0;
   };
   for (int y = 0; y < picture.rows; ++y)
     for (int x = 0; x < picture.cols; ++x) {
       cv::Vec3b& pixel = picture.at<cv::Vec3b>(y, x);
-      const auto grey = static_cast<std::uint8_t>((pixel[0] + pixel[1] + pixel[2]) / 3);
+      const auto gray = static_cast<std::uint8_t>((pixel[0] + pixel[1] + pixel[2]) / 3);
       const float z = depth_m(x, y);
       const bool edge = jumps(z, depth_m(std::min(x + kReach_px, picture.cols - 1), y)) ||
                         jumps(z, depth_m(x, std::min(y + kReach_px, picture.rows - 1)));
-      pixel = edge ? cv::Vec3b(30, 30, 235) : cv::Vec3b(grey, grey, grey);
+      pixel = edge ? cv::Vec3b(30, 30, 235) : cv::Vec3b(gray, gray, gray);
     }
   return picture;
 }
 
-/// Class colours over the grey picture; void is the picture itself.
-cv::Mat label_picture(const SemanticImage& labels, const Grid2d<Rgb8>& colour) {
-  cv::Mat picture = colour_picture(colour);
+/// Class colors over the gray picture; void is the picture itself.
+cv::Mat label_picture(const SemanticImage& labels, const Grid2d<Rgb8>& color) {
+  cv::Mat picture = color_picture(color);
   for (int y = 0; y < picture.rows; ++y)
     for (int x = 0; x < picture.cols; ++x) {
       cv::Vec3b& pixel = picture.at<cv::Vec3b>(y, x);
-      const double grey = (pixel[0] + pixel[1] + pixel[2]) / 3.0;
+      const double gray = (pixel[0] + pixel[1] + pixel[2]) / 3.0;
       const ClassDistribution& seen = labels.at(x, y);
-      const Rgb8 shown = class_colour(seen.most_probable());
+      const Rgb8 shown = class_color(seen.most_probable());
       const double part = seen.entries.empty() ? 0.0 : 0.6;
       const std::array<std::uint8_t, 3> bgr = {shown.b, shown.g, shown.r};
       for (int c = 0; c < 3; ++c)
         pixel[c] = static_cast<std::uint8_t>(part * bgr[static_cast<std::size_t>(c)] +
-                                             (1.0 - part) * grey);
+                                             (1.0 - part) * gray);
     }
   return picture;
 }
 
-std::vector<Factor> colour_factors() {
+std::vector<Factor> color_factors() {
   const auto shot = [](double gain) {
     return [=](SensorConfig& c) { c.shot_noise_on = true, c.shot_noise.gain = gain; };
   };
   const auto gaussian = [](double sigma) {
-    return [=](SensorConfig& c) { c.colour_noise_on = true, c.colour_noise.sigma = sigma; };
+    return [=](SensorConfig& c) { c.color_noise_on = true, c.color_noise.sigma = sigma; };
   };
   const auto read = [](double share) {
     // So large a well that its own noise, the shot noise, is small beside that of reading.
@@ -197,7 +197,7 @@ std::vector<Factor> colour_factors() {
        {processed(0, 0), processed(0.5, 2), processed(1, 5)},
        200},
       {"rolling shutter", {"off", "26 ms", "100 ms"}, {kOff, rolling(0.0261), rolling(0.1)}},
-      {"colour noise (Gaussian)",
+      {"color noise (Gaussian)",
        {"off", "0.7 %", "5 %"},
        {kOff, gaussian(0.007), gaussian(0.05)},
        200},
@@ -225,7 +225,7 @@ std::vector<Factor> depth_factors() {
   };
   const Set axial = noise([](DepthNoiseConfig& d) { d.axial = true; });
   const Set lateral = noise([](DepthNoiseConfig& d) { d.lateral = true; });
-  const Set steps = noise([](DepthNoiseConfig& d) { d.quantisation = true; });
+  const Set steps = noise([](DepthNoiseConfig& d) { d.quantization = true; });
   const Set grazing = noise([](DepthNoiseConfig& d) { d.grazing_holes = true; });
   const Set shadow = noise([](DepthNoiseConfig& d) { d.projector_shadow = true; });
   const Set range = noise([](DepthNoiseConfig& d) { d.min_range_m = 0.4, d.max_range_m = 8.0; });
@@ -239,7 +239,7 @@ std::vector<Factor> depth_factors() {
     d = DepthNoiseConfig{};
     d.projector_shadow = true;
   });
-  const Look over_colour{.over_colour = true};
+  const Look over_color{.over_color = true};
   const auto offset = [](double s) { return [=](SensorConfig& c) { c.depth_offset_s = s; }; };
   return {
       {"axial noise",
@@ -268,11 +268,11 @@ std::vector<Factor> depth_factors() {
        640,
        {Look{.eye_m = 0.2}, Look{}, Look{.eye_m = 0.2}}},
       {"range", {"off", "0.4 to 8 m", "0.8 to 3.5 m"}, {kOff, range, short_range}},
-      {"later than the colour: edges of the depth over the colour",
+      {"later than the color: edges of the depth over the color",
        {"off", "20 ms", "100 ms"},
        {kOff, offset(0.020), offset(0.100)},
        640,
-       {over_colour, over_colour, over_colour}},
+       {over_color, over_color, over_color}},
       {"together", {"off", "without shadow", "Xtion"}, {kOff, most, all}},
   };
 }
@@ -320,7 +320,7 @@ cv::Mat draw(const std::string& title, const std::vector<Factor>& factors,
       cv::resize(whole({(whole.cols - w) / 2, (whole.rows - h) / 2, w, h}), part, {800, 600}, 0, 0,
                  cv::INTER_NEAREST);
       canvas.picture(part, x, y + kCaption, kTileWidth, kTileHeight);
-      canvas.text(factor.captions[k], {x, y + kCaption + kTileHeight + 14}, 8.5, kGrey);
+      canvas.text(factor.captions[k], {x, y + kCaption + kTileHeight + 14}, 8.5, kGray);
     }
     y += row;
   }
@@ -367,7 +367,7 @@ cv::Mat draw_frames(const std::function<cv::Mat(std::size_t frame, const SensorC
         if (!arrives || cv::countNonZero(picture.reshape(1)) == 0)
           canvas.fill(x, y + kHeight - 5, kWidth, 5, kLost);
       }
-      canvas.text(factor.captions[k], {kMargin, y + kHeight + 14}, 8.5, kGrey);
+      canvas.text(factor.captions[k], {kMargin, y + kHeight + 14}, 8.5, kGray);
     }
     y += 40 - kCaption;
   }
@@ -406,28 +406,27 @@ SensorSheets draw_sensor_sheets(const Scene& scene, std::shared_ptr<const Render
     return sensed;
   };
   SensorSheets sheets;
-  sheets.colour = draw("Colour: forward at 0.4 m/s while turning at 1 rad/s", colour_factors(),
-                       [&](const SensorConfig& c, const Look& look) {
-                         return colour_picture(frame(c, look).colour);
-                       });
+  sheets.color = draw(
+      "Color: forward at 0.4 m/s while turning at 1 rad/s", color_factors(),
+      [&](const SensorConfig& c, const Look& look) { return color_picture(frame(c, look).color); });
   sheets.depth = draw("Depth: near red, far blue, black without return", depth_factors(),
                       [&](const SensorConfig& c, const Look& look) {
                         const RgbdFrame seen = frame(c, look);
-                        return look.over_colour ? edges_over_colour(seen.depth_m, seen.colour)
-                                                : depth_picture(seen.depth_m, camera);
+                        return look.over_color ? edges_over_color(seen.depth_m, seen.color)
+                                               : depth_picture(seen.depth_m, camera);
                       });
   sheets.frames = draw_frames(
       [&](std::size_t i, const SensorConfig& c) {
         const RenderedFrame seen = renderer->render(camera, path[i].world_from_camera);
-        return colour_picture(sense(seen, camera, c, stream.fork(i), 0).colour);
+        return color_picture(sense(seen, camera, c, stream.fork(i), 0).color);
       },
       RandomStream(6));  // in ten frames this one loses some at either share
 
   const RenderedFrame truth = renderer->render(camera, pose);
   std::vector<Factor> factors = label_factors();
   sheets.labels = draw(
-      "Labels: class colours over the picture", factors, [&](const SensorConfig& c, const Look&) {
-        return label_picture(sense_labels(truth, LabelMode::kExact, c, pose, stream), truth.colour);
+      "Labels: class colors over the picture", factors, [&](const SensorConfig& c, const Look&) {
+        return label_picture(sense_labels(truth, LabelMode::kExact, c, pose, stream), truth.color);
       });
   // The detector's rows go below: exact boxes, one network and another.
   const Factor detectors{"detectors",
@@ -436,7 +435,7 @@ SensorSheets draw_sensor_sheets(const Scene& scene, std::shared_ptr<const Render
                           [](SensorConfig& c) { c.labels.seed = 7; }}};
   const cv::Mat more = draw("", {detectors}, [&](const SensorConfig& c, const Look&) {
     const LabelMode mode = c.labels.seed == 100 ? LabelMode::kBoxes : LabelMode::kDetector;
-    return label_picture(sense_labels(truth, mode, c, pose, stream), truth.colour);
+    return label_picture(sense_labels(truth, mode, c, pose, stream), truth.color);
   });
   cv::vconcat(sheets.labels,
               more(cv::Range(static_cast<int>(kHeader) - 20, more.rows), cv::Range::all()),

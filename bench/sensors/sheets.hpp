@@ -15,7 +15,7 @@ namespace mh {
 /// A factor without a dial for its strength is stronger in a larger room, with larger pixels or
 /// from nearer the floor, as its caption says.
 struct SensorSheets {
-  cv::Mat colour, depth, frames, labels;
+  cv::Mat color, depth, frames, labels;
 };
 SensorSheets draw_sensor_sheets(const Scene& scene, std::shared_ptr<const Renderer> renderer);
 

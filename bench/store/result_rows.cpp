@@ -108,7 +108,7 @@ SE3 pose_at(SQLite::Statement& s, int column) {
 Json matches_json(const MatchCounts& matches) {
   Json all = Json::array();
   for (const MatcherCounts& c : matches)
-    all.push_back({c.compared, c.penalised, c.rejected_by_xi, c.ratio_helped});
+    all.push_back({c.compared, c.penalized, c.rejected_by_xi, c.ratio_helped});
   return all;
 }
 

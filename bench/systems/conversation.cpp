@@ -88,7 +88,7 @@ class Conversation {
                                {"k3", d.k3},
                                {"fps", camera.rate_hz},
                                {"bf", camera.baseline_m * camera.fx_px}}},
-                             {"depth_per_metre", kDepthPerMetre},
+                             {"depth_per_meter", kDepthPerMeter},
                              {"settings", settings().string()},
                              {"classes", classes_by_id}},
                             {"protocol", "name"});
@@ -124,7 +124,7 @@ class Conversation {
                        TrackStatus with_pose, Json fields = Json::object()) {
     const FrameFiles files = show(frame, scratch_.path);
     fields["stamp"] = format_stamp(frame.stamp_ns);
-    fields["colour"] = files.colour.string();
+    fields["color"] = files.color.string();
     fields["depth"] = files.depth.string();
     if (!files.labels.empty()) fields["labels"] = files.labels.string();
     fields["seed"] = stream.bits(0) >> 33;  // fits an int everywhere

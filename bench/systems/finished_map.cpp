@@ -20,8 +20,8 @@ void fields(A& a, T& call) {
 }
 template <class A, Either<MatcherCounts> T>
 void fields(A& a, T& counts) {
-  auto& [compared, penalised, rejected_by_xi, ratio_helped] = counts;
-  a(compared, penalised, rejected_by_xi, ratio_helped);
+  auto& [compared, penalized, rejected_by_xi, ratio_helped] = counts;
+  a(compared, penalized, rejected_by_xi, ratio_helped);
 }
 template <class A, Either<LoopClosure> T>
 void fields(A& a, T& loop) {

@@ -154,7 +154,7 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   world.robot = input("robot", environment.robot, [&] { return load_robot(environment.robot); });
   if (!spec.vocabulary.empty())
     world.vocabulary = std::make_shared<const Vocabulary>(
-      input("vocabulary", spec.vocabulary, [&] { return Vocabulary::load(spec.vocabulary); }));
+        input("vocabulary", spec.vocabulary, [&] { return Vocabulary::load(spec.vocabulary); }));
   world.sensors = input("level", spec.level, [&] { return load_sensor_config(spec.level); });
   if (environment.sensors)
     world.sensors = input("sensors", *environment.sensors,

@@ -72,7 +72,7 @@ Scene load_lit_scene(const std::filesystem::path& file, int threads, const Cache
 /// @throws InputError where it has no objects, so that all would be background.
 std::string check_labels(const Scene& scene, LabelMode labels);
 
-/// A renderer with the exposure that suits the scene; one that shows its own colours unlit is shown
+/// A renderer with the exposure that suits the scene; one that shows its own colors unlit is shown
 /// as it is.
 /// @param renderer  see make_renderer
 std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene,

@@ -42,9 +42,9 @@ int main() try {
     const cv::FileStorage request(
         line, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_JSON);
     const std::string what = request["do"].string();
-    cv::Mat colour, depth;
-    if (!request["colour"].empty()) {
-      colour = cv::imread(request["colour"].string());
+    cv::Mat color, depth;
+    if (!request["color"].empty()) {
+      color = cv::imread(request["color"].string());
       depth = cv::imread(request["depth"].string(), cv::IMREAD_UNCHANGED);
     }
     std::string answer;
@@ -55,7 +55,7 @@ int main() try {
     } else if (!odometry) {
       answer = R"(,"error":"hello comes first")";
     } else if (what == "track") {
-      answer = about(odometry->track(colour, depth));
+      answer = about(odometry->track(color, depth));
     } else if (what == "rewind") {
       odometry->lose();
     } else if (what == "reset") {
@@ -65,7 +65,7 @@ int main() try {
     } else if (what == "blank") {
       answer = R"(,"pose":null)";  // relocalize() starts from nothing: there is nothing to lose
     } else if (what == "relocalize") {
-      answer = about(odometry->relocalize(colour, depth));
+      answer = about(odometry->relocalize(color, depth));
     } else {
       answer = R"(,"error":"unknown request ')" + what + "'\"";
     }

@@ -52,7 +52,7 @@ Camera read_settings(const std::string& file) {
                    1};
   for (const char* key : {"Camera.k1", "Camera.k2", "Camera.p1", "Camera.p2", "Camera.k3"})
     camera.distortion.push_back(settings[key].empty() ? 0.0 : number(key));
-  camera.depth_per_metre = number("DepthMapFactor");
+  camera.depth_per_meter = number("DepthMapFactor");
   return camera;
 }
 
@@ -80,10 +80,10 @@ void VisualOdometry::forget_map() {
 }
 
 View VisualOdometry::look(const cv::Mat& bgr, const cv::Mat& depth) const {
-  cv::Mat grey, all;
-  cv::cvtColor(bgr, grey, cv::COLOR_BGR2GRAY);
+  cv::Mat gray, all;
+  cv::cvtColor(bgr, gray, cv::COLOR_BGR2GRAY);
   std::vector<cv::KeyPoint> keypoints;
-  orb_->detectAndCompute(grey, cv::noArray(), keypoints, all);
+  orb_->detectAndCompute(gray, cv::noArray(), keypoints, all);
   View view;
   if (keypoints.empty()) return view;
   std::vector<cv::Point2f> pixels, rays;
@@ -92,7 +92,7 @@ View VisualOdometry::look(const cv::Mat& bgr, const cv::Mat& depth) const {
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const auto units = depth.at<std::uint16_t>(cvRound(pixels[i].y), cvRound(pixels[i].x));
     if (units == 0) continue;
-    const auto z = static_cast<float>(units / camera_.depth_per_metre);
+    const auto z = static_cast<float>(units / camera_.depth_per_meter);
     view.pixels.push_back(pixels[i]);
     view.points_in_camera.emplace_back(rays[i].x * z, rays[i].y * z, z);
     view.descriptors.push_back(all.row(static_cast<int>(i)));

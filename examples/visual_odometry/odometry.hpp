@@ -16,7 +16,7 @@ namespace example {
 struct Camera {
   cv::Matx33d matrix = cv::Matx33d::eye();
   std::vector<double> distortion;  ///< k1 k2 p1 p2 k3
-  double depth_per_metre = 5000;
+  double depth_per_meter = 5000;
 };
 
 /// Reads Camera.fx, ... from a settings file. @throws cv::Exception if it cannot be read.

@@ -22,16 +22,16 @@ int main(int argc, char** argv) try {
     return 2;
   }
   example::VisualOdometry odometry(example::read_settings(argv[3]));
-  std::string line, stamp, colour_file, depth_stamp, depth_file;
+  std::string line, stamp, color_file, depth_stamp, depth_file;
   while (std::getline(associations, line)) {
-    if (!(std::istringstream(line) >> stamp >> colour_file >> depth_stamp >> depth_file)) continue;
-    const cv::Mat colour = cv::imread(dataset + "/" + colour_file);
+    if (!(std::istringstream(line) >> stamp >> color_file >> depth_stamp >> depth_file)) continue;
+    const cv::Mat color = cv::imread(dataset + "/" + color_file);
     const cv::Mat depth = cv::imread(dataset + "/" + depth_file, cv::IMREAD_UNCHANGED);
-    if (colour.empty() || depth.type() != CV_16UC1) {
-      std::cerr << colour_file << " or " << depth_file << " is no picture of its kind\n";
+    if (color.empty() || depth.type() != CV_16UC1) {
+      std::cerr << color_file << " or " << depth_file << " is no picture of its kind\n";
       return 2;
     }
-    const example::Found found = odometry.track(colour, depth);
+    const example::Found found = odometry.track(color, depth);
     if (found.world_from_camera)
       trajectory << stamp << ' ' << example::pose_numbers(*found.world_from_camera, ' ') << '\n';
   }

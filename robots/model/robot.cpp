@@ -43,7 +43,7 @@ Camera read_lens(YamlReader& yaml) {
   camera.height_px = static_cast<int>(yaml.integer("height_px", 16, 8192));
   camera.fx_px = focal_px(yaml.number("horizontal_fov_deg", 1.0, 170.0), camera.width_px);
   camera.fy_px = focal_px(yaml.number("vertical_fov_deg", 1.0, 170.0), camera.height_px);
-  camera.cx_px = 0.5 * (camera.width_px - 1);  // pixel centres at integers
+  camera.cx_px = 0.5 * (camera.width_px - 1);  // pixel centers at integers
   camera.cy_px = 0.5 * (camera.height_px - 1);
   camera.rate_hz = yaml.number("rate_hz", 0.1, 240.0);
   camera.baseline_m = yaml.number("baseline_m", 1e-3, 1.0);

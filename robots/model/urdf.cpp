@@ -214,7 +214,7 @@ Link read_link(const urdf::Link& from, const Places& places) {
     fail(fmt::format("no body has the principal moments of inertia {:.6g}, {:.6g}, {:.6g} kg m2",
                      moments[0], moments[1], moments[2]));
   link.mass_kg = body.mass;
-  link.centre_m = link_from_body.translation();
+  link.center_m = link_from_body.translation();
   link.inertia_kg_m2 = link_from_body.rotation() * inertia * link_from_body.rotation().transpose();
   return link;
 }

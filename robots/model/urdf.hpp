@@ -17,7 +17,7 @@ namespace mh {
 struct Link {
   std::string name;
   double mass_kg = 0;                                       ///< 0 = a frame without a body
-  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();       ///< of mass, in the link's frame
+  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();       ///< of mass, in the link's frame
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Zero();  ///< about it, the link's axes
 };
 
@@ -28,7 +28,7 @@ struct Joint {
   Kind kind = Kind::kFixed;
   SE3 parent_from_child;                            ///< at position 0
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, in the child's frame
-  // Radians, metres, per second; newton metres or newtons. Without limits: infinite.
+  // Radians, meters, per second; newton meters or newtons. Without limits: infinite.
   double lower = 0, upper = 0, velocity = 0, effort = 0;
 };
 

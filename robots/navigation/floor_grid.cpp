@@ -86,12 +86,12 @@ void for_each_cell(const FloorGrid& grid, std::span<const Vector3f> polygon, Vis
   const int x0 = std::max(0, first(bounds.low.x())), y0 = std::max(0, first(bounds.low.y()));
   const int x1 = std::min(grid.clearance_m.width() - 1, last(bounds.high.x()));
   const int y1 = std::min(grid.clearance_m.height() - 1, last(bounds.high.y()));
-  const auto apart = [&p](const Vector2d& centre) {
+  const auto apart = [&p](const Vector2d& center) {
     for (std::size_t i = 0; i < p.size(); ++i) {
       const Vector2d side = p[(i + 1) % p.size()] - p[i];
       const Vector2d normal(-side.y(), side.x());
       const double reach = 0.5 * (std::abs(normal.x()) + std::abs(normal.y()));
-      const double middle = normal.dot(centre);
+      const double middle = normal.dot(center);
       double low = std::numeric_limits<double>::infinity(), high = -low;
       for (const Vector2d& q : p) {
         low = std::min(low, normal.dot(q));
@@ -209,7 +209,7 @@ FloorGrid make_floor_grid(const Scene& scene, const FloorGridConfig& config) {
   }
   const Grid2d<float> to_floor = distances(floor);
   const auto inside = [&](int x, int y) {
-    const Vector2d p = grid.centre_of({x, y});
+    const Vector2d p = grid.center_of({x, y});
     return (p.array() >= bounds.low.array()).all() && (p.array() <= bounds.high.array()).all();
   };
   for (int y = 0; y < h; ++y)
@@ -279,7 +279,7 @@ std::string occupant_near(const FloorGrid& grid, const Scene& scene, const Vecto
   double nearest_m = reach_m;
   for (int y = 0; y < grid.occupant.height(); ++y)
     for (int x = 0; x < grid.occupant.width(); ++x) {
-      const double away_m = (grid.centre_of({x, y}) - place_m).norm();
+      const double away_m = (grid.center_of({x, y}) - place_m).norm();
       if (grid.occupant(x, y) == 0 || away_m > nearest_m) continue;
       nearest_m = away_m;
       nearest = grid.occupant(x, y);

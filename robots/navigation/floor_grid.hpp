@@ -31,7 +31,7 @@ struct FloorGrid {
   using Cell = std::pair<int, int>;  ///< column, row
   /// The cell of a place, nothing outside the grid.
   std::optional<Cell> cell_of(const Eigen::Vector2d& place_m) const;
-  Eigen::Vector2d centre_of(const Cell& cell) const {
+  Eigen::Vector2d center_of(const Cell& cell) const {
     return origin_m + resolution_m * Eigen::Vector2d(cell.first, cell.second);
   }
   /// 0 outside.

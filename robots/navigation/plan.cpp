@@ -19,7 +19,7 @@ using Eigen::Vector2d;
 using Cell = FloorGrid::Cell;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr double kNarrowPrice = 2.0;  // a metre as near as allowed counts for three
+constexpr double kNarrowPrice = 2.0;  // a meter as near as allowed counts for three
 
 /// Shortest ways from one cell, each step weighed by `price`; ends early at `goal`.
 struct Search {
@@ -72,7 +72,7 @@ std::optional<Cell> free_cell(const FloorGrid& grid, const Vector2d& place_m, do
       if (!grid.clearance_m.contains(x, y) ||
           static_cast<double>(grid.clearance_m(x, y)) < clearance_m)
         continue;
-      const double away_m = (grid.centre_of({x, y}) - place_m).norm();
+      const double away_m = (grid.center_of({x, y}) - place_m).norm();
       if (away_m >= best_m) continue;
       best_m = away_m;
       best = Cell{x, y};
@@ -110,18 +110,18 @@ std::optional<std::vector<Vector2d>> plan_way(const FloorGrid& grid, const Vecto
   const auto start = free_cell(grid, from_m, clearance_m);
   const auto goal = free_cell(grid, to_m, clearance_m);
   if (!start || !goal) return std::nullopt;
-  const Vector2d goal_m = grid.centre_of(*goal);
+  const Vector2d goal_m = grid.center_of(*goal);
   const Search search(
       grid, *start, goal, clearance_m,
       [&](double room_m) { return narrow_price(room_m, clearance_m); },
-      [&](Cell c) { return static_cast<float>(0.999 * (grid.centre_of(c) - goal_m).norm()); });
+      [&](Cell c) { return static_cast<float>(0.999 * (grid.center_of(c) - goal_m).norm()); });
   if (search.cost(goal->first, goal->second) == kFar) return std::nullopt;
 
   std::vector<Vector2d> way{to_m};
   const int w = search.cost.width();
   for (std::int32_t index = goal->second * w + goal->first; index >= 0;
        index = search.before(index % w, index / w))
-    way.push_back(grid.centre_of({index % w, index / w}));
+    way.push_back(grid.center_of({index % w, index / w}));
   way.back() = from_m;
   std::ranges::reverse(way);
   return straightened(grid, way, clearance_m);
@@ -141,7 +141,7 @@ std::vector<Vector2d> spread_places(const FloorGrid& grid, const Grid2d<std::uin
   std::vector<Vector2d> cells;
   for (int y = 0; y < region.height(); ++y)
     for (int x = 0; x < region.width(); ++x)
-      if (region(x, y) != 0) cells.push_back(grid.centre_of({x, y}));
+      if (region(x, y) != 0) cells.push_back(grid.center_of({x, y}));
   if (cells.empty() || most == 0) return {};
   std::vector<Vector2d> places{cells[RandomStream(seed).below(0, cells.size())]};
   std::vector<double> nearest_m(cells.size(), std::numeric_limits<double>::infinity());

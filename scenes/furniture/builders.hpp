@@ -165,8 +165,8 @@ MaterialSpec plain(std::string kind, Rgb8 tone, double variation = 0.3, std::uin
 void books(Piece& piece, float x0, float x1, float front, float z, float height, float depth,
            std::uint64_t row);
 /// A round body whose section is an ellipse (square = 1) or nearer to a rectangle (square < 1):
-/// profile of (share of the radii, height above centre), listed upwards seen from outside.
-void oval(Piece& piece, MaterialId material, const Eigen::Vector3f& centre, float radius_x_m,
+/// profile of (share of the radii, height above center), listed upwards seen from outside.
+void oval(Piece& piece, MaterialId material, const Eigen::Vector3f& center, float radius_x_m,
           float radius_y_m, std::span<const Eigen::Vector2f> profile, int sides = 28,
           float square = 1.0F);
 /// A bar handle from a to b standing off by `off` along -y.

@@ -77,15 +77,15 @@ void pool_table(Piece& p) {
 void treadmill(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId black = p.fixed(rubber()),
-                   grey = p.material("body", plain("plastic", {120, 122, 126}, 0.2, 195)),
+                   gray = p.material("body", plain("plastic", {120, 122, 126}, 0.2, 195)),
                    metal = p.fixed(steel());
   MeshBuilder& m = p.mesh;
   // One steps on from the front (-y); the console stands at the back, which is to a wall.
-  m.box(grey, {-w / 2, -d / 2, 0.03F}, {-w / 2 + 0.10F, d / 2 - 0.25F, 0.17F}, {.bevel_m = 0.015F});
-  m.box(grey, {w / 2 - 0.10F, -d / 2, 0.03F}, {w / 2, d / 2 - 0.25F, 0.17F}, {.bevel_m = 0.015F});
+  m.box(gray, {-w / 2, -d / 2, 0.03F}, {-w / 2 + 0.10F, d / 2 - 0.25F, 0.17F}, {.bevel_m = 0.015F});
+  m.box(gray, {w / 2 - 0.10F, -d / 2, 0.03F}, {w / 2, d / 2 - 0.25F, 0.17F}, {.bevel_m = 0.015F});
   m.box(black, {-w / 2 + 0.101F, -d / 2 + 0.03F, 0.06F}, {w / 2 - 0.101F, d / 2 - 0.25F, 0.155F},
         {.bevel_m = 0.02F});
-  m.box(grey, {-w / 2, d / 2 - 0.249F, 0}, {w / 2, d / 2, 0.26F}, {.bevel_m = 0.03F});
+  m.box(gray, {-w / 2, d / 2 - 0.249F, 0}, {w / 2, d / 2, 0.26F}, {.bevel_m = 0.03F});
   for (const float s : {-1.0F, 1.0F}) {
     const float x = s * (w / 2 - 0.05F);
     m.beam(metal, {x, d / 2 - 0.12F, 0.2F}, {x, d / 2 - 0.26F, h - 0.12F}, 0.05F, 0.07F);

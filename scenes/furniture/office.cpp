@@ -176,7 +176,7 @@ void notice_board(Piece& p) {
 void copier(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId pale = p.material("body", plain("plastic", {214, 214, 208}, 0.2, 153));
-  const MaterialId grey = p.fixed(plain("plastic", {116, 120, 126}, 0.2, 154));
+  const MaterialId gray = p.fixed(plain("plastic", {116, 120, 126}, 0.2, 154));
   const MaterialId black = p.fixed(dark_plastic());
   MeshBuilder& m = p.mesh;
   const float y = -d / 2 + 0.10F, x0 = -w / 2 + 0.10F, x1 = w / 2 - 0.16F;
@@ -184,28 +184,28 @@ void copier(Piece& p) {
   m.box(pale, {x0, y, 0.04F}, {x1, d / 2, 0.60F * h}, {.bevel_m = 0.01F});
   for (int i = 0; i < 4; ++i) {  // paper drawers
     const float z = 0.06F + 0.125F * h * static_cast<float>(i);
-    m.box(i == 3 ? grey : pale, {x0 + 0.01F, y - 0.014F, z},
+    m.box(i == 3 ? gray : pale, {x0 + 0.01F, y - 0.014F, z},
           {x1 - 0.01F, y - 0.001F, z + 0.115F * h});
-    m.box(grey, {-0.10F, y - 0.016F, z + 0.07F * h}, {0.06F, y - 0.013F, z + 0.095F * h},
+    m.box(gray, {-0.10F, y - 0.016F, z + 0.07F * h}, {0.06F, y - 0.013F, z + 0.095F * h},
           {.bevel_m = 0.0F});
   }
   // The open slot where copies come out, the scanner above it, the feeder on top.
-  m.box(grey, {x0 + 0.02F, d / 2 - 0.12F, 0.60F * h}, {x1, d / 2, 0.74F * h});
+  m.box(gray, {x0 + 0.02F, d / 2 - 0.12F, 0.60F * h}, {x1, d / 2, 0.74F * h});
   m.box(pale, {x0, y, 0.60F * h}, {x0 + 0.06F, d / 2 - 0.121F, 0.74F * h});
-  m.box(grey, {x0 + 0.061F, y + 0.02F, 0.60F * h}, {x1 - 0.02F, d / 2 - 0.121F, 0.605F * h});
+  m.box(gray, {x0 + 0.061F, y + 0.02F, 0.60F * h}, {x1 - 0.02F, d / 2 - 0.121F, 0.605F * h});
   paper_pile(p, {x0 + 0.12F, y + 0.08F, 0.607F * h}, {0.22F, 0.30F}, 0.012F, 7);
   m.box(pale, {x0, y - 0.02F, 0.74F * h}, {x1, d / 2, 0.86F * h}, {.bevel_m = 0.012F});
   m.box(pale, {x0 + 0.01F, y + 0.06F, 0.862F * h}, {x1 - 0.02F, d / 2 - 0.01F, 0.95F * h},
         {.bevel_m = 0.02F});
   m.push(translation(x0 + 0.14F, 0, 0.955F * h) * turn(Vector3f::UnitY(), -0.12F));
-  m.box(grey, {-0.02F, y + 0.12F, 0}, {0.30F, d / 2 - 0.06F, 0.008F});
+  m.box(gray, {-0.02F, y + 0.12F, 0}, {0.30F, d / 2 - 0.06F, 0.008F});
   m.pop();
   // Touch panel, side tray.
   MaterialSpec panel = plain("screen", {90, 140, 180}, 0.7, 155);
   panel.size_m = {0.20F, 0.12F};
   m.push(translation(0.5F * (x0 + x1) + 0.04F, y - 0.03F, 0.83F * h) *
          turn(Vector3f::UnitX(), -0.7F));
-  m.box(grey, {-0.15F, -0.09F, -0.02F}, {0.15F, 0.09F, 0}, {.bevel_m = 0.006F});
+  m.box(gray, {-0.15F, -0.09F, -0.02F}, {0.15F, 0.09F, 0}, {.bevel_m = 0.006F});
   m.picture(p.fixed(panel, {0.12F, 0.14F, 0.16F}), {-0.13F, 0.06F, 0.0008F}, {0.20F, 0, 0},
             {0, -0.12F, 0});
   m.pop();

@@ -29,7 +29,7 @@ namespace {
 
 constexpr std::size_t kMostIncludes = 10000;
 constexpr std::size_t kMostVisuals = 20'000;  // of a model: libsdformat takes 0.1 MB for each
-constexpr std::size_t kDeepest = 64;  // includes or models within each other
+constexpr std::size_t kDeepest = 64;          // includes or models within each other
 
 constexpr const char* kSun =
     "<sdf version='1.9'><light type='directional' name='sun'><pose>0 0 10 0 0 0</pose>"

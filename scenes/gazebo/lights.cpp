@@ -11,12 +11,12 @@ Light light_of(const sdf::Light& light, const Eigen::Affine3d& world_from_light)
   const auto diffuse = light.Diffuse();
   // Gazebo shows albedo x diffuse x cosine, we albedo x irradiance / pi.
   const float gain = std::numbers::pi_v<float> * static_cast<float>(light.Intensity());
-  const Eigen::Vector3f colour =
+  const Eigen::Vector3f color =
       gain * Eigen::Vector3f(diffuse.R(), diffuse.G(), diffuse.B()).cwiseMax(0.0F);
   if (light.Type() == sdf::LightType::DIRECTIONAL) {
     const auto d = light.Direction();
     const Eigen::Vector3d way = world_from_light.linear() * Eigen::Vector3d(d.X(), d.Y(), d.Z());
-    Light sun{.kind = Light::Kind::kSun, .colour = colour};
+    Light sun{.kind = Light::Kind::kSun, .color = color};
     if (way.norm() > 0.0) sun.direction = way.normalized().cast<float>();
     return sun;
   }
@@ -27,7 +27,7 @@ Light light_of(const sdf::Light& light, const Eigen::Affine3d& world_from_light)
   const double share = kReference_m * kReference_m / std::max(fades, 0.1);
   return {.kind = Light::Kind::kSphere,
           .position_m = world_from_light.translation().cast<float>(),
-          .colour = static_cast<float>(share) * colour};
+          .color = static_cast<float>(share) * color};
 }
 
 float edge_for_light_m(const Scene& scene) {

@@ -25,8 +25,8 @@ void append_text(XMLElement& out, const char* name, const std::string& text) {
   out.InsertNewChildElement(name)->SetText(text.c_str());
 }
 
-std::string numbers_of(const std::array<float, 4>& colour) {
-  return fmt::format("{} {} {} {}", colour[0], colour[1], colour[2], colour[3]);
+std::string numbers_of(const std::array<float, 4>& color) {
+  return fmt::format("{} {} {} {}", color[0], color[1], color[2], color[3]);
 }
 
 std::vector<fs::path> scripts_at(const fs::path& place) {

@@ -14,7 +14,7 @@
 
 namespace mh::gazebo {
 
-/// Rewrites the materials of visuals so that they tell everything themselves: colours as `diffuse`
+/// Rewrites the materials of visuals so that they tell everything themselves: colors as `diffuse`
 /// and `emissive`, a texture as the albedo map of a `pbr`, whose path is absolute.
 class LookWriter {
  public:

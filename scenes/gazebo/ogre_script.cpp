@@ -126,7 +126,7 @@ class Parser {
 
 struct Stock {
   std::string_view name;
-  std::array<float, 4> colour;
+  std::array<float, 4> color;
 };
 constexpr std::array kStock = {
     Stock{"White", {1, 1, 1, 1}},
@@ -168,18 +168,18 @@ std::vector<OgreMaterial> parse_ogre_script(std::string_view script) {
 std::optional<OgreMaterial> stock_material(std::string_view name) {
   constexpr std::string_view kPrefix = "Gazebo/";
   if (!name.starts_with(kPrefix)) return std::nullopt;
-  std::string_view colour = name.substr(kPrefix.size());
+  std::string_view color = name.substr(kPrefix.size());
   const auto drop = [&](std::string_view ending) {
-    const bool has = colour.ends_with(ending) && colour.size() > ending.size();
-    if (has) colour.remove_suffix(ending.size());
+    const bool has = color.ends_with(ending) && color.size() > ending.size();
+    if (has) color.remove_suffix(ending.size());
     return has;
   };
   drop("Glow");
   drop("Bright");
   const bool transparent = drop("Transparent");
-  const auto found = std::ranges::find(kStock, colour, &Stock::name);
+  const auto found = std::ranges::find(kStock, color, &Stock::name);
   if (found == kStock.end()) return std::nullopt;
-  OgreMaterial material{.name = std::string(name), .diffuse = found->colour, .texture = {}};
+  OgreMaterial material{.name = std::string(name), .diffuse = found->color, .texture = {}};
   if (transparent) (*material.diffuse)[3] = 0.5F;
   return material;
 }

@@ -20,7 +20,7 @@ struct OgreMaterial {
 /// `texture`, else those of its parent (`material A : B`). All else is passed over.
 std::vector<OgreMaterial> parse_ogre_script(std::string_view script);
 
-/// The plain colours that Gazebo ships as "Gazebo/NAME"; nullopt for other names.
+/// The plain colors that Gazebo ships as "Gazebo/NAME"; nullopt for other names.
 std::optional<OgreMaterial> stock_material(std::string_view name);
 
 }  // namespace mh::gazebo

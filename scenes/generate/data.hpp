@@ -8,8 +8,8 @@ namespace mh {
 
 /// In the order of the paper's Table 1.
 inline constexpr std::array<std::string_view, 12> kCategoryNames = {
-    "bathroom", "bedroom", "bookstore", "classroom", "conference_room", "copy_mail_room",
-    "hallway", "kitchen", "living_room", "lobby", "office", "misc"};
+    "bathroom", "bedroom", "bookstore",   "classroom", "conference_room", "copy_mail_room",
+    "hallway",  "kitchen", "living_room", "lobby",     "office",          "misc"};
 
 /// The text of scenes/categories/NAME.yaml, which is part of the program: a reference to a
 /// generated scene needs no file.

@@ -27,7 +27,7 @@ constexpr int kDrafts = 400;         // rooms drawn until one holds all that it 
 constexpr double kLeastFree = 0.07;  // of the floor: where the robot can stand
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// Plans are written in whole millimetres: what is checked is what is read back.
+/// Plans are written in whole millimeters: what is checked is what is read back.
 double whole_mm(double m) {
   return std::round(m * 1000.0) / 1000.0;
 }
@@ -369,7 +369,7 @@ class Maker {
         item.z_m = rule.z_m ? whole_mm(draw(dice_, *rule.z_m)) : 0.0;
         break;
       }
-      case Place::kCentre: {
+      case Place::kCenter: {
         item.at_m = {0.5 * (r.x0 + r.x1) * dice_.number(0.8, 1.2),
                      0.5 * (r.y0 + r.y1) * dice_.number(0.8, 1.2)};
         const bool along_x = r.x1 - r.x0 > r.y1 - r.y0;
@@ -743,12 +743,12 @@ class Maker {
     rule.place = Place::kCeiling;
     const Design design_of_lamps = design(rule);
     const double power = draw(dice_, grammar_.lamp_power), warm = draw(dice_, grammar_.warmth);
-    const Vector3d colour(power, power * (1.0 - 0.14 * warm), power * (1.0 - 0.42 * warm));
+    const Vector3d color(power, power * (1.0 - 0.14 * warm), power * (1.0 - 0.42 * warm));
     const auto hang = [&](const Vector2d& at) {
       LayoutItem item = item_of(design_of_lamps);
       item.at_m = {whole_mm(at.x()), whole_mm(at.y())};
       item.z_m = whole_mm(layout_.height_m() - item.size_m.z());
-      item.glow = colour;
+      item.glow = color;
       return add(item, design_of_lamps).has_value();
     };
     int placed = 0;
@@ -801,9 +801,9 @@ class Maker {
     out += "\nlights:\n";
     if (!dusk_)
       out += fmt::format(
-          "  sun: {{direction: [{:.3f}, {:.3f}, -0.7], colour: [{:.3f}, {:.3f}, {:.3f}]}}\n",
+          "  sun: {{direction: [{:.3f}, {:.3f}, -0.7], color: [{:.3f}, {:.3f}, {:.3f}]}}\n",
           0.6 * std::cos(a), 0.6 * std::sin(a), sun_power_, 0.94 * sun_power_, 0.82 * sun_power_);
-    out += fmt::format("  sky: {{colour: [{:.3f}, {:.3f}, {:.3f}]}}\n", s * 0.86 * sky_power_,
+    out += fmt::format("  sky: {{color: [{:.3f}, {:.3f}, {:.3f}]}}\n", s * 0.86 * sky_power_,
                        s * 0.97 * sky_power_, s * 1.15 * sky_power_);
     return out;
   }

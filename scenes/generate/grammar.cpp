@@ -47,7 +47,7 @@ PaletteEntry read_entry(YamlReader yaml) {
   for (const YamlReader& tone : yaml.at("tones").items()) {
     const std::vector<double> n = tone.as_numbers(3);
     if (std::ranges::any_of(n, [](double v) { return v < 0 || v > 255; }))
-      tone.fail("is no colour: three numbers from 0 to 255");
+      tone.fail("is no color: three numbers from 0 to 255");
     entry.tones.push_back({static_cast<std::uint8_t>(n[0]), static_cast<std::uint8_t>(n[1]),
                            static_cast<std::uint8_t>(n[2])});
   }
@@ -94,7 +94,7 @@ std::map<std::string, std::string> read_roles(YamlReader& yaml, const std::strin
 Place read_place(const YamlReader& yaml, bool belongs) {
   using enum Place;
   static const std::map<std::string, Place> alone = {
-      {"wall", kWall},     {"corner", kCorner}, {"centre", kCentre},   {"floor", kFloor},
+      {"wall", kWall},     {"corner", kCorner}, {"center", kCenter},   {"floor", kFloor},
       {"hang", kHang},     {"along", kAlong},   {"rows", kRows},       {"aisles", kAisles},
       {"window", kWindow}, {"door", kDoor},     {"ceiling", kCeiling}, {"on", kOnAny}};
   static const std::map<std::string, Place> part = {

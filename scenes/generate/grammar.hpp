@@ -17,7 +17,7 @@ struct DrawRange {
   double low = 0, high = 0;
 };
 
-/// Stuff that surfaces may be made of: one kind of material in some colours.
+/// Stuff that surfaces may be made of: one kind of material in some colors.
 struct PaletteEntry {
   std::string kind;
   std::vector<Rgb8> tones;
@@ -37,7 +37,7 @@ struct Palettes {
 enum class Place {
   kWall,
   kCorner,
-  kCentre,
+  kCenter,
   kFloor,
   kHang,
   kAlong,
@@ -86,7 +86,7 @@ struct RoomGrammar {
   DrawRange doors{1, 1};
   std::array<double, 4> density{1, 1, 1, 1};         ///< weights of the groups of objects per 10 m2
   std::vector<std::string> floors, walls, ceilings;  ///< names of palettes
-  double accent_chance = 0.2;                        ///< of one wall of another colour
+  double accent_chance = 0.2;                        ///< of one wall of another color
   std::string lamp = "ceiling_lamp";
   double area_per_lamp_m2 = 8;
   DrawRange lamp_power{3.0, 5.0}, warmth{0.0, 1.0};

@@ -14,7 +14,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kDoorSwing_m = 0.95;    // floor that a door sweeps, and where one enters
 constexpr double kRobotHeight_m = 1.25;  // what hangs higher is in nobody's way
 constexpr double kFlat_m = 0.03;         // rugs
-constexpr double kApart_m = 0.004;       // neighbours: rounding must not make them overlap
+constexpr double kApart_m = 0.004;       // neighbors: rounding must not make them overlap
 
 Footprint rectangle(const FloorRect& r) {
   return {{{r.x0, r.y0}, {r.x1, r.y0}, {r.x1, r.y1}, {r.x0, r.y1}}};
@@ -80,13 +80,13 @@ Layout::Layout(double width_m, double depth_m, double height_m, std::optional<Fl
   }
   for (int y = 0; y < room_m_.height(); ++y)
     for (int x = 0; x < room_m_.width(); ++x) {
-      const Vector2d p = cell_centre(x, y);
+      const Vector2d p = cell_center(x, y);
       room_m_(x, y) = static_cast<float>(std::min({p.x(), w - p.x(), p.y(), d - p.y()}));
     }
   if (cut_) narrow(room_m_, rectangle(*cut_));
 }
 
-Vector2d Layout::cell_centre(int x, int y) const {
+Vector2d Layout::cell_center(int x, int y) const {
   return {(x + 0.5) * kCell_m, (y + 0.5) * kCell_m};
 }
 
@@ -179,7 +179,7 @@ void Layout::narrow(Grid2d<float>& room, const Footprint& footprint) const {
          x <= std::min(room.width() - 1, cell(x1 + kReach_m)); ++x)
       if (room(x, y) > 0.9 * kRobotRadius_m)  // what is less stays too little
         room(x, y) =
-            std::min(room(x, y), static_cast<float>(distance_m(cell_centre(x, y), footprint)));
+            std::min(room(x, y), static_cast<float>(distance_m(cell_center(x, y), footprint)));
 }
 
 bool Layout::connected(const Grid2d<float>& room, double radius_m) const {
@@ -234,7 +234,7 @@ std::optional<std::size_t> Layout::add(const LayoutItem& item, double front_m) {
       Grid2d<float> after = room_m_;
       narrow(after, footprint);
       // Nowhere may it fit where it cannot come, and where it comes it has its play. Plans are in
-      // whole millimetres: whoever counts what fits exactly, or does not, finds the same.
+      // whole millimeters: whoever counts what fits exactly, or does not, finds the same.
       constexpr double kTie_m = 0.0002;
       for (const double radius : {kRobotRadius_m, kRobotRadius_m + kPlay_m})
         for (const double tie : {-kTie_m, kTie_m})

@@ -97,7 +97,7 @@ class Layout {
   bool in_the_way(const LayoutItem& item) const;  ///< of the robot
   void narrow(Grid2d<float>& room, const Footprint& footprint) const;
   bool connected(const Grid2d<float>& room, double radius_m) const;
-  Eigen::Vector2d cell_centre(int x, int y) const;
+  Eigen::Vector2d cell_center(int x, int y) const;
 
   FloorRect rect_;
   double height_m_;

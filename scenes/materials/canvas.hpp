@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "scenes/materials/colour.hpp"
+#include "scenes/materials/color.hpp"
 #include "slam/core/grid2d.hpp"
 
 namespace mh {

@@ -16,7 +16,7 @@ namespace mh {
 struct MaterialSpec {
   std::string name;          ///< name of the result; empty = the kind
   std::string kind;          ///< one of material_kinds()
-  Rgb8 tone{180, 140, 100};  ///< sRGB, the surface's mean colour (pictures: their key colour)
+  Rgb8 tone{180, 140, 100};  ///< sRGB, the surface's mean color (pictures: their key color)
   double variation = 0.5;    ///< contrast of the pattern, 0 (faint) to 1 (strong)
   std::uint64_t seed = 0;    ///< another seed is another piece of the same stuff
   Eigen::Vector2f size_m{1.0F, 1.0F};  ///< size of the whole picture where is_picture(kind)

@@ -30,7 +30,7 @@ struct Voronoi {
   Field nearest, second;
   Grid2d<int> cell;
 };
-/// @param jitter 0 = points at cell centres, 1 = anywhere in their cells.
+/// @param jitter 0 = points at cell centers, 1 = anywhere in their cells.
 Voronoi voronoi(int width, int height, int cells_x, int cells_y, float jitter, RandomStream random);
 
 }  // namespace mh

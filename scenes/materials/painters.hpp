@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "scenes/materials/colour.hpp"
+#include "scenes/materials/color.hpp"
 #include "scenes/materials/noise.hpp"
 
 namespace mh {
@@ -10,7 +10,7 @@ namespace mh {
 struct PaintJob {
   int width = 0, height = 0;
   float texel_m = 0.002F;
-  Tint tone;               ///< the surface's mean (or a picture's key) colour
+  Tint tone;               ///< the surface's mean (or a picture's key) color
   float variation = 0.5F;  ///< contrast of the pattern, 0 to 1
   RandomStream random;
 

@@ -44,7 +44,7 @@ class Dice {
   std::uint64_t next_ = 0;
 };
 
-/// Colour of a hue in [0, 1) at a saturation and brightness in [0, 1].
+/// Color of a hue in [0, 1) at a saturation and brightness in [0, 1].
 Tint hsv(float hue, float saturation, float value) {
   const auto channel = [&](float n) {
     const float k = std::fmod(n + 6.0F * hue, 6.0F);
@@ -53,7 +53,7 @@ Tint hsv(float hue, float saturation, float value) {
   return {channel(5.0F), channel(3.0F), channel(1.0F)};
 }
 
-/// A colour at random; value and saturation within these bounds.
+/// A color at random; value and saturation within these bounds.
 Tint random_tint(Dice& dice, float s_low, float s_high, float v_low, float v_high) {
   const float hue = dice.uniform(), saturation = dice.uniform(s_low, s_high);
   return hsv(hue, saturation, dice.uniform(v_low, v_high));
@@ -145,7 +145,7 @@ void spine(Picture& picture, const PaintJob& job, Dice& dice, int x, int y, int 
   Canvas canvas(book);
   canvas.rectangle(0, 0, w, h, cloth);
   const int style = dice.below(5);
-  if (style == 0) {  // a label of another colour
+  if (style == 0) {  // a label of another color
     const Tint label = cloth_for(job, dice);
     canvas.rectangle(0, 0.12F * h, w, 0.22F * h, label);
     canvas.rectangle(0, 0.80F * h, w, 0.03F * h, label);
@@ -353,7 +353,8 @@ Picture paint_whiteboard(const PaintJob& job) {
     for (int i = 0; i < 2 + static_cast<int>(r.below(4, 5)); ++i) {
       const RandomStream q = r.fork(static_cast<std::uint64_t>(i));
       float x = x0;
-      const float y = y0 + line * static_cast<float>(i), end = x0 + w * static_cast<float>(q.uniform(0, 0.1, 0.3));
+      const float y = y0 + line * static_cast<float>(i),
+                  end = x0 + w * static_cast<float>(q.uniform(0, 0.1, 0.3));
       float low = y;
       for (std::uint64_t k = 1; x < end; k += 2) {  // a hand's zigzag
         const float nx = x + 0.28F * line * static_cast<float>(q.uniform(k, 0.4, 1.2));

@@ -27,7 +27,7 @@ void add_knots(const PaintJob& job, int count, Field& rings, Field& darkness) {
 }
 
 /// How much darker than its mean a plank is at each texel, about -0.5 to 1: year rings cut
-/// lengthwise (long lines that close to arches, the "cathedral" figure), fibres, pores and knots.
+/// lengthwise (long lines that close to arches, the "cathedral" figure), fibers, pores and knots.
 /// The grain runs along x.
 Field wood_darkness(const PaintJob& job) {
   constexpr double kRingSpacing = 0.016;

@@ -8,7 +8,7 @@
 #include <limits>
 #include <map>
 
-#include "scenes/mesh_io/seen_colours.hpp"
+#include "scenes/mesh_io/seen_colors.hpp"
 
 namespace mh {
 namespace {

@@ -89,7 +89,7 @@ NodeLabel label_of(const aiNode& node) {
 }
 
 /// What the names around a node tell that its own does not: of the mesh, then of the nodes above,
-/// the nearest first, but for "floor", which is what storeys are called. The uppermost is named by
+/// the nearest first, but for "floor", which is what stories are called. The uppermost is named by
 /// the file's writer or the file.
 ClassId guess_around(const aiNode& node, const aiMesh& mesh) {
   ClassId found = guess_class(mesh.mName.C_Str());
@@ -116,13 +116,13 @@ class Gatherer {
     visit(*in_.mRootNode, aiMatrix4x4());
     // Per-vertex arrays are all or nothing: parts that lack them were filled with neutral values.
     if (!any_uvs_) scene_.uvs.clear();
-    if (!any_colours_) scene_.colours.clear();
+    if (!any_colors_) scene_.colors.clear();
     if (!any_light_) scene_.light.clear();
     std::ranges::sort(scene_.instances, {}, &Instance::id);
   }
 
  private:
-  /// Whether save_glb wrote the file: then vertex colours are light.
+  /// Whether save_glb wrote the file: then vertex colors are light.
   void survey(const aiNode& node) {
     ours_ = ours_ || (format_.gltf && std::string_view(node.mName.C_Str()).find("#instance=") !=
                                           std::string_view::npos);
@@ -166,7 +166,7 @@ class Gatherer {
     return next_id_;
   }
 
-  /// The id for a node's faces; a PLY is one unlabelled piece.
+  /// The id for a node's faces; a PLY is one unlabeled piece.
   InstanceId enter_instance(const NodeLabel& label) {
     if (format_.ply) return 0;
     if (label.instance == InstanceId{0}) return 0;
@@ -224,19 +224,19 @@ class Gatherer {
     }
     scene_.uvs.push_back(uv);
 
-    Eigen::Vector3f colour = Eigen::Vector3f::Ones();
+    Eigen::Vector3f color = Eigen::Vector3f::Ones();
     if (mesh.HasVertexColors(0)) {
-      (ours_ ? any_light_ : any_colours_) = true;
+      (ours_ ? any_light_ : any_colors_) = true;
       const aiColor4D& c = mesh.mColors[0][i];
-      colour = Eigen::Vector3f(c.r, c.g, c.b).cwiseMax(0.0F);
+      color = Eigen::Vector3f(c.r, c.g, c.b).cwiseMax(0.0F);
     }
-    scene_.light.push_back(ours_ ? colour : Eigen::Vector3f::Ones().eval());
-    scene_.colours.push_back(ours_ ? Rgb8{255, 255, 255} : srgb_colour(colour));
+    scene_.light.push_back(ours_ ? color : Eigen::Vector3f::Ones().eval());
+    scene_.colors.push_back(ours_ ? Rgb8{255, 255, 255} : srgb_color(color));
   }
 
-  Rgb8 srgb_colour(const Eigen::Vector3f& colour) const {
-    if (format_.gltf) return srgb_from_linear(colour);
-    const Eigen::Vector3f level = 255.0F * colour.cwiseMin(1.0F) + Eigen::Vector3f::Constant(0.5F);
+  Rgb8 srgb_color(const Eigen::Vector3f& color) const {
+    if (format_.gltf) return srgb_from_linear(color);
+    const Eigen::Vector3f level = 255.0F * color.cwiseMin(1.0F) + Eigen::Vector3f::Constant(0.5F);
     return {static_cast<std::uint8_t>(level.x()), static_cast<std::uint8_t>(level.y()),
             static_cast<std::uint8_t>(level.z())};
   }
@@ -250,7 +250,7 @@ class Gatherer {
   std::set<std::string> names_;
   std::map<std::string, int> copies_of_;
   InstanceId next_id_ = 1;
-  bool ours_ = false, any_uvs_ = false, any_colours_ = false, any_light_ = false;
+  bool ours_ = false, any_uvs_ = false, any_colors_ = false, any_light_ = false;
 };
 
 const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Format& format,
@@ -295,18 +295,18 @@ void warn_of_missing_materials(const fs::path& file, std::vector<std::string>* w
     rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
     rest = rest.substr(0, rest.find_last_not_of(" \t") + 1);
     if (!is_there(file.parent_path() / rest))
-      warnings->push_back(fmt::format("{}:{}: mtllib {} is missing: what it colours is grey",
+      warnings->push_back(fmt::format("{}:{}: mtllib {} is missing: what it colors is gray",
                                       file.string(),
                                       1 + std::ranges::count(held.view.substr(0, at), '\n'), rest));
   }
 }
 
-/// assimp gives a mesh without a material a grey one; vertex colours should show as they are.
+/// assimp gives a mesh without a material a gray one; vertex colors should show as they are.
 void whiten_default_material(const Format& format, Scene& scene) {
-  if (scene.colours.empty() && scene.light.empty()) return;
+  if (scene.colors.empty() && scene.light.empty()) return;
   for (Material& material : scene.materials)
     if (material.texture.empty() && (format.ply || material.name == AI_DEFAULT_MATERIAL_NAME))
-      material.base_colour = {255, 255, 255};
+      material.base_color = {255, 255, 255};
 }
 
 /// A PLY as a scene that knows the objects that the PLY tells.
@@ -314,13 +314,13 @@ Scene scene_of(PlyMesh mesh, const fs::path& file, std::vector<std::string>* war
   Scene scene;
   scene.name = file.stem().string();
   scene.positions_m = std::move(mesh.positions_m);
-  scene.colours = std::move(mesh.colours);
+  scene.colors = std::move(mesh.colors);
   scene.triangles = std::move(mesh.triangles);
   const std::size_t faces = scene.triangles.size();
   scene.material_of.assign(faces, 0);
   scene.class_of.assign(faces, kVoid);
   scene.instance_of.assign(faces, 0);
-  scene.materials.push_back({.name = "vertex colours", .texture = {}});
+  scene.materials.push_back({.name = "vertex colors", .texture = {}});
   if (!is_there(labels_path(file))) label_ply(scene, mesh, file, warnings);
   return scene;
 }

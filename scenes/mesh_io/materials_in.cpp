@@ -25,14 +25,14 @@ PictureIn convert_embedded(const aiTexture& texture, PictureStore& pictures) {
   if (texture.mHeight == 0)
     return pictures.decode({reinterpret_cast<const char*>(texture.pcData), texture.mWidth});
   const int width = static_cast<int>(texture.mWidth), height = static_cast<int>(texture.mHeight);
-  Grid2d<Rgb8> colour(width, height);
+  Grid2d<Rgb8> color(width, height);
   Grid2d<std::uint8_t> opacity(width, height);
-  for (std::size_t i = 0; i < colour.size(); ++i) {
+  for (std::size_t i = 0; i < color.size(); ++i) {
     const aiTexel& t = texture.pcData[i];
-    colour.data()[i] = {t.r, t.g, t.b};
+    color.data()[i] = {t.r, t.g, t.b};
     opacity.data()[i] = t.a;
   }
-  return {.colour = std::move(colour), .opacity = std::move(opacity)};
+  return {.color = std::move(color), .opacity = std::move(opacity)};
 }
 
 /// Where a picture lies that a file beside `folder` names: there, or, as Gazebo looks for it, by
@@ -56,7 +56,7 @@ PictureIn find_texture(const aiScene& in, const std::string& name, const fs::pat
   return pictures.read(place_of_picture(portable, folder));
 }
 
-Rgb8 convert_colour(const aiColor4D& c, bool linear) {
+Rgb8 convert_color(const aiColor4D& c, bool linear) {
   if (linear) return srgb_from_linear(Eigen::Vector3f(c.r, c.g, c.b));
   const auto level = [](float v) {
     return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(v, 0.0F, 1.0F)));
@@ -73,15 +73,15 @@ bool has_holes(const aiMaterial& record) {
 
 /// A mask of its own (OBJ's map_d) as opacity, in the size of the texture that it belongs to.
 Grid2d<std::uint8_t> opacity_of_mask(const PictureIn& mask, const Grid2d<Rgb8>& texture) {
-  if (mask.colour.empty() || texture.empty()) return {};
+  if (mask.color.empty() || texture.empty()) return {};
   Grid2d<std::uint8_t> opacity(texture.width(), texture.height());
   for (int y = 0; y < opacity.height(); ++y)
     for (int x = 0; x < opacity.width(); ++x) {
-      const auto from_x = static_cast<int>(std::int64_t{x} * mask.colour.width() / opacity.width());
+      const auto from_x = static_cast<int>(std::int64_t{x} * mask.color.width() / opacity.width());
       const auto from_y =
-          static_cast<int>(std::int64_t{y} * mask.colour.height() / opacity.height());
+          static_cast<int>(std::int64_t{y} * mask.color.height() / opacity.height());
       opacity(x, y) =
-          mask.opacity.empty() ? mask.colour(from_x, from_y).g : mask.opacity(from_x, from_y);
+          mask.opacity.empty() ? mask.color(from_x, from_y).g : mask.opacity(from_x, from_y);
     }
   return opacity;
 }
@@ -112,7 +112,7 @@ Material convert(const aiScene& in, const aiMaterial& record, const fs::path& fi
   aiColor4D base(1.0F, 1.0F, 1.0F, 1.0F);
   if (record.Get(AI_MATKEY_BASE_COLOR, base) == aiReturn_SUCCESS ||
       record.Get(AI_MATKEY_COLOR_DIFFUSE, base) == aiReturn_SUCCESS)
-    material.base_colour = convert_colour(base, linear);
+    material.base_color = convert_color(base, linear);
   aiColor3D emission;
   if (record.Get(AI_MATKEY_COLOR_EMISSIVE, emission) == aiReturn_SUCCESS)
     material.emission = {std::max(0.0F, emission.r), std::max(0.0F, emission.g),
@@ -120,7 +120,7 @@ Material convert(const aiScene& in, const aiMaterial& record, const fs::path& fi
   material.transmission = transmission_of(record, base);
   const auto find = [&](const aiString& name) {
     PictureIn picture = find_texture(in, name.C_Str(), file.parent_path(), pictures);
-    if (picture.colour.empty() && warnings)
+    if (picture.color.empty() && warnings)
       warnings->push_back(fmt::format("{}: material {}: texture {} {}", file.string(),
                                       material.name, name.C_Str(), picture.fault));
     return picture;
@@ -128,15 +128,15 @@ Material convert(const aiScene& in, const aiMaterial& record, const fs::path& fi
   aiString texture;
   if (!material.emission.isZero() &&
       record.GetTexture(aiTextureType_EMISSIVE, 0, &texture) == aiReturn_SUCCESS) {
-    glow = find(texture).colour;
+    glow = find(texture).color;
     if (glow.empty()) material.emission.setZero();
   }
   if (record.GetTexture(aiTextureType_BASE_COLOR, 0, &texture) != aiReturn_SUCCESS &&
       record.GetTexture(aiTextureType_DIFFUSE, 0, &texture) != aiReturn_SUCCESS)
     return material;
   const PictureIn picture = find(texture);
-  if (picture.colour.empty()) material.base_colour = kMissing;
-  material.texture = picture.colour;
+  if (picture.color.empty()) material.base_color = kMissing;
+  material.texture = picture.color;
   aiString mask;
   if (record.GetTexture(aiTextureType_OPACITY, 0, &mask) == aiReturn_SUCCESS && mask != texture)
     material.opacity = opacity_of_mask(find(mask), material.texture);
@@ -149,15 +149,15 @@ Material convert(const aiScene& in, const aiMaterial& record, const fs::path& fi
 
 }  // namespace
 
-MaterialsIn convert_materials(const aiScene& in, const fs::path& file, bool linear_colours,
+MaterialsIn convert_materials(const aiScene& in, const fs::path& file, bool linear_colors,
                               PictureStore& pictures, std::vector<std::string>* warnings) {
   MaterialsIn out;
   out.glow.resize(in.mNumMaterials);
   std::vector<Material>& materials = out.materials;
   for (unsigned i = 0; i < in.mNumMaterials; ++i)
     materials.push_back(
-        convert(in, *in.mMaterials[i], file, linear_colours, pictures, out.glow[i], warnings));
-  if (!linear_colours) return out;
+        convert(in, *in.mMaterials[i], file, linear_colors, pictures, out.glow[i], warnings));
+  if (!linear_colors) return out;
   const std::vector<float> strengths = emissive_strengths(file);
   for (std::size_t i = 0; i < std::min(strengths.size(), materials.size()); ++i)
     materials[i].emission *= strengths[i];

@@ -19,11 +19,11 @@ struct MaterialsIn {
 
 /// Converts the materials of a file that assimp has read, one to one.
 /// @param file              where textures are looked for (its folder) and what warnings name.
-/// @param linear_colours    whether the file's colours are linear (glTF) or sRGB.
+/// @param linear_colors    whether the file's colors are linear (glTF) or sRGB.
 /// @param pictures          decodes the textures and keeps them
 /// @param warnings          one line for every texture that is missing; may be null.
 MaterialsIn convert_materials(const aiScene& in, const std::filesystem::path& file,
-                              bool linear_colours, PictureStore& pictures,
+                              bool linear_colors, PictureStore& pictures,
                               std::vector<std::string>* warnings);
 
 }  // namespace mh

@@ -37,8 +37,8 @@ struct MeshUse {
 /// - else from the node's name: "kitchen/night_stand_2" is a night stand; every node is an
 /// instance.
 ///
-/// Vertex colours of a file written by save_glb are its baked light and return to Scene::light;
-/// everybody else's are Scene::colours.
+/// Vertex colors of a file written by save_glb are its baked light and return to Scene::light;
+/// everybody else's are Scene::colors.
 /// @param warnings where to append one line per flaw that could be mended; may be null.
 /// @param rules     come before those of the side table
 /// @throws InputError for a missing file, no mesh, no faces, positions that are not finite, or
@@ -52,8 +52,8 @@ Scene load_turned_mesh(const std::filesystem::path& file, std::optional<UpAxis> 
                        const MeshUse& use = {});
 
 /// Writes a ScanNet-like mesh: binary little-endian PLY with x y z (float) and red green blue alpha
-/// (uchar, sRGB) per vertex, faces as `uchar int vertex_indices`. The colour of a vertex is what
-/// can be seen there: texture x base colour x vertex colour x baked light, plus emission; where a
+/// (uchar, sRGB) per vertex, faces as `uchar int vertex_indices`. The color of a vertex is what
+/// can be seen there: texture x base color x vertex color x baked light, plus emission; where a
 /// vertex joins several materials, the first face counts.
 ///
 /// Beside it <stem>.labels.json: {"format": "modelhouse-labels", "version": 1, "name", "vertices":
@@ -65,7 +65,7 @@ void save_scannet_ply(const Scene& scene, const std::filesystem::path& file,
 
 /// Writes a binary glTF 2.0 with embedded PNG textures, y-up as glTF wants it, one node per
 /// instance (and class) named `name#class=CLASS#instance=ID` with extras `class` and `instance`,
-/// and baked light times vertex colour as linear vertex colours (they may exceed 1) of unlit
+/// and baked light times vertex color as linear vertex colors (they may exceed 1) of unlit
 /// materials. Lamps and tile sizes are not kept; rooms come back as the boxes of the floors.
 /// @throws InputError if the file cannot be written or would exceed glTF's 4 GiB.
 void save_glb(const Scene& scene, const std::filesystem::path& file);

@@ -32,8 +32,8 @@ PictureIn decoded(std::string_view bytes) {
   }
   if (stored.depth() == CV_16U) stored.convertTo(stored, CV_8U, 1.0 / 257.0);
   if (stored.depth() != CV_8U) return {};
-  Grid2d<Rgb8> colour(stored.cols, stored.rows, Unfilled{});
-  cv::Mat rgb(stored.rows, stored.cols, CV_8UC3, colour.data());
+  Grid2d<Rgb8> color(stored.cols, stored.rows, Unfilled{});
+  cv::Mat rgb(stored.rows, stored.cols, CV_8UC3, color.data());
   PictureIn picture;
   switch (stored.channels()) {
     case 1:
@@ -49,7 +49,7 @@ PictureIn decoded(std::string_view bytes) {
     default:
       return {};
   }
-  picture.colour = std::move(colour);
+  picture.color = std::move(color);
   return picture;
 }
 

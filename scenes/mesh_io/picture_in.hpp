@@ -15,9 +15,9 @@ namespace mh {
 
 /// A material's picture as a file holds it.
 struct PictureIn {
-  SharedGrid<Rgb8> colour{};
+  SharedGrid<Rgb8> color{};
   SharedGrid<std::uint8_t> opacity{};   ///< empty if the file has none
-  std::string fault = "is no picture";  ///< why colour is empty, where it is
+  std::string fault = "is no picture";  ///< why color is empty, where it is
 };
 
 /// The pictures of a scene's materials, each decoded once, however many files hold it and however

@@ -90,7 +90,7 @@ class BodyParser {
     vertices_ = static_cast<std::size_t>(element.count);
     if (parts_.geometry) {
       read_positions(begin, element.stride, axes);
-      read_colours(begin, element);
+      read_colors(begin, element);
     }
     if (!parts_.labels) return;
     const auto ids = [&](std::string_view property, auto& values) {
@@ -122,7 +122,7 @@ class BodyParser {
     }
   }
 
-  void read_colours(const char* begin, const Element& element) {
+  void read_colors(const char* begin, const Element& element) {
     const std::array<const Property*, 3> channels = {element.find("red"), element.find("green"),
                                                      element.find("blue")};
     if (std::ranges::count(channels, nullptr) > 0) return;
@@ -134,11 +134,11 @@ class BodyParser {
       if (!(value > 0.0)) return std::uint8_t{0};  // also what is no number
       return static_cast<std::uint8_t>(std::min(value, 255.0) + 0.5);
     };
-    mesh_.colours.resize(vertices_);
+    mesh_.colors.resize(vertices_);
     for (std::size_t i = 0; i < vertices_; ++i) {
       const char* record = begin + i * element.stride;
-      mesh_.colours[i] = {level(record, *channels[0]), level(record, *channels[1]),
-                          level(record, *channels[2])};
+      mesh_.colors[i] = {level(record, *channels[0]), level(record, *channels[1]),
+                         level(record, *channels[2])};
     }
   }
 
@@ -317,23 +317,23 @@ void warn_of_bytes_left(const PlyMesh& mesh, const std::filesystem::path& file,
 
 std::string ply_bytes(const PlyMesh& mesh) {
   const std::size_t vertices = mesh.positions_m.size();
-  const bool labelled = !mesh.labels.empty();
-  assert(mesh.colours.size() == vertices && (!labelled || mesh.labels.size() == vertices));
+  const bool labeled = !mesh.labels.empty();
+  assert(mesh.colors.size() == vertices && (!labeled || mesh.labels.size() == vertices));
   std::string bytes = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment Modelhouse\nelement vertex {}\n"
       "property float x\nproperty float y\nproperty float z\n"
       "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n{}"
       "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-      vertices, labelled ? "property ushort label\n" : "", mesh.triangles.size());
+      vertices, labeled ? "property ushort label\n" : "", mesh.triangles.size());
   const auto append = [&](const auto& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
   };
   bytes.reserve(bytes.size() + 18 * vertices + 13 * mesh.triangles.size());
   for (std::size_t v = 0; v < vertices; ++v) {
     for (int axis = 0; axis < 3; ++axis) append(mesh.positions_m[v][axis]);
-    append(mesh.colours[v]);
+    append(mesh.colors[v]);
     append(std::uint8_t{255});
-    if (labelled) append(mesh.labels[v]);
+    if (labeled) append(mesh.labels[v]);
   }
   for (const auto& triangle : mesh.triangles) {
     append(std::uint8_t{3});

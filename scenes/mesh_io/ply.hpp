@@ -17,7 +17,7 @@ namespace mh {
 /// What a ScanNet-like PLY holds. Vertices and faces keep the order of the file.
 struct PlyMesh {
   std::vector<Eigen::Vector3f> positions_m;
-  std::vector<Rgb8> colours;          ///< sRGB, one per vertex; empty if the file has none
+  std::vector<Rgb8> colors;           ///< sRGB, one per vertex; empty if the file has none
   std::vector<std::uint16_t> labels;  ///< vertex property `label`; empty if the file has none
   // Of other data sets; empty if the file has none.
   std::vector<std::uint16_t> nyu40{};         ///< vertex property `NYU40` (3RScan)
@@ -32,7 +32,7 @@ inline constexpr std::uint32_t kNoObject = 0xffffffffU;
 
 /// What to read of it.
 struct PlyParts {
-  bool geometry = true;  ///< positions, colours, triangles and their objects
+  bool geometry = true;  ///< positions, colors, triangles and their objects
   bool labels = true;
 };
 
@@ -57,7 +57,7 @@ void warn_of_bytes_left(const PlyMesh& mesh, const std::filesystem::path& file,
 
 /// The bytes of a PLY as ScanNet's: x y z (float), red green blue alpha (uchar), `label` (ushort)
 /// where there are labels, faces as `uchar int vertex_indices`.
-/// @pre colours (and labels, if any) are as many as positions.
+/// @pre colors (and labels, if any) are as many as positions.
 std::string ply_bytes(const PlyMesh& mesh);
 
 }  // namespace mh

@@ -43,9 +43,9 @@ Names read_names(std::initializer_list<fs::path> files, const char* list, const 
   return names;
 }
 
-class Labeller {
+class Labeler {
  public:
-  Labeller(Scene& scene, const fs::path& file, std::vector<std::string>* warnings)
+  Labeler(Scene& scene, const fs::path& file, std::vector<std::string>* warnings)
       : scene_(scene), file_(file), warnings_(warnings) {}
 
   void by_face(const std::vector<std::uint32_t>& objects) {
@@ -152,11 +152,11 @@ class Labeller {
 
 void label_ply(Scene& scene, const PlyMesh& mesh, const fs::path& file,
                std::vector<std::string>* warnings) {
-  Labeller labeller(scene, file, warnings);
+  Labeler labeler(scene, file, warnings);
   if (!mesh.face_objects.empty())
-    labeller.by_face(mesh.face_objects);
+    labeler.by_face(mesh.face_objects);
   else if (!mesh.nyu40.empty() || !mesh.objects.empty() || !mesh.labels.empty())
-    labeller.by_vertex(mesh.nyu40.empty() ? mesh.labels : mesh.nyu40, mesh.objects);
+    labeler.by_vertex(mesh.nyu40.empty() ? mesh.labels : mesh.nyu40, mesh.objects);
 }
 
 }  // namespace mh

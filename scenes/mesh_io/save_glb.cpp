@@ -45,7 +45,7 @@ Eigen::Vector3f y_up(const Eigen::Vector3f& p) {
 Eigen::Vector3f vertex_factor(const Scene& scene, std::uint32_t vertex) {
   Eigen::Array3f factor = Eigen::Array3f::Ones();
   if (!scene.light.empty()) factor *= scene.light[vertex].array();
-  if (!scene.colours.empty()) factor *= linear_from_srgb(scene.colours[vertex]).array();
+  if (!scene.colors.empty()) factor *= linear_from_srgb(scene.colors[vertex]).array();
   return factor.matrix();
 }
 
@@ -117,9 +117,9 @@ class GlbBuilder {
   }
 
   void add_material(const Material& material) {
-    // A pane's own colour is what it lets through.
+    // A pane's own color is what it lets through.
     const Eigen::Vector3f base =
-        material.is_pane() ? material.transmission : linear_from_srgb(material.base_colour);
+        material.is_pane() ? material.transmission : linear_from_srgb(material.base_color);
     Json surface = {{"baseColorFactor", {base.x(), base.y(), base.z(), 1.0F}},
                     {"metallicFactor", 0.0},
                     {"roughnessFactor", 1.0}};
@@ -165,7 +165,7 @@ class GlbBuilder {
   }
 
   void add_nodes() {
-    std::map<InstanceId, std::string> names{{0, "unlabelled"}};
+    std::map<InstanceId, std::string> names{{0, "unlabeled"}};
     for (const Instance& instance : scene_.instances) names[instance.id] = instance.name;
     std::map<NodeKey, FacesByMaterial> nodes;
     for (std::size_t i = 0; i < scene_.triangles.size(); ++i)

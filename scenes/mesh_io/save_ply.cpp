@@ -2,7 +2,7 @@
 #include "scenes/mesh_io/labels_file.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/mesh_io/ply.hpp"
-#include "scenes/mesh_io/seen_colours.hpp"
+#include "scenes/mesh_io/seen_colors.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
@@ -10,9 +10,9 @@ namespace fs = std::filesystem;
 
 void save_scannet_ply(const Scene& scene, const fs::path& file, float max_edge_m) {
   validate(scene);
-  const Scene parted = split_for_colours(scene, max_edge_m);
+  const Scene parted = split_for_colors(scene, max_edge_m);
   write_atomically(file, ply_bytes({.positions_m = parted.positions_m,
-                                    .colours = seen_colours(parted),
+                                    .colors = seen_colors(parted),
                                     .labels = {},
                                     .triangles = parted.triangles}));
   save_labels(parted, labels_path(file));

@@ -34,10 +34,10 @@ class EdgeSplitter {
     half(scene_.positions_m);
     if (!scene_.uvs.empty()) half(scene_.uvs);
     if (!scene_.light.empty()) half(scene_.light);
-    if (scene_.colours.empty()) return;
-    const Rgb8 p = scene_.colours[a], q = scene_.colours[b];
+    if (scene_.colors.empty()) return;
+    const Rgb8 p = scene_.colors[a], q = scene_.colors[b];
     const auto mean = [](int u, int v) { return static_cast<std::uint8_t>((u + v + 1) / 2); };
-    scene_.colours.push_back({mean(p.r, q.r), mean(p.g, q.g), mean(p.b, q.b)});
+    scene_.colors.push_back({mean(p.r, q.r), mean(p.g, q.g), mean(p.b, q.b)});
   }
 
   Scene& scene_;

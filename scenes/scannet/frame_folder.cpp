@@ -64,7 +64,7 @@ void save_extracted(const fs::path& folder, const RecordingInfo& info, std::size
     const RecordedMoment moment = frame_at(i);
     const double lost = -std::numeric_limits<double>::infinity();
     write_atomically(folder / "color" / fmt::format("{}.jpg", i),
-                     encode_jpeg(moment.colour, kRecordedJpegQuality));
+                     encode_jpeg(moment.color, kRecordedJpegQuality));
     write_atomically(folder / "depth" / fmt::format("{}.png", i), encode_png(moment.depth));
     write_atomically(
         folder / "pose" / fmt::format("{}.txt", i),
@@ -77,7 +77,7 @@ void save_extracted(const fs::path& folder, const RecordingInfo& info, std::size
     write_atomically(folder / "intrinsic" / fmt::format("extrinsic_{}.txt", which),
                      matrix_text(matrix_of(lens.device_from_camera)));
   };
-  write_lens("color", info.colour);
+  write_lens("color", info.color);
   write_lens("depth", info.depth);
 }
 

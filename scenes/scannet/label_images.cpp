@@ -23,7 +23,7 @@ constexpr zip_uint64_t kLargestEntry = 1U << 28;
 Grid2d<std::uint16_t> decode(std::string_view bytes, const std::string& name) {
   if (const char* fault = picture_fault(bytes))
     throw InputError(fmt::format("{}: {}", name, fault));
-  auto picture = decode_grey16(bytes);
+  auto picture = decode_gray16(bytes);
   if (!picture) throw InputError(fmt::format("{}: is no picture of one channel", name));
   return std::move(*picture);
 }

@@ -58,7 +58,7 @@ class Loader {
       throw InputError(fmt::format("{}: has no faces to be seen", files_.mesh.string()));
     scene_.name = files_.scene_id;
     scene_.positions_m = std::move(mesh.positions_m);
-    scene_.colours = std::move(mesh.colours);
+    scene_.colors = std::move(mesh.colors);
     scene_.triangles = std::move(mesh.triangles);
     align();
     read_labels(std::move(mesh.labels));
@@ -184,14 +184,14 @@ class Loader {
     Claims claims;
     std::set<std::string> unknown;
     std::set<std::uint32_t> shared;
-    std::size_t unlabelled = 0;
+    std::size_t unlabeled = 0;
     for (const SegmentGroup& group : groups) {
       if (group.object > kLastObject)
         throw InputError(fmt::format("{}: objectId {} is more than {}", files_.aggregation.string(),
                                      group.object, kLastObject));
       const Object object{static_cast<InstanceId>(group.object + 1), class_of(group.category)};
       if (!object.class_id) {
-        ++unlabelled;
+        ++unlabeled;
         unknown.insert(group.category);
       }
       scene_.instances.push_back(
@@ -208,7 +208,7 @@ class Loader {
     }
     std::ranges::sort(scene_.instances, {}, &Instance::id);
     make_names_unique();
-    if (unlabelled > 0) warn_unlabelled(unlabelled, groups.size(), unknown);
+    if (unlabeled > 0) warn_unlabeled(unlabeled, groups.size(), unknown);
     if (!shared.empty())  // scene0217_00 of release v2 names all its objects twice
       warn(
           fmt::format("{}: {} of {} segments belong to several objects (such as segment {}): the "
@@ -220,7 +220,7 @@ class Loader {
   /// Gives the vertices of every object's segments its instance and class.
   void label_objects(Claims claims, const std::vector<SegmentGroup>& groups,
                      const std::vector<std::uint32_t>& segments, VertexLabels& vertices) const {
-    const bool labelled = !vertices.classes.empty();
+    const bool labeled = !vertices.classes.empty();
     vertices.classes.resize(segments.size(), kVoid);
     vertices.instances.assign(segments.size(), 0);
     const Object* object = nullptr;
@@ -234,7 +234,7 @@ class Loader {
       vertices.instances[v] = object->instance;
       if (!object->class_id)
         vertices.classes[v] = kVoid;
-      else if (!labelled || raw_ids_ || labels_[v] > kLastNyu40 ||
+      else if (!labeled || raw_ids_ || labels_[v] > kLastNyu40 ||
                classes()[*object->class_id].nyu40 == vertices.classes[v] ||
                is_finer(*object->class_id, vertices.classes[v]))
         vertices.classes[v] = *object->class_id;
@@ -257,8 +257,8 @@ class Loader {
       while (!names.insert(instance.name).second) instance.name += fmt::format("_{}", instance.id);
   }
 
-  void warn_unlabelled(std::size_t count, std::size_t all,
-                       const std::set<std::string>& categories) const {
+  void warn_unlabeled(std::size_t count, std::size_t all,
+                      const std::set<std::string>& categories) const {
     constexpr std::size_t kTold = 5;
     std::string names;
     std::size_t told = 0;
@@ -267,7 +267,7 @@ class Loader {
       names += fmt::format("{}'{}'", told > 1 ? ", " : "", category);
     }
     if (categories.size() > kTold) names += ", ...";
-    warn(fmt::format("{}: {} of {} objects are of {} categories that {} lacks ({}): unlabelled",
+    warn(fmt::format("{}: {} of {} objects are of {} categories that {} lacks ({}): unlabeled",
                      files_.aggregation.string(), count, all, categories.size(),
                      table_ ? table_->file : "the list of classes, for want of a label table,",
                      names));

@@ -47,19 +47,19 @@ class ExtractedFolder : public Recording {
  public:
   explicit ExtractedFolder(const fs::path& folder)
       : folder_(folder),
-        colour_(folder / "color", {".jpg", ".png"}),
+        color_(folder / "color", {".jpg", ".png"}),
         depth_(folder / "depth", {".png"}) {
-    for (const std::uint32_t number : colour_.numbers())
+    for (const std::uint32_t number : color_.numbers())
       if (depth_.contains(number)) numbers_.push_back(number);
     if (numbers_.empty())
       throw InputError(fmt::format("{}: no picture of color/ has one of the same number in depth/",
                                    folder.string()));
     info_.sensor = "extracted";
-    info_.colour = read_lens("color", announced(colour_));
+    info_.color = read_lens("color", announced(color_));
     info_.depth = read_lens("depth", announced(depth_));
     for (const std::uint32_t number : numbers_) poses_.push_back(read_pose(number));
-    note_lonely("color", colour_, depth_);
-    note_lonely("depth", depth_, colour_);
+    note_lonely("color", color_, depth_);
+    note_lonely("depth", depth_, color_);
     if (missing_poses_ > 0)
       notes_.push_back(
           fmt::format("{}: {} of {} frames have no file in pose/: their pose is unknown",
@@ -76,20 +76,20 @@ class ExtractedFolder : public Recording {
   std::optional<SE3> world_from_device(std::size_t index) const override { return poses_[index]; }
 
   RecordedMoment frame(std::size_t index) const override {
-    const fs::path colour_file = colour_.file(numbers_[index]);
+    const fs::path color_file = color_.file(numbers_[index]);
     const fs::path depth_file = depth_.file(numbers_[index]);
-    auto colour = decode_colour(read_whole(colour_file));
+    auto color = decode_color(read_whole(color_file));
     const std::string depth_bytes = read_whole(depth_file);
     constexpr std::size_t kBits = 24;  // where a PNG tells them
     if (depth_bytes.size() > kBits && depth_bytes[kBits] == 8)
       throw InputError(fmt::format("{}: has 8 bits, depth needs 16", depth_file.string()));
-    auto depth = decode_grey16(depth_bytes);
-    if (!colour)
-      throw InputError(fmt::format("{}: is no picture of 3 x 8 bits", colour_file.string()));
+    auto depth = decode_gray16(depth_bytes);
+    if (!color)
+      throw InputError(fmt::format("{}: is no picture of 3 x 8 bits", color_file.string()));
     if (!depth) throw InputError(fmt::format("{}: is no picture of 16 bits", depth_file.string()));
-    check_size(*colour, info_.colour, colour_file);
+    check_size(*color, info_.color, color_file);
     check_size(*depth, info_.depth, depth_file);
-    return {stamp_ns(index), std::move(*colour), std::move(*depth), poses_[index]};
+    return {stamp_ns(index), std::move(*color), std::move(*depth), poses_[index]};
   }
 
  private:
@@ -128,7 +128,7 @@ class ExtractedFolder : public Recording {
           fmt::format("{}: {} of {} pictures have no partner in {}/ and are left out (the "
                       "first is {})",
                       (folder_ / which).string(), std::ranges::count_if(numbers, lonely),
-                      numbers.size(), &files == &colour_ ? "depth" : "color", *first));
+                      numbers.size(), &files == &color_ ? "depth" : "color", *first));
   }
 
   std::optional<SE3> read_pose(std::uint32_t number) {
@@ -152,7 +152,7 @@ class ExtractedFolder : public Recording {
   }
 
   fs::path folder_;
-  NumberedFiles colour_, depth_;
+  NumberedFiles color_, depth_;
   std::vector<std::uint32_t> numbers_;
   RecordingInfo info_;
   std::vector<std::optional<SE3>> poses_;

@@ -16,10 +16,10 @@
 
 namespace mh {
 
-/// Of the colour pictures that are written.
+/// Of the color pictures that are written.
 inline constexpr int kRecordedJpegQuality = 95;
 
-/// One of a recording's two cameras: a pinhole, without distortion, pixel centres at integers.
+/// One of a recording's two cameras: a pinhole, without distortion, pixel centers at integers.
 struct RecordedLens {
   int width_px = 0, height_px = 0;
   double fx_px = 0, fy_px = 0, cx_px = 0, cy_px = 0;
@@ -29,15 +29,15 @@ struct RecordedLens {
 /// What the frames of a recording have in common.
 struct RecordingInfo {
   std::string sensor;
-  RecordedLens colour, depth;
-  double depth_per_metre = 1000;
+  RecordedLens color, depth;
+  double depth_per_meter = 1000;
 };
 
-/// One moment of a ScanNet recording. Depth is not registered to colour.
+/// One moment of a ScanNet recording. Depth is not registered to color.
 struct RecordedMoment {
-  Stamp stamp_ns = 0;  ///< of the colour picture
-  Grid2d<Rgb8> colour;
-  Grid2d<std::uint16_t> depth;           ///< in RecordingInfo::depth_per_metre; 0 = no return
+  Stamp stamp_ns = 0;  ///< of the color picture
+  Grid2d<Rgb8> color;
+  Grid2d<std::uint16_t> depth;           ///< in RecordingInfo::depth_per_meter; 0 = no return
   std::optional<SE3> world_from_device;  ///< nullopt where the scan had lost its way
 };
 

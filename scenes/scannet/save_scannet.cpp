@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "scenes/mesh_io/ply.hpp"
-#include "scenes/mesh_io/seen_colours.hpp"
+#include "scenes/mesh_io/seen_colors.hpp"
 #include "scenes/scannet/annotation.hpp"
 #include "scenes/scannet/files.hpp"
 #include "scenes/scannet/label_table.hpp"
@@ -41,7 +41,7 @@ std::vector<Owner> part_owners(Scene& scene) {
     };
     again(scene.positions_m);
     again(scene.uvs);
-    again(scene.colours);
+    again(scene.colors);
     again(scene.light);
     return static_cast<std::uint32_t>(scene.positions_m.size() - 1);
   };
@@ -98,12 +98,12 @@ std::vector<SegmentGroup> groups_of(const Scene& scene, const std::vector<Owner>
   return list;
 }
 
-/// The mesh with each vertex's class, drawn in that class's colour.
+/// The mesh with each vertex's class, drawn in that class's color.
 PlyMesh label_mesh(PlyMesh mesh, const std::vector<Owner>& owner) {
   for (std::size_t v = 0; v < owner.size(); ++v) {
     const ClassInfo& info = classes()[classes()[owner[v].class_id].nyu40];
     mesh.labels.push_back(info.id);
-    mesh.colours[v] = {info.r, info.g, info.b};
+    mesh.colors[v] = {info.r, info.g, info.b};
   }
   return mesh;
 }
@@ -140,7 +140,7 @@ std::vector<std::string> saved_scannet_names(const fs::path& folder) {
 
 void save_scannet(const Scene& scene, const fs::path& folder, float max_edge_m) {
   validate(scene);
-  Scene parted = split_for_colours(scene, max_edge_m);
+  Scene parted = split_for_colors(scene, max_edge_m);
   const std::vector<Owner> owner = part_owners(parted);
   const std::vector<std::uint32_t> segments = connected_segments(parted);
 
@@ -148,7 +148,7 @@ void save_scannet(const Scene& scene, const fs::path& folder, float max_edge_m) 
   const ScannetFiles files = saved_files(folder);
   const std::string& id = files.scene_id;
   PlyMesh mesh{.positions_m = parted.positions_m,
-               .colours = seen_colours(parted),
+               .colors = seen_colors(parted),
                .labels = {},
                .triangles = parted.triangles};
   const std::string content = ply_bytes(mesh);

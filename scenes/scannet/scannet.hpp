@@ -17,7 +17,7 @@ namespace mh {
 /// mesh's own `label` counts, a raw category id in v1. In v2 that label is an NYU40 id and goes
 /// before the category where the two differ. A face takes the class, and the instance, that most of
 /// its vertices have; where all three differ, the first vertex counts. Objects of a category that
-/// the table lacks are unlabelled.
+/// the table lacks are unlabeled.
 ///
 /// The mesh alone is a scene too. What is missing or unknown is told by `warnings`, with counts.
 /// @throws InputError naming file and place where a file is damaged or does not fit the mesh.
@@ -29,7 +29,7 @@ std::vector<std::string> saved_scannet_names(const std::filesystem::path& folder
 
 /// Writes a scene as a folder of ScanNet's release v2, so that its tools can read it: mesh, labels,
 /// segments, aggregation, txt and label table. The scene's id is the folder's name. Textures and
-/// light go into the vertices' colours; to hold them, faces of scenes that have any are split until
+/// light go into the vertices' colors; to hold them, faces of scenes that have any are split until
 /// no edge is longer than max_edge_m (0 = as they are). Vertices where faces of several objects
 /// meet are written once for each, so that load_scannet gives every face its class and instance
 /// back. Classes that NYU40 lacks (those above 41) are kept for faces that belong to an object.

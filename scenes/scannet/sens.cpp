@@ -29,7 +29,7 @@ constexpr std::uint32_t kVersion = 4;
 constexpr std::uint64_t kLongestName = 4096;
 constexpr std::uint32_t kLongestSide_px = 16384;
 constexpr std::uint64_t kDeflateLimit = 1032;  // no deflate stream grows by more (zlib's manual)
-enum ColourKind : std::int32_t { kRawColour = 0, kPng = 1, kJpeg = 2 };
+enum ColorKind : std::int32_t { kRawColor = 0, kPng = 1, kJpeg = 2 };
 enum DepthKind : std::int32_t { kRawDepth = 0, kZlib = 1 };
 
 /// Takes values from the front of the bytes.
@@ -75,7 +75,7 @@ class Cursor {
 struct FrameRecord {
   Stamp stamp_ns = 0;
   std::optional<SE3> world_from_device;
-  std::string_view colour, depth;
+  std::string_view color, depth;
 };
 
 class SensFile : public Recording {
@@ -100,7 +100,7 @@ class SensFile : public Recording {
   }
   RecordedMoment frame(std::size_t index) const override {
     const FrameRecord& record = frames_[index];
-    return {record.stamp_ns, colour_of(record, index), depth_of(record, index),
+    return {record.stamp_ns, color_of(record, index), depth_of(record, index),
             record.world_from_device};
   }
 
@@ -113,23 +113,22 @@ class SensFile : public Recording {
     const auto length = cursor.take<std::uint64_t>("the length of the sensor's name");
     if (length > kLongestName) cursor.fail(fmt::format("a sensor's name of {} bytes", length));
     info_.sensor = cursor.take_bytes(length, "the sensor's name");
-    const Eigen::Matrix4d colour_intrinsics = cursor.take_matrix("the colour intrinsics");
-    const Eigen::Matrix4d colour_extrinsics = cursor.take_matrix("the colour extrinsics");
+    const Eigen::Matrix4d color_intrinsics = cursor.take_matrix("the color intrinsics");
+    const Eigen::Matrix4d color_extrinsics = cursor.take_matrix("the color extrinsics");
     const Eigen::Matrix4d depth_intrinsics = cursor.take_matrix("the depth intrinsics");
     const Eigen::Matrix4d depth_extrinsics = cursor.take_matrix("the depth extrinsics");
-    colour_kind_ = cursor.take<std::int32_t>("the colour compression");
-    if (colour_kind_ != kRawColour && colour_kind_ != kPng && colour_kind_ != kJpeg)
-      cursor.fail(
-          fmt::format("colour compression {} is none of 0 raw, 1 png, 2 jpeg", colour_kind_));
+    color_kind_ = cursor.take<std::int32_t>("the color compression");
+    if (color_kind_ != kRawColor && color_kind_ != kPng && color_kind_ != kJpeg)
+      cursor.fail(fmt::format("color compression {} is none of 0 raw, 1 png, 2 jpeg", color_kind_));
     depth_kind_ = cursor.take<std::int32_t>("the depth compression");
     if (depth_kind_ != kRawDepth && depth_kind_ != kZlib)
       cursor.fail(fmt::format("depth compression {} is none of 0 raw, 1 zlib", depth_kind_));
-    const PictureSize colour = take_size(cursor, "colour"), depth = take_size(cursor, "depth");
-    info_.depth_per_metre = cursor.take<float>("the depth shift");
-    if (!(info_.depth_per_metre > 0) || info_.depth_per_metre > 1e6)
-      cursor.fail(fmt::format("a depth shift of {}", info_.depth_per_metre));
-    info_.colour = lens_of(colour_intrinsics, colour_extrinsics, static_cast<int>(colour.width),
-                           static_cast<int>(colour.height), name_ + ": colour camera");
+    const PictureSize color = take_size(cursor, "color"), depth = take_size(cursor, "depth");
+    info_.depth_per_meter = cursor.take<float>("the depth shift");
+    if (!(info_.depth_per_meter > 0) || info_.depth_per_meter > 1e6)
+      cursor.fail(fmt::format("a depth shift of {}", info_.depth_per_meter));
+    info_.color = lens_of(color_intrinsics, color_extrinsics, static_cast<int>(color.width),
+                          static_cast<int>(color.height), name_ + ": color camera");
     info_.depth = lens_of(depth_intrinsics, depth_extrinsics, static_cast<int>(depth.width),
                           static_cast<int>(depth.height), name_ + ": depth camera");
     return cursor.take<std::uint64_t>("the number of frames");
@@ -152,14 +151,14 @@ class SensFile : public Recording {
     FrameRecord record;
     record.world_from_device =
         pose_of(cursor.take_matrix("the pose"), fmt::format("{}: {}", name_, frame));
-    const auto stamp_us = cursor.take<std::uint64_t>("the colour stamp");
+    const auto stamp_us = cursor.take<std::uint64_t>("the color stamp");
     if (stamp_us > static_cast<std::uint64_t>(std::numeric_limits<Stamp>::max() / 1000))
       cursor.fail(fmt::format("{}: a stamp of {} us", frame, stamp_us));
     record.stamp_ns = static_cast<Stamp>(stamp_us * 1000);
     cursor.take<std::uint64_t>("the depth stamp");
-    const auto colour_size = cursor.take<std::uint64_t>("the size of the colour picture");
+    const auto color_size = cursor.take<std::uint64_t>("the size of the color picture");
     const auto depth_size = cursor.take<std::uint64_t>("the size of the depth picture");
-    record.colour = cursor.take_bytes(colour_size, frame + "'s colour picture");
+    record.color = cursor.take_bytes(color_size, frame + "'s color picture");
     record.depth = cursor.take_bytes(depth_size, frame + "'s depth picture");
     return record;
   }
@@ -197,26 +196,26 @@ class SensFile : public Recording {
     throw InputError(fmt::format("{}: frame {}: {}", name_, index, what));
   }
 
-  Grid2d<Rgb8> colour_of(const FrameRecord& record, std::size_t index) const {
-    const RecordedLens& lens = info_.colour;
+  Grid2d<Rgb8> color_of(const FrameRecord& record, std::size_t index) const {
+    const RecordedLens& lens = info_.color;
     const auto fail_size = [&](std::uint64_t width, std::uint64_t height) {
-      fail(index, fmt::format("the colour picture is {} x {}, the header says {} x {}", width,
+      fail(index, fmt::format("the color picture is {} x {}, the header says {} x {}", width,
                               height, lens.width_px, lens.height_px));
     };
-    if (colour_kind_ == kRawColour) {
-      Grid2d<Rgb8> picture = empty_picture<Rgb8>(lens, record.colour.size(), index, "colour");
-      std::memcpy(static_cast<void*>(picture.data()), record.colour.data(), record.colour.size());
+    if (color_kind_ == kRawColor) {
+      Grid2d<Rgb8> picture = empty_picture<Rgb8>(lens, record.color.size(), index, "color");
+      std::memcpy(static_cast<void*>(picture.data()), record.color.data(), record.color.size());
       return picture;
     }
-    const auto size = announced_size(record.colour);
-    if (!size) fail(index, "the colour picture is neither JPEG nor PNG");
+    const auto size = announced_size(record.color);
+    if (!size) fail(index, "the color picture is neither JPEG nor PNG");
     if (size->width != static_cast<std::uint32_t>(lens.width_px) ||
         size->height != static_cast<std::uint32_t>(lens.height_px))
       fail_size(size->width, size->height);
-    if (const char* fault = picture_fault(record.colour))
-      fail(index, fmt::format("the colour picture {}", fault));
-    auto picture = decode_colour(record.colour);
-    if (!picture) fail(index, "the colour picture is none of 3 x 8 bits, or damaged");
+    if (const char* fault = picture_fault(record.color))
+      fail(index, fmt::format("the color picture {}", fault));
+    auto picture = decode_color(record.color);
+    if (!picture) fail(index, "the color picture is none of 3 x 8 bits, or damaged");
     if (picture->width() != lens.width_px || picture->height() != lens.height_px)
       fail_size(static_cast<std::uint64_t>(picture->width()),
                 static_cast<std::uint64_t>(picture->height()));
@@ -263,7 +262,7 @@ class SensFile : public Recording {
   HeldBytes held_;
   std::string name_;
   RecordingInfo info_;
-  std::int32_t colour_kind_ = kJpeg, depth_kind_ = kZlib;
+  std::int32_t color_kind_ = kJpeg, depth_kind_ = kZlib;
   std::vector<FrameRecord> frames_;
 };
 
@@ -324,32 +323,32 @@ void save_sens(const fs::path& file, const RecordingInfo& info, std::size_t fram
     out.put(kVersion);
     out.put(static_cast<std::uint64_t>(info.sensor.size()));
     out.put_bytes(info.sensor);
-    for (const RecordedLens& lens : {info.colour, info.depth}) {
+    for (const RecordedLens& lens : {info.color, info.depth}) {
       out.put(intrinsics_of(lens));
       out.put(matrix_of(lens.device_from_camera));
     }
     out.put(static_cast<std::int32_t>(kJpeg));
     out.put(static_cast<std::int32_t>(kZlib));
-    for (const RecordedLens& lens : {info.colour, info.depth}) {
+    for (const RecordedLens& lens : {info.color, info.depth}) {
       out.put(static_cast<std::uint32_t>(lens.width_px));
       out.put(static_cast<std::uint32_t>(lens.height_px));
     }
-    out.put(static_cast<float>(info.depth_per_metre));
+    out.put(static_cast<float>(info.depth_per_meter));
     out.put(static_cast<std::uint64_t>(frames));
     for (std::size_t i = 0; i < frames; ++i) {
       const RecordedMoment moment = frame_at(i);
-      if (!fits(moment.colour, info.colour) || !fits(moment.depth, info.depth))
+      if (!fits(moment.color, info.color) || !fits(moment.depth, info.depth))
         throw InputError(fmt::format("{}: frame {} has not the cameras' size", file.string(), i));
-      const std::string colour = encode_jpeg(moment.colour, kRecordedJpegQuality);
+      const std::string color = encode_jpeg(moment.color, kRecordedJpegQuality);
       const std::string depth = compressed(moment.depth);
       const double lost = -std::numeric_limits<double>::infinity();
       out.put(moment.world_from_device ? matrix_of(*moment.world_from_device)
                                        : Eigen::Matrix4d::Constant(lost).eval());
-      for (int stamp = 0; stamp < 2; ++stamp)  // colour's and depth's
+      for (int stamp = 0; stamp < 2; ++stamp)  // color's and depth's
         out.put(static_cast<std::uint64_t>(moment.stamp_ns / 1000));
-      out.put(static_cast<std::uint64_t>(colour.size()));
+      out.put(static_cast<std::uint64_t>(color.size()));
       out.put(static_cast<std::uint64_t>(depth.size()));
-      out.put_bytes(colour);
+      out.put_bytes(color);
       out.put_bytes(depth);
     }
     out.put(std::uint64_t{0});  // inertial measurements

@@ -12,14 +12,14 @@
 
 namespace mh {
 
-/// Opens a .sens file of version 4: colour raw, PNG or JPEG; depth raw or zlib, 16 bits. Only the
+/// Opens a .sens file of version 4: color raw, PNG or JPEG; depth raw or zlib, 16 bits. Only the
 /// frames' headers are read at once, pictures when they are asked for.
 /// @throws InputError naming file and place: another version, sizes that the file does not hold.
 std::unique_ptr<Recording> open_sens(const std::filesystem::path& file);
 /// The same from memory; `name` stands for the file in messages.
 std::unique_ptr<Recording> open_sens(HeldBytes bytes, const std::string& name);
 
-/// Writes a .sens file of version 4, colour as JPEG, depth by zlib, poses of -inf for invalid
+/// Writes a .sens file of version 4, color as JPEG, depth by zlib, poses of -inf for invalid
 /// frames, stamps in microseconds, no inertial measurements. Holds one frame at a time.
 /// @param frame_at  called once per index, in order; pictures must have the cameras' sizes
 /// @throws InputError if it cannot be written.

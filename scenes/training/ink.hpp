@@ -7,7 +7,7 @@
 #include <array>
 #include <cstdint>
 
-#include "scenes/materials/colour.hpp"
+#include "scenes/materials/color.hpp"
 #include "scenes/materials/noise.hpp"
 #include "slam/core/grid2d.hpp"
 #include "slam/core/random.hpp"
@@ -18,20 +18,20 @@ namespace mh::training {
 constexpr int kTexels = 512;
 using Sheet = Grid2d<Rgb8>;
 
-/// The colours and the randomness of one sheet.
+/// The colors and the randomness of one sheet.
 struct Ink {
   RandomStream random;
   std::array<Tint, 5> palette;
 
   explicit Ink(RandomStream stream) : random(stream) {
-    const RandomStream colours = stream.fork(1000);
+    const RandomStream colors = stream.fork(1000);
     for (std::uint64_t i = 0; i < palette.size(); ++i) {
-      // Light and dark take turns, so that neighbours in the palette can be told apart.
-      const bool is_light = (i + colours.below(90, 2)) % 2 == 0;
+      // Light and dark take turns, so that neighbors in the palette can be told apart.
+      const bool is_light = (i + colors.below(90, 2)) % 2 == 0;
       const double low = is_light ? 130.0 : 40.0, high = is_light ? 235.0 : 140.0;
-      const auto base = static_cast<float>(colours.uniform(4 * i, low, high));
+      const auto base = static_cast<float>(colors.uniform(4 * i, low, high));
       const auto channel = [&](std::uint64_t k) {
-        return base * static_cast<float>(colours.uniform(4 * i + k, 0.75, 1.15));
+        return base * static_cast<float>(colors.uniform(4 * i + k, 0.75, 1.15));
       };
       palette[i] = {channel(1), channel(2), channel(3)};
     }

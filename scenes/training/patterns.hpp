@@ -13,7 +13,7 @@ namespace mh {
 /// house (material_kinds()), so that no vocabulary has seen what an evaluation shows.
 std::span<const std::string_view> training_patterns();
 
-/// One sheet of a family, 1.2 m square at 512 x 512 texels: colours, sizes and arrangement follow
+/// One sheet of a family, 1.2 m square at 512 x 512 texels: colors, sizes and arrangement follow
 /// from the seed. Its name is "training/<family>". @throws InputError on an unknown family.
 Material make_training_pattern(std::string_view family, std::uint64_t seed);
 

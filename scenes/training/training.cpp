@@ -115,14 +115,14 @@ class RoomMaker {
           [&](float s, float t) -> Vector3f { return corner + s * right + t * down; });
   }
 
-  /// A box about a centre, its axes the columns of `axes`.
-  void box(std::uint16_t material, const Vector3f& centre, const Vector3f& size,
+  /// A box about a center, its axes the columns of `axes`.
+  void box(std::uint16_t material, const Vector3f& center, const Vector3f& size,
            const Eigen::Matrix3f& axes) {
     for (int axis = 0; axis < 3; ++axis)
       for (const float side : {-1.0F, 1.0F}) {
         const int a = axis == 2 ? 0 : (axis + 1) % 2, b = axis == 2 ? 1 : 2;
         const Vector3f right = axes.col(a) * size[a] * side, down = -axes.col(b) * size[b];
-        const Vector3f middle = centre + axes.col(axis) * (0.5F * side * size[axis]);
+        const Vector3f middle = center + axes.col(axis) * (0.5F * side * size[axis]);
         quad(material, middle - 0.5F * right - 0.5F * down, right, down);
       }
   }
@@ -155,8 +155,8 @@ class RoomMaker {
     const Vector3f size{dice_.uniform(0.4, 1.3), 0.02F, dice_.uniform(0.3, 1.1)};
     const float along = dice_.uniform(0.7, length - 0.7), z = dice_.uniform(1.0, height_ - 0.6);
     const float across = far_side ? (long_wall ? depth_ : width_) - 0.011F : 0.011F;
-    const Vector3f centre = long_wall ? Vector3f(along, across, z) : Vector3f(across, along, z);
-    box(any_material(), centre, size, turned(long_wall ? 0.0F : kPi / 2));
+    const Vector3f center = long_wall ? Vector3f(along, across, z) : Vector3f(across, along, z);
+    box(any_material(), center, size, turned(long_wall ? 0.0F : kPi / 2));
   }
 
   /// Where something of this radius can stand near the walls, leaving the middle free.
@@ -267,7 +267,7 @@ class RoomMaker {
                          height_ - dice_.uniform(0.15, 0.5)};
       lamp.radius_m = dice_.uniform(0.05, 0.15);
       const float power = dice_.uniform(4.0, 7.0), warmth = dice_.uniform(0.6, 1.0);
-      lamp.colour = {power, power * (0.5F + 0.5F * warmth), power * warmth};
+      lamp.color = {power, power * (0.5F + 0.5F * warmth), power * warmth};
       scene_.lights.push_back(lamp);
     }
   }

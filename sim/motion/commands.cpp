@@ -85,7 +85,7 @@ class Reflex {
   }
 
   /// The same for the edge from a to b: of what lies ahead of the base's middle and not too far
-  /// aside. All are metres ahead and to the left of the base's middle.
+  /// aside. All are meters ahead and to the left of the base's middle.
   double way_to_edge_m(const Vector2d& a, const Vector2d& b) const {
     const Vector2d d = b - a;
     double from = 0, to = 1;

@@ -24,7 +24,7 @@ constexpr double kDrift_m = 0.005;
 constexpr double kStuck_m = 0.15;  // this far behind the plan, something is in the way
 constexpr double kArrived_m = 0.01, kTurned_rad = 0.005;
 constexpr double kAtRest_m_per_s = 0.01;
-constexpr double kPatience_s = 3.0;  // for the last centimetre of an arrival
+constexpr double kPatience_s = 3.0;  // for the last centimeter of an arrival
 
 /// A robot on its tour: steps the physics, keeps the record.
 class Driver {

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kSharpTurn_rad = 2.1;  // beyond 120 degrees a corner is a stop, not a bow
-constexpr double kLookAhead_m = 0.7;    // a traveller faces this far ahead
+constexpr double kLookAhead_m = 0.7;    // a traveler faces this far ahead
 constexpr double kFaceFirst_rad = 0.8;  // more than this off the way: turn before driving
 constexpr double kHeadingGain_per_s = 3.0;
 constexpr double kNoWay_m = 0.01, kNoTurn_rad = 0.005;  // less than these is not worth a move

@@ -21,7 +21,7 @@ struct Stretch {
 /// A T^2 / 24. The stretch as it is where nothing limits jerk.
 Stretch smoothed(const Stretch& stretch, const BaseLimits& limits, double step_s);
 
-/// The motion that a tour asks for: velocity, acceleration and jerk, as differences of neighbouring
+/// The motion that a tour asks for: velocity, acceleration and jerk, as differences of neighboring
 /// poses give them, stay within the limits. The base stops at the end of each stretch.
 /// @pre the tour has waypoints
 std::vector<Stretch> reference_motion(const Tour& tour, const BaseLimits& limits, double step_s);

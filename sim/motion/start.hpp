@@ -10,7 +10,7 @@
 
 namespace mh {
 
-/// [x, y] in metres, within a kilometre of the origin.
+/// [x, y] in meters, within a kilometer of the origin.
 Eigen::Vector2d read_place(const YamlReader& yaml);
 
 /// Where a motion begins, as files of motions write it: `start: {position: [x, y], heading_deg:

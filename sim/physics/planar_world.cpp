@@ -69,7 +69,7 @@ std::unique_ptr<Obstacles> felt_obstacles(const Scene& scene, float top_m, float
 
 /// Where the base (a sphere that stands for a disc) touches the outline. Bullet's own pairing of a
 /// sphere with a mesh lets a shallow contact take the place of a deep one that points the same way,
-/// and furniture has many layers a few millimetres apart.
+/// and furniture has many layers a few millimeters apart.
 class OutlineContacts final : public btCollisionAlgorithm {
  public:
   struct Maker final : btCollisionAlgorithmCreateFunc {
@@ -91,10 +91,10 @@ class OutlineContacts final : public btCollisionAlgorithm {
     const bool base_is_first = a->getCollisionShape()->getShapeType() == SPHERE_SHAPE_PROXYTYPE;
     const btCollisionObjectWrapper& base = base_is_first ? *a : *b;
     const btCollisionObjectWrapper& house = base_is_first ? *b : *a;
-    const btVector3 centre = base.getWorldTransform().getOrigin();
+    const btVector3 center = base.getWorldTransform().getOrigin();
     const btScalar radius =
         static_cast<const btSphereShape*>(base.getCollisionShape())->getRadius();
-    find_near(*static_cast<const btBvhTriangleMeshShape*>(house.getCollisionShape()), centre,
+    find_near(*static_cast<const btBvhTriangleMeshShape*>(house.getCollisionShape()), center,
               radius + kReach_m);
     manifold_->clearManifold();
     result->setPersistentManifold(manifold_);
@@ -102,7 +102,7 @@ class OutlineContacts final : public btCollisionAlgorithm {
     std::size_t kept = 0;
     for (const Near& near : near_) {
       if (kept == directions.size()) break;
-      const btVector3 direction = (centre - near.point) / near.distance_m;
+      const btVector3 direction = (center - near.point) / near.distance_m;
       const auto alike = [&](const btVector3& other) { return other.dot(direction) > kSameWay; };
       if (std::any_of(directions.begin(), directions.begin() + kept, alike)) continue;
       directions[kept++] = direction;
@@ -112,7 +112,7 @@ class OutlineContacts final : public btCollisionAlgorithm {
         result->addContactPoint(direction, near.point, gap_m);
       } else {
         result->setShapeIdentifiersA(0, near.triangle);
-        result->addContactPoint(-direction, centre - radius * direction, gap_m);
+        result->addContactPoint(-direction, center - radius * direction, gap_m);
       }
     }
   }
@@ -135,30 +135,30 @@ class OutlineContacts final : public btCollisionAlgorithm {
     btVector3 point;  // of the wall, at the height of the base's middle
   };
 
-  /// Walls within a distance of the centre, the nearest first.
-  void find_near(const btBvhTriangleMeshShape& walls, const btVector3& centre, btScalar most_m) {
+  /// Walls within a distance of the center, the nearest first.
+  void find_near(const btBvhTriangleMeshShape& walls, const btVector3& center, btScalar most_m) {
     struct Visitor final : btTriangleCallback {
-      btVector3 centre;
+      btVector3 center;
       btScalar most_m = 0;
       std::vector<Near>* near = nullptr;
       void processTriangle(btVector3* corners, int /*part*/, int triangle) override {
         if (triangle % 2 != 0) return;  // the other half of the same wall
         btVector3 a = corners[0], along = corners[1] - corners[0];
-        a.setZ(centre.z());
+        a.setZ(center.z());
         const btScalar t =
-            std::clamp((centre - a).dot(along) / along.length2(), btScalar(0), btScalar(1));
+            std::clamp((center - a).dot(along) / along.length2(), btScalar(0), btScalar(1));
         const btVector3 point = a + t * along;
-        const btScalar distance_m = (centre - point).length();
+        const btScalar distance_m = (center - point).length();
         if (distance_m < most_m && distance_m > 0) near->push_back({distance_m, triangle, point});
       }
     };
     near_.clear();
     Visitor visitor;
-    visitor.centre = centre;
+    visitor.center = center;
     visitor.most_m = most_m;
     visitor.near = &near_;
     const btVector3 reach(most_m, most_m, most_m);
-    walls.processAllTriangles(&visitor, centre - reach, centre + reach);
+    walls.processAllTriangles(&visitor, center - reach, center + reach);
     std::sort(near_.begin(), near_.end(), [](const Near& a, const Near& b) {
       return std::tie(a.distance_m, a.triangle) < std::tie(b.distance_m, b.triangle);
     });

@@ -10,11 +10,11 @@ namespace mh {
 namespace {
 
 constexpr float kTieShare = 1e-5F;
-constexpr int kColourLevels = 2;
+constexpr int kColorLevels = 2;
 constexpr float kJumpM = 0.02F, kJumpShare = 0.02F;
 
-bool same_colour(Rgb8 a, Rgb8 b) {
-  return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)}) <= kColourLevels;
+bool same_color(Rgb8 a, Rgb8 b) {
+  return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)}) <= kColorLevels;
 }
 
 bool silhouette(const RenderedFrame& frame, int x, int y) {
@@ -44,7 +44,7 @@ void Agreement::add(const RenderedFrame& a, const RenderedFrame& b) {
       same_instance += a.instances(x, y) == b.instances(x, y);
       ties += a.instances(x, y) != b.instances(x, y) &&
               std::abs(a.depth_m(x, y) - b.depth_m(x, y)) <= kTieShare * a.depth_m(x, y);
-      same_colour += mh::same_colour(a.colour(x, y), b.colour(x, y));
+      same_color += mh::same_color(a.color(x, y), b.color(x, y));
       if (silhouette(a, x, y) || silhouette(b, x, y)) continue;
       ++smooth;
       const double d = static_cast<double>(a.depth_m(x, y)) - b.depth_m(x, y);

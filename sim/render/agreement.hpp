@@ -14,19 +14,19 @@ struct Agreement {
   /// Pixels of another instance at the same depth (to 1e-5 of it): two objects that share a plane,
   /// where either answer is right.
   std::int64_t ties = 0;
-  std::int64_t same_colour = 0;  ///< every channel within two grey levels
+  std::int64_t same_color = 0;   ///< every channel within two gray levels
   std::int64_t smooth = 0;       ///< pixels outside silhouettes, see below
   double square_depth_m2 = 0.0;  ///< summed squares of depth differences over those
 
   double class_share() const { return share(same_class); }
   double instance_share() const { return share(same_instance); }
   double tie_share() const { return share(ties); }
-  double colour_share() const { return share(same_colour); }
+  double color_share() const { return share(same_color); }
   /// Root mean square of the depth differences outside silhouettes, m.
   double depth_rmse_m() const;
 
   /// Adds what two pictures of the same size show. A pixel is of a silhouette where in either
-  /// picture the instance or, by more than 2 cm and 2 %, the depth differs from a neighbour's.
+  /// picture the instance or, by more than 2 cm and 2 %, the depth differs from a neighbor's.
   void add(const RenderedFrame& a, const RenderedFrame& b);
 
  private:

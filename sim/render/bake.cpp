@@ -12,7 +12,7 @@
 #include <xxhash.h>
 
 #include "sim/render/bake_points.hpp"
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 #include "sim/render/embree_scene.hpp"
 #include "sim/render/parallel.hpp"
 #include "sim/render/texture.hpp"
@@ -23,7 +23,7 @@ namespace {
 
 using Eigen::Vector2f;
 using Eigen::Vector3f;
-using Colours = std::vector<Vector3f>;
+using Colors = std::vector<Vector3f>;
 
 // Goes up whenever the same scene and config come out in other light.
 constexpr std::uint64_t kBakeVersion = 2;
@@ -114,22 +114,22 @@ class Baker {
         shadow_(whole_packets(std::max(1, config.sun_samples))) {
     valid_.fill(-1);
     for (const Light& light : scene.lights) {
-      if (light.kind == Light::Kind::kSky) sky_ += light.colour;
-      if (light.kind == Light::Kind::kAmbient) ambient_ += light.colour;
+      if (light.kind == Light::Kind::kSky) sky_ += light.color;
+      if (light.kind == Light::Kind::kAmbient) ambient_ += light.color;
     }
     find_albedo();
     find_glow();
   }
 
-  Colours bake() {
+  Colors bake() {
     const std::size_t count = points_.size();
-    Colours direct(count), indirect(count, Vector3f::Zero());
+    Colors direct(count), indirect(count, Vector3f::Zero());
     std::vector<char> inside(count, 0);
     for_each_vertex([&](std::size_t v) { direct[v] = direct_light(v, 1.0F); });
     // Round 0 gathers sky and glow alone; each round after it adds one interreflection.
     for (int round = 0; round <= config_.bounces; ++round) {
-      leaving_ = round == 0 ? Colours(count, Vector3f::Zero()) : light_leaving(direct, indirect);
-      Colours next(count);
+      leaving_ = round == 0 ? Colors(count, Vector3f::Zero()) : light_leaving(direct, indirect);
+      Colors next(count);
       for_each_vertex([&](std::size_t v) {
         const Gathered gathered = gather(v, 1.0F, round);
         next[v] = gathered.light;
@@ -139,7 +139,7 @@ class Baker {
       mend(inside, direct, indirect);
     }
     leaving_ = light_leaving(direct, indirect);
-    Colours light(count);
+    Colors light(count);
     double total = 0.0;
     for (std::size_t v = 0; v < count; ++v) {
       light[v] = direct[v] + indirect[v];
@@ -182,7 +182,7 @@ class Baker {
   void find_albedo() {
     for (const Material& material : scene_.materials) {
       const Vector3f albedo =
-          mean_linear(material.texture).cwiseProduct(srgb_to_linear(material.base_colour));
+          mean_linear(material.texture).cwiseProduct(srgb_to_linear(material.base_color));
       albedo_.push_back(albedo.cwiseMin(kMaxAlbedo));
     }
     if (albedo_.empty()) albedo_.push_back(Vector3f::Constant(kMaxAlbedo));
@@ -196,12 +196,12 @@ class Baker {
       const Vector3f& emission = scene_.materials[scene_.material_of[f]].emission;
       if (emission.isZero()) continue;
       const auto& t = scene_.triangles[f];
-      const Vector3f centre =
+      const Vector3f center =
           (scene_.positions_m[t[0]] + scene_.positions_m[t[1]] + scene_.positions_m[t[2]]) / 3.0F;
       const bool of_a_lamp =
           std::any_of(scene_.lights.begin(), scene_.lights.end(), [&](const Light& light) {
             return light.kind == Light::Kind::kSphere &&
-                   (light.position_m - centre).norm() < std::max(0.3F, 3.0F * light.radius_m);
+                   (light.position_m - center).norm() < std::max(0.3F, 3.0F * light.radius_m);
           });
       if (!of_a_lamp) glow_[f] = emission;
     }
@@ -215,8 +215,8 @@ class Baker {
       if (light.kind == Light::Kind::kSky || light.kind == Light::Kind::kAmbient) continue;
       const Turn turn = random_turn(RandomStream(config_.seed).fork(1000 + l), v);
       irradiance +=
-          light.colour * (light.kind == Light::Kind::kSun ? sun_share(light, v, side, turn)
-                                                          : lamp_share(light, v, side, turn));
+          light.color * (light.kind == Light::Kind::kSun ? sun_share(light, v, side, turn)
+                                                         : lamp_share(light, v, side, turn));
     }
     return irradiance / kPi;
   }
@@ -326,29 +326,29 @@ class Baker {
     return albedo_[material].cwiseProduct(light) + glow_[face];
   }
 
-  /// Per vertex: light x vertex colour; the material's share comes with the face.
-  Colours light_leaving(const Colours& direct, const Colours& indirect) const {
-    Colours leaving(direct.size());
+  /// Per vertex: light x vertex color; the material's share comes with the face.
+  Colors light_leaving(const Colors& direct, const Colors& indirect) const {
+    Colors leaving(direct.size());
     for (std::size_t v = 0; v < leaving.size(); ++v) {
       leaving[v] = direct[v] + indirect[v];
-      if (!scene_.colours.empty())
-        leaving[v] = leaving[v].cwiseProduct(srgb_to_linear(scene_.colours[v]));
+      if (!scene_.colors.empty())
+        leaving[v] = leaving[v].cwiseProduct(srgb_to_linear(scene_.colors[v]));
     }
     return leaving;
   }
 
-  /// Fills vertices inside solids from their neighbours and smooths the indirect light.
-  void mend(const std::vector<char>& inside, Colours& direct, Colours& indirect) const {
+  /// Fills vertices inside solids from their neighbors and smooths the indirect light.
+  void mend(const std::vector<char>& inside, Colors& direct, Colors& indirect) const {
     std::vector<char> known(inside.size());
     for (std::size_t v = 0; v < known.size(); ++v) known[v] = !inside[v];
     fill(known, direct, indirect);
     for (int round = 0; round < config_.smoothing; ++round) {
-      const Colours before = indirect;
+      const Colors before = indirect;
       for (std::size_t v = 0; v < before.size(); ++v) {
         const float own = luminance(before[v]);
         Vector3f sum = before[v];
         float weight = 1.0F;
-        for (const std::uint32_t n : neighbours_.of(v)) {
+        for (const std::uint32_t n : neighbors_.of(v)) {
           if (!known[n] || points_.normal(n).dot(points_.normal(v)) < kSameSurface) continue;
           const float step = (luminance(before[n]) - own) / (kNoise * own + 1e-6F);
           const float w = 1.0F / (1.0F + step * step);
@@ -360,8 +360,8 @@ class Baker {
     }
   }
 
-  /// Gives unknown vertices the mean of their known neighbours, ring by ring from the rim inwards.
-  void fill(std::vector<char>& known, Colours& direct, Colours& indirect) const {
+  /// Gives unknown vertices the mean of their known neighbors, ring by ring from the rim inwards.
+  void fill(std::vector<char>& known, Colors& direct, Colors& indirect) const {
     constexpr int kRings = 16;  // furniture is rarely wider than so many cells
     for (int ring = 0; ring < kRings; ++ring) {
       std::vector<std::size_t> filled;
@@ -369,7 +369,7 @@ class Baker {
         if (known[v]) continue;
         Vector3f sum_direct = Vector3f::Zero(), sum_indirect = Vector3f::Zero();
         float weight = 0.0F;
-        for (const std::uint32_t n : neighbours_.of(v)) {
+        for (const std::uint32_t n : neighbors_.of(v)) {
           if (!known[n] || points_.normal(n).dot(points_.normal(v)) < kSameSurface) continue;
           sum_direct += direct[n];
           sum_indirect += indirect[n];
@@ -392,13 +392,13 @@ class Baker {
   mutable int jobs_done_ = 0;
   EmbreeScene bvh_;
   BakePoints points_;
-  VertexNeighbours neighbours_{scene_};
+  VertexNeighbors neighbors_{scene_};
   DiscPattern hemisphere_, rough_, shadow_;
   alignas(64) std::array<int, kLanes> valid_{};
-  Colours albedo_;  // by material
-  Colours glow_;    // by face
+  Colors albedo_;  // by material
+  Colors glow_;    // by face
   Vector3f sky_ = Vector3f::Zero(), ambient_ = Vector3f::Zero();
-  Colours leaving_;  // by vertex, of the round before
+  Colors leaving_;  // by vertex, of the round before
 };
 
 }  // namespace

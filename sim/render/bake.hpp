@@ -11,7 +11,7 @@ struct BakeConfig {
   int samples = 128;     ///< hemisphere rays per vertex, rounded up to whole packets of 16
   int bounces = 2;       ///< diffuse interreflections
   int sun_samples = 16;  ///< shadow rays per sun and per lamp, rounded up likewise
-  int smoothing = 6;     ///< rounds of averaging the indirect part over neighbouring vertices
+  int smoothing = 6;     ///< rounds of averaging the indirect part over neighboring vertices
   std::uint64_t seed = 0;
   int threads = 2;        ///< never changes a bit of the result
   bool portable = false;  ///< pin Embree to AVX2, so that light agrees across processors
@@ -33,12 +33,12 @@ std::uint64_t digest(const BakeConfig& config);
 ///   (a closed box turned inside out) the other side's is taken. "The brighter side" would let the
 ///   sky shine through every thin outer wall.
 /// - Light is measured all over the nearer half of the vertex's faces, so that a vertex in a corner
-///   is not measured inside the neighbouring wall, and the edge of a shadow becomes a ramp as wide
+///   is not measured inside the neighboring wall, and the edge of a shadow becomes a ramp as wide
 ///   as the faces instead of a staircase.
 /// - A vertex inside something solid (furniture standing on a tessellated floor) sees mostly backs
-///   of faces; its light is filled in from its neighbours, lest it darkens the floor around.
+///   of faces; its light is filled in from its neighbors, lest it darkens the floor around.
 /// - Glowing faces cast no shadow for suns and lamps (lamp shades, window panes), and within reach
-///   of a lamp's centre (three radii, at least 0.3 m) their glow is that lamp's, not counted twice.
+///   of a lamp's center (three radii, at least 0.3 m) their glow is that lamp's, not counted twice.
 /// Deterministic: random numbers are counted by (seed, vertex).
 /// @param watch  may be empty; called from any thread, never from two at once
 /// @throws std::invalid_argument if a count is negative or samples is 0.

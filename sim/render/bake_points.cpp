@@ -40,8 +40,8 @@ BakePoints::BakePoints(const Scene& scene) : scene_(scene) {
     for (std::uint32_t k = 0; k < 3; ++k) faces_[next[scene.triangles[f][k]]++] = 4 * f + k;
   for (std::size_t v = 0; v < count; ++v) {
     // Faces back to back cancel out: then the largest one decides.
-    const bool cancelled = sum[v].norm() < 0.2F * area[v];
-    const Eigen::Vector3f& n = cancelled ? largest[v] : sum[v];
+    const bool canceled = sum[v].norm() < 0.2F * area[v];
+    const Eigen::Vector3f& n = canceled ? largest[v] : sum[v];
     normals_.push_back(area[v] > 0.0F ? n.normalized() : Eigen::Vector3f::UnitZ());
   }
 }
@@ -65,7 +65,7 @@ Eigen::Vector3f BakePoints::origin_m(std::size_t vertex, int i, float shift, flo
   return on_face + towards * lift;
 }
 
-VertexNeighbours::VertexNeighbours(const Scene& scene) {
+VertexNeighbors::VertexNeighbors(const Scene& scene) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   edges.reserve(scene.triangles.size() * 6);
   for (const auto& t : scene.triangles)
@@ -76,10 +76,10 @@ VertexNeighbours::VertexNeighbours(const Scene& scene) {
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   begin_.assign(scene.positions_m.size() + 1, 0);
-  neighbours_.reserve(edges.size());
+  neighbors_.reserve(edges.size());
   for (const auto& [from, to] : edges) {
     ++begin_[from + 1];
-    neighbours_.push_back(to);
+    neighbors_.push_back(to);
   }
   for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
 }

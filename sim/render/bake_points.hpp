@@ -34,16 +34,16 @@ class BakePoints {
 };
 
 /// The vertices that share an edge with each vertex, ascending.
-class VertexNeighbours {
+class VertexNeighbors {
  public:
-  explicit VertexNeighbours(const Scene& scene);
+  explicit VertexNeighbors(const Scene& scene);
   std::span<const std::uint32_t> of(std::size_t vertex) const {
-    return {neighbours_.data() + begin_[vertex], begin_[vertex + 1] - begin_[vertex]};
+    return {neighbors_.data() + begin_[vertex], begin_[vertex + 1] - begin_[vertex]};
   }
 
  private:
   std::vector<std::size_t> begin_;
-  std::vector<std::uint32_t> neighbours_;
+  std::vector<std::uint32_t> neighbors_;
 };
 
 }  // namespace mh

@@ -11,7 +11,7 @@ namespace mh {
 namespace {
 
 // A pixel lies on an edge where its inverse depth departs by this share from the mean of its two
-// neighbours'. A plane departs by nothing, the corner of a box at 2 m by 1e-3: edges within an
+// neighbors'. A plane departs by nothing, the corner of a box at 2 m by 1e-3: edges within an
 // object count where its depth jumps, not where its surface bends.
 constexpr float kEdgeBend = 5e-3F;
 

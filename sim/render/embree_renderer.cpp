@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 #include "sim/render/edges.hpp"
 #include "sim/render/embree_scene.hpp"
 #include "sim/render/packet.hpp"
@@ -24,7 +24,7 @@ namespace {
 // each other out of the caches, and the rays are long in memory when the tracer loads them.
 constexpr float kDepth16PerM = 5000.0F;
 
-// Where an edge pixel is sampled beside its centre: a third of it each, in columns and rows.
+// Where an edge pixel is sampled beside its center: a third of it each, in columns and rows.
 constexpr std::array<Offset, 2> kEdgeOffsets = {
     {{1.0F / 3.0F, -1.0F / 3.0F}, {-1.0F / 3.0F, 1.0F / 3.0F}}};
 constexpr std::size_t kEdgeSamples = kEdgeOffsets.size();
@@ -134,7 +134,7 @@ class EmbreeRenderer final : public Renderer {
  private:
   RenderedFrame empty_frame(int w, int h) const {
     RenderedFrame frame;
-    frame.colour = Grid2d<Rgb8>(w, h, Unfilled{});
+    frame.color = Grid2d<Rgb8>(w, h, Unfilled{});
     frame.depth_m = Grid2d<float>(w, h, Unfilled{});
     frame.classes = Grid2d<ClassId>(w, h, Unfilled{});
     frame.instances = Grid2d<InstanceId>(w, h, Unfilled{});
@@ -243,7 +243,7 @@ class EmbreeRenderer final : public Renderer {
       point[i] = {ray.org_x[i] + depth * ray.dir_x[i], ray.org_y[i] + depth * ray.dir_y[i],
                   ray.org_z[i] + depth * ray.dir_z[i]};
     }
-    const int w = frame.colour.width(), h = frame.colour.height();
+    const int w = frame.color.width(), h = frame.color.height();
     if (config_.extra.depth16) copy(x0, y0, w, h, Output{depth16.data(), frame.depth16});
     if (config_.extra.faces) copy(x0, y0, w, h, Output{face.data(), frame.faces});
     if (config_.extra.barycentric)
@@ -251,7 +251,7 @@ class EmbreeRenderer final : public Renderer {
     if (config_.extra.points) copy(x0, y0, w, h, Output{point.data(), frame.points_m});
   }
 
-  /// Averages the colours of a packet's edge pixels over their samples, in linear light.
+  /// Averages the colors of a packet's edge pixels over their samples, in linear light.
   void smooth(const View& view, const std::vector<Pixel>& edges, std::size_t first, Packet& packet,
               RenderedFrame& frame) const {
     constexpr std::size_t kPixels = kLanes / kEdgeSamples;
@@ -271,18 +271,18 @@ class EmbreeRenderer final : public Renderer {
     shading_.find_texels(seen);
     const Radiance light = light_of(packet, seen);
     for (std::size_t pixel = 0; pixel < count; ++pixel) {
-      Rgb8& colour = frame.colour(edges[first + pixel].x, edges[first + pixel].y);
+      Rgb8& color = frame.color(edges[first + pixel].x, edges[first + pixel].y);
       static_assert(kEdgeSamples == 2);
       const __m256 two = up_to_white(light.of[pixel]);
-      const __m128 centre = _mm_setr_ps(srgb_to_linear(colour.r), srgb_to_linear(colour.g),
-                                        srgb_to_linear(colour.b), 0.0F);
+      const __m128 center = _mm_setr_ps(srgb_to_linear(color.r), srgb_to_linear(color.g),
+                                        srgb_to_linear(color.b), 0.0F);
       const __m128 sum = _mm_add_ps(
-          centre, _mm_add_ps(_mm256_castps256_ps128(two), _mm256_extractf128_ps(two, 1)));
+          center, _mm_add_ps(_mm256_castps256_ps128(two), _mm256_extractf128_ps(two, 1)));
       const __m256 mean = _mm256_castps128_ps256(_mm_mul_ps(sum, _mm_set1_ps(1.0F / 3.0F)));
       const __m256 means[] = {mean, mean, mean, mean};
       std::array<Rgb8, 16> encoded;
       encode(means, &encoded[0], &encoded[8]);
-      colour = encoded[0];
+      color = encoded[0];
     }
   }
 

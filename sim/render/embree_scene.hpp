@@ -38,7 +38,7 @@ struct CutOuts {
     std::array<Eigen::Vector2f, 3> uvs;
     std::uint16_t material = 0;
   };
-  std::vector<Face> faces;                       // by primitive
+  std::vector<Face> faces;                           // by primitive
   std::vector<SharedGrid<std::uint8_t>> opacity_of;  // by material
   bool is_hole(unsigned primitive, float u, float v) const;
 };

@@ -3,7 +3,7 @@
 
 #include <immintrin.h>
 
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 
 namespace mh {
 
@@ -15,7 +15,7 @@ inline __m256 up_to_white(__m256 linear) {
 /// How many bytes after the last one of each row encode() writes over.
 inline constexpr std::size_t kSpareAfterEncode = 4;
 
-/// Eight linear colours, two and two, to sRGB: the same as linear_to_srgb(), but that halves of the
+/// Eight linear colors, two and two, to sRGB: the same as linear_to_srgb(), but that halves of the
 /// table's steps go to the even one.
 /// @param first, second  where the first and the last four pixels go, and kSpareAfterEncode more
 inline void encode(const __m256* light, Rgb8* first, Rgb8* second) {

@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "sim/render/bake.hpp"
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 #include "sim/render/embree_scene.hpp"
 #include "sim/render/texture.hpp"
 #include "slam/core/random.hpp"
@@ -61,7 +61,7 @@ class Meter {
   explicit Meter(const Scene& scene) : scene_(scene) {
     for (const Material& material : scene.materials)
       albedo_.push_back(
-          mean_linear(material.texture).cwiseProduct(srgb_to_linear(material.base_colour)));
+          mean_linear(material.texture).cwiseProduct(srgb_to_linear(material.base_color)));
   }
 
   float at(std::uint32_t face, float u, float v) const {
@@ -71,8 +71,7 @@ class Meter {
     for (std::size_t k = 0; k < 3; ++k) {
       Vector3f corner = Vector3f::Ones();
       if (!scene_.light.empty()) corner = corner.cwiseProduct(scene_.light[t[k]]);
-      if (!scene_.colours.empty())
-        corner = corner.cwiseProduct(srgb_to_linear(scene_.colours[t[k]]));
+      if (!scene_.colors.empty()) corner = corner.cwiseProduct(srgb_to_linear(scene_.colors[t[k]]));
       out += share[k] * corner;
     }
     if (!albedo_.empty()) {

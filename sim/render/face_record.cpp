@@ -6,7 +6,7 @@
 #include <cstring>
 #include <map>
 
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 
 namespace mh {
 namespace {
@@ -41,14 +41,14 @@ std::map<const void*, std::uint32_t> add_textures(const Scene& scene, TextureTab
 }
 
 /// One per material, at least one. Without texture coordinates the textures are left out: their
-/// mean colours go into the faces' records.
+/// mean colors go into the faces' records.
 std::vector<Surface> make_surfaces(const Scene& scene, float exposure, TextureTable& textures) {
   std::map<const void*, std::uint32_t> place_of;
   if (!scene.uvs.empty()) place_of = add_textures(scene, textures);
   std::vector<Surface> surfaces;
   for (const Material& material : scene.materials) {
     Surface& surface = surfaces.emplace_back();
-    surface.base = srgb_to_linear(material.base_colour);
+    surface.base = srgb_to_linear(material.base_color);
     surface.emission = material.emission * exposure;
     if (material.texture.empty()) continue;
     if (scene.uvs.empty()) {
@@ -72,8 +72,8 @@ FaceRecord make_record(const Scene& scene, const Surface& surface, std::size_t f
   std::array<Vector3f, 3> gain;
   for (std::size_t k = 0; k < 3; ++k) {
     gain[k] = surface.base * exposure;
-    if (!scene.colours.empty())
-      gain[k] = gain[k].cwiseProduct(srgb_to_linear(scene.colours[corners[k]]));
+    if (!scene.colors.empty())
+      gain[k] = gain[k].cwiseProduct(srgb_to_linear(scene.colors[corners[k]]));
     if (!scene.light.empty()) gain[k] = gain[k].cwiseProduct(scene.light[corners[k]]);
   }
   store_halves(record.gain, gain[0]);
@@ -120,7 +120,7 @@ FaceRecords::FaceRecords(const Scene& scene, const std::vector<std::uint32_t>& o
   }
   Vector3f sky = Vector3f::Zero();
   for (const Light& light : scene.lights)
-    if (light.kind == Light::Kind::kSky) sky += light.colour * exposure;
+    if (light.kind == Light::Kind::kSky) sky += light.color * exposure;
   FaceRecord nothing;
   store_halves(nothing.emission, sky.cwiseMin(1.0F));
   if (textured)

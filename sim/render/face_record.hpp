@@ -13,10 +13,10 @@
 namespace mh {
 
 /// What shading needs of every face; what changes over the face is kept as its value at corner 0
-/// and its steps to corners 1 and 2. Half floats. What lies between the colours is read along with
+/// and its steps to corners 1 and 2. Half floats. What lies between the colors is read along with
 /// them, as a fourth channel that means nothing.
 struct alignas(32) FaceRecord {
-  /// Light x vertex colour x base colour x exposure: linear RGB that the face reflects of what a
+  /// Light x vertex color x base color x exposure: linear RGB that the face reflects of what a
   /// white texture would.
   std::array<std::uint16_t, 3> gain{};
   InstanceId instance = 0;

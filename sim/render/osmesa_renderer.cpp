@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 #include "sim/render/osmesa_context.hpp"
 #include "sim/render/renderer.hpp"
 #include "sim/render/texture.hpp"
@@ -67,7 +67,7 @@ uniform vec3 emission;
 uniform float white;  // what is brighter is cut off
 uniform float pixel_area;
 uniform float least_opacity;
-layout(location = 0) out vec4 colour;
+layout(location = 0) out vec4 color;
 layout(location = 1) out uvec2 label;
 layout(location = 2) out float depth;
 void main() {
@@ -88,7 +88,7 @@ void main() {
     float level = 0.5 * (float(floatBitsToInt(texels)) * exp2(-23.0) - 127.0);
     light *= textureLod(picture, texture_place, clamp(level, 0.0, 15.0)).rgb;
   }
-  colour = vec4(clamp(light + emission, 0.0, white), 1.0);
+  color = vec4(clamp(light + emission, 0.0, white), 1.0);
   label = texelFetch(labels, face).xy;
 }
 )";
@@ -116,7 +116,7 @@ class OsmesaRenderer final : public Renderer {
     load_faces(scene, order);
     Vector3f sky = Vector3f::Zero();
     for (const Light& light : scene.lights)
-      if (light.kind == Light::Kind::kSky) sky += light.colour * config.exposure;
+      if (light.kind == Light::Kind::kSky) sky += light.color * config.exposure;
     for (int k = 0; k < 3; ++k) sky_[static_cast<std::size_t>(k)] = std::min(sky[k], white());
     check("load the scene");
   }
@@ -215,7 +215,7 @@ class OsmesaRenderer final : public Renderer {
                   end - first,
                   0,
                   0,
-                  srgb_to_linear(material.base_colour) * exposure,
+                  srgb_to_linear(material.base_color) * exposure,
                   material.emission * exposure};
       if (!material.texture.empty()) {
         if (scene.uvs.empty())
@@ -291,7 +291,7 @@ class OsmesaRenderer final : public Renderer {
     if (!scene.uvs.empty()) attribute(1, 2, scene.uvs);
     std::vector<Vector3f> gain(scene.positions_m.size(), Vector3f::Ones());
     for (std::size_t v = 0; v < gain.size(); ++v) {
-      if (!scene.colours.empty()) gain[v] = srgb_to_linear(scene.colours[v]);
+      if (!scene.colors.empty()) gain[v] = srgb_to_linear(scene.colors[v]);
       if (!scene.light.empty()) gain[v] = gain[v].cwiseProduct(scene.light[v]);
     }
     attribute(2, 3, gain);
@@ -335,7 +335,7 @@ class OsmesaRenderer final : public Renderer {
     gl_.ActiveTexture(GL_TEXTURE0);
   }
 
-  /// Renderbuffers of the picture's size: linear colour, labels, depth, depth test.
+  /// Renderbuffers of the picture's size: linear color, labels, depth, depth test.
   void prepare_targets(int width, int height) const {
     if (targets_.empty()) {
       targets_.resize(4);
@@ -365,7 +365,7 @@ class OsmesaRenderer final : public Renderer {
     Eigen::Matrix4f clip_from_camera = Eigen::Matrix4f::Zero();
     clip_from_camera(0, 0) = static_cast<float>(2.0 * camera.fx_px / w);
     clip_from_camera(1, 1) = static_cast<float>(2.0 * camera.fy_px / h);
-    // OpenGL's pixel centres lie at half-integers, ours at integers.
+    // OpenGL's pixel centers lie at half-integers, ours at integers.
     clip_from_camera(0, 2) = static_cast<float>(2.0 * (camera.cx_px + 0.5) / w - 1.0);
     clip_from_camera(1, 2) = static_cast<float>(2.0 * (camera.cy_px + 0.5) / h - 1.0);
     clip_from_camera(2, 3) = kNearM;
@@ -412,22 +412,22 @@ class OsmesaRenderer final : public Renderer {
 
   RenderedFrame read_back(int width, int height) const {
     RenderedFrame frame;
-    frame.colour = Grid2d<Rgb8>(width, height);
+    frame.color = Grid2d<Rgb8>(width, height);
     frame.depth_m = Grid2d<float>(width, height);
     frame.classes = Grid2d<ClassId>(width, height);
     frame.instances = Grid2d<InstanceId>(width, height);
-    std::vector<std::array<float, 4>> colour(frame.colour.size());
-    std::vector<std::array<std::uint16_t, 2>> label(colour.size());
+    std::vector<std::array<float, 4>> color(frame.color.size());
+    std::vector<std::array<std::uint16_t, 2>> label(color.size());
     const auto read = [&](GLenum from, GLenum format, GLenum type, void* to) {
       gl_.ReadBuffer(from);
       gl_.ReadPixels(0, 0, width, height, format, type, to);
     };
-    read(GL_COLOR_ATTACHMENT0, GL_RGBA, GL_FLOAT, colour.data());
+    read(GL_COLOR_ATTACHMENT0, GL_RGBA, GL_FLOAT, color.data());
     read(GL_COLOR_ATTACHMENT1, GL_RG_INTEGER, GL_UNSIGNED_SHORT, label.data());
     read(GL_COLOR_ATTACHMENT2, GL_RED, GL_FLOAT, frame.depth_m.data());
-    for (std::size_t i = 0; i < colour.size(); ++i) {
-      frame.colour.data()[i] = {linear_to_srgb(colour[i][0]), linear_to_srgb(colour[i][1]),
-                                linear_to_srgb(colour[i][2])};
+    for (std::size_t i = 0; i < color.size(); ++i) {
+      frame.color.data()[i] = {linear_to_srgb(color[i][0]), linear_to_srgb(color[i][1]),
+                               linear_to_srgb(color[i][2])};
       frame.classes.data()[i] = static_cast<ClassId>(label[i][0]);
       frame.instances.data()[i] = label[i][1];
     }

@@ -16,7 +16,7 @@ namespace mh {
 inline constexpr int kSide = 4;  ///< a packet is a square of 4 x 4 pixels
 inline constexpr int kLanes = 16;
 
-/// Where in a pixel a ray goes through it, px from its centre.
+/// Where in a pixel a ray goes through it, px from its center.
 struct Offset {
   float x = 0, y = 0;
 };

@@ -17,19 +17,19 @@ namespace mh {
 inline constexpr std::uint32_t kNoFace = ~std::uint32_t{0};
 
 /// The exact picture of a moment: no noise, no lens. All grids have the camera's size. All but the
-/// colour is that of the ray through the pixel's centre; so is the colour, unless it is smoothed
+/// color is that of the ray through the pixel's center; so is the color, unless it is smoothed
 /// (Antialiasing).
 struct RenderedFrame {
-  Grid2d<Rgb8> colour;           ///< sRGB
+  Grid2d<Rgb8> color;            ///< sRGB
   Grid2d<float> depth_m;         ///< along the optical axis; 0 = nothing hit
   Grid2d<ClassId> classes;       ///< kVoid where nothing was hit
   Grid2d<InstanceId> instances;  ///< 0 where nothing was hit
-  /// Linear radiance that is white in the picture is 1 / exposure; 0: the scene shows colours of
+  /// Linear radiance that is white in the picture is 1 / exposure; 0: the scene shows colors of
   /// its own and no light, so that nothing tells how bright it is.
   float exposure = 0.0F;
 
   // On request (ExtraOutputs), else empty.
-  Grid2d<std::uint16_t> depth16{};  ///< 5000 per metre as in TUM's files; 0 beyond 13.1 m
+  Grid2d<std::uint16_t> depth16{};  ///< 5000 per meter as in TUM's files; 0 beyond 13.1 m
   Grid2d<std::uint32_t> faces{};    ///< index in Scene::triangles; kNoFace
   Grid2d<std::array<float, 2>> barycentric{};  ///< shares of the face's corners 1 and 2
   Grid2d<Eigen::Vector3f> points_m{};          ///< world; 0 where nothing was hit
@@ -42,14 +42,14 @@ struct ExtraOutputs {
   bool points = false;
 };
 
-/// How colour becomes the mean of light over a pixel, as that of a sensor's cell is.
+/// How color becomes the mean of light over a pixel, as that of a sensor's cell is.
 enum class Antialiasing {
-  kNone,        ///< the ray through the centre alone
+  kNone,        ///< the ray through the center alone
   kEdges,       ///< two more rays where objects or depth have an edge; textures are filtered anyway
   kSupersample  ///< four rays in each pixel, 2 x 2
 };
 
-/// Renders one scene; implemented by ray tracing (Embree) and by rasterisation (OSMesa).
+/// Renders one scene; implemented by ray tracing (Embree) and by rasterization (OSMesa).
 class Renderer {
  public:
   virtual ~Renderer() = default;
@@ -77,7 +77,7 @@ struct RenderConfig {
 /// Ray-traces with Embree. Keeps no reference to the scene.
 std::unique_ptr<Renderer> make_embree_renderer(const Scene& scene, const RenderConfig& config = {});
 
-/// Rasterises with OSMesa: the independent oracle. Shows the centres of pixels only (kNone) and no
+/// Rasterizes with OSMesa: the independent oracle. Shows the centers of pixels only (kNone) and no
 /// extra outputs; `threads` and `portable` mean nothing to it. Pictures are made one at a time.
 /// Keeps no reference to the scene.
 /// @throws MachineError if this build or this machine has no OSMesa.

@@ -23,10 +23,10 @@ struct Voxel {
   std::uint16_t views = 0;
   InstanceId instance = 0;
   std::uint8_t votes = 0;  ///< of that instance over others (Boyer and Moore's majority)
-  std::array<float, 3> colour{};
+  std::array<float, 3> color{};
 };
 
-/// What the views see lies in this box, metres.
+/// What the views see lies in this box, meters.
 struct Bounds {
   Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity());
   Vector3d high = -low;
@@ -41,9 +41,10 @@ class Volume {
     const double count = size_.cast<double>().prod();
     constexpr double kMost = 6e8;
     if (count > kMost)
-      throw InputError(fmt::format("scan look: {:.0f} voxels of {} m are too many; a scene of {:.1f} "
-                                   "x {:.1f} x {:.1f} m needs coarser ones",
-                                   count, config.voxel_m, span.x(), span.y(), span.z()));
+      throw InputError(
+          fmt::format("scan look: {:.0f} voxels of {} m are too many; a scene of {:.1f} "
+                      "x {:.1f} x {:.1f} m needs coarser ones",
+                      count, config.voxel_m, span.x(), span.y(), span.z()));
     voxels_.resize(static_cast<std::size_t>(count));
   }
 
@@ -66,9 +67,9 @@ class Volume {
           if (at == last || !holds(at)) continue;
           last = at;
           // To the middle of the voxel, along the ray.
-          const Vector3d middle = centre_of(at) - world_from_camera.translation();
+          const Vector3d middle = center_of(at) - world_from_camera.translation();
           const double along = middle.dot(ray) / (per_depth * per_depth);
-          update(voxels_[index(at)], (depth - along) * per_depth, frame.colour(x, y),
+          update(voxels_[index(at)], (depth - along) * per_depth, frame.color(x, y),
                  frame.instances(x, y));
         }
       }
@@ -84,8 +85,7 @@ class Volume {
     for (int z = 1; z + 1 < size_.z(); ++z)
       for (int y = 1; y + 1 < size_.y(); ++y)
         for (int x = 1; x + 1 < size_.x(); ++x)
-          for (int axis = 0; axis < 3; ++axis)
-            add_face({x, y, z}, axis, vertex_of, owner, out);
+          for (int axis = 0; axis < 3; ++axis) add_face({x, y, z}, axis, vertex_of, owner, out);
   }
 
  private:
@@ -94,7 +94,7 @@ class Volume {
   Vector3i cell_of(const Vector3d& p) const {
     return ((p - low_) / config_.voxel_m).array().floor().cast<int>().matrix();
   }
-  Vector3d centre_of(const Vector3i& cell) const {
+  Vector3d center_of(const Vector3i& cell) const {
     return low_ + config_.voxel_m * (cell.cast<double>() + Vector3d::Constant(0.5));
   }
   bool holds(const Vector3i& c) const {
@@ -108,13 +108,13 @@ class Volume {
   }
   bool known(const Voxel& v) const { return v.views >= config_.least_views; }
 
-  void update(Voxel& v, double distance_m, Rgb8 colour, InstanceId instance) const {
+  void update(Voxel& v, double distance_m, Rgb8 color, InstanceId instance) const {
     if (v.views == std::numeric_limits<std::uint16_t>::max()) return;
     const float share = 1.0F / static_cast<float>(++v.views);
     v.distance_m += share * (static_cast<float>(distance_m) - v.distance_m);
-    const std::array<float, 3> c = {static_cast<float>(colour.r), static_cast<float>(colour.g),
-                                    static_cast<float>(colour.b)};
-    for (std::size_t k = 0; k < 3; ++k) v.colour[k] += share * (c[k] - v.colour[k]);
+    const std::array<float, 3> c = {static_cast<float>(color.r), static_cast<float>(color.g),
+                                    static_cast<float>(color.b)};
+    for (std::size_t k = 0; k < 3; ++k) v.color[k] += share * (c[k] - v.color[k]);
     if (v.votes == 0) v.instance = instance;
     if (v.instance == instance)
       v.votes = static_cast<std::uint8_t>(std::min(255, v.votes + 1));
@@ -146,15 +146,14 @@ class Volume {
         sum += (1 - t) * offset(a).cast<double>() + t * offset(b).cast<double>();
         ++crossings;
       }
-    // Colour and object are those of the voxel nearest to the surface.
+    // Color and object are those of the voxel nearest to the surface.
     const Voxel& nearest = **std::ranges::min_element(
         corner, {}, [](const Voxel* v) { return std::abs(v->distance_m); });
     vertex_of[index(cell)] = static_cast<std::uint32_t>(out.positions_m.size());
-    out.positions_m.push_back(
-        (centre_of(cell) + config_.voxel_m * sum / crossings).cast<float>());
+    out.positions_m.push_back((center_of(cell) + config_.voxel_m * sum / crossings).cast<float>());
     const auto level = [](float c) { return static_cast<std::uint8_t>(std::lround(c)); };
-    out.colours.push_back(
-        {level(nearest.colour[0]), level(nearest.colour[1]), level(nearest.colour[2])});
+    out.colors.push_back(
+        {level(nearest.color[0]), level(nearest.color[1]), level(nearest.color[2])});
     owner.push_back(nearest.instance);
   }
 
@@ -178,9 +177,7 @@ class Volume {
     }
   }
 
-  static Vector3i offset(int corner) {
-    return {corner & 1, (corner >> 1) & 1, (corner >> 2) & 1};
-  }
+  static Vector3i offset(int corner) { return {corner & 1, (corner >> 1) & 1, (corner >> 2) & 1}; }
 
   const ScanLookConfig config_;
   Vector3d low_;
@@ -232,9 +229,8 @@ Scene scan_look(const Scene& scene, const Renderer& renderer, const Camera& came
     frames.push_back(renderer.render(camera, pose));
     each_point(frames.back(), pose, [&](const Vector3d& p) {
       const auto flat = p.head<2>().array();
-      if (!scene.rooms.empty() &&
-          ((flat < rooms.low.head<2>().array() - 0.2).any() ||
-           (flat > rooms.high.head<2>().array() + 0.2).any()))
+      if (!scene.rooms.empty() && ((flat < rooms.low.head<2>().array() - 0.2).any() ||
+                                   (flat > rooms.high.head<2>().array() + 0.2).any()))
         return;
       seen.low = seen.low.cwiseMin(p);
       seen.high = seen.high.cwiseMax(p);
@@ -248,7 +244,7 @@ Scene scan_look(const Scene& scene, const Renderer& renderer, const Camera& came
   Scene out;
   out.name = scene.name;
   out.rooms = scene.rooms;
-  out.materials.push_back({.name = "scan", .base_colour = {255, 255, 255}, .texture = {}});
+  out.materials.push_back({.name = "scan", .base_color = {255, 255, 255}, .texture = {}});
   volume.mesh_into(out);
   out.material_of.assign(out.triangles.size(), 0);
   std::vector<ClassId> class_of(std::size_t{1} << 16, kVoid);

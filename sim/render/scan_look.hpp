@@ -20,8 +20,8 @@ struct ScanLookConfig {
 
 /// The scene as a hand-held scan of it would come out: what the views see, fused into a volume of
 /// signed distances (Curless and Levoy, SIGGRAPH 1996) and meshed by surface nets (Gibson, MICCAI
-/// 1998), with colours per vertex, rounded edges, uneven surfaces and holes where nobody looked.
-/// Classes, instances and rooms are those of the scene; its light is in the colours.
+/// 1998), with colors per vertex, rounded edges, uneven surfaces and holes where nobody looked.
+/// Classes, instances and rooms are those of the scene; its light is in the colors.
 /// @param renderer  of that scene
 /// @throws InputError if a size is out of range, there is no view, or the views see too much for
 /// the memory (600 million voxels).

@@ -77,11 +77,11 @@ Radiance Shading::shade(const Packet& packet, const Seen& seen) const {
           _mm256_add_ps(_mm256_mul_ps(first, _mm256_blend_ps(one, u, 0xF0)),
                         _mm256_mul_ps(rest[k], _mm256_blend_ps(_mm256_setzero_ps(), v, 0x0F)));
     }
-    __m256 colour = _mm256_add_ps(_mm256_permute2f128_ps(gain[0], gain[1], 0x20),
-                                  _mm256_permute2f128_ps(gain[0], gain[1], 0x31));
+    __m256 color = _mm256_add_ps(_mm256_permute2f128_ps(gain[0], gain[1], 0x20),
+                                 _mm256_permute2f128_ps(gain[0], gain[1], 0x31));
     if (seen.textured[i / 8])
-      colour = _mm256_mul_ps(colour, records_.textures().filter2(seen.lookup[i / 8], i % 8));
-    light.of[i / 2] = _mm256_add_ps(colour, _mm256_permute2f128_ps(rest[0], rest[1], 0x31));
+      color = _mm256_mul_ps(color, records_.textures().filter2(seen.lookup[i / 8], i % 8));
+    light.of[i / 2] = _mm256_add_ps(color, _mm256_permute2f128_ps(rest[0], rest[1], 0x31));
   }
   return light;
 }

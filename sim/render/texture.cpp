@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
@@ -162,7 +162,7 @@ void TextureTable::look_up(const Place& place, Lookup& lookup) const {
 
   struct Corner {
     Int8 texel, stride;
-    Float8 right, down;  // shares of the neighbours
+    Float8 right, down;  // shares of the neighbors
   };
   const auto corner = [&](const std::array<Float8, 4>& of) {
     const auto [width, height, offset, stride] = of;

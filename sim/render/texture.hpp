@@ -14,7 +14,7 @@
 
 namespace mh {
 
-/// Mean colour of a picture in linear light; white if it is empty.
+/// Mean color of a picture in linear light; white if it is empty.
 Eigen::Vector3f mean_linear(const Grid2d<Rgb8>& picture);
 
 /// The same picture at full size, half, a quarter, ... down to one texel (at most kMipLevels of
@@ -23,10 +23,10 @@ inline constexpr int kMipLevels = 16;
 std::vector<Grid2d<Eigen::Vector3f>> mip_pyramid(const Grid2d<Rgb8>& picture);
 
 /// The pictures of a scene with their mip pyramids, filtered in linear light. They repeat. Texel
-/// centres lie at half-integers, (u, v) = (0, 0) is the outer corner of the first texel.
+/// centers lie at half-integers, (u, v) = (0, 0) is the outer corner of the first texel.
 ///
 /// Laid out for lookups without branches: texels are three 16-bit channels, each level has a copy
-/// of its first column and row at its end, so that the neighbours of a lookup are one load of 16
+/// of its first column and row at its end, so that the neighbors of a lookup are one load of 16
 /// bytes each (the last four mean nothing), and the last level is repeated, so that the next
 /// coarser one always exists.
 class TextureTable {
@@ -66,7 +66,7 @@ class TextureTable {
   /// Asks for the texels, too.
   void look_up(const Place& place, Lookup& lookup) const;
 
-  /// The filtered colours of a lane and the next one: linear RGB, channel 3 = 0.
+  /// The filtered colors of a lane and the next one: linear RGB, channel 3 = 0.
   __m256 filter2(const Lookup& lookup, std::size_t lane) const {
     const __m128i both = _mm_unpacklo_epi64(filter(lookup, lane), filter(lookup, lane + 1));
     return _mm256_mul_ps(_mm256_set1_ps(1.0F / kOne),
@@ -77,7 +77,7 @@ class TextureTable {
   static constexpr float kOne = 65535.0F;
   static constexpr std::size_t kBehind = 2;
 
-  /// The filtered colour of a lane, in 16-bit numbers.
+  /// The filtered color of a lane, in 16-bit numbers.
   __m128i filter(const Lookup& lookup, std::size_t lane) const {
     const auto at = [&](std::size_t pair) { return texel(lookup.texels[pair][lane]); };
     const __m256i upper = pairs(at(0), at(2));
@@ -105,7 +105,7 @@ class TextureTable {
   const std::uint16_t* texel(unsigned index) const {
     return texels_.data() + 3 * static_cast<std::size_t>(index);
   }
-  /// Two neighbouring texels at each of two places.
+  /// Two neighboring texels at each of two places.
   static __m256i pairs(const std::uint16_t* a, const std::uint16_t* b) {
     return _mm256_inserti128_si256(
         _mm256_castsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(a))),

@@ -62,8 +62,8 @@ class Tile {
   void set(std::size_t k, const Radiance& light, const Seen& seen) {
     const int x = kSide * static_cast<int>(k);
     static_assert(kSide == 4 && kLanes == 16);
-    encode(&light.of[0], colour_.at(x, 0), colour_.at(x, 1));
-    encode(&light.of[4], colour_.at(x, 2), colour_.at(x, 3));
+    encode(&light.of[0], color_.at(x, 0), color_.at(x, 1));
+    encode(&light.of[4], color_.at(x, 2), color_.at(x, 3));
     for (int y = 0; y < kSide; ++y) {
       const auto lane = static_cast<std::size_t>(kSide * y);
       _mm_store_ps(depth_m_.at(x, y), _mm_load_ps(&seen.depth_m[lane]));
@@ -73,7 +73,7 @@ class Tile {
 
   /// Everything of it to where it belongs in a frame; other threads see it after _mm_sfence().
   void store(int x0, int y0, RenderedFrame& frame) const {
-    colour_.store(x0, y0, frame.colour);
+    color_.store(x0, y0, frame.color);
     depth_m_.store(x0, y0, frame.depth_m);
     classes_.store(x0, y0, frame.classes);
     instances_.store(x0, y0, frame.instances);
@@ -98,7 +98,7 @@ class Tile {
     std::memcpy(classes, &four, 4);
   }
 
-  TileRows<Rgb8, kWidth, kHeight, kSpareAfterEncode> colour_;
+  TileRows<Rgb8, kWidth, kHeight, kSpareAfterEncode> color_;
   TileRows<float, kWidth, kHeight> depth_m_;
   TileRows<ClassId, kWidth, kHeight> classes_;
   TileRows<InstanceId, kWidth, kHeight> instances_;

@@ -116,7 +116,7 @@ class DepthSensor {
     if (config_.grazing_holes) punch_holes(depth);
     if (config_.projector_shadow) cast_shadow(y, depth);
     if (config_.axial) add_axial_noise(depth);
-    if (config_.quantisation) quantise(depth);
+    if (config_.quantization) quantize(depth);
     const auto nearest = static_cast<float>(config_.min_range_m);
     const auto farthest = static_cast<float>(config_.max_range_m);
     for (float& z : depth) z = z >= nearest && z <= farthest ? z : 0.0F;
@@ -211,11 +211,11 @@ class DepthSensor {
     }
   }
 
-  void quantise(std::span<float> depth) const {
+  void quantize(std::span<float> depth) const {
     for (float& z : depth) {
       const float steps = std::floor(steps_per_inverse_depth_ / z + 0.5F);
-      const float quantised = steps_per_inverse_depth_ / steps;
-      z = z > 0.0F && steps >= 1.0F ? quantised : 0.0F;
+      const float quantized = steps_per_inverse_depth_ / steps;
+      z = z > 0.0F && steps >= 1.0F ? quantized : 0.0F;
     }
   }
 

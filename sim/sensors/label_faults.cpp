@@ -22,7 +22,7 @@ std::int64_t squared_distance(const VisibleObject& a, const VisibleObject& b) {
   return x * x + y * y;
 }
 
-void swap_neighbours(std::vector<VisibleObject>& objects, double share, const FaultDraws& draws) {
+void swap_neighbors(std::vector<VisibleObject>& objects, double share, const FaultDraws& draws) {
   std::vector<bool> done(objects.size(), false);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (done[i] || draws.uniform(kSwap, objects[i].instance) >= share) continue;
@@ -39,7 +39,7 @@ void swap_neighbours(std::vector<VisibleObject>& objects, double share, const Fa
   }
 }
 
-/// Marks in `uneven` the elements whose neighbours within a radius, along one line of the grid,
+/// Marks in `uneven` the elements whose neighbors within a radius, along one line of the grid,
 /// are not all the same.
 void mark_line(const std::uint8_t* value, std::uint8_t* uneven, int count, std::ptrdiff_t stride,
                int radius) {
@@ -91,7 +91,7 @@ ClassId wrong_class(ClassId truth, std::uint64_t bits) {
 std::vector<VisibleObject> with_faults(std::vector<VisibleObject> objects,
                                        const LabelNoiseConfig& config, const FaultDraws& draws) {
   if (config.confusion > 0.0) confuse(objects, config.confusion, draws);
-  if (config.swap > 0.0) swap_neighbours(objects, config.swap, draws);
+  if (config.swap > 0.0) swap_neighbors(objects, config.swap, draws);
   if (config.dropout > 0.0)
     std::erase_if(objects, [&](const VisibleObject& object) {
       return draws.uniform(kDropout, object.instance) < config.dropout;

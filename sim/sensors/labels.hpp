@@ -54,7 +54,7 @@ struct DetectorConfig {
 struct LabelNoiseConfig {
   double confusion = 0.0;  ///< share of instances that carry a wrong class
   double swap = 0.0;       ///< share of instances that begin an exchange of classes with their
-                           ///< nearest neighbour in the picture
+                           ///< nearest neighbor in the picture
   double dropout = 0.0;    ///< share of instances that carry no label (no box, in those modes)
   int erosion_px = 0;      ///< pixels within so many px of a border between labels become void
   friend bool operator==(const LabelNoiseConfig&, const LabelNoiseConfig&) = default;

@@ -7,7 +7,7 @@
 
 #include <Eigen/LU>
 
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 
 namespace mh {
 namespace {
@@ -98,13 +98,12 @@ RenderedFrame Lens::bend(RenderedFrame picture) const {
     const int x1 = std::min(x0 + 1, pinhole_.width_px - 1);
     const int y1 = std::min(y0 + 1, pinhole_.height_px - 1);
     const float s = x - static_cast<float>(x0), t = y - static_cast<float>(y0);
-    const Eigen::Vector3f light =
-        (1.0F - t) * ((1.0F - s) * srgb_to_linear(picture.colour(x0, y0)) +
-                      s * srgb_to_linear(picture.colour(x1, y0))) +
-        t * ((1.0F - s) * srgb_to_linear(picture.colour(x0, y1)) +
-             s * srgb_to_linear(picture.colour(x1, y1)));
-    bent.colour.data()[i] = {linear_to_srgb(light.x()), linear_to_srgb(light.y()),
-                             linear_to_srgb(light.z())};
+    const Eigen::Vector3f light = (1.0F - t) * ((1.0F - s) * srgb_to_linear(picture.color(x0, y0)) +
+                                                s * srgb_to_linear(picture.color(x1, y0))) +
+                                  t * ((1.0F - s) * srgb_to_linear(picture.color(x0, y1)) +
+                                       s * srgb_to_linear(picture.color(x1, y1)));
+    bent.color.data()[i] = {linear_to_srgb(light.x()), linear_to_srgb(light.y()),
+                            linear_to_srgb(light.z())};
   }
   return bent;
 }

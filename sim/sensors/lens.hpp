@@ -7,7 +7,7 @@
 
 namespace mh {
 
-/// Bends pinhole pictures as a camera's lens does (Brown-Conrady). Colour is blended in linear
+/// Bends pinhole pictures as a camera's lens does (Brown-Conrady). Color is blended in linear
 /// light; depth, class and instance are those of the nearest pixel.
 class Lens {
  public:
@@ -26,9 +26,9 @@ class Lens {
   std::vector<Source> source_;  // by pixel; empty without distortion
 };
 
-/// A lens that is not quite sharp, and the interpolation of a colour filter: a Gaussian in linear
+/// A lens that is not quite sharp, and the interpolation of a color filter: a Gaussian in linear
 /// light of this standard deviation, px; 0 or less: nothing.
-void blur_by_lens(Grid2d<Rgb8>& colour, double sigma_px);
+void blur_by_lens(Grid2d<Rgb8>& color, double sigma_px);
 
 /// Where a distorted pixel lies at unit depth: the inverse of the distortion, by Newton's method.
 /// NaN where the lens maps nothing there.

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 #include "sim/sensors/gaussian.hpp"
 #include "sim/sensors/lens.hpp"
 
@@ -36,19 +36,19 @@ LightRow blurred_row(std::span<const Rgb8> row, const std::vector<float>& kernel
 
 }  // namespace
 
-void blur_by_lens(Grid2d<Rgb8>& colour, double sigma_px) {
-  if (sigma_px <= 0.0 || colour.empty()) return;
+void blur_by_lens(Grid2d<Rgb8>& color, double sigma_px) {
+  if (sigma_px <= 0.0 || color.empty()) return;
   const std::vector<float> kernel = gaussian_kernel(sigma_px);
-  const int radius = static_cast<int>(kernel.size()) - 1, last = colour.height() - 1;
+  const int radius = static_cast<int>(kernel.size()) - 1, last = color.height() - 1;
   std::vector<LightRow> rows;
-  for (int y = 0; y <= last; ++y) rows.push_back(blurred_row(std::as_const(colour).row(y), kernel));
+  for (int y = 0; y <= last; ++y) rows.push_back(blurred_row(std::as_const(color).row(y), kernel));
   for (int y = 0; y <= last; ++y) {
     LightRow sum(rows[0].size(), 0.0F);
     for (int k = -radius; k <= radius; ++k)
       add(sum, rows[static_cast<std::size_t>(std::clamp(y + k, 0, last))],
           kernel[static_cast<std::size_t>(std::abs(k))]);
     const float* light = sum.data();
-    for (Rgb8& c : colour.row(y)) {
+    for (Rgb8& c : color.row(y)) {
       c = {linear_to_srgb(light[0]), linear_to_srgb(light[1]), linear_to_srgb(light[2])};
       light += 3;
     }

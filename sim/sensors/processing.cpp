@@ -13,7 +13,7 @@ namespace mh {
 namespace {
 
 using Row = std::vector<float>;
-using Curve = std::array<float, 256>;  // grey levels of grey levels
+using Curve = std::array<float, 256>;  // gray levels of gray levels
 
 Curve tone_curve(double contrast) {
   Curve curve{};
@@ -40,15 +40,15 @@ Row blurred(const Row& row, const std::vector<float>& kernel) {
 
 }  // namespace
 
-void process(Grid2d<Rgb8>& colour, const ProcessingConfig& config) {
-  if ((config.contrast <= 0.0 && config.sharpening <= 0.0) || colour.empty()) return;
+void process(Grid2d<Rgb8>& color, const ProcessingConfig& config) {
+  if ((config.contrast <= 0.0 && config.sharpening <= 0.0) || color.empty()) return;
   const Curve curve = tone_curve(config.contrast);
   const std::vector<float> kernel = gaussian_kernel(config.sharpening_px);
-  const int last = colour.height() - 1, radius = static_cast<int>(kernel.size()) - 1;
+  const int last = color.height() - 1, radius = static_cast<int>(kernel.size()) - 1;
   std::vector<Row> luma, across;  // and the same blurred along its rows
   for (int y = 0; y <= last; ++y) {
     Row row;
-    for (const Rgb8 c : std::as_const(colour).row(y))
+    for (const Rgb8 c : std::as_const(color).row(y))
       row.push_back(0.299F * curve[c.r] + 0.587F * curve[c.g] + 0.114F * curve[c.b]);
     across.push_back(blurred(row, kernel));
     luma.push_back(std::move(row));
@@ -64,7 +64,7 @@ void process(Grid2d<Rgb8>& colour, const ProcessingConfig& config) {
     }
     const Row& own = luma[static_cast<std::size_t>(y)];
     std::size_t x = 0;
-    for (Rgb8& c : colour.row(y)) {
+    for (Rgb8& c : color.row(y)) {
       const float more = k_sharp * (own[x] - smooth[x]);
       ++x;
       const auto level = [&](std::uint8_t v) {

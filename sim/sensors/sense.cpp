@@ -2,14 +2,14 @@
 #include <algorithm>
 #include <cassert>
 
-#include "sim/sensors/colour_noise.hpp"
+#include "sim/sensors/color_noise.hpp"
 #include "sim/sensors/depth_noise.hpp"
 #include "sim/sensors/sensors.hpp"
 
 namespace mh {
 namespace {
 
-enum StreamName : std::uint64_t { kDepth = 1, kColour = 2, kLabels = 3, kBlank = 4 };
+enum StreamName : std::uint64_t { kDepth = 1, kColor = 2, kLabels = 3, kBlank = 4 };
 
 bool is_blank(const SensorConfig& config, RandomStream stream) {
   return config.blank_share > 0.0 && stream.fork(kBlank).uniform(0) < config.blank_share;
@@ -22,16 +22,16 @@ RgbdFrame sense(const RenderedFrame& truth, const Camera& camera, const SensorCo
   assert(truth.depth_m.width() == camera.width_px && truth.depth_m.height() == camera.height_px);
   if (is_blank(config, stream))
     return {.stamp_ns = stamp_ns,
-            .colour = Grid2d<Rgb8>(camera.width_px, camera.height_px),
+            .color = Grid2d<Rgb8>(camera.width_px, camera.height_px),
             .depth_m = Grid2d<float>(camera.width_px, camera.height_px),
             .semantics = {}};
-  RgbdFrame frame{stamp_ns, truth.colour, {}, {}};
+  RgbdFrame frame{stamp_ns, truth.color, {}, {}};
   frame.depth_m = config.depth_noise_on
                       ? noisy_depth(truth.depth_m, camera, config.depth_noise, stream.fork(kDepth))
                       : truth.depth_m;
   SensorConfig set = config;
   set.shot_noise.gain = analogue_gain(config.shot_noise, truth.exposure);
-  develop(frame.colour, camera, set, gain, stream.fork(kColour));
+  develop(frame.color, camera, set, gain, stream.fork(kColor));
   return frame;
 }
 

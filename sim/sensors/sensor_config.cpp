@@ -34,7 +34,7 @@ void read_depth_noise(YamlReader node, SensorConfig& config) {
   DepthNoiseConfig& d = config.depth_noise;
   d.axial = node.boolean("axial", d.axial);
   d.lateral = node.boolean("lateral", d.lateral);
-  d.quantisation = node.boolean("quantisation", d.quantisation);
+  d.quantization = node.boolean("quantization", d.quantization);
   d.grazing_holes = node.boolean("grazing_holes", d.grazing_holes);
   d.projector_shadow = node.boolean("projector_shadow", d.projector_shadow);
   d.min_range_m = node.number_or("min_range_m", d.min_range_m, 0.0);
@@ -43,11 +43,11 @@ void read_depth_noise(YamlReader node, SensorConfig& config) {
   node.finish();
 }
 
-void read_colour(YamlReader& file, SensorConfig& config) {
-  YamlReader grey = file.at("colour_noise");
-  config.colour_noise_on = grey.boolean("enabled", config.colour_noise_on);
-  config.colour_noise.sigma = grey.number_or("sigma", config.colour_noise.sigma, 0.0, 1.0);
-  grey.finish();
+void read_color(YamlReader& file, SensorConfig& config) {
+  YamlReader gray = file.at("color_noise");
+  config.color_noise_on = gray.boolean("enabled", config.color_noise_on);
+  config.color_noise.sigma = gray.number_or("sigma", config.color_noise.sigma, 0.0, 1.0);
+  gray.finish();
   section(file, "shot_noise", config.shot_noise_on, [&](YamlReader& node) {
     ShotNoiseConfig& c = config.shot_noise;
     c.well_e = above(node, "well_e", c.well_e, 0.0, 1e7);
@@ -143,7 +143,7 @@ SensorConfig load_sensor_config(const std::filesystem::path& file) {
   YamlReader reader = YamlReader::load(file);
   SensorConfig config;
   read_depth_noise(reader.at("depth_noise"), config);
-  read_colour(reader, config);
+  read_color(reader, config);
   read_timing(reader, config);
   read_labels(reader, config.labels);
   reader.finish();

@@ -13,13 +13,13 @@ namespace mh {
 
 /// Xtion/Kinect v1 depth. Axial and lateral noise: Nguyen, Izadi and Lovell, "Modeling Kinect
 /// sensor noise for improved 3D reconstruction and tracking", 3DIMPVT 2012; disparity
-/// quantisation and the shadow of the projector, which stands camera.baseline_m to the right of the
+/// quantization and the shadow of the projector, which stands camera.baseline_m to the right of the
 /// camera: Khoshelham and Elberink, "Accuracy and resolution of Kinect depth data", Sensors 2012;
 /// range: ASUS Xtion data sheet. Each on or off alone.
 struct DepthNoiseConfig {
   bool axial = true;              ///< sigma_z(z, incidence)
   bool lateral = true;            ///< ragged edges: the lookup strays by sigma_L(incidence), px
-  bool quantisation = true;       ///< 1/8 px disparity steps
+  bool quantization = true;       ///< 1/8 px disparity steps
   bool grazing_holes = true;      ///< no return beyond kMaxIncidenceRad
   bool projector_shadow = false;  ///< no return where the projector does not shine
   double min_range_m = 0.4;       ///< nearer surfaces give no return; 0 or more
@@ -30,7 +30,7 @@ struct DepthNoiseConfig {
 inline DepthNoiseConfig no_depth_noise() {
   return {.axial = false,
           .lateral = false,
-          .quantisation = false,
+          .quantization = false,
           .grazing_holes = false,
           .projector_shadow = false,
           .min_range_m = 0.0,
@@ -49,7 +49,7 @@ double axial_sigma_m(double depth_m, double incidence_rad);
 /// Standard deviation (px) across it; equation of Nguyen et al., incidence limited likewise.
 double lateral_sigma_px(double incidence_rad);
 
-struct ColourNoiseConfig {
+struct ColorNoiseConfig {
   double sigma = 0.007;  ///< Gaussian, of full scale, 0 to 1 (Pepper's Gazebo model, pepper_robot)
 };
 
@@ -76,7 +76,7 @@ struct ShutterConfig {
   bool motion_blur_on = false;
   double exposure_s = 0.020;  ///< above 0
   bool rolling_shutter_on = false;
-  /// From the first row to the last. Default: the Kinect's colour camera, Ringaby and Forssen,
+  /// From the first row to the last. Default: the Kinect's color camera, Ringaby and Forssen,
   /// "Scan rectification for structured light range sensors with rolling shutters", ICCV 2011.
   double readout_s = 0.0261;
   // The picture is the mean of pictures along the motion, in linear light; between two of them
@@ -112,8 +112,8 @@ struct ProcessingConfig {
 struct SensorConfig {
   bool depth_noise_on = true;  ///< off: the exact depth at any range
   DepthNoiseConfig depth_noise;
-  bool colour_noise_on = true;
-  ColourNoiseConfig colour_noise;
+  bool color_noise_on = true;
+  ColorNoiseConfig color_noise;
   bool shot_noise_on = false;
   ShotNoiseConfig shot_noise;
   ShutterConfig shutter;

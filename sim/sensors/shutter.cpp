@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 
 namespace mh {
 namespace {
@@ -94,18 +94,18 @@ class LightSum {
   explicit LightSum(const Grid2d<Rgb8>& like)
       : width_(like.width()), light_(3 * like.size(), 0.0F) {}
 
-  void add_row(int y, std::span<const Rgb8> colour, float weight) {
+  void add_row(int y, std::span<const Rgb8> color, float weight) {
     float* out =
         light_.data() + 3U * static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
-    for (const Rgb8& c : colour) {
+    for (const Rgb8& c : color) {
       *out++ += weight * srgb_to_linear(c.r);
       *out++ += weight * srgb_to_linear(c.g);
       *out++ += weight * srgb_to_linear(c.b);
     }
   }
-  void write(Grid2d<Rgb8>& colour) const {
+  void write(Grid2d<Rgb8>& color) const {
     const float* in = light_.data();
-    for (Rgb8& c : colour) {
+    for (Rgb8& c : color) {
       c = {linear_to_srgb(in[0]), linear_to_srgb(in[1]), linear_to_srgb(in[2])};
       in += 3;
     }
@@ -177,7 +177,7 @@ Shutter::Exposed Shutter::expose(std::size_t i, LabelMode labels) const {
   if (config_.depth_offset_s != 0.0)
     picture.depth_m = render(lens_.pinhole(), i, config_.depth_offset_s).depth_m;
   picture = lens_.bend(std::move(picture));
-  blur_by_lens(picture.colour, config_.lens_blur_px);
+  blur_by_lens(picture.color, config_.lens_blur_px);
   return {std::move(picture), gains_.empty() ? 1.0 : gains_[i]};
 }
 
@@ -200,7 +200,7 @@ void Shutter::blur(RenderedFrame& picture, std::size_t i, LabelMode labels) cons
   const int pictures = std::clamp(wanted, 3, std::max(3, config.max_pictures | 1));
 
   const Rows rows(config, camera.height_px, pictures);
-  LightSum sum(picture.colour);
+  LightSum sum(picture.color);
   for (int k = 0; k < pictures; ++k) {
     int first = 0, last = camera.height_px;
     while (first < last && rows.overlap_s(k, first) <= 0.0) ++first;
@@ -213,14 +213,14 @@ void Shutter::blur(RenderedFrame& picture, std::size_t i, LabelMode labels) cons
     RenderedFrame part;
     if (!middle) part = render(strip, i, rows.time_s(k));
     for (int y = first; y < last; ++y) {
-      sum.add_row(y, middle ? picture.colour.row(y) : std::as_const(part.colour).row(y - first),
+      sum.add_row(y, middle ? picture.color.row(y) : std::as_const(part.color).row(y - first),
                   static_cast<float>(rows.weight(k, y)));
       if (middle || labels == LabelMode::kAnnotated || rows.middle_picture(y) != k) continue;
       std::ranges::copy(part.classes.row(y - first), picture.classes.row(y).begin());
       std::ranges::copy(part.instances.row(y - first), picture.instances.row(y).begin());
     }
   }
-  sum.write(picture.colour);
+  sum.write(picture.color);
 }
 
 std::vector<double> Shutter::exposure_gains() const {
@@ -238,7 +238,7 @@ std::vector<double> Shutter::exposure_gains() const {
   double log_gain = 0.0;
   for (std::size_t i = 0; i < path_.size(); ++i) {
     double mean = 0.0;
-    for (const Rgb8& c : render(meter, i, 0.0).colour)
+    for (const Rgb8& c : render(meter, i, 0.0).color)
       mean += luminance(srgb_to_linear(c)) / (kWidth * kHeight);
     const double wanted = std::clamp(std::log(config.target / std::max(mean, 1e-6)), -limit, limit);
     // The first frame finds the control at rest.

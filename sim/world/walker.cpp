@@ -62,7 +62,7 @@ void merge(RenderedFrame& picture, const RenderedFrame& walker, InstanceId insta
     float& depth = picture.depth_m.data()[i];
     if (near <= 0 || (depth > 0 && depth <= near)) continue;
     depth = near;
-    picture.colour.data()[i] = walker.colour.data()[i];
+    picture.color.data()[i] = walker.color.data()[i];
     picture.classes.data()[i] = walker.classes.data()[i];
     picture.instances.data()[i] = instance;
   }

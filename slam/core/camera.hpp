@@ -12,7 +12,7 @@ struct Distortion {
   friend bool operator==(const Distortion&, const Distortion&) = default;
 };
 
-/// A pinhole RGB-D camera: x right, y down, z forward; pixel centres at integers.
+/// A pinhole RGB-D camera: x right, y down, z forward; pixel centers at integers.
 struct Camera {
   int width_px = 640;
   int height_px = 480;

@@ -43,7 +43,7 @@ struct LineAllocator {
 /// For a Grid2d all of whose elements are about to be written: they start as memory has them.
 struct Unfilled {};
 
-/// A dense row-major 2D array: images, label maps, occupancy. Pixel centres lie at integers;
+/// A dense row-major 2D array: images, label maps, occupancy. Pixel centers lie at integers;
 /// (0, 0) is the upper left element.
 template <class T>
 class Grid2d {

@@ -19,8 +19,9 @@ HeldBytes hold(std::string bytes);
 /// When the pages of a mapped file are read.
 enum class MapPages { kAtOnce, kAsTouched };
 
-/// Maps a file into memory, to be read only: pages are shared with other processes. The file must be replaced by renaming, never rewritten in place, while it is
-/// mapped. @throws InputError naming the file: missing, a folder, no permission.
+/// Maps a file into memory, to be read only: pages are shared with other processes. The file must
+/// be replaced by renaming, never rewritten in place, while it is mapped. @throws InputError naming
+/// the file: missing, a folder, no permission.
 HeldBytes map_file(const std::filesystem::path& file, MapPages pages = MapPages::kAtOnce);
 
 }  // namespace mh

@@ -6,8 +6,8 @@
 namespace mh {
 namespace {
 
-// NYU40: Gupta et al., CVPR 2013, the mapping shipped with ScanNet; its colours follow ScanNet's
-// convention of one fixed colour per class. COCO indices: Lin et al., ECCV 2014.
+// NYU40: Gupta et al., CVPR 2013, the mapping shipped with ScanNet; its colors follow ScanNet's
+// convention of one fixed color per class. COCO indices: Lin et al., ECCV 2014.
 constexpr std::array kClasses = {
     ClassInfo{0, "void", 0, -1, 0, 0, 0},
     ClassInfo{1, "wall", 1, -1, 174, 199, 232},

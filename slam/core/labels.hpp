@@ -22,7 +22,7 @@ struct ClassInfo {
   std::string_view name;             ///< lower case, as in NYU40 or COCO
   ClassId nyu40 = kVoid;             ///< the NYU40 id that stands for it in NYU40/ScanNet files
   int coco80 = -1;                   ///< index among the 80 COCO detection classes, -1 = none
-  std::uint8_t r = 0, g = 0, b = 0;  ///< drawing colour
+  std::uint8_t r = 0, g = 0, b = 0;  ///< drawing color
 };
 
 /// Every class, ordered by id: classes()[id].id == id.

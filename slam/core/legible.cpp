@@ -21,8 +21,8 @@ std::size_t character(std::string_view text) {
   }
   const bool longer_than_need_be = (size == 3 && code < 0x800) || (size == 4 && code < 0x10000);
   const bool surrogate = code >= 0xd800 && code < 0xe000;
-  const bool obeyed = code < 0xa0 || (code >= 0x2028 && code <= 0x202e) ||
-                      (code >= 0x2066 && code <= 0x2069);
+  const bool obeyed =
+      code < 0xa0 || (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
   return longer_than_need_be || surrogate || code > 0x10ffff || obeyed ? 0 : size;
 }
 

@@ -12,7 +12,7 @@ namespace mh {
 /// Time in integer nanoseconds.
 using Stamp = std::int64_t;
 
-/// 8-bit sRGB colour.
+/// 8-bit sRGB color.
 struct Rgb8 {
   std::uint8_t r = 0, g = 0, b = 0;
   friend bool operator==(const Rgb8&, const Rgb8&) = default;
@@ -36,8 +36,8 @@ struct SemanticImage {
 /// All that SLAM ever sees of a moment: no pose, no instance ids, no truth.
 struct RgbdFrame {
   Stamp stamp_ns = 0;
-  Grid2d<Rgb8> colour;
-  Grid2d<float> depth_m;  ///< along the optical axis, registered to colour; 0 = no return
+  Grid2d<Rgb8> color;
+  Grid2d<float> depth_m;  ///< along the optical axis, registered to color; 0 = no return
   SemanticImage semantics;
 };
 

@@ -25,7 +25,7 @@ class SE3 {
   SE3() : rotation_(Eigen::Matrix3d::Identity()), translation_(Eigen::Vector3d::Zero()) {}
   SE3(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation_m)
       : rotation_(rotation), translation_(translation_m) {}
-  /// The quaternion is normalised first.
+  /// The quaternion is normalized first.
   SE3(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation_m)
       : rotation_(rotation.normalized().toRotationMatrix()), translation_(translation_m) {}
 

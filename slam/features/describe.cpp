@@ -104,9 +104,9 @@ Descriptor describe(const cv::Mat& blurred, int x, int y, float angle_rad) {
     offset[i] = static_cast<int>(v * step + u);  // whole numbers below 2^24: exact
   }
 
-  const std::uint8_t* centre = blurred.ptr<std::uint8_t>(y) + x;
+  const std::uint8_t* center = blurred.ptr<std::uint8_t>(y) + x;
   alignas(32) std::uint8_t value[512];
-  for (int i = 0; i < 512; ++i) value[i] = centre[offset[i]];
+  for (int i = 0; i < 512; ++i) value[i] = center[offset[i]];
   alignas(32) std::uint8_t less[256];
   for (int i = 0; i < 256; ++i) less[i] = value[i] < value[256 + i];
 

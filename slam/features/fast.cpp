@@ -119,13 +119,13 @@ T best_arc(const std::array<T, 16>& p) {
 
 // By how much the best arc around each of `count` pixels is brighter or darker than the pixel; 0 =
 // no such arc.
-void contrast_of_row(const Byte* centre, std::ptrdiff_t step, int count, Byte* contrast) {
+void contrast_of_row(const Byte* center, std::ptrdiff_t step, int count, Byte* contrast) {
   std::array<const Byte*, 16> circle;
-  for (std::size_t i = 0; i < 16; ++i) circle[i] = centre + kCircle[i].y * step + kCircle[i].x;
+  for (std::size_t i = 0; i < 16; ++i) circle[i] = center + kCircle[i].y * step + kCircle[i].x;
   for_all(count, [&]<class T>(int x) {
     std::array<T, 16> p;
     for (std::size_t i = 0; i < 16; ++i) p[i] = load<T>(circle[i] + x);
-    const T c = load<T>(centre + x);
+    const T c = load<T>(center + x);
     store(contrast + x, high(excess(best_arc<Low, High>(p), c), excess(c, best_arc<High, Low>(p))));
   });
 }

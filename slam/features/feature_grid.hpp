@@ -23,7 +23,8 @@ class FeatureGrid {
     const int x0 = column(u_px - radius_px), x1 = column(u_px + radius_px);
     const int y0 = row(v_px - radius_px), y1 = row(v_px + radius_px);
     for (int y = y0; y <= y1; ++y)
-      for (std::uint32_t i = start_[cell(x0, y)]; i < start_[cell(x1, y) + 1]; ++i) visit(order_[i]);
+      for (std::uint32_t i = start_[cell(x0, y)]; i < start_[cell(x1, y) + 1]; ++i)
+        visit(order_[i]);
   }
 
  private:
@@ -31,7 +32,8 @@ class FeatureGrid {
   int column(float u_px) const;
   int row(float v_px) const;
   std::size_t cell(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(x);
   }
 
   int columns_ = 0, rows_ = 0;

@@ -24,7 +24,7 @@ void require_size(const Grid2d<T>& grid, const Camera& camera, const char* name)
 }
 
 void require_sizes(const RgbdFrame& frame, const Camera& camera) {
-  require_size(frame.colour, camera, "colour");
+  require_size(frame.color, camera, "color");
   if (!frame.depth_m.empty()) require_size(frame.depth_m, camera, "depth");
   if (!frame.semantics.index.empty()) require_size(frame.semantics.index, camera, "label image");
 }
@@ -78,8 +78,8 @@ void append(const PyramidLevel& level, int octave, const Corner& corner, const R
             double max_depth_m, Features& features) {
   const cv::Point2d raw = level.to_full(
       {static_cast<double>(corner.x) + corner.dx, static_cast<double>(corner.y) + corner.dy});
-  const int x = std::clamp(cvRound(raw.x), 0, frame.colour.width() - 1);
-  const int y = std::clamp(cvRound(raw.y), 0, frame.colour.height() - 1);
+  const int x = std::clamp(cvRound(raw.x), 0, frame.color.width() - 1);
+  const int y = std::clamp(cvRound(raw.y), 0, frame.color.height() - 1);
 
   Keypoint keypoint;
   keypoint.u_px = static_cast<float>(raw.x);
@@ -108,7 +108,7 @@ void undistort(const Camera& camera, std::vector<Keypoint>& keypoints) {
 Features extract(const RgbdFrame& frame, const Camera& camera, const FeatureConfig& config) {
   require_sizes(frame, camera);
   const std::vector<PyramidLevel> pyramid =
-      make_pyramid(frame.colour, config, 2 * kPatchReach_px + 1);
+      make_pyramid(frame.color, config, 2 * kPatchReach_px + 1);
   const std::vector<std::vector<Corner>> corners = corners_per_level(pyramid, config);
 
   Features features;

@@ -42,7 +42,7 @@ struct FeatureConfig {
   int count = 1000;            ///< keypoints wanted per frame
   int levels = 8;              ///< pyramid levels
   double scale = 1.2;          ///< between levels
-  int fast_threshold = 20;     ///< grey levels
+  int fast_threshold = 20;     ///< gray levels
   int fast_threshold_low = 7;  ///< used in cells where the first finds nothing
   double max_depth_m = 8.0;    ///< depth beyond is dropped
 };
@@ -50,7 +50,7 @@ struct FeatureConfig {
 /// ORB (Rublee et al., ICCV 2011): FAST-9 corners on an image pyramid, spread evenly over image and
 /// levels, each with its orientation, rotated BRIEF, depth and label. Descriptors equal cv::ORB's
 /// bit for bit at the same pixel and angle; the rest departs from it: corners lie between pixels,
-/// levels are mapped centre to centre (cv::ORB is off by up to 1.3 px at scale 3.6), thresholds are
+/// levels are mapped center to center (cv::ORB is off by up to 1.3 px at scale 3.6), thresholds are
 /// lowered where nothing is found. Depth and label are those of the nearest pixel of the picture as
 /// it was taken, before undistortion. Ordered by octave, then strength.
 /// @param frame  depth and semantics may be empty. Depth that is NaN, infinite, not positive or

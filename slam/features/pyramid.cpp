@@ -28,28 +28,28 @@ void mirror_margin(cv::Mat& window) {
                      cv::BORDER_REFLECT_101 | cv::BORDER_ISOLATED);
 }
 
-// A view of the frame's colours; OpenCV's type has no const, nothing writes through it.
-cv::Mat view(const Grid2d<Rgb8>& colour) {
+// A view of the frame's colors; OpenCV's type has no const, nothing writes through it.
+cv::Mat view(const Grid2d<Rgb8>& color) {
   static_assert(sizeof(Rgb8) == 3);
-  return {colour.height(), colour.width(), CV_8UC3, const_cast<Rgb8*>(colour.data())};
+  return {color.height(), color.width(), CV_8UC3, const_cast<Rgb8*>(color.data())};
 }
 
 }  // namespace
 
-std::vector<PyramidLevel> make_pyramid(const Grid2d<Rgb8>& colour, const FeatureConfig& config,
+std::vector<PyramidLevel> make_pyramid(const Grid2d<Rgb8>& color, const FeatureConfig& config,
                                        int min_size_px) {
   std::vector<PyramidLevel> levels;
   for (int l = 0; l < config.levels; ++l) {
     const double scale = std::pow(config.scale, l);
-    const cv::Size size(cvRound(colour.width() / scale), cvRound(colour.height() / scale));
+    const cv::Size size(cvRound(color.width() / scale), cvRound(color.height() / scale));
     if (std::min(size.width, size.height) < min_size_px) break;
 
     PyramidLevel level;
-    level.scale_x = static_cast<double>(colour.width()) / size.width;
-    level.scale_y = static_cast<double>(colour.height()) / size.height;
+    level.scale_x = static_cast<double>(color.width()) / size.width;
+    level.scale_y = static_cast<double>(color.height()) / size.height;
     level.image = windowed(size);
     if (l == 0)
-      cv::cvtColor(view(colour), level.image, cv::COLOR_RGB2GRAY);
+      cv::cvtColor(view(color), level.image, cv::COLOR_RGB2GRAY);
     else
       resize_exactly(levels.back().image, level.image);
     mirror_margin(level.image);

@@ -28,7 +28,7 @@ struct Tap {
   int next;
 };
 
-// One per target pixel; beyond the source's centres its outermost pixel alone.
+// One per target pixel; beyond the source's centers its outermost pixel alone.
 std::vector<Tap> taps(int source_size, int target_size) {
   const double step = 1.0 / (static_cast<double>(target_size) / source_size);
   std::vector<Tap> result;
@@ -45,7 +45,7 @@ std::vector<Tap> taps(int source_size, int target_size) {
   return result;
 }
 
-// How kGroup neighbouring pixels of a target row come from kReach of the source row.
+// How kGroup neighboring pixels of a target row come from kReach of the source row.
 struct Group {
   int source, target;              // first columns
   std::array<Byte, kReach> pairs;  // which bytes stand side by side: pixel and next, eight times
@@ -82,7 +82,7 @@ __m256i load32(const void* from) {
   return _mm256_loadu_si256(static_cast<const __m256i*>(from));
 }
 
-// A source row at the target's columns, in 1/256 grey levels.
+// A source row at the target's columns, in 1/256 gray levels.
 void resize_row(const Byte* from, const std::vector<Group>& columns, std::int32_t* to) {
   for (const Group& group : columns) {
     const __m128i pairs = _mm_shuffle_epi8(load16(from + group.source), load16(group.pairs.data()));

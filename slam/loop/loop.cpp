@@ -20,7 +20,7 @@ class Unrelated {
   Unrelated(const Map& map, KeyframeId newest, const LoopConfig& config)
       : map_(map), newest_(newest), min_gap_(static_cast<std::uint32_t>(config.min_gap)) {
     related_.insert(newest);
-    for (const Keyframe::Neighbour& n : map.at(newest).covisible)
+    for (const Keyframe::Neighbor& n : map.at(newest).covisible)
       if (n.shared >= config.loosely_shared) related_.insert(n.id);
   }
   bool operator()(KeyframeId id) const {
@@ -42,9 +42,9 @@ std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest,
   };
   const AugmentedVector query = view(newest);
 
-  // No candidate may be much less alike than the neighbours that are known to see the same.
+  // No candidate may be much less alike than the neighbors that are known to see the same.
   double least = 1.0;
-  for (const Keyframe::Neighbour& n : map.at(newest).covisible)
+  for (const Keyframe::Neighbor& n : map.at(newest).covisible)
     if (n.shared >= kStrongEdge) least = std::min(least, l1_similarity(query, view(n.id)));
 
   std::vector<KeyframeId> old;
@@ -54,7 +54,7 @@ std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest,
       old.push_back(s.keyframe);
       shared[s.keyframe.value] = s.shared_words + s.shared_labels;
     }
-  // A keyframe is asked for once per neighbourhood that it belongs to.
+  // A keyframe is asked for once per neighborhood that it belongs to.
   std::vector<double> known(map.keyframes().size(), -1.0);
   const auto similarity = [&](KeyframeId k) {
     double& s = known[k.value];
@@ -63,7 +63,8 @@ std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest,
   };
   const auto selection = select_candidates(
       std::span<const KeyframeId>(old), [&](KeyframeId k) { return shared[k.value]; },
-      [&](KeyframeId k) { return neighbourhood(map, k, is_old); }, similarity, semantics.alpha, semantics.beta);
+      [&](KeyframeId k) { return neighborhood(map, k, is_old); }, similarity, semantics.alpha,
+      semantics.beta);
   std::vector<KeyframeId> result;
   for (const auto& candidate : selection.candidates)
     if (similarity(candidate.keyframe) >= config.min_similarity_share * least)
@@ -72,7 +73,7 @@ std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest,
 }
 
 /// The way between a keyframe and the newest, along the keyframes in the order of their making;
-/// from the newest's strong neighbour that is nearest on it, since that is as well placed.
+/// from the newest's strong neighbor that is nearest on it, since that is as well placed.
 double way_between_m(const Map& map, KeyframeId old, KeyframeId newest, const LoopConfig& config) {
   std::vector<double> way_m(map.keyframes().size(), 0.0);
   std::optional<Eigen::Vector3d> before;
@@ -85,7 +86,7 @@ double way_between_m(const Map& map, KeyframeId old, KeyframeId newest, const Lo
     way_m[k.id.value] = sum_m;
   }
   double least_m = std::abs(way_m[newest.value] - way_m[old.value]);
-  for (const Keyframe::Neighbour& n : map.at(newest).covisible)
+  for (const Keyframe::Neighbor& n : map.at(newest).covisible)
     if (n.shared >= config.loosely_shared)
       least_m = std::min(least_m, std::abs(way_m[n.id.value] - way_m[old.value]));
   return least_m;
@@ -108,7 +109,7 @@ struct Graph {
   std::vector<PoseGraphEdge> edges;
 };
 
-/// The essential graph: each keyframe with its best earlier neighbour, with those that share much,
+/// The essential graph: each keyframe with its best earlier neighbor, with those that share much,
 /// and the loop. An edge weighs the landmarks that hold it: drift arises where there are few.
 Graph essential_graph(const Map& map, const Loop& loop) {
   Graph graph;
@@ -120,12 +121,13 @@ Graph essential_graph(const Map& map, const Loop& loop) {
     graph.poses.push_back(k.camera_from_world);
   }
   const auto connect = [&](KeyframeId a, KeyframeId b, const SE3& a_from_b, int landmarks) {
-    graph.edges.push_back({index[a.value], index[b.value], a_from_b, static_cast<double>(landmarks)});
+    graph.edges.push_back(
+        {index[a.value], index[b.value], a_from_b, static_cast<double>(landmarks)});
   };
   for (std::size_t i = 1; i < graph.keyframes.size(); ++i) {
     const Keyframe& k = map.at(graph.keyframes[i]);
     bool has_parent = false;
-    for (const Keyframe::Neighbour& n : k.covisible) {
+    for (const Keyframe::Neighbor& n : k.covisible) {
       if (!(n.id < k.id)) continue;
       if (has_parent && n.shared < kStrongEdge) break;  // most shared first
       has_parent = true;
@@ -206,12 +208,12 @@ void close_loop(Map& map, const Loop& loop, const MappingContext& context, const
   join_landmarks(map, loop);
   map.update_covisibility(loop.keyframe);
   map.update_covisibility(loop.old_keyframe);
-  fuse_with_neighbours(map, loop.keyframe, context, at(counts, Matcher::kFusion));
+  fuse_with_neighbors(map, loop.keyframe, context, at(counts, Matcher::kFusion));
   map.update_covisibility(loop.keyframe);
   // The whole map: with what the loop hardly moved held in place, the house came out a third to a
   // half further from the truth.
   if (negligible)
-    adjust_neighbourhood(map, loop.keyframe, context);
+    adjust_neighborhood(map, loop.keyframe, context);
   else
     adjust_all(map, context);
 }

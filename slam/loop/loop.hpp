@@ -12,10 +12,10 @@ struct LoopConfig {
   bool enabled = true;
   bool augmented = false;  ///< candidates by equation 1 with labels; else by words alone
   int min_gap = 10;        ///< keyframes between the two ends, at least
-  /// The ends share fewer landmarks than this: chance matches across a drift of some centimetres
+  /// The ends share fewer landmarks than this: chance matches across a drift of some centimeters
   /// tie them too loosely to undo it.
   int loosely_shared = 60;
-  /// A candidate's similarity, at least, as a share of that of the least alike strong neighbour.
+  /// A candidate's similarity, at least, as a share of that of the least alike strong neighbor.
   double min_similarity_share = 0.5;
   int agreeing = 2;            ///< keyframes that must tell of the same drift,
   int patience = 5;            ///< each at most so many keyframes after the one before
@@ -31,17 +31,17 @@ struct LoopConfig {
 
 /// What loop detection remembers between keyframes.
 struct LoopMemory {
-  /// world_from_world: where the last keyframe that recognised a place would put the camera, from
+  /// world_from_world: where the last keyframe that recognized a place would put the camera, from
   /// where it is.
   std::optional<SE3> drift;
   KeyframeId keyframe;  ///< that keyframe
   int agreeing = 0;     ///< keyframes that agreed on the drift so far
 };
 
-/// A place recognised: the keyframe as seen by a part of the map that it shares little with.
+/// A place recognized: the keyframe as seen by a part of the map that it shares little with.
 struct Loop {
   KeyframeId keyframe;                ///< the newest
-  KeyframeId old_keyframe;            ///< where it was recognised
+  KeyframeId old_keyframe;            ///< where it was recognized
   SE3 camera_from_world;              ///< the newest keyframe's pose by the old landmarks
   std::vector<LandmarkId> landmarks;  ///< old landmarks per feature of the newest keyframe
 };

@@ -64,8 +64,8 @@ void check_references(const Reader& reader, const std::vector<Keyframe>& keyfram
     reader.require(k.landmarks.size() == k.features.size(), "a keyframe's number of landmarks");
     for (const LandmarkId id : k.landmarks)
       reader.require(!id.valid() || id.value < landmarks.size(), "a keyframe's landmark");
-    for (const Keyframe::Neighbour& n : k.covisible)
-      reader.require(keyframe_stands(n.id), "a keyframe's neighbour");
+    for (const Keyframe::Neighbor& n : k.covisible)
+      reader.require(keyframe_stands(n.id), "a keyframe's neighbor");
     KeyframeId ancestor = k.id;
     for (std::size_t steps = 0; !keyframe_stands(ancestor); ++steps) {
       reader.require(ancestor.value < keyframes.size() && steps < keyframes.size(),

@@ -195,9 +195,9 @@ void fields(A& a, T& index) {
   auto& [vector, by_node] = index;
   a(vector, by_node);
 }
-template <class A, Either<Keyframe::Neighbour> T>
-void fields(A& a, T& neighbour) {
-  auto& [id, shared] = neighbour;
+template <class A, Either<Keyframe::Neighbor> T>
+void fields(A& a, T& neighbor) {
+  auto& [id, shared] = neighbor;
   a(id, shared);
 }
 template <class A, Either<Keyframe> T>

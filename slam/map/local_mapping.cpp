@@ -14,18 +14,18 @@ namespace mh {
 namespace {
 
 constexpr std::size_t kMinNewLandmarks = 100;
-constexpr std::size_t kTriangulationNeighbours = 8;
-constexpr std::size_t kFusionNeighbours = 10;
-constexpr std::size_t kAdjustedNeighbours = 10;
+constexpr std::size_t kTriangulationNeighbors = 8;
+constexpr std::size_t kFusionNeighbors = 10;
+constexpr std::size_t kAdjustedNeighbors = 10;
 constexpr std::size_t kFixedKeyframes = 20;
 constexpr double kFoundShare = 0.25;  // of the frames in which a young landmark was expected
 constexpr double kMinParallaxCosine = 0.9998;  // about 1.1 degrees between the two rays
 constexpr double kChi2Line = 3.84;             // 95 % of chi-square, 1 degree of freedom
 constexpr double kChi2Point = 5.991;           // and 2
 
-std::vector<KeyframeId> best_neighbours(const Map& map, KeyframeId id, std::size_t count) {
+std::vector<KeyframeId> best_neighbors(const Map& map, KeyframeId id, std::size_t count) {
   std::vector<KeyframeId> result;
-  for (const Keyframe::Neighbour& n : map.at(id).covisible) {
+  for (const Keyframe::Neighbor& n : map.at(id).covisible) {
     if (result.size() == count) break;
     result.push_back(n.id);
   }
@@ -39,7 +39,7 @@ Eigen::Vector3d bearing(const Keypoint& k, const Camera& camera) {
 /// Squared distance (px^2) of keypoint b from the line that keypoint a's ray draws in b's image.
 double epipolar_distance2(const Keypoint& a, const Keypoint& b, const Eigen::Matrix3d& essential,
                           const Camera& camera) {
-  // Line in normalised coordinates; focal lengths differ little, so one scale serves both axes.
+  // Line in normalized coordinates; focal lengths differ little, so one scale serves both axes.
   const Eigen::Vector3d line = essential * bearing(a, camera);
   const double norm2 = line.head<2>().squaredNorm();
   if (norm2 < 1e-18) return 1e18;
@@ -145,9 +145,9 @@ void cull_young_landmarks(Map& map, KeyframeId newest) {
   }
 }
 
-void triangulate_with_neighbours(Map& map, KeyframeId keyframe, const MappingContext& context,
-                                 MatcherCounts& counts) {
-  for (const KeyframeId other : best_neighbours(map, keyframe, kTriangulationNeighbours)) {
+void triangulate_with_neighbors(Map& map, KeyframeId keyframe, const MappingContext& context,
+                                MatcherCounts& counts) {
+  for (const KeyframeId other : best_neighbors(map, keyframe, kTriangulationNeighbors)) {
     const Keyframe& a = map.at(keyframe);
     const Keyframe& b = map.at(other);
     const SE3 b_from_a = b.camera_from_world * a.camera_from_world.inverse();
@@ -232,21 +232,21 @@ void fuse_into(Map& map, KeyframeId keyframe, const std::vector<LandmarkId>& lan
 
 }  // namespace
 
-void fuse_with_neighbours(Map& map, KeyframeId keyframe, const MappingContext& context,
-                          MatcherCounts& counts) {
-  std::vector<KeyframeId> neighbours = best_neighbours(map, keyframe, kFusionNeighbours);
-  for (const KeyframeId first : std::vector(neighbours))
-    for (const KeyframeId second : best_neighbours(map, first, 5))
+void fuse_with_neighbors(Map& map, KeyframeId keyframe, const MappingContext& context,
+                         MatcherCounts& counts) {
+  std::vector<KeyframeId> neighbors = best_neighbors(map, keyframe, kFusionNeighbors);
+  for (const KeyframeId first : std::vector(neighbors))
+    for (const KeyframeId second : best_neighbors(map, first, 5))
       if (second != keyframe &&
-          std::find(neighbours.begin(), neighbours.end(), second) == neighbours.end())
-        neighbours.push_back(second);
+          std::find(neighbors.begin(), neighbors.end(), second) == neighbors.end())
+        neighbors.push_back(second);
 
-  for (const KeyframeId neighbour : neighbours)
-    fuse_into(map, neighbour, std::vector(map.at(keyframe).landmarks), context, counts);
+  for (const KeyframeId neighbor : neighbors)
+    fuse_into(map, neighbor, std::vector(map.at(keyframe).landmarks), context, counts);
   std::vector<LandmarkId> theirs;
-  for (const KeyframeId neighbour : neighbours)
-    theirs.insert(theirs.end(), map.at(neighbour).landmarks.begin(),
-                  map.at(neighbour).landmarks.end());
+  for (const KeyframeId neighbor : neighbors)
+    theirs.insert(theirs.end(), map.at(neighbor).landmarks.begin(),
+                  map.at(neighbor).landmarks.end());
   fuse_into(map, keyframe, theirs, context, counts);
 }
 
@@ -315,11 +315,11 @@ void adjust_keyframes(Map& map, const std::vector<KeyframeId>& free,
 
 }  // namespace
 
-void adjust_neighbourhood(Map& map, KeyframeId keyframe, const MappingContext& context) {
-  // Free: the keyframe and its best neighbours, but never the first keyframe, which is the origin.
+void adjust_neighborhood(Map& map, KeyframeId keyframe, const MappingContext& context) {
+  // Free: the keyframe and its best neighbors, but never the first keyframe, which is the origin.
   std::vector<KeyframeId> free;
   if (keyframe.value != 0) free.push_back(keyframe);
-  for (const KeyframeId id : best_neighbours(map, keyframe, kAdjustedNeighbours))
+  for (const KeyframeId id : best_neighbors(map, keyframe, kAdjustedNeighbors))
     if (id.value != 0) free.push_back(id);
   std::vector<KeyframeId> fixed = onlookers(map, free);
   if (fixed.size() > kFixedKeyframes) fixed.resize(kFixedKeyframes);
@@ -334,7 +334,7 @@ void adjust_all(Map& map, const MappingContext& context) {
 }
 
 void cull_redundant_keyframes(Map& map, KeyframeId newest, const MappingContext& context) {
-  for (const KeyframeId id : best_neighbours(map, newest, map.keyframes().size())) {
+  for (const KeyframeId id : best_neighbors(map, newest, map.keyframes().size())) {
     // The first is the origin; the latest few are what tracking stands on.
     if (id.value == 0 || newest.value - id.value < 3) continue;
     const Keyframe& k = map.at(id);
@@ -359,11 +359,11 @@ void map_keyframe(Map& map, KeyframeId keyframe, const MappingContext& context,
                   MatchCounts& counts) {
   cull_young_landmarks(map, keyframe);
   map.update_covisibility(keyframe);
-  triangulate_with_neighbours(map, keyframe, context, at(counts, Matcher::kTriangulation));
-  fuse_with_neighbours(map, keyframe, context, at(counts, Matcher::kFusion));
+  triangulate_with_neighbors(map, keyframe, context, at(counts, Matcher::kTriangulation));
+  fuse_with_neighbors(map, keyframe, context, at(counts, Matcher::kFusion));
   refresh_keyframe(map, keyframe, context);
   map.update_covisibility(keyframe);
-  adjust_neighbourhood(map, keyframe, context);
+  adjust_neighborhood(map, keyframe, context);
   cull_redundant_keyframes(map, keyframe, context);
 }
 

@@ -26,18 +26,18 @@ struct MappingContext {
 void add_landmarks_from_depth(Map& map, KeyframeId keyframe, const MappingContext& context);
 
 /// All that a new keyframe sets off, in order: young landmarks that did not prove themselves go,
-/// new ones are triangulated with neighbours, doubles are fused, the neighbourhood is adjusted,
+/// new ones are triangulated with neighbors, doubles are fused, the neighborhood is adjusted,
 /// redundant keyframes go.
 void map_keyframe(Map& map, KeyframeId keyframe, const MappingContext& context,
                   MatchCounts& counts);
 
 // The stages of map_keyframe, each on its own for tests.
 void cull_young_landmarks(Map& map, KeyframeId newest);
-void triangulate_with_neighbours(Map& map, KeyframeId keyframe, const MappingContext& context,
-                                 MatcherCounts& counts);
-void fuse_with_neighbours(Map& map, KeyframeId keyframe, const MappingContext& context,
-                          MatcherCounts& counts);
-void adjust_neighbourhood(Map& map, KeyframeId keyframe, const MappingContext& context);
+void triangulate_with_neighbors(Map& map, KeyframeId keyframe, const MappingContext& context,
+                                MatcherCounts& counts);
+void fuse_with_neighbors(Map& map, KeyframeId keyframe, const MappingContext& context,
+                         MatcherCounts& counts);
+void adjust_neighborhood(Map& map, KeyframeId keyframe, const MappingContext& context);
 /// Bundle adjustment of the whole map; the first keyframe is held.
 void adjust_all(Map& map, const MappingContext& context);
 void cull_redundant_keyframes(Map& map, KeyframeId newest, const MappingContext& context);

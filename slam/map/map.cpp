@@ -146,7 +146,7 @@ void Map::erase(KeyframeId keyframe) {
         parent = other.id;
   for (std::uint32_t i = 0; i < k.landmarks.size(); ++i)
     if (k.landmarks[i].valid()) erase_observation(k.landmarks[i], keyframe);
-  for (const Keyframe::Neighbour& n : std::vector(k.covisible)) set_neighbour(n.id, keyframe, 0);
+  for (const Keyframe::Neighbor& n : std::vector(k.covisible)) set_neighbor(n.id, keyframe, 0);
   k.covisible.clear();
   k.parent = parent;
   k.camera_from_parent = k.camera_from_world * at(parent).camera_from_world.inverse();
@@ -201,15 +201,15 @@ void Map::refresh(LandmarkId id, const FeatureConfig& config) {
   l.min_distance_m = l.max_distance_m / level_scale(config, config.levels - 1);
 }
 
-void Map::set_neighbour(KeyframeId of, KeyframeId neighbour, int shared) {
+void Map::set_neighbor(KeyframeId of, KeyframeId neighbor, int shared) {
   auto& covisible = mutable_at(of).covisible;
-  std::erase_if(covisible, [&](const Keyframe::Neighbour& n) { return n.id == neighbour; });
+  std::erase_if(covisible, [&](const Keyframe::Neighbor& n) { return n.id == neighbor; });
   if (shared < kMinShared) return;
   const auto place =
-      std::find_if(covisible.begin(), covisible.end(), [&](const Keyframe::Neighbour& n) {
-        return n.shared != shared ? n.shared < shared : neighbour < n.id;
+      std::find_if(covisible.begin(), covisible.end(), [&](const Keyframe::Neighbor& n) {
+        return n.shared != shared ? n.shared < shared : neighbor < n.id;
       });
-  covisible.insert(place, {neighbour, shared});
+  covisible.insert(place, {neighbor, shared});
 }
 
 void Map::update_covisibility(KeyframeId id) {
@@ -219,11 +219,11 @@ void Map::update_covisibility(KeyframeId id) {
     if (landmark.valid())
       for (const Observation& o : at(landmark).observations)
         if (o.keyframe != id) ++shared[o.keyframe];
-  for (const Keyframe::Neighbour& n : std::vector(at(id).covisible))
+  for (const Keyframe::Neighbor& n : std::vector(at(id).covisible))
     if (!shared.contains(n.id)) shared[n.id] = 0;
   for (const auto& [other, count] : shared) {
-    set_neighbour(id, other, count);
-    set_neighbour(other, id, count);
+    set_neighbor(id, other, count);
+    set_neighbor(other, id, count);
   }
 }
 
@@ -262,7 +262,7 @@ void Map::check_invariants() const {
                   l.observations.end(),
               "a landmark does not know its keyframe", l.id.value);
     }
-    for (const Keyframe::Neighbour& n : k.covisible) {
+    for (const Keyframe::Neighbor& n : k.covisible) {
       const auto& back = at(n.id).covisible;
       require(std::any_of(back.begin(), back.end(),
                           [&](const auto& b) { return b.id == k.id && b.shared == n.shared; }),

@@ -36,11 +36,11 @@ struct Keyframe {
   WordIndex words;
   std::vector<LandmarkId> landmarks;  ///< per feature; invalid = none
 
-  struct Neighbour {
+  struct Neighbor {
     KeyframeId id;
     int shared = 0;  ///< landmarks seen by both
   };
-  std::vector<Neighbour> covisible;  ///< at least kMinShared; most shared first, then by id
+  std::vector<Neighbor> covisible;  ///< at least kMinShared; most shared first, then by id
 
   bool erased = false;
   KeyframeId parent;       ///< what an erased keyframe's pose hangs on
@@ -53,7 +53,7 @@ struct Keyframe {
 /// symmetric.
 class Map {
  public:
-  /// Least number of shared landmarks that makes two keyframes neighbours.
+  /// Least number of shared landmarks that makes two keyframes neighbors.
   static constexpr int kMinShared = 15;
 
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
@@ -80,7 +80,7 @@ class Map {
   /// Moves the observations of `from` to `into` (where a keyframe sees both, into's stays), then
   /// erases `from`.
   void fuse(LandmarkId from, LandmarkId into);
-  /// Erases a keyframe; its pose hangs on its best neighbour from then on. The last one stays.
+  /// Erases a keyframe; its pose hangs on its best neighbor from then on. The last one stays.
   void erase(KeyframeId keyframe);
 
   void set_pose(KeyframeId id, const SE3& camera_from_world);
@@ -124,7 +124,7 @@ class Map {
  private:
   Keyframe& mutable_at(KeyframeId id) { return keyframes_[id.value]; }
   void describe(Landmark& landmark) const;
-  void set_neighbour(KeyframeId of, KeyframeId neighbour, int shared);
+  void set_neighbor(KeyframeId of, KeyframeId neighbor, int shared);
 
   std::vector<Keyframe> keyframes_;
   LandmarkTable landmarks_;

@@ -27,10 +27,10 @@ void PositionIndex::remove(KeyframeId keyframe, const Eigen::Vector3d& position_
   if (cell->second.empty()) cells_.erase(cell);
 }
 
-std::vector<KeyframeId> PositionIndex::near(const Eigen::Vector3d& centre_in_world,
+std::vector<KeyframeId> PositionIndex::near(const Eigen::Vector3d& center_in_world,
                                             double radius_m) const {
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius_m);
-  const Cell low = cell_of(centre_in_world - reach), high = cell_of(centre_in_world + reach);
+  const Cell low = cell_of(center_in_world - reach), high = cell_of(center_in_world + reach);
   std::vector<KeyframeId> found;
   // Cells are ordered by x, then y, then z. Past the end of one range the next one begins at what
   // stands there, so that a wide ball visits occupied cells only.

@@ -19,7 +19,7 @@ class PositionIndex {
   /// @param position_in_world  the one that it was added with.
   void remove(KeyframeId keyframe, const Eigen::Vector3d& position_in_world);
   /// All keyframes in cubes that a ball touches (a superset of those within it), by id.
-  std::vector<KeyframeId> near(const Eigen::Vector3d& centre_in_world, double radius_m) const;
+  std::vector<KeyframeId> near(const Eigen::Vector3d& center_in_world, double radius_m) const;
 
  private:
   static constexpr double kCell_m = 2.5;

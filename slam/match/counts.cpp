@@ -29,7 +29,7 @@ std::string_view name(Matcher matcher) {
 
 MatcherCounts& MatcherCounts::operator+=(const MatcherCounts& other) {
   compared += other.compared;
-  penalised += other.penalised;
+  penalized += other.penalized;
   rejected_by_xi += other.rejected_by_xi;
   ratio_helped += other.ratio_helped;
   return *this;

@@ -24,7 +24,7 @@ std::string_view name(Matcher matcher);
 /// What equation 2 did in one matcher during one step.
 struct MatcherCounts {
   std::int64_t compared = 0;        ///< descriptor pairs
-  std::int64_t penalised = 0;       ///< of them, labels known and different: distance times xi
+  std::int64_t penalized = 0;       ///< of them, labels known and different: distance times xi
   std::int64_t rejected_by_xi = 0;  ///< best pairs under the threshold before xi, over it after
   std::int64_t ratio_helped =
       0;  ///< pairs that pass the ratio test only because xi inflated the second best

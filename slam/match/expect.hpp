@@ -21,7 +21,7 @@ std::optional<ProjectionTarget> expect(const Landmark& landmark, const SE3& came
                                        const Eigen::Vector3d& camera_in_world, const Camera& camera,
                                        const FeatureConfig& features, float radius_px);
 
-/// A landmark seen at a feature, as the optimisers take it.
+/// A landmark seen at a feature, as the optimizers take it.
 PoseObservation observe(const Eigen::Vector3d& point_in_world, const Keypoint& keypoint,
                         const Camera& camera, const FeatureConfig& features);
 

@@ -18,7 +18,7 @@
 namespace mh {
 
 /// A descriptor with the label that equation 2 needs.
-struct LabelledDescriptor {
+struct LabeledDescriptor {
   const Descriptor& descriptor;
   ClassId label;
 };
@@ -35,11 +35,11 @@ class SemanticMatcher {
     float plain = 0;     ///< Hamming distance, bits
     float semantic = 0;  ///< after equation 2
   };
-  Distance operator()(LabelledDescriptor p, LabelledDescriptor q) {
+  Distance operator()(LabeledDescriptor p, LabeledDescriptor q) {
     const auto plain = static_cast<float>(hamming(p.descriptor, q.descriptor));
     const bool disagree = labels_disagree(p.label, q.label, policy_);
     ++counts_.compared;
-    counts_.penalised += disagree;
+    counts_.penalized += disagree;
     return {plain, semantic_distance(plain, disagree, xi_)};
   }
   /// The best of several under a gate: nearest by semantic distance, ratio test against the second.
@@ -97,7 +97,7 @@ struct FeatureMatch {
   std::uint32_t a = 0, b = 0;  ///< feature indices
 };
 
-/// Matches features of two frames that fall under the same vocabulary node: nearest neighbour with
+/// Matches features of two frames that fall under the same vocabulary node: nearest neighbor with
 /// gate, ratio test and dominant rotation; each feature at most once.
 /// @param use_a, use_b  which features take part (same lengths as the frames' features).
 /// @param compatible    geometric test of a pair, e.g. the epipolar line; may be empty.

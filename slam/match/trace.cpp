@@ -7,14 +7,14 @@ namespace mh {
 namespace {
 
 /// Equation 2 once more: the matchers keep no distances.
-void set_distance(MatchedPair& pair, LabelledDescriptor p, LabelledDescriptor q,
+void set_distance(MatchedPair& pair, LabeledDescriptor p, LabeledDescriptor q,
                   const SemanticConfig& config) {
   MatcherCounts counts;
   pair.distance_bits = SemanticMatcher(config, counts)(p, q).semantic;
-  pair.penalised = counts.penalised != 0;
+  pair.penalized = counts.penalized != 0;
 }
 
-LabelledDescriptor view(const Features& features, std::uint32_t i) {
+LabeledDescriptor view(const Features& features, std::uint32_t i) {
   return {features.descriptors[i], features.keypoints[i].label};
 }
 

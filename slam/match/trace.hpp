@@ -26,7 +26,7 @@ struct MatchedPair {
                               ///< motion model the last frame's
   std::uint32_t other_feature = kNone;  ///< of that keyframe or of the last frame
   float distance_bits = 0;              ///< after equation 2
-  bool penalised = false;               ///< labels known and different
+  bool penalized = false;               ///< labels known and different
   friend bool operator==(const MatchedPair&, const MatchedPair&) = default;
 };
 

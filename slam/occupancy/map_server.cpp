@@ -13,13 +13,13 @@
 namespace mh {
 namespace {
 
-// Grey levels that map_server itself writes; with p = (255 - grey) / 255 they fall on the right
+// Gray levels that map_server itself writes; with p = (255 - gray) / 255 they fall on the right
 // sides of both thresholds below.
-constexpr std::uint8_t kFreeGrey = 254, kOccupiedGrey = 0, kUnknownGrey = 205;
+constexpr std::uint8_t kFreeGray = 254, kOccupiedGray = 0, kUnknownGray = 205;
 constexpr double kOccupiedThreshold = 0.65, kFreeThreshold = 0.196;
 
-std::uint8_t grey(std::int8_t cell) {
-  return cell == kUnknown ? kUnknownGrey : cell == kFree ? kFreeGrey : kOccupiedGrey;
+std::uint8_t gray(std::int8_t cell) {
+  return cell == kUnknown ? kUnknownGray : cell == kFree ? kFreeGray : kOccupiedGray;
 }
 
 /// Reads the header of a binary PGM and returns its picture, upper row first.
@@ -56,7 +56,7 @@ void save_map_server(const OccupancyGrid& grid, const std::filesystem::path& ste
   const int width = grid.cells.width(), height = grid.cells.height();
   std::string picture = fmt::format("P5\n{} {}\n255\n", width, height);
   for (int y = height - 1; y >= 0; --y)
-    for (int x = 0; x < width; ++x) picture.push_back(static_cast<char>(grey(grid.cells(x, y))));
+    for (int x = 0; x < width; ++x) picture.push_back(static_cast<char>(gray(grid.cells(x, y))));
   write_atomically(pgm, picture);
   write_atomically(yaml, fmt::format("image: {}\nmode: trinary\nresolution: {}\n"
                                      "origin: [{}, {}, 0]\nnegate: 0\noccupied_thresh: {}\n"

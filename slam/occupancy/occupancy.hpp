@@ -29,7 +29,7 @@ struct OccupancyGrid {
   Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();  ///< world place of the corner of cell (0, 0)
 
   /// World place of the middle of a cell.
-  Eigen::Vector2d centre_m(int x, int y) const {
+  Eigen::Vector2d center_m(int x, int y) const {
     return origin_m + resolution_m * Eigen::Vector2d(x + 0.5, y + 0.5);
   }
 };

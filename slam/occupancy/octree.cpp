@@ -47,14 +47,14 @@ struct Block {
 
 Block block_of(const octomap::OcTree& tree, const octomap::OcTree::leaf_iterator& leaf) {
   const double half_m = 0.5 * leaf.getSize();
-  const Eigen::Vector3d centre(leaf.getX(), leaf.getY(), leaf.getZ());
-  const auto voxel = [&](double metres) {
-    return static_cast<int>(std::lround(metres / tree.getResolution()));
+  const Eigen::Vector3d center(leaf.getX(), leaf.getY(), leaf.getZ());
+  const auto voxel = [&](double meters) {
+    return static_cast<int>(std::lround(meters / tree.getResolution()));
   };
   Block block{.low = {}, .high = {}, .occupied = tree.isNodeOccupied(*leaf)};
   for (int axis = 0; axis < 3; ++axis) {
-    block.low[axis] = voxel(centre[axis] - half_m);
-    block.high[axis] = voxel(centre[axis] + half_m);
+    block.low[axis] = voxel(center[axis] - half_m);
+    block.high[axis] = voxel(center[axis] + half_m);
   }
   return block;
 }
@@ -209,7 +209,7 @@ std::size_t OccupancyMapper::leaf_count() const {
 // stderr at each file.
 void OccupancyMapper::write_bt(std::ostream& out) const {
   octomap::OcTree tree(impl_->tree);
-  tree.toMaxLikelihood();  // as the format does, so that equal neighbours can be joined first
+  tree.toMaxLikelihood();  // as the format does, so that equal neighbors can be joined first
   tree.prune();
   out << kMagic << "\n"
       << fmt::format("id {}\nsize {}\nres {}\ndata\n", tree.getTreeType(), tree.size(),

@@ -194,7 +194,7 @@ void eliminate_point(const BundleProblem& problem, Workspace& w, std::uint32_t p
   }
 }
 
-/// Linearises at the state and reduces the system to the poses.
+/// Linearizes at the state and reduces the system to the poses.
 void build_reduced_system(const BundleProblem& problem, Workspace& w, const State& state,
                           const Camera& camera, const BundleConfig& config, bool robust,
                           double damping) {

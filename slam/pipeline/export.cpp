@@ -44,7 +44,7 @@ std::ptrdiff_t landmarks_seen(const Keyframe& keyframe) {
 
 std::string landmarks_ply(const Map& map) {
   std::string text = fmt::format(
-      "ply\nformat ascii 1.0\ncomment landmarks; metres; label: class id\nelement vertex {}\n"
+      "ply\nformat ascii 1.0\ncomment landmarks; meters; label: class id\nelement vertex {}\n"
       "property float x\nproperty float y\nproperty float z\n"
       "property uchar red\nproperty uchar green\nproperty uchar blue\n"
       "property uchar label\nproperty int observations\nend_header\n",
@@ -62,7 +62,7 @@ std::string landmarks_ply(const Map& map) {
 std::string keyframes_ply(const Map& map) {
   const std::vector<Edge> edges = covisibility(map);
   std::string text = fmt::format(
-      "ply\nformat ascii 1.0\ncomment keyframes and what they share; metres\n"
+      "ply\nformat ascii 1.0\ncomment keyframes and what they share; meters\n"
       "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
       "property int landmarks\n"
       "element edge {}\nproperty int vertex1\nproperty int vertex2\nproperty int shared\n"

@@ -16,7 +16,7 @@ std::string_view name(TrackStatus status);
 /// A loop that was closed: two keyframes and where the one is as seen from the other, by what both
 /// see. For whoever knows the truth.
 struct LoopClosure {
-  Stamp stamp_ns = 0, old_stamp_ns = 0;  ///< of the newest keyframe and of the one recognised
+  Stamp stamp_ns = 0, old_stamp_ns = 0;  ///< of the newest keyframe and of the one recognized
   SE3 old_from_new;                      ///< old camera from new camera
 };
 

@@ -144,8 +144,8 @@ void read_camera(YamlReader& yaml, Settings& settings) {
 Settings read_own(YamlReader yaml, Settings settings) {
   read_camera(yaml, settings);
   if (auto pictures = yaml.find("pictures")) {
-    settings.depth_per_metre =
-        pictures->number_or("depth_per_metre", settings.depth_per_metre, 1e-3, 1e9);
+    settings.depth_per_meter =
+        pictures->number_or("depth_per_meter", settings.depth_per_meter, 1e-3, 1e9);
     settings.exchange_red_blue = pictures->boolean("exchange_red_blue", false);
     pictures->finish();
   }
@@ -230,13 +230,13 @@ Settings read_orb_slam(YamlReader yaml, Settings settings) {
   const double rate_hz = yaml.number_or("Camera.fps", 0, 0, kMost);
   if (rate_hz != 0) c.rate_hz = rate_hz;
   c.baseline_m = yaml.number_or("Camera.bf", c.baseline_m * c.fx_px, 1e-6, kMost) / c.fx_px;
-  settings.depth_per_metre = yaml.number_or("DepthMapFactor", settings.depth_per_metre, 0, 1e9);
-  if (settings.depth_per_metre == 0) settings.depth_per_metre = 1;
+  settings.depth_per_meter = yaml.number_or("DepthMapFactor", settings.depth_per_meter, 0, 1e9);
+  if (settings.depth_per_meter == 0) settings.depth_per_meter = 1;
   settings.exchange_red_blue = yaml.integer_or("Camera.RGB", 0, 0, 1) == 1;
   if (settings.exchange_red_blue)
     settings.notes.push_back(fmt::format(
         "{}: Camera.RGB: 1: the first channel is taken for red where OpenCV reads blue, as "
-        "ORB-SLAM2 does; write 0 if colours matter and the files are ordinary ones",
+        "ORB-SLAM2 does; write 0 if colors matter and the files are ordinary ones",
         yaml.file()));
 
   FeatureConfig& f = settings.slam.features;
@@ -324,9 +324,9 @@ std::string format_settings(const Settings& settings) {
              "camera:\n  width_px: {}\n  height_px: {}\n  fx_px: {}\n  fy_px: {}\n  cx_px: {}\n"
              "  cy_px: {}\n  distortion: {{k1: {}, k2: {}, p1: {}, p2: {}, k3: {}}}\n"
              "  rate_hz: {}\n  baseline_m: {}\n  disparity_sigma_px: {}\n"
-             "pictures:\n  depth_per_metre: {}\n  exchange_red_blue: {}\n",
+             "pictures:\n  depth_per_meter: {}\n  exchange_red_blue: {}\n",
              c.width_px, c.height_px, c.fx_px, c.fy_px, c.cx_px, c.cy_px, d.k1, d.k2, d.p1, d.p2,
-             d.k3, c.rate_hz, c.baseline_m, c.disparity_sigma_px, settings.depth_per_metre,
+             d.k3, c.rate_hz, c.baseline_m, c.disparity_sigma_px, settings.depth_per_meter,
              settings.exchange_red_blue) +
          format_slam_config(settings.slam);
 }

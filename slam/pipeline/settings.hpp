@@ -16,14 +16,14 @@ namespace mh {
 struct Settings {
   Camera camera;
   bool has_camera = false;        ///< a file without one serves sources that bring their own
-  double depth_per_metre = 5000;  ///< value of a depth pixel one metre away
+  double depth_per_meter = 5000;  ///< value of a depth pixel one meter away
   bool exchange_red_blue = false;
   SlamConfig slam;
   std::vector<std::string> notes;  ///< what was passed over or needs telling, one line each
 };
 
 /// Reads our own settings (sections camera, pictures and those of SlamConfig, all optional; a
-/// camera needs its focal lengths and centre), a settings file of ORB-SLAM2 (`Camera.fx: ...`), or
+/// camera needs its focal lengths and center), a settings file of ORB-SLAM2 (`Camera.fx: ...`), or
 /// a ROS camera_info (`camera_matrix: ...`), which are told by their keys.
 /// @param base  what SLAM's parameters are where the file is silent
 /// @throws InputError "file:line: place: value".

@@ -22,7 +22,7 @@ concept Either = std::same_as<std::remove_const_t<T>, U>;
 
 inline constexpr double kMany = 1e6;
 inline constexpr SettingRange kShare{0, 1}, kOpenShare{0, 1, true}, kCount{1, kMany},
-    kPoints{4, kMany}, kBits{0, 256}, kGrey{1, 255}, kLength_m{0, 1000}, kRadius_px{1, 1000},
+    kPoints{4, kMany}, kBits{0, 256}, kGray{1, 255}, kLength_m{0, 1000}, kRadius_px{1, 1000},
     kAngle_rad{0, 3.2}, kGate{1e-3, kMany}, kSwitch{0, 1};
 
 // Each of these names every field of one part: the brackets do not compile once a field is added
@@ -34,8 +34,8 @@ void fields(C& c, Visit& v) {
   v("count", count, {10, 20000}, "keypoints wanted per frame");
   v("levels", levels, {1, 16}, "of the image pyramid");
   v("scale", scale, {1.01, 2}, "between levels");
-  v("fast_threshold", fast_threshold, kGrey, "grey levels");
-  v("fast_threshold_low", fast_threshold_low, kGrey, "where the first finds nothing");
+  v("fast_threshold", fast_threshold, kGray, "gray levels");
+  v("fast_threshold_low", fast_threshold_low, kGray, "where the first finds nothing");
   v("max_depth_m", max_depth_m, {0.1, 1000}, "depth beyond is dropped");
 }
 
@@ -138,7 +138,7 @@ void fields(C& c, Visit& v) {
   v("augmented", augmented, kSwitch, "candidates by equation 1 with labels; else by words alone");
   v("min_gap", min_gap, kCount, "keyframes between the two ends");
   v("loosely_shared", loosely_shared, kCount, "landmarks: the two ends share fewer");
-  v("min_similarity_share", min_similarity_share, kShare, "of the least alike strong neighbour's");
+  v("min_similarity_share", min_similarity_share, kShare, "of the least alike strong neighbor's");
   v("agreeing", agreeing, kCount, "keyframes that must tell of the same drift,");
   v("patience", patience, kCount, "each at most so many keyframes after the one before");
   v("same_drift_m", same_drift_m, kLength_m, "what counts as the same");

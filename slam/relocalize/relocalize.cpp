@@ -9,7 +9,7 @@
 namespace mh {
 namespace {
 
-constexpr std::size_t kNeighbours = 10;
+constexpr std::size_t kNeighbors = 10;
 
 int overlap(const InvertedIndex::Score& score, Overlap what) {
   switch (what) {
@@ -173,11 +173,11 @@ std::string_view name(RelocalizationStage stage) {
   return "?";
 }
 
-std::vector<KeyframeId> neighbourhood(const Map& map, KeyframeId k,
-                                      const std::function<bool(KeyframeId)>& belongs) {
+std::vector<KeyframeId> neighborhood(const Map& map, KeyframeId k,
+                                     const std::function<bool(KeyframeId)>& belongs) {
   std::vector<KeyframeId> result{k};
-  for (const Keyframe::Neighbour& n : map.at(k).covisible) {
-    if (result.size() > kNeighbours) break;
+  for (const Keyframe::Neighbor& n : map.at(k).covisible) {
+    if (result.size() > kNeighbors) break;
     if (!belongs || belongs(n.id)) result.push_back(n.id);
   }
   return result;
@@ -197,7 +197,7 @@ CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedV
   return select_candidates(
       std::span<const KeyframeId>(keyframes),
       [&](KeyframeId k) { return overlap(*of[k.value], what); },
-      [&](KeyframeId k) { return neighbourhood(map, k); },
+      [&](KeyframeId k) { return neighborhood(map, k); },
       [&](KeyframeId k) { return of[k.value] ? of[k.value]->similarity : 0.0; }, config.alpha,
       config.beta);
 }

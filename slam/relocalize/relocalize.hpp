@@ -63,8 +63,8 @@ struct RelocalizationResult {
 
 /// N_k of equation 5: a keyframe and its best covisible ones, ten at most.
 /// @param belongs  which keyframes count at all; empty = all
-std::vector<KeyframeId> neighbourhood(const Map& map, KeyframeId k,
-                                      const std::function<bool(KeyframeId)>& belongs = {});
+std::vector<KeyframeId> neighborhood(const Map& map, KeyframeId k,
+                                     const std::function<bool(KeyframeId)>& belongs = {});
 
 /// Algorithm 1 over the whole map. Where the query has no label member, words are counted.
 CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedVector& query,

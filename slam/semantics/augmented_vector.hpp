@@ -18,11 +18,11 @@ namespace mh {
 /// One member of the set of equation 1.
 struct WeightedMember {
   std::uint32_t id = 0;  ///< label or visual word
-  double weight = 0;     ///< L1-normalised share
+  double weight = 0;     ///< L1-normalized share
   friend bool operator==(const WeightedMember&, const WeightedMember&) = default;
 };
 
-/// Equation 1 as one sparse vector, L1-normalised over labels and words together. Each part is
+/// Equation 1 as one sparse vector, L1-normalized over labels and words together. Each part is
 /// ordered by id and holds positive weights only: what weighs nothing is no member.
 struct AugmentedVector {
   std::vector<WeightedMember> labels;
@@ -66,7 +66,7 @@ void for_each_common(std::span<const WeightedMember> a, std::span<const Weighted
 
 }  // namespace semantics_detail
 
-/// Equation 1: labels weigh gamma * |P_l|, visual words eta_v * |P_v|; then L1-normalised.
+/// Equation 1: labels weigh gamma * |P_l|, visual words eta_v * |P_v|; then L1-normalized.
 /// @param labels  one per keypoint; kNoLabel adds nothing (VoidPolicy::kUnknown).
 /// @param words   one per keypoint.
 /// @param gamma   factor of labels, >= 0.
@@ -95,7 +95,7 @@ AugmentedVector augmented_vector(std::span<const Label> labels,
   return vector;
 }
 
-/// The same frame without its labels: words alone, normalised anew.
+/// The same frame without its labels: words alone, normalized anew.
 inline AugmentedVector words_alone(const AugmentedVector& vector) {
   AugmentedVector plain;
   plain.words = vector.words;
@@ -105,7 +105,7 @@ inline AugmentedVector words_alone(const AugmentedVector& vector) {
   return plain;
 }
 
-/// ||f, k||_1 of the paper as a similarity: 1 - |f - k|_1 / 2 over normalised vectors, in [0, 1];
+/// ||f, k||_1 of the paper as a similarity: 1 - |f - k|_1 / 2 over normalized vectors, in [0, 1];
 /// 1 for equal vectors, 0 where nothing is shared (Nister and Stewenius, CVPR 2006). Summed over
 /// the shared members alone: |f - k|_1 = 2 - sum(|f| + |k| - |f - k|), so 1 - |f - k|_1 / 2 is the
 /// sum of the smaller shares.

@@ -14,7 +14,7 @@ namespace mh {
 template <class Key>
 struct Candidate {
   Key keyframe{};
-  double score = 0;  ///< a of equation 5: summed similarity of the keyframe's neighbourhood
+  double score = 0;  ///< a of equation 5: summed similarity of the keyframe's neighborhood
 };
 
 /// What Algorithm 1 selects, and how many keyframes were left after each of its steps.
@@ -28,13 +28,13 @@ struct CandidateSelection {
 /// k_best that several k share is kept once, with its largest a.
 /// @param keyframes   all keyframes of the map.
 /// @param overlap     overlap(k) -> n of equation 3, 0 = shares nothing.
-/// @param neighbours  neighbours(k) -> range of keyframes: k itself and its neighbours.
+/// @param neighbors  neighbors(k) -> range of keyframes: k itself and its neighbors.
 /// @param similarity  similarity(k) -> ||L_f, L_k||_1, larger = more alike.
 /// @param alpha, beta thresholds of equations 4 and 6, in [0, 1).
-template <class Key, class Overlap, class Neighbours, class Similarity>
+template <class Key, class Overlap, class Neighbors, class Similarity>
 CandidateSelection<Key> select_candidates(std::span<const Key> keyframes, Overlap overlap,
-                                          Neighbours neighbours, Similarity similarity,
-                                          double alpha, double beta) {
+                                          Neighbors neighbors, Similarity similarity, double alpha,
+                                          double beta) {
   CandidateSelection<Key> selection;
 
   // Equation (3)
@@ -63,12 +63,12 @@ CandidateSelection<Key> select_candidates(std::span<const Key> keyframes, Overla
     Candidate<Key> best{k, 0.0};
     double best_similarity = -1.0;
     double sum = 0.0;
-    for (const Key& neighbour : neighbours(k)) {
-      const double s = similarity(neighbour);
+    for (const Key& neighbor : neighbors(k)) {
+      const double s = similarity(neighbor);
       sum += s;
-      if (s > best_similarity || (s == best_similarity && neighbour < best.keyframe)) {
+      if (s > best_similarity || (s == best_similarity && neighbor < best.keyframe)) {
         best_similarity = s;
-        best.keyframe = neighbour;
+        best.keyframe = neighbor;
       }
     }
     best.score = sum;

@@ -11,7 +11,7 @@
 namespace mh {
 namespace {
 
-constexpr std::size_t kNeighboursOfEach = 10;
+constexpr std::size_t kNeighborsOfEach = 10;
 constexpr double kNearest_m = 0.05;
 
 ProjectionTarget target_of(const Eigen::Vector3d& point_in_camera, const Keypoint& from,
@@ -77,7 +77,7 @@ KeyframeId reference_of(const TrackedPose& tracked, const Map& map) {
   return voted.empty() ? KeyframeId{} : voted.front().first;
 }
 
-std::optional<TrackedPose> optimise_matches(const Query& query,
+std::optional<TrackedPose> optimize_matches(const Query& query,
                                             const std::vector<LandmarkId>& landmarks,
                                             std::span<const PassingPoint> passing, const SE3& guess,
                                             const Map& map, const Camera& camera,
@@ -191,7 +191,7 @@ std::optional<TrackedPose> track_reference(const Query& query, KeyframeId refere
                       SemanticMatcher(context.semantics, counts));
   trace_landmarks(context.trace, Matcher::kReferenceKeyframe, context.map.at(reference),
                   query.features, landmarks, context.semantics);
-  auto tracked = optimise_matches(query, landmarks, {}, guess, context.map, context.camera,
+  auto tracked = optimize_matches(query, landmarks, {}, guess, context.map, context.camera,
                                   context.features, context.pose);
   if (!tracked || tracked->inliers < context.config.min_inliers_frame) return std::nullopt;
   return tracked;
@@ -229,8 +229,8 @@ LocalMap local_map(const TrackedPose& tracked, const TrackContext& context) {
   for (const auto& [distance, id] : near)
     if (local.keyframes.size() < 3 * limit / 4) take(id);
 
-  for (std::size_t i = 0; i < std::min(kNeighboursOfEach, voted.size()); ++i)
-    for (const Keyframe::Neighbour& n : map.at(voted[i].first).covisible)
+  for (std::size_t i = 0; i < std::min(kNeighborsOfEach, voted.size()); ++i)
+    for (const Keyframe::Neighbor& n : map.at(voted[i].first).covisible)
       if (local.keyframes.size() < limit) take(n.id);
 
   IdSet<LandmarkId> seen;
@@ -277,7 +277,7 @@ std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedP
   for (std::size_t t = 0; t < found.size(); ++t)
     if (found[t] >= 0) landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
 
-  auto refined = optimise_matches(query, landmarks, tracked.passing, tracked.camera_from_world, map,
+  auto refined = optimize_matches(query, landmarks, tracked.passing, tracked.camera_from_world, map,
                                   context.camera, context.features, context.pose);
   if (!refined) return std::nullopt;
   result.tracked = std::move(*refined);

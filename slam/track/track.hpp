@@ -72,7 +72,7 @@ struct LocalMap {
 /// does.
 KeyframeId reference_of(const TrackedPose& tracked, const Map& map);
 
-/// Keyframes that share landmarks with the frame, their neighbours, and those that stand near and
+/// Keyframes that share landmarks with the frame, their neighbors, and those that stand near and
 /// look alike, whatever they share: so a place seen long ago is found again without a detour.
 LocalMap local_map(const TrackedPose& tracked, const TrackContext& context);
 
@@ -83,7 +83,7 @@ struct LocalMapResult {
 
 /// Refines a pose with every landmark of the local map that can be found in the frame, and with the
 /// points that pass by.
-/// @returns nullopt if the optimisation fails.
+/// @returns nullopt if the optimization fails.
 std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedPose& tracked,
                                               const LocalMap& local, float radius_px,
                                               const TrackContext& context, MatcherCounts& counts);
@@ -96,7 +96,7 @@ bool needs_keyframe(const TrackedPose& tracked, const Features& features, const 
 /// @param passing  observed too where the feature has no landmark, but no inliers: where the map is
 ///                 young, landmarks alone may cover a narrow part of the picture, in which turning
 ///                 and shifting look alike.
-std::optional<TrackedPose> optimise_matches(const Query& query,
+std::optional<TrackedPose> optimize_matches(const Query& query,
                                             const std::vector<LandmarkId>& landmarks,
                                             std::span<const PassingPoint> passing, const SE3& guess,
                                             const Map& map, const Camera& camera,

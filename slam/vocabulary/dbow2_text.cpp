@@ -82,13 +82,13 @@ class LineReader {
 /// Nodes as they stand in the file; 0 is the root.
 struct Nodes {
   std::vector<std::uint32_t> parent = {0};
-  std::vector<Descriptor> centre = {Descriptor{}};
+  std::vector<Descriptor> center = {Descriptor{}};
   std::vector<float> weight = {0};
   std::vector<std::uint8_t> is_leaf = {0}, level = {0}, children = {0};
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(parent.size()); }
   void reserve(std::size_t n) {
-    parent.reserve(n), centre.reserve(n), weight.reserve(n);
+    parent.reserve(n), center.reserve(n), weight.reserve(n);
     is_leaf.reserve(n), level.reserve(n), children.reserve(n);
   }
 };
@@ -115,7 +115,7 @@ void read_node(LineReader& reader, const VocabularyTree& tree, Nodes& nodes) {
     throw reader.fault(
         fmt::format("node {} has more than the {} children of line 1", parent, tree.branching));
   nodes.is_leaf.push_back(static_cast<std::uint8_t>(reader.take("is-leaf", 0, 1)));
-  nodes.centre.push_back(take_descriptor(reader));
+  nodes.center.push_back(take_descriptor(reader));
   const auto weight = reader.take<double>("the weight");
   if (!std::isfinite(weight) || weight < 0)
     throw reader.fault(fmt::format("the weight: {} is not a number from 0", weight));
@@ -165,7 +165,7 @@ VocabularyTree read_dbow2_text(std::string_view text, const std::string& name) {
   for (const std::uint32_t node : breadth_first(nodes)) {
     if (nodes.is_leaf[node] == 0 && nodes.children[node] == 0)
       throw reader.fault(node + 1, "is no leaf and has no child in the whole file");
-    tree.centres.push_back(nodes.centre[node]);
+    tree.centers.push_back(nodes.center[node]);
     tree.child_counts.push_back(nodes.children[node]);
     if (nodes.is_leaf[node] != 0) tree.idf.push_back(nodes.weight[node]);
   }

@@ -3,8 +3,8 @@
 //   8 bytes   magic "MHVOCAB\n"
 //   u32 x 6   version, branching, depth, number of nodes N, number of words W, training images
 //   u64       training descriptors
-//   24 bytes  zero: centres start at a multiple of 64
-//   32 x N    centres of the nodes, breadth first (the root's is zero)
+//   24 bytes  zero: centers start at a multiple of 64
+//   32 x N    centers of the nodes, breadth first (the root's is zero)
 //   f32 x W   inverse document frequencies; word w is the w-th node without children
 //   u8  x N   number of children of each node; children follow in the order of their parents
 //   u64       xxh3-64 of all bytes before
@@ -91,14 +91,14 @@ std::string encode(const VocabularyTree& tree) {
   const Header header{.version = Vocabulary::kFileVersion,
                       .branching = tree.branching,
                       .depth = tree.depth,
-                      .nodes = static_cast<std::uint32_t>(tree.centres.size()),
+                      .nodes = static_cast<std::uint32_t>(tree.centers.size()),
                       .words = static_cast<std::uint32_t>(tree.idf.size()),
                       .images = tree.images,
                       .descriptors = tree.descriptors};
   std::string bytes(kMagic);
   bytes.reserve(checksum_offset(header) + sizeof(std::uint64_t));
   bytes.append(reinterpret_cast<const char*>(&header), sizeof header);
-  append(bytes, tree.centres);
+  append(bytes, tree.centers);
   append(bytes, tree.idf);
   append(bytes, tree.child_counts);
   append(bytes, std::vector{std::uint64_t{XXH3_64bits(bytes.data(), bytes.size())}});
@@ -112,7 +112,7 @@ Vocabulary::Vocabulary(HeldBytes bytes, const std::string& name) : bytes_(std::m
   };
   const char* const content = bytes_.view.data();
   const std::size_t idf = kHeaderSize + std::size_t{header.nodes} * sizeof(Descriptor);
-  centres_ = {reinterpret_cast<const Descriptor*>(content + kHeaderSize), header.nodes};
+  centers_ = {reinterpret_cast<const Descriptor*>(content + kHeaderSize), header.nodes};
   idf_ = {reinterpret_cast<const float*>(content + idf), header.words};
   child_counts_ = reinterpret_cast<const std::uint8_t*>(content + idf + idf_.size_bytes());
   branching_ = static_cast<int>(header.branching);

@@ -68,35 +68,35 @@ bool assign(std::span<const Descriptor> descriptors, std::span<const std::uint32
             Clusters& clusters) {
   bool changed = false;
   for (std::size_t i = 0; i < members.size(); ++i) {
-    const std::uint32_t c = nearest(clusters.centres, descriptors[members[i]]);
+    const std::uint32_t c = nearest(clusters.centers, descriptors[members[i]]);
     changed |= c != clusters.cluster_of[i];
     clusters.cluster_of[i] = c;
   }
   return changed;
 }
 
-// A centre without members stays where it is.
-void recentre(std::span<const Descriptor> descriptors, std::span<const std::uint32_t> members,
+// A center without members stays where it is.
+void recenter(std::span<const Descriptor> descriptors, std::span<const std::uint32_t> members,
               Clusters& clusters) {
-  std::vector<Majority> majority(clusters.centres.size());
+  std::vector<Majority> majority(clusters.centers.size());
   for (std::size_t i = 0; i < members.size(); ++i)
     majority[clusters.cluster_of[i]].add(descriptors[members[i]]);
   for (std::size_t c = 0; c < majority.size(); ++c)
-    if (majority[c].count() > 0) clusters.centres[c] = majority[c].vote();
+    if (majority[c].count() > 0) clusters.centers[c] = majority[c].vote();
 }
 
-// Removing centres that nobody is nearest to changes nobody's nearest centre.
+// Removing centers that nobody is nearest to changes nobody's nearest center.
 void drop_empty(Clusters& clusters) {
-  std::vector<std::uint32_t> new_index(clusters.centres.size(), UINT32_MAX);
-  std::vector<char> used(clusters.centres.size(), 0);
+  std::vector<std::uint32_t> new_index(clusters.centers.size(), UINT32_MAX);
+  std::vector<char> used(clusters.centers.size(), 0);
   for (const std::uint32_t c : clusters.cluster_of) used[c] = 1;
   std::vector<Descriptor> kept;
   for (std::size_t c = 0; c < used.size(); ++c) {
     if (!used[c]) continue;
     new_index[c] = static_cast<std::uint32_t>(kept.size());
-    kept.push_back(clusters.centres[c]);
+    kept.push_back(clusters.centers[c]);
   }
-  clusters.centres = std::move(kept);
+  clusters.centers = std::move(kept);
   for (std::uint32_t& c : clusters.cluster_of) c = new_index[c];
 }
 
@@ -108,15 +108,15 @@ Clusters cluster(std::span<const Descriptor> descriptors, std::span<const std::u
   Clusters clusters;
   clusters.cluster_of.assign(members.size(), UINT32_MAX);
 
-  clusters.centres = distinct(descriptors, members, static_cast<std::size_t>(k) + 1);
-  if (clusters.centres.size() <= static_cast<std::size_t>(k)) {
+  clusters.centers = distinct(descriptors, members, static_cast<std::size_t>(k) + 1);
+  if (clusters.centers.size() <= static_cast<std::size_t>(k)) {
     assign(descriptors, members, clusters);
     return clusters;
   }
-  clusters.centres = draw_seeds(descriptors, members, k, random);
+  clusters.centers = draw_seeds(descriptors, members, k, random);
   for (int i = 0; i < max_iterations && assign(descriptors, members, clusters); ++i)
-    recentre(descriptors, members, clusters);
-  assign(descriptors, members, clusters);  // to the centres as they are in the end
+    recenter(descriptors, members, clusters);
+  assign(descriptors, members, clusters);  // to the centers as they are in the end
   drop_empty(clusters);
   return clusters;
 }

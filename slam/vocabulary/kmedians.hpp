@@ -11,9 +11,9 @@
 namespace mh {
 
 struct Clusters {
-  std::vector<Descriptor> centres;  ///< distinct, each with members
+  std::vector<Descriptor> centers;  ///< distinct, each with members
   std::vector<std::uint32_t>
-      cluster_of;  ///< per descriptor: its nearest centre, first among equals
+      cluster_of;  ///< per descriptor: its nearest center, first among equals
 };
 
 /// k-medians in Hamming space: seeds drawn with probability proportional to squared distance from
@@ -26,12 +26,12 @@ struct Clusters {
 Clusters cluster(std::span<const Descriptor> descriptors, std::span<const std::uint32_t> members,
                  int k, int max_iterations, RandomStream random);
 
-/// Index of the centre nearest to a descriptor, the first among equals. @pre there is one.
-inline std::uint32_t nearest(std::span<const Descriptor> centres, const Descriptor& descriptor) {
+/// Index of the center nearest to a descriptor, the first among equals. @pre there is one.
+inline std::uint32_t nearest(std::span<const Descriptor> centers, const Descriptor& descriptor) {
   std::uint32_t best = 0;
-  int best_distance = hamming(centres[0], descriptor);
-  for (std::uint32_t i = 1; i < centres.size(); ++i)
-    if (const int distance = hamming(centres[i], descriptor); distance < best_distance) {
+  int best_distance = hamming(centers[0], descriptor);
+  for (std::uint32_t i = 1; i < centers.size(); ++i)
+    if (const int distance = hamming(centers[i], descriptor); distance < best_distance) {
       best = i;
       best_distance = distance;
     }

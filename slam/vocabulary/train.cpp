@@ -75,29 +75,29 @@ class VocabularyTrainer {
       const Clusters clusters =
           cluster(descriptors_, pending.members, config_.branching, config_.max_iterations, random);
       // All alike: splitting further would only make a chain. The root must have a child, though.
-      if (clusters.centres.size() == 1 && depth > 0) continue;
+      if (clusters.centers.size() == 1 && depth > 0) continue;
       add_children(pending, clusters, next);
     }
     return next;
   }
 
-  void add_node(const Descriptor& centre) {
-    tree_.centres.push_back(centre);
+  void add_node(const Descriptor& center) {
+    tree_.centers.push_back(center);
     tree_.child_counts.push_back(0);
   }
 
   void add_children(const Pending& parent, const Clusters& clusters, std::vector<Pending>& next) {
     const std::size_t first_pending = next.size();
-    tree_.child_counts[parent.node] = static_cast<std::uint8_t>(clusters.centres.size());
-    for (const Descriptor& centre : clusters.centres) {
-      next.push_back({static_cast<std::uint32_t>(tree_.centres.size()), {}});
-      add_node(centre);
+    tree_.child_counts[parent.node] = static_cast<std::uint8_t>(clusters.centers.size());
+    for (const Descriptor& center : clusters.centers) {
+      next.push_back({static_cast<std::uint32_t>(tree_.centers.size()), {}});
+      add_node(center);
     }
     for (std::size_t i = 0; i < parent.members.size(); ++i)
       next[first_pending + clusters.cluster_of[i]].members.push_back(parent.members[i]);
   }
 
-  // Inverse document frequency. Members were assigned to final centres at every node, so each word
+  // Inverse document frequency. Members were assigned to final centers at every node, so each word
   // is that of the descriptors that made it, and none is without an image.
   void weigh_words(const Vocabulary& unweighted) {
     std::vector<std::uint32_t> images_with(tree_.idf.size(), 0);

@@ -17,7 +17,7 @@ struct VocabularyTree {
   std::uint32_t depth = 0;                 ///< levels below the root
   std::uint32_t images = 0;                ///< trained on; 0 = not known
   std::uint64_t descriptors = 0;           ///< in these images; 0 = not known
-  std::vector<Descriptor> centres;         ///< of each node; the root's is zero
+  std::vector<Descriptor> centers;         ///< of each node; the root's is zero
   std::vector<std::uint8_t> child_counts;  ///< of each node; 0 = a word
   std::vector<float> idf;                  ///< of each word, in the order of their nodes
 };

@@ -8,13 +8,13 @@
 namespace mh {
 
 Vocabulary::Quantized Vocabulary::quantize(const Descriptor& descriptor) const {
-  assert(!centres_.empty());
+  assert(!centers_.empty());
   const std::vector<std::uint32_t>& links = *links_;
   std::uint32_t index = 0;
   std::uint32_t ancestor = 0;
   for (int level = 0; child_counts_[index] > 0; ++level) {
     const std::uint32_t first = links[index];
-    index = first + nearest(centres_.subspan(first, child_counts_[index]), descriptor);
+    index = first + nearest(centers_.subspan(first, child_counts_[index]), descriptor);
     if (level < kDirectIndexLevel) ancestor = index;
   }
   return {links[index], ancestor};

@@ -66,7 +66,7 @@ class Vocabulary {
   float idf(WordId word) const { return idf_[word]; }
   int branching() const { return branching_; }
   int depth() const { return depth_; }
-  std::size_t node_count() const { return centres_.size(); }
+  std::size_t node_count() const { return centers_.size(); }
   std::uint32_t training_images() const { return training_images_; }  ///< 0 = not known
   std::uint64_t training_descriptors() const { return training_descriptors_; }
   /// Of the file's content: equal digests, equal vocabularies. 0 if empty.
@@ -77,7 +77,7 @@ class Vocabulary {
   Vocabulary(HeldBytes bytes, const std::string& name);
 
   HeldBytes bytes_;  ///< the whole file; what follows points into it
-  std::span<const Descriptor> centres_;
+  std::span<const Descriptor> centers_;
   std::span<const float> idf_;
   const std::uint8_t* child_counts_ = nullptr;
   /// Per node: its first child, or its word where it has no child.

@@ -502,8 +502,10 @@ TEST(BenchProcess, BadInputFoundInTheWorkIsNoFailureOfTheMachine) {
 
 TEST(BenchProcess, AScannetFolderIsASceneAndItsWarningsAreToldOnce) {
   const fs::path scan = test_folder() / "scan0000_00";
-  ASSERT_EQ(run("scene convert " MH_SOURCE_DIR "/bench/scenarios/room.yaml --format scannet --out " + scan.string()),
-            0)
+  ASSERT_EQ(
+      run("scene convert " MH_SOURCE_DIR "/bench/scenarios/room.yaml --format scannet --out " +
+          scan.string()),
+      0)
       << errors();
   fs::remove(scan / "scan0000_00.aggregation.json");
   const std::string warning = "has no scan0000_00.aggregation.json";

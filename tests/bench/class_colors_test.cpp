@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/pictures/false_colours.hpp"
+#include "bench/pictures/false_colors.hpp"
 #include "bench/realism/scan_views.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/generate/grammar.hpp"
@@ -26,7 +26,7 @@ TEST(Ciede2000, GivesThePublishedFigures) {
   EXPECT_NEAR(ciede2000({2.0776, 0.0795, -1.1350}, {0.9033, -0.0636, -0.5514}), 0.9082, 1e-4);
 }
 
-TEST(ColorVision, RedAndGreenLookAlikeToSomeAndGreysLookTheSameToAll) {
+TEST(ColorVision, RedAndGreenLookAlikeToSomeAndGraysLookTheSameToAll) {
   const auto visions = color_visions();
   for (const Eigen::Matrix3d& vision : visions)
     for (const std::uint8_t v : {0, 60, 128, 255})
@@ -56,14 +56,14 @@ void add_touching(const std::string& name, std::set<std::pair<ClassId, ClassId>>
   }
 }
 
-TEST(ClassColour, ColorBlindPeopleCanTellClassesThatTouch) {
+TEST(ClassColor, ColorBlindPeopleCanTellClassesThatTouch) {
   std::set<std::pair<ClassId, ClassId>> touching;
   add_touching(std::string(MH_SOURCE_DIR) + "/scenes/model_house/house.yaml", touching);
   for (const Category& category : categories())
     add_touching(to_string({category.name, 0}), touching);
   EXPECT_GT(touching.size(), 200U);
   for (const auto& [a, b] : touching)
-    EXPECT_GE(least_difference(class_colour(a), class_colour(b)), 10)
+    EXPECT_GE(least_difference(class_color(a), class_color(b)), 10)
         << classes()[a].name << " and " << classes()[b].name;
 }
 

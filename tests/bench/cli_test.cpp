@@ -561,7 +561,7 @@ TEST_F(CommandLine, SheetsOfSensorsAreFourPicturesWhoseNamesArePrinted) {
   ASSERT_EQ(run("sensors sheet " + mesh.string() + " --out " + out.string()), 0) << err_;
   std::string names;
   std::vector<std::string> pictures;
-  for (const char* name : {"colour.png", "depth.png", "frames.png", "labels.png"}) {
+  for (const char* name : {"color.png", "depth.png", "frames.png", "labels.png"}) {
     names += (out / name).string() + "\n";
     pictures.push_back(content(out / name));
     EXPECT_EQ(pictures.back().substr(1, 3), "PNG") << name;

@@ -64,13 +64,13 @@ inline double ciede2000(const Eigen::Vector3d& first, const Eigen::Vector3d& sec
     return h < 0 ? h + 360 : h;
   };
   const double c1 = chroma(first), c2 = chroma(second), h1 = hue(first), h2 = hue(second);
-  const bool grey = c1 * c2 == 0;
-  double turn = grey ? 0 : h2 - h1;
+  const bool gray = c1 * c2 == 0;
+  double turn = gray ? 0 : h2 - h1;
   if (turn > 180) turn -= 360;
   if (turn < -180) turn += 360;
   double h = h1 + h2;
-  if (!grey && std::abs(h1 - h2) > 180) h += h < 360 ? 360 : -360;
-  if (!grey) h /= 2;
+  if (!gray && std::abs(h1 - h2) > 180) h += h < 360 ? 360 : -360;
+  if (!gray) h /= 2;
   const double l = 0.5 * (first[0] + second[0]), c = 0.5 * (c1 + c2);
   const auto cosine = [&](double times, double shift) {
     return std::cos((times * h + shift) * kDegree);

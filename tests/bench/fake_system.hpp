@@ -102,11 +102,11 @@ inline std::unique_ptr<RelocalizationSession> FakeSystem::open_session() const {
   return std::make_unique<FakeSession>(*this);
 }
 
-/// Frames of 2 x 2 pixels whose stamp is their index; colour tells the noise stream.
+/// Frames of 2 x 2 pixels whose stamp is their index; color tells the noise stream.
 inline RgbdFrame fake_frame(std::size_t index, RandomStream noise) {
   RgbdFrame frame;
   frame.stamp_ns = static_cast<Stamp>(index);
-  frame.colour = Grid2d<Rgb8>(2, 2, Rgb8{static_cast<std::uint8_t>(noise.below(0, 256)), 0, 0});
+  frame.color = Grid2d<Rgb8>(2, 2, Rgb8{static_cast<std::uint8_t>(noise.below(0, 256)), 0, 0});
   frame.depth_m = Grid2d<float>(2, 2, 1.0F);
   return frame;
 }

@@ -57,7 +57,7 @@ const MadeUpFigures kSemantic = {
                     .c3 = 16,
                     .label_mass = 0.17,
                     .unanswered = RelocalizationStage::kPnp},
-    .pairs = {.compared = 1000, .penalised = 123, .rejected_by_xi = 45, .ratio_helped = 6},
+    .pairs = {.compared = 1000, .penalized = 123, .rejected_by_xi = 45, .ratio_helped = 6},
     .track_ms = {1, 2, 30},
     .relocalize_ms = {4, 5, 60}};
 
@@ -309,7 +309,7 @@ TEST_F(Figures, OfTheJsonsRowsHaveTheirNames) {
       "aligned_distance_mean_m": 0.49, "attempts": 3.2, "candidates": {"keyframes": 100.0,
       "c1": 64.0, "c2": 32.0, "c3": 16.0, "final": 2.4, "single": 0.2, "label_mass": 0.17}})"));
   EXPECT_EQ(semantic["matchers"]["motion_model"],
-            nlohmann::json::parse(R"({"compared": 1000, "penalised": 123, "rejected_by_xi": 45,
+            nlohmann::json::parse(R"({"compared": 1000, "penalized": 123, "rejected_by_xi": 45,
       "ratio_helped": 6})"));
   EXPECT_EQ(plain["held_out"]["correct"], 0.25);
   EXPECT_EQ(plain["second_tour"]["correct"], 0.2);

@@ -34,7 +34,7 @@ std::string repeated(const std::string& text, std::size_t count) {
   return all;
 }
 
-std::string png(std::uint32_t width, std::uint32_t height, int bits, int colour_type,
+std::string png(std::uint32_t width, std::uint32_t height, int bits, int color_type,
                 const std::string& rows) {
   uLongf size = compressBound(rows.size());
   std::string packed(size, '\0');
@@ -42,7 +42,7 @@ std::string png(std::uint32_t width, std::uint32_t height, int bits, int colour_
             reinterpret_cast<const Bytef*>(rows.data()), rows.size(), 9);
   packed.resize(size);
   const std::string header = big_endian(width) + big_endian(height) + static_cast<char>(bits) +
-                             static_cast<char>(colour_type) + std::string(3, '\0');
+                             static_cast<char>(color_type) + std::string(3, '\0');
   return "\x89PNG\r\n\x1a\n" + chunk("IHDR", header) + chunk("IDAT", packed) + chunk("IEND", "");
 }
 

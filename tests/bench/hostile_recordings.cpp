@@ -28,16 +28,16 @@ const std::string kCamera =
 HostileCase tum(const std::string& name, std::map<std::string, std::string> files,
                 const std::string& says) {
   HostileCase c{name, std::move(files), "slam {}" + kSlam, says};
-  std::string colours, depths;
+  std::string colors, depths;
   for (int i = 1; i <= 3; ++i) {
-    colours += fmt::format("{0}.0 rgb/{0}.png\n", i);
+    colors += fmt::format("{0}.0 rgb/{0}.png\n", i);
     depths += fmt::format("{0}.0 depth/{0}.png\n", i);
     c.files.try_emplace(fmt::format("rgb/{}.png", i),
                         png(64, 48, 8, 2, std::string(193 * 48, '\0')));
     c.files.try_emplace(fmt::format("depth/{}.png", i),
                         png(64, 48, 16, 0, std::string(129 * 48, '\0')));
   }
-  c.files.try_emplace("rgb.txt", colours);
+  c.files.try_emplace("rgb.txt", colors);
   c.files.try_emplace("depth.txt", depths);
   c.files.try_emplace("camera.yaml", kCamera);
   return c;
@@ -63,13 +63,13 @@ void add_tum(std::vector<HostileCase>& cases) {
   cases.push_back(tum("tum_stamp_of_1e999", {{"rgb.txt", "1e999 rgb/1.png\n"}}, "1e999"));
   cases.push_back(
       tum("tum_truth_is_not_finite", {{"groundtruth.txt", "1.0 nan 0 0 0 0 0 1\n"}}, "not finite"));
-  std::string many_colours, many_depths;
+  std::string many_colors, many_depths;
   for (int i = 1; i <= 60'000; ++i) {
-    many_colours += fmt::format("{}.0 rgb/1.png\n", i);
+    many_colors += fmt::format("{}.0 rgb/1.png\n", i);
     many_depths += fmt::format("{}.0 depth/1.png\n", i);
   }
   HostileCase many =
-      tum("tum_of_60000_frames", {{"rgb.txt", many_colours}, {"depth.txt", many_depths}},
+      tum("tum_of_60000_frames", {{"rgb.txt", many_colors}, {"depth.txt", many_depths}},
           "nothing could be mapped");
   many.arguments += " --frames 3";
   cases.push_back(many);
@@ -128,7 +128,7 @@ void add_scannet(std::vector<HostileCase>& cases) {
       {{"scene0000_00/scene0000_00.txt", "axisAlignment = " + repeated("nan ", 12) + "0 0 0 1\n"}});
 
   const auto sens = [&](const std::string& name, std::uint64_t name_size, std::uint32_t width,
-                        std::uint64_t frames, std::uint64_t colour_bytes, const std::string& says) {
+                        std::uint64_t frames, std::uint64_t color_bytes, const std::string& says) {
     const std::array<float, 16> unit{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     const std::string head = raw(std::uint32_t{4}) + raw(name_size) + "name" + raw(unit) +
                              raw(unit) + raw(unit) + raw(unit) +
@@ -136,7 +136,7 @@ void add_scannet(std::vector<HostileCase>& cases) {
                              raw(std::array<std::uint32_t, 4>{width, 48, width, 48}) + raw(1000.0F);
     cases.push_back({name,
                      {{"a.sens", head + raw(frames) + raw(unit) +
-                                     raw(std::array<std::uint64_t, 4>{1, 1, colour_bytes, 10}) +
+                                     raw(std::array<std::uint64_t, 4>{1, 1, color_bytes, 10}) +
                                      std::string(20, '\0')}},
                      "slam scannet:{}/a.sens" + kSlam,
                      says});

@@ -28,11 +28,11 @@ void put(const fs::path& file, const std::string& content) {
 }
 
 std::string picture(std::uint8_t shade) {
-  Grid2d<Rgb8> colours(16, 16);
+  Grid2d<Rgb8> colors(16, 16);
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 16; ++x)
-      colours(x, y) = {static_cast<std::uint8_t>(16 * x), static_cast<std::uint8_t>(16 * y), shade};
-  return encode_jpeg(colours, 90);
+      colors(x, y) = {static_cast<std::uint8_t>(16 * x), static_cast<std::uint8_t>(16 * y), shade};
+  return encode_jpeg(colors, 90);
 }
 
 // ---- one mesh in each format -----------------------------------------------------------------
@@ -106,7 +106,7 @@ constexpr const char* kAsciiPly =
     "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
     "0 0 0\n1 0 0\n0 2 0\n3 0 1 2\n";
 
-void put_labelled_ply(const fs::path& folder) {
+void put_labeled_ply(const fs::path& folder) {
   put_obj(folder / "source");
   save_scannet_ply(load_mesh(folder / "source" / "a.obj"), folder / "e.ply", 10.0F);
   fs::remove_all(folder / "source");
@@ -184,14 +184,14 @@ const std::vector<Kind>& kinds() {
        "scene.yaml",
        [](const fs::path& f) {
          put_obj(f / "m"), put_gltf(f / "m"), put_glb(f / "m"), put_dae(f / "m");
-         put_labelled_ply(f / "m");
+         put_labeled_ply(f / "m");
          put(f / "scene.yaml",
              "name: room\nobjects: [{file: m/a.obj}, {file: m/b.gltf}, {file: m/c.glb}, "
              "{file: m/d.dae}, {file: m/e.ply}]\n");
        },
        {"scene.yaml", "m/a.obj", "m/look.mtl", "m/wood.jpg", "m/mask.jpg", "m/b.gltf", "m/b.bin",
         "m/wall.jpg", "m/c.glb", "m/d.dae", "m/cloth.jpg", "m/e.ply", "m/e.labels.json"}},
-      {"PlyWithLabelsJson", "e.ply", put_labelled_ply, {"e.ply", "e.labels.json"}},
+      {"PlyWithLabelsJson", "e.ply", put_labeled_ply, {"e.ply", "e.labels.json"}},
       {"PlyInText", "f.ply", [](const fs::path& f) { put(f / "f.ply", kAsciiPly); }, {"f.ply"}},
       {"ObjWithLabelsYaml",
        "a.obj",

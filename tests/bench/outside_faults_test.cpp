@@ -165,8 +165,8 @@ TEST_F(OutsideFaults, AFailureReadsTheSameInAnyFolder) {
   EXPECT_EQ(trajectory_error(writes("what is this\\n")).find(folder_.string()), std::string::npos);
   // Pictures lie in a folder whose name is drawn by chance.
   const std::string picture =
-      track_error(says(R"(echo "$line" | sed 's/.*"colour":"//; s/".*//' >&2; exit 1)"));
-  EXPECT_HOLDS(picture, "it last wrote: colour.ppm");
+      track_error(says(R"(echo "$line" | sed 's/.*"color":"//; s/".*//' >&2; exit 1)"));
+  EXPECT_HOLDS(picture, "it last wrote: color.ppm");
 }
 
 TEST_F(OutsideFaults, ATrajectoryThatIsNone) {

@@ -84,8 +84,8 @@ TEST(FrameFiles, AreReadByOpenCvPixelForPixel) {
   const fs::path folder = fs::temp_directory_path() / ("mh_frame_" + std::to_string(getpid()));
   fs::create_directories(folder);
   RgbdFrame frame;
-  frame.colour = Grid2d<Rgb8>(3, 2, Rgb8{1, 2, 3});
-  frame.colour(2, 1) = {200, 100, 50};
+  frame.color = Grid2d<Rgb8>(3, 2, Rgb8{1, 2, 3});
+  frame.color(2, 1) = {200, 100, 50};
   frame.depth_m = Grid2d<float>(3, 2, 0.0F);
   frame.depth_m(1, 0) = 1.2345F;  // 6172.5 units
   frame.depth_m(2, 1) = 20.0F;    // beyond what 16 bits hold
@@ -94,12 +94,12 @@ TEST(FrameFiles, AreReadByOpenCvPixelForPixel) {
   frame.semantics = {Grid2d<std::uint8_t>(3, 2), {{}, {{{5, 0.3F}, {7, 0.6F}}}}};
   frame.semantics.index(0, 1) = 1;
   files = show(frame, folder);
-  const cv::Mat colour = cv::imread(files.colour.string(), cv::IMREAD_UNCHANGED);
+  const cv::Mat color = cv::imread(files.color.string(), cv::IMREAD_UNCHANGED);
   const cv::Mat depth = cv::imread(files.depth.string(), cv::IMREAD_UNCHANGED);
   const cv::Mat labels = cv::imread(files.labels.string(), cv::IMREAD_UNCHANGED);
   fs::remove_all(folder);
-  ASSERT_EQ(colour.type(), CV_8UC3);
-  EXPECT_EQ(colour.at<cv::Vec3b>(1, 2), cv::Vec3b(50, 100, 200));
+  ASSERT_EQ(color.type(), CV_8UC3);
+  EXPECT_EQ(color.at<cv::Vec3b>(1, 2), cv::Vec3b(50, 100, 200));
   ASSERT_EQ(depth.type(), CV_16UC1);
   EXPECT_NEAR(depth.at<std::uint16_t>(0, 1), 6172.5, 0.6);
   EXPECT_EQ(depth.at<std::uint16_t>(1, 2), 65535);

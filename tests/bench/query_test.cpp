@@ -104,7 +104,7 @@ TEST(Query, TheDigestsOfPosesAndImagesAreOfEveryAttempt) {
     int shown = 0;
     const auto tampered = [&](std::size_t index, RandomStream noise) {
       RgbdFrame frame = fake_frame(index, noise);
-      if (++shown == changed) frame.colour(0, 0).b = 255;
+      if (++shown == changed) frame.color(0, 0).b = 255;
       return frame;
     };
     images.insert(query(system, 59, tampered, {}, RandomStream(1)).image_digest);
@@ -167,7 +167,7 @@ TEST(NearestMapped, IsNextInTimeOrNextInPlaceAndHeading) {
   EXPECT_FALSE(nearest_mapped({}, truth, query, NearestBy::kTime));
 }
 
-TEST(InterpolatedPose, LiesBetweenItsNeighboursInTime) {
+TEST(InterpolatedPose, LiesBetweenItsNeighborsInTime) {
   constexpr Stamp kMs = 1'000'000;
   const Trajectory estimate = {
       {0, at(0, 0, 0)}, {100 * kMs, at(1, 2, 0.4)}, {700 * kMs, at(5, 5, 1.0)}};
@@ -177,7 +177,7 @@ TEST(InterpolatedPose, LiesBetweenItsNeighboursInTime) {
   const auto exact = interpolated_pose(estimate, 100 * kMs);
   ASSERT_TRUE(exact);
   EXPECT_LT((exact->inverse() * at(1, 2, 0.4)).log().norm(), 1e-12);
-  EXPECT_FALSE(interpolated_pose(estimate, 300 * kMs)) << "neighbours 0.6 s apart";
+  EXPECT_FALSE(interpolated_pose(estimate, 300 * kMs)) << "neighbors 0.6 s apart";
   EXPECT_FALSE(interpolated_pose(estimate, 701 * kMs)) << "nothing after it";
   EXPECT_FALSE(interpolated_pose({}, 0));
 }
@@ -200,7 +200,7 @@ TEST(FindAnchor, ComparesWithWhatTheProtocolAsksFor) {
   config.truth = QueryTruth::kInterpolated;
   const TimedPose beyond{120 * kMs, at(1.1, 0, 0)};
   const auto anchor = find_anchor(estimate, truth, beyond, NearestBy::kTime, config);
-  ASSERT_TRUE(anchor) << "without a neighbour after it: the local truth";
+  ASSERT_TRUE(anchor) << "without a neighbor after it: the local truth";
   EXPECT_NEAR(local_truth(*anchor, beyond.world_from_camera).translation().x(), 11.1, 1e-12);
 }
 

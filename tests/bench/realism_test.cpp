@@ -14,7 +14,7 @@ namespace {
 
 enum : std::size_t { kFast20, kFast7, kOrb, kMedian, kHigh, kBlank, kSlope, kLaplacian };
 
-TEST(Percentile, InterpolatesBetweenNeighbours) {
+TEST(Percentile, InterpolatesBetweenNeighbors) {
   EXPECT_DOUBLE_EQ(percentile({4, 1, 3, 2}, 0.5), 2.5);
   EXPECT_DOUBLE_EQ(percentile({10, 20}, 0.25), 12.5);
   EXPECT_DOUBLE_EQ(percentile({7}, 0.95), 7);
@@ -36,7 +36,7 @@ TEST(MeasureImage, OfARampHasItsGradient) {
     for (int x = 0; x < 640; ++x)
       ramp.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(x % 80 * 3);
   const ImageStatistics s = measure_image(ramp);
-  EXPECT_DOUBLE_EQ(s[kMedian], 3.0);  // grey levels per pixel: Sobel / 8
+  EXPECT_DOUBLE_EQ(s[kMedian], 3.0);  // gray levels per pixel: Sobel / 8
   EXPECT_EQ(s[kFast20], 0);           // straight edges have no corner
 }
 
@@ -64,10 +64,10 @@ TEST(MeasureImage, OfNoiseWithAPowerLawHasItsSlope) {
       spectrum.at<cv::Vec2f>(y, x) = {static_cast<float>(a * std::cos(p)),
                                       static_cast<float>(a * std::sin(p))};
     }
-  cv::Mat picture, grey;
+  cv::Mat picture, gray;
   cv::idft(spectrum, picture, cv::DFT_REAL_OUTPUT | cv::DFT_SCALE);
-  cv::normalize(picture, grey, 0, 255, cv::NORM_MINMAX, CV_8U);
-  EXPECT_NEAR(measure_image(grey)[kSlope], -3.0, 0.1);
+  cv::normalize(picture, gray, 0, 255, cv::NORM_MINMAX, CV_8U);
+  EXPECT_NEAR(measure_image(gray)[kSlope], -3.0, 0.1);
 }
 
 TEST(MeasureImage, ScalesToVgaFirst) {

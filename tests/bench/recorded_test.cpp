@@ -35,8 +35,8 @@ class TumFolder : public testing::Test {
   RgbdFrame frame(Stamp stamp_ns) const {
     RgbdFrame f;
     f.stamp_ns = stamp_ns;
-    f.colour = Grid2d<Rgb8>(8, 6, Rgb8{1, 2, 3});
-    f.colour(7, 5) = {200, 100, 50};
+    f.color = Grid2d<Rgb8>(8, 6, Rgb8{1, 2, 3});
+    f.color(7, 5) = {200, 100, 50};
     f.depth_m = Grid2d<float>(8, 6, 1.25F);
     f.depth_m(0, 0) = 0;
     return f;
@@ -63,12 +63,12 @@ TEST_F(TumFolder, ReadsBackWhatItWrote) {
 
   const RecordedCamera camera = load_recorded_camera(folder_ / "camera.yaml");
   EXPECT_EQ(camera.camera, camera_);
-  EXPECT_EQ(camera.depth_per_metre, 5000);
+  EXPECT_EQ(camera.depth_per_meter, 5000);
   const std::vector<RecordedFrame> frames = load_tum_folder(folder_);
   ASSERT_EQ(frames.size(), 2u);
   EXPECT_EQ(frames[1].stamp_ns, 33'333'333);
   const RgbdFrame read = read_frame(frames[1], camera);
-  EXPECT_EQ(read.colour, frame(0).colour);
+  EXPECT_EQ(read.color, frame(0).color);
   EXPECT_EQ(read.depth_m, frame(0).depth_m);  // 1.25 m is a whole number of units
   EXPECT_EQ(read.semantics.at(0, 0).most_probable(), 5);
   EXPECT_EQ(read.semantics.at(2, 1).most_probable(), kVoid);
@@ -91,7 +91,7 @@ TEST_F(TumFolder, NamesWhatIsWrong) {
   const auto frames = load_tum_folder(folder_, &notes);
   ASSERT_EQ(frames.size(), 1u);  // nothing was seen near 0.9 s
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("1 of 2 colour pictures have no depth picture"), std::string::npos);
+  EXPECT_NE(notes[0].find("1 of 2 color pictures have no depth picture"), std::string::npos);
   const auto refused = [&](const std::string& part) {
     try {
       read_frame(frames[0], {camera_, 5000});
@@ -127,25 +127,25 @@ TEST_F(TumFolder, KeepsTheOrderOfStampsThatGoBack) {
   ASSERT_EQ(frames.size(), 4u);
   EXPECT_EQ(frames[2].stamp_ns, 200'000'000);
   EXPECT_EQ(frames[1].depth, folder_ / "3.png");
-  EXPECT_EQ(frames[3].colour, folder_ / "d.png");
+  EXPECT_EQ(frames[3].color, folder_ / "d.png");
 }
 
 TEST_F(TumFolder, TakesTheNearestDepthAndTheFirstOfEquals) {
   fs::create_directories(folder_);
   // Stamps in tens of milliseconds, out of order and more than once; some lie as near on each side.
   const RandomStream draw(7);
-  std::string colours, depths;
-  std::vector<Stamp> colour_ns, depth_ns;
+  std::string colors, depths;
+  std::vector<Stamp> color_ns, depth_ns;
   for (std::uint64_t i = 0; i < 60; ++i) {
-    colour_ns.push_back(static_cast<Stamp>(draw.below(2 * i, 200)) * 10'000'000);
+    color_ns.push_back(static_cast<Stamp>(draw.below(2 * i, 200)) * 10'000'000);
     depth_ns.push_back(static_cast<Stamp>(draw.below(2 * i + 1, 200)) * 10'000'000);
-    colours += format_stamp(colour_ns.back()) + " c.png\n";
+    colors += format_stamp(color_ns.back()) + " c.png\n";
     depths += format_stamp(depth_ns.back()) + " " + std::to_string(i) + ".png\n";
   }
-  std::ofstream(folder_ / "rgb.txt") << colours;
+  std::ofstream(folder_ / "rgb.txt") << colors;
   std::ofstream(folder_ / "depth.txt") << depths;
   std::vector<std::string> wanted, found;
-  for (const Stamp stamp_ns : colour_ns) {
+  for (const Stamp stamp_ns : color_ns) {
     std::optional<std::size_t> best;
     for (std::size_t i = 0; i < depth_ns.size(); ++i)
       if (std::abs(depth_ns[i] - stamp_ns) <= 20'000'000 &&
@@ -162,7 +162,7 @@ TEST_F(TumFolder, TakesTheNearestDepthAndTheFirstOfEquals) {
 TEST(DepthUnits, RoundToTheNearestAndKeepToSixteenBits) {
   for (int i = 0; i < 200'000; ++i) {
     const float depth_m = static_cast<float>(i) * 7e-5F;
-    const double units = std::round(kDepthPerMetre * static_cast<double>(depth_m));
+    const double units = std::round(kDepthPerMeter * static_cast<double>(depth_m));
     ASSERT_EQ(depth_units(depth_m), static_cast<std::uint16_t>(std::min(units, 65535.0)))
         << depth_m;
   }
@@ -176,7 +176,7 @@ TEST_F(TumFolder, ReadsAssociationsWhereTheListsAreMissing) {
   std::ofstream(folder_ / "associations.txt") << "0.1 a.png 0.11 b.png\n0.2 c.png 0.21 d.png\n";
   const auto frames = load_tum_folder(folder_);
   ASSERT_EQ(frames.size(), 2u);
-  EXPECT_EQ(frames[1].colour, folder_ / "c.png");
+  EXPECT_EQ(frames[1].color, folder_ / "c.png");
   EXPECT_EQ(frames[1].depth, folder_ / "d.png");
   // As listed, however far apart.
   std::ofstream(folder_ / "associations.txt") << "0.1 a.png 0.2 b.png\n";

@@ -135,7 +135,7 @@ TEST_F(RenderSequence, LabelsAreThoseThatArrive) {
   EXPECT_EQ(labels({}), truth.classes);
   EXPECT_EQ(labels({.labels = LabelMode::kBoxes}),
             class_image(label_image(truth, LabelMode::kBoxes)));
-  sensors_.labels.noise.dropout = 1.0;  // no instance is labelled
+  sensors_.labels.noise.dropout = 1.0;  // no instance is labeled
   const Grid2d<ClassId> without = labels({});
   for (int y = 0; y < camera_.height_px; ++y)
     for (int x = 0; x < camera_.width_px; ++x)
@@ -167,10 +167,10 @@ TEST_F(RenderSequence, ScanNetsLayoutHoldsWhatWasSeen) {
     return cv::imread((folder_ / "s" / file).string(), cv::IMREAD_UNCHANGED);
   };
   const cv::Mat depth = read("depth/5.png"), label = read("label-filt/5.png"),
-                instance = read("instance-filt/5.png"), colour = read("color/5.jpg");
+                instance = read("instance-filt/5.png"), color = read("color/5.jpg");
   ASSERT_EQ(depth.type(), CV_16UC1);
   ASSERT_EQ(label.type(), CV_16UC1);
-  ASSERT_EQ(colour.size(), cv::Size(64, 48));
+  ASSERT_EQ(color.size(), cv::Size(64, 48));
   for (int y = 0; y < 48; ++y)
     for (int x = 0; x < 64; ++x) {
       ASSERT_EQ(label.at<std::uint16_t>(y, x), exact.classes(x, y));

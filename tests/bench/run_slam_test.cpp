@@ -50,10 +50,10 @@ std::vector<RgbdFrame> frames(int first, int last) {
   return result;
 }
 
-RgbdFrame plain(std::uint8_t grey, float depth_m, int i) {
+RgbdFrame plain(std::uint8_t gray, float depth_m, int i) {
   const Camera c = BoxRoom::camera();
   return {i * kFrame_ns,
-          Grid2d<Rgb8>(c.width_px, c.height_px, Rgb8{grey, grey, grey}),
+          Grid2d<Rgb8>(c.width_px, c.height_px, Rgb8{gray, gray, gray}),
           Grid2d<float>(c.width_px, c.height_px, depth_m),
           {}};
 }
@@ -107,7 +107,7 @@ TEST_F(Folder, AFrameThatCannotBeReadOrIsOfAnotherSizeIsSkippedAndCounted) {
   write(30);
   const auto sequence = open_tum_folder(folder_, settings());
   const auto pictures = load_tum_folder(folder_);
-  std::ofstream(pictures[10].colour) << "no picture";
+  std::ofstream(pictures[10].color) << "no picture";
   fs::remove(pictures[12].depth);
   // A picture of a quarter of the size in place of another.
   Camera small = BoxRoom::camera();
@@ -121,7 +121,7 @@ TEST_F(Folder, AFrameThatCannotBeReadOrIsOfAnotherSizeIsSkippedAndCounted) {
              Grid2d<float>(small.width_px, small.height_px, 1.0F),
              {}});
   other.finish();
-  fs::copy_file(load_tum_folder(folder_ / "small")[0].colour, pictures[14].colour,
+  fs::copy_file(load_tum_folder(folder_ / "small")[0].color, pictures[14].color,
                 fs::copy_options::overwrite_existing);
 
   SlamState state = start();
@@ -287,10 +287,10 @@ TEST(Observers, ChangeNoBitAndSeeEveryStageAndMatcher) {
   EXPECT_TRUE(clock.times_ms(Stage::kRelocalization).empty());
 
   std::array<int, static_cast<std::size_t>(Matcher::kCount)> pairs{};
-  bool penalised = false;
+  bool penalized = false;
   for (const MatchedPair& pair : trace) {
     ++pairs[static_cast<std::size_t>(pair.matcher)];
-    penalised = penalised || pair.penalised;
+    penalized = penalized || pair.penalized;
     EXPECT_GE(pair.distance_bits, 0);
     EXPECT_LE(pair.distance_bits, 100);  // the loosest gate, after equation 2
     if (pair.matcher == Matcher::kLocalMap) {
@@ -303,7 +303,7 @@ TEST(Observers, ChangeNoBitAndSeeEveryStageAndMatcher) {
   for (const Matcher m :
        {Matcher::kMotionModel, Matcher::kReferenceKeyframe, Matcher::kLocalMap, Matcher::kFusion})
     EXPECT_GT(pairs[static_cast<std::size_t>(m)], 0) << name(m);
-  EXPECT_TRUE(penalised);
+  EXPECT_TRUE(penalized);
 }
 
 TEST(Observers, ATracedPairIsWhatTheMapSaysOfIt) {
@@ -325,7 +325,7 @@ TEST(Observers, ATracedPairIsWhatTheMapSaysOfIt) {
                              features.descriptors[pair.feature]);
     EXPECT_FLOAT_EQ(pair.distance_bits,
                     static_cast<float>(bits) *
-                        (pair.penalised ? static_cast<float>(state.config.semantics.xi) : 1.0F));
+                        (pair.penalized ? static_cast<float>(state.config.semantics.xi) : 1.0F));
     ++checked;
   }
   EXPECT_GE(checked, 15);

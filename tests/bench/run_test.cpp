@@ -35,7 +35,7 @@ class FakeRenderer : public Renderer {
     RenderedFrame frame;
     const auto shade = static_cast<std::uint8_t>(
         static_cast<int>(1e4 * std::abs(world_from_camera.translation().x())) % 251);
-    frame.colour = Grid2d<Rgb8>(camera.width_px, camera.height_px, Rgb8{shade, 90, 60});
+    frame.color = Grid2d<Rgb8>(camera.width_px, camera.height_px, Rgb8{shade, 90, 60});
     frame.depth_m = Grid2d<float>(camera.width_px, camera.height_px, 2.0F);
     frame.classes = Grid2d<ClassId>(camera.width_px, camera.height_px, ClassId{5});
     frame.instances = Grid2d<InstanceId>(camera.width_px, camera.height_px, InstanceId{1});
@@ -95,7 +95,7 @@ class MixingSystem : public System {
  private:
   double mix(const RgbdFrame& frame, RandomStream stream) const {
     double sum = 0;
-    for (const Rgb8& c : frame.colour) sum = 0.9 * sum + c.r;
+    for (const Rgb8& c : frame.color) sum = 0.9 * sum + c.r;
     if (looks_at_labels_) sum += static_cast<double>(frame.semantics.palette.size());
     return 1e-6 * sum + 1e-3 * stream.uniform(0);
   }
@@ -203,7 +203,7 @@ TEST(Verify, FindsOnePixelOfOneFrameAndNamesIt) {
     RunTamper tamper;
     if (spec.name == "semantic-boxes-fake-0")
       tamper.frame = [](std::size_t index, RgbdFrame& frame) {
-        if (index == 97) frame.colour(3, 4).g ^= 1;
+        if (index == 97) frame.color(3, 4).g ^= 1;
       };
     return tamper;
   };
@@ -611,7 +611,7 @@ TEST(Results, WhatAnOutsideProgramDoesNotTellIsUnknown) {
       std::regex_search(table, std::regex("odometry_of_theirs +- +- +- +- +5\\.00 +0\\.0% +-\n")))
       << table;
   EXPECT_NE(table.find(" 5 not told\n"), std::string::npos) << table;
-  EXPECT_EQ(table.find("penalised"), std::string::npos) << table;
+  EXPECT_EQ(table.find("penalized"), std::string::npos) << table;
   const auto query = results_json(place.suite, runs)["runs"][1]["points"][0]["held_out"][0];
   EXPECT_TRUE(query["stage"].is_null());
   EXPECT_TRUE(query["candidates"]["c1"].is_null());

@@ -27,20 +27,20 @@ class ScannetFolder : public TemporaryFolder {
     camera_.cy_px = 11.5;
   }
 
-  /// Grey that grows to the right; two classes, left and right; depth in whole millimetres.
+  /// Gray that grows to the right; two classes, left and right; depth in whole millimeters.
   ExactFrame frame(std::size_t index) const {
     ExactFrame f;
     f.seen.stamp_ns = static_cast<Stamp>(index) * 40'000'000;
-    f.seen.colour = Grid2d<Rgb8>(32, 24);
+    f.seen.color = Grid2d<Rgb8>(32, 24);
     f.seen.depth_m = Grid2d<float>(32, 24, 1.5F);
     f.seen.depth_m(3, 3) = 0;
-    f.seen.depth_m(4, 4) = 70.0F;  // beyond 16 bits of millimetres
+    f.seen.depth_m(4, 4) = 70.0F;  // beyond 16 bits of millimeters
     f.exact.classes = Grid2d<ClassId>(32, 24, ClassId{5});
     f.exact.instances = Grid2d<InstanceId>(32, 24, InstanceId{3});
     for (int y = 0; y < 24; ++y)
       for (int x = 0; x < 32; ++x) {
-        const auto grey = static_cast<std::uint8_t>(40 + 5 * x);
-        f.seen.colour(x, y) = {grey, grey, grey};
+        const auto gray = static_cast<std::uint8_t>(40 + 5 * x);
+        f.seen.color(x, y) = {gray, gray, gray};
         if (x >= 16) f.exact.classes(x, y) = 43;  // a potted plant: NYU40 has none
       }
     f.world_from_camera = SE3(so3_exp({0, 0.1 * static_cast<double>(index), 0}), {1, 2, 3});
@@ -65,7 +65,7 @@ TEST_F(ScannetFolder, ARecordingReadBackIsWhatWasSeen) {
   EXPECT_EQ(read.depth_m(3, 3), 0.0F);
   EXPECT_EQ(read.depth_m(4, 4), 0.0F);
   for (int x = 0; x < 32; ++x) {
-    EXPECT_NEAR(read.colour(x, 12).g, expected.seen.colour(x, 12).g, 4) << x;
+    EXPECT_NEAR(read.color(x, 12).g, expected.seen.color(x, 12).g, 4) << x;
     EXPECT_EQ(read.semantics.at(x, 12).most_probable(), x < 16 ? 5 : 43);
   }
   const auto truth = sequence->truth();
@@ -90,7 +90,7 @@ TEST_F(ScannetFolder, WithoutALabelTableLabelsAreLeftOutWithANote) {
 TEST_F(ScannetFolder, SaysWhichFileIsWrongAndWhichLabelsAreMissing) {
   write_scannet_recording(folder_ / "s", camera_, 2, [&](std::size_t i) { return frame(i); });
   const fs::path table = folder_ / "s" / "scannetv2-labels.combined.tsv";
-  // cx 15.5 lies within a width of 16 pixels, but half a pixel beyond the last one's centre.
+  // cx 15.5 lies within a width of 16 pixels, but half a pixel beyond the last one's center.
   std::string sens = read_file(folder_ / "s" / "s.sens");
   const std::uint32_t width = 16;
   const std::size_t depth_width = 4 + 8 + 10 + 4 * 64 + 8 + 8;  // behind the name "Modelhouse"
@@ -99,20 +99,20 @@ TEST_F(ScannetFolder, SaysWhichFileIsWrongAndWhichLabelsAreMissing) {
   std::vector<std::string> notes;
   EXPECT_TRUE(names(error_of([&] { open_scannet(file, notes); }), {"narrow.sens", "depth camera"}));
 
-  const auto labelled = [&](const char* name, int label_width, std::uint32_t number) {
+  const auto labeled = [&](const char* name, int label_width, std::uint32_t number) {
     write(std::string(name) + "/a.sens", read_file(folder_ / "s" / "s.sens"));
     write(std::string(name) + "/scannetv2-labels.combined.tsv", read_file(table));
     const auto writer = write_label_folder(folder_ / name, "label-filt");
     writer->add(number, Grid2d<std::uint16_t>(label_width, 24));
     return folder_ / name;
   };
-  const auto wrong = open_scannet(labelled("c", 10, 0), notes);
+  const auto wrong = open_scannet(labeled("c", 10, 0), notes);
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_TRUE(names(notes[0], {"c/label-filt", "1 of 2 frames", "frame 1"}));
   EXPECT_TRUE(names(error_of([&] { wrong->frame(0); }), {"c/label-filt", "0.png", "10 x 24"}));
   EXPECT_TRUE(wrong->frame(1).semantics.index.empty());
   notes.clear();
-  open_scannet(labelled("d", 32, 7), notes);
+  open_scannet(labeled("d", 32, 7), notes);
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_TRUE(names(notes[0], {"2 of 2 frames", "frame 0"}));
 }
@@ -135,20 +135,20 @@ TEST_F(ScannetFolder, BothLayoutsHoldTheSamePictures) {
   EXPECT_EQ(open_scannet(folder_ / "f", notes)->frame(0).semantics.at(20, 12).most_probable(), 43);
 }
 
-/// Colour has twice the pixels, another centre, and stands 10 cm to the right: a point at depth z
+/// Color has twice the pixels, another center, and stands 10 cm to the right: a point at depth z
 /// is seen fx * 0.1 / z further left.
-TEST_F(ScannetFolder, ColourAndLabelsAreTakenWhereTheColourCameraSawThePixel) {
+TEST_F(ScannetFolder, ColorAndLabelsAreTakenWhereTheColorCameraSawThePixel) {
   RecordingInfo info;
   info.depth = {16, 12, 20, 20, 7.5, 5.5, {}};
-  info.colour = {64, 48, 80, 80, 33.5, 23.5, SE3(Eigen::Matrix3d::Identity(), {0.1, 0, 0})};
+  info.color = {64, 48, 80, 80, 33.5, 23.5, SE3(Eigen::Matrix3d::Identity(), {0.1, 0, 0})};
   RecordedMoment moment{.stamp_ns = 0,
-                        .colour = Grid2d<Rgb8>(64, 48),
+                        .color = Grid2d<Rgb8>(64, 48),
                         .depth = Grid2d<std::uint16_t>(16, 12, std::uint16_t{2000}),
                         .world_from_device = SE3()};
   Grid2d<std::uint16_t> labels(64, 48);
   for (int y = 0; y < 48; ++y)
     for (int x = 0; x < 64; ++x) {
-      moment.colour(x, y) = {static_cast<std::uint8_t>(3 * x), static_cast<std::uint8_t>(4 * y), 0};
+      moment.color(x, y) = {static_cast<std::uint8_t>(3 * x), static_cast<std::uint8_t>(4 * y), 0};
       labels(x, y) = x < 32 ? 1 : 2;
     }
   moment.depth(8, 6) = 0;  // far away: no parallax
@@ -157,18 +157,18 @@ TEST_F(ScannetFolder, ColourAndLabelsAreTakenWhereTheColourCameraSawThePixel) {
   write("scannetv2-labels.combined.tsv", "id\traw_category\tnyu40id\n1\twall\t1\n2\tchair\t5\n");
   std::vector<std::string> notes;
   const RgbdFrame frame = open_scannet(folder_, notes)->frame(0);
-  ASSERT_EQ(frame.colour.width(), 16);
+  ASSERT_EQ(frame.color.width(), 16);
   const auto column_of = [&](int x, double depth_m) {
     return 80 * ((x - 7.5) / 20 - 0.1 / depth_m) + 33.5;
   };
   for (int x = 2; x < 14; ++x) {
     const double column = column_of(x, 2.0), row = 80 * ((5 - 5.5) / 20) + 23.5;
     // Averaging over 4 x 4 pixels, JPEG, and remap's steps of 1/32 px: a few levels.
-    EXPECT_NEAR(frame.colour(x, 5).r, 3 * column, 6) << x;
-    EXPECT_NEAR(frame.colour(x, 5).g, 4 * row, 8) << x;
+    EXPECT_NEAR(frame.color(x, 5).r, 3 * column, 6) << x;
+    EXPECT_NEAR(frame.color(x, 5).g, 4 * row, 8) << x;
     EXPECT_EQ(frame.semantics.at(x, 5).most_probable(), std::round(column) < 32 ? 1 : 5) << x;
   }
-  EXPECT_NEAR(frame.colour(8, 6).r, 3 * column_of(8, 1e9), 6);
+  EXPECT_NEAR(frame.color(8, 6).r, 3 * column_of(8, 1e9), 6);
 }
 
 TEST_F(ScannetFolder, ARosCalibrationReadsBackAndServesATumFolder) {
@@ -176,7 +176,7 @@ TEST_F(ScannetFolder, ARosCalibrationReadsBackAndServesATumFolder) {
   const Settings read = parse_settings(camera_info_text(camera_), "camera_info.yaml");
   EXPECT_TRUE(read.has_camera);
   EXPECT_EQ(read.camera, camera_);
-  EXPECT_EQ(read.depth_per_metre, 5000);
+  EXPECT_EQ(read.depth_per_meter, 5000);
   const auto error = [](const std::string& text) {
     return error_of([&] { parse_settings(text, "info.yaml"); });
   };

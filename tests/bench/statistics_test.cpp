@@ -45,7 +45,7 @@ TEST(ComparePaired, AConstantDifferenceIsFoundAndHasNoSpread) {
   EXPECT_EQ(verdict(c[0]), Verdict::kSecondBetter);
 }
 
-TEST(ComparePaired, AnswersOfOneNeighbourhoodCountLessThanTheirNumber) {
+TEST(ComparePaired, AnswersOfOneNeighborhoodCountLessThanTheirNumber) {
   // Runs of ten equal values: hardly more information than a tenth as many queries.
   std::vector<PairedDifference> runs, mixed;
   for (int i = 0; i < 200; ++i) {

@@ -77,7 +77,7 @@ RunResult some_run(const std::string& name, double shift_m = 0.0) {
   answered.answer.stage = RelocalizationStage::kVerified;
   answered.answer.candidates =
       CandidateCounts{.keyframes = 3, .c1 = 2, .final = 1, .label_mass = 0.3};
-  answered.answer.matches[3].penalised = 4;
+  answered.answer.matches[3].penalized = 4;
   unanswered.answer.index = 59;
   unanswered.answer.stage = RelocalizationStage::kPnp;
   run.points = {{.held_out = {answered, unanswered}, .second_tour = {unanswered}}};
@@ -301,7 +301,7 @@ TEST_F(StoreFile, ARunComesBackAsItWas) {
   ASSERT_EQ(p.held_out.size(), 2u);
   EXPECT_EQ(p.held_out[0].distance_m, 1.0 / 7.0);
   EXPECT_EQ(p.held_out[0].answer.candidates->label_mass, 0.3);
-  EXPECT_EQ(p.held_out[0].answer.matches[3].penalised, 4);
+  EXPECT_EQ(p.held_out[0].answer.matches[3].penalized, 4);
   EXPECT_FALSE(p.held_out[1].answer.world_from_camera);
   EXPECT_EQ(p.held_out[1].answer.stage, RelocalizationStage::kPnp);
   EXPECT_EQ(p.second_tour.size(), 1u);

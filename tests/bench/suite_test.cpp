@@ -191,7 +191,7 @@ TEST_P(BadSuite, IsRefusedWithFileLineAndValue) {
 INSTANTIATE_TEST_SUITE_P(
     Each, BadSuite,
     testing::Values(
-        BadLine{"colour: red\n", "unknown key 'colour'"},
+        BadLine{"color: red\n", "unknown key 'color'"},
         BadLine{"slam: {alpha: 1.2}\n", "slam.alpha: 1.2 is outside [0, 1)"},
         BadLine{"slam: {alpha: 1}\n", "slam.alpha: 1 is outside [0, 1)"},
         BadLine{"slam: {beta: -0.1}\n", "slam.beta: -0.1 is outside [0, 1)"},
@@ -293,7 +293,7 @@ TEST_F(SuiteFile, RefusesEnvironmentsThatAreNone) {
   EXPECT_NE(message("[{category: a, scene: none.yaml, robot: robot.yaml, mapping_tour: t}]")
                 .find("environments[0].scene: '"),
             std::string::npos);
-  EXPECT_NE(message("[{category: a, colour: 3, " + rest + "}]").find("unknown key"),
+  EXPECT_NE(message("[{category: a, color: 3, " + rest + "}]").find("unknown key"),
             std::string::npos);
   EXPECT_NE(message("[{category: a, scene: house.yaml, mapping_tour: tour.yaml}]")
                 .find("key 'robot' is missing"),

@@ -32,9 +32,9 @@ double above(const Floor& floor, const Eigen::Vector3d& p) {
 class RealFloor : public ::testing::TestWithParam<std::pair<bool, double>> {
  protected:
   static Scene scene() {
-    const auto [labelled, slope_deg] = GetParam();
+    const auto [labeled, slope_deg] = GetParam();
     ScannedRoom room{.slope = {std::tan(slope_deg * std::numbers::pi / 180), 0},
-                     .labelled = labelled};
+                     .labeled = labeled};
     room.has_floor = [](double x, double y) { return std::hypot(x - 1, y - 1) > 0.08; };
     Scene scene = room.build();
     room.add_table(scene, 1.2, 0.8);

@@ -139,7 +139,7 @@ TEST(DigestOfMatching, SeesAllThatAStepSaidOfItButThePose) {
   change([](StepReport& r) { r.keyframe_added = true; });
   change([](StepReport& r) { r.relocalization = RelocalizationStage::kPnp; });
   for (std::size_t m = 0; m < report.matches.size(); ++m)
-    for (const auto count : {&MatcherCounts::compared, &MatcherCounts::penalised,
+    for (const auto count : {&MatcherCounts::compared, &MatcherCounts::penalized,
                              &MatcherCounts::rejected_by_xi, &MatcherCounts::ratio_helped})
       change([=](StepReport& r) { r.matches[m].*count = 1; });
   for (const auto count : {&CandidateCounts::keyframes, &CandidateCounts::c1, &CandidateCounts::c2,
@@ -154,7 +154,7 @@ TEST(DigestOfMatching, SeesAllThatAStepSaidOfItButThePose) {
 TEST(DigestOfAFrame, SeesEveryPixelLabelAndItsStamp) {
   RgbdFrame frame;
   frame.stamp_ns = 5;
-  frame.colour = Grid2d<Rgb8>(4, 3);
+  frame.color = Grid2d<Rgb8>(4, 3);
   frame.depth_m = Grid2d<float>(4, 3);
   frame.semantics.index = decltype(frame.semantics.index)(4, 3);
   frame.semantics.palette.resize(2);
@@ -168,7 +168,7 @@ TEST(DigestOfAFrame, SeesEveryPixelLabelAndItsStamp) {
     EXPECT_EQ(seen.size(), ++changes) << "change " << changes;
   };
   change([](RgbdFrame& f) { f.stamp_ns = 6; });
-  change([](RgbdFrame& f) { f.colour(3, 2).b = 1; });
+  change([](RgbdFrame& f) { f.color(3, 2).b = 1; });
   change([](RgbdFrame& f) { f.depth_m(3, 2) = 1e-30F; });
   change([](RgbdFrame& f) { f.semantics.index(3, 2) = 1; });
   change([](RgbdFrame& f) { f.semantics.palette[1].entries[0].first = ClassId{4}; });

@@ -66,8 +66,8 @@ class PictureList : public testing::Test {
       for (int y = 0; y < picture.rows; ++y)
         for (int x = 0; x < picture.cols; ++x) {
           const auto block = static_cast<std::uint64_t>(y / 8 * 40 + x / 8);
-          const auto grey = static_cast<std::uint8_t>(RandomStream(i).below(block, 256));
-          picture.at<cv::Vec3b>(y, x) = {grey, grey, grey};
+          const auto gray = static_cast<std::uint8_t>(RandomStream(i).below(block, 256));
+          picture.at<cv::Vec3b>(y, x) = {gray, gray, gray};
         }
       cv::imwrite((folder_ / "pictures" / fmt::format("{}.png", i)).string(), picture);
     }
@@ -165,7 +165,7 @@ TEST(ScoreVocabulary, FindsViewsOfOnePlaceByTheirWords) {
   // Half of the keypoints have a label: 25 against 50 words of weight ln 3, as each lies in 2 of 6.
   ASSERT_TRUE(score.label_mass);
   EXPECT_NEAR(*score.label_mass, 25 / (25 + 50 * std::log(3.0)), 1e-6);
-  // Who asks from elsewhere alone, or about too near a time, has no true neighbour.
+  // Who asks from elsewhere alone, or about too near a time, has no true neighbor.
   VocabularyScoreConfig long_ago;
   long_ago.min_gap_s = 35;
   EXPECT_THROW(score_vocabulary(vocabulary, views, {}, camera, long_ago), InputError);

@@ -26,7 +26,7 @@ PASSED_OVER = ('bench/micro/',)
 # The kinds that are drawn in turn; logic counts among the relations.
 KINDS = ('relation', 'arithmetic', 'constant', 'arguments', 'statement')
 KIND_OF = {'logic': 'relation'}
-LONGEST_TEST_S, LEAST_LIMIT_S, TIMES_SLOWER = 600, 60, 10
+LONGEST_TEST_S, LEAST_LIMIT_S, TIMES_SLOWER = 600, 60, 3
 MOST_COMPARED = 12  # object files
 MOST_MEMORY = 8 << 30  # bytes, of a test
 EQUAL, CAUGHT, SURVIVED, NO_MUTANT = 'equal', 'caught', 'survived', 'does not compile'

@@ -53,7 +53,7 @@ TEST(LoadRobot, PepperHasItsPublishedFigures) {
 
 TEST(LoadRobot, FieldOfViewSpansTheImage) {
   const Camera camera = load_robot(kPepper).camera;
-  // Image borders lie half a pixel outside the outermost pixel centres.
+  // Image borders lie half a pixel outside the outermost pixel centers.
   const double left = std::atan((-0.5 - camera.cx_px) / camera.fx_px);
   const double right = std::atan((camera.width_px - 0.5 - camera.cx_px) / camera.fx_px);
   EXPECT_NEAR((right - left) * 180 / std::numbers::pi, 58.0, 1e-9);
@@ -75,8 +75,7 @@ TEST(LoadRobot, OpticalAxesFollowRep103) {
 TEST(LoadRobot, RefusesBadFilesWithFileLinePlaceAndValue) {
   EXPECT_NE(refusal("mass_kg: 28.681", "mass_kg: -3").find("base.mass_kg: -3 is outside"),
             std::string::npos);
-  EXPECT_NE(refusal("name: pepper", "name: pepper\ncolour: white").find("colour"),
-            std::string::npos);
+  EXPECT_NE(refusal("name: pepper", "name: pepper\ncolor: white").find("color"), std::string::npos);
   EXPECT_NE(refusal("width_px: 640", "width_px: wide").find("camera.width_px: 'wide'"),
             std::string::npos);
   EXPECT_NE(refusal("  rate_hz: 30.0", "  # rate").find("key 'rate_hz' is missing"),

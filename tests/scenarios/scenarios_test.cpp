@@ -42,7 +42,7 @@ RunFigures run(const RunSpec& spec, const World& world, const Fault& fault) {
   return figures(run_one(spec, world, tools));
 }
 
-/// The gate's judgement of a fault: one seed without it against the same seed with it.
+/// The gate's judgment of a fault: one seed without it against the same seed with it.
 GateResult judge(const std::string& scenario, const Fault& fault,
                  SystemKind system = SystemKind::kPlain) {
   const RunSpec spec = first_run(scenario, system);
@@ -86,7 +86,7 @@ TEST(Scenario, FastTurnCatchesFramesThatDoNotArrive) {
   Fault fault;
   fault.tamper.frame = [](std::size_t index, RgbdFrame& frame) {
     if (index % 4 == 0) return;
-    std::fill(frame.colour.begin(), frame.colour.end(), Rgb8{});
+    std::fill(frame.color.begin(), frame.color.end(), Rgb8{});
     std::fill(frame.depth_m.begin(), frame.depth_m.end(), 0.0F);
   };
   EXPECT_FALSE(judge("fast_turn", fault).passed());
@@ -110,7 +110,7 @@ TEST(Scenario, LightsChangedCatchesThatExposureControlFails) {
   Fault fault;
   fault.tamper.frame = [](std::size_t, RgbdFrame& frame) {
     const auto dark = [](std::uint8_t v) { return static_cast<std::uint8_t>(v / 6); };
-    for (Rgb8& c : frame.colour) c = {dark(c.r), dark(c.g), dark(c.b)};
+    for (Rgb8& c : frame.color) c = {dark(c.r), dark(c.g), dark(c.b)};
   };
   EXPECT_FALSE(judge("lights_changed", fault).passed());
 }
@@ -126,10 +126,10 @@ TEST(Scenario, LabelNoiseCatchesScrambledLabels) {
                   palette.end());
   };
   const GateResult result = judge("label_noise", fault, SystemKind::kSemantic);
-  EXPECT_TRUE(worse(result, "penalised"));
+  EXPECT_TRUE(worse(result, "penalized"));
 }
 
-// Too little to be seen in a room; once round 14 m it is some centimetres.
+// Too little to be seen in a room; once round 14 m it is some centimeters.
 TEST(Scenario, LongLoopCatchesADepthThatReadsThreePercentTooLong) {
   Fault fault;
   fault.tamper.frame = [](std::size_t, RgbdFrame& frame) {

@@ -25,12 +25,12 @@ double height_at(const Floor& floor, double x, double y) {
   return floor.middle_m.z() - floor.up.head<2>().dot(way) / floor.up.z();
 }
 
-class Labelled : public ::testing::TestWithParam<bool> {};
-INSTANTIATE_TEST_SUITE_P(FindFloor, Labelled, ::testing::Bool());
+class Labeled : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(FindFloor, Labeled, ::testing::Bool());
 
-TEST_P(Labelled, FloorLiesWhereItsFacesAreHoweverRough) {
+TEST_P(Labeled, FloorLiesWhereItsFacesAreHoweverRough) {
   for (const double noise_m : {0.0, 0.01, 0.015}) {
-    const Scene scene = ScannedRoom{.noise_m = noise_m, .labelled = GetParam()}.build();
+    const Scene scene = ScannedRoom{.noise_m = noise_m, .labeled = GetParam()}.build();
     const auto found = find_floor(scene);
     ASSERT_TRUE(found);
     EXPECT_NEAR(found->floor.middle_m.z(), 0.055, 0.001) << noise_m;
@@ -40,9 +40,9 @@ TEST_P(Labelled, FloorLiesWhereItsFacesAreHoweverRough) {
   }
 }
 
-TEST_P(Labelled, SlopeOfOneAndAHalfDegreesIsFollowed) {
+TEST_P(Labeled, SlopeOfOneAndAHalfDegreesIsFollowed) {
   const Eigen::Vector2d slope = std::tan(1.5 * kDegree) * Eigen::Vector2d(0.8, -0.6);
-  const Scene scene = ScannedRoom{.floor_z_m = 0.4, .slope = slope, .labelled = GetParam()}.build();
+  const Scene scene = ScannedRoom{.floor_z_m = 0.4, .slope = slope, .labeled = GetParam()}.build();
   const auto found = find_floor(scene);
   ASSERT_TRUE(found);
   EXPECT_NEAR(std::acos(found->floor.up.z()), 1.5 * kDegree, 0.02 * kDegree);
@@ -68,8 +68,8 @@ TEST(FindFloor, SteeperThanTwoDegreesIsTakenAsLevelAndSaid) {
   EXPECT_NE(warnings[0].find("slopes by 4.0 degrees"), std::string::npos) << warnings[0];
 }
 
-TEST_P(Labelled, HolesTakeAreaAwayAndNothingElse) {
-  ScannedRoom room{.labelled = GetParam()};
+TEST_P(Labeled, HolesTakeAreaAwayAndNothingElse) {
+  ScannedRoom room{.labeled = GetParam()};
   room.has_floor = [](double x, double y) { return x < 1 && (y > -1.5 || x < -2); };
   const auto found = find_floor(room.build());
   ASSERT_TRUE(found);
@@ -77,8 +77,8 @@ TEST_P(Labelled, HolesTakeAreaAwayAndNothingElse) {
   EXPECT_NEAR(*found->floor.area_m2, 4.0 * 5 - 3.0 * 1, 0.4);  // not the box's 20
 }
 
-TEST(FindFloor, LargeTableIsNoFloorThoughNothingIsLabelled) {
-  const ScannedRoom room{.labelled = false};
+TEST(FindFloor, LargeTableIsNoFloorThoughNothingIsLabeled) {
+  const ScannedRoom room{.labeled = false};
   Scene scene = room.build();
   room.add_table(scene, 4.5, 3.5);  // more than half of the floor: less of it is seen below
   const auto found = find_floor(scene);
@@ -87,9 +87,9 @@ TEST(FindFloor, LargeTableIsNoFloorThoughNothingIsLabelled) {
   EXPECT_NEAR(*found->floor.area_m2, 30 - 4.5 * 3.5, 0.5);
 }
 
-TEST_P(Labelled, OfTwoLevelsTheLowerIsTheFloorUnlessItIsSmall) {
+TEST_P(Labeled, OfTwoLevelsTheLowerIsTheFloorUnlessItIsSmall) {
   for (const double upper_from_x : {0.0, -2.6}) {
-    const ScannedRoom room{.noise_m = 0.005, .labelled = GetParam()};
+    const ScannedRoom room{.noise_m = 0.005, .labeled = GetParam()};
     Scene scene = room.build();
     for (std::size_t v = 0; v < 101 * 121; ++v)  // a step of 0.6 m
       if (scene.positions_m[v].x() > upper_from_x) scene.positions_m[v].z() += 0.6F;
@@ -99,14 +99,14 @@ TEST_P(Labelled, OfTwoLevelsTheLowerIsTheFloorUnlessItIsSmall) {
   }
 }
 
-TEST_P(Labelled, SlabIsTheFloorAndNotThePlaneBelowIt) {
-  const ScannedRoom room{.floor_z_m = 0.2, .noise_m = 0, .labelled = GetParam()};
+TEST_P(Labeled, SlabIsTheFloorAndNotThePlaneBelowIt) {
+  const ScannedRoom room{.floor_z_m = 0.2, .noise_m = 0, .labeled = GetParam()};
   Scene scene = room.build();
   ScannedRoom::add_sheet(scene, {-50, -50, 0}, {100, 0, 0}, {0, 100, 0}, 1);
   const auto found = find_floor(scene);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->floor.middle_m.z(), 0.2, 1e-6);
-  // Labelled, all of the ground is floor; else what lies where things stand.
+  // Labeled, all of the ground is floor; else what lies where things stand.
   EXPECT_NEAR(*found->floor.area_m2, GetParam() ? 1e4 : 30, GetParam() ? 50 : 0.6);
 }
 
@@ -141,15 +141,15 @@ TEST(FindFloor, ThingAloneHasNone) {
 }
 
 TEST(FindFloor, ItsHeightMayBeTold) {
-  const auto found = find_floor(ScannedRoom{.labelled = false}.build(), 0.07);
+  const auto found = find_floor(ScannedRoom{.labeled = false}.build(), 0.07);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->floor.middle_m.z(), 0.07);
   EXPECT_NEAR(*found->floor.area_m2, 30.0, 1.5);
 }
 
 TEST(FindFloor, FloorAtZeroIsZeroToTheBit) {
-  for (const bool labelled : {true, false}) {
-    const Scene scene = ScannedRoom{.floor_z_m = 0, .noise_m = 0, .labelled = labelled}.build();
+  for (const bool labeled : {true, false}) {
+    const Scene scene = ScannedRoom{.floor_z_m = 0, .noise_m = 0, .labeled = labeled}.build();
     const auto found = find_floor(scene);
     ASSERT_TRUE(found);
     EXPECT_TRUE(found->floor.is_level_zero());

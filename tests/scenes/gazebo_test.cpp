@@ -43,7 +43,7 @@ class GazeboWorld : public TemporaryFolder {
           "<?xml version='1.0'?><model><name>m</name><sdf version='1.6'>model.sdf</sdf></model>");
     write(folder + "/model.sdf", "<?xml version='1.0'?><sdf version='1.6'>" + inside + "</sdf>");
   }
-  /// One side of a quarter square metre with a picture on it.
+  /// One side of a quarter square meter with a picture on it.
   void write_textured_mesh(const std::string& folder, const std::string& texture) const {
     write(folder + "/m.obj",
           "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\n"
@@ -130,7 +130,7 @@ TEST_F(GazeboWorld, ThousandsOfOneNameAreNamedAtOnce) {
   EXPECT_EQ(std::ranges::count(scene.lights, Light::Kind::kSphere, &Light::kind), 3000);
 }
 
-TEST_F(GazeboWorld, LightOnARoadOfAHundredKilometresIsCoarse) {
+TEST_F(GazeboWorld, LightOnARoadOfAHundredKilometersIsCoarse) {
   const Scene scene = load(write_world(
       "<include><uri>model://sun</uri></include>" +
       model("road", link("<visual name='v'><geometry><plane><normal>0 0 1</normal><size>100000 100"
@@ -257,10 +257,10 @@ TEST_F(GazeboWorld, OgreScriptsAndAlbedoMapsDressShapesAndMeshes) {
   EXPECT_TRUE(warnings_.empty()) << warnings_[0];
   ASSERT_EQ(scene.materials.size(), 3U);
   EXPECT_EQ(scene.materials[0].texture(1, 0), (Rgb8{0, 255, 0}));
-  EXPECT_EQ(scene.materials[0].base_colour, (Rgb8{128, 128, 128}));
+  EXPECT_EQ(scene.materials[0].base_color, (Rgb8{128, 128, 128}));
   // One picture, decoded once.
   EXPECT_EQ(scene.materials[0].texture.identity(), scene.materials[1].texture.identity());
-  EXPECT_EQ(scene.materials[2].base_colour, (Rgb8{255, 0, 0}));
+  EXPECT_EQ(scene.materials[2].base_color, (Rgb8{255, 0, 0}));
   // Each side of the box shows the picture once.
   const auto [least, most] =
       std::ranges::minmax(scene.uvs, {}, [](const auto& uv) { return uv.x(); });
@@ -307,10 +307,10 @@ TEST_F(GazeboWorld, LightsOfWorldsAndLinksAreTaken) {
   EXPECT_NEAR(of(Light::Kind::kSun).direction.z(), -1, 1e-5);  // its own z, turned over
   const Light point = of(Light::Kind::kSphere);
   EXPECT_TRUE(point.position_m.isApprox(Eigen::Vector3f(5, 0, 2)));
-  EXPECT_NEAR(point.colour.x(), 3.14159, 1e-4);  // 1 / d^2, as the file says
-  EXPECT_NEAR(point.colour.y(), 0.5 * 3.14159, 1e-4);
-  EXPECT_NEAR(of(Light::Kind::kAmbient).colour.x(), 0.25, 1e-6);
-  // Without a light there is no ambient one either: the scene is shown at its full colours.
+  EXPECT_NEAR(point.color.x(), 3.14159, 1e-4);  // 1 / d^2, as the file says
+  EXPECT_NEAR(point.color.y(), 0.5 * 3.14159, 1e-4);
+  EXPECT_NEAR(of(Light::Kind::kAmbient).color.x(), 0.25, 1e-6);
+  // Without a light there is no ambient one either: the scene is shown at its full colors.
   EXPECT_TRUE(load(write_world(model("m", link(box(1))))).lights.empty());
 }
 

@@ -97,8 +97,8 @@ std::vector<double> parts_m2(const HousePlan& house, double radius_m) {
           room_m = std::min(room_m, distance_m(p, item));
       if (room_m < radius_m) free.at<std::uint8_t>(y, x) = 0;
     }
-  cv::Mat labels, facts, centres;
-  const int count = cv::connectedComponentsWithStats(free, labels, facts, centres, 4);
+  cv::Mat labels, facts, centers;
+  const int count = cv::connectedComponentsWithStats(free, labels, facts, centers, 4);
   std::vector<double> areas;
   for (int k = 1; k < count; ++k)
     areas.push_back(facts.at<int>(k, cv::CC_STAT_AREA) * kCell * kCell);
@@ -130,7 +130,7 @@ double lamp_m(const HousePlan& house, const Eigen::Vector2d& p) {
   return nearest_m;
 }
 
-// Hallway 1 once had an arm of five metres without a lamp: in the grid, half of it was in a wall.
+// Hallway 1 once had an arm of five meters without a lamp: in the grid, half of it was in a wall.
 // Hallway 45 is too small for a second place in the grid.
 TEST(Generate, LampsLightBothArmsOfLShapedRooms) {
   std::vector<GeneratedReference> references = {{"hallway", 45}};
@@ -244,8 +244,8 @@ TEST_P(GeneratedScene, IsWholeAndCanBeWalked) {
   // The largest free part of the floor holds next to all of what is free, and each door.
   constexpr double kCell = 0.025;
   const cv::Mat free = free_floor(scene, 0.26, kCell);
-  cv::Mat labels, facts, centres;
-  const int parts = cv::connectedComponentsWithStats(free, labels, facts, centres, 4);
+  cv::Mat labels, facts, centers;
+  const int parts = cv::connectedComponentsWithStats(free, labels, facts, centers, 4);
   // Closed furniture is free inside: no floor. Under a table, and beside the legs of what has some,
   // there is: most of a part has to lie within footprints.
   std::vector<int> inside(static_cast<std::size_t>(parts), 0);

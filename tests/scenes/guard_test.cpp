@@ -25,7 +25,7 @@ Scene full_scene() {
       .name = "full",
       .positions_m = {{0, 1, 2}, {3, 4, 5}, {6, 7, 9}},
       .uvs = {{0.5F, 1}, {2, 3}, {4, 5}},
-      .colours = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}},
+      .colors = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}},
       .light = {{1, 1, 2}, {3, 5, 8}, {13, 21, 34}},
       .triangles = {{0, 1, 2}, {2, 1, 0}},
       .material_of = {1, 0},
@@ -39,11 +39,11 @@ Scene full_scene() {
                   .direction = {0, 1, 0},
                   .radius_m = 0.2F,
                   .angular_radius_rad = 0.3F,
-                  .colour = {4, 5, 6}}},
+                  .color = {4, 5, 6}}},
       .rooms = {{.name = "room", .polygon_m = {{0, 0}, {1, 0}, {1, 1}}}},
       .floor = {.middle_m = {1, 2, 3}, .up = {0, 0.6, 0.8}, .rough_m = 0.07, .area_m2 = 12.5}};
   Material& all = scene.materials[1];
-  all.base_colour = {9, 8, 7};
+  all.base_color = {9, 8, 7};
   Grid2d<Rgb8> texture(200, 100, {1, 2, 3});  // more than one turn of the pipe
   texture(199, 99) = {5, 6, 7};
   all.texture = texture;

@@ -117,7 +117,7 @@ TEST(House, RobotPassesAllCorridorsAndDoors) {
   }
 }
 
-TEST(House, FurnitureKeepsHalfAMetreFromCorridors) {
+TEST(House, FurnitureKeepsHalfAMeterFromCorridors) {
   const ClassId wall = *class_by_name("wall"), door = *class_by_name("door");
   for (const auto& path : kCorridors) {
     std::string nearest;
@@ -139,7 +139,7 @@ TEST(House, RobotDrivesARingInTheLivingRoom) {
 
 // ---- what there is ---------------------------------------------------------------------------
 
-TEST(House, HasFourRoomsOfSixtySquareMetres) {
+TEST(House, HasFourRoomsOfSixtySquareMeters) {
   ASSERT_EQ(house().rooms.size(), 4u);
   EXPECT_NEAR(house().floor_area_m2(), 60.72, 1e-9);
 }
@@ -241,9 +241,9 @@ TEST(House, NoRayLeavesButThroughWindows) {
   const RandomStream random(5);
   int outside = 0, hull = 0;
   for (std::size_t r = 0; r < house().rooms.size(); ++r) {
-    Vector2d centre = Vector2d::Zero();
-    for (const Vector2d& p : house().rooms[r].polygon_m) centre += p / 4.0;
-    const Vector3d from(centre.x() + 0.013, centre.y() + 0.017, 1.57);
+    Vector2d center = Vector2d::Zero();
+    for (const Vector2d& p : house().rooms[r].polygon_m) center += p / 4.0;
+    const Vector3d from(center.x() + 0.013, center.y() + 0.017, 1.57);
     for (std::uint64_t i = 0; i < 120; ++i) {
       const RandomStream one = random.fork(r).fork(i);
       const Vector3d way = Vector3d(one.normal(0), one.normal(1), one.normal(2)).normalized();
@@ -318,7 +318,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadInput{"UnknownKey", "height_m: 2.5\n", "height_m: 2.5\nheigth_m: 3\n", "heigth_m"},
         BadInput{"UnknownKeyOfRoom", "floor: oak_floor", "flor: oak_floor", "floor"},
-        BadInput{"UnknownKeyOfPiece", kTable, "colour: red, " + kTable, "colour"},
+        BadInput{"UnknownKeyOfPiece", kTable, "color: red, " + kTable, "color"},
         BadInput{"WrongType", "height_m: 2.5\n", "height_m: tall\n", "tall"},
         BadInput{"WrongTypeOfPiece", kTable, "at: here", "at"},
         BadInput{"NegativeSize", kTable, "at: [2.5, 1.3], size_m: [0.90, -0.60, 0.40]", "-0.6"},

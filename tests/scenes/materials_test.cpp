@@ -35,7 +35,7 @@ TEST(MakeMaterial, EveryKindFollowsFromItsSpecAlone) {
   }
 }
 
-TEST(MakeMaterial, TexelsAreSquareAndOneToFourMillimetres) {
+TEST(MakeMaterial, TexelsAreSquareAndOneToFourMillimeters) {
   for (const std::string_view kind : material_kinds()) {
     const Material m = make_material(spec_of(kind));
     const float u = m.tile_m.x() / static_cast<float>(m.texture.width());
@@ -150,7 +150,7 @@ TEST(Noise, WhiteNoiseIsStandard) {
 }
 
 TEST(Noise, VoronoiFindsTheNearestPoint) {
-  const Voronoi v = voronoi(64, 48, 8, 6, 0.0F, RandomStream(3));  // points at cell centres
+  const Voronoi v = voronoi(64, 48, 8, 6, 0.0F, RandomStream(3));  // points at cell centers
   for (int y = 0; y < 48; ++y)
     for (int x = 0; x < 64; ++x) {
       EXPECT_EQ(v.cell(x, y), y / 8 * 8 + x / 8);

@@ -13,7 +13,7 @@
 #include <numbers>
 #include <set>
 
-#include "scenes/labelled.hpp"
+#include "scenes/labeled.hpp"
 #include "scenes/load.hpp"
 #include "scenes/materials/materials.hpp"
 #include "scenes/mesh_io/class_words.hpp"
@@ -56,15 +56,15 @@ class MeshIo : public testing::Test {
   fs::path folder_;
 };
 
-/// Curved, textured, lit pieces of three classes and one unlabelled; materials are shared.
+/// Curved, textured, lit pieces of three classes and one unlabeled; materials are shared.
 Scene example_scene() {
   Scene scene;
   scene.name = "example";
   scene.materials = {
       make_material({.name = "oak", .kind = "wood_grain"}),
       make_material({.name = "weave", .kind = "fabric", .tone = {70, 90, 140}}),
-      {.name = "paint", .base_colour = {210, 60, 35}, .texture = {}},
-      {.name = "bulb", .base_colour = {255, 240, 200}, .texture = {}, .emission = {3, 2.5F, 2}}};
+      {.name = "paint", .base_color = {210, 60, 35}, .texture = {}},
+      {.name = "bulb", .base_color = {255, 240, 200}, .texture = {}, .emission = {3, 2.5F, 2}}};
   scene.instances = {{.id = 1, .class_id = 5, .name = "kitchen/chair_1"},
                      {.id = 4, .class_id = 43, .name = "kitchen/potted_plant"},
                      {.id = 9, .class_id = 35, .name = "lamp"}};
@@ -156,7 +156,7 @@ TEST_F(MeshIo, GlbReadBackIsTheSameScene) {
     const auto found = std::ranges::find(read.materials, material.name, &Material::name);
     ASSERT_NE(found, read.materials.end()) << material.name;
     EXPECT_EQ(found->texture, material.texture) << material.name;
-    EXPECT_EQ(found->base_colour, material.base_colour) << material.name;
+    EXPECT_EQ(found->base_color, material.base_color) << material.name;
     EXPECT_LT((found->emission - material.emission).norm(), 1e-5F) << material.name;
   }
 }
@@ -314,7 +314,7 @@ TEST_F(MeshIo, WithoutAPlanEachFloorIsARoom) {
   EXPECT_NEAR(read.floor_area_m2(), 1.0 * 3.0, 1e-4);  // the piece's box, 1 m by 3 m
 }
 
-TEST_F(MeshIo, PlyReadBackKeepsOrderLabelsAndColours) {
+TEST_F(MeshIo, PlyReadBackKeepsOrderLabelsAndColors) {
   const Scene scene = example_scene();
   save_scannet_ply(scene, folder_ / "scene.ply", 0.0F);
   const Scene read = load_scene(folder_ / "scene.ply");
@@ -325,23 +325,23 @@ TEST_F(MeshIo, PlyReadBackKeepsOrderLabelsAndColours) {
   ASSERT_EQ(read.positions_m.size(), scene.positions_m.size());
   for (std::size_t v = 0; v < read.positions_m.size(); ++v)
     EXPECT_EQ(read.positions_m[v], scene.positions_m[v]);
-  ASSERT_EQ(read.colours.size(), scene.positions_m.size());
+  ASSERT_EQ(read.colors.size(), scene.positions_m.size());
   EXPECT_TRUE(read.light.empty());
   ASSERT_EQ(read.rooms.size(), 1U);
   EXPECT_DOUBLE_EQ(read.floor_area_m2(), scene.floor_area_m2());
   EXPECT_EQ(read.instances[1].name, "kitchen/potted_plant");
   for (const Material& material : read.materials)
-    EXPECT_EQ(material.base_colour, (Rgb8{255, 255, 255}));
+    EXPECT_EQ(material.base_color, (Rgb8{255, 255, 255}));
   for (std::size_t i = 0; i < read.instances.size(); ++i)
     EXPECT_LT(read.instances[i].min_m.x(), read.instances[i].max_m.x());
 }
 
-TEST_F(MeshIo, PlyColourIsTextureTimesLight) {
-  // A uniform texture of known colour under known light: the vertex colour has a closed form.
+TEST_F(MeshIo, PlyColorIsTextureTimesLight) {
+  // A uniform texture of known color under known light: the vertex color has a closed form.
   Scene scene;
   scene.name = "square";
   scene.materials = {
-      {.name = "m", .base_colour = {128, 255, 64}, .texture = Grid2d<Rgb8>(4, 4, {200, 100, 255})}};
+      {.name = "m", .base_color = {128, 255, 64}, .texture = Grid2d<Rgb8>(4, 4, {200, 100, 255})}};
   scene.positions_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   scene.uvs = {{0, 0}, {0.9F, 0.1F}, {-3.7F, 5.2F}};
   scene.light = {{1, 1, 1}, {0.25F, 0.5F, 0.75F}, {9, 9, 9}};
@@ -361,9 +361,9 @@ TEST_F(MeshIo, PlyColourIsTextureTimesLight) {
   };
   for (int v = 0; v < 3; ++v) {
     const Eigen::Vector3f light = scene.light[v];
-    EXPECT_NEAR(read.colours[v].r, level(linear(200) * linear(128) * light.x()), 1.0);
-    EXPECT_NEAR(read.colours[v].g, level(linear(100) * light.y()), 1.0);
-    EXPECT_NEAR(read.colours[v].b, level(linear(64) * light.z()), 1.0);
+    EXPECT_NEAR(read.colors[v].r, level(linear(200) * linear(128) * light.x()), 1.0);
+    EXPECT_NEAR(read.colors[v].g, level(linear(100) * light.y()), 1.0);
+    EXPECT_NEAR(read.colors[v].b, level(linear(64) * light.z()), 1.0);
   }
 }
 
@@ -405,7 +405,7 @@ TEST_F(MeshIo, ObjTextureBesideItAndAMissingOneIsNamedAndMagenta) {
   EXPECT_EQ(there.texture(1, 0), (Rgb8{0, 0, 255}));
   const auto& gone = *std::ranges::find(scene.materials, "gone", &Material::name);
   EXPECT_TRUE(gone.texture.empty());
-  EXPECT_EQ(gone.base_colour, (Rgb8{255, 0, 255}));
+  EXPECT_EQ(gone.base_color, (Rgb8{255, 0, 255}));
   // v counts downwards here: OBJ's (0, 0) is the lower left of the picture.
   for (std::size_t v = 0; v < scene.positions_m.size(); ++v)
     EXPECT_FLOAT_EQ(scene.uvs[v].y(), 1.0F - scene.positions_m[v].y());
@@ -414,7 +414,7 @@ TEST_F(MeshIo, ObjTextureBesideItAndAMissingOneIsNamedAndMagenta) {
   EXPECT_NE(scene.instance_of[0], scene.instance_of[2]);
 }
 
-TEST_F(MeshIo, DaeIsTurnedZUpAndScaledToMetres) {
+TEST_F(MeshIo, DaeIsTurnedZUpAndScaledToMeters) {
   const auto file = write("box.dae", R"(<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><unit name="centimeter" meter="0.01"/><up_axis>Y_UP</up_axis></asset>
@@ -550,7 +550,7 @@ TEST_F(MeshIo, ADensePlyHasTheSameSurfacesAndMoreOfTheTexture) {
   EXPECT_EQ(read.instances.size(), scene.instances.size());
 }
 
-TEST(Subdivide, KeepsEdgesShortNeighboursJoinedAndInterpolatesLinearly) {
+TEST(Subdivide, KeepsEdgesShortNeighborsJoinedAndInterpolatesLinearly) {
   Scene scene;  // a square and an odd triangle hanging on it; light = x, uv = (y, x + y)
   scene.positions_m = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {3, 0.4F, 0}};
   for (const Eigen::Vector3f& p : scene.positions_m) {
@@ -661,7 +661,7 @@ TEST(NodeName, WordsOfTheListNameClassesAndStandOnce) {
 }
 
 TEST_F(MeshIo, NamesAroundANodeHelpWhereItsOwnTellsNothing) {
-  // Three nodes: of a mesh that is named; below a group that is; below a storey.
+  // Three nodes: of a mesh that is named; below a group that is; below a story.
   const char* gltf = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
     "nodes":[{"name":"root","children":[1,2,4,6]},{"name":"Cube","mesh":0},
              {"name":"Walls","children":[3]},{"name":"Cube.001","mesh":1},
@@ -689,12 +689,12 @@ TEST_F(MeshIo, LabelsThatAreSuggestedLoadAsTheyAreAndWhenFilled) {
                                          "o gizmo_01\nf 1 2 3\no gizmo_02\nf 1 2 4\n"
                                          "o w[1]dget\nf 1 5 6\no chair\nf 1 5 4\n";
   const Scene before = load_mesh(folder_ / "room.obj");
-  const LabelledSurface surface = survey_labels(before);
+  const LabeledSurface surface = survey_labels(before);
   EXPECT_NEAR(surface.area_m2, 2 + 2 + 0.5 + 1, 1e-6);
   EXPECT_NEAR(surface.share(), 1 / 5.5, 1e-6);
-  ASSERT_EQ(surface.unlabelled.size(), 2U);
-  EXPECT_EQ(surface.unlabelled[0].pattern, "gizmo*");
-  EXPECT_NEAR(surface.unlabelled[0].area_m2, 4, 1e-6);
+  ASSERT_EQ(surface.unlabeled.size(), 2U);
+  EXPECT_EQ(surface.unlabeled[0].pattern, "gizmo*");
+  EXPECT_NEAR(surface.unlabeled[0].area_m2, 4, 1e-6);
   std::string text = suggested_labels(surface);
   std::ofstream(folder_ / "labels.yaml") << text;
   EXPECT_EQ(load_mesh(folder_ / "room.obj").class_of, before.class_of);

@@ -60,7 +60,7 @@ std::string collada(const std::string& color, const std::string& positions) {
 TEST_F(MeshRepair, ColladaMayHaveBlanksBeforeItsNumbers) {
   const Scene clean = load_mesh(write("a.dae", collada("1 0.5 0 1", "0 0 0 1 0 0 0 1 0")));
   ASSERT_EQ(clean.triangles.size(), 1U);
-  EXPECT_EQ(clean.materials[clean.material_of[0]].base_colour, (Rgb8{255, 128, 0}));
+  EXPECT_EQ(clean.materials[clean.material_of[0]].base_color, (Rgb8{255, 128, 0}));
   for (const char* blank : {" ", "\n\t\t  ", "\r\n"}) {
     const std::string color = std::string(blank) + "1 0.5  0\t1" + blank;
     const std::string positions = std::string(blank) + "0 0 0\n1 0 0\n0 1 0" + blank;
@@ -137,7 +137,7 @@ TEST_F(MeshRepair, ObjMayLackZerosBeforePointsAndItsMaterialsBeAnisotropic) {
   ASSERT_EQ(scene.positions_m.size(), 3U);
   EXPECT_EQ(scene.positions_m[1], Eigen::Vector3f(0.5F, 0, 0));
   EXPECT_EQ(scene.positions_m[2], Eigen::Vector3f(0, -0.5F, 0));
-  EXPECT_EQ(scene.materials[scene.material_of[0]].base_colour, (Rgb8{255, 0, 0}));
+  EXPECT_EQ(scene.materials[scene.material_of[0]].base_color, (Rgb8{255, 0, 0}));
 }
 
 TEST_F(MeshRepair, ColladaMayHaveAnImageThatNamesNoFile) {
@@ -239,7 +239,7 @@ TEST_F(MeshRepair, APlyOfAScanWithoutTexturesKeepsItsFaces) {
   Scene scan;
   scan.name = "scan";
   scan.positions_m = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
-  scan.colours = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}};
+  scan.colors = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}};
   scan.triangles = {{0, 1, 2}};
   scan.material_of = {0};
   scan.class_of = {0};
@@ -249,7 +249,7 @@ TEST_F(MeshRepair, APlyOfAScanWithoutTexturesKeepsItsFaces) {
   save_scannet_ply(scan, folder_ / "scan.ply");
   const Scene same = load_mesh(folder_ / "scan.ply");
   EXPECT_EQ(same.triangles, scan.triangles);
-  EXPECT_EQ(same.colours, scan.colours);
+  EXPECT_EQ(same.colors, scan.colors);
 }
 
 TEST(PictureFile, WhatAPngSaysBesideThePictureIsNotHeard) {

@@ -23,14 +23,14 @@ std::string raw(T value) {
 /// A square of two triangles.
 PlyMesh square() {
   return {.positions_m = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0.5F}},
-          .colours = {{1, 2, 3}, {255, 0, 0}, {0, 255, 0}, {9, 8, 7}},
+          .colors = {{1, 2, 3}, {255, 0, 0}, {0, 255, 0}, {9, 8, 7}},
           .labels = {0, 5, 40, 1163},
           .triangles = {{0, 1, 2}, {0, 2, 3}}};
 }
 
 void expect_same(const PlyMesh& a, const PlyMesh& b) {
   EXPECT_EQ(a.positions_m, b.positions_m);
-  EXPECT_EQ(a.colours, b.colours);
+  EXPECT_EQ(a.colors, b.colors);
   EXPECT_EQ(a.labels, b.labels);
   EXPECT_EQ(a.triangles, b.triangles);
 }
@@ -91,7 +91,7 @@ TEST(Ply, TakesAnyTypeAndOrderAndPassesOverTheUnknown) {
   const PlyMesh mesh = parse_ply(bytes, "mesh.ply");
   ASSERT_EQ(mesh.positions_m.size(), 5U);
   EXPECT_EQ(mesh.positions_m[3], Eigen::Vector3f(23, 13, 3));
-  EXPECT_EQ(mesh.colours[0], (Rgb8{255, 128, 0}));
+  EXPECT_EQ(mesh.colors[0], (Rgb8{255, 128, 0}));
   EXPECT_EQ(mesh.labels[4], 4);
   // The pentagon is a fan of three.
   const std::vector<std::array<std::uint32_t, 3>> expected = {
@@ -222,9 +222,9 @@ TEST(Ply, CutAnywhereIsToldInEveryEncoding) {
                     {"cut short"}));
 }
 
-class LabelledPly : public TemporaryFolder {};
+class LabeledPly : public TemporaryFolder {};
 
-TEST_F(LabelledPly, ReplicasFacesAreOfTheirObjects) {
+TEST_F(LabeledPly, ReplicasFacesAreOfTheirObjects) {
   // Two squares of object 7, one of object 3, one of none.
   std::string text = "ply\nformat ascii 1.0\nelement vertex 4\n" + kPoint + "element face 4\n" +
                      kList + "property int object_id\nend_header\n" +
@@ -255,7 +255,7 @@ TEST_F(LabelledPly, ReplicasFacesAreOfTheirObjects) {
   EXPECT_TRUE(names(error_of([&] { load_mesh(folder_ / "scene/mesh_semantic.ply"); }), {"65541"}));
 }
 
-TEST_F(LabelledPly, ThreeRScansVerticesAreOfTheirObjects) {
+TEST_F(LabeledPly, ThreeRScansVerticesAreOfTheirObjects) {
   const std::string text =
       "ply\nformat ascii 1.0\nelement vertex 5\n" + kPoint +
       "property ushort objectId\nproperty ushort globalId\nproperty uchar NYU40\n"
@@ -275,7 +275,7 @@ TEST_F(LabelledPly, ThreeRScansVerticesAreOfTheirObjects) {
   EXPECT_EQ(scene.instances[1].name, "microwave_4");
 }
 
-TEST_F(LabelledPly, LabelsAloneAreNyu40) {
+TEST_F(LabeledPly, LabelsAloneAreNyu40) {
   PlyMesh mesh = square();
   mesh.labels = {5, 5, 5, 1163};
   write("mesh.ply", ply_bytes(mesh));

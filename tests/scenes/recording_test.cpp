@@ -21,21 +21,21 @@ namespace fs = std::filesystem;
 
 RecordingInfo info() {
   return {.sensor = "StructureSensor",
-          .colour = {16, 8, 20, 21, 7.5, 3.5, SE3(Eigen::Matrix3d::Identity(), {0.01, 0, 0})},
+          .color = {16, 8, 20, 21, 7.5, 3.5, SE3(Eigen::Matrix3d::Identity(), {0.01, 0, 0})},
           .depth = {8, 6, 10, 10.5, 3.5, 2.5, {}},
-          .depth_per_metre = 1000};
+          .depth_per_meter = 1000};
 }
 
 /// Smooth, so that JPEG changes little; the second of three frames is invalid.
 RecordedMoment moment(std::size_t index) {
   RecordedMoment m{.stamp_ns = static_cast<Stamp>(1000 * (33'333 * index + 7)),
-                   .colour = Grid2d<Rgb8>(16, 8),
+                   .color = Grid2d<Rgb8>(16, 8),
                    .depth = Grid2d<std::uint16_t>(8, 6),
                    .world_from_device = std::nullopt};
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 16; ++x) {
       const auto level = static_cast<std::uint8_t>(100 + 4 * x + 3 * y);
-      m.colour(x, y) = {level, level, static_cast<std::uint8_t>(level + 10 * index)};
+      m.color(x, y) = {level, level, static_cast<std::uint8_t>(level + 10 * index)};
     }
   for (int y = 0; y < 6; ++y)
     for (int x = 0; x < 8; ++x) m.depth(x, y) = static_cast<std::uint16_t>(1000 * x + y + index);
@@ -45,18 +45,18 @@ RecordedMoment moment(std::size_t index) {
 }
 
 void expect_recorded(const Recording& recording, bool stamps) {
-  EXPECT_EQ(recording.info().colour.width_px, 16);
+  EXPECT_EQ(recording.info().color.width_px, 16);
   EXPECT_EQ(recording.info().depth.height_px, 6);
   EXPECT_NEAR(recording.info().depth.fy_px, 10.5, 1e-6);
-  EXPECT_NEAR(recording.info().colour.device_from_camera.translation().x(), 0.01, 1e-8);
-  EXPECT_EQ(recording.info().depth_per_metre, 1000);
+  EXPECT_NEAR(recording.info().color.device_from_camera.translation().x(), 0.01, 1e-8);
+  EXPECT_EQ(recording.info().depth_per_meter, 1000);
   ASSERT_EQ(recording.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
     const RecordedMoment expected = moment(i), read = recording.frame(i);
     EXPECT_EQ(read.depth, expected.depth);
     for (int y = 0; y < 8; ++y)
       for (int x = 0; x < 16; ++x)  // a smooth ramp survives JPEG to within a few levels
-        EXPECT_NEAR(read.colour(x, y).g, expected.colour(x, y).g, 6);
+        EXPECT_NEAR(read.color(x, y).g, expected.color(x, y).g, 6);
     const Stamp at_thirty_hertz = static_cast<Stamp>(i) * 1'000'000'000 / 30;
     EXPECT_EQ(recording.stamp_ns(i), stamps ? expected.stamp_ns : at_thirty_hertz);
     EXPECT_EQ(recording.number(i), i);
@@ -113,10 +113,10 @@ TEST_F(SensFile, SaysWhichFieldIsWrong) {
   const std::string whole = bytes();
   EXPECT_TRUE(names(error(with(whole, 0, std::uint32_t{3})), {"version 3", "version 4"}));
   EXPECT_TRUE(names(error(with(whole, 4, std::uint64_t{1} << 60)), {"sensor's name"}));
-  EXPECT_TRUE(names(error(with(whole, kKinds, std::int32_t{-1})), {"colour compression -1"}));
+  EXPECT_TRUE(names(error(with(whole, kKinds, std::int32_t{-1})), {"color compression -1"}));
   EXPECT_TRUE(names(error(with(whole, kKinds + 4, std::int32_t{2})), {"depth compression 2"}));
   EXPECT_TRUE(names(error(with(whole, kSizes, std::uint32_t{100000})), {"100000 x 8"}));
-  EXPECT_TRUE(names(error(with(whole, kMatrices, 0.0F)), {"colour camera", "fx 0"}));
+  EXPECT_TRUE(names(error(with(whole, kMatrices, 0.0F)), {"color camera", "fx 0"}));
   EXPECT_TRUE(names(error(with(whole, kCount, std::uint64_t{1} << 62)), {"frame 3", "cut short"}));
   EXPECT_TRUE(names(error(with(whole, kDepthSize, std::uint64_t{1} << 62)),
                     {"frame 0's depth picture", "cut short"}));
@@ -144,7 +144,7 @@ TEST_F(SensFile, PicturesThatAreNotWhatTheHeaderSaysAreRefused) {
   EXPECT_TRUE(names(error(damaged), {"frame 0", "decompress"}));
 }
 
-TEST_F(SensFile, ACutColourPictureIsAnErrorNotHalfAPicture) {
+TEST_F(SensFile, ACutColorPictureIsAnErrorNotHalfAPicture) {
   const std::string whole = bytes();
   const std::size_t jpeg = kDepthSize + 8;
   std::uint64_t size = 0;
@@ -153,13 +153,13 @@ TEST_F(SensFile, ACutColourPictureIsAnErrorNotHalfAPicture) {
   for (const std::size_t kept : {picture - 1, picture - 2, picture - 20}) {
     std::string cut = with(whole, kDepthSize - 8, std::uint64_t{kept});
     cut.erase(jpeg + kept, picture - kept);
-    EXPECT_TRUE(names(error(cut), {"a.sens", "frame 0", "colour picture is cut short"})) << kept;
+    EXPECT_TRUE(names(error(cut), {"a.sens", "frame 0", "color picture is cut short"})) << kept;
   }
   EXPECT_TRUE(names(error(with(whole, kCount, std::uint64_t{0})), {"a.sens", "no frame"}));
 }
 
 TEST(PictureFault, TellsWhatADecoderWouldHideOrPrint) {
-  const std::string jpeg = encode_jpeg(moment(0).colour, 90), png = encode_png(moment(0).depth);
+  const std::string jpeg = encode_jpeg(moment(0).color, 90), png = encode_png(moment(0).depth);
   EXPECT_EQ(picture_fault(jpeg), nullptr);
   EXPECT_EQ(picture_fault(png), nullptr);
   EXPECT_EQ(picture_fault(jpeg + "behind it"), nullptr);
@@ -171,7 +171,7 @@ TEST(PictureFault, TellsWhatADecoderWouldHideOrPrint) {
   std::string damaged = png;
   damaged[50] ^= 1;
   EXPECT_TRUE(names(picture_fault(damaged), {"sum"}));
-  EXPECT_FALSE(decode_grey16(damaged));
+  EXPECT_FALSE(decode_gray16(damaged));
   // The end mark of a thumbnail within the head does not end the picture.
   const std::string thumbnail = std::string("\xff\xe1\0\6\xff\xd8\xff\xd9", 8);
   const std::string with_thumbnail = jpeg.substr(0, 2) + thumbnail + jpeg.substr(2);
@@ -180,7 +180,7 @@ TEST(PictureFault, TellsWhatADecoderWouldHideOrPrint) {
 }
 
 TEST_F(SensFile, AJpegThatClaimsAnotherSizeIsNotDecoded) {
-  std::string jpeg = encode_jpeg(moment(0).colour, 90);
+  std::string jpeg = encode_jpeg(moment(0).color, 90);
   const std::size_t frame_header = jpeg.find("\xff\xc0");
   ASSERT_NE(frame_header, jpeg.npos);
   jpeg[frame_header + 5] = '\x7f';  // height: 32 thousand rows
@@ -188,7 +188,7 @@ TEST_F(SensFile, AJpegThatClaimsAnotherSizeIsNotDecoded) {
   ASSERT_TRUE(size);
   EXPECT_GT(size->height, 32000U);
   jpeg[frame_header + 7] = '\x7f';
-  EXPECT_FALSE(decode_colour(jpeg));  // 10^9 pixels
+  EXPECT_FALSE(decode_color(jpeg));  // 10^9 pixels
   EXPECT_FALSE(announced_size("GIF89a"));
   EXPECT_FALSE(announced_size("\xff\xd8\xff"));
 }

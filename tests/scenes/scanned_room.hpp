@@ -14,7 +14,7 @@ namespace mh::test {
 struct ScannedRoom {
   double floor_z_m = 0.055, noise_m = 0.01;
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();
-  bool labelled = true;
+  bool labeled = true;
   /// Whether the scan has floor there.
   std::function<bool(double x, double y)> has_floor = [](double, double) { return true; };
 
@@ -23,9 +23,9 @@ struct ScannedRoom {
     scene.name = "scanned room";
     scene.materials.push_back({.name = "scan", .texture = {}});
     scene.instances.push_back(
-        {.id = 1, .class_id = labelled ? class_of("floor") : kVoid, .name = "floor"});
+        {.id = 1, .class_id = labeled ? class_of("floor") : kVoid, .name = "floor"});
     scene.instances.push_back(
-        {.id = 2, .class_id = labelled ? class_of("wall") : kVoid, .name = "wall"});
+        {.id = 2, .class_id = labeled ? class_of("wall") : kVoid, .name = "wall"});
     add_floor(scene);
     const Eigen::Vector3f up(0, 0, 2.5F);
     for (const float side : {-1.0F, 1.0F}) {

@@ -28,7 +28,7 @@ PlyMesh strip() {
   for (int i = 0; i <= 6; ++i)
     for (int j = 0; j < 2; ++j) {
       mesh.positions_m.emplace_back(static_cast<float>(i), static_cast<float>(j), 0.0F);
-      mesh.colours.push_back({static_cast<std::uint8_t>(10 * i), 20, 30});
+      mesh.colors.push_back({static_cast<std::uint8_t>(10 * i), 20, 30});
     }
   for (std::uint32_t i = 0; i < 12; i += 2) {
     mesh.triangles.push_back({i, i + 2, i + 1});
@@ -101,7 +101,7 @@ void expect_strip(const Scene& scene) {
   EXPECT_EQ(scene.instances[2].class_id, kVoid);
   EXPECT_EQ(scene.name, "s");
   EXPECT_EQ(scene.triangles, strip().triangles);
-  EXPECT_EQ(scene.colours, strip().colours);
+  EXPECT_EQ(scene.colors, strip().colors);
 }
 
 TEST_F(Scannet, ReadsAReleaseTwoFolder) {
@@ -248,7 +248,7 @@ TEST_F(Scannet, FilesThatDoNotFitTheMeshAreNamed) {
   write_v2();
   PlyMesh less = strip();
   less.positions_m.resize(13);
-  less.colours.resize(13);
+  less.colors.resize(13);
   less.labels.assign(13, 1);
   less.triangles.resize(2);
   write("s/s_vh_clean_2.labels.ply", ply_bytes(less));

@@ -16,7 +16,7 @@ Scene triangle_scene() {
   scene.name = "test";
   scene.positions_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   scene.uvs = {{0, 0}, {1, 0}, {0, 1}};
-  scene.colours = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+  scene.colors = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
   scene.light = {{1, 1, 1}, {2, 1, 1}, {1, 3, 1}};
   scene.triangles = {{0, 1, 2}};
   scene.material_of = {0};
@@ -34,7 +34,7 @@ TEST(ValidateScene, AcceptsAGoodSceneAndRefusesEveryFlaw) {
   EXPECT_NO_THROW(validate(triangle_scene()));
   const std::vector<Change> flaws = {
       [](Scene& s) { s.uvs.pop_back(); },
-      [](Scene& s) { s.colours.pop_back(); },
+      [](Scene& s) { s.colors.pop_back(); },
       [](Scene& s) { s.light.pop_back(); },
       [](Scene& s) { s.material_of.clear(); },
       [](Scene& s) { s.class_of.push_back(1); },
@@ -65,16 +65,18 @@ TEST(DigestScene, SeesEveryVisibleChangeAndNothingElse) {
   const std::vector<Change> changes = {
       [](Scene& s) { s.positions_m[0].x() = 1e-6F; },
       [](Scene& s) { s.uvs[1].y() = 0.5F; },
-      [](Scene& s) { s.colours[0].g = 77; },
+      [](Scene& s) { s.colors[0].g = 77; },
       [](Scene& s) { s.light[2].z() = 0.5F; },
       [](Scene& s) { std::swap(s.triangles[0][0], s.triangles[0][1]); },
       [](Scene& s) { s.class_of[0] = 6; },
       [](Scene& s) { s.instance_of[0] = 0; },
-      [](Scene& s) { s.materials[0].texture = Grid2d<Rgb8>(2, 2, {0, 0, 1}); },
+      [](Scene& s) {
+        s.materials[0].texture = Grid2d<Rgb8>(2, 2, {0, 0, 1});
+      },
       [](Scene& s) { s.materials[0].texture = Grid2d<Rgb8>(4, 1); },
-      [](Scene& s) { s.materials[0].base_colour.r = 3; },
+      [](Scene& s) { s.materials[0].base_color.r = 3; },
       [](Scene& s) { s.materials[0].emission.x() = 1; },
-      [](Scene& s) { s.lights[0].colour.x() = 2; },
+      [](Scene& s) { s.lights[0].color.x() = 2; },
       [](Scene& s) { s.lights.clear(); },
       [](Scene& s) { s.light.clear(); }};
   std::set<std::uint64_t> seen{digest(triangle_scene())};

@@ -37,7 +37,7 @@ TEST(TrainingRoom, SharesNoMaterialWithTheHouse) {
   EXPECT_GT(seen, 20U);
 }
 
-TEST(TrainingRoom, IsAClosedFurnishedRoomInMetres) {
+TEST(TrainingRoom, IsAClosedFurnishedRoomInMeters) {
   const Scene room = make_training_room(3);
   EXPECT_GT(room.floor_area_m2(), 9.0);
   EXPECT_LT(room.floor_area_m2(), 31.0);

@@ -86,7 +86,7 @@ TEST_F(Worlds, BadYamlIsNamedByLineAndValue) {
   EXPECT_TRUE(
       names(error("  - {file: meshes/a.obj, class: hat stand}\n"), {"room.yaml:2", "'hat stand'"}));
   EXPECT_TRUE(names(error("  - {file: meshes/a.obj, scale: 0}\n"), {"room.yaml:2", "scale"}));
-  EXPECT_TRUE(names(error("  - {file: meshes/a.obj, colour: red}\n"), {"room.yaml", "colour"}));
+  EXPECT_TRUE(names(error("  - {file: meshes/a.obj, color: red}\n"), {"room.yaml", "color"}));
   EXPECT_TRUE(
       names(error("  - {file: meshes/a.obj}\n  - {file: meshes/a.obj}\n"), {"room.yaml:3", "'a'"}));
   EXPECT_TRUE(names(error("  []\n"), {"nothing to be seen"}));
@@ -133,7 +133,7 @@ TEST_F(Worlds, GazeboModelsAreFoundPlacedAndNamed) {
   EXPECT_EQ(instance(scene, "ground").class_id, *class_by_name("floor"));
   EXPECT_NEAR(scene.floor_area_m2(), 48, 1e-3);
   EXPECT_TRUE(std::ranges::any_of(scene.materials, [](const Material& m) {
-    return m.base_colour == Rgb8{255, 0, 0};
+    return m.base_color == Rgb8{255, 0, 0};
   }));
 }
 

@@ -40,13 +40,13 @@ inline void add_quad(Scene& scene, const Eigen::Vector3f& origin, const Eigen::V
   }
 }
 
-/// A scene with one plain material of this sRGB colour.
-inline Scene plain_scene(Rgb8 colour = {255, 255, 255}) {
+/// A scene with one plain material of this sRGB color.
+inline Scene plain_scene(Rgb8 color = {255, 255, 255}) {
   Scene scene;
   scene.name = "test";
   Material material;
   material.name = "plain";
-  material.base_colour = colour;
+  material.base_color = color;
   scene.materials.push_back(material);
   return scene;
 }

@@ -68,8 +68,8 @@ TEST_F(EvoReference, RelativeErrors) {
   const RelativeErrors thirty =
       rpe(matched_, {.value = 30, .unit = DeltaUnit::kFrames, .all_pairs = true});
   expect_equal(error_statistics(thirty.translation_m), "rpe_trans_30frames_all_pairs");
-  const RelativeErrors metres = rpe(matched_, {.value = 0.2, .unit = DeltaUnit::kMetres});
-  expect_equal(error_statistics(metres.translation_m), "rpe_trans_0.2m_all_pairs");
+  const RelativeErrors meters = rpe(matched_, {.value = 0.2, .unit = DeltaUnit::kMeters});
+  expect_equal(error_statistics(meters.translation_m), "rpe_trans_0.2m_all_pairs");
 }
 
 TEST_F(EvoReference, TheReportHoldsTheSameFigures) {

@@ -225,9 +225,9 @@ TEST(DeltaPairs, WorkedByHand) {
   EXPECT_EQ(delta_pairs(t, {.value = 3}), (Pairs{{0, 3}}));
   EXPECT_EQ(delta_pairs(t, {.value = 5}), Pairs{});
   // 3 m: 0 -> 2 (3 m); 1 -> 2 (2 m off by 1, 5 m off by 2: out of tolerance); 2 -> 3; 3 has 1 m.
-  EXPECT_EQ(delta_pairs(t, {.value = 3, .unit = DeltaUnit::kMetres}), (Pairs{{0, 2}, {2, 3}}));
+  EXPECT_EQ(delta_pairs(t, {.value = 3, .unit = DeltaUnit::kMeters}), (Pairs{{0, 2}, {2, 3}}));
   // 1.5 m within a third: 0 -> 1 (1 m) as near as none other; 1 -> 2 (2 m); 3 -> 4 (1 m).
-  EXPECT_EQ(delta_pairs(t, {.value = 1.5, .unit = DeltaUnit::kMetres, .tolerance = 0.34}),
+  EXPECT_EQ(delta_pairs(t, {.value = 1.5, .unit = DeltaUnit::kMeters, .tolerance = 0.34}),
             (Pairs{{0, 1}, {1, 2}, {3, 4}}));
   EXPECT_EQ(delta_pairs(t, {.value = 2, .unit = DeltaUnit::kSeconds}),
             (Pairs{{0, 2}, {1, 3}, {2, 4}}));
@@ -236,7 +236,7 @@ TEST(DeltaPairs, WorkedByHand) {
             (Pairs{{0, 1}, {1, 2}, {2, 3}, {3, 4}}));
   EXPECT_EQ(delta_pairs(t, {.value = 1.5, .unit = DeltaUnit::kSeconds}), Pairs{});
   EXPECT_EQ(delta_pairs({}, {.value = 1}), Pairs{});
-  EXPECT_EQ(delta_pairs({}, {.value = 1, .unit = DeltaUnit::kMetres}), Pairs{});
+  EXPECT_EQ(delta_pairs({}, {.value = 1, .unit = DeltaUnit::kMeters}), Pairs{});
   EXPECT_THROW(delta_pairs(t, {.value = 1.5}), InputError);
   EXPECT_THROW(delta_pairs(t, {.value = 0}), InputError);
   EXPECT_THROW(delta_pairs(t, {.value = -1, .unit = DeltaUnit::kSeconds}), InputError);
@@ -244,7 +244,7 @@ TEST(DeltaPairs, WorkedByHand) {
 
 TEST(DeltaPairs, StandingStillTakesTheFirstPoseThatIsFarEnough) {
   const Trajectory t = every_second({at(0, 0), at(0, 1), at(0, 1), at(0, 1), at(0, 2)});
-  const auto pairs = delta_pairs(t, {.value = 1, .unit = DeltaUnit::kMetres});
+  const auto pairs = delta_pairs(t, {.value = 1, .unit = DeltaUnit::kMeters});
   ASSERT_EQ(pairs.size(), 4U);
   EXPECT_EQ(pairs[0].second, 1U);
   EXPECT_EQ(pairs[1].second, 4U);
@@ -252,7 +252,7 @@ TEST(DeltaPairs, StandingStillTakesTheFirstPoseThatIsFarEnough) {
 
 TEST(Rpe, WorkedByHand) {
   // Truth walks 1 m per step along x; the estimate walks 1.1 m and turns 2 degrees per step on the
-  // spot, so that its next metre points elsewhere.
+  // spot, so that its next meter points elsewhere.
   const Trajectory truth = every_second({at(0, 0), at(0, 1), at(0, 2)});
   Trajectory estimate = every_second({at(0, 0), at(0, 0), at(0, 0)});
   const SE3 step = SE3(so3_exp({0, 0, 2 * std::numbers::pi / 180}), Eigen::Vector3d(1.1, 0, 0));

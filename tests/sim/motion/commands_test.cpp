@@ -86,7 +86,7 @@ TEST(Commands, RandomCommandsKeepEveryLimitOfTheRobot) {
               again.path.base[i].world_from_camera.translation());
 }
 
-TEST(Commands, TheReflexStopsTheRobotFortyCentimetresBeforeAWall) {
+TEST(Commands, TheReflexStopsTheRobotFortyCentimetersBeforeAWall) {
   const VelocityCommand east{.duration_s = 20, .forward_m_per_s = 0.5};
   const CommandedDrive careful = drive(empty_room(), pepper(), script_of({east}, true));
   const CommandedDrive bold = drive(empty_room(), pepper(), script_of({east}, false));
@@ -118,7 +118,7 @@ TEST(Commands, TheReflexKeepsItsDistanceAtAnySpeedAndSlant) {
     }
 }
 
-TEST(Commands, TheReflexLooksTenCentimetresAside) {
+TEST(Commands, TheReflexLooksTenCentimetersAside) {
   for (const auto& [gap_m, stops] : {std::pair(0.095F, true), std::pair(0.105F, false)})
     for (const float side : {-1.0F, 1.0F}) {
       Scene scene = empty_room();

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double h = 1.0 / 240;
 
-/// The base's neighbouring places and headings, differenced once, twice, three times; at rest
+/// The base's neighboring places and headings, differenced once, twice, three times; at rest
 /// before and after.
 DrivePeaks differences(const Stretch& stretch) {
   const auto n = static_cast<long>(stretch.position_m.size());

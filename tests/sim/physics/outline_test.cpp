@@ -72,7 +72,7 @@ TEST(PlanarWorld, DrivesIntoFurnitureStayShallow) {
   std::vector<Vector2d> starts;
   for (int y = 0; y < region.height(); ++y)
     for (int x = 0; x < region.width(); ++x)
-      if (region(x, y) != 0) starts.push_back(grid.centre_of({x, y}));
+      if (region(x, y) != 0) starts.push_back(grid.center_of({x, y}));
   ASSERT_FALSE(starts.empty());
   PlanarWorld world(house, robot, starts[0], 0);
   const RandomStream draw(11);

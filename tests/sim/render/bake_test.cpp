@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 #include "sim/render/renderer.hpp"
 #include "tests/sim/scene_builder.hpp"
 
@@ -30,7 +30,7 @@ Scene floor_scene() {
 Light sphere_lamp(const Vector3f& position_m, float intensity) {
   Light lamp;
   lamp.position_m = position_m;
-  lamp.colour = Vector3f(1.0F, 0.5F, 0.25F) * intensity;
+  lamp.color = Vector3f(1.0F, 0.5F, 0.25F) * intensity;
   return lamp;
 }
 
@@ -57,7 +57,7 @@ TEST(BakeLight, SunLightsWithTheCosineAndTablesCastShadows) {
   Light sun;
   sun.kind = Light::Kind::kSun;
   sun.direction = Vector3f(1, 0, -1).normalized();
-  sun.colour = {3, 3, 3};
+  sun.color = {3, 3, 3};
   scene.lights.push_back(sun);
   bake_light(scene, {.bounces = 0});
   const float lit = 3.0F * std::sqrt(0.5F) / kPi;
@@ -78,12 +78,12 @@ TEST(BakeLight, SunLightsWithTheCosineAndTablesCastShadows) {
       ASSERT_LE(light, 1.001F * lit);
     }
   }
-  EXPECT_EQ(shadowed, 49);  // 7 x 7 vertices at least 11 cm inside a metre
+  EXPECT_EQ(shadowed, 49);  // 7 x 7 vertices at least 11 cm inside a meter
 }
 
 TEST(BakeLight, OpenSkyGivesItsRadiance) {
   Scene scene = floor_scene();
-  scene.lights.push_back({.kind = Light::Kind::kSky, .colour = {0.5F, 0.6F, 0.7F}});
+  scene.lights.push_back({.kind = Light::Kind::kSky, .color = {0.5F, 0.6F, 0.7F}});
   bake_light(scene);
   for (const Vector3f& light : scene.light)
     ASSERT_LT((light - Vector3f(0.5F, 0.6F, 0.7F)).norm(), 1e-5F);
@@ -110,14 +110,14 @@ TEST(BakeLight, AmbientLightReachesEverySurfaceAlike) {
   add_quad(scene, {-2, -2, 0.01F}, {4, 0, 0}, {0, 4, 0}, 2, 1, 0, 40);  // lies on the floor
   scene.lights.push_back(sphere_lamp({0, 0, 1.5F}, 2.0F));
   Scene with = scene;
-  with.lights.push_back({.kind = Light::Kind::kAmbient, .colour = {0.5F, 0.25F, 0.125F}});
+  with.lights.push_back({.kind = Light::Kind::kAmbient, .color = {0.5F, 0.25F, 0.125F}});
   bake_light(scene);
   bake_light(with);
   for (std::size_t v = 0; v < scene.light.size(); ++v)
     ASSERT_EQ(with.light[v], scene.light[v] + Vector3f(0.5F, 0.25F, 0.125F));
 }
 
-TEST(BakeLight, ColourOfATextureBleedsByItsMean) {
+TEST(BakeLight, ColorOfATextureBleedsByItsMean) {
   Scene scene = plain_scene();
   Grid2d<Rgb8> half_red(2, 1);
   half_red(0, 0) = {255, 0, 0};
@@ -133,14 +133,14 @@ TEST(BakeLight, RoomsAreDarkWithoutLightEvenUnderABrightSky) {
   Scene scene = plain_scene();
   add_box(scene, {0, 0, 0}, {3, 3, 2.5F}, true, 1, 1, 0,
           10);  // single sheets: the sky is right behind
-  scene.lights.push_back({.kind = Light::Kind::kSky, .colour = {9, 9, 9}});
+  scene.lights.push_back({.kind = Light::Kind::kSky, .color = {9, 9, 9}});
   scene.lights.push_back(sphere_lamp({1.5F, 1.5F, 2.0F}, 1.0F));
   bake_light(scene);
   // Everything is lit by the lamp alone: nowhere near the sky's radiance.
   for (const Vector3f& light : scene.light) {
     ASSERT_GT(light.x(), 0.01F);
     ASSERT_LT(light.x(), 3.0F);
-    ASSERT_LT(light.z(), 0.3F * light.x());  // the lamp's colour, not the sky's
+    ASSERT_LT(light.z(), 0.3F * light.x());  // the lamp's color, not the sky's
   }
 }
 
@@ -164,7 +164,7 @@ TEST(BakeLight, FloorInsideAStandingBoxTakesTheLightAroundIt) {
   Scene scene = floor_scene();
   const std::size_t floor_vertices = scene.positions_m.size();
   add_box(scene, {-0.33F, -0.33F, 0}, {0.33F, 0.33F, 0.1F}, false, 3, 2, 0, 4);
-  scene.lights.push_back({.kind = Light::Kind::kSky, .colour = {1, 1, 1}});
+  scene.lights.push_back({.kind = Light::Kind::kSky, .color = {1, 1, 1}});
   bake_light(scene);
   for (std::size_t v = 0; v < floor_vertices; ++v) ASSERT_GT(scene.light[v].x(), 0.4F);
 }
@@ -173,7 +173,7 @@ TEST(BakeLight, ThreadsChangeNoBitAndSeedsDo) {
   const auto baked = [](int threads, std::uint64_t seed) {
     Scene scene = floor_scene();
     add_box(scene, {0, 0, 0.3F}, {0.5F, 0.5F, 0.6F}, false, 3, 2, 0, 5);
-    scene.lights.push_back({.kind = Light::Kind::kSky, .colour = {1, 1, 1}});
+    scene.lights.push_back({.kind = Light::Kind::kSky, .color = {1, 1, 1}});
     scene.lights.push_back(sphere_lamp({0.5F, 0.7F, 2.0F}, 2.0F));
     bake_light(scene, {.seed = seed, .threads = threads});
     return scene.light;

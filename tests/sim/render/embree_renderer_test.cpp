@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 #include "sim/render/encode.hpp"
 #include "sim/render/renderer.hpp"
 #include "tests/sim/scene_builder.hpp"
@@ -19,7 +19,7 @@ using test::plain_scene;
 /// The camera's axes in a world of the same axes: x right, y down, z forward.
 const SE3 kIdentity;
 
-/// Colours that vary smoothly from texel to texel, so that every bilinear weight matters.
+/// Colors that vary smoothly from texel to texel, so that every bilinear weight matters.
 Grid2d<Rgb8> smooth_picture(int width, int height) {
   Grid2d<Rgb8> picture(width, height);
   for (int y = 0; y < height; ++y)
@@ -54,11 +54,11 @@ TEST(Encode, IsTheTableForEveryEntry) {
 TEST(EmbreeRenderer, SmoothEdgesMixLightAndLeaveTheRestAlone) {
   Scene scene = plain_scene();
   scene.materials.push_back(scene.materials[0]);
-  scene.materials[1].base_colour = {0, 0, 0};
+  scene.materials[1].base_color = {0, 0, 0};
   add_quad(scene, {-5, -5, 2}, {5, 0, 0}, {0, 10, 0}, 1, 1, 0);  // white left of the axis
   add_quad(scene, {0, -5, 2}, {5, 0, 0}, {0, 10, 0}, 2, 2, 1);   // black right of it
   Camera camera;
-  camera.cx_px = 319.8;  // pixel 320 sees the edge 0.2 px left of its centre
+  camera.cx_px = 319.8;  // pixel 320 sees the edge 0.2 px left of its center
   const RenderedFrame sharp =
       make_embree_renderer(scene, {.antialiasing = Antialiasing::kNone})->render(camera, kIdentity);
   const RenderedFrame smooth = make_embree_renderer(scene)->render(camera, kIdentity);
@@ -66,11 +66,11 @@ TEST(EmbreeRenderer, SmoothEdgesMixLightAndLeaveTheRestAlone) {
   EXPECT_EQ(sharp.classes, smooth.classes);
   EXPECT_EQ(sharp.instances, smooth.instances);
   // One sample of three is white.
-  EXPECT_NEAR(smooth.colour(320, 240).g, linear_to_srgb(1.0F / 3.0F), 1);
-  EXPECT_EQ(sharp.colour(320, 240).g, 0);
+  EXPECT_NEAR(smooth.color(320, 240).g, linear_to_srgb(1.0F / 3.0F), 1);
+  EXPECT_EQ(sharp.color(320, 240).g, 0);
   for (int x = 0; x < camera.width_px; ++x)
     if (x != 320) {
-      EXPECT_EQ(smooth.colour(x, 240), sharp.colour(x, 240)) << x;
+      EXPECT_EQ(smooth.color(x, 240), sharp.color(x, 240)) << x;
     }
 }
 
@@ -86,10 +86,10 @@ TEST(EmbreeRenderer, APictureOfAnySizeIsACutOfALargerOne) {
     for (const int height : {1, 4, 5, 30}) {
       camera.width_px = width, camera.height_px = height;
       const RenderedFrame cut = renderer->render(camera, kIdentity);
-      ASSERT_EQ(cut.colour.size(), static_cast<std::size_t>(width * height));
+      ASSERT_EQ(cut.color.size(), static_cast<std::size_t>(width * height));
       for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-          ASSERT_EQ(cut.colour(x, y), whole.colour(x, y)) << width << "x" << height;
+          ASSERT_EQ(cut.color(x, y), whole.color(x, y)) << width << "x" << height;
           ASSERT_EQ(cut.depth_m(x, y), whole.depth_m(x, y)) << width << "x" << height;
           ASSERT_EQ(cut.classes(x, y), whole.classes(x, y)) << width << "x" << height;
           ASSERT_EQ(cut.instances(x, y), whole.instances(x, y)) << width << "x" << height;
@@ -130,7 +130,7 @@ TEST(EmbreeRenderer, ExtraOutputsAgreeWithOneAnotherAndWithTheClosedForm) {
     }
   EXPECT_GT(hits, 100000);
   const RenderedFrame usual = make_embree_renderer(scene)->render(camera, pose);
-  EXPECT_EQ(usual.colour, frame.colour);
+  EXPECT_EQ(usual.color, frame.color);
   EXPECT_TRUE(usual.faces.empty() && usual.depth16.empty() && usual.points_m.empty());
 }
 
@@ -162,19 +162,19 @@ TEST(EmbreeRenderer, SupersamplingIsTheMeanOfFourFinerPixels) {
   const RenderedFrame mean =
       make_embree_renderer(scene, {.antialiasing = Antialiasing::kSupersample})
           ->render(camera, kIdentity);
-  const RenderedFrame centres = sharp->render(camera, kIdentity);
+  const RenderedFrame centers = sharp->render(camera, kIdentity);
   const RenderedFrame fine = sharp->render(finer, kIdentity);
-  EXPECT_EQ(mean.depth_m, centres.depth_m);
-  EXPECT_EQ(mean.instances, centres.instances);
+  EXPECT_EQ(mean.depth_m, centers.depth_m);
+  EXPECT_EQ(mean.instances, centers.instances);
   for (int y = 0; y < camera.height_px; ++y)
     for (int x = 0; x < camera.width_px; ++x) {
       Vector3f sum = Vector3f::Zero();
       for (const int i : {0, 1})
-        for (const int j : {0, 1}) sum += srgb_to_linear(fine.colour(2 * x + i, 2 * y + j));
+        for (const int j : {0, 1}) sum += srgb_to_linear(fine.color(2 * x + i, 2 * y + j));
       // Two roundings, to the fine pixels' levels and to the mean's.
-      ASSERT_NEAR(mean.colour(x, y).g, linear_to_srgb(sum.y() / 4.0F), 2) << x << " " << y;
+      ASSERT_NEAR(mean.color(x, y).g, linear_to_srgb(sum.y() / 4.0F), 2) << x << " " << y;
     }
-  EXPECT_NE(mean.colour, centres.colour);
+  EXPECT_NE(mean.color, centers.color);
 }
 
 TEST(EmbreeRenderer, ThreadsAndPicturesNotMultiplesOfATileChangeNoBit) {
@@ -192,7 +192,7 @@ TEST(EmbreeRenderer, ThreadsAndPicturesNotMultiplesOfATileChangeNoBit) {
                       .distortion = {}};
   const RenderedFrame one = make_embree_renderer(scene, {.threads = 1})->render(camera, kIdentity);
   const RenderedFrame two = make_embree_renderer(scene, {.threads = 2})->render(camera, kIdentity);
-  EXPECT_EQ(one.colour, two.colour);
+  EXPECT_EQ(one.color, two.color);
   EXPECT_EQ(one.depth_m, two.depth_m);
   EXPECT_EQ(one.classes, two.classes);
   EXPECT_EQ(one.instances, two.instances);
@@ -206,7 +206,7 @@ TEST(EmbreeRenderer, ThreadsAndPicturesNotMultiplesOfATileChangeNoBit) {
     for (int x = 0; x < camera.width_px; ++x) ASSERT_EQ(wide.depth_m(x, y), one.depth_m(x, y));
 }
 
-TEST(Colour, SrgbRoundTripIsExact) {
+TEST(Color, SrgbRoundTripIsExact) {
   for (int i = 0; i < 256; ++i) {
     const auto value = static_cast<std::uint8_t>(i);
     EXPECT_EQ(linear_to_srgb(srgb_to_linear(value)), value);

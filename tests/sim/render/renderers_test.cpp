@@ -6,7 +6,7 @@
 
 #include "scenes/training/training.hpp"
 #include "sim/render/agreement.hpp"
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 #include "sim/render/renderer.hpp"
 #include "slam/core/error.hpp"
 #include "tests/sim/scene_builder.hpp"
@@ -37,13 +37,13 @@ class BothRenderers : public testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(Renderers, BothRenderers, testing::Values("embree", "osmesa"),
                          [](const auto& of) { return std::string(of.param); });
 
-Scene plane_at_two_metres() {
+Scene plane_at_two_meters() {
   Scene scene = plain_scene({200, 100, 50});
   add_quad(scene, {-5, -5, 2}, {10, 0, 0}, {0, 10, 0}, 1, 1);
   return scene;
 }
 
-/// Colours that vary smoothly from texel to texel, so that every bilinear weight matters.
+/// Colors that vary smoothly from texel to texel, so that every bilinear weight matters.
 Grid2d<Rgb8> smooth_picture(int width, int height) {
   Grid2d<Rgb8> picture(width, height);
   for (int y = 0; y < height; ++y)
@@ -54,7 +54,7 @@ Grid2d<Rgb8> smooth_picture(int width, int height) {
   return picture;
 }
 
-/// Bilinear interpolation in linear light of a repeating picture, texel centres at half-integers.
+/// Bilinear interpolation in linear light of a repeating picture, texel centers at half-integers.
 Vector3f bilinear_truth(const Grid2d<Rgb8>& picture, double u, double v) {
   const double x = u * picture.width() - 0.5, y = v * picture.height() - 0.5;
   const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
@@ -68,7 +68,7 @@ Vector3f bilinear_truth(const Grid2d<Rgb8>& picture, double u, double v) {
 }
 
 TEST_P(BothRenderers, LooksThroughTheHolesOfACutOut) {
-  Scene scene = plane_at_two_metres();
+  Scene scene = plane_at_two_meters();
   Material fence;
   fence.name = "fence";
   fence.texture = Grid2d<Rgb8>(4, 2, {250, 250, 250});
@@ -99,8 +99,8 @@ TEST_P(BothRenderers, LooksThroughTheHolesOfACutOut) {
   EXPECT_GT(holes, 50000);
 }
 
-TEST_P(BothRenderers, SeesThroughPanesInTheirColours) {
-  Scene scene = plane_at_two_metres();
+TEST_P(BothRenderers, SeesThroughPanesInTheirColors) {
+  Scene scene = plane_at_two_meters();
   const auto pane = [&](const Vector3f& transmission, float left, float z, float width) {
     Material material;
     material.name = "pane " + std::to_string(scene.materials.size());
@@ -111,10 +111,10 @@ TEST_P(BothRenderers, SeesThroughPanesInTheirColours) {
     for (std::size_t f = before; f < scene.triangles.size(); ++f)
       scene.material_of[f] = static_cast<std::uint16_t>(scene.materials.size() - 1);
   };
-  const Vector3f green(0.5F, 0.9F, 0.6F), grey(0.25F, 0.25F, 0.25F);
+  const Vector3f green(0.5F, 0.9F, 0.6F), gray(0.25F, 0.25F, 0.25F);
   pane(green, -1, 1.0, 1.0);  // the left half
-  pane(grey, -1, 1.2, 1.25);  // behind it and beyond its edge, x < 0.25
-  pane(grey, -5, 2.5, 10);    // behind the wall: seen by nobody
+  pane(gray, -1, 1.2, 1.25);  // behind it and beyond its edge, x < 0.25
+  pane(gray, -5, 2.5, 10);    // behind the wall: seen by nobody
   const Camera camera;
   for (const Antialiasing antialiasing :
        {Antialiasing::kNone, Antialiasing::kEdges, Antialiasing::kSupersample}) {
@@ -129,8 +129,8 @@ TEST_P(BothRenderers, SeesThroughPanesInTheirColours) {
         if (std::abs(a) < 0.003 || std::abs(1.2 * a - 0.25) < 0.003) continue;  // edges of panes
         Vector3f light = wall;
         if (a < 0) light = light.cwiseProduct(green);
-        if (1.2 * a < 0.25) light = light.cwiseProduct(grey);
-        const Rgb8 seen = frame.colour(x, y);
+        if (1.2 * a < 0.25) light = light.cwiseProduct(gray);
+        const Rgb8 seen = frame.color(x, y);
         for (const auto& [channel, k] : {std::pair{seen.r, 0}, {seen.g, 1}, {seen.b, 2}})
           ASSERT_NEAR(channel, linear_to_srgb(light[k]), 1) << x << ", " << y << ", " << k;
       }
@@ -138,7 +138,7 @@ TEST_P(BothRenderers, SeesThroughPanesInTheirColours) {
 }
 
 TEST_P(BothRenderers, WhatIsBrighterThanWhiteIsDimmedBeforeItIsCutOff) {
-  Scene scene = plane_at_two_metres();
+  Scene scene = plane_at_two_meters();
   scene.materials[0].emission = {4, 4, 4};
   Material shade;
   shade.name = "shade";
@@ -146,19 +146,19 @@ TEST_P(BothRenderers, WhatIsBrighterThanWhiteIsDimmedBeforeItIsCutOff) {
   scene.materials.push_back(shade);
   add_quad(scene, {-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, 2, 2);
   scene.material_of[2] = scene.material_of[3] = 1;
-  const Rgb8 seen = make(scene)->render(Camera{}, kIdentity).colour(320, 240);
+  const Rgb8 seen = make(scene)->render(Camera{}, kIdentity).color(320, 240);
   EXPECT_NEAR(seen.g, linear_to_srgb(0.1F * (4 + srgb_to_linear(Rgb8{200, 100, 50}).y())), 1);
 }
 
-TEST_P(BothRenderers, PlaneAtTwoMetresReadsTwoMetresAtEveryPixel) {
-  const auto renderer = make(plane_at_two_metres());
+TEST_P(BothRenderers, PlaneAtTwoMetersReadsTwoMetersAtEveryPixel) {
+  const auto renderer = make(plane_at_two_meters());
   const RenderedFrame frame = renderer->render(Camera{}, kIdentity);
   ASSERT_EQ(frame.depth_m.size(), 640U * 480U);
   // Embree computes in float: one part in 2^22.
   for (const float depth : frame.depth_m) ASSERT_NEAR(depth, 2.0F, 1e-6);
   for (const ClassId id : frame.classes) ASSERT_EQ(id, 1);
   for (const InstanceId id : frame.instances) ASSERT_EQ(id, 1);
-  for (const Rgb8& colour : frame.colour) ASSERT_EQ(colour, (Rgb8{200, 100, 50}));
+  for (const Rgb8& color : frame.color) ASSERT_EQ(color, (Rgb8{200, 100, 50}));
 }
 
 TEST_P(BothRenderers, TiltedPlaneFollowsItsClosedForm) {
@@ -198,18 +198,18 @@ TEST_P(BothRenderers, FinelyCutSphereHasTheDepthOfASphere) {
   scene.instances.push_back({1, 5, "sphere", {}, {}});
 
   // Beside the axis, lest whole rows of rays run along edges, where single ones slip through.
-  const Eigen::Vector3d centre(0.0123, -0.0211, distance);
-  for (Vector3f& p : scene.positions_m) p += centre.cast<float>();
+  const Eigen::Vector3d center(0.0123, -0.0211, distance);
+  for (Vector3f& p : scene.positions_m) p += center.cast<float>();
   const Camera camera;
   const RenderedFrame frame = make(scene)->render(camera, kIdentity);
   int hits = 0;
   for (int y = 0; y < camera.height_px; ++y)
     for (int x = 0; x < camera.width_px; ++x) {
       const Eigen::Vector3d d = camera.unproject(x, y, 1.0);
-      // |t d - centre| = radius, the nearer root; t is the depth as d.z = 1.
-      const double b = d.dot(centre) / d.squaredNorm();
+      // |t d - center| = radius, the nearer root; t is the depth as d.z = 1.
+      const double b = d.dot(center) / d.squaredNorm();
       const double discriminant =
-          b * b - (centre.squaredNorm() - radius * radius) / d.squaredNorm();
+          b * b - (center.squaredNorm() - radius * radius) / d.squaredNorm();
       if (discriminant < -1e-4) {
         ASSERT_EQ(frame.depth_m(x, y), 0.0F);
         ASSERT_EQ(frame.classes(x, y), kVoid);
@@ -222,7 +222,7 @@ TEST_P(BothRenderers, FinelyCutSphereHasTheDepthOfASphere) {
   EXPECT_GT(hits, 40000);  // pi (525 * 0.5 / 2)^2 = 54,000
 }
 
-TEST_P(BothRenderers, PixelCentresLieAtIntegers) {
+TEST_P(BothRenderers, PixelCentersLieAtIntegers) {
   // An edge at x = 0: with cx = 10 pixel 10's ray runs along it, pixel 9 is left, 11 is right.
   Scene scene = plain_scene();
   add_quad(scene, {-9, -9, 1}, {9.001F, 0, 0}, {0, 18, 0}, 1, 1);
@@ -250,7 +250,7 @@ TEST_P(BothRenderers, PoseIsWorldFromCamera) {
   rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   const RenderedFrame frame = make(scene)->render(Camera{}, SE3(rotation, {1, 0, 0}));
   EXPECT_NEAR(frame.depth_m(320, 240), 2.0F, 1e-5);
-  // The wall spans +-1 m at 2 m: +-262.5 px about the centre, pixels 57 to 582; the last is a tie.
+  // The wall spans +-1 m at 2 m: +-262.5 px about the center, pixels 57 to 582; the last is a tie.
   EXPECT_EQ(frame.classes(319 - 262, 240), 7);
   EXPECT_EQ(frame.classes(319 - 263, 240), kVoid);
   EXPECT_EQ(frame.classes(319 + 262, 240), 7);
@@ -260,13 +260,13 @@ TEST_P(BothRenderers, PoseIsWorldFromCamera) {
 TEST_P(BothRenderers, MissShowsTheSkyAndNothingElse) {
   Scene scene = plain_scene();
   add_quad(scene, {5, 5, -5}, {1, 0, 0}, {0, 1, 0}, 3, 1);
-  scene.lights.push_back({.kind = Light::Kind::kSky, .colour = {0.5F, 0.25F, 0.1F}});
+  scene.lights.push_back({.kind = Light::Kind::kSky, .color = {0.5F, 0.25F, 0.1F}});
   const RenderedFrame frame = make(scene)->render(Camera{}, kIdentity);
   for (const float depth : frame.depth_m) ASSERT_EQ(depth, 0.0F);
   for (const ClassId id : frame.classes) ASSERT_EQ(id, kVoid);
   for (const InstanceId id : frame.instances) ASSERT_EQ(id, 0);
   const Rgb8 sky{linear_to_srgb(0.5F), linear_to_srgb(0.25F), linear_to_srgb(0.1F)};
-  for (const Rgb8& colour : frame.colour) ASSERT_EQ(colour, sky);
+  for (const Rgb8& color : frame.color) ASSERT_EQ(color, sky);
 }
 
 TEST_P(BothRenderers, LabelsAreThoseOfTheNearestFaceSeenFromEitherSide) {
@@ -296,11 +296,11 @@ TEST_P(BothRenderers, MagnifiedTextureIsBilinearInLinearLight) {
       const double u = ((x - 319.5) * 0.002 + 0.64) / 1.28 * 2.0 - 1.0;
       const double v = ((y - 239.5) * 0.002 + 0.48) / 0.96 + 3.0;
       const Vector3f truth = bilinear_truth(scene.materials[0].texture, u, v)
-                                 .cwiseProduct(srgb_to_linear(scene.materials[0].base_colour));
-      // One grey level: the gain is kept as a half (one part in 2048), the output rounds.
-      ASSERT_NEAR(frame.colour(x, y).r, linear_to_srgb(truth.x()), 1) << x << " " << y;
-      ASSERT_NEAR(frame.colour(x, y).g, linear_to_srgb(truth.y()), 1) << x << " " << y;
-      ASSERT_NEAR(frame.colour(x, y).b, linear_to_srgb(truth.z()), 1) << x << " " << y;
+                                 .cwiseProduct(srgb_to_linear(scene.materials[0].base_color));
+      // One gray level: the gain is kept as a half (one part in 2048), the output rounds.
+      ASSERT_NEAR(frame.color(x, y).r, linear_to_srgb(truth.x()), 1) << x << " " << y;
+      ASSERT_NEAR(frame.color(x, y).g, linear_to_srgb(truth.y()), 1) << x << " " << y;
+      ASSERT_NEAR(frame.color(x, y).b, linear_to_srgb(truth.z()), 1) << x << " " << y;
     }
 }
 
@@ -314,20 +314,20 @@ TEST_P(BothRenderers, FarTextureShowsItsMeanInLinearLight) {
   for (auto& uv : scene.uvs) uv *= 1000.0F;  // 10 cm per repeat: some 12 texels per pixel
   const RenderedFrame frame = make(scene)->render(Camera{}, kIdentity);
   const int half = linear_to_srgb(0.5F);  // 188: half the light, not half the code value
-  for (const Rgb8& colour : frame.colour) ASSERT_NEAR(colour.g, half, 1);
+  for (const Rgb8& color : frame.color) ASSERT_NEAR(color.g, half, 1);
 }
 
 TEST_P(BothRenderers, OutputIsAlbedoTimesLightTimesExposurePlusEmission) {
   Scene scene = plain_scene({188, 188, 188});  // linear 0.503
   add_quad(scene, {-5, -5, 2}, {10, 0, 0}, {0, 10, 0}, 1, 1);
-  scene.colours.assign(scene.positions_m.size(), Rgb8{188, 255, 0});
+  scene.colors.assign(scene.positions_m.size(), Rgb8{188, 255, 0});
   scene.light.assign(scene.positions_m.size(), Vector3f(0.5F, 0.25F, 1.0F));
   scene.materials[0].emission = {0.0F, 0.1F, 0.05F};
   const RenderedFrame frame = make(scene, {.exposure = 1.5F})->render(Camera{}, kIdentity);
-  const float grey = srgb_to_linear(std::uint8_t{188});
-  const Rgb8 seen = frame.colour(100, 100);
-  EXPECT_NEAR(seen.r, linear_to_srgb(1.5F * grey * grey * 0.5F), 1);
-  EXPECT_NEAR(seen.g, linear_to_srgb(1.5F * (grey * 0.25F + 0.1F)), 1);
+  const float gray = srgb_to_linear(std::uint8_t{188});
+  const Rgb8 seen = frame.color(100, 100);
+  EXPECT_NEAR(seen.r, linear_to_srgb(1.5F * gray * gray * 0.5F), 1);
+  EXPECT_NEAR(seen.g, linear_to_srgb(1.5F * (gray * 0.25F + 0.1F)), 1);
   EXPECT_NEAR(seen.b, linear_to_srgb(1.5F * 0.05F), 1);
   EXPECT_EQ(frame.exposure, 1.5F);
   scene.light.clear();
@@ -335,7 +335,7 @@ TEST_P(BothRenderers, OutputIsAlbedoTimesLightTimesExposurePlusEmission) {
 }
 
 TEST_P(BothRenderers, RefusesACameraWithoutSizeOrFocalLength) {
-  const auto renderer = make(plane_at_two_metres());
+  const auto renderer = make(plane_at_two_meters());
   for (const auto& spoil : std::initializer_list<void (*)(Camera&)>{
            [](Camera& c) { c.fx_px = 0; }, [](Camera& c) { c.fy_px = 0; },
            [](Camera& c) { c.width_px = 0; }, [](Camera& c) { c.height_px = 0; }}) {
@@ -345,7 +345,7 @@ TEST_P(BothRenderers, RefusesACameraWithoutSizeOrFocalLength) {
   }
 }
 
-TEST_P(BothRenderers, CheckerboardHasItsColoursCellByCell) {
+TEST_P(BothRenderers, CheckerboardHasItsColorsCellByCell) {
   // 8 x 6 cells of 8 x 8 texels; 80 px per cell, so that a pixel covers a tenth of a texel.
   Scene scene = plain_scene();
   Grid2d<Rgb8> texture(64, 48);
@@ -361,12 +361,12 @@ TEST_P(BothRenderers, CheckerboardHasItsColoursCellByCell) {
       const int in_x = x % 80, in_y = y % 80;  // the filter reaches half a texel, 5 px, over a side
       if (in_x < 6 || in_x > 73 || in_y < 6 || in_y > 73) continue;
       const Rgb8 wanted = (x / 80 + y / 80) % 2 ? Rgb8{250, 240, 230} : Rgb8{20, 30, 40};
-      ASSERT_EQ(frame.colour(x, y), wanted) << x << " " << y;
+      ASSERT_EQ(frame.color(x, y), wanted) << x << " " << y;
     }
 }
 
 TEST_P(BothRenderers, TexelsPerPixelChooseTheMipLevel) {
-  // Columns of one texel, black and white: level 0 shows them, level 1 and above are half grey, and
+  // Columns of one texel, black and white: level 0 shows them, level 1 and above are half gray, and
   // between the two the contrast fades with the share of level 1.
   const auto contrast = [&](double texels_per_pixel) {
     Scene scene = plain_scene();
@@ -381,14 +381,14 @@ TEST_P(BothRenderers, TexelsPerPixelChooseTheMipLevel) {
     const RenderedFrame frame = make(scene)->render(camera, kIdentity);
     float low = 1.0F, high = 0.0F;
     for (int x = 100; x < 500; ++x) {
-      const float g = srgb_to_linear(frame.colour(x, 240).g);
+      const float g = srgb_to_linear(frame.color(x, 240).g);
       low = std::min(low, g), high = std::max(high, g);
     }
     return high - low;
   };
   EXPECT_GT(contrast(0.97), 0.97);  // level 0; the logarithm is good to 0.05
   EXPECT_LT(contrast(2.1), 0.03);   // level 1
-  // Half way between them (sqrt 2 texels): half of level 0 is left, at the columns' centres.
+  // Half way between them (sqrt 2 texels): half of level 0 is left, at the columns' centers.
   EXPECT_NEAR(contrast(std::numbers::sqrt2), 0.5, 0.06);
 }
 
@@ -413,7 +413,7 @@ TEST(Renderers, AgreeOverAGeneratedRoom) {
     agreement.add(embree->render(Camera{}, view), osmesa->render(Camera{}, view));
   EXPECT_GE(agreement.class_share(), 0.9999);
   EXPECT_GE(agreement.instance_share(), 0.9999);
-  EXPECT_GE(agreement.colour_share(), 0.995);
+  EXPECT_GE(agreement.color_share(), 0.995);
   EXPECT_LE(agreement.depth_rmse_m(), 1e-4);
   EXPECT_GT(agreement.smooth, agreement.pixels / 2);
 }
@@ -424,18 +424,18 @@ TEST(Agreement, CountsWhatDiffers) {
   const RenderedFrame a = make_embree_renderer(scene)->render(Camera{}, kIdentity);
   RenderedFrame b = a;
   b.classes(5, 5) = 9;
-  b.colour(6, 6).g = static_cast<std::uint8_t>(b.colour(6, 6).g - 3);
-  b.colour(7, 7).g = static_cast<std::uint8_t>(b.colour(7, 7).g - 2);  // still counts as the same
+  b.color(6, 6).g = static_cast<std::uint8_t>(b.color(6, 6).g - 3);
+  b.color(7, 7).g = static_cast<std::uint8_t>(b.color(7, 7).g - 2);  // still counts as the same
   for (float& depth : b.depth_m) depth += 0.001F;
   b.instances(8, 8) = b.instances(9, 9) = 77;
-  b.depth_m(8, 8) = a.depth_m(8, 8);  // a tie; its neighbour is not
+  b.depth_m(8, 8) = a.depth_m(8, 8);  // a tie; its neighbor is not
   Agreement agreement;
   agreement.add(a, b);
   EXPECT_EQ(agreement.pixels, 640 * 480);
   EXPECT_EQ(agreement.same_class, agreement.pixels - 1);
   EXPECT_EQ(agreement.same_instance, agreement.pixels - 2);
   EXPECT_EQ(agreement.ties, 1);
-  EXPECT_EQ(agreement.same_colour, agreement.pixels - 1);
+  EXPECT_EQ(agreement.same_color, agreement.pixels - 1);
   EXPECT_EQ(agreement.smooth, agreement.pixels - 14);  // two overlapping squares of 3 x 3
   EXPECT_NEAR(agreement.depth_rmse_m(), 0.001, 1e-6);
 }

@@ -131,7 +131,7 @@ TEST(LabelNoise, SharesOfTheVarianceAreThoseStated) {
   EXPECT_NEAR(same_thing, 0.4, 0.04);
 }
 
-TEST(LabelNoise, SwappedNeighboursExchangeTheirClasses) {
+TEST(LabelNoise, SwappedNeighborsExchangeTheirClasses) {
   RenderedFrame truth = empty_frame();
   paint(truth, 10, 10, 50, 50, kChair, 1);
   paint(truth, 70, 10, 50, 50, kTable, 2);  // nearest to both others

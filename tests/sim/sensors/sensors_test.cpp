@@ -17,9 +17,9 @@ namespace {
 const Camera kCamera;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-RenderedFrame blank_frame(float depth_m, Rgb8 colour = {120, 130, 140}) {
+RenderedFrame blank_frame(float depth_m, Rgb8 color = {120, 130, 140}) {
   const int w = kCamera.width_px, h = kCamera.height_px;
-  return {Grid2d<Rgb8>(w, h, colour), Grid2d<float>(w, h, depth_m), Grid2d<ClassId>(w, h),
+  return {Grid2d<Rgb8>(w, h, color), Grid2d<float>(w, h, depth_m), Grid2d<ClassId>(w, h),
           Grid2d<InstanceId>(w, h)};
 }
 
@@ -44,7 +44,7 @@ double incidence_rad(int x, int y, double angle_rad) {
 
 SensorConfig no_noise() {
   SensorConfig config;
-  config.colour_noise_on = false;
+  config.color_noise_on = false;
   config.depth_noise = no_depth_noise();
   return config;
 }
@@ -64,9 +64,9 @@ TEST(DepthNoise, AllOffIsTheTruth) {
   const RenderedFrame truth = leaning_plane(2.0, 0.5);
   EXPECT_EQ(sensed(truth, no_noise()).depth_m, truth.depth_m);
   SensorConfig off;
-  off.depth_noise_on = off.colour_noise_on = false;
+  off.depth_noise_on = off.color_noise_on = false;
   EXPECT_EQ(sensed(truth, off).depth_m, truth.depth_m);
-  EXPECT_EQ(sensed(truth, off).colour, truth.colour);
+  EXPECT_EQ(sensed(truth, off).color, truth.color);
   EXPECT_EQ(sensed(truth, off).stamp_ns, 5);
 }
 
@@ -140,9 +140,9 @@ TEST(DepthNoise, LateralNoiseMovesEdgesAndNothingElse) {
       ASSERT_NEAR(slid.depth_m(x, y), slope.depth_m(x, y), 2e-4 * slope.depth_m(x, y));
 }
 
-TEST(DepthNoise, QuantisationStepIsAnEighthOfAPixelOfDisparity) {
+TEST(DepthNoise, QuantizationStepIsAnEighthOfAPixelOfDisparity) {
   SensorConfig config = no_noise();
-  config.depth_noise.quantisation = true;
+  config.depth_noise.quantization = true;
   const RenderedFrame truth = leaning_plane(2.0, 0.6);
   const RgbdFrame frame = sensed(truth, config);
   std::set<float> distinct;
@@ -221,16 +221,16 @@ TEST(DepthNoise, NothingIsSeenOutOfRange) {
   EXPECT_EQ(sensed(blank_frame(0.0F), config).depth_m(5, 5), 0.0F);
 }
 
-TEST(ColourNoise, IsGaussianWithTheStatedSigmaAndIndependentChannels) {
+TEST(ColorNoise, IsGaussianWithTheStatedSigmaAndIndependentChannels) {
   SensorConfig config = no_noise();
-  config.colour_noise_on = true;
+  config.color_noise_on = true;
   const RgbdFrame frame = sensed(blank_frame(2.0F), config);
   Moments r, g, b, rg;
   int beyond_two = 0;
   const double sigma = 0.007 * 255.0;
-  for (const Rgb8& c : frame.colour) {
+  for (const Rgb8& c : frame.color) {
     r.add(c.r - 120), g.add(c.g - 130), b.add(c.b - 140), rg.add((c.r - 120) * (c.g - 130));
-    beyond_two += std::abs(c.r - 120) > 3.5;  // more than 3.5 grey levels = 1.961 sigma
+    beyond_two += std::abs(c.r - 120) > 3.5;  // more than 3.5 gray levels = 1.961 sigma
   }
   const double rounded = std::sqrt(sigma * sigma + 1.0 / 12.0);  // rounding to whole levels
   for (const Moments& channel : {r, g, b}) {
@@ -241,13 +241,13 @@ TEST(ColourNoise, IsGaussianWithTheStatedSigmaAndIndependentChannels) {
   EXPECT_NEAR(beyond_two / r.n, std::erfc(3.5 / sigma / std::numbers::sqrt2), 0.002);
 }
 
-TEST(ColourNoise, StopsAtBlackAndWhite) {
+TEST(ColorNoise, StopsAtBlackAndWhite) {
   SensorConfig config = no_noise();
-  config.colour_noise_on = true;
-  config.colour_noise.sigma = 0.1;
+  config.color_noise_on = true;
+  config.color_noise.sigma = 0.1;
   const RgbdFrame frame = sensed(blank_frame(2.0F, {0, 255, 128}), config);
   int black = 0, white = 0;
-  for (const Rgb8& c : frame.colour) {
+  for (const Rgb8& c : frame.color) {
     ASSERT_LT(c.r, 128);  // wrapping round would turn black into white
     ASSERT_GT(c.g, 127);
     black += c.r == 0, white += c.g == 255;
@@ -260,13 +260,13 @@ TEST(Sense, SameKeySameBitsOtherKeyOtherNoise) {
   const RenderedFrame truth = leaning_plane(2.0, 0.5);
   const RgbdFrame a = sensed(truth, {}, 1), b = sensed(truth, {}, 1), c = sensed(truth, {}, 2);
   EXPECT_EQ(a.depth_m, b.depth_m);
-  EXPECT_EQ(a.colour, b.colour);
+  EXPECT_EQ(a.color, b.color);
   EXPECT_NE(a.depth_m, c.depth_m);
-  EXPECT_NE(a.colour, c.colour);
-  // Depth noise does not touch the colour's stream.
-  SensorConfig colour_only;
-  colour_only.depth_noise_on = false;
-  EXPECT_EQ(sensed(truth, colour_only).colour, a.colour);
+  EXPECT_NE(a.color, c.color);
+  // Depth noise does not touch the color's stream.
+  SensorConfig color_only;
+  color_only.depth_noise_on = false;
+  EXPECT_EQ(sensed(truth, color_only).color, a.color);
 }
 
 void paint(RenderedFrame& frame, int left, int top, int right, int bottom, ClassId class_id,
@@ -344,7 +344,7 @@ TEST(SensorLevels, AreFrozen) {
 
 TEST(SensorLevels, SayWhatTheirNamesSay) {
   const SensorConfig ideal = load_sensor_config(level("ideal"));
-  EXPECT_FALSE(ideal.depth_noise_on || ideal.colour_noise_on || ideal.shot_noise_on ||
+  EXPECT_FALSE(ideal.depth_noise_on || ideal.color_noise_on || ideal.shot_noise_on ||
                ideal.shutter.motion_blur_on || ideal.shutter.rolling_shutter_on ||
                ideal.auto_exposure_on || ideal.vignetting_on || ideal.lens_distortion_on);
   EXPECT_EQ(ideal.processing.contrast + ideal.processing.sharpening + ideal.lens_blur_px +
@@ -353,11 +353,11 @@ TEST(SensorLevels, SayWhatTheirNamesSay) {
 
   const SensorConfig pepper = load_sensor_config(level("pepper"));
   const DepthNoiseConfig& d = pepper.depth_noise;
-  EXPECT_TRUE(pepper.depth_noise_on && d.axial && d.lateral && d.quantisation && d.grazing_holes &&
+  EXPECT_TRUE(pepper.depth_noise_on && d.axial && d.lateral && d.quantization && d.grazing_holes &&
               d.projector_shadow);
   EXPECT_EQ(d.min_range_m, 0.4);
   EXPECT_EQ(d.max_range_m, 8.0);
-  EXPECT_TRUE(pepper.shot_noise_on && !pepper.colour_noise_on);
+  EXPECT_TRUE(pepper.shot_noise_on && !pepper.color_noise_on);
   EXPECT_EQ(pepper.shot_noise.well_e, 3981.0);
   EXPECT_FALSE(pepper.shutter.motion_blur_on || pepper.shutter.rolling_shutter_on);
 
@@ -382,16 +382,16 @@ TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {
     }
     return "accepted";
   };
-  const std::string colour = "colour_noise: {sigma: 0.01}\n";
-  EXPECT_NE(message("depth_noise: {wobble: true}\n" + colour).find("wobble"), std::string::npos);
-  EXPECT_NE(message("depth_noise: {axial: 3}\n" + colour).find(":1:"), std::string::npos);
-  EXPECT_NE(message("depth_noise: {min_range_m: 2, max_range_m: 1}\n" + colour).find("max_range_m"),
+  const std::string color = "color_noise: {sigma: 0.01}\n";
+  EXPECT_NE(message("depth_noise: {wobble: true}\n" + color).find("wobble"), std::string::npos);
+  EXPECT_NE(message("depth_noise: {axial: 3}\n" + color).find(":1:"), std::string::npos);
+  EXPECT_NE(message("depth_noise: {min_range_m: 2, max_range_m: 1}\n" + color).find("max_range_m"),
             std::string::npos);
-  EXPECT_NE(message("depth_noise: {}\ncolour_noise: {sigma: -1}\n").find("-1"), std::string::npos);
-  EXPECT_NE(message("depth_noise: {}\n").find("colour_noise"), std::string::npos);
-  EXPECT_EQ(message("depth_noise: {}\n" + colour), "accepted");
+  EXPECT_NE(message("depth_noise: {}\ncolor_noise: {sigma: -1}\n").find("-1"), std::string::npos);
+  EXPECT_NE(message("depth_noise: {}\n").find("color_noise"), std::string::npos);
+  EXPECT_EQ(message("depth_noise: {}\n" + color), "accepted");
   // Each section by its own fault: what must be named, and in which line.
-  const std::string both = "depth_noise: {}\n" + colour;
+  const std::string both = "depth_noise: {}\n" + color;
   const auto third_line = [&](const std::string& text, const std::string& named) {
     const std::string told = message(both + text + "\n");
     EXPECT_NE(told.find(":3:"), std::string::npos) << told;

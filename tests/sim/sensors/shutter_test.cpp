@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 #include "tests/sim/scene_builder.hpp"
 
 namespace mh {
@@ -33,8 +33,8 @@ class Edge : public Renderer {
       for (int x = 0; x < w; ++x) {
         const Eigen::Vector3d p = world_from_camera * camera.unproject(x, y, kDepthM);
         const double white = 0.5 - p.x() / kDepthM * camera.fx_px;
-        const std::uint8_t grey = linear_to_srgb(static_cast<float>(white));
-        frame.colour(x, y) = {grey, grey, grey};
+        const std::uint8_t gray = linear_to_srgb(static_cast<float>(white));
+        frame.color(x, y) = {gray, gray, gray};
         frame.depth_m(x, y) = static_cast<float>(kDepthM + world_from_camera.translation().y());
       }
     rows += h;
@@ -69,10 +69,10 @@ SensorConfig blurring(double exposure_s) {
 /// The squared width over which an edge was smeared: a uniform smear has a variance of
 /// width^2 / 12, to which a pixel's area and, on the mean over where the edge falls between pixels,
 /// the sampling by pixels add 1/12 each.
-double squared_smear_px(const Grid2d<Rgb8>& colour, int y) {
+double squared_smear_px(const Grid2d<Rgb8>& color, int y) {
   double mean = 0.0, square = 0.0;
-  for (int x = 0; x + 1 < colour.width(); ++x) {
-    const double drop = srgb_to_linear(colour(x, y).r) - srgb_to_linear(colour(x + 1, y).r);
+  for (int x = 0; x + 1 < color.width(); ++x) {
+    const double drop = srgb_to_linear(color(x, y).r) - srgb_to_linear(color(x + 1, y).r);
     mean += drop * x;
     square += drop * x * x;
   }
@@ -80,9 +80,9 @@ double squared_smear_px(const Grid2d<Rgb8>& colour, int y) {
 }
 
 /// Where the edge stands in a row: as many pixels as there is light.
-double edge_px(const Grid2d<Rgb8>& colour, int y) {
+double edge_px(const Grid2d<Rgb8>& color, int y) {
   double light = 0.0;
-  for (const Rgb8& c : colour.row(y)) light += srgb_to_linear(c.r);
+  for (const Rgb8& c : color.row(y)) light += srgb_to_linear(c.r);
   return light;
 }
 
@@ -96,7 +96,7 @@ TEST(MotionBlur, LengthIsFocalLengthTimesSpeedTimesExposureOverDepth) {
         const double from_m = kDepthM / 130.0 * k / kPlaces;
         const Shutter shutter(scene, small_camera(), sliding(speed, 5, from_m),
                               blurring(exposure_s));
-        squared += squared_smear_px(shutter.expose(2).seen.colour, 60) / kPlaces;
+        squared += squared_smear_px(shutter.expose(2).seen.color, 60) / kPlaces;
       }
       const double expected = 130.0 * speed * exposure_s / kDepthM;
       EXPECT_NEAR(std::sqrt(std::max(0.0, squared)), expected, 0.1 + 0.01 * expected)
@@ -107,10 +107,10 @@ TEST(MotionBlur, LengthIsFocalLengthTimesSpeedTimesExposureOverDepth) {
 TEST(MotionBlur, IsTheMeanInLinearLight) {
   // Half of the exposure on white, half on black: sRGB 188, not 128.
   const Shutter shutter(std::make_shared<Edge>(), small_camera(), sliding(2.0), blurring(0.030));
-  const Grid2d<Rgb8> colour = shutter.expose(2).seen.colour;
-  EXPECT_EQ(colour(20, 60).r, 255);
-  EXPECT_EQ(colour(140, 60).r, 0);
-  EXPECT_NEAR((colour(79, 60).r + colour(80, 60).r) / 2.0, 188, 6);
+  const Grid2d<Rgb8> color = shutter.expose(2).seen.color;
+  EXPECT_EQ(color(20, 60).r, 255);
+  EXPECT_EQ(color(140, 60).r, 0);
+  EXPECT_NEAR((color(79, 60).r + color(80, 60).r) / 2.0, 188, 6);
 }
 
 TEST(MotionBlur, ACameraAtRestSeesTheExactPictureAndRendersItOnce) {
@@ -120,7 +120,7 @@ TEST(MotionBlur, ACameraAtRestSeesTheExactPictureAndRendersItOnce) {
   const Shutter shutter(scene, small_camera(), sliding(0.0), config);
   const RenderedFrame seen = shutter.expose(2).seen;
   EXPECT_EQ(scene->rows, 120);
-  EXPECT_EQ(seen.colour, scene->render(small_camera(), SE3()).colour);
+  EXPECT_EQ(seen.color, scene->render(small_camera(), SE3()).color);
 }
 
 TEST(MotionBlur, AloneLeavesDepthClassesAndInstancesAtTheStamp) {
@@ -130,7 +130,7 @@ TEST(MotionBlur, AloneLeavesDepthClassesAndInstancesAtTheStamp) {
   const RenderedFrame exact = scene->render(small_camera(), path[1].world_from_camera);
   EXPECT_EQ(seen.depth_m, exact.depth_m);
   EXPECT_EQ(seen.classes, exact.classes);
-  EXPECT_NE(seen.colour, exact.colour);
+  EXPECT_NE(seen.color, exact.color);
 }
 
 TEST(RollingShutter, SlantsAnUprightEdgeBySpeedTimesReadout) {
@@ -142,12 +142,12 @@ TEST(RollingShutter, SlantsAnUprightEdgeBySpeedTimesReadout) {
   const auto scene = std::make_shared<Edge>();
   for (const double speed : {-1.5, 0.8, 1.5}) {
     const Shutter shutter(scene, small_camera(), sliding(speed), config);
-    const Grid2d<Rgb8> colour = shutter.expose(2).seen.colour;
+    const Grid2d<Rgb8> color = shutter.expose(2).seen.color;
     // The camera moves to the right, so what stands still moves to the left, row after row.
     const double expected = -130.0 * speed * 0.030 / kDepthM * 119.0 / 120.0;
-    EXPECT_NEAR(edge_px(colour, 119) - edge_px(colour, 0), expected, 0.5) << speed;
-    EXPECT_NEAR(edge_px(colour, 60), 80.0, 0.6) << speed;  // the middle row is that of the stamp
-    for (int y = 0; y < 120; ++y) ASSERT_LT(squared_smear_px(colour, y), 1.2);  // sharp in each row
+    EXPECT_NEAR(edge_px(color, 119) - edge_px(color, 0), expected, 0.5) << speed;
+    EXPECT_NEAR(edge_px(color, 60), 80.0, 0.6) << speed;  // the middle row is that of the stamp
+    for (int y = 0; y < 120; ++y) ASSERT_LT(squared_smear_px(color, y), 1.2);  // sharp in each row
   }
 }
 
@@ -158,7 +158,7 @@ class PannedEdge : public testing::Test {
   PannedEdge() {
     Scene scene = test::plain_scene();
     scene.materials.push_back(scene.materials.front());
-    scene.materials.back().base_colour = {0, 0, 0};
+    scene.materials.back().base_color = {0, 0, 0};
     test::add_quad(scene, {-4, -3, 2}, {4, 0, 0}, {0, 6, 0}, 1, 1, 0);
     test::add_quad(scene, {0, -3, 2}, {4, 0, 0}, {0, 6, 0}, 2, 2, 1);
     renderer_ = make_embree_renderer(scene);
@@ -182,7 +182,7 @@ class PannedEdge : public testing::Test {
       EXPECT_EQ(frame.instances(x, y), frame.classes(x, y));
     }
     // edge_px counts from the outer side of the first pixel, as the border does.
-    return std::max(0.0, std::abs(edge_px(frame.colour, y) - static_cast<double>(border)) - 0.5);
+    return std::max(0.0, std::abs(edge_px(frame.color, y) - static_cast<double>(border)) - 0.5);
   }
   std::shared_ptr<const Renderer> renderer_;
   Trajectory path_;
@@ -191,7 +191,7 @@ class PannedEdge : public testing::Test {
 
 TEST_F(PannedEdge, ExactLabelsFollowTheColorRowByRow) {
   const RenderedFrame frame = seen(LabelMode::kExact);
-  for (int y = 0; y < frame.colour.height(); ++y) ASSERT_LE(astray_px(frame, y), 1.0) << y;
+  for (int y = 0; y < frame.color.height(); ++y) ASSERT_LE(astray_px(frame, y), 1.0) << y;
   // 2 rad/s for 26.1 ms at a focal length of 525 px: the labels' edge leans as far as the color's.
   const auto border = [&](int y) {
     return std::ranges::find(frame.classes.row(y), 2) - frame.classes.row(y).begin();
@@ -211,7 +211,7 @@ TEST_F(PannedEdge, AnnotatedLabelsAreThoseOfTheStamp) {
 
 TEST_F(PannedEdge, LabelsTouchNeitherColorNorDepth) {
   const RenderedFrame exact = seen(LabelMode::kExact), annotated = seen(LabelMode::kAnnotated);
-  EXPECT_EQ(exact.colour, annotated.colour);
+  EXPECT_EQ(exact.color, annotated.color);
   EXPECT_EQ(exact.depth_m, annotated.depth_m);
   EXPECT_NE(exact.classes, annotated.classes);
 }
@@ -247,7 +247,7 @@ TEST(Shutter, IsAPureFunctionOfTheFrame) {
   const auto first = shutter.expose(5);
   shutter.expose(1);
   const auto again = shutter.expose(5);
-  EXPECT_EQ(first.seen.colour, again.seen.colour);
+  EXPECT_EQ(first.seen.color, again.seen.color);
   EXPECT_EQ(first.gain, again.gain);
 }
 
@@ -268,7 +268,7 @@ TEST(Shutter, PosesBetweenFramesLieOnAConstantTwist) {
   EXPECT_EQ(pose_at(path, 2, 1.0).translation(), path[2].world_from_camera.translation());
 }
 
-TEST(DepthOffset, DepthIsThatOfAnotherMomentAndColourIsNot) {
+TEST(DepthOffset, DepthIsThatOfAnotherMomentAndColorIsNot) {
   Trajectory path = sliding(0.0, 5);
   for (std::size_t i = 0; i < path.size(); ++i)
     path[i].world_from_camera =
@@ -278,16 +278,16 @@ TEST(DepthOffset, DepthIsThatOfAnotherMomentAndColourIsNot) {
   const RenderedFrame seen =
       Shutter(std::make_shared<Edge>(), small_camera(), path, config).expose(1).seen;
   EXPECT_NEAR(seen.depth_m(5, 5), kDepthM + 0.3 + 0.3 * 0.3, 1e-4);
-  EXPECT_EQ(seen.colour, Edge().render(small_camera(), path[1].world_from_camera).colour);
+  EXPECT_EQ(seen.color, Edge().render(small_camera(), path[1].world_from_camera).color);
 }
 
-/// Everything has one grey, lighter where the camera has gone beyond x = 0.
+/// Everything has one gray, lighter where the camera has gone beyond x = 0.
 class Lamp : public Renderer {
  public:
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
     const int w = camera.width_px, h = camera.height_px;
-    const std::uint8_t grey = linear_to_srgb(world_from_camera.translation().x() < 0 ? 0.1F : 0.3F);
-    return {{w, h, {grey, grey, grey}}, {w, h, 2.0F}, {w, h, 1}, {w, h, 1}};
+    const std::uint8_t gray = linear_to_srgb(world_from_camera.translation().x() < 0 ? 0.1F : 0.3F);
+    return {{w, h, {gray, gray, gray}}, {w, h, 2.0F}, {w, h, 1}, {w, h, 1}};
   }
 };
 

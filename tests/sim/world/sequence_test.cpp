@@ -41,11 +41,11 @@ TEST(SimulatedSequence, NoiseIsKeyedByAttemptAndFrameNotByTheOrderOfAsking) {
   sequence.at(0, other);
   const RgbdFrame late = sequence.at(1, first).frame;
   EXPECT_EQ(early.depth_m, late.depth_m);
-  EXPECT_EQ(early.colour, late.colour);
+  EXPECT_EQ(early.color, late.color);
   EXPECT_NE(sequence.at(1, other).frame.depth_m, early.depth_m);
-  EXPECT_NE(sequence.at(1, other).frame.colour, early.colour);
+  EXPECT_NE(sequence.at(1, other).frame.color, early.color);
   // The wall looks the same from everywhere, so that equal noise would give equal pictures.
-  EXPECT_NE(sequence.at(0, first).frame.colour, early.colour);
+  EXPECT_NE(sequence.at(0, first).frame.color, early.color);
   EXPECT_TRUE(early.semantics.index.empty());
 }
 

@@ -114,7 +114,7 @@ TEST_F(WalkedSceneTest, HeHidesWhatIsBehindHimAndNothingElseChanges) {
         top = std::min(top, y);
         EXPECT_EQ(seen.instances(x, y), 2);
       } else {
-        EXPECT_EQ(seen.colour(x, y), empty.colour(x, y));
+        EXPECT_EQ(seen.color(x, y), empty.color(x, y));
         EXPECT_EQ(seen.depth_m(x, y), empty.depth_m(x, y));
         EXPECT_EQ(seen.instances(x, y), empty.instances(x, y));
       }
@@ -145,7 +145,7 @@ TEST_F(WalkedSceneTest, HeMovesWithTimeAndIsTheSameBitsAtTheSameTime) {
     return -1;
   };
   EXPECT_EQ(left_edge(2 * kSecond), left_edge(2 * kSecond));
-  // Half a second is half a metre is 40 px at 3 m; +y is to the left.
+  // Half a second is half a meter is 40 px at 3 m; +y is to the left.
   EXPECT_NEAR(left_edge(2 * kSecond) - left_edge(2 * kSecond + kSecond / 2), 40, 2);
 }
 

@@ -16,17 +16,17 @@ bool starts_a_line(const Grid2d<T>& grid) {
 
 TEST(Grid2d, StartsAtALineOfTheCacheAndKeepsWhatItIsGiven) {
   for (int width = 1; width < 200; width += 7) {
-    const Grid2d<Rgb8> colours(width, 3, Rgb8{1, 2, 3});
+    const Grid2d<Rgb8> colors(width, 3, Rgb8{1, 2, 3});
     const Grid2d<float> zeros(width, 5);
-    EXPECT_TRUE(starts_a_line(colours) && starts_a_line(zeros)) << width;
-    for (const Rgb8& colour : colours) ASSERT_EQ(colour, (Rgb8{1, 2, 3}));
+    EXPECT_TRUE(starts_a_line(colors) && starts_a_line(zeros)) << width;
+    for (const Rgb8& color : colors) ASSERT_EQ(color, (Rgb8{1, 2, 3}));
     for (const float zero : zeros) ASSERT_EQ(zero, 0.0F);
-    Grid2d<Rgb8> copy = colours;
+    Grid2d<Rgb8> copy = colors;
     EXPECT_TRUE(starts_a_line(copy));
-    EXPECT_EQ(copy, colours);
+    EXPECT_EQ(copy, colors);
     copy(width - 1, 2) = {};
-    EXPECT_NE(copy, colours);
-    EXPECT_EQ(colours(width - 1, 2), (Rgb8{1, 2, 3}));
+    EXPECT_NE(copy, colors);
+    EXPECT_EQ(colors(width - 1, 2), (Rgb8{1, 2, 3}));
   }
 }
 

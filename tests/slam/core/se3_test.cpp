@@ -48,7 +48,7 @@ TEST(Se3, ExpIsItsPowerSeriesOnBothSidesOfTheSwitch) {
     }
 }
 
-// V's closed form divides the cancelled 1 - cos by angle^2 and multiplies with angle once: at
+// V's closed form divides the canceled 1 - cos by angle^2 and multiplies with angle once: at
 // 1e-5 rad it is good to 1e-16 / 1e-5 = 1e-11, where its second-order term is 1.7e-11. So the law
 // is of the largest error that this allows.
 TEST(Se3, TranslationOfExpIsItsPowerSeriesOnBothSidesOfTheSwitch) {

@@ -24,8 +24,8 @@ using testing::squares;
 constexpr int kWidth = 640;
 constexpr int kHeight = 480;
 
-Features extract_from(const cv::Mat& grey, const FeatureConfig& config = {}) {
-  const RgbdFrame frame = frame_of(grey);
+Features extract_from(const cv::Mat& gray, const FeatureConfig& config = {}) {
+  const RgbdFrame frame = frame_of(gray);
   return extract(frame, camera_of(frame), config);
 }
 
@@ -164,7 +164,7 @@ TEST(Extract, SpreadsKeypointsOverUnevenTexture) {
 }
 
 TEST(Extract, LowThresholdServesCellsWithoutStrongCorners) {
-  // Squares 12 grey levels brighter than their ground: invisible at 20, visible at 7.
+  // Squares 12 gray levels brighter than their ground: invisible at 20, visible at 7.
   cv::Mat image(kHeight, kWidth, CV_8U, cv::Scalar(100));
   for (int y = 30; y < kHeight - 40; y += 40)
     for (int x = 30; x < kWidth - 40; x += 40)
@@ -177,7 +177,7 @@ TEST(Extract, LowThresholdServesCellsWithoutStrongCorners) {
 }
 
 TEST(Extract, MirroredImagesHaveMirroredKeypointsOnEveryLevel) {
-  // Fails by scale - 1 px if levels are not mapped centre to centre (as u = x * scale does).
+  // Fails by scale - 1 px if levels are not mapped center to center (as u = x * scale does).
   const cv::Mat image = squares(kWidth, kHeight, 12);
   cv::Mat mirrored;
   cv::flip(image, mirrored, /*both axes=*/-1);
@@ -235,9 +235,9 @@ TEST(Extract, FollowsShiftsOfAFractionOfAPixel) {
 }
 
 TEST(Extract, ImagesWithoutTextureHaveNoFeatures) {
-  for (const int grey : {0, 255, 127}) {
-    EXPECT_EQ(extract_from(cv::Mat(kHeight, kWidth, CV_8U, cv::Scalar(grey))).size(), 0U);
-    EXPECT_EQ(extract_from(cv::Mat(5, 7, CV_8U, cv::Scalar(grey))).size(), 0U);
+  for (const int gray : {0, 255, 127}) {
+    EXPECT_EQ(extract_from(cv::Mat(kHeight, kWidth, CV_8U, cv::Scalar(gray))).size(), 0U);
+    EXPECT_EQ(extract_from(cv::Mat(5, 7, CV_8U, cv::Scalar(gray))).size(), 0U);
   }
 }
 

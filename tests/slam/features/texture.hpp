@@ -12,7 +12,7 @@
 
 namespace mh::testing {
 
-// A lens and a sensor: without them neighbouring pixels are equally good corners, and non-maximal
+// A lens and a sensor: without them neighboring pixels are equally good corners, and non-maximal
 // suppression drops both.
 inline void soften(cv::Mat& image) {
   cv::GaussianBlur(image, image, {5, 5}, 0.8);
@@ -35,29 +35,29 @@ inline cv::Mat squares(int width, int height, std::uint64_t seed, double weakest
     const int y = static_cast<int>(r.below(1, static_cast<std::uint64_t>(height)));
     const int size = 4 + static_cast<int>(r.below(2, 40));
     const double contrast = 1 - (1 - weakest) * x / width;
-    const double grey = 128 + contrast * (r.uniform(3) * 250 - 125);
-    cv::rectangle(image, {x, y, size, size}, cv::Scalar(grey), cv::FILLED);
+    const double gray = 128 + contrast * (r.uniform(3) * 250 - 125);
+    cv::rectangle(image, {x, y, size, size}, cv::Scalar(gray), cv::FILLED);
   }
   soften(image);
   return image;
 }
 
-inline RgbdFrame frame_of(const cv::Mat& grey) {
+inline RgbdFrame frame_of(const cv::Mat& gray) {
   RgbdFrame frame;
-  frame.colour = Grid2d<Rgb8>(grey.cols, grey.rows);
-  frame.depth_m = Grid2d<float>(grey.cols, grey.rows, 2.0F);
-  for (int y = 0; y < grey.rows; ++y)
-    for (int x = 0; x < grey.cols; ++x) {
-      const auto g = grey.at<std::uint8_t>(y, x);
-      frame.colour(x, y) = {g, g, g};
+  frame.color = Grid2d<Rgb8>(gray.cols, gray.rows);
+  frame.depth_m = Grid2d<float>(gray.cols, gray.rows, 2.0F);
+  for (int y = 0; y < gray.rows; ++y)
+    for (int x = 0; x < gray.cols; ++x) {
+      const auto g = gray.at<std::uint8_t>(y, x);
+      frame.color(x, y) = {g, g, g};
     }
   return frame;
 }
 
 inline Camera camera_of(const RgbdFrame& frame) {
   Camera camera;
-  camera.width_px = frame.colour.width();
-  camera.height_px = frame.colour.height();
+  camera.width_px = frame.color.width();
+  camera.height_px = frame.color.height();
   camera.cx_px = (camera.width_px - 1) / 2.0;
   camera.cy_px = (camera.height_px - 1) / 2.0;
   return camera;

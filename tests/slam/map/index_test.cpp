@@ -48,13 +48,13 @@ TEST(PositionIndex, FindsAllThatIsNearAndLittleElse) {
 
   for (const double radius : {0.0, 1.0, 2.5, 9.0, 1e6})
     for (std::uint64_t q = 0; q < 20; ++q) {
-      const Eigen::Vector3d centre = place(q);
-      const std::vector<KeyframeId> found = index.near(centre, radius);
+      const Eigen::Vector3d center = place(q);
+      const std::vector<KeyframeId> found = index.near(center, radius);
       EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
       for (std::uint32_t i = 0; i < 900; ++i) {
         const bool listed = std::binary_search(found.begin(), found.end(), KeyframeId{i});
         const bool stands = i % 3 != 0;
-        const double distance = (place(i) - centre).norm();
+        const double distance = (place(i) - center).norm();
         if (stands && distance <= radius) {
           EXPECT_TRUE(listed) << i << " at " << distance;
         }

@@ -42,7 +42,7 @@ TEST(Map, CovisibilityCountsSharedLandmarks) {
   EXPECT_EQ(map.at(KeyframeId{0}).covisible.size(), 1U);
 }
 
-TEST(Map, FifteenSharedLandmarksMakeNeighboursAndFourteenDoNot) {
+TEST(Map, FifteenSharedLandmarksMakeNeighborsAndFourteenDoNot) {
   for (const std::uint32_t shared : {14U, 15U}) {
     Map map;
     for (int i = 0; i < 2; ++i) map.add(keyframe_with(40));
@@ -65,7 +65,7 @@ TEST(Map, CovisibleAreByWhatTheyShareThenById) {
                           KeyframeId{other}, i);
   for (const std::uint32_t last : {4U, 3U, 2U, 1U, 0U}) map.update_covisibility(KeyframeId{last});
   std::vector<std::uint32_t> order;
-  for (const Keyframe::Neighbour& n : map.at(KeyframeId{0}).covisible) order.push_back(n.id.value);
+  for (const Keyframe::Neighbor& n : map.at(KeyframeId{0}).covisible) order.push_back(n.id.value);
   EXPECT_EQ(order, (std::vector<std::uint32_t>{2, 4, 1, 3}));
 }
 

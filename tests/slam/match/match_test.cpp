@@ -26,7 +26,7 @@ struct Frame {
 
 const Descriptor kBase{0x123456789abcdefULL, 0xfedcba987654321ULL, 0x0f0f0f0f0f0f0f0fULL, 42};
 
-TEST(MatchByProjection, PenalisesDisagreeingLabelsAndCounts) {
+TEST(MatchByProjection, PenalizesDisagreeingLabelsAndCounts) {
   Frame frame;
   frame.add(100, 100, flipped(kBase, 20), ClassId{5});  // nearer, but a chair
   frame.add(103, 100, flipped(kBase, 25), ClassId{7});  // a table, like the target
@@ -48,7 +48,7 @@ TEST(MatchByProjection, PenalisesDisagreeingLabelsAndCounts) {
   EXPECT_EQ(match(1.0, plain), 0);
   EXPECT_EQ(match(1.5, semantic), 1);  // 20 * 1.5 = 30 > 25
   EXPECT_EQ(semantic.compared, 2);
-  EXPECT_EQ(semantic.penalised, 1);
+  EXPECT_EQ(semantic.penalized, 1);
   EXPECT_EQ(semantic.rejected_by_xi, 0);
 }
 
@@ -203,7 +203,7 @@ TEST(MatchByWords, LabelsThatDisagreePayXi) {
   EXPECT_EQ(matches.size(), 8U);  // 40 bits are under 50, 1.5 times 40 are not
   for (const FeatureMatch& m : matches) EXPECT_NE(m.b % 3, 0U);
   EXPECT_EQ(counts.compared, 12);
-  EXPECT_EQ(counts.penalised, 4);
+  EXPECT_EQ(counts.penalized, 4);
   EXPECT_EQ(counts.rejected_by_xi, 4);
 }
 

@@ -71,7 +71,7 @@ TEST(OccupancyMapper, ABoxRoomIsFreeInsideAndOccupiedAtItsWalls) {
   int walls = 0;
   for (int y = 0; y < grid.cells.height(); ++y)
     for (int x = 0; x < grid.cells.width(); ++x) {
-      const Eigen::Vector2d p = grid.centre_m(x, y);
+      const Eigen::Vector2d p = grid.center_m(x, y);
       const double inside = std::min(
           {p.x() - kRoomMin.x(), kRoomMax.x() - p.x(), p.y() - kRoomMin.y(), kRoomMax.y() - p.y()});
       // Walls fall into the voxel that they run through.

@@ -15,7 +15,7 @@ using testing::add_noise;
 using testing::distance_m;
 using testing::make_outliers;
 using testing::observe;
-using testing::ten_centimetres_and_five_degrees;
+using testing::ten_centimeters_and_five_degrees;
 using testing::true_pose;
 
 const Camera kCamera{};
@@ -30,7 +30,7 @@ TEST(EstimatePose, RecoversTheExactPoseWithoutNoise) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const auto observations = observe(60, truth, kCamera, RandomStream(seed));
     const auto estimate =
-        estimate_pose(observations, ten_centimetres_and_five_degrees(truth), kCamera);
+        estimate_pose(observations, ten_centimeters_and_five_degrees(truth), kCamera);
     ASSERT_TRUE(estimate);
     EXPECT_LT(distance_m(estimate->camera_from_world, truth), 1e-9);
     EXPECT_LT(angle_between_rad(estimate->camera_from_world, truth), 1e-9);
@@ -43,7 +43,7 @@ TEST(EstimatePose, RecoversTruthFromPixelsAlone) {
   auto observations = observe(60, truth, kCamera, RandomStream(1));
   for (PoseObservation& o : observations) o.disparity_px = -1;
   const auto estimate =
-      estimate_pose(observations, ten_centimetres_and_five_degrees(truth), kCamera);
+      estimate_pose(observations, ten_centimeters_and_five_degrees(truth), kCamera);
   ASSERT_TRUE(estimate);
   EXPECT_LT(distance_m(estimate->camera_from_world, truth), 1e-9);
 }
@@ -56,7 +56,7 @@ TEST(EstimatePose, RecoversTruthWithThirtyPercentOutliers) {
     add_noise(observations, kCamera, stream.fork(1));
     make_outliers(observations, 60, kCamera, stream.fork(2));
     const auto estimate =
-        estimate_pose(observations, ten_centimetres_and_five_degrees(truth), kCamera);
+        estimate_pose(observations, ten_centimeters_and_five_degrees(truth), kCamera);
     ASSERT_TRUE(estimate) << seed;
     // 140 points at 1.5 px and 3 m: 1.5 px / 525 px * 3 m / sqrt(140) is below 1 mm along each
     // axis; 1 cm leaves room for the weaker directions, where rotation and shift trade places.
@@ -90,7 +90,7 @@ TEST(EstimatePose, ItsInformationIsTheInverseCovarianceOfItsErrors) {
 TEST(EstimatePose, CountsItsInliersAndRejectsPointsBehindTheCamera) {
   const SE3 truth = true_pose();
   auto observations = observe(50, truth, kCamera, RandomStream(4));
-  // A point mirrored through the camera's centre has the same pixel.
+  // A point mirrored through the camera's center has the same pixel.
   for (std::size_t i = 0; i < 8; ++i) {
     observations[i].point_in_world =
         truth.inverse() * Eigen::Vector3d(-(truth * observations[i].point_in_world));
@@ -165,8 +165,8 @@ TEST(SolvePnpRansac, WithoutOutliersOneDrawIsEnough) {
   const SE3 truth = true_pose();
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const auto observations = observe(10, truth, kCamera, RandomStream(seed).fork(0));
-    const auto estimate = solve_pnp_ransac(observations, kCamera, {.max_iterations = 1},
-                                           RandomStream(seed).fork(1));
+    const auto estimate =
+        solve_pnp_ransac(observations, kCamera, {.max_iterations = 1}, RandomStream(seed).fork(1));
     ASSERT_TRUE(estimate) << seed;
     EXPECT_EQ(estimate->inlier_count, 10) << seed;
   }

@@ -33,7 +33,7 @@ inline SE3 true_pose() {
 }
 
 /// 10 cm and 5 degrees away.
-inline SE3 ten_centimetres_and_five_degrees(const SE3& pose) {
+inline SE3 ten_centimeters_and_five_degrees(const SE3& pose) {
   const double angle = 5.0 * std::numbers::pi / 180.0;
   const Eigen::Vector3d axis = Eigen::Vector3d(1, -2, 0.5).normalized();
   const Eigen::Vector3d shift = 0.1 * Eigen::Vector3d(2, 1, -2).normalized();

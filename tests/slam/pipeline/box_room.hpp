@@ -14,7 +14,7 @@
 namespace mh::testing_support {
 
 /// An empty 6 x 5 x 3 m room whose six sides carry random squares, seen by a perfect camera: exact
-/// colour, depth and labels in closed form, independent of the simulator. Each side has two
+/// color, depth and labels in closed form, independent of the simulator. Each side has two
 /// classes, in a checkerboard of 1 m.
 class BoxRoom {
  public:
@@ -76,8 +76,8 @@ class BoxRoom {
         const Eigen::Vector3d p = origin + depth * ray;
         const int axis = side / 2;
         const double u = p[(axis + 1) % 3], v = p[(axis + 2) % 3];
-        const auto grey = static_cast<std::uint8_t>(texture(side, u, v));
-        frame.colour(x, y) = {grey, grey, grey};
+        const auto gray = static_cast<std::uint8_t>(texture(side, u, v));
+        frame.color(x, y) = {gray, gray, gray};
         frame.depth_m(x, y) = static_cast<float>(depth);
         if (labels) {
           const int check = (static_cast<int>(std::floor(u)) + static_cast<int>(std::floor(v))) & 1;
@@ -88,7 +88,7 @@ class BoxRoom {
   }
 
  private:
-  /// Grey value, 0 to 255: overlaid squares of 17 and 5 cm, no two alike, their edges 1 cm soft (a
+  /// Gray value, 0 to 255: overlaid squares of 17 and 5 cm, no two alike, their edges 1 cm soft (a
   /// pixel covers about as much).
   static double texture(int side, double u_m, double v_m) {
     return 0.6 * patches(side, u_m / 0.17, v_m / 0.17, 0.06) +

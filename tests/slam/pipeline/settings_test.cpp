@@ -49,14 +49,14 @@ TEST(Settings, WhatIsWrittenReadsBackBitForBit) {
 
 TEST(Settings, TellsTheCameraAndLeavesTheRestAsItIs) {
   const Settings s = parse_settings(std::string(kCamera) +
-                                        "pictures: {depth_per_metre: 1000, exchange_red_blue: "
+                                        "pictures: {depth_per_meter: 1000, exchange_red_blue: "
                                         "true}\nsemantics: {gamma: 2.5}\n",
                                     "s.yaml");
   EXPECT_EQ(s.camera.width_px, 320);
   EXPECT_EQ(s.camera.fy_px, 289);
   EXPECT_EQ(s.camera.baseline_m, 0.06);
   EXPECT_EQ(s.camera.distortion, (Distortion{.k1 = 0.1, .p2 = -0.02}));
-  EXPECT_EQ(s.depth_per_metre, 1000);
+  EXPECT_EQ(s.depth_per_meter, 1000);
   EXPECT_TRUE(s.exchange_red_blue);
   SlamConfig expected;
   expected.semantics.gamma = 2.5;
@@ -65,11 +65,11 @@ TEST(Settings, TellsTheCameraAndLeavesTheRestAsItIs) {
 
 TEST(Settings, AWholeFileReadsBackBitForBit) {
   Settings s = parse_settings(kCamera + format_slam_config(unusual()), "s.yaml");
-  s.depth_per_metre = 1000.0 / 3.0;
+  s.depth_per_meter = 1000.0 / 3.0;
   s.exchange_red_blue = true;
   const Settings read = parse_settings(format_settings(s), "written.yaml");
   EXPECT_EQ(read.camera, s.camera);
-  EXPECT_EQ(read.depth_per_metre, s.depth_per_metre);
+  EXPECT_EQ(read.depth_per_meter, s.depth_per_meter);
   EXPECT_EQ(format_settings(read), format_settings(s));
   EXPECT_TRUE(read.has_camera);
   EXPECT_FALSE(parse_settings("track: {min_inliers: 30}", "s.yaml").has_camera);
@@ -144,7 +144,7 @@ TEST(Settings, TakesOrbSlamsFilesAsTheyAre) {
   EXPECT_EQ(s.slam.features.fast_threshold, 21);
   EXPECT_EQ(s.slam.features.fast_threshold_low, 8);
   EXPECT_NEAR(s.slam.keyframe.close_depth_m, 40 * 40.0 / 517.306408, 1e-12);
-  EXPECT_EQ(s.depth_per_metre, 5000);
+  EXPECT_EQ(s.depth_per_meter, 5000);
   EXPECT_TRUE(s.exchange_red_blue);
   ASSERT_EQ(s.notes.size(), 2U);
   EXPECT_EQ(s.notes[1], "TUM1.yaml: passed over: Somebody.Else");
@@ -184,7 +184,7 @@ TEST(Settings, OrbSlamsFilesAreCheckedToo) {
   bad.replace(bad.find("Camera.fps: 30.0"), 16, "Camera.fps: 0");
   bad.replace(bad.find("DepthMapFactor: 5000.0"), 22, "DepthMapFactor: 0");
   EXPECT_EQ(parse_settings(bad, "s.yaml").camera.rate_hz, 30);
-  EXPECT_EQ(parse_settings(bad, "s.yaml").depth_per_metre, 1);
+  EXPECT_EQ(parse_settings(bad, "s.yaml").depth_per_meter, 1);
 }
 
 TEST(Settings, RosCalibrationsAreReadStrictly) {

@@ -53,7 +53,7 @@ const Drive& mapped() {
   return result;
 }
 
-TEST(Step, TracksANoiseFreeRoomToMillimetres) {
+TEST(Step, TracksANoiseFreeRoomToMillimeters) {
   const Drive& r = mapped();
   r.state.map.check_invariants();
   const Trajectory estimate = trajectory(r.state);
@@ -107,7 +107,7 @@ TEST(Step, EveryMatcherMeetsLabelsThatDisagree) {
   for (std::size_t m = 0; m < r.counts.size(); ++m) r.counts[m] += relocalized.matches[m];
   for (const Matcher m : {Matcher::kMotionModel, Matcher::kReferenceKeyframe, Matcher::kLocalMap,
                           Matcher::kTriangulation, Matcher::kFusion, Matcher::kRelocalizationWords})
-    EXPECT_GT(at(r.counts, m).penalised, 0) << name(m);
+    EXPECT_GT(at(r.counts, m).penalized, 0) << name(m);
 }
 
 // A whole turn without the local map's look around: what comes back into view is a loop.
@@ -125,12 +125,12 @@ TEST(Loop, IsFoundAndClosedWhereTheTurnMeetsItsBeginning) {
   };
   int closed_at = -1;
   double before_m = 0, after_m = 0;
-  std::int64_t penalised = 0;
+  std::int64_t penalized = 0;
   for (int i = 0; i < 300 && closed_at < 0; ++i) {
     if (i > 0) before_m = error_m(i - 1);
     const StepReport report = step(state, frame(i), RandomStream(7).fork(i));
     ASSERT_NE(report.status, TrackStatus::kLost) << i;
-    penalised += report.matches[static_cast<std::size_t>(Matcher::kLoop)].penalised;
+    penalized += report.matches[static_cast<std::size_t>(Matcher::kLoop)].penalized;
     if (report.loop_closed) {
       closed_at = i;
       after_m = error_m(i);
@@ -138,7 +138,7 @@ TEST(Loop, IsFoundAndClosedWhereTheTurnMeetsItsBeginning) {
   }
   state.map.check_invariants();
   EXPECT_GT(closed_at, 180) << "a loop was seen where there is none, or never";
-  EXPECT_GT(penalised, 0);
+  EXPECT_GT(penalized, 0);
   EXPECT_LT(after_m, 0.01) << "before: " << before_m;
   EXPECT_LE(after_m, before_m);
 }
@@ -154,7 +154,7 @@ TEST(Step, SameInputSameBits) {
 }
 
 // The laws of the semantic system: where it has nothing to say, it is the plain one, bit for bit.
-TEST(SemanticLaw, NeutralSettingsOnLabelledInputAreThePlainSystem) {
+TEST(SemanticLaw, NeutralSettingsOnLabeledInputAreThePlainSystem) {
   const Drive neutral = run(SemanticConfig::neutral(), 60, true);
   const Drive plain = run(SemanticConfig::neutral(), 60, false);
   const Drive semantic = run(SemanticConfig{}, 60, true);
@@ -368,7 +368,7 @@ TEST(Step, RefusesStampsThatDoNotGrowAndFramesOfAnotherSize) {
   EXPECT_THROW(step(state, frame(1), RandomStream(0)), InputError);
   EXPECT_THROW(step(state, frame(0), RandomStream(0)), InputError);
   RgbdFrame small = frame(2);
-  small.colour = Grid2d<Rgb8>(100, 100);
+  small.color = Grid2d<Rgb8>(100, 100);
   EXPECT_THROW(step(state, small, RandomStream(0)), InputError);
 }
 

@@ -11,7 +11,7 @@ AugmentedVector vector_of(std::vector<Label> labels, std::vector<std::uint32_t> 
                           1.0, [](std::uint32_t) { return 1.0; });
 }
 
-/// Keyframes that share no landmarks: each is its own neighbourhood.
+/// Keyframes that share no landmarks: each is its own neighborhood.
 Map map_of(const std::vector<AugmentedVector>& vectors) {
   Map map;
   for (const AugmentedVector& vector : vectors) {

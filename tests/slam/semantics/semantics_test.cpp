@@ -85,17 +85,17 @@ TEST(SemanticDistance, IsEquationTwo) {
 }
 
 // Six keyframes worked by hand. n: 0, 10, 8, 9, 10, 2. alpha 0.8: n must exceed 8, so keyframes 1,
-// 3, 4 stay (2 has exactly 8: strict). Neighbourhoods {1, 3}, {3, 1}, {4, 5}; similarities 1: 0.5,
+// 3, 4 stay (2 has exactly 8: strict). Neighborhoods {1, 3}, {3, 1}, {4, 5}; similarities 1: 0.5,
 // 3: 0.2, 4: 0.35, 5: 0.4. Keyframes 1 and 3 both choose 1 with a = 0.7; keyframe 4 chooses 5 with
 // a = 0.75. beta 0.75: a must exceed 0.5625: both stay, 5 first.
 TEST(SelectCandidates, IsAlgorithmOne) {
   const std::vector<int> keyframes{0, 1, 2, 3, 4, 5};
   const int n[] = {0, 10, 8, 9, 10, 2};
-  const std::vector<int> neighbours[] = {{0}, {1, 3}, {2}, {3, 1}, {4, 5}, {5}};
+  const std::vector<int> neighbors[] = {{0}, {1, 3}, {2}, {3, 1}, {4, 5}, {5}};
   const double similarity[] = {0.9, 0.5, 0.9, 0.2, 0.35, 0.4};
   const auto selection = select_candidates(
       std::span<const int>(keyframes), [&](int k) { return n[k]; },
-      [&](int k) { return neighbours[k]; }, [&](int k) { return similarity[k]; }, 0.8, 0.75);
+      [&](int k) { return neighbors[k]; }, [&](int k) { return similarity[k]; }, 0.8, 0.75);
   EXPECT_EQ(selection.c1, 5);
   EXPECT_EQ(selection.c2, 3);
   EXPECT_EQ(selection.c3, 2);
@@ -120,10 +120,10 @@ TEST(SelectCandidates, BetaIsStrictAndTiesGoById) {
 // Keyframes 1 and 2 both choose 0: the first with a = 1.0 + 0.1, the second with 1.0 + 0.6.
 TEST(SelectCandidates, ASharedBestIsKeptOnceWithItsLargestSum) {
   const std::vector<int> keyframes{1, 2};
-  const std::vector<int> neighbours[] = {{0}, {1, 0}, {2, 0}};
+  const std::vector<int> neighbors[] = {{0}, {1, 0}, {2, 0}};
   const double similarity[] = {1.0, 0.1, 0.6};
   const auto selection = select_candidates(
-      std::span<const int>(keyframes), [](int) { return 1; }, [&](int k) { return neighbours[k]; },
+      std::span<const int>(keyframes), [](int) { return 1; }, [&](int k) { return neighbors[k]; },
       [&](int k) { return similarity[k]; }, 0.5, 0.75);
   EXPECT_EQ(selection.c3, 1);
   ASSERT_EQ(selection.candidates.size(), 1U);
@@ -131,13 +131,13 @@ TEST(SelectCandidates, ASharedBestIsKeptOnceWithItsLargestSum) {
   EXPECT_DOUBLE_EQ(selection.candidates[0].score, 1.6);
 }
 
-// Of neighbours that are equally similar equation 5 takes the least id, in whatever order they
+// Of neighbors that are equally similar equation 5 takes the least id, in whatever order they
 // come, itself among them.
-TEST(SelectCandidates, OfEquallySimilarNeighboursTheLeastIsTaken) {
+TEST(SelectCandidates, OfEquallySimilarNeighborsTheLeastIsTaken) {
   const std::vector<int> keyframes{5};
-  for (std::vector<int> neighbours : {std::vector{5, 7, 3, 4}, {3, 4, 5, 7}, {7, 4, 3, 5}}) {
+  for (std::vector<int> neighbors : {std::vector{5, 7, 3, 4}, {3, 4, 5, 7}, {7, 4, 3, 5}}) {
     const auto selection = select_candidates(
-        std::span<const int>(keyframes), [](int) { return 1; }, [&](int) { return neighbours; },
+        std::span<const int>(keyframes), [](int) { return 1; }, [&](int) { return neighbors; },
         [](int k) { return k == 7 ? 0.1 : 0.4; }, 0.5, 0.75);
     ASSERT_EQ(selection.candidates.size(), 1U);
     EXPECT_EQ(selection.candidates[0].keyframe, 3);
@@ -145,8 +145,8 @@ TEST(SelectCandidates, OfEquallySimilarNeighboursTheLeastIsTaken) {
   }
 }
 
-// A keyframe whose neighbourhood is like nothing at all stands for itself or for its least
-// neighbour, and equation 6 drops it beside any that is.
+// A keyframe whose neighborhood is like nothing at all stands for itself or for its least
+// neighbor, and equation 6 drops it beside any that is.
 TEST(SelectCandidates, AScoreOfNothingIsDropped) {
   const std::vector<int> keyframes{2, 3};
   const auto selection = select_candidates(

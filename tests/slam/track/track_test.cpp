@@ -58,7 +58,7 @@ struct View {
   }
 };
 
-TEST(OptimiseMatches, PassingPointsHoldAPoseThatANarrowStripOfLandmarksLetsSlip) {
+TEST(OptimizeMatches, PassingPointsHoldAPoseThatANarrowStripOfLandmarksLetsSlip) {
   const double kStrip_px = 60;
   double alone_m = 0, together_m = 0;
   constexpr int kViews = 20;
@@ -73,7 +73,7 @@ TEST(OptimiseMatches, PassingPointsHoldAPoseThatANarrowStripOfLandmarksLetsSlip)
       passing.push_back({i, view.map.at(view.landmarks[i]).position_in_world});
 
     const auto pose_with = [&](std::span<const PassingPoint> points) {
-      return optimise_matches(query, strip, points, SE3(), view.map, view.camera, view.config, {});
+      return optimize_matches(query, strip, points, SE3(), view.map, view.camera, view.config, {});
     };
     const auto alone = pose_with({}), together = pose_with(passing);
     ASSERT_TRUE(alone && together);
@@ -89,15 +89,15 @@ TEST(OptimiseMatches, PassingPointsHoldAPoseThatANarrowStripOfLandmarksLetsSlip)
   EXPECT_LT(together_m, 0.25 * alone_m) << alone_m;
 }
 
-TEST(OptimiseMatches, APassingPointGivesWayToTheLandmarkOfItsFeature) {
+TEST(OptimizeMatches, APassingPointGivesWayToTheLandmarkOfItsFeature) {
   const View view(1);
   const FeatureGrid grid(view.features.keypoints, view.camera);
   const WordIndex words;
   const Query query{view.features, grid, words};
   const std::vector<PassingPoint> misplaced = {{0, {100, 100, 1}}};
   const auto without =
-      optimise_matches(query, view.landmarks, {}, SE3(), view.map, view.camera, view.config, {});
-  const auto with = optimise_matches(query, view.landmarks, misplaced, SE3(), view.map, view.camera,
+      optimize_matches(query, view.landmarks, {}, SE3(), view.map, view.camera, view.config, {});
+  const auto with = optimize_matches(query, view.landmarks, misplaced, SE3(), view.map, view.camera,
                                      view.config, {});
   ASSERT_TRUE(without && with);
   EXPECT_EQ(with->camera_from_world.translation(), without->camera_from_world.translation());

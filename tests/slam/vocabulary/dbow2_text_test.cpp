@@ -33,7 +33,7 @@ class TextWriter {
     expand(0, 1);
   }
   const std::string& text() const { return text_; }
-  Descriptor centre(int id) const { return random_descriptor(RandomStream(1).fork(id)); }
+  Descriptor center(int id) const { return random_descriptor(RandomStream(1).fork(id)); }
   float weight(int id) const { return static_cast<float>(id) / 7; }
 
   // The leaf that a walk through the tree as written ends at.
@@ -42,7 +42,7 @@ class TextWriter {
     while (!children_.at(node).empty()) {
       const auto& children = children_.at(node);
       node = *std::ranges::min_element(children, {},
-                                       [&](int child) { return hamming(centre(child), d); });
+                                       [&](int child) { return hamming(center(child), d); });
     }
     return node;
   }
@@ -55,7 +55,7 @@ class TextWriter {
       children_[node].push_back(id);
       children_[id];
       text_ += fmt::format("{} {} ", node, level == depth_ ? 1 : 0);
-      const Descriptor d = centre(id);
+      const Descriptor d = center(id);
       const auto* bytes = reinterpret_cast<const std::uint8_t*>(d.data());
       for (std::size_t b = 0; b < sizeof d; ++b) text_ += fmt::format("{} ", bytes[b]);
       text_ += fmt::format("{}\n", level == depth_ ? weight(id) : 0.0F);
@@ -74,7 +74,7 @@ TEST(Dbow2Text, WalksTheSameTreeToTheSameWeight) {
   const VocabularyTree tree = read_dbow2_text(written.text(), "t.txt");
   EXPECT_EQ(tree.branching, 5U);
   EXPECT_EQ(tree.depth, 4U);
-  EXPECT_EQ(tree.centres.size(), 1U + 5 + 25 + 125 + 625);
+  EXPECT_EQ(tree.centers.size(), 1U + 5 + 25 + 125 + 625);
   const Vocabulary v(tree);
   ASSERT_EQ(v.size(), 625U);
   std::map<WordId, int> leaf_of;
@@ -94,9 +94,9 @@ TEST(Dbow2Text, BytesOfADescriptorStandInTheOrderOfOpenCv) {
   for (int b = 1; b < 32; ++b) zeros += " 0", ones += " 255";
   const VocabularyTree tree =
       read_dbow2_text("2 1 0 0\n0 1 5" + zeros + " 1.5\n0 1 0" + ones + " 0", "t.txt");
-  ASSERT_EQ(tree.centres.size(), 3U);
-  EXPECT_EQ(tree.centres[1], (Descriptor{5, 0, 0, 0}));
-  EXPECT_EQ(tree.centres[2], (Descriptor{~0xffULL, ~0ULL, ~0ULL, ~0ULL}));
+  ASSERT_EQ(tree.centers.size(), 3U);
+  EXPECT_EQ(tree.centers[1], (Descriptor{5, 0, 0, 0}));
+  EXPECT_EQ(tree.centers[2], (Descriptor{~0xffULL, ~0ULL, ~0ULL, ~0ULL}));
   EXPECT_EQ(tree.idf, (std::vector<float>{1.5F, 0.0F}));
 }
 

@@ -34,7 +34,7 @@ Descriptor near(Descriptor d, int flips, RandomStream random) {
   return d;
 }
 
-// Images whose descriptors scatter around `clusters` random centres.
+// Images whose descriptors scatter around `clusters` random centers.
 std::vector<std::vector<Descriptor>> scattered(int images, int per_image, std::uint64_t clusters,
                                                std::uint64_t seed, int flips = 20) {
   const RandomStream random(seed);
@@ -43,14 +43,14 @@ std::vector<std::vector<Descriptor>> scattered(int images, int per_image, std::u
   for (auto& image : result)
     for (int i = 0; i < per_image; ++i, ++n) {
       const RandomStream r = random.fork(n);
-      const Descriptor centre = random_descriptor(random.fork(1u << 30).fork(r.below(0, clusters)));
-      image.push_back(near(centre, flips, r.fork(1)));
+      const Descriptor center = random_descriptor(random.fork(1u << 30).fork(r.below(0, clusters)));
+      image.push_back(near(center, flips, r.fork(1)));
     }
   return result;
 }
 
 TEST(Train, SeparatesWellSeparatedClustersExactly) {
-  // Random centres lie some 128 bits apart, members within 20 of theirs.
+  // Random centers lie some 128 bits apart, members within 20 of theirs.
   const auto images = scattered(10, 100, 6, 1);
   const Vocabulary v =
       Vocabulary::train(images, {.branching = 6, .depth = 1, .max_iterations = 20, .seed = 3});
@@ -69,26 +69,26 @@ TEST(Train, SeparatesWellSeparatedClustersExactly) {
 }
 
 TEST(Train, MediansAreBitwiseMajorities) {
-  // Two groups of three; each group's majority is its centre, though no member equals it.
+  // Two groups of three; each group's majority is its center, though no member equals it.
   const RandomStream random(5);
   std::vector<std::vector<Descriptor>> images(1);
-  std::vector<Descriptor> centres;
+  std::vector<Descriptor> centers;
   for (std::uint64_t c = 0; c < 2; ++c) {
-    centres.push_back(random_descriptor(random.fork(c)));
+    centers.push_back(random_descriptor(random.fork(c)));
     for (std::uint64_t m = 0; m < 3; ++m) {
-      Descriptor d = centres.back();
+      Descriptor d = centers.back();
       d[m] ^= 0xffULL << (8 * c);  // each member differs elsewhere
       images[0].push_back(d);
     }
   }
   const Vocabulary v = Vocabulary::train(images, {.branching = 2, .depth = 1, .seed = 1});
   ASSERT_EQ(v.size(), 2U);
-  // With centres c0 and c1 the border between the words is where the distances are equal.
+  // With centers c0 and c1 the border between the words is where the distances are equal.
   for (std::uint64_t i = 0; i < 500; ++i) {
     const Descriptor d = random_descriptor(random.fork(100 + i));
-    const int to_0 = hamming(d, centres[0]), to_1 = hamming(d, centres[1]);
+    const int to_0 = hamming(d, centers[0]), to_1 = hamming(d, centers[1]);
     if (to_0 == to_1) continue;
-    EXPECT_EQ(v.quantize(d).word, v.quantize(centres[to_0 < to_1 ? 0 : 1]).word);
+    EXPECT_EQ(v.quantize(d).word, v.quantize(centers[to_0 < to_1 ? 0 : 1]).word);
   }
 }
 
@@ -96,7 +96,7 @@ TEST(Train, FewDescriptorsBecomeWordsThemselves) {
   const auto images = scattered(1, 9, 9000, 6);
   const Vocabulary v = Vocabulary::train(images, {.branching = 10, .depth = 3});
   ASSERT_EQ(v.size(), 9U);
-  // Depth 1 in effect: quantising finds the nearest of the nine, checked against brute force.
+  // Depth 1 in effect: quantizing finds the nearest of the nine, checked against brute force.
   for (std::uint64_t i = 0; i < 300; ++i) {
     const Descriptor d = random_descriptor(RandomStream(7).fork(i));
     int best = 257;

@@ -12,10 +12,10 @@ namespace mh {
 
 /// Linear light in [0, 1] of an 8-bit sRGB value; IEC 61966-2-1.
 float srgb_to_linear(std::uint8_t value);
-Eigen::Vector3f srgb_to_linear(Rgb8 colour);
+Eigen::Vector3f srgb_to_linear(Rgb8 color);
 
 /// The nearest 8-bit sRGB value of a linear one, clamped to [0, 1]; a table of 2^14 entries, whose
-/// steps are below a quarter of a grey level.
+/// steps are below a quarter of a gray level.
 std::uint8_t linear_to_srgb(float linear);
 
 /// The table behind linear_to_srgb: entry i stands for linear i / kSrgbTableMax. Four bytes can be

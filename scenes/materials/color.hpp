@@ -7,7 +7,7 @@
 
 namespace mh {
 
-/// An sRGB colour in [0, 255] while it is being mixed. Mixing happens in sRGB, which is near enough
+/// An sRGB color in [0, 255] while it is being mixed. Mixing happens in sRGB, which is near enough
 /// to how the eye steps and keeps painters short.
 struct Tint {
   float r = 0, g = 0, b = 0;

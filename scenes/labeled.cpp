@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/labelled.hpp"
+#include "scenes/labeled.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -28,10 +28,10 @@ std::string pattern_of(const std::string& name) {
 
 }  // namespace
 
-LabelledSurface survey_labels(const Scene& scene) {
+LabeledSurface survey_labels(const Scene& scene) {
   std::vector<const std::string*> name_of(65536, nullptr);
   for (const Instance& instance : scene.instances) name_of[instance.id] = &instance.name;
-  LabelledSurface surface;
+  LabeledSurface surface;
   std::map<std::string, double> area_of;
   std::map<const std::string*, std::string> patterns;  // looked up, never walked
   for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
@@ -42,7 +42,7 @@ LabelledSurface survey_labels(const Scene& scene) {
                                      .norm();
     surface.area_m2 += area_m2;
     if (scene.class_of[face] != kVoid) {
-      surface.labelled_m2 += area_m2;
+      surface.labeled_m2 += area_m2;
       continue;
     }
     const std::string* name = name_of[scene.instance_of[face]];
@@ -51,19 +51,19 @@ LabelledSurface survey_labels(const Scene& scene) {
     if (is_new) pattern->second = pattern_of(*name);
     area_of[pattern->second] += area_m2;
   }
-  for (const auto& [pattern, area_m2] : area_of) surface.unlabelled.push_back({pattern, area_m2});
-  std::ranges::stable_sort(surface.unlabelled, std::greater<>(),
-                           &LabelledSurface::Unlabelled::area_m2);
+  for (const auto& [pattern, area_m2] : area_of) surface.unlabeled.push_back({pattern, area_m2});
+  std::ranges::stable_sort(surface.unlabeled, std::greater<>(),
+                           &LabeledSurface::Unlabeled::area_m2);
   return surface;
 }
 
-std::string suggested_labels(const LabelledSurface& surface) {
+std::string suggested_labels(const LabeledSurface& surface) {
   std::string text = fmt::format(
       "# What has no class, the largest first ({:.0f} % of {:.1f} m2 have one). Put a class in the "
       "place of void\n# and save it as labels.yaml beside the mesh.\n",
       100 * surface.share(), surface.area_m2);
-  if (surface.unlabelled.empty()) return text + "{}\n";
-  for (const auto& [pattern, area_m2] : surface.unlabelled)
+  if (surface.unlabeled.empty()) return text + "{}\n";
+  for (const auto& [pattern, area_m2] : surface.unlabeled)
     text += fmt::format(
         "{}: void  # {:.2f} m2\n",
         nlohmann::json(pattern).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),

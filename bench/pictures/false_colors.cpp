@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/pictures/false_colours.hpp"
+#include "bench/pictures/false_colors.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,13 +14,13 @@ namespace {
 // Parts of Turbo, which runs from a nearly black blue to a dark red.
 constexpr double kFarthest = 0.1, kNearest = 0.95;
 
-constexpr std::uint8_t kNoReturn = 215;  // grey, which Turbo has none of; black is void's
+constexpr std::uint8_t kNoReturn = 215;  // gray, which Turbo has none of; black is void's
 
 // By class. Found by search (tests/bench/class_colors_test.cpp holds what it is for): of any two
 // classes that touch in pictures of the model house, of the four rooms or of the 201 generated
 // ones, the colors are 10 or more apart (CIEDE2000) to people with usual sight, protanopia,
 // deuteranopia and tritanopia alike; any two classes are 20 apart in L*a*b* (1976).
-constexpr std::array<Rgb8, 55> kClassColours = {{
+constexpr std::array<Rgb8, 55> kClassColors = {{
     {0, 0, 0},       {174, 199, 232}, {140, 170, 120}, {181, 163, 255}, {203, 119, 61},
     {0, 0, 188},     {140, 83, 73},   {255, 147, 174}, {235, 69, 47},   {89, 70, 26},
     {255, 45, 192},  {64, 16, 255},   {87, 213, 192},  {203, 91, 101},  {223, 164, 38},
@@ -35,20 +35,20 @@ constexpr std::array<Rgb8, 55> kClassColours = {{
 }};
 
 /// Shares of the way from far (0) to near (1), as 8-bit BGR.
-cv::Mat coloured(const cv::Mat& near_share) {
-  cv::Mat grey, picture;
-  near_share.convertTo(grey, CV_8U, 255 * (kNearest - kFarthest), 255 * kFarthest);
-  cv::applyColorMap(grey, picture, cv::COLORMAP_TURBO);
+cv::Mat colored(const cv::Mat& near_share) {
+  cv::Mat gray, picture;
+  near_share.convertTo(gray, CV_8U, 255 * (kNearest - kFarthest), 255 * kFarthest);
+  cv::applyColorMap(gray, picture, cv::COLORMAP_TURBO);
   return picture;
 }
 
-/// CIE L*a*b* (1976) of an sRGB colour under D65.
-Eigen::Vector3d lab(Rgb8 colour) {
+/// CIE L*a*b* (1976) of an sRGB color under D65.
+Eigen::Vector3d lab(Rgb8 color) {
   const auto linear = [](std::uint8_t value) {
     const double v = value / 255.0;
     return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
   };
-  const double r = linear(colour.r), g = linear(colour.g), b = linear(colour.b);
+  const double r = linear(color.r), g = linear(color.g), b = linear(color.b);
   const auto f = [](double t) { return t > 0.008856 ? std::cbrt(t) : 7.787 * t + 16.0 / 116; };
   const double x = f((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505);
   const double y = f(0.2126 * r + 0.7152 * g + 0.0722 * b);
@@ -58,12 +58,12 @@ Eigen::Vector3d lab(Rgb8 colour) {
 
 }  // namespace
 
-cv::Mat depth_colours(const Grid2d<float>& depth_m, float near_m, float far_m) {
+cv::Mat depth_colors(const Grid2d<float>& depth_m, float near_m, float far_m) {
   cv::Mat share(depth_m.height(), depth_m.width(), CV_32FC1);
   for (int y = 0; y < depth_m.height(); ++y)
     for (int x = 0; x < depth_m.width(); ++x)
       share.at<float>(y, x) = std::clamp((far_m - depth_m(x, y)) / (far_m - near_m), 0.0F, 1.0F);
-  cv::Mat picture = coloured(share);
+  cv::Mat picture = colored(share);
   for (int y = 0; y < depth_m.height(); ++y)
     for (int x = 0; x < depth_m.width(); ++x)
       if (depth_m(x, y) <= 0) picture.at<cv::Vec3b>(y, x) = {kNoReturn, kNoReturn, kNoReturn};
@@ -73,14 +73,14 @@ cv::Mat depth_colours(const Grid2d<float>& depth_m, float near_m, float far_m) {
 cv::Mat depth_scale() {
   cv::Mat ramp(1, 256, CV_32FC1);
   for (int i = 0; i < 256; ++i) ramp.at<float>(0, i) = 1.0F - static_cast<float>(i) / 255.0F;
-  return coloured(ramp);
+  return colored(ramp);
 }
 
-Rgb8 class_colour(ClassId id) {
-  return kClassColours.at(id);
+Rgb8 class_color(ClassId id) {
+  return kClassColors.at(id);
 }
 
-double colour_distance(Rgb8 a, Rgb8 b) {
+double color_distance(Rgb8 a, Rgb8 b) {
   return (lab(a) - lab(b)).norm();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 
 #include <algorithm>
 #include <array>
@@ -38,8 +38,8 @@ float srgb_to_linear(std::uint8_t value) {
   return kDecode[value];
 }
 
-Eigen::Vector3f srgb_to_linear(Rgb8 colour) {
-  return {kDecode[colour.r], kDecode[colour.g], kDecode[colour.b]};
+Eigen::Vector3f srgb_to_linear(Rgb8 color) {
+  return {kDecode[color.r], kDecode[color.g], kDecode[color.b]};
 }
 
 std::uint8_t linear_to_srgb(float linear) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/mesh_io/seen_colours.hpp"
+#include "scenes/mesh_io/seen_colors.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,13 +12,13 @@
 namespace mh {
 namespace {
 
-Rgb8 seen_colour(const Scene& scene, std::uint32_t vertex, const Material& material) {
-  Eigen::Array3f colour = linear_from_srgb(material.base_colour).array();
+Rgb8 seen_color(const Scene& scene, std::uint32_t vertex, const Material& material) {
+  Eigen::Array3f color = linear_from_srgb(material.base_color).array();
   if (!material.texture.empty())
-    colour *= sample_texture(material.texture, scene.uvs[vertex]).array();
-  if (!scene.colours.empty()) colour *= linear_from_srgb(scene.colours[vertex]).array();
-  if (!scene.light.empty()) colour *= scene.light[vertex].array();
-  return srgb_from_linear((colour + material.emission.array()).matrix().eval());
+    color *= sample_texture(material.texture, scene.uvs[vertex]).array();
+  if (!scene.colors.empty()) color *= linear_from_srgb(scene.colors[vertex]).array();
+  if (!scene.light.empty()) color *= scene.light[vertex].array();
+  return srgb_from_linear((color + material.emission.array()).matrix().eval());
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ Eigen::Vector3f sample_texture(const Grid2d<Rgb8>& texture, const Eigen::Vector2
          ty * ((1 - tx) * texel(left, top + 1) + tx * texel(left + 1, top + 1));
 }
 
-Scene split_for_colours(const Scene& scene, float max_edge_m) {
+Scene split_for_colors(const Scene& scene, float max_edge_m) {
   const auto has_texture = [](const Material& material) { return !material.texture.empty(); };
   if (max_edge_m <= 0.0F ||
       (scene.light.empty() && std::ranges::none_of(scene.materials, has_texture)))
@@ -44,18 +44,18 @@ Scene split_for_colours(const Scene& scene, float max_edge_m) {
   return subdivide(scene, max_edge_m);
 }
 
-std::vector<Rgb8> seen_colours(const Scene& scene) {
+std::vector<Rgb8> seen_colors(const Scene& scene) {
   constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> material_of_vertex(scene.positions_m.size(), kUnused);
   for (std::size_t face = 0; face < scene.triangles.size(); ++face)
     for (const std::uint32_t vertex : scene.triangles[face])
       if (material_of_vertex[vertex] == kUnused)
         material_of_vertex[vertex] = scene.material_of[face];
-  std::vector<Rgb8> colours(scene.positions_m.size());
-  for (std::uint32_t v = 0; v < colours.size(); ++v)
+  std::vector<Rgb8> colors(scene.positions_m.size());
+  for (std::uint32_t v = 0; v < colors.size(); ++v)
     if (material_of_vertex[v] != kUnused)
-      colours[v] = seen_colour(scene, v, scene.materials[material_of_vertex[v]]);
-  return colours;
+      colors[v] = seen_color(scene, v, scene.materials[material_of_vertex[v]]);
+  return colors;
 }
 
 }  // namespace mh

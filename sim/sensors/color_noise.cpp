@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/sensors/colour_noise.hpp"
+#include "sim/sensors/color_noise.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "sim/render/colour.hpp"
+#include "sim/render/color.hpp"
 #include "sim/sensors/normal_table.hpp"
 #include "sim/sensors/processing.hpp"
 
@@ -43,18 +43,18 @@ void fall_off(const Camera& camera, double strength, int y, std::vector<float>& 
   }
 }
 
-void expose(Grid2d<Rgb8>& colour, const Camera& camera, const SensorConfig& config, double gain,
+void expose(Grid2d<Rgb8>& color, const Camera& camera, const SensorConfig& config, double gain,
             RandomStream stream) {
   const std::array<Signal, 256> signals = signal_table(config);
   const auto& normals = normal_table();
   const std::uint8_t* encode = kSrgbTable.data();
   const auto scale = static_cast<float>(gain * kSrgbTableMax);
-  std::vector<float> share(static_cast<std::size_t>(colour.width()), 1.0F);
+  std::vector<float> share(static_cast<std::size_t>(color.width()), 1.0F);
   std::uint64_t pixel = 0;
-  for (int y = 0; y < colour.height(); ++y) {
+  for (int y = 0; y < color.height(); ++y) {
     if (config.vignetting_on) fall_off(camera, config.vignetting.strength, y, share);
     const float* lit = share.data();
-    for (Rgb8& c : colour.row(y)) {
+    for (Rgb8& c : color.row(y)) {
       const std::uint64_t bits = stream.bits(pixel++);
       // Less light through the lens has less noise: sigma goes with the root of the share.
       const float factor = scale * *lit, noise_factor = scale * std::sqrt(*lit);
@@ -71,8 +71,8 @@ void expose(Grid2d<Rgb8>& colour, const Camera& camera, const SensorConfig& conf
   }
 }
 
-void add_grey_noise(Grid2d<Rgb8>& colour, double sigma, RandomStream stream) {
-  // Grey levels in 1/256: one table entry per equally probable normal number.
+void add_gray_noise(Grid2d<Rgb8>& color, double sigma, RandomStream stream) {
+  // Gray levels in 1/256: one table entry per equally probable normal number.
   std::array<int, 1 << kNormalBits> noise;
   std::transform(normal_table().begin(), normal_table().end(), noise.begin(), [&](float normal) {
     return static_cast<int>(std::lrint(256.0 * 255.0 * sigma * normal));
@@ -81,9 +81,9 @@ void add_grey_noise(Grid2d<Rgb8>& colour, double sigma, RandomStream stream) {
     const int sum = (256 * value + noise[bits & kNormalMask] + 128) >> 8;
     return static_cast<std::uint8_t>(std::clamp(sum, 0, 255));
   };
-  for (std::size_t i = 0; i < colour.size(); ++i) {
+  for (std::size_t i = 0; i < color.size(); ++i) {
     const std::uint64_t bits = stream.bits(i);
-    Rgb8& c = colour.data()[i];
+    Rgb8& c = color.data()[i];
     c = {add(c.r, bits), add(c.g, bits >> kNormalBits), add(c.b, bits >> (2 * kNormalBits))};
   }
 }
@@ -95,12 +95,12 @@ double analogue_gain(const ShotNoiseConfig& config, float exposure) {
   return std::max(1.0, config.gain * static_cast<double>(exposure) / config.gain_at_exposure);
 }
 
-void develop(Grid2d<Rgb8>& colour, const Camera& camera, const SensorConfig& config, double gain,
+void develop(Grid2d<Rgb8>& color, const Camera& camera, const SensorConfig& config, double gain,
              RandomStream stream) {
   if (config.shot_noise_on || config.vignetting_on || gain != 1.0)
-    expose(colour, camera, config, gain, stream.fork(kShot));
-  if (config.colour_noise_on) add_grey_noise(colour, config.colour_noise.sigma, stream);
-  process(colour, config.processing);
+    expose(color, camera, config, gain, stream.fork(kShot));
+  if (config.color_noise_on) add_gray_noise(color, config.color_noise.sigma, stream);
+  process(color, config.processing);
 }
 
 }  // namespace mh
