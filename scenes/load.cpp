@@ -12,7 +12,7 @@
 #include "scenes/floor.hpp"
 #include "scenes/gazebo.hpp"
 #include "scenes/generate/generate.hpp"
-#include "scenes/house.hpp"
+#include "scenes/house/house.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/placed_objects.hpp"
 #include "scenes/scannet/files.hpp"

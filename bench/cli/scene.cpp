@@ -23,7 +23,7 @@
 #include "bench/world/world.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/generate/grammar.hpp"
-#include "scenes/house.hpp"
+#include "scenes/house/house.hpp"
 #include "scenes/labeled.hpp"
 #include "scenes/load.hpp"
 #include "scenes/mesh_io/labels_file.hpp"

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scenes/house/plan_file.hpp"
 #include "scenes/scene.hpp"
 
 namespace mh {
@@ -30,12 +31,13 @@ std::string to_string(const GeneratedReference& reference);
 struct GeneratedPlan {
   std::string name;  ///< "bathroom-3"
   std::string room;  ///< which of the category's rooms: "bathroom", "gym"
-  std::string yaml;  ///< see docs/formats.md, House
+  HouseFile house;
   double floor_area_m2 = 0;
   int objects = 0;        ///< pieces, doors and windows
   int fittings = 0;       ///< pieces that are not counted: switches, radiators, papers on walls
   double free_share = 0;  ///< of the floor: where the robot can stand
   double objects_per_10_m2() const { return 10.0 * objects / floor_area_m2; }
+  std::string yaml() const { return to_yaml(house); }  ///< see docs/formats.md, House
 };
 GeneratedPlan generate_plan(const GeneratedReference& reference);
 /// The plan's text, its mesh made as fine as it takes for kLeastTriangles: small rooms get finer

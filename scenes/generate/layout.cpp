@@ -46,14 +46,12 @@ Footprint footprint_of(const Vector2d& middle_m, double turn_deg, double width_m
 }
 
 Vector2d WallRun::place(double along_m, double depth_m, double gap_m) const {
-  const double inward = side == Side::kSouth || side == Side::kWest ? 1.0 : -1.0;
-  const double across = face_m + inward * (gap_m + depth_m / 2);
+  const double across = face_m + inward(side) * (gap_m + depth_m / 2);
   return runs_along_x(side) ? Vector2d(along_m, across) : Vector2d(across, along_m);
 }
 
 double WallRun::turn_deg() const {
-  constexpr std::array kTurn = {180.0, 0.0, 90.0, -90.0};
-  return kTurn[static_cast<std::size_t>(side)];
+  return turn_before_wall_deg(side);
 }
 
 Layout::Layout(double width_m, double depth_m, double height_m, std::optional<FloorRect> cut)

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scenes/furniture/furniture.hpp"
-#include "scenes/house_plan.hpp"
+#include "scenes/house/plan.hpp"
 #include "slam/core/grid2d.hpp"
 
 namespace mh {

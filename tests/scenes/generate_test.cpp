@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 
 #include "scenes/generate/grammar.hpp"
-#include "scenes/house.hpp"
-#include "scenes/house_plan.hpp"
+#include "scenes/house/house.hpp"
+#include "scenes/house/plan_file.hpp"
 #include "scenes/load.hpp"
 #include "slam/core/error.hpp"
 
@@ -45,7 +45,7 @@ TEST(Generate, AllDensityGroupsAreThereAndNoTwoPlansAlike) {
     for (int i = 0; i < category.count; ++i) {
       const GeneratedPlan plan = generate_plan({category.name, static_cast<std::uint64_t>(i)});
       ++groups[static_cast<std::size_t>(density_group(plan.objects_per_10_m2()))];
-      texts.insert(plan.yaml.substr(plan.yaml.find("extent_m")));
+      texts.insert(plan.yaml().substr(plan.yaml().find("extent_m")));
     }
   EXPECT_EQ(texts.size(), 201U);
   for (int g = 0; g < kDensityGroups; ++g)
@@ -56,15 +56,16 @@ TEST(Generate, EveryEnvironmentCanBeBuilt) {
   for (const Category& category : categories())
     for (int i = 0; i < category.count; ++i) {
       const GeneratedPlan plan = generate_plan({category.name, static_cast<std::uint64_t>(i)});
-      EXPECT_NO_THROW(count_triangles(plan.yaml, plan.name)) << plan.name;
+      EXPECT_NO_THROW(count_triangles(plan.yaml(), plan.name)) << plan.name;
     }
 }
 
 TEST(Generate, SameSeedSameBytes) {
   for (const GeneratedReference& reference : sample())
-    EXPECT_EQ(generate_plan(reference).yaml, generate_plan(reference).yaml) << to_string(reference);
+    EXPECT_EQ(generate_plan(reference).yaml(), generate_plan(reference).yaml())
+        << to_string(reference);
   EXPECT_EQ(digest(generate_scene({"bathroom", 5})), digest(generate_scene({"bathroom", 5})));
-  EXPECT_NE(generate_plan({"bathroom", 5}).yaml, generate_plan({"bathroom", 6}).yaml);
+  EXPECT_NE(generate_plan({"bathroom", 5}).yaml(), generate_plan({"bathroom", 6}).yaml());
 }
 
 /// How far a point is from a turned box's footprint, m.
@@ -110,7 +111,7 @@ TEST(Generate, WhereverTheRobotFitsItCanCome) {
   for (const Category& category : categories())
     for (int i = 0; i < category.count; ++i) {
       const GeneratedPlan plan = generate_plan({category.name, static_cast<std::uint64_t>(i)});
-      const HousePlan house = read_house_plan(YamlReader::parse(plan.yaml, plan.name));
+      const HousePlan house = read_house_plan(YamlReader::parse(plan.yaml(), plan.name));
       EXPECT_EQ(parts_m2(house, 0.26).size(), 1U) << plan.name;
       EXPECT_EQ(parts_m2(house, 0.29).size(), 1U) << plan.name << " with play";
     }
@@ -140,7 +141,7 @@ TEST(Generate, LampsLightBothArmsOfLShapedRooms) {
   int rooms = 0;
   for (const GeneratedReference& reference : references) {
     const GeneratedPlan plan = generate_plan(reference);
-    const HousePlan house = read_house_plan(YamlReader::parse(plan.yaml, plan.name));
+    const HousePlan house = read_house_plan(YamlReader::parse(plan.yaml(), plan.name));
     const RoomPlan& room = house.rooms[0];
     if (!room.cut) continue;
     ++rooms;
@@ -155,7 +156,7 @@ TEST(Generate, LampsLightBothArmsOfLShapedRooms) {
 
 TEST(Generate, PicturesOfOneRuleDiffer) {
   const GeneratedPlan plan = generate_plan({"hallway", 0});
-  const HousePlan house = read_house_plan(YamlReader::parse(plan.yaml, plan.name));
+  const HousePlan house = read_house_plan(YamlReader::parse(plan.yaml(), plan.name));
   std::set<double> widths;
   std::set<std::uint64_t> images;
   std::size_t pictures = 0;
@@ -297,7 +298,7 @@ TEST(Generate, DrawsFromManyMaterialsOfWhichNoneTrainedTheVocabulary) {
     for (const PaletteEntry& entry : list)
       EXPECT_NE(std::ranges::find(material_kinds(), entry.kind), material_kinds().end()) << name;
   const HousePlan house =
-      read_house_plan(YamlReader::parse(generate_plan({"living_room", 0}).yaml, "living_room"));
+      read_house_plan(YamlReader::parse(generate_plan({"living_room", 0}).yaml(), "living_room"));
   std::set<std::uint64_t> seeds;
   for (const ItemPlan& item : house.items)
     for (const auto& [role, spec] : item.materials) seeds.insert(spec.seed);
@@ -329,7 +330,7 @@ TEST(Generate, RefusesUnknownNames) {
 }
 
 TEST(Generate, ACutCornerMustBeOneAndLeaveAWay) {
-  const std::string plan = generate_plan({"hallway", 1}).yaml;
+  const std::string plan = generate_plan({"hallway", 1}).yaml();
   const std::size_t at = plan.find("    cut: {"), end = plan.find('\n', at);
   const auto error = [&](const std::string& cut) -> std::string {
     try {
@@ -347,7 +348,7 @@ TEST(Generate, ACutCornerMustBeOneAndLeaveAWay) {
 TEST(Generate, CutCornerMakesAnLShapedRoom) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const GeneratedPlan plan = generate_plan({"hallway", 2 * seed + 1});
-    const HousePlan house = read_house_plan(YamlReader::parse(plan.yaml, "hallway"));
+    const HousePlan house = read_house_plan(YamlReader::parse(plan.yaml(), "hallway"));
     ASSERT_TRUE(house.rooms[0].cut);
     const auto outline = house.rooms[0].outline_m();
     ASSERT_EQ(outline.size(), 6U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/house.hpp"
+#include "scenes/house/house.hpp"
 
 #include <gtest/gtest.h>
 

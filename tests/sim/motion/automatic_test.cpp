@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scenes/house.hpp"
+#include "scenes/house/house.hpp"
 #include "sim/motion/replay.hpp"
 #include "slam/core/error.hpp"
 #include "tests/sim/boxes.hpp"

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "robots/navigation/floor_grid.hpp"
-#include "scenes/house.hpp"
+#include "scenes/house/house.hpp"
 #include "slam/core/error.hpp"
 #include "tests/sim/boxes.hpp"
 

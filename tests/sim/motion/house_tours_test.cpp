@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scenes/house.hpp"
+#include "scenes/house/house.hpp"
 #include "sim/motion/motion.hpp"
 #include "slam/core/error.hpp"
 #include "tests/sim/boxes.hpp"

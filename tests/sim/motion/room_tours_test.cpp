@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scenes/house.hpp"
+#include "scenes/house/house.hpp"
 #include "sim/motion/motion.hpp"
 #include "tests/sim/boxes.hpp"
 #include "tests/sim/motion/limits_kept.hpp"

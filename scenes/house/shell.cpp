@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/house_shell.hpp"
+#include "scenes/house/shell.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -31,7 +31,7 @@ struct WallFrame {
   Side side;
   float face;
   bool along_x() const { return runs_along_x(side); }
-  float in() const { return side == Side::kSouth || side == Side::kWest ? 1.0F : -1.0F; }
+  float in() const { return static_cast<float>(inward(side)); }
   /// World point at `along`, `depth` behind the face (into the wall), height z.
   Vector3f at(float along, float depth, float z) const {
     const float across = face - in() * depth;
@@ -40,17 +40,7 @@ struct WallFrame {
 };
 
 WallFrame wall_frame(const FloorRect& rect, Side side) {
-  switch (side) {
-    case Side::kSouth:
-      return {side, static_cast<float>(rect.y0)};
-    case Side::kNorth:
-      return {side, static_cast<float>(rect.y1)};
-    case Side::kWest:
-      return {side, static_cast<float>(rect.x0)};
-    case Side::kEast:
-      return {side, static_cast<float>(rect.x1)};
-  }
-  return {side, 0};
+  return {side, static_cast<float>(wall_at(rect, side))};
 }
 
 /// A box from two opposite corners in any order.

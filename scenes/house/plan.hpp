@@ -5,13 +5,13 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "scenes/furniture/furniture.hpp"
 #include "scenes/materials/materials.hpp"
-#include "slam/core/yaml.hpp"
 
 namespace mh {
 
@@ -32,11 +32,24 @@ std::string_view side_name(Side side);
 constexpr bool runs_along_x(Side side) {
   return side == Side::kSouth || side == Side::kNorth;
 }
-
+/// 1 where the way from that wall into the room goes with x or y, -1 where it goes against it.
+constexpr double inward(Side side) {
+  return side == Side::kSouth || side == Side::kWest ? 1.0 : -1.0;
+}
+/// The turn of a piece that stands with its back to that wall: its front (-y) faces the room.
+constexpr double turn_before_wall_deg(Side side) {
+  constexpr std::array kTurn = {180.0, 0.0, 90.0, -90.0};
+  return kTurn[static_cast<std::size_t>(side)];
+}
 constexpr Side opposite(Side side) {
   constexpr std::array kOpposite = {Side::kNorth, Side::kSouth, Side::kEast, Side::kWest};
   return kOpposite[static_cast<std::size_t>(side)];
 }
+
+/// Inner face of the wall on a side of a room, m: an x or a y.
+double wall_at(const FloorRect& rect, Side side);
+/// From where to where that wall goes, m.
+std::pair<double, double> wall_span(const FloorRect& rect, Side side);
 
 struct RoomPlan {
   std::string name;
@@ -48,6 +61,8 @@ struct RoomPlan {
   /// The floor's outline, counter-clockwise, m.
   std::vector<Eigen::Vector2d> outline_m() const;
 };
+/// The stretch of a room's wall: what a missing corner takes of it is none.
+std::pair<double, double> wall_span(const RoomPlan& room, Side side);
 
 /// A hole in a wall: a doorway or a window.
 struct OpeningPlan {
@@ -62,8 +77,6 @@ struct OpeningPlan {
 };
 
 struct ItemPlan {
-  explicit ItemPlan(YamlReader place) : where(std::move(place)) {}
-
   std::string name;  ///< "room/item"
   std::size_t room = 0;
   const FurnitureKind* kind = nullptr;
@@ -74,7 +87,6 @@ struct ItemPlan {
   std::optional<std::size_t> under;               ///< index of the piece that it is pushed under
   std::map<std::string, MaterialSpec> materials;  ///< by role
   std::optional<Eigen::Vector3f> glow;            ///< lamps: linear RGB intensity at 1 m
-  YamlReader where;                               ///< for messages
 
   /// Corners of the footprint, counter-clockwise.
   std::array<Eigen::Vector2d, 4> footprint() const;
@@ -97,9 +109,6 @@ struct HousePlan {
   std::optional<GardenPlan> garden;
   std::optional<Light> sun, sky;
 };
-
-/// Reads and checks a description; see load_house. @throws InputError
-HousePlan read_house_plan(YamlReader yaml);
 
 /// How deep (m) two convex counter-clockwise quadrilaterals overlap; 0 or less: they do not.
 double overlap_m(const std::array<Eigen::Vector2d, 4>& a, const std::array<Eigen::Vector2d, 4>& b);

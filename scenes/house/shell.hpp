@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "scenes/house_plan.hpp"
+#include "scenes/house/plan.hpp"
 #include "scenes/mesh_builder.hpp"
 
 namespace mh {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/house.hpp"
+#include "scenes/house/house.hpp"
 
 #include <cassert>
 #include <vector>
 
-#include "scenes/house_plan.hpp"
-#include "scenes/house_shell.hpp"
+#include "scenes/house/plan_file.hpp"
+#include "scenes/house/shell.hpp"
 #include "scenes/name_key.hpp"
 #include "slam/core/yaml.hpp"
 

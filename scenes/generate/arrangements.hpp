@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "scenes/generate/pieces.hpp"
+
+namespace mh::generate {
+
+// Many pieces of one design, set by a pattern.
+
+/// Rows of equal pieces that face one wall: desks in a classroom. @returns how many there are
+int add_rows(Draft& draft, const Design& design);
+/// Double rows back to back, a way between them and round their ends: shelves in a shop.
+int add_aisles(Draft& draft, const Design& design);
+/// Curtains at both sides of each window; what is as wide as a window (radiators, blinds) once.
+void add_at_windows(Draft& draft, const Design& common);
+/// On the wall beside each door, on either side.
+void add_at_doors(Draft& draft, const Design& design);
+/// Along some wall, wherever it is free: what goes round a room, in pieces between the furniture.
+void add_along_wall(Draft& draft, const Design& common);
+
+}  // namespace mh::generate

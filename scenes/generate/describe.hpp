@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "scenes/generate/draft.hpp"
+#include "scenes/house/plan_file.hpp"
+
+namespace mh::generate {
+
+/// A furnished room as a house of one room.
+HouseFile describe(const Draft& draft, const std::string& name);
+
+}  // namespace mh::generate

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "scenes/house/plan.hpp"
+
+namespace mh {
+
+class YamlReader;
+
+/// Reads and checks a description; see load_house. @throws InputError
+HousePlan read_house_plan(YamlReader yaml);
+
+/// A piece as its line in the file states it.
+struct ItemEntry {
+  std::string name, kind;
+  std::string on;                                  ///< name of what carries it; empty: the floor
+  Eigen::Vector2d at_m = Eigen::Vector2d::Zero();  ///< in the world, or in the carrier's frame
+  double turn_deg = 0;                             ///< the same
+  std::optional<double> z_m;                       ///< above the floor, or above the carrier's foot
+  std::string under;                               ///< name of what it is pushed under; empty: none
+  Eigen::Vector3d size_m = Eigen::Vector3d::Ones();
+  std::optional<Eigen::Vector3d> glow;           ///< lamps: linear RGB intensity at 1 m
+  std::map<std::string, std::string> materials;  ///< role -> name of a material
+};
+
+struct RoomEntry {
+  std::string name;
+  FloorRect rect;
+  std::optional<FloorRect> cut;
+  std::string floor, ceiling, walls;          ///< names of materials
+  std::map<Side, std::string> special_walls;  ///< of another material than the rest
+  std::vector<ItemEntry> items;               ///< what carries others stands before them
+};
+
+struct GardenEntry {
+  std::string material;
+  double distance_m = 10.0, height_m = 5.0, glow = 1.0;
+};
+
+struct SunEntry {
+  Eigen::Vector3d direction, color;
+};
+
+/// A house as its file states it: materials and pieces by name, places as they are written. Numbers
+/// are written in whole millimeters and half degrees.
+struct HouseFile {
+  std::string comment;  ///< one line
+  std::string name;
+  FloorRect extent;
+  double height_m = 2.5, wall_m = 0.1;
+  std::vector<MaterialSpec> materials;
+  std::vector<RoomEntry> rooms;
+  std::vector<OpeningPlan> doorways, windows;  ///< their rooms by index
+  std::string trim, window_frame;              ///< names of materials
+  GardenEntry garden;
+  std::optional<SunEntry> sun;
+  std::optional<Eigen::Vector3d> sky;  ///< its color
+  std::optional<double> detail;        ///< see HousePlan::detail
+};
+
+/// The text that read_house_plan reads; docs/formats.md says what the keys mean.
+std::string to_yaml(const HouseFile& house);
+
+}  // namespace mh
