@@ -16,18 +16,18 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cache/cache.hpp"
-#include "bench/counted.hpp"
 #include "bench/plan/spec_json.hpp"
 #include "bench/results/write.hpp"
 #include "bench/run_one.hpp"
 #include "bench/store/run_key.hpp"
 #include "bench/systems/find_program.hpp"
-#include "bench/temporary_folder.hpp"
 #include "bench/world/inputs.hpp"
 #include "bench/world/travel.hpp"
 #include "bench/world/world.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/temporary_folder.hpp"
 
 namespace mh {
 namespace {

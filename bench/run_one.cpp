@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "bench/counted.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/results/occupancy.hpp"
 #include "bench/results/trajectory_score.hpp"
@@ -19,6 +18,7 @@
 #include "bench/systems/recorded_run.hpp"
 #include "bench/systems/tampered.hpp"
 #include "sim/world/sequence.hpp"
+#include "slam/core/counted.hpp"
 
 namespace mh {
 namespace {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string_view>
 
+#include "bench/protocol/system.hpp"
 #include "bench/results/run_result.hpp"
-#include "bench/systems/system.hpp"
 #include "bench/world/world.hpp"
 
 namespace mh {

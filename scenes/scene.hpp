@@ -9,13 +9,12 @@
 
 #include <Eigen/Core>
 
+#include "scenes/instance_id.hpp"
 #include "scenes/shared_grid.hpp"
 #include "slam/core/labels.hpp"
 #include "slam/core/rgbd_frame.hpp"
 
 namespace mh {
-
-using InstanceId = std::uint16_t;  ///< 0 = none
 
 /// The least opacity, of 255, that can be seen: glTF's usual cut-off of 0.5.
 inline constexpr std::uint8_t kOpaqueFrom = 128;

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/counted.hpp"
+#include "slam/core/counted.hpp"
 
 namespace mh {
 namespace {

@@ -13,12 +13,12 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
-#include "bench/counted.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/run.hpp"
-#include "bench/temporary_folder.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/temporary_folder.hpp"
 
 namespace mh::cli {
 namespace {

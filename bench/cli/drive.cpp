@@ -12,13 +12,13 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/motion_option.hpp"
 #include "bench/cli/scene_option.hpp"
-#include "bench/counted.hpp"
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/robot_readings.hpp"
 #include "bench/world/travel.hpp"
 #include "robots/model/robot.hpp"
 #include "scenes/floor.hpp"
 #include "scenes/load.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh::cli {

@@ -13,8 +13,8 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
-#include "bench/counted.hpp"
 #include "bench/metrics/trajectory_io.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh::cli {

@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "bench/counted.hpp"
 #include "bench/plan/runs.hpp"
 #include "bench/results/json.hpp"
 #include "bench/results/table.hpp"
 #include "bench/results/write.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh::cli {

@@ -11,7 +11,6 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
-#include "bench/counted.hpp"
 #include "bench/realism/survey.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "bench/world/travel.hpp"
@@ -20,6 +19,7 @@
 #include "scenes/generate/grammar.hpp"
 #include "scenes/picture_file.hpp"
 #include "sim/world/sequence.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh::cli {

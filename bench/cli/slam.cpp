@@ -12,9 +12,9 @@
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/cli/slam_report.hpp"
-#include "bench/counted.hpp"
 #include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/scannet_folder.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/pipeline/map_file.hpp"
 

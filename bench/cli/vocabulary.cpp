@@ -10,10 +10,10 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
-#include "bench/counted.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/vocabulary_score.hpp"
 #include "bench/vocabulary_training.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 

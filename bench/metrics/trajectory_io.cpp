@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/counted.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/text_file.hpp"

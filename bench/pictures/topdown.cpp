@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "bench/counted.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "bench/pictures/slice.hpp"
+#include "slam/core/counted.hpp"
 
 namespace mh {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cassert>
 
-#include "bench/counted.hpp"
 #include "bench/plan/names.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/random.hpp"
 
 namespace mh {

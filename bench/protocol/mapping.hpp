@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/protocol/config.hpp"
-#include "bench/systems/system.hpp"
+#include "bench/protocol/system.hpp"
 
 namespace mh {
 

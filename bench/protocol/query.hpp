@@ -6,7 +6,7 @@
 
 #include "bench/protocol/config.hpp"
 #include "bench/protocol/mapping.hpp"
-#include "bench/systems/system.hpp"
+#include "bench/protocol/system.hpp"
 
 namespace mh {
 

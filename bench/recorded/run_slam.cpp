@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "bench/counted.hpp"
 #include "bench/metrics/trajectory_io.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {

@@ -10,13 +10,13 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
-#include "bench/temporary_folder.hpp"
 #include "scenes/scannet/files.hpp"
 #include "scenes/scannet/label_images.hpp"
 #include "scenes/scannet/label_table.hpp"
 #include "scenes/scannet/sens.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/temporary_folder.hpp"
 
 namespace mh {
 namespace {

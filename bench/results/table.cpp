@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "bench/counted.hpp"
 #include "bench/results/sweep.hpp"
+#include "slam/core/counted.hpp"
 
 namespace mh {
 namespace {

@@ -23,10 +23,10 @@
 #include "bench/store/result_rows.hpp"
 #include "bench/store/row_digest.hpp"
 #include "bench/store/schema.hpp"
-#include "bench/temporary_folder.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/json_number.hpp"
+#include "slam/core/temporary_folder.hpp"
 
 namespace mh {
 namespace {

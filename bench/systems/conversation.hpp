@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <memory>
 
+#include "bench/protocol/system.hpp"
 #include "bench/systems/outside_program.hpp"
-#include "bench/systems/system.hpp"
 #include "slam/core/camera.hpp"
 
 namespace mh {

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "bench/systems/system.hpp"
+#include "bench/protocol/system.hpp"
 #include "slam/pipeline/slam.hpp"
 
 namespace mh {

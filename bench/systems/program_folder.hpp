@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "bench/temporary_folder.hpp"
+#include "slam/core/temporary_folder.hpp"
 
 namespace mh {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "bench/systems/system.hpp"
+#include "bench/protocol/system.hpp"
 
 namespace mh {
 

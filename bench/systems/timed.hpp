@@ -5,7 +5,7 @@
 #include <mutex>
 #include <vector>
 
-#include "bench/systems/system.hpp"
+#include "bench/protocol/system.hpp"
 
 namespace mh {
 

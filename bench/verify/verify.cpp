@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 
-#include "bench/counted.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/results/json.hpp"
-#include "bench/temporary_folder.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/temporary_folder.hpp"
 
 namespace mh {
 namespace {

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "bench/counted.hpp"
 #include "bench/metrics/errors.hpp"
 #include "bench/protocol/digest.hpp"
 #include "bench/results/fingerprint.hpp"
@@ -20,6 +19,7 @@
 #include "sim/render/bake.hpp"
 #include "sim/sensors/shutter.hpp"
 #include "sim/sensors/visible_objects.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 

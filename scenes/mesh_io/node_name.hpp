@@ -5,7 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "scenes/scene.hpp"
+#include "scenes/instance_id.hpp"
+#include "slam/core/labels.hpp"
 
 namespace mh {
 

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "slam/core/camera.hpp"
+#include "slam/map/keyframe_config.hpp"
 #include "slam/map/map.hpp"
 #include "slam/match/config.hpp"
 #include "slam/match/counts.hpp"
 #include "slam/match/trace.hpp"
 #include "slam/optimize/bundle.hpp"
-#include "slam/track/config.hpp"
 
 namespace mh {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/systems/system.hpp"
+#include "bench/protocol/system.hpp"
 
 namespace mh {
 

@@ -14,7 +14,6 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
-#include "bench/counted.hpp"
 #include "bench/pictures/sweep.hpp"
 #include "bench/pictures/topdown.hpp"
 #include "bench/results/json.hpp"
@@ -23,6 +22,7 @@
 #include "bench/results/trajectory_score.hpp"
 #include "bench/results/write.hpp"
 #include "bench/verify/verify.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/temporary_folder.hpp"
+#include "slam/core/temporary_folder.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""rooms.py check ROOMS ROOT: files include only what their target links; no circle of targets.
+
+ROOMS is made/rooms.txt of the build folder, which CMake writes: NAME|SOURCES|PUBLIC|PRIVATE.
+"""
+import os
+import re
+import sys
+
+
+def read_rooms(text):
+    """{target: (sources, public links, private links)}; links to other projects are left out."""
+    rooms = {}
+    for line in text.splitlines():
+        name, sources, *links = line.split("|")
+        ours = ([link[4:] for link in part.split(";") if link.startswith("mh::")] for part in links)
+        rooms[name] = (sources.split(";"), *ours)
+    return rooms
+
+
+def circle(rooms, name, path=()):
+    """The first circle of links that begins on the way from a target; empty if there is none."""
+    if name in path:
+        return [*path[path.index(name):], name]
+    _, public, private = rooms[name]
+    return next(filter(None, (circle(rooms, l, (*path, name)) for l in public + private)), [])
+
+
+def reach(rooms, name):
+    """The targets whose headers come with a link to `name`."""
+    return {name}.union(*(reach(rooms, link) for link in rooms[name][1]))
+
+
+def violations(rooms, root):
+    """A line for each include that goes against the link lines."""
+    for name in rooms:
+        if found := circle(rooms, name):
+            return ["circle: " + " -> ".join(found)]
+    owner = {source: name for name, (sources, *_) in rooms.items() for source in sources}
+    folders = {}
+    for source, name in owner.items():
+        folders.setdefault(os.path.dirname(source), set()).add(name)
+    may = {name: {name}.union(*(reach(rooms, link) for link in public + private))
+           for name, (_, public, private) in rooms.items()}
+
+    def owners(file):  # a header's is that of the source of its name, else any of its folder's
+        source = os.path.splitext(file)[0] + ".cpp"
+        return {owner[source]} if source in owner else folders.get(os.path.dirname(file), set())
+
+    found = []
+    for folder in sorted(f for f in folders if os.path.isdir(os.path.join(root, f))):
+        for file in sorted(os.listdir(os.path.join(root, folder))):
+            if not file.endswith((".hpp", ".cpp")):
+                continue
+            file = os.path.join(folder, file)
+            with open(os.path.join(root, file), encoding="utf-8") as text:
+                headers = re.findall(r'^#include "([^"]+)"', text.read(), re.M)
+            wrong = {n: [h for h in headers if owners(h) and not owners(h) & may[n]]
+                     for n in owners(file)}
+            best = min(sorted(wrong), key=lambda n: len(wrong[n]))
+            found += [f"{file} of {best} includes {h} of {' or '.join(sorted(owners(h)))}"
+                      for h in wrong[best]]
+    return found
+
+
+def main(task, made, root):
+    assert task == "check"
+    with open(made, encoding="utf-8") as text:
+        found = violations(read_rooms(text.read()), root)
+    print("\n".join(found) or "every include follows a link line")
+    return bool(found)
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

@@ -1,0 +1,52 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What rooms.py finds in made-up trees."""
+import os
+import tempfile
+import unittest
+
+from rooms import read_rooms, violations
+
+ROOMS = """low|a/low.cpp|Eigen3::Eigen|
+inner|b/inner.cpp||mh::low
+high|c/high.cpp;c/deep/more.cpp|mh::low|mh::inner
+"""
+
+
+class Violations(unittest.TestCase):
+    def found(self, files, rooms=ROOMS):
+        with tempfile.TemporaryDirectory() as root:
+            for file, header in files.items():
+                os.makedirs(os.path.join(root, os.path.dirname(file)), exist_ok=True)
+                with open(os.path.join(root, file), "w", encoding="utf-8") as text:
+                    text.write(f'#pragma once\n#include "{header}"\n#include <{header}>\n')
+            return violations(read_rooms(rooms), root)
+
+    def test_what_is_linked_may_be_included(self):
+        self.assertEqual(self.found({"c/high.cpp": "a/low.hpp", "c/deep/more.hpp": "b/only.hpp",
+                                     "b/inner.hpp": "a/low.hpp", "a/low.cpp": "a/low.hpp",
+                                     "a/low.hpp": "elsewhere/other.hpp"}), [])
+
+    def test_an_include_against_a_link_line_is_found(self):
+        self.assertEqual(self.found({"a/low.hpp": "b/inner.hpp", "a/only.hpp": "c/deep/only.hpp",
+                                     "b/inner.cpp": "a/low.hpp"}),
+                         ["a/low.hpp of low includes b/inner.hpp of inner",
+                          "a/only.hpp of low includes c/deep/only.hpp of high"])
+
+    def test_a_private_link_hands_nothing_on(self):
+        rooms = ROOMS + "top|d/top.cpp|mh::high|\n"
+        self.assertEqual(self.found({"d/top.cpp": "b/inner.hpp"}, rooms),
+                         ["d/top.cpp of top includes b/inner.hpp of inner"])
+
+    def test_of_a_folder_with_two_targets_a_header_is_the_one_that_may(self):
+        rooms = ROOMS + "shared|a/shared.cpp|mh::high|\n"
+        self.assertEqual(self.found({"a/only.hpp": "c/high.hpp"}, rooms), [])
+        self.assertEqual(len(self.found({"a/low.hpp": "c/high.hpp"}, rooms)), 1)
+
+    def test_a_circle_of_links_is_found(self):
+        rooms = ROOMS.replace("Eigen3::Eigen|", "Eigen3::Eigen|mh::high")
+        self.assertEqual(self.found({}, rooms), ["circle: low -> high -> low"])
+
+
+if __name__ == "__main__":
+    unittest.main()
