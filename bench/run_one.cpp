@@ -7,16 +7,17 @@
 
 #include <fmt/format.h>
 
-#include "bench/protocol/digest.hpp"
+#include "bench/inputs/run_key.hpp"
+#include "bench/provenance/digest.hpp"
 #include "bench/results/occupancy.hpp"
 #include "bench/results/trajectory_score.hpp"
-#include "bench/store/run_key.hpp"
 #include "bench/systems/conversation.hpp"
 #include "bench/systems/finished_map.hpp"
 #include "bench/systems/ours.hpp"
 #include "bench/systems/program_folder.hpp"
 #include "bench/systems/recorded_run.hpp"
 #include "bench/systems/tampered.hpp"
+#include "bench/systems/timed.hpp"
 #include "sim/world/sequence.hpp"
 #include "slam/core/counted.hpp"
 

@@ -18,7 +18,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/protocol/digest.hpp"
+#include "bench/provenance/digest.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 

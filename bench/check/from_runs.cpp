@@ -7,12 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "bench/inputs/inputs.hpp"
+#include "bench/plan/find_program.hpp"
 #include "bench/plan/spec_json.hpp"
-#include "bench/protocol/digest.hpp"
-#include "bench/results/fingerprint.hpp"
+#include "bench/provenance/digest.hpp"
+#include "bench/provenance/fingerprint.hpp"
 #include "bench/results/summary.hpp"
-#include "bench/systems/find_program.hpp"
-#include "bench/world/inputs.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {

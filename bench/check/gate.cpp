@@ -150,10 +150,6 @@ std::size_t count(std::span<const Change> changes, ChangeVerdict verdict) {
 
 }  // namespace
 
-double Tolerance::of(double baseline_median) const {
-  return std::max(absolute, relative * std::abs(baseline_median));
-}
-
 std::string_view name(ChangeVerdict verdict) {
   switch (verdict) {
     case ChangeVerdict::kSame:

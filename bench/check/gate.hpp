@@ -1,30 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
-#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "bench/check/figures.hpp"
+#include "bench/plan/gate_config.hpp"
+#include "bench/plan/measures.hpp"
 
 namespace mh {
-
-/// How far a measure may get worse: the greater of the two. Both 0: not at all.
-struct Tolerance {
-  double absolute = 0;  ///< in the measure's unit
-  double relative = 0;  ///< of the baseline's median
-  double of(double baseline_median) const;
-};
-
-/// By measure; a measure without a tolerance is reported nowhere and judged never.
-using Tolerances = std::map<std::string, Tolerance, std::less<>>;
-
-struct GateConfig {
-  Tolerances tolerances;
-  std::map<std::string, Tolerances, std::less<>> of_scenario;  ///< in the place of those above
-};
 
 /// What became of one measure of one system in one scenario.
 enum class ChangeVerdict { kSame, kWithin, kBetter, kWorse };

@@ -13,7 +13,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
-#include "bench/protocol/digest.hpp"
+#include "bench/provenance/digest.hpp"
 #include "bench/run.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"

@@ -12,14 +12,14 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/motion_option.hpp"
 #include "bench/cli/scene_option.hpp"
-#include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/robot_readings.hpp"
-#include "bench/world/travel.hpp"
 #include "robots/model/robot.hpp"
 #include "scenes/floor.hpp"
 #include "scenes/load.hpp"
+#include "sim/world/travel.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/trajectory_io.hpp"
 
 namespace mh::cli {
 namespace {

@@ -13,9 +13,9 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
-#include "bench/metrics/trajectory_io.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/trajectory_io.hpp"
 
 namespace mh::cli {
 namespace {

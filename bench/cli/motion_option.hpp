@@ -15,7 +15,7 @@
 
 namespace mh::cli {
 
-/// How the camera moves (see bench/world/travel.hpp): as TOUR or as --motion.
+/// How the camera moves (see sim/world/travel.hpp): as TOUR or as --motion.
 struct MotionOption {
   std::string tour, motion;
 

@@ -17,7 +17,7 @@
 #include "bench/cli/scene_option.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "bench/pictures/contact_sheet.hpp"
-#include "bench/protocol/digest.hpp"
+#include "bench/provenance/digest.hpp"
 #include "bench/realism/scan_views.hpp"
 #include "bench/world/world.hpp"
 #include "scenes/generate/generate.hpp"

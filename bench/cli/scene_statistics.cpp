@@ -13,12 +13,12 @@
 #include "bench/cli/scene_option.hpp"
 #include "bench/realism/survey.hpp"
 #include "bench/recorded/tum_folder.hpp"
-#include "bench/world/travel.hpp"
 #include "bench/world/world.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/generate/grammar.hpp"
 #include "scenes/picture_file.hpp"
 #include "sim/world/sequence.hpp"
+#include "sim/world/travel.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 

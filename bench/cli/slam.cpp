@@ -12,10 +12,10 @@
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/cli/slam_report.hpp"
-#include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/scannet_folder.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/trajectory_io.hpp"
 #include "slam/pipeline/map_file.hpp"
 
 namespace mh::cli {

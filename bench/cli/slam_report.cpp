@@ -9,12 +9,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/metrics/trajectory_io.hpp"
-#include "bench/protocol/digest.hpp"
+#include "bench/provenance/digest.hpp"
 #include "bench/systems/timed.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/temporary_folder.hpp"
+#include "slam/core/trajectory_io.hpp"
 #include "slam/pipeline/export.hpp"
 
 namespace mh::cli {

@@ -8,7 +8,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
-#include "bench/protocol/digest.hpp"
+#include "bench/provenance/digest.hpp"
 #include "bench/verify/verify.hpp"
 
 namespace mh::cli {

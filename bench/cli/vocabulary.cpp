@@ -10,7 +10,7 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
-#include "bench/protocol/digest.hpp"
+#include "bench/provenance/digest.hpp"
 #include "bench/vocabulary_score.hpp"
 #include "bench/vocabulary_training.hpp"
 #include "slam/core/counted.hpp"

@@ -20,9 +20,9 @@
 #include <opencv2/core.hpp>
 
 #include "bench/metrics/evaluate.hpp"
-#include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/trajectory_io.hpp"
 #include "slam/pipeline/slam.hpp"
 #include "tests/slam/pipeline/feature_world.hpp"
 

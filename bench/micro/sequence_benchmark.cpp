@@ -19,9 +19,9 @@
 #include <opencv2/core/utility.hpp>
 
 #include "bench/recorded/render_sequence.hpp"
-#include "bench/world/travel.hpp"
 #include "bench/world/world.hpp"
 #include "sim/render/parallel.hpp"
+#include "sim/world/travel.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 

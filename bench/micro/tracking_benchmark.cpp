@@ -18,10 +18,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "bench/metrics/evaluate.hpp"
-#include "bench/metrics/trajectory_io.hpp"
-#include "bench/protocol/digest.hpp"
+#include "bench/provenance/digest.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/trajectory_io.hpp"
 #include "slam/pipeline/slam.hpp"
 
 namespace mh {

@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 
 #include "bench/plan/names.hpp"
-#include "bench/world/travel.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/scannet/files.hpp"
+#include "sim/world/travel.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/suggest.hpp"
 
@@ -65,7 +65,7 @@ fs::path read_scene(const YamlReader& node, const SuitePaths& paths, int index) 
   return is_scannet_scene(folder) ? folder : read_source(node, paths, index, Shipped::kScene);
 }
 
-/// A tour: a source, or a motion by its name alone (bench/world/travel.hpp).
+/// A tour: a source, or a motion by its name alone (sim/world/travel.hpp).
 fs::path read_tour(const YamlReader& node, const SuitePaths& paths, int index) {
   const std::string text = with_index(node.as_string(), index);
   for (const char* motion : kMotions) {

@@ -14,7 +14,7 @@ namespace mh {
 
 /// A place to be mapped and asked about, as data: a scene and how it is walked through. `scene` and
 /// the tours are files, or made by code: "generated:KIND:SEED" (see is_generated). In a suite a
-/// tour may also be `auto[:SEED]` or `handheld[:SEED[:FRAMES]]` (bench/world/travel.hpp); the
+/// tour may also be `auto[:SEED]` or `handheld[:SEED[:FRAMES]]` (sim/world/travel.hpp); the
 /// mapping tour is `auto` where none is given.
 struct Environment {
   std::string name;      ///< unique in its suite, fit for a folder

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/check/gate_config.hpp"
+#include "bench/plan/gate_config.hpp"
 #include "bench/plan/names.hpp"
 #include "scenes/scannet/files.hpp"
 #include "slam/core/error.hpp"

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/check/gate.hpp"
 #include "bench/plan/environment.hpp"
+#include "bench/plan/gate_config.hpp"
 #include "bench/plan/parameters.hpp"
 #include "bench/plan/system_spec.hpp"
 #include "bench/protocol/config.hpp"

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "bench/plan/environment.hpp"
-#include "bench/systems/outside_program.hpp"
+#include "bench/plan/outside_program.hpp"
 #include "slam/core/yaml.hpp"
 
 namespace mh {

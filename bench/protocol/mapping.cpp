@@ -3,7 +3,8 @@
 
 #include <algorithm>
 
-#include "bench/protocol/digest.hpp"
+#include "bench/protocol/step_digest.hpp"
+#include "bench/provenance/digest.hpp"
 
 namespace mh {
 namespace {

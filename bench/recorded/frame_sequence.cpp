@@ -4,11 +4,11 @@
 #include <utility>
 #include <vector>
 
-#include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/tum_folder.hpp"
-#include "bench/world/travel.hpp"
 #include "bench/world/world.hpp"
 #include "sim/sensors/shutter.hpp"
+#include "sim/world/travel.hpp"
+#include "slam/core/trajectory_io.hpp"
 
 namespace mh {
 namespace {

@@ -10,12 +10,12 @@
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
 
-#include "bench/metrics/trajectory_io.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "bench/recorded/tum_list.hpp"
 #include "scenes/picture_file.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/text_file.hpp"
+#include "slam/core/trajectory_io.hpp"
 #include "slam/pipeline/settings.hpp"
 
 namespace mh {

@@ -7,14 +7,14 @@
 #include <fmt/format.h>
 #include <opencv2/core/version.hpp>
 
+#include "bench/plan/outside_program.hpp"
 #include "bench/plan/shipped.hpp"
 #include "bench/plan/spec_json.hpp"
-#include "bench/protocol/digest.hpp"
 #include "bench/protocol/loop_audit.hpp"
-#include "bench/results/fingerprint.hpp"
+#include "bench/provenance/code_version.hpp"
+#include "bench/provenance/digest.hpp"
+#include "bench/provenance/fingerprint.hpp"
 #include "bench/results/scenes.hpp"
-#include "bench/store/code_version.hpp"
-#include "bench/systems/outside_program.hpp"
 
 namespace mh {
 namespace {

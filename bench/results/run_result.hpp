@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <compare>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,47 +9,12 @@
 #include "bench/plan/runs.hpp"
 #include "bench/protocol/mapping.hpp"
 #include "bench/protocol/score.hpp"
-#include "bench/systems/timed.hpp"
+#include "bench/provenance/place_facts.hpp"
+#include "bench/results/call_times.hpp"
 #include "slam/core/trajectory.hpp"
 #include "slam/occupancy/occupancy.hpp"
 
 namespace mh {
-
-/// A file that was read, by its name and the xxh3-64 of its content.
-struct FileDigest {
-  std::string file;  ///< seen from the folder of what named it
-  std::uint64_t digest = 0;
-  friend auto operator<=>(const FileDigest&, const FileDigest&) = default;
-};
-
-/// Something that the results depend on.
-struct InputDigest {
-  /// scene, robot, mapping_tour, query_tour, vocabulary, level; "SYSTEM: WORD" of what an outside
-  /// program's command names.
-  std::string name;
-  /// Of all that was read for it, and of what was looked for and not there
-  /// (bench/world/inputs.hpp).
-  std::uint64_t digest = 0;
-  std::vector<FileDigest> files = {};  ///< that were read, sorted, each once
-  friend bool operator==(const InputDigest&, const InputDigest&) = default;
-};
-
-/// What is told of a driven path. NaN: unknown, since the path was cut.
-struct PathFacts {
-  std::size_t frames = 0;
-  double length_m = 0, turned_in_place_rad = 0, contact_time_s = 0, max_penetration_m = 0;
-};
-
-/// What a run says of its surroundings, so that results need no world beside them.
-struct PlaceFacts {
-  std::string scene, robot;  ///< their names
-  std::uint64_t scene_digest = 0, path_digest = 0, vocabulary_digest = 0;
-  std::size_t vocabulary_words = 0;
-  PathFacts mapping;
-  std::optional<PathFacts> second;
-  bool cut = false;  ///< the tours were cut after RunSpec::max_frames
-  std::vector<InputDigest> inputs;
-};
 
 /// How good the mapping tour's trajectory is.
 struct TrajectoryScore {

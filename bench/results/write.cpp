@@ -3,19 +3,19 @@
 
 #include <fmt/format.h>
 
-#include "bench/metrics/trajectory_io.hpp"
+#include "bench/inputs/run_key.hpp"
 #include "bench/pictures/canvas.hpp"
 #include "bench/pictures/contact_sheet.hpp"
 #include "bench/pictures/png.hpp"
 #include "bench/pictures/sweep.hpp"
 #include "bench/pictures/topdown.hpp"
 #include "bench/plan/spec_json.hpp"
-#include "bench/protocol/digest.hpp"
+#include "bench/provenance/code_version.hpp"
+#include "bench/provenance/digest.hpp"
 #include "bench/results/json.hpp"
 #include "bench/results/table.hpp"
-#include "bench/store/code_version.hpp"
-#include "bench/store/run_key.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/trajectory_io.hpp"
 
 namespace mh {
 namespace fs = std::filesystem;

@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 
+#include "bench/inputs/run_key.hpp"
 #include "bench/plan/spec_json.hpp"
-#include "bench/protocol/digest.hpp"
+#include "bench/provenance/digest.hpp"
 #include "bench/results/summary.hpp"
 #include "bench/store/row_digest.hpp"
-#include "bench/store/run_key.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/protocol/digest.hpp"
+#include "bench/provenance/digest.hpp"
 #include "bench/store/schema.hpp"
 #include "slam/core/error.hpp"
 

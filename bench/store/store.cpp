@@ -18,7 +18,7 @@
 
 #include "bench/plan/runs.hpp"
 #include "bench/plan/spec_json.hpp"
-#include "bench/results/fingerprint.hpp"
+#include "bench/provenance/fingerprint.hpp"
 #include "bench/store/guard.hpp"
 #include "bench/store/result_rows.hpp"
 #include "bench/store/row_digest.hpp"

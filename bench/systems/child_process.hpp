@@ -7,7 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "bench/systems/outside_program.hpp"
+#include "bench/plan/outside_program.hpp"
+#include "bench/systems/outside_error.hpp"
 #include "bench/systems/watcher.hpp"
 
 namespace mh {

@@ -15,11 +15,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/metrics/trajectory_io.hpp"
 #include "bench/protocol/query.hpp"
 #include "bench/recorded/frame_files.hpp"
 #include "bench/systems/child_process.hpp"
+#include "bench/systems/outside_error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/trajectory_io.hpp"
 
 namespace mh {
 namespace {

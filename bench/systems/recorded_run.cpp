@@ -9,11 +9,12 @@
 
 #include <fmt/format.h>
 
-#include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "bench/systems/child_process.hpp"
+#include "bench/systems/outside_error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/text_file.hpp"
+#include "slam/core/trajectory_io.hpp"
 
 namespace mh {
 namespace {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <span>
 
-#include "bench/systems/outside_program.hpp"
+#include "bench/plan/outside_program.hpp"
 #include "slam/core/camera.hpp"
 #include "slam/core/trajectory.hpp"
 

@@ -3,7 +3,6 @@
 
 #include <time.h>
 
-#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <utility>
@@ -102,15 +101,6 @@ std::unique_ptr<RelocalizationSession> TimedSystem::timed(
 CallTimes TimedSystem::times() const {
   const std::lock_guard lock(mutex_);
   return {track_ms_, relocalize_ms_, blank_ms_, processor_s_ + relocalize_processor_s_};
-}
-
-TimeSummary summarize(std::vector<double> times_ms) {
-  if (times_ms.empty()) return {};
-  std::sort(times_ms.begin(), times_ms.end());
-  const auto at = [&](double share) {
-    return times_ms[static_cast<std::size_t>(share * static_cast<double>(times_ms.size() - 1))];
-  };
-  return {at(0.5), at(0.95)};
 }
 
 }  // namespace mh

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/protocol/system.hpp"
+#include "bench/results/call_times.hpp"
 
 namespace mh {
 
@@ -23,14 +24,6 @@ class ProcessorTimer {
  private:
   double& sum_s_;
   double start_s_;
-};
-
-/// Wall time (ms) of every call that handled a frame, in call order.
-struct CallTimes {
-  std::vector<double> track_ms;
-  std::vector<double> relocalize_ms;  ///< of queries' own frames
-  std::vector<double> blank_ms;       ///< of the blank frames before them
-  double processor_s = 0;             ///< of all calls but save and restore, in this process
 };
 
 /// A system whose calls are timed on the way; what it answers is untouched.
@@ -63,12 +56,5 @@ class TimedSystem : public System {
   mutable std::vector<double> relocalize_ms_, blank_ms_;
   mutable double relocalize_processor_s_ = 0;
 };
-
-/// Median and 95th percentile, ms.
-struct TimeSummary {
-  double median_ms = 0;
-  double p95_ms = 0;
-};
-TimeSummary summarize(std::vector<double> times_ms);
 
 }  // namespace mh

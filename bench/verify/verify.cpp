@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/protocol/digest.hpp"
+#include "bench/provenance/digest.hpp"
 #include "bench/results/json.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"

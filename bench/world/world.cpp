@@ -8,17 +8,17 @@
 
 #include <fmt/format.h>
 
+#include "bench/inputs/inputs.hpp"
+#include "bench/inputs/run_key.hpp"
 #include "bench/metrics/errors.hpp"
-#include "bench/protocol/digest.hpp"
-#include "bench/results/fingerprint.hpp"
-#include "bench/store/code_version.hpp"
-#include "bench/store/run_key.hpp"
-#include "bench/world/inputs.hpp"
-#include "bench/world/travel.hpp"
+#include "bench/provenance/code_version.hpp"
+#include "bench/provenance/digest.hpp"
+#include "bench/provenance/fingerprint.hpp"
 #include "scenes/load.hpp"
 #include "sim/render/bake.hpp"
 #include "sim/sensors/shutter.hpp"
 #include "sim/sensors/visible_objects.hpp"
+#include "sim/world/travel.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"

@@ -2,7 +2,7 @@
 // The law of keys: whatever was read, or looked for and not found, is in the key of every result
 // that depends on it. For each kind of scene a folder is made, every file of it is changed, hidden
 // and carried elsewhere.
-#include "bench/world/inputs.hpp"
+#include "bench/inputs/inputs.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/store/run_key.hpp"
+#include "bench/inputs/run_key.hpp"
 #include "scenes/load.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/picture_file.hpp"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes the place of bench/store/code_version.cpp and bench/results/fingerprint.cpp: a build whose
-// sources and compiler a test may change.
+// Takes the place of bench/provenance/code_version.cpp and bench/provenance/fingerprint.cpp: a
+// build whose sources and compiler a test may change.
 #include "tests/bench/other_build.hpp"
 
-#include "bench/results/fingerprint.hpp"
-#include "bench/store/code_version.hpp"
+#include "bench/provenance/code_version.hpp"
+#include "bench/provenance/fingerprint.hpp"
 
 namespace mh {
 

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/protocol/digest.hpp"
 #include "bench/protocol/query.hpp"
+#include "bench/provenance/digest.hpp"
 #include "tests/slam/pipeline/box_room.hpp"
 
 namespace mh {

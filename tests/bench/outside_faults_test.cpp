@@ -16,6 +16,7 @@
 
 #include "bench/systems/child_process.hpp"
 #include "bench/systems/conversation.hpp"
+#include "bench/systems/outside_error.hpp"
 #include "bench/systems/program_folder.hpp"
 #include "bench/systems/recorded_run.hpp"
 #include "slam/core/files.hpp"

@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "bench/protocol/digest.hpp"
 #include "bench/protocol/query.hpp"
 #include "bench/protocol/score.hpp"
+#include "bench/provenance/digest.hpp"
 #include "bench/recorded/frame_files.hpp"
 #include "bench/results/trajectory_score.hpp"
 #include "bench/systems/conversation.hpp"

@@ -9,12 +9,12 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/metrics/trajectory_io.hpp"
 #include "bench/pictures/slice.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "scenes/picture_file.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/random.hpp"
+#include "slam/core/trajectory_io.hpp"
 
 namespace mh {
 namespace {

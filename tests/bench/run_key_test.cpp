@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/store/run_key.hpp"
+#include "bench/inputs/run_key.hpp"
 
 #include <fnmatch.h>
 #include <unistd.h>
@@ -15,8 +15,8 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/inputs/inputs.hpp"
 #include "bench/plan/spec_json.hpp"
-#include "bench/world/inputs.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "tests/bench/other_build.hpp"
@@ -250,9 +250,9 @@ bool is_digested(const std::string& file, const std::set<std::string>& patterns)
 // Code of the bench that a digested source includes decides results as well.
 TEST(CodeVersion, HoldsWhatItsSourcesInclude) {
   // How a run is told of, named, cached and counted: the key's own fields, or no result at all.
-  const std::set<std::string> other = {"bench/cache/cache.hpp", "bench/plan/runs.hpp",
-                                       "bench/results/fingerprint.hpp", "bench/store/run_key.hpp",
-                                       "bench/store/code_version.hpp"};
+  const std::set<std::string> other = {
+      "bench/cache/cache.hpp", "bench/plan/runs.hpp", "bench/provenance/fingerprint.hpp",
+      "bench/inputs/run_key.hpp", "bench/provenance/code_version.hpp"};
   const std::set<std::string> patterns = digested_sources();
   ASSERT_TRUE(patterns.contains("slam/*.cpp"));
   const fs::path root = MH_SOURCE_DIR;

@@ -13,10 +13,10 @@
 #include <gtest/gtest.h>
 
 #include "bench/metrics/evaluate.hpp"
-#include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "bench/systems/stage_clock.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/trajectory_io.hpp"
 #include "slam/pipeline/map_file.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 

@@ -12,9 +12,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/tum_folder.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/trajectory_io.hpp"
 #include "slam/pipeline/settings.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 

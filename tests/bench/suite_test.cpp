@@ -10,11 +10,11 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/inputs/inputs.hpp"
+#include "bench/inputs/run_key.hpp"
+#include "bench/plan/find_program.hpp"
 #include "bench/plan/runs.hpp"
 #include "bench/plan/spec_json.hpp"
-#include "bench/store/run_key.hpp"
-#include "bench/systems/find_program.hpp"
-#include "bench/world/inputs.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Motions on floors as scanners and other programs leave them.
-#include "bench/world/travel.hpp"
+#include "sim/world/travel.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -8,7 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/protocol/digest.hpp"
+#include "bench/protocol/step_digest.hpp"
+#include "bench/provenance/digest.hpp"
 
 namespace mh {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/metrics/trajectory_io.hpp"
 #include "bench/recorded/tum_list.hpp"
+#include "slam/core/trajectory_io.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

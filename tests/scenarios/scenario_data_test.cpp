@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "bench/plan/suite.hpp"
-#include "bench/world/travel.hpp"
 #include "bench/world/world.hpp"
 #include "scenes/load.hpp"
+#include "sim/world/travel.hpp"
 #include "sim/world/walker.hpp"
 
 namespace mh {

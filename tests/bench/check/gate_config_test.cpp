@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/check/gate_config.hpp"
+#include "bench/plan/gate_config.hpp"
 
 #include <unistd.h>
 

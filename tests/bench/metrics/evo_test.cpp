@@ -10,7 +10,7 @@
 
 #include "bench/metrics/errors.hpp"
 #include "bench/metrics/evaluate.hpp"
-#include "bench/metrics/trajectory_io.hpp"
+#include "slam/core/trajectory_io.hpp"
 
 namespace mh {
 namespace {

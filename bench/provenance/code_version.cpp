@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/store/code_version.hpp"
+#include "bench/provenance/code_version.hpp"
 
 #include "code_version_made.hpp"
 

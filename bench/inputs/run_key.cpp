@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/store/run_key.hpp"
-
-#include <xxhash.h>
-
-#include <fmt/format.h>
+#include "bench/inputs/run_key.hpp"
 
 #include "bench/plan/spec_json.hpp"
-#include "bench/protocol/digest.hpp"
-#include "bench/results/fingerprint.hpp"
-#include "bench/store/code_version.hpp"
+#include "bench/provenance/code_version.hpp"
+#include "bench/provenance/digest.hpp"
+#include "bench/provenance/fingerprint.hpp"
 
 namespace mh {
 namespace {
@@ -66,11 +62,6 @@ std::string stored_spec(const RunSpec& spec) {
   json["vocabulary"] = name_of(spec.vocabulary);
   if (spec.system.kind == SystemKind::kOutside) json["system"]["outside"].erase("folder");
   return json.dump();
-}
-
-std::string text_key(std::string_view text) {
-  const XXH128_hash_t h = XXH3_128bits(text.data(), text.size());
-  return fmt::format("{:016x}{:016x}", h.high64, h.low64);
 }
 
 }  // namespace mh

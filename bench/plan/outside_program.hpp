@@ -7,26 +7,13 @@
 #include <utility>
 #include <vector>
 
-#include "slam/core/error.hpp"
-#include "slam/core/trajectory.hpp"
-
 namespace mh {
-
-/// An outside program failed its run: the message names the program, its command and what it did.
-/// A MachineError, so that a crash of somebody's program never looks like a regression.
-struct OutsideError : MachineError {
-  using MachineError::MachineError;
-};
 
 /// How the bench works with a program that is not ours.
 enum class OutsideMode {
   kTrajectory,    ///< is given a recorded folder, writes a trajectory
   kConversation,  ///< is shown frame after frame over standard input and output
 };
-
-/// A pose of an outside program with a coordinate beyond this is garbage: no tour goes that far,
-/// and what errors are summed up of its square stays a number.
-inline constexpr double kFarthest_m = 1e6;
 
 /// A SLAM system that a suite names by its command line (docs/outside_systems.md).
 struct OutsideProgram {
@@ -48,9 +35,6 @@ struct OutsideProgram {
 /// in trajectory mode, {settings} {seed} in a conversation; `${NAME}` is left to the shell.
 /// @throws InputError naming the value.
 void validate(const OutsideProgram& program);
-
-/// Whether a coordinate lies beyond kFarthest_m.
-bool is_too_far(const TimedPose& pose);
 
 /// One word for the shell, whatever is in it.
 std::string shell_quoted(std::string_view value);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/world/travel.hpp"
+#include "sim/world/travel.hpp"
 
 #include <charconv>
 #include <cmath>
@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "bench/metrics/trajectory_io.hpp"
 #include "scenes/floor.hpp"
 #include "scenes/generate/generate.hpp"
 #include "sim/motion/automatic.hpp"
@@ -18,6 +17,7 @@
 #include "sim/motion/commands.hpp"
 #include "sim/motion/replay.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/trajectory_io.hpp"
 
 namespace mh {
 namespace {

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "slam/core/rgbd_frame.hpp"
 #include "slam/core/trajectory.hpp"
-#include "slam/pipeline/report.hpp"
 
 namespace mh {
 
@@ -19,10 +19,11 @@ std::uint64_t digest_file(const std::filesystem::path& file, std::uint64_t seed 
 std::uint64_t digest(const RgbdFrame& frame);  ///< stamp, color, depth and labels
 std::uint64_t digest(const std::optional<SE3>& pose);
 std::uint64_t digest(const Trajectory& trajectory);
-/// Everything that a step said of its matching and relocalizing, the pose apart.
-std::uint64_t digest_of_matching(const StepReport& report);
 
 /// 16 hexadecimal digits.
 std::string hex(std::uint64_t digest);
+
+/// xxh3-128 of a text, in hexadecimal.
+std::string text_key(std::string_view text);
 
 }  // namespace mh

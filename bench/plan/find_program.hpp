@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/systems/outside_program.hpp"
+#include "bench/plan/outside_program.hpp"
 
 namespace mh {
 

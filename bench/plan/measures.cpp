@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/check/figures.hpp"
+#include "bench/plan/measures.hpp"
 
 #include <algorithm>
 #include <array>

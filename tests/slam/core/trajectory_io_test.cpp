@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/metrics/trajectory_io.hpp"
+#include "slam/core/trajectory_io.hpp"
 
 #include <filesystem>
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/protocol/digest.hpp"
+#include "bench/provenance/digest.hpp"
 #include "slam/core/files.hpp"
 
 #define XXH_INLINE_ALL
@@ -60,25 +60,13 @@ std::uint64_t digest(const Trajectory& trajectory) {
   return d;
 }
 
-std::uint64_t digest_of_matching(const StepReport& report) {
-  const int numbers[] = {static_cast<int>(report.status), report.keypoints, report.inliers,
-                         report.keyframe_added ? 1 : 0, static_cast<int>(report.relocalization)};
-  std::uint64_t d = digest_value(numbers, 0);
-  for (const MatcherCounts& counts : report.matches) {
-    const std::int64_t c[] = {counts.compared, counts.penalized, counts.rejected_by_xi,
-                              counts.ratio_helped};
-    d = digest_value(c, d);
-  }
-  if (report.candidates) {
-    const CandidateCounts& c = *report.candidates;
-    const int counts[] = {c.keyframes, c.c1, c.c2, c.c3, c.final};
-    d = digest_value(c.label_mass, digest_value(counts, d));
-  }
-  return d;
-}
-
 std::string hex(std::uint64_t digest) {
   return fmt::format("{:016x}", digest);
+}
+
+std::string text_key(std::string_view text) {
+  const XXH128_hash_t h = XXH3_128bits(text.data(), text.size());
+  return fmt::format("{:016x}{:016x}", h.high64, h.low64);
 }
 
 }  // namespace mh

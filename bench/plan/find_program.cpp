@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/systems/find_program.hpp"
+#include "bench/plan/find_program.hpp"
 
 #include <unistd.h>
 

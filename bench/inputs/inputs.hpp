@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bench/plan/runs.hpp"
-#include "bench/results/run_result.hpp"
+#include "bench/provenance/input_digest.hpp"
 #include "scenes/scene.hpp"
 #include "slam/core/read_record.hpp"
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/check/gate_config.hpp"
+#include "bench/plan/gate_config.hpp"
 
 #include <algorithm>
 
 #include <fmt/format.h>
+
+#include "bench/plan/measures.hpp"
 
 namespace mh {
 namespace {
@@ -30,6 +32,10 @@ Tolerances read_tolerances(YamlReader node) {
 }
 
 }  // namespace
+
+double Tolerance::of(double baseline_median) const {
+  return std::max(absolute, relative * std::abs(baseline_median));
+}
 
 GateConfig read_gate(YamlReader node, const std::vector<std::string>& environments) {
   GateConfig config;

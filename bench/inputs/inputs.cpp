@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/world/inputs.hpp"
+#include "bench/inputs/inputs.hpp"
 
 #include <algorithm>
 #include <optional>
 
 #include <fmt/format.h>
 
-#include "bench/protocol/digest.hpp"
-#include "bench/systems/find_program.hpp"
-#include "bench/world/travel.hpp"
+#include "bench/plan/find_program.hpp"
+#include "bench/provenance/digest.hpp"
 #include "robots/model/robot.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/load.hpp"
 #include "sim/motion/motion.hpp"
 #include "sim/sensors/sensors.hpp"
+#include "sim/world/travel.hpp"
 #include "sim/world/walker.hpp"
 #include "slam/vocabulary/vocabulary.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/results/fingerprint.hpp"
+#include "bench/provenance/fingerprint.hpp"
 
 #include <fstream>
 #include <string>

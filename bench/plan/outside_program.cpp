@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/systems/outside_program.hpp"
+#include "bench/plan/outside_program.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -9,6 +9,8 @@
 #include <span>
 
 #include <fmt/format.h>
+
+#include "slam/core/error.hpp"
 
 namespace mh {
 namespace {
@@ -69,10 +71,6 @@ void check_limit(const OutsideProgram& program, std::string_view what, double va
 }
 
 }  // namespace
-
-bool is_too_far(const TimedPose& pose) {
-  return !(pose.world_from_camera.translation().cwiseAbs().maxCoeff() <= kFarthest_m);
-}
 
 std::string shell_quoted(std::string_view value) {
   std::string result = "'";

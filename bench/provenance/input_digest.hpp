@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace mh {
+
+/// A file that was read, by its name and the xxh3-64 of its content.
+struct FileDigest {
+  std::string file;  ///< seen from the folder of what named it
+  std::uint64_t digest = 0;
+  friend auto operator<=>(const FileDigest&, const FileDigest&) = default;
+};
+
+/// Something that the results depend on.
+struct InputDigest {
+  /// scene, robot, mapping_tour, query_tour, vocabulary, level; "SYSTEM: WORD" of what an outside
+  /// program's command names.
+  std::string name;
+  /// Of all that was read for it, and of what was looked for and not there
+  /// (bench/inputs/inputs.hpp).
+  std::uint64_t digest = 0;
+  std::vector<FileDigest> files = {};  ///< that were read, sorted, each once
+  friend bool operator==(const InputDigest&, const InputDigest&) = default;
+};
+
+}  // namespace mh

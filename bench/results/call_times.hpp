@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+namespace mh {
+
+/// Wall time (ms) of every call that handled a frame, in call order.
+struct CallTimes {
+  std::vector<double> track_ms;
+  std::vector<double> relocalize_ms;  ///< of queries' own frames
+  std::vector<double> blank_ms;       ///< of the blank frames before them
+  double processor_s = 0;             ///< of all calls but save and restore, in this process
+};
+
+/// Median and 95th percentile, ms.
+struct TimeSummary {
+  double median_ms = 0;
+  double p95_ms = 0;
+};
+TimeSummary summarize(std::vector<double> times_ms);
+
+}  // namespace mh
