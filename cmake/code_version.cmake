@@ -30,11 +30,10 @@ digest_of(RUN slam/*.cpp slam/*.hpp scenes/*.cpp scenes/*.hpp scenes/categories/
           bench/world/*.hpp bench/inputs/inputs.cpp bench/inputs/inputs.hpp
           bench/plan/find_program.* bench/plan/outside_program.* bench/provenance/digest.*
           bench/provenance/input_digest.hpp bench/provenance/place_facts.hpp
-          bench/run_one.cpp bench/run_one.hpp bench/results/occupancy.cpp
-          bench/results/occupancy.hpp bench/results/run_result.hpp bench/results/call_times.*
-          bench/results/trajectory_score.cpp bench/results/trajectory_score.hpp
-          bench/recorded/*.cpp bench/recorded/*.hpp bench/pictures/canvas.* bench/pictures/png.*
+          bench/results/call_times.* bench/results/run_result.hpp
+          bench/results/trajectory_score.* bench/run/occupancy.* bench/run/run_one.*
           CMakeLists.txt)
+
 # Where git is not installed: what .git says, a worktree's included. Changes in files go unseen.
 function(commit_from_files variable)
   set(${variable} "unknown" PARENT_SCOPE)  # no clone

@@ -9,7 +9,7 @@
 #include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
-#include "bench/run.hpp"
+#include "bench/run/run.hpp"
 
 namespace mh::cli {
 namespace {

@@ -14,7 +14,7 @@
 #include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/provenance/digest.hpp"
-#include "bench/run.hpp"
+#include "bench/run/run.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"

@@ -5,8 +5,8 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
-#include "bench/run.hpp"
-#include "bench/store/export.hpp"
+#include "bench/report/export.hpp"
+#include "bench/run/run.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh::cli {

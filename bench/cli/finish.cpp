@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "bench/plan/runs.hpp"
-#include "bench/results/json.hpp"
-#include "bench/results/table.hpp"
-#include "bench/results/write.hpp"
+#include "bench/report/json.hpp"
+#include "bench/report/table.hpp"
+#include "bench/report/write.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 

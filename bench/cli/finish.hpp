@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/cli/progress.hpp"
-#include "bench/run.hpp"
+#include "bench/run/run.hpp"
 
 namespace mh::cli {
 

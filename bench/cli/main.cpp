@@ -15,9 +15,9 @@
 
 #include "bench/cli/commands.hpp"
 #include "bench/cli/declarations.hpp"
-#include "bench/jobs/pool.hpp"
-#include "bench/jobs/run_process.hpp"
-#include "bench/run.hpp"
+#include "bench/run/pool.hpp"
+#include "bench/run/run.hpp"
+#include "bench/run/run_process.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/legible.hpp"

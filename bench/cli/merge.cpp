@@ -6,7 +6,7 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/finish.hpp"
-#include "bench/run.hpp"
+#include "bench/run/run.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
-#include "bench/pictures/false_colors.hpp"
+#include "bench/drawing/false_colors.hpp"
 #include "robots/model/robot_keys.hpp"
 #include "scenes/furniture/furniture.hpp"
 #include "scenes/materials/materials.hpp"

@@ -14,12 +14,13 @@
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/inputs/inputs.hpp"
+#include "bench/plan/check_labels.hpp"
 #include "bench/plan/suite.hpp"
 #include "bench/provenance/digest.hpp"
-#include "bench/recorded/render_sequence.hpp"
-#include "bench/world/world.hpp"
 #include "scenes/scannet/files.hpp"
 #include "sim/sensors/shutter.hpp"
+#include "sim/world/lit_scene.hpp"
+#include "sim/world/render_sequence.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -168,8 +169,8 @@ void run(Options options) {
   std::vector<std::string> warnings;
   const Scene scene = [&] {
     Progress light("light");
-    return load_lit_scene(options.scene, options.sequence.threads, Cache(), {}, &warnings,
-                          options.frame.frame(), [&](double share) { light.share(share); });
+    return load_lit_scene(options.scene, options.sequence.threads, &warnings, options.frame.frame(),
+                          [&](double share) { light.share(share); });
   }();
   if (std::string warning = check_labels(scene, options.sequence.labels); !warning.empty())
     warnings.push_back(std::move(warning));

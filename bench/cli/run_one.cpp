@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "bench/cli/commands.hpp"
-#include "bench/jobs/run_process.hpp"
-#include "bench/run.hpp"
+#include "bench/run/run.hpp"
+#include "bench/run/run_process.hpp"
 
 namespace mh::cli {
 namespace {

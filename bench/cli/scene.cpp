@@ -15,11 +15,9 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
-#include "bench/pictures/canvas.hpp"
-#include "bench/pictures/contact_sheet.hpp"
+#include "bench/drawing/contact_sheet.hpp"
 #include "bench/provenance/digest.hpp"
-#include "bench/realism/scan_views.hpp"
-#include "bench/world/world.hpp"
+#include "bench/studies/scan_views.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/generate/grammar.hpp"
 #include "scenes/house/house.hpp"
@@ -27,8 +25,10 @@
 #include "scenes/load.hpp"
 #include "scenes/mesh_io/labels_file.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
+#include "scenes/pictures/write_picture.hpp"
 #include "scenes/scannet/scannet.hpp"
 #include "sim/render/scan_look.hpp"
+#include "sim/world/lit_scene.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -138,7 +138,7 @@ std::pair<std::string, std::vector<View>> see(const std::string& name, const Opt
   const ReadScope reading;
   Scene scene = load(find_scene(name).string(), options.frame);
   need_not_read(options.out, reading.record());
-  light_scene(scene, kThreads, Cache(), {}, baked);
+  light_scene(scene, kThreads, baked);
   const auto renderer = make_scene_renderer(scene);
   return {scene.name, views_of(scene, *renderer)};
 }
@@ -202,7 +202,7 @@ Scene scanned(const Scene& scene) {
 /// Bakes its light, which takes a while, and tells how far that has come.
 void light(Scene& scene) {
   Progress progress("light");
-  light_scene(scene, kThreads, Cache(), {}, [&](double share) { progress.share(share); });
+  light_scene(scene, kThreads, [&](double share) { progress.share(share); });
 }
 
 void write_mesh(Scene scene, const fs::path& out, bool scan = false) {

@@ -11,12 +11,14 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
-#include "bench/realism/survey.hpp"
-#include "bench/recorded/tum_folder.hpp"
-#include "bench/world/world.hpp"
+#include "bench/studies/survey.hpp"
+#include "bench/world/cached_light.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/generate/grammar.hpp"
+#include "scenes/load.hpp"
 #include "scenes/picture_file.hpp"
+#include "scenes/recorded/tum_folder.hpp"
+#include "sim/world/lit_scene.hpp"
 #include "sim/world/sequence.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/core/counted.hpp"
@@ -62,9 +64,8 @@ MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const O
                             const Robot& robot, const SensorConfig& sensors) {
   constexpr std::size_t kAround = 3;  // poses before and after a moment: what blurs it
   std::vector<std::string> warnings;
-  const Scene scene = load_lit_scene(
-      name, options.threads, Cache(options.cache), [](std::string_view) {}, &warnings,
-      options.frame.frame());
+  Scene scene = load_scene(name, &warnings, options.frame.frame());
+  light_from_cache(scene, options.threads, Cache(options.cache));
   print_warnings(warnings);
   const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene);
   const Trajectory scan = travel(scene, robot, "handheld").camera;

@@ -9,10 +9,10 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
-#include "bench/pictures/canvas.hpp"
-#include "bench/sensors/figures.hpp"
-#include "bench/sensors/sheets.hpp"
-#include "bench/world/world.hpp"
+#include "bench/studies/figures.hpp"
+#include "bench/studies/sheets.hpp"
+#include "scenes/pictures/write_picture.hpp"
+#include "sim/world/lit_scene.hpp"
 
 namespace mh::cli {
 namespace {
@@ -45,8 +45,8 @@ void sheet(Options options) {
   const OutputFolder folder(options.out, "sensors sheet",
                             {"color.png", "depth.png", "frames.png", "labels.png"});
   Progress light("light");
-  const Scene scene = load_lit_scene(options.scene, 2, Cache(), {}, nullptr, {},
-                                     [&](double share) { light.share(share); });
+  const Scene scene =
+      load_lit_scene(options.scene, 2, nullptr, {}, [&](double share) { light.share(share); });
   light.end();
   const SensorSheets sheets = draw_sensor_sheets(scene, make_scene_renderer(scene));
   for (const auto& [name, picture] :

@@ -12,7 +12,9 @@
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/cli/slam_report.hpp"
-#include "bench/recorded/scannet_folder.hpp"
+#include "bench/run/recorded_camera.hpp"
+#include "scenes/recorded/scannet_folder.hpp"
+#include "sim/world/scene_sequence.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/trajectory_io.hpp"
@@ -109,7 +111,7 @@ Source open_source(const Options& options) {
     throw InputError(
         fmt::format("{}: holds neither rgb.txt nor associations.txt", folder.string()));
   Settings settings = settings_for(options, folder);
-  auto frames = open_tum_folder(folder, settings, &settings.notes);
+  auto frames = open_tum_folder(folder, recorded_camera(settings), &settings.notes);
   return {std::move(settings), std::move(frames)};
 }
 

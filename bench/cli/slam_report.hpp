@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "bench/metrics/evaluate.hpp"
-#include "bench/recorded/run_slam.hpp"
+#include "bench/run/run_slam.hpp"
 #include "bench/systems/stage_clock.hpp"
+#include "slam/pipeline/settings.hpp"
 
 namespace mh::cli {
 

@@ -9,17 +9,12 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
+#include "slam/core/path_length.hpp"
 
 namespace mh {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-
-double step_length_m(const Trajectory& trajectory, std::size_t i) {
-  return (trajectory[i].world_from_camera.translation() -
-          trajectory[i - 1].world_from_camera.translation())
-      .norm();
-}
 
 /// How far along each pose lies, in the delta's unit (meters or seconds), from the first one.
 std::vector<double> progress(const Trajectory& trajectory, DeltaUnit unit) {
@@ -133,12 +128,6 @@ RelativeErrors rpe(const MatchedTrajectories& matched, const RpeDelta& delta) {
     errors.rotation_deg.push_back(kDegPerRad * angle_between_rad(truth_step, estimate_step));
   }
   return errors;
-}
-
-double path_length_m(const Trajectory& trajectory) {
-  double length = 0;
-  for (std::size_t i = 1; i < trajectory.size(); ++i) length += step_length_m(trajectory, i);
-  return length;
 }
 
 }  // namespace mh

@@ -70,7 +70,4 @@ struct RelativeErrors {
 };
 RelativeErrors rpe(const MatchedTrajectories& matched, const RpeDelta& delta);
 
-/// Length (m) of the polyline through the positions.
-double path_length_m(const Trajectory& trajectory);
-
 }  // namespace mh

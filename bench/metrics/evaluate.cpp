@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/metrics/evaluate.hpp"
 
+#include "slam/core/path_length.hpp"
+
 namespace mh {
 
 Evaluation evaluate(const Trajectory& truth, const Trajectory& estimate,

@@ -20,7 +20,8 @@
 #include <opencv2/core.hpp>
 
 #include "bench/metrics/evaluate.hpp"
-#include "bench/recorded/tum_folder.hpp"
+#include "bench/run/recorded_camera.hpp"
+#include "scenes/recorded/tum_folder.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/trajectory_io.hpp"
 #include "slam/pipeline/slam.hpp"

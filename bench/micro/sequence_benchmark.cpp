@@ -18,9 +18,9 @@
 #include <fmt/format.h>
 #include <opencv2/core/utility.hpp>
 
-#include "bench/recorded/render_sequence.hpp"
-#include "bench/world/world.hpp"
 #include "sim/render/parallel.hpp"
+#include "sim/world/lit_scene.hpp"
+#include "sim/world/render_sequence.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -96,7 +96,7 @@ int run(const std::vector<std::string>& given) {
   const Speed encode = measure("encoding alone (kept in memory)", frames, [&] {
     for_frames(frames, [&](std::size_t k) {
       const ExactFrame& frame = held[k % kHeldFrames];
-      in_memory->add(k % kHeldFrames, frame.seen, frame.exact, frame.world_from_camera);
+      in_memory->add(k % kHeldFrames, frame);
     });
   });
   std::vector<std::pair<fs::path, std::string>> files;  // of the frames held

@@ -16,9 +16,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/protocol/query.hpp"
-#include "bench/recorded/frame_files.hpp"
 #include "bench/systems/child_process.hpp"
 #include "bench/systems/outside_error.hpp"
+#include "scenes/recorded/frame_files.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/trajectory_io.hpp"
 

@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "bench/recorded/tum_folder.hpp"
 #include "bench/systems/child_process.hpp"
 #include "bench/systems/outside_error.hpp"
+#include "scenes/recorded/tum_folder.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/text_file.hpp"
 #include "slam/core/trajectory_io.hpp"

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "bench/provenance/digest.hpp"
-#include "bench/results/json.hpp"
+#include "bench/report/json.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/temporary_folder.hpp"

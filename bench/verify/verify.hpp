@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "bench/run.hpp"
+#include "bench/run/run.hpp"
 
 namespace mh {
 

@@ -2,33 +2,17 @@
 #include "bench/world/world.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <limits>
-
-#include <fmt/format.h>
 
 #include "bench/inputs/inputs.hpp"
-#include "bench/inputs/run_key.hpp"
-#include "bench/metrics/errors.hpp"
-#include "bench/provenance/code_version.hpp"
 #include "bench/provenance/digest.hpp"
-#include "bench/provenance/fingerprint.hpp"
+#include "bench/world/cached_light.hpp"
 #include "scenes/load.hpp"
-#include "sim/render/bake.hpp"
 #include "sim/sensors/shutter.hpp"
-#include "sim/sensors/visible_objects.hpp"
+#include "sim/world/lit_scene.hpp"
 #include "sim/world/travel.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
 
 namespace mh {
 namespace {
-
-float exposure_of(const Scene& scene) {
-  return scene.light.empty() ? 1.0F : suggest_exposure(scene);
-}
 
 PathFacts facts(const DrivenPath& path) {
   return {path.camera.size(), path.length_m, path.turned_in_place_rad, path.contact_time_s,
@@ -36,84 +20,6 @@ PathFacts facts(const DrivenPath& path) {
 }
 
 }  // namespace
-
-bool cut(DrivenPath& path, std::size_t max_frames) {
-  if (path.camera.size() <= max_frames) return false;
-  path.camera.resize(max_frames);
-  path.base.resize(max_frames);
-  path.length_m = path_length_m(path.base);
-  path.turned_in_place_rad = path.contact_time_s = path.max_penetration_m =
-      std::numeric_limits<double>::quiet_NaN();
-  return true;
-}
-
-DrivenPath joined(DrivenPath first, const DrivenPath& second, double rate_hz) {
-  const auto add = [rate_hz](Trajectory& path, const Trajectory& more) {
-    for (const TimedPose& pose : more)
-      path.push_back(
-          {std::llround(static_cast<double>(path.size()) * 1e9 / rate_hz), pose.world_from_camera});
-  };
-  add(first.camera, second.camera);
-  add(first.base, second.base);
-  first.length_m += second.length_m;
-  first.turned_in_place_rad += second.turned_in_place_rad;
-  first.max_penetration_m = std::max(first.max_penetration_m, second.max_penetration_m);
-  first.contact_time_s += second.contact_time_s;
-  return first;
-}
-
-void light_scene(Scene& scene, int threads, const Cache& cache, const Say& say,
-                 const BakeWatch& baked) {
-  if (!scene.light.empty() || scene.lights.empty()) return;
-  const BakeConfig config{.threads = threads};
-  const std::string key = text_key(fmt::format(
-      "{} {} {} {} {} {} {} {}", code_of_light(), fingerprint_json().dump(), hex(digest(scene)),
-      config.samples, config.bounces, config.sun_samples, config.smoothing, config.seed));
-  const std::string light = cache.get("light", key, [&] {
-    if (say) say(fmt::format("baking the light of {}", scene.name));
-    bake_light(scene, config, baked);
-    return std::string(reinterpret_cast<const char*>(scene.light.data()),
-                       scene.light.size() * sizeof(Eigen::Vector3f));
-  });
-  if (light.size() != scene.positions_m.size() * sizeof(Eigen::Vector3f))
-    throw MachineError(fmt::format("{}: holds an entry that does not fit its key: remove it",
-                                   cache.folder().string()));
-  scene.light.resize(scene.positions_m.size());
-  std::memcpy(static_cast<void*>(scene.light.data()), light.data(), light.size());
-}
-
-Scene load_lit_scene(const std::filesystem::path& file, int threads, const Cache& cache,
-                     const Say& say, std::vector<std::string>* warnings, const SceneFrame& frame,
-                     const BakeWatch& baked) {
-  Scene scene = load_scene(file, warnings, frame);
-  light_scene(scene, threads, cache, say, baked);
-  return scene;
-}
-
-std::string check_labels(const Scene& scene, LabelMode labels) {
-  if (labels != LabelMode::kBoxes && labels != LabelMode::kDetector) return "";
-  if (std::ranges::all_of(scene.instance_of, [](InstanceId id) { return id == 0; }))
-    throw InputError(fmt::format(
-        "{}: labels '{}' are boxes around objects, and its faces belong to none: all would be "
-        "background; use 'exact' or 'none'",
-        scene.name, name(labels)));
-  const auto& of = scene.instances;
-  if (std::ranges::any_of(of, [](const Instance& i) { return is_coco(i.class_id); })) return "";
-  return fmt::format(
-      "{}: none of its {} is of a class that a detector knows: labels '{}' are background "
-      "everywhere",
-      scene.name, counted(of.size(), "object"), name(labels));
-}
-
-std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene, std::string_view renderer) {
-  return make_renderer(renderer, scene, {.exposure = exposure_of(scene)});
-}
-
-std::shared_ptr<const WalkedScene> make_walked_scene(const Scene& scene,
-                                                     std::shared_ptr<const Renderer> renderer,
-                                                     const Walk& walk) {
-  return std::make_shared<const WalkedScene>(scene, std::move(renderer), exposure_of(scene), walk);
-}
 
 PlaceFacts facts(const World& world) {
   PlaceFacts f{.scene = world.scene->name,
@@ -169,7 +75,7 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
 
   const auto lit_scene = [&](const char* name, const std::filesystem::path& file) {
     Scene scene = input(name, file, [&] { return load_scene(file, nullptr, environment.frame); });
-    light_scene(scene, threads, cache, say, baked);
+    light_from_cache(scene, threads, cache, say, baked);
     return std::make_shared<const Scene>(std::move(scene));
   };
   const auto scene = lit_scene("scene", environment.scene);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/world/travel.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <string_view>
@@ -17,6 +19,7 @@
 #include "sim/motion/commands.hpp"
 #include "sim/motion/replay.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/path_length.hpp"
 #include "slam/core/trajectory_io.hpp"
 
 namespace mh {
@@ -142,6 +145,31 @@ DrivenPath travel(const Scene& scene, const Robot& robot, const std::string& mot
     for (TimedPose& pose : *poses)
       pose.world_from_camera = level.world_from_level() * pose.world_from_camera;
   return path;
+}
+
+bool cut(DrivenPath& path, std::size_t max_frames) {
+  if (path.camera.size() <= max_frames) return false;
+  path.camera.resize(max_frames);
+  path.base.resize(max_frames);
+  path.length_m = path_length_m(path.base);
+  path.turned_in_place_rad = path.contact_time_s = path.max_penetration_m =
+      std::numeric_limits<double>::quiet_NaN();
+  return true;
+}
+
+DrivenPath joined(DrivenPath first, const DrivenPath& second, double rate_hz) {
+  const auto add = [rate_hz](Trajectory& path, const Trajectory& more) {
+    for (const TimedPose& pose : more)
+      path.push_back(
+          {std::llround(static_cast<double>(path.size()) * 1e9 / rate_hz), pose.world_from_camera});
+  };
+  add(first.camera, second.camera);
+  add(first.base, second.base);
+  first.length_m += second.length_m;
+  first.turned_in_place_rad += second.turned_in_place_rad;
+  first.max_penetration_m = std::max(first.max_penetration_m, second.max_penetration_m);
+  first.contact_time_s += second.contact_time_s;
+  return first;
 }
 
 }  // namespace mh

@@ -26,6 +26,13 @@ namespace mh {
 DrivenPath travel(const Scene& scene, const Robot& robot, const std::string& motion,
                   const std::vector<MovingObstacle>& others = {});
 
+/// Keeps the first frames of a path with their length; the other measures, which need the whole
+/// drive, become NaN. @returns whether anything was cut off
+bool cut(DrivenPath& path, std::size_t max_frames);
+
+/// One path after the other, without a way between them: the stamps go on at the camera's rate.
+DrivenPath joined(DrivenPath first, const DrivenPath& second, double rate_hz);
+
 /// Whether the robot drives, moved by physics; else a camera is moved without it.
 bool is_driven(const std::string& motion);
 

@@ -7,7 +7,7 @@
 #include "bench/check/from_runs.hpp"
 #include "bench/check/gate.hpp"
 #include "bench/check/report.hpp"
-#include "bench/run_one.hpp"
+#include "bench/run/run_one.hpp"
 #include "bench/systems/ours.hpp"
 
 namespace mh {

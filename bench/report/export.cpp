@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/report/export.hpp"
+
+#include <algorithm>
+#include <type_traits>
+#include <variant>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/results/summary.hpp"
+#include "bench/store/load_results.hpp"
+
+namespace mh {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string latex_cell(std::string_view text) {
+  std::string safe;
+  for (const char c : text)
+    safe += std::string_view("&%$#_{}").find(c) == std::string_view::npos ? std::string(1, c)
+                                                                          : std::string("\\") + c;
+  return safe;
+}
+
+std::string cell(const std::optional<double>& value, const char* format = "{:.4f}") {
+  return value ? fmt::format(fmt::runtime(format), *value) : std::string("--");
+}
+
+nlohmann::ordered_json to_json(const Store::Value& value) {
+  return std::visit(
+      [](const auto& v) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, std::monostate>)
+          return nlohmann::ordered_json();
+        else
+          return nlohmann::ordered_json(v);
+      },
+      value);
+}
+
+}  // namespace
+
+std::string export_csv(const Store& store) {
+  const Rows names = store.rows("SELECT DISTINCT name FROM metrics ORDER BY name");
+  std::string columns;
+  for (std::size_t i = 1; i < names.size(); ++i)
+    columns += fmt::format(
+        ", (SELECT value FROM metrics m WHERE m.key = r.key AND m.point = o.point AND m.name = "
+        "'{0}') AS \"{0}\"",
+        names[i][0]);
+  const Rows rows = store.rows(
+      "SELECT p.name AS run, r.environment, r.category, r.level, r.system, r.labels, r.trial, "
+      "r.seed, r.status, r.error, o.point, o.gamma, o.xi, o.alpha, o.beta, o.overlap" +
+      columns +
+      " FROM plan p JOIN runs r ON r.key = p.key LEFT JOIN points o ON o.key = r.key "
+      "ORDER BY p.position, o.point");
+  std::string text;
+  for (const auto& row : rows) {
+    for (std::size_t c = 0; c < row.size(); ++c)
+      text.append(c > 0 ? "," : "").append(csv_cell(row[c]));
+    text += "\n";
+  }
+  return text;
+}
+
+std::string export_json(const Store& store) {
+  nlohmann::ordered_json all;
+  for (const std::string table : {"runs", "points", "metrics", "calls", "frames", "queries"}) {
+    const auto rows = store.values(fmt::format(
+        "SELECT t.* FROM {} t JOIN (SELECT DISTINCT key, min(position) AS at FROM plan GROUP BY "
+        "key) p ON p.key = t.key ORDER BY p.at, 2, 3, 4",
+        table));
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (std::size_t r = 1; r < rows.size(); ++r) {
+      nlohmann::ordered_json object;
+      for (std::size_t c = 0; c + 1 < rows[r].size(); ++c)  // the digest stands last
+        object[std::get<std::string>(rows[0][c])] = to_json(rows[r][c]);
+      list.push_back(std::move(object));
+    }
+    all[table] = std::move(list);
+  }
+  return all.dump(1) + "\n";
+}
+
+std::string export_latex(const Store& store) {
+  const Suite suite = store.planned_suite();
+  const BenchResults results = load_results(store, suite);
+  const std::vector<SemanticConfig> points = parameter_points(suite);
+  const bool sweep = points.size() > 1;
+  std::string text = fmt::format(
+      "\\begin{{tabular}}{{llll{0}lrrrlrrr}}\n\\toprule\n"
+      "environment & level & labels & system & {1}trials & complete & ATE (m) & RPE (m) & queries "
+      "& "
+      "success & correct & distance (m) \\\\\n\\midrule\n",
+      sweep ? "rrrr" : "", sweep ? "$\\gamma$ & $\\xi$ & $\\alpha$ & $\\beta$ & " : "");
+  for (const Row& row : make_rows(suite, results.runs, results.failed)) {
+    const SystemSpec& system = suite.systems[row.system];
+    const SemanticConfig seen = settings_of(system, points[row.parameters]);
+    const auto same = [&](const SemanticConfig& point) {
+      return settings_of(system, point) == seen;
+    };
+    // What a system does not look at makes no rows of their own.
+    if (std::any_of(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(row.parameters),
+                    same))
+      continue;
+    std::string head = fmt::format(
+        "{} & {} & {} & {} & ", latex_cell(suite.environments[row.environment].name),
+        latex_cell(level_name(suite.levels[row.level])), name(row.labels), latex_cell(system.name));
+    for (const double value : {seen.gamma, seen.xi, seen.alpha, seen.beta})
+      if (sweep)
+        head += system.kind == SystemKind::kOutside ? "-- & " : fmt::format("{:.4g} & ", value);
+    const auto trials = static_cast<std::size_t>(suite.trials);
+    head += row.trials.size() == trials ? fmt::format("{}", trials)
+                                        : fmt::format("{} of {}", row.trials.size(), trials);
+    if (row.failed > 0) head += fmt::format(", {} failed", row.failed);
+    const auto share = [](double value) { return fmt::format("{:.2f}\\,\\%", 100 * value); };
+    head += fmt::format(
+        " & {} & {} & {}", row.trials.empty() ? "--" : share(row.trajectory.completeness),
+        cell(row.trajectory.ate_rmse_m), cell(row.trajectory.rpe_frame_rmse_m, "{:.5f}"));
+    bool asked = false;
+    for (const QuerySet set : kQuerySets) {
+      const QuerySummary& s = summary(row, set);
+      if (s.queries == 0) continue;
+      asked = true;
+      text += fmt::format("{} & {} & {} & {} & {} \\\\\n", head, latex_cell(name(set)),
+                          share(s.success), share(s.correct), cell(s.distance_mean_m));
+    }
+    if (!asked) text += head + " & -- & -- & -- & -- \\\\\n";
+  }
+  return text + "\\bottomrule\n\\end{tabular}\n";
+}
+
+}  // namespace mh

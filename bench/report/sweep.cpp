@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/report/sweep.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "bench/drawing/canvas.hpp"
+
+namespace mh {
+namespace {
+
+constexpr double kPanelWidth = 400, kPanelHeight = 340, kMargin = 24, kHeader = 62, kFooter = 30;
+constexpr int kColumns = 3;
+constexpr Rgb8 kInk = {40, 43, 50}, kGray = {110, 115, 125}, kFrame = {214, 39, 40};
+constexpr Rgb8 kWhite = {255, 255, 255};
+
+struct Shades {
+  Rgb8 low, high;
+  Rgb8 at(double share) const {
+    const auto mix = [&](std::uint8_t a, std::uint8_t b) {
+      return static_cast<std::uint8_t>(std::lround(a + share * (double(b) - double(a))));
+    };
+    return {mix(low.r, high.r), mix(low.g, high.g), mix(low.b, high.b)};
+  }
+};
+constexpr Shades kGood = {{236, 243, 251}, {8, 69, 148}}, kBad = {{253, 243, 231}, {166, 54, 3}};
+
+/// What one panel shows of a point.
+struct PanelMeasure {
+  std::string title;
+  Shades shades;
+  int digits;
+  std::function<std::optional<double>(const QuerySummary&)> value;
+};
+
+std::vector<PanelMeasure> panel_measures() {
+  return {{"correct answers, %", kGood, 1,
+           [](const QuerySummary& s) { return std::optional(100 * s.correct); }},
+          {"false answers, %", kBad, 1,
+           [](const QuerySummary& s) { return std::optional(100 * s.wrong); }},
+          {"mean distance, mm", kBad, 1, [](const QuerySummary& s) -> std::optional<double> {
+             if (!s.distance_mean_m) return std::nullopt;
+             return 1e3 * *s.distance_mean_m;
+           }}};
+}
+
+/// The values of a panel, the least and the greatest of them.
+struct Values {
+  std::vector<std::optional<double>> of;
+  double least = 0, most = 0;
+
+  Values(const SweepResult& result, QuerySet set, const PanelMeasure& measure) {
+    for (const CategoryRow& row : result.answers) of.push_back(measure.value(summary(row, set)));
+    bool any = false;
+    for (const auto& value : of)
+      if (value) {
+        least = any ? std::min(least, *value) : *value;
+        most = any ? std::max(most, *value) : *value;
+        any = true;
+      }
+  }
+  double share(double value) const { return most > least ? (value - least) / (most - least) : 0; }
+};
+
+std::vector<double> distinct(const SweepResult& result, std::string_view name) {
+  std::set<double> values;
+  for (const SemanticConfig& point : result.points) values.insert(parameter(point, name));
+  return {values.begin(), values.end()};
+}
+
+/// Where a panel stands, with room for the numbers on its axes.
+struct Box {
+  double left, right, top, bottom;
+  explicit Box(cv::Point2d corner)
+      : left(corner.x + 62),
+        right(corner.x + kPanelWidth - 16),
+        top(corner.y + 30),
+        bottom(corner.y + kPanelHeight - 48) {}
+};
+
+void draw_names(Canvas& canvas, const Box& box, const std::string& title, std::string_view across,
+                std::string_view up) {
+  canvas.text(title, {box.left, box.top - 12}, 9.5, kInk, Canvas::Align::kLeft, true);
+  canvas.text(std::string(across), {(box.left + box.right) / 2, box.bottom + 34}, 9, kGray,
+              Canvas::Align::kCenter);
+  if (!up.empty())
+    canvas.text(std::string(up), {box.left - 8, box.top - 12}, 9, kGray, Canvas::Align::kRight);
+}
+
+/// A cell per point.
+void draw_grid(Canvas& canvas, cv::Point2d corner, const SweepResult& result,
+               const std::vector<std::string>& varied, const std::string& title,
+               const PanelMeasure& measure, const Values& values,
+               std::optional<std::size_t> framed) {
+  const Box box(corner);
+  const std::string& across = varied.back();
+  const std::string up = varied.size() > 1 ? varied.front() : "";
+  const std::vector<double> xs = distinct(result, across);
+  const std::vector<double> ys = up.empty() ? std::vector<double>{0} : distinct(result, up);
+  const double width = (box.right - box.left) / static_cast<double>(xs.size());
+  const double height = (box.bottom - box.top) / static_cast<double>(ys.size());
+  const auto place = [](const std::vector<double>& list, double value) {
+    return static_cast<double>(std::ranges::find(list, value) - list.begin());
+  };
+  const auto corner_of = [&](const SemanticConfig& point) {
+    const double row = up.empty() ? 0 : place(ys, parameter(point, up));
+    return cv::Point2d(box.left + width * place(xs, parameter(point, across)),
+                       box.bottom - height * (row + 1));
+  };
+  draw_names(canvas, box, title, across, up);
+  for (std::size_t i = 0; i < xs.size(); ++i)
+    canvas.text(fmt::format("{:g}", xs[i]),
+                {box.left + width * (static_cast<double>(i) + 0.5), box.bottom + 16}, 8, kGray,
+                Canvas::Align::kCenter);
+  for (std::size_t i = 0; i < ys.size() && !up.empty(); ++i)
+    canvas.text(fmt::format("{:g}", ys[i]),
+                {box.left - 8, box.bottom - height * (static_cast<double>(i) + 0.5) + 4}, 8, kGray,
+                Canvas::Align::kRight);
+  for (std::size_t i = 0; i < result.points.size(); ++i) {
+    if (!values.of[i]) continue;
+    const double share = values.share(*values.of[i]);
+    const cv::Point2d at = corner_of(result.points[i]);
+    canvas.fill(at.x, at.y, width, height, measure.shades.at(share));
+    canvas.text(fmt::format("{:.{}f}", *values.of[i], measure.digits),
+                {at.x + width / 2, at.y + height / 2 + 4}, 8.5, share > 0.5 ? kWhite : kInk,
+                Canvas::Align::kCenter);
+  }
+  if (!framed) return;
+  const cv::Point2d a = corner_of(result.points[*framed]), b(a.x + width, a.y + height);
+  for (const auto& [from, to] : {std::pair(a, cv::Point2d(b.x, a.y)),
+                                 {cv::Point2d(b.x, a.y), b},
+                                 {b, cv::Point2d(a.x, b.y)},
+                                 {cv::Point2d(a.x, b.y), a}})
+    canvas.line(from, to, kFrame, 2);
+}
+
+/// A dot per point over two of its parameters.
+void draw_dots(Canvas& canvas, cv::Point2d corner, const SweepResult& result,
+               const std::string& across, const std::string& up, const std::string& title,
+               const PanelMeasure& measure, const Values& values,
+               std::optional<std::size_t> framed) {
+  const Box box(corner);
+  const std::vector<double> xs = distinct(result, across), ys = distinct(result, up);
+  const auto share = [](const std::vector<double>& list, double value) {
+    const double range = list.back() - list.front();
+    return range > 0 ? (value - list.front()) / range : 0.5;
+  };
+  constexpr double kInset = 10;  // no dot is cut by the border
+  const auto at = [&](const SemanticConfig& point) {
+    return cv::Point2d(
+        box.left + kInset +
+            share(xs, parameter(point, across)) * (box.right - box.left - 2 * kInset),
+        box.bottom - kInset -
+            share(ys, parameter(point, up)) * (box.bottom - box.top - 2 * kInset));
+  };
+  draw_names(canvas, box, title, across, up);
+  canvas.fill(box.left, box.top, box.right - box.left, box.bottom - box.top, {246, 247, 249});
+  const auto number = [&](double value, cv::Point2d where, Canvas::Align align) {
+    canvas.text(fmt::format("{:.3g}", value), where, 8, kGray, align);
+  };
+  number(xs.front(), {box.left, box.bottom + 16}, Canvas::Align::kLeft);
+  number(xs.back(), {box.right, box.bottom + 16}, Canvas::Align::kRight);
+  number(ys.front(), {box.left - 8, box.bottom}, Canvas::Align::kRight);
+  number(ys.back(), {box.left - 8, box.top + 10}, Canvas::Align::kRight);
+  for (std::size_t i = 0; i < result.points.size(); ++i)
+    if (values.of[i])
+      canvas.disc(at(result.points[i]), 6, measure.shades.at(values.share(*values.of[i])));
+  if (framed) canvas.ring(at(result.points[*framed]), 9, kFrame, 2);
+}
+
+bool is_grid(const SweepResult& result, const std::vector<std::string>& varied) {
+  std::size_t cells = 1;
+  for (const std::string& name : varied) cells *= distinct(result, name).size();
+  return varied.size() <= 2 && cells == result.points.size();
+}
+
+std::string place_of(const SemanticConfig& point, const std::vector<std::string>& varied) {
+  std::string text;
+  for (const std::string& name : varied)
+    text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", name, parameter(point, name));
+  return text;
+}
+
+std::string caption(const SweepResult& result, QuerySet set, const std::vector<std::string>& varied,
+                    const BestPoint& best) {
+  const Comparison& c = best.to_reference;
+  if (best.equals == result.points.size())
+    return fmt::format("{}: {:.1f} % correct at each of {} points", name(set),
+                       100 * summary(result.answers[best.point], set).correct, best.equals);
+  return fmt::format(
+      "{}: most correct answers at {}{}: {:.1f} %, {:+.1f} [{:+.1f}, {:+.1f}] points against {}",
+      name(set), place_of(result.points[best.point], varied),
+      best.equals > 1 ? fmt::format(" (one of {} equals)", best.equals) : "",
+      100 * summary(result.answers[best.point], set).correct, 100 * c.difference, 100 * c.low,
+      100 * c.high, place_of(result.points[best.reference], varied));
+}
+
+}  // namespace
+
+std::string sweep_picture_name(const Suite& suite, const SweepResult& result) {
+  return fmt::format("sweep-{}-{}-{}.png", suite.systems[result.system].name, name(result.labels),
+                     level_name(suite.levels[result.level]));
+}
+
+cv::Mat draw_sweep(const Suite& suite, std::span<const Row> rows, const SweepResult& result) {
+  const std::vector<std::string>& varied = suite.sweep.varied;
+  const bool grid = is_grid(result, varied);
+  struct Block {
+    QuerySet set;
+    BestPoint best;
+  };
+  std::vector<Block> blocks;
+  for (const QuerySet set : kQuerySets)
+    if (const auto best = best_point(suite, rows, result, set)) blocks.push_back({set, *best});
+
+  std::vector<std::pair<std::string, std::string>> pairs;  // across, up
+  for (std::size_t i = 0; i < varied.size(); ++i)
+    for (std::size_t j = i + 1; j < varied.size(); ++j) pairs.emplace_back(varied[j], varied[i]);
+  const std::vector<PanelMeasure> all = panel_measures();
+  const std::size_t panels = grid ? all.size() : pairs.size();
+  const auto lines = static_cast<int>((panels + kColumns - 1) / kColumns);
+  const double block_height = lines * kPanelHeight + kFooter;
+
+  Canvas canvas(static_cast<int>(2 * kMargin + kColumns * kPanelWidth),
+                static_cast<int>(kHeader + static_cast<double>(blocks.size()) * block_height + 16));
+  canvas.text(fmt::format("{}: {}, {}, level {}, map: {}", suite.name,
+                          suite.systems[result.system].name, with_labels(result.labels),
+                          level_name(suite.levels[result.level]), name(suite.sweep.map)),
+              {kMargin, 34}, 14, kInk, Canvas::Align::kLeft, true);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const auto& [set, best] = blocks[b];
+    const double top = kHeader + static_cast<double>(b) * block_height;
+    for (std::size_t i = 0; i < panels; ++i) {
+      const cv::Point2d corner(kMargin + static_cast<double>(i % kColumns) * kPanelWidth,
+                               top + static_cast<double>(i / kColumns) * kPanelHeight);
+      const PanelMeasure& measure = grid ? all[i] : all.front();
+      const Values values(result, set, measure);
+      const std::string title = grid ? fmt::format("{}: {}", name(set), measure.title)
+                                     : fmt::format("{}: {:.1f} to {:.1f} % correct", name(set),
+                                                   values.least, values.most);
+      std::optional<std::size_t> framed;
+      if ((!grid || i == 0) && best.equals < result.points.size()) framed = best.point;
+      if (grid)
+        draw_grid(canvas, corner, result, varied, title, measure, values, framed);
+      else
+        draw_dots(canvas, corner, result, pairs[i].first, pairs[i].second, title, measure, values,
+                  framed);
+    }
+    canvas.text(caption(result, set, varied, best), {kMargin + 8, top + lines * kPanelHeight + 12},
+                9, kInk);
+  }
+  canvas.text("framed: most correct answers, chosen by these same queries: confirm it on others",
+              {kMargin + 8, static_cast<double>(canvas.height()) - 10}, 8, kGray);
+  return canvas.finish();
+}
+
+}  // namespace mh

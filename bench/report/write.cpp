@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/report/write.hpp"
+
+#include <fmt/format.h>
+
+#include "bench/drawing/contact_sheet.hpp"
+#include "bench/inputs/run_key.hpp"
+#include "bench/plan/spec_json.hpp"
+#include "bench/provenance/code_version.hpp"
+#include "bench/provenance/digest.hpp"
+#include "bench/report/json.hpp"
+#include "bench/report/sweep.hpp"
+#include "bench/report/table.hpp"
+#include "bench/report/topdown.hpp"
+#include "scenes/pictures/png.hpp"
+#include "scenes/pictures/write_picture.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/trajectory_io.hpp"
+
+namespace mh {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kMadeOf = "modelhouse";  ///< keyword of what a picture was made of
+
+void write_marked(const fs::path& file, const cv::Mat& picture, const std::string& made_of) {
+  write_atomically(file, with_text(encode_png(picture), kMadeOf, made_of));
+}
+
+std::string mark_of(const fs::path& picture) {
+  return fs::is_regular_file(picture) ? text_in(read_file(picture), kMadeOf) : std::string();
+}
+
+/// What decides a contact sheet. Levels, which may lose other frames, share one.
+std::string identity_of_views(const World& world, const RunSpec& spec) {
+  std::string text = fmt::format("{} {} {} ", code_of_run(), to_json(spec.environment.frame).dump(),
+                                 spec.max_frames ? std::to_string(*spec.max_frames) : "all");
+  for (const InputDigest& input : world.inputs)
+    for (const char* seen : {"scene", "robot", "mapping_tour", "kidnapped_tour"})
+      if (input.name == seen) text += fmt::format("{} {} ", seen, hex(input.digest));
+  return text_key(text);
+}
+
+}  // namespace
+
+void remove_run(const fs::path& folder) {
+  std::error_code error;
+  for (const char* file : {"topdown.png", "topdown_second_tour.png", "truth.tum", "estimate.tum",
+                           "map.bt", "map.pgm", "map.yaml"})
+    fs::remove(folder / file, error);
+}
+
+bool shows_another_run(const fs::path& folder, const std::string& key) {
+  return fs::exists(folder / "estimate.tum") && mark_of(folder / "topdown.png") != key;
+}
+
+void write_run(const fs::path& folder, const World& world, const RunResult& run,
+               const std::string& key) {
+  make_output_folder(folder);
+  write_tum(folder / "truth.tum", world.mapping.camera);
+  write_tum(folder / "estimate.tum", run.estimate);
+  run.volume->save_bt(folder / "map.bt");
+  save_map_server(run.grid, folder / "map");
+  if (world.second)
+    write_picture(folder / "topdown_second_tour.png",
+                  draw_topdown(world, run, QuerySet::kSecondTour));
+  // Last: it tells that all are there.
+  write_marked(folder / "topdown.png", draw_topdown(world, run, QuerySet::kHeldOut), key);
+}
+
+void write_views(const fs::path& file, const World& world, const RunSpec& spec) {
+  const std::string identity = identity_of_views(world, spec);
+  if (mark_of(file) == identity) return;
+  write_marked(
+      file,
+      draw_contact_sheet(fmt::format("{}, along the mapping tour", world.scene->name),
+                         views_along(world.mapping.camera, *world.renderer, world.robot.camera, 6)),
+      identity);
+}
+
+std::string write_results(const fs::path& folder, const Suite& suite,
+                          std::span<const RunResult> runs, std::span<const FailedRun> failed,
+                          std::span<const std::string> missing) {
+  const std::string table = results_table(suite, runs, failed, missing);
+  write_atomically(folder / "times.json", times_json(runs).dump(2) + "\n");
+  write_atomically(folder / "reproduction.json", reproduction_json(suite, runs).dump(2) + "\n");
+  write_atomically(folder / "times.txt", times_table(suite, runs));
+  if (parameter_points(suite).size() > 1) {
+    const std::vector<Row> rows = make_rows(suite, runs);
+    for (const SweepResult& result : sweep_results(suite, rows))
+      write_picture(folder / sweep_picture_name(suite, result), draw_sweep(suite, rows, result));
+  }
+  write_atomically(folder / "table.txt", table);
+  write_atomically(folder / "results.json",
+                   results_json(suite, runs, failed, missing).dump(2) + "\n");
+  return table;
+}
+
+}  // namespace mh

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/run/pool.hpp"
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <deque>
+#include <fstream>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bench/plan/spec_json.hpp"
+#include "bench/run/forecast.hpp"
+#include "bench/run/run_process.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/file_errors.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kFirstGuess_mb = 1500;  // until a run was measured
+constexpr int kPoll_ms = 100;
+constexpr auto kBeat = std::chrono::seconds(10);
+
+volatile std::sig_atomic_t g_signal = 0;
+
+/// Notes SIGINT and SIGTERM while it lives instead of dying of them.
+class SignalWatch {
+ public:
+  SignalWatch() {
+    g_signal = 0;
+    struct sigaction action {};
+    action.sa_handler = [](int number) { g_signal = number; };
+    sigaction(SIGINT, &action, &old_int_);
+    sigaction(SIGTERM, &action, &old_term_);
+  }
+  ~SignalWatch() {
+    sigaction(SIGINT, &old_int_, nullptr);
+    sigaction(SIGTERM, &old_term_, nullptr);
+  }
+  SignalWatch(const SignalWatch&) = delete;
+  SignalWatch& operator=(const SignalWatch&) = delete;
+
+ private:
+  struct sigaction old_int_ {
+  }, old_term_{};
+};
+
+double available_mb() {
+  std::ifstream file("/proc/meminfo");
+  std::string word;
+  double kb = 0;
+  while (file >> word)
+    if (word == "MemAvailable:" && file >> kb) return kb / 1024.0;
+  return 1e9;  // unknown: memory holds nobody back
+}
+
+struct Waiting {
+  Job job;
+  bool alone = false;  ///< it was killed from outside once
+};
+
+struct Running {
+  Waiting what;
+  std::unique_ptr<RunProcess> process;
+  std::string cut_off;  ///< why we killed it; empty: we did not
+};
+
+class Pool {
+ public:
+  Pool(Store& store, std::vector<Job> jobs, const PoolOptions& options)
+      : store_(store), options_(options), all_(jobs.size()) {
+    for (Job& job : jobs) waiting_.push_back({std::move(job), false});
+    need_mb_ = store.largest_rss_mb();
+  }
+
+  void work() {
+    const SignalWatch watch;
+    auto next_beat = Clock::now() + kBeat;
+    tell();
+    while (!waiting_.empty() || !running_.empty()) {
+      if (g_signal != 0) {
+        give_up();
+        throw Interrupted{static_cast<int>(g_signal)};
+      }
+      start_what_fits();
+      wait_a_moment();
+      look_after_running();
+      if (Clock::now() < next_beat) continue;
+      store_.beat();
+      next_beat = Clock::now() + kBeat;
+    }
+  }
+
+ private:
+  /// Ends every process and gives back what they had claimed.
+  void give_up() {
+    for (Running& r : running_) r.process->kill();
+    std::vector<std::string> keys;
+    for (const Running& r : running_) keys.push_back(r.what.job.key);
+    running_.clear();  // waits for them
+    for (const std::string& key : keys) store_.release(key);
+  }
+
+  double need_mb() const { return need_mb_ > 0 ? need_mb_ : kFirstGuess_mb; }
+
+  bool another_fits() const {
+    if (running_.empty()) return true;
+    if (running_.size() >= static_cast<std::size_t>(options_.jobs)) return false;
+    double promised_mb = 0;
+    for (const Running& r : running_) promised_mb += std::max(0.0, need_mb() - r.process->rss_mb());
+    return available_mb() - promised_mb > need_mb();
+  }
+
+  void start_what_fits() {
+    const bool only_alone =
+        std::all_of(waiting_.begin(), waiting_.end(), [](const Waiting& w) { return w.alone; });
+    for (std::size_t i = 0, n = waiting_.size(); i < n && another_fits(); ++i) {
+      Waiting next = std::move(waiting_.front());
+      waiting_.pop_front();
+      if (const auto status = store_.status(next.job.key)) {  // another process finished it
+        note_end(*status == RunStatus::kDone);
+        continue;
+      }
+      const bool must_wait = next.alone
+                                 ? !only_alone || !running_.empty()
+                                 : std::any_of(running_.begin(), running_.end(),
+                                               [](const Running& r) { return r.what.alone; });
+      if (must_wait || !store_.claim(next.job.key)) {
+        waiting_.push_back(std::move(next));
+        continue;
+      }
+      start(std::move(next));
+    }
+  }
+
+  std::filesystem::path work_file(const Job& job, const char* ending) const {
+    return options_.work_folder / (job.key + ending);
+  }
+
+  void start(Waiting next) {
+    const Job& job = next.job;
+    const auto description = work_file(job, ".json");
+    write_atomically(description, to_json(job.spec).dump(1));
+    auto process = std::make_unique<RunProcess>(
+        options_.executable, options_.arguments(job, description), work_file(job, ".log"));
+    running_.push_back({std::move(next), std::move(process), ""});
+  }
+
+  void wait_a_moment() const {
+    std::vector<pollfd> outputs;
+    for (const Running& r : running_) outputs.push_back({r.process->output(), POLLIN, 0});
+    ::poll(outputs.data(), outputs.size(), kPoll_ms);
+    // An output that has ended is readable all the time: do not spin on it.
+    for (const pollfd& output : outputs)
+      if ((output.revents & POLLHUP) != 0) ::poll(nullptr, 0, 5);
+  }
+
+  void look_after_running() {
+    bool news = false;
+    for (std::size_t i = 0; i < running_.size();) {
+      Running& r = running_[i];
+      const double before = r.process->share();
+      const std::string status = r.process->status();
+      const auto end = r.process->poll();
+      news = news || end || r.process->share() != before || r.process->status() != status;
+      for (const std::string& stage : r.process->take_stages())
+        options_.say(fmt::format("{}: {}", r.what.job.spec.name, stage));
+      if (!end) {
+        keep_within_limits(r);
+        ++i;
+        continue;
+      }
+      Running ended = std::move(r);
+      running_.erase(running_.begin() + static_cast<std::ptrdiff_t>(i));
+      settle(std::move(ended), *end);
+    }
+    if (news) tell();
+  }
+
+  void keep_within_limits(Running& r) const {
+    if (!r.cut_off.empty()) return;
+    if (options_.time_limit_s > 0 && r.process->age_s() > options_.time_limit_s)
+      r.cut_off = fmt::format("took longer than the limit of {:g} s", options_.time_limit_s);
+    else if (options_.memory_limit_mb > 0 && r.process->rss_mb() > options_.memory_limit_mb)
+      r.cut_off =
+          fmt::format("needed more memory than the limit of {:.0f} MB", options_.memory_limit_mb);
+    if (!r.cut_off.empty()) r.process->kill();
+  }
+
+  void settle(Running ended, const ProcessEnd& end) {
+    const Job& job = ended.what.job;
+    need_mb_ = std::max(need_mb_, end.cost.max_rss_mb);
+    if (end.good && store_.status(job.key) == RunStatus::kDone) {
+      std::filesystem::remove(work_file(job, ".json"));
+      std::filesystem::remove(work_file(job, ".log"));
+      forecast_.note(job.spec, end.cost.wall_s);
+      note_end(true);
+      return;
+    }
+    const bool killed = end.signal == SIGKILL || end.signal == SIGTERM;
+    if (killed && ended.cut_off.empty() && !ended.what.alone) {
+      options_.say(
+          fmt::format("{}: was killed from outside; will be tried again, alone", job.spec.name));
+      store_.release(job.key);
+      waiting_.push_back({job, true});
+      return;
+    }
+    if (end.code == kDiskFullCode && ended.cut_off.empty()) {
+      give_up();
+      store_.release(job.key);
+      throw DiskFullError(end.message.empty()
+                              ? job.spec.name + ": the disk is full: make room and run again"
+                              : end.message);
+    }
+    if (end.code == kInputChangedCode && ended.cut_off.empty()) {
+      give_up();
+      store_.release(job.key);
+      throw InputError(end.message);
+    }
+    const std::string error = describe(ended, end);
+    store_.put_failure(job.key, job.spec, error, end.cost);
+    options_.say(fmt::format("{}: failed: {}", job.spec.name, error));
+    note_end(false);
+  }
+
+  static std::string describe(const Running& ended, const ProcessEnd& end) {
+    if (!ended.cut_off.empty()) return ended.cut_off;
+    const std::string last = end.message.empty() ? "" : ": " + end.message;
+    if (end.signal != 0)
+      return fmt::format("ended by signal {} ({}){}", end.signal, strsignal(end.signal), last);
+    if (end.good) return "ended without a result";
+    if (end.message.empty()) return fmt::format("returned {}", end.code);
+    return end.code == kBadInputCode ? std::string(kBadInputMark) + end.message : end.message;
+  }
+
+  void note_end(bool good) {
+    ++(good ? done_ : failed_);
+    tell();
+  }
+
+  void tell() const {
+    double sum = static_cast<double>(done_ + failed_);
+    for (const Running& r : running_) sum += r.process->share();
+    // The whole is done when every run is settled, not when the last one says that it is at its
+    // end.
+    const bool over = done_ + failed_ == all_;
+    PoolProgress progress{.share = over ? 1.0 : std::min(0.99, sum / static_cast<double>(all_)),
+                          .done = done_,
+                          .failed = failed_,
+                          .to_go_s = over ? std::nullopt : to_go_s(),
+                          .status = {}};
+    for (const Running& r : running_)
+      if (progress.status.empty() && !r.process->status().empty())
+        progress.status = fmt::format("{}: {}", r.what.job.spec.name, r.process->status());
+    options_.progress(progress);
+  }
+
+  std::optional<double> to_go_s() const {
+    std::vector<RunSpec> waiting;
+    std::vector<RunAtWork> at_work;
+    for (const Waiting& w : waiting_) waiting.push_back(w.job.spec);
+    for (const Running& r : running_)
+      at_work.push_back(
+          {r.what.job.spec, r.process->age_s(), r.process->working_s(), r.process->share()});
+    return forecast_.to_go_s(waiting, at_work, options_.jobs);
+  }
+
+  Store& store_;
+  const PoolOptions& options_;
+  std::size_t all_, done_ = 0, failed_ = 0;
+  double need_mb_ = 0;  ///< of one run, as far as measured
+  Forecast forecast_;
+  std::deque<Waiting> waiting_;
+  std::vector<Running> running_;
+};
+
+}  // namespace
+
+void work_off(Store& store, std::vector<Job> jobs, const PoolOptions& options) {
+  Pool(store, std::move(jobs), options).work();
+}
+
+}  // namespace mh

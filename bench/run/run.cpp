@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/run/run.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/cache/cache.hpp"
+#include "bench/inputs/inputs.hpp"
+#include "bench/inputs/run_key.hpp"
+#include "bench/plan/check_labels.hpp"
+#include "bench/plan/find_program.hpp"
+#include "bench/plan/spec_json.hpp"
+#include "bench/report/write.hpp"
+#include "bench/run/run_one.hpp"
+#include "bench/systems/timed.hpp"
+#include "bench/world/world.hpp"
+#include "sim/world/travel.hpp"
+#include "slam/core/counted.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/temporary_folder.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether what the runs name can be worked with, each once: outside programs can be started,
+/// scenes read, tours driven. Generated scenes and motions are valid by construction.
+void check_places(const std::vector<Job>& jobs, InputReader& inputs,
+                  const std::function<void(std::string_view)>& say) {
+  std::set<std::string> programs;
+  struct Uses {
+    std::set<std::tuple<fs::path, fs::path, std::optional<fs::path>>> drives;  // robot, tour, walk
+    std::set<LabelMode> labels;
+  };
+  std::map<std::pair<fs::path, SceneFrame>, Uses> uses_of;  // of each scene
+  for (const Job& job : jobs) {
+    const RunSpec& spec = job.spec;
+    if (spec.system.kind == SystemKind::kOutside && programs.insert(spec.system.name).second)
+      require_program(spec.system.outside);
+    const Environment& e = spec.environment;
+    const auto note = [&](const fs::path& scene, const std::optional<fs::path>& tour,
+                          const std::optional<fs::path>& walk = {}) {
+      if (is_generated(scene)) return;
+      Uses& uses = uses_of[{scene, e.frame}];
+      uses.labels.insert(spec.labels);
+      if (tour && !is_generated(*tour)) uses.drives.insert({e.robot, *tour, walk});
+    };
+    note(e.scene, e.mapping_tour, e.walk);
+    note(e.scene, e.kidnapped_tour);
+    note(e.query_scene.value_or(e.scene), e.query_tour);
+  }
+  for (const auto& [place, uses] : uses_of) {
+    const auto& [file, frame] = place;
+    say(fmt::format("checking {}", file.string()));
+    const std::shared_ptr<const Scene> scene = inputs.scene(file, frame);
+    for (const LabelMode labels : uses.labels)
+      if (const std::string warning = check_labels(*scene, labels); !warning.empty())
+        say("warning: " + warning);
+    for (const auto& [robot, tour, walk] : uses.drives) {
+      std::vector<MovingObstacle> others;
+      if (walk) others.push_back(as_obstacle(*scene, load_walk(*walk)));
+      travel(*scene, load_robot(robot), tour, others);
+    }
+  }
+}
+
+void check_names(const Suite& suite, const std::vector<RunSpec>& specs) {
+  std::set<std::string> names;
+  for (const RunSpec& spec : specs)
+    if (!names.insert(spec.name).second)
+      throw InputError(fmt::format("{}: two runs are named '{}': rename an environment or a level",
+                                   suite.file.string(), spec.name));
+}
+
+std::string views_name(const Suite& suite, const RunSpec& spec) {
+  return suite.environments.size() == 1 ? std::string("views.png")
+                                        : fmt::format("views-{}.png", spec.environment.name);
+}
+
+fs::path real_executable(const fs::path& executable) {
+  std::error_code error;
+  const fs::path real = fs::canonical(executable, error);
+  return error ? executable : real;
+}
+
+/// Files that a finished run had written and that nobody makes again.
+void say_what_is_gone(const Suite& suite, const BenchResults& results,
+                      const BenchOptions& options) {
+  std::size_t runs = 0;
+  std::set<std::string> views;
+  for (const RunResult& run : results.runs) {
+    runs += fs::exists(options.out / run.spec.name / "estimate.tum") ? 0 : 1;
+    if (const std::string name = views_name(suite, run.spec); !fs::exists(options.out / name))
+      views.insert(name);
+  }
+  if (runs == 0 && views.empty()) return;
+  options.say(fmt::format(
+      "warning: {} of finished runs and {} of pictures are gone from {}; their results are kept, "
+      "another --out makes all of it anew",
+      counted(runs, "folder"), counted(views.size(), "sheet"), options.out.string()));
+}
+
+/// Where a scene was changed and changed back, the files that lie there are of the run in between:
+/// they go with its result, which is made anew, or from beside a failure.
+void forget_what_is_not_shown(Store& store, const std::vector<Job>& jobs, const fs::path& out) {
+  for (const Job& job : jobs) {
+    const fs::path folder = out / job.spec.name;
+    const auto status = store.status(job.key);
+    if (!status || !shows_another_run(folder, job.key)) continue;
+    if (status == RunStatus::kDone)
+      store.forget(job.key);
+    else
+      remove_run(folder);
+  }
+}
+
+/// Processes at work per processor, of the last minute; 0 where it is unknown.
+double load_per_processor() {
+  double load = 0;
+  if (getloadavg(&load, 1) != 1) return 0;
+  return load / std::max(1.0, static_cast<double>(sysconf(_SC_NPROCESSORS_ONLN)));
+}
+
+/// @param wall_s  of this process so far, as cpu_s is of it
+/// @param world_s, products_s  processor time besides what `run` knows of
+RunCost cost_of_this_process(const RunResult& run, double wall_s, double world_s, double products_s,
+                             const RunOrder& order) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return {
+      .wall_s = wall_s,
+      .cpu_s = processor_time_s(),
+      .slam_s = run.times.processor_s,
+      .frames_s = world_s + run.frames_s,
+      .products_s = products_s + run.products_s,
+      .max_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0,
+      .circumstances = {
+          .host = {}, .sitting = order.sitting, .jobs = order.jobs, .load = load_per_processor()}};
+}
+
+}  // namespace
+
+Shard parse_shard(const std::string& text) {
+  Shard shard;
+  char slash = 0, more = 0;
+  if (std::sscanf(text.c_str(), "%zu%c%zu%c", &shard.index, &slash, &shard.of, &more) != 3 ||
+      slash != '/' || shard.index < 1 || shard.index > shard.of ||
+      text.find('-') != std::string::npos)
+    throw InputError(fmt::format("shard '{}' is not i/n with 1 <= i <= n", text));
+  return shard;
+}
+
+BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
+                       const BenchOptions& options) {
+  const std::vector<RunSpec> specs = expand(suite);
+  check_names(suite, specs);
+
+  std::set<std::string> warned;
+  for (const RunSpec& spec : specs)
+    if (spec.system.kind == SystemKind::kOutside && warned.insert(spec.system.name).second)
+      if (const std::string warning = unseen_program(spec.system.outside); !warning.empty())
+        options.say(warning);
+
+  std::optional<InputReader> inputs(std::in_place, options.say);
+  std::vector<Job> mine;
+  std::vector<std::pair<std::string, std::string>> plan;
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    plan.emplace_back(specs[i].name, run_key(specs[i], inputs->inputs_of(specs[i])));
+    if (i % options.shard.of + 1 == options.shard.index)
+      mine.push_back({specs[i], plan.back().second});
+  }
+  const fs::path results = options.out / "results.sqlite";
+  if (fs::exists(results)) {
+    Store before(results);
+    before.check();
+    if (options.retry_failed)
+      for (const Job& job : mine) before.forget_failure(job.key);
+    if (!options.figures_alone) forget_what_is_not_shown(before, mine, options.out);
+    std::erase_if(mine, [&](const Job& job) { return before.status(job.key).has_value(); });
+  }
+  check_places(mine, *inputs, options.say);  // bad input leaves no file
+  inputs.reset();                            // it holds a scene
+
+  Store store(results);
+  store.plan(suite, overrides, plan);
+  options.say(fmt::format("{}, {} of them to do", counted(specs.size(), "run"), mine.size()));
+
+  if (!mine.empty()) {
+    const TemporaryFolder work(options.out);
+    const fs::path cache = options.cache ? *options.cache : work.path() / "cache";
+    if (options.cache)
+      if (const std::string why = Cache(cache).why_unwritable(); !why.empty())
+        options.say(fmt::format(
+            "warning: the cache keeps nothing, light is baked anew in each run: {}", why));
+    const std::string sitting = utc_now();
+    PoolOptions pool;
+    pool.jobs = options.jobs;
+    pool.time_limit_s = options.time_limit_s;
+    pool.memory_limit_mb = options.memory_limit_mb;
+    pool.executable = real_executable(options.executable);
+    pool.work_folder = work.path();
+    pool.arguments = [&](const Job& job, const fs::path& description) {
+      std::vector<std::string> arguments{"run-one",   description.string(),
+                                         "--store",   store.file().string(),
+                                         "--key",     job.key,
+                                         "--folder",  options.out.string(),
+                                         "--cache",   cache.string(),
+                                         "--views",   views_name(suite, job.spec),
+                                         "--jobs",    std::to_string(options.jobs),
+                                         "--sitting", sitting,
+                                         "--parent",  std::to_string(getpid())};
+      if (options.cache) arguments.insert(arguments.end(), {"--maps", cache.string()});
+      if (options.figures_alone) arguments.emplace_back("--figures-alone");
+      return arguments;
+    };
+    pool.say = options.say;
+    pool.progress = options.progress;
+    work_off(store, std::move(mine), pool);
+  }
+  store.check();
+  BenchResults made = load_results(store, suite);
+  if (!options.figures_alone) say_what_is_gone(suite, made, options);
+  return made;
+}
+
+void carry_out(const RunOrder& order) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto json = nlohmann::ordered_json::parse(read_file(order.description), nullptr, false);
+  const RunSpec spec = run_spec_from_json(json);
+  double world_s = 0, products_s = 0;
+  const World world = [&] {
+    const ProcessorTimer timer(world_s);
+    const auto baked = [&](double share) {
+      order.status(fmt::format("light {:.0f} %", 100 * share));
+    };
+    return build_world(spec, order.jobs, Cache(order.cache), order.say, baked);
+  }();
+  if (run_key(spec, world.inputs) != order.key)
+    throw InputChanged(fmt::format(
+        "{}: a file that it reads was changed after the suite was begun: start the suite again",
+        spec.name));
+  const fs::path folder = order.folder / spec.name;
+  make_output_folder(folder);
+  if (!order.figures_alone) remove_run(folder);
+  const RunResult run = run_one(spec, world,
+                                {.folder = folder,
+                                 .progress = order.progress,
+                                 .status = order.status,
+                                 .system = {},
+                                 .tamper = {},
+                                 .occupancy = !order.figures_alone,
+                                 .maps = Cache(order.maps)});
+  if (!order.figures_alone) {
+    const ProcessorTimer timer(products_s);
+    write_run(folder, world, run, order.key);
+    // One process makes the contact sheet; should two begin it, both write the same bytes.
+    write_views(order.folder / order.views, world, spec);
+  }
+  const double wall_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  Store(order.store)
+      .put(order.key, run, cost_of_this_process(run, wall_s, world_s, products_s, order));
+}
+
+}  // namespace mh

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/run/run_one.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "bench/inputs/run_key.hpp"
+#include "bench/provenance/digest.hpp"
+#include "bench/results/trajectory_score.hpp"
+#include "bench/run/occupancy.hpp"
+#include "bench/systems/conversation.hpp"
+#include "bench/systems/finished_map.hpp"
+#include "bench/systems/ours.hpp"
+#include "bench/systems/program_folder.hpp"
+#include "bench/systems/recorded_run.hpp"
+#include "bench/systems/tampered.hpp"
+#include "bench/systems/timed.hpp"
+#include "sim/world/sequence.hpp"
+#include "slam/core/counted.hpp"
+
+namespace mh {
+namespace {
+
+enum StreamName : std::uint64_t { kMapping = 1, kHeldOut = 2, kSecondTour = 3 };
+
+/// Counts pieces of work and tells their share.
+class WorkDone {
+ public:
+  WorkDone(std::size_t all, const std::function<void(double)>& tell)
+      : all_(std::max<std::size_t>(1, all)), tell_(tell) {}
+  void reached(std::size_t position) {
+    if (position <= furthest_) return;
+    furthest_ = position;
+    tell_(static_cast<double>(furthest_) / static_cast<double>(all_));
+  }
+  void one_more() { reached(furthest_ + 1); }
+
+ private:
+  std::size_t all_, furthest_ = 0;
+  const std::function<void(double)>& tell_;
+};
+
+/// @param spent_s  the processor time that making frames takes is added to it
+FrameSource frames_of(const SimulatedSequence& sequence, const RunTamper& tamper, double& spent_s) {
+  return [&sequence, &tamper, &spent_s](std::size_t index, RandomStream noise) {
+    const ProcessorTimer timer(spent_s);
+    RgbdFrame frame = sequence.at(index, noise).frame;
+    if (tamper.frame) tamper.frame(index, frame);
+    return frame;
+  };
+}
+
+/// Frames of one query, made once for all parameter points.
+FrameSource made_once(const FrameSource& frames) {
+  const auto made = std::make_shared<std::map<std::uint64_t, RgbdFrame>>();
+  return [frames, made](std::size_t index, RandomStream noise) {
+    const auto [place, is_new] = made->try_emplace(noise.key());
+    if (is_new) place->second = frames(index, noise);
+    return place->second;
+  };
+}
+
+/// One set of queries.
+class QueryRound {
+ public:
+  QueryRound(const RunSpec& spec, const SimulatedSequence& sequence, NearestBy by,
+             const RunTamper& tamper, RunResult& run, RandomStream stream)
+      : spec_(spec),
+        sequence_(sequence),
+        by_(by),
+        frames_(frames_of(sequence, tamper, run.frames_s)),
+        run_(run),
+        stream_(stream) {}
+
+  /// Puts each query under the points first .. end - 1; `scores[p]` takes the answers under point
+  /// p.
+  void put(System& frozen, std::size_t first, std::size_t end,
+           const std::vector<std::vector<QueryScore>*>& scores, WorkDone& work) const {
+    for (const std::size_t index : test_frames(sequence_.size(), spec_.protocol)) {
+      const TimedPose& truth = sequence_.path()[index];
+      const auto anchor = find_anchor(run_.estimate, run_.truth, truth, by_, spec_.protocol);
+      const bool once = end - first == 1;  // nothing to share
+      const FrameSource frames = once ? frames_ : made_once(frames_);
+      const std::unique_ptr<QueryMemo> memo = once ? nullptr : frozen.make_memo();
+      for (std::size_t p = first; p < end; ++p) {
+        if (!once) frozen.set_query_settings(spec_.points[p]);
+        const QueryAnswer answer =
+            query(frozen, index, frames, spec_.protocol, stream_, memo.get());
+        scores[p]->push_back(
+            score(answer, truth, anchor, run_.trajectory.truth_from_estimate, spec_.protocol));
+        work.one_more();
+      }
+    }
+  }
+
+ private:
+  const RunSpec& spec_;
+  const SimulatedSequence& sequence_;
+  NearestBy by_;
+  FrameSource frames_;
+  const RunResult& run_;
+  RandomStream stream_;
+};
+
+/// The end of the points from `first` on under which keyframes are described alike (equation 1), so
+/// that going from one to the next costs nothing.
+std::size_t end_of_alike(const std::vector<SemanticConfig>& points, std::size_t first) {
+  std::size_t end = first + 1;
+  while (end < points.size() && points[end].gamma == points[first].gamma &&
+         points[end].void_is_a_label == points[first].void_is_a_label)
+    ++end;
+  return end;
+}
+
+std::vector<std::vector<QueryScore>*> lists(RunResult& run, QuerySet set) {
+  std::vector<std::vector<QueryScore>*> all;
+  for (PointResult& point : run.points)
+    all.push_back(set == QuerySet::kHeldOut ? &point.held_out : &point.second_tour);
+  return all;
+}
+
+std::string status_of(const MappedFrame& call, std::size_t frames) {
+  return fmt::format("frame {} of {}{}{}", call.index + 1, frames,
+                     call.restart > 0 ? ", " + counted(call.restart, "restart") : "",
+                     call.status == TrackStatus::kLost ? ", lost" : "");
+}
+
+std::size_t pieces_of_work(const RunSpec& spec, const World& world) {
+  std::size_t queries = test_frames(world.mapping.camera.size(), spec.protocol).size();
+  if (world.second) queries += test_frames(world.second->camera.size(), spec.protocol).size();
+  return world.mapping.camera.size() + spec.points.size() * queries;
+}
+
+/// The mapping frames as a folder, and what an outside program made of them.
+Trajectory run_recorded(const RunSpec& spec, const SimulatedSequence& mapping,
+                        const FrameSource& frames, RandomStream stream,
+                        const std::filesystem::path& folder,
+                        const std::function<void(std::string_view)>& status) {
+  std::vector<std::size_t> offered;
+  for (std::size_t i = 0; i < mapping.size(); ++i)
+    if (!is_test_frame(i, spec.protocol)) offered.push_back(i);
+  ProgramFolder given(folder);
+  const std::vector<Stamp> stamps =
+      write_dataset(given.path() / "dataset", mapping.camera(), offered.size(), [&](std::size_t i) {
+        status(fmt::format("writing frame {} of {}", i + 1, offered.size()));
+        return frames(offered[i], mapping_noise(stream, 0));
+      });
+  status(fmt::format("runs over {}", counted(offered.size(), "frame")));
+  Trajectory trajectory =
+      run_on_dataset(spec.system.outside, given.path(), stamps, spec.seed, folder / "outside.log");
+  given.move_to_run();
+  return trajectory;
+}
+
+}  // namespace
+
+std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
+                                    const std::filesystem::path& folder) {
+  if (spec.system.kind == SystemKind::kOutside) {
+    if (spec.system.outside.mode == OutsideMode::kTrajectory) return nullptr;
+    return make_conversation_system(spec.system.outside, world.robot.camera, spec.seed,
+                                    folder / "outside.log");
+  }
+  SlamConfig config;
+  config.semantics = spec.mapping;
+  return make_our_system(world.robot.camera, config, world.vocabulary);
+}
+
+RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools) {
+  const RandomStream stream(spec.seed);
+  const RunTamper& tamper = tools.tamper;
+  const Camera& camera = world.robot.camera;
+  const SimulatedSequence mapping(world.renderer, camera, world.mapping.camera, world.sensors,
+                                  spec.labels, world.walked);
+  WorkDone work(pieces_of_work(spec, world), tools.progress);
+  RunResult run;
+  run.spec = spec;
+  run.place = facts(world);
+  run.truth = world.mapping.camera;
+  KeyframeDepths depths;
+  const FrameSource frames = frames_of(mapping, tamper, run.frames_s);
+  const auto integrate = [&] {
+    const ProcessorTimer timer(run.products_s);
+    if (tools.occupancy)
+      run.volume = depths.integrate(camera, run.estimate, run.trajectory.dock_from_estimate);
+  };
+
+  std::unique_ptr<System> inner =
+      tools.system ? tools.system(spec, world) : make_system(spec, world, tools.folder);
+  if (inner == nullptr) {  // a program that answers with a trajectory: nothing to ask it
+    for (std::size_t i = 0; i < mapping.size(); ++i)
+      run.mapping.offered += is_test_frame(i, spec.protocol) ? 0 : 1;
+    run.estimate =
+        run_recorded(spec, mapping, frames, stream.fork(kMapping), tools.folder, tools.status);
+    run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
+    integrate();
+    run.points.resize(spec.points.size());
+  } else {
+    if (tamper.report) inner = make_tampered(std::move(inner), tamper.report);
+    TimedSystem system(std::move(inner));
+    const auto take_trajectory = [&] {
+      system.freeze();
+      run.estimate = system.trajectory();
+      run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
+    };
+    const auto map_now = [&] {
+      run.mapping =
+          map_sequence(system, mapping.size(), frames, spec.protocol, stream.fork(kMapping),
+                       [&](const MappedFrame& call, const RgbdFrame& frame, const StepReport&) {
+                         const ProcessorTimer timer(run.products_s);
+                         if (call.keyframe_added && tools.occupancy) depths.keep(frame);
+                         work.reached(call.index + 1);
+                         tools.status(status_of(call, mapping.size()));
+                       });
+      take_trajectory();
+      integrate();
+    };
+    if (!tools.maps.folder().empty() && tools.occupancy &&
+        spec.system.kind != SystemKind::kOutside) {
+      bool mapped = false;
+      const std::string kept = tools.maps.get("map", map_key(spec, world.inputs), [&] {
+        map_now();
+        mapped = true;
+        return encode(FinishedMap{system.save(), run.mapping, run.volume});
+      });
+      if (!mapped) {
+        FinishedMap finished = decode_finished_map(kept, "cached map");
+        system.restore(finished.system);
+        run.mapping = std::move(finished.outcome);
+        run.volume = std::move(finished.volume);
+        take_trajectory();
+      }
+    } else {
+      map_now();
+    }
+    work.reached(mapping.size());
+    tools.status("queries");
+
+    run.points.resize(spec.points.size());
+    const QueryRound held_out(spec, mapping, NearestBy::kTime, tamper, run, stream.fork(kHeldOut));
+    std::optional<SimulatedSequence> second;
+    std::optional<QueryRound> second_tour;
+    if (world.second) {
+      second.emplace(world.second_renderer ? world.second_renderer : world.renderer, camera,
+                     world.second->camera, world.sensors, spec.labels);
+      second_tour.emplace(spec, *second, NearestBy::kPlace, tamper, run, stream.fork(kSecondTour));
+    }
+    for (std::size_t p = 0; p < spec.points.size(); p = end_of_alike(spec.points, p)) {
+      const std::size_t end = end_of_alike(spec.points, p);
+      system.set_query_settings(spec.points[p]);
+      held_out.put(system, p, end, lists(run, QuerySet::kHeldOut), work);
+      if (second_tour) second_tour->put(system, p, end, lists(run, QuerySet::kSecondTour), work);
+    }
+    system.finish();
+    run.times = system.times();
+  }
+
+  const ProcessorTimer timer(run.products_s);
+  // From just over the floor (noise of the depth at 4 m lies below) to the top of the head.
+  const double floor_z_m = world.scene->floor.middle_m.z();
+  if (run.volume)
+    run.grid = run.volume->project(floor_z_m + 0.10, floor_z_m + world.robot.height_m);
+  run.map_digest = digest_bytes(run.grid.cells.data(), run.grid.cells.size(), digest(run.estimate));
+  return run;
+}
+
+}  // namespace mh

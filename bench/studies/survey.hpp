@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bench/studies/image_statistics.hpp"
+
+namespace mh {
+
+/// The frames of one environment, or of one recording.
+struct MeasuredPlace {
+  std::string name;
+  std::vector<ImageStatistics> frames;
+  double at(std::size_t quantity, double share) const;  ///< percentile over its frames
+};
+
+/// Percentiles 5, 25, 50, 75, 95 of each quantity, as carried over from real frames.
+struct RealFrames {
+  std::string name, source;
+  std::array<std::array<double, 5>, kImageQuantityCount> percentiles;
+};
+inline constexpr std::array<double, 5> kShares = {0.05, 0.25, 0.5, 0.75, 0.95};
+
+/// Reads assets/real_frames.yaml. @throws InputError naming file, line and value
+std::vector<RealFrames> load_real_frames(const std::filesystem::path& file);
+
+/// How one quantity of places compares to real frames.
+struct RealismRow {
+  std::array<double, 5> ours;        ///< percentiles over all frames
+  double median_of_places = 0;       ///< of the places' medians
+  bool in_range = false;             ///< it lies between the real frames' 25th and 75th percentile
+  double spread_ratio = 0;           ///< 5th to 95th percentile over frames: ours / theirs
+  std::vector<std::size_t> outside;  ///< places whose median is beyond their 5th or 95th
+};
+RealismRow compare(const std::vector<MeasuredPlace>& places, const RealFrames& real,
+                   std::size_t quantity);
+
+}  // namespace mh

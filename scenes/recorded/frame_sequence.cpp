@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/recorded/frame_sequence.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "slam/core/trajectory_io.hpp"
+
+namespace mh {
+namespace {
+
+class TumSequence : public FrameSequence {
+ public:
+  TumSequence(const std::filesystem::path& folder, const RecordedCamera& camera,
+              std::vector<std::string>* notes)
+      : camera_(camera), frames_(load_tum_folder(folder, notes)) {
+    const auto truth = folder / "groundtruth.txt";
+    if (std::filesystem::exists(truth)) truth_ = read_tum(truth);
+  }
+  const Camera& camera() const override { return camera_.camera; }
+  std::size_t size() const override { return frames_.size(); }
+  Stamp stamp_ns(std::size_t index) const override { return frames_[index].stamp_ns; }
+  RgbdFrame frame(std::size_t index) const override { return read_frame(frames_[index], camera_); }
+  std::optional<Trajectory> truth() const override { return truth_; }
+
+ private:
+  RecordedCamera camera_;
+  std::vector<RecordedFrame> frames_;
+  std::optional<Trajectory> truth_;
+};
+
+class MemorySequence : public FrameSequence {
+ public:
+  MemorySequence(const Camera& camera, std::vector<RgbdFrame> frames)
+      : camera_(camera), frames_(std::move(frames)) {}
+  const Camera& camera() const override { return camera_; }
+  std::size_t size() const override { return frames_.size(); }
+  Stamp stamp_ns(std::size_t index) const override { return frames_[index].stamp_ns; }
+  RgbdFrame frame(std::size_t index) const override { return frames_[index]; }
+  std::optional<Trajectory> truth() const override { return std::nullopt; }
+
+ private:
+  Camera camera_;
+  std::vector<RgbdFrame> frames_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSequence> open_tum_folder(const std::filesystem::path& folder,
+                                               const RecordedCamera& camera,
+                                               std::vector<std::string>* notes) {
+  return std::make_unique<TumSequence>(folder, camera, notes);
+}
+
+std::unique_ptr<FrameSequence> frames_in_memory(const Camera& camera,
+                                                std::vector<RgbdFrame> frames) {
+  return std::make_unique<MemorySequence>(camera, std::move(frames));
+}
+
+}  // namespace mh

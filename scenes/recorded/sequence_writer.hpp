@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "scenes/instance_id.hpp"
+#include "slam/core/camera.hpp"
+#include "slam/core/labels.hpp"
+#include "slam/core/rgbd_frame.hpp"
+#include "slam/core/se3.hpp"
+
+namespace mh {
+
+/// Compression of PNG files, 0 (none) to 9; none given: 1. What each costs and saves:
+/// docs/rendering.md.
+using PngCompression = std::optional<int>;
+/// As write_picture wants it.
+std::vector<int> png_settings(PngCompression compression);
+
+/// A frame to record, with the truth.
+struct ExactFrame {
+  RgbdFrame seen;
+  Grid2d<ClassId> classes;  ///< of the same moment, as are the instances
+  Grid2d<InstanceId> instances;
+  SE3 world_from_camera;
+};
+
+/// Writes a sequence of frames with their truth into a folder. Each file is written whole or not at
+/// all. Safe to call from several threads at once; the bytes do not depend on the order.
+class SequenceWriter {
+ public:
+  virtual ~SequenceWriter() = default;
+  /// @param index  of the frame in the sequence, from 0
+  virtual void add(std::size_t index, const ExactFrame& frame) = 0;
+  /// Counts a frame as added without its pictures, if they are all there from an earlier run.
+  /// @returns whether they are
+  virtual bool resume(std::size_t index, Stamp stamp_ns, const SE3& world_from_camera) = 0;
+  /// Writes what stands once beside the pictures: a folder without it was not finished.
+  virtual void finish() = 0;
+};
+
+/// By name: "tum" (see TumWriter) or "scannet-frames", the layout that ScanNet's SensReader
+/// extracts: color/N.jpg, depth/N.png (16 bit, 1000 per meter), pose/N.txt (camera to world),
+/// intrinsic/, and as in its 2D annotation label-filt/N.png (16 bit, class ids) and
+/// instance-filt/N.png (16 bit); scannetv2-labels.combined.tsv gives the class of each id, and
+/// NYU40's.
+/// @throws InputError on another name.
+std::unique_ptr<SequenceWriter> make_sequence_writer(std::string_view format,
+                                                     const std::filesystem::path& folder,
+                                                     const Camera& camera,
+                                                     PngCompression png_compression = {});
+
+}  // namespace mh

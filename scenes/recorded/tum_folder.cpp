@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/recorded/tum_folder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include <fmt/format.h>
+#include <opencv2/core.hpp>
+
+#include "scenes/picture_file.hpp"
+#include "scenes/pictures/write_picture.hpp"
+#include "scenes/recorded/tum_list.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/text_file.hpp"
+#include "slam/core/trajectory_io.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Stamp kMaxApart_ns = 20'000'000;  // as TUM's associate.py
+
+using Listed = TumListEntry;
+
+/// Reads a list whose files lie beside it.
+std::vector<Listed> read_list(const fs::path& list, int skip = 0) {
+  std::vector<Listed> entries = parse_tum_list(read_text(list), list.string(), skip);
+  for (Listed& entry : entries) entry.file = list.parent_path() / entry.file;
+  return entries;
+}
+
+/// Entries by their stamps, to be looked up by a moment.
+class ByStamp {
+ public:
+  explicit ByStamp(const std::vector<Listed>& entries) {
+    for (const Listed& entry : entries) sorted_.push_back(&entry);
+    std::ranges::stable_sort(sorted_, {}, &stamp_of);
+  }
+
+  /// The entry nearest to a moment, the first of the list among equals; null if none is near.
+  const Listed* nearest(Stamp stamp_ns) const {
+    const Listed* best = nullptr;
+    const auto offer = [&](auto place) {  // the first of its stamp
+      place = std::ranges::lower_bound(sorted_, stamp_of(*place), {}, &stamp_of);
+      const Stamp apart_ns = std::abs((*place)->stamp_ns - stamp_ns);
+      if (apart_ns > kMaxApart_ns) return;
+      const Stamp best_ns =
+          best == nullptr ? kMaxApart_ns + 1 : std::abs(best->stamp_ns - stamp_ns);
+      if (apart_ns < best_ns || (apart_ns == best_ns && *place < best)) best = *place;
+    };
+    const auto after = std::ranges::lower_bound(sorted_, stamp_ns, {}, &stamp_of);
+    if (after != sorted_.begin()) offer(std::prev(after));
+    if (after != sorted_.end()) offer(after);
+    return best;
+  }
+
+ private:
+  static Stamp stamp_of(const Listed* entry) { return entry->stamp_ns; }
+  std::vector<const Listed*> sorted_;
+};
+
+/// A frame's picture. What it announces is looked at before anything is decoded.
+cv::Mat read_frame_picture(const fs::path& file, int type, const Camera& camera) {
+  const std::string bytes = read_file(file);
+  const auto check_size = [&](std::int64_t width, std::int64_t height) {
+    if (width != camera.width_px || height != camera.height_px)
+      throw InputError(fmt::format("{}: is {} x {}, the camera has {} x {}", file.string(), width,
+                                   height, camera.width_px, camera.height_px));
+  };
+  if (const auto size = announced_size(bytes)) check_size(size->width, size->height);
+  cv::Mat picture;
+  try {
+    picture = decode_picture(bytes);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+  }
+  if (picture.type() != type)
+    throw InputError(fmt::format("{}: has the wrong number of bits or channels", file.string()));
+  check_size(picture.cols, picture.rows);
+  return picture;
+}
+
+SemanticImage one_hot(const cv::Mat& ids, const fs::path& file) {
+  SemanticImage semantics;
+  semantics.index = Grid2d<std::uint8_t>(ids.cols, ids.rows);
+  for (const ClassInfo& info : classes())
+    semantics.palette.push_back(ClassDistribution::one_hot(info.id));
+  for (int y = 0; y < ids.rows; ++y)
+    for (int x = 0; x < ids.cols; ++x) {
+      const std::uint8_t id = ids.at<std::uint8_t>(y, x);
+      if (id >= semantics.palette.size())
+        throw InputError(fmt::format("{}: class {} is unknown", file.string(), id));
+      semantics.index(x, y) = id;
+    }
+  return semantics;
+}
+
+}  // namespace
+
+std::vector<RecordedFrame> load_tum_folder(const fs::path& folder,
+                                           std::vector<std::string>* notes) {
+  const fs::path both = folder / "associations.txt";
+  const bool associated = !fs::exists(folder / "rgb.txt") && fs::exists(both);
+  const fs::path list = associated ? both : folder / "rgb.txt";
+  const std::vector<Listed> color = read_list(list);
+  if (color.empty()) throw InputError(fmt::format("{}: lists no picture", list.string()));
+  const std::vector<Listed> depth =
+      associated ? read_list(both, 2) : read_list(folder / "depth.txt");
+  std::vector<Listed> labels;
+  if (fs::exists(folder / "label.txt")) labels = read_list(folder / "label.txt");
+  const ByStamp depth_at(depth), labels_at(labels);
+  std::vector<RecordedFrame> frames;
+  for (std::size_t i = 0; i < color.size(); ++i) {
+    const Listed* d = associated ? &depth[i] : depth_at.nearest(color[i].stamp_ns);
+    if (d == nullptr) continue;
+    const Listed* l = labels_at.nearest(color[i].stamp_ns);
+    frames.push_back({color[i].stamp_ns, color[i].file, d->file, l ? l->file : fs::path()});
+  }
+  if (frames.empty())
+    throw InputError(
+        fmt::format("{}: no color picture has a depth picture within 0.02 s", folder.string()));
+  if (notes != nullptr && frames.size() < color.size())
+    notes->push_back(
+        fmt::format("{}: {} of {} color pictures have no depth picture within 0.02 s "
+                    "and are left out",
+                    folder.string(), color.size() - frames.size(), color.size()));
+  return frames;
+}
+
+RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera) {
+  const cv::Mat color = read_frame_picture(recorded.color, CV_8UC3, camera.camera);
+  const cv::Mat depth = read_frame_picture(recorded.depth, CV_16UC1, camera.camera);
+  RgbdFrame frame;
+  frame.stamp_ns = recorded.stamp_ns;
+  frame.color = Grid2d<Rgb8>(color.cols, color.rows);
+  frame.depth_m = Grid2d<float>(color.cols, color.rows);
+  for (int y = 0; y < color.rows; ++y)
+    for (int x = 0; x < color.cols; ++x) {
+      const cv::Vec3b bgr = color.at<cv::Vec3b>(y, x);
+      frame.color(x, y) = {bgr[2], bgr[1], bgr[0]};
+      if (camera.exchange_red_blue) frame.color(x, y) = {bgr[0], bgr[1], bgr[2]};
+      frame.depth_m(x, y) =
+          static_cast<float>(depth.at<std::uint16_t>(y, x) / camera.depth_per_meter);
+    }
+  if (!recorded.classes.empty())
+    frame.semantics =
+        one_hot(read_frame_picture(recorded.classes, CV_8UC1, camera.camera), recorded.classes);
+  return frame;
+}
+
+TumWriter::TumWriter(fs::path folder, const Camera& camera, PngCompression png_compression)
+    : folder_(std::move(folder)), camera_(camera), png_(png_settings(png_compression)) {
+  for (const char* part : {"rgb", "depth", "label"}) {
+    make_output_folder(folder_ / part);
+    listed_[part];
+  }
+}
+
+fs::path TumWriter::file_of(const char* part, Stamp stamp_ns) const {
+  return folder_ / part / (format_stamp(stamp_ns) + ".png");
+}
+
+void TumWriter::write(const char* part, Stamp stamp_ns, const cv::Mat& picture) {
+  write_picture(file_of(part, stamp_ns), picture, png_);
+  const std::scoped_lock lock(mutex_);
+  listed_[part].insert(stamp_ns);
+}
+
+void TumWriter::add_pictures(const RgbdFrame& frame) {
+  cv::Mat depth(frame.depth_m.height(), frame.depth_m.width(), CV_16UC1);
+  std::transform(frame.depth_m.begin(), frame.depth_m.end(), depth.ptr<std::uint16_t>(),
+                 depth_units);
+  write("rgb", frame.stamp_ns, color_picture(frame.color));
+  write("depth", frame.stamp_ns, depth);
+}
+
+void TumWriter::add_labels(Stamp stamp_ns, const Grid2d<ClassId>& classes) {
+  write("label", stamp_ns, gray_picture(classes));
+}
+
+void TumWriter::add(const RgbdFrame& frame) {
+  add_pictures(frame);
+  if (!frame.semantics.index.empty()) add_labels(frame.stamp_ns, class_image(frame.semantics));
+}
+
+void TumWriter::add(std::size_t, const ExactFrame& frame) {
+  const Stamp stamp_ns = frame.seen.stamp_ns;
+  fs::create_directories(folder_ / "instance");
+  add_pictures(frame.seen);
+  add_labels(stamp_ns, frame.classes);
+  write("instance", stamp_ns, gray_picture(frame.instances));
+  const std::scoped_lock lock(mutex_);
+  truth_[stamp_ns] = frame.world_from_camera;
+}
+
+bool TumWriter::resume(std::size_t, Stamp stamp_ns, const SE3& world_from_camera) {
+  constexpr std::array kParts = {"rgb", "depth", "label", "instance"};
+  if (!std::ranges::all_of(
+          kParts, [&](const char* part) { return is_whole_picture(file_of(part, stamp_ns)); }))
+    return false;
+  const std::scoped_lock lock(mutex_);
+  for (const char* part : kParts) listed_[part].insert(stamp_ns);
+  truth_[stamp_ns] = world_from_camera;
+  return true;
+}
+
+void TumWriter::finish() {
+  std::string associations;
+  for (const auto& [part, stamps] : listed_) {
+    std::string list = "# stamp (s) file\n";
+    for (const Stamp stamp : stamps) {
+      const std::string name = format_stamp(stamp);
+      list += fmt::format("{0} {1}/{0}.png\n", name, part);
+      if (part == "rgb") associations += fmt::format("{0} rgb/{0}.png {0} depth/{0}.png\n", name);
+    }
+    write_atomically(folder_ / (part + ".txt"), list);
+  }
+  write_atomically(folder_ / "associations.txt", associations);
+  Trajectory truth;
+  for (const auto& [stamp, pose] : truth_) truth.push_back({stamp, pose});
+  if (!truth.empty()) write_tum(folder_ / "groundtruth.txt", truth);
+  write_atomically(folder_ / "camera_info.yaml", camera_info_text(camera_));
+  write_atomically(folder_ / "camera.yaml", settings_text(camera_));
+}
+
+}  // namespace mh

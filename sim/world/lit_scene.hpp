@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenes/scene.hpp"
+#include "scenes/scene_frame.hpp"
+#include "sim/render/bake.hpp"
+#include "sim/render/renderer.hpp"
+#include "sim/world/walker.hpp"
+
+namespace mh {
+
+/// Gives a scene that has lamps but no baked light its light.
+/// @param baked  told the share that is baked, from any thread but never from two at once; may be
+///               empty
+void light_scene(Scene& scene, int threads, const BakeWatch& baked = {});
+
+/// A scene ready to be looked at: loaded and lit. @throws InputError naming file and place.
+/// @param warnings, frame  as of load_scene
+Scene load_lit_scene(const std::filesystem::path& file, int threads,
+                     std::vector<std::string>* warnings = nullptr, const SceneFrame& frame = {},
+                     const BakeWatch& baked = {});
+
+/// A renderer with the exposure that suits the scene; one that shows its own colors unlit is shown
+/// as it is.
+/// @param renderer  see make_renderer
+std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene,
+                                              std::string_view renderer = "embree");
+
+/// The scene with somebody who walks through it, shown with the scene's exposure.
+std::shared_ptr<const WalkedScene> make_walked_scene(const Scene& scene,
+                                                     std::shared_ptr<const Renderer> renderer,
+                                                     const Walk& walk);
+
+}  // namespace mh

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scenes/recorded/frame_sequence.hpp"
+#include "scenes/scene_frame.hpp"
+
+namespace mh {
+
+/// What is needed to see a scene.
+struct SceneDrive {
+  std::filesystem::path scene, tour, robot;
+  std::filesystem::path level;  ///< of the sensors; empty = no noise
+  std::uint64_t seed = 0;       ///< of the noise
+  SceneFrame frame = {};
+};
+
+/// A scene seen by a robot along a tour, with exact labels, rendered as it is asked for.
+/// @param notes  gets what could be mended in the scene, a line each; may be null
+/// @throws InputError naming file and place.
+std::unique_ptr<FrameSequence> open_scene(const SceneDrive& source,
+                                          std::vector<std::string>* notes = nullptr);
+
+}  // namespace mh

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+// `modelhouse slam` as a user meets it, on a small textured room.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "scenes/recorded/tum_folder.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/trajectory_io.hpp"
+#include "slam/pipeline/settings.hpp"
+#include "tests/slam/pipeline/box_room_slam.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+using testing_support::BoxRoom;
+
+class SlamCommand : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = fs::temp_directory_path() / ("mh_slam_cli_" + std::to_string(getpid()));
+    fs::remove_all(folder_);
+    TumWriter writer(folder_ / "room", BoxRoom::camera());
+    Trajectory truth;
+    for (int i = 0; i < 50; ++i) {
+      writer.add(testing_support::box_room_frame(i));
+      truth.push_back(
+          {i * testing_support::kFrame_ns, BoxRoom::round_trip(i, testing_support::kTurnFrames)});
+    }
+    writer.finish();
+    write_tum(folder_ / "room/groundtruth.txt", truth);
+    testing_support::box_room_vocabulary()->save(folder_ / "words.mhvoc");
+  }
+  static void TearDownTestSuite() { fs::remove_all(folder_); }
+
+  /// Runs `modelhouse slam ARGUMENTS` with the vocabulary. @returns its exit code
+  int run(const std::string& arguments) {
+    const fs::path out = folder_ / "stdout", err = folder_ / "stderr";
+    const int status =
+        std::system((std::string(MH_EXECUTABLE) + " slam " + arguments + " --vocabulary " +
+                     path("words.mhvoc") + " >" + out.string() + " 2>" + err.string())
+                        .c_str());
+    out_ = read_file(out);
+    err_ = read_file(err);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  void expect_refused(const std::string& arguments, const std::string& part) {
+    EXPECT_EQ(run(arguments), 2) << err_;
+    EXPECT_NE(err_.find("modelhouse: error: "), std::string::npos) << err_;
+    EXPECT_NE(err_.find(part), std::string::npos) << err_;
+  }
+  static std::string path(const std::string& name) { return (folder_ / name).string(); }
+  static nlohmann::json summary(const std::string& folder) {
+    return nlohmann::json::parse(read_file(folder_ / folder / "summary.json"));
+  }
+
+  static inline fs::path folder_;
+  std::string out_, err_;
+};
+
+TEST_F(SlamCommand, MapsAFolderAndSaysWhatCameOfIt) {
+  ASSERT_EQ(run(path("room") + " --out " + path("a") + " --save-map " + path("a.mhmap")), 0)
+      << err_;
+  EXPECT_NE(out_.find("50 of 50 frames tracked (100.0 %)"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("ATE 0.0"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("peak memory"), std::string::npos) << out_;
+  EXPECT_NE(err_.find("keyframes"), std::string::npos) << "no live figures: " << err_;
+  for (const char* file : {"estimate.tum", "estimate.kitti", "frames.csv", "landmarks.ply",
+                           "keyframes.ply", "keyframes.json", "summary.json", "settings.yaml"})
+    EXPECT_TRUE(fs::exists(folder_ / "a" / file)) << file;
+
+  const auto json = summary("a");
+  EXPECT_EQ(json["tracked"], 50);
+  EXPECT_LT(json["truth"]["ate_rmse_m"], 0.02);
+  EXPECT_GT(json["times"]["features"]["median_ms"], 0);
+  const auto graph = nlohmann::json::parse(read_file(folder_ / "a/keyframes.json"));
+  EXPECT_EQ(graph["keyframes"].size(), json["keyframes"]);
+  EXPECT_FALSE(graph["edges"].empty());
+  std::map<int, int> landmarks;
+  for (const auto& k : graph["keyframes"]) landmarks[k["id"]] = k["landmarks"];
+  for (const auto& e : graph["edges"]) {
+    EXPECT_GT(e["shared"], 0);
+    EXPECT_LE(e["shared"], std::min(landmarks.at(e["a"]), landmarks.at(e["b"]))) << e;
+  }
+  EXPECT_EQ(read_tum(folder_ / "a/estimate.tum").size(), 50U);
+  EXPECT_EQ(read_kitti(folder_ / "a/estimate.kitti").size(), 50U);
+  EXPECT_EQ(load_settings(folder_ / "a/settings.yaml").camera,
+            load_settings(folder_ / "room/camera.yaml").camera);
+
+  // tum:FOLDER is the same source; twice the same run, and once by its own settings.
+  ASSERT_EQ(run("tum:" + path("room") + " --out " + path("b") + " --save-map " + path("b.mhmap") +
+                " --settings " + path("a/settings.yaml")),
+            0)
+      << err_;
+  EXPECT_EQ(read_file(folder_ / "a.mhmap"), read_file(folder_ / "b.mhmap"));
+  EXPECT_EQ(read_file(folder_ / "a/estimate.tum"), read_file(folder_ / "b/estimate.tum"));
+  EXPECT_EQ(summary("b")["map_digest"], json["map_digest"]);
+}
+
+TEST_F(SlamCommand, PicksUpAMapToGoOnOrToLocalize) {
+  ASSERT_EQ(run(path("room") + " --out " + path("whole") + " --save-map " + path("whole.mhmap")), 0)
+      << err_;
+  ASSERT_EQ(run(path("room") + " --out " + path("half") + " --frames 30 --save-map " +
+                path("half.mhmap")),
+            0)
+      << err_;
+  ASSERT_EQ(run(path("room") + " --out " + path("rest") + " --map " + path("half.mhmap") +
+                " --resume --save-map " + path("rest.mhmap")),
+            0)
+      << err_;
+  EXPECT_EQ(read_file(folder_ / "rest.mhmap"), read_file(folder_ / "whole.mhmap"));
+  EXPECT_EQ(read_file(folder_ / "rest/estimate.tum"), read_file(folder_ / "whole/estimate.tum"));
+
+  ASSERT_EQ(run(path("room") + " --out " + path("found") + " --map " + path("whole.mhmap") +
+                " --localize"),
+            0)
+      << err_;
+  const auto found = summary("found");
+  EXPECT_EQ(found["tracked"], 50);
+  EXPECT_EQ(found["relocalized"], 1);
+  EXPECT_EQ(found["map_digest"], summary("whole")["map_digest"]);
+  EXPECT_NE(read_file(folder_ / "found/frames.csv").find(",verified,"), std::string::npos);
+
+  const std::string again = path("room") + " --out " + path("no") + " --map ";
+  expect_refused(again + path("whole.mhmap") + " --resume",
+                 "nothing is left to go on with: it ends at 1.633333317 s");
+  EXPECT_NE(err_.find("whole.mhmap"), std::string::npos) << err_;
+  EXPECT_NE(run(again + path("whole.mhmap") + " --resume --localize"), 0);
+
+  // The map's settings count: what was asked for otherwise is told.
+  std::string other = format_settings(load_settings(folder_ / "room/camera.yaml"));
+  other.replace(other.find("count: 1000"), 11, "count: 1500");
+  write_atomically(folder_ / "other.yaml", other);
+  ASSERT_EQ(run(path("room") + " --out " + path("told") + " --map " + path("half.mhmap") +
+                " --resume --frames 2 --settings " + path("other.yaml")),
+            0)
+      << err_;
+  EXPECT_NE(err_.find("other.yaml: the map's own settings count: features.count: 1000\n"),
+            std::string::npos)
+      << err_;
+}
+
+TEST_F(SlamCommand, AMapIsSearchedByTheSettingsOfRelocalizationThatAreGiven) {
+  ASSERT_EQ(run(path("room") + " --frames 30 --out " + path("mapped") + " --save-map " +
+                path("mapped.mhmap")),
+            0)
+      << err_;
+  // A thousand inliers are more than any frame has: nothing is found.
+  const std::string camera = format_settings(load_settings(folder_ / "room/camera.yaml"));
+  write_atomically(folder_ / "strict.yaml", camera.substr(0, camera.find("features:")) +
+                                                "relocalize:\n  min_inliers: 1000\n");
+  const auto localized = [&](const std::string& map, const std::string& out,
+                             const std::string& settings) {
+    EXPECT_EQ(run(path("room") + " --map " + path(map) + " --localize --frames 5 --out " +
+                  path(out) + settings),
+              0)
+        << err_;
+    return summary(out)["tracked"];
+  };
+  EXPECT_EQ(localized("mapped.mhmap", "by_map", ""), 5);
+  EXPECT_EQ(localized("mapped.mhmap", "strictly", " --settings " + path("strict.yaml")), 0);
+  EXPECT_EQ(err_.find("the map's own settings count"), std::string::npos) << err_;
+  EXPECT_EQ(load_settings(folder_ / "strictly/settings.yaml").slam.relocalize.min_inliers, 1000);
+  // What the file is silent about stays the map's.
+  EXPECT_EQ(
+      run(path("room") + " --map " + path("mapped.mhmap") + " --resume --save-map " +
+          path("strict.mhmap") + " --out " + path("on") + " --settings " + path("strict.yaml")),
+      0)
+      << err_;
+  EXPECT_EQ(localized("strict.mhmap", "kept", " --settings " + path("room/camera.yaml")), 0);
+}
+
+TEST_F(SlamCommand, AMapAnswersByTheFactorsThatAreGiven) {
+  // Candidates are chosen by labels alone, of which a map that was made with gamma 0 has none: they
+  // are weighed anew.
+  std::string settings = format_settings(load_settings(folder_ / "room/camera.yaml"));
+  settings.replace(settings.find("overlap: augmented"), 18, "overlap: labels");
+  write_atomically(folder_ / "labels.yaml", settings);
+  ASSERT_EQ(run(path("room") + " --settings " + path("labels.yaml") + " --gamma 0 --out " +
+                path("g0") + " --save-map " + path("g0.mhmap")),
+            0)
+      << err_;
+  ASSERT_EQ(run(path("room") + " --map " + path("g0.mhmap") + " --localize --gamma 1 --out " +
+                path("g1")),
+            0)
+      << err_;
+  EXPECT_EQ(summary("g1")["tracked"], 50);
+  EXPECT_NE(run(path("room") + " --map " + path("g0.mhmap") + " --localize --save-map " +
+                path("g2.mhmap") + " --out " + path("g2")),
+            0)
+      << "there is nothing to save";
+}
+
+TEST_F(SlamCommand, RefusesWhatItCannotUse) {
+  const std::string out = " --out " + path("no");
+  expect_refused(path("nowhere") + out, "is no folder, nor scene:FILE");
+  fs::create_directories(folder_ / "empty");
+  expect_refused(path("empty") + out, "holds neither rgb.txt nor associations.txt");
+  expect_refused(path("room") + out + " --localize", "--localize needs a map");
+  expect_refused(path("room") + out + " --settings " + path("room/rgb.txt"), "rgb.txt");
+  expect_refused("scene:house.yaml" + out, "source 'scene:house.yaml' needs --tour");
+  expect_refused(path("room") + out + " --robot pepper.yaml",
+                 "--robot pepper.yaml: is for scene:FILE");
+  EXPECT_NE(run(path("room") + out + " --plain --gamma 2"), 0) << "the one undoes the other";
+  std::ofstream(folder_ / "cut.mhmap") << "MHMAP\n";
+  expect_refused(path("room") + out + " --map " + path("cut.mhmap"), "cut short");
+  std::ofstream(folder_ / "bare.yaml") << "track: {min_inliers: 30}\n";
+  expect_refused(path("room") + out + " --settings " + path("bare.yaml"), "'camera' is missing");
+}
+
+TEST_F(SlamCommand, FindsBadFilesBeforeTheWork) {
+  const std::string start = path("room") + " --out " + path("no");
+  const auto refused_at_once = [&](const std::string& more, const std::string& part) {
+    expect_refused(start + more, part);
+    EXPECT_EQ(err_.find("keyframes"), std::string::npos) << "it worked first: " << err_;
+  };
+  refused_at_once(" --truth " + path("nowhere.txt"), "nowhere.txt: cannot be read: no such file");
+  refused_at_once(" --truth " + path("room/camera.yaml"), "camera.yaml:");
+  refused_at_once(" --save-map " + path("room"), "room: cannot be written: it is a folder");
+  refused_at_once(" --save-map " + path("no/../no/summary.json"), "will hold a result of its own");
+  fs::create_directories(folder_ / "taken/frames.csv");
+  expect_refused(path("room") + " --out " + path("taken"), "frames.csv: is there already");
+  refused_at_once(" --save-map " + path("words.mhvoc/map"), "words.mhvoc: cannot be made a folder");
+}
+
+TEST_F(SlamCommand, PrintsItsSettings) {
+  ASSERT_EQ(run("--print-settings"), 0) << err_;
+  EXPECT_EQ(out_, format_slam_config({}, true));
+}
+
+}  // namespace
+}  // namespace mh

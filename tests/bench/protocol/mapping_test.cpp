@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/protocol/mapping.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/bench/protocol/fake_system.hpp"
+
+namespace mh {
+namespace {
+
+constexpr std::size_t kCount = 120;  // test frames are 29, 59, 89, 119: 116 are offered
+
+TEST(MapSequence, OffersEveryFrameButTheTestFramesOnce) {
+  FakeSystem system([](Stamp, int) { return true; });
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  EXPECT_EQ(outcome.offered, 116u);
+  EXPECT_EQ(system.fed.size(), 116u);
+  for (const Stamp test : {29, 59, 89, 119})
+    EXPECT_EQ(std::count(system.fed.begin(), system.fed.end(), test), 0) << test;
+  EXPECT_EQ(outcome.restarts, 0);
+  EXPECT_TRUE(outcome.dropped.empty());
+}
+
+// By hand: frame 80 is never tracked. First pass: 0..80 without 29 and 59 = 79 calls, failure 1.
+// Each of the rewinds goes to frame 30 and feeds 30..80 without 59 = 50 calls. Failures 2 to 6
+// come after restarts 1 to 5; at the sixth failure the frame is dropped and the feed goes back a
+// sixth time, feeding 30..119 without 59, 80, 89, 119 = 86 calls. 79 + 5 * 50 + 86 = 415.
+TEST(MapSequence, DropsTheOffendingFrameAfterFiveFailedRestarts) {
+  FakeSystem system([](Stamp frame, int) { return frame != 80; });
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  EXPECT_EQ(outcome.failures, 6);
+  EXPECT_EQ(outcome.restarts, 6);
+  EXPECT_EQ(system.rewinds, 6);
+  EXPECT_EQ(system.resets, 0);
+  EXPECT_EQ(outcome.dropped, std::vector<std::size_t>{80});
+  EXPECT_EQ(outcome.calls.size(), 415u);
+  EXPECT_EQ(std::count(system.fed.begin(), system.fed.end(), 80), 6);
+  EXPECT_EQ(system.trajectory().size(), 115u);  // completeness 115 / 116
+  EXPECT_FALSE(outcome.gave_up);
+  EXPECT_EQ(system.fed[79], 30);  // after the failure at 80 the feed stands at 80 - 50
+}
+
+TEST(MapSequence, AFrameThatIsTrackedOnTheThirdShowingCostsTwoRestarts) {
+  FakeSystem system([](Stamp frame, int showing) { return frame != 80 || showing >= 3; });
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  EXPECT_EQ(outcome.restarts, 2);
+  EXPECT_TRUE(outcome.dropped.empty());
+  EXPECT_EQ(system.trajectory().size(), 116u);
+}
+
+TEST(MapSequence, LostFramesOnTheWayBackAreNoFailures) {
+  // After the failure at 80 the system finds its place again only at frame 75.
+  FakeSystem system([](Stamp frame, int showing) {
+    if (frame == 80) return showing >= 2;
+    return showing == 1 || frame >= 75;
+  });
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  EXPECT_EQ(outcome.failures, 1);
+  EXPECT_EQ(outcome.restarts, 1);
+  EXPECT_TRUE(outcome.dropped.empty());
+}
+
+TEST(MapSequence, CountsAnewAfterTheTroubleIsPassed) {
+  // Two troubles of four restarts each: none reaches six failures.
+  FakeSystem system([](Stamp frame, int showing) {
+    return (frame != 70 && frame != 100) || showing >= (frame == 70 ? 5 : 9);
+  });
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  // Frame 100 is shown for the first time when 70 is passed; it fails eight times: six failures
+  // drop it. Frame 70 costs four restarts and stays.
+  EXPECT_EQ(outcome.dropped, std::vector<std::size_t>{100});
+  EXPECT_EQ(outcome.restarts, 4 + 6);
+}
+
+TEST(MapSequence, TheOtherReadingOfResetForgetsTheMap) {
+  FakeSystem system([](Stamp frame, int) { return frame != 80; });
+  ProtocolConfig config;
+  config.reset = DropReset::kMap;
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, config, RandomStream(1));
+  EXPECT_EQ(system.resets, 1);
+  EXPECT_EQ(outcome.dropped.size(), 1u);
+  EXPECT_EQ(system.trajectory().size(), 86u);  // what was fed after the reset, counted above
+}
+
+// By hand, beside the counter reading above: the calls are the same 415, since both go back 50. But
+// at the drop frames 0 to 80 are forgotten; fed again are 30 to 119 without 59, 80, 89 and 119, so
+// that 86 of 116 frames have a pose in the end and frame 30 begins the new map.
+TEST(MapSequence, ResettingTheMapCostsWhatLiesBeforeTheRewind) {
+  FakeSystem system([](Stamp frame, int) { return frame != 80; });
+  ProtocolConfig config;
+  config.reset = DropReset::kMap;
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, config, RandomStream(1));
+  EXPECT_EQ(outcome.calls.size(), 415u);
+  EXPECT_EQ(outcome.failures, 6);
+  EXPECT_EQ(outcome.restarts, 6);
+  EXPECT_EQ(outcome.dropped, std::vector<std::size_t>{80});
+  EXPECT_EQ(system.trajectory().front().stamp_ns, 30);
+  EXPECT_EQ(system.trajectory().back().stamp_ns, 118);
+}
+
+// By hand: frame 10 fails twice, and the feed cannot go back beyond frame 0: 11 calls, 11 calls,
+// then all of 0 to 119 but the four test frames: 22 + 116 = 138.
+TEST(MapSequence, GoesBackToTheStartAtMost) {
+  FakeSystem system([](Stamp frame, int showing) { return frame != 10 || showing >= 3; });
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  EXPECT_EQ(outcome.failures, 2);
+  EXPECT_EQ(outcome.restarts, 2);
+  EXPECT_EQ(outcome.calls.size(), 138u);
+  EXPECT_EQ(system.fed[11], 0);
+}
+
+// By hand: without patience the first failure at 80 drops it. 0 to 80 without two test frames = 79
+// calls, then 30 to 119 without 59, 80, 89, 119 = 86: 165 in all.
+TEST(MapSequence, WithoutRestartsTheFirstFailureDropsTheFrame) {
+  FakeSystem system([](Stamp frame, int) { return frame != 80; });
+  ProtocolConfig config;
+  config.restarts_per_frame = 0;
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, config, RandomStream(1));
+  EXPECT_EQ(outcome.failures, 1);
+  EXPECT_EQ(outcome.restarts, 1);
+  EXPECT_EQ(outcome.dropped, std::vector<std::size_t>{80});
+  EXPECT_EQ(outcome.calls.size(), 165u);
+}
+
+// By hand, with rewinds of 5: 80 and 81 are never tracked. 0 to 80 without 29, 59 = 79 calls; five
+// times 75 to 80 = 30; the drop of 80 and 75 to 81 without it = 6, where 81 fails for the first
+// time; five times 76 to 81 without 80 = 25; the drop of 81 and 76 to 119 without 80, 81, 89, 119 =
+// 40. Together 79 + 30 + 6 + 25 + 40 = 180; failures 6 + 6.
+TEST(MapSequence, TwoOffendingFramesInARowAreDroppedOneAfterTheOther) {
+  FakeSystem system([](Stamp frame, int) { return frame != 80 && frame != 81; });
+  ProtocolConfig config;
+  config.rewind_frames = 5;
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, config, RandomStream(1));
+  EXPECT_EQ(outcome.dropped, (std::vector<std::size_t>{80, 81}));
+  EXPECT_EQ(outcome.failures, 12);
+  EXPECT_EQ(outcome.restarts, 12);
+  EXPECT_EQ(outcome.calls.size(), 180u);
+  EXPECT_EQ(system.trajectory().size(), 114u);
+}
+
+TEST(MapSequence, PassesOverFramesBeforeTheMapExists) {
+  FakeSystem system([](Stamp frame, int) { return frame >= 7; });
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  EXPECT_EQ(outcome.before_map, 7);
+  EXPECT_EQ(outcome.failures, 0);
+  EXPECT_EQ(outcome.restarts, 0);
+  EXPECT_EQ(outcome.calls.size(), 116u);
+}
+
+TEST(MapSequence, ASystemThatNeverFindsBackComesToAnEnd) {
+  FakeSystem system([](Stamp frame, int showing) { return showing == 1 && frame < 60; });
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  EXPECT_TRUE(outcome.gave_up);
+  EXPECT_LE(outcome.calls.size(), kCount + 1000);
+  EXPECT_GE(outcome.dropped.size(), 1u);
+}
+
+TEST(MapSequence, EndsByItselfWhenEveryFrameFromSomewhereOnMustBeDropped) {
+  FakeSystem system([](Stamp frame, int) { return frame < 100; });
+  ProtocolConfig config;
+  config.max_effort = 1000;
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, config, RandomStream(1));
+  EXPECT_FALSE(outcome.gave_up);
+  EXPECT_EQ(outcome.dropped.size(), 19u);  // 100 .. 118
+  EXPECT_EQ(outcome.restarts, 19 * 6);
+}
+
+TEST(MapSequence, ARestartIsNoReplica) {
+  FakeSystem system([](Stamp frame, int showing) { return frame != 80 || showing >= 3; });
+  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  std::set<std::uint64_t> draws(system.streams.begin(), system.streams.end());
+  EXPECT_EQ(draws.size(), system.streams.size());
+  std::set<std::uint64_t> images_of_80;
+  for (const MappedFrame& call : outcome.calls)
+    if (call.index == 80) images_of_80.insert(call.image_digest);
+  EXPECT_EQ(images_of_80.size(), 3u);
+}
+
+TEST(MapSequence, IsAPureFunctionOfItsStream) {
+  const auto run = [](std::uint64_t seed) {
+    FakeSystem system([](Stamp frame, int showing) { return frame != 80 || showing >= 3; });
+    map_sequence(system, kCount, fake_frame, {}, RandomStream(seed));
+    return system.streams;
+  };
+  EXPECT_EQ(run(4), run(4));
+  EXPECT_NE(run(4), run(5));
+}
+
+}  // namespace
+}  // namespace mh

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/run/forecast.hpp"
+
+#include <gtest/gtest.h>
+
+namespace mh {
+namespace {
+
+RunSpec run_of(const std::string& system, const std::string& environment) {
+  RunSpec spec;
+  spec.system.name = system;
+  spec.environment.name = environment;
+  return spec;
+}
+
+TEST(Forecast, TakesTheMeanOfTheNearestKindThatHasFinished) {
+  Forecast forecast;
+  EXPECT_EQ(forecast.of(run_of("plain", "office")), std::nullopt);
+  forecast.note(run_of("plain", "office"), 10);
+  forecast.note(run_of("plain", "office"), 20);
+  forecast.note(run_of("plain", "lobby"), 60);
+  forecast.note(run_of("theirs", "lobby"), 2);
+  EXPECT_EQ(forecast.of(run_of("plain", "office")), 15);
+  EXPECT_EQ(forecast.of(run_of("plain", "bookshop")), 30) << "the system elsewhere";
+  EXPECT_EQ(forecast.of(run_of("semantic", "office")), 23) << "any run";
+}
+
+TEST(Forecast, TellsNoTimeBeforeItIsKnown) {
+  const RunSpec plain = run_of("plain", "office"), theirs = run_of("theirs", "office");
+  Forecast forecast;
+  EXPECT_EQ(forecast.to_go_s({plain}, {{theirs, 50, 50, 0.5}}, 1), std::nullopt)
+      << "one waits of which nothing is known";
+  EXPECT_EQ(forecast.to_go_s({}, {{theirs, 50, 2, 0.01}}, 1), std::nullopt)
+      << "a hundredth of the work, most of the time spent on light";
+  EXPECT_EQ(forecast.to_go_s({}, {{theirs, 50, 30, 0.25}}, 1), 90) << "by the share that is done";
+}
+
+TEST(Forecast, SumsWhatIsLeftOverTheJobsButNoShorterThanTheLongestRun) {
+  const RunSpec plain = run_of("plain", "office"), theirs = run_of("theirs", "office");
+  Forecast forecast;
+  forecast.note(plain, 100);
+  forecast.note(theirs, 10);
+  // 90 s of the one at work, 100 and 10 s of those that wait.
+  EXPECT_EQ(forecast.to_go_s({plain, theirs}, {{plain, 10, 0, 0}}, 1), 200);
+  EXPECT_EQ(forecast.to_go_s({plain, theirs}, {{plain, 10, 0, 0}}, 2), 100);
+  EXPECT_EQ(forecast.to_go_s({theirs}, {{plain, 10, 0, 0}}, 8), 90);
+}
+
+}  // namespace
+}  // namespace mh

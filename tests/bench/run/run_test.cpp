@@ -1,0 +1,741 @@
+// SPDX-License-Identifier: Apache-2.0
+// The bench around a scripted system in a small make-believe world: no SLAM, no ray tracing.
+#include "bench/run/run_one.hpp"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include "bench/report/json.hpp"
+#include "bench/report/sweep.hpp"
+#include "bench/report/table.hpp"
+#include "bench/report/topdown.hpp"
+#include "bench/report/write.hpp"
+#include "bench/results/scenes.hpp"
+#include "bench/results/trajectory_score.hpp"
+#include "bench/verify/verify.hpp"
+#include "slam/core/counted.hpp"
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+
+/// Pictures that are a function of the camera's place.
+class FakeRenderer : public Renderer {
+ public:
+  RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
+    RenderedFrame frame;
+    const auto shade = static_cast<std::uint8_t>(
+        static_cast<int>(1e4 * std::abs(world_from_camera.translation().x())) % 251);
+    frame.color = Grid2d<Rgb8>(camera.width_px, camera.height_px, Rgb8{shade, 90, 60});
+    frame.depth_m = Grid2d<float>(camera.width_px, camera.height_px, 2.0F);
+    frame.classes = Grid2d<ClassId>(camera.width_px, camera.height_px, ClassId{5});
+    frame.instances = Grid2d<InstanceId>(camera.width_px, camera.height_px, InstanceId{1});
+    return frame;
+  }
+};
+
+/// Reports poses that depend on every pixel it has seen and on its draws, and fails at one frame
+/// twice, so that restarts take part.
+class MixingSystem : public System {
+ public:
+  MixingSystem(bool looks_at_labels, int failures)
+      : looks_at_labels_(looks_at_labels), failures_(failures) {}
+
+  StepReport track(const RgbdFrame& frame, RandomStream stream) override {
+    StepReport report;
+    if (frame.stamp_ns == 70 * kPeriod && ++showings_ <= failures_) return report;
+    const double wobble = mix(frame, stream);
+    report.status = TrackStatus::kTracked;
+    report.keyframe_added = frame.stamp_ns % (10 * kPeriod) == 0;
+    report.world_from_camera =
+        SE3(Eigen::Matrix3d::Identity(),
+            Eigen::Vector3d(0.01 * static_cast<double>(frame.stamp_ns / kPeriod), wobble, 1.0));
+    poses_[frame.stamp_ns] = *report.world_from_camera;
+    return report;
+  }
+  void rewind() override {}
+  void reset() override { poses_.clear(); }
+  void freeze() override {}
+  Trajectory trajectory() const override {
+    Trajectory t;
+    for (const auto& [stamp, pose] : poses_) t.push_back({stamp, pose});
+    return t;
+  }
+  std::unique_ptr<RelocalizationSession> open_session() const override {
+    struct Session : RelocalizationSession {
+      explicit Session(const MixingSystem& s) : system(s) {}
+      StepReport feed(const RgbdFrame& frame, RandomStream stream) override {
+        StepReport report;
+        if (frame.depth_m(0, 0) == 0) return report;
+        report.candidates = CandidateCounts{.keyframes = 10, .c1 = 9, .c2 = 4, .c3 = 3, .final = 1};
+        report.status = TrackStatus::kRelocalized;
+        report.relocalization = RelocalizationStage::kVerified;
+        report.world_from_camera =
+            SE3(Eigen::Matrix3d::Identity(),
+                Eigen::Vector3d(0.01 * static_cast<double>(frame.stamp_ns / kPeriod),
+                                system.mix(frame, stream), 1.0));
+        return report;
+      }
+      const MixingSystem& system;
+    };
+    return std::make_unique<Session>(*this);
+  }
+
+  static constexpr Stamp kPeriod = 33'333'333;
+
+ private:
+  double mix(const RgbdFrame& frame, RandomStream stream) const {
+    double sum = 0;
+    for (const Rgb8& c : frame.color) sum = 0.9 * sum + c.r;
+    if (looks_at_labels_) sum += static_cast<double>(frame.semantics.palette.size());
+    return 1e-6 * sum + 1e-3 * stream.uniform(0);
+  }
+
+  bool looks_at_labels_;
+  int failures_;
+  int showings_ = 0;
+  std::map<Stamp, SE3> poses_;
+};
+
+Trajectory straight_path(std::size_t frames) {
+  Trajectory path;
+  for (std::size_t i = 0; i < frames; ++i)
+    path.push_back(
+        {static_cast<Stamp>(i) * MixingSystem::kPeriod,
+         SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.01 * static_cast<double>(i), 0, 1.0))});
+  return path;
+}
+
+/// Changes what one run sees or says.
+using TamperRun = std::function<RunTamper(const RunSpec&)>;
+
+struct Place {
+  Suite suite;
+  World world;
+
+  Place() {
+    suite.name = "fake";
+    suite.environments = {{.name = "fake",
+                           .category = "fake",
+                           .scene = "house.yaml",
+                           .robot = "robot.yaml",
+                           .mapping_tour = "tour.yaml",
+                           .query_tour = "tour.yaml"}};
+    suite.levels = {"fake.yaml"};
+    suite.systems = {{SystemKind::kSemantic, "semantic", {}}, {SystemKind::kPlain, "plain", {}}};
+    suite.labels = {LabelMode::kExact, LabelMode::kBoxes};
+    world.renderer = std::make_shared<FakeRenderer>();
+    world.scene = std::make_shared<const Scene>();
+    world.vocabulary = std::make_shared<const Vocabulary>();
+    world.robot.camera.width_px = 16;
+    world.robot.camera.height_px = 12;
+    world.robot.camera.cx_px = 7.5;
+    world.robot.camera.cy_px = 5.5;
+    world.robot.camera.fx_px = world.robot.camera.fy_px = 16;
+    world.mapping.camera = straight_path(150);
+    world.second = DrivenPath{};
+    world.second->camera = straight_path(90);
+  }
+  std::vector<RunResult> run(const TamperRun& tamper = {}) const {
+    std::vector<RunResult> results;
+    for (const RunSpec& spec : expand(suite))
+      results.push_back(run_one(spec, world,
+                                {.system =
+                                     [](const RunSpec& s, const World&) {
+                                       return std::make_unique<MixingSystem>(
+                                           s.system.kind == SystemKind::kSemantic, 2);
+                                     },
+                                 .tamper = tamper ? tamper(spec) : RunTamper{}}));
+    return results;
+  }
+};
+
+TEST(RunOne, IsAFunctionOfItsSpecAndWorld) {
+  const Place place;
+  const auto once = place.run(), again = place.run();
+  ASSERT_EQ(once.size(), 3u);
+  EXPECT_FALSE(first_difference(once, again));
+  EXPECT_EQ(digests(place.suite, once), digests(place.suite, again));
+  EXPECT_EQ(results_json(place.suite, once).dump(), results_json(place.suite, again).dump());
+}
+
+TEST(RunOne, PutsTheQueriesUnderEachPoint) {
+  Place place;
+  for (const double alpha : {0.5, 0.6, 0.7}) {
+    place.suite.sweep.points.push_back(place.suite.semantics);
+    place.suite.sweep.points.back().alpha = alpha;
+  }
+  const auto runs = place.run();
+  ASSERT_EQ(runs[0].points.size(), 3u);
+  for (const PointResult& point : runs[0].points) EXPECT_EQ(point.held_out.size(), 5u);
+}
+
+TEST(RunOne, CountsWhatHappened) {
+  const Place place;
+  const RunResult run = place.run()[0];
+  EXPECT_EQ(run.mapping.offered, 145u);
+  EXPECT_EQ(run.mapping.restarts, 2);
+  EXPECT_EQ(run.trajectory.completeness, 1.0);
+  EXPECT_EQ(run.points[0].held_out.size(), 5u);
+  EXPECT_EQ(run.points[0].second_tour.size(), 3u);
+  EXPECT_EQ(run.times.relocalize_ms.size(), 8u);
+  EXPECT_EQ(run.times.blank_ms.size(), 8u) << "told apart from the queries' own frames";
+  for (const QueryScore& q : run.points[0].held_out) {
+    EXPECT_TRUE(q.success && q.correct);
+    EXPECT_LT(q.distance_m.value(), 0.01);
+    EXPECT_GT(q.distance_m.value(), 0.0);
+  }
+  EXPECT_GT(run.volume->leaf_count(), 0u);
+}
+
+TEST(Verify, FindsOnePixelOfOneFrameAndNamesIt) {
+  const Place place;
+  const auto flip = [](const RunSpec& spec) {
+    RunTamper tamper;
+    if (spec.name == "semantic-boxes-fake-0")
+      tamper.frame = [](std::size_t index, RgbdFrame& frame) {
+        if (index == 97) frame.color(3, 4).g ^= 1;
+      };
+    return tamper;
+  };
+  const auto difference = first_difference(place.run(), place.run(flip));
+  ASSERT_TRUE(difference);
+  EXPECT_EQ(*difference, (Difference{"semantic-boxes-fake-0", "mapping", 97, 2, "image"}));
+  EXPECT_EQ(describe(*difference),
+            "semantic-boxes-fake-0: mapping: frame 97 (after 2 restarts): image differs");
+}
+
+TEST(Verify, FindsOnePoseAndNamesIt) {
+  const Place place;
+  const auto shift = [](const RunSpec& spec) {
+    RunTamper tamper;
+    if (spec.system.kind == SystemKind::kPlain)
+      tamper.report = [](std::size_t call, StepReport& report) {
+        if (call == 41)
+          report.world_from_camera =
+              *report.world_from_camera * SE3(Eigen::Matrix3d::Identity(), {0, 0, 1e-15});
+      };
+    return tamper;
+  };
+  const auto clean = place.run();
+  const auto difference = first_difference(clean, place.run(shift));
+  ASSERT_TRUE(difference);
+  const std::size_t frame = clean[2].mapping.calls[41].index;
+  EXPECT_EQ(*difference, (Difference{"plain-fake-0", "mapping", frame, 0, "pose"}));
+}
+
+TEST(Verify, FindsAPixelOfAQuery) {
+  const Place place;
+  const auto nudge = [](const RunSpec&) {
+    RunTamper tamper;
+    tamper.frame = [](std::size_t index, RgbdFrame& frame) {
+      if (index == 119) frame.depth_m(1, 1) += 1e-6F;
+    };
+    return tamper;
+  };
+  const auto difference = first_difference(place.run(), place.run(nudge));
+  ASSERT_TRUE(difference);
+  EXPECT_EQ(*difference, (Difference{"semantic-exact-fake-0", "held_out", 119, 0, "image"}));
+}
+
+TEST(Verify, SeesAnotherPath) {
+  Place a, b;
+  b.world.second->camera.back().stamp_ns += 1;
+  const auto difference = first_difference(a.run(), b.run());
+  ASSERT_TRUE(difference);
+  EXPECT_EQ(describe(*difference), "semantic-exact-fake-0: world: path differs");
+}
+
+TEST(Scenes, MeansAreOfMediansAndScenesArePaired) {
+  Place place;
+  place.suite.environments.push_back(place.suite.environments[0]);
+  place.suite.environments[1].name = "other";
+  place.suite.environments.push_back(place.suite.environments[0]);
+  place.suite.environments[2].name = "hall";
+  place.suite.environments[2].category = "hall";
+  place.suite.trials = 3;
+  std::vector<RunResult> runs = place.run();
+  ASSERT_EQ(runs.size(), 27u);
+  // Completeness of the plain system in the first scene: 0.2, 0.5, 0.9; elsewhere 1.
+  int trial = 0;
+  const double completeness[] = {0.2, 0.9, 0.5};
+  for (RunResult& run : runs)
+    if (run.spec.system.name == "plain" && run.spec.environment.name == "fake")
+      run.trajectory.completeness = completeness[trial++];
+  const std::vector<Row> rows = make_rows(place.suite, runs);
+  const std::vector<CategoryRow> categories = make_category_rows(place.suite, rows);
+  std::vector<std::string> seen;
+  for (const CategoryRow& row : categories)
+    if (row.labels == LabelMode::kExact && place.suite.systems[row.system].name == "plain")
+      seen.push_back(fmt::format("{} {} {}", row.category, row.scenes, row.completeness));
+  EXPECT_EQ(seen,
+            (std::vector<std::string>{"fake 2 0.75", "hall 1 1", "all 3 0.8333333333333334"}));
+  const std::vector<SceneFamily> families = compare_over_scenes(place.suite, rows);
+  ASSERT_EQ(families.size(), 1u);
+  EXPECT_EQ(families[0].comparisons[0].what, "success, held_out, exact labels");
+  EXPECT_EQ(families[0].comparisons[0].pairs, 3u) << "scenes, not queries";
+  EXPECT_NE(results_table(place.suite, runs).find("Wilcoxon"), std::string::npos);
+}
+
+TEST(Scenes, NotInferiorNeedsTheWholeIntervalAboveTheMargin) {
+  Comparison c{.what = "success", .pairs = 100};
+  c.low = -0.03;
+  EXPECT_TRUE(not_inferior(c, 0.05));
+  EXPECT_FALSE(not_inferior(c, 0.03));
+  c.low = -INFINITY;
+  EXPECT_FALSE(not_inferior(c, 1.0)) << "too few scenes";
+  c.low = 0;  // no query differs
+  c.pairs = 60;
+  EXPECT_TRUE(not_inferior(c, 0.05));
+  c.pairs = 59;
+  EXPECT_FALSE(not_inferior(c, 0.05)) << "a loss of 5 % may show in none of 59";
+}
+
+TEST(Results, WhatIsUndeterminedIsNull) {
+  const Place place;  // its path is straight: no alignment by SE(3)
+  const std::vector<RunResult> runs = place.run();
+  const auto row = results_json(place.suite, runs)["rows"][0];
+  EXPECT_TRUE(row["trajectory"]["ate_rmse_m"].is_null());
+  EXPECT_TRUE(row["trajectory"]["ate_first_pose_m"].is_number());
+  EXPECT_TRUE(row["held_out"]["distance_mean_m"].is_number());
+  const Trajectory one = straight_path(1);
+  EXPECT_FALSE(score_trajectory(one, one, 1).ate_first_pose_m);
+  const std::vector<QueryScore> unanswered(3);
+  EXPECT_FALSE(summarize(unanswered).distance_mean_m);
+  std::vector<QueryScore> without_map(3);
+  for (QueryScore& q : without_map) q.success = q.wrong = true;
+  EXPECT_EQ(summarize(without_map).wrong, 1.0);
+  EXPECT_FALSE(summarize(without_map).distance_mean_m);
+  EXPECT_FALSE(summarize(without_map).aligned_distance_mean_m);
+}
+
+TEST(Sweep, TheBestPointIsComparedWithTheSuitesOwnSettings) {
+  Place place;
+  place.suite.labels = {LabelMode::kExact};
+  place.suite.sweep.varied = {"gamma", "alpha"};
+  for (const double gamma : {0.5, 1.0})
+    for (const double alpha : {0.7, 0.8}) {
+      place.suite.sweep.points.push_back(place.suite.semantics);
+      place.suite.sweep.points.back().gamma = gamma;
+      place.suite.sweep.points.back().alpha = alpha;
+    }
+  std::vector<RunResult> runs = place.run();
+  // Of the semantic system's five held-out answers under each point 3, 4, 5, 4 are correct.
+  const std::size_t correct[] = {3, 4, 5, 4};
+  for (std::size_t p = 0; p < 4; ++p)
+    for (std::size_t q = 0; q < 5; ++q) runs[0].points[p].held_out[q].correct = q < correct[p];
+  const std::vector<Row> rows = make_rows(place.suite, runs);
+  const std::vector<SweepResult> results = sweep_results(place.suite, rows);
+  ASSERT_EQ(results.size(), 2u);  // of the plain system those that differ in alpha
+  const auto best = best_point(place.suite, rows, results[0], QuerySet::kHeldOut);
+  ASSERT_TRUE(best);
+  EXPECT_EQ(best->point, 2u);
+  EXPECT_EQ(best->reference, 3u);  // gamma 1, alpha 0.8
+  EXPECT_NEAR(best->to_reference.difference, 0.2, 1e-12);
+  EXPECT_EQ(best->equals, 1u);
+  const auto plain = best_point(place.suite, rows, results[1], QuerySet::kHeldOut);
+  EXPECT_EQ(plain->point, 3u) << "of equals the suite's own";
+  EXPECT_EQ(plain->equals, 4u);
+  const std::string table = results_table(place.suite, runs);
+  EXPECT_NE(table.find("alpha 0.7, beta 0.75: 100.00%, +0.2000"), std::string::npos) << table;
+  EXPECT_NE(table.find("held_out: 100.00% at each of 4 points"), std::string::npos) << table;
+  runs[0].points[0].held_out = runs[0].points[2].held_out;
+  EXPECT_NE(results_table(place.suite, runs).find("; 2 points are equal\n"), std::string::npos);
+  const cv::Mat picture = draw_sweep(place.suite, rows, results[0]);
+  EXPECT_GT(picture.cols, 1000);
+  EXPECT_EQ(sweep_picture_name(place.suite, results[0]), "sweep-semantic-exact-fake.png");
+}
+
+TEST(Results, WhatWasNotAskedIsADashNotZeroPercent) {
+  Place place;
+  place.suite.labels = {LabelMode::kExact};
+  std::vector<RunResult> runs = place.run();
+  ASSERT_EQ(runs[0].spec.system.name, "semantic");
+  runs[0].points[0] = {};  // as of a program that answers with a trajectory alone
+  place.suite.environments.push_back(place.suite.environments[0]);
+  place.suite.environments[1].name = "other";
+  for (const std::size_t places : {1u, 2u}) {
+    place.suite.environments.resize(places);
+    std::istringstream lines(results_table(place.suite, runs));
+    int of_semantic = 0, of_plain = 0;
+    for (std::string line; std::getline(lines, line);) {
+      static const std::regex kNothing(" 0\\.00(%| )"), kAsked(" plain .* 100\\.00(%| )");
+      if (line.find(" semantic ") != std::string::npos && line.find(" - ") != std::string::npos) {
+        EXPECT_FALSE(std::regex_search(line, kNothing)) << line;
+        ++of_semantic;
+      }
+      of_plain += std::regex_search(line, kAsked) ? 1 : 0;
+    }
+    EXPECT_GE(of_semantic, places == 1 ? 4 : 2);
+    EXPECT_GE(of_plain, places == 1 ? 4 : 2);
+  }
+}
+
+/// The runs without those of a name's beginning, and these as failures.
+std::pair<std::vector<RunResult>, std::vector<FailedRun>> with_failed(
+    std::vector<RunResult> runs, const std::vector<std::string>& names) {
+  std::vector<FailedRun> failed;
+  std::erase_if(runs, [&](const RunResult& run) {
+    const bool is = std::ranges::count(names, run.spec.name) > 0;
+    if (is) failed.push_back({run.spec, "ended by signal 11"});
+    return is;
+  });
+  EXPECT_EQ(failed.size(), names.size());
+  return {std::move(runs), std::move(failed)};
+}
+
+TEST(Results, FailedRunsAreToldInTheirRows) {
+  Place place;
+  place.suite.labels = {LabelMode::kExact};
+  place.suite.trials = 3;
+  const auto [runs, failed] = with_failed(
+      place.run(), {"semantic-exact-fake-1", "plain-fake-0", "plain-fake-1", "plain-fake-2"});
+  const std::string table = results_table(place.suite, runs, failed);
+  for (const char* part : {"   2 of 3 trials, 1 failed\n", "   failed: 3 of 3 trials\n",
+                           "failed, so that the figures above are without 4 runs:\n",
+                           "  semantic-exact-fake-1: ended by signal 11\n"})
+    EXPECT_NE(table.find(part), std::string::npos) << part << table;
+  EXPECT_EQ(table.find("semantic minus plain"), std::string::npos) << "with what? " << table;
+  const auto json = results_json(place.suite, runs, failed);
+  ASSERT_EQ(json["runs"].size(), 6u);
+  EXPECT_EQ(json["runs"][0]["status"], "done");
+  EXPECT_EQ(json["runs"][5]["status"], "failed");
+  EXPECT_EQ(json["runs"][5]["error"], "ended by signal 11");
+  EXPECT_EQ(json["rows"][0]["trials"], 2);
+  EXPECT_EQ(json["rows"][0]["failed"], 1);
+  EXPECT_EQ(json["rows"][1]["trials"], 0);
+  EXPECT_TRUE(json["rows"][1]["trajectory"].is_null());
+  EXPECT_TRUE(json["rows"][1]["held_out"].is_null());
+  // Nothing at all is left.
+  const std::string nothing = results_table(place.suite, {}, failed);
+  EXPECT_NE(nothing.find("   failed: 3 of 3 trials\n"), std::string::npos) << nothing;
+}
+
+TEST(Results, RunsThatNobodyHasMadeYetAreTold) {
+  const Place place;
+  std::vector<RunResult> runs = place.run();
+  const std::vector<std::string> missing = {runs.back().spec.name};
+  runs.pop_back();
+  const std::string table = results_table(place.suite, runs, {}, missing);
+  EXPECT_TRUE(table.ends_with("\nmissing, so that the figures above are without 1 run:\n  " +
+                              missing[0] + "\n"))
+      << table;
+  EXPECT_EQ(results_json(place.suite, runs, {}, missing)["missing"][0], missing[0]);
+  EXPECT_TRUE(results_json(place.suite, runs)["missing"].empty());
+  const std::vector<std::string> many(12, "x");
+  EXPECT_TRUE(results_table(place.suite, runs, {}, many).ends_with("  and 2 more\n"));
+}
+
+TEST(Results, RunsWithoutLabelsAreSaidToHaveNone) {
+  Place place;
+  place.suite.labels = {LabelMode::kNone};
+  const std::string table = results_table(place.suite, place.run());
+  EXPECT_NE(table.find("fake, level fake, no labels, 1 trial"), std::string::npos) << table;
+  EXPECT_EQ(table.find("none labels"), std::string::npos) << table;
+}
+
+TEST(Topdown, KeepsItsTextWithinTheMarginsAndItsAnswersOnThePlan) {
+  Place place;
+  place.suite.environments[0].name = "a corridor";
+  RunResult run = place.run()[0];
+  const auto drawn = [&] { return draw_topdown(place.world, run, QuerySet::kSecondTour); };
+  const auto ink = [](const cv::Mat& part) {
+    return cv::countNonZero(part.reshape(1) != 255);  // on white
+  };
+  QueryScore& q = run.points[0].second_tour[0];
+  q.correct = false;
+  q.wrong = true;
+  q.answer.world_from_camera = SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, 1, 1));
+  const cv::Mat near = drawn();
+  q.answer.world_from_camera = SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, 8, 1));
+  const cv::Mat far = drawn();
+  ASSERT_EQ(near.size(), far.size());
+  constexpr int kText = 80;  // title and subtitle; the plan begins below
+  EXPECT_EQ(cv::norm(near.rowRange(0, kText), far.rowRange(0, kText)), 0) << "drawn over the title";
+  EXPECT_GT(cv::norm(near, far), 0);
+  place.world.robot.name = std::string(200, 'w');
+  EXPECT_EQ(ink(drawn().rowRange(0, kText).colRange(1180, 1200)), 0) << "cut at the edge";
+  // Of a program that answers with a trajectory alone nothing was asked.
+  run.points[0].second_tour.clear();
+  EXPECT_GT(cv::norm(drawn().rowRange(0, kText), far.rowRange(0, kText)), 0);
+}
+
+TEST(Topdown, FailuresLieOnTopHeadingsShowAndThePathsCanBeTold) {
+  Place place;
+  RunResult run = place.run()[0];
+  auto& asked = run.points[0].second_tour;
+  ASSERT_GE(asked.size(), 2U);
+  asked.resize(2);
+  Eigen::Matrix3d level;  // a camera that looks along x
+  level << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  const SE3 here(level, Eigen::Vector3d(0.5, 0.5, 1));
+  QueryScore answered = asked[0], failed = asked[0];
+  answered.success = answered.correct = true;
+  answered.wrong = failed.success = failed.correct = failed.wrong = false;
+  answered.true_world_from_camera = failed.true_world_from_camera = here;
+  answered.answer.world_from_camera = here;
+  const auto drawn = [&](const QueryScore& first, const QueryScore& second) {
+    asked = {first, second};
+    return draw_topdown(place.world, run, QuerySet::kSecondTour);
+  };
+  const cv::Mat picture = drawn(answered, failed);
+  const auto plan = picture.rowRange(80, picture.rows - 130);
+  const auto pixels_of = [&](const cv::Mat& of, cv::Scalar bgr) {
+    cv::Mat mask;
+    cv::inRange(of, bgr, bgr, mask);
+    return cv::countNonZero(mask);
+  };
+  EXPECT_EQ(cv::norm(picture, drawn(failed, answered)), 0) << "the order of queries decides";
+  EXPECT_GT(pixels_of(plan, {150, 140, 140}), 10) << "the failure is hidden";
+  QueryScore turned = failed;
+  turned.true_world_from_camera =
+      SE3(Eigen::AngleAxisd(1, Eigen::Vector3d::UnitZ()).toRotationMatrix() * level,
+          here.translation());
+  EXPECT_GT(cv::norm(picture, drawn(answered, turned)), 0) << "no heading";
+  run.estimate = place.world.mapping.camera;  // a path that is just right
+  run.trajectory.dock_from_estimate = SE3();
+  const cv::Mat both = drawn(answered, failed);
+  EXPECT_GT(pixels_of(both, {165, 205, 150}), 50) << "the true path is hidden";
+  EXPECT_GT(pixels_of(both, {10, 84, 196}), 50) << "the estimated path is hidden";
+}
+
+TEST(Scenes, WhereRunsFailedItIsSaidOverHowManyScenesTheMeanIs) {
+  Place place;
+  place.suite.labels = {LabelMode::kExact};
+  place.suite.environments.push_back(place.suite.environments[0]);
+  place.suite.environments[1].name = place.suite.environments[1].category = "hall";
+  const auto [runs, failed] = with_failed(place.run(), {"hall-plain-fake-0"});
+  const std::vector<Row> rows = make_rows(place.suite, runs, failed);
+  std::vector<std::string> seen;
+  for (const CategoryRow& row : make_category_rows(place.suite, rows))
+    seen.push_back(fmt::format("{} {} {}/{} {}", row.category, place.suite.systems[row.system].name,
+                               row.scenes, row.of, row.failed));
+  EXPECT_EQ(seen, (std::vector<std::string>{"fake semantic 1/1 0", "fake plain 1/1 0",
+                                            "hall semantic 1/1 0", "hall plain 0/1 1",
+                                            "all semantic 2/2 0", "all plain 1/2 1"}));
+  const auto families = compare_over_scenes(place.suite, rows);
+  ASSERT_EQ(families.size(), 1u);
+  EXPECT_EQ(families[0].comparisons[0].pairs, 1u);
+  const std::string table = results_table(place.suite, runs, failed);
+  for (const char* part : {"   0 of 1 scene, 1 run failed\n", "   1 of 2 scenes, 1 run failed\n",
+                           "over 1 of 2 scenes, where both have a value"})
+    EXPECT_NE(table.find(part), std::string::npos) << part << table;
+  EXPECT_EQ(table.find("inf"), std::string::npos) << table;
+  const auto json = results_json(place.suite, runs, failed);
+  EXPECT_TRUE(json["categories"][3]["completeness"].is_null());
+  EXPECT_EQ(json["categories"][5]["of_scenes"], 2);
+}
+
+TEST(Sweep, APointThatFailedInSomeScenesIsNeverBest) {
+  Place place;
+  place.suite.labels = {LabelMode::kExact};
+  place.suite.systems.resize(1);
+  place.suite.environments.push_back(place.suite.environments[0]);
+  place.suite.environments[1].name = "hall";
+  place.suite.sweep.map = SweepMap::kRebuilt;
+  place.suite.sweep.varied = {"alpha"};
+  for (const double alpha : {0.7, 0.8}) {
+    place.suite.sweep.points.push_back(place.suite.semantics);
+    place.suite.sweep.points.back().alpha = alpha;
+  }
+  std::vector<RunResult> all = place.run();
+  for (RunResult& run : all)  // the second point answers half as often
+    if (run.spec.points[0].alpha == 0.8)
+      for (std::size_t q = 0; q < run.points[0].held_out.size(); q += 2)
+        run.points[0].held_out[q].correct = false;
+  const auto [runs, failed] = with_failed(std::move(all), {"hall-semantic-exact-fake-p00-0"});
+  const std::vector<Row> rows = make_rows(place.suite, runs, failed);
+  const auto best =
+      best_point(place.suite, rows, sweep_results(place.suite, rows)[0], QuerySet::kHeldOut);
+  ASSERT_TRUE(best);
+  EXPECT_EQ(best->point, 1u);
+}
+
+TEST(Results, OfTwoSystemsTheSameTrialsAreCompared) {
+  Place place;
+  place.suite.labels = {LabelMode::kExact};
+  place.suite.trials = 2;
+  std::vector<RunResult> all = place.run();
+  const auto bent = [](double by) {  // a path with a corner: it determines an alignment
+    Trajectory path = straight_path(40);
+    for (std::size_t i = 20; i < path.size(); ++i)
+      path[i].world_from_camera =
+          SE3(Eigen::Matrix3d::Identity(),
+              Eigen::Vector3d(0.2, 0.01 * static_cast<double>(i), 1.0 + by * (i % 2 ? 1 : -1)));
+    return path;
+  };
+  for (RunResult& run : all) {
+    run.truth = bent(0);
+    run.estimate = bent(run.spec.trial == 0 ? 0.1 : 0.0);
+  }
+  const auto [runs, failed] = with_failed(std::move(all), {"semantic-exact-fake-0"});
+  const std::vector<Row> rows = make_rows(place.suite, runs, failed);
+  const auto [semantic, plain] = ate_over_common_frames(rows[0], rows[1]);
+  ASSERT_TRUE(semantic && plain);
+  EXPECT_NEAR(*semantic, 0, 1e-9);
+  EXPECT_NEAR(*plain, 0, 1e-9) << "trial 0 of the plain system has no counterpart";
+}
+
+TEST(Results, WhatAnOutsideProgramDoesNotTellIsUnknown) {
+  Place place;
+  place.suite.labels = {LabelMode::kExact};
+  place.suite.systems = {{SystemKind::kPlain, "plain", {}},
+                         {SystemKind::kOutside, "odometry_of_theirs", {.name = "x"}}};
+  std::vector<RunResult> runs = place.run();
+  ASSERT_EQ(runs[1].spec.system.kind, SystemKind::kOutside);
+  for (QueryScore& q : runs[1].points[0].held_out) {
+    q.success = false;
+    q.answer.stage = RelocalizationStage::kNone;
+    q.answer.candidates = CandidateCounts{.keyframes = kUnknownCount,
+                                          .c1 = kUnknownCount,
+                                          .c2 = kUnknownCount,
+                                          .c3 = kUnknownCount,
+                                          .final = 5,
+                                          .label_mass = std::nan("")};
+  }
+  const QuerySummary s = summarize(runs[1].points[0].held_out);
+  EXPECT_FALSE(s.c1 || s.keyframes || s.label_mass);
+  EXPECT_EQ(s.final, 5.0);
+  EXPECT_EQ(s.single_candidate, 0.0);
+  const std::string table = results_table(place.suite, runs);
+  EXPECT_TRUE(
+      std::regex_search(table, std::regex("odometry_of_theirs +- +- +- +- +5\\.00 +0\\.0% +-\n")))
+      << table;
+  EXPECT_NE(table.find(" 5 not told\n"), std::string::npos) << table;
+  EXPECT_EQ(table.find("penalized"), std::string::npos) << table;
+  const auto query = results_json(place.suite, runs)["runs"][1]["points"][0]["held_out"][0];
+  EXPECT_TRUE(query["stage"].is_null());
+  EXPECT_TRUE(query["candidates"]["c1"].is_null());
+  EXPECT_EQ(query["candidates"]["final"], 5);
+}
+
+TEST(Results, ACutRunSaysSo) {
+  Place place;
+  place.world.mapping.base = place.world.mapping.camera;
+  place.world.mapping.length_m = 63;
+  EXPECT_FALSE(cut(place.world.mapping, 150));
+  EXPECT_EQ(place.world.mapping.length_m, 63);
+  ASSERT_TRUE(cut(place.world.mapping, 101));
+  EXPECT_NEAR(place.world.mapping.length_m, 1.0, 1e-9);  // 100 steps of 1 cm
+  EXPECT_TRUE(results_json(place.suite, place.run())["suite"]["frames"].is_null());
+  place.suite.max_frames = 101;
+  place.world.cut = true;
+  const std::vector<RunResult> runs = place.run();
+  const auto json = results_json(place.suite, runs);
+  EXPECT_EQ(json["suite"]["frames"], 101);
+  EXPECT_TRUE(json["runs"][0]["place"]["mapping_tour"]["contact_time_s"].is_null());
+  const std::string table = results_table(place.suite, runs);
+  EXPECT_TRUE(table.starts_with("\nSHORTENED to the first 101 frames")) << table;
+  EXPECT_NE(table.find("1 trial, first 101 frames"), std::string::npos) << table;
+}
+
+TEST(TimesTable, SaysInWhichSittingsItWasMeasuredAndShowsThePlainSystemOnce) {
+  const Place place;
+  std::vector<RunResult> runs = place.run();
+  for (RunResult& run : runs)
+    run.circumstances = {.host = "a", .sitting = "2026-01-01T00:00:00Z", .jobs = 2, .load = 0.5};
+  const std::string one = times_table(place.suite, runs);
+  EXPECT_NE(one.find("measured on a in 1 sitting, 2 jobs side by side, load per processor 0.5\n"),
+            std::string::npos)
+      << one;
+  EXPECT_EQ(one.find("plain"), one.rfind("plain")) << one;
+
+  runs.back().circumstances = {
+      .host = "b", .sitting = "2026-01-01T00:00:00Z", .jobs = 1, .load = 2};
+  const std::string two = times_table(place.suite, runs);
+  EXPECT_NE(two.find("measured on a, b in 2 sittings, 1 to 2 jobs side by side, load per processor "
+                     "0.5 to 2.0: rows need not compare\n"),
+            std::string::npos)
+      << two;
+}
+
+TEST(Results, PathsDoNotDependOnTheSuitesSpelling) {
+  const std::vector<RunResult> runs = Place().run();
+  const auto scene = [&](const std::filesystem::path& folder) {
+    Place place;
+    place.suite.file = folder / "suite.yaml";
+    place.suite.environments[0].scene = (folder / "../scenes/house.yaml").lexically_normal();
+    return results_json(place.suite, runs)["suite"]["environments"][0]["scene"];
+  };
+  for (const char* folder : {"", ".", "suites", "../suites", "/suites"})
+    EXPECT_EQ(scene(folder), "../scenes/house.yaml") << folder;
+}
+
+TEST(Results, WhatHasNoPairsIsUnknownAndTheFamilyIsSuccessAndDistance) {
+  const Place place;
+  std::vector<RunResult> runs = place.run();
+  const auto family = [&] {
+    std::map<std::string, bool> counted;  // by what; whether it has a corrected p
+    const auto json = results_json(place.suite, runs);
+    for (const auto& c : json["comparisons"]) counted[c["what"]] = !c["p_holm"].is_null();
+    return counted;
+  };
+  const auto of_all = family();
+  EXPECT_EQ(of_all.size(), 12u);
+  for (const auto& [what, counts] : of_all) EXPECT_EQ(counts, !what.starts_with("correct")) << what;
+  EXPECT_NE(results_table(place.suite, runs).find("Holm over 8 comparisons"), std::string::npos);
+
+  for (RunResult& run : runs)
+    if (run.spec.system.kind == SystemKind::kPlain)
+      for (QueryScore& q : run.points[0].held_out) {
+        q.success = q.correct = false;
+        q.distance_m.reset();
+      }
+  const std::string table = results_table(place.suite, runs);
+  EXPECT_NE(table.find("Holm over 6 comparisons"), std::string::npos) << table;
+  EXPECT_NE(table.find("-  (no pairs)"), std::string::npos) << table;
+  EXPECT_FALSE(family()["distance where both answer, m, held_out, exact labels"]);
+  EXPECT_TRUE(family()["distance where both answer, m, second_tour, exact labels"]);
+  const auto json = results_json(place.suite, runs);
+  for (const auto& c : json["comparisons"])
+    for (const char* figure : {"semantic_minus_plain", "p"})
+      EXPECT_EQ(c[figure].is_null(), c["pairs"] == 0) << c.dump();
+}
+
+TEST(Results, TheCommandToMakeThemAgainWorksFromAnyFolder) {
+  Place place;
+  place.suite.file = "my suites/it's one.yaml";
+  place.suite.scene_replaced = true;
+  place.suite.environments[0].scene = "other house.glb";
+  const std::string here = std::filesystem::current_path().string();
+  const std::string command = reproduction_json(place.suite, {})["command"];
+  EXPECT_NE(command.find(" bench '" + here + "/my suites/it'\\''s one.yaml' --scene '" + here +
+                         "/other house.glb' --trials 1"),
+            std::string::npos)
+      << command;
+  EXPECT_TRUE(command.starts_with("'/")) << command;
+}
+
+TEST(Counted, OneIsNotMany) {
+  EXPECT_EQ(counted(1, "run"), "1 run");
+  EXPECT_EQ(counted(0, "run"), "0 runs");
+  EXPECT_EQ(counted(2, "query", "queries"), "2 queries");
+  EXPECT_EQ(counted(1, "query", "queries"), "1 query");
+}
+
+TEST(ResultsTable, HasThePapersFormAndMarksASaturatedTable) {
+  Place place;
+  place.suite.published = Published::kTable2;
+  const std::string table = results_table(place.suite, place.run());
+  for (const char* part : {"Reloc. success (%)", "Average distance (m)", "published, other data",
+                           "the paper's semantic system", "79.25", "0.0512", "71.43", "0.0945",
+                           "exact labels", "labels from boxes", "held-out frames", "second tour",
+                           "saturated", "undecided; too few pairs"})
+    EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;
+  EXPECT_EQ(table.find("is better"), std::string::npos) << table;
+  place.suite.published.reset();
+  EXPECT_EQ(results_table(place.suite, place.run()).find("published"), std::string::npos)
+      << "of a suite that reproduces no table of the paper";
+}
+
+}  // namespace
+}  // namespace mh

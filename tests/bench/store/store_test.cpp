@@ -1,0 +1,653 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/store/store.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <random>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "bench/plan/runs.hpp"
+#include "bench/report/export.hpp"
+#include "bench/report/json.hpp"
+#include "bench/run/pool.hpp"
+#include "bench/run/run.hpp"
+#include "bench/run/run_process.hpp"
+#include "slam/core/file_errors.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A run with one of everything: a tracked and an untracked frame, an answered and an unanswered
+/// query, unknown scores, numbers that decimal text would round.
+RunResult some_run(const std::string& name, double shift_m = 0.0) {
+  const auto pose = [&](double x) {
+    return SE3(Eigen::Quaterniond(0.9, 0.1, -0.2, 0.3), Eigen::Vector3d(x / 3.0 + shift_m, 0.1, 2));
+  };
+  RunResult run;
+  run.spec.name = name;
+  run.spec.environment = {.name = "room",
+                          .category = "rooms",
+                          .scene = "a/room.yaml",
+                          .robot = "a/robot.yaml",
+                          .mapping_tour = "a/tour.yaml",
+                          .query_tour = {}};
+  run.spec.level = "levels/pepper.yaml";
+  run.spec.points = {SemanticConfig{}};
+  run.place.scene = "room";
+  run.place.scene_digest = 0xfedcba9876543210;
+  run.place.mapping.contact_time_s = std::nan("");
+  run.place.inputs = {{"scene", 7}};
+  run.truth = {{0, pose(0)}, {33, pose(1)}};
+  run.estimate = {{33, pose(1.1)}};
+  run.mapping.calls = {{.index = 0, .stamp_ns = 0, .restart = 0, .status = TrackStatus::kLost},
+                       {.index = 1,
+                        .stamp_ns = 33,
+                        .restart = 1,
+                        .status = TrackStatus::kTracked,
+                        .inliers = 12,
+                        .keyframe_added = true,
+                        .image_digest = 1,
+                        .matching_digest = 0xffffffffffffffff,
+                        .pose_digest = 3}};
+  run.mapping.dropped = {5};
+  run.mapping.matches[0].compared = 9;
+  run.trajectory.completeness = 1.0 / 3.0;
+  run.trajectory.rpe_frame_rmse_m = 0.1;
+  QueryScore answered, unanswered;
+  answered.answer.index = 29;
+  answered.success = answered.correct = true;
+  answered.distance_m = 1.0 / 7.0;
+  answered.answer.world_from_camera = pose(5);
+  answered.answer.stage = RelocalizationStage::kVerified;
+  answered.answer.candidates =
+      CandidateCounts{.keyframes = 3, .c1 = 2, .final = 1, .label_mass = 0.3};
+  answered.answer.matches[3].penalized = 4;
+  unanswered.answer.index = 59;
+  unanswered.answer.stage = RelocalizationStage::kPnp;
+  run.points = {{.held_out = {answered, unanswered}, .second_tour = {unanswered}}};
+  run.map_digest = 77;
+  run.times.track_ms = {1.25};
+  return run;
+}
+
+class StoreFile : public testing::Test {
+ protected:
+  StoreFile() : folder_(fs::temp_directory_path() / ("mh_store_" + std::to_string(getpid()))) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~StoreFile() override { fs::remove_all(folder_); }
+  std::string error_of_opening(const fs::path& file) const {
+    try {
+      Store store(file);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  }
+  Suite suite() const {
+    Suite s;
+    s.name = "s";
+    s.file = folder_ / "suite.yaml";
+    std::ofstream(s.file) << "name: s\n";
+    return s;
+  }
+
+  /// A suite of one run that a store's text of it gives again.
+  Suite whole_suite() const {
+    const fs::path file = folder_ / "suite.yaml";
+    std::ofstream(file) << "environments: [{category: room, scene: r.yaml, mapping_tour: t.yaml}]\n"
+                           "robot: robot.yaml\nvocabulary: v.mhvoc\nlevels: [pepper.yaml]\n"
+                           "systems: [plain]\nlabels: [exact]\ntrials: 3\n";
+    return parse_suite(read_file(file), file, {}, false);
+  }
+  /// A finished run, a failed one and one that is missing.
+  void write_results(const fs::path& file) const {
+    const Suite s = whole_suite();
+    const auto specs = expand(s);
+    Store store(file);
+    store.plan(s, {}, {{specs[0].name, "k0"}, {specs[1].name, "k1"}, {specs[2].name, "k2"}});
+    RunResult run = some_run(specs[0].name);
+    for (int i = 2; i < 60; ++i) run.truth.push_back({33 * i, run.truth[1].world_from_camera});
+    store.put("k0", run, {.wall_s = 2, .max_rss_mb = 12});
+    store.put_failure("k1", some_run(specs[1].name).spec, "ended by signal 11", {});
+  }
+  /// What a user gets of a file: its exports and what the table is made of.
+  static std::string exports(const fs::path& file) {
+    const Store store = Store::open_to_read(file);
+    const Suite planned = store.planned_suite();
+    const BenchResults results = load_results(store, planned);
+    return export_json(store) + export_csv(store) + export_latex(store) +
+           results_json(planned, results.runs, results.failed, results.missing).dump();
+  }
+  std::map<std::string, std::string> files() const {
+    std::map<std::string, std::string> found;
+    for (const auto& entry : fs::directory_iterator(folder_))
+      found[entry.path().filename().string()] = read_file(entry.path());
+    return found;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(StoreFile, NoFlippedByteChangesWhatIsExported) {
+  const fs::path good = folder_ / "good.sqlite", bad = folder_ / "bad.sqlite";
+  write_results(good);
+  ASSERT_FALSE(fs::exists(good.string() + "-wal")) << "the file holds all";
+  const std::string bytes = read_file(good), expected = exports(good);
+  ASSERT_NE(expected.find("ended by signal 11"), std::string::npos);
+  std::mt19937 random(18);
+  int refused = 0;
+  for (int flip = 0; flip < 500; ++flip) {
+    const std::size_t at = random() % bytes.size();
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ (1 + random() % 255));
+    std::ofstream(bad, std::ios::binary) << damaged;
+    try {
+      EXPECT_EQ(exports(bad), expected) << "byte " << at << " was flipped";
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find(bad.string()), 0u) << error.what();
+      ++refused;
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << "byte " << at << ": no InputError: " << error.what();
+    }
+    fs::remove(bad.string() + "-wal");
+    fs::remove(bad.string() + "-shm");
+  }
+  EXPECT_GT(refused, 100);
+}
+
+TEST_F(StoreFile, AChangedValueOfAnyTableIsNamed) {
+  const fs::path file = folder_ / "r.sqlite";
+  for (const std::string change :
+       {"UPDATE suite SET name = 'other'", "UPDATE plan SET position = 7 WHERE position = 2",
+        "UPDATE runs SET seed = 5 WHERE status = 'done'", "UPDATE points SET alpha = 0.125",
+        "UPDATE metrics SET value = value + 1 WHERE name = 'completeness'",
+        "UPDATE calls SET status = 'lost' WHERE call = 1",
+        "UPDATE frames SET tx = 0 WHERE frame = 1",
+        "UPDATE queries SET correct = 0 WHERE correct = 1", "UPDATE times SET wall_s = 1"}) {
+    fs::remove(file);
+    write_results(file);
+    EXPECT_NO_THROW(exports(file));
+    SQLite::Database(file.string(), SQLite::OPEN_READWRITE).exec(change);
+    const std::string table = change.substr(7, change.find(' ', 7) - 7);
+    try {
+      exports(file);
+      ADD_FAILURE() << change;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("of its table '" + table + "'"), std::string::npos)
+          << error.what();
+    }
+    EXPECT_THROW(Store(folder_ / "all.sqlite").merge(file), InputError);
+  }
+}
+
+/// As a user who is not root, while it lives; root may write everywhere.
+class AsNobody {
+ public:
+  AsNobody() { failed_ = geteuid() == 0 && seteuid(65534) != 0; }
+  ~AsNobody() {
+    if (getuid() == 0 && seteuid(0) != 0) std::abort();
+  }
+  bool failed() const { return failed_; }
+
+ private:
+  bool failed_;
+};
+
+TEST_F(StoreFile, AFileThatMayOnlyBeReadIsExportedAndMerged) {
+  const fs::path file = folder_ / "sealed" / "r 100%?.sqlite";
+  fs::create_directories(file.parent_path());
+  write_results(file);
+  const std::string expected = exports(file), bytes = read_file(file);
+  fs::permissions(folder_, fs::perms::all);
+  const auto try_it = [&] {
+    fs::permissions(file, fs::perms(0444));
+    fs::permissions(file.parent_path(), fs::perms(0555));
+    const AsNobody nobody;
+    ASSERT_FALSE(nobody.failed());
+    EXPECT_EQ(exports(file), expected);
+    Store all(folder_ / "all.sqlite");
+    EXPECT_EQ(all.merge(file), 2u);
+    EXPECT_EQ(exports(folder_ / "all.sqlite"), expected);
+  };
+  try_it();
+  EXPECT_EQ(std::distance(fs::directory_iterator(file.parent_path()), {}), 1) << "nothing beside";
+  EXPECT_EQ(read_file(file), bytes);
+
+  // The same, left by a process that was killed: part of it stands in the log.
+  for (const char* name : {"all.sqlite", "all.sqlite-wal", "all.sqlite-shm"})
+    fs::remove(folder_ / name);
+  fs::permissions(file.parent_path(), fs::perms::all);
+  fs::remove(file);
+  if (const pid_t writer = fork(); writer == 0) {
+    write_results(file);
+    Store store(file);
+    store.put_failure("k9", some_run("x").spec, "in the log", {});
+    kill(getpid(), SIGKILL);
+  } else {
+    waitpid(writer, nullptr, 0);
+  }
+  const fs::path log = file.string() + "-wal";
+  ASSERT_GT(fs::file_size(log), 0u);
+  fs::remove(file.string() + "-shm");
+  fs::permissions(log, fs::perms(0444));
+  fs::permissions(file, fs::perms(0444));
+  fs::permissions(file.parent_path(), fs::perms(0555));
+  {
+    const AsNobody nobody;
+    EXPECT_EQ(Store::open_to_read(file).error("k9"), "in the log");
+    EXPECT_EQ(Store(folder_ / "all.sqlite").merge(file), 3u);
+  }
+  fs::permissions(file.parent_path(), fs::perms::all);
+}
+
+TEST_F(StoreFile, AnOlderFileIsReadWithoutBeingChanged) {
+  const fs::path file = folder_ / "r.sqlite";
+  write_results(file);
+  const std::string expected = exports(file);
+  {
+    SQLite::Database raw(file.string(), SQLite::OPEN_READWRITE);
+    for (const char* table :
+         {"suite", "plan", "runs", "points", "metrics", "calls", "frames", "queries", "times"})
+      raw.exec(fmt::format("ALTER TABLE {} DROP COLUMN digest", table));
+    raw.exec("PRAGMA user_version = 3");
+  }
+  const auto before = files();
+  EXPECT_EQ(exports(file), expected);
+  EXPECT_EQ(files(), before);
+  Store(folder_ / "all.sqlite").merge(file);
+  EXPECT_EQ(exports(folder_ / "all.sqlite"), expected);
+  EXPECT_EQ(read_file(file), before.at("r.sqlite"));
+}
+
+TEST_F(StoreFile, ARunComesBackAsItWas) {
+  Store store(folder_ / "r.sqlite");
+  const RunResult run = some_run("a");
+  store.put("k", run, {.wall_s = 2});
+  EXPECT_EQ(store.status("k"), RunStatus::kDone);
+  const RunResult once = store.load("k", run.spec);
+  EXPECT_EQ(once.place.scene_digest, run.place.scene_digest);
+  EXPECT_TRUE(std::isnan(once.place.mapping.contact_time_s));
+  EXPECT_EQ(once.place.inputs, run.place.inputs);
+  ASSERT_EQ(once.mapping.calls.size(), 2u);
+  EXPECT_EQ(once.mapping.calls[1].matching_digest, 0xffffffffffffffff);
+  EXPECT_EQ(once.mapping.calls[1].status, TrackStatus::kTracked);
+  EXPECT_EQ(once.mapping.dropped, run.mapping.dropped);
+  EXPECT_EQ(once.mapping.matches[0].compared, 9);
+  EXPECT_EQ(once.trajectory.completeness, 1.0 / 3.0);
+  EXPECT_FALSE(once.trajectory.ate_rmse_m);
+  EXPECT_EQ(once.estimate.size(), 1u);
+  EXPECT_EQ(once.estimate[0].stamp_ns, 33);
+  EXPECT_EQ(once.estimate[0].world_from_camera.translation(),
+            run.estimate[0].world_from_camera.translation());
+  const PointResult& p = once.points.at(0);
+  ASSERT_EQ(p.held_out.size(), 2u);
+  EXPECT_EQ(p.held_out[0].distance_m, 1.0 / 7.0);
+  EXPECT_EQ(p.held_out[0].answer.candidates->label_mass, 0.3);
+  EXPECT_EQ(p.held_out[0].answer.matches[3].penalized, 4);
+  EXPECT_FALSE(p.held_out[1].answer.world_from_camera);
+  EXPECT_EQ(p.held_out[1].answer.stage, RelocalizationStage::kPnp);
+  EXPECT_EQ(p.second_tour.size(), 1u);
+  EXPECT_EQ(once.times.track_ms, run.times.track_ms);
+  // Rotations go through quaternions: they come back to the last place but one.
+  EXPECT_LT(
+      (once.estimate[0].world_from_camera.rotation() - run.estimate[0].world_from_camera.rotation())
+          .cwiseAbs()
+          .maxCoeff(),
+      1e-15);
+}
+
+TEST_F(StoreFile, ARunThatMetAFullDiskIsNoFailure) {
+  const fs::path program = folder_ / "program";
+  std::ofstream(program) << "#!/bin/sh\necho 'modelhouse: error: x: the disk is full' >&2\nexit "
+                         << kDiskFullCode << "\n";
+  fs::permissions(program, fs::perms::owner_all);
+  Store store(folder_ / "r.sqlite");
+  PoolOptions options;
+  options.executable = program;
+  options.work_folder = folder_;
+  options.arguments = [](const Job&, const fs::path&) { return std::vector<std::string>(); };
+  EXPECT_THROW(work_off(store, {{some_run("a").spec, "k"}}, options), DiskFullError);
+  EXPECT_EQ(store.status("k"), std::nullopt);
+  EXPECT_TRUE(store.claim("k")) << "its claim was kept";
+}
+
+TEST_F(StoreFile, BadInputFoundLateIsToldAsSuchAndStagesAreSaid) {
+  const fs::path program = folder_ / "program";
+  std::ofstream(program) << "#!/bin/sh\necho 0.5; echo baking the light of a room; echo 0.75\n"
+                            "echo 'modelhouse: error: x.ply: no floor' >&2\nexit 2\n";
+  fs::permissions(program, fs::perms::owner_all);
+  Store store(folder_ / "r.sqlite");
+  std::vector<std::string> said;
+  PoolOptions options;
+  options.executable = program;
+  options.work_folder = folder_;
+  options.arguments = [](const Job&, const fs::path&) { return std::vector<std::string>(); };
+  options.say = [&](std::string_view line) { said.emplace_back(line); };
+  work_off(store, {{some_run("a").spec, "k"}}, options);
+  EXPECT_EQ(store.error("k"), std::string(kBadInputMark) + "x.ply: no floor");
+  EXPECT_EQ(said, (std::vector<std::string>{"a: baking the light of a room",
+                                            "a: failed: bad input: x.ply: no floor"}));
+}
+
+TEST_F(StoreFile, AFileWithoutItsTablesIsRefusedWithAdvice) {
+  const fs::path file = folder_ / "r.sqlite";
+  { Store store(file); }
+  SQLite::Database(file.string(), SQLite::OPEN_READWRITE).exec("DROP TABLE runs");
+  try {
+    Store(file).status("k");
+    FAIL();
+  } catch (const InputError& e) {
+    const std::string message = e.what();
+    EXPECT_TRUE(message.starts_with(file.string())) << message;
+    EXPECT_NE(message.find("move it away"), std::string::npos) << message;
+  }
+}
+
+TEST_F(StoreFile, ANewerSchemaIsRefused) {
+  const fs::path file = folder_ / "r.sqlite";
+  { Store store(file); }
+  SQLite::Database(file.string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99");
+  const std::string message = error_of_opening(file);
+  EXPECT_NE(message.find("has schema 99"), std::string::npos) << message;
+  EXPECT_NE(message.find("newer"), std::string::npos) << message;
+}
+
+TEST_F(StoreFile, AFileOfSchema1IsTakenOverAndMerges) {
+  const fs::path file = folder_ / "old.sqlite";
+  {
+    Store store(file);
+    store.plan(suite(), {}, {{"x", "kx"}, {"y", "ky"}});
+    store.put("kx", some_run("x"), {.wall_s = 2, .max_rss_mb = 11});
+  }
+  {
+    SQLite::Database raw(file.string(), SQLite::OPEN_READWRITE);
+    raw.exec("ALTER TABLE points RENAME TO p");
+    raw.exec(
+        "CREATE TABLE points (key TEXT NOT NULL, point INTEGER NOT NULL, gamma REAL NOT NULL, xi "
+        "REAL NOT NULL, alpha REAL NOT NULL, beta REAL NOT NULL, overlap TEXT NOT NULL, "
+        "void_is_a_label INTEGER NOT NULL, digest INTEGER, PRIMARY KEY (key, point)) WITHOUT "
+        "ROWID");
+    raw.exec("INSERT INTO points SELECT * FROM p");
+    raw.exec("DROP TABLE p");
+    for (const char* table :
+         {"suite", "plan", "runs", "points", "metrics", "calls", "frames", "queries", "times"})
+      raw.exec(fmt::format("ALTER TABLE {} DROP COLUMN digest", table));
+    for (const char* column : {"products_s", "sitting", "jobs", "load"})
+      raw.exec(fmt::format("ALTER TABLE times DROP COLUMN {}", column));
+    raw.exec("PRAGMA user_version = 1");
+  }
+  Store old(file), fresh(folder_ / "fresh.sqlite");
+  EXPECT_EQ(old.rows("PRAGMA user_version")[1][0], "4");
+  old.check();
+  EXPECT_EQ(old.rows("SELECT key, alpha FROM points")[1],
+            (std::vector<std::string>{"kx", exact(SemanticConfig{}.alpha)}));
+  EXPECT_EQ(old.rows("SELECT * FROM queries").size(), 1u + 3);
+  const RunResult before = old.load("kx", some_run("x").spec);
+  EXPECT_EQ(before.wall_s, 2);
+  EXPECT_EQ(before.circumstances.sitting, "");
+  const RunCost cost{
+      .products_s = 0.5,
+      .max_rss_mb = 12,
+      .circumstances = {.host = "", .sitting = "2026-01-01T00:00:00Z", .jobs = 3, .load = 0.25}};
+  RunResult theirs = some_run("y");
+  theirs.spec.system = {SystemKind::kOutside, "vo", {}};
+  old.put("ky", theirs, cost);
+  fresh.merge(file);
+  for (const Store* store : {&old, &fresh}) {
+    EXPECT_EQ(store->rows("SELECT key, products_s, max_rss_mb FROM times ORDER BY key"),
+              (std::vector<std::vector<std::string>>{
+                  {"key", "products_s", "max_rss_mb"}, {"kx", "", "11"}, {"ky", "0.5", "12"}}));
+    const Circumstances after = store->load("ky", some_run("y").spec).circumstances;
+    EXPECT_EQ(after.sitting, cost.circumstances.sitting);
+    EXPECT_EQ(after.jobs, 3);
+    EXPECT_EQ(after.load, 0.25);
+    EXPECT_NE(after.host, "");
+  }
+}
+
+TEST_F(StoreFile, ADamagedOrForeignFileIsRefusedWithAdvice) {
+  const fs::path file = folder_ / "r.sqlite";
+  std::ofstream(file) << std::string(5000, 'x');
+  EXPECT_NE(error_of_opening(file).find("move it away"), std::string::npos);
+  fs::remove(file);
+  SQLite::Database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
+      .exec("CREATE TABLE cats (name TEXT)");
+  EXPECT_NE(error_of_opening(file).find("no results file"), std::string::npos);
+  fs::remove(file);
+  {
+    Store store(file);
+    for (int i = 0; i < 20; ++i) store.put(fmt::format("k{}", i), some_run("a"), {});
+  }
+  ASSERT_GT(fs::file_size(file), 40000u);
+  {
+    std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(8192);
+    bytes << std::string(16384, '\xff');
+  }
+  EXPECT_NE(error_of_opening(file).find("is damaged"), std::string::npos);
+}
+
+TEST_F(StoreFile, ARunIsClaimedOnce) {
+  const fs::path file = folder_ / "r.sqlite";
+  Store one(file), two(file);
+  EXPECT_TRUE(one.claim("k"));
+  EXPECT_FALSE(two.claim("k"));
+  one.release("k");
+  EXPECT_TRUE(two.claim("k"));
+  two.put("k", some_run("a"), {});
+  EXPECT_FALSE(one.claim("k")) << "it is finished";
+  EXPECT_EQ(one.rows("SELECT * FROM claims").size(), 1u) << "the header alone";
+}
+
+TEST_F(StoreFile, AClaimOfADeadProcessIsTakenOver) {
+  const fs::path file = folder_ / "r.sqlite";
+  Store store(file);
+  ASSERT_TRUE(store.claim("k"));
+  SQLite::Database raw(file.string(), SQLite::OPEN_READWRITE);
+  raw.exec(
+      "UPDATE claims SET started = started - 1");  // the number lives on, another process has it
+  EXPECT_TRUE(store.claim("k"));
+  raw.exec("UPDATE claims SET host = 'elsewhere'");
+  EXPECT_FALSE(store.claim("k")) << "it may live: it showed itself just now";
+  raw.exec("UPDATE claims SET beat = beat - 1000");
+  EXPECT_TRUE(store.claim("k"));
+}
+
+TEST_F(StoreFile, AFailureStaysUntilItIsForgotten) {
+  Store store(folder_ / "r.sqlite");
+  store.put_failure("k", some_run("a").spec, "ended by signal 11", {});
+  EXPECT_EQ(store.status("k"), RunStatus::kFailed);
+  EXPECT_EQ(store.error("k"), "ended by signal 11");
+  EXPECT_FALSE(store.claim("k"));
+  store.forget_failure("k");
+  EXPECT_FALSE(store.status("k"));
+  store.put("k", some_run("a"), {});
+  store.forget_failure("k");
+  EXPECT_EQ(store.status("k"), RunStatus::kDone) << "a result is no failure";
+}
+
+TEST_F(StoreFile, MergingTakesOverWhatIsMissingOnce) {
+  const Suite s = suite();
+  Store a(folder_ / "a.sqlite"), b(folder_ / "b.sqlite");
+  const std::vector<std::pair<std::string, std::string>> plan = {{"x", "kx"}, {"y", "ky"}};
+  a.plan(s, {}, plan);
+  b.plan(s, {}, plan);
+  a.put("kx", some_run("x"), {});
+  a.put_failure("ky", some_run("y").spec, "crashed", {});
+  b.put("ky", some_run("y", 1.0), {});
+  Store all(folder_ / "all.sqlite");
+  all.merge(a.file());
+  all.merge(b.file());
+  all.merge(b.file());
+  EXPECT_EQ(all.planned_keys(), plan);
+  EXPECT_EQ(
+      all.rows("SELECT name, status FROM runs ORDER BY name"),
+      (std::vector<std::vector<std::string>>{{"name", "status"}, {"x", "done"}, {"y", "done"}}));
+  EXPECT_EQ(all.rows("SELECT * FROM queries").size(), 1u + 2 * 3);
+}
+
+TEST_F(StoreFile, MergingNeverPutsAFailureInThePlaceOfAResultNorOneFailureInThatOfAnother) {
+  const Suite s = suite();
+  const std::vector<std::pair<std::string, std::string>> plan = {{"x", "kx"}};
+  int files = 0;
+  const auto store_with = [&](bool done, double shift_m, const std::string& error) {
+    Store store(folder_ / fmt::format("{}.sqlite", files++));
+    store.plan(s, {}, plan);
+    done ? store.put("kx", some_run("x", shift_m), {})
+         : store.put_failure("kx", some_run("x").spec, error, {});
+    return store;
+  };
+  const auto merged = [&](Store first, const Store& second) {
+    const std::size_t taken = first.merge(second.file());
+    return std::tuple(taken, first.status("kx").value(), first.error("kx"),
+                      first.rows("SELECT * FROM queries").size() - 1);
+  };
+  EXPECT_EQ(merged(store_with(true, 0, ""), store_with(false, 0, "crashed")),
+            std::tuple(0u, RunStatus::kDone, "", 3u));
+  EXPECT_EQ(merged(store_with(false, 0, "crashed"), store_with(true, 0, "")),
+            std::tuple(1u, RunStatus::kDone, "", 3u));
+  EXPECT_EQ(merged(store_with(false, 0, "first"), store_with(false, 0, "second")),
+            std::tuple(0u, RunStatus::kFailed, "first", 0u));
+  Store here = store_with(true, 1, "");
+  EXPECT_EQ(here.merge(store_with(true, 2, "").file()), 0u);
+  EXPECT_EQ(here.load("kx", some_run("x").spec).truth[0].world_from_camera.translation().x(), 1)
+      << "what is here stays";
+}
+
+TEST_F(StoreFile, ADamagedPartIsNamedBeforeAnythingIsMerged) {
+  const Suite s = whole_suite();
+  const std::string name = expand(s)[0].name;
+  const fs::path good = folder_ / "good.sqlite", bad = folder_ / "bad.sqlite";
+  for (const fs::path& part : {good, bad}) {
+    Store store(part);
+    store.plan(s, {}, {{name, "k"}});
+    store.put("k", some_run(name), {});
+  }
+  const auto refused = [&] {
+    try {
+      Store::check_mergeable({good, bad});
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(refused(), "no error");
+  SQLite::Database raw(bad.string(), SQLite::OPEN_READWRITE);
+  raw.exec("CREATE TABLE my_notes (text TEXT)");
+  EXPECT_EQ(refused(), "no error") << "it does no harm";
+  raw.exec("UPDATE runs SET result = substr(result, 1, 40)");
+  EXPECT_EQ(refused(), bad.string() +
+                           ": is damaged: row (k) of its table 'runs': put back a copy, or move it "
+                           "away and run again");
+  raw.exec("ALTER TABLE metrics DROP COLUMN value");
+  EXPECT_TRUE(refused().starts_with(bad.string() + ": does not hold what")) << refused();
+}
+
+TEST_F(StoreFile, MergingRefusesRunsOfOtherSettings) {
+  Store a(folder_ / "a.sqlite"), b(folder_ / "b.sqlite");
+  a.plan(suite(), {}, {{"x", "k1"}});
+  b.plan(suite(), {}, {{"x", "k2"}});
+  try {
+    a.merge(b.file());
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("run 'x' was made with other settings"), std::string::npos)
+        << e.what();
+  }
+}
+
+TEST_F(StoreFile, ExportsALinePerRunAndPoint) {
+  Store store(folder_ / "r.sqlite");
+  store.plan(suite(), {}, {{"x", "kx"}});
+  RunResult run = some_run("x");
+  run.spec.points.push_back(run.spec.points[0]);
+  run.spec.points[1].alpha = 0.5;
+  run.points.push_back(run.points[0]);
+  store.put("kx", run, {});
+  const std::string csv = export_csv(store);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3) << csv;
+  EXPECT_NE(csv.find("held_out.success"), std::string::npos) << csv;
+  EXPECT_NE(csv.find(",0.5,"), std::string::npos) << csv;
+  const auto json = nlohmann::json::parse(export_json(store));
+  EXPECT_EQ(json["queries"].size(), 6u);
+  EXPECT_FALSE(json.contains("times"));
+  EXPECT_EQ(json["queries"][0]["success"], 1);
+  EXPECT_EQ(json["queries"][0]["distance_m"], 1.0 / 7.0);
+  EXPECT_EQ(json["runs"][0]["trial"], 0);
+  EXPECT_EQ(json["runs"][0]["name"], "x");
+  EXPECT_TRUE(json["queries"][1]["distance_m"].is_null());
+}
+
+TEST_F(StoreFile, WhatAnOutsideProgramDoesNotTellIsNull) {
+  Store store(folder_ / "r.sqlite");
+  store.plan(suite(), {}, {{"x", "kx"}});
+  RunResult run = some_run("x");
+  run.spec.system = {SystemKind::kOutside, "vo", {}};
+  QueryScore& query = run.points[0].held_out[0];
+  query.answer.stage = RelocalizationStage::kNone;
+  query.answer.matches = {};
+  run.mapping.calls[0].inliers = kUnknownCount;
+  query.answer.candidates = CandidateCounts{.keyframes = kUnknownCount,
+                                            .c1 = kUnknownCount,
+                                            .c2 = kUnknownCount,
+                                            .c3 = kUnknownCount,
+                                            .final = 5,
+                                            .label_mass = std::nan("")};
+  store.put("kx", run, {});
+  EXPECT_EQ(
+      store.rows("SELECT stage, c1, final, label_mass, matchers FROM queries WHERE frame = 29")
+          .at(1),
+      (std::vector<std::string>{"", "", "5", "", ""}));
+  EXPECT_NE(export_csv(store).find(",0,,,,,,"), std::string::npos) << export_csv(store);
+  EXPECT_EQ(store.rows("SELECT inliers FROM calls ORDER BY call"),
+            (std::vector<std::vector<std::string>>{{"inliers"}, {""}, {"12"}}));
+  EXPECT_EQ(store.load("kx", run.spec).mapping.calls[0].inliers, kUnknownCount);
+  const QueryScore back = store.load("kx", run.spec).points[0].held_out[0];
+  ASSERT_TRUE(back.answer.candidates);
+  EXPECT_EQ(back.answer.candidates->c1, kUnknownCount);
+  EXPECT_EQ(back.answer.candidates->final, 5);
+  EXPECT_TRUE(std::isnan(back.answer.candidates->label_mass));
+  const auto told = results_json(suite(), std::vector{store.load("kx", run.spec)})["runs"][0];
+  EXPECT_TRUE(told["points"][0]["settings"].is_null());
+  EXPECT_TRUE(told["mapping"]["matchers"].is_null());
+}
+
+TEST_F(StoreFile, ADamagedResultIsNamedWithItsFile) {
+  const fs::path file = folder_ / "r.sqlite";
+  Store store(file);
+  store.put("k", some_run("a"), {});
+  SQLite::Database(file.string(), SQLite::OPEN_READWRITE).exec("UPDATE runs SET result = '{'");
+  try {
+    store.load("k", some_run("a").spec);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find(file.string() + ": run 'a' is damaged"), std::string::npos)
+        << e.what();
+  }
+}
+
+TEST(Exact, ReadsBackTheSame) {
+  for (const double value : {0.1, 1.0 / 3.0, 1e-300, 12345678.9})
+    EXPECT_EQ(std::stod(exact(value)), value);
+}
+
+}  // namespace
+}  // namespace mh

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/studies/vocabulary_training.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include "bench/studies/vocabulary_score.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/random.hpp"
+
+namespace mh {
+namespace {
+namespace fs = std::filesystem;
+
+VocabularyTraining small() {
+  VocabularyTraining config;
+  config.rooms = 2;
+  config.views = 2;
+  config.light_samples = 16;
+  config.tree.depth = 2;
+  return config;
+}
+
+TEST(TrainVocabulary, IsTheSameAtAnyThreadCountAndOtherForOtherSeeds) {
+  VocabularyTraining config = small();
+  config.threads = 1;
+  int calls = 0;
+  const Vocabulary one = train_vocabulary(config, [&](int done, int total) {
+    EXPECT_EQ(done, ++calls);
+    EXPECT_EQ(total, 2);
+  });
+  EXPECT_EQ(calls, 2);
+  EXPECT_EQ(one.size(), 100U);
+  config.threads = 2;
+  EXPECT_EQ(train_vocabulary(config).digest(), one.digest());
+  config.seed = 2;
+  EXPECT_NE(train_vocabulary(config).digest(), one.digest());
+}
+
+TEST(TrainVocabulary, FailuresInARoomReachTheCaller) {
+  const auto stop = [](int, int) { throw std::runtime_error("stop"); };
+  EXPECT_THROW(train_vocabulary(small(), stop), std::runtime_error);
+}
+
+TEST(TrainVocabulary, RefusesNonsense) {
+  for (int VocabularyTraining::*field : {&VocabularyTraining::rooms, &VocabularyTraining::views,
+                                         &VocabularyTraining::light_samples}) {
+    VocabularyTraining config = small();
+    config.*field = 0;
+    EXPECT_THROW(train_vocabulary(config), InputError);
+  }
+}
+
+class PictureList : public testing::Test {
+ protected:
+  PictureList() : folder_(fs::path(testing::TempDir()) / "picture_list") {
+    fs::remove_all(folder_);
+    make_output_folder(folder_ / "pictures");
+    for (int i = 0; i < 3; ++i) {
+      cv::Mat picture(240, 320, CV_8UC3);
+      for (int y = 0; y < picture.rows; ++y)
+        for (int x = 0; x < picture.cols; ++x) {
+          const auto block = static_cast<std::uint64_t>(y / 8 * 40 + x / 8);
+          const auto gray = static_cast<std::uint8_t>(RandomStream(i).below(block, 256));
+          picture.at<cv::Vec3b>(y, x) = {gray, gray, gray};
+        }
+      cv::imwrite((folder_ / "pictures" / fmt::format("{}.png", i)).string(), picture);
+    }
+  }
+  ~PictureList() override { fs::remove_all(folder_); }
+
+  std::vector<fs::path> listed(const std::string& text) const {
+    write_atomically(folder_ / "list.txt", text);
+    return load_picture_list(folder_ / "list.txt");
+  }
+  std::string fault_of(const std::string& text) const {
+    try {
+      VocabularyTraining config = small();
+      config.pictures = listed(text);
+      train_vocabulary(config);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(PictureList, IsTrainedOnAtAnyThreadCount) {
+  VocabularyTraining config = small();
+  config.pictures = listed("# three\npictures/0.png\n\n  pictures/1.png  # one\r\npictures/2.png");
+  ASSERT_EQ(config.pictures.size(), 3U);
+  config.threads = 1;
+  const Vocabulary one = train_vocabulary(config);
+  EXPECT_EQ(one.training_images(), 3U);
+  EXPECT_GT(one.training_descriptors(), 500U);
+  config.threads = 3;
+  EXPECT_EQ(train_vocabulary(config).digest(), one.digest());
+  std::swap(config.pictures[0], config.pictures[2]);
+  EXPECT_NE(train_vocabulary(config).digest(), one.digest());  // the order is part of the input
+}
+
+TEST_F(PictureList, FaultsAreNamed) {
+  const std::string list = (folder_ / "list.txt").string();
+  EXPECT_EQ(fault_of("pictures/0.png\npictures/9.png\n"),
+            list + ":2: no such picture: pictures/9.png");
+  EXPECT_EQ(fault_of("# nothing\n"), list + ": names no picture");
+  write_atomically(folder_ / "text.png", "no picture");
+  EXPECT_EQ(fault_of("text.png"),
+            (folder_ / "text.png").string() + ": is no picture, or a damaged one");
+}
+
+// A plane 2 m before the camera, seen from two places.
+TEST(Overlap, IsTheShareThatTheOtherPictureShows) {
+  const Camera camera;
+  PlacedView a;
+  a.depth_m = Grid2d<float>(80, 60, 2.0F);
+  PlacedView b = a;
+  EXPECT_DOUBLE_EQ(overlap(a, b, camera), 1.0);
+  // Half a picture to the side: 320 px at 2 m.
+  b.world_from_camera = SE3(Eigen::Matrix3d::Identity(), {320 * 2.0 / camera.fx_px, 0, 0});
+  EXPECT_NEAR(overlap(a, b, camera), 0.5, 0.02);
+  b.world_from_camera = SE3(Eigen::Matrix3d::Identity(), {0, 0, 5});  // behind it
+  EXPECT_DOUBLE_EQ(overlap(a, b, camera), 0.0);
+  b.world_from_camera = a.world_from_camera;
+  b.depth_m = Grid2d<float>(80, 60, 1.0F);  // something stands before the plane
+  EXPECT_DOUBLE_EQ(overlap(a, b, camera), 0.0);
+  EXPECT_DOUBLE_EQ(overlap(b, a, camera), 1.0);
+  a.depth_m = Grid2d<float>(80, 60, 0.0F);
+  EXPECT_DOUBLE_EQ(overlap(a, b, camera), 0.0);
+}
+
+// Views of three places, two at a time, with descriptors of their place alone.
+TEST(ScoreVocabulary, FindsViewsOfOnePlaceByTheirWords) {
+  const Camera camera;
+  std::vector<PlacedView> views;
+  std::vector<std::vector<Descriptor>> images;
+  for (int i = 0; i < 6; ++i) {
+    PlacedView view;
+    view.stamp_ns = i * Stamp{10'000'000'000};
+    const int place = i % 3;
+    view.world_from_camera = SE3(Eigen::Matrix3d::Identity(), {100.0 * place, 0.01 * i, 0});
+    view.depth_m = Grid2d<float>(80, 60, 2.0F);
+    for (std::uint64_t k = 0; k < 50; ++k) {
+      const RandomStream r = RandomStream(place).fork(k);
+      view.features.descriptors.push_back({r.bits(0), r.bits(1), r.bits(2), r.bits(3)});
+      view.features.keypoints.push_back({.label = static_cast<ClassId>(k % 2)});
+    }
+    images.push_back(view.features.descriptors);
+    views.push_back(view);
+  }
+  const Vocabulary vocabulary = Vocabulary::train(images, {});
+  const VocabularyScore score = score_vocabulary(vocabulary, views, {}, camera, {});
+  EXPECT_EQ(score.views, 6);
+  EXPECT_EQ(score.queries, 6);
+  EXPECT_DOUBLE_EQ(score.precision, 1.0);
+  EXPECT_DOUBLE_EQ(score.average_precision, 1.0);
+  EXPECT_DOUBLE_EQ(score.chance, 1.0 / 5.0);
+  // Half of the keypoints have a label: 25 against 50 words of weight ln 3, as each lies in 2 of 6.
+  ASSERT_TRUE(score.label_mass);
+  EXPECT_NEAR(*score.label_mass, 25 / (25 + 50 * std::log(3.0)), 1e-6);
+  // Who asks from elsewhere alone, or about too near a time, has no true neighbor.
+  VocabularyScoreConfig long_ago;
+  long_ago.min_gap_s = 35;
+  EXPECT_THROW(score_vocabulary(vocabulary, views, {}, camera, long_ago), InputError);
+  // Words of another place mislead.
+  std::swap(views[0].features, views[1].features);
+  EXPECT_LT(score_vocabulary(vocabulary, views, {}, camera, {}).precision, 0.5);
+}
+
+// The file that comes with the project is whole, and its words are used evenly enough to tell
+// pictures apart: few occur in more than half of them (weight below ln 2).
+TEST(Assets, VocabularyHoldsWordsThatTell) {
+  const Vocabulary vocabulary = Vocabulary::load(MH_SOURCE_DIR "/assets/vocabulary.mhvoc");
+  EXPECT_GT(vocabulary.size(), 95000U);
+  EXPECT_GT(vocabulary.training_descriptors(), 20 * vocabulary.size());
+  std::size_t common = 0;
+  for (WordId w = 0; w < vocabulary.size(); ++w) common += vocabulary.idf(w) < 0.693F;
+  EXPECT_LT(common, vocabulary.size() / 100);
+}
+
+}  // namespace
+}  // namespace mh

@@ -1,0 +1,476 @@
+// SPDX-License-Identifier: Apache-2.0
+// Outside programs that misbehave, as shell scripts: each fault is one OutsideError that names the
+// program, its command and what it did, and never the end of the bench.
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <set>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "bench/systems/child_process.hpp"
+#include "bench/systems/conversation.hpp"
+#include "bench/systems/outside_error.hpp"
+#include "bench/systems/program_folder.hpp"
+#include "bench/systems/recorded_run.hpp"
+#include "slam/core/files.hpp"
+#include "tests/bench/protocol/fake_system.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OutsideFaults : public testing::Test {
+ protected:
+  OutsideFaults() : folder_(fs::temp_directory_path() / ("mh_faults_" + std::to_string(getpid()))) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "out");
+    camera_.width_px = camera_.height_px = 2;
+    camera_.cx_px = camera_.cy_px = 0.5;
+  }
+  ~OutsideFaults() override { fs::remove_all(folder_); }
+
+  OutsideProgram program(OutsideMode mode, const std::string& command) const {
+    OutsideProgram p{.name = "theirs", .command = command, .mode = mode};
+    p.run_limit_s = p.answer_limit_s = 10;
+    return p;
+  }
+
+  /// The OutsideError of an action; it must name program and command.
+  std::string error_of(const OutsideProgram& program, const std::function<void()>& action) {
+    try {
+      action();
+    } catch (const OutsideError& error) {
+      const std::string what = error.what();
+      EXPECT_NE(what.find("outside program 'theirs' ("), std::string::npos) << what;
+      EXPECT_NE(what.find(program.command.substr(0, 4)), std::string::npos) << what;
+      EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+      return what;
+    } catch (const std::exception& error) {
+      return std::string("another kind of error: ") + error.what();
+    }
+    return "no error";
+  }
+
+  // Trajectory mode over three frames at 1, 2 and 3 s.
+  std::string trajectory_error(OutsideProgram p) {
+    return error_of(p, [&] { run(p); });
+  }
+  Trajectory run(const OutsideProgram& p) {
+    const std::vector<Stamp> stamps = {1'000'000'000, 2'000'000'000, 3'000'000'000};
+    ProgramFolder given(folder_ / "out");
+    fs::create_directories(given.path() / "dataset");
+    std::ofstream(given.path() / "dataset" / "rgb.txt") << "# stamp (s) file\n";
+    Trajectory trajectory =
+        run_on_dataset(p, given.path(), stamps, 0, folder_ / "out" / "outside.log");
+    given.move_to_run();
+    return trajectory;
+  }
+  OutsideProgram writes(const std::string& poses) const {
+    return program(OutsideMode::kTrajectory, "printf '" + poses + "' > {trajectory}");
+  }
+
+  // Conversation: `after_hello` runs once the greeting is over, with the request in $line.
+  OutsideProgram says(const std::string& after_hello) const {
+    return program(OutsideMode::kConversation,
+                   R"(read -r line; echo '{"id":1,"protocol":1}'; read -r line; )" + after_hello);
+  }
+  std::string track_error(const OutsideProgram& p) {
+    return error_of(p, [&] {
+      const auto system = make_conversation_system(p, camera_, 0, folder_ / "log");
+      system->track(fake_frame(7, RandomStream(1)), RandomStream(2));
+    });
+  }
+  std::string hello_error(const std::string& command) {
+    const OutsideProgram p = program(OutsideMode::kConversation, command);
+    return error_of(p, [&] { make_conversation_system(p, camera_, 0, folder_ / "log"); });
+  }
+
+  /// An empty folder for the numbers of processes.
+  fs::path pids() const {
+    fs::remove_all(folder_ / "pids");
+    fs::create_directories(folder_ / "pids");
+    return folder_ / "pids";
+  }
+  /// How many of the processes that noted their numbers there do not end soon; forgets them.
+  int left_running() const {
+    int left = 0, all = 0;
+    for (const std::string& name : names_in(folder_ / "pids")) {
+      ++all;
+      left += ends_soon(std::stoi(name)) ? 0 : 1;
+    }
+    EXPECT_EQ(all, 4);
+    pids();
+    return left;
+  }
+  static std::set<std::string> names_in(const fs::path& folder) {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder))
+      names.insert(entry.path().filename().string());
+    return names;
+  }
+  static bool comes_soon(const fs::path& file) {
+    for (int i = 0; i < 1000 && !fs::exists(file); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return fs::exists(file);
+  }
+
+  /// Whether a process is gone within seconds, or a zombie that some init has yet to bury.
+  static bool ends_soon(pid_t process) {
+    for (int i = 0; i < 500; ++i) {
+      std::string stat;
+      std::getline(std::ifstream("/proc/" + std::to_string(process) + "/stat"), stat);
+      if (stat.empty() || stat.find(") Z") != std::string::npos) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+
+  fs::path folder_;
+  Camera camera_;
+};
+
+#define EXPECT_HOLDS(text, part)                                       \
+  do {                                                                 \
+    const std::string holds_text = text;                               \
+    EXPECT_NE(holds_text.find(part), std::string::npos) << holds_text; \
+  } while (false)
+
+TEST_F(OutsideFaults, TrajectoryProgramsThatFail) {
+  const auto fails = [&](const std::string& command, const std::string& part) {
+    EXPECT_HOLDS(trajectory_error(program(OutsideMode::kTrajectory, command)), part);
+  };
+  fails("exit 3; : {trajectory}", "exited with code 3");
+  fails("echo no vocabulary >&2; exit 1; : {trajectory}", "it last wrote: no vocabulary");
+  fails("/nowhere/slam {trajectory}", "exited with code 127");
+  fails("kill -SEGV $$; : {trajectory}", "was killed by signal 11");
+  fails("exit 0; : {trajectory}", "ended well but wrote no trajectory");
+  OutsideProgram elsewhere = writes("");
+  elsewhere.folder = "/nowhere";
+  EXPECT_HOLDS(trajectory_error(elsewhere), "its folder cannot be entered");
+}
+
+TEST_F(OutsideFaults, AFailureReadsTheSameInAnyFolder) {
+  const std::string dataset = trajectory_error(
+      program(OutsideMode::kTrajectory,
+              "echo cannot open {trajectory} in $(dirname {trajectory}) >&2; exit 1"));
+  EXPECT_HOLDS(dataset, "(echo cannot open {trajectory} in");
+  EXPECT_HOLDS(dataset, "it last wrote: cannot open trajectory.txt in .");
+  EXPECT_EQ(trajectory_error(writes("what is this\\n")).find(folder_.string()), std::string::npos);
+  // Pictures lie in a folder whose name is drawn by chance.
+  const std::string picture =
+      track_error(says(R"(echo "$line" | sed 's/.*"color":"//; s/".*//' >&2; exit 1)"));
+  EXPECT_HOLDS(picture, "it last wrote: color.ppm");
+}
+
+TEST_F(OutsideFaults, ATrajectoryThatIsNone) {
+  EXPECT_HOLDS(trajectory_error(writes("what is this\\n")),
+               "trajectory.txt:1: pose: 3 values, expected 8");
+  EXPECT_HOLDS(trajectory_error(writes("1 0 0 0 0 0 0 1\\n2 nan 0 0 0 0 0 1\\n")),
+               "trajectory.txt:2: tx: 'nan' is not finite");
+  EXPECT_HOLDS(trajectory_error(writes("1 0 0 0 0 0 0 1\\n2.5 0 0 0 0 0 0 1\\n")),
+               "wrote 1 of 2 poses at stamps of no frame, the first at 2.500000000");
+  EXPECT_HOLDS(trajectory_error(writes("2.9995 0 0 0 0 0 0 1\\n3 0 0 0 0 0 0 1\\n")),
+               "wrote two poses for the frame at 3.000000000");
+  EXPECT_HOLDS(trajectory_error(writes("1 0 0 0 0 0 0 1\\n2 0 -1e200 0 0 0 0 1\\n")),
+               "wrote a pose more than 1e+06 m away, at 2.000000000");
+}
+
+TEST_F(OutsideFaults, StampsOfFewDigitsAreTheFramesOwn) {
+  const Trajectory trajectory = run(writes("1.0001 0 0 0 0 0 0 1\\n2.9995 5 0 0 0 0 0 1\\n"));
+  ASSERT_EQ(trajectory.size(), 2u);
+  EXPECT_EQ(trajectory[0].stamp_ns, 1'000'000'000);
+  EXPECT_EQ(trajectory[1].stamp_ns, 3'000'000'000);
+  EXPECT_EQ(trajectory[1].world_from_camera.translation().x(), 5.0);
+}
+
+TEST_F(OutsideFaults, AProgramThatTrackedNothingHasAnEmptyTrajectory) {
+  EXPECT_TRUE(run(writes("# nothing held\\n")).empty());
+}
+
+TEST_F(OutsideFaults, ATrajectoryOfAnOlderRunIsNotTakenForThisOne) {
+  EXPECT_EQ(run(writes("1 0 0 0 0 0 0 1\\n")).size(), 1u);
+  EXPECT_HOLDS(trajectory_error(program(OutsideMode::kTrajectory, "exit 0; : {trajectory}")),
+               "wrote no trajectory");
+}
+
+TEST_F(OutsideFaults, TimeAndMemoryAreLimited) {
+  OutsideProgram sleeper = program(OutsideMode::kTrajectory, "sleep 60; : {trajectory}");
+  sleeper.run_limit_s = 0.3;
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_HOLDS(trajectory_error(sleeper), "was still running after 0.3 s");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+
+  // tail keeps the one line that never ends.
+  OutsideProgram glutton = program(OutsideMode::kTrajectory, "tail /dev/zero; : {trajectory}");
+  glutton.memory_limit_mb = 50;
+  EXPECT_HOLDS(trajectory_error(glutton), "its limit is 50 MB");
+}
+
+/// Starts processes that nothing of a group or a session holds, that do not listen to SIGTERM, and
+/// whose parents are gone; notes their numbers in the folder PIDS when all of them run.
+const std::string kEscapes =
+    "sleeper='trap \"\" TERM HUP INT; echo $$ > $PIDS/$$; while :; do sleep 60; done'; "
+    "sh -c \"$sleeper\" & setsid sh -c \"$sleeper\" & (setsid sh -c \"$sleeper\" &) ; "
+    "(setsid sh -c \"(setsid sh -c '$sleeper' &) ; exit 0\" &) ; "
+    "while [ $(ls $PIDS | wc -l) -lt 4 ]; do sleep 0.02; done";
+
+TEST_F(OutsideFaults, WhatAProgramLeavesBehindIsEndedToo) {
+  const std::string start = "export PIDS=" + pids().string() + "; " + kEscapes;
+  run(program(OutsideMode::kTrajectory, start + "; echo 1 0 0 0 0 0 0 1 > {trajectory}"));
+  EXPECT_EQ(left_running(), 0);
+  EXPECT_HOLDS(
+      trajectory_error(program(OutsideMode::kTrajectory, start + "; exit 3; {trajectory}")),
+      "exited with code 3");
+  EXPECT_EQ(left_running(), 0);
+  OutsideProgram slow = program(OutsideMode::kTrajectory, start + "; sleep 60; : {trajectory}");
+  slow.run_limit_s = 1.5;
+  EXPECT_HOLDS(trajectory_error(slow), "was still running after 1.5 s");
+  EXPECT_EQ(left_running(), 0);
+  EXPECT_HOLDS(track_error(says(start + "; exit 3")), "exited with code 3 during track");
+  EXPECT_EQ(left_running(), 0);
+}
+
+TEST_F(OutsideFaults, ABenchThatIsKilledLeavesNothingRunning) {
+  const fs::path scratch = folder_ / "scratch";
+  fs::create_directories(scratch / "sub");
+  pids();
+  const pid_t bench = fork();
+  if (bench == 0) {
+    const std::string command = "export PIDS=" + (folder_ / "pids").string() + "; " + kEscapes +
+                                "; touch " + (folder_ / "all").string() + "; sleep 60";
+    ChildProcess child(program(OutsideMode::kTrajectory, command), command, ChildProcess::Talk::kNo,
+                       folder_ / "log", scratch);
+    pause();
+    _exit(0);
+  }
+  EXPECT_TRUE(comes_soon(folder_ / "all"));
+  kill(bench, SIGKILL);
+  waitpid(bench, nullptr, 0);
+  EXPECT_EQ(left_running(), 0);
+  for (int i = 0; i < 500 && fs::exists(scratch); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_FALSE(fs::exists(scratch));
+}
+
+TEST_F(OutsideFaults, MemoryOfASessionOfItsOwnCounts) {
+  OutsideProgram glutton =
+      program(OutsideMode::kTrajectory, "setsid tail /dev/zero & sleep 60; : {trajectory}");
+  glutton.memory_limit_mb = 50;
+  EXPECT_HOLDS(trajectory_error(glutton), "its limit is 50 MB");
+}
+
+TEST_F(OutsideFaults, AProgramThatKillsItsWatcherFails) {
+  EXPECT_HOLDS(trajectory_error(
+                   program(OutsideMode::kTrajectory, "kill -9 $PPID; sleep 60; : {trajectory}")),
+               "was lost: the process that watched it was killed");
+}
+
+TEST_F(OutsideFaults, WhatIsSaidIsBounded) {
+  const auto start = std::chrono::steady_clock::now();
+  // 3 GB, were it let.
+  EXPECT_HOLDS(trajectory_error(program(OutsideMode::kTrajectory,
+                                        "yes 'all is well' | head -c 3000000000; : {trajectory}")),
+               "wrote more than 64 MB to its log, the limit");
+  EXPECT_LT(fs::file_size(folder_ / "out" / "outside.log"), std::uintmax_t{65} << 20);
+  EXPECT_HOLDS(read_file(folder_ / "out" / "outside.log"), "wrote too much and was stopped");
+  EXPECT_HOLDS(track_error(says("yes >&2")), "wrote more than 64 MB to its log, the limit");
+  EXPECT_LT(fs::file_size(folder_ / "log"), std::uintmax_t{65} << 20);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(120));
+  // Less than that is kept to the last byte, also what it wrote just before its end.
+  run(program(OutsideMode::kTrajectory,
+              "yes 1234567 | head -c 8000000; echo 1 0 0 0 0 0 0 1 > {trajectory}"));
+  EXPECT_EQ(fs::file_size(folder_ / "out" / "outside.log"), 8000000u);
+}
+
+TEST_F(OutsideFaults, WhatIsWrittenIsBounded) {
+  const auto writes_much = [&](const std::string& command) {
+    OutsideProgram p = program(OutsideMode::kTrajectory, "cd $(dirname {trajectory}); " + command);
+    p.disk_limit_mb = 5;
+    return trajectory_error(p);
+  };
+  EXPECT_HOLDS(writes_much("exec head -c 8000000 /dev/zero > map"),
+               "wrote a file of more than 5 MB, its limit");
+  EXPECT_LE(fs::file_size(folder_ / "out" / "outside" / "map"), 5u << 20);
+  EXPECT_HOLDS(writes_much("sh -c 'head -c 8000000 /dev/zero > map'"),
+               "wrote a file of more than 5 MB, its limit");
+  EXPECT_HOLDS(writes_much("for i in 1 2 3 4; do head -c 4000000 /dev/zero > $i; done; sleep 60"),
+               "MB into its folder during its run, its limit is 5 MB");
+}
+
+TEST_F(OutsideFaults, ARunMeetsNothingOfAnEarlierOne) {
+  const fs::path out = folder_ / "out", kept = out / "outside";
+  const std::string look =
+      "find $(dirname {trajectory}) $(dirname $(dirname {trajectory})); touch $(dirname "
+      "{trajectory})/map.bin $(dirname {trajectory})/edited; echo 1 0 0 0 0 0 0 1 > {trajectory}";
+  const auto look_about = [&] {
+    run(program(OutsideMode::kTrajectory, look));
+    return read_file(out / "outside.log");
+  };
+  std::ofstream(out / "truth.tum") << "the truth of an earlier run";
+  const std::string first = look_about();
+  EXPECT_HOLDS(first, "dataset/rgb.txt");
+  EXPECT_EQ(first.find("truth"), std::string::npos) << first;
+  const std::set<std::string> all = {"dataset", "edited", "map.bin", "trajectory.txt",
+                                     ProgramFolder::kList};
+  EXPECT_EQ(names_in(kept), all);
+  // In its place comes the next one, which has not seen it.
+  std::ofstream(kept / "trajectory.txt", std::ios::app) << "# read by hand\n";
+  fs::remove(kept / "trajectory.txt");
+  const std::string second = look_about();
+  EXPECT_EQ(second.find("map.bin"), std::string::npos) << second;
+  EXPECT_EQ(names_in(kept), all);
+  EXPECT_EQ(names_in(out), (std::set<std::string>{"outside", "outside.log", "truth.tum"}));
+  // What the program did not make stays where it is, and so does what somebody changed.
+  const fs::path elsewhere = folder_ / "elsewhere";
+  fs::create_directory(elsewhere);
+  for (const char* file : {"map.bin", "rgb.txt", "photograph.jpg"})
+    std::ofstream(elsewhere / file) << "mine";
+  std::ofstream(kept / "notes.txt") << "mine";
+  std::ofstream(kept / "edited") << "mine";
+  fs::remove_all(kept / "dataset");
+  fs::create_directory_symlink(elsewhere, kept / "dataset");
+  std::ofstream(kept / ProgramFolder::kList, std::ios::app)
+      << "4 0 ../../elsewhere/map.bin\n../../elsewhere/\n";
+  look_about();
+  EXPECT_EQ(names_in(kept), (std::set<std::string>{"dataset", "edited", "notes.txt"}));
+  EXPECT_EQ(read_file(kept / "edited"), "mine");
+  EXPECT_EQ(names_in(elsewhere), (std::set<std::string>{"map.bin", "photograph.jpg", "rgb.txt"}));
+  EXPECT_EQ(names_in(out / "outside.2"), all);
+  look_about();
+  EXPECT_EQ(names_in(out / "outside.2"), all);
+  EXPECT_FALSE(fs::exists(out / "outside.3"));
+}
+
+TEST_F(OutsideFaults, AConversationIsGivenTimeToEndWell) {
+  const auto farewell = [&](const std::string& last_words) {
+    const OutsideProgram p =
+        program(OutsideMode::kConversation, R"(read -r line; echo '{"id":1,"protocol":1}'; )"
+                                            "read -r line; sleep 0.2; " +
+                                                last_words);
+    return error_of(p, [&] { make_conversation_system(p, camera_, 0, folder_ / "log")->finish(); });
+  };
+  const fs::path note = folder_ / "saved";
+  EXPECT_EQ(farewell("touch " + note.string()), "no error");
+  EXPECT_TRUE(fs::exists(note)) << "it had no time to save its map";
+  EXPECT_HOLDS(farewell("echo no room >&2; exit 3"),
+               "exited with code 3 after its input was closed; it last wrote: no room");
+  EXPECT_HOLDS(farewell("kill -SEGV $$"), "was killed by signal 11 after its input");
+}
+
+TEST_F(OutsideFaults, ConversationsThatDoNotBegin) {
+  EXPECT_HOLDS(hello_error("exit 4"), "exited with code 4");
+  EXPECT_HOLDS(hello_error("echo Welcome to my SLAM; sleep 60"),
+               "wrote what is no line of JSON: 'Welcome to my SLAM', answering hello (request 1)");
+  EXPECT_HOLDS(hello_error(R"(echo '{"id":1}'; sleep 60)"), "does not speak protocol 1");
+  EXPECT_HOLDS(hello_error(R"(echo '{"id":1,"protocol":2}'; sleep 60)"),
+               "does not speak protocol 1");
+  EXPECT_HOLDS(hello_error(R"(echo '[1]'; sleep 60)"), "wrote no JSON object");
+}
+
+TEST_F(OutsideFaults, ConversationsThatBreakOff) {
+  EXPECT_HOLDS(track_error(says("exit 3")), "exited with code 3 during track (request 2)");
+  EXPECT_HOLDS(track_error(says("echo out of luck >&2; exit 3")), "it last wrote: out of luck");
+  EXPECT_HOLDS(track_error(says("kill -9 $$")), "was killed by signal 9 during track");
+  EXPECT_HOLDS(track_error(says("exec >&-; sleep 60")), "closed its pipe during track");
+  OutsideProgram silent = says("sleep 60");
+  silent.answer_limit_s = 0.3;
+  EXPECT_HOLDS(track_error(silent), "did not answer track (request 2) within 0.3 s");
+  // Gone before it is asked: writing to it must not kill the bench by SIGPIPE.
+  const OutsideProgram short_lived =
+      program(OutsideMode::kConversation, R"(read -r line; echo '{"id":1,"protocol":1}'; exit 0)");
+  EXPECT_HOLDS(track_error(short_lived), "exited with code 0");
+}
+
+TEST_F(OutsideFaults, AnswersThatAreNone) {
+  const auto answers = [&](const std::string& json) {
+    return track_error(says("echo '" + json + "'; sleep 60"));
+  };
+  EXPECT_HOLDS(answers("garbage"), "wrote what is no line of JSON: 'garbage'");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[NaN,0,0,0,0,0,1]})"), "a number that is not finite");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[1e999,0,0,0,0,0,1]})"), "a number that is too large");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[null,0,0,0,0,0,1]})"), "pose that is not of numbers");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,0,0,0,0,0,"1"]})"), "pose that is not of numbers");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,-1e7,0,0,0,0,1]})"), "a pose more than 1e+06 m away");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,0,0,0,0,0]})"), "expected [x, y, z, qx, qy, qz, qw]");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,0,0,0,0,0,2]})"), "quaternion has norm 2");
+  EXPECT_HOLDS(answers(R"({"id":2})"), "neither a pose nor");
+  EXPECT_HOLDS(answers(R"({"id":3,"pose":null})"), "answered request 3, which was not asked");
+  EXPECT_HOLDS(answers(R"({"pose":null})"), "gave no request number");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"mood":"good"})"), "unknown key 'mood'");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"inliers":-1})"), "expected a count");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"candidates":{"c4":1}})"), "'candidates.c4'");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"candidates":{"keyframes":3,"final":9}})"),
+               "a step cannot leave more than the one before it");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"stage":"lunch"})"), "unknown stage");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,0,0,0,0,0,1],"stage":"no_candidate"})"),
+               "gave a pose and the stage \"no_candidate\"");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"pose":[0,0,0,0,0,0,1]})"), "the key 'pose' twice");
+  EXPECT_HOLDS(answers(R"({"id":2,"error":"no memory"})"), "reported an error: \"no memory\"");
+}
+
+TEST_F(OutsideFaults, AFinalTrajectoryHoldsShownFramesOnly) {
+  const auto freeze_error = [&](const std::string& trajectory) {
+    const OutsideProgram p = says(
+        R"(echo '{"id":2,"pose":[0,0,0,0,0,0,1]}'; read -r line; echo '{"id":3,"trajectory":)" +
+        trajectory + "}'; sleep 60");
+    return error_of(p, [&] {
+      const auto system = make_conversation_system(p, camera_, 0, folder_ / "log");
+      system->track(fake_frame(7, RandomStream(1)), RandomStream(2));
+      system->freeze();
+      const Trajectory t = system->trajectory();
+      ASSERT_EQ(t.size(), 1u);
+      EXPECT_EQ(t[0].stamp_ns, 7);
+      EXPECT_EQ(t[0].world_from_camera.translation().x(), 4.0);
+    });
+  };
+  EXPECT_EQ(freeze_error(R"(["0.000000007 4 0 0 0 0 0 1"])"), "no error");
+  EXPECT_HOLDS(freeze_error(R"(["0.000000008 4 0 0 0 0 0 1"])"),
+               "gave a pose at 0.000000008 in its trajectory, a frame that it never saw");
+  EXPECT_HOLDS(freeze_error(R"(["0.000000007 nan 0 0 0 0 0 1"])"), "trajectory:1: tx: 'nan'");
+  EXPECT_HOLDS(freeze_error(R"(["0.000000007 4e30 0 0 0 0 0 1"])"),
+               "a pose more than 1e+06 m away in its trajectory, at 0.000000007");
+  EXPECT_HOLDS(freeze_error("7"), "no list of lines");
+}
+
+TEST_F(OutsideFaults, CommandsAreCheckedBeforeTheyRun) {
+  const auto refused = [&](OutsideMode mode, const std::string& command) -> std::string {
+    try {
+      validate(program(mode, command));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_HOLDS(refused(OutsideMode::kTrajectory, " "), "theirs: command: is empty");
+  EXPECT_HOLDS(refused(OutsideMode::kTrajectory, "slam {dataset}"), "{trajectory} is missing");
+  EXPECT_HOLDS(refused(OutsideMode::kTrajectory, "slam {datset} {trajectory}"),
+               "'{datset}' is none of {dataset}");
+  EXPECT_HOLDS(refused(OutsideMode::kConversation, "slam {dataset}"), "'{dataset}' is none of");
+  EXPECT_EQ(refused(OutsideMode::kTrajectory, "a={b,c}; slam ${HOME} {trajectory}"), "no error");
+  EXPECT_EQ(refused(OutsideMode::kConversation, "slam {settings} {seed}"), "no error");
+  for (const char* quoted : {"'{dataset}'", "\"{dataset}\"", "\"--data={dataset}\"",
+                             "sh -c 'slam {dataset}'", "'{dataset}"})
+    EXPECT_HOLDS(refused(OutsideMode::kTrajectory, quoted + std::string(" {trajectory}")),
+                 "stands within quotes: its value comes quoted");
+  EXPECT_EQ(refused(OutsideMode::kTrajectory, R"(sh -c "slam {dataset} it's" 'a b' {trajectory})"),
+            "no error");
+  OutsideProgram p = program(OutsideMode::kConversation, "slam");
+  p.answer_limit_s = 0;
+  EXPECT_THROW(validate(p), InputError);
+}
+
+TEST(ExpandCommand, QuotesForTheShell) {
+  EXPECT_EQ(expand_command("slam {dataset} ${HOME} {", {{"dataset", "/a b/it's"}}),
+            "slam '/a b/it'\\''s' ${HOME} {");
+}
+
+}  // namespace
+}  // namespace mh

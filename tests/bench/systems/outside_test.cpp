@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// The example odometry as somebody else's system, in both modes, over a rendered room.
+#include <unistd.h>
+
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include "bench/protocol/query.hpp"
+#include "bench/protocol/score.hpp"
+#include "bench/provenance/digest.hpp"
+#include "bench/results/trajectory_score.hpp"
+#include "bench/systems/conversation.hpp"
+#include "bench/systems/recorded_run.hpp"
+#include "scenes/recorded/frame_files.hpp"
+#include "scenes/training/training.hpp"
+#include "sim/sensors/sensors.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A camera that looks about and sways in a furnished room, with sensor noise.
+class OutsideOdometry : public testing::Test {
+ protected:
+  static constexpr std::size_t kCount = 90;  // test frames are 29, 59, 89: 87 are offered
+
+  static void SetUpTestSuite() {
+    const Scene scene = make_training_room(3);
+    renderer_ = make_embree_renderer(scene);
+    const SE3 middle = training_views(scene, 5, 1).front();
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const double t = 2 * 3.14159265358979 * static_cast<double>(i) / kCount;
+      const SE3 sway(
+          so3_exp({0.05 * std::sin(2 * t), 0.4 * std::sin(t), 0}),
+          Eigen::Vector3d(0.2 * std::sin(t), 0.03 * std::sin(2 * t), 0.1 * (1 - std::cos(t))));
+      path_.push_back({static_cast<Stamp>(i) * 33'333'333, middle * sway});
+    }
+  }
+  static void TearDownTestSuite() { renderer_.reset(); }
+
+  OutsideOdometry() : folder_(fs::temp_directory_path() / ("mh_vo_" + std::to_string(getpid()))) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~OutsideOdometry() override { fs::remove_all(folder_); }
+
+  static Camera camera() {
+    Camera c;
+    c.width_px = 320;
+    c.height_px = 240;
+    c.fx_px = c.fy_px = 280;
+    c.cx_px = 159.5;
+    c.cy_px = 119.5;
+    return c;
+  }
+  static RgbdFrame frame(std::size_t index, RandomStream noise) {
+    const RenderedFrame exact = renderer_->render(camera(), path_[index].world_from_camera);
+    RgbdFrame seen = sense(exact, camera(), {}, noise.fork(index), path_[index].stamp_ns);
+    seen.semantics = label_image(exact, LabelMode::kExact);
+    return seen;
+  }
+  std::unique_ptr<System> converse() const {
+    return make_conversation_system({.name = "vo",
+                                     .command = std::string("exec ") + VO_CONVERSE,
+                                     .mode = OutsideMode::kConversation},
+                                    camera(), 0, folder_ / "log");
+  }
+  static std::unique_ptr<System> mapped(std::unique_ptr<System> system) {
+    map_sequence(*system, kCount, frame, {}, RandomStream(1));
+    system->freeze();
+    return system;
+  }
+
+  static inline std::unique_ptr<Renderer> renderer_;
+  static inline Trajectory path_;
+  fs::path folder_;
+};
+
+TEST(FrameFiles, AreReadByOpenCvPixelForPixel) {
+  const fs::path folder = fs::temp_directory_path() / ("mh_frame_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  RgbdFrame frame;
+  frame.color = Grid2d<Rgb8>(3, 2, Rgb8{1, 2, 3});
+  frame.color(2, 1) = {200, 100, 50};
+  frame.depth_m = Grid2d<float>(3, 2, 0.0F);
+  frame.depth_m(1, 0) = 1.2345F;  // 6172.5 units
+  frame.depth_m(2, 1) = 20.0F;    // beyond what 16 bits hold
+  FrameFiles files = show(frame, folder);
+  EXPECT_TRUE(files.labels.empty());
+  frame.semantics = {Grid2d<std::uint8_t>(3, 2), {{}, {{{5, 0.3F}, {7, 0.6F}}}}};
+  frame.semantics.index(0, 1) = 1;
+  files = show(frame, folder);
+  const cv::Mat color = cv::imread(files.color.string(), cv::IMREAD_UNCHANGED);
+  const cv::Mat depth = cv::imread(files.depth.string(), cv::IMREAD_UNCHANGED);
+  const cv::Mat labels = cv::imread(files.labels.string(), cv::IMREAD_UNCHANGED);
+  fs::remove_all(folder);
+  ASSERT_EQ(color.type(), CV_8UC3);
+  EXPECT_EQ(color.at<cv::Vec3b>(1, 2), cv::Vec3b(50, 100, 200));
+  ASSERT_EQ(depth.type(), CV_16UC1);
+  EXPECT_NEAR(depth.at<std::uint16_t>(0, 1), 6172.5, 0.6);
+  EXPECT_EQ(depth.at<std::uint16_t>(1, 2), 65535);
+  EXPECT_EQ(depth.at<std::uint16_t>(1, 1), 0);
+  ASSERT_EQ(labels.type(), CV_8UC1);
+  EXPECT_EQ(labels.at<std::uint8_t>(1, 0), 7);  // the most probable class
+  EXPECT_EQ(labels.at<std::uint8_t>(0, 0), kVoid);
+}
+
+TEST(SettingsText, HasRealNumbersWhereReadersInsistOnThem) {
+  const cv::FileStorage settings(settings_text(Camera{}), cv::FileStorage::READ |
+                                                              cv::FileStorage::MEMORY |
+                                                              cv::FileStorage::FORMAT_YAML);
+  for (const char* key : {"Camera.fx", "Camera.cy", "Camera.k1", "Camera.bf", "DepthMapFactor",
+                          "ThDepth", "ORBextractor.scaleFactor"})
+    EXPECT_TRUE(settings[key].isReal()) << key;
+  EXPECT_EQ(settings["Camera.fx"].real(), Camera{}.fx_px);
+  EXPECT_TRUE(settings["Camera.width"].isInt());
+  EXPECT_EQ(static_cast<int>(settings["ORBextractor.nFeatures"]), 1000);
+}
+
+TEST_F(OutsideOdometry, GoesThroughTheWholeProtocol) {
+  const auto system = converse();
+  const MappingOutcome mapping = map_sequence(*system, kCount, frame, {}, RandomStream(1));
+  system->freeze();
+  EXPECT_EQ(mapping.failures, 0);
+  const Trajectory estimate = system->trajectory();
+  const TrajectoryScore score = score_trajectory(estimate, path_, mapping.offered);
+  EXPECT_EQ(score.completeness, 1.0);
+  ASSERT_TRUE(score.ate_rmse_m);
+  EXPECT_LT(*score.ate_rmse_m, 0.05);  // it drifts: it adjusts nothing; the camera sways by 0.4 m
+  EXPECT_GT(*score.ate_rmse_m, 1e-6);  // noise: nobody may be that good
+
+  for (const std::size_t index : test_frames(kCount, {})) {
+    const QueryAnswer answer = query(*system, index, frame, {}, RandomStream(2));
+    EXPECT_EQ(answer.blank_frames, 1);
+    ASSERT_TRUE(answer.candidates) << index;
+    EXPECT_GE(answer.candidates->keyframes, 2);
+    EXPECT_GE(answer.candidates->final, 1);
+    const QueryScore q =
+        mh::score(answer, path_[index],
+                  nearest_mapped(estimate, path_, path_[index], NearestBy::kTime), SE3(), {});
+    EXPECT_TRUE(q.correct) << index << ": " << q.distance_m.value_or(-1);
+  }
+}
+
+TEST_F(OutsideOdometry, AnswersDependOnNoOtherQuery) {
+  const auto system = mapped(converse());
+  const auto ask = [&](std::initializer_list<std::size_t> order) {
+    std::map<std::size_t, std::uint64_t> poses;
+    for (const std::size_t index : order)
+      poses[index] = query(*system, index, frame, {}, RandomStream(2)).pose_digest;
+    return poses;
+  };
+  const auto forwards = ask({29, 59, 89});
+  EXPECT_EQ(forwards, ask({89, 29, 59}));
+  EXPECT_NE(forwards.at(29), forwards.at(59));
+}
+
+TEST_F(OutsideOdometry, RewindKeepsTheMapAndResetForgetsIt) {
+  const auto system = converse();
+  const RandomStream stream(1);
+  for (std::size_t i = 0; i < 20; ++i) system->track(frame(i, stream), stream);
+  system->rewind();
+  const auto again = system->track(frame(12, stream), stream);
+  ASSERT_TRUE(again.world_from_camera);
+  EXPECT_TRUE(again.candidates) << "it was lost, so that it had to relocalize";
+  EXPECT_GT(again.world_from_camera->translation().norm(), 0.05);
+  EXPECT_EQ(system->trajectory().size(), 20u);
+  system->reset();
+  EXPECT_TRUE(system->trajectory().empty());
+  const auto anew = system->track(frame(12, stream), stream);
+  ASSERT_TRUE(anew.world_from_camera);
+  EXPECT_EQ(anew.world_from_camera->translation().norm(), 0.0);
+}
+
+TEST_F(OutsideOdometry, BothModesGiveOneTrajectoryAndTheTruthStaysOutside) {
+  // What mapping shows where nothing fails: every frame but the test frames, once.
+  std::vector<std::size_t> offered;
+  for (std::size_t i = 0; i < kCount; ++i)
+    if (!is_test_frame(i, {})) offered.push_back(i);
+  const RandomStream noise = mapping_noise(RandomStream(1), 0);
+  const std::vector<Stamp> stamps =
+      write_dataset(folder_ / "given" / "dataset", camera(), offered.size(),
+                    [&](std::size_t k) { return frame(offered[k], noise); });
+  OutsideProgram program{.name = "vo"};
+  // `find` writes the names of all that the program is given to standard output: its log.
+  program.command = "find {dataset} && " + std::string(VO_RUN_DATASET) +
+                    " {dataset} {associations} {settings} {trajectory}";
+  const Trajectory recorded =
+      run_on_dataset(program, folder_ / "given", stamps, 0, folder_ / "outside.log");
+  EXPECT_EQ(recorded.size(), 87u);
+  EXPECT_LT(*score_trajectory(recorded, path_, offered.size()).ate_rmse_m, 0.05);
+  EXPECT_EQ(digest(recorded), digest(mapped(converse())->trajectory()));
+
+  const std::string given = read_file(folder_ / "outside.log");
+  for (const char* part : {"/rgb.txt", "/depth.txt", "/label.txt", "/associations.txt",
+                           "/camera.yaml", "/rgb/0.000000000.png", "/label/0.000000000.png"})
+    EXPECT_NE(given.find(part), std::string::npos) << part;
+  for (const char* part : {"truth", "instance", "/0.966666657.png"})  // the last: a test frame
+    EXPECT_EQ(given.find(part), std::string::npos) << part;
+}
+
+}  // namespace
+}  // namespace mh

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "bench/drawing/slice.hpp"
+#include "bench/run/recorded_camera.hpp"
+#include "scenes/picture_file.hpp"
+#include "scenes/recorded/tum_folder.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/random.hpp"
+#include "slam/core/trajectory_io.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TumFolder : public testing::Test {
+ protected:
+  TumFolder() : folder_(fs::temp_directory_path() / ("mh_tum_" + std::to_string(getpid()))) {
+    fs::remove_all(folder_);
+    camera_.width_px = 8;
+    camera_.height_px = 6;
+    camera_.cx_px = 3.5;
+    camera_.cy_px = 2.5;
+  }
+  ~TumFolder() override { fs::remove_all(folder_); }
+
+  RgbdFrame frame(Stamp stamp_ns) const {
+    RgbdFrame f;
+    f.stamp_ns = stamp_ns;
+    f.color = Grid2d<Rgb8>(8, 6, Rgb8{1, 2, 3});
+    f.color(7, 5) = {200, 100, 50};
+    f.depth_m = Grid2d<float>(8, 6, 1.25F);
+    f.depth_m(0, 0) = 0;
+    return f;
+  }
+  ExactFrame exact(Stamp stamp_ns, const SE3& pose) const {
+    ExactFrame f{frame(stamp_ns), Grid2d<ClassId>(8, 6, ClassId{5}),
+                 Grid2d<InstanceId>(8, 6, InstanceId{700}), pose};
+    f.classes(2, 1) = 0;
+    return f;
+  }
+
+  fs::path folder_;
+  Camera camera_;
+};
+
+TEST_F(TumFolder, ReadsBackWhatItWrote) {
+  TumWriter writer(folder_, camera_);
+  const SE3 pose(Eigen::Matrix3d::Identity(), {1, 2, 3});
+  writer.add(0, exact(0, pose));
+  writer.add(1, exact(33'333'333, pose));
+  EXPECT_FALSE(fs::exists(folder_ / "rgb.txt")) << "an unfinished folder looks finished";
+  writer.finish();
+
+  const RecordedCamera camera = load_recorded_camera(folder_ / "camera.yaml");
+  EXPECT_EQ(camera.camera, camera_);
+  EXPECT_EQ(camera.depth_per_meter, 5000);
+  const std::vector<RecordedFrame> frames = load_tum_folder(folder_);
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_EQ(frames[1].stamp_ns, 33'333'333);
+  const RgbdFrame read = read_frame(frames[1], camera);
+  EXPECT_EQ(read.color, frame(0).color);
+  EXPECT_EQ(read.depth_m, frame(0).depth_m);  // 1.25 m is a whole number of units
+  EXPECT_EQ(read.semantics.at(0, 0).most_probable(), 5);
+  EXPECT_EQ(read.semantics.at(2, 1).most_probable(), kVoid);
+  EXPECT_EQ(read_tum(folder_ / "groundtruth.txt").size(), 2u);
+}
+
+TEST_F(TumFolder, NamesWhatIsWrong) {
+  fs::create_directories(folder_);
+  EXPECT_THROW(load_tum_folder(folder_), InputError);
+  std::ofstream(folder_ / "rgb.txt") << "# comment\n0.1 a.png\n0.2\n";
+  std::ofstream(folder_ / "depth.txt") << "0.1 a.png\n";
+  try {
+    load_tum_folder(folder_);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("rgb.txt:3"), std::string::npos) << error.what();
+  }
+  std::ofstream(folder_ / "rgb.txt") << "0.1 a.png\n0.9 b.png\n";
+  std::vector<std::string> notes;
+  const auto frames = load_tum_folder(folder_, &notes);
+  ASSERT_EQ(frames.size(), 1u);  // nothing was seen near 0.9 s
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_NE(notes[0].find("1 of 2 color pictures have no depth picture"), std::string::npos);
+  const auto refused = [&](const std::string& part) {
+    try {
+      read_frame(frames[0], {camera_, 5000});
+      FAIL();
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  };
+  refused("a.png: cannot be read: no such file");
+  std::ofstream(folder_ / "a.png") << "no picture";
+  refused("a.png: is no picture, or a damaged one");
+  const std::string whole = encode_png(Grid2d<std::uint8_t>(8, 6));
+  std::ofstream(folder_ / "a.png", std::ios::binary) << whole.substr(0, whole.size() - 12);
+  refused("a.png: is cut short");
+  std::string huge = whole;  // its header announces 100000 x 100000 pixels
+  huge.replace(16, 8, std::string("\0\1\x86\xa0\0\1\x86\xa0", 8));
+  std::ofstream(folder_ / "a.png", std::ios::binary) << huge;
+  refused("a.png: is 100000 x 100000, the camera has 8 x 6");
+  std::ofstream(folder_ / "rgb.txt") << "# nothing\n";
+  try {
+    load_tum_folder(folder_);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("rgb.txt: lists no picture"), std::string::npos);
+  }
+}
+
+TEST_F(TumFolder, KeepsTheOrderOfStampsThatGoBack) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "rgb.txt") << "0.1 a.png\n0.3 b.png\n0.2 c.png\n0.2 d.png\n";
+  std::ofstream(folder_ / "depth.txt") << "0.3 3.png\n0.2 2.png\n0.1 1.png\n";
+  const auto frames = load_tum_folder(folder_);
+  ASSERT_EQ(frames.size(), 4u);
+  EXPECT_EQ(frames[2].stamp_ns, 200'000'000);
+  EXPECT_EQ(frames[1].depth, folder_ / "3.png");
+  EXPECT_EQ(frames[3].color, folder_ / "d.png");
+}
+
+TEST_F(TumFolder, TakesTheNearestDepthAndTheFirstOfEquals) {
+  fs::create_directories(folder_);
+  // Stamps in tens of milliseconds, out of order and more than once; some lie as near on each side.
+  const RandomStream draw(7);
+  std::string colors, depths;
+  std::vector<Stamp> color_ns, depth_ns;
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    color_ns.push_back(static_cast<Stamp>(draw.below(2 * i, 200)) * 10'000'000);
+    depth_ns.push_back(static_cast<Stamp>(draw.below(2 * i + 1, 200)) * 10'000'000);
+    colors += format_stamp(color_ns.back()) + " c.png\n";
+    depths += format_stamp(depth_ns.back()) + " " + std::to_string(i) + ".png\n";
+  }
+  std::ofstream(folder_ / "rgb.txt") << colors;
+  std::ofstream(folder_ / "depth.txt") << depths;
+  std::vector<std::string> wanted, found;
+  for (const Stamp stamp_ns : color_ns) {
+    std::optional<std::size_t> best;
+    for (std::size_t i = 0; i < depth_ns.size(); ++i)
+      if (std::abs(depth_ns[i] - stamp_ns) <= 20'000'000 &&
+          (!best || std::abs(depth_ns[i] - stamp_ns) < std::abs(depth_ns[*best] - stamp_ns)))
+        best = i;
+    if (best) wanted.push_back(std::to_string(*best) + ".png");
+  }
+  for (const RecordedFrame& frame : load_tum_folder(folder_))
+    found.push_back(frame.depth.filename().string());
+  ASSERT_GT(wanted.size(), 20U);
+  EXPECT_EQ(found, wanted);
+}
+
+TEST(DepthUnits, RoundToTheNearestAndKeepToSixteenBits) {
+  for (int i = 0; i < 200'000; ++i) {
+    const float depth_m = static_cast<float>(i) * 7e-5F;
+    const double units = std::round(kDepthPerMeter * static_cast<double>(depth_m));
+    ASSERT_EQ(depth_units(depth_m), static_cast<std::uint16_t>(std::min(units, 65535.0)))
+        << depth_m;
+  }
+  EXPECT_EQ(depth_units(-1.0F), 0);
+  EXPECT_EQ(depth_units(std::numeric_limits<float>::infinity()), 65535);
+  EXPECT_EQ(depth_units(std::numeric_limits<float>::quiet_NaN()), 0) << "nothing came back";
+}
+
+TEST_F(TumFolder, ReadsAssociationsWhereTheListsAreMissing) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "associations.txt") << "0.1 a.png 0.11 b.png\n0.2 c.png 0.21 d.png\n";
+  const auto frames = load_tum_folder(folder_);
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_EQ(frames[1].color, folder_ / "c.png");
+  EXPECT_EQ(frames[1].depth, folder_ / "d.png");
+  // As listed, however far apart.
+  std::ofstream(folder_ / "associations.txt") << "0.1 a.png 0.2 b.png\n";
+  EXPECT_EQ(load_tum_folder(folder_)[0].depth, folder_ / "b.png");
+  std::ofstream(folder_ / "associations.txt") << "0.1 a.png\n";
+  EXPECT_THROW(load_tum_folder(folder_), InputError);
+}
+
+TEST_F(TumFolder, ReadsOrbSlamsOwnCalibration) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "TUM1.yaml")
+      << "%YAML:1.0\n\nCamera.fx: 517.3\nCamera.fy: 516.5\nCamera.cx: 318.6\nCamera.cy: 255.3\n"
+      << "Camera.k1: 0.2624\nCamera.bf: 40.0\nDepthMapFactor: 5000.0\nORBextractor.nFeatures: "
+         "1000\n";
+  const RecordedCamera camera = load_recorded_camera(folder_ / "TUM1.yaml");
+  EXPECT_DOUBLE_EQ(camera.camera.fx_px, 517.3);
+  EXPECT_DOUBLE_EQ(camera.camera.distortion.k1, 0.2624);
+  EXPECT_NEAR(camera.camera.baseline_m, 40.0 / 517.3, 1e-12);
+  std::ofstream(folder_ / "bad.yaml") << "Camera.fx: 517.3\n";
+  EXPECT_THROW(load_recorded_camera(folder_ / "bad.yaml"), InputError);
+}
+
+TEST(Slice, CutsATentIntoItsOutlineAtThatHeight) {
+  // A tent 2 m long over y, 2 m wide and 1 m high: at height h each side is cut at |x| = 1 - h.
+  Scene scene;
+  scene.positions_m = {{-1, 0, 0}, {-1, 2, 0}, {0, 0, 1}, {0, 2, 1}, {1, 0, 0}, {1, 2, 0}};
+  scene.triangles = {{0, 1, 2}, {1, 3, 2}, {4, 2, 5}, {5, 2, 3}};
+  scene.class_of = {1, 1, 2, 2};
+  const std::vector<SliceSegment> segments = slice(scene, 0.25);
+  ASSERT_EQ(segments.size(), 4u);
+  double length = 0;
+  for (const SliceSegment& s : segments) {
+    EXPECT_NEAR(std::abs(s.from_m.x()), 0.75, 1e-6);
+    EXPECT_NEAR(std::abs(s.to_m.x()), 0.75, 1e-6);
+    length += (s.from_m - s.to_m).norm();
+  }
+  EXPECT_NEAR(length, 4.0, 1e-6);
+  EXPECT_EQ(segments[0].class_id, 1);
+  EXPECT_TRUE(slice(scene, 1.5).empty());
+}
+
+}  // namespace
+}  // namespace mh

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Motions on floors as scanners and other programs leave them.
+#include "sim/world/travel.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "scenes/floor.hpp"
+#include "slam/core/error.hpp"
+#include "tests/scenes/scanned_room.hpp"
+#include "tests/sim/boxes.hpp"
+
+namespace mh {
+namespace {
+
+using test::ScannedRoom;
+
+Scene settled(Scene scene) {
+  const auto found = find_floor(scene);
+  scene.floor = found.value().floor;
+  scene.rooms = {found->room};
+  return scene;
+}
+
+double above(const Floor& floor, const Eigen::Vector3d& p) {
+  return floor.up.dot(p - floor.middle_m);
+}
+
+class RealFloor : public ::testing::TestWithParam<std::pair<bool, double>> {
+ protected:
+  static Scene scene() {
+    const auto [labeled, slope_deg] = GetParam();
+    ScannedRoom room{.slope = {std::tan(slope_deg * std::numbers::pi / 180), 0},
+                     .labeled = labeled};
+    room.has_floor = [](double x, double y) { return std::hypot(x - 1, y - 1) > 0.08; };
+    Scene scene = room.build();
+    room.add_table(scene, 1.2, 0.8);
+    return settled(std::move(scene));
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Floors, RealFloor,
+                         ::testing::Values(std::pair(true, 0.0), std::pair(false, 0.0),
+                                           std::pair(true, 1.5), std::pair(false, 1.5)));
+
+TEST_P(RealFloor, RobotDrivesAlongIt) {
+  const Scene room = scene();
+  const Robot robot = test::pepper();
+  const DrivenPath path = travel(room, robot, "auto:0");
+  EXPECT_GT(path.length_m, 8.0);
+  for (std::size_t i = 0; i < path.base.size(); ++i) {
+    const SE3& base = path.base[i].world_from_camera;
+    EXPECT_NEAR(above(room.floor, base.translation()), 0.0, 1e-9);
+    EXPECT_LT((base.rotation().col(2) - room.floor.up).norm(), 1e-9);
+    EXPECT_GT(above(room.floor, path.camera[i].world_from_camera.translation()), 1.0);
+    // Round the table, not through it.
+    EXPECT_FALSE(std::abs(base.translation().x()) < 0.6 && std::abs(base.translation().y()) < 0.4);
+  }
+}
+
+TEST_P(RealFloor, PersonScansIt) {
+  const Scene room = scene();
+  const DrivenPath path = travel(room, test::pepper(), "handheld:0:90");
+  ASSERT_EQ(path.camera.size(), 90U);
+  for (const TimedPose& pose : path.camera)
+    EXPECT_NEAR(above(room.floor, pose.world_from_camera.translation()), 1.4, 0.2);
+  for (const TimedPose& pose : path.base)
+    EXPECT_NEAR(above(room.floor, pose.world_from_camera.translation()), 0.0, 1e-9);
+}
+
+TEST(Travel, FloorThatLiesHigherLiftsThePathAndNothingElse) {
+  const auto at = [](double z_m) {
+    const ScannedRoom room{.floor_z_m = z_m, .noise_m = 0};
+    Scene scene = room.build();
+    room.add_table(scene, 1.25, 0.75);
+    return settled(std::move(scene));
+  };
+  const Scene low = at(0), high = at(0.0625);  // exact in binary, as are all heights
+  ASSERT_EQ(high.floor.middle_m.z(), 0.0625);
+  for (const char* motion : {"auto:1", "handheld:1:60"}) {
+    const DrivenPath a = travel(low, test::pepper(), motion),
+                     b = travel(high, test::pepper(), motion);
+    ASSERT_EQ(a.camera.size(), b.camera.size());
+    for (std::size_t i = 0; i < a.camera.size(); ++i) {
+      const SE3 &p = a.camera[i].world_from_camera, &q = b.camera[i].world_from_camera;
+      EXPECT_EQ(p.rotation(), q.rotation());
+      EXPECT_EQ((p.translation() + Eigen::Vector3d(0, 0, 0.0625)).eval(), q.translation());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mh
