@@ -126,7 +126,7 @@ std::string gate_suite_digest(const Suite& suite) {
           std::pair("mapping_tour", std::optional(e.mapping_tour)),
           std::pair("kidnapped_tour", e.kidnapped_tour), std::pair("query_tour", e.query_tour),
           std::pair("query_scene", e.query_scene), std::pair("sensors", e.sensors),
-          std::pair("walk", e.walk)})
+          std::pair("pedestrian", e.pedestrian)})
       text += content(what, source, inputs);
   }
   return hex(digest_bytes(text.data(), text.size()));

@@ -25,7 +25,7 @@ namespace mh::cli {
 namespace {
 
 struct Options {
-  std::string scene, robot = "pepper", walk, out;
+  std::string scene, robot = "pepper", pedestrian, out;
   MotionOption motion;
   SceneFrameOption frame;
   std::uint64_t seed = 0;
@@ -41,8 +41,8 @@ void run(Options options) {
     throw InputError("--sensors needs --out: a folder to write them into");
   check_motion(motion);
   const bool driven = is_driven(motion);
-  for (const auto& [given, option] :
-       {std::pair(options.sensors, "--sensors"), std::pair(!options.walk.empty(), "--walk")})
+  for (const auto& [given, option] : {std::pair(options.sensors, "--sensors"),
+                                      std::pair(!options.pedestrian.empty(), "--pedestrian")})
     if (given && !driven)
       throw InputError(fmt::format(
           "{}: motion '{}' moves a camera by hand, no robot drives along it", option, motion));
@@ -54,13 +54,14 @@ void run(Options options) {
     folder.emplace(out, "drive", std::move(names));
   }
   const Robot robot = load_robot(options.robot);
-  const std::optional<Walk> walk =
-      options.walk.empty() ? std::nullopt : std::optional(load_walk(options.walk));
+  const std::optional<Pedestrian> pedestrian =
+      options.pedestrian.empty() ? std::nullopt
+                                 : std::optional(load_pedestrian(options.pedestrian));
   std::vector<std::string> warnings;
   const Scene scene = load_scene(options.scene, &warnings, options.frame.frame());
   print_warnings(warnings);
   std::vector<MovingObstacle> others;
-  if (walk) others.push_back(as_obstacle(scene, *walk));
+  if (pedestrian) others.push_back(as_obstacle(scene, *pedestrian));
   if (const std::string note = note_on(motion, robot); !note.empty())
     fmt::print(stderr, "modelhouse: warning: {}\n", note);
   const DrivenPath path = travel(scene, robot, motion, others);
@@ -123,8 +124,8 @@ void add_drive(CLI::App& app) {
   options->motion.add_to(*command);
   options->frame.add_to(*command);
   command->add_option("--robot", options->robot, "Robot (YAML), or the name of a shipped one");
-  command->add_option("--walk", options->walk,
-                      "Somebody who walks about meanwhile (YAML); reflex and sensors notice him");
+  command->add_option("--pedestrian", options->pedestrian,
+                      "Adds a pedestrian (YAML); reflex and sensors notice him");
   command->add_option("--out", options->out, "Folder for camera.tum and base.tum");
   command->add_flag(
       "--sensors", options->sensors,

@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string scene, robot = "pepper", camera, level, walk, out, format = "tum",
+  std::string scene, robot = "pepper", camera, level, pedestrian, out, format = "tum",
                      renderer = "embree";
   std::string labels = "exact";
   MotionOption motion;
@@ -58,8 +58,8 @@ std::string settings_of(const Options& o, const Scene& scene, const Trajectory& 
                                  {"camera", o.camera},
                                  {"level", o.level},
                                  {"level_digest", digest_of_file(o.level)},
-                                 {"walk", o.walk},
-                                 {"walk_digest", digest_of_file(o.walk)},
+                                 {"pedestrian", o.pedestrian},
+                                 {"pedestrian_digest", digest_of_file(o.pedestrian)},
                                  {"format", o.format},
                                  {"renderer", o.renderer},
                                  {"every", o.sequence.every},
@@ -161,8 +161,8 @@ void run(Options options) {
   SensorConfig sensors;
   sensors.depth_noise_on = sensors.color_noise_on = false;
   if (!options.level.empty()) sensors = load_sensor_config(options.level);
-  std::optional<Walk> walk;
-  if (!options.walk.empty()) walk = load_walk(options.walk);
+  std::optional<Pedestrian> pedestrian;
+  if (!options.pedestrian.empty()) pedestrian = load_pedestrian(options.pedestrian);
 
   Progress progress("render");
   progress.say(fmt::format("scene {}", options.scene));
@@ -180,7 +180,7 @@ void run(Options options) {
   if (const std::string note = note_on(motion, robot); !note.empty())
     progress.say("warning: " + note);
   std::vector<MovingObstacle> others;
-  if (walk) others.push_back(as_obstacle(scene, *walk));
+  if (pedestrian) others.push_back(as_obstacle(scene, *pedestrian));
   DrivenPath driven = travel(scene, robot, motion, others);
   const Camera camera = mounted != nullptr ? mounted->camera : robot.camera;
   const Trajectory path = mounted != nullptr
@@ -197,11 +197,13 @@ void run(Options options) {
     options.sequence.resume = true;
   }
   write_atomically(out / "render.json", settings);
-  std::shared_ptr<const WalkedScene> walked;
-  if (walk) walked = make_walked_scene(scene, renderer, *walk);
+  std::shared_ptr<const PedestrianScene> pedestrian_scene;
+  if (pedestrian) pedestrian_scene = make_pedestrian_scene(scene, renderer, *pedestrian);
   const Shutter shutter =
-      walked ? Shutter([walked](Stamp stamp) { return walked->at(stamp); }, camera, path, sensors)
-             : Shutter(renderer, camera, path, sensors);
+      pedestrian_scene
+          ? Shutter([pedestrian_scene](Stamp stamp) { return pedestrian_scene->at(stamp); }, camera,
+                    path, sensors)
+          : Shutter(renderer, camera, path, sensors);
   const Camera camera_told = recorded_camera(shutter.camera(), options.sequence);
   if (options.format == "scannet") {  // one file for all: frames in order, one by one
     const std::vector<std::size_t> wanted = moments(shutter, sensors, options.sequence);
@@ -251,8 +253,8 @@ void add_render(CLI::App& app) {
                       "Another of the robot's cameras, by its name in the robot's file");
   command->add_option("--level", options->level,
                       "Sensor level (YAML), or the name of a shipped one; without: no noise");
-  command->add_option("--walk", options->walk,
-                      "Somebody who walks about meanwhile (YAML); a robot that drives meets him");
+  command->add_option("--pedestrian", options->pedestrian,
+                      "Adds a pedestrian (YAML); a robot that drives meets him");
   command
       ->add_option("--out", options->out,
                    "Folder to write; goes on where it was stopped (scannet: anew, as a .sens is "

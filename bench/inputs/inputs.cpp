@@ -13,8 +13,8 @@
 #include "scenes/load.hpp"
 #include "sim/motion/motion.hpp"
 #include "sim/sensors/sensors.hpp"
+#include "sim/world/pedestrian.hpp"
 #include "sim/world/travel.hpp"
-#include "sim/world/walker.hpp"
 #include "slam/vocabulary/vocabulary.hpp"
 
 namespace mh {
@@ -78,7 +78,8 @@ std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
   add("mapping_tour", "motion", e.mapping_tour, read_motion);
   add("query_tour", "motion", e.query_tour, read_motion);
   add("kidnapped_tour", "tour", e.kidnapped_tour, [](const fs::path& file) { load_tour(file); });
-  add("walk", "walk", e.walk, [](const fs::path& file) { load_walk(file); });
+  add("pedestrian", "pedestrian", e.pedestrian,
+      [](const fs::path& file) { load_pedestrian(file); });
   add("scene", "scene", e.scene, load_place);
   add("query_scene", "scene", e.query_scene, load_place);
   return inputs;

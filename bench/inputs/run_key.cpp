@@ -57,7 +57,7 @@ std::string stored_spec(const RunSpec& spec) {
   shorten("query_scene", spec.environment.query_scene);
   shorten("kidnapped_tour", spec.environment.kidnapped_tour);
   shorten("sensors", spec.environment.sensors);
-  shorten("walk", spec.environment.walk);
+  shorten("pedestrian", spec.environment.pedestrian);
   json["level"] = level_name(spec.level);
   json["vocabulary"] = name_of(spec.vocabulary);
   if (spec.system.kind == SystemKind::kOutside) json["system"]["outside"].erase("folder");

@@ -94,7 +94,7 @@ std::vector<Environment> read_entry(YamlReader node, const SuitePaths& paths,
   const auto query_scene = node.find("query_scene");
   if (query_scene && !query_tour) query_scene->fail("needs a query_tour");
   const auto kidnapped_tour = node.find("kidnapped_tour");
-  const auto sensors = node.find("sensors"), walk = node.find("walk");
+  const auto sensors = node.find("sensors"), pedestrian = node.find("pedestrian");
   const SceneFrame frame = read_scene_frame(node);
   const auto robot = node.find("robot");
   if (!robot && !default_robot) node.at("robot");  // tells that it is missing
@@ -114,7 +114,7 @@ std::vector<Environment> read_entry(YamlReader node, const SuitePaths& paths,
     if (query_scene) e.query_scene = read_scene(*query_scene, paths, i);
     if (kidnapped_tour) e.kidnapped_tour = named_file(*kidnapped_tour, paths, Shipped::kTour);
     if (sensors) e.sensors = named_file(*sensors, paths, Shipped::kLevel);
-    if (walk) e.walk = named_file(*walk, paths);
+    if (pedestrian) e.pedestrian = named_file(*pedestrian, paths);
     environments.push_back(std::move(e));
   }
   return environments;

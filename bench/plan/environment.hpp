@@ -12,7 +12,7 @@
 
 namespace mh {
 
-/// A place to be mapped and asked about, as data: a scene and how it is walked through. `scene` and
+/// A place to be mapped and asked about, as data: a scene and how it is crossed. `scene` and
 /// the tours are files, or made by code: "generated:KIND:SEED" (see is_generated). In a suite a
 /// tour may also be `auto[:SEED]` or `handheld[:SEED[:FRAMES]]` (sim/world/travel.hpp); the
 /// mapping tour is `auto` where none is given.
@@ -26,8 +26,8 @@ struct Environment {
   std::optional<std::filesystem::path> query_scene = {};  ///< of the second tour; none: the scene
   /// From one frame to the next the robot is put to the start of this tour, and maps on.
   std::optional<std::filesystem::path> kidnapped_tour = {};
-  std::optional<std::filesystem::path> sensors = {};  ///< settings in the place of the level's
-  std::optional<std::filesystem::path> walk = {};     ///< of a person, while the robot maps
+  std::optional<std::filesystem::path> sensors = {};     ///< settings in the place of the level's
+  std::optional<std::filesystem::path> pedestrian = {};  ///< while the robot maps
 };
 
 /// Whether a source names something that code makes ("generated:bathroom:0") instead of a file.

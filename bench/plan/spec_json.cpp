@@ -79,7 +79,7 @@ Json to_json(const Environment& e) {
                {"query_scene", path_json(e.query_scene)},
                {"kidnapped_tour", path_json(e.kidnapped_tour)},
                {"sensors", path_json(e.sensors)},
-               {"walk", path_json(e.walk)}};
+               {"pedestrian", path_json(e.pedestrian)}};
   if (e.frame != SceneFrame{}) json["frame"] = to_json(e.frame);
   return json;
 }
@@ -95,7 +95,7 @@ Environment environment_from_json(const Json& json) {
           .query_scene = path_from_json(json.at("query_scene")),
           .kidnapped_tour = path_from_json(json.at("kidnapped_tour")),
           .sensors = path_from_json(json.at("sensors")),
-          .walk = path_from_json(json.at("walk"))};
+          .pedestrian = path_from_json(json.at("pedestrian"))};
 }
 
 ProtocolConfig protocol_from_json(const Json& p) {

@@ -42,7 +42,8 @@ void check_places(const std::vector<Job>& jobs, InputReader& inputs,
                   const std::function<void(std::string_view)>& say) {
   std::set<std::string> programs;
   struct Uses {
-    std::set<std::tuple<fs::path, fs::path, std::optional<fs::path>>> drives;  // robot, tour, walk
+    std::set<std::tuple<fs::path, fs::path, std::optional<fs::path>>>
+        drives;  // robot, tour, pedestrian
     std::set<LabelMode> labels;
   };
   std::map<std::pair<fs::path, SceneFrame>, Uses> uses_of;  // of each scene
@@ -52,13 +53,13 @@ void check_places(const std::vector<Job>& jobs, InputReader& inputs,
       require_program(spec.system.outside);
     const Environment& e = spec.environment;
     const auto note = [&](const fs::path& scene, const std::optional<fs::path>& tour,
-                          const std::optional<fs::path>& walk = {}) {
+                          const std::optional<fs::path>& pedestrian = {}) {
       if (is_generated(scene)) return;
       Uses& uses = uses_of[{scene, e.frame}];
       uses.labels.insert(spec.labels);
-      if (tour && !is_generated(*tour)) uses.drives.insert({e.robot, *tour, walk});
+      if (tour && !is_generated(*tour)) uses.drives.insert({e.robot, *tour, pedestrian});
     };
-    note(e.scene, e.mapping_tour, e.walk);
+    note(e.scene, e.mapping_tour, e.pedestrian);
     note(e.scene, e.kidnapped_tour);
     note(e.query_scene.value_or(e.scene), e.query_tour);
   }
@@ -69,9 +70,9 @@ void check_places(const std::vector<Job>& jobs, InputReader& inputs,
     for (const LabelMode labels : uses.labels)
       if (const std::string warning = check_labels(*scene, labels); !warning.empty())
         say("warning: " + warning);
-    for (const auto& [robot, tour, walk] : uses.drives) {
+    for (const auto& [robot, tour, pedestrian] : uses.drives) {
       std::vector<MovingObstacle> others;
-      if (walk) others.push_back(as_obstacle(*scene, load_walk(*walk)));
+      if (pedestrian) others.push_back(as_obstacle(*scene, load_pedestrian(*pedestrian)));
       travel(*scene, load_robot(robot), tour, others);
     }
   }

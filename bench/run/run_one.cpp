@@ -174,7 +174,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   const RunTamper& tamper = tools.tamper;
   const Camera& camera = world.robot.camera;
   const SimulatedSequence mapping(world.renderer, camera, world.mapping.camera, world.sensors,
-                                  spec.labels, world.walked);
+                                  spec.labels, world.pedestrian_scene);
   WorkDone work(pieces_of_work(spec, world), tools.progress);
   RunResult run;
   run.spec = spec;

@@ -69,9 +69,10 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   if (environment.kidnapped_tour)
     input("kidnapped_tour", *environment.kidnapped_tour,
           [&] { return load_tour(*environment.kidnapped_tour); });
-  std::optional<Walk> walk;
-  if (environment.walk)
-    walk = input("walk", *environment.walk, [&] { return load_walk(*environment.walk); });
+  std::optional<Pedestrian> pedestrian;
+  if (environment.pedestrian)
+    pedestrian = input("pedestrian", *environment.pedestrian,
+                       [&] { return load_pedestrian(*environment.pedestrian); });
 
   const auto lit_scene = [&](const char* name, const std::filesystem::path& file) {
     Scene scene = input(name, file, [&] { return load_scene(file, nullptr, environment.frame); });
@@ -81,7 +82,8 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   const auto scene = lit_scene("scene", environment.scene);
   world.scene = scene;
   world.renderer = make_scene_renderer(*scene);
-  if (walk) world.walked = make_walked_scene(*scene, world.renderer, *walk);
+  if (pedestrian)
+    world.pedestrian_scene = make_pedestrian_scene(*scene, world.renderer, *pedestrian);
 
   const auto lose_frames = [&](DrivenPath& path) {
     const RandomStream same_for_every_trial(0);
@@ -89,18 +91,19 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
     path.base = arriving_frames(path.base, world.sensors, same_for_every_trial);
   };
   const double rate_hz = world.robot.camera.rate_hz;
-  const auto walker = [&](std::size_t frames_before) {
+  const auto obstacles = [&](std::size_t frames_before) {
     std::vector<MovingObstacle> others;
-    if (walk)
-      others.push_back(as_obstacle(*scene, *walk, static_cast<double>(frames_before) / rate_hz));
+    if (pedestrian)
+      others.push_back(
+          as_obstacle(*scene, *pedestrian, static_cast<double>(frames_before) / rate_hz));
     return others;
   };
   world.mapping = input("mapping_tour", environment.mapping_tour, [&] {
-    return travel(*scene, world.robot, environment.mapping_tour, walker(0));
+    return travel(*scene, world.robot, environment.mapping_tour, obstacles(0));
   });
   if (environment.kidnapped_tour) {
     const DrivenPath elsewhere = travel(*scene, world.robot, environment.kidnapped_tour->string(),
-                                        walker(world.mapping.camera.size()));
+                                        obstacles(world.mapping.camera.size()));
     world.mapping = joined(std::move(world.mapping), elsewhere, rate_hz);
   }
   lose_frames(world.mapping);

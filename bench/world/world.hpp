@@ -17,7 +17,7 @@
 #include "sim/render/renderer.hpp"
 #include "sim/sensors/labels.hpp"
 #include "sim/sensors/sensors.hpp"
-#include "sim/world/walker.hpp"
+#include "sim/world/pedestrian.hpp"
 #include "slam/vocabulary/vocabulary.hpp"
 
 namespace mh {
@@ -31,7 +31,8 @@ struct World {
   std::optional<DrivenPath> second;           ///< the second tour, where the environment has one
   std::shared_ptr<const Scene> second_scene;  ///< where it takes place; null: the same scene
   std::shared_ptr<const Renderer> second_renderer;  ///< of that scene, likewise
-  std::shared_ptr<const WalkedScene> walked;        ///< who walks about during the mapping; or null
+  std::shared_ptr<const PedestrianScene>
+      pedestrian_scene;  ///< with whoever is about during the mapping; or null
   std::shared_ptr<const Vocabulary> vocabulary;
   SensorConfig sensors;             ///< the level
   bool cut = false;                 ///< the tours were cut after RunSpec::max_frames

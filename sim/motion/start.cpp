@@ -17,7 +17,7 @@ std::string name_of(const Scene& scene, InstanceId id) {
   if (id == 0) return "something";
   for (const Instance& instance : scene.instances)
     if (instance.id == id) return instance.name;
-  return "somebody who walks about";
+  return "a pedestrian";
 }
 
 }  // namespace

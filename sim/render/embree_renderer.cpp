@@ -39,8 +39,8 @@ struct Output {
 };
 
 /// What a thread works with.
-struct Bench {
-  explicit Bench(const View& view) : packets(Tile::kPackets), seen(Tile::kPackets) {
+struct Scratch {
+  explicit Scratch(const View& view) : packets(Tile::kPackets), seen(Tile::kPackets) {
     for (Packet& packet : packets) packet.start(view);
   }
   std::vector<Packet> packets;
@@ -49,18 +49,18 @@ struct Bench {
   Tile tile;
   FlushDenormals flush;
 };
-struct EdgeBench {
-  explicit EdgeBench(const View& view) { packet.start(view); }
+struct EdgeScratch {
+  explicit EdgeScratch(const View& view) { packet.start(view); }
   Packet packet;
   std::vector<Pixel> edges;
   FlushDenormals flush;
 };
 
 /// The panes of a scene, where it has any.
-class Panes {
+class Glass {
  public:
-  Panes(const Scene& scene, const RenderConfig& config)
-      : bvh_(scene, config.threads, config.portable, false, Faces::kPanes) {
+  Glass(const Scene& scene, const RenderConfig& config)
+      : bvh_(scene, config.threads, config.portable, false, Faces::kGlass) {
     for (const std::uint16_t material : scene.material_of)
       transmission_.push_back(scene.materials[material].transmission);
   }
@@ -105,7 +105,7 @@ class EmbreeRenderer final : public Renderer {
         lit_(!scene.light.empty()),
         bvh_(scene, config.threads, config.portable),
         shading_(scene, bvh_, config.exposure) {
-    if (std::ranges::any_of(scene.materials, &Material::is_pane)) panes_.emplace(scene, config);
+    if (std::ranges::any_of(scene.materials, &Material::is_pane)) glass_.emplace(scene, config);
   }
 
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
@@ -113,20 +113,20 @@ class EmbreeRenderer final : public Renderer {
     const View view(camera, world_from_camera);
     RenderedFrame frame = empty_frame(view.width, view.height);
     parallel_for((view.height + Tile::kHeight - 1) / Tile::kHeight, config_.threads,
-                 [&] { return Bench(view); },
-                 [&](int row, Bench& bench) {
+                 [&] { return Scratch(view); },
+                 [&](int row, Scratch& scratch) {
                    for (int x = 0; x < view.width; x += Tile::kWidth)
-                     render_tile(view, x, row * Tile::kHeight, bench, frame);
+                     render_tile(view, x, row * Tile::kHeight, scratch, frame);
                    _mm_sfence();
                  });
     if (config_.antialiasing != Antialiasing::kEdges) return frame;
     parallel_for((view.height + kEdgeBlock - 1) / kEdgeBlock, config_.threads,
-                 [&] { return EdgeBench(view); },
-                 [&](int row, EdgeBench& bench) {
-                   find_edges(frame, row * kEdgeBlock, bench.edges);
-                   for (std::size_t first = 0; first < bench.edges.size();
+                 [&] { return EdgeScratch(view); },
+                 [&](int row, EdgeScratch& scratch) {
+                   find_edges(frame, row * kEdgeBlock, scratch.edges);
+                   for (std::size_t first = 0; first < scratch.edges.size();
                         first += kLanes / kEdgeSamples)
-                     smooth(view, bench.edges, first, bench.packet, frame);
+                     smooth(view, scratch.edges, first, scratch.packet, frame);
                  });
     return frame;
   }
@@ -150,47 +150,47 @@ class EmbreeRenderer final : public Renderer {
   /// What reaches the camera of what a packet's lanes show.
   Radiance light_of(const Packet& packet, const Seen& seen) const {
     Radiance light = shading_.shade(packet, seen);
-    if (panes_) panes_->dim(packet, light);
+    if (glass_) glass_->dim(packet, light);
     return light;
   }
 
-  void render_tile(const View& view, int x0, int y0, Bench& bench, RenderedFrame& frame) const {
+  void render_tile(const View& view, int x0, int y0, Scratch& scratch, RenderedFrame& frame) const {
     const int count = std::min(Tile::kPackets, (view.width - x0 + kSide - 1) / kSide);
     const auto for_each = [&](const auto& work) {
       for (int k = 0; k < count; ++k) work(static_cast<std::size_t>(k), x0 + kSide * k);
     };
     const float pixel_area = view.pixel_width * view.pixel_height;
-    std::vector<Packet>& packets = bench.packets;
-    std::vector<Seen>& seen = bench.seen;
+    std::vector<Packet>& packets = scratch.packets;
+    std::vector<Seen>& seen = scratch.seen;
     const bool supersample = config_.antialiasing == Antialiasing::kSupersample;
     if (supersample) {
-      bench.light.assign(Tile::kPackets, Radiance{});
+      scratch.light.assign(Tile::kPackets, Radiance{});
       for (const Offset& offset : kQuarters) {
-        trace_tile(view, y0, for_each, offset, 0.25F * pixel_area, bench);
+        trace_tile(view, y0, for_each, offset, 0.25F * pixel_area, scratch);
         for_each([&](std::size_t k, int) {
           const Radiance light = light_of(packets[k], seen[k]);
           for (std::size_t i = 0; i < kLanes / 2; ++i)
-            bench.light[k].of[i] =
-                _mm256_add_ps(bench.light[k].of[i],
+            scratch.light[k].of[i] =
+                _mm256_add_ps(scratch.light[k].of[i],
                               _mm256_mul_ps(_mm256_set1_ps(0.25F), up_to_white(light.of[i])));
         });
       }
     }
-    trace_tile(view, y0, for_each, {}, pixel_area, bench);
+    trace_tile(view, y0, for_each, {}, pixel_area, scratch);
     for_each([&](std::size_t k, int x) {
-      bench.tile.set(k, supersample ? bench.light[k] : light_of(packets[k], seen[k]), seen[k]);
+      scratch.tile.set(k, supersample ? scratch.light[k] : light_of(packets[k], seen[k]), seen[k]);
       if (any_extra()) write_extra(packets[k], seen[k], x, y0, frame);
     });
-    bench.tile.store(x0, y0, frame);
+    scratch.tile.store(x0, y0, frame);
   }
 
   template <class ForEach>
   void trace_tile(const View& view, int y0, const ForEach& for_each, const Offset& offset,
-                  float pixel_area, Bench& bench) const {
+                  float pixel_area, Scratch& scratch) const {
     alignas(64) std::array<int, kLanes> all;
     all.fill(-1);
-    std::vector<Packet>& packets = bench.packets;
-    std::vector<Seen>& seen = bench.seen;
+    std::vector<Packet>& packets = scratch.packets;
+    std::vector<Seen>& seen = scratch.seen;
     for_each([&](std::size_t k, int x) { packets[k].aim(view, x, y0, offset); });
     // The records that a packet asks for arrive while the next one is traced.
     for_each([&](std::size_t k, int) {
@@ -290,7 +290,7 @@ class EmbreeRenderer final : public Renderer {
   bool lit_;
   EmbreeScene bvh_;
   Shading shading_;
-  std::optional<Panes> panes_;
+  std::optional<Glass> glass_;
 };
 
 }  // namespace

@@ -67,7 +67,7 @@ EmbreeScene::EmbreeScene(const Scene& scene, int build_threads, bool portable, b
   for (std::uint32_t f = 0; f < scene.triangles.size(); ++f) {
     const Material* material =
         scene.materials.empty() ? nullptr : &scene.materials[scene.material_of[f]];
-    if ((material != nullptr && material->is_pane()) != (which == Faces::kPanes)) continue;
+    if ((material != nullptr && material->is_pane()) != (which == Faces::kGlass)) continue;
     const bool emits = material != nullptr && !material->emission.isZero();
     const bool has_holes = !scene.uvs.empty() && material != nullptr && !material->opacity.empty();
     (emits ? luminous : has_holes ? cut_out : opaque).push_back(f);

@@ -44,7 +44,7 @@ struct CutOuts {
 };
 
 /// What stops a ray, or what a ray passes and is tinted by (Material::transmission).
-enum class Faces { kSurfaces, kPanes };
+enum class Faces { kSurfaces, kGlass };
 
 /// Surfaces or panes of a scene in an Embree hierarchy; owns all that it needs. Tracing is safe
 /// from several threads. One place for the differences between Embree 3 and 4.

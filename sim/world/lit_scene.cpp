@@ -31,10 +31,10 @@ std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene, std::string_vi
   return make_renderer(renderer, scene, {.exposure = exposure_of(scene)});
 }
 
-std::shared_ptr<const WalkedScene> make_walked_scene(const Scene& scene,
-                                                     std::shared_ptr<const Renderer> renderer,
-                                                     const Walk& walk) {
-  return std::make_shared<const WalkedScene>(scene, std::move(renderer), exposure_of(scene), walk);
+std::shared_ptr<const PedestrianScene> make_pedestrian_scene(
+    const Scene& scene, std::shared_ptr<const Renderer> renderer, const Pedestrian& pedestrian) {
+  return std::make_shared<const PedestrianScene>(scene, std::move(renderer), exposure_of(scene),
+                                                 pedestrian);
 }
 
 }  // namespace mh

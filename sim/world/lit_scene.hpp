@@ -11,7 +11,7 @@
 #include "scenes/scene_frame.hpp"
 #include "sim/render/bake.hpp"
 #include "sim/render/renderer.hpp"
-#include "sim/world/walker.hpp"
+#include "sim/world/pedestrian.hpp"
 
 namespace mh {
 
@@ -32,9 +32,8 @@ Scene load_lit_scene(const std::filesystem::path& file, int threads,
 std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene,
                                               std::string_view renderer = "embree");
 
-/// The scene with somebody who walks through it, shown with the scene's exposure.
-std::shared_ptr<const WalkedScene> make_walked_scene(const Scene& scene,
-                                                     std::shared_ptr<const Renderer> renderer,
-                                                     const Walk& walk);
+/// The scene with a pedestrian, shown with the scene's exposure.
+std::shared_ptr<const PedestrianScene> make_pedestrian_scene(
+    const Scene& scene, std::shared_ptr<const Renderer> renderer, const Pedestrian& pedestrian);
 
 }  // namespace mh

@@ -7,8 +7,11 @@ namespace mh {
 namespace {
 
 Shutter::SceneAt scene_at(std::shared_ptr<const Renderer> renderer,
-                          std::shared_ptr<const WalkedScene> walked) {
-  if (walked) return [walked = std::move(walked)](Stamp stamp_ns) { return walked->at(stamp_ns); };
+                          std::shared_ptr<const PedestrianScene> pedestrian_scene) {
+  if (pedestrian_scene)
+    return [pedestrian_scene = std::move(pedestrian_scene)](Stamp stamp_ns) {
+      return pedestrian_scene->at(stamp_ns);
+    };
   return [renderer = std::move(renderer)](Stamp) { return renderer; };
 }
 
@@ -16,8 +19,9 @@ Shutter::SceneAt scene_at(std::shared_ptr<const Renderer> renderer,
 
 SimulatedSequence::SimulatedSequence(std::shared_ptr<const Renderer> renderer, Camera camera,
                                      std::vector<TimedPose> world_from_camera, SensorConfig sensors,
-                                     LabelMode labels, std::shared_ptr<const WalkedScene> walked)
-    : shutter_(scene_at(std::move(renderer), std::move(walked)), camera,
+                                     LabelMode labels,
+                                     std::shared_ptr<const PedestrianScene> pedestrian_scene)
+    : shutter_(scene_at(std::move(renderer), std::move(pedestrian_scene)), camera,
                std::move(world_from_camera), sensors),
       sensors_(sensors),
       labels_(labels) {}

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/sensors/shutter.hpp"
-#include "sim/world/walker.hpp"
+#include "sim/world/pedestrian.hpp"
 #include "slam/core/trajectory.hpp"
 
 namespace mh {
@@ -25,10 +25,11 @@ struct SimulatedFrame {
 /// the same `attempt` stream is the same bits whenever and wherever it is asked for.
 class SimulatedSequence {
  public:
-  /// @param walked  `renderer`'s scene with somebody who walks through it; may be null
+  /// @param pedestrian_scene  `renderer`'s scene with a pedestrian; may be null
   SimulatedSequence(std::shared_ptr<const Renderer> renderer, Camera camera,
                     std::vector<TimedPose> world_from_camera, SensorConfig sensors,
-                    LabelMode labels, std::shared_ptr<const WalkedScene> walked = nullptr);
+                    LabelMode labels,
+                    std::shared_ptr<const PedestrianScene> pedestrian_scene = nullptr);
 
   std::size_t size() const { return path().size(); }
   const Camera& camera() const { return shutter_.camera(); }

@@ -125,12 +125,12 @@ std::string note_on(const std::string& motion, const Robot& robot) {
                 kDegreesPerRad * robot.limits.max_turn_rad_per_s);
 }
 
-MovingObstacle as_obstacle(const Scene& scene, const Walk& walk, double from_s) {
-  return {.radius_m = kWalkerRadius_m,
-          .height_m = kWalkerHeight_m,
-          .instance = walker_instance(scene),
+MovingObstacle as_obstacle(const Scene& scene, const Pedestrian& pedestrian, double from_s) {
+  return {.radius_m = kPedestrianRadius_m,
+          .height_m = kPedestrianHeight_m,
+          .instance = pedestrian_instance(scene),
           .path = [=](double time_s) -> Eigen::Vector2d {
-            return world_from_walker(walk, std::llround(1e9 * (from_s + time_s)))
+            return world_from_pedestrian(pedestrian, std::llround(1e9 * (from_s + time_s)))
                 .translation()
                 .head<2>();
           }};

@@ -8,7 +8,7 @@
 #include "robots/model/robot.hpp"
 #include "scenes/scene.hpp"
 #include "sim/motion/motion.hpp"
-#include "sim/world/walker.hpp"
+#include "sim/world/pedestrian.hpp"
 
 namespace mh {
 
@@ -39,8 +39,8 @@ bool is_driven(const std::string& motion);
 /// What the robot does not do as the motion's file asks, for the user; "" if nothing.
 std::string note_on(const std::string& motion, const Robot& robot);
 
-/// The walker as the physics meets him, from a time of his walk on.
-MovingObstacle as_obstacle(const Scene& scene, const Walk& walk, double from_s = 0);
+/// The pedestrian as the physics meets him, from a time of his way on.
+MovingObstacle as_obstacle(const Scene& scene, const Pedestrian& pedestrian, double from_s = 0);
 
 /// Whether `motion` can be read: what can be told without the scene. @throws InputError if not.
 void check_motion(const std::string& motion);

@@ -8,8 +8,8 @@
 #include "bench/plan/suite.hpp"
 #include "bench/world/world.hpp"
 #include "scenes/load.hpp"
+#include "sim/world/pedestrian.hpp"
 #include "sim/world/travel.hpp"
-#include "sim/world/walker.hpp"
 
 namespace mh {
 namespace {
@@ -64,22 +64,22 @@ TEST(ScenarioData, InTheEveningTheLightIsAnotherAndNothingMoved) {
 TEST(ScenarioData, TheRobotDoesNotRunIntoThePersonWhoWalksByInFrontOfIt) {
   const Scene room = load_scene(kFolder + "room.yaml");
   const Robot robot = load_robot(kFolder + "robot.yaml");
-  const Walk walk = load_walk(kFolder + "walk.yaml");
+  const Pedestrian pedestrian = load_pedestrian(kFolder + "pedestrian.yaml");
   const DrivenPath path = drive(room, robot, load_tour(kFolder + "tours/room.yaml"));
   double nearest_m = 1e9;
   int seen = 0;
   for (std::size_t i = 0; i < path.base.size(); ++i) {
-    const SE3 walker = world_from_walker(walk, path.base[i].stamp_ns);
+    const SE3 body = world_from_pedestrian(pedestrian, path.base[i].stamp_ns);
     nearest_m = std::min(
-        nearest_m, (walker.translation() - path.base[i].world_from_camera.translation()).norm());
+        nearest_m, (body.translation() - path.base[i].world_from_camera.translation()).norm());
     const Eigen::Vector3d chest = path.camera[i].world_from_camera.inverse() *
-                                  (walker.translation() + Eigen::Vector3d(0, 0, 1.2));
+                                  (body.translation() + Eigen::Vector3d(0, 0, 1.2));
     seen += chest.z() > 0 && std::abs(chest.x()) < 0.5 * chest.z() ? 1 : 0;
   }
-  EXPECT_GT(nearest_m, robot.footprint_radius_m + kWalkerRadius_m);
+  EXPECT_GT(nearest_m, robot.footprint_radius_m + kPedestrianRadius_m);
   // The physics knows him: the way is the same bits because he touches nobody.
   const DrivenPath with_him =
-      travel(room, robot, kFolder + "tours/room.yaml", {as_obstacle(room, walk)});
+      travel(room, robot, kFolder + "tours/room.yaml", {as_obstacle(room, pedestrian)});
   ASSERT_EQ(with_him.base.size(), path.base.size());
   for (std::size_t i = 0; i < path.base.size(); ++i) {
     const SE3 &a = with_him.base[i].world_from_camera, &b = path.base[i].world_from_camera;

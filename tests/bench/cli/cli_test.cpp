@@ -587,7 +587,8 @@ TEST_F(CommandLine, APersonInTheWayStopsADriveAndIsSeenBySensors) {
   const fs::path script = write("forward.yaml",
                                 "name: forward\nstart: {position: [1, 2], heading_deg: 0}\n"
                                 "commands: [{for_s: 12, forward_m_per_s: 0.4}]\n");
-  const fs::path walk = write("walk.yaml", "path: [[4, 2], [4, 2.05]]\nspeed_m_per_s: 0.01\n");
+  const fs::path pedestrian =
+      write("pedestrian.yaml", "path: [[4, 2], [4, 2.05]]\nspeed_m_per_s: 0.01\n");
   const fs::path out = folder_ / "out";
   const auto drive = [&](const std::string& more) {
     EXPECT_EQ(run("drive " + mesh.string() + " --motion commands:" + script.string() + " --robot " +
@@ -597,7 +598,7 @@ TEST_F(CommandLine, APersonInTheWayStopsADriveAndIsSeenBySensors) {
     return nlohmann::json::parse(out_)["length_m"].get<double>();
   };
   EXPECT_GT(drive(""), 4.0);
-  EXPECT_NEAR(drive(" --walk " + walk.string() + " --sensors --out " + out.string()),
+  EXPECT_NEAR(drive(" --pedestrian " + pedestrian.string() + " --sensors --out " + out.string()),
               3 - 0.26 - 0.22 - 0.40, 0.01);
   const std::string sonars = content(out / "sonars.csv");
   const std::string last = sonars.substr(sonars.rfind('\n', sonars.size() - 2) + 1);
@@ -606,7 +607,8 @@ TEST_F(CommandLine, APersonInTheWayStopsADriveAndIsSeenBySensors) {
   const std::string render = "render " + mesh.string() + " --motion commands:" + script.string() +
                              " --robot " + robot_ + " --every 100 --out ";
   ASSERT_EQ(run(render + (folder_ / "alone").string()), 0) << err_;
-  ASSERT_EQ(run(render + (folder_ / "met").string() + " --walk " + walk.string()), 0) << err_;
+  ASSERT_EQ(run(render + (folder_ / "met").string() + " --pedestrian " + pedestrian.string()), 0)
+      << err_;
   EXPECT_NE(content(folder_ / "alone/groundtruth.txt"), content(folder_ / "met/groundtruth.txt"));
 }
 
@@ -630,7 +632,7 @@ TEST_F(CommandLine, WhatIsCarriedByHandHasNoRobotsSensors) {
   const std::string drive = "drive " + mesh.string() + " --motion handheld:0 --robot " + robot_;
   const std::string out = " --out " + (folder_ / "out").string();
   expect_refused(drive + out + " --sensors", "--sensors: motion 'handheld:0'");
-  expect_refused(drive + out + " --walk w.yaml", "--walk: motion 'handheld:0'");
+  expect_refused(drive + out + " --pedestrian w.yaml", "--pedestrian: motion 'handheld:0'");
   EXPECT_EQ(files_left(), 1U);  // the mesh
   ASSERT_EQ(run(drive + " --json"), 0) << err_;
   EXPECT_TRUE(nlohmann::json::parse(out_)["peaks"].is_null()) << out_;

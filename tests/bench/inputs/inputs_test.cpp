@@ -366,7 +366,7 @@ class RunInputs : public TemporaryFolder {
     copy("robots/pepper/pepper.urdf", "pepper.urdf");
     copy("sim/sensors/levels/pepper.yaml", "level.yaml");
     copy("sim/sensors/levels/ideal.yaml", "sensors.yaml");
-    copy("bench/scenarios/walk.yaml", "walk.yaml");
+    copy("bench/scenarios/pedestrian.yaml", "pedestrian.yaml");
     copy("bench/scenarios/tours/room.yaml", "mapping.yaml");
     copy("bench/scenarios/tours/room_query.yaml", "kidnapped.yaml");
     copy("assets/vocabulary.mhvoc", "words.mhvoc");
@@ -384,7 +384,7 @@ class RunInputs : public TemporaryFolder {
                          .query_scene = folder_ / "there/b.gltf",
                          .kidnapped_tour = folder_ / "kidnapped.yaml",
                          .sensors = folder_ / "sensors.yaml",
-                         .walk = folder_ / "walk.yaml"};
+                         .pedestrian = folder_ / "pedestrian.yaml"};
     spec_.level = folder_ / "level.yaml";
     spec_.vocabulary = folder_ / "words.mhvoc";
     spec_.system = {.kind = SystemKind::kOutside,
@@ -403,8 +403,8 @@ TEST_F(RunInputs, EachIsInItsKeys) {
   std::vector<std::string> names;
   for (const InputDigest& input : before) names.push_back(input.name);
   EXPECT_EQ(names, (std::vector<std::string>{"kidnapped_tour", "level", "mapping_tour",
-                                             "query_scene", "query_tour", "robot", "scene",
-                                             "sensors", "vo: ./program", "vocabulary", "walk"}));
+                                             "pedestrian", "query_scene", "query_tour", "robot",
+                                             "scene", "sensors", "vo: ./program", "vocabulary"}));
   const std::string run = run_key(spec_, before), map = map_key(spec_, before);
   const auto change = [&](const std::string& file, const std::string& more) {
     const std::string content = read_file(folder_ / file);
@@ -414,8 +414,9 @@ TEST_F(RunInputs, EachIsInItsKeys) {
     EXPECT_NE(run_key(spec_, after), run) << file;
     return map_key(spec_, after) != map;
   };
-  for (const char* file : {"pepper.yaml", "level.yaml", "sensors.yaml", "walk.yaml", "mapping.yaml",
-                           "kidnapped.yaml", "program", "here/a.obj", "here/look.mtl"})
+  for (const char* file :
+       {"pepper.yaml", "level.yaml", "sensors.yaml", "pedestrian.yaml", "mapping.yaml",
+        "kidnapped.yaml", "program", "here/a.obj", "here/look.mtl"})
     EXPECT_TRUE(change(file, "# more\n")) << file;
   EXPECT_TRUE(change("pepper.urdf", "<!-- more -->\n"));
   EXPECT_TRUE(change("here/wood.jpg", "x"));
@@ -432,7 +433,7 @@ TEST_F(RunInputs, TellTheFilesThatWereReadAndWhatTheyHeld) {
     std::vector<std::string> wanted = files;
     if (input.name == "robot") wanted = {"pepper.urdf", "pepper.yaml"};
     if (input.name == "scene") wanted = {"a.obj", "look.mtl", "mask.jpg", "wood.jpg"};
-    if (input.name == "walk") wanted = {"walk.yaml"};
+    if (input.name == "pedestrian") wanted = {"pedestrian.yaml"};
     EXPECT_EQ(files, wanted) << input.name;
   }
 }

@@ -42,7 +42,7 @@ std::vector<InputDigest> inputs_of(const RunSpec& spec) {
   add("query_scene", e.query_scene);
   add("kidnapped_tour", e.kidnapped_tour);
   add("sensors", e.sensors);
-  add("walk", e.walk);
+  add("pedestrian", e.pedestrian);
   add("level", spec.level);
   add("vocabulary", spec.vocabulary);
   return inputs;
@@ -70,7 +70,7 @@ class RunKey : public testing::Test {
                                   .query_scene = file("query_scene.yaml"),
                                   .kidnapped_tour = file("kidnapped_tour.yaml"),
                                   .sensors = file("sensors.yaml"),
-                                  .walk = file("walk.yaml")};
+                                  .pedestrian = file("pedestrian.yaml")};
     ours_ = {.name = "semantic-exact-pepper-0",
              .environment = environment,
              .level = file("pepper.yaml"),
@@ -177,7 +177,7 @@ TEST_F(RunKey, ChangesWithAPointOrAnInputMoreAndWithWhatIsNotThere) {
   EXPECT_NE(map_key_of(changed), map_key_of(ours_));
   for (const auto field :
        {&Environment::query_tour, &Environment::query_scene, &Environment::kidnapped_tour,
-        &Environment::sensors, &Environment::walk}) {
+        &Environment::sensors, &Environment::pedestrian}) {
     changed = ours_;
     (changed.environment.*field).reset();
     EXPECT_NE(run_key_of(changed), before);
@@ -200,7 +200,7 @@ TEST_F(RunKey, TellsWhichFileIsWhich) {
 TEST_F(RunKey, ChangesWithTheContentOfEachFileAndNotWithItsPlace) {
   for (const char* name :
        {"scene.yaml", "robot.yaml", "mapping_tour.yaml", "query_tour.yaml", "query_scene.yaml",
-        "kidnapped_tour.yaml", "sensors.yaml", "walk.yaml", "pepper.yaml", "words"}) {
+        "kidnapped_tour.yaml", "sensors.yaml", "pedestrian.yaml", "pepper.yaml", "words"}) {
     const std::string before = run_key_of(ours_);
     std::ofstream(folder_ / name) << name << " edited";
     EXPECT_NE(run_key_of(ours_), before) << name;

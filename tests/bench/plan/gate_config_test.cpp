@@ -50,7 +50,7 @@ class GateDigest : public testing::Test {
     write("look.mtl", "newmtl a\nKd 1 0 0\n");
     write("robot", read_file(root + "robot.yaml"));
     write("tour", read_file(root + "tours/room.yaml"));
-    write("walk", read_file(root + "walk.yaml"));
+    write("pedestrian", read_file(root + "pedestrian.yaml"));
     for (const char* name : {"level", "words"}) write(name, name);
   }
   ~GateDigest() override { std::filesystem::remove_all(folder_); }
@@ -58,12 +58,12 @@ class GateDigest : public testing::Test {
     std::ofstream(folder_ / name) << text;
   }
   std::string digest(const std::string& more = "", const std::string& scene = "house.obj") const {
-    write("suite.yaml",
-          "environments: [{category: hall, scene: " + scene +
-              ", mapping_tour: tour, query_tour: tour, query_scene: later.obj, walk: walk}]\n"
-              "robot: robot\nvocabulary: words\nlevels: [level]\nsystems: [plain]\n"
-              "labels: [exact]\n" +
-              more);
+    write("suite.yaml", "environments: [{category: hall, scene: " + scene +
+                            ", mapping_tour: tour, query_tour: tour, query_scene: later.obj, "
+                            "pedestrian: pedestrian}]\n"
+                            "robot: robot\nvocabulary: words\nlevels: [level]\nsystems: [plain]\n"
+                            "labels: [exact]\n" +
+                            more);
     return gate_suite_digest(load_suite(folder_ / "suite.yaml"));
   }
   std::filesystem::path folder_;
@@ -72,7 +72,7 @@ class GateDigest : public testing::Test {
 TEST_F(GateDigest, SeesEachFileAndSettingThatMakesTheRuns) {
   const std::string before = digest();
   for (const char* name :
-       {"house.obj", "later.obj", "look.mtl", "robot", "tour", "level", "walk"}) {
+       {"house.obj", "later.obj", "look.mtl", "robot", "tour", "level", "pedestrian"}) {
     const std::string text = read_file(folder_ / name);
     write(name, text + "# changed\n");
     EXPECT_NE(digest(), before) << name;

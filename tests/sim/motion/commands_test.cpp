@@ -198,8 +198,7 @@ TEST(Commands, AStartInsideAPersonIsRefused) {
     drive(empty_room(), pepper(), script_of({{.duration_s = 1}}), {person});
     FAIL() << "the robot started in a person";
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("mm inside somebody who walks about"), std::string::npos)
-        << e.what();
+    EXPECT_NE(std::string(e.what()).find("mm inside a pedestrian"), std::string::npos) << e.what();
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/walker.hpp"
+#include "sim/world/pedestrian.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,18 +20,19 @@ using Eigen::Vector2f;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-double length_m(const Walk& walk) {
+double length_m(const Pedestrian& pedestrian) {
   double sum = 0;
-  for (std::size_t i = 1; i < walk.path_m.size(); ++i)
-    sum += (walk.path_m[i] - walk.path_m[i - 1]).norm();
+  for (std::size_t i = 1; i < pedestrian.path_m.size(); ++i)
+    sum += (pedestrian.path_m[i] - pedestrian.path_m[i - 1]).norm();
   return sum;
 }
 
-/// How far along the line the walker is (m), and whether he is on his way back.
-std::pair<double, bool> progress(const Walk& walk, Stamp stamp_ns) {
-  const double walked_s = std::max(0.0, 1e-9 * static_cast<double>(stamp_ns) - walk.start_s);
-  const double length = length_m(walk);
-  const double s = std::fmod(walk.speed_m_per_s * walked_s, 2 * length);
+/// How far along the line the pedestrian is (m), and whether he is on his way back.
+std::pair<double, bool> progress(const Pedestrian& pedestrian, Stamp stamp_ns) {
+  const double on_his_way_s =
+      std::max(0.0, 1e-9 * static_cast<double>(stamp_ns) - pedestrian.start_s);
+  const double length = length_m(pedestrian);
+  const double s = std::fmod(pedestrian.speed_m_per_s * on_his_way_s, 2 * length);
   return s <= length ? std::pair{s, false} : std::pair{2 * length - s, true};
 }
 
@@ -56,79 +57,80 @@ Vector3f mean_light(const Scene& scene) {
   return (sum / static_cast<double>(scene.light.size())).cast<float>();
 }
 
-void merge(RenderedFrame& picture, const RenderedFrame& walker, InstanceId instance) {
+void merge(RenderedFrame& picture, const RenderedFrame& pedestrian, InstanceId instance) {
   for (std::size_t i = 0; i < picture.depth_m.size(); ++i) {
-    const float near = walker.depth_m.data()[i];
+    const float near = pedestrian.depth_m.data()[i];
     float& depth = picture.depth_m.data()[i];
     if (near <= 0 || (depth > 0 && depth <= near)) continue;
     depth = near;
-    picture.color.data()[i] = walker.color.data()[i];
-    picture.classes.data()[i] = walker.classes.data()[i];
+    picture.color.data()[i] = pedestrian.color.data()[i];
+    picture.classes.data()[i] = pedestrian.classes.data()[i];
     picture.instances.data()[i] = instance;
   }
 }
 
 class Moment : public Renderer {
  public:
-  Moment(const Renderer& scene, const Renderer& walker, InstanceId instance,
-         const SE3& world_from_walker)
+  Moment(const Renderer& scene, const Renderer& pedestrian, InstanceId instance,
+         const SE3& world_from_pedestrian)
       : scene_(scene),
-        walker_(walker),
+        body_(pedestrian),
         instance_(instance),
-        walker_from_world_(world_from_walker.inverse()) {}
+        body_from_world_(world_from_pedestrian.inverse()) {}
 
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
     RenderedFrame picture = scene_.render(camera, world_from_camera);
-    merge(picture, walker_.render(camera, walker_from_world_ * world_from_camera), instance_);
+    merge(picture, body_.render(camera, body_from_world_ * world_from_camera), instance_);
     return picture;
   }
 
  private:
   const Renderer& scene_;
-  const Renderer& walker_;
+  const Renderer& body_;
   InstanceId instance_;
-  SE3 walker_from_world_;
+  SE3 body_from_world_;
 };
 
 }  // namespace
 
-Walk load_walk(const std::filesystem::path& file) {
+Pedestrian load_pedestrian(const std::filesystem::path& file) {
   YamlReader yaml = YamlReader::load(file);
-  Walk walk;
+  Pedestrian pedestrian;
   const YamlReader path = yaml.at("path");
   for (const YamlReader& place : path.items()) {
     const std::vector<double> xy = place.as_numbers(2);
-    walk.path_m.emplace_back(xy[0], xy[1]);
-    if (walk.path_m.size() > 1 && walk.path_m.back() == walk.path_m[walk.path_m.size() - 2])
+    pedestrian.path_m.emplace_back(xy[0], xy[1]);
+    if (pedestrian.path_m.size() > 1 &&
+        pedestrian.path_m.back() == pedestrian.path_m[pedestrian.path_m.size() - 2])
       place.fail("is the place before it again");
   }
-  if (walk.path_m.size() < 2) path.fail("a walk needs two places or more");
-  walk.speed_m_per_s = yaml.number_or("speed_m_per_s", walk.speed_m_per_s, 0.01, 10.0);
-  walk.start_s = yaml.number_or("start_s", walk.start_s, 0.0, 1e6);
+  if (pedestrian.path_m.size() < 2) path.fail("a path needs two places or more");
+  pedestrian.speed_m_per_s = yaml.number_or("speed_m_per_s", pedestrian.speed_m_per_s, 0.01, 10.0);
+  pedestrian.start_s = yaml.number_or("start_s", pedestrian.start_s, 0.0, 1e6);
   yaml.finish();
-  return walk;
+  return pedestrian;
 }
 
-SE3 world_from_walker(const Walk& walk, Stamp stamp_ns) {
-  assert(walk.path_m.size() >= 2);
-  auto [left_m, back] = progress(walk, stamp_ns);
+SE3 world_from_pedestrian(const Pedestrian& pedestrian, Stamp stamp_ns) {
+  assert(pedestrian.path_m.size() >= 2);
+  auto [left_m, back] = progress(pedestrian, stamp_ns);
   std::size_t leg = 1;
-  const auto leg_m = [&] { return (walk.path_m[leg] - walk.path_m[leg - 1]).norm(); };
-  while (leg + 1 < walk.path_m.size() && left_m > leg_m()) left_m -= leg_m(), ++leg;
-  const Vector2d way = (walk.path_m[leg] - walk.path_m[leg - 1]) / leg_m();
-  const Vector2d place = walk.path_m[leg - 1] + std::min(left_m, leg_m()) * way;
+  const auto leg_m = [&] { return (pedestrian.path_m[leg] - pedestrian.path_m[leg - 1]).norm(); };
+  while (leg + 1 < pedestrian.path_m.size() && left_m > leg_m()) left_m -= leg_m(), ++leg;
+  const Vector2d way = (pedestrian.path_m[leg] - pedestrian.path_m[leg - 1]) / leg_m();
+  const Vector2d place = pedestrian.path_m[leg - 1] + std::min(left_m, leg_m()) * way;
   const Vector2d forward = back ? Vector2d(-way) : way;
   const Eigen::Matrix3d rotation =
       Eigen::AngleAxisd(std::atan2(forward.y(), forward.x()), Vector3d::UnitZ()).toRotationMatrix();
   return {rotation, {place.x(), place.y(), 0.0}};
 }
 
-Scene build_walker(const Vector3f& light) {
+Scene build_pedestrian(const Vector3f& light) {
   MeshBuilder mesh;
-  mesh.scene().name = "walker";
+  mesh.scene().name = "pedestrian";
   const auto person = class_by_name("person");
   assert(person);
-  mesh.begin_instance("walker", *person);
+  mesh.begin_instance("pedestrian", *person);
   const MaterialId trousers = mesh.material(
       {.name = "trousers", .kind = "fabric", .tone = {58, 66, 88}, .variation = 0.6, .seed = 901});
   const MaterialId pullover = mesh.material(
@@ -139,7 +141,7 @@ Scene build_walker(const Vector3f& light) {
   Eigen::Isometry3f flat = Eigen::Isometry3f::Identity();
   flat.linear() = Vector3f(0.65F, 1.0F, 1.0F).asDiagonal();
   mesh.push(flat);
-  constexpr auto kRadius = static_cast<float>(kWalkerRadius_m);
+  constexpr auto kRadius = static_cast<float>(kPedestrianRadius_m);
   const std::array legs = {Vector2f(0.0F, 0.0F), Vector2f(0.15F, 0.0F), Vector2f(0.16F, 0.40F),
                            Vector2f(0.19F, 0.85F)};
   mesh.lathe(trousers, Vector3f::Zero(), legs);
@@ -159,28 +161,28 @@ Scene build_walker(const Vector3f& light) {
   return scene;
 }
 
-InstanceId walker_instance(const Scene& scene) {
+InstanceId pedestrian_instance(const Scene& scene) {
   const int last = scene.instances.empty() ? 0 : scene.instances.back().id;
   assert(last < std::numeric_limits<InstanceId>::max());
   return static_cast<InstanceId>(last + 1);
 }
 
-WalkedScene::WalkedScene(const Scene& scene, std::shared_ptr<const Renderer> renderer,
-                         float exposure, Walk walk)
-    : scene_(std::move(renderer)), walk_(std::move(walk)) {
+PedestrianScene::PedestrianScene(const Scene& scene, std::shared_ptr<const Renderer> renderer,
+                                 float exposure, Pedestrian pedestrian)
+    : scene_(std::move(renderer)), pedestrian_(std::move(pedestrian)) {
   assert(scene_ != nullptr);
   // Smoothed edges would mix the void around him into his outline.
-  walker_ = make_embree_renderer(build_walker(mean_light(scene)),
-                                 {.exposure = exposure, .antialiasing = Antialiasing::kNone});
-  instance_ = walker_instance(scene);
+  body_ = make_embree_renderer(build_pedestrian(mean_light(scene)),
+                               {.exposure = exposure, .antialiasing = Antialiasing::kNone});
+  instance_ = pedestrian_instance(scene);
   world_from_floor_ = world_from_floor(scene.floor);
 }
 
-WalkedScene::~WalkedScene() = default;
+PedestrianScene::~PedestrianScene() = default;
 
-std::shared_ptr<const Renderer> WalkedScene::at(Stamp stamp_ns) const {
-  return std::make_shared<Moment>(*scene_, *walker_, instance_,
-                                  world_from_floor_ * world_from_walker(walk_, stamp_ns));
+std::shared_ptr<const Renderer> PedestrianScene::at(Stamp stamp_ns) const {
+  return std::make_shared<Moment>(*scene_, *body_, instance_,
+                                  world_from_floor_ * world_from_pedestrian(pedestrian_, stamp_ns));
 }
 
 }  // namespace mh

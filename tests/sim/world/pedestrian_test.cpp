@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/walker.hpp"
+#include "sim/world/pedestrian.hpp"
 
 #include <unistd.h>
 
@@ -17,11 +17,12 @@ namespace {
 
 constexpr Stamp kSecond = 1'000'000'000;
 
-const Walk kWalk{.path_m = {{1, 0}, {3, 0}, {3, 1}}, .speed_m_per_s = 0.5, .start_s = 2};
+const Pedestrian kPedestrian{
+    .path_m = {{1, 0}, {3, 0}, {3, 1}}, .speed_m_per_s = 0.5, .start_s = 2};
 
-TEST(Walk, HeWaitsThenGoesToAndFroAtOneSpeed) {
+TEST(Pedestrian, HeWaitsThenGoesToAndFroAtOneSpeed) {
   const auto at = [](double s) {
-    const SE3 pose = world_from_walker(kWalk, static_cast<Stamp>(s * 1e9));
+    const SE3 pose = world_from_pedestrian(kPedestrian, static_cast<Stamp>(s * 1e9));
     return pose.translation();
   };
   EXPECT_NEAR((at(0) - Eigen::Vector3d(1, 0, 0)).norm(), 0, 1e-9);
@@ -35,9 +36,9 @@ TEST(Walk, HeWaitsThenGoesToAndFroAtOneSpeed) {
     EXPECT_LE((at(s + 0.1) - at(s)).norm(), 0.05 + 1e-9) << s;  // never faster
 }
 
-TEST(Walk, HeFacesTheWayHeGoes) {
+TEST(Pedestrian, HeFacesTheWayHeGoes) {
   const auto forward = [](double s) {
-    return world_from_walker(kWalk, static_cast<Stamp>(s * 1e9)).rotation().col(0).eval();
+    return world_from_pedestrian(kPedestrian, static_cast<Stamp>(s * 1e9)).rotation().col(0).eval();
   };
   EXPECT_NEAR(forward(4).x(), 1, 1e-9);
   EXPECT_NEAR(forward(7).y(), 1, 1e-9);
@@ -45,28 +46,28 @@ TEST(Walk, HeFacesTheWayHeGoes) {
   EXPECT_NEAR(forward(11).x(), -1, 1e-9);
 }
 
-TEST(Walk, BadFilesAreNamed) {
-  const auto file =
-      std::filesystem::temp_directory_path() / ("mh_walk_" + std::to_string(getpid()) + ".yaml");
+TEST(Pedestrian, BadFilesAreNamed) {
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("mh_pedestrian_" + std::to_string(getpid()) + ".yaml");
   for (const char* text :
        {"path: [[1, 2]]", "path: [[1, 2], [1, 2]]", "path: [[1, 2], [3, 4]]\nspeed_m_per_s: 0",
         "path: [[1, 2], [3, 4]]\nsped: 1", "path: [[1, 2], [3]]"}) {
     std::ofstream(file) << text;
-    EXPECT_THROW(load_walk(file), InputError) << text;
+    EXPECT_THROW(load_pedestrian(file), InputError) << text;
   }
   std::ofstream(file) << "path: [[1, 2], [3, 4]]";
-  EXPECT_EQ(load_walk(file).path_m.size(), 2u);
+  EXPECT_EQ(load_pedestrian(file).path_m.size(), 2u);
   std::filesystem::remove(file);
 }
 
-TEST(Walker, HasAPersonsSize) {
-  const Scene scene = build_walker({1, 1, 1});
+TEST(Pedestrian, HasAPersonsSize) {
+  const Scene scene = build_pedestrian({1, 1, 1});
   ASSERT_EQ(scene.instances.size(), 1u);
   EXPECT_EQ(classes()[scene.instances[0].class_id].name, "person");
   const Eigen::Vector3f &low = scene.instances[0].min_m, &high = scene.instances[0].max_m;
   EXPECT_NEAR(low.z(), 0, 1e-3);
-  EXPECT_NEAR(high.z(), kWalkerHeight_m, 1e-3);
-  EXPECT_NEAR(high.y(), kWalkerRadius_m, 2e-3);
+  EXPECT_NEAR(high.z(), kPedestrianHeight_m, 1e-3);
+  EXPECT_NEAR(high.y(), kPedestrianRadius_m, 2e-3);
   EXPECT_LT(high.x(), high.y());
   EXPECT_EQ(scene.light.size(), scene.positions_m.size());
   for (const Eigen::Vector3f& light : scene.light) {
@@ -75,10 +76,10 @@ TEST(Walker, HasAPersonsSize) {
   }
 }
 
-/// A camera at 1 m that looks along x at a wall 5 m away, and a walker who crosses 3 m away.
-class WalkedSceneTest : public testing::Test {
+/// A camera at 1 m that looks along x at a wall 5 m away, and a pedestrian who crosses 3 m away.
+class PedestrianSceneTest : public testing::Test {
  protected:
-  WalkedSceneTest() {
+  PedestrianSceneTest() {
     scene_ = test::plain_scene({120, 120, 120});
     test::add_quad(scene_, {5, -9, -9}, {0, 18, 0}, {0, 0, 18}, 5, 1);
     renderer_ = make_embree_renderer(scene_);
@@ -95,11 +96,11 @@ class WalkedSceneTest : public testing::Test {
   SE3 world_from_camera_;
 };
 
-TEST_F(WalkedSceneTest, HeHidesWhatIsBehindHimAndNothingElseChanges) {
-  const WalkedScene walked(scene_, renderer_, 1.0F,
-                           {.path_m = {{3, -2}, {3, 2}}, .speed_m_per_s = 1});
+TEST_F(PedestrianSceneTest, HeHidesWhatIsBehindHimAndNothingElseChanges) {
+  const PedestrianScene pedestrian_scene(scene_, renderer_, 1.0F,
+                                         {.path_m = {{3, -2}, {3, 2}}, .speed_m_per_s = 1});
   const RenderedFrame empty = renderer_->render(camera_, world_from_camera_);
-  const RenderedFrame seen = walked.at(2 * kSecond)->render(camera_, world_from_camera_);
+  const RenderedFrame seen = pedestrian_scene.at(2 * kSecond)->render(camera_, world_from_camera_);
   // He stands on the axis, seen from the side: 2 * 0.65 * 0.22 m broad at chest height.
   const ClassId person = *class_by_name("person");
   EXPECT_EQ(seen.classes(159, 119), person);
@@ -121,25 +122,25 @@ TEST_F(WalkedSceneTest, HeHidesWhatIsBehindHimAndNothingElseChanges) {
     }
     broadest = std::max(broadest, row);
   }
-  EXPECT_NEAR(top, 119.5 - 240 * (kWalkerHeight_m - 1) / 3, 3);
-  EXPECT_NEAR(broadest, 240 * 2 * 0.65 * kWalkerRadius_m / 3, 3);
+  EXPECT_NEAR(top, 119.5 - 240 * (kPedestrianHeight_m - 1) / 3, 3);
+  EXPECT_NEAR(broadest, 240 * 2 * 0.65 * kPedestrianRadius_m / 3, 3);
   EXPECT_GT(pixels, 2000);
 }
 
-TEST_F(WalkedSceneTest, HeIsHiddenByWhatIsBeforeHim) {
-  const WalkedScene walked(scene_, renderer_, 1.0F,
-                           {.path_m = {{7, -2}, {7, 2}}, .speed_m_per_s = 1});
+TEST_F(PedestrianSceneTest, HeIsHiddenByWhatIsBeforeHim) {
+  const PedestrianScene pedestrian_scene(scene_, renderer_, 1.0F,
+                                         {.path_m = {{7, -2}, {7, 2}}, .speed_m_per_s = 1});
   const RenderedFrame empty = renderer_->render(camera_, world_from_camera_);
-  const RenderedFrame seen = walked.at(2 * kSecond)->render(camera_, world_from_camera_);
+  const RenderedFrame seen = pedestrian_scene.at(2 * kSecond)->render(camera_, world_from_camera_);
   EXPECT_TRUE(std::equal(seen.depth_m.begin(), seen.depth_m.end(), empty.depth_m.begin()));
   EXPECT_TRUE(std::equal(seen.classes.begin(), seen.classes.end(), empty.classes.begin()));
 }
 
-TEST_F(WalkedSceneTest, HeMovesWithTimeAndIsTheSameBitsAtTheSameTime) {
-  const WalkedScene walked(scene_, renderer_, 1.0F,
-                           {.path_m = {{3, -2}, {3, 2}}, .speed_m_per_s = 1});
+TEST_F(PedestrianSceneTest, HeMovesWithTimeAndIsTheSameBitsAtTheSameTime) {
+  const PedestrianScene pedestrian_scene(scene_, renderer_, 1.0F,
+                                         {.path_m = {{3, -2}, {3, 2}}, .speed_m_per_s = 1});
   const auto left_edge = [&](Stamp stamp) {
-    const RenderedFrame seen = walked.at(stamp)->render(camera_, world_from_camera_);
+    const RenderedFrame seen = pedestrian_scene.at(stamp)->render(camera_, world_from_camera_);
     for (int x = 0; x < 320; ++x)
       if (seen.instances(x, 119) == 2) return x;
     return -1;
@@ -149,19 +150,19 @@ TEST_F(WalkedSceneTest, HeMovesWithTimeAndIsTheSameBitsAtTheSameTime) {
   EXPECT_NEAR(left_edge(2 * kSecond) - left_edge(2 * kSecond + kSecond / 2), 40, 2);
 }
 
-TEST_F(WalkedSceneTest, ASequenceShowsHimWhereHeIsAtEachStamp) {
-  const auto walked = std::make_shared<const WalkedScene>(
-      scene_, renderer_, 1.0F, Walk{.path_m = {{3, -2}, {3, 2}}, .speed_m_per_s = 1});
+TEST_F(PedestrianSceneTest, ASequenceShowsHimWhereHeIsAtEachStamp) {
+  const auto pedestrian_scene = std::make_shared<const PedestrianScene>(
+      scene_, renderer_, 1.0F, Pedestrian{.path_m = {{3, -2}, {3, 2}}, .speed_m_per_s = 1});
   const std::vector<TimedPose> path = {{0, world_from_camera_}, {2 * kSecond, world_from_camera_}};
-  const auto person = [&](std::size_t i, std::shared_ptr<const WalkedScene> who) {
+  const auto person = [&](std::size_t i, std::shared_ptr<const PedestrianScene> who) {
     const SimulatedSequence sequence(renderer_, camera_, path, SensorConfig{}, LabelMode::kExact,
                                      std::move(who));
     const RgbdFrame frame = sequence.at(i, RandomStream(1)).frame;
     return frame.semantics.at(159, 119).most_probable() == *class_by_name("person") &&
            std::abs(frame.depth_m(159, 119) - 2.8F) < 0.1F;
   };
-  EXPECT_FALSE(person(0, walked));  // 2 m aside, out of the picture
-  EXPECT_TRUE(person(1, walked));
+  EXPECT_FALSE(person(0, pedestrian_scene));  // 2 m aside, out of the picture
+  EXPECT_TRUE(person(1, pedestrian_scene));
   EXPECT_FALSE(person(1, nullptr));
 }
 

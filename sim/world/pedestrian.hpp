@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "scenes/scene.hpp"
+#include "sim/render/renderer.hpp"
+
+namespace mh {
+
+/// A person who walks to and fro along a line of places.
+struct Pedestrian {
+  std::vector<Eigen::Vector2d> path_m;  ///< two places or more, world
+  double speed_m_per_s = 1.2;           ///< above 0
+  double start_s = 0;                   ///< when he sets off; he waits in the first place till then
+};
+
+/// Reads one (YAML): `path: [[x, y], ...]`, optional `speed_m_per_s`, `start_s`.
+/// @throws InputError naming file, line, field and value.
+Pedestrian load_pedestrian(const std::filesystem::path& file);
+
+/// Where the pedestrian stands, facing the way he goes: x forward, z up, origin on the floor.
+SE3 world_from_pedestrian(const Pedestrian& pedestrian, Stamp stamp_ns);
+
+/// The pedestrian's body in his own frame: 1.72 m high, at most 0.22 m from his middle; one
+/// instance of class `person`. A capsule with a head, trousers and a knitted pullover, no limbs.
+/// @param light  what reaches an upright surface, irradiance / pi, linear RGB
+Scene build_pedestrian(const Eigen::Vector3f& light);
+inline constexpr double kPedestrianRadius_m = 0.22;
+inline constexpr double kPedestrianHeight_m = 1.72;
+
+/// The pedestrian's instance in a scene: one above its own.
+InstanceId pedestrian_instance(const Scene& scene);
+
+/// A scene with a pedestrian on its floor. The two are rendered apart and merged by depth, so
+/// the pedestrian hides what is behind him and is hidden by what is before him; he casts no shadow
+/// and takes no light from the place where he stands, but the scene's mean.
+class PedestrianScene {
+ public:
+  /// @param scene     what `renderer` shows; its mean light is the pedestrian's
+  /// @param exposure  that of `renderer`
+  PedestrianScene(const Scene& scene, std::shared_ptr<const Renderer> renderer, float exposure,
+                  Pedestrian pedestrian);
+  ~PedestrianScene();
+  PedestrianScene(const PedestrianScene&) = delete;
+  PedestrianScene& operator=(const PedestrianScene&) = delete;
+
+  /// The scene as it is at one moment. Must not outlive this.
+  std::shared_ptr<const Renderer> at(Stamp stamp_ns) const;
+  const Pedestrian& pedestrian() const { return pedestrian_; }
+
+ private:
+  std::shared_ptr<const Renderer> scene_;
+  std::unique_ptr<const Renderer> body_;
+  InstanceId instance_;    ///< the pedestrian's
+  Pedestrian pedestrian_;  ///< in the floor's frame
+  SE3 world_from_floor_;
+};
+
+}  // namespace mh
