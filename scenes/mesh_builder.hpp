@@ -25,6 +25,16 @@ struct BoxStyle {
   int grain_axis = -1;     ///< 0, 1, 2: u (the grain of wood) runs along x, y, z; -1: the longest
 };
 
+/// Of a round body at its two ends.
+struct EndRadii {
+  float a_m, b_m;
+};
+
+/// Where a flat shape lies: u_axis x v_axis is its normal.
+struct Plane {
+  Eigen::Vector3f origin, u_axis, v_axis;
+};
+
 /// Builds shapes into a Scene. Shapes are given in meters in the current frame (see push); their
 /// texture coordinates are kept in meters and divided by the material's tile when finished.
 /// Neighboring faces of one shape share their points bit for bit, so that no ray slips between
@@ -64,14 +74,13 @@ class MeshBuilder {
                const Eigen::Vector3f& down, const Eigen::Vector2f& uv0 = {0, 0},
                std::optional<Eigen::Vector2f> uv_size = std::nullopt);
   /// A flat rectangular grid with given breaks along two directions and an optional mask of cells
-  /// to leave out (holes for doors and windows). Normal: u_axis x v_axis.
-  void panel(MaterialId material, const Eigen::Vector3f& origin, const Eigen::Vector3f& u_axis,
-             const Eigen::Vector3f& v_axis, std::span<const float> u_breaks,
+  /// to leave out (holes for doors and windows).
+  void panel(MaterialId material, const Plane& plane, std::span<const float> u_breaks,
              std::span<const float> v_breaks,
              const std::function<bool(float u, float v)>& leave_out = nullptr);
   /// Round body between two centers (a cone if the radii differ); caps close it.
   void cylinder(MaterialId material, const Eigen::Vector3f& a, const Eigen::Vector3f& b,
-                float radius_a_m, float radius_b_m, int sides = 16, bool caps = true);
+                const EndRadii& radii, int sides = 16, bool caps = true);
   /// Revolves a profile of (radius, height) around the z axis through `center`, listed so that
   /// the outside lies to the right of its way (upwards: outwards).
   void lathe(MaterialId material, const Eigen::Vector3f& center,

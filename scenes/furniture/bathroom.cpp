@@ -22,35 +22,16 @@ MaterialSpec chrome() {
 void tap(Piece& p, const Vector3f& foot, float tall) {
   const MaterialId metal = p.fixed(chrome());
   MeshBuilder& m = p.mesh;
-  m.cylinder(metal, foot, foot + Vector3f(0, 0, tall), 0.018F, 0.016F, 12);
+  m.cylinder(metal, foot, foot + Vector3f(0, 0, tall), {0.018F, 0.016F}, 12);
   const std::array<Vector3f, 4> spout = {
       foot + Vector3f(0, 0, 0.8F * tall), foot + Vector3f(0, -0.05F, 1.0F * tall),
       foot + Vector3f(0, -0.10F, 0.95F * tall), foot + Vector3f(0, -0.115F, 0.78F * tall)};
   m.tube(metal, spout, 0.010F, 10);
   m.cylinder(metal, foot + Vector3f(0, 0, tall), foot + Vector3f(0.03F, 0.02F, tall + 0.05F),
-             0.007F, 0.006F, 8);
+             {0.007F, 0.006F}, 8);
 }
 
 }  // namespace
-
-void oval(Piece& p, MaterialId material, const Vector3f& center, float radius_x, float radius_y,
-          std::span<const Vector2f> profile, int sides, float square) {
-  const auto n = static_cast<float>(profile.size() - 1);
-  const auto round = [square](float v) { return std::copysign(std::pow(std::abs(v), square), v); };
-  p.mesh.sheet(
-      material,
-      [&](float s, float t) -> Vector3f {
-        const float at = (1.0F - t) * n;
-        const auto i = std::min(static_cast<std::size_t>(at), profile.size() - 2);
-        const Vector2f q =
-            profile[i] + (at - static_cast<float>(i)) * (profile[i + 1] - profile[i]);
-        const float a = s >= 1.0F ? 0.0F : 6.2831853F * s;
-        return center + Vector3f(radius_x * q.x() * round(std::cos(a)),
-                                 radius_y * q.x() * round(std::sin(a)), q.y());
-      },
-      sides, static_cast<int>(profile.size()) - 1,
-      {3.0F * (radius_x + radius_y), std::abs(profile.back().y() - profile.front().y()) + 0.05F});
-}
 
 void toilet(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
@@ -63,7 +44,7 @@ void toilet(Piece& p) {
   m.box(white, {-w / 2 + 0.01F, d / 2 - tank, rim - 0.02F}, {w / 2 - 0.01F, d / 2, h - 0.035F},
         {.bevel_m = 0.02F});
   m.box(white, {-w / 2, d / 2 - tank - 0.01F, h - 0.034F}, {w / 2, d / 2, h}, {.bevel_m = 0.012F});
-  m.cylinder(metal, {0, d / 2 - 0.09F, h - 0.002F}, {0, d / 2 - 0.09F, h + 0.0F}, 0.025F, 0.025F,
+  m.cylinder(metal, {0, d / 2 - 0.09F, h - 0.002F}, {0, d / 2 - 0.09F, h + 0.0F}, {0.025F, 0.025F},
              16);
   // Bowl on a waisted foot.
   const float length = d - tank, cy = -d / 2 + 0.5F * length, rx = 0.5F * w - 0.01F,
@@ -77,24 +58,24 @@ void toilet(Piece& p) {
                                          {0.97F, rim},
                                          {0.74F, rim},
                                          {0.50F, 0.27F}}};
-  oval(p, white, {0, cy, 0}, rx, ry, bowl, 28, 0.8F);
+  oval(p, white, {0, cy, 0}, {rx, ry, 0.8F}, bowl, 28);
   m.box(white, {-0.6F * rx, cy, 0.0F}, {0.6F * rx, d / 2 - 0.02F, rim - 0.03F}, {.bevel_m = 0.03F});
   m.cylinder(p.fixed(plain("glass", {150, 170, 178}, 0.1, 64)), {0, cy, 0.26F}, {0, cy, 0.275F},
-             0.45F * rx, 0.47F * rx, 20);
+             {0.45F * rx, 0.47F * rx}, 20);
   // Seat, and the lid: closed, or leaning on the cistern.
   const std::array<Vector2f, 5> ring = {{{0.72F, rim + 0.002F},
                                          {1.0F, rim + 0.002F},
                                          {1.0F, rim + 0.018F},
                                          {0.72F, rim + 0.020F},
                                          {0.72F, rim + 0.002F}}};
-  oval(p, seat, {0, cy, 0}, rx, ry, ring, 28, 0.8F);
+  oval(p, seat, {0, cy, 0}, {rx, ry, 0.8F}, ring, 28);
   const std::array<Vector2f, 4> disc = {
       {{0.99F, 0}, {1.0F, 0.012F}, {0.9F, 0.018F}, {0.01F, 0.02F}}};
   if (p.random.uniform(3) < 0.5) {
-    oval(p, seat, {0, cy, rim + 0.021F}, rx, ry, disc, 28, 0.8F);
+    oval(p, seat, {0, cy, rim + 0.021F}, {rx, ry, 0.8F}, disc, 28);
   } else {
     m.push(translation(0, d / 2 - tank - 0.025F, rim + 0.02F) * turn(Vector3f::UnitX(), 1.42F));
-    oval(p, seat, {0, -0.9F * ry, 0}, rx, 0.9F * ry, disc, 28, 0.8F);
+    oval(p, seat, {0, -0.9F * ry, 0}, {rx, 0.9F * ry, 0.8F}, disc, 28);
     m.pop();
   }
 }
@@ -123,13 +104,13 @@ void bathtub(Piece& p) {
                                            {0.82F, 0.22F * h},
                                            {0.6F, 0.18F * h},
                                            {0.01F, 0.17F * h}}};
-  oval(p, white, {0.5F * (x0 + x1), 0, 0}, 0.5F * (x1 - x0), 0.5F * d - 0.9F * lip, hollow, 40,
-       0.45F);
+  oval(p, white, {0.5F * (x0 + x1), 0, 0}, {0.5F * (x1 - x0), 0.5F * d - 0.9F * lip, 0.45F}, hollow,
+       40);
   // Mixer and drain at one end.
   const float tx = w / 2 - 0.035F;
-  m.cylinder(metal, {tx, -0.07F, h}, {tx, -0.07F, h + 0.09F}, 0.016F, 0.016F, 10);
-  m.cylinder(metal, {tx, 0.07F, h}, {tx, 0.07F, h + 0.09F}, 0.016F, 0.016F, 10);
-  m.cylinder(metal, {tx, -0.10F, h + 0.09F}, {tx, 0.10F, h + 0.09F}, 0.018F, 0.018F, 12);
+  m.cylinder(metal, {tx, -0.07F, h}, {tx, -0.07F, h + 0.09F}, {0.016F, 0.016F}, 10);
+  m.cylinder(metal, {tx, 0.07F, h}, {tx, 0.07F, h + 0.09F}, {0.016F, 0.016F}, 10);
+  m.cylinder(metal, {tx, -0.10F, h + 0.09F}, {tx, 0.10F, h + 0.09F}, {0.018F, 0.018F}, 12);
   const std::array<Vector3f, 3> spout = {
       {{tx, 0, h + 0.09F}, {tx - 0.09F, 0, h + 0.085F}, {tx - 0.12F, 0, h + 0.06F}}};
   m.tube(metal, spout, 0.013F, 10);
@@ -155,13 +136,13 @@ void shower(Piece& p) {
   m.box(metal, {-w / 2, -d / 2, h - 0.03F}, {w / 2 - 0.021F, -d / 2 + 0.024F, h});
   m.box(metal, {-w / 2, -d / 2 + 0.025F, h - 0.03F}, {-w / 2 + 0.024F, d / 2 - 0.021F, h});
   const float rx = 0.15F * w, ry = d / 2 - 0.05F;
-  m.cylinder(metal, {rx, ry, 0.95F}, {rx, ry, std::min(h - 0.06F, 1.95F)}, 0.010F, 0.010F, 10);
+  m.cylinder(metal, {rx, ry, 0.95F}, {rx, ry, std::min(h - 0.06F, 1.95F)}, {0.010F, 0.010F}, 10);
   m.cylinder(metal, {rx, ry - 0.09F, std::min(h - 0.1F, 1.90F)},
-             {rx, ry - 0.11F, std::min(h - 0.13F, 1.86F)}, 0.03F, 0.055F, 16);
+             {rx, ry - 0.11F, std::min(h - 0.13F, 1.86F)}, {0.03F, 0.055F}, 16);
   m.cylinder(metal, {rx, ry, std::min(h - 0.08F, 1.92F)},
-             {rx, ry - 0.09F, std::min(h - 0.1F, 1.90F)}, 0.009F, 0.009F, 8);
-  m.cylinder(metal, {rx - 0.09F, ry + 0.005F, 1.02F}, {rx + 0.09F, ry + 0.005F, 1.02F}, 0.02F,
-             0.02F, 12);
+             {rx, ry - 0.09F, std::min(h - 0.1F, 1.90F)}, {0.009F, 0.009F}, 8);
+  m.cylinder(metal, {rx - 0.09F, ry + 0.005F, 1.02F}, {rx + 0.09F, ry + 0.005F, 1.02F},
+             {0.02F, 0.02F}, 12);
   std::vector<Vector3f> hose;
   for (int i = 0; i <= 12; ++i) {
     const float t = static_cast<float>(i) / 12.0F;
@@ -169,7 +150,7 @@ void shower(Piece& p) {
                       1.0F - 0.35F * std::sin(3.14F * t) + 0.85F * t * t);
   }
   m.tube(metal, hose, 0.006F, 6);
-  m.cylinder(metal, {0, 0, 0.05F}, {0, 0, 0.054F}, 0.045F, 0.045F, 16);
+  m.cylinder(metal, {0, 0, 0.05F}, {0, 0, 0.054F}, {0.045F, 0.045F}, 16);
   p.part("curtain", "shower curtain");
   const MaterialId cloth = p.material("fabric", plain("curtain_fabric", {196, 210, 214}, 0.4, 66));
   const float cw = 0.55F * w, ch = h - 0.2F;
@@ -211,10 +192,10 @@ void washbasin(Piece& p) {
                                            {0.5F, 0.4F},
                                            {0.65F, 0.6F},
                                            {0.95F, h - 0.17F}}};
-    oval(p, white, {0, 0.14F * d, 0}, 0.10F, 0.10F, foot, 18, 0.9F);
+    oval(p, white, {0, 0.14F * d, 0}, {0.10F, 0.10F, 0.9F}, foot, 18);
     const std::array<Vector2f, 4> belly = {
         {{0.35F, h - 0.19F}, {0.7F, h - 0.15F}, {0.93F, h - 0.08F}, {0.97F, h - 0.055F}}};
-    oval(p, white, {0, 0, 0}, w / 2, d / 2, belly, 30, 0.6F);
+    oval(p, white, {0, 0, 0}, {w / 2, d / 2, 0.6F}, belly, 30);
   }
   // The slab with its basin, one closed shape from rim to hollow.
   p.part("sink", "sink");
@@ -230,8 +211,8 @@ void washbasin(Piece& p) {
                                            {0.55F, h - 0.13F},
                                            {0.2F, h - 0.145F},
                                            {0.01F, h - 0.145F}}};
-  oval(p, white, {0, cy, 0}, bx, by, hollow, 32, 0.55F);
-  m.cylinder(p.fixed(chrome()), {0, cy, h - 0.144F}, {0, cy, h - 0.14F}, 0.022F, 0.02F, 14);
+  oval(p, white, {0, cy, 0}, {bx, by, 0.55F}, hollow, 32);
+  m.cylinder(p.fixed(chrome()), {0, cy, h - 0.144F}, {0, cy, h - 0.14F}, {0.022F, 0.02F}, 14);
   tap(p, {0, cy + by + 0.035F, h - 0.002F}, 0.13F);
   p.body();
 }
@@ -248,8 +229,8 @@ void washing_machine(Piece& p) {
         {.bevel_m = 0.0F});
   m.box(gray, {-w / 2 + 0.006F, y - 0.006F, h - 0.13F}, {w / 2 - 0.006F, y + 0.001F, h - 0.015F});
   m.box(body, {-w / 2 + 0.02F, y - 0.012F, h - 0.12F}, {-w / 2 + 0.2F, y - 0.005F, h - 0.03F});
-  m.cylinder(metal, {0.02F, y - 0.005F, h - 0.07F}, {0.02F, y - 0.035F, h - 0.07F}, 0.033F, 0.028F,
-             18);
+  m.cylinder(metal, {0.02F, y - 0.005F, h - 0.07F}, {0.02F, y - 0.035F, h - 0.07F},
+             {0.033F, 0.028F}, 18);
   m.box(dark, {0.09F, y - 0.008F, h - 0.10F}, {w / 2 - 0.03F, y - 0.005F, h - 0.045F},
         {.bevel_m = 0.0F});
   m.push(translation(0, y, 0.47F * h) * turn(Vector3f::UnitX(), 1.57079633F));  // z points to -y
@@ -271,9 +252,9 @@ void laundry_basket(Piece& p) {
   const MaterialId cloth = p.material("fabric", plain("fabric", {150, 160, 186}, 0.5, 72));
   const std::array<Vector2f, 5> side = {
       {{0.01F, 0.0F}, {0.82F, 0.0F}, {0.9F, 0.4F * h}, {0.98F, 0.9F * h}, {1.0F, 0.93F * h}}};
-  oval(p, body, {0, 0, 0}, w / 2, d / 2, side, 28, 0.6F);
+  oval(p, body, {0, 0, 0}, {w / 2, d / 2, 0.6F}, side, 28);
   const std::array<Vector2f, 3> inner = {{{0.97F, 0.93F * h}, {0.93F, 0.8F * h}, {0.9F, 0.6F * h}}};
-  oval(p, body, {0, 0, 0}, w / 2, d / 2, inner, 28, 0.6F);
+  oval(p, body, {0, 0, 0}, {w / 2, d / 2, 0.6F}, inner, 28);
   for (int i = 0; i < 4; ++i) {
     const float a = 1.571F * static_cast<float>(i);
     p.mesh.push(translation(0.17F * w * std::cos(a), 0.17F * d * std::sin(a), 0.80F * h) *
@@ -294,13 +275,13 @@ void trash_can(Piece& p) {
                                          {0.97F, 0.97F * h},
                                          {1.0F, h - 0.004F},
                                          {0.96F, h}}};
-  oval(p, body, {0, 0, 0}, w / 2, d / 2, side, 28, square);
+  oval(p, body, {0, 0, 0}, {w / 2, d / 2, square}, side, 28);
   const std::array<Vector2f, 5> inner = {{{0.965F, h - 0.001F},
                                           {0.94F, 0.9F * h},
                                           {0.9F, 0.72F * h},
                                           {0.5F, 0.66F * h},
                                           {0.01F, 0.68F * h}}};
-  oval(p, bag, {0, 0, 0}, w / 2, d / 2, inner, 28, square);
+  oval(p, bag, {0, 0, 0}, {w / 2, d / 2, square}, inner, 28);
 }
 
 void toilet_paper(Piece& p) {
@@ -309,10 +290,10 @@ void toilet_paper(Piece& p) {
                    metal = p.fixed(chrome());
   MeshBuilder& m = p.mesh;
   const float r = std::min(0.4F * h, 0.45F * d), y = d / 2 - r - 0.012F, z = 0.55F * h;
-  m.cylinder(paper, {-0.42F * w, y, z}, {0.36F * w, y, z}, r, r, 22);
+  m.cylinder(paper, {-0.42F * w, y, z}, {0.36F * w, y, z}, {r, r}, 22);
   m.box(paper, {-0.42F * w, y - r, 0.02F * h}, {0.36F * w, y - r + 0.002F, z}, {.bevel_m = 0.0F});
-  m.cylinder(metal, {-0.48F * w, y, z}, {0.42F * w, y, z}, 0.008F, 0.008F, 8);
-  m.cylinder(metal, {0.42F * w, y, z}, {0.42F * w, d / 2, z}, 0.008F, 0.012F, 8);
+  m.cylinder(metal, {-0.48F * w, y, z}, {0.42F * w, y, z}, {0.008F, 0.008F}, 8);
+  m.cylinder(metal, {0.42F * w, y, z}, {0.42F * w, d / 2, z}, {0.008F, 0.012F}, 8);
 }
 
 void radiator(Piece& p) {
@@ -346,7 +327,7 @@ void blinds(Piece& p) {
     m.pop();
   }
   for (const float s : {-0.35F, 0.35F})
-    m.cylinder(slat, {s * w, 0, 0.0F}, {s * w, 0, h - 0.03F}, 0.0015F, 0.0015F, 4, false);
+    m.cylinder(slat, {s * w, 0, 0.0F}, {s * w, 0, h - 0.03F}, {0.0015F, 0.0015F}, 4, false);
 }
 
 }  // namespace mh::build

@@ -22,18 +22,20 @@ void console_table(Piece& piece);
 void desk(Piece& piece);
 void night_stand(Piece& piece);
 
-// storage.cpp
+// shelves.cpp
 void bookshelf(Piece& piece);
 void open_shelf(Piece& piece);
 void wall_shelf(Piece& piece);
 void shoe_shelf(Piece& piece);
-void sideboard(Piece& piece);
 void tv_board(Piece& piece);
+void book_stack(Piece& piece);
+
+// cabinets.cpp
+void sideboard(Piece& piece);
 void dresser(Piece& piece);
 void wardrobe(Piece& piece);
 void cupboard(Piece& piece);
 void box(Piece& piece);
-void book_stack(Piece& piece);
 
 // bathroom.cpp
 void toilet(Piece& piece);
@@ -78,20 +80,24 @@ void storage_shelf(Piece& piece);
 void base_counter(Piece& piece);
 void vending_machine(Piece& piece);
 
-// leisure.cpp
-void pool_table(Piece& piece);
+// sport.cpp
 void treadmill(Piece& piece);
 void exercise_bike(Piece& piece);
 void dumbbell_rack(Piece& piece);
 void weight_bench(Piece& piece);
 void exercise_ball(Piece& piece);
 void yoga_mat(Piece& piece);
+void bicycle(Piece& piece);
+
+// household.cpp
 void ironing_board(Piece& piece);
 void workbench(Piece& piece);
 void tool_board(Piece& piece);
-void bicycle(Piece& piece);
 void ladder(Piece& piece);
 void clothes_rack(Piece& piece);
+
+// leisure.cpp
+void pool_table(Piece& piece);
 void fireplace(Piece& piece);
 void piano(Piece& piece);
 void stool(Piece& piece);
@@ -157,18 +163,32 @@ void vase(Piece& piece);
 
 namespace mh::build {
 
-/// Usual materials and parts that several kinds share.
+// parts.cpp: usual materials and parts that several kinds share.
 MaterialSpec oak(std::uint64_t seed = 15);
+MaterialSpec bare_steel();
+MaterialSpec black_rubber();
 MaterialSpec plain(std::string kind, Rgb8 tone, double variation = 0.3, std::uint64_t seed = 1);
-/// Rows of books standing on z = 0 from x0 to x1, spines at y = front (facing -y), at most
-/// `height` tall and `depth` deep; the current object is theirs.
-void books(Piece& piece, float x0, float x1, float front, float z, float height, float depth,
-           std::uint64_t row);
-/// A round body whose section is an ellipse (square = 1) or nearer to a rectangle (square < 1):
-/// profile of (share of the radii, height above center), listed upwards seen from outside.
-void oval(Piece& piece, MaterialId material, const Eigen::Vector3f& center, float radius_x_m,
-          float radius_y_m, std::span<const Eigen::Vector2f> profile, int sides = 28,
-          float square = 1.0F);
+/// An upright rectangle that faces -y: what a door or a drawer covers.
+struct Front {
+  float x0, x1, y, z0, z1;
+};
+/// Where books stand: on z, spines at y = front (facing -y), at most `height` tall and `depth`
+/// deep.
+struct BookSpace {
+  float x0, x1, front, z, height, depth;
+};
+/// A row of books; the current object is theirs.
+void books(Piece& piece, const BookSpace& space, std::uint64_t row);
+/// An ellipse (square = 1), or what is nearer to a rectangle (square < 1).
+struct Oval {
+  float radius_x_m, radius_y_m, square = 1.0F;
+};
+/// A round body of that section: profile of (share of the radii, height above center), listed
+/// upwards seen from outside.
+void oval(Piece& piece, MaterialId material, const Eigen::Vector3f& center, const Oval& section,
+          std::span<const Eigen::Vector2f> profile, int sides = 28);
+/// What handles are made of: the role `metal`.
+MaterialId grip_metal(Piece& piece);
 /// A bar handle from a to b standing off by `off` along -y.
 void handle(Piece& piece, MaterialId material, const Eigen::Vector3f& a, const Eigen::Vector3f& b,
             float off = 0.03F);

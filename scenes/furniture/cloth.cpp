@@ -30,7 +30,7 @@ void curtain(Piece& p) {
                  return {x, std::clamp(y, -0.49F * d, 0.49F * d), top * (1.0F - t)};
                },
                nu, std::max(6, static_cast<int>(h / 0.12F)), {1.5F * w, h});
-  p.mesh.cylinder(rod, {-w / 2, 0, h - 0.018F}, {w / 2, 0, h - 0.018F}, 0.012F, 0.012F, 10);
+  p.mesh.cylinder(rod, {-w / 2, 0, h - 0.018F}, {w / 2, 0, h - 0.018F}, {0.012F, 0.012F}, 10);
 }
 
 void rug(Piece& p) {
@@ -56,10 +56,10 @@ void towel(Piece& p) {
   const MaterialId cloth = p.material("fabric", plain("fabric", {132, 152, 178}, 0.5, 38));
   const MaterialId metal = p.fixed(plain("brushed_metal", {186, 188, 190}, 0.3, 8));
   const float rail = h - 0.02F, y = -0.01F;
-  p.mesh.cylinder(metal, {-w / 2, y, rail}, {w / 2, y, rail}, 0.007F, 0.007F, 10);
+  p.mesh.cylinder(metal, {-w / 2, y, rail}, {w / 2, y, rail}, {0.007F, 0.007F}, 10);
   for (const float s : {-1.0F, 1.0F})
     p.mesh.cylinder(metal, {s * (w / 2 - 0.01F), y, rail}, {s * (w / 2 - 0.01F), d / 2, rail},
-                    0.006F, 0.010F, 8);
+                    {0.006F, 0.010F}, 8);
   const float inner = 0.5F * w - 0.035F;  // front and back flap over the rail
   p.mesh.sheet(cloth,
                [&](float s, float t) -> Vector3f {
@@ -78,9 +78,14 @@ void towel(Piece& p) {
 
 namespace {
 
+struct GarmentCut {
+  float length, width, depth;
+  bool hood;
+};
+
 /// A jacket on a hanger, its shoulders at z = top, seen from the front.
-void garment(Piece& p, MaterialId cloth, float x, float top, float length, float width, float depth,
-             bool hood) {
+void garment(Piece& p, MaterialId cloth, float x, float top, const GarmentCut& cut) {
+  const auto [length, width, depth, hood] = cut;
   MeshBuilder& m = p.mesh;
   const auto body = [&](float front) {
     return [=](float s, float t) -> Vector3f {
@@ -135,7 +140,7 @@ void coat_rack(Piece& p) {
     p.part(fmt::format("coat_{}", i + 1), "clothes");
     m.push(translation(0, y - 0.105F, 0));
     garment(p, p.fixed(stuffs[static_cast<std::size_t>(i)]), x, z + 0.055F,
-            std::min(0.78F, z - 0.02F), i == 1 ? 0.26F : 0.28F, 0.17F, i != 1);
+            {std::min(0.78F, z - 0.02F), i == 1 ? 0.26F : 0.28F, 0.17F, i != 1});
     m.pop();
   }
   p.part("hat", "clothes");
@@ -181,8 +186,8 @@ void hook_rail(Piece& p) {
     p.part(fmt::format("thing_{}", i + 1), what < 0.75 ? "clothes" : "bag");
     if (what < 0.45 && i > 0 && i + 1 < n) {  // a coat
       m.push(translation(0, y - 0.06F, 0));
-      garment(p, p.fixed(plain("fabric", tone, 0.4, 112)), x, bar + 0.01F, std::min(0.75F, long_m),
-              1.5F * pitch, 0.08F, false);
+      garment(p, p.fixed(plain("fabric", tone, 0.4, 112)), x, bar + 0.01F,
+              {std::min(0.75F, long_m), 1.5F * pitch, 0.08F, false});
       m.pop();
     } else if (what < 0.75) {  // an apron or a scarf, gathered at the hook
       m.sheet(p.fixed(plain(r.uniform(3) < 0.5 ? "curtain_fabric" : "fabric", tone, 0.5,

@@ -32,7 +32,7 @@ void outlet(Piece& p, MaterialId face, MaterialId dark, const Vector3f& at, floa
   m.box(face, at + Vector3f(-half, -0.008F, -half), at + Vector3f(half, 0.0F, half),
         {.bevel_m = 0.003F});
   const auto round = [&](MaterialId material, float x, float z, float radius, float out) {
-    m.cylinder(material, at + Vector3f(x, -0.004F, z), at + Vector3f(x, -out, z), radius, radius,
+    m.cylinder(material, at + Vector3f(x, -0.004F, z), at + Vector3f(x, -out, z), {radius, radius},
                14);
   };
   round(dark, 0, 0, 0.60F * half, 0.0084F);
@@ -51,7 +51,7 @@ void socket(Piece& p) {
   // A plug whose cable hangs down to the floor.
   const MaterialId cable = p.random.uniform(1) < 0.5 ? dark : face;
   const float y = d / 2 - 0.009F;
-  p.mesh.cylinder(cable, {half, y, z}, {half, y - 0.03F, z}, 0.017F, 0.014F, 12);
+  p.mesh.cylinder(cable, {half, y, z}, {half, y - 0.03F, z}, {0.017F, 0.014F}, 12);
   const std::array<Vector3f, 6> way = {{{half, y - 0.03F, z},
                                         {half, y - 0.035F, z - 0.03F},
                                         {half - 0.01F, y - 0.02F, 0.6F * z},
@@ -101,10 +101,10 @@ void pipes(Piece& p) {
     const float x = -w / 2 + 0.03F + 0.07F * static_cast<float>(i),
                 z = 0.05F + 0.07F * static_cast<float>(i);
     const bool turns = w > 0.35F;
-    m.cylinder(pipe, {x, y, turns ? z : 0.0F}, {x, y, h}, r, r, 12);
+    m.cylinder(pipe, {x, y, turns ? z : 0.0F}, {x, y, h}, {r, r}, 12);
     if (turns) {
-      m.cylinder(pipe, {x, y, z}, {w / 2, y, z}, r, r, 12);
-      m.cylinder(clamp, {x, y, z - 1.7F * r}, {x, y, z + 1.9F * r}, 1.35F * r, 1.35F * r, 12);
+      m.cylinder(pipe, {x, y, z}, {w / 2, y, z}, {r, r}, 12);
+      m.cylinder(clamp, {x, y, z - 1.7F * r}, {x, y, z + 1.9F * r}, {1.35F * r, 1.35F * r}, 12);
     }
     for (float at = z + 0.3F; at < h - 0.05F; at += 0.45F)
       m.box(clamp, {x - 1.4F * r, y - 1.4F * r, at}, {x + 1.4F * r, d / 2, at + 0.02F},
@@ -114,9 +114,9 @@ void pipes(Piece& p) {
             {.bevel_m = 0.002F});
   }
   const float x = -w / 2 + 0.03F, z = std::min(0.55F * h, 0.75F);
-  m.cylinder(clamp, {x, y, z - 0.035F}, {x, y, z + 0.035F}, 1.6F * r, 1.6F * r, 12);
-  m.cylinder(clamp, {x, y - r, z}, {x, -d / 2 + 0.012F, z}, 0.6F * r, 0.6F * r, 8);
-  m.cylinder(valve, {x, -d / 2 + 0.014F, z}, {x, -d / 2 + 0.002F, z}, 0.028F, 0.028F, 14);
+  m.cylinder(clamp, {x, y, z - 0.035F}, {x, y, z + 0.035F}, {1.6F * r, 1.6F * r}, 12);
+  m.cylinder(clamp, {x, y - r, z}, {x, -d / 2 + 0.012F, z}, {0.6F * r, 0.6F * r}, 8);
+  m.cylinder(valve, {x, -d / 2 + 0.014F, z}, {x, -d / 2 + 0.002F, z}, {0.028F, 0.028F}, 14);
 }
 
 void towel_radiator(Piece& p) {
@@ -125,15 +125,15 @@ void towel_radiator(Piece& p) {
   MeshBuilder& m = p.mesh;
   const float x = w / 2 - 0.018F, y = 0.05F * d;
   for (const float s : {-1.0F, 1.0F}) {
-    m.cylinder(metal, {s * x, y, 0}, {s * x, y, h}, 0.016F, 0.016F, 12);
+    m.cylinder(metal, {s * x, y, 0}, {s * x, y, h}, {0.016F, 0.016F}, 12);
     for (const float z : {0.1F * h, 0.9F * h})
-      m.cylinder(metal, {s * x, y, z}, {s * x, d / 2, z}, 0.010F, 0.014F, 8);
+      m.cylinder(metal, {s * x, y, z}, {s * x, d / 2, z}, {0.010F, 0.014F}, 8);
   }
   float rail = 0;
   int since_gap = 0;
   for (float z = 0.04F; z < h - 0.03F; z += since_gap == 5 ? 0.12F : 0.048F) {
     since_gap = since_gap == 5 ? 0 : since_gap + 1;
-    m.cylinder(metal, {-x, y, z}, {x, y, z}, 0.011F, 0.011F, 10);
+    m.cylinder(metal, {-x, y, z}, {x, y, z}, {0.011F, 0.011F}, 10);
     if (z < 0.78F * h) rail = z;
   }
   p.part("towel", "towel");
@@ -193,7 +193,7 @@ void fuse_box(Piece& p) {
   m.picture(p.fixed(label), {-0.3F * wide, y - 0.0125F, 0.54F * h}, {0.6F * wide, 0, 0},
             {0, 0, -0.36F * h});
   m.cylinder(metal, {0.42F * wide, y - 0.011F, 0.3F * h}, {0.42F * wide, y - 0.018F, 0.3F * h},
-             0.014F, 0.014F, 14);
+             {0.014F, 0.014F}, 14);
 }
 
 void sign(Piece& p) {
@@ -304,9 +304,9 @@ void bath_shelf(Piece& p) {
         const MaterialId cap =
             p.fixed(plain("plastic", kTones[r.below(4, kTones.size())], 0.1, 177));
         m.cylinder(stuff, {x + radius, 0, z + 0.0155F}, {x + radius, 0, z + 0.0155F + 0.78F * tall},
-                   radius, 0.95F * radius, 14);
+                   {radius, 0.95F * radius}, 14);
         m.cylinder(cap, {x + radius, 0, z + 0.0155F + 0.78F * tall},
-                   {x + radius, 0, z + 0.0155F + tall}, 0.5F * radius, 0.45F * radius, 10);
+                   {x + radius, 0, z + 0.0155F + tall}, {0.5F * radius, 0.45F * radius}, 10);
         x += 2 * radius + static_cast<float>(r.uniform(5, 0.008, 0.05));
       } else {
         const auto wide = std::min(left, static_cast<float>(r.uniform(3, 0.05, 0.13)));
@@ -335,7 +335,7 @@ void broom_rack(Piece& p) {
     const MaterialId tone = p.fixed(plain("plastic", kTones[r.below(1, kTones.size())], 0.2, 179));
     m.box(metal, {x - 0.02F, y - 0.02F, h - 0.09F}, {x + 0.02F, d / 2 - 0.0205F, h - 0.07F},
           {.bevel_m = 0.002F});
-    m.cylinder(r.uniform(2) < 0.6 ? stick : metal, {x, y, foot + 0.1F}, {x, y, h}, 0.011F, 0.011F,
+    m.cylinder(r.uniform(2) < 0.6 ? stick : metal, {x, y, foot + 0.1F}, {x, y, h}, {0.011F, 0.011F},
                10);
     switch (r.below(3, 4)) {
       case 0:  // a broom
@@ -348,7 +348,7 @@ void broom_rack(Piece& p) {
         }
         break;
       case 1:  // a mop
-        m.cylinder(tone, {x, y, foot + 0.2F}, {x, y, foot + 0.28F}, 0.02F, 0.014F, 10);
+        m.cylinder(tone, {x, y, foot + 0.2F}, {x, y, foot + 0.28F}, {0.02F, 0.014F}, 10);
         for (int k = 0; k < 9; ++k) {
           const float a = 0.698F * static_cast<float>(k);
           const std::array<Vector3f, 3> strand = {
@@ -367,7 +367,7 @@ void broom_rack(Piece& p) {
               {.bevel_m = 0.003F});
         m.box(metal, {x - 0.96F * half, y - 0.003F, foot + 0.03F},
               {x + 0.96F * half, y + 0.003F, foot + 0.0695F}, {.bevel_m = 0.0F});
-        m.cylinder(tone, {x, y, 0.72F * h}, {x, y, h}, 0.015F, 0.015F, 10);
+        m.cylinder(tone, {x, y, 0.72F * h}, {x, y, h}, {0.015F, 0.015F}, 10);
     }
   }
 }

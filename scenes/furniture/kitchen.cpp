@@ -18,8 +18,8 @@ MaterialSpec black_plastic() {
 }
 
 /// A flat front with a bar handle near its upper edge.
-void front(Piece& p, MaterialId stuff, MaterialId metal, float x0, float x1, float y, float z0,
-           float z1) {
+void front(Piece& p, MaterialId stuff, MaterialId metal, const Front& place) {
+  const auto& [x0, x1, y, z0, z1] = place;
   p.mesh.box(stuff, {x0, y - 0.019F, z0}, {x1, y, z1}, {.bevel_m = 0.004F, .grain_axis = 2});
   const float x = 0.5F * (x0 + x1), z = z1 - 0.05F, reach = 0.28F * (x1 - x0);
   handle(p, metal, {x - reach, y - 0.019F, z}, {x + reach, y - 0.019F, z}, 0.028F);
@@ -61,7 +61,7 @@ void refrigerator(Piece& p) {
     m.picture(p.fixed(paper), {nx, face - 0.0025F, nz}, {0.11F, 0, 0}, {0, 0, -0.14F});
     m.cylinder(p.fixed(plain("plastic", i == 0 ? Rgb8{190, 50, 44} : Rgb8{50, 100, 170}, 0.1)),
                {nx + 0.055F, face - 0.0025F, nz - 0.015F},
-               {nx + 0.055F, face - 0.010F, nz - 0.015F}, 0.010F, 0.010F, 10);
+               {nx + 0.055F, face - 0.010F, nz - 0.015F}, {0.010F, 0.010F}, 10);
   }
   p.body();
 }
@@ -83,12 +83,12 @@ void kitchen_counter(Piece& p) {
   for (int i = 0; i < 3; ++i) {
     const float a = -x + unit * static_cast<float>(i) + 0.003F, b = a + unit - 0.006F;
     if (i == 2) {
-      front(p, wood, metal, a, b, y0, 0.106F, 0.40F);
-      front(p, wood, metal, a, b, y0, 0.406F, 0.62F);
-      front(p, wood, metal, a, b, y0, 0.626F, zt - 0.006F);
+      front(p, wood, metal, {a, b, y0, 0.106F, 0.40F});
+      front(p, wood, metal, {a, b, y0, 0.406F, 0.62F});
+      front(p, wood, metal, {a, b, y0, 0.626F, zt - 0.006F});
     } else {
-      front(p, wood, metal, a, 0.5F * (a + b) - 0.0015F, y0, 0.106F, zt - 0.006F);
-      front(p, wood, metal, 0.5F * (a + b) + 0.0015F, b, y0, 0.106F, zt - 0.006F);
+      front(p, wood, metal, {a, 0.5F * (a + b) - 0.0015F, y0, 0.106F, zt - 0.006F});
+      front(p, wood, metal, {0.5F * (a + b) + 0.0015F, b, y0, 0.106F, zt - 0.006F});
     }
   }
   // Worktop around the basin.
@@ -120,11 +120,11 @@ void kitchen_counter(Piece& p) {
   m.box(metal, {bx0 + t, by1 - t, deep}, {bx1 - t, by1 - 0.001F, h - 0.0015F}, {.bevel_m = 0.0F});
   m.box(metal, {bx0 + 0.001F, by0 + 0.001F, deep - 0.006F}, {bx1 - 0.001F, by1 - 0.001F, deep},
         {.bevel_m = 0.0F});
-  m.cylinder(p.fixed(black_plastic()), {-0.03F, 0, deep}, {-0.03F, 0, deep + 0.004F}, 0.04F, 0.035F,
-             16);
+  m.cylinder(p.fixed(black_plastic()), {-0.03F, 0, deep}, {-0.03F, 0, deep + 0.004F},
+             {0.04F, 0.035F}, 16);
   // Tap: a base, a swan neck and a lever.
   const float ty = by1 + 0.05F, tx = -0.03F;
-  m.cylinder(metal, {tx, ty, h}, {tx, ty, h + 0.05F}, 0.024F, 0.022F, 14);
+  m.cylinder(metal, {tx, ty, h}, {tx, ty, h + 0.05F}, {0.024F, 0.022F}, 14);
   std::vector<Vector3f> neck{{tx, ty, h + 0.04F}, {tx, ty, h + 0.20F}};
   for (int i = 1; i <= 8; ++i) {
     const float a = 3.14159265F * static_cast<float>(i) / 8.0F;
@@ -132,8 +132,8 @@ void kitchen_counter(Piece& p) {
   }
   neck.emplace_back(tx, ty - 0.18F, h + 0.15F);
   m.tube(metal, neck, 0.011F, 10);
-  m.cylinder(metal, {tx + 0.02F, ty, h + 0.035F}, {tx + 0.09F, ty - 0.01F, h + 0.06F}, 0.007F,
-             0.006F, 8);
+  m.cylinder(metal, {tx + 0.02F, ty, h + 0.035F}, {tx + 0.09F, ty - 0.01F, h + 0.06F},
+             {0.007F, 0.006F}, 8);
   p.body();
 }
 
@@ -157,7 +157,7 @@ void oven(Piece& p) {
       ring.emplace_back(cx + r * std::cos(a), cy + r * std::sin(a), h + 0.012F);
     }
     m.tube(black, ring, 0.005F, 6);
-    m.cylinder(metal, {cx, cy, h}, {cx, cy, h + 0.010F}, 0.4F * r, 0.32F * r, 14);
+    m.cylinder(metal, {cx, cy, h}, {cx, cy, h + 0.010F}, {0.4F * r, 0.32F * r}, 14);
     for (int i = 0; i < 4; ++i) {
       const float a = 1.57079633F * static_cast<float>(i);
       m.beam(black, {cx + 0.45F * r * std::cos(a), cy + 0.45F * r * std::sin(a), h + 0.013F},
@@ -169,8 +169,8 @@ void oven(Piece& p) {
         {.bevel_m = 0.003F});  // knobs' panel
   for (int i = 0; i < 5; ++i) {
     const float kx = (static_cast<float>(i) - 2.0F) * 0.105F;
-    m.cylinder(black, {kx, y0 + 0.002F, h - 0.066F}, {kx, y0 - 0.026F, h - 0.066F}, 0.021F, 0.018F,
-               14);
+    m.cylinder(black, {kx, y0 + 0.002F, h - 0.066F}, {kx, y0 - 0.026F, h - 0.066F},
+               {0.021F, 0.018F}, 14);
     m.box(metal, {kx - 0.002F, y0 - 0.028F, h - 0.066F}, {kx + 0.002F, y0 - 0.025F, h - 0.048F},
           {.bevel_m = 0.0F});
   }
@@ -208,8 +208,8 @@ void range_hood(Piece& p) {
   m.box(body, {-cx, cy, z1 - 0.002F}, {cx, y, h}, {.bevel_m = 0.002F, .grain_axis = 2});
   for (int i = 0; i < 4; ++i)
     m.cylinder(black, {-0.06F + 0.04F * static_cast<float>(i), -y + 0.002F, 0.03F},
-               {-0.06F + 0.04F * static_cast<float>(i), -y - 0.0F + 0.0005F, 0.03F}, 0.009F, 0.009F,
-               10);
+               {-0.06F + 0.04F * static_cast<float>(i), -y - 0.0F + 0.0005F, 0.03F},
+               {0.009F, 0.009F}, 10);
 }
 
 void wall_cabinet(Piece& p) {
@@ -240,8 +240,8 @@ void microwave(Piece& p) {
   m.box(body, {-x, y + 0.012F, 0.012F}, {x, d / 2, h}, {.bevel_m = 0.008F});
   for (const float sx : {-1.0F, 1.0F})
     for (const float sy : {-0.35F, 0.40F})
-      m.cylinder(black, {sx * 0.4F * w, sy * d, 0}, {sx * 0.4F * w, sy * d, 0.014F}, 0.014F, 0.014F,
-                 8);
+      m.cylinder(black, {sx * 0.4F * w, sy * d, 0}, {sx * 0.4F * w, sy * d, 0.014F},
+                 {0.014F, 0.014F}, 8);
   m.box(body, {-x + 0.003F, y, 0.016F}, {x - 0.125F, y + 0.0115F, h - 0.006F}, {.bevel_m = 0.004F});
   m.box(glass, {-x + 0.04F, y - 0.002F, 0.055F}, {x - 0.165F, y + 0.004F, h - 0.045F},
         {.bevel_m = 0.001F});

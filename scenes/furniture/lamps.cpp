@@ -40,10 +40,10 @@ void floor_lamp(Piece& p) {
       std::array<Vector2f, 5>{
           {{0.001F, 0}, {0.8F * r, 0}, {0.8F * r, 0.015F}, {0.2F * r, 0.028F}, {0.001F, 0.03F}}},
       24);
-  m.cylinder(metal, {0, 0, 0.02F}, {0, 0, h - 0.12F}, 0.012F, 0.010F, 10);
+  m.cylinder(metal, {0, 0, 0.02F}, {0, 0, h - 0.12F}, {0.012F, 0.010F}, 10);
   shade(p, h - 0.30F, h, r, 0.72F * r);
-  m.cylinder(metal, {-0.7F * r, 0, h - 0.02F}, {0.7F * r, 0, h - 0.02F}, 0.003F, 0.003F, 6);
-  m.cylinder(metal, {0, -0.7F * r, h - 0.02F}, {0, 0.7F * r, h - 0.02F}, 0.003F, 0.003F, 6);
+  m.cylinder(metal, {-0.7F * r, 0, h - 0.02F}, {0.7F * r, 0, h - 0.02F}, {0.003F, 0.003F}, 6);
+  m.cylinder(metal, {0, -0.7F * r, h - 0.02F}, {0, 0.7F * r, h - 0.02F}, {0.003F, 0.003F}, 6);
 }
 
 void table_lamp(Piece& p) {
@@ -104,8 +104,8 @@ void pendant_lamp(Piece& p) {
           std::array<Vector2f, 5>{
               {{0.001F, 0}, {0.045F, 0.015F}, {0.055F, 0.05F}, {0.03F, 0.10F}, {0.02F, 0.16F}}},
           16);
-  m.cylinder(black, {0, 0, 0.9F * k}, {0, 0, h - 0.02F}, 0.004F, 0.004F, 6, false);
-  m.cylinder(black, {0, 0, h - 0.03F}, {0, 0, h}, 0.05F, 0.055F, 16);
+  m.cylinder(black, {0, 0, 0.9F * k}, {0, 0, h - 0.02F}, {0.004F, 0.004F}, 6, false);
+  m.cylinder(black, {0, 0, h - 0.03F}, {0, 0, h}, {0.05F, 0.055F}, 16);
 }
 
 }  // namespace mh::build

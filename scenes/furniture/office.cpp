@@ -48,9 +48,9 @@ void office_chair(Piece& p) {
     m.beam(black, {0, 0, 0.11F}, end, 0.035F, 0.025F, {-std::sin(a), std::cos(a), 0});
     const Vector3f axle(-0.02F * std::sin(a), 0.02F * std::cos(a), 0);
     const Vector3f castor(0.96F * end.x(), 0.96F * end.y(), 0.03F);
-    m.cylinder(black, castor - axle, castor + axle, 0.029F, 0.029F, 12);
+    m.cylinder(black, castor - axle, castor + axle, {0.029F, 0.029F}, 12);
   }
-  m.cylinder(metal, {0, 0, 0.10F}, {0, 0, seat - 0.09F}, 0.025F, 0.022F, 12);
+  m.cylinder(metal, {0, 0, 0.10F}, {0, 0, seat - 0.09F}, {0.025F, 0.022F}, 12);
   m.box(black, {-0.12F, -0.10F, seat - 0.09F}, {0.12F, 0.12F, seat - 0.06F});
   m.cushion(cloth, {0, -0.02F, seat - 0.03F}, {0.80F * w, 0.78F * d, 0.075F}, 0.03F, 0.008F, 0.05F);
   m.beam(black, {0, 0.10F, seat - 0.08F}, {0, 0.44F * d, seat + 0.02F}, 0.06F, 0.02F);
@@ -140,7 +140,7 @@ void whiteboard(Piece& p) {
   for (std::size_t i = 0; i < 3; ++i) {
     const float x = -0.2F * w + 0.16F * static_cast<float>(i);
     m.cylinder(p.fixed(plain("plastic", kPens[i], 0.1, 151)), {x, -d / 2 + 0.02F, 0.02F},
-               {x + 0.13F, -d / 2 + 0.022F, 0.02F}, 0.008F, 0.008F, 8);
+               {x + 0.13F, -d / 2 + 0.022F, 0.02F}, {0.008F, 0.008F}, 8);
   }
 }
 
@@ -169,7 +169,7 @@ void notice_board(Piece& p) {
     const float y = -d / 2 + 0.0015F - 0.0004F * static_cast<float>(i % 4);
     m.picture(p.fixed(print), {x, y, z}, {nw, 0, 0}, {0, 0, -nh});
     m.cylinder(p.fixed(plain("plastic", {190, 50, 44}, 0.1)), {x + nw / 2, y, z - 0.012F},
-               {x + nw / 2, -d / 2 + 0.0F, z - 0.012F}, 0.005F, 0.006F, 8);
+               {x + nw / 2, -d / 2 + 0.0F, z - 0.012F}, {0.005F, 0.006F}, 8);
   }
 }
 
@@ -313,7 +313,7 @@ void conference_phone(Piece& p) {
                    0.0F, 0.04F);
     p.mesh.pop();
   }
-  p.mesh.cylinder(pale, {0, 0, 0.2F * h}, {0, 0, h}, 0.34F * r, 0.22F * r, 16);
+  p.mesh.cylinder(pale, {0, 0, 0.2F * h}, {0, 0, h}, {0.34F * r, 0.22F * r}, 16);
 }
 
 void water_cooler(Piece& p) {
@@ -331,7 +331,7 @@ void water_cooler(Piece& p) {
   for (std::size_t i = 0; i < 2; ++i)
     m.cylinder(p.fixed(plain("plastic", tones[i], 0.1)),
                {(i == 0 ? -0.14F : 0.14F) * w, -d / 2 + 0.004F, 0.83F * top},
-               {(i == 0 ? -0.14F : 0.14F) * w, -d / 2 + 0.02F, 0.83F * top}, 0.016F, 0.016F, 10);
+               {(i == 0 ? -0.14F : 0.14F) * w, -d / 2 + 0.02F, 0.83F * top}, {0.016F, 0.016F}, 10);
   const float r = 0.44F * std::min(w, d);
   m.lathe(water, {0, 0.0F, top},
           std::array<Vector2f, 8>{{{0.3F * r, 0},

@@ -135,10 +135,10 @@ void school_desk(Piece& p) {
                                             {x, 0.42F * d, h - 0.04F},
                                             {x, 0.42F * d, 0.012F}}};
     m.tube(metal, frame, 0.013F, 8);
-    m.cylinder(metal, {x, -0.44F * d, 0.18F}, {x, 0.42F * d, 0.18F}, 0.010F, 0.010F, 8);
+    m.cylinder(metal, {x, -0.44F * d, 0.18F}, {x, 0.42F * d, 0.18F}, {0.010F, 0.010F}, 8);
   }
-  m.cylinder(metal, {-w / 2 + 0.04F, 0.42F * d, 0.18F}, {w / 2 - 0.04F, 0.42F * d, 0.18F}, 0.010F,
-             0.010F, 8);
+  m.cylinder(metal, {-w / 2 + 0.04F, 0.42F * d, 0.18F}, {w / 2 - 0.04F, 0.42F * d, 0.18F},
+             {0.010F, 0.010F}, 8);
 }
 
 void school_chair(Piece& p) {
@@ -154,7 +154,7 @@ void school_chair(Piece& p) {
                                           {s * x, d / 2 - 0.02F, 0}}};
     m.tube(metal, leg, 0.011F, 8);
     m.cylinder(metal, {s * (x - 0.02F), 0.28F * d, seat - 0.03F},
-               {s * (x - 0.04F), d / 2 - 0.03F, h - 0.18F}, 0.010F, 0.010F, 8);
+               {s * (x - 0.04F), d / 2 - 0.03F, h - 0.18F}, {0.010F, 0.010F}, 8);
   }
   m.sheet(shell,
           [&](float s, float t) -> Vector3f {  // a seat with a rolled front edge
@@ -244,7 +244,7 @@ void fire_extinguisher(Piece& p) {
                                    {0.35F * r, 0.83F * h},
                                    {0.3F * r, 0.86F * h}}},
           24);
-  m.cylinder(black, {0, y, 0.85F * h}, {0, y, 0.93F * h}, 0.3F * r, 0.28F * r, 12);
+  m.cylinder(black, {0, y, 0.85F * h}, {0, y, 0.93F * h}, {0.3F * r, 0.28F * r}, 12);
   m.box(black, {-0.02F, y - 0.8F * r, 0.93F * h}, {0.02F, y + 0.4F * r, 0.96F * h});
   m.box(black, {-0.015F, y - 0.9F * r, 0.985F * h}, {0.015F, y + 0.3F * r, h});
   const std::array<Vector3f, 5> hose = {{{0.2F * r, y, 0.88F * h},

@@ -73,7 +73,7 @@ void upholstered(Piece& p, int seats) {
   for (const float sx : {-1.0F, 1.0F})
     for (const float sy : {-1.0F, 1.0F})
       m.cylinder(wood, {sx * (x - 0.07F), sy * (y - 0.07F), 0},
-                 {sx * (x - 0.08F), sy * (y - 0.08F), 0.13F}, 0.018F, 0.028F, 10);
+                 {sx * (x - 0.08F), sy * (y - 0.08F), 0.13F}, {0.018F, 0.028F}, 10);
   m.cushion(fabric, {0, 0, 0.205F}, {w - 0.02F, d - 0.03F, 0.17F}, 0.03F);  // base
   for (const float sx : {-1.0F, 1.0F})
     m.cushion(fabric, {sx * (x - arm / 2), -0.01F, 0.36F}, {arm, d - 0.02F, 0.48F}, 0.06F);

@@ -30,11 +30,11 @@ void four_legs(Piece& p, MaterialId wood, float top, float leg, float inset, flo
 }
 
 /// A drawer front with a knob.
-void drawer(Piece& p, MaterialId wood, MaterialId knob, float x0, float x1, float y, float z0,
-            float z1) {
+void drawer(Piece& p, MaterialId wood, MaterialId knob, const Front& front) {
+  const auto& [x0, x1, y, z0, z1] = front;
   p.mesh.box(wood, {x0, y - 0.018F, z0}, {x1, y, z1}, {.bevel_m = 0.005F, .grain_axis = 0});
   const float x = 0.5F * (x0 + x1), z = 0.5F * (z0 + z1);
-  p.mesh.cylinder(knob, {x, y - 0.016F, z}, {x, y - 0.034F, z}, 0.008F, 0.014F, 10);
+  p.mesh.cylinder(knob, {x, y - 0.016F, z}, {x, y - 0.034F, z}, {0.008F, 0.014F}, 10);
 }
 
 }  // namespace
@@ -58,8 +58,8 @@ void console_table(Piece& p) {
   four_legs(p, wood, 0.025F, 0.04F, 0.015F, 0.0F);
   p.mesh.box(wood, {-w / 2 + 0.056F, -d / 2 + 0.04F, h - 0.16F},
              {w / 2 - 0.056F, d / 2 - 0.02F, h - 0.026F});
-  drawer(p, wood, knob, -w / 2 + 0.07F, -0.005F, -d / 2 + 0.04F, h - 0.15F, h - 0.035F);
-  drawer(p, wood, knob, 0.005F, w / 2 - 0.07F, -d / 2 + 0.04F, h - 0.15F, h - 0.035F);
+  drawer(p, wood, knob, {-w / 2 + 0.07F, -0.005F, -d / 2 + 0.04F, h - 0.15F, h - 0.035F});
+  drawer(p, wood, knob, {0.005F, w / 2 - 0.07F, -d / 2 + 0.04F, h - 0.15F, h - 0.035F});
   p.mesh.box(wood, {-w / 2 + 0.03F, -d / 2 + 0.03F, 0.16F}, {w / 2 - 0.03F, d / 2 - 0.03F, 0.178F});
 }
 
@@ -73,7 +73,7 @@ void desk(Piece& p) {
   p.mesh.box(wood, {x0, -d / 2 + 0.05F, h - 0.50F}, {x1, d / 2 - 0.03F, h - 0.027F});
   for (int i = 0; i < 3; ++i) {
     const float z = h - 0.49F + 0.153F * static_cast<float>(i);
-    drawer(p, wood, knob, x0 + 0.008F, x1 - 0.008F, -d / 2 + 0.05F, z, z + 0.146F);
+    drawer(p, wood, knob, {x0 + 0.008F, x1 - 0.008F, -d / 2 + 0.05F, z, z + 0.146F});
   }
   p.mesh.box(wood, {-w / 2 + 0.056F, d / 2 - 0.04F, h - 0.22F},
              {x0 - 0.001F, d / 2 - 0.025F, h - 0.027F});
@@ -87,7 +87,7 @@ void night_stand(Piece& p) {
   const float z = h - 0.023F;
   p.mesh.box(wood, {-w / 2 + 0.044F, -d / 2 + 0.03F, z - 0.15F},
              {w / 2 - 0.044F, d / 2 - 0.012F, z});
-  drawer(p, wood, knob, -w / 2 + 0.05F, w / 2 - 0.05F, -d / 2 + 0.03F, z - 0.143F, z - 0.006F);
+  drawer(p, wood, knob, {-w / 2 + 0.05F, w / 2 - 0.05F, -d / 2 + 0.03F, z - 0.143F, z - 0.006F});
   p.mesh.box(wood, {-w / 2 + 0.012F, -d / 2 + 0.012F, 0.10F},
              {w / 2 - 0.012F, d / 2 - 0.012F, 0.118F});
 }

@@ -130,8 +130,8 @@ void light_switch(Piece& p) {
   p.mesh.box(body, {-0.36F * w, -d / 2, 0.51F * h}, {0.36F * w, -d / 2 + 0.0049F, 0.86F * h},
              {.bevel_m = 0.0F});
   for (const float z : {0.07F, 0.93F})  // its screws
-    p.mesh.cylinder(body, {0, -d / 2 + 0.005F, z * h}, {0, -d / 2 + 0.0035F, z * h}, 0.003F, 0.003F,
-                    8);
+    p.mesh.cylinder(body, {0, -d / 2 + 0.005F, z * h}, {0, -d / 2 + 0.0035F, z * h},
+                    {0.003F, 0.003F}, 8);
 }
 
 /// What people tape to walls and doors of cupboards: lists, calendars, photographs, drawings.
@@ -207,7 +207,7 @@ void clock(Piece& p) {
   hand(black, 1.05F, 0.48F * r, 0.006F, 0.003F);  // ten past ten, as in any shop window
   hand(black, -1.05F, 0.70F * r, 0.004F, 0.005F);
   hand(red, 2.6F, 0.74F * r, 0.0015F, 0.007F);
-  m.cylinder(black, {0, 0, z}, {0, 0, z + 0.009F}, 0.010F, 0.009F, 12);
+  m.cylinder(black, {0, 0, z}, {0, 0, z + 0.009F}, {0.010F, 0.009F}, 12);
   m.pop();
   (void)y;
 }
@@ -227,7 +227,7 @@ void bottle(Piece& p) {
                                             {0.42F * r, 0.93F * h},
                                             {0.40F * r, 0.955F * h}}};
   p.mesh.lathe(glass, {0, 0, 0}, profile, 16);
-  p.mesh.cylinder(cap, {0, 0, 0.93F * h}, {0, 0, h}, 0.44F * r, 0.44F * r, 12);
+  p.mesh.cylinder(cap, {0, 0, 0.93F * h}, {0, 0, h}, {0.44F * r, 0.44F * r}, 12);
   const std::array<Vector2f, 2> band = {{{1.015F * r, 0.16F * h}, {1.015F * r, 0.44F * h}}};
   p.mesh.lathe(label, {0, 0, 0}, band, 16);
 }
@@ -245,7 +245,7 @@ void cup(Piece& p) {
                                             {0.88F * r, 0.5F * h},
                                             {0.80F * r, 0.2F * h}}};
   p.mesh.lathe(body, {cx, 0, 0}, profile, 20);
-  p.mesh.cylinder(tea, {cx, 0, 0.2F * h}, {cx, 0, 0.78F * h}, 0.8F * r, 0.91F * r, 16);
+  p.mesh.cylinder(tea, {cx, 0, 0.2F * h}, {cx, 0, 0.78F * h}, {0.8F * r, 0.91F * r}, 16);
   std::vector<Vector3f> grip;
   for (int i = 0; i <= 8; ++i) {
     const float a = -1.45F + 2.9F * static_cast<float>(i) / 8.0F;

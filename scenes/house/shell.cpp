@@ -53,13 +53,21 @@ struct Hole {
   float from, to, low, high;
 };
 
-/// The face of a wall with its holes, seen from the side to which `inwards` points.
-void wall_sheet(MeshBuilder& mesh, MaterialId material, const WallFrame& wall, bool inwards,
-                float from, float to, float low, float high, const std::vector<Hole>& holes,
-                float step) {
-  step /= mesh.detail;
+/// The face of a wall with its holes.
+struct WallSheet {
+  Hole extent;
+  std::vector<Hole> holes = {};
+  bool inwards = true;  ///< is seen from the room
+  float step_m = kWallStep;
+};
+
+void wall_sheet(MeshBuilder& mesh, MaterialId material, const WallFrame& wall,
+                const WallSheet& sheet) {
+  const auto& [from, to, low, high] = sheet.extent;
+  const std::vector<Hole>& holes = sheet.holes;
+  const float step = sheet.step_m / mesh.detail;
   // u runs to the right of who looks at the wall.
-  const bool forward = ((wall.side == Side::kNorth || wall.side == Side::kWest) == inwards);
+  const bool forward = ((wall.side == Side::kNorth || wall.side == Side::kWest) == sheet.inwards);
   const float sign = forward ? 1.0F : -1.0F;
   std::vector<float> u_stops, v_stops;
   for (const Hole& hole : holes) {
@@ -72,7 +80,7 @@ void wall_sheet(MeshBuilder& mesh, MaterialId material, const WallFrame& wall, b
   const std::vector<float> vs = breaks(low, high, step, v_stops);
   const Vector3f origin = wall.along_x() ? Vector3f(0, wall.face, 0) : Vector3f(wall.face, 0, 0);
   const Vector3f axis = sign * (wall.along_x() ? Vector3f::UnitX() : Vector3f::UnitY());
-  mesh.panel(material, origin, axis, Vector3f::UnitZ(), us, vs, [&](float u, float v) {
+  mesh.panel(material, {origin, axis, Vector3f::UnitZ()}, us, vs, [&](float u, float v) {
     return std::ranges::any_of(holes, [&](const Hole& h) {
       return sign * u > h.from && sign * u < h.to && v > h.low && v < h.high;
     });
@@ -132,10 +140,10 @@ void build_room(const HousePlan& house, std::size_t index, MaterialId trim, Mesh
   }
   const auto missing = [&](float x, float y) { return room.cut && room.cut->contains({x, y}); };
   mesh.begin_instance(room.name + "/floor", class_id("floor"));
-  mesh.panel(mesh.material(room.floor), Vector3f::Zero(), Vector3f::UnitX(), Vector3f::UnitY(),
+  mesh.panel(mesh.material(room.floor), {Vector3f::Zero(), Vector3f::UnitX(), Vector3f::UnitY()},
              breaks(x0, x1, fine, x_stops), breaks(y0, y1, fine, y_stops), missing);
   mesh.begin_instance(room.name + "/ceiling", class_id("ceiling"));
-  mesh.panel(mesh.material(room.ceiling), {0, 0, top}, Vector3f::UnitY(), Vector3f::UnitX(),
+  mesh.panel(mesh.material(room.ceiling), {{0, 0, top}, Vector3f::UnitY(), Vector3f::UnitX()},
              breaks(y0, y1, coarse, y_stops), breaks(x0, x1, coarse, x_stops),
              [&](float y, float x) { return missing(x, y); });
   for (const Side side : kSides) {
@@ -157,19 +165,26 @@ void build_room(const HousePlan& house, std::size_t index, MaterialId trim, Mesh
         const WallFrame across{side, inner.face};
         mesh.begin_instance(fmt::format("{}/wall_inner_{}", room.name, side_name(side)),
                             class_id("wall"));
-        wall_sheet(mesh, paint, across, true, a, b, 0.0F, top, {}, kWallStep);
+        wall_sheet(mesh, paint, across, {.extent = {a, b, 0.0F, top}});
         build_skirting(mesh, trim, across, a, b, {});
       }
     }
     mesh.begin_instance(fmt::format("{}/wall_{}", room.name, side_name(side)), class_id("wall"));
-    wall_sheet(mesh, paint, wall, true, from, to, 0.0F, top, holes, kWallStep);
+    wall_sheet(mesh, paint, wall, {.extent = {from, to, 0.0F, top}, .holes = holes});
     build_skirting(mesh, trim, wall, from, to, holes);
   }
 }
 
-/// Boards that line a hole through the wall, and those around it on the faces at `depths`.
+/// Boards that line a hole through the wall, and those around it on the faces at these depths.
+struct Lining {
+  float back;  ///< how far it reaches behind the wall's face
+  bool below;
+  std::vector<std::pair<float, float>> casings;
+};
+
 void build_lining(MeshBuilder& mesh, MaterialId wood, const WallFrame& wall, const Hole& h,
-                  float back, bool below, const std::vector<std::pair<float, float>>& casings) {
+                  const Lining& lining) {
+  const auto& [back, below, casings] = lining;
   const float a = h.from, b = h.to;
   board(mesh, wood, wall.at(a - 0.004F, -kProud + 0.005F, h.low), wall.at(a + kJamb, back, h.high));
   board(mesh, wood, wall.at(b - kJamb, -kProud + 0.005F, h.low), wall.at(b + 0.004F, back, h.high));
@@ -209,12 +224,12 @@ void build_door_leaf(MeshBuilder& mesh, MaterialId wood, const WallFrame& wall, 
   const float x = b - 0.06F, z = 1.0F;  // a plate, a spindle and a lever
   board(mesh, metal, wall.at(x - 0.022F, front - 0.006F, z - 0.09F),
         wall.at(x + 0.022F, front + 0.002F, z + 0.09F));
-  mesh.cylinder(metal, wall.at(x, front, z + 0.03F), wall.at(x, front - 0.055F, z + 0.03F), 0.009F,
-                0.009F, 10);
+  mesh.cylinder(metal, wall.at(x, front, z + 0.03F), wall.at(x, front - 0.055F, z + 0.03F),
+                {0.009F, 0.009F}, 10);
   mesh.cylinder(metal, wall.at(x + 0.01F, front - 0.05F, z + 0.03F),
-                wall.at(x - 0.12F, front - 0.05F, z + 0.03F), 0.009F, 0.008F, 10);
+                wall.at(x - 0.12F, front - 0.05F, z + 0.03F), {0.009F, 0.008F}, 10);
   mesh.cylinder(metal, wall.at(0.5F * (a + b), front + 0.002F, 1.52F),
-                wall.at(0.5F * (a + b), front - 0.006F, 1.52F), 0.012F, 0.012F, 12);
+                wall.at(0.5F * (a + b), front - 0.006F, 1.52F), {0.012F, 0.012F}, 12);
 }
 
 void build_doorway(const HousePlan& house, const OpeningPlan& door, MaterialId wood,
@@ -226,7 +241,7 @@ void build_doorway(const HousePlan& house, const OpeningPlan& door, MaterialId w
   std::vector<std::pair<float, float>> casings{{-kProud, 0.002F}};
   if (door.other) casings.emplace_back(thick - 0.002F, thick + kProud);
   const float back = door.other ? thick + kProud - 0.001F : thick - 0.005F;
-  build_lining(mesh, wood, wall, hole, back, false, casings);
+  build_lining(mesh, wood, wall, hole, {back, false, casings});
   // Threshold: a flat board that covers the joint of the two floors.
   board(mesh, wood, wall.at(hole.from - 0.002F, -0.012F, -0.02F),
         wall.at(hole.to + 0.002F, back, 0.005F));
@@ -239,8 +254,8 @@ void build_window(const HousePlan& house, const OpeningPlan& window, MaterialId 
   const Hole h = hole_of(window);
   const auto thick = static_cast<float>(house.wall_m);
   mesh.begin_instance(window.name, class_id("window"));
-  build_lining(mesh, frame, wall, h, thick + 0.01F, true,
-               {{-kProud, 0.002F}, {thick - 0.002F, thick + kProud}});
+  build_lining(mesh, frame, wall, h,
+               {thick + 0.01F, true, {{-kProud, 0.002F}, {thick - 0.002F, thick + kProud}}});
   // Inner sill.
   board(mesh, frame, wall.at(h.from - kCasing - 0.01F, -0.028F, h.low - 0.001F),
         wall.at(h.to + kCasing + 0.01F, 0.004F, h.low + kJamb + 0.004F), 0.005F);
@@ -280,14 +295,17 @@ void build_hull_layer(const HousePlan& house, MaterialId material, float inset, 
     for (const OpeningPlan& window : house.windows)
       if (window.side == side) holes.push_back(hole_of(window));
     const WallFrame wall = wall_frame(outer, side);
-    wall_sheet(mesh, material, wall, !outwards, wall.along_x() ? x0 : y0, wall.along_x() ? x1 : y1,
-               bottom, top, holes, kHullStep);
+    wall_sheet(mesh, material, wall,
+               {.extent = {wall.along_x() ? x0 : y0, wall.along_x() ? x1 : y1, bottom, top},
+                .holes = holes,
+                .inwards = !outwards,
+                .step_m = kHullStep});
   }
   if (!outwards) return;  // floors and ceilings have nothing standing at their far side
   mesh.begin_instance("house/roof", class_id("ceiling"));
-  mesh.panel(material, {0, 0, top}, Vector3f::UnitX(), Vector3f::UnitY(), xs, ys);
+  mesh.panel(material, {{0, 0, top}, Vector3f::UnitX(), Vector3f::UnitY()}, xs, ys);
   mesh.begin_instance("house/slab", class_id("otherstructure"));
-  mesh.panel(material, {0, 0, bottom}, Vector3f::UnitY(), Vector3f::UnitX(), ys, xs);
+  mesh.panel(material, {{0, 0, bottom}, Vector3f::UnitY(), Vector3f::UnitX()}, ys, xs);
 }
 
 /// Behind every joint of the rooms lies something closed and dark. One layer would not do: light
@@ -343,11 +361,11 @@ void build_garden(const HousePlan& house, const GardenPlan& garden, MeshBuilder&
     const float from = wall.along_x() ? x0 : y0, to = wall.along_x() ? x1 : y1;
     const Vector3f normal = axis.cross(Vector3f::UnitZ());
     const bool lit = house.sun && house.sun->direction.dot(normal) < 0.0F;
-    mesh.panel(picture(side, to - from, lit), origin, axis, Vector3f::UnitZ(),
+    mesh.panel(picture(side, to - from, lit), {origin, axis, Vector3f::UnitZ()},
                breaks(forward ? from : -to, forward ? to : -from, 1.0F),
                breaks(kGround - h, 0.0F, 1.0F));
   }
-  mesh.panel(lawn, {0, 0, kGround}, Vector3f::UnitX(), Vector3f::UnitY(), breaks(x0, x1, 0.6F),
+  mesh.panel(lawn, {{0, 0, kGround}, Vector3f::UnitX(), Vector3f::UnitY()}, breaks(x0, x1, 0.6F),
              breaks(y0, y1, 0.6F));
 }
 

@@ -70,20 +70,21 @@ void Canvas::polygon(const std::vector<Eigen::Vector2f>& corners, Tint tint) {
   cv::fillPoly(image, std::vector{points}, scalar(tint), cv::LINE_AA, kShift);
 }
 
-float Canvas::text(std::string_view words, float x, float y, float height, float thickness,
-                   Tint tint, bool upwards) {
+float Canvas::text(std::string_view words, const Eigen::Vector2f& at, const Letters& letters,
+                   Tint tint) {
+  const auto& [height, thickness, upwards] = letters;
   cv::Mat image = view(picture_);
   const std::string copy(words);
   const double scale = height / kCapitalHeight;
   const float width = text_width(words, height);
   if (!upwards) {
-    cv::putText(image, copy, cv::Point(std::lround(x), std::lround(y)), kFont, scale, scalar(tint),
-                stroke(thickness), cv::LINE_AA);
+    cv::putText(image, copy, cv::Point(std::lround(at.x()), std::lround(at.y())), kFont, scale,
+                scalar(tint), stroke(thickness), cv::LINE_AA);
     return width;
   }
   cv::Mat turned;
   cv::rotate(image, turned, cv::ROTATE_90_CLOCKWISE);
-  const cv::Point base(image.rows - 1 - std::lround(y), std::lround(x));
+  const cv::Point base(image.rows - 1 - std::lround(at.y()), std::lround(at.x()));
   cv::putText(turned, copy, base, kFont, scale, scalar(tint), stroke(thickness), cv::LINE_AA);
   cv::rotate(turned, image, cv::ROTATE_90_COUNTERCLOCKWISE);
   return width;

@@ -11,6 +11,13 @@
 
 namespace mh {
 
+/// How a line of text is written.
+struct Letters {
+  float height;          ///< of capitals
+  float thickness;       ///< of strokes
+  bool upwards = false;  ///< turned by 90 degrees, as on the spine of a book
+};
+
 /// Draws antialiased shapes and letters into a picture; coordinates in texels, parts outside are
 /// cut off. Keeps a reference to the picture.
 class Canvas {
@@ -22,10 +29,8 @@ class Canvas {
   void line(float x0, float y0, float x1, float y1, float thickness, Tint tint);
   void ellipse(float x, float y, float radius_x, float radius_y, float angle_rad, Tint tint);
   void polygon(const std::vector<Eigen::Vector2f>& corners, Tint tint);
-  /// Writes text whose capitals are `height` tall, its baseline starting at (x, y), and returns its
-  /// width. `upwards` turns the line by 90 degrees, as on the spine of a book.
-  float text(std::string_view words, float x, float y, float height, float thickness, Tint tint,
-             bool upwards = false);
+  /// Writes text, its baseline starting at `at`, and returns its width.
+  float text(std::string_view words, const Eigen::Vector2f& at, const Letters& letters, Tint tint);
   static float text_width(std::string_view words, float height);
 
  private:

@@ -26,9 +26,9 @@ int round_to(int value, int unit) {
 
 Picture paint_fabric(const PaintJob& job) {
   const int w = job.width, h = job.height;
-  const Field warp = fbm(w, h, round_to(w, 4) / 4, 4, 2, 0.5F, job.random.fork(0));
-  const Field weft = fbm(w, h, 4, round_to(h, 4) / 4, 2, 0.5F, job.random.fork(1));
-  const Field broad = fbm(w, h, 7, 7, 4, 0.6F, job.random.fork(2));
+  const Field warp = fbm(w, h, {round_to(w, 4) / 4, 4, 2, 0.5F}, job.random.fork(0));
+  const Field weft = fbm(w, h, {4, round_to(h, 4) / 4, 2, 0.5F}, job.random.fork(1));
+  const Field broad = fbm(w, h, {7, 7, 4, 0.6F}, job.random.fork(2));
   const Field fuzz = white_noise(w, h, job.random.fork(3));
   return paint(job, [&](int x, int y) {
     const float slubs = ((x / 4 + y / 4) & 1) == 0 ? warp(x, y) : weft(x, y);
@@ -40,8 +40,8 @@ Picture paint_fabric(const PaintJob& job) {
 Picture paint_knit(const PaintJob& job) {
   // Stockinette: columns of V-shaped stitches, each leg leaning towards the middle of its column.
   const int columns = std::max(2, job.width / 10), rows = std::max(2, job.height / 8);
-  const Field yarn = fbm(job.width, job.height, columns, rows, 3, 0.7F, job.random.fork(0));
-  const Field broad = fbm(job.width, job.height, 7, 7, 3, 0.5F, job.random.fork(1));
+  const Field yarn = fbm(job.width, job.height, {columns, rows, 3, 0.7F}, job.random.fork(0));
+  const Field broad = fbm(job.width, job.height, {7, 7, 3, 0.5F}, job.random.fork(1));
   return paint(job, [&](int x, int y) {
     const float column = (static_cast<float>(x) + 0.5F) * static_cast<float>(columns) /
                          static_cast<float>(job.width);
@@ -60,7 +60,7 @@ Picture paint_knit(const PaintJob& job) {
 Picture paint_leather(const PaintJob& job) {
   const int cells = std::max(4, job.width / job.texels(0.009));
   const Voronoi grain = voronoi(job.width, job.height, cells, cells, 1.0F, job.random.fork(0));
-  const Field folds = fbm(job.width, job.height, 4, 4, 5, 0.6F, job.random.fork(1));
+  const Field folds = fbm(job.width, job.height, {4, 4, 5, 0.6F}, job.random.fork(1));
   return paint(job, [&](int x, int y) {
     const float crease = smoothstep(0.3F, 0.0F, grain.second(x, y) - grain.nearest(x, y));
     const float wrinkle = smoothstep(0.05F, 0.0F, std::abs(folds(x, y)));
@@ -72,7 +72,7 @@ Picture paint_leather(const PaintJob& job) {
 Picture paint_carpet(const PaintJob& job) {
   const int cells = std::max(4, job.width / job.texels(0.008));
   const Voronoi tufts = voronoi(job.width, job.height, cells, cells, 0.8F, job.random.fork(0));
-  const Field broad = fbm(job.width, job.height, 3, 3, 5, 0.6F, job.random.fork(1));
+  const Field broad = fbm(job.width, job.height, {3, 3, 5, 0.6F}, job.random.fork(1));
   const Field pile = white_noise(job.width, job.height, job.random.fork(2));
   const RandomStream shade = job.random.fork(3);
   return paint(job, [&](int x, int y) {
@@ -88,7 +88,7 @@ Picture paint_curtain(const PaintJob& job) {
   // Bands of stripes along v, a small leaf motif between them, and a fine weave over all.
   constexpr int kBands = 4;
   const int w = job.width, h = job.height;
-  const Field slubs = fbm(w, h, w / 3, 6, 2, 0.5F, job.random.fork(0));
+  const Field slubs = fbm(w, h, {w / 3, 6, 2, 0.5F}, job.random.fork(0));
   const float brightness = (job.tone.r + job.tone.g + job.tone.b) / 3.0F;
   const Tint ink = brightness > 120.0F
                        ? blend(job.tone, Tint(60, 50, 60), 0.25F + 0.45F * job.variation)
@@ -116,7 +116,7 @@ Picture paint_rug(const PaintJob& job) {
   const Tint accent = blend(Tint(job.tone.b, job.tone.r * 0.6F, job.tone.g), cream, 0.25F);
   const std::array<Tint, 4> palette = {job.tone, dark, cream, accent};
   const Field pile = white_noise(job.width, job.height, job.random.fork(0));
-  const Field broad = fbm(job.width, job.height, 4, 4, 4, 0.6F, job.random.fork(1));
+  const Field broad = fbm(job.width, job.height, {4, 4, 4, 0.6F}, job.random.fork(1));
   const auto w = static_cast<float>(job.width), h = static_cast<float>(job.height);
   const auto petals = 6.0F + 2.0F * static_cast<float>(job.random.below(1, 3));
   const float unit = 0.045F * std::min(w, h);  // width of the thinnest band of the border

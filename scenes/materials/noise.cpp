@@ -69,13 +69,13 @@ Field value_noise(int width, int height, int cells_x, int cells_y, RandomStream 
   return field;
 }
 
-Field fbm(int width, int height, int cells_x, int cells_y, int octaves, float gain,
-          RandomStream random) {
+Field fbm(int width, int height, const Octaves& octaves, RandomStream random) {
+  auto [cells_x, cells_y, count, gain] = octaves;
   Field field(width, height);
   float total = 0.0F, octave_height = 1.0F;
-  for (int i = 0; i < octaves; ++i, octave_height *= gain) total += octave_height;
+  for (int i = 0; i < count; ++i, octave_height *= gain) total += octave_height;
   octave_height = 1.0F / total;
-  for (int i = 0; i < octaves; ++i, octave_height *= gain) {
+  for (int i = 0; i < count; ++i, octave_height *= gain) {
     if (cells_x > width / 2 && cells_y > height / 2) break;
     add_value_noise(field, std::min(cells_x, width), std::min(cells_y, height), octave_height,
                     random.fork(static_cast<std::uint64_t>(i)));

@@ -13,10 +13,13 @@ using Field = Grid2d<float>;
 /// joined smoothly. K. Perlin's fade curve between the nodes.
 Field value_noise(int width, int height, int cells_x, int cells_y, RandomStream random);
 
-/// Fractal sum of value noise in about [-1, 1]: each octave doubles the lattice and scales its
-/// height by `gain`. Octaves finer than two texels are left out.
-Field fbm(int width, int height, int cells_x, int cells_y, int octaves, float gain,
-          RandomStream random);
+/// Each octave doubles the lattice and scales its height by `gain`.
+struct Octaves {
+  int cells_x, cells_y, count;
+  float gain;
+};
+/// Fractal sum of value noise in about [-1, 1]. Octaves finer than two texels are left out.
+Field fbm(int width, int height, const Octaves& octaves, RandomStream random);
 
 /// Independent normal noise at every texel, standard deviation 1.
 Field white_noise(int width, int height, RandomStream random);

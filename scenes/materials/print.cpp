@@ -76,16 +76,20 @@ Tint cloth_for(const PaintJob& job, Dice& dice) {
 /// Grain over a whole picture, so that flat prints are not mathematically flat.
 void add_grain(Picture& picture, const PaintJob& job, float strength) {
   const Field grain = white_noise(picture.width(), picture.height(), job.random.fork(99));
-  const Field broad = fbm(picture.width(), picture.height(), 2, 2, 3, 0.5F, job.random.fork(98));
+  const Field broad = fbm(picture.width(), picture.height(), {2, 2, 3, 0.5F}, job.random.fork(98));
   for (int y = 0; y < picture.height(); ++y)
     for (int x = 0; x < picture.width(); ++x)
       picture(x, y) = to_rgb8(Tint(picture(x, y)) *
                               (1.0F + strength * (0.012F * grain(x, y) + 0.05F * broad(x, y))));
 }
 
+struct PrintBox {
+  float x, y, width, height;
+};
+
 /// Lines of small print filling a box, ragged at the right.
-void small_print(Canvas& canvas, Dice& dice, float x, float y, float width, float height,
-                 float letter, Tint ink) {
+void small_print(Canvas& canvas, Dice& dice, const PrintBox& box, float letter, Tint ink) {
+  const auto& [x, y, width, height] = box;
   for (float line = y + letter; line <= y + height; line += 1.9F * letter) {
     std::string text = dice.words(1);
     while (true) {
@@ -96,12 +100,13 @@ void small_print(Canvas& canvas, Dice& dice, float x, float y, float width, floa
     if (dice.below(6) == 0) text.resize(text.size() / 2);
     for (std::size_t i = 1; i < text.size(); ++i)
       if (text[i] != ' ') text[i] = static_cast<char>(text[i] - 'A' + 'a');
-    canvas.text(text, x, line, letter, 1.0F, ink);
+    canvas.text(text, {x, line}, {letter, 1.0F}, ink);
   }
 }
 
 /// An emblem of a few simple shapes.
-void emblem(Canvas& canvas, Dice& dice, float x, float y, float radius, Tint a, Tint b) {
+void emblem(Canvas& canvas, Dice& dice, const Eigen::Vector2f& at, float radius, Tint a, Tint b) {
+  const float x = at.x(), y = at.y();
   switch (dice.below(4)) {
     case 0:
       canvas.ellipse(x, y, radius, radius, 0.0F, a);
@@ -130,9 +135,10 @@ void emblem(Canvas& canvas, Dice& dice, float x, float y, float radius, Tint a, 
   }
 }
 
-void slash(Canvas& canvas, Dice& dice, float x, float y, float reach, float thickness, Tint tint) {
+void slash(Canvas& canvas, Dice& dice, const Eigen::Vector2f& at, float reach, float thickness,
+           Tint tint) {
   const float dx = dice.uniform(-2, 2) * reach, dy = dice.uniform(-2, 2) * reach;
-  canvas.line(x, y, x + dx, y + dy, thickness, tint);
+  canvas.line(at.x(), at.y(), at.x() + dx, at.y() + dy, thickness, tint);
 }
 
 /// One book seen from its back, standing at x and `width` wide; its top edge at y.
@@ -162,9 +168,9 @@ void spine(Picture& picture, const PaintJob& job, Dice& dice, int x, int y, int 
   while (title.find(' ') != std::string::npos && Canvas::text_width(title, letter) > 0.62F * h)
     title.resize(title.rfind(' '));
   const float length = Canvas::text_width(title, letter);
-  canvas.text(title, 0.5F * (w + letter), 0.12F * h + length, letter, letter > 7.0F ? 2.0F : 1.0F,
-              ink, true);
-  if (width > 10) emblem(canvas, dice, 0.5F * w, 0.92F * h, 0.22F * w, ink, cloth);
+  canvas.text(title, {0.5F * (w + letter), 0.12F * h + length},
+              {letter, letter > 7.0F ? 2.0F : 1.0F, true}, ink);
+  if (width > 10) emblem(canvas, dice, {0.5F * w, 0.92F * h}, 0.22F * w, ink, cloth);
   for (int j = 0; j < height; ++j)
     for (int i = 0; i < width; ++i) {  // rounded back: dark at the gaps between the books
       const float t = 2.0F * (static_cast<float>(i) + 0.5F) / w - 1.0F;
@@ -205,10 +211,10 @@ Picture paint_book_cover(const PaintJob& job) {
   const Tint second = hsv(dice.uniform(), 0.6F, 0.75F);
   canvas.frame(0.05F * w, 0.04F * h, 0.9F * w, 0.92F * h, std::max(1.0F, 0.012F * w), ink);
   const float letter = 0.085F * w;
-  canvas.text(dice.words(1), 0.12F * w, 0.17F * h, letter, 0.16F * letter, ink);
-  canvas.text(dice.words(1), 0.12F * w, 0.17F * h + 1.6F * letter, letter, 0.16F * letter, ink);
-  emblem(canvas, dice, 0.5F * w, 0.58F * h, 0.26F * std::min(w, h), second, ink);
-  canvas.text(dice.words(2), 0.12F * w, 0.91F * h, 0.45F * letter, 1.0F, ink);
+  canvas.text(dice.words(1), {0.12F * w, 0.17F * h}, {letter, 0.16F * letter}, ink);
+  canvas.text(dice.words(1), {0.12F * w, 0.17F * h + 1.6F * letter}, {letter, 0.16F * letter}, ink);
+  emblem(canvas, dice, {0.5F * w, 0.58F * h}, 0.26F * std::min(w, h), second, ink);
+  canvas.text(dice.words(2), {0.12F * w, 0.91F * h}, {0.45F * letter, 1.0F}, ink);
   add_grain(picture, job, 1.0F);
   return picture;
 }
@@ -232,10 +238,10 @@ Picture paint_poster(const PaintJob& job) {
     const float r = dice.uniform(0.05F, 0.2F) * small;
     switch (dice.below(4)) {
       case 0:
-        emblem(canvas, dice, x, y, r, tint, job.tone);
+        emblem(canvas, dice, {x, y}, r, tint, job.tone);
         break;
       case 1:
-        slash(canvas, dice, x, y, r, 0.02F * small, tint);
+        slash(canvas, dice, {x, y}, r, 0.02F * small, tint);
         break;
       case 2:
         for (int k = 0; k < 6; ++k)
@@ -249,12 +255,12 @@ Picture paint_poster(const PaintJob& job) {
   const std::string title = dice.words(2);
   float letter = 0.11F * w;
   letter *= std::min(1.0F, 0.84F * w / Canvas::text_width(title, letter));
-  canvas.text(title, 0.08F * w, 0.05F * h + letter, letter, 0.18F * letter, ink);
-  canvas.text(dice.words(3), 0.08F * w, 0.05F * h + 1.9F * letter, 0.4F * letter, 1.0F, ink);
+  canvas.text(title, {0.08F * w, 0.05F * h + letter}, {letter, 0.18F * letter}, ink);
+  canvas.text(dice.words(3), {0.08F * w, 0.05F * h + 1.9F * letter}, {0.4F * letter, 1.0F}, ink);
   canvas.rectangle(0, 0.78F * h, w, 0.22F * h, blend(job.tone, Tint(250, 247, 238), 0.8F));
-  small_print(canvas, dice, 0.08F * w, 0.81F * h, 0.5F * w, 0.15F * h, std::max(4.0F, 0.012F * h),
+  small_print(canvas, dice, {0.08F * w, 0.81F * h, 0.5F * w, 0.15F * h}, std::max(4.0F, 0.012F * h),
               Tint(40, 38, 44));
-  emblem(canvas, dice, 0.82F * w, 0.89F * h, 0.07F * small, third, second);
+  emblem(canvas, dice, {0.82F * w, 0.89F * h}, 0.07F * small, third, second);
   add_grain(picture, job, 0.7F);
   return picture;
 }
@@ -266,14 +272,14 @@ Picture paint_paper(const PaintJob& job) {
   const auto w = static_cast<float>(job.width), h = static_cast<float>(job.height);
   const Tint ink = blend(Tint(35, 34, 40), job.tone, 0.15F);
   const float letter = std::max(4.0F, 0.014F * h);
-  canvas.text(dice.words(3), 0.1F * w, 0.09F * h, 1.8F * letter, 2.0F, ink);
+  canvas.text(dice.words(3), {0.1F * w, 0.09F * h}, {1.8F * letter, 2.0F}, ink);
   const float split = dice.uniform(0.35F, 0.6F);
-  small_print(canvas, dice, 0.1F * w, 0.14F * h, 0.8F * w, (split - 0.16F) * h, letter, ink);
+  small_print(canvas, dice, {0.1F * w, 0.14F * h, 0.8F * w, (split - 0.16F) * h}, letter, ink);
   canvas.rectangle(0.1F * w, split * h, 0.36F * w, 0.2F * h, hsv(dice.uniform(), 0.3F, 0.75F));
-  emblem(canvas, dice, 0.28F * w, (split + 0.1F) * h, 0.07F * w, hsv(dice.uniform(), 0.6F, 0.5F),
+  emblem(canvas, dice, {0.28F * w, (split + 0.1F) * h}, 0.07F * w, hsv(dice.uniform(), 0.6F, 0.5F),
          ink);
-  small_print(canvas, dice, 0.5F * w, split * h, 0.4F * w, 0.2F * h, letter, ink);
-  small_print(canvas, dice, 0.1F * w, (split + 0.24F) * h, 0.8F * w, (0.68F - split) * h, letter,
+  small_print(canvas, dice, {0.5F * w, split * h, 0.4F * w, 0.2F * h}, letter, ink);
+  small_print(canvas, dice, {0.1F * w, (split + 0.24F) * h, 0.8F * w, (0.68F - split) * h}, letter,
               ink);
   add_grain(picture, job, 0.6F);
   return picture;
@@ -284,7 +290,7 @@ Picture paint_screen(const PaintJob& job) {
   Dice dice(job.random);
   const auto w = static_cast<float>(job.width), h = static_cast<float>(job.height);
   const Tint sky = hsv(dice.uniform(0.5F, 0.7F), 0.5F, 0.85F);
-  const Field hills = fbm(job.width, 8, 3, 1, 6, 0.5F, job.random.fork(1));
+  const Field hills = fbm(job.width, 8, {3, 1, 6, 0.5F}, job.random.fork(1));
   Picture picture = paint(job, [&](int x, int y) {
     const float v = static_cast<float>(y) / h;
     Tint tint = blend(sky, Tint(250, 225, 190), v * 1.2F);
@@ -308,26 +314,26 @@ Picture paint_screen(const PaintJob& job) {
       const float width = 0.44F * w, height = 0.6F * h;
       canvas.rectangle(x, y, width, height, i == 0 ? Tint(246, 247, 249) : Tint(36, 39, 48));
       canvas.rectangle(x, y, width, 0.05F * h, i == 0 ? Tint(205, 210, 220) : Tint(62, 66, 80));
-      canvas.text(dice.words(2), x + letter, y + 0.037F * h, 0.8F * letter, 1.0F,
+      canvas.text(dice.words(2), {x + letter, y + 0.037F * h}, {0.8F * letter, 1.0F},
                   i == 0 ? Tint(40, 40, 50) : Tint(220, 220, 225));
-      small_print(canvas, dice, x + letter, y + 0.08F * h, width - 2.5F * letter, 0.46F * h, letter,
-                  i == 0 ? Tint(60, 62, 70) : Tint(150, 210, 160));
+      small_print(canvas, dice, {x + letter, y + 0.08F * h, width - 2.5F * letter, 0.46F * h},
+                  letter, i == 0 ? Tint(60, 62, 70) : Tint(150, 210, 160));
     }
   } else {
     canvas.ellipse(0.72F * w, 0.24F * h, 0.05F * w, 0.05F * w, 0.0F, Tint(255, 246, 214));
     canvas.rectangle(0, 0.82F * h, w, 0.1F * h, Tint(170, 28, 36));
-    canvas.text(dice.words(4), 0.03F * w, 0.892F * h, 2.0F * letter, 3.0F, Tint(250, 250, 250));
+    canvas.text(dice.words(4), {0.03F * w, 0.892F * h}, {2.0F * letter, 3.0F}, Tint(250, 250, 250));
     canvas.rectangle(0, 0.92F * h, w, 0.08F * h, Tint(236, 238, 242));
-    canvas.text(dice.words(9), 0.03F * w, 0.97F * h, 1.2F * letter, 1.0F, Tint(30, 32, 40));
+    canvas.text(dice.words(9), {0.03F * w, 0.97F * h}, {1.2F * letter, 1.0F}, Tint(30, 32, 40));
     canvas.rectangle(0.86F * w, 0.05F * h, 0.1F * w, 0.07F * h, Tint(22, 60, 140));
-    canvas.text(dice.words(1).substr(0, 3), 0.875F * w, 0.1F * h, 1.5F * letter, 2.0F,
+    canvas.text(dice.words(1).substr(0, 3), {0.875F * w, 0.1F * h}, {1.5F * letter, 2.0F},
                 Tint(250, 250, 250));
   }
   return picture;
 }
 
 Picture paint_whiteboard(const PaintJob& job) {
-  const Field broad = fbm(job.width, job.height, 3, 2, 3, 0.5F, job.random.fork(0));
+  const Field broad = fbm(job.width, job.height, {3, 2, 3, 0.5F}, job.random.fork(0));
   Picture picture = paint(job, [&](int x, int y) {
     return job.tone * (1.0F + 0.012F * broad(x, y));  // not wiped quite clean
   });

@@ -17,11 +17,11 @@ Tint sky_tint(float height, float cloud) {
 
 Picture paint_painting(const PaintJob& job) {
   const int w = job.width, h = job.height;
-  const Field stroke_x = fbm(w, h, 7, 7, 3, 0.6F, job.random.fork(0));
-  const Field stroke_y = fbm(w, h, 7, 7, 3, 0.6F, job.random.fork(1));
-  const Field clouds = fbm(w, h, 3, 6, 5, 0.55F, job.random.fork(2));
-  const Field ridges = fbm(w, 16, 3, 1, 5, 0.5F, job.random.fork(3));
-  const Field dabs = fbm(w, h, w / 9, h / 4, 3, 0.75F, job.random.fork(4));
+  const Field stroke_x = fbm(w, h, {7, 7, 3, 0.6F}, job.random.fork(0));
+  const Field stroke_y = fbm(w, h, {7, 7, 3, 0.6F}, job.random.fork(1));
+  const Field clouds = fbm(w, h, {3, 6, 5, 0.55F}, job.random.fork(2));
+  const Field ridges = fbm(w, 16, {3, 1, 5, 0.5F}, job.random.fork(3));
+  const Field dabs = fbm(w, h, {w / 9, h / 4, 3, 0.75F}, job.random.fork(4));
   const Field canvas_grain = white_noise(w, h, job.random.fork(5));
   const float horizon = static_cast<float>(job.random.fork(6).uniform(0, 0.38, 0.52));
   const Tint warm(238, 196, 128);
@@ -70,11 +70,11 @@ Picture paint_painting(const PaintJob& job) {
 Picture paint_garden(const PaintJob& job) {
   const int w = job.width, h = job.height;
   const int widths = std::max(1, w / (2 * h));  // a wide picture shows more, not wider things
-  const Field clouds = fbm(w, h, 3 * widths, 5, 5, 0.55F, job.random.fork(0));
-  const Field crowns = fbm(w, h, 5 * widths, 5, 6, 0.6F, job.random.fork(1));
-  const Field leaves = fbm(w, h, w / 7, h / 7, 3, 0.8F, job.random.fork(2));
-  const Field tops = fbm(w, 16, 4 * widths, 1, 5, 0.55F, job.random.fork(3));
-  const Field grass = fbm(w, h, w / 3, h / 9, 2, 0.8F, job.random.fork(4));
+  const Field clouds = fbm(w, h, {3 * widths, 5, 5, 0.55F}, job.random.fork(0));
+  const Field crowns = fbm(w, h, {5 * widths, 5, 6, 0.6F}, job.random.fork(1));
+  const Field leaves = fbm(w, h, {w / 7, h / 7, 3, 0.8F}, job.random.fork(2));
+  const Field tops = fbm(w, 16, {4 * widths, 1, 5, 0.55F}, job.random.fork(3));
+  const Field grass = fbm(w, h, {w / 3, h / 9, 2, 0.8F}, job.random.fork(4));
   const Voronoi hedge =
       voronoi(w, h, std::max(3, w / 6), std::max(3, h / 6), 1.0F, job.random.fork(5));
   const Tint green = blend(Tint(70, 108, 52), job.tone, 0.25F);
@@ -121,9 +121,10 @@ Picture paint_garden(const PaintJob& job) {
 
 Picture paint_leaf(const PaintJob& job) {
   // One leaf: its midrib along u in the middle of v, side veins leaving it at an angle.
-  const Field mottle = fbm(job.width, job.height, 4, 4, 5, 0.6F, job.random.fork(0));
-  const Field cells = fbm(job.width, job.height, std::max(2, job.width / 4),
-                          std::max(2, job.height / 4), 1, 1.0F, job.random.fork(1));
+  const Field mottle = fbm(job.width, job.height, {4, 4, 5, 0.6F}, job.random.fork(0));
+  const Field cells =
+      fbm(job.width, job.height, {std::max(2, job.width / 4), std::max(2, job.height / 4), 1, 1.0F},
+          job.random.fork(1));
   const Tint vein = blend(job.tone, Tint(222, 230, 160), 0.5F);
   return paint(job, [&](int x, int y) {
     const float u = static_cast<float>(x) / static_cast<float>(job.width);

@@ -6,16 +6,16 @@
 namespace mh {
 
 Picture paint_plaster(const PaintJob& job) {
-  const Field broad = fbm(job.width, job.height, 3, 3, 4, 0.5F, job.random.fork(0));
+  const Field broad = fbm(job.width, job.height, {3, 3, 4, 0.5F}, job.random.fork(0));
   const Field roller =
-      fbm(job.width, job.height, job.width / 4, job.height / 3, 2, 0.7F, job.random.fork(1));
+      fbm(job.width, job.height, {job.width / 4, job.height / 3, 2, 0.7F}, job.random.fork(1));
   return paint(job, [&](int x, int y) {
     return job.tone * (1.0F + job.variation * (0.035F * broad(x, y) + 0.022F * roller(x, y)));
   });
 }
 
 Picture paint_ceiling(const PaintJob& job) {
-  const Field broad = fbm(job.width, job.height, 2, 2, 3, 0.5F, job.random.fork(0));
+  const Field broad = fbm(job.width, job.height, {2, 2, 3, 0.5F}, job.random.fork(0));
   const Field grain = white_noise(job.width, job.height, job.random.fork(1));
   return paint(job, [&](int x, int y) {
     return job.tone * (1.0F + job.variation * (0.02F * broad(x, y) + 0.004F * grain(x, y)));
@@ -25,7 +25,7 @@ Picture paint_ceiling(const PaintJob& job) {
 Picture paint_tiles(const PaintJob& job) {
   const int count_x = std::max(1, job.width / job.texels(0.2));
   const int count_y = std::max(1, job.height / job.texels(0.2));
-  const Field cloud = fbm(job.width, job.height, 14, 14, 4, 0.55F, job.random.fork(0));
+  const Field cloud = fbm(job.width, job.height, {14, 14, 4, 0.55F}, job.random.fork(0));
   const Field grout_grain = white_noise(job.width, job.height, job.random.fork(1));
   const float brightness = (job.tone.r + job.tone.g + job.tone.b) / 3.0F;
   const Tint grout = brightness > 150.0F ? job.tone * 0.66F : job.tone * 1.35F;
@@ -50,7 +50,7 @@ Picture paint_tiles(const PaintJob& job) {
 Picture paint_stone(const PaintJob& job) {
   const int cells = std::max(4, job.width / job.texels(0.007));
   const Voronoi grains = voronoi(job.width, job.height, cells, cells, 1.0F, job.random.fork(0));
-  const Field broad = fbm(job.width, job.height, 6, 6, 4, 0.6F, job.random.fork(1));
+  const Field broad = fbm(job.width, job.height, {6, 6, 4, 0.6F}, job.random.fork(1));
   const RandomStream pick = job.random.fork(2);
   return paint(job, [&](int x, int y) {
     const auto id = static_cast<std::uint64_t>(grains.cell(x, y));
@@ -62,15 +62,15 @@ Picture paint_stone(const PaintJob& job) {
 }
 
 Picture paint_brushed_metal(const PaintJob& job) {
-  const Field lines = fbm(job.width, job.height, 3, job.height / 4, 2, 0.9F, job.random.fork(0));
-  const Field broad = fbm(job.width, job.height, 2, 3, 2, 0.5F, job.random.fork(1));
+  const Field lines = fbm(job.width, job.height, {3, job.height / 4, 2, 0.9F}, job.random.fork(0));
+  const Field broad = fbm(job.width, job.height, {2, 3, 2, 0.5F}, job.random.fork(1));
   return paint(job, [&](int x, int y) {
     return job.tone * (1.0F + job.variation * (0.09F * lines(x, y) + 0.08F * broad(x, y)));
   });
 }
 
 Picture paint_smooth(const PaintJob& job) {
-  const Field broad = fbm(job.width, job.height, 2, 2, 2, 0.5F, job.random.fork(0));
+  const Field broad = fbm(job.width, job.height, {2, 2, 2, 0.5F}, job.random.fork(0));
   const Field grain = white_noise(job.width, job.height, job.random.fork(1));
   return paint(job, [&](int x, int y) {
     return job.tone * (1.0F + job.variation * (0.015F * broad(x, y) + 0.003F * grain(x, y)));

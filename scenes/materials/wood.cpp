@@ -35,10 +35,10 @@ Field wood_darkness(const PaintJob& job) {
   const auto cells = [&](int texels, double spacing_m) {
     return std::max(1, texels / job.texels(spacing_m));
   };
-  Field rings = fbm(w, h, cells(w, 0.9), cells(h, 0.17), 4, 0.42F, job.random.fork(2));
-  Field darkness = fbm(w, h, cells(w, 0.30), cells(h, 0.009), 2, 0.8F, job.random.fork(3));
+  Field rings = fbm(w, h, {cells(w, 0.9), cells(h, 0.17), 4, 0.42F}, job.random.fork(2));
+  Field darkness = fbm(w, h, {cells(w, 0.30), cells(h, 0.009), 2, 0.8F}, job.random.fork(3));
   const Field pores = value_noise(w, h, cells(w, 0.025), h / 2, job.random.fork(4));
-  const Field broad = fbm(w, h, cells(w, 0.6), cells(h, 0.1), 2, 0.5F, job.random.fork(5));
+  const Field broad = fbm(w, h, {cells(w, 0.6), cells(h, 0.1), 2, 0.5F}, job.random.fork(5));
   const int count = cells(h, kRingSpacing);
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x)
@@ -147,7 +147,7 @@ Picture paint_parquet(const PaintJob& job) {
 Picture paint_bark(const PaintJob& job) {
   const Voronoi plates = voronoi(job.width, job.height, std::max(3, job.width / job.texels(0.03)),
                                  std::max(3, job.height / job.texels(0.1)), 0.9F, job.random);
-  const Field rough = fbm(job.width, job.height, 24, 10, 5, 0.7F, job.random.fork(1));
+  const Field rough = fbm(job.width, job.height, {24, 10, 5, 0.7F}, job.random.fork(1));
   return paint(job, [&](int x, int y) {
     const float ridge = smoothstep(0.0F, 0.4F, plates.second(x, y) - plates.nearest(x, y));
     const float light = 0.45F + 0.6F * ridge + 0.9F * job.variation * rough(x, y);

@@ -104,25 +104,32 @@ Eigen::Vector3f transmission_of(const aiMaterial& record, const aiColor4D& base)
   return (Eigen::Vector3f::Constant(1.0F - opacity) + opacity * tint).cwiseMin(1.0F);
 }
 
-Material convert(const aiScene& in, const aiMaterial& record, const fs::path& file, bool linear,
-                 PictureStore& pictures, SharedGrid<Rgb8>& glow,
-                 std::vector<std::string>* warnings) {
+/// A file that is read, and what its materials share.
+struct Source {
+  const aiScene& scene;
+  const fs::path& file;
+  bool linear;  ///< its colors
+  PictureStore& pictures;
+  std::vector<std::string>* warnings;
+};
+
+Material convert(const Source& in, const aiMaterial& record, SharedGrid<Rgb8>& glow) {
   Material material;
   material.name = record.GetName().C_Str();
   aiColor4D base(1.0F, 1.0F, 1.0F, 1.0F);
   if (record.Get(AI_MATKEY_BASE_COLOR, base) == aiReturn_SUCCESS ||
       record.Get(AI_MATKEY_COLOR_DIFFUSE, base) == aiReturn_SUCCESS)
-    material.base_color = convert_color(base, linear);
+    material.base_color = convert_color(base, in.linear);
   aiColor3D emission;
   if (record.Get(AI_MATKEY_COLOR_EMISSIVE, emission) == aiReturn_SUCCESS)
     material.emission = {std::max(0.0F, emission.r), std::max(0.0F, emission.g),
                          std::max(0.0F, emission.b)};
   material.transmission = transmission_of(record, base);
   const auto find = [&](const aiString& name) {
-    PictureIn picture = find_texture(in, name.C_Str(), file.parent_path(), pictures);
-    if (picture.color.empty() && warnings)
-      warnings->push_back(fmt::format("{}: material {}: texture {} {}", file.string(),
-                                      material.name, name.C_Str(), picture.fault));
+    PictureIn picture = find_texture(in.scene, name.C_Str(), in.file.parent_path(), in.pictures);
+    if (picture.color.empty() && in.warnings)
+      in.warnings->push_back(fmt::format("{}: material {}: texture {} {}", in.file.string(),
+                                         material.name, name.C_Str(), picture.fault));
     return picture;
   };
   aiString texture;
@@ -151,12 +158,12 @@ Material convert(const aiScene& in, const aiMaterial& record, const fs::path& fi
 
 MaterialsIn convert_materials(const aiScene& in, const fs::path& file, bool linear_colors,
                               PictureStore& pictures, std::vector<std::string>* warnings) {
+  const Source source{in, file, linear_colors, pictures, warnings};
   MaterialsIn out;
   out.glow.resize(in.mNumMaterials);
   std::vector<Material>& materials = out.materials;
   for (unsigned i = 0; i < in.mNumMaterials; ++i)
-    materials.push_back(
-        convert(in, *in.mMaterials[i], file, linear_colors, pictures, out.glow[i], warnings));
+    materials.push_back(convert(source, *in.mMaterials[i], out.glow[i]));
   if (!linear_colors) return out;
   const std::vector<float> strengths = emissive_strengths(file);
   for (std::size_t i = 0; i < std::min(strengths.size(), materials.size()); ++i)

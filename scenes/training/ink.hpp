@@ -59,7 +59,7 @@ Sheet fill(const TintAt& tint_at) {
 /// Smooth noise in about [-1, 1], `cells` lumps across the sheet.
 inline Field clouds(const Ink& ink, std::uint64_t name, int cells, int octaves = 5,
                     float gain = 0.55F) {
-  return fbm(kTexels, kTexels, cells, cells, octaves, gain, ink.random.fork(name));
+  return fbm(kTexels, kTexels, {cells, cells, octaves, gain}, ink.random.fork(name));
 }
 
 }  // namespace mh::training

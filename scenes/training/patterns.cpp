@@ -116,7 +116,7 @@ Sheet stripes(const Ink& ink) {
       line[x] = ink.pick(id) * (0.8F + 0.4F * ink.uniform(500 + id, 0, 1));
   }
   const Field rough =
-      fbm(kTexels, kTexels, upright ? 170 : 8, upright ? 8 : 170, 2, 0.6F, ink.random.fork(2));
+      fbm(kTexels, kTexels, {upright ? 170 : 8, upright ? 8 : 170, 2, 0.6F}, ink.random.fork(2));
   return fill([&](int x, int y) {
     const int along = ((upright ? x : y) + slope * (upright ? y : x) + kTexels) % kTexels;
     return line[along] * (1.0F + 0.2F * rough(x, y));

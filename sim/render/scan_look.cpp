@@ -51,7 +51,7 @@ class Volume {
   void add(const RenderedFrame& frame, const Camera& camera, const SE3& world_from_camera,
            RandomStream random) {
     // Smooth errors of the depth, another for each view.
-    const Field bumps = fbm(camera.width_px, camera.height_px, 6, 5, 3, 0.6F, random);
+    const Field bumps = fbm(camera.width_px, camera.height_px, {6, 5, 3, 0.6F}, random);
     for (int y = 0; y < camera.height_px; ++y)
       for (int x = 0; x < camera.width_px; ++x) {
         const double seen = static_cast<double>(frame.depth_m(x, y));

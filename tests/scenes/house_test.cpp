@@ -414,7 +414,7 @@ TEST(MeshBuilder, ShapesAreClosedAndFaceOutwards) {
               1.0 - 4 * 3.5 * 0.01 * 0.01 / 2, 1e-4);
   // A regular 64-gon is 0.9984 of its circle.
   EXPECT_NEAR(measure([](MeshBuilder& m, MaterialId k) {
-                m.cylinder(k, {0, 0, 0}, {0, 0, 1}, 0.5F, 0.5F, 64);
+                m.cylinder(k, {0, 0, 0}, {0, 0, 1}, {0.5F, 0.5F}, 64);
               }),
               0.25 * M_PI * 0.9984, 1e-3);
   EXPECT_NEAR(measure([](MeshBuilder& m, MaterialId k) {
