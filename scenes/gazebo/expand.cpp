@@ -16,6 +16,7 @@
 
 #include "scenes/gazebo/find.hpp"
 #include "scenes/gazebo/look.hpp"
+#include "scenes/gazebo/names.hpp"
 #include "scenes/gazebo/source.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -46,15 +47,6 @@ std::string text_of(const XMLElement* element) {
   const auto first = trimmed.find_first_not_of(" \t\r\n");
   if (first == trimmed.npos) return {};
   return std::string(trimmed.substr(first, trimmed.find_last_not_of(" \t\r\n") - first + 1));
-}
-
-/// A name that libsdformat lets pass.
-std::string sound_name(const char* given) {
-  std::string name = given == nullptr ? "" : given;
-  for (std::size_t at; (at = name.find("::")) != name.npos; name[at] = '_') name.erase(at, 1);
-  while (name.starts_with("__") && name.ends_with("__")) name.erase(0, 2);
-  if (name.empty()) return "unnamed";
-  return name == "world" ? "world_" : name;
 }
 
 class Expander {
@@ -108,10 +100,6 @@ class Expander {
     }
   }
 
-  /// Taken in a scope, with the number that the next copy of each may try: names of thousands of
-  /// one name are not to be tried one by one.
-  using Names = std::map<std::string, int>;
-
   /// A range over an element's child elements.
   struct Children {
     const XMLElement* first;
@@ -138,16 +126,6 @@ class Expander {
     std::unique_ptr<Source>& source = sources_[file];
     if (!source) source = parse_source(file, read_file(file));
     return *source;
-  }
-
-  std::string free_name(const char* given, Names& names) const {
-    const std::string name = sound_name(given);
-    const auto [given_before, is_new] = names.try_emplace(name, 2);
-    if (is_new) return name;
-    std::string free;
-    do free = fmt::format("{}_{}", name, given_before->second++);
-    while (!names.try_emplace(free, 2).second);
-    return free;
   }
 
   void add_parts(const XMLElement& parent, const Source& source, XMLElement& out, Names& names) {
@@ -242,7 +220,7 @@ class Expander {
         include == nullptr ? "" : text_of(include->FirstChildElement("name"));
     copy->SetAttribute(
         "name",
-        free_name(told_name.empty() ? model.Attribute("name") : told_name.c_str(), names).c_str());
+        names.take(told_name.empty() ? model.Attribute("name") : told_name.c_str()).c_str());
     const XMLElement* pose = model.FirstChildElement("pose");
     const std::string placed =
         include == nullptr ? "" : text_of(include->FirstChildElement("placement_frame"));
@@ -263,7 +241,7 @@ class Expander {
 
   void add_link(const XMLElement& link, const Source& source, XMLElement& out, Names& names) {
     XMLElement* copy = out.InsertNewChildElement("link");
-    copy->SetAttribute("name", free_name(link.Attribute("name"), names).c_str());
+    copy->SetAttribute("name", names.take(link.Attribute("name")).c_str());
     Names inner;
     for (const XMLElement& part : children(link)) {
       const std::string_view kind = part.Name();
@@ -294,7 +272,7 @@ class Expander {
       return;
     }
     XMLElement* copy = out.InsertNewChildElement("visual");
-    copy->SetAttribute("name", free_name(given, names).c_str());
+    copy->SetAttribute("name", names.take(given).c_str());
     if (const XMLElement* pose = visual.FirstChildElement("pose")) add_pose(*pose, source, *copy);
     if (const std::string clear = text_of(visual.FirstChildElement("transparency")); !clear.empty())
       copy->InsertNewChildElement("transparency")->SetText(clear.c_str());
@@ -323,7 +301,7 @@ class Expander {
     if (std::strcmp(out.Name(), "model") == 0) return;  // only worlds and links have lights
     XMLElement* copy = light.DeepClone(&out_)->ToElement();
     out.InsertEndChild(copy);
-    copy->SetAttribute("name", free_name(light.Attribute("name"), names).c_str());
+    copy->SetAttribute("name", names.take(light.Attribute("name")).c_str());
     if (copy->Attribute("type") == nullptr) copy->SetAttribute("type", "point");
     while (XMLElement* pose = copy->FirstChildElement("pose")) copy->DeleteChild(pose);
     const XMLElement* placed = include == nullptr ? nullptr : include->FirstChildElement("pose");
@@ -334,7 +312,7 @@ class Expander {
   void add_frame(const XMLElement& frame, const Source& source, XMLElement& out, Names& names) {
     if (!source.has_frames) return;
     XMLElement* copy = out.InsertNewChildElement("frame");
-    copy->SetAttribute("name", free_name(frame.Attribute("name"), names).c_str());
+    copy->SetAttribute("name", names.take(frame.Attribute("name")).c_str());
     if (const char* to = frame.Attribute("attached_to")) copy->SetAttribute("attached_to", to);
     if (const XMLElement* pose = frame.FirstChildElement("pose")) add_pose(*pose, source, *copy);
   }
@@ -344,7 +322,7 @@ class Expander {
     const char* name = joint.Attribute("name");
     if (!source.has_frames || name == nullptr || !source.referred.contains(name)) return;
     XMLElement* copy = out.InsertNewChildElement("joint");
-    copy->SetAttribute("name", free_name(name, names).c_str());
+    copy->SetAttribute("name", names.take(name).c_str());
     copy->SetAttribute("type", "fixed");
     for (const char* end : {"parent", "child"})
       copy->InsertNewChildElement(end)->SetText(text_of(joint.FirstChildElement(end)).c_str());

@@ -2,171 +2,19 @@
 #include "sim/physics/planar_world.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <optional>
-#include <span>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <btBulletDynamicsCommon.h>
 
-#include "scenes/band.hpp"
-#include "sim/physics/outline.hpp"
+#include "sim/physics/obstacles.hpp"
+#include "sim/physics/outline_contacts.hpp"
 
 namespace mh {
 namespace {
-
-// What is met sideways reaches past the middle of the robot by this much, up and down: the shortest
-// way out of any overlap is sideways, the only way a planar body can go.
-constexpr float kOverhang_m = 1.0F;
-
-/// Triangles, the instance that each belongs to, and the shape made of them.
-struct Obstacles {
-  btTriangleMesh mesh;
-  std::vector<InstanceId> instance_of;
-  std::unique_ptr<btBvhTriangleMeshShape> shape;  // none if there are no triangles
-
-  void make_shape() {
-    if (!instance_of.empty()) shape = std::make_unique<btBvhTriangleMeshShape>(&mesh, true);
-  }
-};
-
-/// Triangles of the scene, cut to the band of heights in which they are obstacles: what rays meet.
-std::unique_ptr<Obstacles> seen_obstacles(const Scene& scene, float top_m) {
-  auto result = std::make_unique<Obstacles>();
-  const auto point = [](const Eigen::Vector3f& p) { return btVector3(p.x(), p.y(), p.z()); };
-  for_each_face_in_band(scene, static_cast<float>(scene.floor.rough_m), top_m,
-                        [&](std::size_t face, std::span<const Eigen::Vector3f> polygon) {
-                          for (std::size_t i = 2; i < polygon.size(); ++i) {
-                            result->mesh.addTriangle(point(polygon[0]), point(polygon[i - 1]),
-                                                     point(polygon[i]));
-                            result->instance_of.push_back(scene.instance_of[face]);
-                          }
-                        });
-  result->make_shape();
-  return result;
-}
-
-/// Upright walls along the outline of the same, two triangles for each edge: what the base runs
-/// into. An upright cylinder among triangles is a disc among their outlines.
-std::unique_ptr<Obstacles> felt_obstacles(const Scene& scene, float top_m, float middle_m) {
-  auto result = std::make_unique<Obstacles>();
-  const float low = middle_m - kOverhang_m, high = middle_m + kOverhang_m;
-  for (const OutlineEdge& edge :
-       floor_outline(scene, static_cast<float>(scene.floor.rough_m), top_m)) {
-    const btVector3 a(edge.a_m.x(), edge.a_m.y(), low), b(edge.b_m.x(), edge.b_m.y(), low),
-        a_high(edge.a_m.x(), edge.a_m.y(), high), b_high(edge.b_m.x(), edge.b_m.y(), high);
-    result->mesh.addTriangle(a, b, b_high);
-    result->mesh.addTriangle(a, b_high, a_high);
-    result->instance_of.insert(result->instance_of.end(), 2, edge.instance);
-  }
-  result->make_shape();
-  return result;
-}
-
-/// Where the base (a sphere that stands for a disc) touches the outline. Bullet's own pairing of a
-/// sphere with a mesh lets a shallow contact take the place of a deep one that points the same way,
-/// and furniture has many layers a few millimeters apart.
-class OutlineContacts final : public btCollisionAlgorithm {
- public:
-  struct Maker final : btCollisionAlgorithmCreateFunc {
-    btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
-                                                   const btCollisionObjectWrapper* a,
-                                                   const btCollisionObjectWrapper* b) override {
-      void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(OutlineContacts));
-      return new (memory) OutlineContacts(info, a->getCollisionObject(), b->getCollisionObject());
-    }
-  };
-
-  OutlineContacts(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObject* a,
-                  const btCollisionObject* b)
-      : btCollisionAlgorithm(info), manifold_(m_dispatcher->getNewManifold(a, b)) {}
-  ~OutlineContacts() override { m_dispatcher->releaseManifold(manifold_); }
-
-  void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
-                        const btDispatcherInfo& /*info*/, btManifoldResult* result) override {
-    const bool base_is_first = a->getCollisionShape()->getShapeType() == SPHERE_SHAPE_PROXYTYPE;
-    const btCollisionObjectWrapper& base = base_is_first ? *a : *b;
-    const btCollisionObjectWrapper& house = base_is_first ? *b : *a;
-    const btVector3 center = base.getWorldTransform().getOrigin();
-    const btScalar radius =
-        static_cast<const btSphereShape*>(base.getCollisionShape())->getRadius();
-    find_near(*static_cast<const btBvhTriangleMeshShape*>(house.getCollisionShape()), center,
-              radius + kReach_m);
-    manifold_->clearManifold();
-    result->setPersistentManifold(manifold_);
-    std::array<btVector3, MANIFOLD_CACHE_SIZE> directions;
-    std::size_t kept = 0;
-    for (const Near& near : near_) {
-      if (kept == directions.size()) break;
-      const btVector3 direction = (center - near.point) / near.distance_m;
-      const auto alike = [&](const btVector3& other) { return other.dot(direction) > kSameWay; };
-      if (std::any_of(directions.begin(), directions.begin() + kept, alike)) continue;
-      directions[kept++] = direction;
-      const btScalar gap_m = near.distance_m - radius;
-      if (base_is_first) {
-        result->setShapeIdentifiersB(0, near.triangle);
-        result->addContactPoint(direction, near.point, gap_m);
-      } else {
-        result->setShapeIdentifiersA(0, near.triangle);
-        result->addContactPoint(-direction, center - radius * direction, gap_m);
-      }
-    }
-  }
-
-  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
-                                 btManifoldResult*) override {
-    return 1;
-  }
-  void getAllContactManifolds(btManifoldArray& manifolds) override {
-    manifolds.push_back(manifold_);
-  }
-
- private:
-  static constexpr btScalar kReach_m = 0.005F;  // farther than a step goes
-  static constexpr btScalar kSameWay = 0.995F;  // 6 deg: the deeper of two such contacts is enough
-
-  struct Near {
-    btScalar distance_m;
-    int triangle;
-    btVector3 point;  // of the wall, at the height of the base's middle
-  };
-
-  /// Walls within a distance of the center, the nearest first.
-  void find_near(const btBvhTriangleMeshShape& walls, const btVector3& center, btScalar most_m) {
-    struct Visitor final : btTriangleCallback {
-      btVector3 center;
-      btScalar most_m = 0;
-      std::vector<Near>* near = nullptr;
-      void processTriangle(btVector3* corners, int /*part*/, int triangle) override {
-        if (triangle % 2 != 0) return;  // the other half of the same wall
-        btVector3 a = corners[0], along = corners[1] - corners[0];
-        a.setZ(center.z());
-        const btScalar t =
-            std::clamp((center - a).dot(along) / along.length2(), btScalar(0), btScalar(1));
-        const btVector3 point = a + t * along;
-        const btScalar distance_m = (center - point).length();
-        if (distance_m < most_m && distance_m > 0) near->push_back({distance_m, triangle, point});
-      }
-    };
-    near_.clear();
-    Visitor visitor;
-    visitor.center = center;
-    visitor.most_m = most_m;
-    visitor.near = &near_;
-    const btVector3 reach(most_m, most_m, most_m);
-    walls.processAllTriangles(&visitor, center - reach, center + reach);
-    std::sort(near_.begin(), near_.end(), [](const Near& a, const Near& b) {
-      return std::tie(a.distance_m, a.triangle) < std::tie(b.distance_m, b.triangle);
-    });
-  }
-
-  btPersistentManifold* manifold_;
-  std::vector<Near> near_;
-};
 
 double limited(double value, double limit) {
   return std::clamp(value, -limit, limit);

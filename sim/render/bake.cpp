@@ -11,6 +11,7 @@
 
 #include <xxhash.h>
 
+#include "sim/render/bake_mend.hpp"
 #include "sim/render/bake_points.hpp"
 #include "sim/render/color.hpp"
 #include "sim/render/embree_scene.hpp"
@@ -23,7 +24,6 @@ namespace {
 
 using Eigen::Vector2f;
 using Eigen::Vector3f;
-using Colors = std::vector<Vector3f>;
 
 // Goes up whenever the same scene and config come out in other light.
 constexpr std::uint64_t kBakeVersion = 2;
@@ -38,11 +38,6 @@ constexpr float kInsideShare = 0.5F;
 // A side with less than this share of the scene's mean light, and of the other side's, is dark:
 // inside a closed box that is turned inside out.
 constexpr float kDarkShare = 0.02F;
-// Light is averaged only between vertices whose normals differ by less than 25 deg, and the less
-// the further they differ beyond this share, the size of the noise: contact shadows stay.
-constexpr float kSameSurface = 0.9F;
-constexpr float kNoise = 0.1F;
-
 /// Evenly spread points of the unit disc (Vogel's sunflower), turned by a random angle and shifted
 /// by a random share of a step: the same low-discrepancy pattern at each vertex, no two alike.
 class DiscPattern {
@@ -136,7 +131,7 @@ class Baker {
         inside[v] = gathered.inside;
       });
       indirect = std::move(next);
-      mend(inside, direct, indirect);
+      mend(inside, {points_, neighbors_}, config_.smoothing, direct, indirect);
     }
     leaving_ = light_leaving(direct, indirect);
     Colors light(count);
@@ -335,54 +330,6 @@ class Baker {
         leaving[v] = leaving[v].cwiseProduct(srgb_to_linear(scene_.colors[v]));
     }
     return leaving;
-  }
-
-  /// Fills vertices inside solids from their neighbors and smooths the indirect light.
-  void mend(const std::vector<char>& inside, Colors& direct, Colors& indirect) const {
-    std::vector<char> known(inside.size());
-    for (std::size_t v = 0; v < known.size(); ++v) known[v] = !inside[v];
-    fill(known, direct, indirect);
-    for (int round = 0; round < config_.smoothing; ++round) {
-      const Colors before = indirect;
-      for (std::size_t v = 0; v < before.size(); ++v) {
-        const float own = luminance(before[v]);
-        Vector3f sum = before[v];
-        float weight = 1.0F;
-        for (const std::uint32_t n : neighbors_.of(v)) {
-          if (!known[n] || points_.normal(n).dot(points_.normal(v)) < kSameSurface) continue;
-          const float step = (luminance(before[n]) - own) / (kNoise * own + 1e-6F);
-          const float w = 1.0F / (1.0F + step * step);
-          sum += w * before[n];
-          weight += w;
-        }
-        indirect[v] = sum / weight;
-      }
-    }
-  }
-
-  /// Gives unknown vertices the mean of their known neighbors, ring by ring from the rim inwards.
-  void fill(std::vector<char>& known, Colors& direct, Colors& indirect) const {
-    constexpr int kRings = 16;  // furniture is rarely wider than so many cells
-    for (int ring = 0; ring < kRings; ++ring) {
-      std::vector<std::size_t> filled;
-      for (std::size_t v = 0; v < known.size(); ++v) {
-        if (known[v]) continue;
-        Vector3f sum_direct = Vector3f::Zero(), sum_indirect = Vector3f::Zero();
-        float weight = 0.0F;
-        for (const std::uint32_t n : neighbors_.of(v)) {
-          if (!known[n] || points_.normal(n).dot(points_.normal(v)) < kSameSurface) continue;
-          sum_direct += direct[n];
-          sum_indirect += indirect[n];
-          weight += 1.0F;
-        }
-        if (weight <= 0.0F) continue;
-        direct[v] = sum_direct / weight;
-        indirect[v] = sum_indirect / weight;
-        filled.push_back(v);
-      }
-      if (filled.empty()) return;
-      for (const std::size_t v : filled) known[v] = 1;
-    }
   }
 
   const Scene& scene_;

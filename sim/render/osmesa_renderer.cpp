@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstring>
 #include <limits>
 #include <mutex>
-#include <numeric>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "sim/render/color.hpp"
 #include "sim/render/osmesa_context.hpp"
+#include "sim/render/osmesa_scene.hpp"
+#include "sim/render/osmesa_shaders.hpp"
 #include "sim/render/renderer.hpp"
-#include "sim/render/texture.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
@@ -26,82 +24,6 @@ using Eigen::Vector3f;
 // Nearer surfaces are cut away; a ray tracer sees them.
 constexpr float kNearM = 1e-3F;
 
-// The camera's frame is x right, y down, z forward; row 0 of a picture is the first that is read
-// back, so nothing is turned over. Depth is reversed (near / z), which is finest in floats.
-constexpr const char* kVertexShader = R"(
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec2 uv;
-layout(location = 2) in vec3 gain;
-uniform vec3 origin;
-uniform mat3 camera_from_world;
-uniform mat4 clip_from_camera;
-out vec2 texture_place;
-out vec3 vertex_gain;
-out vec3 from_origin;
-void main() {
-  from_origin = position - origin;
-  texture_place = uv;
-  vertex_gain = gain;
-  gl_Position = clip_from_camera * vec4(camera_from_world * from_origin, 1.0);
-}
-)";
-
-// The level of detail follows TextureTable::look_up: the texels that a pixel covers.
-// Holes follow CutOuts::is_hole. Only a scene that has any pays for them: a shader that may discard
-// is tested for depth after it has run.
-constexpr const char* kVersion = "#version 450 core\n";
-constexpr const char* kVersionWithHoles = "#version 450 core\n#define HOLES\n";
-constexpr const char* kFragmentShader = R"(
-in vec2 texture_place;
-in vec3 vertex_gain;
-in vec3 from_origin;
-uniform sampler2D picture;
-uniform samplerBuffer normals;   // per face: normal x twice its area, texels of twice its area
-uniform usamplerBuffer labels;   // per face: class, instance
-uniform int first_face;
-uniform bool textured;
-uniform bool has_holes;
-uniform sampler2D opacity;
-uniform vec3 base;
-uniform vec3 emission;
-uniform float white;  // what is brighter is cut off
-uniform float pixel_area;
-uniform float least_opacity;
-layout(location = 0) out vec4 color;
-layout(location = 1) out uvec2 label;
-layout(location = 2) out float depth;
-void main() {
-#ifdef HOLES
-  if (has_holes) {
-    ivec2 size = textureSize(opacity, 0);
-    ivec2 texel = min(size - 1, ivec2((texture_place - floor(texture_place)) * vec2(size)));
-    if (texelFetch(opacity, texel, 0).r < least_opacity) discard;
-  }
-#endif
-  int face = first_face + gl_PrimitiveID;
-  depth = 1.0 / gl_FragCoord.w;
-  vec3 light = vertex_gain * base;
-  if (textured) {
-    vec4 normal = texelFetch(normals, face);
-    float facing = abs(dot(normal.xyz, from_origin / depth));
-    float texels = depth * depth * pixel_area * normal.w / facing;
-    float level = 0.5 * (float(floatBitsToInt(texels)) * exp2(-23.0) - 127.0);
-    light *= textureLod(picture, texture_place, clamp(level, 0.0, 15.0)).rgb;
-  }
-  color = vec4(clamp(light + emission, 0.0, white), 1.0);
-  label = texelFetch(labels, face).xy;
-}
-)";
-
-/// The faces of one material, drawn at once.
-struct Batch {
-  int first = 0, count = 0;  // faces
-  GLuint texture = 0;        // 0 = none
-  GLuint opacity = 0;        // 0 = no holes
-  Vector3f base, emission;   // linear, x exposure
-  bool pane = false;         // emission is what the pane lets through
-};
-
 class OsmesaRenderer final : public Renderer {
  public:
   OsmesaRenderer(const Scene& scene, const RenderConfig& config)
@@ -110,10 +32,7 @@ class OsmesaRenderer final : public Renderer {
     has_panes_ = std::ranges::any_of(scene.materials, &Material::is_pane);
     make_program(
         std::ranges::any_of(scene.materials, [](const Material& m) { return !m.opacity.empty(); }));
-    const std::vector<std::uint32_t> order = sort_faces(scene);
-    make_batches(scene, order, config.exposure);
-    load_vertices(scene);
-    load_faces(scene, order);
+    batches_ = load_scene(gl_, scene, config.exposure);
     Vector3f sky = Vector3f::Zero();
     for (const Light& light : scene.lights)
       if (light.kind == Light::Kind::kSky) sky += light.color * config.exposure;
@@ -185,154 +104,6 @@ class OsmesaRenderer final : public Renderer {
     gl_.DepthFunc(GL_GREATER);
     gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
     gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  }
-
-  /// Faces by material, else in their order.
-  static std::vector<std::uint32_t> sort_faces(const Scene& scene) {
-    std::vector<std::uint32_t> order(scene.triangles.size());
-    std::iota(order.begin(), order.end(), 0U);
-    if (!scene.materials.empty())
-      std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return scene.material_of[a] < scene.material_of[b];
-      });
-    return order;
-  }
-
-  void make_batches(const Scene& scene, const std::vector<std::uint32_t>& order, float exposure) {
-    if (scene.materials.empty()) {
-      batches_.push_back({0, static_cast<int>(order.size()), 0, 0, Vector3f::Constant(exposure),
-                          Vector3f::Zero()});
-      return;
-    }
-    for (int first = 0; first < static_cast<int>(order.size());) {
-      const std::uint16_t id = scene.material_of[order[static_cast<std::size_t>(first)]];
-      int end = first;
-      while (end < static_cast<int>(order.size()) &&
-             scene.material_of[order[static_cast<std::size_t>(end)]] == id)
-        ++end;
-      const Material& material = scene.materials[id];
-      Batch batch{first,
-                  end - first,
-                  0,
-                  0,
-                  srgb_to_linear(material.base_color) * exposure,
-                  material.emission * exposure};
-      if (!material.texture.empty()) {
-        if (scene.uvs.empty())
-          batch.base = batch.base.cwiseProduct(mean_linear(material.texture));
-        else
-          batch.texture = load_texture(material.texture);
-      }
-      if (!material.opacity.empty() && !scene.uvs.empty() && material.emission.isZero())
-        batch.opacity = load_opacity(material.opacity);
-      if (material.is_pane())
-        batch = {.first = first,
-                 .count = end - first,
-                 .base = Vector3f::Zero(),
-                 .emission = material.transmission,
-                 .pane = true};
-      batches_.push_back(batch);
-      first = end;
-    }
-  }
-
-  GLuint load_texture(const Grid2d<Rgb8>& picture) const {
-    GLuint texture = 0;
-    gl_.GenTextures(1, &texture);
-    gl_.ActiveTexture(GL_TEXTURE0);
-    gl_.BindTexture(GL_TEXTURE_2D, texture);
-    const auto levels = mip_pyramid(picture);
-    for (std::size_t l = 0; l < levels.size(); ++l) {
-      std::vector<std::uint16_t> texels;
-      for (const Vector3f& c : levels[l])
-        for (int k = 0; k < 4; ++k)
-          texels.push_back(static_cast<std::uint16_t>(std::lround((k < 3 ? c[k] : 1.0F) * 65535)));
-      gl_.TexImage2D(GL_TEXTURE_2D, static_cast<GLint>(l), GL_RGBA16, levels[l].width(),
-                     levels[l].height(), 0, GL_RGBA, GL_UNSIGNED_SHORT, texels.data());
-    }
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(levels.size()) - 1);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    return texture;
-  }
-
-  GLuint load_opacity(const Grid2d<std::uint8_t>& opacity) const {
-    GLuint texture = 0;
-    gl_.GenTextures(1, &texture);
-    gl_.ActiveTexture(GL_TEXTURE3);
-    gl_.BindTexture(GL_TEXTURE_2D, texture);
-    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, opacity.width(), opacity.height(), 0, GL_RED,
-                   GL_UNSIGNED_BYTE, opacity.data());
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    gl_.ActiveTexture(GL_TEXTURE0);
-    return texture;
-  }
-
-  template <class T>
-  void fill(GLenum target, const std::vector<T>& data) const {
-    GLuint buffer = 0;
-    gl_.GenBuffers(1, &buffer);
-    gl_.BindBuffer(target, buffer);
-    gl_.BufferData(target, static_cast<GLsizeiptr>(data.size() * sizeof(T)), data.data(),
-                   GL_STATIC_DRAW);
-  }
-
-  void load_vertices(const Scene& scene) const {
-    GLuint array = 0;
-    gl_.GenVertexArrays(1, &array);
-    gl_.BindVertexArray(array);
-    const auto attribute = [&](GLuint index, GLint size, const auto& data) {
-      fill(GL_ARRAY_BUFFER, data);
-      gl_.EnableVertexAttribArray(index);
-      gl_.VertexAttribPointer(index, size, GL_FLOAT, GL_FALSE, 0, nullptr);
-    };
-    attribute(0, 3, scene.positions_m);
-    if (!scene.uvs.empty()) attribute(1, 2, scene.uvs);
-    std::vector<Vector3f> gain(scene.positions_m.size(), Vector3f::Ones());
-    for (std::size_t v = 0; v < gain.size(); ++v) {
-      if (!scene.colors.empty()) gain[v] = srgb_to_linear(scene.colors[v]);
-      if (!scene.light.empty()) gain[v] = gain[v].cwiseProduct(scene.light[v]);
-    }
-    attribute(2, 3, gain);
-  }
-
-  void load_faces(const Scene& scene, const std::vector<std::uint32_t>& order) const {
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<std::array<float, 4>> normals;
-    std::vector<std::array<std::uint16_t, 2>> labels;
-    for (const std::uint32_t f : order) {
-      const auto& t = scene.triangles[f];
-      triangles.push_back(t);
-      const Vector3f &a = scene.positions_m[t[0]], &b = scene.positions_m[t[1]],
-                     &c = scene.positions_m[t[2]];
-      const Vector3f normal = (b - a).cross(c - a);
-      float texels = 0.0F;
-      if (!scene.uvs.empty() && !scene.materials.empty()) {
-        const Eigen::Vector2f p = scene.uvs[t[1]] - scene.uvs[t[0]];
-        const Eigen::Vector2f q = scene.uvs[t[2]] - scene.uvs[t[0]];
-        texels = std::abs(p.x() * q.y() - p.y() * q.x()) *
-                 static_cast<float>(scene.materials[scene.material_of[f]].texture.size());
-      }
-      normals.push_back({normal.x(), normal.y(), normal.z(), texels});
-      labels.push_back({scene.class_of[f], scene.instance_of[f]});
-    }
-    fill(GL_ELEMENT_ARRAY_BUFFER, triangles);
-    const auto per_face = [&](GLenum unit, GLenum format, const auto& data) {
-      GLuint texture = 0;
-      gl_.GenTextures(1, &texture);
-      gl_.ActiveTexture(unit);
-      gl_.BindTexture(GL_TEXTURE_BUFFER, texture);
-      GLuint buffer = 0;
-      gl_.GenBuffers(1, &buffer);
-      gl_.BindBuffer(GL_TEXTURE_BUFFER, buffer);
-      gl_.BufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(data.size() * sizeof(data[0])),
-                     data.data(), GL_STATIC_DRAW);
-      gl_.TexBuffer(GL_TEXTURE_BUFFER, format, buffer);
-    };
-    per_face(GL_TEXTURE1, GL_RGBA32F, normals);
-    per_face(GL_TEXTURE2, GL_RG16UI, labels);
-    gl_.ActiveTexture(GL_TEXTURE0);
   }
 
   /// Renderbuffers of the picture's size: linear color, labels, depth, depth test.
@@ -459,13 +230,6 @@ std::unique_ptr<Renderer> make_osmesa_renderer([[maybe_unused]] const Scene& sce
   throw MachineError(
       "this build has no OSMesa: install libosmesa6-dev and build again, or render with embree");
 #endif
-}
-
-std::unique_ptr<Renderer> make_renderer(std::string_view name, const Scene& scene,
-                                        const RenderConfig& config) {
-  if (name == "embree") return make_embree_renderer(scene, config);
-  if (name == "osmesa") return make_osmesa_renderer(scene, config);
-  throw InputError(fmt::format("renderer '{}' is none of embree, osmesa", name));
 }
 
 }  // namespace mh

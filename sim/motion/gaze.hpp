@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "scenes/scene.hpp"
+#include "sim/motion/by_hand.hpp"
+#include "sim/motion/feet.hpp"
+#include "slam/core/camera.hpp"
+#include "slam/core/random.hpp"
+
+namespace mh::by_hand {
+
+/// Where the camera looks in each frame.
+struct Looks {
+  std::vector<double> yaw_rad, pitch_rad;
+};
+/// One looks as somebody does who scans a room, turn after turn.
+Looks looks_along(const Scene& scene, const std::vector<Eigen::Vector2d>& feet_m,
+                  const Ground& ground, const Camera& camera, const HandheldConfig& config,
+                  RandomStream stream);
+
+}  // namespace mh::by_hand

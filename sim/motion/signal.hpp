@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "slam/core/random.hpp"
+
+namespace mh::by_hand {
+
+/// A signal of given root mean square whose power lies evenly in a band: 16 sines of seeded
+/// frequency and phase.
+class BandNoise {
+ public:
+  BandNoise(RandomStream stream, double rms, double low_hz, double high_hz);
+  double at(double t_s) const;
+
+ private:
+  std::array<std::pair<double, double>, 16> sines_;  ///< rate, phase
+  double amplitude_ = 0;
+};
+
+/// Mean over a Gaussian window; the ends are held.
+std::vector<double> smoothed(const std::vector<double>& values, double sigma_frames);
+
+}  // namespace mh::by_hand

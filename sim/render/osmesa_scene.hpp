@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "scenes/scene.hpp"
+#include "sim/render/osmesa_context.hpp"
+
+#ifdef MH_HAS_OSMESA
+namespace mh {
+
+/// The faces of one material, drawn at once.
+struct Batch {
+  int first = 0, count = 0;        // faces
+  GLuint texture = 0;              // 0 = none
+  GLuint opacity = 0;              // 0 = no holes
+  Eigen::Vector3f base, emission;  // linear, x exposure
+  bool pane = false;               // emission is what the pane lets through
+};
+
+/// Hands a scene to the current context: vertices, the tables of faces that the shaders read,
+/// textures.
+std::vector<Batch> load_scene(const Gl& gl, const Scene& scene, float exposure);
+
+}  // namespace mh
+#endif
