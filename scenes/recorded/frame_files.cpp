@@ -15,11 +15,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A portable any-map: `magic` P5 (gray) or P6 (color).
-void write_pnm(const fs::path& file, const char* magic, int width, int height, int greatest,
-               const void* pixels, std::size_t bytes) {
+/// The head of a portable any-map.
+struct PnmHead {
+  const char* magic;  ///< P5 (gray) or P6 (color)
+  int width, height, greatest;
+};
+
+void write_pnm(const fs::path& file, const PnmHead& head, const void* pixels, std::size_t bytes) {
   std::ofstream out(file, std::ios::binary);
-  out << magic << '\n' << width << ' ' << height << '\n' << greatest << '\n';
+  out << head.magic << '\n' << head.width << ' ' << head.height << '\n' << head.greatest << '\n';
   out.write(static_cast<const char*>(pixels), static_cast<std::streamsize>(bytes));
   if (!out.flush())
     throw DiskFullError(fmt::format("{}: cannot be written: is the disk full?", file.string()));
@@ -41,18 +45,18 @@ FrameFiles show(const RgbdFrame& frame, const fs::path& folder) {
   static_assert(sizeof(Rgb8) == 3);
   const int width = frame.color.width(), height = frame.color.height();
   FrameFiles files{folder / "color.ppm", folder / "depth.pgm", {}};
-  write_pnm(files.color, "P6", width, height, 255, frame.color.data(), 3 * frame.color.size());
+  write_pnm(files.color, {"P6", width, height, 255}, frame.color.data(), 3 * frame.color.size());
   std::vector<std::uint8_t> depth(2 * frame.depth_m.size());
   for (std::size_t i = 0; i < frame.depth_m.size(); ++i) {
     const std::uint16_t units = depth_units(frame.depth_m.data()[i]);
     depth[2 * i] = static_cast<std::uint8_t>(units >> 8);  // the format's own order
     depth[2 * i + 1] = static_cast<std::uint8_t>(units & 0xff);
   }
-  write_pnm(files.depth, "P5", width, height, 65535, depth.data(), depth.size());
+  write_pnm(files.depth, {"P5", width, height, 65535}, depth.data(), depth.size());
   if (frame.semantics.index.empty()) return files;
   files.labels = folder / "labels.pgm";
   const Grid2d<ClassId> labels = class_image(frame.semantics);
-  write_pnm(files.labels, "P5", width, height, 255, labels.data(), labels.size());
+  write_pnm(files.labels, {"P5", width, height, 255}, labels.data(), labels.size());
   return files;
 }
 
