@@ -22,6 +22,7 @@
 #include "bench/results/scenes.hpp"
 #include "bench/results/trajectory_score.hpp"
 #include "bench/verify/verify.hpp"
+#include "sim/world/travel.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 

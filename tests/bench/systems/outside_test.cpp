@@ -64,10 +64,9 @@ class OutsideOdometry : public testing::Test {
     return seen;
   }
   std::unique_ptr<System> converse() const {
-    return make_conversation_system({.name = "vo",
-                                     .command = std::string("exec ") + VO_CONVERSE,
-                                     .mode = OutsideMode::kConversation},
-                                    camera(), 0, folder_ / "log");
+    return make_conversation_system(
+        {.name = "vo", .command = "exec " VO_CONVERSE, .mode = OutsideMode::kConversation},
+        camera(), 0, folder_ / "log");
   }
   static std::unique_ptr<System> mapped(std::unique_ptr<System> system) {
     map_sequence(*system, kCount, frame, {}, RandomStream(1));
@@ -187,8 +186,8 @@ TEST_F(OutsideOdometry, BothModesGiveOneTrajectoryAndTheTruthStaysOutside) {
                     [&](std::size_t k) { return frame(offered[k], noise); });
   OutsideProgram program{.name = "vo"};
   // `find` writes the names of all that the program is given to standard output: its log.
-  program.command = "find {dataset} && " + std::string(VO_RUN_DATASET) +
-                    " {dataset} {associations} {settings} {trajectory}";
+  program.command =
+      "find {dataset} && " VO_RUN_DATASET " {dataset} {associations} {settings} {trajectory}";
   const Trajectory recorded =
       run_on_dataset(program, folder_ / "given", stamps, 0, folder_ / "outside.log");
   EXPECT_EQ(recorded.size(), 87u);
