@@ -147,7 +147,7 @@ SlamState first_state(const Options& options, const std::shared_ptr<const Vocabu
   SemanticConfig semantics = state.config.semantics;
   if (options.gamma) semantics.gamma = *options.gamma;
   if (options.xi) semantics.xi = *options.xi;
-  if (options.plain) semantics = semantics.neutralised();
+  if (options.plain) semantics = semantics.neutralized();
   set_query_settings(state, semantics);
   settings.slam = state.config;
   return state;

@@ -74,7 +74,7 @@ void run(const Options& options) {
   std::vector<RecordedFrame> frames = load_tum_folder(options.folder);
   if (frames.size() > options.frames) frames.resize(options.frames);
   SlamConfig config;
-  if (options.plain) config.semantics = config.semantics.neutralised();
+  if (options.plain) config.semantics = config.semantics.neutralized();
   SlamState state =
       make_slam(camera.camera, config,
                 std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary)));
@@ -97,7 +97,7 @@ void run(const Options& options) {
               [&] { orb->detectAndCompute(gray, cv::noArray(), keypoints, descriptors); });
     time_into(times.extraction,
               [&] { static_cast<void>(extract(frame, state.camera, config.features)); });
-    // Tracking alone is localisation in the map as it stands: step() does the same and then maps.
+    // Tracking alone is localization in the map as it stands: step() does the same and then maps.
     if (!state.map.empty() && tracker.tracking())
       time_into(times.tracking,
                 [&] { static_cast<void>(localize(state, tracker, frame, stream)); });

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "slam/core/yaml.hpp"
-#include "slam/match/config.hpp"
+#include "slam/config/semantics.hpp"
 
 namespace mh {
 

@@ -12,7 +12,7 @@ SemanticConfig settings_of(const SystemSpec& system, const SemanticConfig& setti
     case SystemKind::kSemantic:
       return settings;
     case SystemKind::kPlain:
-      return settings.neutralised();
+      return settings.neutralized();
     case SystemKind::kOutside:
       return SemanticConfig::neutral();
   }

@@ -14,7 +14,7 @@
 #include "bench/plan/system_spec.hpp"
 #include "bench/protocol/config.hpp"
 #include "sim/sensors/sensors.hpp"
-#include "slam/pipeline/config.hpp"
+#include "slam/config/slam.hpp"
 
 namespace mh {
 

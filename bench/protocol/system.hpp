@@ -7,7 +7,7 @@
 #include "slam/core/random.hpp"
 #include "slam/core/rgbd_frame.hpp"
 #include "slam/core/trajectory.hpp"
-#include "slam/match/config.hpp"
+#include "slam/config/semantics.hpp"
 #include "slam/pipeline/report.hpp"
 
 namespace mh {

@@ -50,7 +50,7 @@ class Runner {
  private:
   StepReport process(const RgbdFrame& frame, RandomStream stream) {
     if (options_.localize) {
-      need_later(frame.stamp_ns, localized_ns_);
+      require_increasing_stamp(frame.stamp_ns, localized_ns_);
       localized_ns_ = frame.stamp_ns;
       return localize(state_, localizer_, frame, stream, observers_);
     }

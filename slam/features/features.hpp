@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "slam/config/features.hpp"
 #include "slam/core/camera.hpp"
 #include "slam/core/rgbd_frame.hpp"
 
@@ -36,15 +37,6 @@ struct Features {
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;
   std::size_t size() const { return keypoints.size(); }
-};
-
-struct FeatureConfig {
-  int count = 1000;            ///< keypoints wanted per frame
-  int levels = 8;              ///< pyramid levels
-  double scale = 1.2;          ///< between levels
-  int fast_threshold = 20;     ///< gray levels
-  int fast_threshold_low = 7;  ///< used in cells where the first finds nothing
-  double max_depth_m = 8.0;    ///< depth beyond is dropped
 };
 
 /// ORB (Rublee et al., ICCV 2011): FAST-9 corners on an image pyramid, spread evenly over image and

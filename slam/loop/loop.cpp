@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slam/config/slam.hpp"
 #include "slam/map/id_set.hpp"
-#include "slam/match/expect.hpp"
+#include "slam/mapping/local_mapping.hpp"
 #include "slam/optimize/pose_graph.hpp"
+#include "slam/relocalize/relocalize.hpp"
 
 namespace mh {
 namespace {
@@ -174,16 +176,15 @@ void join_landmarks(Map& map, const Loop& loop) {
 
 }  // namespace
 
-std::optional<Loop> detect_loop(const Map& map, KeyframeId newest, LoopMemory& memory,
-                                const MappingContext& context, const RelocalizeConfig& relocalize,
-                                const LoopConfig& config, RandomStream stream,
-                                MatchCounts& counts) {
+std::optional<Loop> detect_loop(KeyframeId newest, LoopMemory& memory, const SlamContext& context,
+                                RandomStream stream) {
+  const Map& map = context.map;
+  const LoopConfig& config = context.config.loop;
   const Keyframe& keyframe = map.at(newest);
   const auto found =
       try_candidates({keyframe.features, keyframe.grid, keyframe.words},
-                     candidates(map, newest, context.semantics, config), map, context.camera,
-                     context.features, context.semantics, context.match, relocalize, stream, counts,
-                     {.words = Matcher::kLoop, .projection = Matcher::kLoop}, context.trace);
+                     candidates(map, newest, context.config.semantics, config), context, stream,
+                     {.words = Matcher::kLoop, .projection = Matcher::kLoop});
   if (!found.camera_from_world ||
       !plausible(map, found.keyframe, newest, *found.camera_from_world, config))
     return std::nullopt;
@@ -199,8 +200,8 @@ std::optional<Loop> detect_loop(const Map& map, KeyframeId newest, LoopMemory& m
   return Loop{newest, found.keyframe, *found.camera_from_world, found.landmarks};
 }
 
-void close_loop(Map& map, const Loop& loop, const MappingContext& context, const LoopConfig& config,
-                MatchCounts& counts) {
+void close_loop(Map& map, const Loop& loop, const SlamContext& context) {
+  const LoopConfig& config = context.config.loop;
   const SE3 drift = loop.camera_from_world * map.at(loop.keyframe).camera_from_world.inverse();
   const bool negligible = drift.translation().norm() < config.negligible_m &&
                           angle_between_rad(drift, SE3()) < config.negligible_rad;
@@ -208,7 +209,7 @@ void close_loop(Map& map, const Loop& loop, const MappingContext& context, const
   join_landmarks(map, loop);
   map.update_covisibility(loop.keyframe);
   map.update_covisibility(loop.old_keyframe);
-  fuse_with_neighbors(map, loop.keyframe, context, at(counts, Matcher::kFusion));
+  fuse_with_neighbors(map, loop.keyframe, context);
   map.update_covisibility(loop.keyframe);
   // The whole map: with what the loop hardly moved held in place, the house came out a third to a
   // half further from the truth.

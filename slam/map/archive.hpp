@@ -8,7 +8,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <concepts>
 #include <cstring>
 #include <map>
 #include <optional>
@@ -19,6 +18,7 @@
 #include <vector>
 
 #include "slam/core/camera.hpp"
+#include "slam/core/fields.hpp"
 #include "slam/core/ids.hpp"
 #include "slam/core/se3.hpp"
 #include "slam/map/map.hpp"
@@ -27,8 +27,6 @@ namespace mh::archive {
 
 static_assert(std::endian::native == std::endian::little, "numbers are stored as they lie");
 
-template <class T, class U>
-concept Either = std::same_as<std::remove_const_t<T>, U>;
 template <class T>
 concept Number = std::is_arithmetic_v<T>;
 template <class T>

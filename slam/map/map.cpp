@@ -236,7 +236,7 @@ SE3 Map::camera_from_world(KeyframeId id) const {
   return camera_from_here * at(id).camera_from_world;
 }
 
-KeyframeId Map::standing(KeyframeId id) const {
+KeyframeId Map::live_keyframe(KeyframeId id) const {
   while (at(id).erased) id = at(id).parent;
   return id;
 }

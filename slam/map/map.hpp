@@ -17,15 +17,9 @@
 #include "slam/map/position_index.hpp"
 #include "slam/semantics/augmented_vector.hpp"
 #include "slam/vocabulary/inverted_index.hpp"
+#include "slam/vocabulary/word_index.hpp"
 
 namespace mh {
-
-/// A keyframe's features as the bag of words sees them.
-struct WordIndex {
-  AugmentedVector vector;  ///< equation 1
-  /// (node, feature) ordered: features under the same node of the vocabulary may match.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> by_node;
-};
 
 struct Keyframe {
   KeyframeId id;
@@ -114,7 +108,7 @@ class Map {
   /// Pose of any keyframe ever added, through its parents if it was erased.
   SE3 camera_from_world(KeyframeId id) const;
   /// The keyframe itself if it stands, else the nearest standing one up its parents.
-  KeyframeId standing(KeyframeId id) const;
+  KeyframeId live_keyframe(KeyframeId id) const;
 
   /// @throws std::logic_error naming the broken invariant.
   void check_invariants() const;

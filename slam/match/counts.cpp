@@ -35,4 +35,8 @@ MatcherCounts& MatcherCounts::operator+=(const MatcherCounts& other) {
   return *this;
 }
 
+void add(const MatchCounts& more, MatchCounts& counts) {
+  for (std::size_t m = 0; m < counts.size(); ++m) counts[m] += more[m];
+}
+
 }  // namespace mh

@@ -32,6 +32,9 @@ struct MatcherCounts {
 };
 using MatchCounts = std::array<MatcherCounts, static_cast<std::size_t>(Matcher::kCount)>;
 
+/// Adds counts to others, matcher by matcher.
+void add(const MatchCounts& more, MatchCounts& counts);
+
 inline MatcherCounts& at(MatchCounts& counts, Matcher matcher) {
   return counts[static_cast<std::size_t>(matcher)];
 }

@@ -99,15 +99,15 @@ std::vector<std::int32_t> match_by_projection(std::span<const ProjectionTarget> 
 }
 
 std::vector<FeatureMatch> match_by_words(
-    const Features& a, const WordIndex& words_a, std::span<const std::uint8_t> use_a,
-    const Features& b, const WordIndex& words_b, std::span<const std::uint8_t> use_b,
-    float max_distance, float ratio, SemanticMatcher matcher,
+    const WordView& view_a, const WordView& view_b, const WordGate& gate, SemanticMatcher matcher,
     const std::function<bool(std::uint32_t, std::uint32_t)>& compatible) {
+  const Features& a = view_a.features;
+  const Features& b = view_b.features;
   std::vector<std::int32_t> owner(b.size(), -1);
   std::vector<float> owner_distance(b.size(), 0.0F);
 
-  const auto& by_a = words_a.by_node;
-  const auto& by_b = words_b.by_node;
+  const auto& by_a = view_a.words.by_node;
+  const auto& by_b = view_b.words.by_node;
   for (std::size_t i = 0, j = 0; i < by_a.size() && j < by_b.size();) {
     if (by_a[i].first < by_b[j].first) {
       ++i;
@@ -121,17 +121,17 @@ std::vector<FeatureMatch> match_by_words(
     while (end_b < by_b.size() && by_b[end_b].first == by_b[j].first) ++end_b;
     for (const std::uint32_t node = by_a[i].first; i < by_a.size() && by_a[i].first == node; ++i) {
       const std::uint32_t fa = by_a[i].second;
-      if (use_a[fa] == 0) continue;
+      if (view_a.use[fa] == 0) continue;
       SemanticMatcher::Best best;
       for (std::size_t n = j; n < end_b; ++n) {
         const std::uint32_t fb = by_b[n].second;
-        if (use_b[fb] == 0 || (compatible && !compatible(fa, fb))) continue;
+        if (view_b.use[fb] == 0 || (compatible && !compatible(fa, fb))) continue;
         best.offer(fb,
                    matcher({a.descriptors[fa], a.keypoints[fa].label},
                            {b.descriptors[fb], b.keypoints[fb].label}),
                    0);
       }
-      if (!matcher.accept(best, max_distance, ratio)) continue;
+      if (!matcher.accept(best, gate.max_distance, gate.ratio)) continue;
       if (owner[best.index] >= 0 && owner_distance[best.index] <= best.first.semantic) continue;
       owner[best.index] = static_cast<std::int32_t>(fa);
       owner_distance[best.index] = best.first.semantic;
@@ -152,21 +152,6 @@ std::vector<FeatureMatch> match_by_words(
                         b.keypoints[fb].angle_rad))
       matches.push_back({static_cast<std::uint32_t>(owner[fb]), fb});
   return matches;
-}
-
-std::vector<LandmarkId> match_landmarks(const Keyframe& keyframe, const Features& features,
-                                        const WordIndex& words, const MatchConfig& config,
-                                        SemanticMatcher matcher) {
-  std::vector<std::uint8_t> with_landmark(keyframe.features.size());
-  for (std::size_t i = 0; i < with_landmark.size(); ++i)
-    with_landmark[i] = keyframe.landmarks[i].valid();
-  const std::vector<std::uint8_t> all(features.size(), 1);
-  const auto matches = match_by_words(keyframe.features, keyframe.words, with_landmark, features,
-                                      words, all, static_cast<float>(config.max_distance),
-                                      static_cast<float>(config.ratio), matcher);
-  std::vector<LandmarkId> landmarks(features.size());
-  for (const FeatureMatch& m : matches) landmarks[m.b] = keyframe.landmarks[m.a];
-  return landmarks;
 }
 
 }  // namespace mh

@@ -3,17 +3,14 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include <Eigen/Core>
-
+#include "slam/config/semantics.hpp"
 #include "slam/features/feature_grid.hpp"
 #include "slam/features/features.hpp"
-#include "slam/map/map.hpp"
-#include "slam/match/config.hpp"
 #include "slam/match/counts.hpp"
+#include "slam/vocabulary/word_index.hpp"
 
 namespace mh {
 
@@ -97,20 +94,23 @@ struct FeatureMatch {
   std::uint32_t a = 0, b = 0;  ///< feature indices
 };
 
+/// A frame's features as match_by_words() takes them.
+struct WordView {
+  const Features& features;
+  const WordIndex& words;
+  std::span<const std::uint8_t> use;  ///< which features take part, one flag each
+};
+
+struct WordGate {
+  float max_distance = 50;  ///< after equation 2
+  float ratio = 1.0F;       ///< best over second best; >= 1: no ratio test
+};
+
 /// Matches features of two frames that fall under the same vocabulary node: nearest neighbor with
 /// gate, ratio test and dominant rotation; each feature at most once.
-/// @param use_a, use_b  which features take part (same lengths as the frames' features).
-/// @param compatible    geometric test of a pair, e.g. the epipolar line; may be empty.
+/// @param compatible  geometric test of a pair, e.g. the epipolar line; may be empty.
 std::vector<FeatureMatch> match_by_words(
-    const Features& a, const WordIndex& words_a, std::span<const std::uint8_t> use_a,
-    const Features& b, const WordIndex& words_b, std::span<const std::uint8_t> use_b,
-    float max_distance, float ratio, SemanticMatcher matcher,
+    const WordView& a, const WordView& b, const WordGate& gate, SemanticMatcher matcher,
     const std::function<bool(std::uint32_t, std::uint32_t)>& compatible = {});
-
-/// The landmarks that a keyframe sees, matched to a frame by appearance alone (words, tight gate,
-/// ratio test): one per feature of the frame, invalid = none.
-std::vector<LandmarkId> match_landmarks(const Keyframe& keyframe, const Features& features,
-                                        const WordIndex& words, const MatchConfig& config,
-                                        SemanticMatcher matcher);
 
 }  // namespace mh

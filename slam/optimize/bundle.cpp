@@ -103,7 +103,7 @@ Workspace make_workspace(const BundleProblem& problem) {
 }
 
 /// Holds every point that its active observations do not determine (fewer than two, and no
-/// depth), and lets go of those observations: marginalised, they would say nothing about a pose.
+/// depth), and lets go of those observations: marginalized, they would say nothing about a pose.
 void choose_points(const BundleProblem& problem, Workspace& w) {
   for (std::size_t point = 0; point < problem.points_in_world.size(); ++point) {
     const std::uint32_t begin = w.first_observation[point];

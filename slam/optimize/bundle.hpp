@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "slam/config/bundle.hpp"
 #include "slam/core/camera.hpp"
 #include "slam/core/se3.hpp"
 
@@ -25,14 +26,6 @@ struct BundleProblem {
   std::uint32_t free_poses = 0;
   std::vector<Eigen::Vector3d> points_in_world;
   std::vector<BundleObservation> observations;
-};
-
-struct BundleConfig {
-  int iterations = 5;               ///< with Huber; then outliers are dropped and
-  int refine_iterations = 10;       ///< more follow without
-  double relative_decrease = 1e-3;  ///< of the cost: a step that gains less ends its phase
-  double chi2_mono = 5.991;         ///< 95 % of chi-square, 2 degrees of freedom
-  double chi2_stereo = 7.815;       ///< 95 % of chi-square, 3 degrees of freedom
 };
 
 struct BundleResult {

@@ -123,8 +123,8 @@ Consensus best_consensus(std::span<const PoseObservation> observations, const Ca
 
 std::optional<PoseEstimate> solve_pnp_ransac(std::span<const PoseObservation> observations,
                                              const Camera& camera, const RansacConfig& config,
-                                             RandomStream stream) {
-  PoseConfig gates;
+                                             const PoseConfig& pose, RandomStream stream) {
+  PoseConfig gates = pose;
   gates.min_inliers = std::max(config.min_inliers, 4);  // any three points agree with their own P3P
   if (static_cast<int>(observations.size()) < gates.min_inliers) return std::nullopt;
 

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "slam/config/pose.hpp"
 #include "slam/core/camera.hpp"
 #include "slam/core/random.hpp"
 #include "slam/core/se3.hpp"
@@ -21,14 +22,6 @@ struct PoseObservation {
   double u_px = 0, v_px = 0;
   double disparity_px = -1;  ///< negative = no depth
   double sigma_px = 1;       ///< standard deviation of the keypoint (scale^octave)
-};
-
-struct PoseConfig {
-  int rounds = 4;              ///< inlier sets are formed anew after each
-  int iterations = 10;         ///< Gauss-Newton steps per round
-  double chi2_mono = 5.991;    ///< 95 % of chi-square, 2 degrees of freedom
-  double chi2_stereo = 7.815;  ///< 95 % of chi-square, 3 degrees of freedom
-  int min_inliers = 10;
 };
 
 struct PoseEstimate {
@@ -47,22 +40,17 @@ std::optional<PoseEstimate> estimate_pose(std::span<const PoseObservation> obser
                                           const SE3& camera_from_world_guess, const Camera& camera,
                                           const PoseConfig& config = {});
 
-struct RansacConfig {
-  int max_iterations = 300;
-  double confidence = 0.99;
-  int min_inliers = 10;
-};
-
 /// Judges each observation at a pose by the chi-square gates; points behind the camera (z < 1 cm)
 /// fail. Writes one flag per observation (the vector is reused). @returns how many pass.
 int find_inliers(std::span<const PoseObservation> observations, const SE3& camera_from_world,
                  const Camera& camera, const PoseConfig& config, std::vector<std::uint8_t>& inlier);
 
 /// Pose from scratch: P3P (OpenCV's AP3P) on random triples inside RANSAC, inliers by the
-/// chi-square gates of PoseConfig. Draws depend on the stream alone.
+/// chi-square gates of `pose`, its rounds and iterations for the refinement. Draws depend on the
+/// stream alone.
 /// @returns the best consensus, or nullopt below config.min_inliers.
 std::optional<PoseEstimate> solve_pnp_ransac(std::span<const PoseObservation> observations,
                                              const Camera& camera, const RansacConfig& config,
-                                             RandomStream stream);
+                                             const PoseConfig& pose, RandomStream stream);
 
 }  // namespace mh

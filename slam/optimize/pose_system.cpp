@@ -51,10 +51,10 @@ std::size_t PoseSystem::find(std::uint32_t row, std::uint32_t column) const {
 }
 
 bool PoseSystem::solve(Eigen::VectorXd& right_side) const {
-  return direct() ? factorise(right_side) : iterate(right_side);
+  return direct() ? factorize(right_side) : iterate(right_side);
 }
 
-bool PoseSystem::factorise(Eigen::VectorXd& x) const {
+bool PoseSystem::factorize(Eigen::VectorXd& x) const {
   Eigen::MatrixXd matrix(first_of(poses_), first_of(poses_));
   for (std::uint32_t row = 0; row < poses_; ++row)
     for (std::uint32_t column = 0; column <= row; ++column)

@@ -41,7 +41,7 @@ class PoseSystem {
   }
   bool direct() const { return poses_ <= kDirectPoses; }
   std::size_t find(std::uint32_t row, std::uint32_t column) const;
-  bool factorise(Eigen::VectorXd& x) const;
+  bool factorize(Eigen::VectorXd& x) const;
   bool iterate(Eigen::VectorXd& x) const;
   Eigen::VectorXd times(const Eigen::VectorXd& x) const;
 

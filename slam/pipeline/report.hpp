@@ -4,9 +4,10 @@
 #include <optional>
 #include <string_view>
 
+#include "slam/core/rgbd_frame.hpp"
 #include "slam/core/se3.hpp"
 #include "slam/match/counts.hpp"
-#include "slam/relocalize/relocalize.hpp"
+#include "slam/relocalize/outcome.hpp"
 
 namespace mh {
 

@@ -14,7 +14,6 @@
 #include "slam/core/error.hpp"
 #include "slam/core/text_file.hpp"
 #include "slam/features/undistort.hpp"
-#include "slam/pipeline/settings_fields.hpp"
 
 namespace mh {
 namespace {

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "slam/config/slam.hpp"
 #include "slam/core/camera.hpp"
 #include "slam/core/yaml.hpp"
-#include "slam/pipeline/config.hpp"
 
 namespace mh {
 

@@ -5,12 +5,13 @@
 #include <memory>
 #include <optional>
 
+#include "slam/config/slam.hpp"
 #include "slam/core/camera.hpp"
 #include "slam/core/random.hpp"
 #include "slam/core/rgbd_frame.hpp"
 #include "slam/core/trajectory.hpp"
+#include "slam/loop/loop.hpp"
 #include "slam/map/map.hpp"
-#include "slam/pipeline/config.hpp"
 #include "slam/pipeline/observe.hpp"
 #include "slam/pipeline/report.hpp"
 #include "slam/track/tracker.hpp"
@@ -54,7 +55,7 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
                 const StepObservers& observers = {});
 
 /// @throws InputError naming both if a frame's stamp is not later than the last one's.
-void need_later(Stamp stamp_ns, std::optional<Stamp> last_ns);
+void require_increasing_stamp(Stamp stamp_ns, std::optional<Stamp> last_ns);
 
 /// The feed goes back: tracking counts as lost and earlier stamps are accepted; the map stays.
 void rewind(SlamState& state);

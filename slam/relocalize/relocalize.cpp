@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "slam/config/slam.hpp"
 #include "slam/match/expect.hpp"
-#include "slam/match/match.hpp"
 
 namespace mh {
 namespace {
@@ -28,36 +28,25 @@ using Attempt = CandidateAttempt;
 /// Relocalizes against one candidate keyframe.
 class CandidateTrial {
  public:
-  CandidateTrial(const Query& query, const Map& map, const Camera& camera,
-                 const FeatureConfig& features, const SemanticConfig& semantics,
-                 const MatchConfig& match, const RelocalizeConfig& config, MatchCounts& counts,
-                 PlaceMatchers matchers, MatchTrace* trace)
-      : query_(query),
-        map_(map),
-        camera_(camera),
-        features_(features),
-        semantics_(semantics),
-        match_(match),
-        config_(config),
-        counts_(counts),
-        matchers_(matchers),
-        trace_(trace) {}
+  CandidateTrial(const Query& query, const SlamContext& context, PlaceMatchers matchers)
+      : query_(query), context_(context), matchers_(matchers) {}
 
   Attempt run(KeyframeId candidate, RandomStream stream) {
     Attempt attempt;
-    attempt.landmarks = match_landmarks(map_.at(candidate), query_.features, query_.words, match_,
-                                        SemanticMatcher(semantics_, at(counts_, matchers_.words)));
-    trace_landmarks(trace_, matchers_.words, map_.at(candidate), query_.features, attempt.landmarks,
-                    semantics_);
+    const Keyframe& keyframe = context_.map.at(candidate);
+    const MatchConfig& match = context_.config.match;
+    const RelocalizeConfig& config = context_.config.relocalize;
+    attempt.landmarks = match_landmarks(keyframe, query_, context_, matchers_.words);
     attempt.inliers =
         static_cast<int>(std::count_if(attempt.landmarks.begin(), attempt.landmarks.end(),
                                        [](LandmarkId id) { return id.valid(); }));
-    if (attempt.inliers < config_.min_word_matches) return attempt;
+    if (attempt.inliers < config.min_word_matches) return attempt;
 
     attempt.stage = RelocalizationStage::kPnp;
     std::vector<std::uint32_t> feature_of;
     const auto observations = observe_all(attempt.landmarks, feature_of);
-    const auto pnp = solve_pnp_ransac(observations, camera_, config_.ransac, stream);
+    const auto pnp = solve_pnp_ransac(observations, context_.camera, config.ransac,
+                                      context_.config.pose, stream);
     if (!pnp) return attempt;
     adopt(*pnp, feature_of, attempt);
 
@@ -66,14 +55,14 @@ class CandidateTrial {
     attempt.stage = RelocalizationStage::kInliers;
     refine(attempt);
     for (const auto& [radius_px, max_distance] :
-         {std::pair{10.0F, match_.max_distance_loose},
-          std::pair{4.0F, 2 * match_.max_distance_loose / 3}}) {
-      if (attempt.inliers >= config_.min_inliers || attempt.inliers < config_.ransac.min_inliers)
+         {std::pair{10.0F, match.max_distance_loose},
+          std::pair{4.0F, 2 * match.max_distance_loose / 3}}) {
+      if (attempt.inliers >= config.min_inliers || attempt.inliers < config.ransac.min_inliers)
         break;
-      search_by_pose(map_.at(candidate), radius_px, static_cast<float>(max_distance), attempt);
+      search_by_pose(keyframe, radius_px, static_cast<float>(max_distance), attempt);
       refine(attempt);
     }
-    if (attempt.inliers >= config_.min_inliers) attempt.stage = RelocalizationStage::kVerified;
+    if (attempt.inliers >= config.min_inliers) attempt.stage = RelocalizationStage::kVerified;
     return attempt;
   }
 
@@ -83,8 +72,9 @@ class CandidateTrial {
     std::vector<PoseObservation> observations;
     for (std::uint32_t i = 0; i < landmarks.size(); ++i)
       if (landmarks[i].valid()) {
-        observations.push_back(observe(map_.at(landmarks[i]).position_in_world,
-                                       query_.features.keypoints[i], camera_, features_));
+        observations.push_back(observe(context_.map.at(landmarks[i]).position_in_world,
+                                       query_.features.keypoints[i], context_.camera,
+                                       context_.config.features));
         feature_of.push_back(i);
       }
     return observations;
@@ -101,7 +91,8 @@ class CandidateTrial {
   void refine(Attempt& attempt) const {
     std::vector<std::uint32_t> feature_of;
     const auto observations = observe_all(attempt.landmarks, feature_of);
-    const auto estimate = estimate_pose(observations, attempt.camera_from_world, camera_);
+    const auto estimate = estimate_pose(observations, attempt.camera_from_world, context_.camera,
+                                        context_.config.pose);
     if (estimate)
       adopt(*estimate, feature_of, attempt);
     else
@@ -124,33 +115,25 @@ class CandidateTrial {
     for (std::size_t i = 0; i < keyframe.landmarks.size(); ++i) {
       const LandmarkId id = keyframe.landmarks[i];
       if (!id.valid() || std::binary_search(known.begin(), known.end(), id)) continue;
-      auto target = expect(map_.at(id), attempt.camera_from_world, camera_in_world, camera_,
-                           features_, radius_px);
+      auto target = expect(context_.map.at(id), attempt.camera_from_world, camera_in_world,
+                           context_.camera, context_.config.features, radius_px);
       if (!target) continue;
       target->angle_rad = keyframe.features.keypoints[i].angle_rad;
       targets.push_back(*target);
       target_landmark.push_back(id);
     }
-    const auto found =
-        match_by_projection(targets, query_.features, query_.grid, taken,
-                            {.max_distance = max_distance, .check_angle = true},
-                            SemanticMatcher(semantics_, at(counts_, matchers_.projection)));
-    trace_projection(trace_, matchers_.projection, {}, query_.features, targets, found,
-                     target_landmark, {}, semantics_);
+    const auto found = match_by_projection(targets, query_.features, query_.grid, taken,
+                                           {.max_distance = max_distance, .check_angle = true},
+                                           semantic_matcher(context_, matchers_.projection));
+    trace_projection(context_, matchers_.projection,
+                     {{}, query_.features, targets, found, target_landmark});
     for (std::size_t t = 0; t < found.size(); ++t)
       if (found[t] >= 0) attempt.landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
   }
 
   const Query& query_;
-  const Map& map_;
-  const Camera& camera_;
-  const FeatureConfig& features_;
-  const SemanticConfig& semantics_;
-  const MatchConfig& match_;
-  const RelocalizeConfig& config_;
-  MatchCounts& counts_;
+  const SlamContext& context_;
   PlaceMatchers matchers_;
-  MatchTrace* trace_;
 };
 
 }  // namespace
@@ -203,11 +186,8 @@ CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedV
 }
 
 RelocalizationResult try_candidates(const Query& query, std::span<const KeyframeId> candidates,
-                                    const Map& map, const Camera& camera,
-                                    const FeatureConfig& features, const SemanticConfig& semantics,
-                                    const MatchConfig& match, const RelocalizeConfig& config,
-                                    RandomStream stream, MatchCounts& counts,
-                                    PlaceMatchers matchers, MatchTrace* trace, AttemptMemo* memo) {
+                                    const SlamContext& context, RandomStream stream,
+                                    PlaceMatchers matchers, AttemptMemo* memo) {
   RelocalizationResult result;
   AttemptMemo own;
   AttemptMemo& known = memo != nullptr ? *memo : own;
@@ -215,13 +195,14 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
     const auto [place, is_new] = known.try_emplace(candidate);
     if (is_new) {
       MatchCounts its_counts{};
-      CandidateTrial trial(query, map, camera, features, semantics, match, config, its_counts,
-                           matchers, trace);
-      place->second = trial.run(candidate, stream.fork(candidate.value));
+      const SlamContext own_counts{context.camera, context.config, context.map, its_counts,
+                                   context.trace};
+      place->second =
+          CandidateTrial(query, own_counts, matchers).run(candidate, stream.fork(candidate.value));
       place->second.counts = its_counts;
     }
     const Attempt& attempt = place->second;
-    for (std::size_t m = 0; m < counts.size(); ++m) counts[m] += attempt.counts[m];
+    add(attempt.counts, context.counts);
     result.stage = std::max(result.stage, attempt.stage);
     if (attempt.stage != RelocalizationStage::kVerified) continue;
     result.camera_from_world = attempt.camera_from_world;
@@ -233,19 +214,18 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
   return result;
 }
 
-RelocalizationResult relocalize(const Query& query, const Map& map, const Camera& camera,
-                                const FeatureConfig& features, const SemanticConfig& semantics,
-                                const MatchConfig& match, const RelocalizeConfig& config,
-                                RandomStream stream, MatchCounts& counts, MatchTrace* trace,
+RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,
                                 AttemptMemo* memo) {
-  const auto selection = select_keyframes(map, query.words.vector, semantics);
+  const SlamConfig& config = context.config;
+  const auto selection = select_keyframes(context.map, query.words.vector, config.semantics);
   std::vector<KeyframeId> candidates;
   for (const auto& candidate : selection.candidates) candidates.push_back(candidate.keyframe);
-  Camera lenient = camera;
-  lenient.disparity_sigma_px = std::max(camera.disparity_sigma_px, config.disparity_sigma_px);
-  RelocalizationResult result = try_candidates(query, candidates, map, lenient, features, semantics,
-                                               match, config, stream, counts, {}, trace, memo);
-  result.candidates = {.keyframes = map.keyframe_count(),
+  Camera lenient = context.camera;
+  lenient.disparity_sigma_px =
+      std::max(context.camera.disparity_sigma_px, config.relocalize.disparity_sigma_px);
+  const SlamContext leniently{lenient, config, context.map, context.counts, context.trace};
+  RelocalizationResult result = try_candidates(query, candidates, leniently, stream, {}, memo);
+  result.candidates = {.keyframes = context.map.keyframe_count(),
                        .c1 = selection.c1,
                        .c2 = selection.c2,
                        .c3 = selection.c3,

@@ -5,52 +5,14 @@
 #include <map>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
-#include "slam/core/camera.hpp"
 #include "slam/core/random.hpp"
-#include "slam/map/map.hpp"
-#include "slam/match/config.hpp"
-#include "slam/match/counts.hpp"
-#include "slam/match/trace.hpp"
-#include "slam/optimize/pose.hpp"
+#include "slam/match/context.hpp"
+#include "slam/relocalize/outcome.hpp"
 #include "slam/semantics/candidate_selection.hpp"
 
 namespace mh {
-
-struct RelocalizeConfig {
-  int min_word_matches = 15;
-  int min_inliers = 50;  ///< to accept a pose
-  /// How far the disparity of a true pair strays (one standard deviation, beside the keypoint's own
-  /// as in Camera) before the pose is refined on the local map; at least the camera's own counts.
-  /// The camera's tells of one reading. Here the landmark comes from another reading (0.1 px), the
-  /// pose from a handful of points (1 cm at 1.4 m: 0.2 px), and color and depth were neither taken
-  /// at the same moment nor is a structured-light sensor free of warp (0.2 px): 0.3 px together,
-  /// which is what pairs of real recordings show (docs/slam.md).
-  double disparity_sigma_px = 0.3;
-  RansacConfig ransac;
-};
-
-/// Where an attempt to relocalize ended: the farthest stage that any candidate reached and failed,
-/// or kVerified.
-enum class RelocalizationStage { kNone, kNoCandidate, kMatches, kPnp, kInliers, kVerified };
-std::string_view name(RelocalizationStage stage);
-
-/// Keyframes left after each step of Algorithm 1.
-struct CandidateCounts {
-  int keyframes = 0;           ///< in the map
-  int c1 = 0, c2 = 0, c3 = 0;  ///< after equations 3, 4 and 5
-  int final = 0;               ///< after equation 6
-  double label_mass = 0;       ///< share of the query vector's L1 mass held by labels
-};
-
-/// A frame prepared for search: its features with index and bag of words.
-struct Query {
-  const Features& features;
-  const FeatureGrid& grid;
-  const WordIndex& words;
-};
 
 struct RelocalizationResult {
   RelocalizationStage stage = RelocalizationStage::kNoCandidate;
@@ -93,20 +55,13 @@ using AttemptMemo = std::map<KeyframeId, CandidateAttempt>;
 /// search. The first that holds wins; `candidates` of the result stays empty. A memo changes
 /// nothing but the work.
 RelocalizationResult try_candidates(const Query& query, std::span<const KeyframeId> candidates,
-                                    const Map& map, const Camera& camera,
-                                    const FeatureConfig& features, const SemanticConfig& semantics,
-                                    const MatchConfig& match, const RelocalizeConfig& config,
-                                    RandomStream stream, MatchCounts& counts,
-                                    PlaceMatchers matchers = {}, MatchTrace* trace = nullptr,
-                                    AttemptMemo* memo = nullptr);
+                                    const SlamContext& context, RandomStream stream,
+                                    PlaceMatchers matchers = {}, AttemptMemo* memo = nullptr);
 
 /// Finds the camera in the map without any guess: Algorithm 1 chooses the candidates, in order of
-/// score. Depth is weighed by config.disparity_sigma_px: the pose is one to begin from, which the
-/// local map, weighing depth as the camera does, has to confirm.
-RelocalizationResult relocalize(const Query& query, const Map& map, const Camera& camera,
-                                const FeatureConfig& features, const SemanticConfig& semantics,
-                                const MatchConfig& match, const RelocalizeConfig& config,
-                                RandomStream stream, MatchCounts& counts,
-                                MatchTrace* trace = nullptr, AttemptMemo* memo = nullptr);
+/// score. Depth is weighed by RelocalizeConfig::disparity_sigma_px: the pose is one to begin from,
+/// which the local map, weighing depth as the camera does, has to confirm.
+RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,
+                                AttemptMemo* memo = nullptr);
 
 }  // namespace mh

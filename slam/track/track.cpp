@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <numbers>
 
+#include "slam/config/slam.hpp"
 #include "slam/map/id_set.hpp"
 #include "slam/match/expect.hpp"
-#include "slam/match/match.hpp"
 
 namespace mh {
 namespace {
@@ -80,8 +80,10 @@ KeyframeId reference_of(const TrackedPose& tracked, const Map& map) {
 std::optional<TrackedPose> optimize_matches(const Query& query,
                                             const std::vector<LandmarkId>& landmarks,
                                             std::span<const PassingPoint> passing, const SE3& guess,
-                                            const Map& map, const Camera& camera,
-                                            const FeatureConfig& features, const PoseConfig& pose) {
+                                            const SlamContext& context) {
+  const Map& map = context.map;
+  const Camera& camera = context.camera;
+  const FeatureConfig& features = context.config.features;
   std::vector<PoseObservation> observations;
   std::vector<std::uint32_t> feature_of;
   for (std::uint32_t i = 0; i < landmarks.size(); ++i) {
@@ -96,7 +98,7 @@ std::optional<TrackedPose> optimize_matches(const Query& query,
                                    camera, features));
     observations.back().sigma_px *= std::numbers::sqrt2;  // its point is no surer than the corner
   }
-  const auto estimate = estimate_pose(observations, guess, camera, pose);
+  const auto estimate = estimate_pose(observations, guess, camera, context.config.pose);
   if (!estimate) return std::nullopt;
   TrackedPose tracked{estimate->camera_from_world, std::vector<LandmarkId>(landmarks.size()), 0,
                       estimate->information};
@@ -109,18 +111,21 @@ std::optional<TrackedPose> optimize_matches(const Query& query,
 }
 
 std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& last, const SE3& guess,
-                                        const TrackContext& context, MatcherCounts& counts) {
-  const auto& [map, camera, features, semantics, match, pose, config, trace] = context;
-  const std::vector<LastPoint> points = points_in_view(last, guess, map, camera);
+                                        const SlamContext& context) {
+  const Camera& camera = context.camera;
+  const TrackConfig& config = context.config.track;
+  const std::vector<LastPoint> points = points_in_view(last, guess, context.map, camera);
   std::vector<ProjectionTarget> targets;
   for (const LastPoint& p : points)
     targets.push_back(target_of(guess * p.position_in_world, last.features.keypoints[p.feature],
                                 last.features.descriptors[p.feature], camera,
-                                static_cast<float>(config.search_radius_px), features));
+                                static_cast<float>(config.search_radius_px),
+                                context.config.features));
 
   const std::vector<std::uint8_t> taken(query.features.size(), 0);
-  const ProjectionGate gate{.max_distance = static_cast<float>(match.max_distance_loose),
-                            .check_angle = true};
+  const ProjectionGate gate{
+      .max_distance = static_cast<float>(context.config.match.max_distance_loose),
+      .check_angle = true};
   // A guess that is far off finds little, or what does not fit together: search again in twice the
   // radius, then in four times.
   std::vector<std::int32_t> found;
@@ -131,7 +136,7 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
     if (search > 1)
       for (ProjectionTarget& target : targets) target.radius_px *= 2.0F;
     found = match_by_projection(targets, query.features, query.grid, taken, gate,
-                                SemanticMatcher(semantics, counts));
+                                semantic_matcher(context, Matcher::kMotionModel));
     point_of.clear();
     for (std::size_t t = 0; t < found.size(); ++t)
       if (found[t] >= 0) point_of.push_back(t);
@@ -141,20 +146,20 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
     for (const std::size_t t : point_of)
       observations.push_back(observe(points[t].position_in_world,
                                      query.features.keypoints[static_cast<std::size_t>(found[t])],
-                                     camera, features));
-    estimate = estimate_pose(observations, guess, camera, pose);
+                                     camera, context.config.features));
+    estimate = estimate_pose(observations, guess, camera, context.config.pose);
     if (estimate && estimate->inlier_count < config.min_inliers_frame) estimate.reset();
   }
 
-  if (trace != nullptr) {
+  if (context.trace != nullptr) {
     std::vector<LandmarkId> landmarks;
     std::vector<std::uint32_t> others;
     for (const LastPoint& p : points) {
       landmarks.push_back(p.landmark);
       others.push_back(p.feature);
     }
-    trace_projection(trace, Matcher::kMotionModel, {}, query.features, targets, found, landmarks,
-                     others, semantics);
+    trace_projection(context, Matcher::kMotionModel,
+                     {{}, query.features, targets, found, landmarks, others});
   }
   if (!estimate) return std::nullopt;
 
@@ -184,26 +189,21 @@ int count_that_can_be_found(const LastFrame& last, const SE3& guess, const Map& 
 }
 
 std::optional<TrackedPose> track_reference(const Query& query, KeyframeId reference,
-                                           const SE3& guess, const TrackContext& context,
-                                           MatcherCounts& counts) {
+                                           const SE3& guess, const SlamContext& context) {
   const std::vector<LandmarkId> landmarks =
-      match_landmarks(context.map.at(reference), query.features, query.words, context.match,
-                      SemanticMatcher(context.semantics, counts));
-  trace_landmarks(context.trace, Matcher::kReferenceKeyframe, context.map.at(reference),
-                  query.features, landmarks, context.semantics);
-  auto tracked = optimize_matches(query, landmarks, {}, guess, context.map, context.camera,
-                                  context.features, context.pose);
-  if (!tracked || tracked->inliers < context.config.min_inliers_frame) return std::nullopt;
+      match_landmarks(context.map.at(reference), query, context, Matcher::kReferenceKeyframe);
+  auto tracked = optimize_matches(query, landmarks, {}, guess, context);
+  if (!tracked || tracked->inliers < context.config.track.min_inliers_frame) return std::nullopt;
   return tracked;
 }
 
-LocalMap local_map(const TrackedPose& tracked, const TrackContext& context) {
+LocalMap local_map(const TrackedPose& tracked, const SlamContext& context) {
   const Map& map = context.map;
   const auto voted = by_shared_landmarks(tracked, map);
 
   LocalMap local;
   IdSet<KeyframeId> has;
-  const auto limit = static_cast<std::size_t>(context.config.local_keyframes);
+  const auto limit = static_cast<std::size_t>(context.config.track.local_keyframes);
   const auto take = [&](KeyframeId id) {
     if (!map.at(id).erased && has.insert(id)) local.keyframes.push_back(id);
   };
@@ -212,14 +212,14 @@ LocalMap local_map(const TrackedPose& tracked, const TrackContext& context) {
 
   // Near and alike, nearest first.
   const SE3 world_from_camera = tracked.camera_from_world.inverse();
-  const double least_cosine = std::cos(context.config.near_angle_rad);
+  const double least_cosine = std::cos(context.config.track.near_angle_rad);
   std::vector<std::pair<double, KeyframeId>> near;
   for (const KeyframeId id :
-       map.keyframes_near(world_from_camera.translation(), context.config.near_distance_m)) {
+       map.keyframes_near(world_from_camera.translation(), context.config.track.near_distance_m)) {
     const SE3 world_from_keyframe = map.at(id).camera_from_world.inverse();
     const double distance =
         (world_from_keyframe.translation() - world_from_camera.translation()).norm();
-    if (distance > context.config.near_distance_m) continue;
+    if (distance > context.config.track.near_distance_m) continue;
     const double cosine =
         world_from_keyframe.rotation().col(2).dot(world_from_camera.rotation().col(2));
     if (cosine < least_cosine) continue;
@@ -241,8 +241,7 @@ LocalMap local_map(const TrackedPose& tracked, const TrackContext& context) {
 }
 
 std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedPose& tracked,
-                                              const LocalMap& local, float radius_px,
-                                              const TrackContext& context, MatcherCounts& counts) {
+                                              const LocalMap& local, const SlamContext& context) {
   const Map& map = context.map;
   IdSet<LandmarkId> matched;
   std::vector<std::uint8_t> taken(query.features.size(), 0);
@@ -260,33 +259,35 @@ std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedP
   std::vector<LandmarkId> target_landmark;
   for (const LandmarkId id : local.landmarks) {
     if (matched.contains(id)) continue;
-    const auto target = expect(map.at(id), tracked.camera_from_world, camera_in_world,
-                               context.camera, context.features, radius_px);
+    const auto target =
+        expect(map.at(id), tracked.camera_from_world, camera_in_world, context.camera,
+               context.config.features, static_cast<float>(context.config.track.local_radius_px));
     if (!target) continue;
     targets.push_back(*target);
     target_landmark.push_back(id);
     result.expected.push_back(id);
   }
-  const auto found =
-      match_by_projection(targets, query.features, query.grid, taken,
-                          {.max_distance = static_cast<float>(context.match.max_distance_loose),
-                           .ratio = static_cast<float>(context.match.ratio_projection)},
-                          SemanticMatcher(context.semantics, counts));
-  trace_projection(context.trace, Matcher::kLocalMap, {}, query.features, targets, found,
-                   target_landmark, {}, context.semantics);
+  const auto found = match_by_projection(
+      targets, query.features, query.grid, taken,
+      {.max_distance = static_cast<float>(context.config.match.max_distance_loose),
+       .ratio = static_cast<float>(context.config.match.ratio_projection)},
+      semantic_matcher(context, Matcher::kLocalMap));
+  trace_projection(context, Matcher::kLocalMap,
+                   {{}, query.features, targets, found, target_landmark});
   for (std::size_t t = 0; t < found.size(); ++t)
     if (found[t] >= 0) landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
 
-  auto refined = optimize_matches(query, landmarks, tracked.passing, tracked.camera_from_world, map,
-                                  context.camera, context.features, context.pose);
+  auto refined =
+      optimize_matches(query, landmarks, tracked.passing, tracked.camera_from_world, context);
   if (!refined) return std::nullopt;
   result.tracked = std::move(*refined);
   return result;
 }
 
-bool needs_keyframe(const TrackedPose& tracked, const Features& features, const Map& map,
-                    KeyframeId reference, int frames_since_keyframe, const KeyframeConfig& config) {
-  const auto& of_reference = map.at(reference).landmarks;
+bool needs_keyframe(const TrackedPose& tracked, const Features& features, KeyframeId reference,
+                    int frames_since_keyframe, const SlamContext& context) {
+  const KeyframeConfig& config = context.config.keyframe;
+  const auto& of_reference = context.map.at(reference).landmarks;
   const auto reference_landmarks = std::count_if(of_reference.begin(), of_reference.end(),
                                                  [](LandmarkId id) { return id.valid(); });
   int close_tracked = 0, close_new = 0;

@@ -5,13 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "slam/map/map.hpp"
-#include "slam/match/config.hpp"
-#include "slam/match/counts.hpp"
-#include "slam/match/trace.hpp"
-#include "slam/optimize/pose.hpp"
-#include "slam/relocalize/relocalize.hpp"
-#include "slam/track/config.hpp"
+#include "slam/match/context.hpp"
 #include "slam/track/tracker.hpp"
 
 namespace mh {
@@ -32,23 +26,11 @@ struct TrackedPose {
   std::vector<PassingPoint> passing = {};   ///< inliers of the motion model without a landmark
 };
 
-/// What every stage of tracking works with; references live as long as the step.
-struct TrackContext {
-  const Map& map;
-  const Camera& camera;
-  const FeatureConfig& features;
-  const SemanticConfig& semantics;
-  const MatchConfig& match;
-  const PoseConfig& pose;
-  const TrackConfig& config;
-  MatchTrace* trace = nullptr;  ///< where accepted pairs are noted, if anywhere
-};
-
 /// The pose of a frame from the last one and a guess of the motion: the last frame's landmarks, and
 /// the points behind its other keypoints with depth, are looked for where the guess puts them.
-/// @returns nullopt below config.min_inliers_frame.
+/// @returns nullopt below TrackConfig::min_inliers_frame.
 std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& last, const SE3& guess,
-                                        const TrackContext& context, MatcherCounts& counts);
+                                        const SlamContext& context);
 
 /// How many of the last frame's points (as in track_motion) the guess puts where a keypoint can be:
 /// if they are few, no frame there holds by the last one, however well its motion is known. The
@@ -57,10 +39,9 @@ int count_that_can_be_found(const LastFrame& last, const SE3& guess, const Map& 
                             const Camera& camera);
 
 /// The pose of a frame by appearance: words shared with the reference keyframe.
-/// @returns nullopt below config.min_inliers_frame.
+/// @returns nullopt below TrackConfig::min_inliers_frame.
 std::optional<TrackedPose> track_reference(const Query& query, KeyframeId reference,
-                                           const SE3& guess, const TrackContext& context,
-                                           MatcherCounts& counts);
+                                           const SE3& guess, const SlamContext& context);
 
 /// The part of the map that a pose may see.
 struct LocalMap {
@@ -74,7 +55,7 @@ KeyframeId reference_of(const TrackedPose& tracked, const Map& map);
 
 /// Keyframes that share landmarks with the frame, their neighbors, and those that stand near and
 /// look alike, whatever they share: so a place seen long ago is found again without a detour.
-LocalMap local_map(const TrackedPose& tracked, const TrackContext& context);
+LocalMap local_map(const TrackedPose& tracked, const SlamContext& context);
 
 struct LocalMapResult {
   TrackedPose tracked;
@@ -85,12 +66,11 @@ struct LocalMapResult {
 /// points that pass by.
 /// @returns nullopt if the optimization fails.
 std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedPose& tracked,
-                                              const LocalMap& local, float radius_px,
-                                              const TrackContext& context, MatcherCounts& counts);
+                                              const LocalMap& local, const SlamContext& context);
 
 /// Whether the map needs this frame as a keyframe.
-bool needs_keyframe(const TrackedPose& tracked, const Features& features, const Map& map,
-                    KeyframeId reference, int frames_since_keyframe, const KeyframeConfig& config);
+bool needs_keyframe(const TrackedPose& tracked, const Features& features, KeyframeId reference,
+                    int frames_since_keyframe, const SlamContext& context);
 
 /// Landmarks of the inlier observations, per feature; the front of every tracking stage's end.
 /// @param passing  observed too where the feature has no landmark, but no inliers: where the map is
@@ -99,7 +79,6 @@ bool needs_keyframe(const TrackedPose& tracked, const Features& features, const 
 std::optional<TrackedPose> optimize_matches(const Query& query,
                                             const std::vector<LandmarkId>& landmarks,
                                             std::span<const PassingPoint> passing, const SE3& guess,
-                                            const Map& map, const Camera& camera,
-                                            const FeatureConfig& features, const PoseConfig& pose);
+                                            const SlamContext& context);
 
 }  // namespace mh

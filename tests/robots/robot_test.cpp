@@ -16,6 +16,7 @@
 #include "robots/model/robot_keys.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "source_dir.hpp"
 
 namespace mh {
 namespace {

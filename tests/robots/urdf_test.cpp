@@ -11,6 +11,7 @@
 #include "robots/model/robot.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "source_dir.hpp"
 
 namespace mh {
 namespace {

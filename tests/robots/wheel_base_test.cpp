@@ -9,6 +9,7 @@
 
 #include "robots/model/odometry.hpp"
 #include "slam/core/random.hpp"
+#include "source_dir.hpp"
 
 namespace mh {
 namespace {

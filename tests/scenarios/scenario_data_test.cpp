@@ -10,6 +10,7 @@
 #include "scenes/load.hpp"
 #include "sim/world/pedestrian.hpp"
 #include "sim/world/travel.hpp"
+#include "source_dir.hpp"
 
 namespace mh {
 namespace {

@@ -13,6 +13,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/random.hpp"
+#include "source_dir.hpp"
 
 namespace mh {
 namespace {

@@ -10,6 +10,7 @@
 #include "scenes/load.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/placed_objects.hpp"
+#include "source_dir.hpp"
 #include "tests/scenes/temporary_folder.hpp"
 
 namespace mh {

@@ -5,6 +5,7 @@
 
 #include "robots/model/robot.hpp"
 #include "scenes/scene.hpp"
+#include "source_dir.hpp"
 
 namespace mh::test {
 

@@ -18,6 +18,8 @@
 
 #include <gtest/gtest.h>
 
+#include "source_dir.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;

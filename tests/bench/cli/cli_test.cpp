@@ -19,6 +19,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "source_dir.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;

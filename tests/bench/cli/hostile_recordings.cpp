@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "source_dir.hpp"
 #include "tests/bench/cli/hostile_files.hpp"
 
 namespace mh {

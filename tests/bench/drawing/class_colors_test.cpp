@@ -13,6 +13,7 @@
 #include "scenes/generate/grammar.hpp"
 #include "scenes/load.hpp"
 #include "sim/render/renderer.hpp"
+#include "source_dir.hpp"
 #include "tests/bench/drawing/color_vision.hpp"
 
 namespace mh {

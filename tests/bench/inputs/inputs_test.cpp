@@ -15,6 +15,7 @@
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/picture_file.hpp"
 #include "slam/core/files.hpp"
+#include "source_dir.hpp"
 #include "tests/scenes/temporary_folder.hpp"
 
 namespace mh {

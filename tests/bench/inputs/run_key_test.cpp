@@ -19,6 +19,7 @@
 #include "bench/plan/spec_json.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "source_dir.hpp"
 #include "tests/bench/inputs/other_build.hpp"
 
 namespace mh {

@@ -11,6 +11,7 @@
 #include "bench/metrics/errors.hpp"
 #include "bench/metrics/evaluate.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "source_dir.hpp"
 
 namespace mh {
 namespace {

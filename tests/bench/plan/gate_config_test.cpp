@@ -12,6 +12,7 @@
 #include "bench/check/from_runs.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "source_dir.hpp"
 
 namespace mh {
 namespace {

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "slam/core/error.hpp"
+#include "source_dir.hpp"
 
 namespace mh {
 namespace {

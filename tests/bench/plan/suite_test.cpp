@@ -17,6 +17,7 @@
 #include "bench/plan/spec_json.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "source_dir.hpp"
 
 namespace mh {
 namespace {

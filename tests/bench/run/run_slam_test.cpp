@@ -19,6 +19,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/trajectory_io.hpp"
 #include "slam/pipeline/map_file.hpp"
+#include "source_dir.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 
 namespace mh {

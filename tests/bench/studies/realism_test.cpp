@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "slam/core/random.hpp"
+#include "source_dir.hpp"
 
 namespace mh {
 namespace {

@@ -10,6 +10,7 @@
 #include "robots/navigation/floor_grid.hpp"
 #include "scenes/house/house.hpp"
 #include "slam/core/error.hpp"
+#include "source_dir.hpp"
 #include "tests/sim/boxes.hpp"
 
 namespace mh {

@@ -10,6 +10,7 @@
 #include "scenes/house/house.hpp"
 #include "sim/motion/motion.hpp"
 #include "slam/core/error.hpp"
+#include "source_dir.hpp"
 #include "tests/sim/boxes.hpp"
 #include "tests/sim/motion/nearest_view.hpp"
 

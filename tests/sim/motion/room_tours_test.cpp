@@ -8,6 +8,7 @@
 
 #include "scenes/house/house.hpp"
 #include "sim/motion/motion.hpp"
+#include "source_dir.hpp"
 #include "tests/sim/boxes.hpp"
 #include "tests/sim/motion/limits_kept.hpp"
 #include "tests/sim/motion/nearest_view.hpp"

@@ -9,6 +9,7 @@
 #include "scenes/load.hpp"
 #include "sim/motion/motion.hpp"
 #include "sim/motion/path.hpp"
+#include "source_dir.hpp"
 #include "tests/sim/motion/limits_kept.hpp"
 
 namespace mh {

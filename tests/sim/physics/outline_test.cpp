@@ -11,6 +11,7 @@
 #include "scenes/load.hpp"
 #include "sim/physics/planar_world.hpp"
 #include "slam/core/random.hpp"
+#include "source_dir.hpp"
 #include "tests/sim/boxes.hpp"
 
 namespace mh {

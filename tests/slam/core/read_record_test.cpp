@@ -14,6 +14,7 @@
 #include "slam/core/files.hpp"
 #include "slam/core/held_bytes.hpp"
 #include "slam/core/yaml.hpp"
+#include "source_dir.hpp"
 
 namespace mh {
 namespace {

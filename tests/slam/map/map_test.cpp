@@ -90,7 +90,7 @@ TEST(Map, AnErasedKeyframesPoseMovesWithItsParent) {
   map.erase(KeyframeId{1});
   map.check_invariants();
   EXPECT_EQ(map.keyframe_count(), 2);
-  EXPECT_EQ(map.standing(KeyframeId{1}), KeyframeId{0});
+  EXPECT_EQ(map.live_keyframe(KeyframeId{1}), KeyframeId{0});
   EXPECT_LT((before * map.camera_from_world(KeyframeId{1}).inverse()).log().norm(), 1e-12);
   const SE3 moved = SE3::exp((Vector6d() << 1, 2, 3, 0.1, 0, 0).finished());
   map.set_pose(KeyframeId{0}, map.at(KeyframeId{0}).camera_from_world * moved);

@@ -147,8 +147,8 @@ TEST(MatchByWords, MatchesWithinNodesOnceAndByDominantRotation) {
   std::sort(words_b.by_node.begin(), words_b.by_node.end());
   MatcherCounts counts;
   const std::vector<std::uint8_t> all(40, 1);
-  const auto matches = match_by_words(a.features, words_a, all, b.features, words_b, all, 50, 0.75F,
-                                      SemanticMatcher(SemanticConfig{}, counts));
+  const auto matches = match_by_words({a.features, words_a, all}, {b.features, words_b, all},
+                                      {50, 0.75F}, SemanticMatcher(SemanticConfig{}, counts));
   EXPECT_EQ(matches.size(), 38U);  // 40 but the other node's and the other rotation's
   for (const FeatureMatch& m : matches) {
     EXPECT_EQ(m.a, m.b);
@@ -172,7 +172,7 @@ std::size_t matches_with_last_turn(float from_rad, float to_rad) {
   }
   MatcherCounts counts;
   const std::vector<std::uint8_t> all(40, 1);
-  return match_by_words(a.features, words, all, b.features, words, all, 50, 0.75F,
+  return match_by_words({a.features, words, all}, {b.features, words, all}, {50, 0.75F},
                         SemanticMatcher(SemanticConfig{}, counts))
       .size();
 }
@@ -198,8 +198,9 @@ TEST(MatchByWords, LabelsThatDisagreePayXi) {
   }
   MatcherCounts counts;
   const std::vector<std::uint8_t> all(12, 1);
-  const auto matches = match_by_words(a.features, words, all, b.features, words, all, 50, 0.75F,
-                                      SemanticMatcher(SemanticConfig{.xi = 1.5}, counts));
+  const auto matches =
+      match_by_words({a.features, words, all}, {b.features, words, all}, {50, 0.75F},
+                     SemanticMatcher(SemanticConfig{.xi = 1.5}, counts));
   EXPECT_EQ(matches.size(), 8U);  // 40 bits are under 50, 1.5 times 40 are not
   for (const FeatureMatch& m : matches) EXPECT_NE(m.b % 3, 0U);
   EXPECT_EQ(counts.compared, 12);

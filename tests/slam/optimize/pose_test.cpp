@@ -150,7 +150,7 @@ TEST(SolvePnpRansac, FindsThePoseAmongFiftyPercentOutliers) {
     auto observations = observe(100, truth, kCamera, stream.fork(0));
     add_noise(observations, kCamera, stream.fork(1));
     make_outliers(observations, 50, kCamera, stream.fork(2));
-    const auto estimate = solve_pnp_ransac(observations, kCamera, {}, stream.fork(3));
+    const auto estimate = solve_pnp_ransac(observations, kCamera, {}, {}, stream.fork(3));
     ASSERT_TRUE(estimate) << seed;
     // Bounds as above with 50 points in place of 140.
     EXPECT_LT(distance_m(estimate->camera_from_world, truth), 0.02) << seed;
@@ -165,8 +165,8 @@ TEST(SolvePnpRansac, WithoutOutliersOneDrawIsEnough) {
   const SE3 truth = true_pose();
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const auto observations = observe(10, truth, kCamera, RandomStream(seed).fork(0));
-    const auto estimate =
-        solve_pnp_ransac(observations, kCamera, {.max_iterations = 1}, RandomStream(seed).fork(1));
+    const auto estimate = solve_pnp_ransac(observations, kCamera, {.max_iterations = 1}, {},
+                                           RandomStream(seed).fork(1));
     ASSERT_TRUE(estimate) << seed;
     EXPECT_EQ(estimate->inlier_count, 10) << seed;
   }
@@ -175,7 +175,7 @@ TEST(SolvePnpRansac, WithoutOutliersOneDrawIsEnough) {
 TEST(SolvePnpRansac, IsExactWithoutNoise) {
   const SE3 truth = true_pose();
   const auto observations = observe(30, truth, kCamera, RandomStream(9));
-  const auto estimate = solve_pnp_ransac(observations, kCamera, {}, RandomStream(10));
+  const auto estimate = solve_pnp_ransac(observations, kCamera, {}, {}, RandomStream(10));
   ASSERT_TRUE(estimate);
   EXPECT_EQ(estimate->inlier_count, 30);
   EXPECT_LT(distance_m(estimate->camera_from_world, truth), 1e-9);
@@ -184,8 +184,9 @@ TEST(SolvePnpRansac, IsExactWithoutNoise) {
 TEST(SolvePnpRansac, GivesNothingWhereNothingCanBeKnown) {
   const SE3 truth = true_pose();
   auto observations = observe(60, truth, kCamera, RandomStream(11));
-  EXPECT_FALSE(solve_pnp_ransac({}, kCamera, {}, RandomStream(0)));
-  EXPECT_FALSE(solve_pnp_ransac(std::span(observations).first(9), kCamera, {}, RandomStream(0)));
+  EXPECT_FALSE(solve_pnp_ransac({}, kCamera, {}, {}, RandomStream(0)));
+  EXPECT_FALSE(
+      solve_pnp_ransac(std::span(observations).first(9), kCamera, {}, {}, RandomStream(0)));
 
   auto line = observations;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -193,18 +194,18 @@ TEST(SolvePnpRansac, GivesNothingWhereNothingCanBeKnown) {
     const Eigen::Vector2d pixel = kCamera.project(p);
     line[i] = {.point_in_world = truth.inverse() * p, .u_px = pixel.x(), .v_px = pixel.y()};
   }
-  EXPECT_FALSE(solve_pnp_ransac(line, kCamera, {}, RandomStream(0)));
+  EXPECT_FALSE(solve_pnp_ransac(line, kCamera, {}, {}, RandomStream(0)));
 
   auto one_place = observations;
   for (PoseObservation& o : one_place) o = observations.front();
-  EXPECT_FALSE(solve_pnp_ransac(one_place, kCamera, {}, RandomStream(0)));
+  EXPECT_FALSE(solve_pnp_ransac(one_place, kCamera, {}, {}, RandomStream(0)));
 
   auto invalid = observations;
   for (PoseObservation& o : invalid) o.point_in_world.x() = std::numeric_limits<double>::infinity();
-  EXPECT_FALSE(solve_pnp_ransac(invalid, kCamera, {}, RandomStream(0)));
+  EXPECT_FALSE(solve_pnp_ransac(invalid, kCamera, {}, {}, RandomStream(0)));
 
   make_outliers(observations, 60, kCamera, RandomStream(12));
-  EXPECT_FALSE(solve_pnp_ransac(observations, kCamera, {}, RandomStream(0)));
+  EXPECT_FALSE(solve_pnp_ransac(observations, kCamera, {}, {}, RandomStream(0)));
 }
 
 TEST(SolvePnpRansac, DependsOnItsStreamAlone) {
@@ -212,9 +213,9 @@ TEST(SolvePnpRansac, DependsOnItsStreamAlone) {
   auto observations = observe(100, truth, kCamera, RandomStream(13));
   add_noise(observations, kCamera, RandomStream(14));
   make_outliers(observations, 40, kCamera, RandomStream(15));
-  const auto a = solve_pnp_ransac(observations, kCamera, {}, RandomStream(16));
-  solve_pnp_ransac(observations, kCamera, {}, RandomStream(99));
-  const auto b = solve_pnp_ransac(observations, kCamera, {}, RandomStream(16));
+  const auto a = solve_pnp_ransac(observations, kCamera, {}, {}, RandomStream(16));
+  solve_pnp_ransac(observations, kCamera, {}, {}, RandomStream(99));
+  const auto b = solve_pnp_ransac(observations, kCamera, {}, {}, RandomStream(16));
   ASSERT_TRUE(a && b);
   EXPECT_TRUE(same_bits(a->camera_from_world, b->camera_from_world));
   EXPECT_EQ(a->inlier, b->inlier);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "slam/pipeline/slam.hpp"
+#include "source_dir.hpp"
 #include "tests/slam/pipeline/box_room.hpp"
 #include "tests/slam/pipeline/feature_world.hpp"
 

@@ -4,6 +4,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/pipeline/settings.hpp"
+#include "source_dir.hpp"
 
 namespace mh {
 namespace {

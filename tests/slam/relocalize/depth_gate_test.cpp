@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "slam/config/slam.hpp"
 #include "slam/match/expect.hpp"
 #include "slam/relocalize/relocalize.hpp"
 
@@ -117,11 +118,13 @@ class DepthGate : public testing::Test {
     return scene;
   }
 
-  static RelocalizationResult find(const Scene& scene, const RelocalizeConfig& config) {
+  static RelocalizationResult find(const Scene& scene, const RelocalizeConfig& relocalization) {
     const FeatureGrid grid(scene.features.keypoints, Camera{});
     MatchCounts counts{};
-    return relocalize({scene.features, grid, scene.words}, scene.map, Camera{}, {}, {}, {}, config,
-                      RandomStream(1), counts);
+    SlamConfig config;
+    config.relocalize = relocalization;
+    return relocalize({scene.features, grid, scene.words}, {Camera{}, config, scene.map, counts},
+                      RandomStream(1));
   }
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/relocalize/relocalize.hpp"
+#include "slam/config/slam.hpp"
 
 #include <gtest/gtest.h>
 
@@ -64,7 +65,7 @@ TEST(Relocalize, AnEmptyMapHasNoCandidate) {
   const WordIndex words;
   MatchCounts counts{};
   const auto result =
-      relocalize({features, grid, words}, Map{}, Camera{}, {}, {}, {}, {}, RandomStream(1), counts);
+      relocalize({features, grid, words}, {Camera{}, SlamConfig{}, Map{}, counts}, RandomStream(1));
   EXPECT_EQ(result.stage, RelocalizationStage::kNoCandidate);
   EXPECT_FALSE(result.camera_from_world.has_value());
 }

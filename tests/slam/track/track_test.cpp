@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "slam/config/slam.hpp"
 #include "slam/core/random.hpp"
 #include "slam/match/expect.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 /// noise model says. The camera has not moved.
 struct View {
   Camera camera;
-  FeatureConfig config;
+  SlamConfig config;
   Map map;
   Features features;
   std::vector<LandmarkId> landmarks;  // per feature
@@ -44,6 +45,9 @@ struct View {
     for (std::uint32_t i = 0; i < seen.size(); ++i)
       landmarks.push_back(map.add_landmark(place(seen.keypoints[i]), id, i));
   }
+
+  SlamContext context() const { return {camera, config, map, counts}; }
+  mutable MatchCounts counts{};
 
   Eigen::Vector3d place(const Keypoint& keypoint) const {
     return unproject(keypoint, camera, SE3());
@@ -73,7 +77,7 @@ TEST(OptimizeMatches, PassingPointsHoldAPoseThatANarrowStripOfLandmarksLetsSlip)
       passing.push_back({i, view.map.at(view.landmarks[i]).position_in_world});
 
     const auto pose_with = [&](std::span<const PassingPoint> points) {
-      return optimize_matches(query, strip, points, SE3(), view.map, view.camera, view.config, {});
+      return optimize_matches(query, strip, points, SE3(), view.context());
     };
     const auto alone = pose_with({}), together = pose_with(passing);
     ASSERT_TRUE(alone && together);
@@ -95,10 +99,8 @@ TEST(OptimizeMatches, APassingPointGivesWayToTheLandmarkOfItsFeature) {
   const WordIndex words;
   const Query query{view.features, grid, words};
   const std::vector<PassingPoint> misplaced = {{0, {100, 100, 1}}};
-  const auto without =
-      optimize_matches(query, view.landmarks, {}, SE3(), view.map, view.camera, view.config, {});
-  const auto with = optimize_matches(query, view.landmarks, misplaced, SE3(), view.map, view.camera,
-                                     view.config, {});
+  const auto without = optimize_matches(query, view.landmarks, {}, SE3(), view.context());
+  const auto with = optimize_matches(query, view.landmarks, misplaced, SE3(), view.context());
   ASSERT_TRUE(without && with);
   EXPECT_EQ(with->camera_from_world.translation(), without->camera_from_world.translation());
 }

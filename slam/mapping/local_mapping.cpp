@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "slam/map/local_mapping.hpp"
+#include "slam/mapping/local_mapping.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/LU>
 
+#include "slam/config/slam.hpp"
 #include "slam/map/id_set.hpp"
 #include "slam/match/expect.hpp"
-#include "slam/match/match.hpp"
+#include "slam/optimize/bundle.hpp"
 
 namespace mh {
 namespace {
@@ -75,7 +76,7 @@ std::optional<Eigen::Vector3d> midpoint(const SE3& world_from_a, const SE3& worl
 /// The point that two matched features see: by parallax where there is enough, else by whichever
 /// depth is at hand; none if it does not reproject into both.
 std::optional<Eigen::Vector3d> triangulate(const Keyframe& a, const Keypoint& ka, const Keyframe& b,
-                                           const Keypoint& kb, const MappingContext& context) {
+                                           const Keypoint& kb, const SlamContext& context) {
   const SE3 world_from_a = a.camera_from_world.inverse();
   const SE3 world_from_b = b.camera_from_world.inverse();
   const Eigen::Vector3d ray_a = bearing(ka, context.camera), ray_b = bearing(kb, context.camera);
@@ -90,8 +91,8 @@ std::optional<Eigen::Vector3d> triangulate(const Keyframe& a, const Keypoint& ka
   } else if (kb.depth_m > 0) {
     point = unproject(kb, context.camera, world_from_b);
   }
-  if (!point || !reprojects(*point, a, ka, context.camera, context.features) ||
-      !reprojects(*point, b, kb, context.camera, context.features))
+  if (!point || !reprojects(*point, a, ka, context.camera, context.config.features) ||
+      !reprojects(*point, b, kb, context.camera, context.config.features))
     return std::nullopt;
   return point;
 }
@@ -106,14 +107,14 @@ std::vector<LandmarkId> landmarks_of(const Map& map, const std::vector<KeyframeI
   return result;
 }
 
-void refresh_keyframe(Map& map, KeyframeId keyframe, const MappingContext& context) {
+void refresh_keyframe(Map& map, KeyframeId keyframe, const SlamContext& context) {
   for (const LandmarkId id : std::vector(map.at(keyframe).landmarks))
-    if (id.valid()) map.refresh(id, context.features);
+    if (id.valid()) map.refresh(id, context.config.features);
 }
 
 }  // namespace
 
-void add_landmarks_from_depth(Map& map, KeyframeId keyframe, const MappingContext& context) {
+void add_landmarks_from_depth(Map& map, KeyframeId keyframe, const SlamContext& context) {
   const SE3 world_from_camera = map.at(keyframe).camera_from_world.inverse();
   std::vector<std::pair<float, std::uint32_t>> by_depth;
   const auto& keypoints = map.at(keyframe).features.keypoints;
@@ -123,12 +124,12 @@ void add_landmarks_from_depth(Map& map, KeyframeId keyframe, const MappingContex
 
   std::size_t count = 0;
   for (const auto& [depth, i] : by_depth) {
-    if (depth > context.config.close_depth_m && count >= kMinNewLandmarks) break;
+    if (depth > context.config.keyframe.close_depth_m && count >= kMinNewLandmarks) break;
     ++count;
     if (map.at(keyframe).landmarks[i].valid()) continue;
     const Eigen::Vector3d point =
         unproject(map.at(keyframe).features.keypoints[i], context.camera, world_from_camera);
-    map.refresh(map.add_landmark(point, keyframe, i), context.features);
+    map.refresh(map.add_landmark(point, keyframe, i), context.config.features);
   }
 }
 
@@ -145,8 +146,7 @@ void cull_young_landmarks(Map& map, KeyframeId newest) {
   }
 }
 
-void triangulate_with_neighbors(Map& map, KeyframeId keyframe, const MappingContext& context,
-                                MatcherCounts& counts) {
+void triangulate_with_neighbors(Map& map, KeyframeId keyframe, const SlamContext& context) {
   for (const KeyframeId other : best_neighbors(map, keyframe, kTriangulationNeighbors)) {
     const Keyframe& a = map.at(keyframe);
     const Keyframe& b = map.at(other);
@@ -161,22 +161,24 @@ void triangulate_with_neighbors(Map& map, KeyframeId keyframe, const MappingCont
     };
     const auto on_line = [&](std::uint32_t fa, std::uint32_t fb) {
       const Keypoint& kb = b.features.keypoints[fb];
-      const double sigma = octave_scale(context.features, kb.octave);
+      const double sigma = octave_scale(context.config.features, kb.octave);
       return epipolar_distance2(a.features.keypoints[fa], kb, essential, context.camera) <
              kChi2Line * sigma * sigma;
     };
-    const auto matches = match_by_words(a.features, a.words, unmapped(a), b.features, b.words,
-                                        unmapped(b), static_cast<float>(context.match.max_distance),
-                                        1.0F, SemanticMatcher(context.semantics, counts), on_line);
-    trace_words(context.trace, Matcher::kTriangulation, keyframe, a.features, {}, other, b.features,
-                matches, context.semantics);
+    const std::vector<std::uint8_t> use_a = unmapped(a), use_b = unmapped(b);
+    const auto matches =
+        match_by_words({a.features, a.words, use_a}, {b.features, b.words, use_b},
+                       {.max_distance = static_cast<float>(context.config.match.max_distance)},
+                       semantic_matcher(context, Matcher::kTriangulation), on_line);
+    trace_words(context, Matcher::kTriangulation,
+                {keyframe, a.features, {}, other, b.features, matches});
     for (const FeatureMatch& m : matches) {
       const auto point = triangulate(map.at(keyframe), map.at(keyframe).features.keypoints[m.a],
                                      map.at(other), map.at(other).features.keypoints[m.b], context);
       if (!point) continue;
       const LandmarkId id = map.add_landmark(*point, keyframe, m.a);
       map.add_observation(id, other, m.b);
-      map.refresh(id, context.features);
+      map.refresh(id, context.config.features);
     }
   }
 }
@@ -186,7 +188,7 @@ namespace {
 /// Looks for landmarks in a keyframe: where the feature found has a landmark already, the one with
 /// more observations takes over the other's.
 void fuse_into(Map& map, KeyframeId keyframe, const std::vector<LandmarkId>& landmarks,
-               const MappingContext& context, MatcherCounts& counts) {
+               const SlamContext& context) {
   constexpr float kRadius_px = 3.0F;
   const Keyframe& k = map.at(keyframe);
   const Eigen::Vector3d camera_in_world = k.camera_from_world.inverse().translation();
@@ -199,7 +201,7 @@ void fuse_into(Map& map, KeyframeId keyframe, const std::vector<LandmarkId>& lan
   for (const LandmarkId id : landmarks) {
     if (!id.valid() || map.at(id).erased || !seen.insert(id)) continue;
     const auto target = expect(map.at(id), k.camera_from_world, camera_in_world, context.camera,
-                               context.features, kRadius_px);
+                               context.config.features, kRadius_px);
     if (!target) continue;
     targets.push_back(*target);
     target_landmark.push_back(id);
@@ -207,10 +209,10 @@ void fuse_into(Map& map, KeyframeId keyframe, const std::vector<LandmarkId>& lan
   const std::vector<std::uint8_t> taken(k.features.size(), 0);
   const auto found =
       match_by_projection(targets, k.features, k.grid, taken,
-                          {.max_distance = static_cast<float>(context.match.max_distance)},
-                          SemanticMatcher(context.semantics, counts));
-  trace_projection(context.trace, Matcher::kFusion, keyframe, k.features, targets, found,
-                   target_landmark, {}, context.semantics);
+                          {.max_distance = static_cast<float>(context.config.match.max_distance)},
+                          semantic_matcher(context, Matcher::kFusion));
+  trace_projection(context, Matcher::kFusion,
+                   {keyframe, k.features, targets, found, target_landmark});
   for (std::size_t t = 0; t < found.size(); ++t) {
     if (found[t] < 0) continue;
     const auto feature = static_cast<std::uint32_t>(found[t]);
@@ -218,7 +220,8 @@ void fuse_into(Map& map, KeyframeId keyframe, const std::vector<LandmarkId>& lan
     const LandmarkId theirs = target_landmark[t];
     if (map.at(theirs).erased) continue;
     if (!reprojects(map.at(theirs).position_in_world, map.at(keyframe),
-                    map.at(keyframe).features.keypoints[feature], context.camera, context.features))
+                    map.at(keyframe).features.keypoints[feature], context.camera,
+                    context.config.features))
       continue;
     if (!mine.valid()) {
       map.add_observation(theirs, keyframe, feature);
@@ -232,8 +235,7 @@ void fuse_into(Map& map, KeyframeId keyframe, const std::vector<LandmarkId>& lan
 
 }  // namespace
 
-void fuse_with_neighbors(Map& map, KeyframeId keyframe, const MappingContext& context,
-                         MatcherCounts& counts) {
+void fuse_with_neighbors(Map& map, KeyframeId keyframe, const SlamContext& context) {
   std::vector<KeyframeId> neighbors = best_neighbors(map, keyframe, kFusionNeighbors);
   for (const KeyframeId first : std::vector(neighbors))
     for (const KeyframeId second : best_neighbors(map, first, 5))
@@ -242,18 +244,19 @@ void fuse_with_neighbors(Map& map, KeyframeId keyframe, const MappingContext& co
         neighbors.push_back(second);
 
   for (const KeyframeId neighbor : neighbors)
-    fuse_into(map, neighbor, std::vector(map.at(keyframe).landmarks), context, counts);
+    fuse_into(map, neighbor, std::vector(map.at(keyframe).landmarks), context);
   std::vector<LandmarkId> theirs;
   for (const KeyframeId neighbor : neighbors)
     theirs.insert(theirs.end(), map.at(neighbor).landmarks.begin(),
                   map.at(neighbor).landmarks.end());
-  fuse_into(map, keyframe, theirs, context, counts);
+  fuse_into(map, keyframe, theirs, context);
 }
 
 namespace {
 
 /// The other keyframes that see the landmarks of these, those that see most of them first.
-std::vector<KeyframeId> onlookers(const Map& map, const std::vector<KeyframeId>& keyframes) {
+std::vector<KeyframeId> observing_keyframes(const Map& map,
+                                            const std::vector<KeyframeId>& keyframes) {
   std::vector<std::int32_t> sees(map.keyframes().size(), 0);
   for (const LandmarkId l : landmarks_of(map, keyframes))
     for (const Observation& o : map.at(l).observations) ++sees[o.keyframe.value];
@@ -269,7 +272,7 @@ std::vector<KeyframeId> onlookers(const Map& map, const std::vector<KeyframeId>&
 /// Adjusts the free keyframes and all landmarks they see; the fixed ones hold the frame of
 /// reference: without any, nothing moves.
 void adjust_keyframes(Map& map, const std::vector<KeyframeId>& free,
-                      const std::vector<KeyframeId>& fixed, const MappingContext& context) {
+                      const std::vector<KeyframeId>& fixed, const SlamContext& context) {
   if (free.empty() || fixed.empty()) return;
   std::vector<std::int32_t> pose_of(map.keyframes().size(), -1);
   BundleProblem problem;
@@ -291,7 +294,7 @@ void adjust_keyframes(Map& map, const std::vector<KeyframeId>& free,
       if (pose < 0) continue;
       const PoseObservation seen_at =
           observe(l.position_in_world, map.at(o.keyframe).features.keypoints[o.feature],
-                  context.camera, context.features);
+                  context.camera, context.config.features);
       problem.observations.push_back({.pose = static_cast<std::uint32_t>(pose),
                                       .point = p,
                                       .u_px = static_cast<float>(seen_at.u_px),
@@ -302,7 +305,7 @@ void adjust_keyframes(Map& map, const std::vector<KeyframeId>& free,
     }
   }
 
-  const BundleResult result = adjust(problem, context.camera, context.bundle);
+  const BundleResult result = adjust(problem, context.camera, context.config.bundle);
   for (std::size_t i = 0; i < free.size(); ++i)
     map.set_pose(free[i], result.camera_from_world[i].normalized());
   for (std::size_t p = 0; p < points.size(); ++p)
@@ -310,30 +313,30 @@ void adjust_keyframes(Map& map, const std::vector<KeyframeId>& free,
   for (std::size_t j = 0; j < observation_of.size(); ++j)
     if (result.outlier[j] != 0)
       map.erase_observation(points[problem.observations[j].point], observation_of[j].keyframe);
-  for (const LandmarkId l : points) map.refresh(l, context.features);
+  for (const LandmarkId l : points) map.refresh(l, context.config.features);
 }
 
 }  // namespace
 
-void adjust_neighborhood(Map& map, KeyframeId keyframe, const MappingContext& context) {
+void adjust_neighborhood(Map& map, KeyframeId keyframe, const SlamContext& context) {
   // Free: the keyframe and its best neighbors, but never the first keyframe, which is the origin.
   std::vector<KeyframeId> free;
   if (keyframe.value != 0) free.push_back(keyframe);
   for (const KeyframeId id : best_neighbors(map, keyframe, kAdjustedNeighbors))
     if (id.value != 0) free.push_back(id);
-  std::vector<KeyframeId> fixed = onlookers(map, free);
+  std::vector<KeyframeId> fixed = observing_keyframes(map, free);
   if (fixed.size() > kFixedKeyframes) fixed.resize(kFixedKeyframes);
   adjust_keyframes(map, free, fixed, context);
 }
 
-void adjust_all(Map& map, const MappingContext& context) {
+void adjust_all(Map& map, const SlamContext& context) {
   std::vector<KeyframeId> free;
   for (const Keyframe& k : map.keyframes())
     if (!k.erased && k.id.value != 0) free.push_back(k.id);
   adjust_keyframes(map, free, {KeyframeId{0}}, context);
 }
 
-void cull_redundant_keyframes(Map& map, KeyframeId newest, const MappingContext& context) {
+void cull_redundant_keyframes(Map& map, KeyframeId newest, const SlamContext& context) {
   for (const KeyframeId id : best_neighbors(map, newest, map.keyframes().size())) {
     // The first is the origin; the latest few are what tracking stands on.
     if (id.value == 0 || newest.value - id.value < 3) continue;
@@ -342,7 +345,7 @@ void cull_redundant_keyframes(Map& map, KeyframeId newest, const MappingContext&
     for (std::size_t i = 0; i < k.landmarks.size(); ++i) {
       const Keypoint& keypoint = k.features.keypoints[i];
       if (!k.landmarks[i].valid() || keypoint.depth_m <= 0 ||
-          keypoint.depth_m > context.config.close_depth_m)
+          keypoint.depth_m > context.config.keyframe.close_depth_m)
         continue;
       ++total;
       int others = 0;
@@ -351,16 +354,15 @@ void cull_redundant_keyframes(Map& map, KeyframeId newest, const MappingContext&
                   map.at(o.keyframe).features.keypoints[o.feature].octave <= keypoint.octave + 1;
       redundant += others >= 3;
     }
-    if (redundant > context.config.redundant_share * total) map.erase(id);
+    if (redundant > context.config.keyframe.redundant_share * total) map.erase(id);
   }
 }
 
-void map_keyframe(Map& map, KeyframeId keyframe, const MappingContext& context,
-                  MatchCounts& counts) {
+void map_keyframe(Map& map, KeyframeId keyframe, const SlamContext& context) {
   cull_young_landmarks(map, keyframe);
   map.update_covisibility(keyframe);
-  triangulate_with_neighbors(map, keyframe, context, at(counts, Matcher::kTriangulation));
-  fuse_with_neighbors(map, keyframe, context, at(counts, Matcher::kFusion));
+  triangulate_with_neighbors(map, keyframe, context);
+  fuse_with_neighbors(map, keyframe, context);
   refresh_keyframe(map, keyframe, context);
   map.update_covisibility(keyframe);
   adjust_neighborhood(map, keyframe, context);

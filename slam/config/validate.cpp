@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "slam/pipeline/config.hpp"
+#include "slam/config/slam.hpp"
 
 #include <cmath>
 #include <string>
@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
-#include "slam/pipeline/settings_fields.hpp"
 
 namespace mh {
 namespace {

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "slam/config/setting.hpp"
+
+namespace mh {
+
+struct BundleConfig {
+  int iterations = 5;               ///< with Huber; then outliers are dropped and
+  int refine_iterations = 10;       ///< more follow without
+  double relative_decrease = 1e-3;  ///< of the cost: a step that gains less ends its phase
+  double chi2_mono = 5.991;         ///< 95 % of chi-square, 2 degrees of freedom
+  double chi2_stereo = 7.815;       ///< 95 % of chi-square, 3 degrees of freedom
+};
+
+template <Either<BundleConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [iterations, refine_iterations, relative_decrease, chi2_mono, chi2_stereo] = c;
+  v("iterations", iterations, {1, 1000}, "with Huber's cost, before outliers are dropped");
+  v("refine_iterations", refine_iterations, {0, 1000}, "after");
+  v("relative_decrease", relative_decrease, setting::kShare,
+    "of the cost; a smaller step ends a phase");
+  v("chi2_mono", chi2_mono, setting::kGate, "gate of an observation without depth");
+  v("chi2_stereo", chi2_stereo, setting::kGate, "gate of an observation with depth");
+}
+
+}  // namespace mh

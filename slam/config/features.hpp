@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "slam/config/setting.hpp"
+
+namespace mh {
+
+struct FeatureConfig {
+  int count = 1000;            ///< keypoints wanted per frame
+  int levels = 8;              ///< pyramid levels
+  double scale = 1.2;          ///< between levels
+  int fast_threshold = 20;     ///< gray levels
+  int fast_threshold_low = 7;  ///< used in cells where the first finds nothing
+  double max_depth_m = 8.0;    ///< depth beyond is dropped
+};
+
+template <Either<FeatureConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [count, levels, scale, fast_threshold, fast_threshold_low, max_depth_m] = c;
+  v("count", count, {10, 20000}, "keypoints wanted per frame");
+  v("levels", levels, {1, 16}, "of the image pyramid");
+  v("scale", scale, {1.01, 2}, "between levels");
+  v("fast_threshold", fast_threshold, setting::kGray, "gray levels");
+  v("fast_threshold_low", fast_threshold_low, setting::kGray, "where the first finds nothing");
+  v("max_depth_m", max_depth_m, {0.1, 1000}, "depth beyond is dropped");
+}
+
+}  // namespace mh

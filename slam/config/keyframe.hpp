@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "slam/config/setting.hpp"
+
+namespace mh {
+
+struct KeyframeConfig {
+  int max_interval = 30;           ///< frames after which a keyframe is wanted in any case
+  double min_tracked_share = 0.5;  ///< of the reference keyframe's landmarks
+  int min_close_tracked = 100;     ///< close points tracked below this, and
+  int min_close_new = 70;          ///< close points untracked above this: a keyframe is needed
+  double close_depth_m = 3.5;      ///< depth is trusted to make a landmark at once up to here
+  double redundant_share = 0.9;    ///< of a keyframe's landmarks seen by 3 others: culled
+};
+
+template <Either<KeyframeConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [max_interval, min_tracked_share, min_close_tracked, min_close_new, close_depth_m,
+         redundant_share] = c;
+  v("max_interval", max_interval, setting::kCount,
+    "frames after which a keyframe is wanted in any case");
+  v("min_tracked_share", min_tracked_share, setting::kShare,
+    "of the reference keyframe's landmarks");
+  v("min_close_tracked", min_close_tracked, {0, setting::kMany},
+    "fewer close points tracked than this and");
+  v("min_close_new", min_close_new, {0, setting::kMany},
+    "more close points new than this: a keyframe");
+  v("close_depth_m", close_depth_m, {0.1, 1000}, "depth makes a landmark at once up to here");
+  v("redundant_share", redundant_share, setting::kShare,
+    "of its landmarks seen by 3 others: culled");
+}
+
+}  // namespace mh

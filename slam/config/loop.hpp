@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "slam/config/setting.hpp"
+
+namespace mh {
+
+struct LoopConfig {
+  bool enabled = true;
+  bool augmented = false;  ///< candidates by equation 1 with labels; else by words alone
+  int min_gap = 10;        ///< keyframes between the two ends, at least
+  /// The ends share fewer landmarks than this: chance matches across a drift of some centimeters
+  /// tie them too loosely to undo it.
+  int loosely_shared = 60;
+  /// A candidate's similarity, at least, as a share of that of the least alike strong neighbor.
+  double min_similarity_share = 0.5;
+  int agreeing = 2;            ///< keyframes that must tell of the same drift,
+  int patience = 5;            ///< each at most so many keyframes after the one before
+  double same_drift_m = 0.10;  ///< what counts as the same
+  double same_drift_rad = 0.05;
+  /// Nobody drifts by more than this, and this share of the way between the ends: what looks so is
+  /// another place that looks the same.
+  double max_drift_m = 0.3, max_drift_share = 0.03;
+  double max_drift_rad = 0.35;
+  double negligible_m = 0.01;  ///< below, landmarks are joined but poses stay
+  double negligible_rad = 0.003;
+};
+
+template <Either<LoopConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, augmented, min_gap, loosely_shared, min_similarity_share, agreeing, patience,
+         same_drift_m, same_drift_rad, max_drift_m, max_drift_share, max_drift_rad, negligible_m,
+         negligible_rad] = c;
+  v("enabled", enabled, setting::kSwitch, "whether loops are looked for");
+  v("augmented", augmented, setting::kSwitch,
+    "candidates by equation 1 with labels; else by words alone");
+  v("min_gap", min_gap, setting::kCount, "keyframes between the two ends");
+  v("loosely_shared", loosely_shared, setting::kCount, "landmarks: the two ends share fewer");
+  v("min_similarity_share", min_similarity_share, setting::kShare,
+    "of the least alike strong neighbor's");
+  v("agreeing", agreeing, setting::kCount, "keyframes that must tell of the same drift,");
+  v("patience", patience, setting::kCount, "each at most so many keyframes after the one before");
+  v("same_drift_m", same_drift_m, setting::kLength_m, "what counts as the same");
+  v("same_drift_rad", same_drift_rad, setting::kAngle_rad, "");
+  v("max_drift_m", max_drift_m, setting::kLength_m,
+    "no loop moves the camera farther than this and");
+  v("max_drift_share", max_drift_share, setting::kShare, "this share of the way between its ends,");
+  v("max_drift_rad", max_drift_rad, setting::kAngle_rad, "nor turns it farther");
+  v("negligible_m", negligible_m, setting::kLength_m, "below, landmarks are joined but poses stay");
+  v("negligible_rad", negligible_rad, setting::kAngle_rad, "");
+}
+
+}  // namespace mh

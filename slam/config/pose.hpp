@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "slam/config/setting.hpp"
+
+namespace mh {
+
+struct PoseConfig {
+  int rounds = 4;              ///< inlier sets are formed anew after each
+  int iterations = 10;         ///< Gauss-Newton steps per round
+  double chi2_mono = 5.991;    ///< 95 % of chi-square, 2 degrees of freedom
+  double chi2_stereo = 7.815;  ///< 95 % of chi-square, 3 degrees of freedom
+  int min_inliers = 10;
+};
+
+template <Either<PoseConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [rounds, iterations, chi2_mono, chi2_stereo, min_inliers] = c;
+  v("rounds", rounds, {1, 100}, "inlier sets are formed anew after each");
+  v("iterations", iterations, {1, 1000}, "Gauss-Newton steps per round");
+  v("chi2_mono", chi2_mono, setting::kGate, "gate of an observation without depth");
+  v("chi2_stereo", chi2_stereo, setting::kGate, "gate of an observation with depth");
+  v("min_inliers", min_inliers, setting::kPoints, "below, there is no pose");
+}
+
+struct RansacConfig {
+  int max_iterations = 300;
+  double confidence = 0.99;
+  int min_inliers = 10;
+};
+
+template <Either<RansacConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [max_iterations, confidence, min_inliers] = c;
+  v("max_iterations", max_iterations, setting::kCount, "of RANSAC");
+  v("confidence", confidence, setting::kOpenShare, "of RANSAC");
+  v("min_pnp_inliers", min_inliers, setting::kPoints, "of PnP");
+}
+
+}  // namespace mh

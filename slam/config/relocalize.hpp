@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "slam/config/pose.hpp"
+#include "slam/config/setting.hpp"
+
+namespace mh {
+
+struct RelocalizeConfig {
+  int min_word_matches = 15;
+  int min_inliers = 50;  ///< to accept a pose
+  /// How far the disparity of a true pair strays (one standard deviation, beside the keypoint's own
+  /// as in Camera) before the pose is refined on the local map; at least the camera's own counts.
+  /// The camera's tells of one reading. Here the landmark comes from another reading (0.1 px), the
+  /// pose from a handful of points (1 cm at 1.4 m: 0.2 px), and color and depth were neither taken
+  /// at the same moment nor is a structured-light sensor free of warp (0.2 px): 0.3 px together,
+  /// which is what pairs of real recordings show (docs/slam.md).
+  double disparity_sigma_px = 0.3;
+  RansacConfig ransac;
+};
+
+template <Either<RelocalizeConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [min_word_matches, min_inliers, disparity_sigma_px, ransac] = c;
+  v("min_word_matches", min_word_matches, setting::kPoints, "with a candidate keyframe");
+  v("min_inliers", min_inliers, setting::kPoints, "to accept a pose");
+  v("disparity_sigma_px", disparity_sigma_px, {0, 1000},
+    "how far a true pair's depth strays; at least the camera's own");
+  fields(ransac, v);
+}
+
+}  // namespace mh

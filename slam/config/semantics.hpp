@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "slam/config/setting.hpp"
+
+namespace mh {
+
+/// What is counted as n in equation 3 (Algorithm 1 leaves it open).
+enum class Overlap {
+  kLabels,     ///< distinct labels, as Algorithm 1's text says
+  kAugmented,  ///< members of the augmented vector: labels and words
+  kWords       ///< visual words alone
+};
+
+/// The paper's parameters.
+struct SemanticConfig {
+  double gamma = 1.0;
+  double xi = 1.5;
+  double alpha = 0.8;
+  double beta = 0.75;
+  Overlap overlap = Overlap::kAugmented;
+  bool void_is_a_label = false;
+
+  /// These settings with the method switched off: the plain system. What is not of the method
+  /// (alpha, beta) stays.
+  SemanticConfig neutralized() const {
+    SemanticConfig plain = *this;
+    plain.gamma = 0.0;
+    plain.xi = 1.0;
+    plain.overlap = Overlap::kWords;
+    return plain;
+  }
+  /// The plain system's defaults.
+  static SemanticConfig neutral() { return SemanticConfig{}.neutralized(); }
+  friend bool operator==(const SemanticConfig&, const SemanticConfig&) = default;
+};
+
+template <Either<SemanticConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [gamma, xi, alpha, beta, overlap, void_is_a_label] = c;
+  v("gamma", gamma, {0, setting::kMany}, "weight of a label, equation 1");
+  v("xi", xi, {1, setting::kMany}, "factor where labels disagree, equation 2");
+  v("alpha", alpha, setting::kOpenShare, "equation 4");
+  v("beta", beta, setting::kOpenShare, "equation 6");
+  v("overlap", overlap, {}, "what equation 3 counts: labels, augmented or words");
+  v("void_is_a_label", void_is_a_label, setting::kSwitch, "void disagrees with every label");
+}
+
+}  // namespace mh

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "slam/config/bundle.hpp"
+#include "slam/config/features.hpp"
+#include "slam/config/keyframe.hpp"
+#include "slam/config/loop.hpp"
+#include "slam/config/match.hpp"
+#include "slam/config/pose.hpp"
+#include "slam/config/relocalize.hpp"
+#include "slam/config/semantics.hpp"
+#include "slam/config/track.hpp"
+
+namespace mh {
+
+/// One SLAM run: everything that decides its result beside vocabulary and frames.
+struct SlamConfig {
+  FeatureConfig features;
+  SemanticConfig semantics;
+  MatchConfig match;
+  PoseConfig pose;
+  BundleConfig bundle;
+  KeyframeConfig keyframe;
+  TrackConfig track;
+  RelocalizeConfig relocalize;
+  LoopConfig loop;
+};
+
+/// Calls visit.section(name) before each part of the settings and visit(name, value, range, note)
+/// for each field.
+template <Either<SlamConfig> C, class Visit>
+void for_each_setting(C& config, Visit&& visit) {
+  auto& [features, semantics, match, pose, bundle, keyframe, track, relocalize, loop] = config;
+  const auto part = [&](const char* name, auto& c) {
+    visit.section(name);
+    fields(c, visit);
+  };
+  part("features", features);
+  part("semantics", semantics);
+  part("match", match);
+  part("pose", pose);
+  part("bundle", bundle);
+  part("keyframe", keyframe);
+  part("track", track);
+  part("relocalize", relocalize);
+  part("loop", loop);
+}
+
+/// @throws InputError naming field and value.
+void validate(const SlamConfig& config);
+
+}  // namespace mh

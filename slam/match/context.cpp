@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/match/context.hpp"
+
+#include "slam/config/slam.hpp"
+
+namespace mh {
+namespace {
+
+/// Equation 2 once more: the matchers keep no distances.
+void set_distance(MatchedPair& pair, LabeledDescriptor p, LabeledDescriptor q,
+                  const SemanticConfig& config) {
+  MatcherCounts counts;
+  pair.distance_bits = SemanticMatcher(config, counts)(p, q).semantic;
+  pair.penalized = counts.penalized != 0;
+}
+
+LabeledDescriptor view(const Features& features, std::uint32_t i) {
+  return {features.descriptors[i], features.keypoints[i].label};
+}
+
+}  // namespace
+
+SemanticMatcher semantic_matcher(const SlamContext& context, Matcher matcher) {
+  return {context.config.semantics, at(context.counts, matcher)};
+}
+
+std::vector<LandmarkId> match_landmarks(const Keyframe& keyframe, const Query& query,
+                                        const SlamContext& context, Matcher matcher) {
+  const MatchConfig& config = context.config.match;
+  std::vector<std::uint8_t> with_landmark(keyframe.features.size());
+  for (std::size_t i = 0; i < with_landmark.size(); ++i)
+    with_landmark[i] = keyframe.landmarks[i].valid();
+  const std::vector<std::uint8_t> all(query.features.size(), 1);
+  const auto matches = match_by_words({keyframe.features, keyframe.words, with_landmark},
+                                      {query.features, query.words, all},
+                                      {.max_distance = static_cast<float>(config.max_distance),
+                                       .ratio = static_cast<float>(config.ratio)},
+                                      semantic_matcher(context, matcher));
+  trace_words(context, matcher,
+              {keyframe.id, keyframe.features, keyframe.landmarks, {}, query.features, matches});
+  std::vector<LandmarkId> landmarks(query.features.size());
+  for (const FeatureMatch& m : matches) landmarks[m.b] = keyframe.landmarks[m.a];
+  return landmarks;
+}
+
+void trace_projection(const SlamContext& context, Matcher matcher, const ProjectionPairs& pairs) {
+  if (context.trace == nullptr) return;
+  for (std::size_t t = 0; t < pairs.found.size(); ++t) {
+    if (pairs.found[t] < 0) continue;
+    MatchedPair pair{.matcher = matcher,
+                     .seen_in = pairs.seen_in,
+                     .feature = static_cast<std::uint32_t>(pairs.found[t]),
+                     .landmark = pairs.landmarks[t],
+                     .keyframe = {},
+                     .other_feature = pairs.others.empty() ? MatchedPair::kNone : pairs.others[t]};
+    const ProjectionTarget& target = pairs.targets[t];
+    set_distance(pair, {*target.descriptor, target.label}, view(pairs.features, pair.feature),
+                 context.config.semantics);
+    context.trace->push_back(pair);
+  }
+}
+
+void trace_words(const SlamContext& context, Matcher matcher, const WordPairs& pairs) {
+  if (context.trace == nullptr) return;
+  for (const FeatureMatch& m : pairs.matches) {
+    MatchedPair pair{.matcher = matcher,
+                     .seen_in = pairs.b,
+                     .feature = m.b,
+                     .landmark = pairs.landmarks_a.empty() ? LandmarkId{} : pairs.landmarks_a[m.a],
+                     .keyframe = pairs.a,
+                     .other_feature = m.a};
+    set_distance(pair, view(pairs.features_a, m.a), view(pairs.features_b, m.b),
+                 context.config.semantics);
+    context.trace->push_back(pair);
+  }
+}
+
+}  // namespace mh

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "slam/pipeline/prepared_frame.hpp"
+#include "slam/track/track.hpp"
+
+namespace mh {
+
+/// Makes a frame a keyframe: maps it, then looks for a loop and closes it. The frame keeps its
+/// features.
+KeyframeId add_keyframe(SlamState& state, PreparedFrame& frame, const TrackedPose& tracked,
+                        RandomStream stream, const StepObservers& observers, StepReport& report);
+
+}  // namespace mh

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "slam/pipeline/prepared_frame.hpp"
+#include "slam/track/carry.hpp"
+
+namespace mh {
+
+/// The context of one frame's step; matches are counted in its report.
+SlamContext context_of(const SlamState& state, const StepObservers& observers, StepReport& report);
+
+/// Finds the camera of a frame in the map: from the frames before; where that does not hold,
+/// anywhere. Reads the map, never writes it.
+std::optional<Located> locate(const SlamState& state, const Tracker& tracker, PreparedFrame& frame,
+                              RandomStream stream, const StepObservers& observers,
+                              StepReport& report);
+
+/// Refines a pose on the part of the map that it sees.
+/// @returns nullopt below `min_inliers`.
+std::optional<Located> confirm_in_local_map(const PreparedFrame& frame, const TrackedPose& tracked,
+                                            int min_inliers, const SlamContext& context,
+                                            const StepObservers& observers);
+
+}  // namespace mh

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "slam/match/context.hpp"
+#include "slam/pipeline/slam.hpp"
+
+namespace mh {
+
+/// Reports a stage to the observers for as long as this lives.
+class InStage {
+ public:
+  InStage(const StepObservers& observers, Stage stage) : observers_(observers), stage_(stage) {
+    if (observers_.stage) observers_.stage(stage_, StageEvent::kBegin);
+  }
+  ~InStage() {
+    if (observers_.stage) observers_.stage(stage_, StageEvent::kEnd);
+  }
+  InStage(const InStage&) = delete;
+  InStage& operator=(const InStage&) = delete;
+
+ private:
+  const StepObservers& observers_;
+  Stage stage_;
+};
+
+/// A frame's features, indexed. Words are looked up only where a stage asks for them.
+struct PreparedFrame {
+  Stamp stamp_ns;
+  Features features;
+  FeatureGrid grid;
+  std::optional<WordIndex> words;
+};
+
+/// extract(), as a stage.
+Features observed_features(const RgbdFrame& frame, const SlamState& state,
+                           const StepObservers& observers);
+
+/// @param tracker  that of the frames before, which knows how a rolling shutter moved
+PreparedFrame prepare(Stamp stamp_ns, Features features, const SlamState& state,
+                      const Tracker& tracker);
+
+/// The frame with its words, which are looked up at the first call.
+Query with_words(PreparedFrame& frame, const SlamState& state, const StepObservers& observers);
+/// The frame with what words it has by now.
+Query without_words(const PreparedFrame& frame);
+
+}  // namespace mh

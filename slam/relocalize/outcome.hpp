@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+namespace mh {
+
+/// Where an attempt to relocalize ended: the farthest stage that any candidate reached and failed,
+/// or kVerified.
+enum class RelocalizationStage { kNone, kNoCandidate, kMatches, kPnp, kInliers, kVerified };
+std::string_view name(RelocalizationStage stage);
+
+/// Keyframes left after each step of Algorithm 1.
+struct CandidateCounts {
+  int keyframes = 0;           ///< in the map
+  int c1 = 0, c2 = 0, c3 = 0;  ///< after equations 3, 4 and 5
+  int final = 0;               ///< after equation 6
+  double label_mass = 0;       ///< share of the query vector's L1 mass held by labels
+};
+
+}  // namespace mh
