@@ -119,9 +119,17 @@ void choose_points(const BundleProblem& problem, Workspace& w) {
   }
 }
 
+/// One of the two phases of adjust(): with Huber's rho, or without.
+struct Phase {
+  const BundleProblem& problem;
+  const Camera& camera;
+  const BundleConfig& config;
+  bool robust;
+};
+
 /// Sum of rho over the active observations.
-double cost_of(const BundleProblem& problem, const Workspace& w, const State& state,
-               const Camera& camera, const BundleConfig& config, bool robust) {
+double cost_of(const Phase& phase, const Workspace& w, const State& state) {
+  const auto& [problem, camera, config, robust] = phase;
   double cost = 0;
   for (std::size_t i = 0; i < problem.observations.size(); ++i) {
     if (!w.active[i]) continue;
@@ -132,12 +140,13 @@ double cost_of(const BundleProblem& problem, const Workspace& w, const State& st
   return cost;
 }
 
-/// Adds one point's observations to the pose blocks and to its own; fills W for each.
-void linearize_point(const BundleProblem& problem, Workspace& w, const State& state,
-                     std::uint32_t point, const Camera& camera, const BundleConfig& config,
-                     bool robust, Eigen::Matrix3d& point_information) {
+/// Adds one point's observations to the pose blocks and to its gradient; fills W for each.
+/// @returns the point's own block.
+Eigen::Matrix3d linearize_point(const Phase& phase, Workspace& w, const State& state,
+                                std::uint32_t point) {
+  const auto& [problem, camera, config, robust] = phase;
+  Eigen::Matrix3d point_information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  point_information.setZero();
   for (std::uint32_t i = w.first_observation[point]; i < w.first_observation[point + 1]; ++i) {
     w.coupled[i] = 0;
     if (!w.active[i]) continue;
@@ -170,6 +179,7 @@ void linearize_point(const BundleProblem& problem, Workspace& w, const State& st
     w.right_side.segment<3>(at + 3) -= p.cross(term.gradient);
   }
   w.point_gradient[point] = gradient;
+  return point_information;
 }
 
 /// Takes one point out of the system: reduced -= W V^-1 W^T, right side += W V^-1 g.
@@ -195,16 +205,14 @@ void eliminate_point(const BundleProblem& problem, Workspace& w, std::uint32_t p
 }
 
 /// Linearizes at the state and reduces the system to the poses.
-void build_reduced_system(const BundleProblem& problem, Workspace& w, const State& state,
-                          const Camera& camera, const BundleConfig& config, bool robust,
-                          double damping) {
+void build_reduced_system(const Phase& phase, Workspace& w, const State& state, double damping) {
+  const BundleProblem& problem = phase.problem;
   w.reduced.set_zero();
   w.pose_diagonal.setZero();
   w.right_side.setZero();
-  Eigen::Matrix3d information;
   for (std::uint32_t point = 0; point < problem.points_in_world.size(); ++point) {
     if (!w.adjusted[point]) continue;
-    linearize_point(problem, w, state, point, camera, config, robust, information);
+    Eigen::Matrix3d information = linearize_point(phase, w, state, point);
     const double trace = information.trace();
     if (!(trace > 0)) {  // every observation has slipped behind its camera
       w.point_inverse[point].setZero();
@@ -249,24 +257,22 @@ bool take_step(const BundleProblem& problem, Workspace& w, const State& from, St
 }
 
 /// One phase of Levenberg-Marquardt over the active observations. @returns trial steps made.
-int minimize(const BundleProblem& problem, Workspace& w, State& state, State& trial,
-             const Camera& camera, const BundleConfig& config, bool robust, int iterations) {
-  choose_points(problem, w);
-  double cost = cost_of(problem, w, state, camera, config, robust);
-  const double perfect = kPerfectChi2 * static_cast<double>(problem.observations.size());
+int minimize(const Phase& phase, Workspace& w, State& state, State& trial, int iterations) {
+  choose_points(phase.problem, w);
+  double cost = cost_of(phase, w, state);
+  const double perfect = kPerfectChi2 * static_cast<double>(phase.problem.observations.size());
   double damping = kInitialDamping;
   int made = 0;
   while (made < iterations && cost > perfect && damping < kGreatestDamping) {
     ++made;
-    build_reduced_system(problem, w, state, camera, config, robust, damping);
-    const bool solved = take_step(problem, w, state, trial);
-    const double trial_cost =
-        solved ? cost_of(problem, w, trial, camera, config, robust) : HUGE_VAL;
+    build_reduced_system(phase, w, state, damping);
+    const bool solved = take_step(phase.problem, w, state, trial);
+    const double trial_cost = solved ? cost_of(phase, w, trial) : HUGE_VAL;
     if (!(trial_cost <= cost)) {
       damping *= 10.0;
       continue;
     }
-    const bool settled = cost - trial_cost <= config.relative_decrease * cost;
+    const bool settled = cost - trial_cost <= phase.config.relative_decrease * cost;
     std::swap(state, trial);
     cost = trial_cost;
     damping = std::max(0.1 * damping, kLeastDamping);
@@ -292,7 +298,7 @@ BundleResult adjust(const BundleProblem& problem, const Camera& camera,
     result.initial_cost += huber_loss(chi2, gate(o, config));
     w.active[i] = chi2 != kBehindChi2;
   }
-  result.iterations = minimize(problem, w, state, trial, camera, config, true, config.iterations);
+  result.iterations = minimize({problem, camera, config, true}, w, state, trial, config.iterations);
 
   if (config.refine_iterations > 0) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -301,7 +307,7 @@ BundleResult adjust(const BundleProblem& problem, const Camera& camera,
     }
     trial = state;
     result.iterations +=
-        minimize(problem, w, state, trial, camera, config, false, config.refine_iterations);
+        minimize({problem, camera, config, false}, w, state, trial, config.refine_iterations);
   }
 
   for (std::uint32_t pose = 0; pose < problem.free_poses; ++pose)

@@ -118,11 +118,9 @@ class DepthGate : public testing::Test {
     return scene;
   }
 
-  static RelocalizationResult find(const Scene& scene, const RelocalizeConfig& relocalization) {
+  static RelocalizationResult find(const Scene& scene, const SlamConfig& config) {
     const FeatureGrid grid(scene.features.keypoints, Camera{});
     MatchCounts counts{};
-    SlamConfig config;
-    config.relocalize = relocalization;
     return relocalize({scene.features, grid, scene.words}, {Camera{}, config, scene.map, counts},
                       RandomStream(1));
   }
@@ -150,8 +148,8 @@ TEST_F(DepthGate, OneReadingsNoiseIsTooNarrowForAPoseThatIsNotRefined) {
   int by_one_reading = 0, by_default = 0;
   for (std::uint64_t seed = 0; seed < kScenes; ++seed) {
     const Scene made = scene(seed);
-    RelocalizeConfig narrow;
-    narrow.disparity_sigma_px = 0;  // the camera's own
+    SlamConfig narrow;
+    narrow.relocalize.disparity_sigma_px = 0;  // the camera's own
     by_one_reading += find(made, narrow).camera_from_world.has_value();
     const RelocalizationResult found = find(made, {});
     if (!found.camera_from_world) continue;
@@ -162,6 +160,17 @@ TEST_F(DepthGate, OneReadingsNoiseIsTooNarrowForAPoseThatIsNotRefined) {
   }
   EXPECT_LE(by_one_reading, 2);
   EXPECT_EQ(by_default, static_cast<int>(kScenes));
+}
+
+TEST_F(DepthGate, PosesAreEstimatedByTheSettingsOfSectionPose) {
+  const Scene made = scene(0);
+  ASSERT_TRUE(find(made, {}).camera_from_world);
+  SlamConfig tight;
+  tight.pose.chi2_mono = tight.pose.chi2_stereo = 1e-3;  // nothing fits so well
+  EXPECT_EQ(find(made, tight).stage, RelocalizationStage::kPnp);
+  SlamConfig many;
+  many.pose.min_inliers = 100000;
+  EXPECT_FALSE(find(made, many).camera_from_world);
 }
 
 // A smaller copy of what the map holds looks the same from nearer by: depth alone tells.
