@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <yaml-cpp/yaml.h>
 
 #include "slam/core/suggest.hpp"
 #include "slam/core/text_file.hpp"
@@ -55,8 +56,8 @@ class Walk {
 
 }  // namespace
 
-YamlReader::YamlReader(YAML::Node node, std::string file, std::string place)
-    : node_(std::move(node)), file_(std::move(file)), place_(std::move(place)) {}
+YamlReader::YamlReader(const YAML::Node& node, std::string file, std::string place)
+    : node_(std::make_shared<YAML::Node>(node)), file_(std::move(file)), place_(std::move(place)) {}
 
 YamlReader YamlReader::load(const std::filesystem::path& file) {
   return parse(read_text(file), file.string());
@@ -78,25 +79,36 @@ YamlReader YamlReader::parse(const std::string& text, const std::string& name) {
   }
 }
 
+bool YamlReader::is_scalar() const {
+  return node_->IsScalar();
+}
+
+bool YamlReader::is_sequence() const {
+  return node_->IsSequence();
+}
+
+bool YamlReader::is_map() const {
+  return node_->IsMap();
+}
+
 int YamlReader::line() const {
-  return node_.Mark().line + 1;
+  return node_->Mark().line + 1;
 }
 
 void YamlReader::fail(const std::string& what) const {
   const std::string where = place_.empty() ? "" : place_ + ": ";
-  if (place_.empty() && node_.IsNull()) throw InputError(file_ + ": the file holds nothing");
-  throw InputError(fmt::format("{}: {}{}", place_in(file_, node_), where, what));
+  if (place_.empty() && node_->IsNull()) throw InputError(file_ + ": the file holds nothing");
+  throw InputError(fmt::format("{}: {}{}", place_in(file_, *node_), where, what));
 }
 
 bool YamlReader::has(const std::string& key) const {
-  return node_.IsMap() && node_[key].IsDefined();
+  return node_->IsMap() && (*node_)[key].IsDefined();
 }
 
 std::optional<YamlReader> YamlReader::find(const std::string& key) {
-  if (!node_.IsMap()) fail("must be a mapping");
+  if (!node_->IsMap()) fail("must be a mapping");
   read_.insert(key);
-  const YAML::Node& node = node_;  // const access never inserts
-  YAML::Node child = node[key];
+  const YAML::Node child = (*node_)[key];
   if (!child.IsDefined()) return std::nullopt;
   return YamlReader{child, file_, place_.empty() ? key : place_ + "." + key};
 }
@@ -104,7 +116,7 @@ std::optional<YamlReader> YamlReader::find(const std::string& key) {
 YamlReader YamlReader::at(const std::string& key) {
   if (auto child = find(key)) return *child;
   std::vector<std::string> others;
-  for (const auto& entry : node_)
+  for (const auto& entry : *node_)
     if (!read_.contains(entry.first.Scalar())) others.push_back(entry.first.Scalar());
   const auto slip = nearest_word(key, others);
   fail(fmt::format("key '{}' is missing{}", key,
@@ -112,17 +124,17 @@ YamlReader YamlReader::at(const std::string& key) {
 }
 
 std::vector<YamlReader> YamlReader::items() const {
-  if (!node_.IsSequence()) fail("must be a list");
+  if (!node_->IsSequence()) fail("must be a list");
   std::vector<YamlReader> result;
-  for (std::size_t i = 0; i < node_.size(); ++i)
-    result.push_back(YamlReader{node_[i], file_, fmt::format("{}[{}]", place_, i)});
+  for (std::size_t i = 0; i < node_->size(); ++i)
+    result.push_back(YamlReader{(*node_)[i], file_, fmt::format("{}[{}]", place_, i)});
   return result;
 }
 
 std::vector<std::pair<std::string, YamlReader>> YamlReader::entries() {
-  if (!node_.IsMap()) fail("must be a mapping");
+  if (!node_->IsMap()) fail("must be a mapping");
   std::vector<std::pair<std::string, YamlReader>> result;
-  for (const auto& entry : node_) {
+  for (const auto& entry : *node_) {
     const std::string& key = entry.first.Scalar();
     read_.insert(key);
     result.emplace_back(key,
@@ -132,40 +144,40 @@ std::vector<std::pair<std::string, YamlReader>> YamlReader::entries() {
 }
 
 std::string YamlReader::as_string() const {
-  if (!node_.IsScalar()) fail("must be a word");
-  return node_.Scalar();
+  if (!node_->IsScalar()) fail("must be a word");
+  return node_->Scalar();
 }
 
 bool YamlReader::as_bool() const {
-  if (!node_.IsScalar()) fail("must be true or false");
+  if (!node_->IsScalar()) fail("must be true or false");
   try {
-    return node_.as<bool>();
+    return node_->as<bool>();
   } catch (const YAML::Exception&) {
-    fail(fmt::format("'{}' is not true or false", node_.Scalar()));
+    fail(fmt::format("'{}' is not true or false", node_->Scalar()));
   }
 }
 
 double YamlReader::as_double(double min, double max) const {
-  if (!node_.IsScalar()) fail("must be a number");
+  if (!node_->IsScalar()) fail("must be a number");
   double value = 0;
   try {
-    value = node_.as<double>();
+    value = node_->as<double>();
   } catch (const YAML::Exception&) {
-    fail(fmt::format("'{}' is not a number", node_.Scalar()));
+    fail(fmt::format("'{}' is not a number", node_->Scalar()));
   }
-  if (!std::isfinite(value)) fail(fmt::format("'{}' is not a finite number", node_.Scalar()));
+  if (!std::isfinite(value)) fail(fmt::format("'{}' is not a finite number", node_->Scalar()));
   if (value < min || value > max)
-    fail(fmt::format("{} is outside [{}, {}]", node_.Scalar(), min, max));
+    fail(fmt::format("{} is outside [{}, {}]", node_->Scalar(), min, max));
   return value;
 }
 
 std::int64_t YamlReader::as_int(std::int64_t min, std::int64_t max) const {
-  if (!node_.IsScalar()) fail("must be a whole number");
+  if (!node_->IsScalar()) fail("must be a whole number");
   std::int64_t value = 0;
   try {
-    value = node_.as<std::int64_t>();
+    value = node_->as<std::int64_t>();
   } catch (const YAML::Exception&) {
-    fail(fmt::format("'{}' is not a whole number", node_.Scalar()));
+    fail(fmt::format("'{}' is not a whole number", node_->Scalar()));
   }
   if (value < min || value > max) fail(fmt::format("{} is outside [{}, {}]", value, min, max));
   return value;
@@ -201,7 +213,7 @@ std::int64_t YamlReader::integer_or(const std::string& key, std::int64_t fallbac
 }
 
 void YamlReader::finish() const {
-  for (const auto& entry : node_) {
+  for (const auto& entry : *node_) {
     const std::string& key = entry.first.Scalar();
     if (read_.contains(key)) continue;
     throw InputError(fmt::format("{}:{}: unknown key '{}{}' (known here: {}){}", file_,

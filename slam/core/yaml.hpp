@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <limits>
-#include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include <yaml-cpp/yaml.h>
-
 #include "slam/core/error.hpp"
+
+namespace YAML {
+class Node;  // its headers stay out of everybody's
+}
 
 namespace mh {
 
@@ -36,9 +40,9 @@ class YamlReader {
   /// none.
   std::vector<std::pair<std::string, YamlReader>> entries();
 
-  bool is_scalar() const { return node_.IsScalar(); }
-  bool is_sequence() const { return node_.IsSequence(); }
-  bool is_map() const { return node_.IsMap(); }
+  bool is_scalar() const;
+  bool is_sequence() const;
+  bool is_map() const;
 
   /// This scalar. @throws InputError on the wrong type.
   std::string as_string() const;
@@ -71,9 +75,9 @@ class YamlReader {
 
  private:
   static constexpr double kInf = std::numeric_limits<double>::infinity();
-  YamlReader(YAML::Node node, std::string file, std::string place);
+  YamlReader(const YAML::Node& node, std::string file, std::string place);
 
-  YAML::Node node_;
+  std::shared_ptr<const YAML::Node> node_;
   std::string file_;
   std::string place_;
   std::set<std::string> read_;
