@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <string_view>
+#include <utility>
+
 #include "slam/config/setting.hpp"
 
 namespace mh {
@@ -11,6 +15,12 @@ enum class Overlap {
   kAugmented,  ///< members of the augmented vector: labels and words
   kWords       ///< visual words alone
 };
+
+constexpr std::array<std::pair<std::string_view, Overlap>, 3> setting_words(Overlap) {
+  return {{{"labels", Overlap::kLabels},
+           {"augmented", Overlap::kAugmented},
+           {"words", Overlap::kWords}}};
+}
 
 /// The paper's parameters.
 struct SemanticConfig {

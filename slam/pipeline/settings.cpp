@@ -12,90 +12,14 @@
 #include <fmt/ranges.h>
 
 #include "slam/core/error.hpp"
+#include "slam/core/settings_io.hpp"
 #include "slam/core/text_file.hpp"
 #include "slam/features/undistort.hpp"
 
 namespace mh {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Overlap>, 3> kOverlaps{
-    {{"labels", Overlap::kLabels}, {"augmented", Overlap::kAugmented}, {"words", Overlap::kWords}}};
-
 constexpr double kMost = 1e6;
-
-std::string_view name_of(Overlap overlap) {
-  return std::find_if(kOverlaps.begin(), kOverlaps.end(),
-                      [&](const auto& entry) { return entry.second == overlap; })
-      ->first;
-}
-
-class Write {
- public:
-  explicit Write(bool notes) : notes_(notes) {}
-  void section(const char* name) { text += fmt::format("{}:\n", name); }
-  template <class T>
-  void operator()(const char* key, const T& value, const SettingRange& range, const char* note) {
-    std::string line;
-    if constexpr (std::is_same_v<T, Overlap>)
-      line = fmt::format("  {}: {}", key, name_of(value));
-    else
-      line = fmt::format("  {}: {}", key, value);  // doubles: the shortest that reads back equal
-    if (!notes_) {
-      text += line + "\n";
-      return;
-    }
-    std::string comment = note;
-    if constexpr (!std::is_same_v<T, Overlap> && !std::is_same_v<T, bool>)
-      comment = fmt::format("[{}, {}{}{}{}", range.min, range.max, range.open ? ")" : "]",
-                            comment.empty() ? "" : "  ", comment);
-    text += fmt::format("{:<30} # {}\n", line, comment);
-  }
-  std::string text;
-
- private:
-  bool notes_;
-};
-
-class Read {
- public:
-  explicit Read(YamlReader& yaml) : yaml_(yaml) {}
-  void section(const char* name) {
-    finish();
-    part_ = yaml_.find(name);
-  }
-  void finish() const {
-    if (part_) part_->finish();
-  }
-  void operator()(const char* key, int& value, const SettingRange& range, const char*) {
-    if (part_)
-      value = static_cast<int>(part_->integer_or(key, value, static_cast<std::int64_t>(range.min),
-                                                 static_cast<std::int64_t>(range.max)));
-  }
-  void operator()(const char* key, double& value, const SettingRange& range, const char*) {
-    const auto node = part_ ? part_->find(key) : std::nullopt;
-    if (!node) return;
-    value = node->as_double(range.min, range.max);
-    if (range.open && value == range.max)
-      node->fail(fmt::format("{} is outside [{}, {})", value, range.min, range.max));
-  }
-  void operator()(const char* key, bool& value, const SettingRange&, const char*) {
-    if (part_) value = part_->boolean(key, value);
-  }
-  void operator()(const char* key, Overlap& value, const SettingRange&, const char*) {
-    const auto node = part_ ? part_->find(key) : std::nullopt;
-    if (!node) return;
-    const std::string word = node->as_string();
-    const auto* known = std::find_if(kOverlaps.begin(), kOverlaps.end(),
-                                     [&](const auto& entry) { return entry.first == word; });
-    if (known == kOverlaps.end())
-      node->fail(fmt::format("'{}' is none of labels, augmented, words", word));
-    value = known->second;
-  }
-
- private:
-  YamlReader& yaml_;
-  std::optional<YamlReader> part_;
-};
 
 /// The intrinsics, by whatever names a dialect gives them.
 void read_distortion(YamlReader& yaml, const std::string& prefix, Camera& camera) {
@@ -331,15 +255,15 @@ std::string format_settings(const Settings& settings) {
 }
 
 std::string format_slam_config(const SlamConfig& config, bool notes) {
-  Write write(notes);
-  for_each_setting(config, write);
-  return write.text;
+  SettingsWriter writer(notes);
+  for_each_setting(config, writer);
+  return writer.text();
 }
 
 SlamConfig read_slam_config(YamlReader& yaml, SlamConfig config) {
-  Read read(yaml);
-  for_each_setting(config, read);
-  read.finish();
+  SettingsReader reader(yaml);
+  for_each_setting(config, reader);
+  reader.finish();
   return config;
 }
 

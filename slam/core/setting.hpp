@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// How settings are listed. Beside a struct of settings stands the list of its fields, each with
+// name, range and meaning: `fields(config, visit)` calls visit(name, value, range, note) for each.
+// Its brackets name every field of the struct, so that a field without a line does not compile.
+// What checks, reads, writes and documents settings is made from the lists (settings_io.hpp).
+
+#include "slam/core/fields.hpp"
+
+namespace mh {
+
+/// The values that a setting may take: [min, max], or [min, max) where open. Of words and switches
+/// it says nothing.
+struct SettingRange {
+  double min = 0, max = 1;
+  bool open = false;
+};
+
+namespace setting {
+inline constexpr double kMany = 1e6;
+inline constexpr SettingRange kShare{0, 1}, kOpenShare{0, 1, true}, kCount{1, kMany},
+    kLength_m{0, 1000}, kSwitch{0, 1};
+}  // namespace setting
+
+}  // namespace mh

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "slam/core/error.hpp"
+#include "slam/core/setting.hpp"
+#include "slam/core/suggest.hpp"
+#include "slam/core/yaml.hpp"
+
+namespace mh {
+
+// Visitors of settings' field lists. A setting is an int, a double, a bool or an enumeration E, for
+// which setting_words(E) gives an array of (word, value).
+
+/// "[0, 1)"
+inline std::string interval(const SettingRange& range) {
+  return fmt::format("[{}, {}{}", range.min, range.max, range.open ? ")" : "]");
+}
+
+inline bool allows(const SettingRange& range, double value) {
+  return std::isfinite(value) && value >= range.min && value <= range.max &&
+         !(range.open && value == range.max);
+}
+
+/// Reads sections of a YAML mapping; what is absent keeps its value. Call finish() at the end.
+class SettingsReader {
+ public:
+  explicit SettingsReader(YamlReader& yaml) : yaml_(yaml) {}
+
+  void section(const char* name) {
+    finish();
+    section_ = yaml_.find(name);
+  }
+  /// @throws InputError at a key of the last section that is no field of it.
+  void finish() const {
+    if (section_) section_->finish();
+  }
+
+  template <class T>
+  void operator()(const char* key, T& value, const SettingRange& range, const char*) {
+    if (const auto node = section_ ? section_->find(key) : std::nullopt) read(*node, value, range);
+  }
+
+  /// One value. @throws InputError at its place.
+  template <class T>
+  static void read(const YamlReader& node, T& value, const SettingRange& range) {
+    if constexpr (std::is_same_v<T, bool>) {
+      value = node.as_bool();
+    } else if constexpr (std::is_enum_v<T>) {
+      const auto words = setting_words(T{});
+      const std::string word = node.as_string();
+      for (const auto& [name, named] : words)
+        if (name == word) {
+          value = named;
+          return;
+        }
+      const auto known = words_of(words, [](const auto& entry) { return entry.first; });
+      node.fail(fmt::format("'{}' is none of {}{}", word, fmt::join(known, ", "),
+                            did_you_mean(word, known)));
+    } else if constexpr (std::is_integral_v<T>) {
+      value = static_cast<T>(
+          node.as_int(static_cast<std::int64_t>(range.min), static_cast<std::int64_t>(range.max)));
+    } else {
+      value = node.as_double(range.min, range.max);
+      if (!allows(range, value)) node.fail(fmt::format("{} is outside {}", value, interval(range)));
+    }
+  }
+
+ private:
+  YamlReader& yaml_;
+  std::optional<YamlReader> section_;
+};
+
+/// Writes settings as YAML that SettingsReader takes back bit for bit; with notes each line ends in
+/// a comment that says what it means and which values it may take.
+class SettingsWriter {
+ public:
+  explicit SettingsWriter(bool notes = false) : notes_(notes) {}
+
+  void section(const char* name) { text_ += fmt::format("{}:\n", name); }
+
+  template <class T>
+  void operator()(const char* key, const T& value, const SettingRange& range, const char* note) {
+    const std::string line = fmt::format("  {}: {}", key, word_of(value));
+    if (!notes_) {
+      text_ += line + "\n";
+      return;
+    }
+    std::string comment = note;
+    if constexpr (!std::is_enum_v<T> && !std::is_same_v<T, bool>)
+      comment = interval(range) + (comment.empty() ? "" : "  " + comment);
+    text_ += fmt::format("{:<30} # {}\n", line, comment);
+  }
+  const std::string& text() const { return text_; }
+
+  template <class T>
+  static std::string word_of(const T& value) {
+    if constexpr (std::is_enum_v<T>) {
+      for (const auto& [name, named] : setting_words(T{}))
+        if (named == value) return std::string(name);
+      return "?";
+    } else {
+      return fmt::format("{}", value);  // doubles: the shortest that reads back equal
+    }
+  }
+
+ private:
+  bool notes_;
+  std::string text_;
+};
+
+/// Finds the first number out of its range. @throws InputError naming it.
+class SettingsCheck {
+ public:
+  /// @param what  begins the message: "slam settings"
+  explicit SettingsCheck(std::string what) : what_(std::move(what)) {}
+
+  void section(const char* name) { section_ = name; }
+
+  template <class T>
+  void operator()(const char* key, const T& value, const SettingRange& range, const char*) const {
+    if constexpr (!std::is_enum_v<T>)
+      if (!allows(range, static_cast<double>(value)))
+        throw InputError(fmt::format("{}: {}.{} = {} is outside {}", what_, section_, key, value,
+                                     interval(range)));
+  }
+
+ private:
+  std::string what_, section_;
+};
+
+}  // namespace mh
