@@ -85,10 +85,10 @@ void draw_grid(Canvas& canvas, const PlanView& view, const OccupancyGrid& grid) 
   for (int y = 0; y < grid.cells.height(); ++y)
     for (int x = 0; x < grid.cells.width(); ++x) {
       const std::int8_t value = grid.cells(x, y);
-      if (value == kUnknown || !view.bounds.contain(grid.center_m(x, y))) continue;
+      if (value == kUnknownCell || !view.bounds.contain(grid.center_m(x, y))) continue;
       const cv::Point2d center = view(grid.center_m(x, y));
       canvas.fill(center.x - cell / 2, center.y - cell / 2, cell, cell,
-                  value == kOccupied ? kMapOccupied : kMapFree);
+                  value == kOccupiedCell ? kMapOccupied : kMapFree);
     }
 }
 

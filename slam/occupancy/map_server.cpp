@@ -19,7 +19,7 @@ constexpr std::uint8_t kFreeGray = 254, kOccupiedGray = 0, kUnknownGray = 205;
 constexpr double kOccupiedThreshold = 0.65, kFreeThreshold = 0.196;
 
 std::uint8_t gray(std::int8_t cell) {
-  return cell == kUnknown ? kUnknownGray : cell == kFree ? kFreeGray : kOccupiedGray;
+  return cell == kUnknownCell ? kUnknownGray : cell == kFreeCell ? kFreeGray : kOccupiedGray;
 }
 
 /// Reads the header of a binary PGM and returns its picture, upper row first.
@@ -87,7 +87,7 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file) {
     for (int x = 0; x < picture.width(); ++x) {
       const double level = picture(x, picture.height() - 1 - y) / 255.0;
       const double p = negate ? level : 1.0 - level;
-      grid.cells(x, y) = p > occupied ? kOccupied : p < free ? kFree : kUnknown;
+      grid.cells(x, y) = p > occupied ? kOccupiedCell : p < free ? kFreeCell : kUnknownCell;
     }
   return grid;
 }

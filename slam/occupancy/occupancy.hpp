@@ -16,9 +16,9 @@
 namespace mh {
 
 // Values of an OccupancyGrid's cells, as in ROS nav_msgs/OccupancyGrid.
-inline constexpr std::int8_t kFree = 0;
-inline constexpr std::int8_t kOccupied = 100;
-inline constexpr std::int8_t kUnknown = -1;
+inline constexpr std::int8_t kFreeCell = 0;
+inline constexpr std::int8_t kOccupiedCell = 100;
+inline constexpr std::int8_t kUnknownCell = -1;
 
 /// The floor seen from above. Cell (x, y) covers [x, x+1) x [y, y+1) times resolution_m from
 /// origin_m; so row 0 is the southernmost, y grows northwards (pictures are turned over on

@@ -193,11 +193,11 @@ OccupancyGrid OccupancyMapper::project(double min_z_m, double max_z_m) const {
     high = high.cwiseMax(block.high);
   }
   grid.origin_m = r * low.head<2>().cast<double>();
-  grid.cells = Grid2d<std::int8_t>(high.x() - low.x(), high.y() - low.y(), kUnknown);
+  grid.cells = Grid2d<std::int8_t>(high.x() - low.x(), high.y() - low.y(), kUnknownCell);
   for (const Block& block : blocks)
     for (int y = block.low.y() - low.y(); y < block.high.y() - low.y(); ++y)
       for (int x = block.low.x() - low.x(); x < block.high.x() - low.x(); ++x)
-        grid.cells(x, y) = std::max(grid.cells(x, y), block.occupied ? kOccupied : kFree);
+        grid.cells(x, y) = std::max(grid.cells(x, y), block.occupied ? kOccupiedCell : kFreeCell);
   return grid;
 }
 

@@ -76,12 +76,12 @@ TEST(OccupancyMapper, ABoxRoomIsFreeInsideAndOccupiedAtItsWalls) {
           {p.x() - kRoomMin.x(), kRoomMax.x() - p.x(), p.y() - kRoomMin.y(), kRoomMax.y() - p.y()});
       // Walls fall into the voxel that they run through.
       if (inside > 0.051) {
-        ASSERT_EQ(grid.cells(x, y), kFree) << p.transpose();
+        ASSERT_EQ(grid.cells(x, y), kFreeCell) << p.transpose();
       }
       if (inside < -0.051) {
-        ASSERT_EQ(grid.cells(x, y), kUnknown) << p.transpose();
+        ASSERT_EQ(grid.cells(x, y), kUnknownCell) << p.transpose();
       }
-      walls += grid.cells(x, y) == kOccupied ? 1 : 0;
+      walls += grid.cells(x, y) == kOccupiedCell ? 1 : 0;
     }
   // 72 x 47 cells with walls all round; a corner may have gone unseen.
   EXPECT_NEAR(walls, 2 * 72 + 2 * 45, 4);
@@ -89,14 +89,14 @@ TEST(OccupancyMapper, ABoxRoomIsFreeInsideAndOccupiedAtItsWalls) {
 
 TEST(OccupancyMapper, BeyondTheRangeNothingIsSeen) {
   const OccupancyGrid grid = mapped_room(0.8).project(0.3, 1.9);
-  EXPECT_EQ(count(grid, kOccupied), 0);  // the nearest wall is 1 m away
-  EXPECT_NEAR(count(grid, kFree) * 0.05 * 0.05, M_PI * 0.8 * 0.8, 0.25);
+  EXPECT_EQ(count(grid, kOccupiedCell), 0);  // the nearest wall is 1 m away
+  EXPECT_NEAR(count(grid, kFreeCell) * 0.05 * 0.05, M_PI * 0.8 * 0.8, 0.25);
 }
 
 TEST(OccupancyMapper, HeightsOutsideTheBandDoNotCount) {
   const OccupancyMapper mapper = mapped_room();
   const OccupancyGrid floor = mapper.project(-0.04, 0.04);
-  EXPECT_GT(count(floor, kOccupied), 500);
+  EXPECT_GT(count(floor, kOccupiedCell), 500);
   EXPECT_TRUE(mapper.project(5.0, 6.0).cells.empty());
 }
 
@@ -184,8 +184,8 @@ TEST(OccupancyMapper, AReloadedTreeTakesMore) {
   near(81, 61) = 0.5F;  // every second pixel is used
   for (int i = 0; i < 20; ++i) reloaded.insert(near, kCamera, pose);
   const OccupancyGrid before = mapped_room().project(0.3, 1.9), after = reloaded.project(0.3, 1.9);
-  EXPECT_EQ(count(after, kOccupied), count(before, kOccupied) + 1);
-  EXPECT_EQ(count(after, kUnknown), count(before, kUnknown));
+  EXPECT_EQ(count(after, kOccupiedCell), count(before, kOccupiedCell) + 1);
+  EXPECT_EQ(count(after, kUnknownCell), count(before, kUnknownCell));
 }
 
 TEST(OccupancyMapper, RepeatsBitForBit) {
@@ -197,10 +197,11 @@ TEST(OccupancyMapper, RepeatsBitForBit) {
 }
 
 TEST(MapServer, RoundTripKeepsCellsAndPlace) {
-  OccupancyGrid grid{
-      .cells = Grid2d<std::int8_t>(3, 2, kUnknown), .resolution_m = 0.05, .origin_m = {-1.25, 0.1}};
-  grid.cells(0, 0) = kOccupied;
-  grid.cells(2, 1) = kFree;
+  OccupancyGrid grid{.cells = Grid2d<std::int8_t>(3, 2, kUnknownCell),
+                     .resolution_m = 0.05,
+                     .origin_m = {-1.25, 0.1}};
+  grid.cells(0, 0) = kOccupiedCell;
+  grid.cells(2, 1) = kFreeCell;
   const std::string stem = testing::TempDir() + "map.v1";  // the dot is part of the name
   save_map_server(grid, stem);
   const OccupancyGrid back = load_map_server(stem + ".yaml");
