@@ -133,7 +133,7 @@ std::string gate_suite_digest(const Suite& suite) {
 }
 
 nlohmann::ordered_json gate_settings(const Suite& suite) {
-  nlohmann::ordered_json settings = {{"slam", to_json(suite.semantics)}};
+  nlohmann::ordered_json settings = {{"slam", to_json(suite.slam)}};
   if (!suite.vocabulary.empty()) settings["vocabulary"] = hex(digest_file(suite.vocabulary));
   for (const SystemSpec& system : suite.systems)
     if (system.kind == SystemKind::kOutside)

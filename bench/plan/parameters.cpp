@@ -2,87 +2,81 @@
 #include "bench/plan/parameters.hpp"
 
 #include <algorithm>
-#include <cassert>
 
 #include "bench/plan/names.hpp"
+#include "slam/config/by_name.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/random.hpp"
+#include "slam/core/suggest.hpp"
 
 namespace mh {
 namespace {
 
-constexpr Names<Overlap, 3> kOverlaps{
-    {{"labels", Overlap::kLabels}, {"augmented", Overlap::kAugmented}, {"words", Overlap::kWords}}};
 constexpr Names<SweepMap, 2> kMaps{{{"fixed", SweepMap::kFixed}, {"rebuilt", SweepMap::kRebuilt}}};
 constexpr std::size_t kMaxPoints = 10000;
 
-struct Range {
-  double min, max;
-  bool open;  ///< max itself is outside: equations 4 and 6 compare strictly, so 1 leaves nothing
-};
-
-Range range_of(std::string_view name) {
-  if (name == "gamma") return {0.0, 1e6, false};
-  if (name == "xi") return {1.0, 1e6, false};
-  return {0.0, 1.0, true};
+/// @throws InputError at the value's place unless the name is that of a setting that can be varied.
+void check_varied(const std::string& name, const YamlReader& place, SweepMap map) {
+  if (!is_setting(name))
+    place.fail("is no setting of SLAM" + hint(name, setting_names(), "`slam --print-settings`"));
+  if (map == SweepMap::kFixed && !name.starts_with("semantics."))
+    place.fail("decides the map, too: it needs `map: rebuilt`");
 }
 
-double read_parameter(const YamlReader& node, std::string_view name) {
-  const Range range = range_of(name);
-  if (!range.open) return node.as_double(range.min, range.max);
-  const double value = node.as_double();
-  if (value < range.min || value >= range.max)
-    node.fail(fmt::format("{} is outside [{}, {})", value, range.min, range.max));
-  return value;
-}
-
-/// Every combination of the listed values, the last parameter varying fastest.
-void read_grid(YamlReader& node, const SemanticConfig& base, Sweep& sweep) {
+/// Every combination of the listed values, the last setting varying fastest.
+void read_grid(YamlReader& node, const SlamConfig& base, Sweep& sweep) {
   sweep.points = {base};
-  for (const std::string_view name : kParameters) {
-    const auto list = node.find(std::string(name));
-    if (!list) continue;
-    sweep.varied.emplace_back(name);
-    std::vector<double> values;
-    for (const YamlReader& item : items_of(*list))
-      add_once(values, read_parameter(item, name), item);
-    std::vector<SemanticConfig> points;
-    for (const SemanticConfig& point : sweep.points)
-      for (const double value : values) {
+  for (const auto& [name, list] : node.entries()) {
+    if (name == "map") continue;
+    check_varied(name, list, sweep.map);
+    sweep.varied.push_back(name);
+    std::vector<std::string> seen;
+    std::vector<SlamConfig> points;
+    for (const YamlReader& item : items_of(list)) {
+      SlamConfig value = base;
+      read_setting(value, name, item);
+      add_once(seen, setting_text(value, name), item);
+    }
+    for (const SlamConfig& point : sweep.points)
+      for (const YamlReader& item : list.items()) {
         points.push_back(point);
-        parameter(points.back(), name) = value;
+        read_setting(points.back(), name, item);
       }
     if (points.size() > kMaxPoints)
-      list->fail(
+      list.fail(
           fmt::format("makes {}, at most {} can be", counted(points.size(), "point"), kMaxPoints));
     sweep.points = std::move(points);
   }
 }
 
-void read_sobol(YamlReader node, const SemanticConfig& base, Sweep& sweep) {
+void read_sobol(YamlReader node, const SlamConfig& base, Sweep& sweep) {
   const auto count = node.integer("points", 1, kMaxPoints);
   const auto seed = static_cast<std::uint64_t>(node.integer_or("seed", 0, 0, INT64_MAX));
   YamlReader ranges = node.at("ranges");
   std::vector<std::pair<double, double>> bounds;
-  for (const std::string_view name : kParameters) {
-    const auto range = ranges.find(std::string(name));
-    if (!range) continue;
-    const std::vector<YamlReader> ends = range->items();
-    if (ends.size() != 2) range->fail("must be [low, high]");
-    const double low = read_parameter(ends[0], name), high = read_parameter(ends[1], name);
-    if (low >= high) range->fail(fmt::format("{} is not below {}", low, high));
-    sweep.varied.emplace_back(name);
-    bounds.emplace_back(low, high);
+  for (const auto& [name, range] : ranges.entries()) {
+    check_varied(name, range, sweep.map);
+    const std::vector<YamlReader> ends = range.items();
+    if (ends.size() != 2) range.fail("must be [low, high]");
+    SlamConfig low = base, high = base;
+    read_setting(low, name, ends[0]);
+    read_setting(high, name, ends[1]);
+    bounds.emplace_back(setting_value(low, name), setting_value(high, name));
+    if (!set_between(low, name, 0, 0, 0))
+      range.fail("is no number: list its values instead, without `sobol`");
+    if (bounds.back().first >= bounds.back().second)
+      range.fail(fmt::format("{} is not below {}", bounds.back().first, bounds.back().second));
+    sweep.varied.push_back(name);
+    if (sweep.varied.size() > kSobolDimensions)
+      range.fail(fmt::format("is one too many: {} can be varied", kSobolDimensions));
   }
-  ranges.finish();
   node.finish();
-  if (sweep.varied.empty()) ranges.fail("names no parameter");
+  if (sweep.varied.empty()) ranges.fail("names no setting");
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
-    const std::array<double, 4> unit = sobol_point(i, seed);
-    SemanticConfig point = base;
+    const auto unit = sobol_point(i, seed);
+    SlamConfig point = base;
     for (std::size_t k = 0; k < bounds.size(); ++k)
-      parameter(point, sweep.varied[k]) =
-          bounds[k].first + unit[k] * (bounds[k].second - bounds[k].first);
+      set_between(point, sweep.varied[k], bounds[k].first, bounds[k].second, unit[k]);
     sweep.points.push_back(point);
   }
 }
@@ -92,61 +86,48 @@ void read_sobol(YamlReader node, const SemanticConfig& base, Sweep& sweep) {
 std::string_view name(SweepMap map) {
   return name_of(map, kMaps);
 }
-std::string_view name(Overlap overlap) {
-  return name_of(overlap, kOverlaps);
+std::string_view shown_name(std::string_view setting) {
+  constexpr std::string_view kPaper = "semantics.";
+  return setting.starts_with(kPaper) ? setting.substr(kPaper.size()) : setting;
 }
 
-double parameter(const SemanticConfig& config, std::string_view name) {
-  if (name == "gamma") return config.gamma;
-  if (name == "xi") return config.xi;
-  if (name == "alpha") return config.alpha;
-  assert(name == "beta");
-  return config.beta;
+std::string shown_value(const SlamConfig& config, std::string_view setting) {
+  const std::string text = setting_text(config, setting);
+  const bool is_word = text.find_first_not_of("0123456789.e+-") != std::string::npos;
+  return is_word ? text : fmt::format("{:.4g}", setting_value(config, setting));
 }
 
-double& parameter(SemanticConfig& config, std::string_view name) {
-  if (name == "gamma") return config.gamma;
-  if (name == "xi") return config.xi;
-  if (name == "alpha") return config.alpha;
-  assert(name == "beta");
-  return config.beta;
-}
-
-SemanticConfig read_semantics(YamlReader node) {
-  SemanticConfig c;
-  for (const std::string_view name : kParameters)
-    if (const auto child = node.find(std::string(name)))
-      parameter(c, name) = read_parameter(*child, name);
-  if (const auto overlap = node.find("overlap")) c.overlap = one_of(*overlap, kOverlaps);
-  c.void_is_a_label = node.boolean("void_is_a_label", c.void_is_a_label);
-  node.finish();
-  return c;
-}
-
-Sweep read_sweep(YamlReader node, const SemanticConfig& base) {
+Sweep read_sweep(YamlReader node, const SlamConfig& base) {
   Sweep sweep;
   sweep.map = one_of(node.at("map"), kMaps);
   const auto sobol = node.find("sobol");
-  if (sobol)
+  if (sobol) {
     read_sobol(*sobol, base, sweep);
-  else
+    node.finish();
+  } else {
     read_grid(node, base, sweep);
-  node.finish();
-  if (sweep.varied.empty()) node.fail("varies nothing: gamma, xi, alpha, beta or sobol is needed");
+  }
+  if (sweep.varied.empty())
+    node.fail("varies nothing: a setting with its values, or sobol, is needed");
   return sweep;
 }
 
-std::array<double, 4> sobol_point(std::uint32_t index, std::uint64_t seed) {
+std::array<double, kSobolDimensions> sobol_point(std::uint32_t index, std::uint64_t seed) {
   constexpr int kBits = 32;
   // Primitive polynomials by degree s, inner coefficients a, and initial direction numbers m.
   struct Dimension {
     int s;
     std::uint32_t a;
-    std::array<std::uint32_t, 3> m;
+    std::array<std::uint32_t, 5> m;
   };
-  constexpr std::array<Dimension, 3> kDimensions{
-      {{1, 0, {1, 0, 0}}, {2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}}};
-  std::array<double, 4> point{};
+  constexpr std::array<Dimension, kSobolDimensions - 1> kDimensions{{{1, 0, {1}},
+                                                                     {2, 1, {1, 3}},
+                                                                     {3, 1, {1, 3, 1}},
+                                                                     {3, 2, {1, 1, 1}},
+                                                                     {4, 1, {1, 1, 3, 3}},
+                                                                     {4, 4, {1, 3, 5, 13}},
+                                                                     {5, 2, {1, 1, 5, 5, 17}}}};
+  std::array<double, kSobolDimensions> point{};
   for (std::size_t d = 0; d < point.size(); ++d) {
     std::array<std::uint32_t, kBits> v{};
     for (int k = 0; k < kBits; ++k) {

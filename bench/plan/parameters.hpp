@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "slam/config/slam.hpp"
 #include "slam/core/yaml.hpp"
-#include "slam/config/semantics.hpp"
 
 namespace mh {
 
@@ -17,32 +17,35 @@ namespace mh {
 enum class SweepMap { kFixed, kRebuilt };
 std::string_view name(SweepMap map);
 
-/// The points of a sweep over the method's parameters. None: the suite's own settings alone.
+/// The points of a sweep over settings of SLAM. None: the suite's own settings alone.
 struct Sweep {
   SweepMap map = SweepMap::kFixed;
-  std::vector<std::string> varied;     ///< of gamma, xi, alpha, beta, in this order
-  std::vector<SemanticConfig> points;  ///< whole settings, in the order of the results
+  std::vector<std::string>
+      varied;  ///< full names (slam/config/by_name.hpp), as the suite orders them
+  std::vector<SlamConfig> points;  ///< whole settings, in the order of the results
 };
 
-/// The suite's own settings: the section `slam`.
-SemanticConfig read_semantics(YamlReader node);
-
-/// The section `parameters`: `map: fixed | rebuilt`, and either a grid (any of gamma, xi, alpha,
-/// beta with a list of values; the last one varies fastest) or
-/// `sobol: {points, seed, ranges: {gamma: [low, high], ...}}`.
+/// The section `parameters`: `map: fixed | rebuilt`, and either a grid (any settings, each with a
+/// list of values: `features.count: [500, 1000]`; the last one varies fastest) or
+/// `sobol: {points, seed, ranges: {semantics.gamma: [low, high], ...}}`. Over a fixed map only the
+/// section `semantics` can vary.
 /// @param base  settings of what is not varied
 /// @throws InputError naming file, line, field and value.
-Sweep read_sweep(YamlReader node, const SemanticConfig& base);
+Sweep read_sweep(YamlReader node, const SlamConfig& base);
 
-/// The method's parameter of that name (gamma, xi, alpha, beta).
-double& parameter(SemanticConfig& config, std::string_view name);
-double parameter(const SemanticConfig& config, std::string_view name);
+/// How tables and pictures call a setting: the paper's symbols by themselves ("gamma"), others by
+/// their full names.
+std::string_view shown_name(std::string_view setting);
 
-inline constexpr std::array<std::string_view, 4> kParameters = {"gamma", "xi", "alpha", "beta"};
+/// Its value there: numbers to four digits.
+std::string shown_value(const SlamConfig& config, std::string_view setting);
 
-/// Point `index` of the Sobol sequence in four dimensions (Sobol, 1967; direction numbers of Joe
-/// and Kuo, 2008), shifted digitally by the seed: each dyadic interval of each dimension holds its
-/// share of every 2^k points. @returns coordinates in [0, 1)
-std::array<double, 4> sobol_point(std::uint32_t index, std::uint64_t seed);
+/// Most settings that a Sobol sequence can vary.
+inline constexpr std::size_t kSobolDimensions = 8;
+
+/// Point `index` of the Sobol sequence (Sobol, 1967; direction numbers of Joe and Kuo, 2008),
+/// shifted digitally by the seed: each dyadic interval of each dimension holds its share of every
+/// 2^k points. @returns coordinates in [0, 1)
+std::array<double, kSobolDimensions> sobol_point(std::uint32_t index, std::uint64_t seed);
 
 }  // namespace mh

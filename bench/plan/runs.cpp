@@ -7,29 +7,29 @@
 
 namespace mh {
 
-SemanticConfig settings_of(const SystemSpec& system, const SemanticConfig& settings) {
-  switch (system.kind) {
-    case SystemKind::kSemantic:
-      return settings;
-    case SystemKind::kPlain:
-      return settings.neutralized();
-    case SystemKind::kOutside:
-      return SemanticConfig::neutral();
-  }
+SlamConfig settings_of(const SystemSpec& system, const SlamConfig& settings) {
+  SlamConfig seen = system.kind == SystemKind::kOutside ? SlamConfig{} : settings;
+  if (system.kind != SystemKind::kSemantic) seen.semantics = seen.semantics.neutralized();
+  return seen;
+}
+
+SlamConfig settings_at(const RunSpec& spec, std::size_t point) {
+  SlamConfig settings = spec.slam;
+  settings.semantics = spec.points[point];
   return settings;
 }
 
-std::vector<SemanticConfig> parameter_points(const Suite& suite) {
-  return suite.sweep.points.empty() ? std::vector{suite.semantics} : suite.sweep.points;
+std::vector<SlamConfig> parameter_points(const Suite& suite) {
+  return suite.sweep.points.empty() ? std::vector{suite.slam} : suite.sweep.points;
 }
 
 namespace {
 
 /// The points of the suite that differ for a system, in order.
-std::vector<SemanticConfig> points_of(const SystemSpec& system, const Suite& suite) {
-  std::vector<SemanticConfig> points;
-  for (const SemanticConfig& point : parameter_points(suite)) {
-    const SemanticConfig seen = settings_of(system, point);
+std::vector<SlamConfig> points_of(const SystemSpec& system, const Suite& suite) {
+  std::vector<SlamConfig> points;
+  for (const SlamConfig& point : parameter_points(suite)) {
+    const SlamConfig seen = settings_of(system, point);
     if (std::find(points.begin(), points.end(), seen) == points.end()) points.push_back(seen);
   }
   return points;
@@ -37,16 +37,19 @@ std::vector<SemanticConfig> points_of(const SystemSpec& system, const Suite& sui
 
 /// What a system maps with, and the points that it answers with on that map.
 struct Study {
-  SemanticConfig mapping;
+  SlamConfig mapping;
   std::vector<SemanticConfig> points;
 };
 
 std::vector<Study> studies_of(const SystemSpec& system, const Suite& suite) {
-  std::vector<SemanticConfig> points = points_of(system, suite);
-  if (suite.sweep.map == SweepMap::kFixed)
-    return {{settings_of(system, suite.semantics), std::move(points)}};
+  const std::vector<SlamConfig> points = points_of(system, suite);
   std::vector<Study> studies;
-  for (const SemanticConfig& point : points) studies.push_back({point, {point}});
+  if (suite.sweep.map == SweepMap::kFixed) {
+    studies.push_back({settings_of(system, suite.slam), {}});
+    for (const SlamConfig& point : points) studies.front().points.push_back(point.semantics);
+  } else {
+    for (const SlamConfig& point : points) studies.push_back({point, {point.semantics}});
+  }
   return studies;
 }
 
@@ -76,7 +79,7 @@ std::vector<RunSpec> expand(const Suite& suite) {
                               .labels = mode,
                               .trial = trial,
                               .seed = suite.seed + static_cast<std::uint64_t>(trial),
-                              .mapping = studies[s].mapping,
+                              .slam = studies[s].mapping,
                               .points = studies[s].points,
                               .protocol = suite.protocol,
                               .max_frames = suite.max_frames});

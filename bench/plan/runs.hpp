@@ -21,7 +21,7 @@ struct RunSpec {
   LabelMode labels = LabelMode::kNone;
   int trial = 0;
   std::uint64_t seed = 0;  ///< of the trial
-  SemanticConfig mapping;  ///< settings while mapping; the plain system's are neutral
+  SlamConfig slam;         ///< settings while mapping; the plain system's are neutral
   /// Settings of the queries: one pass over all queries for each, on the same map. At least one.
   std::vector<SemanticConfig> points;
   ProtocolConfig protocol;
@@ -30,10 +30,13 @@ struct RunSpec {
 
 /// Settings as a system sees them: the plain one with the method at neutral, an outside program
 /// none.
-SemanticConfig settings_of(const SystemSpec& system, const SemanticConfig& settings);
+SlamConfig settings_of(const SystemSpec& system, const SlamConfig& settings);
+
+/// All settings of a run's pass over the queries. @param point  index into spec.points
+SlamConfig settings_at(const RunSpec& spec, std::size_t point);
 
 /// The parameter points of a suite: those of its sweep, else its own settings alone.
-std::vector<SemanticConfig> parameter_points(const Suite& suite);
+std::vector<SlamConfig> parameter_points(const Suite& suite);
 
 /// Every run, ordered by environment, level, trial, parameters, system, labels. The plain system
 /// never looks at labels (a law with its own test), so it runs once and stands beside each kind of

@@ -5,6 +5,7 @@
 
 #include "slam/core/error.hpp"
 #include "slam/core/json_number.hpp"
+#include "slam/core/settings_io.hpp"
 
 namespace mh {
 namespace {
@@ -18,6 +19,49 @@ T named(const Json& word, std::initializer_list<T> values) {
     if (name(value) == word.get<std::string>()) return value;
   throw InputError(fmt::format("'{}' is no known word", word.get<std::string>()));
 }
+
+/// Writes settings into an object, or into one of its own per section.
+class WriteSettings {
+ public:
+  explicit WriteSettings(Json& into) : all_(into), into_(&into) {}
+  void section(const char* name) { into_ = &all_[name]; }
+  template <class T>
+  void operator()(const char* key, const T& value, const SettingRange&, const char*) {
+    if constexpr (std::is_enum_v<T>)
+      (*into_)[key] = SettingsWriter::word_of(value);
+    else
+      (*into_)[key] = value;
+  }
+
+ private:
+  Json& all_;
+  Json* into_;
+};
+
+/// The other way.
+class ReadSettings {
+ public:
+  explicit ReadSettings(const Json& from) : all_(from), from_(&from) {}
+  void section(const char* name) { from_ = &all_.at(name); }
+  template <class T>
+  void operator()(const char* key, T& value, const SettingRange&, const char*) {
+    if constexpr (std::is_enum_v<T>) {
+      const std::string word = from_->at(key);
+      for (const auto& [name, named] : setting_words(T{}))
+        if (name == word) {
+          value = named;
+          return;
+        }
+      throw InputError(fmt::format("'{}' is no known word", word));
+    } else {
+      value = from_->at(key).template get<T>();
+    }
+  }
+
+ private:
+  const Json& all_;
+  const Json* from_;
+};
 
 template <class T>
 Json optional_json(const std::optional<T>& value) {
@@ -123,7 +167,7 @@ RunSpec read(const Json& json) {
                                 LabelMode::kBoxes, LabelMode::kDetector});
   spec.trial = json.at("trial");
   spec.seed = json.at("seed");
-  spec.mapping = semantics_from_json(json.at("mapping"));
+  spec.slam = slam_from_json(json.at("slam"));
   for (const Json& point : json.at("points")) spec.points.push_back(semantics_from_json(point));
   spec.protocol = protocol_from_json(json.at("protocol"));
   if (!json.at("max_frames").is_null())
@@ -140,10 +184,17 @@ Json to_json(const SceneFrame& frame) {
   return json;
 }
 
-Json to_json(const SemanticConfig& s) {
-  return {{"gamma", s.gamma},           {"xi", s.xi},
-          {"alpha", s.alpha},           {"beta", s.beta},
-          {"overlap", name(s.overlap)}, {"void_is_a_label", s.void_is_a_label}};
+Json to_json(const SemanticConfig& semantics) {
+  Json json;
+  WriteSettings write(json);
+  fields(semantics, write);
+  return json;
+}
+
+Json to_json(const SlamConfig& settings) {
+  Json json;
+  for_each_setting(settings, WriteSettings(json));
+  return json;
 }
 
 Json to_json(const ProtocolConfig& p) {
@@ -170,20 +221,23 @@ Json to_json(const RunSpec& spec) {
           {"labels", name(spec.labels)},
           {"trial", spec.trial},
           {"seed", spec.seed},
-          {"mapping", to_json(spec.mapping)},
+          {"slam", to_json(spec.slam)},
           {"points", points},
           {"protocol", to_json(spec.protocol)},
           {"max_frames", optional_json(spec.max_frames)}};
 }
 
-SemanticConfig semantics_from_json(const Json& s) {
-  return {
-      .gamma = s.at("gamma"),
-      .xi = s.at("xi"),
-      .alpha = s.at("alpha"),
-      .beta = s.at("beta"),
-      .overlap = named(s.at("overlap"), {Overlap::kLabels, Overlap::kAugmented, Overlap::kWords}),
-      .void_is_a_label = s.at("void_is_a_label")};
+SemanticConfig semantics_from_json(const Json& json) {
+  SemanticConfig semantics;
+  ReadSettings read(json);
+  fields(semantics, read);
+  return semantics;
+}
+
+SlamConfig slam_from_json(const Json& json) {
+  SlamConfig settings;
+  for_each_setting(settings, ReadSettings(json));
+  return settings;
 }
 
 SceneFrame scene_frame_from_json(const Json& json) {

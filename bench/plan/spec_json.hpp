@@ -8,6 +8,8 @@
 namespace mh {
 
 nlohmann::ordered_json to_json(const SemanticConfig& settings);
+/// All settings of SLAM, section by section.
+nlohmann::ordered_json to_json(const SlamConfig& settings);
 nlohmann::ordered_json to_json(const ProtocolConfig& protocol);
 /// Only what is told: nothing told is {}.
 nlohmann::ordered_json to_json(const SceneFrame& frame);
@@ -16,6 +18,7 @@ nlohmann::ordered_json to_json(const RunSpec& spec);
 
 /// The other way. @throws InputError if it was not made by to_json.
 SemanticConfig semantics_from_json(const nlohmann::ordered_json& json);
+SlamConfig slam_from_json(const nlohmann::ordered_json& json);
 SceneFrame scene_frame_from_json(const nlohmann::ordered_json& json);
 RunSpec run_spec_from_json(const nlohmann::ordered_json& json);
 

@@ -12,6 +12,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/text_file.hpp"
+#include "slam/pipeline/settings.hpp"
 
 namespace mh {
 namespace {
@@ -120,8 +121,11 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   suite.seed = static_cast<std::uint64_t>(yaml.integer_or("seed", 0, 0, INT64_MAX / 2));
   if (const auto published = yaml.find("published"))
     suite.published = one_of(*published, kPublished);
-  if (const auto slam = yaml.find("slam")) suite.semantics = read_semantics(*slam);
-  if (const auto sweep = yaml.find("parameters")) suite.sweep = read_sweep(*sweep, suite.semantics);
+  if (auto slam = yaml.find("slam")) {
+    suite.slam = read_slam_config(*slam);
+    slam->finish();
+  }
+  if (const auto sweep = yaml.find("parameters")) suite.sweep = read_sweep(*sweep, suite.slam);
   if (const auto protocol = yaml.find("protocol")) suite.protocol = read_protocol(*protocol);
   if (const auto margin = yaml.find("non_inferiority_margin"))
     suite.non_inferiority_margin = margin->as_double(0.0, 1.0);

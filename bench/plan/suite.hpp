@@ -39,7 +39,7 @@ struct Suite {
   std::vector<LabelMode> labels;
   int trials = 1;
   std::uint64_t seed = 0;  ///< trial t uses seed + t
-  SemanticConfig semantics;
+  SlamConfig slam;
   Sweep sweep;
   ProtocolConfig protocol;
   /// The semantic system counts as not inferior where the interval of its success minus the plain

@@ -4,10 +4,10 @@
 #include <memory>
 #include <string>
 
+#include "slam/config/semantics.hpp"
 #include "slam/core/random.hpp"
 #include "slam/core/rgbd_frame.hpp"
 #include "slam/core/trajectory.hpp"
-#include "slam/config/semantics.hpp"
 #include "slam/pipeline/report.hpp"
 
 namespace mh {

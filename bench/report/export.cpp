@@ -90,23 +90,32 @@ std::string export_json(const Store& store) {
   return all.dump(1) + "\n";
 }
 
+/// "$\\gamma$ & features.count & "
+std::string latex_headings(const Sweep& sweep) {
+  constexpr std::array<std::string_view, 4> kGreek{"gamma", "xi", "alpha", "beta"};
+  std::string text;
+  for (const std::string& name : sweep.varied) {
+    const std::string_view shown = shown_name(name);
+    const bool is_symbol = std::ranges::count(kGreek, shown) > 0;
+    text += (is_symbol ? fmt::format("$\\{}$", shown) : latex_cell(shown)) + " & ";
+  }
+  return text;
+}
+
 std::string export_latex(const Store& store) {
   const Suite suite = store.planned_suite();
   const BenchResults results = load_results(store, suite);
-  const std::vector<SemanticConfig> points = parameter_points(suite);
-  const bool sweep = points.size() > 1;
+  const std::vector<SlamConfig> points = parameter_points(suite);
   std::string text = fmt::format(
       "\\begin{{tabular}}{{llll{0}lrrrlrrr}}\n\\toprule\n"
       "environment & level & labels & system & {1}trials & complete & ATE (m) & RPE (m) & queries "
       "& "
       "success & correct & distance (m) \\\\\n\\midrule\n",
-      sweep ? "rrrr" : "", sweep ? "$\\gamma$ & $\\xi$ & $\\alpha$ & $\\beta$ & " : "");
+      std::string(suite.sweep.varied.size(), 'r'), latex_headings(suite.sweep));
   for (const Row& row : make_rows(suite, results.runs, results.failed)) {
     const SystemSpec& system = suite.systems[row.system];
-    const SemanticConfig seen = settings_of(system, points[row.parameters]);
-    const auto same = [&](const SemanticConfig& point) {
-      return settings_of(system, point) == seen;
-    };
+    const SlamConfig seen = settings_of(system, points[row.parameters]);
+    const auto same = [&](const SlamConfig& point) { return settings_of(system, point) == seen; };
     // What a system does not look at makes no rows of their own.
     if (std::any_of(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(row.parameters),
                     same))
@@ -114,9 +123,9 @@ std::string export_latex(const Store& store) {
     std::string head = fmt::format(
         "{} & {} & {} & {} & ", latex_cell(suite.environments[row.environment].name),
         latex_cell(level_name(suite.levels[row.level])), name(row.labels), latex_cell(system.name));
-    for (const double value : {seen.gamma, seen.xi, seen.alpha, seen.beta})
-      if (sweep)
-        head += system.kind == SystemKind::kOutside ? "-- & " : fmt::format("{:.4g} & ", value);
+    for (const std::string& name : suite.sweep.varied)
+      head += (system.kind == SystemKind::kOutside ? "--" : latex_cell(shown_value(seen, name))) +
+              " & ";
     const auto trials = static_cast<std::size_t>(suite.trials);
     head += row.trials.size() == trials ? fmt::format("{}", trials)
                                         : fmt::format("{} of {}", row.trials.size(), trials);

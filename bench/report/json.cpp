@@ -73,7 +73,15 @@ Json system_json(const SystemSpec& system) {
 Json sweep_json(const Sweep& sweep) {
   if (sweep.points.empty()) return nullptr;
   Json points = Json::array();
-  for (const SemanticConfig& point : sweep.points) points.push_back(to_json(point));
+  for (const SlamConfig& point : sweep.points) {
+    Json values;
+    const Json settings = to_json(point);
+    for (const std::string& name : sweep.varied) {
+      const std::size_t dot = name.find('.');
+      values[name] = settings.at(name.substr(0, dot)).at(name.substr(dot + 1));
+    }
+    points.push_back(std::move(values));
+  }
   return {{"map", name(sweep.map)}, {"varied", sweep.varied}, {"points", points}};
 }
 
@@ -95,7 +103,7 @@ Json suite_json(const Suite& suite) {
       {"trials", suite.trials},
       {"frames", suite.max_frames ? Json(*suite.max_frames) : Json()},
       {"seed", suite.seed},
-      {"slam", to_json(suite.semantics)},
+      {"slam", to_json(suite.slam)},
       {"parameters", sweep_json(suite.sweep)},
       {"non_inferiority_margin", number(suite.non_inferiority_margin)},
       {"protocol", to_json(suite.protocol)}};
@@ -257,7 +265,7 @@ Json run_json(const RunResult& run) {
           {"place", place_json(run.place)},
           {"digests", digests_json(run)},
           {"mapping",
-           {{"settings", of_ours(run.spec.system, to_json(run.spec.mapping))},
+           {{"settings", of_ours(run.spec.system, to_json(run.spec.slam))},
             {"track_calls", m.calls.size()},
             {"failures", m.failures},
             {"restarts", m.restarts},

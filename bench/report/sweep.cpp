@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <set>
+#include <iterator>
+#include <map>
 
 #include <fmt/format.h>
 
 #include "bench/drawing/canvas.hpp"
+#include "slam/config/by_name.hpp"
 
 namespace mh {
 namespace {
@@ -66,10 +68,12 @@ struct Values {
   double share(double value) const { return most > least ? (value - least) / (most - least) : 0; }
 };
 
-std::vector<double> distinct(const SweepResult& result, std::string_view name) {
-  std::set<double> values;
-  for (const SemanticConfig& point : result.points) values.insert(parameter(point, name));
-  return {values.begin(), values.end()};
+/// The values that a setting takes in a sweep, and how they are written.
+std::map<double, std::string> distinct(const SweepResult& result, std::string_view name) {
+  std::map<double, std::string> values;
+  for (const SlamConfig& point : result.points)
+    values.emplace(setting_value(point, name), shown_value(point, name));
+  return values;
 }
 
 /// Where a panel stands, with room for the numbers on its axes.
@@ -91,35 +95,41 @@ void draw_names(Canvas& canvas, const Box& box, const std::string& title, std::s
     canvas.text(std::string(up), {box.left - 8, box.top - 12}, 9, kGray, Canvas::Align::kRight);
 }
 
+struct Panel {
+  cv::Point2d corner;
+  const SweepResult& result;
+  std::string across, up;  ///< the settings along the axes; up is empty where one alone is varied
+  std::string title;
+  const PanelMeasure& measure;
+  const Values& values;
+  std::optional<std::size_t> framed;  ///< the point that is pointed out
+};
+
 /// A cell per point.
-void draw_grid(Canvas& canvas, cv::Point2d corner, const SweepResult& result,
-               const std::vector<std::string>& varied, const std::string& title,
-               const PanelMeasure& measure, const Values& values,
-               std::optional<std::size_t> framed) {
+void draw_grid(Canvas& canvas, const Panel& panel) {
+  const auto& [corner, result, across, up, title, measure, values, framed] = panel;
   const Box box(corner);
-  const std::string& across = varied.back();
-  const std::string up = varied.size() > 1 ? varied.front() : "";
-  const std::vector<double> xs = distinct(result, across);
-  const std::vector<double> ys = up.empty() ? std::vector<double>{0} : distinct(result, up);
+  const auto xs = distinct(result, across);
+  const auto ys = up.empty() ? std::map<double, std::string>{{0, ""}} : distinct(result, up);
   const double width = (box.right - box.left) / static_cast<double>(xs.size());
   const double height = (box.bottom - box.top) / static_cast<double>(ys.size());
-  const auto place = [](const std::vector<double>& list, double value) {
-    return static_cast<double>(std::ranges::find(list, value) - list.begin());
+  const auto place = [](const std::map<double, std::string>& list, double value) {
+    return static_cast<double>(std::distance(list.begin(), list.find(value)));
   };
-  const auto corner_of = [&](const SemanticConfig& point) {
-    const double row = up.empty() ? 0 : place(ys, parameter(point, up));
-    return cv::Point2d(box.left + width * place(xs, parameter(point, across)),
+  const auto corner_of = [&](const SlamConfig& point) {
+    const double row = up.empty() ? 0 : place(ys, setting_value(point, up));
+    return cv::Point2d(box.left + width * place(xs, setting_value(point, across)),
                        box.bottom - height * (row + 1));
   };
-  draw_names(canvas, box, title, across, up);
-  for (std::size_t i = 0; i < xs.size(); ++i)
-    canvas.text(fmt::format("{:g}", xs[i]),
-                {box.left + width * (static_cast<double>(i) + 0.5), box.bottom + 16}, 8, kGray,
+  draw_names(canvas, box, title, shown_name(across), shown_name(up));
+  double column = 0, row = 0;
+  for (const auto& [value, text] : xs)
+    canvas.text(text, {box.left + width * (column++ + 0.5), box.bottom + 16}, 8, kGray,
                 Canvas::Align::kCenter);
-  for (std::size_t i = 0; i < ys.size() && !up.empty(); ++i)
-    canvas.text(fmt::format("{:g}", ys[i]),
-                {box.left - 8, box.bottom - height * (static_cast<double>(i) + 0.5) + 4}, 8, kGray,
-                Canvas::Align::kRight);
+  for (const auto& [value, text] : ys)
+    if (!up.empty())
+      canvas.text(text, {box.left - 8, box.bottom - height * (row++ + 0.5) + 4}, 8, kGray,
+                  Canvas::Align::kRight);
   for (std::size_t i = 0; i < result.points.size(); ++i) {
     if (!values.of[i]) continue;
     const double share = values.share(*values.of[i]);
@@ -138,34 +148,32 @@ void draw_grid(Canvas& canvas, cv::Point2d corner, const SweepResult& result,
     canvas.line(from, to, kFrame, 2);
 }
 
-/// A dot per point over two of its parameters.
-void draw_dots(Canvas& canvas, cv::Point2d corner, const SweepResult& result,
-               const std::string& across, const std::string& up, const std::string& title,
-               const PanelMeasure& measure, const Values& values,
-               std::optional<std::size_t> framed) {
+/// A dot per point over two of its settings.
+void draw_dots(Canvas& canvas, const Panel& panel) {
+  const auto& [corner, result, across, up, title, measure, values, framed] = panel;
   const Box box(corner);
-  const std::vector<double> xs = distinct(result, across), ys = distinct(result, up);
-  const auto share = [](const std::vector<double>& list, double value) {
-    const double range = list.back() - list.front();
-    return range > 0 ? (value - list.front()) / range : 0.5;
+  const auto xs = distinct(result, across), ys = distinct(result, up);
+  const auto share = [](const std::map<double, std::string>& list, double value) {
+    const double low = list.begin()->first, range = list.rbegin()->first - low;
+    return range > 0 ? (value - low) / range : 0.5;
   };
   constexpr double kInset = 10;  // no dot is cut by the border
-  const auto at = [&](const SemanticConfig& point) {
+  const auto at = [&](const SlamConfig& point) {
     return cv::Point2d(
         box.left + kInset +
-            share(xs, parameter(point, across)) * (box.right - box.left - 2 * kInset),
+            share(xs, setting_value(point, across)) * (box.right - box.left - 2 * kInset),
         box.bottom - kInset -
-            share(ys, parameter(point, up)) * (box.bottom - box.top - 2 * kInset));
+            share(ys, setting_value(point, up)) * (box.bottom - box.top - 2 * kInset));
   };
-  draw_names(canvas, box, title, across, up);
+  draw_names(canvas, box, title, shown_name(across), shown_name(up));
   canvas.fill(box.left, box.top, box.right - box.left, box.bottom - box.top, {246, 247, 249});
-  const auto number = [&](double value, cv::Point2d where, Canvas::Align align) {
-    canvas.text(fmt::format("{:.3g}", value), where, 8, kGray, align);
+  const auto number = [&](const auto& entry, cv::Point2d where, Canvas::Align align) {
+    canvas.text(entry.second, where, 8, kGray, align);
   };
-  number(xs.front(), {box.left, box.bottom + 16}, Canvas::Align::kLeft);
-  number(xs.back(), {box.right, box.bottom + 16}, Canvas::Align::kRight);
-  number(ys.front(), {box.left - 8, box.bottom}, Canvas::Align::kRight);
-  number(ys.back(), {box.left - 8, box.top + 10}, Canvas::Align::kRight);
+  number(*xs.begin(), {box.left, box.bottom + 16}, Canvas::Align::kLeft);
+  number(*xs.rbegin(), {box.right, box.bottom + 16}, Canvas::Align::kRight);
+  number(*ys.begin(), {box.left - 8, box.bottom}, Canvas::Align::kRight);
+  number(*ys.rbegin(), {box.left - 8, box.top + 10}, Canvas::Align::kRight);
   for (std::size_t i = 0; i < result.points.size(); ++i)
     if (values.of[i])
       canvas.disc(at(result.points[i]), 6, measure.shades.at(values.share(*values.of[i])));
@@ -178,10 +186,11 @@ bool is_grid(const SweepResult& result, const std::vector<std::string>& varied) 
   return varied.size() <= 2 && cells == result.points.size();
 }
 
-std::string place_of(const SemanticConfig& point, const std::vector<std::string>& varied) {
+std::string place_of(const SlamConfig& point, const std::vector<std::string>& varied) {
   std::string text;
   for (const std::string& name : varied)
-    text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", name, parameter(point, name));
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", shown_name(name),
+                        shown_value(point, name));
   return text;
 }
 
@@ -245,10 +254,11 @@ cv::Mat draw_sweep(const Suite& suite, std::span<const Row> rows, const SweepRes
       std::optional<std::size_t> framed;
       if ((!grid || i == 0) && best.equals < result.points.size()) framed = best.point;
       if (grid)
-        draw_grid(canvas, corner, result, varied, title, measure, values, framed);
+        draw_grid(canvas, {corner, result, varied.back(), varied.size() > 1 ? varied.front() : "",
+                           title, measure, values, framed});
       else
-        draw_dots(canvas, corner, result, pairs[i].first, pairs[i].second, title, measure, values,
-                  framed);
+        draw_dots(canvas, {corner, result, pairs[i].first, pairs[i].second, title, measure, values,
+                           framed});
     }
     canvas.text(caption(result, set, varied, best), {kMargin + 8, top + lines * kPanelHeight + 12},
                 9, kInk);

@@ -414,6 +414,15 @@ std::string scenes_text(const Suite& suite, const std::vector<Row>& rows) {
   return text;
 }
 
+/// "gamma 1, features.count 500"
+std::string shown_point(const Sweep& sweep, const SlamConfig& point) {
+  std::string text;
+  for (const std::string& name : sweep.varied)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", shown_name(name),
+                        shown_value(point, name));
+  return text;
+}
+
 std::string best_points(const Suite& suite, const std::vector<Row>& rows) {
   std::string text =
       "\nmost correct answers, and the difference to the suite's own settings, or to the first "
@@ -424,7 +433,7 @@ std::string best_points(const Suite& suite, const std::vector<Row>& rows) {
       const auto best = best_point(suite, rows, result, set);
       if (!best) continue;
       const SystemSpec& system = suite.systems[result.system];
-      const SemanticConfig at = settings_of(system, result.points[best->point]);
+      const SlamConfig at = settings_of(system, result.points[best->point]);
       const Comparison& c = best->to_reference;
       if (best->equals == result.points.size()) {
         text += fmt::format("  {}, level {}, {}, {}: {:.2f}% at each of {} points\n", system.name,
@@ -434,11 +443,9 @@ std::string best_points(const Suite& suite, const std::vector<Row>& rows) {
         continue;
       }
       text += fmt::format(
-          "  {}, level {}, {}, {}: gamma {:.4g}, xi {:.4g}, alpha {:.4g}, beta {:.4g}: "
-          "{:.2f}%, {}{}\n",
-          system.name, level_name(suite.levels[result.level]), with_labels(result.labels),
-          name(set), at.gamma, at.xi, at.alpha, at.beta,
-          100 * summary(result.answers[best->point], set).correct,
+          "  {}, level {}, {}, {}: {}: {:.2f}%, {}{}\n", system.name,
+          level_name(suite.levels[result.level]), with_labels(result.labels), name(set),
+          shown_point(suite.sweep, at), 100 * summary(result.answers[best->point], set).correct,
           c.pairs == 0 ? std::string("-") : fmt::format("{:+.4f} {}", c.difference, interval(c)),
           best->equals > 1 ? fmt::format("; {} points are equal", best->equals) : "");
     }
@@ -447,7 +454,10 @@ std::string best_points(const Suite& suite, const std::vector<Row>& rows) {
 
 /// One line per parameter point and system, and the point that answers most.
 std::string sweep_text(const Suite& suite, const std::vector<Row>& rows) {
-  const std::vector<SemanticConfig> points = parameter_points(suite);
+  const std::vector<SlamConfig> points = parameter_points(suite);
+  std::vector<int> widths;
+  for (const std::string& varied : suite.sweep.varied)
+    widths.push_back(std::max(9, static_cast<int>(shown_name(varied).size()) + 2));
   std::string text;
   const CategoryRow* last = nullptr;
   const std::vector<CategoryRow> categories = make_category_rows(suite, rows);
@@ -458,8 +468,9 @@ std::string sweep_text(const Suite& suite, const std::vector<Row>& rows) {
                           level_name(suite.levels[row.level]), with_labels(row.labels),
                           name(suite.sweep.map), counted(suite.trials, "trial"),
                           shortened(suite, rows));
-      text += fmt::format("  {:<{}}{:>9}{:>9}{:>9}{:>9}", "system", name_width(suite), "gamma",
-                          "xi", "alpha", "beta");
+      text += fmt::format("  {:<{}}", "system", name_width(suite));
+      for (std::size_t v = 0; v < widths.size(); ++v)
+        text += fmt::format("{:>{}}", shown_name(suite.sweep.varied[v]), widths[v]);
       for (const QuerySet set : kQuerySets)
         if (asked(categories, set))
           text += fmt::format("{:>13}{:>11}{:>10}{:>9}{:>11}",
@@ -468,11 +479,13 @@ std::string sweep_text(const Suite& suite, const std::vector<Row>& rows) {
       text += "\n";
     }
     const SystemSpec& system = suite.systems[row.system];
-    const SemanticConfig seen = settings_of(system, points[row.parameters]);
+    const SlamConfig seen = settings_of(system, points[row.parameters]);
     text += fmt::format("  {:<{}}", system.name, name_width(suite));
-    for (const double value : {seen.gamma, seen.xi, seen.alpha, seen.beta})
-      text += fmt::format("{:>9}",
-                          system.kind == SystemKind::kOutside ? "-" : fmt::format("{:.4g}", value));
+    for (std::size_t v = 0; v < widths.size(); ++v)
+      text += fmt::format(
+          "{:>{}}",
+          system.kind == SystemKind::kOutside ? "-" : shown_value(seen, suite.sweep.varied[v]),
+          widths[v]);
     for (const QuerySet set : kQuerySets) {
       const QuerySummary& s = summary(row, set);
       if (asked(categories, set))

@@ -122,10 +122,11 @@ bool belongs(const RunSpec& spec, const Suite& suite, const Row& row) {
          (system.kind == SystemKind::kPlain || spec.labels == row.labels);
 }
 
-const PointResult* find_point(const RunResult& run, const SemanticConfig& settings) {
-  for (std::size_t i = 0; i < run.points.size(); ++i)
-    if (run.spec.points[i] == settings) return &run.points[i];
-  return nullptr;
+/// Which pass over a run's queries had these settings.
+std::optional<std::size_t> find_point(const RunSpec& spec, const SlamConfig& settings) {
+  for (std::size_t i = 0; i < spec.points.size(); ++i)
+    if (settings_at(spec, i) == settings) return i;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -212,7 +213,7 @@ QuerySummary reduce(
 
 std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs,
                            std::span<const FailedRun> failed) {
-  const std::vector<SemanticConfig> points = parameter_points(suite);
+  const std::vector<SlamConfig> points = parameter_points(suite);
   std::vector<Row> rows;
   for (std::size_t e = 0; e < suite.environments.size(); ++e)
     for (std::size_t level = 0; level < suite.levels.size(); ++level)
@@ -225,14 +226,14 @@ std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs,
             row.system = s;
             row.labels = labels;
             row.parameters = p;
-            const SemanticConfig seen = settings_of(suite.systems[s], points[p]);
+            const SlamConfig seen = settings_of(suite.systems[s], points[p]);
             for (const RunResult& run : runs)
               if (belongs(run.spec, suite, row))
-                if (const PointResult* point = find_point(run, seen))
-                  row.trials.push_back({&run, point});
+                if (const auto point = find_point(run.spec, seen);
+                    point && *point < run.points.size())
+                  row.trials.push_back({&run, &run.points[*point]});
             for (const FailedRun& run : failed)
-              if (belongs(run.spec, suite, row) && std::ranges::count(run.spec.points, seen) > 0)
-                ++row.failed;
+              if (belongs(run.spec, suite, row) && find_point(run.spec, seen)) ++row.failed;
             if (!row.trials.empty())
               rows.push_back(fill_in(std::move(row)));
             else if (row.failed > 0)

@@ -20,7 +20,7 @@ std::vector<const Row*> rows_at(std::span<const Row> rows, const SweepResult& re
 }  // namespace
 
 std::vector<SweepResult> sweep_results(const Suite& suite, std::span<const Row> rows) {
-  const std::vector<SemanticConfig> points = parameter_points(suite);
+  const std::vector<SlamConfig> points = parameter_points(suite);
   std::vector<SweepResult> results;
   for (const CategoryRow& row : make_category_rows(suite, rows)) {
     if (row.category != kAllCategories || row.scenes == 0) continue;
@@ -34,7 +34,7 @@ std::vector<SweepResult> sweep_results(const Suite& suite, std::span<const Row> 
   }
   std::erase_if(results, [&](const SweepResult& result) {
     const SystemSpec& system = suite.systems[result.system];
-    return std::ranges::all_of(result.points, [&](const SemanticConfig& point) {
+    return std::ranges::all_of(result.points, [&](const SlamConfig& point) {
       return settings_of(system, point) == settings_of(system, result.points.front());
     });
   });
@@ -51,7 +51,7 @@ std::optional<BestPoint> best_point(const Suite& suite, std::span<const Row> row
   const auto correct = [&](const CategoryRow& row) {
     return row.scenes == scenes ? summary(row, set).correct : -1.0;
   };
-  const auto own = std::ranges::find(result.points, suite.semantics);
+  const auto own = std::ranges::find(result.points, suite.slam);
   BestPoint found;
   if (own != result.points.end())
     found.reference = static_cast<std::size_t>(own - result.points.begin());

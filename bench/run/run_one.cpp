@@ -164,9 +164,7 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
     return make_conversation_system(spec.system.outside, world.robot.camera, spec.seed,
                                     folder / "outside.log");
   }
-  SlamConfig config;
-  config.semantics = spec.mapping;
-  return make_our_system(world.robot.camera, config, world.vocabulary);
+  return make_our_system(world.robot.camera, spec.slam, world.vocabulary);
 }
 
 RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools) {

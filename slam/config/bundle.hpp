@@ -11,6 +11,7 @@ struct BundleConfig {
   double relative_decrease = 1e-3;  ///< of the cost: a step that gains less ends its phase
   double chi2_mono = 5.991;         ///< 95 % of chi-square, 2 degrees of freedom
   double chi2_stereo = 7.815;       ///< 95 % of chi-square, 3 degrees of freedom
+  friend bool operator==(const BundleConfig&, const BundleConfig&) = default;
 };
 
 template <Either<BundleConfig> C, class Visit>

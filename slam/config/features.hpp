@@ -12,6 +12,7 @@ struct FeatureConfig {
   int fast_threshold = 20;     ///< gray levels
   int fast_threshold_low = 7;  ///< used in cells where the first finds nothing
   double max_depth_m = 8.0;    ///< depth beyond is dropped
+  friend bool operator==(const FeatureConfig&, const FeatureConfig&) = default;
 };
 
 template <Either<FeatureConfig> C, class Visit>

@@ -12,6 +12,7 @@ struct KeyframeConfig {
   int min_close_new = 70;          ///< close points untracked above this: a keyframe is needed
   double close_depth_m = 3.5;      ///< depth is trusted to make a landmark at once up to here
   double redundant_share = 0.9;    ///< of a keyframe's landmarks seen by 3 others: culled
+  friend bool operator==(const KeyframeConfig&, const KeyframeConfig&) = default;
 };
 
 template <Either<KeyframeConfig> C, class Visit>

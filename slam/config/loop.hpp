@@ -24,6 +24,7 @@ struct LoopConfig {
   double max_drift_rad = 0.35;
   double negligible_m = 0.01;  ///< below, landmarks are joined but poses stay
   double negligible_rad = 0.003;
+  friend bool operator==(const LoopConfig&, const LoopConfig&) = default;
 };
 
 template <Either<LoopConfig> C, class Visit>

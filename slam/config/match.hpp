@@ -10,6 +10,7 @@ struct MatchConfig {
   int max_distance_loose = 100;   ///< bits; where geometry already restricts the search
   double ratio = 0.75;            ///< best over second best, appearance alone
   double ratio_projection = 0.8;  ///< the same where geometry already restricts the search
+  friend bool operator==(const MatchConfig&, const MatchConfig&) = default;
 };
 
 template <Either<MatchConfig> C, class Visit>

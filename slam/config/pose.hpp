@@ -11,6 +11,7 @@ struct PoseConfig {
   double chi2_mono = 5.991;    ///< 95 % of chi-square, 2 degrees of freedom
   double chi2_stereo = 7.815;  ///< 95 % of chi-square, 3 degrees of freedom
   int min_inliers = 10;
+  friend bool operator==(const PoseConfig&, const PoseConfig&) = default;
 };
 
 template <Either<PoseConfig> C, class Visit>
@@ -27,6 +28,7 @@ struct RansacConfig {
   int max_iterations = 300;
   double confidence = 0.99;
   int min_inliers = 10;
+  friend bool operator==(const RansacConfig&, const RansacConfig&) = default;
 };
 
 template <Either<RansacConfig> C, class Visit>

@@ -17,6 +17,7 @@ struct RelocalizeConfig {
   /// which is what pairs of real recordings show (docs/slam.md).
   double disparity_sigma_px = 0.3;
   RansacConfig ransac;
+  friend bool operator==(const RelocalizeConfig&, const RelocalizeConfig&) = default;
 };
 
 template <Either<RelocalizeConfig> C, class Visit>

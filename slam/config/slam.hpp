@@ -24,6 +24,7 @@ struct SlamConfig {
   TrackConfig track;
   RelocalizeConfig relocalize;
   LoopConfig loop;
+  friend bool operator==(const SlamConfig&, const SlamConfig&) = default;
 };
 
 /// Calls visit.section(name) before each part of the settings and visit(name, value, range, note)

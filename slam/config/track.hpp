@@ -20,6 +20,7 @@ struct TrackConfig {
   /// From the first row to the last of a rolling shutter, whose middle row is of the stamp; 0: all
   /// rows are.
   double readout_s = 0;
+  friend bool operator==(const TrackConfig&, const TrackConfig&) = default;
 };
 
 template <Either<TrackConfig> C, class Visit>

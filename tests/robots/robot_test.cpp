@@ -12,7 +12,6 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
-#include <yaml-cpp/yaml.h>
 
 #include "robots/model/robot_keys.hpp"
 #include "slam/core/error.hpp"

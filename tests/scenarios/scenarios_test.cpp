@@ -36,7 +36,7 @@ RunFigures run(const RunSpec& spec, const World& world, const Fault& fault) {
   tools.occupancy = false;  // no measure of the gate looks at it
   tools.system = [&](const RunSpec&, const World&) {
     SlamConfig config;
-    config.semantics = spec.mapping;
+    config = spec.slam;
     fault.settings(config);
     return make_our_system(world.robot.camera, config, world.vocabulary);
   };

@@ -456,15 +456,16 @@ TEST(BenchProcess, LimitsEndARun) {
 
 TEST(BenchProcess, ASweepOverAFixedMapAnswersAsSeparateQueriesWould) {
   const fs::path sweep = write_suite(
-      "sweep", "[semantic]", "parameters: {map: fixed, alpha: [0.8, 0.5], beta: [0.75, 0.9]}\n");
+      "sweep", "[semantic]",
+      "parameters: {map: fixed, semantics.alpha: [0.8, 0.5], semantics.beta: [0.75, 0.9]}\n");
   EXPECT_EQ(run(bench(sweep, "sweep")), 0) << errors();
   // The one maps for itself, the other takes the sweep's map from the cache.
   for (const auto& [alpha, beta, point, cache] :
        {std::tuple("0.8", "0.75", 0, "--no-cache"), std::tuple("0.5", "0.9", 3, "")}) {
     const std::string name = std::string("alone") + alpha;
-    const fs::path alone = write_suite(
-        name, "[semantic]",
-        std::string("parameters: {map: fixed, alpha: [") + alpha + "], beta: [" + beta + "]}\n");
+    const fs::path alone = write_suite(name, "[semantic]",
+                                       std::string("parameters: {map: fixed, semantics.alpha: [") +
+                                           alpha + "], semantics.beta: [" + beta + "]}\n");
     EXPECT_EQ(run(bench_with_kept_maps(alone, name, cache)), 0) << errors();
     EXPECT_EQ(errors().find("baking the light of") != std::string::npos, *cache != '\0')
         << "whether it says what takes long: " << errors();

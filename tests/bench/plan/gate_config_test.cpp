@@ -87,7 +87,7 @@ TEST_F(GateDigest, SeesEachFileAndSettingThatMakesTheRuns) {
 
 TEST_F(GateDigest, LeavesOutWhatAChangeMayChange) {
   const std::string before = digest();
-  EXPECT_EQ(digest("slam: {xi: 2}"), before);
+  EXPECT_EQ(digest("slam: {semantics: {xi: 2}}"), before);
   EXPECT_EQ(digest("check: {tolerances: {completeness: 0.1}}"), before);
   write("words", "trained anew");
   EXPECT_EQ(digest(), before);
@@ -103,9 +103,9 @@ TEST_F(GateDigest, WhatAChangeMayChangeIsTold) {
   };
   const Baseline before = settings();
   EXPECT_TRUE(changed_settings(before, settings("trials: 3")).empty());
-  const auto xi = changed_settings(before, settings("slam: {xi: 3}"));
+  const auto xi = changed_settings(before, settings("slam: {semantics: {xi: 3}}"));
   ASSERT_EQ(xi.size(), 1u);
-  EXPECT_EQ(xi[0], "slam/xi: 1.5 -> 3.0");
+  EXPECT_EQ(xi[0], "slam/semantics/xi: 1.5 -> 3.0");
   write("words", "trained anew");
   const auto words = changed_settings(before, settings());
   ASSERT_EQ(words.size(), 1u);

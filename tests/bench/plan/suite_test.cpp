@@ -58,7 +58,7 @@ class SuiteFile : public testing::Test {
 
 TEST_F(SuiteFile, ReadsWhatStandsThere) {
   const Suite suite = load(
-      "slam: {gamma: 0.5, xi: 2, overlap: labels}\n"
+      "slam: {semantics: {gamma: 0.5, xi: 2, overlap: labels}, features: {count: 500}}\n"
       "protocol: {test_interval: 10, reset: map, truth: interpolated}\ntrials: 3\nseed: 7\n");
   EXPECT_EQ(suite.name, "suite");
   ASSERT_EQ(suite.environments.size(), 1u);
@@ -66,10 +66,10 @@ TEST_F(SuiteFile, ReadsWhatStandsThere) {
   EXPECT_EQ(suite.environments[0].scene, folder_ / "house.yaml");
   EXPECT_EQ(suite.environments[0].robot, folder_ / "robot.yaml");
   EXPECT_FALSE(suite.environments[0].query_tour);
-  EXPECT_EQ(suite.semantics.gamma, 0.5);
-  EXPECT_EQ(suite.semantics.xi, 2.0);
-  EXPECT_EQ(suite.semantics.alpha, SemanticConfig{}.alpha);
-  EXPECT_EQ(suite.semantics.overlap, Overlap::kLabels);
+  EXPECT_EQ(suite.slam.semantics.gamma, 0.5);
+  EXPECT_EQ(suite.slam.semantics.xi, 2.0);
+  EXPECT_EQ(suite.slam.semantics.alpha, SemanticConfig{}.alpha);
+  EXPECT_EQ(suite.slam.semantics.overlap, Overlap::kLabels);
   EXPECT_EQ(suite.protocol.test_interval, 10);
   EXPECT_EQ(suite.protocol.reset, DropReset::kMap);
   EXPECT_EQ(suite.protocol.truth, QueryTruth::kInterpolated);
@@ -193,31 +193,45 @@ INSTANTIATE_TEST_SUITE_P(
     Each, BadSuite,
     testing::Values(
         BadLine{"color: red\n", "unknown key 'color'"},
-        BadLine{"slam: {alpha: 1.2}\n", "slam.alpha: 1.2 is outside [0, 1)"},
-        BadLine{"slam: {alpha: 1}\n", "slam.alpha: 1 is outside [0, 1)"},
-        BadLine{"slam: {beta: -0.1}\n", "slam.beta: -0.1 is outside [0, 1)"},
-        BadLine{"slam: {xi: 0.5}\n", "slam.xi: 0.5 is outside"},
-        BadLine{"slam: {gamma: -1}\n", "slam.gamma: -1 is outside"},
-        BadLine{"slam: {gamma: .nan}\n", "slam.gamma: '.nan' is not a finite number"},
-        BadLine{"slam: {gamma: much}\n", "slam.gamma: 'much' is not a number"},
-        BadLine{"slam: {overlap: both}\n", "'both' is none of labels, augmented, words"},
-        BadLine{"slam: {delta: 1}\n", "unknown key 'slam.delta'"},
+        BadLine{"slam: {semantics: {alpha: 1.2}}\n", "slam.semantics.alpha: 1.2 is outside [0, 1)"},
+        BadLine{"slam: {semantics: {alpha: 1}}\n", "slam.semantics.alpha: 1 is outside [0, 1)"},
+        BadLine{"slam: {semantics: {beta: -0.1}}\n", "slam.semantics.beta: -0.1 is outside [0, 1)"},
+        BadLine{"slam: {semantics: {xi: 0.5}}\n", "slam.semantics.xi: 0.5 is outside"},
+        BadLine{"slam: {semantics: {gamma: -1}}\n", "slam.semantics.gamma: -1 is outside"},
+        BadLine{"slam: {semantics: {gamma: .nan}}\n",
+                "slam.semantics.gamma: '.nan' is not a finite number"},
+        BadLine{"slam: {semantics: {gamma: much}}\n",
+                "slam.semantics.gamma: 'much' is not a number"},
+        BadLine{"slam: {semantics: {overlap: both}}\n",
+                "'both' is none of labels, augmented, words"},
+        BadLine{"slam: {semantics: {delta: 1}}\n", "unknown key 'slam.semantics.delta'"},
         BadLine{"slam: 3\n", "must be a mapping"},
         BadLine{"parameters: {map: fixed}\n", "varies nothing"},
-        BadLine{"parameters: {alpha: [0.5]}\n", "key 'map' is missing"},
-        BadLine{"parameters: {map: new, alpha: [0.5]}\n", "'new' is none of fixed, rebuilt"},
-        BadLine{"parameters: {map: fixed, alpha: [0.5, 1.2]}\n",
+        BadLine{"parameters: {semantics.alpha: [0.5]}\n", "key 'map' is missing"},
+        BadLine{"parameters: {map: new, semantics.alpha: [0.5]}\n",
+                "'new' is none of fixed, rebuilt"},
+        BadLine{"parameters: {map: fixed, semantics.alpha: [0.5, 1.2]}\n",
                 "parameters.alpha[1]: 1.2 is outside [0, 1)"},
-        BadLine{"parameters: {map: fixed, xi: [0.5]}\n", "parameters.xi[0]: 0.5 is outside"},
-        BadLine{"parameters: {map: fixed, gamma: [-1]}\n", "parameters.gamma[0]: -1 is outside"},
-        BadLine{"parameters: {map: fixed, gamma: [1, 1]}\n", "'1' stands twice"},
-        BadLine{"parameters: {map: fixed, gamma: []}\n", "is empty"},
-        BadLine{"parameters: {map: fixed, delta: [1]}\n", "unknown key 'parameters.delta'"},
-        BadLine{"parameters: {map: fixed, sobol: {points: 4, ranges: {xi: [2, 1]}}}\n",
+        BadLine{"parameters: {map: fixed, semantics.xi: [0.5]}\n",
+                "parameters.semantics.xi[0]: 0.5 is outside"},
+        BadLine{"parameters: {map: fixed, semantics.gamma: [-1]}\n",
+                "parameters.semantics.gamma[0]: -1 is outside"},
+        BadLine{"parameters: {map: fixed, semantics.gamma: [1, 1]}\n", "'1' stands twice"},
+        BadLine{"parameters: {map: fixed, semantics.gamma: []}\n", "is empty"},
+        BadLine{"parameters: {map: fixed, delta: [1]}\n",
+                "parameters.delta: is no setting of SLAM"},
+        BadLine{"parameters: {map: fixed, semantics.gama: [1]}\n", "semantics.gamma"},
+        BadLine{"parameters: {map: fixed, features.count: [500]}\n", "needs `map: rebuilt`"},
+        BadLine{"parameters: {map: rebuilt, features.count: [5]}\n", "5 is outside [10, 20000]"},
+        BadLine{"parameters: {map: rebuilt, sobol: {points: 2, ranges: {loop.enabled: [false, "
+                "true]}}}\n",
+                "is no number"},
+        BadLine{"parameters: {map: fixed, sobol: {points: 4, ranges: {semantics.xi: [2, 1]}}}\n",
                 "2 is not below 1"},
-        BadLine{"parameters: {map: fixed, sobol: {points: 4, ranges: {alpha: [0, 1.2]}}}\n",
-                "1.2 is outside [0, 1)"},
-        BadLine{"parameters: {map: fixed, sobol: {points: 4, ranges: {}}}\n", "names no parameter"},
+        BadLine{
+            "parameters: {map: fixed, sobol: {points: 4, ranges: {semantics.alpha: [0, 1.2]}}}\n",
+            "1.2 is outside [0, 1)"},
+        BadLine{"parameters: {map: fixed, sobol: {points: 4, ranges: {}}}\n", "names no setting"},
         BadLine{"non_inferiority_margin: 2\n", "2 is outside [0, 1]"},
         BadLine{"protocol: {test_interval: 1}\n", "protocol.test_interval: 1 is outside"},
         BadLine{"protocol: {reset: all}\n", "'all' is none of counter, map"},
@@ -305,27 +319,59 @@ TEST_F(SuiteFile, RefusesEnvironmentsThatAreNone) {
 }
 
 TEST_F(SuiteFile, AGridHasEveryCombinationAndOneRunForAFixedMap) {
-  const Suite suite = load("parameters: {map: fixed, xi: [1, 2], alpha: [0.5, 0.6, 0.7]}\n");
+  const Suite suite =
+      load("parameters: {map: fixed, semantics.xi: [1, 2], semantics.alpha: [0.5, 0.6, 0.7]}\n");
   ASSERT_EQ(suite.sweep.points.size(), 6u);
-  EXPECT_EQ(suite.sweep.points[4].xi, 2.0);
-  EXPECT_EQ(suite.sweep.points[4].alpha, 0.6);
-  EXPECT_EQ(suite.sweep.points[4].beta, suite.semantics.beta);
+  EXPECT_EQ(suite.sweep.points[4].semantics.xi, 2.0);
+  EXPECT_EQ(suite.sweep.points[4].semantics.alpha, 0.6);
+  EXPECT_EQ(suite.sweep.points[4].semantics.beta, suite.slam.semantics.beta);
   const std::vector<RunSpec> runs = expand(suite);
   ASSERT_EQ(runs.size(), 3u);
   EXPECT_EQ(runs[0].points.size(), 6u);
   EXPECT_EQ(runs[2].points.size(), 3u) << "the plain system knows no xi";
-  EXPECT_EQ(runs[0].mapping, suite.semantics);
+  EXPECT_EQ(runs[0].slam, suite.slam);
 }
 
 TEST_F(SuiteFile, ARebuiltMapMakesARunForEachPoint) {
-  const Suite suite = load("parameters: {map: rebuilt, xi: [1, 2], alpha: [0.5, 0.6]}\n");
+  const Suite suite =
+      load("parameters: {map: rebuilt, semantics.xi: [1, 2], semantics.alpha: [0.5, 0.6]}\n");
   const std::vector<RunSpec> runs = expand(suite);
   ASSERT_EQ(runs.size(), 4u * 2u + 2u);
   for (const RunSpec& run : runs) {
     ASSERT_EQ(run.points.size(), 1u);
-    EXPECT_EQ(run.points[0], run.mapping);
+    EXPECT_EQ(run.points[0], run.slam.semantics);
   }
   EXPECT_EQ(runs[2].name, "semantic-exact-pepper-p01-0");
+}
+
+TEST_F(SuiteFile, ASweepTakesAnySetting) {
+  const Suite suite = load(
+      "parameters: {map: rebuilt, features.count: [500, 1000], loop.enabled: [true, false]}\n"
+      "slam: {track: {min_inliers: 25}}\n");
+  EXPECT_EQ(suite.sweep.varied, (std::vector<std::string>{"features.count", "loop.enabled"}));
+  ASSERT_EQ(suite.sweep.points.size(), 4u);
+  const std::vector<RunSpec> runs = expand(suite);
+  ASSERT_EQ(runs.size(), 3u * 4u) << "exact, boxes and the plain system, which looks at them too";
+  EXPECT_EQ(runs[2].slam.features.count, 500);
+  EXPECT_FALSE(runs[2].slam.loop.enabled);
+  for (const RunSpec& run : runs) {
+    EXPECT_EQ(run.slam.track.min_inliers, 25);
+    EXPECT_EQ(settings_at(run, 0), run.slam);
+    EXPECT_EQ(run_spec_from_json(to_json(run)).slam, run.slam);
+  }
+}
+
+TEST_F(SuiteFile, ASobolSequenceTakesWholeNumbersToo) {
+  const Suite suite = load(
+      "parameters: {map: rebuilt, sobol: {points: 8, ranges: {features.count: [500, 507], "
+      "track.coast_s: [0.5, 1]}}}\n");
+  std::set<int> counts;
+  for (const SlamConfig& point : suite.sweep.points) {
+    counts.insert(point.features.count);
+    EXPECT_GE(point.track.coast_s, 0.5);
+    EXPECT_LE(point.track.coast_s, 1);
+  }
+  EXPECT_GE(counts.size(), 6u);
 }
 
 TEST_F(SuiteFile, NamesAnOutsideProgram) {
@@ -334,7 +380,7 @@ TEST_F(SuiteFile, NamesAnOutsideProgram) {
          "robot: robot.yaml\nvocabulary: words\nlevels: [pepper.yaml]\nlabels: [exact]\n"
          "systems: [plain, {name: vo, command: 'run {dataset} {trajectory}', protocol: "
          "trajectory}]\n"
-         "parameters: {map: rebuilt, xi: [1, 2]}\n";
+         "parameters: {map: rebuilt, semantics.xi: [1, 2]}\n";
   const Suite suite = load_suite(folder_ / "suite.yaml");
   EXPECT_EQ(suite.systems[1].outside.mode, OutsideMode::kTrajectory);
   const std::vector<RunSpec> runs = expand(suite);

@@ -172,8 +172,8 @@ TEST(RunOne, IsAFunctionOfItsSpecAndWorld) {
 TEST(RunOne, PutsTheQueriesUnderEachPoint) {
   Place place;
   for (const double alpha : {0.5, 0.6, 0.7}) {
-    place.suite.sweep.points.push_back(place.suite.semantics);
-    place.suite.sweep.points.back().alpha = alpha;
+    place.suite.sweep.points.push_back(place.suite.slam);
+    place.suite.sweep.points.back().semantics.alpha = alpha;
   }
   const auto runs = place.run();
   ASSERT_EQ(runs[0].points.size(), 3u);
@@ -322,12 +322,12 @@ TEST(Results, WhatIsUndeterminedIsNull) {
 TEST(Sweep, TheBestPointIsComparedWithTheSuitesOwnSettings) {
   Place place;
   place.suite.labels = {LabelMode::kExact};
-  place.suite.sweep.varied = {"gamma", "alpha"};
+  place.suite.sweep.varied = {"semantics.gamma", "semantics.alpha"};
   for (const double gamma : {0.5, 1.0})
     for (const double alpha : {0.7, 0.8}) {
-      place.suite.sweep.points.push_back(place.suite.semantics);
-      place.suite.sweep.points.back().gamma = gamma;
-      place.suite.sweep.points.back().alpha = alpha;
+      place.suite.sweep.points.push_back(place.suite.slam);
+      place.suite.sweep.points.back().semantics.gamma = gamma;
+      place.suite.sweep.points.back().semantics.alpha = alpha;
     }
   std::vector<RunResult> runs = place.run();
   // Of the semantic system's five held-out answers under each point 3, 4, 5, 4 are correct.
@@ -543,10 +543,10 @@ TEST(Sweep, APointThatFailedInSomeScenesIsNeverBest) {
   place.suite.environments.push_back(place.suite.environments[0]);
   place.suite.environments[1].name = "hall";
   place.suite.sweep.map = SweepMap::kRebuilt;
-  place.suite.sweep.varied = {"alpha"};
+  place.suite.sweep.varied = {"semantics.alpha"};
   for (const double alpha : {0.7, 0.8}) {
-    place.suite.sweep.points.push_back(place.suite.semantics);
-    place.suite.sweep.points.back().alpha = alpha;
+    place.suite.sweep.points.push_back(place.suite.slam);
+    place.suite.sweep.points.back().semantics.alpha = alpha;
   }
   std::vector<RunResult> all = place.run();
   for (RunResult& run : all)  // the second point answers half as often
