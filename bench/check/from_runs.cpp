@@ -106,14 +106,9 @@ std::vector<RunFigures> figures(std::span<const RunResult> runs) {
 }
 
 std::string gate_suite_digest(const Suite& suite) {
-  const ProtocolConfig& p = suite.protocol;
   std::string text = fmt::format(
-      "trials={};seed={};frames={};interval={};rewind={};restarts={};reset={};effort={};"
-      "attempts={};blanks={};correct={},{};truth={};",
-      suite.trials, suite.seed, suite.max_frames ? std::to_string(*suite.max_frames) : "all",
-      p.test_interval, p.rewind_frames, p.restarts_per_frame, name(p.reset), p.max_effort,
-      p.query_attempts, p.max_blank_frames, p.correct_distance_m, p.correct_angle_deg,
-      name(p.truth));
+      "trials={};seed={};frames={};protocol={};", suite.trials, suite.seed,
+      suite.max_frames ? std::to_string(*suite.max_frames) : "all", to_json(suite.protocol).dump());
   for (const SystemSpec& system : suite.systems) text += fmt::format("system={};", system.name);
   for (const LabelMode labels : suite.labels) text += fmt::format("labels={};", name(labels));
   for (const auto& level : suite.levels) text += content(level_name(level), level);

@@ -142,17 +142,11 @@ Environment environment_from_json(const Json& json) {
           .pedestrian = path_from_json(json.at("pedestrian"))};
 }
 
-ProtocolConfig protocol_from_json(const Json& p) {
-  return {.test_interval = p.at("test_interval"),
-          .rewind_frames = p.at("rewind_frames"),
-          .restarts_per_frame = p.at("restarts_per_frame"),
-          .reset = named(p.at("reset"), {DropReset::kCounter, DropReset::kMap}),
-          .max_effort = p.at("max_effort"),
-          .query_attempts = p.at("query_attempts"),
-          .max_blank_frames = p.at("max_blank_frames"),
-          .correct_distance_m = p.at("correct_distance_m"),
-          .correct_angle_deg = p.at("correct_angle_deg"),
-          .truth = named(p.at("truth"), {QueryTruth::kLocal, QueryTruth::kInterpolated})};
+ProtocolConfig protocol_from_json(const Json& json) {
+  ProtocolConfig protocol;
+  ReadSettings read(json);
+  fields(protocol, read);
+  return protocol;
 }
 
 RunSpec read(const Json& json) {
@@ -197,17 +191,11 @@ Json to_json(const SlamConfig& settings) {
   return json;
 }
 
-Json to_json(const ProtocolConfig& p) {
-  return {{"test_interval", p.test_interval},
-          {"rewind_frames", p.rewind_frames},
-          {"restarts_per_frame", p.restarts_per_frame},
-          {"reset", name(p.reset)},
-          {"max_effort", p.max_effort},
-          {"query_attempts", p.query_attempts},
-          {"max_blank_frames", p.max_blank_frames},
-          {"correct_distance_m", p.correct_distance_m},
-          {"correct_angle_deg", p.correct_angle_deg},
-          {"truth", name(p.truth)}};
+Json to_json(const ProtocolConfig& protocol) {
+  Json json;
+  WriteSettings write(json);
+  fields(protocol, write);
+  return json;
 }
 
 Json to_json(const RunSpec& spec) {

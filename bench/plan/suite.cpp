@@ -11,6 +11,7 @@
 #include "scenes/scannet/files.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
+#include "slam/core/settings_io.hpp"
 #include "slam/core/text_file.hpp"
 #include "slam/pipeline/settings.hpp"
 
@@ -24,29 +25,7 @@ constexpr Names<LabelMode, 5> kLabels{{{"exact", LabelMode::kExact},
                                        {"boxes", LabelMode::kBoxes},
                                        {"detector", LabelMode::kDetector},
                                        {"none", LabelMode::kNone}}};
-constexpr Names<DropReset, 2> kResets{{{"counter", DropReset::kCounter}, {"map", DropReset::kMap}}};
 constexpr Names<Published, 1> kPublished{{{"table2", Published::kTable2}}};
-constexpr Names<QueryTruth, 2> kTruths{
-    {{"local", QueryTruth::kLocal}, {"interpolated", QueryTruth::kInterpolated}}};
-
-ProtocolConfig read_protocol(YamlReader node) {
-  ProtocolConfig c;
-  const auto count = [&](const char* key, int fallback, int min, int max) {
-    return static_cast<int>(node.integer_or(key, fallback, min, max));
-  };
-  c.test_interval = count("test_interval", c.test_interval, 2, 100000);
-  c.rewind_frames = count("rewind_frames", c.rewind_frames, 1, 100000);
-  c.restarts_per_frame = count("restarts_per_frame", c.restarts_per_frame, 0, 1000);
-  if (const auto reset = node.find("reset")) c.reset = one_of(*reset, kResets);
-  c.max_effort = node.number_or("max_effort", c.max_effort, 1.0, 1000.0);
-  c.query_attempts = count("query_attempts", c.query_attempts, 1, 1000);
-  c.max_blank_frames = count("max_blank_frames", c.max_blank_frames, 1, 100000);
-  c.correct_distance_m = node.number_or("correct_distance_m", c.correct_distance_m, 0.0, 1000.0);
-  c.correct_angle_deg = node.number_or("correct_angle_deg", c.correct_angle_deg, 0.0, 180.0);
-  if (const auto truth = node.find("truth")) c.truth = one_of(*truth, kTruths);
-  node.finish();
-  return c;
-}
 
 Environment& only_environment(Suite& suite, const char* option) {
   if (suite.environments.size() != 1)
@@ -74,12 +53,6 @@ std::string with_labels(LabelMode labels) {
       break;
   }
   return "no labels";
-}
-std::string_view name(DropReset reset) {
-  return name_of(reset, kResets);
-}
-std::string_view name(QueryTruth truth) {
-  return name_of(truth, kTruths);
 }
 std::string level_name(const fs::path& level) {
   return level.stem().string();
@@ -126,7 +99,10 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
     slam->finish();
   }
   if (const auto sweep = yaml.find("parameters")) suite.sweep = read_sweep(*sweep, suite.slam);
-  if (const auto protocol = yaml.find("protocol")) suite.protocol = read_protocol(*protocol);
+  SettingsReader protocol(yaml);
+  protocol.section("protocol");
+  fields(suite.protocol, protocol);
+  protocol.finish();
   if (const auto margin = yaml.find("non_inferiority_margin"))
     suite.non_inferiority_margin = margin->as_double(0.0, 1.0);
   if (const auto check = yaml.find("check")) {

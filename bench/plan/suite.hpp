@@ -22,8 +22,6 @@ std::string_view name(LabelMode labels);
 /// "exact labels", "labels from boxes", "no labels"
 std::string with_labels(LabelMode labels);
 std::string_view name(Overlap overlap);
-std::string_view name(DropReset reset);
-std::string_view name(QueryTruth truth);
 
 /// A table of the paper that a suite is made after.
 enum class Published { kTable2 };

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "slam/core/setting.hpp"
+
 namespace mh {
 
 /// What "resets" means after a frame was dropped (section 3.1 of the paper leaves it open).
@@ -8,6 +14,10 @@ enum class DropReset {
   kCounter,  ///< the count of failed restarts starts again, the map stays
   kMap,      ///< the system forgets its map too
 };
+
+constexpr std::array<std::pair<std::string_view, DropReset>, 2> setting_words(DropReset) {
+  return {{{"counter", DropReset::kCounter}, {"map", DropReset::kMap}}};
+}
 
 /// What a query's answer is compared with.
 enum class QueryTruth {
@@ -18,21 +28,45 @@ enum class QueryTruth {
   kInterpolated,
 };
 
+constexpr std::array<std::pair<std::string_view, QueryTruth>, 2> setting_words(QueryTruth) {
+  return {{{"local", QueryTruth::kLocal}, {"interpolated", QueryTruth::kInterpolated}}};
+}
+
 /// The paper's sections 3.1 and 3.2, each number settable.
 struct ProtocolConfig {
-  int test_interval = 30;      ///< every so many frames one is held out as a test frame, >= 2
-  int rewind_frames = 50;      ///< how far the feed goes back after a failure, >= 1
-  int restarts_per_frame = 5;  ///< failed restarts after which the offending frame is dropped, >= 0
+  int test_interval = 30;
+  int rewind_frames = 50;
+  int restarts_per_frame = 5;
   DropReset reset = DropReset::kCounter;
-  /// Mapping gives up after this many track calls per frame of the sequence: a system that never
-  /// finds its way back would otherwise cost restarts_per_frame + 1 rewinds for each frame dropped.
+  /// A system that never finds its way back would otherwise cost restarts_per_frame + 1 rewinds for
+  /// each frame dropped.
   double max_effort = 6.0;
-
-  int query_attempts = 5;     ///< times that a test frame is shown, >= 1
-  int max_blank_frames = 30;  ///< blank frames shown at most until the system is lost, >= 1
+  int query_attempts = 5;
+  int max_blank_frames = 30;
   double correct_distance_m = 0.25;
   double correct_angle_deg = 10.0;
   QueryTruth truth = QueryTruth::kLocal;
+  friend bool operator==(const ProtocolConfig&, const ProtocolConfig&) = default;
 };
+
+template <Either<ProtocolConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [test_interval, rewind_frames, restarts_per_frame, reset, max_effort, query_attempts,
+         max_blank_frames, correct_distance_m, correct_angle_deg, truth] = c;
+  v("test_interval", test_interval, {2, 100000},
+    "every so many frames one is held out as a test frame");
+  v("rewind_frames", rewind_frames, {1, 100000}, "how far the feed goes back after a failure");
+  v("restarts_per_frame", restarts_per_frame, {0, 1000},
+    "failed restarts after which the offending frame is dropped");
+  v("reset", reset, {}, "after a drop the count of restarts starts again (counter), or all (map)");
+  v("max_effort", max_effort, {1, 1000}, "mapping gives up after so many track calls per frame");
+  v("query_attempts", query_attempts, {1, 1000}, "times that a test frame is shown");
+  v("max_blank_frames", max_blank_frames, {1, 100000},
+    "blank frames shown at most until the system is lost");
+  v("correct_distance_m", correct_distance_m, setting::kLength_m,
+    "a correct answer is no farther off,");
+  v("correct_angle_deg", correct_angle_deg, {0, 180}, "nor turned by more");
+  v("truth", truth, {}, "what an answer is compared with: local or interpolated");
+}
 
 }  // namespace mh
