@@ -76,7 +76,7 @@ MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const O
     const auto from = scan.begin() + static_cast<std::ptrdiff_t>(first);
     const SimulatedSequence moment(renderer, robot.camera, Trajectory(from, from + 2 * kAround + 1),
                                    sensors, LabelMode::kNone);
-    place.frames.push_back(measure_image(gray_of(moment.at(kAround, RandomStream(k)).frame.color)));
+    place.frames.push_back(measure_image(gray_of(moment.frame(kAround, RandomStream(k)).color)));
   }
   return place;
 }

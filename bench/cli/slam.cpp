@@ -62,11 +62,11 @@ Settings settings_for(const Options& options, const fs::path& folder) {
 
 struct Source {
   Settings settings;
-  std::unique_ptr<FrameSequence> frames;
+  std::unique_ptr<Sequence> frames;
 };
 
 /// Settings for a source that brings its own camera and pictures' scale.
-Settings settings_beside(const Options& options, const FrameSequence& frames,
+Settings settings_beside(const Options& options, const Sequence& frames,
                          std::vector<std::string> notes) {
   Settings settings;
   if (!options.settings.empty()) {
@@ -168,8 +168,7 @@ void check(const Options& options) {
 }
 
 /// @throws InputError if the sequence ends no later than what the map's run was fed.
-void need_something_left(const Options& options, const SlamState& state,
-                         const FrameSequence& frames) {
+void need_something_left(const Options& options, const SlamState& state, const Sequence& frames) {
   if (!state.last_stamp_ns)
     throw InputError(fmt::format("{}: holds no run that could go on", options.map));
   Stamp last_ns = -1;
@@ -195,8 +194,11 @@ void run(Options options) {
   const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
   Source source = open_source(options);
   // Before the work: a slip costs no minutes.
-  const std::optional<Trajectory> truth =
-      options.truth.empty() ? source.frames->truth() : std::optional(read_tum(options.truth));
+  std::optional<Trajectory> truth;
+  if (!options.truth.empty())
+    truth = read_tum(options.truth);
+  else if (const Trajectory* known = source.frames->truth())
+    truth = *known;
   const OutputFolder folder(options.out, "slam", {kSlamFiles.begin(), kSlamFiles.end()});
   for (const char* name : kSlamFiles) {
     const fs::path file = fs::path(options.out) / name;
@@ -235,6 +237,7 @@ void run(Options options) {
                                counted(state.map.landmark_count(), "landmark"),
                                running_ms / std::max<double>(1, frame_ms.size())));
   };
+  options.run.noise = RandomStream(options.seed);
   const SlamRun result =
       run_slam(state, *source.frames, options.run, RandomStream(options.seed), observers, watch);
   if (!options.save_map.empty()) save_slam(options.save_map, state);

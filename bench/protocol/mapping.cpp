@@ -41,10 +41,6 @@ void note_tracked(Feed& feed, std::size_t index) {
   }
 }
 
-void add(MatchCounts& sum, const MatchCounts& counts) {
-  for (std::size_t m = 0; m < sum.size(); ++m) sum[m] += counts[m];
-}
-
 }  // namespace
 
 bool is_test_frame(std::size_t index, const ProtocolConfig& config) {
@@ -55,9 +51,9 @@ RandomStream mapping_noise(RandomStream stream, int restart) {
   return stream.fork(kNoise).fork(static_cast<std::uint64_t>(restart));
 }
 
-MappingOutcome map_sequence(System& system, std::size_t count, const FrameSource& frames,
-                            const ProtocolConfig& config, RandomStream stream,
-                            const MappingObserver& observe) {
+MappingOutcome map_sequence(System& system, const Sequence& sequence, const ProtocolConfig& config,
+                            RandomStream stream, const MappingObserver& observe) {
+  const std::size_t count = sequence.size();
   MappingOutcome outcome;
   for (std::size_t i = 0; i < count; ++i) outcome.offered += is_test_frame(i, config) ? 0 : 1;
   std::vector<bool> dropped(count, false);
@@ -72,7 +68,7 @@ MappingOutcome map_sequence(System& system, std::size_t count, const FrameSource
       outcome.gave_up = true;
       break;
     }
-    const RgbdFrame frame = frames(i, mapping_noise(stream, outcome.restarts));
+    const RgbdFrame frame = sequence.frame(i, mapping_noise(stream, outcome.restarts));
     const RandomStream draws =
         stream.fork(kSlam).fork(static_cast<std::uint64_t>(outcome.restarts)).fork(i);
     const StepReport report = system.track(frame, draws);
@@ -85,7 +81,7 @@ MappingOutcome map_sequence(System& system, std::size_t count, const FrameSource
                              .image_digest = digest(frame),
                              .matching_digest = digest_of_matching(report),
                              .pose_digest = digest(report.world_from_camera)});
-    add(outcome.matches, report.matches);
+    add(report.matches, outcome.matches);
     if (report.loop) outcome.loops.push_back(*report.loop);
     if (observe) observe(outcome.calls.back(), frame, report);
 

@@ -7,12 +7,9 @@
 
 #include "bench/protocol/config.hpp"
 #include "bench/protocol/system.hpp"
+#include "slam/core/sequence.hpp"
 
 namespace mh {
-
-/// Delivers frame i of a sequence as the sensor saw it under one noise stream: the same bits
-/// whenever and wherever it is asked for.
-using FrameSource = std::function<RgbdFrame(std::size_t index, RandomStream noise)>;
 
 /// One track call of the mapping, in order.
 struct MappedFrame {
@@ -59,10 +56,8 @@ using MappingObserver =
 /// count + 1,000, if more) the rest stays unmapped.
 ///
 /// Noise and SLAM draw from streams keyed by (restart, frame), so that a restart is no replica.
-/// @param count   frames in the sequence
-MappingOutcome map_sequence(System& system, std::size_t count, const FrameSource& frames,
-                            const ProtocolConfig& config, RandomStream stream,
-                            const MappingObserver& observe = {});
+MappingOutcome map_sequence(System& system, const Sequence& sequence, const ProtocolConfig& config,
+                            RandomStream stream, const MappingObserver& observe = {});
 
 /// The noise stream of mapping frames after so many restarts; equal for every system.
 RandomStream mapping_noise(RandomStream stream, int restart);

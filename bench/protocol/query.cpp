@@ -41,7 +41,7 @@ bool is_blank(const RgbdFrame& frame) {
                      [](Rgb8 color) { return color == Rgb8{}; });
 }
 
-QueryAnswer query(const System& frozen, std::size_t index, const FrameSource& frames,
+QueryAnswer query(const System& frozen, std::size_t index, const Sequence& sequence,
                   const ProtocolConfig& config, RandomStream stream, QueryMemo* memo) {
   const RandomStream noise = stream.fork(kNoise).fork(index);
   const RandomStream draws = stream.fork(kSlam).fork(index);
@@ -51,7 +51,7 @@ QueryAnswer query(const System& frozen, std::size_t index, const FrameSource& fr
   answer.index = index;
   for (int attempt = 0; attempt < config.query_attempts; ++attempt) {
     const auto key = static_cast<std::uint64_t>(attempt);
-    const RgbdFrame frame = frames(index, noise.fork(key));
+    const RgbdFrame frame = sequence.frame(index, noise.fork(key));
     if (attempt == 0)
       answer.blank_frames =
           lose(*session, frame, config.max_blank_frames, stream.fork(kBlank).fork(index));
@@ -60,7 +60,7 @@ QueryAnswer query(const System& frozen, std::size_t index, const FrameSource& fr
     ++answer.attempts;
     answer.stage = std::max(answer.stage, report.relocalization);
     if (attempt == 0) answer.candidates = report.candidates;
-    for (std::size_t m = 0; m < answer.matches.size(); ++m) answer.matches[m] += report.matches[m];
+    add(report.matches, answer.matches);
     answer.image_digest = chain(answer.image_digest, digest(frame));
     answer.matching_digest = chain(answer.matching_digest, digest_of_matching(report));
     answer.pose_digest = chain(answer.pose_digest, digest(report.world_from_camera));

@@ -36,7 +36,7 @@ bool is_blank(const RgbdFrame& frame);
 /// back. Noise and SLAM draw from streams keyed by (test frame, attempt) alone: the answer depends
 /// on no other query.
 /// @param memo  of frozen.make_memo(), for this query alone; null or not, the answer is the same
-QueryAnswer query(const System& frozen, std::size_t index, const FrameSource& frames,
+QueryAnswer query(const System& frozen, std::size_t index, const Sequence& sequence,
                   const ProtocolConfig& config, RandomStream stream, QueryMemo* memo = nullptr);
 
 /// The test frames of a sequence, in order.

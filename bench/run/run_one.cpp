@@ -43,47 +43,71 @@ class WorkDone {
   const std::function<void(double)>& tell_;
 };
 
-/// @param spent_s  the processor time that making frames takes is added to it
-FrameSource frames_of(const SimulatedSequence& sequence, const RunTamper& tamper, double& spent_s) {
-  return [&sequence, &tamper, &spent_s](std::size_t index, RandomStream noise) {
-    const ProcessorTimer timer(spent_s);
-    RgbdFrame frame = sequence.at(index, noise).frame;
-    if (tamper.frame) tamper.frame(index, frame);
+/// Another sequence's frames, looked at on the way.
+class FramesOf : public Sequence {
+ public:
+  explicit FramesOf(const Sequence& inner) : inner_(inner) {}
+  const Camera& camera() const override { return inner_.camera(); }
+  std::size_t size() const override { return inner_.size(); }
+  Stamp stamp_ns(std::size_t i) const override { return inner_.stamp_ns(i); }
+  RgbdFrame frame(std::size_t i, RandomStream noise) const override {
+    return inner_.frame(i, noise);
+  }
+  const Trajectory* truth() const override { return inner_.truth(); }
+
+ private:
+  const Sequence& inner_;
+};
+
+/// As a run sees them: the processor time that making them takes is counted, tests may change them.
+class WatchedFrames : public FramesOf {
+ public:
+  /// @param spent_s  grows by the time spent
+  WatchedFrames(const Sequence& inner, const RunTamper& tamper, double& spent_s)
+      : FramesOf(inner), tamper_(tamper), spent_s_(spent_s) {}
+  RgbdFrame frame(std::size_t i, RandomStream noise) const override {
+    const ProcessorTimer timer(spent_s_);
+    RgbdFrame frame = FramesOf::frame(i, noise);
+    if (tamper_.frame) tamper_.frame(i, frame);
     return frame;
-  };
-}
+  }
+
+ private:
+  const RunTamper& tamper_;
+  double& spent_s_;
+};
 
 /// Frames of one query, made once for all parameter points.
-FrameSource made_once(const FrameSource& frames) {
-  const auto made = std::make_shared<std::map<std::uint64_t, RgbdFrame>>();
-  return [frames, made](std::size_t index, RandomStream noise) {
-    const auto [place, is_new] = made->try_emplace(noise.key());
-    if (is_new) place->second = frames(index, noise);
+class FramesMadeOnce : public FramesOf {
+ public:
+  using FramesOf::FramesOf;
+  RgbdFrame frame(std::size_t i, RandomStream noise) const override {
+    const auto [place, is_new] = made_.try_emplace(noise.key());
+    if (is_new) place->second = FramesOf::frame(i, noise);
     return place->second;
-  };
-}
+  }
+
+ private:
+  mutable std::map<std::uint64_t, RgbdFrame> made_;
+};
 
 /// One set of queries.
 class QueryRound {
  public:
-  QueryRound(const RunSpec& spec, const SimulatedSequence& sequence, NearestBy by,
-             const RunTamper& tamper, RunResult& run, RandomStream stream)
-      : spec_(spec),
-        sequence_(sequence),
-        by_(by),
-        frames_(frames_of(sequence, tamper, run.frames_s)),
-        run_(run),
-        stream_(stream) {}
+  QueryRound(const RunSpec& spec, const Sequence& sequence, NearestBy by, const RunTamper& tamper,
+             RunResult& run, RandomStream stream)
+      : spec_(spec), by_(by), frames_(sequence, tamper, run.frames_s), run_(run), stream_(stream) {}
 
   /// Puts each query under the points first .. end - 1; `scores[p]` takes the answers under point
   /// p.
   void put(System& frozen, std::size_t first, std::size_t end,
            const std::vector<std::vector<QueryScore>*>& scores, WorkDone& work) const {
-    for (const std::size_t index : test_frames(sequence_.size(), spec_.protocol)) {
-      const TimedPose& truth = sequence_.path()[index];
+    for (const std::size_t index : test_frames(frames_.size(), spec_.protocol)) {
+      const TimedPose& truth = (*frames_.truth())[index];
       const auto anchor = find_anchor(run_.estimate, run_.truth, truth, by_, spec_.protocol);
       const bool once = end - first == 1;  // nothing to share
-      const FrameSource frames = once ? frames_ : made_once(frames_);
+      const FramesMadeOnce shared(frames_);
+      const Sequence& frames = once ? static_cast<const Sequence&>(frames_) : shared;
       const std::unique_ptr<QueryMemo> memo = once ? nullptr : frozen.make_memo();
       for (std::size_t p = first; p < end; ++p) {
         if (!once) frozen.set_query_settings(spec_.points[p]);
@@ -98,9 +122,8 @@ class QueryRound {
 
  private:
   const RunSpec& spec_;
-  const SimulatedSequence& sequence_;
   NearestBy by_;
-  FrameSource frames_;
+  WatchedFrames frames_;
   const RunResult& run_;
   RandomStream stream_;
 };
@@ -135,8 +158,7 @@ std::size_t pieces_of_work(const RunSpec& spec, const World& world) {
 }
 
 /// The mapping frames as a folder, and what an outside program made of them.
-Trajectory run_recorded(const RunSpec& spec, const SimulatedSequence& mapping,
-                        const FrameSource& frames, RandomStream stream,
+Trajectory run_recorded(const RunSpec& spec, const Sequence& mapping, RandomStream stream,
                         const std::filesystem::path& folder,
                         const std::function<void(std::string_view)>& status) {
   std::vector<std::size_t> offered;
@@ -146,7 +168,7 @@ Trajectory run_recorded(const RunSpec& spec, const SimulatedSequence& mapping,
   const std::vector<Stamp> stamps =
       write_dataset(given.path() / "dataset", mapping.camera(), offered.size(), [&](std::size_t i) {
         status(fmt::format("writing frame {} of {}", i + 1, offered.size()));
-        return frames(offered[i], mapping_noise(stream, 0));
+        return mapping.frame(offered[i], mapping_noise(stream, 0));
       });
   status(fmt::format("runs over {}", counted(offered.size(), "frame")));
   Trajectory trajectory =
@@ -179,7 +201,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   run.place = facts(world);
   run.truth = world.mapping.camera;
   KeyframeDepths depths;
-  const FrameSource frames = frames_of(mapping, tamper, run.frames_s);
+  const WatchedFrames frames(mapping, tamper, run.frames_s);
   const auto integrate = [&] {
     const ProcessorTimer timer(run.products_s);
     if (tools.occupancy)
@@ -191,8 +213,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   if (inner == nullptr) {  // a program that answers with a trajectory: nothing to ask it
     for (std::size_t i = 0; i < mapping.size(); ++i)
       run.mapping.offered += is_test_frame(i, spec.protocol) ? 0 : 1;
-    run.estimate =
-        run_recorded(spec, mapping, frames, stream.fork(kMapping), tools.folder, tools.status);
+    run.estimate = run_recorded(spec, frames, stream.fork(kMapping), tools.folder, tools.status);
     run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
     integrate();
     run.points.resize(spec.points.size());
@@ -206,7 +227,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     };
     const auto map_now = [&] {
       run.mapping =
-          map_sequence(system, mapping.size(), frames, spec.protocol, stream.fork(kMapping),
+          map_sequence(system, frames, spec.protocol, stream.fork(kMapping),
                        [&](const MappedFrame& call, const RgbdFrame& frame, const StepReport&) {
                          const ProcessorTimer timer(run.products_s);
                          if (call.keyframe_added && tools.occupancy) depths.keep(frame);

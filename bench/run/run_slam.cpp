@@ -22,7 +22,7 @@ constexpr std::size_t kHopeless = 10;
 /// One run in progress.
 class Runner {
  public:
-  Runner(SlamState& state, const FrameSequence& sequence, const SlamRunOptions& options,
+  Runner(SlamState& state, const Sequence& sequence, const SlamRunOptions& options,
          RandomStream stream, const StepObservers& observers)
       : state_(state),
         sequence_(sequence),
@@ -33,7 +33,7 @@ class Runner {
   void offer(std::size_t index) {
     FrameOutcome outcome{.stamp_ns = sequence_.stamp_ns(index), .skipped = false, .report = {}};
     try {
-      outcome.report = process(sequence_.frame(index), stream_.fork(index));
+      outcome.report = process(sequence_.frame(index, options_.noise), stream_.fork(index));
       count(outcome);
     } catch (const InputError& error) {
       outcome.skipped = true;
@@ -92,7 +92,7 @@ class Runner {
   }
 
   SlamState& state_;
-  const FrameSequence& sequence_;
+  const Sequence& sequence_;
   const SlamRunOptions& options_;
   RandomStream stream_;
   const StepObservers& observers_;
@@ -110,7 +110,7 @@ Trajectory poses_at(const SlamState& state, const std::set<Stamp>& moments) {
 
 }  // namespace
 
-SlamRun run_slam(SlamState& state, const FrameSequence& sequence, const SlamRunOptions& options,
+SlamRun run_slam(SlamState& state, const Sequence& sequence, const SlamRunOptions& options,
                  RandomStream stream, const StepObservers& observers, const SlamWatch& watch) {
   std::size_t first = std::min(options.first, sequence.size());
   if (options.resume && state.last_stamp_ns)

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "scenes/recorded/frame_sequence.hpp"
 #include "slam/core/random.hpp"
+#include "slam/core/sequence.hpp"
 #include "slam/pipeline/slam.hpp"
 
 namespace mh {
@@ -36,6 +36,7 @@ struct SlamRunOptions {
   bool localize = false;  ///< the map is frozen: frames are found in it, never added
   bool resume = false;    ///< frames up to the last one that the state was fed are passed by
   std::size_t first = 0, count = SIZE_MAX;  ///< frames of the sequence to offer
+  RandomStream noise = {};                  ///< of the sensors, where the sequence is simulated
   int small_map = 5;  ///< a map of at most so many keyframes is given up when tracking is lost
 };
 
@@ -50,7 +51,7 @@ using SlamWatch = std::function<void(std::size_t done, std::size_t all, const Sl
 /// the map that was given up count as lost.
 /// @param watch  may be empty
 /// @throws InputError if no frame at all could be read, or none could start a map.
-SlamRun run_slam(SlamState& state, const FrameSequence& sequence, const SlamRunOptions& options,
+SlamRun run_slam(SlamState& state, const Sequence& sequence, const SlamRunOptions& options,
                  RandomStream stream, const StepObservers& observers = {},
                  const SlamWatch& watch = {});
 

@@ -72,7 +72,7 @@ class ColorPixels {
   bool parallax_;
 };
 
-class ScannetSequence : public FrameSequence {
+class ScannetSequence : public Sequence {
  public:
   ScannetSequence(const fs::path& path, std::vector<std::string>& notes)
       : recording_(open_recording(path)),
@@ -84,6 +84,10 @@ class ScannetSequence : public FrameSequence {
       throw InputError(fmt::format("{}: depth {}", path.string(), error.what()));
     }
     std::ranges::copy(recording_->notes(), std::back_inserter(notes));
+    const SE3& device_from_camera = recording_->info().depth.device_from_camera;
+    for (std::size_t i = 0; i < recording_->size(); ++i)
+      if (const auto world_from_device = recording_->world_from_device(i))
+        truth_.push_back({recording_->stamp_ns(i), *world_from_device * device_from_camera});
     for (const ClassInfo& info : classes()) palette_.push_back(ClassDistribution::one_hot(info.id));
     std::error_code error;
     const fs::path folder = fs::is_directory(path, error) ? path : path.parent_path();
@@ -106,7 +110,7 @@ class ScannetSequence : public FrameSequence {
   std::size_t size() const override { return recording_->size(); }
   Stamp stamp_ns(std::size_t index) const override { return recording_->stamp_ns(index); }
 
-  RgbdFrame frame(std::size_t index) const override {
+  RgbdFrame frame(std::size_t index, RandomStream) const override {
     const RecordedMoment moment = recording_->frame(index);
     cv::Mat columns, rows;
     pixels_.find(moment.depth, columns, rows);
@@ -126,15 +130,7 @@ class ScannetSequence : public FrameSequence {
     return frame;
   }
 
-  std::optional<Trajectory> truth() const override {
-    Trajectory truth;
-    const SE3& device_from_camera = recording_->info().depth.device_from_camera;
-    for (std::size_t i = 0; i < size(); ++i)
-      if (const auto world_from_device = recording_->world_from_device(i))
-        truth.push_back({stamp_ns(i), *world_from_device * device_from_camera});
-    if (truth.empty()) return std::nullopt;
-    return truth;
-  }
+  const Trajectory* truth() const override { return truth_.empty() ? nullptr : &truth_; }
 
  private:
   void note_missing_labels(std::vector<std::string>& notes) const {
@@ -193,6 +189,7 @@ class ScannetSequence : public FrameSequence {
 
   std::unique_ptr<Recording> recording_;
   Camera camera_;
+  Trajectory truth_;  // of the frames with a valid pose
   ColorPixels pixels_;
   std::unique_ptr<LabelImages> labels_;
   std::array<ClassId, 65536> class_of_id_{};
@@ -223,7 +220,7 @@ RecordedLens recorded_lens(const Camera& camera) {
           {}};
 }
 
-std::unique_ptr<FrameSequence> open_scannet(const fs::path& path, std::vector<std::string>& notes) {
+std::unique_ptr<Sequence> open_scannet(const fs::path& path, std::vector<std::string>& notes) {
   return std::make_unique<ScannetSequence>(path, notes);
 }
 

@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "scenes/recorded/frame_sequence.hpp"
 #include "scenes/recorded/sequence_writer.hpp"
 #include "scenes/scannet/recording.hpp"
-#include "slam/core/camera.hpp"
+#include "slam/core/sequence.hpp"
 
 namespace mh {
 
@@ -22,8 +21,8 @@ namespace mh {
 /// like any other, for their pictures are sound.
 /// @param notes  where to append what could not be used, one line each
 /// @throws InputError naming file and place.
-std::unique_ptr<FrameSequence> open_scannet(const std::filesystem::path& path,
-                                            std::vector<std::string>& notes);
+std::unique_ptr<Sequence> open_scannet(const std::filesystem::path& path,
+                                       std::vector<std::string>& notes);
 
 /// Of the 16-bit depth that is written.
 inline constexpr double kScannetDepthPerMeter = 1000;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scenes/recorded/frame_files.hpp"
+#include "sim/world/sequence.hpp"
 
 namespace mh {
 
@@ -29,23 +30,16 @@ std::vector<std::size_t> moments(const Shutter& shutter, const SensorConfig& sen
 
 ExactFrame exact_frame(const Shutter& shutter, const SensorConfig& sensors,
                        const RenderSequenceOptions& options, std::size_t i) {
-  const TimedPose& pose = shutter.path()[i];
-  const RandomStream noise = RandomStream(options.seed).fork(i);
-  Shutter::Exposed exposed = shutter.expose(i, options.labels);
-  RgbdFrame seen =
-      sense(exposed.seen, shutter.camera(), sensors, noise, pose.stamp_ns, exposed.gain);
-  RenderedFrame exact = std::move(exposed.seen);
+  auto [seen, exact] =
+      sense_moment(shutter, sensors, options.labels, i, RandomStream(options.seed));
   const bool labels_are_exact = is_per_pixel(options.labels) && sensors.blank_share == 0.0 &&
                                 sensors.labels.noise == LabelNoiseConfig{};
-  if (!labels_are_exact) {
-    const SemanticImage labels =
-        sense_labels(exact, options.labels, sensors, pose.world_from_camera, noise);
-    exact.classes = labels.index.empty()
+  if (!labels_are_exact)
+    exact.classes = seen.semantics.index.empty()
                         ? Grid2d<ClassId>(exact.classes.width(), exact.classes.height(), kVoid)
-                        : class_image(labels);
-  }
+                        : class_image(seen.semantics);
   return {std::move(seen), std::move(exact.classes), std::move(exact.instances),
-          pose.world_from_camera};
+          shutter.path()[i].world_from_camera};
 }
 
 RenderedSequence render_sequence(const Shutter& shutter, const SensorConfig& sensors,

@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/world/scene_sequence.hpp"
 
-#include <optional>
-
 #include "sim/sensors/shutter.hpp"
 #include "sim/world/lit_scene.hpp"
+#include "sim/world/sequence.hpp"
 #include "sim/world/travel.hpp"
 
 namespace mh {
 namespace {
 
-class SceneSequence : public FrameSequence {
+class SceneSequence : public Sequence {
  public:
   SceneSequence(const SceneDrive& source, const Robot& robot, const Scene& scene,
                 const SensorConfig& sensors)
       : sensors_(sensors),
-        noise_(source.seed),
         shutter_(make_scene_renderer(scene), robot.camera,
                  travel(scene, robot, source.tour.string()).camera, sensors),
         arriving_(arriving(shutter_.path().size(), sensors, RandomStream(source.seed))) {}
@@ -24,29 +22,20 @@ class SceneSequence : public FrameSequence {
   Stamp stamp_ns(std::size_t index) const override {
     return shutter_.path()[arriving_[index]].stamp_ns;
   }
-  RgbdFrame frame(std::size_t index) const override {
-    const std::size_t i = arriving_[index];
-    const TimedPose& pose = shutter_.path()[i];
-    const RandomStream noise = noise_.fork(i);
-    const Shutter::Exposed exposed = shutter_.expose(i);
-    RgbdFrame frame = sense(exposed.seen, camera(), sensors_, noise, pose.stamp_ns, exposed.gain);
-    frame.semantics =
-        sense_labels(exposed.seen, LabelMode::kExact, sensors_, pose.world_from_camera, noise);
-    return frame;
+  RgbdFrame frame(std::size_t index, RandomStream noise) const override {
+    return sense_moment(shutter_, sensors_, LabelMode::kExact, arriving_[index], noise).frame;
   }
-  std::optional<Trajectory> truth() const override { return shutter_.path(); }
+  const Trajectory* truth() const override { return &shutter_.path(); }
 
  private:
   SensorConfig sensors_;
-  RandomStream noise_;
   Shutter shutter_;
   std::vector<std::size_t> arriving_;  // of the shutter's path
 };
 
 }  // namespace
 
-std::unique_ptr<FrameSequence> open_scene(const SceneDrive& source,
-                                          std::vector<std::string>* notes) {
+std::unique_ptr<Sequence> open_scene(const SceneDrive& source, std::vector<std::string>* notes) {
   SensorConfig sensors;
   sensors.depth_noise_on = sensors.color_noise_on = false;
   if (!source.level.empty()) sensors = load_sensor_config(source.level);

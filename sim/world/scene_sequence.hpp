@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "scenes/recorded/frame_sequence.hpp"
 #include "scenes/scene_frame.hpp"
+#include "slam/core/sequence.hpp"
 
 namespace mh {
 
@@ -16,14 +16,14 @@ namespace mh {
 struct SceneDrive {
   std::filesystem::path scene, tour, robot;
   std::filesystem::path level;  ///< of the sensors; empty = no noise
-  std::uint64_t seed = 0;       ///< of the noise
+  std::uint64_t seed = 0;       ///< of which frames arrive
   SceneFrame frame = {};
 };
 
 /// A scene seen by a robot along a tour, with exact labels, rendered as it is asked for.
 /// @param notes  gets what could be mended in the scene, a line each; may be null
 /// @throws InputError naming file and place.
-std::unique_ptr<FrameSequence> open_scene(const SceneDrive& source,
-                                          std::vector<std::string>* notes = nullptr);
+std::unique_ptr<Sequence> open_scene(const SceneDrive& source,
+                                     std::vector<std::string>* notes = nullptr);
 
 }  // namespace mh

@@ -26,14 +26,20 @@ SimulatedSequence::SimulatedSequence(std::shared_ptr<const Renderer> renderer, C
       sensors_(sensors),
       labels_(labels) {}
 
-SimulatedFrame SimulatedSequence::at(std::size_t i, RandomStream attempt) const {
-  const TimedPose& moment = path()[i];
-  const Shutter::Exposed exposed = shutter_.expose(i, labels_);
+SensedMoment sense_moment(const Shutter& shutter, const SensorConfig& sensors, LabelMode labels,
+                          std::size_t i, RandomStream noise) {
+  const TimedPose& moment = shutter.path()[i];
+  const RandomStream its_noise = noise.fork(i);
+  Shutter::Exposed exposed = shutter.expose(i, labels);
   RgbdFrame frame =
-      sense(exposed.seen, camera(), sensors_, attempt.fork(i), moment.stamp_ns, exposed.gain);
+      sense(exposed.seen, shutter.camera(), sensors, its_noise, moment.stamp_ns, exposed.gain);
   frame.semantics =
-      sense_labels(exposed.seen, labels_, sensors_, moment.world_from_camera, attempt.fork(i));
-  return {std::move(frame), {moment.stamp_ns, moment.world_from_camera}};
+      sense_labels(exposed.seen, labels, sensors, moment.world_from_camera, its_noise);
+  return {std::move(frame), std::move(exposed.seen)};
+}
+
+RgbdFrame SimulatedSequence::frame(std::size_t i, RandomStream noise) const {
+  return sense_moment(shutter_, sensors_, labels_, i, noise).frame;
 }
 
 }  // namespace mh

@@ -6,24 +6,23 @@
 
 #include "sim/sensors/shutter.hpp"
 #include "sim/world/pedestrian.hpp"
-#include "slam/core/trajectory.hpp"
+#include "slam/core/sequence.hpp"
 
 namespace mh {
 
-/// What really was: never handed to SLAM, only to what scores it.
-struct GroundTruth {
-  Stamp stamp_ns = 0;
-  SE3 world_from_camera;
-};
-
-struct SimulatedFrame {
+/// One moment of a shutter's path: what the camera delivers, and what was exact of it.
+struct SensedMoment {
   RgbdFrame frame;
-  GroundTruth truth;
+  RenderedFrame exact;
 };
 
-/// The frames that a camera delivers along a path through a scene, made on demand. Frame i under
-/// the same `attempt` stream is the same bits whenever and wherever it is asked for.
-class SimulatedSequence {
+/// Exposes, senses and labels the path's i-th moment: the one way from a scene to a frame. Noise is
+/// keyed by (noise, i, pixel).
+SensedMoment sense_moment(const Shutter& shutter, const SensorConfig& sensors, LabelMode labels,
+                          std::size_t i, RandomStream noise);
+
+/// The frames that a camera delivers along a path through a scene, made on demand.
+class SimulatedSequence : public Sequence {
  public:
   /// @param pedestrian_scene  `renderer`'s scene with a pedestrian; may be null
   SimulatedSequence(std::shared_ptr<const Renderer> renderer, Camera camera,
@@ -31,11 +30,11 @@ class SimulatedSequence {
                     LabelMode labels,
                     std::shared_ptr<const PedestrianScene> pedestrian_scene = nullptr);
 
-  std::size_t size() const { return path().size(); }
-  const Camera& camera() const { return shutter_.camera(); }
-  const std::vector<TimedPose>& path() const { return shutter_.path(); }
-  /// Sensor noise is keyed by (attempt, i, pixel).
-  SimulatedFrame at(std::size_t i, RandomStream attempt) const;
+  const Camera& camera() const override { return shutter_.camera(); }
+  std::size_t size() const override { return shutter_.path().size(); }
+  Stamp stamp_ns(std::size_t i) const override { return shutter_.path()[i].stamp_ns; }
+  RgbdFrame frame(std::size_t i, RandomStream noise) const override;
+  const Trajectory* truth() const override { return &shutter_.path(); }
 
  private:
   Shutter shutter_;

@@ -80,7 +80,7 @@ class RunKey : public testing::Test {
              .labels = LabelMode::kExact,
              .trial = 1,
              .seed = 3,
-             .mapping = {},
+             .slam = {},
              .points = {SemanticConfig{}, SemanticConfig{.gamma = 0.5}},
              .protocol = {},
              .max_frames = 100};

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/protocol/system.hpp"
+#include "tests/slam/core/made_sequence.hpp"
 
 namespace mh {
 
@@ -109,6 +110,11 @@ inline RgbdFrame fake_frame(std::size_t index, RandomStream noise) {
   frame.color = Grid2d<Rgb8>(2, 2, Rgb8{static_cast<std::uint8_t>(noise.below(0, 256)), 0, 0});
   frame.depth_m = Grid2d<float>(2, 2, 1.0F);
   return frame;
+}
+
+/// So many of them, in order.
+inline MadeSequence fake_frames(std::size_t count) {
+  return {count, fake_frame};
 }
 
 }  // namespace mh

@@ -15,7 +15,7 @@ constexpr std::size_t kCount = 120;  // test frames are 29, 59, 89, 119: 116 are
 
 TEST(MapSequence, OffersEveryFrameButTheTestFramesOnce) {
   FakeSystem system([](Stamp, int) { return true; });
-  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), {}, RandomStream(1));
   EXPECT_EQ(outcome.offered, 116u);
   EXPECT_EQ(system.fed.size(), 116u);
   for (const Stamp test : {29, 59, 89, 119})
@@ -30,7 +30,7 @@ TEST(MapSequence, OffersEveryFrameButTheTestFramesOnce) {
 // sixth time, feeding 30..119 without 59, 80, 89, 119 = 86 calls. 79 + 5 * 50 + 86 = 415.
 TEST(MapSequence, DropsTheOffendingFrameAfterFiveFailedRestarts) {
   FakeSystem system([](Stamp frame, int) { return frame != 80; });
-  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), {}, RandomStream(1));
   EXPECT_EQ(outcome.failures, 6);
   EXPECT_EQ(outcome.restarts, 6);
   EXPECT_EQ(system.rewinds, 6);
@@ -45,7 +45,7 @@ TEST(MapSequence, DropsTheOffendingFrameAfterFiveFailedRestarts) {
 
 TEST(MapSequence, AFrameThatIsTrackedOnTheThirdShowingCostsTwoRestarts) {
   FakeSystem system([](Stamp frame, int showing) { return frame != 80 || showing >= 3; });
-  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), {}, RandomStream(1));
   EXPECT_EQ(outcome.restarts, 2);
   EXPECT_TRUE(outcome.dropped.empty());
   EXPECT_EQ(system.trajectory().size(), 116u);
@@ -57,7 +57,7 @@ TEST(MapSequence, LostFramesOnTheWayBackAreNoFailures) {
     if (frame == 80) return showing >= 2;
     return showing == 1 || frame >= 75;
   });
-  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), {}, RandomStream(1));
   EXPECT_EQ(outcome.failures, 1);
   EXPECT_EQ(outcome.restarts, 1);
   EXPECT_TRUE(outcome.dropped.empty());
@@ -68,7 +68,7 @@ TEST(MapSequence, CountsAnewAfterTheTroubleIsPassed) {
   FakeSystem system([](Stamp frame, int showing) {
     return (frame != 70 && frame != 100) || showing >= (frame == 70 ? 5 : 9);
   });
-  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), {}, RandomStream(1));
   // Frame 100 is shown for the first time when 70 is passed; it fails eight times: six failures
   // drop it. Frame 70 costs four restarts and stays.
   EXPECT_EQ(outcome.dropped, std::vector<std::size_t>{100});
@@ -79,7 +79,7 @@ TEST(MapSequence, TheOtherReadingOfResetForgetsTheMap) {
   FakeSystem system([](Stamp frame, int) { return frame != 80; });
   ProtocolConfig config;
   config.reset = DropReset::kMap;
-  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, config, RandomStream(1));
+  const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), config, RandomStream(1));
   EXPECT_EQ(system.resets, 1);
   EXPECT_EQ(outcome.dropped.size(), 1u);
   EXPECT_EQ(system.trajectory().size(), 86u);  // what was fed after the reset, counted above
@@ -92,7 +92,7 @@ TEST(MapSequence, ResettingTheMapCostsWhatLiesBeforeTheRewind) {
   FakeSystem system([](Stamp frame, int) { return frame != 80; });
   ProtocolConfig config;
   config.reset = DropReset::kMap;
-  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, config, RandomStream(1));
+  const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), config, RandomStream(1));
   EXPECT_EQ(outcome.calls.size(), 415u);
   EXPECT_EQ(outcome.failures, 6);
   EXPECT_EQ(outcome.restarts, 6);
@@ -105,7 +105,7 @@ TEST(MapSequence, ResettingTheMapCostsWhatLiesBeforeTheRewind) {
 // then all of 0 to 119 but the four test frames: 22 + 116 = 138.
 TEST(MapSequence, GoesBackToTheStartAtMost) {
   FakeSystem system([](Stamp frame, int showing) { return frame != 10 || showing >= 3; });
-  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), {}, RandomStream(1));
   EXPECT_EQ(outcome.failures, 2);
   EXPECT_EQ(outcome.restarts, 2);
   EXPECT_EQ(outcome.calls.size(), 138u);
@@ -118,7 +118,7 @@ TEST(MapSequence, WithoutRestartsTheFirstFailureDropsTheFrame) {
   FakeSystem system([](Stamp frame, int) { return frame != 80; });
   ProtocolConfig config;
   config.restarts_per_frame = 0;
-  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, config, RandomStream(1));
+  const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), config, RandomStream(1));
   EXPECT_EQ(outcome.failures, 1);
   EXPECT_EQ(outcome.restarts, 1);
   EXPECT_EQ(outcome.dropped, std::vector<std::size_t>{80});
@@ -133,7 +133,7 @@ TEST(MapSequence, TwoOffendingFramesInARowAreDroppedOneAfterTheOther) {
   FakeSystem system([](Stamp frame, int) { return frame != 80 && frame != 81; });
   ProtocolConfig config;
   config.rewind_frames = 5;
-  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, config, RandomStream(1));
+  const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), config, RandomStream(1));
   EXPECT_EQ(outcome.dropped, (std::vector<std::size_t>{80, 81}));
   EXPECT_EQ(outcome.failures, 12);
   EXPECT_EQ(outcome.restarts, 12);
@@ -143,7 +143,7 @@ TEST(MapSequence, TwoOffendingFramesInARowAreDroppedOneAfterTheOther) {
 
 TEST(MapSequence, PassesOverFramesBeforeTheMapExists) {
   FakeSystem system([](Stamp frame, int) { return frame >= 7; });
-  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), {}, RandomStream(1));
   EXPECT_EQ(outcome.before_map, 7);
   EXPECT_EQ(outcome.failures, 0);
   EXPECT_EQ(outcome.restarts, 0);
@@ -152,7 +152,7 @@ TEST(MapSequence, PassesOverFramesBeforeTheMapExists) {
 
 TEST(MapSequence, ASystemThatNeverFindsBackComesToAnEnd) {
   FakeSystem system([](Stamp frame, int showing) { return showing == 1 && frame < 60; });
-  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), {}, RandomStream(1));
   EXPECT_TRUE(outcome.gave_up);
   EXPECT_LE(outcome.calls.size(), kCount + 1000);
   EXPECT_GE(outcome.dropped.size(), 1u);
@@ -162,7 +162,7 @@ TEST(MapSequence, EndsByItselfWhenEveryFrameFromSomewhereOnMustBeDropped) {
   FakeSystem system([](Stamp frame, int) { return frame < 100; });
   ProtocolConfig config;
   config.max_effort = 1000;
-  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, config, RandomStream(1));
+  const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), config, RandomStream(1));
   EXPECT_FALSE(outcome.gave_up);
   EXPECT_EQ(outcome.dropped.size(), 19u);  // 100 .. 118
   EXPECT_EQ(outcome.restarts, 19 * 6);
@@ -170,7 +170,7 @@ TEST(MapSequence, EndsByItselfWhenEveryFrameFromSomewhereOnMustBeDropped) {
 
 TEST(MapSequence, ARestartIsNoReplica) {
   FakeSystem system([](Stamp frame, int showing) { return frame != 80 || showing >= 3; });
-  const MappingOutcome outcome = map_sequence(system, kCount, fake_frame, {}, RandomStream(1));
+  const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), {}, RandomStream(1));
   std::set<std::uint64_t> draws(system.streams.begin(), system.streams.end());
   EXPECT_EQ(draws.size(), system.streams.size());
   std::set<std::uint64_t> images_of_80;
@@ -182,7 +182,7 @@ TEST(MapSequence, ARestartIsNoReplica) {
 TEST(MapSequence, IsAPureFunctionOfItsStream) {
   const auto run = [](std::uint64_t seed) {
     FakeSystem system([](Stamp frame, int showing) { return frame != 80 || showing >= 3; });
-    map_sequence(system, kCount, fake_frame, {}, RandomStream(seed));
+    map_sequence(system, fake_frames(kCount), {}, RandomStream(seed));
     return system.streams;
   };
   EXPECT_EQ(run(4), run(4));

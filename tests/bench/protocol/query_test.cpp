@@ -17,7 +17,7 @@ namespace {
 
 FakeSystem mapped() {
   FakeSystem system([](Stamp, int) { return true; });
-  map_sequence(system, 300, fake_frame, {}, RandomStream(1));
+  map_sequence(system, fake_frames(300), {}, RandomStream(1));
   system.freeze();
   return system;
 }
@@ -29,7 +29,7 @@ TEST(TestFrames, AreTheLastOfEveryThirty) {
 TEST(Query, StopsAtTheFirstPoseThatComesBack) {
   FakeSystem system = mapped();
   system.answers_at = [](Stamp) { return 3; };
-  const QueryAnswer answer = query(system, 59, fake_frame, {}, RandomStream(1));
+  const QueryAnswer answer = query(system, 59, fake_frames(300), {}, RandomStream(1));
   ASSERT_TRUE(answer.world_from_camera);
   EXPECT_EQ(answer.attempts, 3);
   EXPECT_EQ(answer.blank_frames, 1);
@@ -42,10 +42,10 @@ TEST(Query, EachAttemptAtEachFrameHasItsOwnNoiseAndDraws) {
   FakeSystem system = mapped();
   system.answers_at = [](Stamp) { return 0; };
   std::set<std::uint64_t> noise, draws;
-  const auto spy = [&](std::size_t index, RandomStream stream) {
+  const MadeSequence spy(300, [&](std::size_t index, RandomStream stream) {
     noise.insert(stream.key());
     return fake_frame(index, stream);
-  };
+  });
   system.on_query = [&](RandomStream stream) { draws.insert(stream.key()); };
   for (const std::size_t index : {29, 59}) query(system, index, spy, {}, RandomStream(1));
   EXPECT_EQ(noise.size(), 10u);
@@ -55,7 +55,7 @@ TEST(Query, EachAttemptAtEachFrameHasItsOwnNoiseAndDraws) {
 TEST(Query, GivesUpAfterFiveAttemptsAndNamesTheStage) {
   FakeSystem system = mapped();
   system.answers_at = [](Stamp) { return 6; };
-  const QueryAnswer answer = query(system, 59, fake_frame, {}, RandomStream(1));
+  const QueryAnswer answer = query(system, 59, fake_frames(300), {}, RandomStream(1));
   EXPECT_FALSE(answer.world_from_camera);
   EXPECT_EQ(answer.attempts, 5);
   EXPECT_EQ(answer.stage, RelocalizationStage::kMatches);
@@ -68,7 +68,7 @@ TEST(Query, CandidatesAreThoseOfTheFirstAttemptAndPairsAreSummed) {
     report.candidates->final = 10 + attempt;
     report.matches[2].compared = attempt;
   };
-  const QueryAnswer answer = query(system, 59, fake_frame, {}, RandomStream(1));
+  const QueryAnswer answer = query(system, 59, fake_frames(300), {}, RandomStream(1));
   ASSERT_TRUE(answer.candidates);
   EXPECT_EQ(answer.candidates->final, 11);
   EXPECT_EQ(answer.matches[2].compared, 1 + 2 + 3);
@@ -76,7 +76,7 @@ TEST(Query, CandidatesAreThoseOfTheFirstAttemptAndPairsAreSummed) {
   system.on_report = [](int attempt, StepReport& report) {
     if (attempt == 1) report.candidates.reset();
   };
-  EXPECT_FALSE(query(system, 59, fake_frame, {}, RandomStream(1)).candidates);
+  EXPECT_FALSE(query(system, 59, fake_frames(300), {}, RandomStream(1)).candidates);
 }
 
 TEST(Query, TheDigestOfMatchingIsOfEveryAttempt) {
@@ -87,7 +87,7 @@ TEST(Query, TheDigestOfMatchingIsOfEveryAttempt) {
     system.on_report = [&](int attempt, StepReport& report) {
       if (attempt == changed) report.matches[0].compared = 1;
     };
-    seen.insert(query(system, 59, fake_frame, {}, RandomStream(1)).matching_digest);
+    seen.insert(query(system, 59, fake_frames(300), {}, RandomStream(1)).matching_digest);
   }
   EXPECT_EQ(seen.size(), 4u);
 }
@@ -100,13 +100,13 @@ TEST(Query, TheDigestsOfPosesAndImagesAreOfEveryAttempt) {
     system.on_report = [&](int attempt, StepReport& report) {
       if (attempt == changed) report.world_from_camera = SE3();
     };
-    poses.insert(query(system, 59, fake_frame, {}, RandomStream(1)).pose_digest);
+    poses.insert(query(system, 59, fake_frames(300), {}, RandomStream(1)).pose_digest);
     int shown = 0;
-    const auto tampered = [&](std::size_t index, RandomStream noise) {
+    const MadeSequence tampered(300, [&](std::size_t index, RandomStream noise) {
       RgbdFrame frame = fake_frame(index, noise);
       if (++shown == changed) frame.color(0, 0).b = 255;
       return frame;
-    };
+    });
     images.insert(query(system, 59, tampered, {}, RandomStream(1)).image_digest);
   }
   EXPECT_EQ(poses.size(), 3u);
@@ -116,9 +116,9 @@ TEST(Query, TheDigestsOfPosesAndImagesAreOfEveryAttempt) {
 TEST(Query, ShowsBlankFramesUntilLost) {
   FakeSystem system = mapped();
   system.believes_blanks = 4;
-  EXPECT_EQ(query(system, 59, fake_frame, {}, RandomStream(1)).blank_frames, 5);
+  EXPECT_EQ(query(system, 59, fake_frames(300), {}, RandomStream(1)).blank_frames, 5);
   system.believes_blanks = 1000;
-  EXPECT_EQ(query(system, 59, fake_frame, {}, RandomStream(1)).blank_frames, 30);
+  EXPECT_EQ(query(system, 59, fake_frames(300), {}, RandomStream(1)).blank_frames, 30);
 }
 
 TEST(Query, PermutingTheQueriesChangesNothing) {
@@ -127,7 +127,7 @@ TEST(Query, PermutingTheQueriesChangesNothing) {
   const auto ask = [&](std::vector<std::size_t> order) {
     std::map<std::size_t, std::pair<std::uint64_t, std::uint64_t>> answers;
     for (const std::size_t index : order) {
-      const QueryAnswer a = query(system, index, fake_frame, {}, RandomStream(9));
+      const QueryAnswer a = query(system, index, fake_frames(300), {}, RandomStream(9));
       answers[index] = {a.pose_digest, a.image_digest};
     }
     return answers;

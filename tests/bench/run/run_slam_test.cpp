@@ -93,7 +93,7 @@ TEST_F(Folder, FromFileAndFromMemoryGiveTheSameBits) {
   write(40);
   const auto on_disk = open_tum_folder(folder_, recorded_camera(settings()));
   std::vector<RgbdFrame> in_memory;
-  for (std::size_t i = 0; i < on_disk->size(); ++i) in_memory.push_back(on_disk->frame(i));
+  for (std::size_t i = 0; i < on_disk->size(); ++i) in_memory.push_back(on_disk->frame(i, {}));
   ASSERT_FALSE(in_memory[0].semantics.index.empty()) << "labels beside frames are not read";
 
   SlamState a = start(), b = start(), c = start();
@@ -346,7 +346,7 @@ class TumFr1Rpy : public testing::Test {
         recorded.camera, recorded.slam,
         std::make_shared<const Vocabulary>(Vocabulary::load(source / "assets/vocabulary.mhvoc")));
   }
-  std::unique_ptr<FrameSequence> sequence;
+  std::unique_ptr<Sequence> sequence;
   SlamState state;
 };
 
@@ -363,10 +363,10 @@ TEST_F(TumFr1Rpy, IsTrackedWholeAndMoreAccuratelyThanByOrbSlam2) {
 // Each query is lost and on its own. Where it is, SLAM tells that goes on from the map.
 TEST_F(TumFr1Rpy, LostFramesAreFoundInAMapOfEarlierOnes) {
   const RandomStream stream(0);
-  for (std::size_t i = 0; i < 100; ++i) step(state, sequence->frame(i), stream.fork(i));
+  for (std::size_t i = 0; i < 100; ++i) step(state, sequence->frame(i, {}), stream.fork(i));
   SlamState further = state;
   std::map<Stamp, SE3> expected;
-  for (std::size_t i = 100; i < 200; ++i) step(further, sequence->frame(i), stream.fork(i));
+  for (std::size_t i = 100; i < 200; ++i) step(further, sequence->frame(i, {}), stream.fork(i));
   for (const TimedPose& pose : trajectory(further))
     expected[pose.stamp_ns] = pose.world_from_camera;
 
@@ -375,7 +375,7 @@ TEST_F(TumFr1Rpy, LostFramesAreFoundInAMapOfEarlierOnes) {
     int count = 0;
     for (std::size_t i = 100; i < 200; i += 4) {
       Tracker lost;
-      const StepReport report = localize(state, lost, sequence->frame(i), stream.fork(i));
+      const StepReport report = localize(state, lost, sequence->frame(i, {}), stream.fork(i));
       if (!report.world_from_camera) continue;
       ++count;
       const SE3 off = expected.at(sequence->stamp_ns(i)).inverse() * *report.world_from_camera;

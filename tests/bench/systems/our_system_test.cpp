@@ -6,6 +6,7 @@
 
 #include "bench/protocol/query.hpp"
 #include "bench/provenance/digest.hpp"
+#include "tests/slam/core/made_sequence.hpp"
 #include "tests/slam/pipeline/box_room.hpp"
 
 namespace mh {
@@ -42,9 +43,8 @@ std::unique_ptr<System> frozen() {
 }
 
 QueryAnswer ask(const System& system, std::size_t index) {
-  return query(
-      system, index, [](std::size_t i, RandomStream) { return frame(i); }, ProtocolConfig{},
-      RandomStream(3));
+  const MadeSequence frames(index + 1, [](std::size_t i, RandomStream) { return frame(i); });
+  return query(system, index, frames, ProtocolConfig{}, RandomStream(3));
 }
 
 TEST(OurSystem, QueriesLeaveNoTraceInTheFrozenMapOrInEachOther) {

@@ -17,6 +17,7 @@
 #include "scenes/training/training.hpp"
 #include "sim/sensors/sensors.hpp"
 #include "slam/core/files.hpp"
+#include "tests/slam/core/made_sequence.hpp"
 
 namespace mh {
 namespace {
@@ -63,13 +64,14 @@ class OutsideOdometry : public testing::Test {
     seen.semantics = label_image(exact, LabelMode::kExact);
     return seen;
   }
+  static MadeSequence frames() { return {kCount, frame, camera()}; }
   std::unique_ptr<System> converse() const {
     return make_conversation_system(
         {.name = "vo", .command = "exec " VO_CONVERSE, .mode = OutsideMode::kConversation},
         camera(), 0, folder_ / "log");
   }
   static std::unique_ptr<System> mapped(std::unique_ptr<System> system) {
-    map_sequence(*system, kCount, frame, {}, RandomStream(1));
+    map_sequence(*system, frames(), {}, RandomStream(1));
     system->freeze();
     return system;
   }
@@ -122,7 +124,7 @@ TEST(SettingsText, HasRealNumbersWhereReadersInsistOnThem) {
 
 TEST_F(OutsideOdometry, GoesThroughTheWholeProtocol) {
   const auto system = converse();
-  const MappingOutcome mapping = map_sequence(*system, kCount, frame, {}, RandomStream(1));
+  const MappingOutcome mapping = map_sequence(*system, frames(), {}, RandomStream(1));
   system->freeze();
   EXPECT_EQ(mapping.failures, 0);
   const Trajectory estimate = system->trajectory();
@@ -133,7 +135,7 @@ TEST_F(OutsideOdometry, GoesThroughTheWholeProtocol) {
   EXPECT_GT(*score.ate_rmse_m, 1e-6);  // noise: nobody may be that good
 
   for (const std::size_t index : test_frames(kCount, {})) {
-    const QueryAnswer answer = query(*system, index, frame, {}, RandomStream(2));
+    const QueryAnswer answer = query(*system, index, frames(), {}, RandomStream(2));
     EXPECT_EQ(answer.blank_frames, 1);
     ASSERT_TRUE(answer.candidates) << index;
     EXPECT_GE(answer.candidates->keyframes, 2);
@@ -150,7 +152,7 @@ TEST_F(OutsideOdometry, AnswersDependOnNoOtherQuery) {
   const auto ask = [&](std::initializer_list<std::size_t> order) {
     std::map<std::size_t, std::uint64_t> poses;
     for (const std::size_t index : order)
-      poses[index] = query(*system, index, frame, {}, RandomStream(2)).pose_digest;
+      poses[index] = query(*system, index, frames(), {}, RandomStream(2)).pose_digest;
     return poses;
   };
   const auto forwards = ask({29, 59, 89});

@@ -157,7 +157,7 @@ TEST_F(PedestrianSceneTest, ASequenceShowsHimWhereHeIsAtEachStamp) {
   const auto person = [&](std::size_t i, std::shared_ptr<const PedestrianScene> who) {
     const SimulatedSequence sequence(renderer_, camera_, path, SensorConfig{}, LabelMode::kExact,
                                      std::move(who));
-    const RgbdFrame frame = sequence.at(i, RandomStream(1)).frame;
+    const RgbdFrame frame = sequence.frame(i, RandomStream(1));
     return frame.semantics.at(159, 119).most_probable() == *class_by_name("person") &&
            std::abs(frame.depth_m(159, 119) - 2.8F) < 0.1F;
   };

@@ -21,31 +21,33 @@ TEST(SimulatedSequence, FramesCarryStampTruthAndWhatTheCameraSees) {
   const SimulatedSequence sequence = three_steps_towards_a_wall(LabelMode::kExact);
   ASSERT_EQ(sequence.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
-    const SimulatedFrame seen = sequence.at(i, RandomStream(1));
-    EXPECT_EQ(seen.frame.stamp_ns, 1000 + static_cast<Stamp>(i));
-    EXPECT_EQ(seen.truth.stamp_ns, seen.frame.stamp_ns);
-    EXPECT_EQ(seen.truth.world_from_camera.translation().z(), 0.5 * static_cast<double>(i));
+    const RgbdFrame seen = sequence.frame(i, RandomStream(1));
+    EXPECT_EQ(seen.stamp_ns, 1000 + static_cast<Stamp>(i));
+    const TimedPose& truth = (*sequence.truth())[i];
+    EXPECT_EQ(sequence.stamp_ns(i), seen.stamp_ns);
+    EXPECT_EQ(truth.stamp_ns, seen.stamp_ns);
+    EXPECT_EQ(truth.world_from_camera.translation().z(), 0.5 * static_cast<double>(i));
     double sum = 0.0;
-    for (const float depth : seen.frame.depth_m) sum += depth;
+    for (const float depth : seen.depth_m) sum += depth;
     const double expected = 3.0 - 0.5 * static_cast<double>(i);
     EXPECT_NEAR(sum / 307200.0, expected, 0.01);  // noise of 1.4 cm and steps of up to 3 cm
-    EXPECT_EQ(seen.frame.semantics.at(10, 10).most_probable(), 5);
+    EXPECT_EQ(seen.semantics.at(10, 10).most_probable(), 5);
   }
 }
 
 TEST(SimulatedSequence, NoiseIsKeyedByAttemptAndFrameNotByTheOrderOfAsking) {
   const SimulatedSequence sequence = three_steps_towards_a_wall(LabelMode::kNone);
   const RandomStream first(7), other = first.fork(1);
-  const RgbdFrame early = sequence.at(1, first).frame;
-  sequence.at(2, first);
-  sequence.at(0, other);
-  const RgbdFrame late = sequence.at(1, first).frame;
+  const RgbdFrame early = sequence.frame(1, first);
+  sequence.frame(2, first);
+  sequence.frame(0, other);
+  const RgbdFrame late = sequence.frame(1, first);
   EXPECT_EQ(early.depth_m, late.depth_m);
   EXPECT_EQ(early.color, late.color);
-  EXPECT_NE(sequence.at(1, other).frame.depth_m, early.depth_m);
-  EXPECT_NE(sequence.at(1, other).frame.color, early.color);
+  EXPECT_NE(sequence.frame(1, other).depth_m, early.depth_m);
+  EXPECT_NE(sequence.frame(1, other).color, early.color);
   // The wall looks the same from everywhere, so that equal noise would give equal pictures.
-  EXPECT_NE(sequence.at(0, first).frame.color, early.color);
+  EXPECT_NE(sequence.frame(0, first).color, early.color);
   EXPECT_TRUE(early.semantics.index.empty());
 }
 
