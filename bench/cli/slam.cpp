@@ -13,6 +13,7 @@
 #include "bench/cli/scene_option.hpp"
 #include "bench/cli/slam_report.hpp"
 #include "bench/run/recorded_camera.hpp"
+#include "scenes/recorded/frame_sequence.hpp"
 #include "scenes/recorded/scannet_folder.hpp"
 #include "sim/world/scene_sequence.hpp"
 #include "slam/core/counted.hpp"

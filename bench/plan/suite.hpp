@@ -21,7 +21,6 @@ namespace mh {
 std::string_view name(LabelMode labels);
 /// "exact labels", "labels from boxes", "no labels"
 std::string with_labels(LabelMode labels);
-std::string_view name(Overlap overlap);
 
 /// A table of the paper that a suite is made after.
 enum class Published { kTable2 };

@@ -14,6 +14,7 @@
 #include "bench/results/summary.hpp"
 #include "bench/store/row_digest.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/settings_io.hpp"
 
 namespace mh {
 namespace {
@@ -463,7 +464,7 @@ void put_rows(SQLite::Database& db, const std::string& key, const RunResult& run
     row << key << static_cast<std::int64_t>(p);
     // An outside program has no such settings: the rest stays null.
     if (run.spec.system.kind != SystemKind::kOutside)
-      row << s.gamma << s.xi << s.alpha << s.beta << name(s.overlap)
+      row << s.gamma << s.xi << s.alpha << s.beta << SettingsWriter::word_of(s.overlap)
           << std::int64_t{s.void_is_a_label};
     row.put();
   }

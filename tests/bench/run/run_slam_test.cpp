@@ -15,6 +15,7 @@
 #include "bench/metrics/evaluate.hpp"
 #include "bench/run/recorded_camera.hpp"
 #include "bench/systems/stage_clock.hpp"
+#include "scenes/recorded/frame_sequence.hpp"
 #include "scenes/recorded/tum_folder.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/trajectory_io.hpp"
