@@ -70,8 +70,10 @@ class SettingsReader {
       value = static_cast<T>(
           node.as_int(static_cast<std::int64_t>(range.min), static_cast<std::int64_t>(range.max)));
     } else {
-      value = node.as_double(range.min, range.max);
-      if (!allows(range, value)) node.fail(fmt::format("{} is outside {}", value, interval(range)));
+      const double number = node.as_double();
+      if (!allows(range, number))
+        node.fail(fmt::format("{} is outside {}", node.as_string(), interval(range)));
+      value = number;
     }
   }
 

@@ -347,7 +347,7 @@ TEST(Sweep, TheBestPointIsComparedWithTheSuitesOwnSettings) {
   EXPECT_EQ(plain->point, 3u) << "of equals the suite's own";
   EXPECT_EQ(plain->equals, 4u);
   const std::string table = results_table(place.suite, runs);
-  EXPECT_NE(table.find("alpha 0.7, beta 0.75: 100.00%, +0.2000"), std::string::npos) << table;
+  EXPECT_NE(table.find("gamma 1, alpha 0.7: 100.00%, +0.2000"), std::string::npos) << table;
   EXPECT_NE(table.find("held_out: 100.00% at each of 4 points"), std::string::npos) << table;
   runs[0].points[0].held_out = runs[0].points[2].held_out;
   EXPECT_NE(results_table(place.suite, runs).find("; 2 points are equal\n"), std::string::npos);
