@@ -36,7 +36,7 @@ struct SlamRunOptions {
   bool localize = false;  ///< the map is frozen: frames are found in it, never added
   bool resume = false;    ///< frames up to the last one that the state was fed are passed by
   std::size_t first = 0, count = SIZE_MAX;  ///< frames of the sequence to offer
-  RandomStream noise = {};                  ///< of the sensors, where the sequence is simulated
+  RandomStream noise = RandomStream();      ///< of the sensors, where the sequence is simulated
   int small_map = 5;  ///< a map of at most so many keyframes is given up when tracking is lost
 };
 

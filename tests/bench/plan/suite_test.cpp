@@ -211,7 +211,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"parameters: {map: new, semantics.alpha: [0.5]}\n",
                 "'new' is none of fixed, rebuilt"},
         BadLine{"parameters: {map: fixed, semantics.alpha: [0.5, 1.2]}\n",
-                "parameters.alpha[1]: 1.2 is outside [0, 1)"},
+                "parameters.semantics.alpha[1]: 1.2 is outside [0, 1)"},
         BadLine{"parameters: {map: fixed, semantics.xi: [0.5]}\n",
                 "parameters.semantics.xi[0]: 0.5 is outside"},
         BadLine{"parameters: {map: fixed, semantics.gamma: [-1]}\n",
