@@ -8,8 +8,8 @@
 namespace mh {
 
 SlamConfig settings_of(const SystemSpec& system, const SlamConfig& settings) {
-  SlamConfig seen = system.kind == SystemKind::kOutside ? SlamConfig{} : settings;
-  if (system.kind != SystemKind::kSemantic) seen.semantics = seen.semantics.neutralized();
+  SlamConfig seen = system.is_program() ? SlamConfig{} : settings;
+  if (!system.weighs_labels()) seen.semantics = seen.semantics.neutralized();
   return seen;
 }
 
@@ -63,7 +63,7 @@ std::vector<RunSpec> expand(const Suite& suite) {
         for (const SystemSpec& system : suite.systems) {
           const std::vector<Study> studies = studies_of(system, suite);
           const std::vector<LabelMode> labels =
-              system.kind == SystemKind::kPlain ? std::vector{LabelMode::kNone} : suite.labels;
+              !system.sees_labels() ? std::vector{LabelMode::kNone} : suite.labels;
           for (std::size_t s = 0; s < studies.size(); ++s)
             for (const LabelMode mode : labels) {
               std::string run = suite.environments.size() > 1 ? environment.name + "-" : "";

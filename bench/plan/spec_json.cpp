@@ -71,7 +71,7 @@ Json optional_json(const std::optional<T>& value) {
 Json to_json(const SystemSpec& system) {
   const OutsideProgram& p = system.outside;
   Json json = {{"kind", name(system.kind)}, {"name", system.name}};
-  if (system.kind == SystemKind::kOutside)
+  if (system.is_program())
     json["outside"] = {{"command", p.command},
                        {"mode", name(p.mode)},
                        {"folder", p.folder.string()},
@@ -88,7 +88,7 @@ SystemSpec system_from_json(const Json& json) {
                                                     SystemKind::kOutside}),
                     .name = json.at("name"),
                     .outside = {}};
-  if (system.kind == SystemKind::kOutside) {
+  if (system.is_program()) {
     const Json& p = json.at("outside");
     system.outside = {
         .name = system.name,

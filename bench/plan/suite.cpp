@@ -12,6 +12,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/settings_io.hpp"
+#include "slam/core/suggest.hpp"
 #include "slam/core/text_file.hpp"
 #include "slam/pipeline/settings.hpp"
 
@@ -26,6 +27,41 @@ constexpr Names<LabelMode, 5> kLabels{{{"exact", LabelMode::kExact},
                                        {"detector", LabelMode::kDetector},
                                        {"none", LabelMode::kNone}}};
 constexpr Names<Published, 1> kPublished{{{"table2", Published::kTable2}}};
+
+/// @throws InputError at this place if no system of the suite has the name.
+std::size_t system_named(const YamlReader& node, const std::vector<SystemSpec>& systems) {
+  const std::string name = node.as_string();
+  const auto found = std::ranges::find(systems, name, &SystemSpec::name);
+  if (found == systems.end()) {
+    const auto known = words_of(systems, [](const SystemSpec& s) { return s.name; });
+    node.fail(fmt::format("'{}' is none of the suite's systems{}", name, hint(name, known)));
+  }
+  return static_cast<std::size_t>(found - systems.begin());
+}
+
+/// Pairs of different systems, each once; semantic and plain where nothing is said.
+std::vector<SystemPair> read_compare(YamlReader& yaml, const std::vector<SystemSpec>& systems) {
+  std::vector<SystemPair> pairs;
+  const auto node = yaml.find("compare");
+  if (!node) {
+    const auto own = [&](SystemKind kind) {
+      return static_cast<std::size_t>(std::ranges::find(systems, kind, &SystemSpec::kind) -
+                                      systems.begin());
+    };
+    const SystemPair pair{own(SystemKind::kSemantic), own(SystemKind::kPlain)};
+    if (pair.first < systems.size() && pair.second < systems.size()) pairs.push_back(pair);
+    return pairs;
+  }
+  for (const YamlReader& item : node->items()) {
+    const std::vector<YamlReader> names = item.items();
+    if (names.size() != 2) item.fail("must be two systems: [first, second]");
+    const SystemPair pair{system_named(names[0], systems), system_named(names[1], systems)};
+    if (pair.first == pair.second) item.fail("compares a system with itself");
+    if (std::ranges::find(pairs, pair) != pairs.end()) item.fail("stands twice");
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
 
 Environment& only_environment(Suite& suite, const char* option) {
   if (suite.environments.size() != 1)
@@ -86,7 +122,8 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
     if (!names.insert(suite.systems.back().name).second)
       system.fail(fmt::format("'{}' stands twice", suite.systems.back().name));
   }
-  if (yaml.has("vocabulary") || std::ranges::any_of(suite.systems, needs_vocabulary))
+  suite.compare = read_compare(yaml, suite.systems);
+  if (yaml.has("vocabulary") || std::ranges::any_of(suite.systems, &SystemSpec::takes_settings))
     suite.vocabulary = named_file(yaml.at("vocabulary"), paths, Shipped::kVocabulary);
   for (const YamlReader& labels : items_of(yaml.at("labels")))
     add_once(suite.labels, one_of(labels, kLabels), labels);

@@ -25,6 +25,12 @@ std::string with_labels(LabelMode labels);
 /// A table of the paper that a suite is made after.
 enum class Published { kTable2 };
 
+/// Two systems of a suite, by index.
+struct SystemPair {
+  std::size_t first = 0, second = 0;
+  friend bool operator==(const SystemPair&, const SystemPair&) = default;
+};
+
 /// A benchmark as data: the grid environments x systems x labels x levels x parameters x trials.
 struct Suite {
   std::string name;
@@ -39,8 +45,11 @@ struct Suite {
   SlamConfig slam;
   Sweep sweep;
   ProtocolConfig protocol;
-  /// The semantic system counts as not inferior where the interval of its success minus the plain
-  /// one's stays above -margin. Stated in the suite, before anything is measured.
+  /// Which systems are set against which: first minus second. A suite that says nothing compares
+  /// `semantic` with `plain`, where it has both.
+  std::vector<SystemPair> compare;
+  /// The first of a pair counts as not inferior where the interval of its success minus the
+  /// second's stays above -margin. Stated in the suite, before anything is measured.
   std::optional<double> non_inferiority_margin;
   std::optional<Published> published;     ///< whose figures stand beside those measured
   GateConfig gate;                        ///< what `modelhouse check` tolerates

@@ -22,12 +22,16 @@ struct SystemSpec {
   SystemKind kind = SystemKind::kSemantic;
   std::string name = "semantic";
   OutsideProgram outside;  ///< of an outside program alone
-};
 
-/// Modelhouse's own systems do; an outside program brings what it needs.
-inline bool needs_vocabulary(const SystemSpec& system) {
-  return system.kind != SystemKind::kOutside;
-}
+  // What it can do; nobody else asks for its kind.
+  bool is_program() const { return kind == SystemKind::kOutside; }
+  bool sees_labels() const { return kind != SystemKind::kPlain; }
+  /// Has the settings of SlamConfig. It needs a vocabulary, and tells candidates, matches and how
+  /// far a relocalization came; a program brings and tells what it likes.
+  bool takes_settings() const { return !is_program(); }
+  /// Labels enter its matching: equation 2.
+  bool weighs_labels() const { return takes_settings() && sees_labels(); }
+};
 
 /// `semantic`, `plain`, or a mapping {name, command, protocol: trajectory |
 /// conversation} with `run_limit_s`, `answer_limit_s`, `memory_limit_mb`, `disk_limit_mb` where the

@@ -63,7 +63,7 @@ Json environment_json(const Suite& suite, const Environment& e) {
 }
 
 Json system_json(const SystemSpec& system) {
-  if (system.kind != SystemKind::kOutside) return system.name;
+  if (!system.is_program()) return system.name;
   return {{"name", system.name},
           {"command", system.outside.command},
           {"protocol", name(system.outside.mode)},
@@ -147,16 +147,17 @@ Json count_json(int count) {
 }
 
 /// @param system  that answered
-Json query_json(const QueryScore& q, SystemKind system) {
-  Json json = {{"frame", q.answer.index},
-               {"stamp_ns", q.stamp_ns},
-               {"success", q.success},
-               {"correct", q.correct},
-               {"false", q.wrong},
-               {"stage", is_told(system, q.answer.stage) ? Json(name(q.answer.stage)) : Json()},
-               {"attempts", q.answer.attempts},
-               {"blank_frames", q.answer.blank_frames},
-               {"truth", pose_json(q.true_world_from_camera)}};
+Json query_json(const QueryScore& q, const SystemSpec& system) {
+  Json json = {
+      {"frame", q.answer.index},
+      {"stamp_ns", q.stamp_ns},
+      {"success", q.success},
+      {"correct", q.correct},
+      {"false", q.wrong},
+      {"stage", reports_stage(system, q.answer.stage) ? Json(name(q.answer.stage)) : Json()},
+      {"attempts", q.answer.attempts},
+      {"blank_frames", q.answer.blank_frames},
+      {"truth", pose_json(q.true_world_from_camera)}};
   if (q.success) {
     json["estimate"] = pose_json(*q.answer.world_from_camera);
     json["distance_m"] = number(q.distance_m);
@@ -222,7 +223,7 @@ Json digests_json(const RunResult& run) {
 
 /// What an outside program does not have or tell.
 Json of_ours(const SystemSpec& system, const Json& value) {
-  return system.kind == SystemKind::kOutside ? Json() : value;
+  return system.is_program() ? Json() : value;
 }
 
 Json points_json(const RunResult& run) {
@@ -232,7 +233,7 @@ Json points_json(const RunResult& run) {
     for (const QuerySet set : kQuerySets) {
       Json list = Json::array();
       for (const QueryScore& q : queries(run.points[i], set))
-        list.push_back(query_json(q, run.spec.system.kind));
+        list.push_back(query_json(q, run.spec.system));
       point[std::string(name(set))] = std::move(list);
     }
     points.push_back(std::move(point));
@@ -325,21 +326,25 @@ Json category_json(const CategoryRow& row, const Suite& suite) {
           {"second_tour", summary_json(row.second_tour)}};
 }
 
-Json comparison_json(const Comparison& c) {
+Json comparison_json(const Suite& suite, const SystemPair& systems, const Comparison& c) {
+  const std::string& first = suite.systems[systems.first].name;
+  const std::string& second = suite.systems[systems.second].name;
   const Verdict v = verdict(c);
   const auto known = [&](double value) { return c.pairs > 0 ? number(value) : Json(); };
   return {{"what", c.what},
+          {"first", first},
+          {"second", second},
           {"pairs", c.pairs},
           {"in_family", c.in_family},
-          {"semantic_minus_plain", known(c.difference)},
+          {"difference", known(c.difference)},
           {"low", known(c.low)},
           {"high", known(c.high)},
           {"p", known(c.p)},
           {"p_holm", counts(c) ? Json(c.p_holm) : Json()},
           {"detectable", known(c.detectable)},
           {"better", v == Verdict::kUndecided     ? Json()
-                     : v == Verdict::kFirstBetter ? Json("semantic")
-                                                  : Json("plain")}};
+                     : v == Verdict::kFirstBetter ? Json(first)
+                                                  : Json(second)}};
 }
 
 }  // namespace
@@ -353,7 +358,7 @@ Json results_json(const Suite& suite, std::span<const RunResult> runs,
   for (const Row& row : rows) row_list.push_back(row_json(row, suite));
   for (const Family& family : compare_systems(suite, rows))
     for (const Comparison& c : family.comparisons) {
-      Json json = comparison_json(c);
+      Json json = comparison_json(suite, family.systems, c);
       json["environment"] = suite.environments[family.environment].name;
       json["level"] = level_name(suite.levels[family.level]);
       comparisons.push_back(std::move(json));
@@ -364,7 +369,7 @@ Json results_json(const Suite& suite, std::span<const RunResult> runs,
       categories.push_back(category_json(row, suite));
     for (const SceneFamily& family : compare_over_scenes(suite, rows))
       for (const Comparison& c : family.comparisons) {
-        Json json = comparison_json(c);
+        Json json = comparison_json(suite, family.systems, c);
         json["level"] = level_name(suite.levels[family.level]);
         json["parameters"] = family.parameters;
         if (suite.non_inferiority_margin && c.what.starts_with("success"))

@@ -16,7 +16,7 @@
 namespace mh {
 namespace {
 
-// Above this share of successes of the plain system nothing is left to be gained.
+// Above this share of successes of a system without labels nothing is left to be gained by them.
 constexpr double kSaturated = 0.97;
 
 std::string title(QuerySet set) {
@@ -127,7 +127,7 @@ std::string table_2(const Block& block) {
         fmt::format("  {}, {}\n", title(set), counted(std::lround(queries), "query", "queries"));
     for (const Row* row : block.rows) {
       const QuerySummary& s = summary(*row, set);
-      const bool saturated = block.system(row).kind == SystemKind::kPlain && s.success > kSaturated;
+      const bool saturated = !block.system(row).sees_labels() && s.success > kSaturated;
       text += fmt::format(
           "    {:<{}}{:>22}{:>22}{}{}\n", block.system(row).name, name_width(block.suite, 42),
           s.queries > 0 ? fmt::format("{:.2f}", 100 * s.success) : "-", meters(s.distance_mean_m),
@@ -199,7 +199,7 @@ std::string failing_stages(const Block& block) {
       const char* comma = "";
       for (const auto& [stage, count] : stages) {
         text += fmt::format("{} {} {}", comma, count,
-                            is_told(block.system(row).kind, stage) ? name(stage) : "not told");
+                            reports_stage(block.system(row), stage) ? name(stage) : "not told");
         comma = ",";
       }
       text += "\n";
@@ -229,7 +229,7 @@ std::string mapping_details(const Block& block) {
 std::string penalties(const Block& block) {
   std::string text;
   for (const Row* row : block.rows) {
-    if (block.system(row).kind != SystemKind::kSemantic || row->trials.empty()) continue;
+    if (!block.system(row).weighs_labels() || row->trials.empty()) continue;
     text += "  pairs penalized by xi (of those compared; rejected by it; ratio tests it helped)\n";
     for (std::size_t m = 0; m < row->matches.size(); ++m) {
       const MatcherCounts& c = row->matches[m];
@@ -245,16 +245,20 @@ std::string penalties(const Block& block) {
 }
 
 std::string common_ate(const Block& block) {
-  const Row *semantic = nullptr, *plain = nullptr;
-  for (const Row* row : block.rows) {
-    if (row->trials.empty()) continue;
-    if (block.system(row).kind == SystemKind::kSemantic) semantic = row;
-    if (block.system(row).kind == SystemKind::kPlain) plain = row;
+  std::string text;
+  for (const auto& [first, second] : block.suite.compare) {
+    const auto row_of = [&](std::size_t system) -> const Row* {
+      const auto row = std::ranges::find_if(
+          block.rows, [&](const Row* r) { return r->system == system && !r->trials.empty(); });
+      return row == block.rows.end() ? nullptr : *row;
+    };
+    const Row *one = row_of(first), *other = row_of(second);
+    if (one == nullptr || other == nullptr) continue;
+    const auto [a, b] = ate_over_common_frames(*one, *other);
+    text += fmt::format("  ATE over the frames that both tracked, m: {} {}, {} {}\n",
+                        block.system(one).name, meters(a), block.system(other).name, meters(b));
   }
-  if (semantic == nullptr || plain == nullptr) return "";
-  const auto [a, b] = ate_over_common_frames(*semantic, *plain);
-  return fmt::format("  ATE over the frames that both tracked, m: semantic {}, plain {}\n",
-                     meters(a), meters(b));
+  return text;
 }
 
 /// "[-0.0123, +0.0456]"; "-" where too few pairs leave it open.
@@ -264,12 +268,19 @@ std::string interval(const Comparison& c) {
              : std::string("-");
 }
 
-std::string comparison_line(const Comparison& c) {
+/// The two systems of a family, by name.
+struct PairNames {
+  const std::string &first, &second;
+  PairNames(const Suite& suite, const SystemPair& pair)
+      : first(suite.systems[pair.first].name), second(suite.systems[pair.second].name) {}
+};
+
+std::string comparison_line(const PairNames& names, const Comparison& c) {
   if (c.pairs == 0) return fmt::format("  {:<62}-  (no pairs)\n", c.what);
   const Verdict v = verdict(c);
   const std::string word =
-      v == Verdict::kFirstBetter    ? "semantic is better"
-      : v == Verdict::kSecondBetter ? "plain is better"
+      v == Verdict::kFirstBetter    ? names.first + " is better"
+      : v == Verdict::kSecondBetter ? names.second + " is better"
       : std::isfinite(c.detectable)
           ? fmt::format("undecided; smallest detectable difference {:.4f}", c.detectable)
           : std::string("undecided; too few pairs");
@@ -299,31 +310,35 @@ std::string block_text(const Block& block) {
 }
 
 /// Of a comparison of success where the suite states a margin.
-std::string margin_line(const Suite& suite, const Comparison& c) {
+std::string margin_line(const Suite& suite, const PairNames& names, const Comparison& c) {
   if (!suite.non_inferiority_margin || c.pairs == 0 || !c.what.starts_with("success")) return "";
+  const double margin = *suite.non_inferiority_margin;
+  const std::string finding = fmt::format("{} is not worse", names.first);
   return fmt::format("  {:<62}{} by more than the {:.3f} stated beforehand\n", "",
-                     not_inferior(c, *suite.non_inferiority_margin) ? "semantic is not worse"
-                     : enough_for(c, *suite.non_inferiority_margin)
-                         ? "not shown that semantic is not worse"
-                         : "too few pairs to show that semantic is not worse",
-                     *suite.non_inferiority_margin);
+                     not_inferior(c, margin) ? finding
+                     : enough_for(c, margin) ? "not shown that " + finding
+                                             : "too few pairs to show that " + finding,
+                     margin);
 }
 
 std::string family_text(const Suite& suite, const Family& family) {
+  const PairNames names(suite, family.systems);
   std::string text = fmt::format(
-      "\nsemantic minus plain, level {}: blocks of queries resampled, 95 % intervals, Holm over "
-      "{} of success and distance\n",
-      level_name(suite.levels[family.level]),
+      "\n{} minus {}, level {}: blocks of queries resampled, 95 % intervals, Holm over {} of "
+      "success "
+      "and distance\n",
+      names.first, names.second, level_name(suite.levels[family.level]),
       counted(family_size(family.comparisons), "comparison"));
   if (suite.trials == 1)
     text += "  one trial: this holds for these maps; other seeds draw other maps (--trials 10)\n";
-  for (const Comparison& c : family.comparisons) text += comparison_line(c) + margin_line(suite, c);
+  for (const Comparison& c : family.comparisons)
+    text += comparison_line(names, c) + margin_line(suite, names, c);
   return text;
 }
 
 /// The plain system looks at no labels: its runs stand beside each kind, told of with the first.
 bool told_above(const Suite& suite, const Row& row) {
-  return suite.systems[row.system].kind == SystemKind::kPlain && row.labels != suite.labels.front();
+  return !suite.systems[row.system].sees_labels() && row.labels != suite.labels.front();
 }
 
 /// A suite of one place: everything about it.
@@ -364,22 +379,24 @@ std::string category_line(const Suite& suite, const CategoryRow& row,
                           percent(s, &QuerySummary::correct), meters(s.distance_mean_m));
   }
   const bool saturated =
-      suite.systems[row.system].kind == SystemKind::kPlain && row.held_out.success > kSaturated;
+      !suite.systems[row.system].sees_labels() && row.held_out.success > kSaturated;
   return text + (saturated ? "   saturated" : "") + lacking(row) + "\n";
 }
 
 std::string scene_family_text(const Suite& suite, const SceneFamily& family) {
+  const PairNames names(suite, family.systems);
   std::string text = fmt::format(
-      "\nsemantic minus plain, level {}: scenes resampled, 95 % intervals, Wilcoxon signed-rank, "
-      "Holm over {} of success, distance and ATE\n",
-      level_name(suite.levels[family.level]),
+      "\n{} minus {}, level {}: scenes resampled, 95 % intervals, Wilcoxon signed-rank, Holm over "
+      "{} "
+      "of success, distance and ATE\n",
+      names.first, names.second, level_name(suite.levels[family.level]),
       counted(family_size(family.comparisons), "comparison"));
   const std::size_t scenes = suite.environments.size();
   for (const Comparison& c : family.comparisons) {
     if (c.pairs < scenes)
       text += fmt::format("  over {} of {}, where both have a value:\n", c.pairs,
                           counted(scenes, "scene"));
-    text += comparison_line(c) + margin_line(suite, c);
+    text += comparison_line(names, c) + margin_line(suite, names, c);
   }
   return text;
 }
@@ -482,10 +499,9 @@ std::string sweep_text(const Suite& suite, const std::vector<Row>& rows) {
     const SlamConfig seen = settings_of(system, points[row.parameters]);
     text += fmt::format("  {:<{}}", system.name, name_width(suite));
     for (std::size_t v = 0; v < widths.size(); ++v)
-      text += fmt::format(
-          "{:>{}}",
-          system.kind == SystemKind::kOutside ? "-" : shown_value(seen, suite.sweep.varied[v]),
-          widths[v]);
+      text += fmt::format("{:>{}}",
+                          system.is_program() ? "-" : shown_value(seen, suite.sweep.varied[v]),
+                          widths[v]);
     for (const QuerySet set : kQuerySets) {
       const QuerySummary& s = summary(row, set);
       if (asked(categories, set))
@@ -563,7 +579,7 @@ std::string times_table(const Suite& suite, std::span<const RunResult> runs) {
   const auto label = [&](const Row& row) {
     const SystemSpec& system = suite.systems[row.system];
     std::string text = fmt::format("{}, {}", suite.environments[row.environment].name, system.name);
-    if (system.kind != SystemKind::kPlain) text += ", " + with_labels(row.labels);
+    if (system.sees_labels()) text += ", " + with_labels(row.labels);
     return text;
   };
   std::size_t width = 44;

@@ -299,7 +299,7 @@ void draw_header(Canvas& canvas, const World& world, const RunResult& run, Query
       canvas,
       fmt::format(
           "{}: {} system{}{}", run.spec.environment.name, run.spec.system.name,
-          run.spec.system.kind == SystemKind::kPlain ? "" : ", " + with_labels(run.spec.labels),
+          !run.spec.system.sees_labels() ? "" : ", " + with_labels(run.spec.labels),
           world.cut ? fmt::format(", first {}", counted(*run.spec.max_frames, "frame")) : ""),
       38, 17, kInk, true);
   const QuerySummary s = summarize(queries(run.points.front(), set));

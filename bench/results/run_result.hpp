@@ -66,9 +66,9 @@ struct RunResult {
   Circumstances circumstances;
 };
 
-/// Whether a system said how far its relocalization came: an outside one need not, ours do.
-inline bool is_told(SystemKind system, RelocalizationStage stage) {
-  return system != SystemKind::kOutside || stage != RelocalizationStage::kNone;
+/// Whether a system reported how far its relocalization came: a program need not.
+inline bool reports_stage(const SystemSpec& system, RelocalizationStage stage) {
+  return system.takes_settings() || stage != RelocalizationStage::kNone;
 }
 
 /// A run that came to nothing.

@@ -81,7 +81,7 @@ PairedDifference between(const std::optional<double>& a, const std::optional<dou
   return a && b ? PairedDifference{*a - *b, true} : PairedDifference{};
 }
 
-/// Semantic minus plain in one scene.
+/// First minus second in one scene.
 using Measure = PairedDifference (*)(const Row&, const Row&, QuerySet);
 
 template <double QuerySummary::*kField>
@@ -100,16 +100,16 @@ PairedDifference ate(const Row& a, const Row& b, QuerySet) {
   return between(first, second);
 }
 
-std::vector<Comparison> compare(const std::vector<const Row*>& semantic,
-                                const std::vector<const Row*>& plain, LabelMode labels,
+std::vector<Comparison> compare(const std::vector<const Row*>& first,
+                                const std::vector<const Row*>& second, LabelMode labels,
                                 std::uint64_t seed) {
   std::vector<Comparison> comparisons;
   const auto add = [&](const std::string& what, Measure measure, QuerySet set, bool shares,
                        bool more_is_better, bool in_family) {
     std::vector<PairedDifference> differences;
-    for (std::size_t i = 0; i < semantic.size(); ++i)
-      differences.push_back(has_result(semantic[i]) && has_result(plain[i])
-                                ? measure(*semantic[i], *plain[i], set)
+    for (std::size_t i = 0; i < first.size(); ++i)
+      differences.push_back(has_result(first[i]) && has_result(second[i])
+                                ? measure(*first[i], *second[i], set)
                                 : PairedDifference{});
     comparisons.push_back(compare_scenes(what, differences, shares, seed));
     comparisons.back().more_is_better = more_is_better;
@@ -128,12 +128,6 @@ std::vector<Comparison> compare(const std::vector<const Row*>& semantic,
   add(fmt::format("ATE where both track, m, {}", with_labels(labels)), ate, QuerySet::kHeldOut,
       false, false, true);
   return comparisons;
-}
-
-std::optional<std::size_t> system_of(const Suite& suite, SystemKind kind) {
-  for (std::size_t s = 0; s < suite.systems.size(); ++s)
-    if (suite.systems[s].kind == kind) return s;
-  return std::nullopt;
 }
 
 }  // namespace
@@ -163,21 +157,19 @@ std::vector<CategoryRow> make_category_rows(const Suite& suite, std::span<const 
 
 std::vector<SceneFamily> compare_over_scenes(const Suite& suite, std::span<const Row> rows) {
   std::vector<SceneFamily> families;
-  const auto semantic = system_of(suite, SystemKind::kSemantic);
-  const auto plain = system_of(suite, SystemKind::kPlain);
-  if (!semantic || !plain) return families;
-  for (std::size_t level = 0; level < suite.levels.size(); ++level)
-    for (std::size_t p = 0; p < parameter_points(suite).size(); ++p) {
-      SceneFamily family{level, p, {}};
-      for (const LabelMode labels : suite.labels)
-        for (Comparison& c :
-             compare(scenes_of(suite, rows, level, labels, p, *semantic),
-                     scenes_of(suite, rows, level, labels, p, *plain), labels, suite.seed))
-          family.comparisons.push_back(std::move(c));
-      if (family.comparisons.empty()) continue;
-      holm(family.comparisons);
-      families.push_back(std::move(family));
-    }
+  for (const SystemPair& systems : suite.compare)
+    for (std::size_t level = 0; level < suite.levels.size(); ++level)
+      for (std::size_t p = 0; p < parameter_points(suite).size(); ++p) {
+        SceneFamily family{level, p, systems, {}};
+        for (const LabelMode labels : suite.labels)
+          for (Comparison& c : compare(scenes_of(suite, rows, level, labels, p, systems.first),
+                                       scenes_of(suite, rows, level, labels, p, systems.second),
+                                       labels, suite.seed))
+            family.comparisons.push_back(std::move(c));
+        if (family.comparisons.empty()) continue;
+        holm(family.comparisons);
+        families.push_back(std::move(family));
+      }
   return families;
 }
 

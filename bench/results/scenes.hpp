@@ -34,11 +34,12 @@ inline const QuerySummary& summary(const CategoryRow& row, QuerySet set) {
 /// last), then system.
 std::vector<CategoryRow> make_category_rows(const Suite& suite, std::span<const Row> rows);
 
-/// Semantic minus plain over scenes, paired: one family per level and parameter point, corrected
-/// by Holm. Success, correct, false, distance over the queries that both answered, ATE over the
-/// frames that both tracked.
+/// First minus second of each pair that the suite compares, over scenes: one family per pair, level
+/// and parameter point, corrected by Holm. Success, correct, false, distance over the queries that
+/// both answered, ATE over the frames that both tracked.
 struct SceneFamily {
   std::size_t level = 0, parameters = 0;
+  SystemPair systems;
   std::vector<Comparison> comparisons;
 };
 std::vector<SceneFamily> compare_over_scenes(const Suite& suite, std::span<const Row> rows);

@@ -93,22 +93,22 @@ std::vector<PairedDifference> differences(const Row& first, const Row& second, Q
   return result;
 }
 
-std::vector<Comparison> compare_rows(const Row& semantic, const Row& plain, std::uint64_t seed) {
+std::vector<Comparison> compare_rows(const Row& first, const Row& second, std::uint64_t seed) {
   std::vector<Comparison> comparisons;
   for (const QuerySet set : kQuerySets) {
-    if (summary(semantic, set).queries == 0) continue;
+    if (summary(first, set).queries == 0) continue;
     const auto label = [&](const char* what) {
-      return fmt::format("{}, {}, {}", what, name(set), with_labels(semantic.labels));
+      return fmt::format("{}, {}, {}", what, name(set), with_labels(first.labels));
     };
     const auto success = [](const QueryScore& q) { return std::optional(q.success ? 1.0 : 0.0); };
     const auto correct = [](const QueryScore& q) { return std::optional(q.correct ? 1.0 : 0.0); };
     comparisons.push_back(
-        compare_paired(label("success"), differences(semantic, plain, set, success), true, seed));
+        compare_paired(label("success"), differences(first, second, set, success), true, seed));
     comparisons.push_back(
-        compare_paired(label("correct"), differences(semantic, plain, set, correct), true, seed));
+        compare_paired(label("correct"), differences(first, second, set, correct), true, seed));
     comparisons.back().in_family = false;
     comparisons.push_back(
-        compare_distances(semantic, plain, set, label("distance where both answer, m"), seed));
+        compare_distances(first, second, set, label("distance where both answer, m"), seed));
     comparisons.back().more_is_better = false;
   }
   return comparisons;
@@ -119,7 +119,7 @@ bool belongs(const RunSpec& spec, const Suite& suite, const Row& row) {
   const SystemSpec& system = suite.systems[row.system];
   return spec.environment.name == suite.environments[row.environment].name &&
          spec.level == suite.levels[row.level] && spec.system.name == system.name &&
-         (system.kind == SystemKind::kPlain || spec.labels == row.labels);
+         (!system.sees_labels() || spec.labels == row.labels);
 }
 
 /// Which pass over a run's queries had these settings.
@@ -244,22 +244,21 @@ std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs,
 
 std::vector<Family> compare_systems(const Suite& suite, std::span<const Row> rows) {
   std::vector<Family> families;
-  for (const Row& semantic : rows) {
-    if (suite.systems[semantic.system].kind != SystemKind::kSemantic || semantic.parameters != 0 ||
-        semantic.trials.empty())
-      continue;
-    const auto plain = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
-      return suite.systems[row.system].kind == SystemKind::kPlain && !row.trials.empty() &&
-             row.environment == semantic.environment && row.level == semantic.level &&
-             row.labels == semantic.labels && row.parameters == semantic.parameters;
-    });
-    if (plain == rows.end()) continue;
-    if (families.empty() || families.back().environment != semantic.environment ||
-        families.back().level != semantic.level)
-      families.push_back({semantic.environment, semantic.level, {}});
-    for (Comparison& c : compare_rows(semantic, *plain, suite.seed))
-      families.back().comparisons.push_back(std::move(c));
-  }
+  for (const SystemPair& systems : suite.compare)
+    for (const Row& first : rows) {
+      if (first.system != systems.first || first.parameters != 0 || first.trials.empty()) continue;
+      const auto second = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
+        return row.system == systems.second && !row.trials.empty() &&
+               row.environment == first.environment && row.level == first.level &&
+               row.labels == first.labels && row.parameters == first.parameters;
+      });
+      if (second == rows.end()) continue;
+      if (families.empty() || families.back().environment != first.environment ||
+          families.back().level != first.level || families.back().systems != systems)
+        families.push_back({first.environment, first.level, systems, {}});
+      for (Comparison& c : compare_rows(first, *second, suite.seed))
+        families.back().comparisons.push_back(std::move(c));
+    }
   for (Family& family : families) holm(family.comparisons);
   return families;
 }

@@ -68,14 +68,15 @@ std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs,
 /// What is compared: rows that differ in nothing but the system.
 struct Family {
   std::size_t environment = 0, level = 0;
+  SystemPair systems;
   std::vector<Comparison> comparisons;
 };
 
-/// Semantic minus plain at the suite's first parameter point, for each environment, level, label
-/// kind, query set and measure. The family of one environment and level, over which Holm corrects,
-/// are the two figures of the paper's Table 2 for each label kind and query set: success, and the
-/// distance where both answer. *Correct* stands beside it: where nothing is false it is success.
-/// Empty where the suite lacks one of the two.
+/// First minus second of each pair that the suite compares, at its first parameter point, for each
+/// environment, level, label kind, query set and measure. The family of one pair, environment and
+/// level, over which Holm corrects, are the two figures of the paper's Table 2 for each label kind
+/// and query set: success, and the distance where both answer. *Correct* stands beside it: where
+/// nothing is false it is success.
 std::vector<Family> compare_systems(const Suite& suite, std::span<const Row> rows);
 
 /// Distances over the queries that both answered, first minus second, by blocks of queries.

@@ -181,7 +181,7 @@ Trajectory run_recorded(const RunSpec& spec, const Sequence& mapping, RandomStre
 
 std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
                                     const std::filesystem::path& folder) {
-  if (spec.system.kind == SystemKind::kOutside) {
+  if (spec.system.is_program()) {
     if (spec.system.outside.mode == OutsideMode::kTrajectory) return nullptr;
     return make_conversation_system(spec.system.outside, world.robot.camera, spec.seed,
                                     folder / "outside.log");
@@ -237,8 +237,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
       take_trajectory();
       integrate();
     };
-    if (!tools.maps.folder().empty() && tools.occupancy &&
-        spec.system.kind != SystemKind::kOutside) {
+    if (!tools.maps.folder().empty() && tools.occupancy && !spec.system.is_program()) {
       bool mapped = false;
       const std::string kept = tools.maps.get("map", map_key(spec, world.inputs), [&] {
         map_now();

@@ -296,7 +296,7 @@ void put_frames(SQLite::Database& db, const std::string& key, const RunResult& r
 
 void put_queries(SQLite::Database& db, const std::string& key, const RunResult& run) {
   Insert row(db, "queries", 38);
-  const SystemKind kind = run.spec.system.kind;
+  const SystemSpec& system = run.spec.system;
   for (std::size_t p = 0; p < run.points.size(); ++p)
     for (const QuerySet set : kQuerySets)
       for (const QueryScore& q : queries(run.points[p], set)) {
@@ -311,7 +311,7 @@ void put_queries(SQLite::Database& db, const std::string& key, const RunResult& 
         row << key << static_cast<std::int64_t>(p) << name(set)
             << static_cast<std::int64_t>(q.answer.index) << q.stamp_ns << std::int64_t{q.success}
             << std::int64_t{q.correct} << std::int64_t{q.wrong}
-            << told(is_told(kind, q.answer.stage), name(q.answer.stage))
+            << told(reports_stage(system, q.answer.stage), name(q.answer.stage))
             << std::int64_t{q.answer.attempts} << std::int64_t{q.answer.blank_frames}
             << q.distance_m << q.angle_deg << q.aligned_distance_m
             << counted(&CandidateCounts::keyframes) << counted(&CandidateCounts::c1)
@@ -319,7 +319,7 @@ void put_queries(SQLite::Database& db, const std::string& key, const RunResult& 
             << counted(&CandidateCounts::final) << (c ? std::optional(c->label_mass) : std::nullopt)
             << q.true_world_from_camera << q.answer.world_from_camera << hex(q.answer.image_digest)
             << hex(q.answer.matching_digest) << hex(q.answer.pose_digest)
-            << told(kind != SystemKind::kOutside, matches_json(q.answer.matches).dump());
+            << told(system.takes_settings(), matches_json(q.answer.matches).dump());
         row.put();
       }
 }
@@ -463,7 +463,7 @@ void put_rows(SQLite::Database& db, const std::string& key, const RunResult& run
     const SemanticConfig& s = run.spec.points[p];
     row << key << static_cast<std::int64_t>(p);
     // An outside program has no such settings: the rest stays null.
-    if (run.spec.system.kind != SystemKind::kOutside)
+    if (!run.spec.system.is_program())
       row << s.gamma << s.xi << s.alpha << s.beta << SettingsWriter::word_of(s.overlap)
           << std::int64_t{s.void_is_a_label};
     row.put();

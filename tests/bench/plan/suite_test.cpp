@@ -206,6 +206,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "'both' is none of labels, augmented, words"},
         BadLine{"slam: {semantics: {delta: 1}}\n", "unknown key 'slam.semantics.delta'"},
         BadLine{"slam: 3\n", "must be a mapping"},
+        BadLine{"compare: [[semantic, plian]]\n", "'plian' is none of the suite's systems"},
+        BadLine{"compare: [[semantic]]\n", "must be two systems"},
+        BadLine{"compare: [[plain, plain]]\n", "compares a system with itself"},
+        BadLine{"compare: [[semantic, plain], [semantic, plain]]\n", "stands twice"},
         BadLine{"parameters: {map: fixed}\n", "varies nothing"},
         BadLine{"parameters: {semantics.alpha: [0.5]}\n", "key 'map' is missing"},
         BadLine{"parameters: {map: new, semantics.alpha: [0.5]}\n",
@@ -342,6 +346,12 @@ TEST_F(SuiteFile, ARebuiltMapMakesARunForEachPoint) {
     EXPECT_EQ(run.points[0], run.slam.semantics);
   }
   EXPECT_EQ(runs[2].name, "semantic-exact-pepper-p01-0");
+}
+
+TEST_F(SuiteFile, SaysWhichSystemsAreCompared) {
+  EXPECT_EQ(load("").compare, (std::vector<SystemPair>{{0, 1}}));
+  EXPECT_EQ(load("compare: [[plain, semantic]]\n").compare, (std::vector<SystemPair>{{1, 0}}));
+  EXPECT_TRUE(load("compare: []\n").compare.empty());
 }
 
 TEST_F(SuiteFile, ASweepTakesAnySetting) {
