@@ -330,7 +330,7 @@ TEST_F(CommandLine, BadSuites) {
   refused("seed", "0\nspeed: 3", "unknown key 'speed'");
   refused("levels", "[]", "levels: is empty");
   refused("name", "[unclosed", "is no valid YAML");
-  refused("slam", "{alpha: 1.2}\nx:", "slam.alpha: 1.2");
+  refused("slam", "{semantics: {alpha: 1.2}}\nx:", "slam.semantics.alpha: 1.2");
   EXPECT_EQ(files_left(), 0u);
 }
 
