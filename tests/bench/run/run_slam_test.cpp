@@ -94,7 +94,8 @@ TEST_F(Folder, FromFileAndFromMemoryGiveTheSameBits) {
   write(40);
   const auto on_disk = open_tum_folder(folder_, recorded_camera(settings()));
   std::vector<RgbdFrame> in_memory;
-  for (std::size_t i = 0; i < on_disk->size(); ++i) in_memory.push_back(on_disk->frame(i, {}));
+  for (std::size_t i = 0; i < on_disk->size(); ++i)
+    in_memory.push_back(on_disk->frame(i, RandomStream()));
   ASSERT_FALSE(in_memory[0].semantics.index.empty()) << "labels beside frames are not read";
 
   SlamState a = start(), b = start(), c = start();
@@ -364,10 +365,12 @@ TEST_F(TumFr1Rpy, IsTrackedWholeAndMoreAccuratelyThanByOrbSlam2) {
 // Each query is lost and on its own. Where it is, SLAM tells that goes on from the map.
 TEST_F(TumFr1Rpy, LostFramesAreFoundInAMapOfEarlierOnes) {
   const RandomStream stream(0);
-  for (std::size_t i = 0; i < 100; ++i) step(state, sequence->frame(i, {}), stream.fork(i));
+  for (std::size_t i = 0; i < 100; ++i)
+    step(state, sequence->frame(i, RandomStream()), stream.fork(i));
   SlamState further = state;
   std::map<Stamp, SE3> expected;
-  for (std::size_t i = 100; i < 200; ++i) step(further, sequence->frame(i, {}), stream.fork(i));
+  for (std::size_t i = 100; i < 200; ++i)
+    step(further, sequence->frame(i, RandomStream()), stream.fork(i));
   for (const TimedPose& pose : trajectory(further))
     expected[pose.stamp_ns] = pose.world_from_camera;
 
@@ -376,7 +379,8 @@ TEST_F(TumFr1Rpy, LostFramesAreFoundInAMapOfEarlierOnes) {
     int count = 0;
     for (std::size_t i = 100; i < 200; i += 4) {
       Tracker lost;
-      const StepReport report = localize(state, lost, sequence->frame(i, {}), stream.fork(i));
+      const StepReport report =
+          localize(state, lost, sequence->frame(i, RandomStream()), stream.fork(i));
       if (!report.world_from_camera) continue;
       ++count;
       const SE3 off = expected.at(sequence->stamp_ns(i)).inverse() * *report.world_from_camera;

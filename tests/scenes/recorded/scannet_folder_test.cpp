@@ -59,7 +59,7 @@ TEST_F(ScannetFolder, ARecordingReadBackIsWhatWasSeen) {
   EXPECT_NEAR(sequence->camera().cx_px, 15.5, 1e-6);
   ASSERT_EQ(sequence->size(), 3U);
   EXPECT_EQ(sequence->stamp_ns(2), 80'000'000);
-  const RgbdFrame read = sequence->frame(1, {});
+  const RgbdFrame read = sequence->frame(1, RandomStream());
   const ExactFrame expected = frame(1);
   EXPECT_FLOAT_EQ(read.depth_m(10, 10), 1.5F);
   EXPECT_EQ(read.depth_m(3, 3), 0.0F);
@@ -82,7 +82,7 @@ TEST_F(ScannetFolder, WithoutALabelTableLabelsAreLeftOutWithANote) {
   write_scannet_recording(folder_ / "s", camera_, 1, [&](std::size_t i) { return frame(i); });
   fs::remove(folder_ / "s" / "scannetv2-labels.combined.tsv");
   std::vector<std::string> notes;
-  EXPECT_TRUE(open_scannet(folder_ / "s", notes)->frame(0, {}).semantics.index.empty());
+  EXPECT_TRUE(open_scannet(folder_ / "s", notes)->frame(0, RandomStream()).semantics.index.empty());
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_TRUE(names(notes[0], {"labels are left out"}));
 }
@@ -109,8 +109,9 @@ TEST_F(ScannetFolder, SaysWhichFileIsWrongAndWhichLabelsAreMissing) {
   const auto wrong = open_scannet(labeled("c", 10, 0), notes);
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_TRUE(names(notes[0], {"c/label-filt", "1 of 2 frames", "frame 1"}));
-  EXPECT_TRUE(names(error_of([&] { wrong->frame(0, {}); }), {"c/label-filt", "0.png", "10 x 24"}));
-  EXPECT_TRUE(wrong->frame(1, {}).semantics.index.empty());
+  EXPECT_TRUE(names(error_of([&] { wrong->frame(0, RandomStream()); }),
+                    {"c/label-filt", "0.png", "10 x 24"}));
+  EXPECT_TRUE(wrong->frame(1, RandomStream()).semantics.index.empty());
   notes.clear();
   open_scannet(labeled("d", 32, 7), notes);
   ASSERT_EQ(notes.size(), 1U);
@@ -132,7 +133,10 @@ TEST_F(ScannetFolder, BothLayoutsHoldTheSamePictures) {
     EXPECT_EQ(find_label_images(folder_ / "s", kind)->read(0),
               find_label_images(folder_ / "f", kind)->read(0));
   std::vector<std::string> notes;
-  EXPECT_EQ(open_scannet(folder_ / "f", notes)->frame(0, {}).semantics.at(20, 12).most_probable(),
+  EXPECT_EQ(open_scannet(folder_ / "f", notes)
+                ->frame(0, RandomStream())
+                .semantics.at(20, 12)
+                .most_probable(),
             43);
 }
 
@@ -157,7 +161,7 @@ TEST_F(ScannetFolder, ColorAndLabelsAreTakenWhereTheColorCameraSawThePixel) {
   write_label_folder(folder_, "label-filt")->add(0, labels);
   write("scannetv2-labels.combined.tsv", "id\traw_category\tnyu40id\n1\twall\t1\n2\tchair\t5\n");
   std::vector<std::string> notes;
-  const RgbdFrame frame = open_scannet(folder_, notes)->frame(0, {});
+  const RgbdFrame frame = open_scannet(folder_, notes)->frame(0, RandomStream());
   ASSERT_EQ(frame.color.width(), 16);
   const auto column_of = [&](int x, double depth_m) {
     return 80 * ((x - 7.5) / 20 - 0.1 / depth_m) + 33.5;

@@ -196,7 +196,7 @@ TEST_F(RenderSequence, ScanNetsLayoutHoldsWhatWasSeen) {
   std::vector<std::string> notes;
   const auto back = open_scannet(folder_ / "s", notes);
   EXPECT_TRUE(notes.empty()) << notes[0];
-  const SemanticImage seen = back->frame(5, {}).semantics;
+  const SemanticImage seen = back->frame(5, RandomStream()).semantics;
   ASSERT_FALSE(seen.index.empty());
   EXPECT_EQ(seen.at(32, 24).most_probable(), exact.classes(32, 24));
   EXPECT_THROW(make_sequence_writer("kitti", folder_, camera_), InputError);
