@@ -30,21 +30,23 @@ void read_grid(YamlReader& node, const SlamConfig& base, Sweep& sweep) {
     if (name == "map") continue;
     check_varied(name, list, sweep.map);
     sweep.varied.push_back(name);
+    const std::vector<YamlReader> items = items_of(list);
     std::vector<std::string> seen;
-    std::vector<SlamConfig> points;
-    for (const YamlReader& item : items_of(list)) {
+    for (const YamlReader& item : items) {
       SlamConfig value = base;
       read_setting(value, name, item);
       add_once(seen, setting_text(value, name), item);
     }
+    // Before they are made: two long lists would ask for all memory.
+    const std::size_t count = sweep.points.size() * items.size();
+    if (count > kMaxPoints)
+      list.fail(fmt::format("makes {}, at most {} can be", counted(count, "point"), kMaxPoints));
+    std::vector<SlamConfig> points;
     for (const SlamConfig& point : sweep.points)
-      for (const YamlReader& item : list.items()) {
+      for (const YamlReader& item : items) {
         points.push_back(point);
         read_setting(points.back(), name, item);
       }
-    if (points.size() > kMaxPoints)
-      list.fail(
-          fmt::format("makes {}, at most {} can be", counted(points.size(), "point"), kMaxPoints));
     sweep.points = std::move(points);
   }
 }
@@ -62,8 +64,7 @@ void read_sobol(YamlReader node, const SlamConfig& base, Sweep& sweep) {
     read_setting(low, name, ends[0]);
     read_setting(high, name, ends[1]);
     bounds.emplace_back(setting_value(low, name), setting_value(high, name));
-    if (!set_between(low, name, 0, 0, 0))
-      range.fail("is no number: list its values instead, without `sobol`");
+    if (!is_number(name)) range.fail("is no number: list its values instead, without `sobol`");
     if (bounds.back().first >= bounds.back().second)
       range.fail(fmt::format("{} is not below {}", bounds.back().first, bounds.back().second));
     sweep.varied.push_back(name);
@@ -86,15 +87,15 @@ void read_sobol(YamlReader node, const SlamConfig& base, Sweep& sweep) {
 std::string_view name(SweepMap map) {
   return name_of(map, kMaps);
 }
+
 std::string_view shown_name(std::string_view setting) {
   constexpr std::string_view kPaper = "semantics.";
   return setting.starts_with(kPaper) ? setting.substr(kPaper.size()) : setting;
 }
 
 std::string shown_value(const SlamConfig& config, std::string_view setting) {
-  const std::string text = setting_text(config, setting);
-  const bool is_word = text.find_first_not_of("0123456789.e+-") != std::string::npos;
-  return is_word ? text : fmt::format("{:.4g}", setting_value(config, setting));
+  return is_number(setting) ? fmt::format("{:.4g}", setting_value(config, setting))
+                            : setting_text(config, setting);
 }
 
 Sweep read_sweep(YamlReader node, const SlamConfig& base) {

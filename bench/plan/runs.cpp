@@ -13,12 +13,6 @@ SlamConfig settings_of(const SystemSpec& system, const SlamConfig& settings) {
   return seen;
 }
 
-SlamConfig settings_at(const RunSpec& spec, std::size_t point) {
-  SlamConfig settings = spec.slam;
-  settings.semantics = spec.points[point];
-  return settings;
-}
-
 std::vector<SlamConfig> parameter_points(const Suite& suite) {
   return suite.sweep.points.empty() ? std::vector{suite.slam} : suite.sweep.points;
 }

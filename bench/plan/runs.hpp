@@ -32,9 +32,6 @@ struct RunSpec {
 /// none.
 SlamConfig settings_of(const SystemSpec& system, const SlamConfig& settings);
 
-/// All settings of a run's pass over the queries. @param point  index into spec.points
-SlamConfig settings_at(const RunSpec& spec, std::size_t point);
-
 /// The parameter points of a suite: those of its sweep, else its own settings alone.
 std::vector<SlamConfig> parameter_points(const Suite& suite);
 

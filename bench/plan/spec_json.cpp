@@ -47,12 +47,9 @@ class ReadSettings {
   void operator()(const char* key, T& value, const SettingRange&, const char*) {
     if constexpr (std::is_enum_v<T>) {
       const std::string word = from_->at(key);
-      for (const auto& [name, named] : setting_words(T{}))
-        if (name == word) {
-          value = named;
-          return;
-        }
-      throw InputError(fmt::format("'{}' is no known word", word));
+      const auto named = value_of(word, setting_words(T{}));
+      if (!named) throw InputError(fmt::format("'{}' is no known word", word));
+      value = *named;
     } else {
       value = from_->at(key).template get<T>();
     }
@@ -62,6 +59,24 @@ class ReadSettings {
   const Json& all_;
   const Json* from_;
 };
+
+/// The fields of one section, without its name.
+template <class Config>
+Json section_json(const Config& config) {
+  Json json;
+  WriteSettings write(json);
+  fields(config, write);
+  return json;
+}
+
+/// The other way.
+template <class Config>
+Config section_from(const Json& json) {
+  Config config;
+  ReadSettings read(json);
+  fields(config, read);
+  return config;
+}
 
 template <class T>
 Json optional_json(const std::optional<T>& value) {
@@ -142,11 +157,10 @@ Environment environment_from_json(const Json& json) {
           .pedestrian = path_from_json(json.at("pedestrian"))};
 }
 
-ProtocolConfig protocol_from_json(const Json& json) {
-  ProtocolConfig protocol;
-  ReadSettings read(json);
-  fields(protocol, read);
-  return protocol;
+SlamConfig slam_from_json(const Json& json) {
+  SlamConfig settings;
+  for_each_setting(settings, ReadSettings(json));
+  return settings;
 }
 
 RunSpec read(const Json& json) {
@@ -162,8 +176,9 @@ RunSpec read(const Json& json) {
   spec.trial = json.at("trial");
   spec.seed = json.at("seed");
   spec.slam = slam_from_json(json.at("slam"));
-  for (const Json& point : json.at("points")) spec.points.push_back(semantics_from_json(point));
-  spec.protocol = protocol_from_json(json.at("protocol"));
+  for (const Json& point : json.at("points"))
+    spec.points.push_back(section_from<SemanticConfig>(point));
+  spec.protocol = section_from<ProtocolConfig>(json.at("protocol"));
   if (!json.at("max_frames").is_null())
     spec.max_frames = whole_number<std::size_t>(json.at("max_frames"));
   return spec;
@@ -179,10 +194,7 @@ Json to_json(const SceneFrame& frame) {
 }
 
 Json to_json(const SemanticConfig& semantics) {
-  Json json;
-  WriteSettings write(json);
-  fields(semantics, write);
-  return json;
+  return section_json(semantics);
 }
 
 Json to_json(const SlamConfig& settings) {
@@ -192,10 +204,7 @@ Json to_json(const SlamConfig& settings) {
 }
 
 Json to_json(const ProtocolConfig& protocol) {
-  Json json;
-  WriteSettings write(json);
-  fields(protocol, write);
-  return json;
+  return section_json(protocol);
 }
 
 Json to_json(const RunSpec& spec) {
@@ -213,19 +222,6 @@ Json to_json(const RunSpec& spec) {
           {"points", points},
           {"protocol", to_json(spec.protocol)},
           {"max_frames", optional_json(spec.max_frames)}};
-}
-
-SemanticConfig semantics_from_json(const Json& json) {
-  SemanticConfig semantics;
-  ReadSettings read(json);
-  fields(semantics, read);
-  return semantics;
-}
-
-SlamConfig slam_from_json(const Json& json) {
-  SlamConfig settings;
-  for_each_setting(settings, ReadSettings(json));
-  return settings;
 }
 
 SceneFrame scene_frame_from_json(const Json& json) {

@@ -17,8 +17,6 @@ nlohmann::ordered_json to_json(const SceneFrame& frame);
 nlohmann::ordered_json to_json(const RunSpec& spec);
 
 /// The other way. @throws InputError if it was not made by to_json.
-SemanticConfig semantics_from_json(const nlohmann::ordered_json& json);
-SlamConfig slam_from_json(const nlohmann::ordered_json& json);
 SceneFrame scene_frame_from_json(const nlohmann::ordered_json& json);
 RunSpec run_spec_from_json(const nlohmann::ordered_json& json);
 

@@ -124,9 +124,12 @@ bool belongs(const RunSpec& spec, const Suite& suite, const Row& row) {
 
 /// Which pass over a run's queries had these settings.
 std::optional<std::size_t> find_point(const RunSpec& spec, const SlamConfig& settings) {
-  for (std::size_t i = 0; i < spec.points.size(); ++i)
-    if (settings_at(spec, i) == settings) return i;
-  return std::nullopt;
+  SlamConfig at_point = spec.slam;
+  at_point.semantics = settings.semantics;
+  if (at_point != settings) return std::nullopt;
+  const auto point = std::ranges::find(spec.points, settings.semantics);
+  if (point == spec.points.end()) return std::nullopt;
+  return static_cast<std::size_t>(point - spec.points.begin());
 }
 
 }  // namespace

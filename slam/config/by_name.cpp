@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
 
 #include "slam/core/settings_io.hpp"
 
 namespace mh {
 namespace {
+
+template <class T>
+inline constexpr bool kIsNumber = !std::is_enum_v<T> && !std::is_same_v<T, bool>;
 
 /// Calls visit(name, value, range) for every setting.
 template <class Visit>
@@ -28,7 +32,7 @@ class EachByName {
 
 /// Calls use(value, range) for the setting of that name.
 template <class Config, class Use>
-void at_setting(Config& config, std::string_view name, Use use) {
+void at_setting(Config&& config, std::string_view name, Use use) {
   bool found = false;
   for_each_setting(config,
                    EachByName([&](const std::string& its, auto& value, const SettingRange& range) {
@@ -75,15 +79,20 @@ void read_setting(SlamConfig& config, std::string_view name, const YamlReader& v
   });
 }
 
-bool set_between(SlamConfig& config, std::string_view name, double low, double high, double share) {
-  bool is_number = false;
+bool is_number(std::string_view name) {
+  bool number = false;
+  at_setting(SlamConfig(), name,
+             [&]<class T>(const T&, const SettingRange&) { number = kIsNumber<T>; });
+  return number;
+}
+
+void set_between(SlamConfig& config, std::string_view name, double low, double high, double share) {
   at_setting(config, name, [&]<class T>(T& setting, const SettingRange&) {
-    if constexpr (std::is_enum_v<T> || std::is_same_v<T, bool>) return;
-    is_number = true;
-    const double value = low + share * (high - low);
-    setting = std::is_integral_v<T> ? static_cast<T>(std::lround(value)) : static_cast<T>(value);
+    if constexpr (kIsNumber<T>) {
+      const double value = low + share * (high - low);
+      setting = std::is_integral_v<T> ? static_cast<T>(std::lround(value)) : static_cast<T>(value);
+    }
   });
-  return is_number;
 }
 
 }  // namespace mh

@@ -6,20 +6,18 @@
 #include <optional>
 #include <string>
 #include <type_traits>
-#include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "slam/core/error.hpp"
+#include "slam/core/names.hpp"
 #include "slam/core/setting.hpp"
-#include "slam/core/suggest.hpp"
 #include "slam/core/yaml.hpp"
 
 namespace mh {
 
 // Visitors of settings' field lists. A setting is an int, a double, a bool or an enumeration E, for
-// which setting_words(E) gives an array of (word, value).
+// which setting_words(E) gives its Names.
 
 /// "[0, 1)"
 inline std::string interval(const SettingRange& range) {
@@ -56,16 +54,7 @@ class SettingsReader {
     if constexpr (std::is_same_v<T, bool>) {
       value = node.as_bool();
     } else if constexpr (std::is_enum_v<T>) {
-      const auto words = setting_words(T{});
-      const std::string word = node.as_string();
-      for (const auto& [name, named] : words)
-        if (name == word) {
-          value = named;
-          return;
-        }
-      const auto known = words_of(words, [](const auto& entry) { return entry.first; });
-      node.fail(fmt::format("'{}' is none of {}{}", word, fmt::join(known, ", "),
-                            did_you_mean(word, known)));
+      value = one_of(node, setting_words(T{}));
     } else if constexpr (std::is_integral_v<T>) {
       value = static_cast<T>(
           node.as_int(static_cast<std::int64_t>(range.min), static_cast<std::int64_t>(range.max)));
@@ -107,9 +96,7 @@ class SettingsWriter {
   template <class T>
   static std::string word_of(const T& value) {
     if constexpr (std::is_enum_v<T>) {
-      for (const auto& [name, named] : setting_words(T{}))
-        if (named == value) return std::string(name);
-      return "?";
+      return std::string(name_of(value, setting_words(T{})));
     } else {
       return fmt::format("{}", value);  // doubles: the shortest that reads back equal
     }

@@ -26,7 +26,7 @@ execute_process(COMMAND ${program} render office auto --level instaled --out ren
 if(NOT code EQUAL 2 OR NOT told MATCHES "did you mean 'installed'")
   message(FATAL_ERROR "a level beside the installed ones was not found: ${told}")
 endif()
-run(${program} bench model_house --frames 40 --trials 1 --out bench --cache ${BUILD_DIR}/test_cache
+run(${program} bench model_house --frames 40 --trials 1 --out bench --cache ${BUILD_DIR}/cache_of_tests
     WORKING_DIRECTORY ${elsewhere})
 file(STRINGS ${elsewhere}/bench/table.txt table)
 if(NOT table MATCHES "the paper's semantic system")

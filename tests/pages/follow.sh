@@ -58,7 +58,7 @@ parse() {
 }
 
 cd "$work/clone"
-export HOME=$work/home XDG_CACHE_HOME=$build/test_cache/home
+export HOME=$work/home XDG_CACHE_HOME=$build/cache_of_tests/home
 run=0 parsed=0
 while IFS= read -r line; do
   [[ $line =~ ^[[:space:]]*(#.*)?$ || $line == sudo\ * ]] && continue
