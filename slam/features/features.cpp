@@ -78,8 +78,7 @@ void append(const PyramidLevel& level, int octave, const Corner& corner, const R
             double max_depth_m, Features& features) {
   const cv::Point2d raw = level.to_full(
       {static_cast<double>(corner.x) + corner.dx, static_cast<double>(corner.y) + corner.dy});
-  const int x = std::clamp(cvRound(raw.x), 0, frame.color.width() - 1);
-  const int y = std::clamp(cvRound(raw.y), 0, frame.color.height() - 1);
+  const int x = cvRound(raw.x), y = cvRound(raw.y);  // inside: corners keep off the border
 
   Keypoint keypoint;
   keypoint.u_px = static_cast<float>(raw.x);

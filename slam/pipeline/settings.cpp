@@ -78,32 +78,32 @@ Settings read_own(YamlReader yaml, Settings settings) {
 }
 
 /// What is read of ORB-SLAM2's files; the rest is for its window, or of other sensors.
-constexpr std::array<std::string_view, 21> kOrbSlamKeys{"Camera.fx",
-                                                        "Camera.fy",
-                                                        "Camera.cx",
-                                                        "Camera.cy",
-                                                        "Camera.k1",
-                                                        "Camera.k2",
-                                                        "Camera.p1",
-                                                        "Camera.p2",
-                                                        "Camera.k3",
-                                                        "Camera.width",
-                                                        "Camera.height",
-                                                        "Camera.fps",
-                                                        "Camera.bf",
-                                                        "Camera.RGB",
-                                                        "ThDepth",
-                                                        "DepthMapFactor",
-                                                        "ORBextractor.nFeatures",
-                                                        "ORBextractor.scaleFactor",
-                                                        "ORBextractor.nLevels",
-                                                        "ORBextractor.iniThFAST",
-                                                        "ORBextractor.minThFAST"};
+constexpr auto kOrbSlamKeys = std::to_array<std::string_view>({"Camera.fx",
+                                                               "Camera.fy",
+                                                               "Camera.cx",
+                                                               "Camera.cy",
+                                                               "Camera.k1",
+                                                               "Camera.k2",
+                                                               "Camera.p1",
+                                                               "Camera.p2",
+                                                               "Camera.k3",
+                                                               "Camera.width",
+                                                               "Camera.height",
+                                                               "Camera.fps",
+                                                               "Camera.bf",
+                                                               "Camera.RGB",
+                                                               "ThDepth",
+                                                               "DepthMapFactor",
+                                                               "ORBextractor.nFeatures",
+                                                               "ORBextractor.scaleFactor",
+                                                               "ORBextractor.nLevels",
+                                                               "ORBextractor.iniThFAST",
+                                                               "ORBextractor.minThFAST"});
 
 /// What such files hold beside them: a kind of camera, of which ours is the one, and what is for
 /// other sensors.
-constexpr std::array<std::string_view, 6> kOrbSlamOthers{
-    "Camera.type", "Camera.bFishEye", "Tbc", "Tlr", "loopClosing", "thFarPoints"};
+constexpr auto kOrbSlamOthers = std::to_array<std::string_view>(
+    {"Camera.type", "Camera.bFishEye", "Tbc", "Tlr", "loopClosing", "thFarPoints"});
 
 bool is_one_of(const auto& keys, std::string_view key) {
   return std::find(keys.begin(), keys.end(), key) != keys.end();

@@ -167,6 +167,48 @@ TEST(NearestMapped, IsNextInTimeOrNextInPlaceAndHeading) {
   EXPECT_FALSE(nearest_mapped({}, truth, query, NearestBy::kTime));
 }
 
+TEST(NearestMapped, IsTheSameWhereverTheWorldHasItsOrigin) {
+  for (const double east : {0.0, 7.0, -7.0})
+    for (const double north : {0.0, 40.0, -40.0})
+      for (const double turn : {0.0, 1.0, -2.5}) {
+        const SE3 world = at(east, north, turn);
+        const Trajectory truth = {{0, world * at(-1, 0, 0)},
+                                  {10, world * at(0.5, 0, 0)},
+                                  {20, world * at(0, 0.4, 0)},
+                                  {30, world * at(0, 0, 0.45)}};
+        const auto nearest = [&](const SE3& query) {
+          return nearest_mapped(truth, truth, {99, world * query}, NearestBy::kPlace)->stamp_ns;
+        };
+        EXPECT_EQ(nearest(at(0, 0, 0)), 20) << "0.4 m before 0.45 rad";
+        EXPECT_EQ(nearest(at(0, 0, 0.1)), 30) << "0.35 rad before 0.4 m and 0.1 rad";
+        EXPECT_EQ(nearest(at(-0.6, 0, 0)), 0);
+        EXPECT_EQ(nearest(at(0.6, 0.1, 0)), 10);
+      }
+}
+
+TEST(NearestMapped, OfEquallyNearFramesTheEarlierIsTakenAndBeforeIsAsNearAsAfter) {
+  const Trajectory truth = {
+      {100, at(1, 0, 0)}, {200, at(-1, 0, 0)}, {300, at(0, 0, 2)}, {400, at(0, -1, 0)}};
+  const auto in_time = [&](Stamp stamp_ns) {
+    return nearest_mapped(truth, truth, {stamp_ns, SE3()}, NearestBy::kTime)->stamp_ns;
+  };
+  // Exactly on a frame, exactly between two, a nanosecond to either side, before all, after all.
+  for (const auto& [asked, expected] : std::map<Stamp, Stamp>{{-5, 100},
+                                                              {0, 100},
+                                                              {100, 100},
+                                                              {150, 100},
+                                                              {151, 200},
+                                                              {249, 200},
+                                                              {250, 200},
+                                                              {251, 300},
+                                                              {350, 300},
+                                                              {400, 400},
+                                                              {9000, 400}})
+    EXPECT_EQ(in_time(asked), expected) << asked;
+  // Three stand 1 m away.
+  EXPECT_EQ(nearest_mapped(truth, truth, {250, at(0, 0, 0)}, NearestBy::kPlace)->stamp_ns, 100);
+}
+
 TEST(InterpolatedPose, LiesBetweenItsNeighborsInTime) {
   constexpr Stamp kMs = 1'000'000;
   const Trajectory estimate = {

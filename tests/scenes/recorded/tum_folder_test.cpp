@@ -9,7 +9,6 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/drawing/slice.hpp"
 #include "bench/run/recorded_camera.hpp"
 #include "scenes/picture_file.hpp"
 #include "scenes/recorded/tum_folder.hpp"
@@ -197,25 +196,6 @@ TEST_F(TumFolder, ReadsOrbSlamsOwnCalibration) {
   EXPECT_NEAR(camera.camera.baseline_m, 40.0 / 517.3, 1e-12);
   std::ofstream(folder_ / "bad.yaml") << "Camera.fx: 517.3\n";
   EXPECT_THROW(load_recorded_camera(folder_ / "bad.yaml"), InputError);
-}
-
-TEST(Slice, CutsATentIntoItsOutlineAtThatHeight) {
-  // A tent 2 m long over y, 2 m wide and 1 m high: at height h each side is cut at |x| = 1 - h.
-  Scene scene;
-  scene.positions_m = {{-1, 0, 0}, {-1, 2, 0}, {0, 0, 1}, {0, 2, 1}, {1, 0, 0}, {1, 2, 0}};
-  scene.triangles = {{0, 1, 2}, {1, 3, 2}, {4, 2, 5}, {5, 2, 3}};
-  scene.class_of = {1, 1, 2, 2};
-  const std::vector<SliceSegment> segments = slice(scene, 0.25);
-  ASSERT_EQ(segments.size(), 4u);
-  double length = 0;
-  for (const SliceSegment& s : segments) {
-    EXPECT_NEAR(std::abs(s.from_m.x()), 0.75, 1e-6);
-    EXPECT_NEAR(std::abs(s.to_m.x()), 0.75, 1e-6);
-    length += (s.from_m - s.to_m).norm();
-  }
-  EXPECT_NEAR(length, 4.0, 1e-6);
-  EXPECT_EQ(segments[0].class_id, 1);
-  EXPECT_TRUE(slice(scene, 1.5).empty());
 }
 
 }  // namespace

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/sensors/sensors.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <xxhash.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <optional>
 #include <set>
 
 #include "slam/core/error.hpp"
@@ -369,6 +372,107 @@ TEST(SensorLevels, SayWhatTheirNamesSay) {
   EXPECT_EQ(pepper.shot_noise.gain_at_exposure, 0);
   EXPECT_TRUE(handheld.processing.contrast > 0 && handheld.processing.sharpening > 0);
   EXPECT_EQ(pepper.processing.contrast + pepper.processing.sharpening, 0.0);
+}
+
+/// A number of a level: where it stands, what it may be, where it goes.
+struct LevelNumber {
+  std::string section, key;
+  double low, high;
+  bool above = false;      ///< the low end itself is refused
+  std::string beside;      ///< what else the section needs: "sigma_px: 1, "
+  std::function<double(const SensorConfig&)> value;
+  double unit = 1;  ///< of the file, in ours
+};
+
+std::vector<LevelNumber> level_numbers() {
+  using C = SensorConfig;
+  return {
+      {"color_noise", "sigma", 0, 1, false, "", [](const C& c) { return c.color_noise.sigma; }},
+      {"shot_noise", "well_e", 0, 1e7, true, "", [](const C& c) { return c.shot_noise.well_e; }},
+      {"shot_noise", "read_noise_e", 0, 1e6, false, "",
+       [](const C& c) { return c.shot_noise.read_noise_e; }},
+      {"shot_noise", "gain", 1, 1000, false, "", [](const C& c) { return c.shot_noise.gain; }},
+      {"shot_noise", "gain_at_exposure", 0, 1e6, false, "",
+       [](const C& c) { return c.shot_noise.gain_at_exposure; }},
+      {"auto_exposure", "target", 0, 1, true, "",
+       [](const C& c) { return c.auto_exposure.target; }},
+      {"auto_exposure", "time_constant_s", 0, 60, false, "",
+       [](const C& c) { return c.auto_exposure.time_constant_s; }},
+      {"auto_exposure", "max_gain", 1, 1000, false, "",
+       [](const C& c) { return c.auto_exposure.max_gain; }},
+      {"vignetting", "strength", 0, 1, false, "",
+       [](const C& c) { return c.vignetting.strength; }},
+      {"lens_blur", "sigma_px", 0, 20, false, "", [](const C& c) { return c.lens_blur_px; }},
+      {"processing", "contrast", 0, 1, false, "",
+       [](const C& c) { return c.processing.contrast; }},
+      {"processing", "sharpening", 0, 20, false, "",
+       [](const C& c) { return c.processing.sharpening; }},
+      {"processing", "sharpening_px", 0, 20, true, "",
+       [](const C& c) { return c.processing.sharpening_px; }},
+      {"lens_distortion", "k1", -2, 2, false, "", [](const C& c) { return c.lens_distortion.k1; }},
+      {"lens_distortion", "k2", -2, 2, false, "", [](const C& c) { return c.lens_distortion.k2; }},
+      {"lens_distortion", "p1", -0.2, 0.2, false, "",
+       [](const C& c) { return c.lens_distortion.p1; }},
+      {"lens_distortion", "p2", -0.2, 0.2, false, "",
+       [](const C& c) { return c.lens_distortion.p2; }},
+      {"lens_distortion", "k3", -2, 2, false, "", [](const C& c) { return c.lens_distortion.k3; }},
+      {"motion_blur", "exposure_ms", 0, 1000, true, "",
+       [](const C& c) { return c.shutter.exposure_s; }, 1e-3},
+      {"rolling_shutter", "readout_ms", 0, 1000, true, "",
+       [](const C& c) { return c.shutter.readout_s; }, 1e-3},
+      {"depth_offset", "offset_ms", -1000, 1000, false, "",
+       [](const C& c) { return c.depth_offset_s; }, 1e-3},
+      {"blank_frames", "share", 0, 1, false, "", [](const C& c) { return c.blank_share; }},
+      {"dropped_frames", "share", 0, 1, false, "", [](const C& c) { return c.dropped_share; }},
+      {"label_noise", "confusion", 0, 1, false, "",
+       [](const C& c) { return c.labels.noise.confusion; }},
+      {"label_noise", "swap", 0, 1, false, "", [](const C& c) { return c.labels.noise.swap; }},
+      {"label_noise", "dropout", 0, 1, false, "",
+       [](const C& c) { return c.labels.noise.dropout; }},
+      {"label_noise", "persistent_share", 0, 1, false, "frame_share: 0, ",
+       [](const C& c) { return c.labels.persistent_share; }},
+      {"label_noise", "frame_share", 0, 1, false, "persistent_share: 0, ",
+       [](const C& c) { return c.labels.frame_share; }},
+      {"detector", "recall_small", 0, 1, false, "",
+       [](const C& c) { return c.labels.detector.recall_small; }},
+      {"detector", "recall_medium", 0, 1, false, "",
+       [](const C& c) { return c.labels.detector.recall_medium; }},
+      {"detector", "recall_large", 0, 1, false, "",
+       [](const C& c) { return c.labels.detector.recall_large; }},
+      {"detector", "confusion", 0, 1, false, "",
+       [](const C& c) { return c.labels.detector.confusion; }},
+      {"detector", "false_alarms", 0, 8, false, "",
+       [](const C& c) { return c.labels.detector.false_alarms; }},
+      {"detector", "box_sigma", 0, 1, false, "",
+       [](const C& c) { return c.labels.detector.box_sigma; }}};
+}
+
+TEST(SensorLevels, EachNumberGoesToItsPlaceAndItsRangeEndsWhereItShould) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / "modelhouse_level_ends.yaml";
+  for (const LevelNumber& n : level_numbers()) {
+    const auto loaded = [&](double value) -> std::optional<double> {
+      std::string text = "depth_noise: {}\n";
+      if (n.section != "color_noise") text += "color_noise: {sigma: 0.01}\n";
+      text += fmt::format("{}: {{{}{}: {}}}\n", n.section, n.beside, n.key, value);
+      write_atomically(file, text);
+      try {
+        return n.value(load_sensor_config(file));
+      } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find(n.key), std::string::npos) << error.what();
+        return std::nullopt;
+      }
+    };
+    const std::string name = n.section + "." + n.key;
+    const double first = n.above ? std::nextafter(n.low, n.high) : n.low;
+    for (const double value : {first, n.low + 0.375 * (n.high - n.low), n.high}) {
+      ASSERT_TRUE(loaded(value)) << name << " " << value;
+      EXPECT_DOUBLE_EQ(*loaded(value), n.unit * value) << name;
+    }
+    EXPECT_FALSE(loaded(std::nextafter(n.high, HUGE_VAL))) << name;
+    EXPECT_FALSE(loaded(n.above ? n.low : std::nextafter(n.low, -HUGE_VAL))) << name;
+  }
+  std::filesystem::remove(file);
 }
 
 TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {

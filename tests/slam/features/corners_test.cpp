@@ -108,6 +108,9 @@ TEST(FastCorners, EqualThoseOfOpenCv) {
     expect_equal_to_opencv(image(cv::Rect(11, 5, width, 90)), 4, 10);
     expect_equal_to_opencv(image(cv::Rect(11, 5, width, 90)).clone(), 4, 10);
   }
+  // Less than a register: pixel by pixel. 38 columns hold 30 to search and 32 to fill.
+  for (const int width : {14, 20, 31, 37, 38, 39})
+    expect_equal_to_opencv(image(cv::Rect(11, 5, width, 300)), 4, 10);
 }
 
 TEST(FastCorners, KnowsBlackFromWhite) {

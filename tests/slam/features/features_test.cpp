@@ -295,6 +295,27 @@ TEST(Extract, TheCornerOfASilhouetteIsAsNearAsWhatStandsInFront) {
   EXPECT_GT(behind, 100);
 }
 
+// Of one surface is what lies less than 5 % behind the nearest of the 3x3 pixels.
+TEST(Extract, ASurfaceEndsAtExactlyFivePercentBehindTheNearest) {
+  RgbdFrame frame = frame_of(squares(kWidth, kHeight, 10));
+  const float second = 1.05F;
+  for (const auto& [behind, is_another] :
+       {std::pair(std::nextafter(second, 0.0F), false), {second, true}, {2.0F, true}}) {
+    const auto surface = [behind = behind](int x) { return x / 4 % 2 == 0 ? 1.0F : behind; };
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) frame.depth_m(x, y) = surface(x);
+    int at_edges = 0;
+    for (const Keypoint& k : extract(frame, camera_of(frame), {}).keypoints) {
+      const int x = static_cast<int>(std::lround(k.u_px));
+      if (std::abs(k.u_px - x) > 0.499F) continue;
+      const bool edge = surface(x - 1) != surface(x + 1);
+      EXPECT_EQ(k.depth_m, edge && is_another ? 1.0F : surface(x)) << behind;
+      at_edges += edge && surface(x) == behind;
+    }
+    EXPECT_GT(at_edges, 100);
+  }
+}
+
 TEST(Extract, DepthThatIsNoDepthCountsAsNone) {
   RgbdFrame frame = frame_of(squares(kWidth, kHeight, 9));
   constexpr float kInfinity = std::numeric_limits<float>::infinity();

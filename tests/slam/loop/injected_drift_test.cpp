@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "slam/core/random.hpp"
+#include "slam/loop/loop.hpp"
 #include "slam/pipeline/slam.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 
@@ -90,6 +92,107 @@ TEST(Loop, IsRefusedWhereItTellsOfMoreDriftThanCanBe) {
         step(state, testing_support::box_room_frame(i, true), RandomStream(7).fork(i));
     ASSERT_FALSE(report.loop_closed) << i;
   }
+}
+
+/// Cameras in a row, 0.2 m apart and all looking along z, each with 20 landmarks that the next one
+/// sees too. The row has grown too long: where the map has the last one, it has gone `drift_m` too
+/// far, evenly. It sees the first one's landmarks and tells so: a loop.
+struct StretchedRow {
+  static constexpr std::uint32_t kKeyframes = 6, kShared = 20, kLast = kKeyframes - 1;
+  static constexpr double kStep_m = 0.2;
+  Camera camera;
+  SlamConfig config;
+  Map map;
+  MatchCounts counts{};
+  Loop loop;
+
+  explicit StretchedRow(double drift_m) {
+    config.bundle.iterations = config.bundle.refine_iterations = 0;  // what bending does by itself
+    const double step_m = kStep_m + drift_m / kLast;
+    const RandomStream draw(3);
+    const auto descriptor = [&](std::uint32_t owner, std::uint32_t i) {
+      const RandomStream bits = draw.fork(owner).fork(i);
+      return Descriptor{bits.bits(0), bits.bits(1), bits.bits(2), bits.bits(3)};
+    };
+    const auto seen_from = [&](double x_m, std::uint32_t i) {  // landmark i of the camera at 0
+      const Eigen::Vector3d p(0.05 * (i % 5) - x_m, 0.2 * (i / 5) - 0.3, 2.0 + 0.05 * i);
+      return p;
+    };
+    for (std::uint32_t k = 0; k < kKeyframes; ++k) {
+      Keyframe keyframe;
+      keyframe.camera_from_world = SE3(Eigen::Matrix3d(Eigen::Matrix3d::Identity()),
+                                       Eigen::Vector3d(-step_m * k, 0, 0));
+      const auto see = [&](std::uint32_t owner, double x_m) {
+        for (std::uint32_t i = 0; i < kShared; ++i) {
+          const Eigen::Vector3d p = seen_from(x_m, i);
+          Keypoint keypoint;
+          keypoint.u_px = static_cast<float>(camera.project(p).x());
+          keypoint.v_px = static_cast<float>(camera.project(p).y());
+          keypoint.depth_m = static_cast<float>(p.z());
+          keyframe.features.keypoints.push_back(keypoint);
+          keyframe.features.descriptors.push_back(descriptor(owner, i));
+        }
+      };
+      see(k, 0);                              // features 0 to 19
+      if (k > 0) see(k - 1, step_m);          // 20 to 39
+      if (k == kLast) see(0, kStep_m * kLast);  // 40 to 59
+      keyframe.grid = FeatureGrid(keyframe.features.keypoints, camera);
+      map.add(std::move(keyframe));
+    }
+    for (std::uint32_t k = 0; k < kKeyframes; ++k)
+      for (std::uint32_t i = 0; i < kShared; ++i) {
+        const LandmarkId id = map.add_landmark(
+            seen_from(0, i) + Eigen::Vector3d(step_m * k, 0, 0), KeyframeId{k}, i);
+        if (k < kLast) map.add_observation(id, KeyframeId{k + 1}, kShared + i);
+        map.refresh(id, config.features);
+      }
+    for (std::uint32_t k = 0; k < kKeyframes; ++k) map.update_covisibility(KeyframeId{k});
+    loop.keyframe = KeyframeId{kLast};
+    loop.old_keyframe = KeyframeId{0};
+    loop.camera_from_world = SE3(Eigen::Matrix3d(Eigen::Matrix3d::Identity()),
+                                 Eigen::Vector3d(-kStep_m * kLast, 0, 0));
+    loop.landmarks.resize(3 * kShared);
+    for (std::uint32_t i = 0; i < kShared; ++i) loop.landmarks[2 * kShared + i] = LandmarkId{i};
+  }
+
+  void close() { close_loop(map, loop, {camera, config, map, counts}); }
+  double x_m(std::uint32_t k) const {
+    return map.at(KeyframeId{k}).camera_from_world.inverse().translation().x();
+  }
+};
+
+// Five steps and the loop hold by 20 landmarks each: each of the six gives a sixth of what is too
+// much.
+TEST(CloseLoop, BendsARowEvenlyAndItsLandmarksWithIt) {
+  constexpr double kDrift_m = 0.06;
+  StretchedRow row(kDrift_m);
+  const StretchedRow before(kDrift_m);
+  row.close();
+  for (std::uint32_t k = 0; k < StretchedRow::kKeyframes; ++k) {
+    const double moved_m = -kDrift_m * k / StretchedRow::kKeyframes;
+    EXPECT_NEAR(row.x_m(k) - before.x_m(k), moved_m, 1e-6) << k;
+    const SE3& pose = row.map.at(KeyframeId{k}).camera_from_world;
+    EXPECT_LT(angle_between_rad(pose, SE3()), 1e-6) << k;
+    const LandmarkId own{k * StretchedRow::kShared + 7};
+    ASSERT_FALSE(row.map.at(own).erased);
+    EXPECT_LT((row.map.at(own).position_in_world - before.map.at(own).position_in_world -
+               Eigen::Vector3d(moved_m, 0, 0))
+                  .norm(),
+              1e-6)
+        << k;
+  }
+  row.map.check_invariants();
+}
+
+TEST(CloseLoop, BelowWhatIsNegligiblePosesStayAndLandmarksAreJoined) {
+  StretchedRow row(0.009);
+  const StretchedRow before(0.009);
+  ASSERT_LT(0.009, row.config.loop.negligible_m);
+  row.close();
+  for (std::uint32_t k = 0; k < StretchedRow::kKeyframes; ++k) EXPECT_EQ(row.x_m(k), before.x_m(k));
+  EXPECT_EQ(before.map.at(LandmarkId{3}).observations.size(), 2u);
+  EXPECT_EQ(row.map.at(LandmarkId{3}).observations.size(), 3u);
+  EXPECT_EQ(row.map.at(KeyframeId{0}).covisible.size(), 2u) << "the next one, and the last";
 }
 
 }  // namespace

@@ -188,6 +188,34 @@ TEST(Adjust, FindsTheOutliersAndIsNotMovedByThem) {
   EXPECT_NEAR(result.final_cost, inliers, 1e-9 * inliers);
 }
 
+// Huber's cost bounds the pull of a gross error, the second phase takes it away: without noise it
+// comes to the truth where the first, however long, does not.
+TEST(Adjust, TheSecondPhaseForgetsTheOutliersThatTheFirstHasBorne) {
+  SyntheticBundle bundle =
+      make_bundle({.poses = 6, .points = 200, .observations_per_point = 6, .noise_px = 0}, kCamera,
+                  RandomStream(10));
+  for (std::size_t i = 0; i < bundle.problem.observations.size(); i += 10)
+    bundle.problem.observations[i].u_px += 60;  // all to one side
+  const auto error_m = [&](const BundleConfig& config) {
+    return worst_pose_m(adjust(bundle.problem, kCamera, config).camera_from_world,
+                        bundle.true_poses);
+  };
+  EXPECT_GT(error_m({.iterations = 100, .refine_iterations = 0, .relative_decrease = 0}), 1e-4);
+  EXPECT_LT(error_m({.iterations = 20, .refine_iterations = 10}), 1e-6);
+  const BundleResult result =
+      adjust(bundle.problem, kCamera, {.iterations = 20, .refine_iterations = 10});
+  EXPECT_LT(result.final_cost, 1e-6) << "the sum over the inliers";
+  // Trial steps of both phases are told.
+  const auto steps = [&](int refine_iterations) {
+    return adjust(bundle.problem, kCamera,
+                  {.iterations = 1, .refine_iterations = refine_iterations, .relative_decrease = 0})
+        .iterations;
+  };
+  EXPECT_EQ(steps(0), 1);
+  EXPECT_EQ(steps(1), 2);
+  EXPECT_EQ(steps(2), 3);
+}
+
 TEST(Adjust, MovesNeitherFixedPosesNorWhatNobodyDetermines) {
   SyntheticBundle bundle =
       make_bundle({.poses = 6, .fixed_poses = 2, .points = 100}, kCamera, RandomStream(6));

@@ -11,6 +11,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/pipeline/map_file.hpp"
+#include "slam/pipeline/settings.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 
 namespace mh {
@@ -73,6 +74,160 @@ TEST(MapFile, LoadingChangesNothing) {
   const SlamState loaded = decode_slam(midway_bytes(), "room.mhmap", vocabulary());
   EXPECT_EQ(encode_slam(loaded), midway_bytes());
   EXPECT_EQ(loaded.map.digest(), midway().map.digest());
+}
+
+/// The content of a map file, written out a second time: a reader in another language would have
+/// nothing but this to go by. Whoever has to change it raises kMapFileVersion.
+class Layout {
+ public:
+  explicit Layout(const SlamState& s) {
+    const std::string settings = format_slam_config(s.config);
+    put<std::uint64_t>(settings.size());
+    out_ += settings;
+    put<std::int32_t>(s.camera.width_px, s.camera.height_px);
+    const auto& [k1, k2, p1, p2, k3] = s.camera.distortion;
+    put<double>(s.camera.fx_px, s.camera.fy_px, s.camera.cx_px, s.camera.cy_px, k1, k2, p1, p2, k3,
+                s.camera.rate_hz, s.camera.baseline_m, s.camera.disparity_sigma_px);
+    put<std::uint64_t>(s.map.keyframes().size());
+    for (const Keyframe& k : s.map.keyframes()) keyframe(k);
+    put<std::uint64_t>(s.map.landmarks().size());
+    for (const Landmark& l : s.map.landmarks()) landmark(l);
+    tracker(s.tracker);
+    put<std::uint8_t>(s.loop_memory.drift.has_value());
+    if (s.loop_memory.drift) pose(*s.loop_memory.drift);
+    put<std::uint32_t>(s.loop_memory.keyframe.value);
+    put<std::int32_t>(s.loop_memory.agreeing);
+    put<std::uint64_t>(s.tracked_frames.size());
+    for (const auto& [stamp_ns, frame] : s.tracked_frames) {
+      put<std::int64_t>(stamp_ns);
+      put<std::uint32_t>(frame.reference.value);
+      pose(frame.camera_from_reference);
+    }
+    put<std::uint8_t>(s.last_stamp_ns.has_value());
+    if (s.last_stamp_ns) put<std::int64_t>(*s.last_stamp_ns);
+  }
+  const std::string& bytes() const { return out_; }
+
+ private:
+  template <class T, class... Values>
+  void put(const Values&... values) {
+    const auto one = [&](const T& value) {
+      out_.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    (one(static_cast<T>(values)), ...);
+  }
+  void vector(const Eigen::Vector3d& v) { put<double>(v.x(), v.y(), v.z()); }
+  void pose(const SE3& p) {  // the rotation by columns
+    const Eigen::Matrix3d r = p.rotation();
+    for (int column = 0; column < 3; ++column) vector(r.col(column));
+    vector(p.translation());
+  }
+  void twist(const Vector6d& v) {
+    for (int i = 0; i < 6; ++i) put<double>(v[i]);
+  }
+  void matrix(const Matrix6d& m) {  // by rows
+    for (int row = 0; row < 6; ++row) twist(m.row(row));
+  }
+  void features(const Features& f) {
+    put<std::uint64_t>(f.keypoints.size());
+    for (const Keypoint& k : f.keypoints) {
+      put<float>(k.u_px, k.v_px, k.depth_m, k.angle_rad);
+      put<std::int32_t>(k.octave);
+      put<std::uint8_t>(k.label);
+    }
+    put<std::uint64_t>(f.descriptors.size());
+    for (const Descriptor& d : f.descriptors) put<std::uint64_t>(d[0], d[1], d[2], d[3]);
+  }
+  void ids(const std::vector<LandmarkId>& list) {
+    put<std::uint64_t>(list.size());
+    for (const LandmarkId id : list) put<std::uint32_t>(id.value);
+  }
+  void members(const std::vector<WeightedMember>& list) {
+    put<std::uint64_t>(list.size());
+    for (const WeightedMember& m : list) {
+      put<std::uint32_t>(m.id);
+      put<double>(m.weight);
+    }
+  }
+  void keyframe(const Keyframe& k) {
+    put<std::uint32_t>(k.id.value);
+    put<std::int64_t>(k.stamp_ns);
+    pose(k.camera_from_world);
+    features(k.features);
+    members(k.words.vector.labels);
+    members(k.words.vector.words);
+    put<std::uint64_t>(k.words.by_node.size());
+    for (const auto& [node, feature] : k.words.by_node) put<std::uint32_t>(node, feature);
+    ids(k.landmarks);
+    put<std::uint64_t>(k.covisible.size());
+    for (const Keyframe::Neighbor& n : k.covisible) {
+      put<std::uint32_t>(n.id.value);
+      put<std::int32_t>(n.shared);
+    }
+    put<std::uint8_t>(k.erased);
+    put<std::uint32_t>(k.parent.value);
+    pose(k.camera_from_parent);
+  }
+  void landmark(const Landmark& l) {
+    put<std::uint8_t>(l.erased);
+    if (l.erased) return;
+    put<std::uint32_t>(l.id.value);
+    vector(l.position_in_world);
+    put<std::uint64_t>(l.observations.size());
+    for (const Observation& o : l.observations) put<std::uint32_t>(o.keyframe.value, o.feature);
+    put<std::uint64_t>(l.descriptor[0], l.descriptor[1], l.descriptor[2], l.descriptor[3]);
+    put<std::uint8_t>(l.label);
+    vector(l.mean_direction);
+    put<double>(l.min_distance_m, l.max_distance_m);
+    put<std::uint32_t>(l.first_keyframe.value);
+    put<std::int32_t>(l.visible, l.found);
+  }
+  void tracker(const Tracker& t) {
+    put<std::uint8_t>(t.last.has_value());
+    if (t.last) {
+      put<std::int64_t>(t.last->stamp_ns);
+      pose(t.last->camera_from_world);
+      features(t.last->features);
+      ids(t.last->landmarks);
+    }
+    put<std::uint8_t>(t.velocity_per_s.has_value());
+    if (t.velocity_per_s) twist(*t.velocity_per_s);
+    put<std::uint8_t>(t.motion.has_value());
+    if (t.motion) {
+      twist(t.motion->velocity_per_s);
+      matrix(t.motion->pose_covariance);
+      matrix(t.motion->pose_velocity_covariance);
+      matrix(t.motion->velocity_covariance);
+    }
+    put<std::uint32_t>(t.reference.value);
+    put<std::int32_t>(t.frames_since_keyframe);
+    put<std::uint8_t>(t.coasting);
+  }
+
+  std::string out_;
+};
+
+TEST(MapFile, LiesAsAnotherReaderWouldExpect) {
+  SlamState state = midway();
+  ASSERT_TRUE(state.tracker.last && state.tracker.velocity_per_s && state.tracker.motion &&
+              state.last_stamp_ns);
+  state.loop_memory = {.drift = SE3::exp((Vector6d() << 1, 2, 3, 0.4, 0.5, 0.6).finished()),
+                       .keyframe = KeyframeId{1},
+                       .agreeing = 1};
+  for (const SlamState& of : {state, start()}) {
+    const std::string content = Layout(of).bytes();
+    std::string bytes("MHMAP\n\0\0", 8);
+    const auto append = [&](auto value) {
+      bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    append(std::uint32_t{5});
+    append(std::uint64_t{vocabulary()->digest()});
+    append(std::uint64_t{content.size()});
+    bytes += content;
+    append(std::uint64_t{XXH3_64bits(bytes.data(), bytes.size())});
+    EXPECT_TRUE(bytes == encode_slam(of)) << "sizes " << bytes.size() << ", "
+                                          << encode_slam(of).size();
+  }
 }
 
 TEST(MapFile, ARunThatIsSavedAndLoadedGoesOnWithTheSameBits) {

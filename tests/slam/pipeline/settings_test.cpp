@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <regex>
+#include <sstream>
+#include <string>
+
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "slam/config/by_name.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/pipeline/settings.hpp"
@@ -100,6 +107,39 @@ TEST(Settings, TheDocsHaveThemAll) {
       << "docs/slam.md: put there what `modelhouse slam --print-settings` prints";
 }
 
+// The docs are the oracle: whatever range they print holds at both of its ends, and not beyond.
+TEST(Settings, EveryRangeOfTheDocsEndsWhereItSays) {
+  std::istringstream docs(read_file(std::string(MH_SOURCE_DIR) + "/docs/slam.md"));
+  const std::regex section_line("([a-z]+):"),
+      setting_line("  ([a-z0-9_]+): ([0-9.e-]+) +# \\[([0-9.e-]+), ([0-9.e-]+)([\\])]).*");
+  std::string section;
+  int ranges = 0;
+  std::smatch part;
+  for (std::string line; std::getline(docs, line);) {
+    if (std::regex_match(line, part, section_line)) section = part[1];
+    if (!std::regex_match(line, part, setting_line)) continue;
+    ++ranges;
+    const std::string key = part[1];
+    const double low = std::stod(part[3]), high = std::stod(part[4]);
+    const bool open = part[5] == ")";
+    const double present = setting_value(SlamConfig{}, section + "." + key);
+    const bool whole =
+        complaint(section + ": {" + key + ": 1.5}").find("whole number") != std::string::npos;
+    EXPECT_TRUE(present >= low && present <= high) << line;
+    const auto refused = [&](double value) {
+      const std::string said = complaint(fmt::format("{}: {{{}: {}}}", section, key, value));
+      return said.find(fmt::format("{}.{}: ", section, key)) != std::string::npos &&
+             said.find(" is outside [") != std::string::npos;
+    };
+    EXPECT_FALSE(refused(low)) << line;
+    EXPECT_EQ(refused(high), open) << line;
+    EXPECT_TRUE(refused(whole ? low - 1 : std::nextafter(low, -HUGE_VAL))) << line;
+    EXPECT_TRUE(refused(whole ? high + 1 : std::nextafter(high, HUGE_VAL))) << line;
+    EXPECT_FALSE(refused(open ? std::nextafter(high, low) : high)) << line;
+  }
+  EXPECT_GT(ranges, 50) << "the docs' table is not found";
+}
+
 // As it stands in the original's Examples/RGB-D folder, but for its comments.
 constexpr const char* kTum1 = R"(%YAML:1.0
 
@@ -149,6 +189,21 @@ TEST(Settings, TakesOrbSlamsFilesAsTheyAre) {
   EXPECT_TRUE(s.exchange_red_blue);
   ASSERT_EQ(s.notes.size(), 2U);
   EXPECT_EQ(s.notes[1], "TUM1.yaml: passed over: Somebody.Else");
+}
+
+// What a file does not tell is what the program has.
+TEST(Settings, OfAnOrbSlamFileWithoutARowThatRowIsTheDefault) {
+  const Settings s = parse_settings(
+      "Camera.fx: 250\nCamera.fy: 251\nCamera.cx: 319\nCamera.cy: 239\n", "s.yaml");
+  Camera camera;
+  camera.fx_px = 250, camera.fy_px = 251, camera.cx_px = 319, camera.cy_px = 239;
+  EXPECT_DOUBLE_EQ(s.camera.baseline_m, camera.baseline_m) << "in m, whatever the focal length";
+  camera.baseline_m = s.camera.baseline_m;
+  EXPECT_EQ(s.camera, camera);
+  EXPECT_EQ(s.slam, SlamConfig{});
+  EXPECT_EQ(s.depth_per_meter, Settings{}.depth_per_meter);
+  EXPECT_FALSE(s.exchange_red_blue);
+  EXPECT_TRUE(s.notes.empty());
 }
 
 TEST(Settings, OrbSlamsFilesAreCheckedToo) {

@@ -217,6 +217,52 @@ TEST(Localize, FindsFramesThatWereNeverMappedAndChangesNothing) {
   EXPECT_EQ(r.state.map.digest(), digest);
 }
 
+/// Whatever a report of a localization says.
+void expect_equal(const StepReport& a, const StepReport& b) {
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.relocalization, b.relocalization);
+  EXPECT_EQ(a.keypoints, b.keypoints);
+  EXPECT_EQ(a.inliers, b.inliers);
+  ASSERT_TRUE(a.candidates && b.candidates);
+  EXPECT_EQ(a.candidates->c1, b.candidates->c1);
+  EXPECT_EQ(a.candidates->final, b.candidates->final);
+  ASSERT_EQ(a.world_from_camera.has_value(), b.world_from_camera.has_value());
+  if (a.world_from_camera) {
+    EXPECT_EQ(a.world_from_camera->translation(), b.world_from_camera->translation());
+    EXPECT_EQ(a.world_from_camera->rotation(), b.world_from_camera->rotation());
+  }
+  for (std::size_t m = 0; m < a.matches.size(); ++m)
+    EXPECT_EQ(a.matches[m].compared, b.matches[m].compared) << m;
+}
+
+// One memo serves all settings that choose other candidates, whatever was asked before.
+TEST(Localize, WithAMemoItSaysWhatItSaysFromALostTracker) {
+  SlamState state = mapped().state;
+  const int confirmed = state.config.relocalize.min_inliers;
+  int verified = 0, unconfirmed = 0;
+  for (const int i : {7, 40, 199}) {
+    for (const bool strict : {false, true}) {
+      // So many that a place is recognized, and never confirmed in the local map.
+      state.config.relocalize.min_inliers = strict ? 100'000 : confirmed;
+      LocalizeMemo memo;
+      for (const double gamma : {1.0, 3.0, 1.0})
+        for (const double alpha : {0.8, 0.0}) {
+          SemanticConfig semantics = state.config.semantics;
+          semantics.gamma = gamma;
+          semantics.alpha = alpha;
+          set_query_settings(state, semantics);
+          Tracker lost;
+          const StepReport plain = localize(state, lost, frame(i), RandomStream(5));
+          expect_equal(localize(state, frame(i), RandomStream(5), memo), plain);
+          verified += plain.relocalization == RelocalizationStage::kVerified;
+          unconfirmed += plain.relocalization == RelocalizationStage::kInliers;
+        }
+    }
+  }
+  EXPECT_EQ(verified, 3 * 6);
+  EXPECT_EQ(unconfirmed, 3 * 6);
+}
+
 TEST(Localize, ABlankFrameIsLostAndLeavesTheTrackerLost) {
   const Drive& r = mapped();
   Tracker tracker;

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/mapping/local_mapping.hpp"
+
+#include <gtest/gtest.h>
+
+#include "slam/config/slam.hpp"
+#include "slam/core/random.hpp"
+
+namespace mh {
+namespace {
+
+const Camera kCamera;
+
+/// A keyframe at x_m that sees these points, exactly.
+KeyframeId add_view(Map& map, double x_m, const std::vector<Eigen::Vector3d>& points) {
+  Keyframe k;
+  k.camera_from_world =
+      SE3(Eigen::Matrix3d(Eigen::Matrix3d::Identity()), Eigen::Vector3d(-x_m, 0, 0));
+  for (const Eigen::Vector3d& point : points) {
+    const Eigen::Vector3d p = k.camera_from_world * point;
+    const Eigen::Vector2d pixel = kCamera.project(p);
+    Keypoint keypoint;
+    keypoint.u_px = static_cast<float>(pixel.x());
+    keypoint.v_px = static_cast<float>(pixel.y());
+    keypoint.depth_m = static_cast<float>(p.z());
+    k.features.keypoints.push_back(keypoint);
+  }
+  k.features.descriptors.resize(points.size());
+  return map.add(std::move(k));
+}
+
+std::vector<Eigen::Vector3d> cloud(std::uint64_t seed) {
+  const RandomStream draw(seed);
+  std::vector<Eigen::Vector3d> points;
+  for (std::uint64_t i = 0; i < 40; ++i)
+    points.emplace_back(draw.uniform(3 * i, -0.7, 0.9), draw.uniform(3 * i + 1, -0.6, 0.6),
+                        draw.uniform(3 * i + 2, 2.0, 4.0));
+  return points;
+}
+
+struct TwoViews {
+  Map map;
+  SlamConfig config;
+  MatchCounts counts{};
+  SlamContext context() { return {kCamera, config, map, counts}; }
+
+  /// @param shared  whether the second sees the first one's landmarks, or those of its own alone
+  explicit TwoViews(bool shared) {
+    const std::vector<Eigen::Vector3d> points = cloud(1), others = cloud(2);
+    add_view(map, 0, points);
+    add_view(map, 0.2, shared ? points : others);
+    const Eigen::Vector3d off(0.004, -0.003, 0.01);
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      const LandmarkId id = map.add_landmark(points[i] + off, KeyframeId{0}, i);
+      if (shared)
+        map.add_observation(id, KeyframeId{1}, i);
+      else
+        map.add_landmark(others[i] + off, KeyframeId{1}, i);
+    }
+    for (const std::uint32_t k : {0, 1}) map.update_covisibility(KeyframeId{k});
+  }
+};
+
+TEST(AdjustNeighborhood, BringsPointsBackThatAKeyframeOutsideHolds) {
+  TwoViews views(true);
+  const SE3 first = views.map.at(KeyframeId{0}).camera_from_world;
+  adjust_neighborhood(views.map, KeyframeId{1}, views.context());
+  const std::vector<Eigen::Vector3d> points = cloud(1);
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    EXPECT_LT((views.map.at(LandmarkId{i}).position_in_world - points[i]).norm(), 1e-4) << i;
+  EXPECT_EQ(views.map.at(KeyframeId{0}).camera_from_world.translation(), first.translation());
+  EXPECT_LT(
+      (views.map.at(KeyframeId{1}).camera_from_world.translation() - Eigen::Vector3d(-0.2, 0, 0))
+          .norm(),
+      1e-4);
+}
+
+// With nothing that holds it, the keyframe would go wherever its points pull it.
+TEST(AdjustNeighborhood, MovesNothingThatNoOtherKeyframeHolds) {
+  TwoViews views(false);
+  const std::uint64_t digest = views.map.digest();
+  adjust_neighborhood(views.map, KeyframeId{1}, views.context());
+  EXPECT_EQ(views.map.digest(), digest);
+}
+
+TEST(AdjustAll, OfTheFirstKeyframeAloneMovesNothing) {
+  Map map;
+  SlamConfig config;
+  MatchCounts counts{};
+  const std::vector<Eigen::Vector3d> points = cloud(1);
+  add_view(map, 0, points);
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    map.add_landmark(points[i] + Eigen::Vector3d(0.01, 0, 0), KeyframeId{0}, i);
+  const std::uint64_t digest = map.digest();
+  adjust_all(map, {kCamera, config, map, counts});
+  EXPECT_EQ(map.digest(), digest);
+}
+
+}  // namespace
+}  // namespace mh
