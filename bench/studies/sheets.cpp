@@ -316,7 +316,7 @@ cv::Mat draw(const std::string& title, const std::vector<Factor>& factors,
       cv::Mat whole = show(config, factor.looks[k]);
       if (const int pixel = factor.looks[k].pixel; pixel > 1)
         cv::resize(whole, whole, {}, pixel, pixel, cv::INTER_NEAREST);
-      const int w = factor.crop_px, h = w * 3 / 4;
+      const int w = factor.crop_px, h = static_cast<int>(w * kTileHeight / kTileWidth);
       cv::Mat part;
       cv::resize(whole({(whole.cols - w) / 2, (whole.rows - h) / 2, w, h}), part, {800, 600}, 0, 0,
                  cv::INTER_NEAREST);

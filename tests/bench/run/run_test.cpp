@@ -510,6 +510,65 @@ TEST(Topdown, FailuresLieOnTopHeadingsShowAndThePathsCanBeTold) {
   EXPECT_GT(pixels_of(both, {10, 84, 196}), 50) << "the estimated path is hidden";
 }
 
+// A fence of 1 m: it is drawn as furniture once it reaches 0.4 m above the floor, and as a wall
+// once it reaches 1.2 m.
+TEST(Topdown, FurnitureIsCutAt40CmAndWallsAt120CmAboveTheFloor) {
+  Place place;
+  const RunResult run = place.run()[0];
+  for (const double floor_z_m : {0.0, -0.75}) {
+    const auto drawn = [&](double top_m) {
+      Scene scene;
+      scene.floor.middle_m.z() = floor_z_m;
+      for (const double z_m : {floor_z_m, floor_z_m + top_m})
+        for (const float x : {0.2F, 1.2F})
+          scene.positions_m.emplace_back(x, 1.5F, static_cast<float>(z_m));
+      scene.triangles = {{0, 1, 2}, {1, 3, 2}};
+      scene.class_of = {1, 1};
+      place.world.scene = std::make_shared<const Scene>(scene);
+      return draw_topdown(place.world, run, QuerySet::kSecondTour);
+    };
+    const cv::Mat none = drawn(0.01), furniture = drawn(0.41), wall = drawn(1.21);
+    const double line = cv::norm(none, furniture);
+    EXPECT_GT(line, 300);
+    EXPECT_GT(cv::norm(furniture, wall), line);
+    // But for where the fence's two triangles meet.
+    EXPECT_EQ(cv::norm(none, drawn(0.39)), 0);
+    EXPECT_LT(cv::norm(furniture, drawn(1.19)), 0.1 * line);
+    EXPECT_LT(cv::norm(wall, drawn(2.5)), 0.1 * line);
+  }
+}
+
+// What the legend says of the two paths is the farthest in the plane, whichever way; height does
+// not count. Its first line stands 84 to 54 px above the picture's lower edge.
+TEST(Topdown, TheLegendTellsHowFarThePathsAreApart) {
+  Place place;
+  RunResult run = place.run()[0];
+  run.trajectory.dock_from_estimate = SE3();
+  const auto legend = [&](const Eigen::Vector3d& first_off, const Eigen::Vector3d& others_off) {
+    run.estimate = place.world.mapping.camera;
+    for (TimedPose& pose : run.estimate) {
+      const Eigen::Vector3d& off = &pose == &run.estimate[0] ? first_off : others_off;
+      pose.world_from_camera =
+          SE3(pose.world_from_camera.rotation(), pose.world_from_camera.translation() + off);
+    }
+    const cv::Mat picture = draw_topdown(place.world, run, QuerySet::kSecondTour);
+    return picture.rowRange(picture.rows - 84, picture.rows - 54).clone();
+  };
+  const auto of = [&](double x, double y, double z) {
+    const Eigen::Vector3d off(x, y, z);
+    return legend(off, off);
+  };
+  const cv::Mat half = of(0.5, 0, 0);
+  EXPECT_EQ(cv::norm(half, of(0, 0.5, 0)), 0);
+  EXPECT_EQ(cv::norm(half, of(0, -0.5, 0)), 0);
+  EXPECT_EQ(cv::norm(half, of(-0.3, 0.4, 0)), 0);
+  EXPECT_EQ(cv::norm(half, of(0.5, 0, 3)), 0);
+  EXPECT_EQ(cv::norm(half, legend({0, 0.5, 0}, {0.1, 0, 0})), 0) << "the farthest of all";
+  EXPECT_GT(cv::norm(half, of(0.5, 0.1, 0)), 0);
+  EXPECT_GT(cv::norm(half, of(0, 0, 0)), 0);
+  EXPECT_EQ(cv::norm(of(0, 0, 0), of(0, 0, 2)), 0);
+}
+
 TEST(Scenes, WhereRunsFailedItIsSaidOverHowManyScenesTheMeanIs) {
   Place place;
   place.suite.labels = {LabelMode::kExact};

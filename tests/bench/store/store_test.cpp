@@ -347,6 +347,42 @@ TEST_F(StoreFile, BadInputFoundLateIsToldAsSuchAndStagesAreSaid) {
                                             "a: failed: bad input: x.ply: no floor"}));
 }
 
+// Four runs: one that another process has finished meanwhile, one that failed there, one that comes
+// well to its end and one that does not. Each is counted once, and the share is that of the settled.
+TEST_F(StoreFile, TheWorkDoneIsTheRunsThatAreSettled) {
+  const fs::path program = folder_ / "program";
+  std::ofstream(program) << "#!/bin/sh\n[ \"$1\" = well ]\n";
+  fs::permissions(program, fs::perms::owner_all);
+  Store store(folder_ / "r.sqlite");
+  store.put("done", some_run("a"), {});
+  store.put_failure("failed", some_run("b").spec, "x", {});
+  PoolOptions options;
+  options.executable = program;
+  options.work_folder = folder_;
+  options.arguments = [&](const Job& job, const fs::path&) {
+    if (job.key == "well") store.put(job.key, some_run("c"), {});
+    return std::vector<std::string>{job.key};
+  };
+  using Counts = std::tuple<std::size_t, std::size_t, double>;
+  std::vector<Counts> seen;
+  bool to_go = false;
+  options.progress = [&](const PoolProgress& p) {
+    if (const Counts now{p.done, p.failed, p.share}; seen.empty() || seen.back() != now)
+      seen.push_back(now);
+    to_go = p.to_go_s.has_value();
+  };
+  work_off(store,
+           {{some_run("a").spec, "done"},
+            {some_run("b").spec, "failed"},
+            {some_run("c").spec, "well"},
+            {some_run("d").spec, "badly"}},
+           options);
+  EXPECT_EQ(seen, (std::vector<Counts>{
+                      {0, 0, 0.0}, {1, 0, 0.25}, {1, 1, 0.5}, {2, 1, 0.75}, {2, 2, 1.0}}));
+  EXPECT_FALSE(to_go) << "nothing is left to be waited for";
+  EXPECT_EQ(store.error("badly"), "returned 1");
+}
+
 TEST_F(StoreFile, AFileWithoutItsTablesIsRefusedWithAdvice) {
   const fs::path file = folder_ / "r.sqlite";
   { Store store(file); }

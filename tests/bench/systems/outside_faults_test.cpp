@@ -19,6 +19,7 @@
 #include "bench/systems/outside_error.hpp"
 #include "bench/systems/program_folder.hpp"
 #include "bench/systems/recorded_run.hpp"
+#include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "tests/bench/protocol/fake_system.hpp"
 
@@ -142,6 +143,17 @@ class OutsideFaults : public testing::Test {
     const std::string holds_text = text;                               \
     EXPECT_NE(holds_text.find(part), std::string::npos) << holds_text; \
   } while (false)
+
+TEST_F(OutsideFaults, WhatTheMachineRefusesIsToldByProgramThingAndReason) {
+  const fs::path log = folder_ / "nowhere" / "log";
+  try {
+    ChildProcess(program(OutsideMode::kTrajectory, "true"), "true", ChildProcess::Talk::kNo, log,
+                 folder_);
+    FAIL();
+  } catch (const MachineError& error) {
+    EXPECT_EQ(error.what(), "theirs: " + log.string() + ": No such file or directory");
+  }
+}
 
 TEST_F(OutsideFaults, TrajectoryProgramsThatFail) {
   const auto fails = [&](const std::string& command, const std::string& part) {
