@@ -4,15 +4,9 @@
 #include <algorithm>
 #include <numbers>
 
+#include "bench/protocol/score.hpp"
+
 namespace mh {
-namespace {
-
-const TimedPose* at(const Trajectory& truth, Stamp stamp_ns) {
-  const auto found = std::ranges::lower_bound(truth, stamp_ns, {}, &TimedPose::stamp_ns);
-  return found == truth.end() || found->stamp_ns != stamp_ns ? nullptr : &*found;
-}
-
-}  // namespace
 
 LoopAudit audit_loops(std::span<const LoopClosure> loops, const Trajectory& truth,
                       const ProtocolConfig& config) {
@@ -20,12 +14,13 @@ LoopAudit audit_loops(std::span<const LoopClosure> loops, const Trajectory& trut
   LoopAudit audit;
   for (const LoopClosure& loop : loops) {
     ++audit.closed;
-    const TimedPose *old_pose = at(truth, loop.old_stamp_ns), *new_pose = at(truth, loop.stamp_ns);
+    const auto old_pose = interpolated_pose(truth, loop.old_stamp_ns, kMaxTruthGap_ns);
+    const auto new_pose = interpolated_pose(truth, loop.stamp_ns, kMaxTruthGap_ns);
     if (!old_pose || !new_pose) {
-      ++audit.wrong;
+      ++audit.unknown;
       continue;
     }
-    const SE3 exact = old_pose->world_from_camera.inverse() * new_pose->world_from_camera;
+    const SE3 exact = old_pose->inverse() * *new_pose;
     const double distance_m = (loop.old_from_new.translation() - exact.translation()).norm();
     const double angle_rad = angle_between_rad(loop.old_from_new, exact);
     audit.worst_m = std::max(audit.worst_m, distance_m);

@@ -10,13 +10,6 @@
 namespace mh {
 namespace {
 
-const TimedPose* find_stamp(const Trajectory& trajectory, Stamp stamp_ns) {
-  const auto found =
-      std::lower_bound(trajectory.begin(), trajectory.end(), stamp_ns,
-                       [](const TimedPose& pose, Stamp stamp) { return pose.stamp_ns < stamp; });
-  return found != trajectory.end() && found->stamp_ns == stamp_ns ? &*found : nullptr;
-}
-
 double separation(const TimedPose& mapped, const TimedPose& query, NearestBy by) {
   if (by == NearestBy::kTime)
     return static_cast<double>(std::abs(mapped.stamp_ns - query.stamp_ns)) * 1e-9;
@@ -37,25 +30,24 @@ std::optional<Anchor> nearest_mapped(const Trajectory& estimate, const Trajector
   std::optional<Anchor> best;
   double best_separation = std::numeric_limits<double>::infinity();
   for (const TimedPose& pose : estimate) {
-    const TimedPose* truth = find_stamp(mapping_truth, pose.stamp_ns);
-    if (truth == nullptr) continue;
-    const double s = separation(*truth, true_query, by);
+    const auto truth = interpolated_pose(mapping_truth, pose.stamp_ns, kMaxTruthGap_ns);
+    if (!truth) continue;
+    const double s = separation({pose.stamp_ns, *truth}, true_query, by);
     if (s >= best_separation) continue;
     best_separation = s;
-    best = Anchor{pose.world_from_camera, truth->world_from_camera, pose.stamp_ns};
+    best = Anchor{pose.world_from_camera, *truth, pose.stamp_ns};
   }
   return best;
 }
 
-std::optional<SE3> interpolated_pose(const Trajectory& estimate, Stamp stamp_ns) {
-  const auto after =
-      std::lower_bound(estimate.begin(), estimate.end(), stamp_ns,
-                       [](const TimedPose& pose, Stamp stamp) { return pose.stamp_ns < stamp; });
-  if (after != estimate.end() && after->stamp_ns == stamp_ns) return after->world_from_camera;
-  if (after == estimate.begin() || after == estimate.end()) return std::nullopt;
+std::optional<SE3> interpolated_pose(const Trajectory& trajectory, Stamp stamp_ns,
+                                     Stamp max_gap_ns) {
+  const auto after = std::ranges::lower_bound(trajectory, stamp_ns, {}, &TimedPose::stamp_ns);
+  if (after != trajectory.end() && after->stamp_ns == stamp_ns) return after->world_from_camera;
+  if (after == trajectory.begin() || after == trajectory.end()) return std::nullopt;
   const TimedPose& before = *std::prev(after);
   const Stamp gap_ns = after->stamp_ns - before.stamp_ns;
-  if (gap_ns > kMaxNeighborGap_ns) return std::nullopt;
+  if (gap_ns > max_gap_ns) return std::nullopt;
   const double share =
       static_cast<double>(stamp_ns - before.stamp_ns) / static_cast<double>(gap_ns);
   const SE3& a = before.world_from_camera;
@@ -64,34 +56,44 @@ std::optional<SE3> interpolated_pose(const Trajectory& estimate, Stamp stamp_ns)
              (1 - share) * a.translation() + share * b.translation());
 }
 
-std::optional<Anchor> find_anchor(const Trajectory& estimate, const Trajectory& mapping_truth,
-                                  const TimedPose& true_query, NearestBy by,
-                                  const ProtocolConfig& config) {
-  if (config.truth == QueryTruth::kInterpolated && by == NearestBy::kTime)
-    if (const auto pose = interpolated_pose(estimate, true_query.stamp_ns))
-      return Anchor{*pose, true_query.world_from_camera, true_query.stamp_ns};
-  return nearest_mapped(estimate, mapping_truth, true_query, by);
+QueryMoment moment_of(Stamp stamp_ns, const Trajectory* truth) {
+  if (truth == nullptr) return {stamp_ns, std::nullopt};
+  return {stamp_ns, interpolated_pose(*truth, stamp_ns, kMaxTruthGap_ns)};
 }
 
-QueryScore score(const QueryAnswer& answer, const TimedPose& truth,
+std::optional<Anchor> find_anchor(const Trajectory& estimate, const Trajectory& mapping_truth,
+                                  const QueryMoment& query, NearestBy by,
+                                  const ProtocolConfig& config) {
+  if (config.truth == QueryTruth::kInterpolated && by == NearestBy::kTime)
+    if (const auto pose = interpolated_pose(estimate, query.stamp_ns))
+      return Anchor{*pose, query.true_world_from_camera.value_or(SE3()), query.stamp_ns};
+  if (!query.true_world_from_camera) return std::nullopt;
+  return nearest_mapped(estimate, mapping_truth, {query.stamp_ns, *query.true_world_from_camera},
+                        by);
+}
+
+QueryScore score(const QueryAnswer& answer, const QueryMoment& moment,
                  const std::optional<Anchor>& anchor, const SE3& truth_from_estimate,
                  const ProtocolConfig& config) {
   QueryScore s{.answer = answer,
-               .stamp_ns = truth.stamp_ns,
-               .true_world_from_camera = truth.world_from_camera,
+               .stamp_ns = moment.stamp_ns,
+               .true_world_from_camera = moment.true_world_from_camera,
                .success = answer.world_from_camera.has_value()};
   if (!s.success) return s;
   const SE3& estimate = *answer.world_from_camera;
   if (anchor) {
-    const SE3 aligned = truth_from_estimate * estimate;
-    s.aligned_distance_m = (aligned.translation() - truth.world_from_camera.translation()).norm();
-    const SE3 expected = local_truth(*anchor, truth.world_from_camera);
+    const SE3 truth = moment.true_world_from_camera.value_or(anchor->truth);
+    if (moment.true_world_from_camera) {
+      const SE3 aligned = truth_from_estimate * estimate;
+      s.aligned_distance_m = (aligned.translation() - truth.translation()).norm();
+    }
+    const SE3 expected = local_truth(*anchor, truth);
     s.distance_m = (estimate.translation() - expected.translation()).norm();
     s.angle_deg = angle_between_rad(estimate, expected) * 180.0 / std::numbers::pi;
     s.correct =
         *s.distance_m <= config.correct_distance_m && *s.angle_deg <= config.correct_angle_deg;
   }
-  s.wrong = !s.correct;
+  s.wrong = is_judged(s) && !s.correct;
   return s;
 }
 

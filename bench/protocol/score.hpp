@@ -22,6 +22,16 @@ struct Anchor {
   Stamp stamp_ns = 0;
 };
 
+/// A query's moment, and where its camera really was: absent where nobody knows.
+struct QueryMoment {
+  Stamp stamp_ns = 0;
+  std::optional<SE3> true_world_from_camera = {};
+  QueryMoment(Stamp stamp, const std::optional<SE3>& truth)
+      : stamp_ns(stamp), true_world_from_camera(truth) {}
+  // NOLINTNEXTLINE(google-explicit-constructor): a pose of the truth is a query's whole moment
+  QueryMoment(const TimedPose& truth) : QueryMoment(truth.stamp_ns, truth.world_from_camera) {}
+};
+
 /// Where the query camera is in the system's own map, exactly: the anchor's estimated pose
 /// composed with the true motion from the anchor to the query. Drift of the map elsewhere does not
 /// count (the paper's 0.02 m beside an APE of 0.2 m shows that its distance was local too).
@@ -35,32 +45,51 @@ std::optional<Anchor> nearest_mapped(const Trajectory& estimate, const Trajector
 /// frames miss one frame or two, and beyond that an interpolation says nothing.
 inline constexpr Stamp kMaxNeighborGap_ns = 500'000'000;
 
-/// Where the query camera is in the system's own map by the paper's estimate: between its
-/// neighbors in time among the mapped frames, position linearly, rotation along the shortest turn.
-/// nullopt if one of them is missing or they lie more than kMaxNeighborGap_ns apart.
-std::optional<SE3> interpolated_pose(const Trajectory& estimate, Stamp stamp_ns);
+/// Likewise for the truth, which a recording may tell at other moments than its frames'. Over this
+/// gap g a hand that accelerates by 5 m/s2 and 10 rad/s2 leaves the interpolation by a g^2 / 8: 1.6
+/// mm and 0.2 degrees. It is less than two frames at 30 Hz, so that a frame whose own pose is
+/// invalid gets none of its neighbors'.
+inline constexpr Stamp kMaxTruthGap_ns = 50'000'000;
+
+/// The pose at a moment: the one of that stamp, else between its neighbors in time, position
+/// linearly, rotation along the shortest turn. Of mapped frames it is where the query camera is in
+/// the system's own map by the paper's estimate.
+/// nullopt if a neighbor is missing or they lie more than max_gap_ns apart.
+std::optional<SE3> interpolated_pose(const Trajectory& trajectory, Stamp stamp_ns,
+                                     Stamp max_gap_ns = kMaxNeighborGap_ns);
+
+/// Where the camera of a query was, as a trajectory of the truth tells it.
+/// @param truth  may be null: nobody knows
+QueryMoment moment_of(Stamp stamp_ns, const Trajectory* truth);
 
 /// The anchor that config.truth asks for. Interpolation is for held-out frames: a query found by
-/// place has no neighbors in time, and is compared as by kLocal.
+/// place has no neighbors in time, and is compared as by kLocal. It alone needs no truth.
 std::optional<Anchor> find_anchor(const Trajectory& estimate, const Trajectory& mapping_truth,
-                                  const TimedPose& true_query, NearestBy by,
+                                  const QueryMoment& query, NearestBy by,
                                   const ProtocolConfig& config);
 
 /// One answer beside the truth.
 struct QueryScore {
   QueryAnswer answer;
   Stamp stamp_ns = 0;
-  SE3 true_world_from_camera;
-  bool success = false;  ///< a pose was returned (the paper's measure)
+  std::optional<SE3> true_world_from_camera = {};  ///< absent where nobody knows
+  bool success = false;                            ///< a pose was returned (the paper's measure)
+  // Both false where the answer cannot be judged.
   bool correct = false;  ///< and lies within the limits of the protocol
-  bool wrong = false;    ///< returned, and outside them (or nothing to compare with)
+  bool wrong = false;    ///< returned, and outside them (or nothing was mapped to compare with)
   // Absent where nothing was answered, or nothing was mapped that an answer may be compared with.
   std::optional<double> distance_m = {}, angle_deg = {};  ///< to the local truth
   std::optional<double> aligned_distance_m = {};  ///< to the truth after aligning the trajectory
 };
 
+/// Whether it is known if an answer was correct: there is a truth, or a distance without one
+/// (QueryTruth::kInterpolated).
+inline bool is_judged(const QueryScore& q) {
+  return q.true_world_from_camera.has_value() || q.distance_m.has_value();
+}
+
 /// @param truth_from_estimate  global SE(3) alignment of the mapping trajectory
-QueryScore score(const QueryAnswer& answer, const TimedPose& truth,
+QueryScore score(const QueryAnswer& answer, const QueryMoment& moment,
                  const std::optional<Anchor>& anchor, const SE3& truth_from_estimate,
                  const ProtocolConfig& config);
 

@@ -139,7 +139,8 @@ std::string export_latex(const Store& store) {
       if (s.queries == 0) continue;
       asked = true;
       text += fmt::format("{} & {} & {} & {} & {} \\\\\n", head, latex_cell(name(set)),
-                          share(s.success), share(s.correct), cell(s.distance_mean_m));
+                          share(s.success), s.correct ? share(*s.correct) : "--",
+                          cell(s.distance_mean_m));
     }
     if (!asked) text += head + " & -- & -- & -- & -- \\\\\n";
   }

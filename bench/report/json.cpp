@@ -152,12 +152,12 @@ Json query_json(const QueryScore& q, const SystemSpec& system) {
       {"frame", q.answer.index},
       {"stamp_ns", q.stamp_ns},
       {"success", q.success},
-      {"correct", q.correct},
-      {"false", q.wrong},
+      {"correct", is_judged(q) ? Json(q.correct) : Json()},
+      {"false", is_judged(q) ? Json(q.wrong) : Json()},
       {"stage", reports_stage(system, q.answer.stage) ? Json(name(q.answer.stage)) : Json()},
       {"attempts", q.answer.attempts},
       {"blank_frames", q.answer.blank_frames},
-      {"truth", pose_json(q.true_world_from_camera)}};
+      {"truth", q.true_world_from_camera ? pose_json(*q.true_world_from_camera) : Json()}};
   if (q.success) {
     json["estimate"] = pose_json(*q.answer.world_from_camera);
     json["distance_m"] = number(q.distance_m);
@@ -186,8 +186,8 @@ Json summary_json(const QuerySummary& s) {
   if (s.queries == 0) return nullptr;  // nothing was asked
   return {{"queries", s.queries},
           {"success", s.success},
-          {"correct", s.correct},
-          {"false", s.wrong},
+          {"correct", number(s.correct)},
+          {"false", number(s.wrong)},
           {"distance_mean_m", number(s.distance_mean_m)},
           {"distance_median_m", number(s.distance_median_m)},
           {"aligned_distance_mean_m", number(s.aligned_distance_mean_m)},
@@ -242,10 +242,11 @@ Json points_json(const RunResult& run) {
 }
 
 Json loops_json(const LoopAudit& loops) {
+  const bool judged = loops.closed == 0 || loops.unknown < loops.closed;
   return {{"closed", loops.closed},
-          {"false", loops.wrong},
-          {"worst_m", loops.worst_m},
-          {"worst_deg", loops.worst_rad * 180.0 / std::numbers::pi}};
+          {"false", judged ? Json(loops.wrong) : Json()},
+          {"worst_m", judged ? Json(loops.worst_m) : Json()},
+          {"worst_deg", judged ? Json(loops.worst_rad * 180.0 / std::numbers::pi) : Json()}};
 }
 
 Json run_json(const RunResult& run) {

@@ -39,15 +39,18 @@ struct PanelMeasure {
   std::function<std::optional<double>(const QuerySummary&)> value;
 };
 
+std::optional<double> in_percent(const std::optional<double>& share) {
+  return share ? std::optional(100 * *share) : std::nullopt;
+}
+
 std::vector<PanelMeasure> panel_measures() {
-  return {{"correct answers, %", kGood, 1,
-           [](const QuerySummary& s) { return std::optional(100 * s.correct); }},
-          {"false answers, %", kBad, 1,
-           [](const QuerySummary& s) { return std::optional(100 * s.wrong); }},
-          {"mean distance, mm", kBad, 1, [](const QuerySummary& s) -> std::optional<double> {
-             if (!s.distance_mean_m) return std::nullopt;
-             return 1e3 * *s.distance_mean_m;
-           }}};
+  return {
+      {"correct answers, %", kGood, 1, [](const QuerySummary& s) { return in_percent(s.correct); }},
+      {"false answers, %", kBad, 1, [](const QuerySummary& s) { return in_percent(s.wrong); }},
+      {"mean distance, mm", kBad, 1, [](const QuerySummary& s) -> std::optional<double> {
+         if (!s.distance_mean_m) return std::nullopt;
+         return 1e3 * *s.distance_mean_m;
+       }}};
 }
 
 /// The values of a panel, the least and the greatest of them.
@@ -199,12 +202,12 @@ std::string caption(const SweepResult& result, QuerySet set, const std::vector<s
   const Comparison& c = best.to_reference;
   if (best.equals == result.points.size())
     return fmt::format("{}: {:.1f} % correct at each of {} points", name(set),
-                       100 * summary(result.answers[best.point], set).correct, best.equals);
+                       100 * *summary(result.answers[best.point], set).correct, best.equals);
   return fmt::format(
       "{}: most correct answers at {}{}: {:.1f} %, {:+.1f} [{:+.1f}, {:+.1f}] points against {}",
       name(set), place_of(result.points[best.point], varied),
       best.equals > 1 ? fmt::format(" (one of {} equals)", best.equals) : "",
-      100 * summary(result.answers[best.point], set).correct, 100 * c.difference, 100 * c.low,
+      100 * *summary(result.answers[best.point], set).correct, 100 * c.difference, 100 * c.low,
       100 * c.high, place_of(result.points[best.reference], varied));
 }
 

@@ -32,6 +32,11 @@ std::string percent(const QuerySummary& s, double QuerySummary::*share) {
   return s.queries > 0 ? fmt::format("{:.2f}%", 100 * s.*share) : std::string("-");
 }
 
+/// The same where nobody may know.
+std::string percent(const QuerySummary& s, std::optional<double> QuerySummary::*share) {
+  return s.*share ? fmt::format("{:.2f}%", 100 * *(s.*share)) : std::string("-");
+}
+
 /// Queries put to the system that was asked most.
 double most_queries(const std::vector<const Row*>& rows, QuerySet set) {
   double most = 0;
@@ -455,14 +460,14 @@ std::string best_points(const Suite& suite, const std::vector<Row>& rows) {
       if (best->equals == result.points.size()) {
         text += fmt::format("  {}, level {}, {}, {}: {:.2f}% at each of {} points\n", system.name,
                             level_name(suite.levels[result.level]), with_labels(result.labels),
-                            name(set), 100 * summary(result.answers[best->point], set).correct,
+                            name(set), 100 * *summary(result.answers[best->point], set).correct,
                             best->equals);
         continue;
       }
       text += fmt::format(
           "  {}, level {}, {}, {}: {}: {:.2f}%, {}{}\n", system.name,
           level_name(suite.levels[result.level]), with_labels(result.labels), name(set),
-          shown_point(suite.sweep, at), 100 * summary(result.answers[best->point], set).correct,
+          shown_point(suite.sweep, at), 100 * *summary(result.answers[best->point], set).correct,
           c.pairs == 0 ? std::string("-") : fmt::format("{:+.4f} {}", c.difference, interval(c)),
           best->equals > 1 ? fmt::format("; {} points are equal", best->equals) : "");
     }

@@ -106,7 +106,8 @@ std::vector<cv::Point2d> marks(const PlanView& view, const World& world, const R
   for (const TimedPose& pose : world.mapping.camera)
     result.push_back(view(pose.world_from_camera.translation().head<2>()));
   for (const QueryScore& q : queries(run.points.front(), set))
-    result.push_back(view(q.true_world_from_camera.translation().head<2>()));
+    if (q.true_world_from_camera)
+      result.push_back(view(q.true_world_from_camera->translation().head<2>()));
   for (const SliceSegment& s : furniture) result.push_back(view(0.5 * (s.from_m + s.to_m)));
   return result;
 }
@@ -182,7 +183,8 @@ void draw_heading(Canvas& canvas, const cv::Point2d& at, const SE3& plan_from_ca
 /// An answer beyond the plan has no ring, but the line towards it.
 void draw_query(Canvas& canvas, const PlanView& view, const QueryScore& q,
                 const SE3& plan_from_estimate) {
-  const Eigen::Vector2d at = q.true_world_from_camera.translation().head<2>();
+  if (!q.true_world_from_camera) return;
+  const Eigen::Vector2d at = q.true_world_from_camera->translation().head<2>();
   const cv::Point2d truth = view(at);
   if (q.success) {
     const Rgb8 color = q.wrong ? kBad : kGood;
@@ -195,7 +197,7 @@ void draw_query(Canvas& canvas, const PlanView& view, const QueryScore& q,
     }
   }
   const Rgb8 color = q.success ? kX : kMissed;
-  draw_heading(canvas, truth, q.true_world_from_camera, 0, color);
+  draw_heading(canvas, truth, *q.true_world_from_camera, 0, color);
   canvas.cross(truth, kCross, color, kStroke);
 }
 
@@ -308,7 +310,7 @@ void draw_header(Canvas& canvas, const World& world, const RunResult& run, Query
       s.queries == 0 ? fmt::format("{}: nothing was asked", which)
                      : fmt::format("{} ({}): {:.1f} % answered, {:.1f} % correct",
                                    counted(static_cast<int>(s.queries), "query", "queries"), which,
-                                   100 * s.success, 100 * s.correct);
+                                   100 * s.success, 100 * s.correct.value_or(0));
   const std::optional<double>& ate = run.trajectory.ate_rmse_m;
   draw_line_of_text(
       canvas,

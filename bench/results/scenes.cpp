@@ -77,17 +77,13 @@ std::vector<const Row*> scenes_of(const Suite& suite, std::span<const Row> rows,
   return scenes;
 }
 
-PairedDifference between(const std::optional<double>& a, const std::optional<double>& b) {
-  return a && b ? PairedDifference{*a - *b, true} : PairedDifference{};
-}
-
 /// First minus second in one scene.
 using Measure = PairedDifference (*)(const Row&, const Row&, QuerySet);
 
-template <double QuerySummary::*kField>
+template <auto QuerySummary::*kField>
 PairedDifference share(const Row& a, const Row& b, QuerySet set) {
   if (summary(a, set).queries == 0 || summary(b, set).queries == 0) return {};
-  return {summary(a, set).*kField - summary(b, set).*kField, true};
+  return paired_difference(summary(a, set).*kField, summary(b, set).*kField);
 }
 
 PairedDifference distance(const Row& a, const Row& b, QuerySet set) {
@@ -97,7 +93,7 @@ PairedDifference distance(const Row& a, const Row& b, QuerySet set) {
 
 PairedDifference ate(const Row& a, const Row& b, QuerySet) {
   const auto [first, second] = ate_over_common_frames(a, b);
-  return between(first, second);
+  return paired_difference(first, second);
 }
 
 std::vector<Comparison> compare(const std::vector<const Row*>& first,

@@ -21,6 +21,11 @@ struct PairedDifference {
   double difference = 0;
   bool present = false;
 };
+/// First minus second, where both are known.
+inline PairedDifference paired_difference(const std::optional<double>& first,
+                                          const std::optional<double>& second) {
+  return first && second ? PairedDifference{*first - *second, true} : PairedDifference{};
+}
 
 /// Mean difference of two systems over the same queries.
 struct Comparison {

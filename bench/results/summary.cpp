@@ -93,6 +93,10 @@ std::vector<PairedDifference> differences(const Row& first, const Row& second, Q
   return result;
 }
 
+std::optional<double> judged_correct(const QueryScore& q) {
+  return is_judged(q) ? std::optional(q.correct ? 1.0 : 0.0) : std::nullopt;
+}
+
 std::vector<Comparison> compare_rows(const Row& first, const Row& second, std::uint64_t seed) {
   std::vector<Comparison> comparisons;
   for (const QuerySet set : kQuerySets) {
@@ -101,11 +105,10 @@ std::vector<Comparison> compare_rows(const Row& first, const Row& second, std::u
       return fmt::format("{}, {}, {}", what, name(set), with_labels(first.labels));
     };
     const auto success = [](const QueryScore& q) { return std::optional(q.success ? 1.0 : 0.0); };
-    const auto correct = [](const QueryScore& q) { return std::optional(q.correct ? 1.0 : 0.0); };
     comparisons.push_back(
         compare_paired(label("success"), differences(first, second, set, success), true, seed));
-    comparisons.push_back(
-        compare_paired(label("correct"), differences(first, second, set, correct), true, seed));
+    comparisons.push_back(compare_paired(
+        label("correct"), differences(first, second, set, judged_correct), true, seed));
     comparisons.back().in_family = false;
     comparisons.push_back(
         compare_distances(first, second, set, label("distance where both answer, m"), seed));
@@ -159,16 +162,21 @@ QuerySummary summarize(std::span<const QueryScore> queries) {
   QuerySummary s;
   if (queries.empty()) return s;
   std::vector<double> distances, aligned;
+  double correct = 0, wrong = 0;
   for (const QueryScore& q : queries) {
     s.success += q.success;
-    s.correct += q.correct;
-    s.wrong += q.wrong;
+    correct += q.correct;
+    wrong += q.wrong;
     s.attempts += q.answer.attempts;
     if (q.distance_m) distances.push_back(*q.distance_m);
     if (q.aligned_distance_m) aligned.push_back(*q.aligned_distance_m);
   }
   s.queries = static_cast<double>(queries.size());
-  for (double* share : {&s.success, &s.correct, &s.wrong, &s.attempts}) *share /= s.queries;
+  for (double* share : {&s.success, &s.attempts}) *share /= s.queries;
+  if (std::ranges::any_of(queries, is_judged)) {
+    s.correct = correct / s.queries;
+    s.wrong = wrong / s.queries;
+  }
   for (const auto& [field, count] :
        {std::pair(&QuerySummary::keyframes, &CandidateCounts::keyframes),
         {&QuerySummary::c1, &CandidateCounts::c1},
@@ -196,17 +204,16 @@ QuerySummary reduce(
         of_known) {
   QuerySummary result;
   for (double QuerySummary::*field :
-       {&QuerySummary::queries, &QuerySummary::success, &QuerySummary::correct,
-        &QuerySummary::wrong, &QuerySummary::attempts}) {
+       {&QuerySummary::queries, &QuerySummary::success, &QuerySummary::attempts}) {
     std::vector<double> values;
     for (const QuerySummary& s : summaries) values.push_back(s.*field);
     result.*field = of(values);
   }
   for (std::optional<double> QuerySummary::*field :
-       {&QuerySummary::distance_mean_m, &QuerySummary::distance_median_m,
-        &QuerySummary::aligned_distance_mean_m, &QuerySummary::keyframes, &QuerySummary::c1,
-        &QuerySummary::c2, &QuerySummary::c3, &QuerySummary::final, &QuerySummary::single_candidate,
-        &QuerySummary::label_mass}) {
+       {&QuerySummary::correct, &QuerySummary::wrong, &QuerySummary::distance_mean_m,
+        &QuerySummary::distance_median_m, &QuerySummary::aligned_distance_mean_m,
+        &QuerySummary::keyframes, &QuerySummary::c1, &QuerySummary::c2, &QuerySummary::c3,
+        &QuerySummary::final, &QuerySummary::single_candidate, &QuerySummary::label_mass}) {
     std::vector<std::optional<double>> values;
     for (const QuerySummary& s : summaries) values.push_back(s.*field);
     result.*field = of_known(values);
@@ -273,8 +280,7 @@ Comparison compare_distances(const Row& first, const Row& second, QuerySet set, 
 }
 
 Comparison compare_correct(const Row& first, const Row& second, QuerySet set, std::uint64_t seed) {
-  const auto correct = [](const QueryScore& q) { return std::optional(q.correct ? 1.0 : 0.0); };
-  return compare_paired("correct", differences(first, second, set, correct), true, seed);
+  return compare_paired("correct", differences(first, second, set, judged_correct), true, seed);
 }
 
 std::array<std::optional<double>, 2> ate_over_common_frames(const Row& first, const Row& second) {

@@ -15,7 +15,9 @@ namespace mh {
 /// The answers of one run to one set of queries, or the median of that over trials.
 struct QuerySummary {
   double queries = 0;
-  double success = 0, correct = 0, wrong = 0;  ///< shares of all queries
+  double success = 0;  ///< share of all queries
+  /// Likewise; absent where none can be judged, since nobody knows the truth.
+  std::optional<double> correct, wrong;
   /// Over the queries that were answered, local truth; absent where none was.
   std::optional<double> distance_mean_m, distance_median_m;
   std::optional<double> aligned_distance_mean_m;  ///< the same, in the globally aligned frame

@@ -43,13 +43,12 @@ std::vector<SweepResult> sweep_results(const Suite& suite, std::span<const Row> 
 
 std::optional<BestPoint> best_point(const Suite& suite, std::span<const Row> rows,
                                     const SweepResult& result, QuerySet set) {
-  if (result.answers.empty() || summary(result.answers.front(), set).queries == 0)
-    return std::nullopt;
+  if (result.answers.empty() || !summary(result.answers.front(), set).correct) return std::nullopt;
   // A point that failed in some scenes would be compared by the others alone: it is never best.
   const std::size_t scenes =
       std::ranges::max_element(result.answers, {}, &CategoryRow::scenes)->scenes;
   const auto correct = [&](const CategoryRow& row) {
-    return row.scenes == scenes ? summary(row, set).correct : -1.0;
+    return row.scenes == scenes ? summary(row, set).correct.value_or(-1.0) : -1.0;
   };
   const auto own = std::ranges::find(result.points, suite.slam);
   BestPoint found;
@@ -72,8 +71,8 @@ std::optional<BestPoint> best_point(const Suite& suite, std::span<const Row> row
   for (const Row* a : at_best)
     for (const Row* b : at_reference)
       if (a->environment == b->environment)
-        differences.push_back({summary(*a, set).correct - summary(*b, set).correct,
-                               summary(*a, set).queries > 0 && summary(*b, set).queries > 0});
+        differences.push_back(
+            paired_difference(summary(*a, set).correct, summary(*b, set).correct));
   found.to_reference = compare_scenes("correct", differences, true, suite.seed);
   return found;
 }

@@ -103,8 +103,8 @@ class QueryRound {
   void put(System& frozen, std::size_t first, std::size_t end,
            const std::vector<std::vector<QueryScore>*>& scores, WorkDone& work) const {
     for (const std::size_t index : test_frames(frames_.size(), spec_.protocol)) {
-      const TimedPose& truth = (*frames_.truth())[index];
-      const auto anchor = find_anchor(run_.estimate, run_.truth, truth, by_, spec_.protocol);
+      const QueryMoment moment = moment_of(frames_.stamp_ns(index), frames_.truth());
+      const auto anchor = find_anchor(run_.estimate, run_.truth, moment, by_, spec_.protocol);
       const bool once = end - first == 1;  // nothing to share
       const FramesMadeOnce shared(frames_);
       const Sequence& frames = once ? static_cast<const Sequence&>(frames_) : shared;
@@ -114,7 +114,7 @@ class QueryRound {
         const QueryAnswer answer =
             query(frozen, index, frames, spec_.protocol, stream_, memo.get());
         scores[p]->push_back(
-            score(answer, truth, anchor, run_.trajectory.truth_from_estimate, spec_.protocol));
+            score(answer, moment, anchor, run_.trajectory.truth_from_estimate, spec_.protocol));
         work.one_more();
       }
     }

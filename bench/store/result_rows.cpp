@@ -283,13 +283,19 @@ void put_calls(SQLite::Database& db, const std::string& key, const RunResult& ru
 
 void put_frames(SQLite::Database& db, const std::string& key, const RunResult& run) {
   Insert row(db, "frames", 17);
-  auto estimate = run.estimate.begin();
-  std::int64_t frame = 0;
-  for (const TimedPose& truth : run.truth) {
-    while (estimate != run.estimate.end() && estimate->stamp_ns < truth.stamp_ns) ++estimate;
-    const bool tracked = estimate != run.estimate.end() && estimate->stamp_ns == truth.stamp_ns;
-    row << key << frame++ << truth.stamp_ns << truth.world_from_camera
-        << (tracked ? std::optional(estimate->world_from_camera) : std::nullopt);
+  // A recording's truth may have other stamps than its frames, or be unknown: one row per moment.
+  auto truth = run.truth.begin(), estimate = run.estimate.begin();
+  const auto take = [](auto& next, auto end, Stamp stamp_ns) {
+    return next != end && next->stamp_ns == stamp_ns ? std::optional(next++->world_from_camera)
+                                                     : std::nullopt;
+  };
+  for (std::int64_t frame = 0; truth != run.truth.end() || estimate != run.estimate.end();
+       ++frame) {
+    const bool estimate_first = truth == run.truth.end() || (estimate != run.estimate.end() &&
+                                                             estimate->stamp_ns < truth->stamp_ns);
+    const Stamp stamp_ns = estimate_first ? estimate->stamp_ns : truth->stamp_ns;
+    row << key << frame << stamp_ns << take(truth, run.truth.end(), stamp_ns)
+        << take(estimate, run.estimate.end(), stamp_ns);
     row.put();
   }
 }
@@ -355,7 +361,7 @@ QueryScore query_at(SQLite::Statement& s) {
                              .label_mass = known(16).value_or(std::nan(""))};
   for (const int number : {told.keyframes, told.c1, told.c2, told.c3, told.final})
     if (number != kUnknownCount) q.answer.candidates = told;
-  q.true_world_from_camera = pose_at(s, 17);
+  if (!s.getColumn(17).isNull()) q.true_world_from_camera = pose_at(s, 17);
   if (!s.getColumn(24).isNull()) q.answer.world_from_camera = pose_at(s, 24);
   q.answer.image_digest = from_hex(s.getColumn(31).getString());
   q.answer.matching_digest = from_hex(s.getColumn(32).getString());
@@ -391,7 +397,7 @@ void load_frames(SQLite::Database& db, const std::string& key, RunResult& run) {
   s.bind(1, key);
   while (s.executeStep()) {
     const Stamp stamp_ns = s.getColumn(2).getInt64();
-    run.truth.push_back({stamp_ns, pose_at(s, 3)});
+    if (!s.getColumn(3).isNull()) run.truth.push_back({stamp_ns, pose_at(s, 3)});
     if (!s.getColumn(10).isNull()) run.estimate.push_back({stamp_ns, pose_at(s, 10)});
   }
 }

@@ -313,6 +313,49 @@ TEST(Score, TellsCorrectFromWrong) {
   EXPECT_TRUE(!none.success && !none.correct && !none.wrong);
 }
 
+TEST(InterpolatedPose, OfTheTruthIsNotThatOfAFrameWhosePoseIsInvalid) {
+  constexpr Stamp kMs = 1'000'000;
+  // 100 Hz as a tracking system tells it, then 30 Hz without the frame at 133 ms.
+  const Trajectory truth = {{0, at(0, 0, 0)},
+                            {10 * kMs, at(1, 0, 0)},
+                            {100 * kMs, at(2, 0, 0)},
+                            {166 * kMs, at(3, 0, 0)}};
+  ASSERT_TRUE(moment_of(4 * kMs, &truth).true_world_from_camera);
+  EXPECT_NEAR(moment_of(4 * kMs, &truth).true_world_from_camera->translation().x(), 0.4, 1e-12);
+  EXPECT_TRUE(moment_of(100 * kMs, &truth).true_world_from_camera);
+  EXPECT_FALSE(moment_of(133 * kMs, &truth).true_world_from_camera);
+  EXPECT_FALSE(moment_of(0, nullptr).true_world_from_camera);
+}
+
+TEST(NearestMapped, AsksTheTruthBetweenItsOwnMoments) {
+  constexpr Stamp kMs = 1'000'000;
+  const Trajectory truth = {{0, at(0, 0, 0)}, {10 * kMs, at(1, 0, 0)}, {20 * kMs, at(2, 0, 0)}};
+  const Trajectory estimate = {{5 * kMs, at(7, 0, 0)}, {300 * kMs, at(9, 0, 0)}};
+  const auto anchor = nearest_mapped(estimate, truth, {16 * kMs, at(1.6, 0, 0)}, NearestBy::kTime);
+  ASSERT_TRUE(anchor);
+  EXPECT_EQ(anchor->stamp_ns, 5 * kMs);
+  EXPECT_NEAR(local_truth(*anchor, at(1.6, 0, 0)).translation().x(), 8.1, 1e-12);
+}
+
+TEST(Score, WithoutATruthAnAnswerIsASuccessAndNothingElse) {
+  QueryAnswer answer;
+  answer.world_from_camera = at(5, 5, 0);
+  const QueryMoment unknown(50'000'000, std::nullopt);
+  const Trajectory estimate = {{0, at(5, 4.9, 0)}, {100'000'000, at(5, 5.1, 0)}};
+  ProtocolConfig config;
+  EXPECT_FALSE(find_anchor(estimate, {}, unknown, NearestBy::kTime, config));
+  const QueryScore s = score(answer, unknown, std::nullopt, SE3(), config);
+  EXPECT_TRUE(s.success && !s.correct && !s.wrong && !is_judged(s));
+  EXPECT_FALSE(s.distance_m || s.angle_deg || s.aligned_distance_m);
+  // The paper's own way needs none.
+  config.truth = QueryTruth::kInterpolated;
+  const auto anchor = find_anchor(estimate, {}, unknown, NearestBy::kTime, config);
+  const QueryScore judged = score(answer, unknown, anchor, SE3(), config);
+  EXPECT_TRUE(judged.correct && is_judged(judged));
+  EXPECT_NEAR(judged.distance_m.value(), 0, 1e-12);
+  EXPECT_FALSE(judged.aligned_distance_m);
+}
+
 TEST(Score, AnAnswerWithoutAnyMapIsFalseAndItsDistanceUnknown) {
   QueryAnswer answer;
   answer.world_from_camera = at(5, 5, 0);

@@ -38,6 +38,7 @@ inline std::vector<QueryScore> made_up_queries(const MadeUpAnswers& a) {
     QueryScore q;
     q.answer.index = 29 + 30 * i;
     q.stamp_ns = static_cast<Stamp>(q.answer.index);
+    q.true_world_from_camera = SE3();
     q.answer.attempts = a.attempts[i];
     q.answer.candidates = CandidateCounts{.keyframes = a.keyframes,
                                           .c1 = a.c1,

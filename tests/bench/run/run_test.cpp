@@ -314,10 +314,42 @@ TEST(Results, WhatIsUndeterminedIsNull) {
   const std::vector<QueryScore> unanswered(3);
   EXPECT_FALSE(summarize(unanswered).distance_mean_m);
   std::vector<QueryScore> without_map(3);
-  for (QueryScore& q : without_map) q.success = q.wrong = true;
+  for (QueryScore& q : without_map) {
+    q.true_world_from_camera = SE3();
+    q.success = q.wrong = true;
+  }
   EXPECT_EQ(summarize(without_map).wrong, 1.0);
   EXPECT_FALSE(summarize(without_map).distance_mean_m);
   EXPECT_FALSE(summarize(without_map).aligned_distance_mean_m);
+}
+
+TEST(Results, OfAnswersThatNobodyCanJudgeNothingIsSaidButTheirSuccess) {
+  std::vector<QueryScore> queries(4);
+  queries[1].success = true;
+  const QuerySummary s = summarize(queries);
+  EXPECT_EQ(s.success, 0.25);
+  EXPECT_FALSE(s.correct || s.wrong || s.distance_mean_m);
+  queries[3].true_world_from_camera = SE3();
+  queries[3].success = queries[3].correct = true;
+  EXPECT_EQ(summarize(queries).correct, 0.25);
+  EXPECT_EQ(summarize(queries).wrong, 0.0);
+
+  Place place;
+  std::vector<RunResult> runs = place.run();
+  for (RunResult& run : runs)
+    for (QueryScore& q : run.points.front().held_out) {
+      q.true_world_from_camera.reset();
+      q.distance_m = q.angle_deg = q.aligned_distance_m = {};
+      q.correct = q.wrong = false;
+    }
+  const auto json = results_json(place.suite, runs);
+  EXPECT_TRUE(json["rows"][0]["held_out"]["success"].is_number());
+  EXPECT_TRUE(json["rows"][0]["held_out"]["correct"].is_null());
+  EXPECT_TRUE(json["rows"][0]["held_out"]["false"].is_null());
+  EXPECT_TRUE(json["rows"][0]["second_tour"]["correct"].is_number());
+  const auto query = json["runs"][0]["points"][0]["held_out"][0];
+  EXPECT_TRUE(query["correct"].is_null() && query["false"].is_null() && query["truth"].is_null());
+  EXPECT_NE(results_table(place.suite, runs).find("-        -"), std::string::npos);
 }
 
 TEST(Sweep, TheBestPointIsComparedWithTheSuitesOwnSettings) {

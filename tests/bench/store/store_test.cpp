@@ -72,6 +72,7 @@ RunResult some_run(const std::string& name, double shift_m = 0.0) {
   QueryScore answered, unanswered;
   answered.answer.index = 29;
   answered.success = answered.correct = true;
+  answered.true_world_from_camera = pose(6);
   answered.distance_m = 1.0 / 7.0;
   answered.answer.world_from_camera = pose(5);
   answered.answer.stage = RelocalizationStage::kVerified;
