@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -369,6 +371,40 @@ TEST_F(SuiteFile, ASweepTakesAnySetting) {
     EXPECT_EQ(run.points, std::vector{run.slam.semantics});
     EXPECT_EQ(run_spec_from_json(to_json(run)).slam, run.slam);
   }
+}
+
+// Sobol's sequence by the recurrence of Joe and Kuo ("Constructing Sobol sequences with better
+// two-dimensional projections", 2008), in whole numbers and from their table's first rows; each
+// axis is shifted by bits of its own, which are those of point 0.
+TEST(Sobol, IsTheSequenceOfJoeAndKuoShifted) {
+  struct Row {
+    unsigned s, a;
+    std::vector<std::uint64_t> m;
+  };
+  std::vector<Row> rows = {{1, 0, {1}},          {2, 1, {1, 3}},        {3, 1, {1, 3, 1}},
+                           {3, 2, {1, 1, 1}},    {4, 1, {1, 1, 3, 3}},  {4, 4, {1, 3, 5, 13}},
+                           {5, 2, {1, 1, 5, 5, 17}}};
+  for (auto& [s, a, m] : rows)
+    for (std::size_t k = m.size(); k < 32; ++k) {  // m[k] is Joe and Kuo's m_(k+1)
+      std::uint64_t next = m[k - s] ^ (m[k - s] << s);
+      for (unsigned i = 1; i < s; ++i)
+        if ((a >> (s - 1 - i)) % 2 == 1) next ^= m[k - i] << i;
+      m.push_back(next);
+    }
+  const auto bits = [](double share) { return static_cast<std::uint64_t>(share * 0x1.0p32); };
+  const auto shift = sobol_point(0, 5);
+  ASSERT_EQ(shift.size(), rows.size() + 1);
+  for (const std::uint32_t index : {1U, 2U, 3U, 6U, 7U, 29U, 1000U, 65535U, 0x9abcdef1U}) {
+    const auto point = sobol_point(index, 5);
+    for (std::size_t d = 0; d < point.size(); ++d) {
+      std::uint64_t expected = 0;
+      for (unsigned k = 0; k < 32; ++k)
+        if ((index >> k) % 2 == 1) expected ^= (d == 0 ? 1 : rows[d - 1].m[k]) << (31 - k);
+      EXPECT_EQ(bits(point[d]) ^ bits(shift[d]), expected) << index << ", axis " << d;
+    }
+  }
+  EXPECT_NE(sobol_point(0, 6), shift) << "the seed makes the shift";
+  EXPECT_NE(shift[0], shift[1]);
 }
 
 TEST_F(SuiteFile, ASobolSequenceTakesWholeNumbersToo) {

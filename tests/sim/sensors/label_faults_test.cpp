@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "sim/sensors/labels.hpp"
 
@@ -51,6 +52,19 @@ int count(const SemanticImage& image, ClassId class_id) {
   for (int i = 0; i < 108; ++i)
     found += image.at(i % 12 * 26 + 12, i / 12 * 26 + 12).most_probable() == class_id;
   return found;
+}
+
+TEST(WrongClass, IsAnyOtherOfItsKindAndNeverTheTruth) {
+  for (const ClassInfo& truth : classes()) {
+    std::set<ClassId> expected, drawn;
+    for (const ClassInfo& other : classes())
+      if (other.id != truth.id && other.id != kVoid && other.id != kBackground &&
+          (other.coco80 >= 0) == (truth.coco80 >= 0))
+        expected.insert(other.id);
+    for (std::uint64_t bits = 0; bits < 200; ++bits) drawn.insert(wrong_class(truth.id, bits));
+    EXPECT_EQ(drawn, expected) << truth.name;
+    EXPECT_TRUE(expected.contains(wrong_class(truth.id, UINT64_MAX)));
+  }
 }
 
 TEST(LabelNoise, NoneIsNone) {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/mapping/local_mapping.hpp"
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "slam/config/slam.hpp"
@@ -60,6 +64,45 @@ struct TwoViews {
     for (const std::uint32_t k : {0, 1}) map.update_covisibility(KeyframeId{k});
   }
 };
+
+// All that is close, the limit included, and of what is beyond the nearest until there are 100.
+TEST(AddLandmarksFromDepth, TakesWhatIsCloseAndElseTheNearestHundred) {
+  SlamConfig config;
+  config.keyframe.close_depth_m = 3;
+  MatchCounts counts{};
+  const auto taken = [&](int close, int at_the_limit, int beyond, bool one_known = false) {
+    Map map;
+    std::vector<Eigen::Vector3d> points;
+    for (int i = 0; i < beyond; ++i) points.emplace_back(0.01 * i, 0, 3.5 + 0.01 * i);
+    for (int i = 0; i < close; ++i) points.emplace_back(0.01 * i, 0, 2);
+    for (int i = 0; i < at_the_limit; ++i) points.emplace_back(0.01 * i, 0, 3);
+    points.emplace_back(0.1, 0.1, 1);
+    const KeyframeId id = add_view(map, 0.5, points);
+    // The last has lost its depth.
+    Keyframe without = map.at(id);
+    without.features.keypoints.back().depth_m = 0;
+    Map again;
+    again.add(std::move(without));
+    if (one_known) again.add_landmark({9, 9, 9}, KeyframeId{0}, 0);
+    add_landmarks_from_depth(again, KeyframeId{0}, {kCamera, config, again, counts});
+    double farthest = 0;
+    for (const Landmark& l : again.landmarks()) {
+      const std::uint32_t feature = l.observations.front().feature;
+      if (one_known && feature == 0) continue;
+      EXPECT_LT((l.position_in_world - points[feature]).norm(), 1e-5);
+      farthest = std::max(farthest, points[feature].z());
+    }
+    return std::pair(again.landmark_count(), farthest);
+  };
+  EXPECT_EQ(taken(150, 30, 40), (std::pair(180, 3.0)));
+  EXPECT_EQ(taken(100, 0, 40), (std::pair(100, 2.0)));
+  EXPECT_EQ(taken(90, 20, 40), (std::pair(110, 3.0)));
+  EXPECT_EQ(taken(99, 0, 40), (std::pair(100, 3.5)));
+  EXPECT_EQ(taken(50, 10, 60).first, 100);
+  EXPECT_NEAR(taken(50, 10, 60).second, 3.5 + 0.01 * 39, 1e-9) << "the nearest 40 of 60";
+  EXPECT_EQ(taken(10, 0, 20).first, 30) << "all there are";
+  EXPECT_EQ(taken(50, 10, 60, true).first, 100) << "what has a landmark counts and keeps it";
+}
 
 TEST(AdjustNeighborhood, BringsPointsBackThatAKeyframeOutsideHolds) {
   TwoViews views(true);

@@ -172,6 +172,21 @@ TEST(SolvePnpRansac, WithoutOutliersOneDrawIsEnough) {
   }
 }
 
+// Three draws are three different points: of four, five or six exact ones any three will do.
+TEST(SolvePnpRansac, DrawsThreeDifferentPointsHoweverFewThereAre) {
+  const SE3 truth = true_pose();
+  for (const int count : {4, 5, 6})
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+      const auto observations = observe(count, truth, kCamera, RandomStream(17));
+      const auto estimate = solve_pnp_ransac(observations, kCamera,
+                                             {.max_iterations = 1, .min_inliers = 4}, {},
+                                             RandomStream(seed));
+      ASSERT_TRUE(estimate) << count << " " << seed;
+      EXPECT_EQ(estimate->inlier_count, count);
+      EXPECT_LT(distance_m(estimate->camera_from_world, truth), 1e-6);
+    }
+}
+
 TEST(SolvePnpRansac, IsExactWithoutNoise) {
   const SE3 truth = true_pose();
   const auto observations = observe(30, truth, kCamera, RandomStream(9));

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <functional>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <xxhash.h>
@@ -80,7 +82,11 @@ TEST(MapFile, LoadingChangesNothing) {
 /// nothing but this to go by. Whoever has to change it raises kMapFileVersion.
 class Layout {
  public:
-  explicit Layout(const SlamState& s) {
+  explicit Layout(const SlamState& s)
+      : Layout(s, s.map.keyframes(), {s.map.landmarks().begin(), s.map.landmarks().end()}) {}
+  /// @param keyframes, landmarks  in the place of the map's
+  Layout(const SlamState& s, const std::vector<Keyframe>& keyframes,
+         const std::vector<Landmark>& landmarks) {
     const std::string settings = format_slam_config(s.config);
     put<std::uint64_t>(settings.size());
     out_ += settings;
@@ -88,10 +94,10 @@ class Layout {
     const auto& [k1, k2, p1, p2, k3] = s.camera.distortion;
     put<double>(s.camera.fx_px, s.camera.fy_px, s.camera.cx_px, s.camera.cy_px, k1, k2, p1, p2, k3,
                 s.camera.rate_hz, s.camera.baseline_m, s.camera.disparity_sigma_px);
-    put<std::uint64_t>(s.map.keyframes().size());
-    for (const Keyframe& k : s.map.keyframes()) keyframe(k);
-    put<std::uint64_t>(s.map.landmarks().size());
-    for (const Landmark& l : s.map.landmarks()) landmark(l);
+    put<std::uint64_t>(keyframes.size());
+    for (const Keyframe& k : keyframes) keyframe(k);
+    put<std::uint64_t>(landmarks.size());
+    for (const Landmark& l : landmarks) landmark(l);
     tracker(s.tracker);
     put<std::uint8_t>(s.loop_memory.drift.has_value());
     if (s.loop_memory.drift) pose(*s.loop_memory.drift);
@@ -207,6 +213,124 @@ class Layout {
   std::string out_;
 };
 
+/// A whole file around a content.
+std::string framed(const std::string& content) {
+  std::string bytes("MHMAP\n\0\0", 8);
+  const auto append = [&](auto value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  append(std::uint32_t{5});
+  append(std::uint64_t{vocabulary()->digest()});
+  append(std::uint64_t{content.size()});
+  bytes += content;
+  append(std::uint64_t{XXH3_64bits(bytes.data(), bytes.size())});
+  return bytes;
+}
+
+// One lie at a time, each with a right checksum; what would point nowhere is refused by its name.
+TEST(MapFile, WhatPointsNowhereIsRefusedByItsName) {
+  struct Parts {
+    SlamState state;
+    std::vector<Keyframe> keyframes;
+    std::vector<Landmark> landmarks;
+    Keyframe* standing;  ///< with words, labels and neighbors
+    Keyframe* fallen;
+    Landmark* seen;  ///< twice at least
+  };
+  const auto said = [](const std::function<void(Parts&)>& lie) {
+    Parts p{midway(), midway().map.keyframes(), {midway().map.landmarks().begin(),
+                                                 midway().map.landmarks().end()}, {}, {}, {}};
+    p.standing = &*std::ranges::find_if(p.keyframes, [](const Keyframe& k) {
+      return !k.erased && k.id.value > 0 && !k.covisible.empty() &&
+             k.words.vector.labels.size() > 1 && k.words.by_node.size() > 1;
+    });
+    p.fallen = &*std::ranges::find(p.keyframes, true, &Keyframe::erased);
+    p.seen = &*std::ranges::find_if(
+        p.landmarks, [](const Landmark& l) { return !l.erased && l.observations.size() > 1; });
+    lie(p);
+    return complaint(framed(Layout(p.state, p.keyframes, p.landmarks).bytes()));
+  };
+  ASSERT_EQ(said([](Parts&) {}), "");
+  const auto refuses = [&](const std::string& what, const std::function<void(Parts&)>& lie) {
+    EXPECT_EQ(said(lie), "room.mhmap: is no consistent map: " + what);
+  };
+  const auto no_class = static_cast<ClassId>(classes().size());
+  const auto keyframes = static_cast<std::uint32_t>(midway().map.keyframes().size());
+  const auto landmarks = static_cast<std::uint32_t>(midway().map.landmarks().size());
+  const int levels = midway().config.features.levels;
+
+  refuses("a keyframe's id", [](Parts& p) { ++p.standing->id.value; });
+  refuses("a keyframe's place", [](Parts& p) {
+    p.standing->camera_from_world =
+        SE3(p.standing->camera_from_world.rotation(), Eigen::Vector3d(1e6, 0, 0));
+  });
+  refuses("a keypoint's octave",
+          [=](Parts& p) { p.standing->features.keypoints[3].octave = levels; });
+  refuses("a keypoint's octave", [](Parts& p) { p.standing->features.keypoints[3].octave = -1; });
+  refuses("a keypoint's label",
+          [=](Parts& p) { p.standing->features.keypoints[3].label = no_class; });
+  refuses("a number is not finite",
+          [](Parts& p) { p.standing->features.keypoints[3].u_px = HUGE_VALF; });
+  refuses("keypoints and descriptors differ in number",
+          [](Parts& p) { p.standing->features.descriptors.pop_back(); });
+  refuses("the order of labels or words", [](Parts& p) {
+    std::swap(p.standing->words.vector.labels[0], p.standing->words.vector.labels[1]);
+  });
+  refuses("the order of labels or words", [](Parts& p) {
+    p.standing->words.vector.words[1].id = p.standing->words.vector.words[0].id;
+  });
+  refuses("the order of labels or words",
+          [=](Parts& p) { p.standing->words.vector.labels.back().id = no_class; });
+  refuses("the order of labels or words", [](Parts& p) {
+    p.standing->words.vector.words.back().id = static_cast<std::uint32_t>(vocabulary()->size());
+  });
+  refuses("a word's feature", [](Parts& p) {
+    p.standing->words.by_node.back().second =
+        static_cast<std::uint32_t>(p.standing->features.size());
+  });
+  refuses("the order of words", [](Parts& p) {
+    std::swap(p.standing->words.by_node.front(), p.standing->words.by_node.back());
+  });
+  refuses("a keyframe's number of landmarks",
+          [](Parts& p) { p.standing->landmarks.pop_back(); });
+  refuses("a keyframe's landmark", [=](Parts& p) { p.standing->landmarks[0].value = landmarks; });
+  refuses("a keyframe's neighbor",
+          [=](Parts& p) { p.standing->covisible[0].id.value = keyframes; });
+  refuses("a keyframe's neighbor",
+          [](Parts& p) { p.standing->covisible[0].id = p.fallen->id; });
+  refuses("a keyframe's parent", [=](Parts& p) { p.fallen->parent.value = keyframes; });
+  refuses("a keyframe's parent", [](Parts& p) { p.fallen->parent = p.fallen->id; });
+  refuses("a landmark's id", [](Parts& p) { ++p.seen->id.value; });
+  refuses("a landmark's label", [=](Parts& p) { p.seen->label = no_class; });
+  refuses("a landmark's first keyframe",
+          [=](Parts& p) { p.seen->first_keyframe.value = keyframes; });
+  refuses("a landmark's observation",
+          [=](Parts& p) { p.seen->observations.back().keyframe.value = keyframes; });
+  refuses("a landmark's observation",
+          [](Parts& p) { p.seen->observations[0].keyframe = p.fallen->id; });
+  refuses("a landmark's observation", [](Parts& p) {
+    Observation& o = p.seen->observations[0];
+    o.feature = static_cast<std::uint32_t>(p.keyframes[o.keyframe.value].features.size());
+  });
+  refuses("the order of a landmark's observations", [](Parts& p) {
+    std::swap(p.seen->observations.front(), p.seen->observations.back());
+  });
+  refuses("the last frame's number of landmarks",
+          [](Parts& p) { p.state.tracker.last->landmarks.pop_back(); });
+  refuses("the last frame's landmark",
+          [=](Parts& p) { p.state.tracker.last->landmarks[0].value = landmarks; });
+  refuses("the reference keyframe",
+          [=](Parts& p) { p.state.tracker.reference.value = keyframes; });
+  refuses("a tracked frame's keyframe", [=](Parts& p) {
+    p.state.tracked_frames.begin()->second.reference.value = keyframes;
+  });
+  // Who sees what is told on both sides.
+  EXPECT_NE(said([](Parts& p) { p.seen->observations.pop_back(); }), "");
+  EXPECT_NE(said([](Parts& p) { p.standing->covisible.pop_back(); }), "");
+  EXPECT_EQ(complaint(framed(Layout(midway()).bytes() + "x")),
+            "room.mhmap: is no consistent map: it goes on after its end");
+}
+
 TEST(MapFile, LiesAsAnotherReaderWouldExpect) {
   SlamState state = midway();
   ASSERT_TRUE(state.tracker.last && state.tracker.velocity_per_s && state.tracker.motion &&
@@ -215,16 +339,7 @@ TEST(MapFile, LiesAsAnotherReaderWouldExpect) {
                        .keyframe = KeyframeId{1},
                        .agreeing = 1};
   for (const SlamState& of : {state, start()}) {
-    const std::string content = Layout(of).bytes();
-    std::string bytes("MHMAP\n\0\0", 8);
-    const auto append = [&](auto value) {
-      bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-    };
-    append(std::uint32_t{5});
-    append(std::uint64_t{vocabulary()->digest()});
-    append(std::uint64_t{content.size()});
-    bytes += content;
-    append(std::uint64_t{XXH3_64bits(bytes.data(), bytes.size())});
+    const std::string bytes = framed(Layout(of).bytes());
     EXPECT_TRUE(bytes == encode_slam(of)) << "sizes " << bytes.size() << ", "
                                           << encode_slam(of).size();
   }
