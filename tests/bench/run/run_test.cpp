@@ -25,6 +25,8 @@
 #include "sim/world/travel.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/temporary_folder.hpp"
+#include "slam/core/trajectory_io.hpp"
 
 namespace mh {
 namespace {
@@ -197,6 +199,34 @@ TEST(RunOne, CountsWhatHappened) {
     EXPECT_GT(q.distance_m.value(), 0.0);
   }
   EXPECT_GT(run.volume->leaf_count(), 0u);
+}
+
+// It answers for the first 29 frames, twice as far from the start: a fifth of the 145 that are no
+// test frames. Nothing is asked of it.
+TEST(RunOne, AnOutsideProgramsTrajectoryIsScoredByWhatItWasOffered) {
+  const TemporaryFolder folder(std::filesystem::temp_directory_path());
+  Trajectory answer = straight_path(29);
+  for (TimedPose& pose : answer)
+    pose.world_from_camera = SE3(pose.world_from_camera.rotation(),
+                                 2 * pose.world_from_camera.translation());
+  write_tum(folder.path() / "answer.tum", answer);
+  Place place;
+  place.suite.compare.clear();
+  place.suite.labels = {LabelMode::kExact};
+  place.suite.systems = {
+      {SystemKind::kOutside,
+       "theirs",
+       {.name = "theirs",
+        .command = "cp " + (folder.path() / "answer.tum").string() + " {trajectory}"}}};
+  const RunResult run =
+      run_one(expand(place.suite)[0], place.world, {.folder = folder.path(), .occupancy = false});
+  EXPECT_EQ(run.mapping.offered, 145u);
+  EXPECT_EQ(run.trajectory.completeness, 29.0 / 145);
+  EXPECT_EQ(run.estimate.size(), 29u);
+  EXPECT_EQ(run.truth.size(), 150u);
+  EXPECT_NEAR(run.trajectory.rpe_frame_rmse_m.value(), 0.01, 1e-9) << "2 cm a frame for 1";
+  ASSERT_EQ(run.points.size(), 1u);
+  EXPECT_TRUE(run.points[0].held_out.empty() && run.points[0].second_tour.empty());
 }
 
 TEST(Verify, FindsOnePixelOfOneFrameAndNamesIt) {

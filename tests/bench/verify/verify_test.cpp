@@ -3,13 +3,28 @@
 // (tests/bench/run/run_test.cpp has it find differences of whole runs).
 #include "bench/verify/verify.hpp"
 
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <map>
 #include <set>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include "bench/plan/spec_json.hpp"
+#include "bench/plan/suite.hpp"
 #include "bench/protocol/step_digest.hpp"
 #include "bench/provenance/digest.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/temporary_folder.hpp"
+#include "source_dir.hpp"
 
 namespace mh {
 namespace {
@@ -195,5 +210,92 @@ TEST(DigestOfATrajectory, SeesStampsPlacesTurnsAndOrder) {
   EXPECT_NE(digest(std::optional(there)), digest(std::optional(turned)));
 }
 
+constexpr const char* kPlay = "MH_TEST_PLAY";  // what a played run does, by the environment
+
+/// Plays the part of `modelhouse run-one`: puts a result that was made up into the store. "alike":
+/// always the same; "apart": the pose of frame 4 differs where several runs go side by side;
+/// "fail": none.
+int play_a_run(const std::vector<std::string>& arguments) {
+  const std::string play = std::getenv(kPlay);
+  if (play == "fail") return 1;
+  std::map<std::string, std::string> option;
+  for (std::size_t i = 3; i + 1 < arguments.size(); i += 2) option[arguments[i]] = arguments[i + 1];
+  RunResult run = some_run();
+  run.spec = run_spec_from_json(nlohmann::ordered_json::parse(read_file(arguments[2])));
+  run.points.resize(1);
+  if (play == "apart" && option.at("--jobs") != "1") run.mapping.calls[1].pose_digest = 9;
+  Store(option.at("--store")).put(option.at("--key"), run, {});
+  return 0;
+}
+
+/// A suite of two trials in a room that is shipped.
+Suite played_suite(const std::filesystem::path& folder) {
+  const std::string root = MH_SOURCE_DIR "/bench/scenarios/";
+  std::ofstream(folder / "suite.yaml")
+      << "environments: [{category: room, scene: " << root << "room.yaml, mapping_tour: " << root
+      << "tours/room.yaml}]\nrobot: " << root << "robot.yaml\nvocabulary: " MH_SOURCE_DIR
+      << "/assets/vocabulary.mhvoc\nlevels: [ideal]\nsystems: [plain]\nlabels: [exact]\n"
+      << "trials: 2\n";
+  return load_suite(folder / "suite.yaml");
+}
+
+TEST(Verify, ExecutesAllRunsTwiceWithOneJobAndWithFourAndComparesThem) {
+  const TemporaryFolder folder(std::filesystem::temp_directory_path());
+  const Suite suite = played_suite(folder.path());
+  std::vector<std::string> said;
+  std::vector<double> shares;
+  bool told_time = false;
+  BenchOptions options;
+  options.figures_alone = true;
+  options.say = [&](std::string_view line) {
+    if (line.starts_with("executing ") || line.ends_with(" to do")) said.emplace_back(line);
+  };
+  options.progress = [&](const PoolProgress& p) {
+    shares.push_back(p.share);
+    told_time = told_time || (p.share < 0.5 && p.to_go_s);
+  };
+  setenv(kPlay, "alike", 1);
+  const Verification alike = verify(suite, {}, options);
+  EXPECT_FALSE(alike.difference);
+  EXPECT_EQ(alike.first, alike.second);
+  EXPECT_EQ(said, (std::vector<std::string>{"executing with 1 job", "2 runs, 2 of them to do",
+                                            "executing with 4 jobs", "2 runs, 2 of them to do"}));
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  ASSERT_FALSE(shares.empty());
+  EXPECT_EQ(shares.front(), 0.0);
+  EXPECT_EQ(shares.back(), 1.0);
+  EXPECT_TRUE(std::ranges::count(shares, 0.5)) << "the half";
+  EXPECT_FALSE(told_time) << "of the whole, before half of it is known";
+
+  setenv(kPlay, "apart", 1);
+  const Verification apart = verify(suite, {}, options);
+  ASSERT_TRUE(apart.difference);
+  EXPECT_EQ(describe(*apart.difference),
+            "plain-ideal-0: mapping: frame 4 (after 2 restarts): pose differs");
+  EXPECT_EQ(apart.first, alike.first);
+  EXPECT_NE(apart.second.poses, alike.second.poses);
+  EXPECT_EQ(apart.second.images, alike.second.images);
+}
+
+TEST(Verify, ARunThatFailedIsNoVerification) {
+  const TemporaryFolder folder(std::filesystem::temp_directory_path());
+  const Suite suite = played_suite(folder.path());
+  setenv(kPlay, "fail", 1);
+  try {
+    verify(suite, {}, {});
+    FAIL();
+  } catch (const MachineError& error) {
+    EXPECT_STREQ(error.what(), "plain-ideal-0: returned 1");
+  }
+}
+
 }  // namespace
 }  // namespace mh
+
+// The bench starts its own executable anew for each run; here that is this one.
+int main(int argc, char** argv) {
+  if (argc > 2 && std::string_view(argv[1]) == "run-one")
+    return mh::play_a_run({argv, argv + argc});
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

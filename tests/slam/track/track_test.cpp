@@ -105,5 +105,77 @@ TEST(OptimizeMatches, APassingPointGivesWayToTheLandmarkOfItsFeature) {
   EXPECT_EQ(with->camera_from_world.translation(), without->camera_from_world.translation());
 }
 
+/// A keyframe without anything to be seen yet: at x_m, turned by some angle from looking along z.
+KeyframeId add_keyframe(Map& map, double x_m, double turn_rad = 0) {
+  Keyframe keyframe;
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  keyframe.camera_from_world = SE3(turn, Eigen::Vector3d(x_m, 0, 0)).inverse();
+  keyframe.features.keypoints.resize(40);
+  keyframe.features.descriptors.resize(40);
+  return map.add(std::move(keyframe));
+}
+
+// Nobody shares a landmark: what counts is place and heading, both limits included, the nearest
+// first and the earliest of equals.
+TEST(LocalMap, HoldsTheKeyframesThatStandNearAndLookAlike) {
+  const Camera camera;
+  SlamConfig config;
+  config.track.near_distance_m = 1;
+  config.track.near_angle_rad = 0.5;
+  Map map;
+  add_keyframe(map, 0.75);
+  add_keyframe(map, -0.5);
+  add_keyframe(map, 1);
+  add_keyframe(map, 1 + 1e-9);
+  add_keyframe(map, 0.25, 0.5 - 1e-6);
+  add_keyframe(map, 0.3, 0.5 + 1e-6);
+  add_keyframe(map, -0.75);
+  map.erase(add_keyframe(map, 0.1));
+  MatchCounts counts{};
+  const LocalMap local = local_map({SE3(), {}}, {camera, config, map, counts});
+  EXPECT_EQ(local.keyframes, (std::vector{KeyframeId{4}, KeyframeId{1}, KeyframeId{0},
+                                          KeyframeId{6}, KeyframeId{2}}));
+  EXPECT_TRUE(local.landmarks.empty());
+}
+
+// At most half are those that share landmarks with the frame, most first; up to three quarters what
+// stands near; the rest neighbors.
+TEST(LocalMap, HasAQuarterForEachThatDoesNotShareWithTheFrame) {
+  const Camera camera;
+  SlamConfig config;
+  config.track.local_keyframes = 4;
+  Map map;
+  const KeyframeId near = add_keyframe(map, 0.2), nearer = add_keyframe(map, 0.1);
+  const KeyframeId one = add_keyframe(map, 100), three = add_keyframe(map, 101),
+                   two = add_keyframe(map, 102), neighbor = add_keyframe(map, 103);
+  TrackedPose tracked{SE3(), std::vector<LandmarkId>(10)};
+  std::uint32_t feature = 0;
+  for (const auto& [keyframe, shared] : {std::pair(one, 1), {three, 3}, {two, 2}})
+    for (int i = 0; i < shared; ++i, ++feature)
+      tracked.landmarks[feature] = map.add_landmark({0, 0, 2}, keyframe, feature);
+  for (std::uint32_t i = 10; i < 26; ++i)
+    map.add_observation(map.add_landmark({0, 0, 3}, three, i), neighbor, i);
+  map.update_covisibility(three);
+  MatchCounts counts{};
+  const LocalMap local = local_map(tracked, {camera, config, map, counts});
+  EXPECT_EQ(local.keyframes, (std::vector{three, two, nearer, neighbor}));
+  EXPECT_EQ(local.landmarks.size(), 3u + 16u + 2u) << "each once, though two see it";
+  config.track.local_keyframes = 100;
+  EXPECT_EQ(local_map(tracked, {camera, config, map, counts}).keyframes,
+            (std::vector{three, two, one, nearer, near, neighbor}));
+  EXPECT_EQ(reference_of(tracked, map), three);
+  EXPECT_FALSE(reference_of({SE3(), {}}, map).valid());
+}
+
+TEST(ReferenceOf, OfEqualsIsTheEarliest) {
+  Map map;
+  const KeyframeId first = add_keyframe(map, 0), second = add_keyframe(map, 1);
+  TrackedPose tracked{SE3(), {map.add_landmark({0, 0, 2}, second, 0)}};
+  EXPECT_EQ(reference_of(tracked, map), second);
+  tracked.landmarks.push_back(map.add_landmark({0, 0, 2}, first, 0));
+  EXPECT_EQ(reference_of(tracked, map), first);
+}
+
 }  // namespace
 }  // namespace mh
