@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -412,10 +413,13 @@ TEST_F(SuiteFile, ASobolSequenceTakesWholeNumbersToo) {
       "parameters: {map: rebuilt, sobol: {points: 8, ranges: {features.count: [500, 507], "
       "track.coast_s: [0.5, 1]}}}\n");
   std::set<int> counts;
-  for (const SlamConfig& point : suite.sweep.points) {
+  ASSERT_EQ(suite.sweep.points.size(), 8u);
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const SlamConfig& point = suite.sweep.points[i];
+    const auto share = sobol_point(i, 0);
     counts.insert(point.features.count);
-    EXPECT_GE(point.track.coast_s, 0.5);
-    EXPECT_LE(point.track.coast_s, 1);
+    EXPECT_EQ(point.features.count, std::lround(500 + 7 * share[0]));
+    EXPECT_NEAR(point.track.coast_s, 0.5 + 0.5 * share[1], 1e-12);
   }
   EXPECT_GE(counts.size(), 6u);
 }

@@ -2,7 +2,12 @@
 #include "slam/relocalize/relocalize.hpp"
 #include "slam/config/slam.hpp"
 
+#include <algorithm>
+#include <vector>
+
 #include <gtest/gtest.h>
+
+#include "slam/core/random.hpp"
 
 namespace mh {
 namespace {
@@ -68,6 +73,60 @@ TEST(Relocalize, AnEmptyMapHasNoCandidate) {
       relocalize({features, grid, words}, {Camera{}, SlamConfig{}, Map{}, counts}, RandomStream(1));
   EXPECT_EQ(result.stage, RelocalizationStage::kNoCandidate);
   EXPECT_FALSE(result.camera_from_world.has_value());
+}
+
+// A keyframe of 60 points and a frame from beside it that sees them all without noise; the first
+// feature and the last may lie. What is found is each true one, no other, and the exact pose.
+TEST(Relocalize, FindsEachTrueLandmarkAndTheExactPose) {
+  const Camera camera;
+  const SlamConfig config;
+  constexpr std::uint32_t kPoints = 60;
+  const SE3 truth = SE3::exp((Vector6d() << 0.1, -0.05, 0.12, 0.03, -0.06, 0.02).finished());
+  const auto keypoint = [&](const Eigen::Vector3d& p) {
+    Keypoint k;
+    k.u_px = static_cast<float>(camera.project(p).x());
+    k.v_px = static_cast<float>(camera.project(p).y());
+    k.depth_m = static_cast<float>(p.z());
+    return k;
+  };
+  for (const bool lies : {false, true}) {
+    Keyframe keyframe;
+    Features features;
+    WordIndex words;
+    std::vector<Eigen::Vector3d> points;
+    for (std::uint32_t i = 0; i < kPoints; ++i) {
+      const RandomStream draw = RandomStream(4).fork(i);
+      points.push_back(camera.unproject(draw.uniform(0, 120, 520), draw.uniform(1, 100, 380),
+                                        draw.uniform(2, 2, 4)));
+      keyframe.features.keypoints.push_back(keypoint(points[i]));
+      keyframe.features.descriptors.push_back(
+          {draw.bits(3), draw.bits(4), draw.bits(5), draw.bits(6)});
+      keyframe.words.by_node.emplace_back(i, i);
+      features.keypoints.push_back(keypoint(truth * points[i]));
+      if (lies && (i == 0 || i == kPoints - 1)) features.keypoints[i].u_px += 60;
+    }
+    features.descriptors = keyframe.features.descriptors;
+    words.by_node = keyframe.words.by_node;
+    words.vector = keyframe.words.vector = vector_of({}, {1, 2, 3});
+    Map map;
+    map.add(std::move(keyframe));
+    for (std::uint32_t i = 0; i < kPoints; ++i)
+      map.refresh(map.add_landmark(points[i], KeyframeId{0}, i), config.features);
+    const FeatureGrid grid(features.keypoints, camera);
+    MatchCounts counts{};
+    const auto found =
+        relocalize({features, grid, words}, {camera, config, map, counts}, RandomStream(1));
+    EXPECT_EQ(found.stage, RelocalizationStage::kVerified);
+    EXPECT_EQ(found.keyframe, KeyframeId{0});
+    EXPECT_EQ(found.inliers, static_cast<int>(lies ? kPoints - 2 : kPoints));
+    ASSERT_TRUE(found.camera_from_world);
+    EXPECT_LT((*found.camera_from_world * truth.inverse()).log().norm(), 1e-5);
+    ASSERT_EQ(found.landmarks.size(), kPoints);
+    for (std::uint32_t i = 0; i < kPoints; ++i)
+      EXPECT_EQ(found.landmarks[i],
+                lies && (i == 0 || i == kPoints - 1) ? LandmarkId{} : LandmarkId{i})
+          << i;
+  }
 }
 
 }  // namespace
