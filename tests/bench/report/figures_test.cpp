@@ -355,6 +355,10 @@ TEST_F(Figures, OfTheCsvStandUnderTheirHeadings) {
   const Cells row = split(line, ",");
   std::map<std::string, std::string> cell;
   for (std::size_t c = 0; c < heading.size(); ++c) cell[heading[c]] = c < row.size() ? row[c] : "";
+  ASSERT_GT(heading.size(), 2u);
+  EXPECT_EQ(heading[0], "run");
+  EXPECT_EQ(heading[1], "environment");
+  EXPECT_EQ(row[0], runs_[0].spec.name);
   EXPECT_EQ(cell["system"], "semantic");
   for (const auto& [name, value] :
        std::map<std::string, double>{{"ate_rmse_m", 0.0111},
