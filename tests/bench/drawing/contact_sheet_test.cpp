@@ -47,8 +47,8 @@ TEST(LookAt, PutsTheTargetInTheMiddleAndStandsUpright) {
 TEST(ViewsAlong, AreTheMiddlesOfEqualParts) {
   Trajectory path;
   for (int i = 0; i < 100; ++i)
-    path.push_back({i, SE3(Eigen::Matrix3d(Eigen::Matrix3d::Identity()),
-                           Eigen::Vector3d(0.1 * i, 0, 0))});
+    path.push_back(
+        {i, SE3(Eigen::Matrix3d(Eigen::Matrix3d::Identity()), Eigen::Vector3d(0.1 * i, 0, 0))});
   const auto frames = [&](std::size_t count) {
     const Recorder renderer;
     std::vector<int> at;

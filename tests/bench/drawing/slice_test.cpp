@@ -49,8 +49,7 @@ TEST(Slice, OfAClosedSurfaceIsClosedAtAnyHeight) {
       for (std::uint32_t k = 0; k < 4; ++k)
         for (const std::uint32_t tip : {4U, 5U}) {
           const std::array<std::uint32_t, 3> face = {k, (k + 1) % 4, tip};
-          scene.triangles.push_back(
-              {face[begin], face[(begin + 1) % 3], face[(begin + 2) % 3]});
+          scene.triangles.push_back({face[begin], face[(begin + 1) % 3], face[(begin + 2) % 3]});
           scene.class_of.push_back(1);
         }
       for (const double height : {-1.5, -1.0, -0.5, -0.25, 0.0, 0.25, 0.5, 1.0, 1.5}) {
@@ -63,7 +62,8 @@ TEST(Slice, OfAClosedSurfaceIsClosedAtAnyHeight) {
           for (const Eigen::Vector2d& end : {s.from_m, s.to_m}) {
             int ends_here = 0;
             for (const SliceSegment& other : segments)
-              ends_here += ((other.from_m - end).norm() < 1e-6) + ((other.to_m - end).norm() < 1e-6);
+              ends_here +=
+                  ((other.from_m - end).norm() < 1e-6) + ((other.to_m - end).norm() < 1e-6);
             EXPECT_EQ(ends_here % 2, 0) << height << ": an open end";
           }
         }

@@ -382,9 +382,9 @@ TEST(Sobol, IsTheSequenceOfJoeAndKuoShifted) {
     unsigned s, a;
     std::vector<std::uint64_t> m;
   };
-  std::vector<Row> rows = {{1, 0, {1}},          {2, 1, {1, 3}},        {3, 1, {1, 3, 1}},
-                           {3, 2, {1, 1, 1}},    {4, 1, {1, 1, 3, 3}},  {4, 4, {1, 3, 5, 13}},
-                           {5, 2, {1, 1, 5, 5, 17}}};
+  std::vector<Row> rows = {
+      {1, 0, {1}},          {2, 1, {1, 3}},        {3, 1, {1, 3, 1}},       {3, 2, {1, 1, 1}},
+      {4, 1, {1, 1, 3, 3}}, {4, 4, {1, 3, 5, 13}}, {5, 2, {1, 1, 5, 5, 17}}};
   for (auto& [s, a, m] : rows)
     for (std::size_t k = m.size(); k < 32; ++k) {  // m[k] is Joe and Kuo's m_(k+1)
       std::uint64_t next = m[k - s] ^ (m[k - s] << s);

@@ -207,8 +207,8 @@ TEST(RunOne, AnOutsideProgramsTrajectoryIsScoredByWhatItWasOffered) {
   const TemporaryFolder folder(std::filesystem::temp_directory_path());
   Trajectory answer = straight_path(29);
   for (TimedPose& pose : answer)
-    pose.world_from_camera = SE3(pose.world_from_camera.rotation(),
-                                 2 * pose.world_from_camera.translation());
+    pose.world_from_camera =
+        SE3(pose.world_from_camera.rotation(), 2 * pose.world_from_camera.translation());
   write_tum(folder.path() / "answer.tum", answer);
   Place place;
   place.suite.compare.clear();

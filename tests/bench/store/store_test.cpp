@@ -349,7 +349,8 @@ TEST_F(StoreFile, BadInputFoundLateIsToldAsSuchAndStagesAreSaid) {
 }
 
 // Four runs: one that another process has finished meanwhile, one that failed there, one that comes
-// well to its end and one that does not. Each is counted once, and the share is that of the settled.
+// well to its end and one that does not. Each is counted once, and the share is that of the
+// settled.
 TEST_F(StoreFile, TheWorkDoneIsTheRunsThatAreSettled) {
   const fs::path program = folder_ / "program";
   std::ofstream(program) << "#!/bin/sh\n[ \"$1\" = well ]\n";

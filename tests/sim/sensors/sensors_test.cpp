@@ -378,8 +378,8 @@ TEST(SensorLevels, SayWhatTheirNamesSay) {
 struct LevelNumber {
   std::string section, key;
   double low, high;
-  bool above = false;      ///< the low end itself is refused
-  std::string beside;      ///< what else the section needs: "sigma_px: 1, "
+  bool above = false;  ///< the low end itself is refused
+  std::string beside;  ///< what else the section needs: "sigma_px: 1, "
   std::function<double(const SensorConfig&)> value;
   double unit = 1;  ///< of the file, in ours
 };
@@ -400,11 +400,9 @@ std::vector<LevelNumber> level_numbers() {
        [](const C& c) { return c.auto_exposure.time_constant_s; }},
       {"auto_exposure", "max_gain", 1, 1000, false, "",
        [](const C& c) { return c.auto_exposure.max_gain; }},
-      {"vignetting", "strength", 0, 1, false, "",
-       [](const C& c) { return c.vignetting.strength; }},
+      {"vignetting", "strength", 0, 1, false, "", [](const C& c) { return c.vignetting.strength; }},
       {"lens_blur", "sigma_px", 0, 20, false, "", [](const C& c) { return c.lens_blur_px; }},
-      {"processing", "contrast", 0, 1, false, "",
-       [](const C& c) { return c.processing.contrast; }},
+      {"processing", "contrast", 0, 1, false, "", [](const C& c) { return c.processing.contrast; }},
       {"processing", "sharpening", 0, 20, false, "",
        [](const C& c) { return c.processing.sharpening; }},
       {"processing", "sharpening_px", 0, 20, true, "",

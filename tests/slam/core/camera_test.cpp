@@ -30,23 +30,24 @@ TEST(Camera, EachNumberHasItsRangeAndIsNamedOutsideIt) {
     camera.*member = value;
     return complaint(camera);
   };
-  for (const auto& [member, name] : {std::pair(&Camera::width_px, "width_px"),
-                                     {&Camera::height_px, "height_px"}})
-    for (const int bad : {0, -1})
-      EXPECT_EQ(with(member, bad), std::string("camera: ") + name + " = " + std::to_string(bad) +
-                                       " is out of range");
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = HUGE_VAL;
   for (const auto& [member, name] :
-       {std::pair(&Camera::fx_px, "fx_px"), {&Camera::fy_px, "fy_px"},
-        {&Camera::rate_hz, "rate_hz"}, {&Camera::baseline_m, "baseline_m"},
-        {&Camera::disparity_sigma_px, "disparity_sigma_px"}}) {
+       {std::pair(&Camera::width_px, "width_px"), {&Camera::height_px, "height_px"}})
+    for (const int bad : {0, -1})
+      EXPECT_EQ(with(member, bad),
+                std::string("camera: ") + name + " = " + std::to_string(bad) + " is out of range");
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = HUGE_VAL;
+  for (const auto& [member, name] : {std::pair(&Camera::fx_px, "fx_px"),
+                                     {&Camera::fy_px, "fy_px"},
+                                     {&Camera::rate_hz, "rate_hz"},
+                                     {&Camera::baseline_m, "baseline_m"},
+                                     {&Camera::disparity_sigma_px, "disparity_sigma_px"}}) {
     EXPECT_EQ(with(member, std::numeric_limits<double>::min()), "") << name;
     for (const double bad : {0.0, -1.0, kNan, kInfinity, -kInfinity})
       EXPECT_TRUE(with(member, bad).starts_with(std::string("camera: ") + name + " = ")) << bad;
   }
   // The principal point lies on a pixel's middle at most.
-  for (const auto& [member, name, last] : {std::tuple(&Camera::cx_px, "cx_px", 639.0),
-                                           {&Camera::cy_px, "cy_px", 479.0}}) {
+  for (const auto& [member, name, last] :
+       {std::tuple(&Camera::cx_px, "cx_px", 639.0), {&Camera::cy_px, "cy_px", 479.0}}) {
     for (const double good : {0.0, last}) EXPECT_EQ(with(member, good), "") << name;
     for (const double bad :
          {std::nextafter(0.0, -1.0), std::nextafter(last, 1e9), kNan, kInfinity, -kInfinity})
@@ -69,9 +70,12 @@ TEST(Camera, ProjectsAsWorkedByHandAndBack) {
   EXPECT_LT((camera.project(point) - Eigen::Vector2d(420, 340)).norm(), 1e-12);
   EXPECT_LT((camera.unproject(420, 340, 2) - point).norm(), 1e-12);
   EXPECT_DOUBLE_EQ(camera.disparity_px(2), 15);
-  for (const auto& [u, v, inside] :
-       {std::tuple(0.0, 0.0, true), {639.0, 479.0, true}, {-0.001, 5.0, false},
-        {5.0, -0.001, false}, {639.001, 5.0, false}, {5.0, 479.001, false}})
+  for (const auto& [u, v, inside] : {std::tuple(0.0, 0.0, true),
+                                     {639.0, 479.0, true},
+                                     {-0.001, 5.0, false},
+                                     {5.0, -0.001, false},
+                                     {639.001, 5.0, false},
+                                     {5.0, 479.001, false}})
     EXPECT_EQ(camera.in_image(u, v), inside) << u << " " << v;
 }
 

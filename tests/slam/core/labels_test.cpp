@@ -18,55 +18,35 @@ struct Published {
   const char* name;
   int r, g, b;
 };
-constexpr std::array<Published, 40> kNyu40 = {{{"wall", 174, 199, 232},
-                                               {"floor", 152, 223, 138},
-                                               {"cabinet", 31, 119, 180},
-                                               {"bed", 255, 187, 120},
-                                               {"chair", 188, 189, 34},
-                                               {"sofa", 140, 86, 75},
-                                               {"table", 255, 152, 150},
-                                               {"door", 214, 39, 40},
-                                               {"window", 197, 176, 213},
-                                               {"bookshelf", 148, 103, 189},
-                                               {"picture", 196, 156, 148},
-                                               {"counter", 23, 190, 207},
-                                               {"blinds", 178, 76, 76},
-                                               {"desk", 247, 182, 210},
-                                               {"shelves", 66, 188, 102},
-                                               {"curtain", 219, 219, 141},
-                                               {"dresser", 140, 57, 197},
-                                               {"pillow", 202, 185, 52},
-                                               {"mirror", 51, 176, 203},
-                                               {"floor mat", 200, 54, 131},
-                                               {"clothes", 92, 193, 61},
-                                               {"ceiling", 78, 71, 183},
-                                               {"books", 172, 114, 82},
-                                               {"refridgerator", 255, 127, 14},
-                                               {"television", 91, 163, 138},
-                                               {"paper", 153, 98, 156},
-                                               {"towel", 140, 153, 101},
-                                               {"shower curtain", 158, 218, 229},
-                                               {"box", 100, 125, 154},
-                                               {"whiteboard", 178, 127, 135},
-                                               {"person", 120, 185, 128},
-                                               {"night stand", 146, 111, 194},
-                                               {"toilet", 44, 160, 44},
-                                               {"sink", 112, 128, 144},
-                                               {"lamp", 96, 207, 209},
-                                               {"bathtub", 227, 119, 194},
-                                               {"bag", 213, 92, 176},
-                                               {"otherstructure", 94, 106, 211},
-                                               {"otherfurniture", 82, 84, 163},
-                                               {"otherprop", 100, 85, 144}}};
+constexpr std::array<Published, 40> kNyu40 = {
+    {{"wall", 174, 199, 232},         {"floor", 152, 223, 138},
+     {"cabinet", 31, 119, 180},       {"bed", 255, 187, 120},
+     {"chair", 188, 189, 34},         {"sofa", 140, 86, 75},
+     {"table", 255, 152, 150},        {"door", 214, 39, 40},
+     {"window", 197, 176, 213},       {"bookshelf", 148, 103, 189},
+     {"picture", 196, 156, 148},      {"counter", 23, 190, 207},
+     {"blinds", 178, 76, 76},         {"desk", 247, 182, 210},
+     {"shelves", 66, 188, 102},       {"curtain", 219, 219, 141},
+     {"dresser", 140, 57, 197},       {"pillow", 202, 185, 52},
+     {"mirror", 51, 176, 203},        {"floor mat", 200, 54, 131},
+     {"clothes", 92, 193, 61},        {"ceiling", 78, 71, 183},
+     {"books", 172, 114, 82},         {"refridgerator", 255, 127, 14},
+     {"television", 91, 163, 138},    {"paper", 153, 98, 156},
+     {"towel", 140, 153, 101},        {"shower curtain", 158, 218, 229},
+     {"box", 100, 125, 154},          {"whiteboard", 178, 127, 135},
+     {"person", 120, 185, 128},       {"night stand", 146, 111, 194},
+     {"toilet", 44, 160, 44},         {"sink", 112, 128, 144},
+     {"lamp", 96, 207, 209},          {"bathtub", 227, 119, 194},
+     {"bag", 213, 92, 176},           {"otherstructure", 94, 106, 211},
+     {"otherfurniture", 82, 84, 163}, {"otherprop", 100, 85, 144}}};
 
 // Of COCO's 80 classes those that are found indoors, by their place in the usual list from 0.
 const std::map<int, std::string_view> kCoco80 = {
-    {0, "person"},     {13, "bench"},         {26, "bag"},        {39, "bottle"},
-    {41, "cup"},       {45, "bowl"},          {56, "chair"},      {57, "couch"},
-    {58, "plant"},     {59, "bed"},           {60, "dining table"}, {61, "toilet"},
-    {62, "tv"},        {63, "laptop"},        {66, "keyboard"},   {68, "microwave"},
-    {69, "oven"},      {70, "toaster"},       {71, "sink"},       {72, "refrigerator"},
-    {73, "book"},      {74, "clock"},         {75, "vase"},       {77, "teddy bear"}};
+    {0, "person"},        {13, "bench"},  {26, "bag"},     {39, "bottle"},    {41, "cup"},
+    {45, "bowl"},         {56, "chair"},  {57, "couch"},   {58, "plant"},     {59, "bed"},
+    {60, "dining table"}, {61, "toilet"}, {62, "tv"},      {63, "laptop"},    {66, "keyboard"},
+    {68, "microwave"},    {69, "oven"},   {70, "toaster"}, {71, "sink"},      {72, "refrigerator"},
+    {73, "book"},         {74, "clock"},  {75, "vase"},    {77, "teddy bear"}};
 
 TEST(Classes, TheFirstFortyAreThoseOfNyu40InScanNetsColors) {
   ASSERT_GT(classes().size(), kNyu40.size());
@@ -74,8 +54,7 @@ TEST(Classes, TheFirstFortyAreThoseOfNyu40InScanNetsColors) {
     const ClassInfo& info = classes()[i + 1];
     EXPECT_EQ(info.name, kNyu40[i].name);
     EXPECT_EQ(info.nyu40, i + 1) << info.name;
-    EXPECT_EQ(std::tuple(info.r, info.g, info.b),
-              std::tuple(kNyu40[i].r, kNyu40[i].g, kNyu40[i].b))
+    EXPECT_EQ(std::tuple(info.r, info.g, info.b), std::tuple(kNyu40[i].r, kNyu40[i].g, kNyu40[i].b))
         << info.name;
   }
 }

@@ -17,7 +17,9 @@ namespace {
 TEST(FeatureGrid, VisitsExactlyWhatLiesInTheCellsThatASquareTouches) {
   Camera camera;
   camera.width_px = 100, camera.height_px = 70;  // no whole number of cells
-  const auto column = [](float u) { return std::clamp(static_cast<int>(std::floor(u / 16)), 0, 6); };
+  const auto column = [](float u) {
+    return std::clamp(static_cast<int>(std::floor(u / 16)), 0, 6);
+  };
   const auto row = [](float v) { return std::clamp(static_cast<int>(std::floor(v / 16)), 0, 4); };
   const RandomStream draw(5);
   std::vector<Keypoint> keypoints;

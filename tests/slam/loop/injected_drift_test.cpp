@@ -120,8 +120,8 @@ struct StretchedRow {
     };
     for (std::uint32_t k = 0; k < kKeyframes; ++k) {
       Keyframe keyframe;
-      keyframe.camera_from_world = SE3(Eigen::Matrix3d(Eigen::Matrix3d::Identity()),
-                                       Eigen::Vector3d(-step_m * k, 0, 0));
+      keyframe.camera_from_world =
+          SE3(Eigen::Matrix3d(Eigen::Matrix3d::Identity()), Eigen::Vector3d(-step_m * k, 0, 0));
       const auto see = [&](std::uint32_t owner, double x_m) {
         for (std::uint32_t i = 0; i < kShared; ++i) {
           const Eigen::Vector3d p = seen_from(x_m, i);
@@ -133,24 +133,24 @@ struct StretchedRow {
           keyframe.features.descriptors.push_back(descriptor(owner, i));
         }
       };
-      see(k, 0);                              // features 0 to 19
-      if (k > 0) see(k - 1, step_m);          // 20 to 39
+      see(k, 0);                                // features 0 to 19
+      if (k > 0) see(k - 1, step_m);            // 20 to 39
       if (k == kLast) see(0, kStep_m * kLast);  // 40 to 59
       keyframe.grid = FeatureGrid(keyframe.features.keypoints, camera);
       map.add(std::move(keyframe));
     }
     for (std::uint32_t k = 0; k < kKeyframes; ++k)
       for (std::uint32_t i = 0; i < kShared; ++i) {
-        const LandmarkId id = map.add_landmark(
-            seen_from(0, i) + Eigen::Vector3d(step_m * k, 0, 0), KeyframeId{k}, i);
+        const LandmarkId id =
+            map.add_landmark(seen_from(0, i) + Eigen::Vector3d(step_m * k, 0, 0), KeyframeId{k}, i);
         if (k < kLast) map.add_observation(id, KeyframeId{k + 1}, kShared + i);
         map.refresh(id, config.features);
       }
     for (std::uint32_t k = 0; k < kKeyframes; ++k) map.update_covisibility(KeyframeId{k});
     loop.keyframe = KeyframeId{kLast};
     loop.old_keyframe = KeyframeId{0};
-    loop.camera_from_world = SE3(Eigen::Matrix3d(Eigen::Matrix3d::Identity()),
-                                 Eigen::Vector3d(-kStep_m * kLast, 0, 0));
+    loop.camera_from_world =
+        SE3(Eigen::Matrix3d(Eigen::Matrix3d::Identity()), Eigen::Vector3d(-kStep_m * kLast, 0, 0));
     loop.landmarks.resize(3 * kShared);
     for (std::uint32_t i = 0; i < kShared; ++i) loop.landmarks[2 * kShared + i] = LandmarkId{i};
   }

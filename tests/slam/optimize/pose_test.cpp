@@ -178,9 +178,8 @@ TEST(SolvePnpRansac, DrawsThreeDifferentPointsHoweverFewThereAre) {
   for (const int count : {4, 5, 6})
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
       const auto observations = observe(count, truth, kCamera, RandomStream(17));
-      const auto estimate = solve_pnp_ransac(observations, kCamera,
-                                             {.max_iterations = 1, .min_inliers = 4}, {},
-                                             RandomStream(seed));
+      const auto estimate = solve_pnp_ransac(
+          observations, kCamera, {.max_iterations = 1, .min_inliers = 4}, {}, RandomStream(seed));
       ASSERT_TRUE(estimate) << count << " " << seed;
       EXPECT_EQ(estimate->inlier_count, count);
       EXPECT_LT(distance_m(estimate->camera_from_world, truth), 1e-6);

@@ -70,18 +70,18 @@ TEST(KeyframesPly, HoldsPlacesAndEdgesBetweenThem) {
 
 TEST(KeyframesJson, HoldsIdsStampsAndPoses) {
   const std::string text = keyframes_json(made_map());
-  for (const char* part : {"{\"id\": 0, \"stamp_ns\": 10, \"position_m\": [1, 2, 3], ",
-                           "{\"id\": 2, \"stamp_ns\": 30, \"position_m\": [-4, 0.5, 0.25], ",
-                           "\"landmarks\": 16}", "\"landmarks\": 15}",
-                           "\"edges\": [\n    {\"a\": 0, \"b\": 2, \"shared\": 15}\n  ]"})
+  for (const char* part :
+       {"{\"id\": 0, \"stamp_ns\": 10, \"position_m\": [1, 2, 3], ",
+        "{\"id\": 2, \"stamp_ns\": 30, \"position_m\": [-4, 0.5, 0.25], ", "\"landmarks\": 16}",
+        "\"landmarks\": 15}", "\"edges\": [\n    {\"a\": 0, \"b\": 2, \"shared\": 15}\n  ]"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   EXPECT_EQ(text.find("\"id\": 1"), std::string::npos) << "an erased keyframe";
   // A quarter turn about z.
   const std::string key = "\"quaternion_xyzw\": [";
   double x = 1, y = 1, z = 0, w = 0;
-  ASSERT_EQ(std::sscanf(text.c_str() + text.find(key) + key.size(), "%lf, %lf, %lf, %lf", &x, &y,
-                        &z, &w),
-            4);
+  ASSERT_EQ(
+      std::sscanf(text.c_str() + text.find(key) + key.size(), "%lf, %lf, %lf, %lf", &x, &y, &z, &w),
+      4);
   EXPECT_NEAR(x, 0, 1e-15);
   EXPECT_NEAR(y, 0, 1e-15);
   EXPECT_NEAR(z, std::numbers::sqrt2 / 2, 1e-15);

@@ -238,8 +238,12 @@ TEST(MapFile, WhatPointsNowhereIsRefusedByItsName) {
     Landmark* seen;  ///< twice at least
   };
   const auto said = [](const std::function<void(Parts&)>& lie) {
-    Parts p{midway(), midway().map.keyframes(), {midway().map.landmarks().begin(),
-                                                 midway().map.landmarks().end()}, {}, {}, {}};
+    Parts p{midway(),
+            midway().map.keyframes(),
+            {midway().map.landmarks().begin(), midway().map.landmarks().end()},
+            {},
+            {},
+            {}};
     p.standing = &*std::ranges::find_if(p.keyframes, [](const Keyframe& k) {
       return !k.erased && k.id.value > 0 && !k.covisible.empty() &&
              k.words.vector.labels.size() > 1 && k.words.by_node.size() > 1;
@@ -291,13 +295,11 @@ TEST(MapFile, WhatPointsNowhereIsRefusedByItsName) {
   refuses("the order of words", [](Parts& p) {
     std::swap(p.standing->words.by_node.front(), p.standing->words.by_node.back());
   });
-  refuses("a keyframe's number of landmarks",
-          [](Parts& p) { p.standing->landmarks.pop_back(); });
+  refuses("a keyframe's number of landmarks", [](Parts& p) { p.standing->landmarks.pop_back(); });
   refuses("a keyframe's landmark", [=](Parts& p) { p.standing->landmarks[0].value = landmarks; });
   refuses("a keyframe's neighbor",
           [=](Parts& p) { p.standing->covisible[0].id.value = keyframes; });
-  refuses("a keyframe's neighbor",
-          [](Parts& p) { p.standing->covisible[0].id = p.fallen->id; });
+  refuses("a keyframe's neighbor", [](Parts& p) { p.standing->covisible[0].id = p.fallen->id; });
   refuses("a keyframe's parent", [=](Parts& p) { p.fallen->parent.value = keyframes; });
   refuses("a keyframe's parent", [](Parts& p) { p.fallen->parent = p.fallen->id; });
   refuses("a landmark's id", [](Parts& p) { ++p.seen->id.value; });
@@ -312,18 +314,15 @@ TEST(MapFile, WhatPointsNowhereIsRefusedByItsName) {
     Observation& o = p.seen->observations[0];
     o.feature = static_cast<std::uint32_t>(p.keyframes[o.keyframe.value].features.size());
   });
-  refuses("the order of a landmark's observations", [](Parts& p) {
-    std::swap(p.seen->observations.front(), p.seen->observations.back());
-  });
+  refuses("the order of a landmark's observations",
+          [](Parts& p) { std::swap(p.seen->observations.front(), p.seen->observations.back()); });
   refuses("the last frame's number of landmarks",
           [](Parts& p) { p.state.tracker.last->landmarks.pop_back(); });
   refuses("the last frame's landmark",
           [=](Parts& p) { p.state.tracker.last->landmarks[0].value = landmarks; });
-  refuses("the reference keyframe",
-          [=](Parts& p) { p.state.tracker.reference.value = keyframes; });
-  refuses("a tracked frame's keyframe", [=](Parts& p) {
-    p.state.tracked_frames.begin()->second.reference.value = keyframes;
-  });
+  refuses("the reference keyframe", [=](Parts& p) { p.state.tracker.reference.value = keyframes; });
+  refuses("a tracked frame's keyframe",
+          [=](Parts& p) { p.state.tracked_frames.begin()->second.reference.value = keyframes; });
   // Who sees what is told on both sides.
   EXPECT_NE(said([](Parts& p) { p.seen->observations.pop_back(); }), "");
   EXPECT_NE(said([](Parts& p) { p.standing->covisible.pop_back(); }), "");
@@ -340,8 +339,8 @@ TEST(MapFile, LiesAsAnotherReaderWouldExpect) {
                        .agreeing = 1};
   for (const SlamState& of : {state, start()}) {
     const std::string bytes = framed(Layout(of).bytes());
-    EXPECT_TRUE(bytes == encode_slam(of)) << "sizes " << bytes.size() << ", "
-                                          << encode_slam(of).size();
+    EXPECT_TRUE(bytes == encode_slam(of))
+        << "sizes " << bytes.size() << ", " << encode_slam(of).size();
   }
 }
 

@@ -193,8 +193,8 @@ TEST(Settings, TakesOrbSlamsFilesAsTheyAre) {
 
 // What a file does not tell is what the program has.
 TEST(Settings, OfAnOrbSlamFileWithoutARowThatRowIsTheDefault) {
-  const Settings s = parse_settings(
-      "Camera.fx: 250\nCamera.fy: 251\nCamera.cx: 319\nCamera.cy: 239\n", "s.yaml");
+  const Settings s =
+      parse_settings("Camera.fx: 250\nCamera.fy: 251\nCamera.cx: 319\nCamera.cy: 239\n", "s.yaml");
   Camera camera;
   camera.fx_px = 250, camera.fy_px = 251, camera.cx_px = 319, camera.cy_px = 239;
   EXPECT_DOUBLE_EQ(s.camera.baseline_m, camera.baseline_m) << "in m, whatever the focal length";
