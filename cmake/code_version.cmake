@@ -27,7 +27,7 @@ digest_of(LIGHT scenes/*.cpp scenes/*.hpp scenes/categories/*.yaml sim/render/*.
 digest_of(RUN slam/*.cpp slam/*.hpp scenes/*.cpp scenes/*.hpp scenes/categories/*.yaml robots/*.cpp robots/*.hpp sim/*.cpp
           sim/*.hpp bench/protocol/*.cpp bench/protocol/*.hpp bench/metrics/*.cpp
           bench/metrics/*.hpp bench/systems/*.cpp bench/systems/*.hpp bench/world/*.cpp
-          bench/world/*.hpp bench/inputs/inputs.cpp bench/inputs/inputs.hpp
+          bench/world/*.hpp bench/inputs/inputs.cpp bench/inputs/inputs.hpp bench/inputs/recorded_camera.*
           bench/plan/find_program.* bench/plan/outside_program.* bench/provenance/digest.*
           bench/provenance/input_digest.hpp bench/provenance/place_facts.hpp
           bench/results/call_times.* bench/results/run_result.hpp

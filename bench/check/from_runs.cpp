@@ -111,11 +111,17 @@ std::string gate_suite_digest(const Suite& suite) {
       suite.max_frames ? std::to_string(*suite.max_frames) : "all", to_json(suite.protocol).dump());
   for (const SystemSpec& system : suite.systems) text += fmt::format("system={};", system.name);
   for (const LabelMode labels : suite.labels) text += fmt::format("labels={};", name(labels));
-  for (const auto& level : suite.levels) text += content(level_name(level), level);
+  for (const auto& level : suite.levels)
+    text += level == kRecordedLevel ? "recorded;" : content(level_name(level), level);
   InputReader reader;
   for (const Environment& e : suite.environments) {
     const std::vector<InputDigest> inputs = reader.inputs_of(e);
     text += fmt::format("environment={};", e.name);
+    if (e.is_recorded()) {
+      for (const InputDigest& input : inputs)
+        text += fmt::format("{}={};", input.name, hex(input.digest));
+      continue;
+    }
     for (const auto& [what, source] :
          {std::pair("scene", std::optional(e.scene)), std::pair("robot", std::optional(e.robot)),
           std::pair("mapping_tour", std::optional(e.mapping_tour)),

@@ -9,6 +9,7 @@
 #include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
+#include "bench/cli/set_option.hpp"
 #include "bench/run/run.hpp"
 
 namespace mh::cli {
@@ -22,6 +23,7 @@ struct Options {
   std::optional<std::size_t> frames;
   std::optional<std::string> scene;
   SceneFrameOption frame;
+  SetOption set;
   std::string shard = "1/1";
   std::string cache;
   bool no_cache = false;
@@ -49,6 +51,7 @@ void run(Options options) {
   resolve(options.suite, Shipped::kSuite);
   if (options.scene) resolve(*options.scene, Shipped::kScene);
   SuiteOverrides overrides;
+  overrides.set = options.set.values();
   overrides.trials = options.trials;
   overrides.max_frames = options.frames;
   if (options.scene) overrides.scene = *options.scene;
@@ -96,6 +99,7 @@ void add_bench(CLI::App& app) {
   command->add_option("--scene", options->scene,
                       "Another scene or mesh file (default: the suite's)");
   options->frame.add_to(*command);
+  options->set.add_to(*command);
   command->add_option("--shard", options->shard,
                       "i/n: takes run i, i + n, ... alone; `merge` puts them together");
   command->add_option("--cache", options->cache,

@@ -13,6 +13,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/cli/set_option.hpp"
 #include "bench/provenance/digest.hpp"
 #include "bench/run/run.hpp"
 #include "slam/core/counted.hpp"
@@ -29,6 +30,7 @@ struct Options {
   std::string suite, baseline, junit;
   int jobs = 1;
   std::optional<std::size_t> frames;
+  SetOption set;
   bool update = false, json = false;
 };
 
@@ -77,6 +79,7 @@ Baseline measure(const Suite& suite, const Options& of) {
                              .say = [&](std::string_view stage) { progress.say(stage); },
                              .progress = [&](const PoolProgress& p) { show(progress, p); }};
   SuiteOverrides overrides;
+  overrides.set = of.set.values();
   overrides.max_frames = of.frames;
   BenchResults results;
   try {
@@ -135,6 +138,7 @@ void update(const Options& options, const Suite& suite, const Baseline& now) {
 void run(Options options) {
   resolve(options.suite, Shipped::kSuite);
   SuiteOverrides overrides;
+  overrides.set = options.set.values();
   overrides.max_frames = options.frames;
   const Suite suite = load_suite(options.suite, overrides);
   if (suite.gate.tolerances.empty() && suite.gate.of_scenario.empty())
@@ -176,6 +180,7 @@ void add_check(CLI::App& app) {
                    "Cuts the tours after N frames; the baseline is then one of the same cut "
                    "(default: all)")
       ->check(CLI::Range(1, 100000000));
+  options->set.add_to(*command);
   command->add_flag("--update", options->update, "Rewrites the baseline and shows the difference");
   command->add_flag("--json", options->json, "Prints JSON");
   command->footer(

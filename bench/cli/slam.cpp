@@ -12,9 +12,8 @@
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/cli/slam_report.hpp"
-#include "bench/run/recorded_camera.hpp"
-#include "scenes/recorded/frame_sequence.hpp"
-#include "scenes/recorded/scannet_folder.hpp"
+#include "bench/inputs/recorded_camera.hpp"
+#include "scenes/recorded/open_sequence.hpp"
 #include "sim/world/scene_sequence.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
@@ -27,12 +26,12 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::string_view kTum = "tum:", kScene = "scene:", kScannet = "scannet:";
+constexpr std::string_view kScene = "scene:";
 
 constexpr const char* kUsualRobot = "pepper";
 
 struct Options {
-  std::string source, settings, vocabulary = "vocabulary", out, map, save_map, truth;
+  std::string source, settings, classes, vocabulary = "vocabulary", out, map, save_map, truth;
   SceneFrameOption frame;
   std::string tour, robot, level;
   std::optional<double> gamma, xi;
@@ -40,26 +39,6 @@ struct Options {
   std::uint64_t seed = 0;
   SlamRunOptions run;
 };
-
-bool is_tum_folder(const fs::path& folder) {
-  return fs::exists(folder / "rgb.txt") || fs::exists(folder / "associations.txt");
-}
-
-/// The settings file that was named, else the one that lies in the folder, else its calibration.
-Settings settings_for(const Options& options, const fs::path& folder) {
-  fs::path beside = folder / "camera.yaml";
-  if (!fs::exists(beside)) beside = folder / "camera_info.yaml";
-  if (options.settings.empty() && !fs::exists(beside))
-    throw InputError(
-        fmt::format("{}: holds neither camera.yaml nor camera_info.yaml; name a settings file by "
-                    "--settings",
-                    folder.string()));
-  const fs::path file = options.settings.empty() ? beside : fs::path(options.settings);
-  Settings settings = load_settings(file);
-  if (!settings.has_camera)
-    throw InputError(fmt::format("{}: key 'camera' is missing", file.string()));
-  return settings;
-}
 
 struct Source {
   Settings settings;
@@ -98,22 +77,14 @@ Source open_source(const Options& options) {
                              &notes);
     return {settings_beside(options, *frames, notes), std::move(frames)};
   }
-  if (source.starts_with(kScannet)) {
-    std::vector<std::string> notes;
-    auto frames = open_scannet(source.substr(kScannet.size()), notes);
-    return {settings_beside(options, *frames, notes), std::move(frames)};
-  }
-  const bool named = source.starts_with(kTum);
-  const fs::path folder = named ? source.substr(kTum.size()) : source;
-  if (!fs::is_directory(folder))
-    throw InputError(
-        fmt::format("source '{}' is no folder, nor scene:FILE or scannet:PATH", source));
-  if (!named && !is_tum_folder(folder))
-    throw InputError(
-        fmt::format("{}: holds neither rgb.txt nor associations.txt", folder.string()));
-  Settings settings = settings_for(options, folder);
-  auto frames = open_tum_folder(folder, recorded_camera(settings), &settings.notes);
-  return {std::move(settings), std::move(frames)};
+  Settings settings;
+  RecordingConfig config{.calibration = options.settings, .classes = options.classes};
+  config.read_camera = camera_reader(&settings);
+  OpenedRecording opened = open_sequence(source, config);
+  if (!settings.has_camera)
+    return {settings_beside(options, *opened.sequence, opened.notes), std::move(opened.sequence)};
+  settings.notes.insert(settings.notes.end(), opened.notes.begin(), opened.notes.end());
+  return {std::move(settings), std::move(opened.sequence)};
 }
 
 /// What --settings may change of a map's run: how a lost camera is looked for. The rest has formed
@@ -159,7 +130,11 @@ void check(const Options& options) {
     throw InputError("--localize needs a map: name one by --map");
   if (options.run.resume && options.map.empty())
     throw InputError("--resume needs a map: name one by --map");
-  if (options.source.starts_with(kScene)) return;
+  if (options.source.starts_with(kScene)) {
+    if (!options.classes.empty())
+      throw InputError("--classes is for recordings, but the source is a scene");
+    return;
+  }
   for (const auto& [name, value] : {std::pair("--tour", &options.tour),
                                     {"--robot", &options.robot},
                                     {"--level", &options.level}})
@@ -264,13 +239,15 @@ void add_slam(CLI::App& app) {
       app.add_subcommand("slam", "Runs SLAM on a recorded sequence or along a tour of a scene.");
   command
       ->add_option("source", options->source,
-                   "tum:FOLDER, FOLDER, scannet:FOLDER, scannet:FILE.sens or scene:FILE")
+                   sequence_forms() + ", a path whose layout is recognized, or scene:FILE")
       ->required();
   command->add_option(
       "--settings", options->settings,
 
       "Settings (YAML), also ORB-SLAM2's, or the name of shipped ones (default: the "
       "folder's camera.yaml)");
+  command->add_option("--classes", options->classes,
+                      "What the labels of a recording mean (YAML), where they are not our classes");
   command->add_option("--vocabulary", options->vocabulary,
                       "Vocabulary file, or the name of the shipped one");
   command->add_option("--out", options->out, "Folder for the results")->required();

@@ -8,6 +8,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/cli/set_option.hpp"
 #include "bench/provenance/digest.hpp"
 #include "bench/verify/verify.hpp"
 
@@ -17,6 +18,7 @@ namespace {
 struct Options {
   std::string suite;
   std::optional<std::size_t> frames;
+  SetOption set;
   bool json = false;
 };
 
@@ -57,6 +59,7 @@ void print_table(const Verification& v) {
 void run(Options options) {
   resolve(options.suite, Shipped::kSuite);
   SuiteOverrides overrides;
+  overrides.set = options.set.values();
   overrides.max_frames = options.frames;
   const Suite suite = load_suite(options.suite, overrides);
   Progress progress("verify");
@@ -79,6 +82,7 @@ void add_verify(CLI::App& app) {
       ->required();
   command->add_option("--frames", options->frames, "Cuts the tours after N frames (default: all)")
       ->check(CLI::Range(1, 100000000));
+  options->set.add_to(*command);
   command->add_flag("--json", options->json, "Prints JSON");
   command->footer(
       "Example:\n  modelhouse verify model_house --frames 600\n"

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/inputs/recorded_camera.hpp"
 #include "bench/plan/find_program.hpp"
 #include "bench/provenance/digest.hpp"
 #include "robots/model/robot.hpp"
@@ -60,6 +61,20 @@ std::vector<InputDigest> inputs_of_program(const RunSpec& spec) {
 
 std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
   std::vector<InputDigest> inputs;
+  if (e.is_recorded()) {
+    // What it holds depends on the files beside it, too.
+    const std::string kind = fmt::format("recording {} {}", e.settings.value_or("").string(),
+                                         e.classes.value_or("").string());
+    const auto add = [&](const char* name, const std::string& sequence) {
+      inputs.push_back(read(name, kind, split_sequence(sequence).second, [&](const fs::path& file) {
+        say_(fmt::format("reading {}", file.string()));
+        for (const std::string& note : open_recorded(e, sequence).notes) warn(note);
+      }));
+    };
+    add("sequence", e.sequence);
+    if (e.queries) add("queries", *e.queries);
+    return inputs;
+  }
   const auto add = [&](const char* name, const char* kind, const std::optional<fs::path>& source,
                        const std::function<void(const fs::path&)>& load) {
     if (source) inputs.push_back(read(name, kind, *source, load));
@@ -87,8 +102,9 @@ std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
 
 std::vector<InputDigest> InputReader::inputs_of(const RunSpec& spec) {
   std::vector<InputDigest> inputs = inputs_of(spec.environment);
-  inputs.push_back(
-      read("level", "level", spec.level, [](const fs::path& file) { load_sensor_config(file); }));
+  if (!spec.environment.is_recorded())
+    inputs.push_back(
+        read("level", "level", spec.level, [](const fs::path& file) { load_sensor_config(file); }));
   if (!spec.vocabulary.empty())
     inputs.push_back(read("vocabulary", "vocabulary", spec.vocabulary,
                           [](const fs::path& file) { Vocabulary::load(file); }));
@@ -106,15 +122,18 @@ std::shared_ptr<const Scene> InputReader::scene(const fs::path& file, const Scen
     std::vector<std::string> warnings;  // told here alone: the runs load it again
     scene_ = std::make_shared<const Scene>(load_scene(file, &warnings, frame));
     scene_source_ = {file, frame};
-    for (const std::string& warning : warnings)
-      if (warned_.insert(warning).second) say_("warning: " + warning);
+    for (const std::string& warning : warnings) warn(warning);
   }
   return scene_;
 }
 
-InputDigest InputReader::read(const char* name, const char* kind, const fs::path& source,
+void InputReader::warn(const std::string& warning) {
+  if (warned_.insert(warning).second) say_("warning: " + warning);
+}
+
+InputDigest InputReader::read(const char* name, const std::string& kind, const fs::path& source,
                               const std::function<void(const fs::path&)>& load) {
-  const std::pair key(std::string(kind), source);
+  const std::pair key(kind, source);
   auto known = known_.find(key);
   if (known == known_.end()) {
     const ReadScope scope;

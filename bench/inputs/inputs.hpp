@@ -53,7 +53,8 @@ class InputReader {
   std::shared_ptr<const Scene> scene(const std::filesystem::path& file, const SceneFrame& frame);
 
  private:
-  InputDigest read(const char* name, const char* kind, const std::filesystem::path& source,
+  void warn(const std::string& warning);  ///< once
+  InputDigest read(const char* name, const std::string& kind, const std::filesystem::path& source,
                    const std::function<void(const std::filesystem::path&)>& load);
 
   std::map<std::pair<std::string, std::filesystem::path>, InputDigest> known_;  // by kind, source

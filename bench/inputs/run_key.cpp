@@ -5,6 +5,7 @@
 #include "bench/provenance/code_version.hpp"
 #include "bench/provenance/digest.hpp"
 #include "bench/provenance/fingerprint.hpp"
+#include "scenes/recorded/open_sequence.hpp"
 
 namespace mh {
 namespace {
@@ -34,7 +35,8 @@ std::string map_key(const RunSpec& spec, std::span<const InputDigest> inputs) {
   json.erase("points");
   json.erase("trial");  // the seed tells
   json["system"].erase("name");
-  for (const char* of_queries : {"query_tour", "query_scene"}) json["inputs"].erase(of_queries);
+  for (const char* of_queries : {"query_tour", "query_scene", "queries"})
+    json["inputs"].erase(of_queries);
   for (const char* of_queries :
        {"query_attempts", "max_blank_frames", "correct_distance_m", "correct_angle_deg", "truth"})
     json["protocol"].erase(of_queries);
@@ -47,6 +49,17 @@ std::string stored_spec(const RunSpec& spec) {
     return is_generated(source) ? source.string() : source.filename().string();
   };
   nlohmann::ordered_json& e = json["environment"];
+  if (spec.environment.is_recorded()) {
+    const auto shorten_sequence = [&](const char* key, const std::string& source) {
+      const auto [layout, path] = split_sequence(source);
+      e["recording"][key] = join_sequence(layout, name_of(path));
+    };
+    shorten_sequence("sequence", spec.environment.sequence);
+    if (spec.environment.queries) shorten_sequence("queries", *spec.environment.queries);
+    for (const auto& [key, file] :
+         {std::pair("settings", spec.environment.settings), {"classes", spec.environment.classes}})
+      if (file) e["recording"][key] = name_of(*file);
+  }
   e["scene"] = name_of(spec.environment.scene);
   e["robot"] = name_of(spec.environment.robot);
   e["mapping_tour"] = name_of(spec.environment.mapping_tour);

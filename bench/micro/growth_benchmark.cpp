@@ -19,8 +19,8 @@
 #include <CLI/CLI.hpp>
 #include <opencv2/core.hpp>
 
+#include "bench/inputs/recorded_camera.hpp"
 #include "bench/metrics/evaluate.hpp"
-#include "bench/run/recorded_camera.hpp"
 #include "scenes/recorded/tum_folder.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/trajectory_io.hpp"

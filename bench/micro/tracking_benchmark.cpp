@@ -17,9 +17,9 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "bench/inputs/recorded_camera.hpp"
 #include "bench/metrics/evaluate.hpp"
 #include "bench/provenance/digest.hpp"
-#include "bench/run/recorded_camera.hpp"
 #include "scenes/recorded/tum_folder.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/trajectory_io.hpp"

@@ -52,7 +52,8 @@ std::vector<Study> studies_of(const SystemSpec& system, const Suite& suite) {
 std::vector<RunSpec> expand(const Suite& suite) {
   std::vector<RunSpec> runs;
   for (const Environment& environment : suite.environments)
-    for (const auto& level : suite.levels)
+    for (const auto& level : suite.levels) {
+      if (!fits(environment, level)) continue;
       for (int trial = 0; trial < suite.trials; ++trial)
         for (const SystemSpec& system : suite.systems) {
           const std::vector<Study> studies = studies_of(system, suite);
@@ -60,6 +61,7 @@ std::vector<RunSpec> expand(const Suite& suite) {
               !system.sees_labels() ? std::vector{LabelMode::kNone} : suite.labels;
           for (std::size_t s = 0; s < studies.size(); ++s)
             for (const LabelMode mode : labels) {
+              if (!fits(environment, mode)) continue;
               std::string run = suite.environments.size() > 1 ? environment.name + "-" : "";
               run += system.name;
               if (mode != LabelMode::kNone) run += fmt::format("-{}", name(mode));
@@ -79,6 +81,7 @@ std::vector<RunSpec> expand(const Suite& suite) {
                               .max_frames = suite.max_frames});
             }
         }
+    }
   return runs;
 }
 

@@ -140,21 +140,34 @@ Json to_json(const Environment& e) {
                {"sensors", path_json(e.sensors)},
                {"pedestrian", path_json(e.pedestrian)}};
   if (e.frame != SceneFrame{}) json["frame"] = to_json(e.frame);
+  if (e.is_recorded())
+    json["recording"] = {{"sequence", e.sequence},
+                         {"queries", optional_json(e.queries)},
+                         {"settings", path_json(e.settings)},
+                         {"classes", path_json(e.classes)}};
   return json;
 }
 
 Environment environment_from_json(const Json& json) {
-  return {.name = json.at("name"),
-          .category = json.at("category"),
-          .scene = json.at("scene").get<std::string>(),
-          .robot = json.at("robot").get<std::string>(),
-          .mapping_tour = json.at("mapping_tour").get<std::string>(),
-          .frame = json.contains("frame") ? scene_frame_from_json(json.at("frame")) : SceneFrame{},
-          .query_tour = path_from_json(json.at("query_tour")),
-          .query_scene = path_from_json(json.at("query_scene")),
-          .kidnapped_tour = path_from_json(json.at("kidnapped_tour")),
-          .sensors = path_from_json(json.at("sensors")),
-          .pedestrian = path_from_json(json.at("pedestrian"))};
+  Environment e{
+      .name = json.at("name"),
+      .category = json.at("category"),
+      .scene = json.at("scene").get<std::string>(),
+      .robot = json.at("robot").get<std::string>(),
+      .mapping_tour = json.at("mapping_tour").get<std::string>(),
+      .frame = json.contains("frame") ? scene_frame_from_json(json.at("frame")) : SceneFrame{},
+      .query_tour = path_from_json(json.at("query_tour")),
+      .query_scene = path_from_json(json.at("query_scene")),
+      .kidnapped_tour = path_from_json(json.at("kidnapped_tour")),
+      .sensors = path_from_json(json.at("sensors")),
+      .pedestrian = path_from_json(json.at("pedestrian"))};
+  if (!json.contains("recording")) return e;
+  const Json& recording = json.at("recording");
+  e.sequence = recording.at("sequence");
+  if (!recording.at("queries").is_null()) e.queries = recording.at("queries").get<std::string>();
+  e.settings = path_from_json(recording.at("settings"));
+  e.classes = path_from_json(recording.at("classes"));
+  return e;
 }
 
 SlamConfig slam_from_json(const Json& json) {
@@ -172,7 +185,7 @@ RunSpec read(const Json& json) {
   spec.system = system_from_json(json.at("system"));
   spec.labels =
       named(json.at("labels"), {LabelMode::kNone, LabelMode::kExact, LabelMode::kAnnotated,
-                                LabelMode::kBoxes, LabelMode::kDetector});
+                                LabelMode::kBoxes, LabelMode::kDetector, LabelMode::kRecorded});
   spec.trial = json.at("trial");
   spec.seed = json.at("seed");
   spec.slam = slam_from_json(json.at("slam"));

@@ -21,11 +21,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Names<LabelMode, 5> kLabels{{{"exact", LabelMode::kExact},
+constexpr Names<LabelMode, 6> kLabels{{{"exact", LabelMode::kExact},
                                        {"annotated", LabelMode::kAnnotated},
                                        {"boxes", LabelMode::kBoxes},
                                        {"detector", LabelMode::kDetector},
-                                       {"none", LabelMode::kNone}}};
+                                       {"none", LabelMode::kNone},
+                                       {"recorded", LabelMode::kRecorded}}};
 constexpr Names<Published, 1> kPublished{{{"table2", Published::kTable2}}};
 
 /// @throws InputError at this place if no system of the suite has the name.
@@ -67,7 +68,62 @@ Environment& only_environment(Suite& suite, const char* option) {
   if (suite.environments.size() != 1)
     throw InputError(fmt::format("{}: {} needs a suite of one environment, this has {}",
                                  suite.file.string(), option, suite.environments.size()));
+  if (suite.environments.front().is_recorded())
+    throw InputError(fmt::format("{}: {} is of scenes, and '{}' is a recording",
+                                 suite.file.string(), option, suite.environments.front().name));
   return suite.environments.front();
+}
+
+/// Levels of scenes, and the one of recordings where there are some.
+std::vector<fs::path> read_levels(YamlReader& yaml, const SuitePaths& paths, const Suite& suite) {
+  const auto is_recorded = [](const Environment& e) { return e.is_recorded(); };
+  std::vector<fs::path> levels;
+  if (!std::ranges::all_of(suite.environments, is_recorded)) {
+    std::set<std::string> names;
+    for (const YamlReader& level : items_of(yaml.at("levels"))) {
+      levels.push_back(named_file(level, paths, Shipped::kLevel));
+      const std::string name = level_name(levels.back());
+      if (!names.insert(name).second) level.fail(fmt::format("'{}' stands twice", name));
+      if (name == kRecordedLevel) level.fail("is what the level of recordings is called");
+    }
+  } else if (const auto named = yaml.find("levels")) {
+    named->fail("are settings of simulated sensors: a suite of recordings has none");
+  }
+  if (std::ranges::any_of(suite.environments, is_recorded)) levels.emplace_back(kRecordedLevel);
+  return levels;
+}
+
+/// Kinds of labels, each of some use, and at least one for each environment.
+std::vector<LabelMode> read_labels(const YamlReader& list, const Suite& suite) {
+  std::vector<LabelMode> all;
+  for (const YamlReader& node : items_of(list)) {
+    add_once(all, one_of(node, kLabels), node);
+    const LabelMode labels = all.back();
+    if (std::ranges::any_of(suite.environments,
+                            [&](const Environment& e) { return fits(e, labels); }))
+      continue;
+    node.fail(labels == LabelMode::kRecorded
+                  ? "'recorded' labels are a recording's (`sequence`), and no environment is one"
+                  : fmt::format("'{}' labels are drawn of a simulated scene; recordings have "
+                                "'recorded' ones or 'none'",
+                                node.as_string()));
+  }
+  for (const Environment& e : suite.environments)
+    if (std::ranges::none_of(all, [&](LabelMode labels) { return fits(e, labels); }))
+      list.fail(fmt::format("none of them is for '{}', which is {}", e.name,
+                            e.is_recorded() ? "a recording: 'recorded' or 'none'"
+                                            : "a scene: 'exact', 'none' or another"));
+  return all;
+}
+
+/// The value of a variable of the suite. @throws InputError if it was not set.
+std::string value_of(const std::string& name, const SuiteOverrides& overrides) {
+  const auto value = overrides.set.find(name);
+  if (value == overrides.set.end())
+    throw InputError(fmt::format(
+        "'${{{0}}}' is not set: --set {0}=VALUE does{1}", name,
+        overrides.set.empty() ? "" : fmt::format(" (set is '{}')", overrides.set.begin()->first)));
+  return value->second;
 }
 
 }  // namespace
@@ -85,10 +141,19 @@ std::string with_labels(LabelMode labels) {
       return "labels from boxes";
     case LabelMode::kDetector:
       return "labels from the detector";
+    case LabelMode::kRecorded:
+      return "recorded labels";
     case LabelMode::kNone:
       break;
   }
   return "no labels";
+}
+bool fits(const Environment& environment, LabelMode labels) {
+  return labels == LabelMode::kNone ||
+         environment.is_recorded() == (labels == LabelMode::kRecorded);
+}
+bool fits(const Environment& environment, const fs::path& level) {
+  return environment.is_recorded() == (level == kRecordedLevel);
 }
 std::string level_name(const fs::path& level) {
   return level.stem().string();
@@ -100,8 +165,16 @@ Suite load_suite(const fs::path& file, const SuiteOverrides& overrides) {
 
 Suite parse_suite(const std::string& content, const fs::path& file, const SuiteOverrides& overrides,
                   bool files_must_exist) {
-  YamlReader yaml = YamlReader::parse(content, file.string());
-  const SuitePaths paths{file.parent_path(), files_must_exist};
+  std::set<std::string> asked;
+  YamlReader yaml = YamlReader::parse(content, file.string(), [&](const std::string& name) {
+    asked.insert(name);
+    return value_of(name, overrides);
+  });
+  for (const auto& [name, value] : overrides.set)
+    if (!asked.contains(name))
+      throw InputError(fmt::format("{}: --set {}: nothing in it is called ${{{}}}{}", file.string(),
+                                   name, name, did_you_mean(name, {asked.begin(), asked.end()})));
+  const SuitePaths paths{file.parent_path(), files_must_exist, overrides.found};
 
   Suite suite;
   suite.file = file;
@@ -109,14 +182,13 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   if (yaml.has("name")) check_folder_name(yaml.at("name"), suite.name);
   std::optional<fs::path> robot;
   if (const auto node = yaml.find("robot")) robot = named_file(*node, paths, Shipped::kRobot);
-  suite.environments = read_environments(yaml.at("environments"), paths, robot);
+  Environments environments = read_environments(yaml.at("environments"), paths, robot);
+  suite.environments = std::move(environments.list);
+  suite.found = std::move(environments.found);
+  suite.notes = std::move(environments.notes);
+  suite.set = overrides.set;
+  suite.levels = read_levels(yaml, paths, suite);
   std::set<std::string> names;
-  for (const YamlReader& level : items_of(yaml.at("levels"))) {
-    suite.levels.push_back(named_file(level, paths, Shipped::kLevel));
-    if (!names.insert(level_name(suite.levels.back())).second)
-      level.fail(fmt::format("'{}' stands twice", level_name(suite.levels.back())));
-  }
-  names.clear();
   for (const YamlReader& system : items_of(yaml.at("systems"))) {
     suite.systems.push_back(read_system(system, paths));
     if (!names.insert(suite.systems.back().name).second)
@@ -125,8 +197,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   suite.compare = read_compare(yaml, suite.systems);
   if (yaml.has("vocabulary") || std::ranges::any_of(suite.systems, &SystemSpec::takes_settings))
     suite.vocabulary = named_file(yaml.at("vocabulary"), paths, Shipped::kVocabulary);
-  for (const YamlReader& labels : items_of(yaml.at("labels")))
-    add_once(suite.labels, one_of(labels, kLabels), labels);
+  suite.labels = read_labels(yaml.at("labels"), suite);
   suite.trials = static_cast<int>(yaml.integer_or("trials", suite.trials, 1, 1000));
   suite.seed = static_cast<std::uint64_t>(yaml.integer_or("seed", 0, 0, INT64_MAX / 2));
   if (const auto published = yaml.find("published"))
@@ -143,9 +214,9 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   if (const auto margin = yaml.find("non_inferiority_margin"))
     suite.non_inferiority_margin = margin->as_double(0.0, 1.0);
   if (const auto check = yaml.find("check")) {
-    std::vector<std::string> environments;
-    for (const Environment& e : suite.environments) environments.push_back(e.name);
-    suite.gate = read_gate(*check, environments);
+    std::vector<std::string> names_of_all;
+    for (const Environment& e : suite.environments) names_of_all.push_back(e.name);
+    suite.gate = read_gate(*check, names_of_all);
   }
   yaml.finish();
 

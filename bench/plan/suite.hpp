@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,8 +37,9 @@ struct Suite {
   std::string name;
   std::filesystem::path file;
   std::vector<Environment> environments;
-  std::filesystem::path vocabulary;           ///< empty where none of the systems needs it
-  std::vector<std::filesystem::path> levels;  ///< sensor settings; a level is named by its file
+  std::filesystem::path vocabulary;  ///< empty where none of the systems needs it
+  /// Sensor settings, named by their files; kRecordedLevel stands last where there are recordings.
+  std::vector<std::filesystem::path> levels;
   std::vector<SystemSpec> systems;
   std::vector<LabelMode> labels;
   int trials = 1;
@@ -51,10 +53,13 @@ struct Suite {
   /// The first of a pair counts as not inferior where the interval of its success minus the
   /// second's stays above -margin. Stated in the suite, before anything is measured.
   std::optional<double> non_inferiority_margin;
-  std::optional<Published> published;     ///< whose figures stand beside those measured
-  GateConfig gate;                        ///< what `modelhouse check` tolerates
-  std::optional<std::size_t> max_frames;  ///< cuts the tours: for a quick look
-  bool scene_replaced = false;            ///< by SuiteOverrides::scene
+  std::optional<Published> published;      ///< whose figures stand beside those measured
+  GateConfig gate;                         ///< what `modelhouse check` tolerates
+  std::optional<std::size_t> max_frames;   ///< cuts the tours: for a quick look
+  bool scene_replaced = false;             ///< by SuiteOverrides::scene
+  std::map<std::string, std::string> set;  ///< as SuiteOverrides
+  FoundRecordings found;                   ///< what its patterns of recordings found
+  std::vector<std::string> notes;          ///< what of it was left out, one line each
 };
 
 /// What the command line may put in the place of a suite's own settings.
@@ -63,6 +68,10 @@ struct SuiteOverrides {
   SceneFrame frame = {};  ///< of that scene, else of the suite's only one
   std::optional<int> trials = {};
   std::optional<std::size_t> max_frames = {};
+  /// What `${name}` in the suite's words stands for.
+  std::map<std::string, std::string> set = {};
+  /// Of a suite that is read from its results: patterns are not looked for again.
+  FoundRecordings found = {};
 };
 
 /// Reads a suite (YAML); its paths are relative to its own folder and must exist.
@@ -73,6 +82,15 @@ Suite load_suite(const std::filesystem::path& file, const SuiteOverrides& overri
 /// files that it names.
 Suite parse_suite(const std::string& content, const std::filesystem::path& file,
                   const SuiteOverrides& overrides = {}, bool files_must_exist = true);
+
+/// The level of recordings, which have noise of their own; no file has its name.
+inline constexpr const char* kRecordedLevel = "recorded";
+
+/// Whether runs of an environment may have these labels: a recording's are recorded, a scene's
+/// drawn. All may have none.
+bool fits(const Environment& environment, LabelMode labels);
+/// Whether runs of an environment are made at this level: a recording's at kRecordedLevel alone.
+bool fits(const Environment& environment, const std::filesystem::path& level);
 
 std::string level_name(const std::filesystem::path& level);
 

@@ -56,19 +56,36 @@ MappingOutcome map_sequence(System& system, const Sequence& sequence, const Prot
   const std::size_t count = sequence.size();
   MappingOutcome outcome;
   for (std::size_t i = 0; i < count; ++i) outcome.offered += is_test_frame(i, config) ? 0 : 1;
-  std::vector<bool> dropped(count, false);
+  const std::vector<bool> has_stamp = increasing_stamps(sequence);
+  std::vector<bool> out(count, false);  // dropped or skipped
+  const auto skip = [&](std::size_t i, const std::string& reason) {
+    out[i] = true;
+    outcome.skipped.add(reason);
+    if (outcome.calls.empty() && outcome.skipped.count == kHopeless)
+      throw InputError(outcome.skipped.reasons.front());
+  };
   const std::size_t max_calls = std::max(
       count + 1000, static_cast<std::size_t>(config.max_effort * static_cast<double>(count)));
 
   Feed feed;
   while (feed.next < count) {
     const std::size_t i = feed.next++;
-    if (is_test_frame(i, config) || dropped[i]) continue;
+    if (is_test_frame(i, config) || out[i]) continue;
     if (outcome.calls.size() >= max_calls) {
       outcome.gave_up = true;
       break;
     }
-    const RgbdFrame frame = sequence.frame(i, mapping_noise(stream, outcome.restarts));
+    if (!has_stamp[i]) {
+      skip(i, stamp_fault(sequence, i));
+      continue;
+    }
+    RgbdFrame frame;
+    try {
+      frame = usable_frame(sequence, i, mapping_noise(stream, outcome.restarts));
+    } catch (const UnusableFrame& error) {
+      skip(i, error.what());
+      continue;
+    }
     const RandomStream draws =
         stream.fork(kSlam).fork(static_cast<std::uint64_t>(outcome.restarts)).fork(i);
     const StepReport report = system.track(frame, draws);
@@ -100,7 +117,7 @@ MappingOutcome map_sequence(System& system, const Sequence& sequence, const Prot
       ++feed.restarts_here;
       continue;
     }
-    dropped[i] = true;
+    out[i] = true;
     outcome.dropped.push_back(i);
     feed.restarts_here = 0;
     if (config.reset == DropReset::kMap) {
@@ -108,6 +125,8 @@ MappingOutcome map_sequence(System& system, const Sequence& sequence, const Prot
       feed.mapped = false;
     }
   }
+  if (outcome.calls.empty() && outcome.skipped.count > 0)
+    throw InputError(outcome.skipped.reasons.front());
   return outcome;
 }
 

@@ -7,6 +7,7 @@
 
 #include "bench/protocol/config.hpp"
 #include "bench/protocol/system.hpp"
+#include "bench/protocol/usable_frame.hpp"
 #include "slam/core/sequence.hpp"
 
 namespace mh {
@@ -34,6 +35,7 @@ struct MappingOutcome {
   std::size_t offered = 0;           ///< frames of the sequence that are no test frames
   MatchCounts matches{};             ///< summed over all track calls
   std::vector<LoopClosure> loops;    ///< closed on the way, in order
+  SkippedFrames skipped;             ///< of those offered; queries' are counted by the run
 };
 
 /// Test frames are the last of every `test_interval`: 29, 59, ... at 30.
@@ -55,7 +57,10 @@ using MappingObserver =
 /// of these events there are at most five restarts; beyond max_effort * count track calls (or
 /// count + 1,000, if more) the rest stays unmapped.
 ///
+/// A frame that no system can be shown (SkippedFrames) is skipped, as if it were not there.
+///
 /// Noise and SLAM draw from streams keyed by (restart, frame), so that a restart is no replica.
+/// @throws InputError if none of the first kHopeless frames can be shown, or none at all.
 MappingOutcome map_sequence(System& system, const Sequence& sequence, const ProtocolConfig& config,
                             RandomStream stream, const MappingObserver& observe = {});
 

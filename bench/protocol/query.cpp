@@ -51,7 +51,7 @@ QueryAnswer query(const System& frozen, std::size_t index, const Sequence& seque
   answer.index = index;
   for (int attempt = 0; attempt < config.query_attempts; ++attempt) {
     const auto key = static_cast<std::uint64_t>(attempt);
-    const RgbdFrame frame = sequence.frame(index, noise.fork(key));
+    const RgbdFrame frame = usable_frame(sequence, index, noise.fork(key));
     if (attempt == 0)
       answer.blank_frames =
           lose(*session, frame, config.max_blank_frames, stream.fork(kBlank).fork(index));

@@ -35,6 +35,7 @@ bool is_blank(const RgbdFrame& frame);
 /// until it is lost, then the test frame up to config.query_attempts times or until a pose comes
 /// back. Noise and SLAM draw from streams keyed by (test frame, attempt) alone: the answer depends
 /// on no other query.
+/// @throws UnusableFrame if the frame cannot be shown.
 /// @param memo  of frozen.make_memo(), for this query alone; null or not, the answer is the same
 QueryAnswer query(const System& frozen, std::size_t index, const Sequence& sequence,
                   const ProtocolConfig& config, RandomStream stream, QueryMemo* memo = nullptr);

@@ -15,6 +15,7 @@
 #include "bench/provenance/digest.hpp"
 #include "bench/provenance/fingerprint.hpp"
 #include "bench/results/scenes.hpp"
+#include "scenes/recorded/open_sequence.hpp"
 
 namespace mh {
 namespace {
@@ -53,7 +54,21 @@ Json source_json(const Suite& suite, const std::filesystem::path& source) {
   return is_generated(source) ? source.string() : from_suite(suite, source);
 }
 
+Json recorded_json(const Suite& suite, const Environment& e) {
+  const auto name_of = [&](const std::string& sequence) {
+    const auto [layout, path] = split_sequence(sequence);
+    return join_sequence(layout, from_suite(suite, path));
+  };
+  return {{"name", e.name},
+          {"category", e.category},
+          {"sequence", name_of(e.sequence)},
+          {"queries", e.queries ? Json(name_of(*e.queries)) : Json()},
+          {"settings", e.settings ? Json(from_suite(suite, *e.settings)) : Json()},
+          {"classes", e.classes ? Json(from_suite(suite, *e.classes)) : Json()}};
+}
+
 Json environment_json(const Suite& suite, const Environment& e) {
+  if (e.is_recorded()) return recorded_json(suite, e);
   return {{"name", e.name},
           {"category", e.category},
           {"scene", source_json(suite, e.scene)},
@@ -90,7 +105,8 @@ Json suite_json(const Suite& suite) {
   Json environments = Json::array();
   for (const Environment& e : suite.environments)
     environments.push_back(environment_json(suite, e));
-  for (const auto& level : suite.levels) levels.push_back(from_suite(suite, level));
+  for (const auto& level : suite.levels)
+    levels.push_back(level == kRecordedLevel ? kRecordedLevel : from_suite(suite, level));
   for (const SystemSpec& system : suite.systems) systems.push_back(system_json(system));
   for (const LabelMode mode : suite.labels) labels.push_back(name(mode));
   return {
@@ -111,7 +127,7 @@ Json suite_json(const Suite& suite) {
 
 Json path_json(const PathFacts& path) {
   return {{"frames", path.frames},
-          {"length_m", path.length_m},
+          {"length_m", number(path.length_m)},
           {"turned_in_place_rad", number(path.turned_in_place_rad)},
           {"contact_time_s", number(path.contact_time_s)},
           {"max_penetration_m", number(path.max_penetration_m)}};
@@ -274,6 +290,7 @@ Json run_json(const RunResult& run) {
             {"dropped", m.dropped},
             {"before_map", m.before_map},
             {"gave_up", m.gave_up},
+            {"skipped", {{"frames", m.skipped.count}, {"reasons", m.skipped.reasons}}},
             {"keyframes_made", keyframes},
             {"loops", loops_json(audit_loops(m.loops, run.truth, run.spec.protocol))},
             {"matchers", of_ours(run.spec.system, matches_json(m.matches))}}},
@@ -408,6 +425,8 @@ Json reproduction_json(const Suite& suite, std::span<const RunResult> runs) {
     if (frame.up) command += fmt::format(" --up {}", name(*frame.up));
     if (frame.floor_z_m) command += fmt::format(" --floor-z {}", *frame.floor_z_m);
   }
+  for (const auto& [name, value] : suite.set)
+    command += " --set " + shell_quoted(fmt::format("{}={}", name, value));
   command += fmt::format(" --trials {}", suite.trials);
   if (suite.max_frames) command += fmt::format(" --frames {}", *suite.max_frames);
   Json seeds = Json::array(), inputs = Json::object(), files = Json::object();

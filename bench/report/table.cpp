@@ -343,7 +343,10 @@ std::string family_text(const Suite& suite, const Family& family) {
 
 /// The plain system looks at no labels: its runs stand beside each kind, told of with the first.
 bool told_above(const Suite& suite, const Row& row) {
-  return !suite.systems[row.system].sees_labels() && row.labels != suite.labels.front();
+  const auto first = std::ranges::find_if(suite.labels, [&](LabelMode labels) {
+    return fits(suite.environments[row.environment], labels);
+  });
+  return !suite.systems[row.system].sees_labels() && row.labels != *first;
 }
 
 /// A suite of one place: everything about it.
@@ -530,6 +533,21 @@ std::string failures_text(std::span<const FailedRun> failed) {
   return text;
 }
 
+/// What is to be known of recordings: their one noise, and frames that no system was shown.
+std::string recordings_text(const Suite& suite, std::span<const RunResult> runs) {
+  if (std::ranges::none_of(suite.environments, &Environment::is_recorded)) return "";
+  std::string text =
+      "\nrecordings have one noise: trials and attempts differ in RANSAC's draws alone\n";
+  std::set<std::string> told;
+  for (const RunResult& run : runs) {
+    const SkippedFrames& skipped = run.mapping.skipped;
+    if (skipped.count == 0 || !told.insert(run.spec.environment.name).second) continue;
+    text += fmt::format("  {}: {} skipped, the first: {}\n", run.spec.environment.name,
+                        counted(skipped.count, "frame"), skipped.reasons.front());
+  }
+  return text;
+}
+
 /// Which runs of the suite nobody has made yet.
 std::string missing_text(std::span<const std::string> missing) {
   if (missing.empty()) return "";
@@ -576,7 +594,7 @@ std::string results_table(const Suite& suite, std::span<const RunResult> runs,
          (parameter_points(suite).size() > 1 ? sweep_text(suite, rows)
           : suite.environments.size() > 1    ? scenes_text(suite, rows)
                                              : place_text(suite, rows)) +
-         failures_text(failed) + missing_text(missing);
+         recordings_text(suite, runs) + failures_text(failed) + missing_text(missing);
 }
 
 std::string times_table(const Suite& suite, std::span<const RunResult> runs) {

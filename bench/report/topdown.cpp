@@ -52,10 +52,10 @@ struct Bounds {
 Bounds area_of_interest(const World& world) {
   constexpr double kWalls_m = 0.35, kSight_m = 5.0;
   Bounds bounds;
-  for (const Room& room : world.scene->rooms)
+  for (const Room& room : world.simulated->scene->rooms)
     for (const Eigen::Vector2d& corner : room.polygon_m) bounds.add(corner);
-  const bool rooms = !world.scene->rooms.empty();
-  for (const TimedPose& pose : world.mapping.camera)
+  const bool rooms = !world.simulated->scene->rooms.empty();
+  for (const TimedPose& pose : world.simulated->mapping.camera)
     bounds.add(pose.world_from_camera.translation().head<2>());
   bounds.grow(rooms ? kWalls_m : kSight_m);
   return bounds;
@@ -103,7 +103,7 @@ void draw_slice(Canvas& canvas, const PlanView& view, const std::vector<SliceSeg
 std::vector<cv::Point2d> marks(const PlanView& view, const World& world, const RunResult& run,
                                QuerySet set, const std::vector<SliceSegment>& furniture) {
   std::vector<cv::Point2d> result;
-  for (const TimedPose& pose : world.mapping.camera)
+  for (const TimedPose& pose : world.simulated->mapping.camera)
     result.push_back(view(pose.world_from_camera.translation().head<2>()));
   for (const QueryScore& q : queries(run.points.front(), set))
     if (q.true_world_from_camera)
@@ -315,9 +315,9 @@ void draw_header(Canvas& canvas, const World& world, const RunResult& run, Query
   draw_line_of_text(
       canvas,
       fmt::format("level {}, trial {}; {} {:.1f} m driven; {}; ATE {}, completeness {:.1f} %",
-                  level_name(run.spec.level), run.spec.trial, world.robot.name,
-                  world.mapping.length_m, answers, ate ? fmt::format("{:.3f} m", *ate) : "-",
-                  100 * run.trajectory.completeness),
+                  level_name(run.spec.level), run.spec.trial, world.simulated->robot.name,
+                  world.simulated->mapping.length_m, answers,
+                  ate ? fmt::format("{:.3f} m", *ate) : "-", 100 * run.trajectory.completeness),
       66, 10.5, kFaint, false);
 }
 
@@ -325,24 +325,25 @@ void draw_header(Canvas& canvas, const World& world, const RunResult& run, Query
 
 cv::Mat draw_topdown(const World& world, const RunResult& run, QuerySet set) {
   const Bounds bounds = area_of_interest(world);
-  const double floor_z_m = world.scene->floor.middle_m.z();
-  const std::vector<SliceSegment> walls = slice(*world.scene, floor_z_m + kWallCut_m);
-  const std::vector<SliceSegment> furniture = slice(*world.scene, floor_z_m + kFurnitureCut_m);
+  const double floor_z_m = world.simulated->scene->floor.middle_m.z();
+  const std::vector<SliceSegment> walls = slice(*world.simulated->scene, floor_z_m + kWallCut_m);
+  const std::vector<SliceSegment> furniture =
+      slice(*world.simulated->scene, floor_z_m + kFurnitureCut_m);
   const PlanView view = fit(bounds);
   const double plan_height = (bounds.high.y() - bounds.low.y()) * view.px_per_m;
   Canvas canvas(kWidth, static_cast<int>(kHeader + plan_height + kFooter + 20));
   draw_grid(canvas, view, run.grid);
   draw_slice(canvas, view, furniture, kFurniture, 1.2);
   draw_slice(canvas, view, walls, kWall, 2.2);
-  draw_room_names(canvas, view, *world.scene, marks(view, world, run, set, furniture));
-  draw_path(canvas, view, world.mapping.camera, SE3(), kTruth, kTruthWidth);
+  draw_room_names(canvas, view, *world.simulated->scene, marks(view, world, run, set, furniture));
+  draw_path(canvas, view, world.simulated->mapping.camera, SE3(), kTruth, kTruthWidth);
   draw_path(canvas, view, run.estimate, run.trajectory.dock_from_estimate, kEstimate,
             kEstimateWidth);
   draw_queries(canvas, view, queries(run.points.front(), set), run.trajectory.dock_from_estimate);
   draw_header(canvas, world, run, set);
   const double legend_y = kHeader + plan_height + 36;
-  const auto apart_m =
-      farthest_apart_m(world.mapping.camera, run.estimate, run.trajectory.dock_from_estimate);
+  const auto apart_m = farthest_apart_m(world.simulated->mapping.camera, run.estimate,
+                                        run.trajectory.dock_from_estimate);
   draw_legend(canvas, legend_y,
               apart_m ? fmt::format(", at most {:.3f} m off", *apart_m) : std::string(),
               !queries(run.points.front(), set).empty(), !run.grid.cells.empty());

@@ -13,6 +13,7 @@ namespace mh {
 /// true and estimated path, and for each query an 'x' where the camera was and an 'o' where the
 /// system believed it to be. Estimates are drawn in the frame of the dock: drift shows. Queries are
 /// those of the run's first parameter point.
+/// @pre world.simulated
 cv::Mat draw_topdown(const World& world, const RunResult& run, QuerySet set);
 
 }  // namespace mh

@@ -28,6 +28,8 @@ void write_marked(const fs::path& file, const cv::Mat& picture, const std::strin
   write_atomically(file, with_text(encode_png(picture), kMadeOf, made_of));
 }
 
+constexpr const char* kRunKey = "run.key";  ///< of a run without pictures: what it was made of
+
 std::string mark_of(const fs::path& picture) {
   return fs::is_regular_file(picture) ? text_in(read_file(picture), kMadeOf) : std::string();
 }
@@ -47,20 +49,26 @@ std::string identity_of_views(const World& world, const RunSpec& spec) {
 void remove_run(const fs::path& folder) {
   std::error_code error;
   for (const char* file : {"topdown.png", "topdown_second_tour.png", "truth.tum", "estimate.tum",
-                           "map.bt", "map.pgm", "map.yaml"})
+                           "map.bt", "map.pgm", "map.yaml", kRunKey})
     fs::remove(folder / file, error);
 }
 
 bool shows_another_run(const fs::path& folder, const std::string& key) {
-  return fs::exists(folder / "estimate.tum") && mark_of(folder / "topdown.png") != key;
+  if (!fs::exists(folder / "estimate.tum")) return false;
+  if (fs::is_regular_file(folder / kRunKey)) return read_file(folder / kRunKey) != key;
+  return mark_of(folder / "topdown.png") != key;
 }
 
 void write_run(const fs::path& folder, const World& world, const RunResult& run,
                const std::string& key) {
   make_output_folder(folder);
-  write_tum(folder / "truth.tum", world.mapping.camera);
+  if (!run.truth.empty()) write_tum(folder / "truth.tum", run.truth);
   write_tum(folder / "estimate.tum", run.estimate);
   run.volume->save_bt(folder / "map.bt");
+  if (!world.simulated) {
+    write_atomically(folder / kRunKey, key);  // last: it tells that all are there
+    return;
+  }
   save_map_server(run.grid, folder / "map");
   if (world.second)
     write_picture(folder / "topdown_second_tour.png",
@@ -74,8 +82,9 @@ void write_views(const fs::path& file, const World& world, const RunSpec& spec) 
   if (mark_of(file) == identity) return;
   write_marked(
       file,
-      draw_contact_sheet(fmt::format("{}, along the mapping tour", world.scene->name),
-                         views_along(world.mapping.camera, *world.renderer, world.robot.camera, 6)),
+      draw_contact_sheet(fmt::format("{}, along the mapping tour", world.simulated->scene->name),
+                         views_along(world.simulated->mapping.camera, *world.simulated->renderer,
+                                     world.simulated->robot.camera, 6)),
       identity);
 }
 

@@ -11,7 +11,9 @@
 namespace mh {
 
 /// Writes what is large about a run into its folder: truth.tum, estimate.tum, map.bt, map.pgm,
-/// map.yaml and topdown.png, which holds the run's key. Each file appears whole or not at all.
+/// map.yaml and topdown.png, which holds the run's key. Of a recording, whose floor nobody knows,
+/// there is no map.pgm and no picture, and run.key holds the key. Each file appears whole or not at
+/// all.
 void write_run(const std::filesystem::path& folder, const World& world, const RunResult& run,
                const std::string& key);
 /// Removes what write_run() writes, nothing else: another run's files must not stand beside the
@@ -20,8 +22,8 @@ void remove_run(const std::filesystem::path& folder);
 /// Whether a folder holds files of write_run(), and not those of the run of that key.
 bool shows_another_run(const std::filesystem::path& folder, const std::string& key);
 
-/// The contact sheet of an environment, unless the one that is there was made of the same scene,
-/// robot, way and code.
+/// The contact sheet of a simulated environment, unless the one that is there was made of the same
+/// scene, robot, way and code.
 void write_views(const std::filesystem::path& file, const World& world, const RunSpec& spec);
 
 /// Writes what a suite's runs gave together: results.json, times.json, table.txt, times.txt.

@@ -138,7 +138,8 @@ std::vector<CategoryRow> make_category_rows(const Suite& suite, std::span<const 
         for (std::size_t g = 0; g < groups.size(); ++g)
           for (std::size_t s = 0; s < suite.systems.size(); ++s) {
             const auto is_in = [&](const Environment& e) {
-              return g + 1 == groups.size() || e.category == groups[g];
+              return fits(e, suite.levels[level]) && fits(e, labels) &&
+                     (g + 1 == groups.size() || e.category == groups[g]);
             };
             std::vector<const Row*> scenes = scenes_of(suite, rows, level, labels, p, s);
             std::erase_if(scenes, [&](const Row* row) {

@@ -236,6 +236,7 @@ std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs,
             row.system = s;
             row.labels = labels;
             row.parameters = p;
+            if (!fits(suite.environments[e], labels)) continue;
             const SlamConfig seen = settings_of(suite.systems[s], points[p]);
             for (const RunResult& run : runs)
               if (belongs(run.spec, suite, row))

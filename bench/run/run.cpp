@@ -17,6 +17,7 @@
 
 #include "bench/cache/cache.hpp"
 #include "bench/inputs/inputs.hpp"
+#include "bench/inputs/recorded_camera.hpp"
 #include "bench/inputs/run_key.hpp"
 #include "bench/plan/check_labels.hpp"
 #include "bench/plan/find_program.hpp"
@@ -36,11 +37,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Whether frames of an environment's recordings can be had, with labels where these are wanted.
+void check_recordings(const Environment& e, LabelMode labels,
+                      const std::function<void(std::string_view)>& say) {
+  for (const std::string& sequence : {e.sequence, e.queries.value_or("")}) {
+    if (sequence.empty()) continue;
+    say(fmt::format("checking {}", sequence));
+    const bool wanted = labels == LabelMode::kRecorded;
+    const OpenedRecording opened = open_recorded(e, sequence, wanted);
+    if (wanted && !opened.has_labels)
+      throw InputError(fmt::format("{}: holds no labels: take `labels: [none]` for it", sequence));
+    require_usable_frames(*opened.sequence);
+    if (opened.sequence->truth() == nullptr)
+      say(
+          fmt::format("warning: {}: nobody tells where its camera was: answers are successes, and "
+                      "nothing is said of correct ones, of distances and of the trajectory",
+                      sequence));
+  }
+}
+
 /// Whether what the runs name can be worked with, each once: outside programs can be started,
 /// scenes read, tours driven. Generated scenes and motions are valid by construction.
 void check_places(const std::vector<Job>& jobs, InputReader& inputs,
                   const std::function<void(std::string_view)>& say) {
   std::set<std::string> programs;
+  std::set<std::pair<std::string, bool>> checked;  // recordings, and whether with labels
   struct Uses {
     std::set<std::tuple<fs::path, fs::path, std::optional<fs::path>>>
         drives;  // robot, tour, pedestrian
@@ -52,6 +73,11 @@ void check_places(const std::vector<Job>& jobs, InputReader& inputs,
     if (spec.system.is_program() && programs.insert(spec.system.name).second)
       require_program(spec.system.outside);
     const Environment& e = spec.environment;
+    if (e.is_recorded()) {
+      if (checked.insert({e.name, spec.labels == LabelMode::kRecorded}).second)
+        check_recordings(e, spec.labels, say);
+      continue;
+    }
     const auto note = [&](const fs::path& scene, const std::optional<fs::path>& tour,
                           const std::optional<fs::path>& pedestrian = {}) {
       if (is_generated(scene)) return;
@@ -104,6 +130,7 @@ void say_what_is_gone(const Suite& suite, const BenchResults& results,
   std::set<std::string> views;
   for (const RunResult& run : results.runs) {
     runs += fs::exists(options.out / run.spec.name / "estimate.tum") ? 0 : 1;
+    if (run.spec.environment.is_recorded()) continue;  // no picture is drawn of it
     if (const std::string name = views_name(suite, run.spec); !fs::exists(options.out / name))
       views.insert(name);
   }
@@ -168,6 +195,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
                        const BenchOptions& options) {
   const std::vector<RunSpec> specs = expand(suite);
   check_names(suite, specs);
+  for (const std::string& note : suite.notes) options.say(note);
 
   std::set<std::string> warned;
   for (const RunSpec& spec : specs)
@@ -268,7 +296,7 @@ void carry_out(const RunOrder& order) {
     const ProcessorTimer timer(products_s);
     write_run(folder, world, run, order.key);
     // One process makes the contact sheet; should two begin it, both write the same bytes.
-    write_views(order.folder / order.views, world, spec);
+    if (world.simulated) write_views(order.folder / order.views, world, spec);
   }
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

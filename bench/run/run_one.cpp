@@ -18,7 +18,6 @@
 #include "bench/systems/recorded_run.hpp"
 #include "bench/systems/tampered.hpp"
 #include "bench/systems/timed.hpp"
-#include "sim/world/sequence.hpp"
 #include "slam/core/counted.hpp"
 
 namespace mh {
@@ -82,9 +81,9 @@ class FramesMadeOnce : public FramesOf {
  public:
   using FramesOf::FramesOf;
   RgbdFrame frame(std::size_t i, RandomStream noise) const override {
-    const auto [place, is_new] = made_.try_emplace(noise.key());
-    if (is_new) place->second = FramesOf::frame(i, noise);
-    return place->second;
+    auto made = made_.find(noise.key());
+    if (made == made_.end()) made = made_.emplace(noise.key(), FramesOf::frame(i, noise)).first;
+    return made->second;
   }
 
  private:
@@ -103,7 +102,10 @@ class QueryRound {
   void put(System& frozen, std::size_t first, std::size_t end,
            const std::vector<std::vector<QueryScore>*>& scores, WorkDone& work) const {
     for (const std::size_t index : test_frames(frames_.size(), spec_.protocol)) {
-      const QueryMoment moment = moment_of(frames_.stamp_ns(index), frames_.truth());
+      const Trajectory* truth = run_.truth.empty() ? nullptr : frames_.truth();
+      const QueryMoment moment = moment_of(frames_.stamp_ns(index), truth);
+      // Where the truth is known, a frame of which it is not would count as no answer could.
+      if (truth != nullptr && !moment.true_world_from_camera) continue;
       const auto anchor = find_anchor(run_.estimate, run_.truth, moment, by_, spec_.protocol);
       const bool once = end - first == 1;  // nothing to share
       const FramesMadeOnce shared(frames_);
@@ -111,10 +113,14 @@ class QueryRound {
       const std::unique_ptr<QueryMemo> memo = once ? nullptr : frozen.make_memo();
       for (std::size_t p = first; p < end; ++p) {
         if (!once) frozen.set_query_settings(spec_.points[p]);
-        const QueryAnswer answer =
-            query(frozen, index, frames, spec_.protocol, stream_, memo.get());
-        scores[p]->push_back(
-            score(answer, moment, anchor, run_.trajectory.truth_from_estimate, spec_.protocol));
+        try {
+          const QueryAnswer answer =
+              query(frozen, index, frames, spec_.protocol, stream_, memo.get());
+          scores[p]->push_back(
+              score(answer, moment, anchor, run_.trajectory.truth_from_estimate, spec_.protocol));
+        } catch (const UnusableFrame& error) {
+          if (p == 0) run_.mapping.skipped.add(error.what());
+        }
         work.one_more();
       }
     }
@@ -124,7 +130,7 @@ class QueryRound {
   const RunSpec& spec_;
   NearestBy by_;
   WatchedFrames frames_;
-  const RunResult& run_;
+  RunResult& run_;
   RandomStream stream_;
 };
 
@@ -152,24 +158,37 @@ std::string status_of(const MappedFrame& call, std::size_t frames) {
 }
 
 std::size_t pieces_of_work(const RunSpec& spec, const World& world) {
-  std::size_t queries = test_frames(world.mapping.camera.size(), spec.protocol).size();
-  if (world.second) queries += test_frames(world.second->camera.size(), spec.protocol).size();
-  return world.mapping.camera.size() + spec.points.size() * queries;
+  std::size_t queries = test_frames(world.mapping->size(), spec.protocol).size();
+  if (world.second) queries += test_frames(world.second->size(), spec.protocol).size();
+  return world.mapping->size() + spec.points.size() * queries;
 }
 
 /// The mapping frames as a folder, and what an outside program made of them.
+/// @param skipped  gets the frames that could not be written
 Trajectory run_recorded(const RunSpec& spec, const Sequence& mapping, RandomStream stream,
                         const std::filesystem::path& folder,
-                        const std::function<void(std::string_view)>& status) {
+                        const std::function<void(std::string_view)>& status,
+                        SkippedFrames& skipped) {
+  const std::vector<bool> has_stamp = increasing_stamps(mapping);
   std::vector<std::size_t> offered;
   for (std::size_t i = 0; i < mapping.size(); ++i)
     if (!is_test_frame(i, spec.protocol)) offered.push_back(i);
   ProgramFolder given(folder);
+  const auto frame_of = [&](std::size_t i) -> std::optional<RgbdFrame> {
+    try {
+      if (has_stamp[i]) return usable_frame(mapping, i, mapping_noise(stream, 0));
+      skipped.add(stamp_fault(mapping, i));
+    } catch (const UnusableFrame& error) {
+      skipped.add(error.what());
+    }
+    return std::nullopt;
+  };
   const std::vector<Stamp> stamps =
       write_dataset(given.path() / "dataset", mapping.camera(), offered.size(), [&](std::size_t i) {
         status(fmt::format("writing frame {} of {}", i + 1, offered.size()));
-        return mapping.frame(offered[i], mapping_noise(stream, 0));
+        return frame_of(offered[i]);
       });
+  if (stamps.empty() && skipped.count > 0) throw InputError(skipped.reasons.front());
   status(fmt::format("runs over {}", counted(offered.size(), "frame")));
   Trajectory trajectory =
       run_on_dataset(spec.system.outside, given.path(), stamps, spec.seed, folder / "outside.log");
@@ -183,23 +202,22 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
                                     const std::filesystem::path& folder) {
   if (spec.system.is_program()) {
     if (spec.system.outside.mode == OutsideMode::kTrajectory) return nullptr;
-    return make_conversation_system(spec.system.outside, world.robot.camera, spec.seed,
+    return make_conversation_system(spec.system.outside, world.mapping->camera(), spec.seed,
                                     folder / "outside.log");
   }
-  return make_our_system(world.robot.camera, spec.slam, world.vocabulary);
+  return make_our_system(world.mapping->camera(), spec.slam, world.vocabulary);
 }
 
 RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools) {
   const RandomStream stream(spec.seed);
   const RunTamper& tamper = tools.tamper;
-  const Camera& camera = world.robot.camera;
-  const SimulatedSequence mapping(world.renderer, camera, world.mapping.camera, world.sensors,
-                                  spec.labels, world.pedestrian_scene);
+  const Sequence& mapping = *world.mapping;
+  const Camera& camera = mapping.camera();
   WorkDone work(pieces_of_work(spec, world), tools.progress);
   RunResult run;
   run.spec = spec;
-  run.place = facts(world);
-  run.truth = world.mapping.camera;
+  run.place = facts(world, spec);
+  if (mapping.truth() != nullptr) run.truth = *mapping.truth();
   KeyframeDepths depths;
   const WatchedFrames frames(mapping, tamper, run.frames_s);
   const auto integrate = [&] {
@@ -213,7 +231,8 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   if (inner == nullptr) {  // a program that answers with a trajectory: nothing to ask it
     for (std::size_t i = 0; i < mapping.size(); ++i)
       run.mapping.offered += is_test_frame(i, spec.protocol) ? 0 : 1;
-    run.estimate = run_recorded(spec, frames, stream.fork(kMapping), tools.folder, tools.status);
+    run.estimate = run_recorded(spec, frames, stream.fork(kMapping), tools.folder, tools.status,
+                                run.mapping.skipped);
     run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
     integrate();
     run.points.resize(spec.points.size());
@@ -259,13 +278,10 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
 
     run.points.resize(spec.points.size());
     const QueryRound held_out(spec, mapping, NearestBy::kTime, tamper, run, stream.fork(kHeldOut));
-    std::optional<SimulatedSequence> second;
     std::optional<QueryRound> second_tour;
-    if (world.second) {
-      second.emplace(world.second_renderer ? world.second_renderer : world.renderer, camera,
-                     world.second->camera, world.sensors, spec.labels);
-      second_tour.emplace(spec, *second, NearestBy::kPlace, tamper, run, stream.fork(kSecondTour));
-    }
+    if (world.second)
+      second_tour.emplace(spec, *world.second, NearestBy::kPlace, tamper, run,
+                          stream.fork(kSecondTour));
     for (std::size_t p = 0; p < spec.points.size(); p = end_of_alike(spec.points, p)) {
       const std::size_t end = end_of_alike(spec.points, p);
       system.set_query_settings(spec.points[p]);
@@ -277,10 +293,12 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   }
 
   const ProcessorTimer timer(run.products_s);
-  // From just over the floor (noise of the depth at 4 m lies below) to the top of the head.
-  const double floor_z_m = world.scene->floor.middle_m.z();
-  if (run.volume)
-    run.grid = run.volume->project(floor_z_m + 0.10, floor_z_m + world.robot.height_m);
+  // From just over the floor (noise of the depth at 4 m lies below) to the top of the head. Where
+  // the floor of a recording lies nobody tells.
+  if (run.volume && world.simulated) {
+    const double floor_z_m = world.simulated->scene->floor.middle_m.z();
+    run.grid = run.volume->project(floor_z_m + 0.10, floor_z_m + world.simulated->robot.height_m);
+  }
   run.map_digest = digest_bytes(run.grid.cells.data(), run.grid.cells.size(), digest(run.estimate));
   return run;
 }

@@ -8,16 +8,13 @@
 
 #include <fmt/format.h>
 
+#include "bench/protocol/usable_frame.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/trajectory_io.hpp"
 
 namespace mh {
 namespace {
-
-constexpr std::size_t kFaultsTold = 5;
-/// When not one of so many frames can be read, the settings are wrong rather than the frames.
-constexpr std::size_t kHopeless = 10;
 
 /// One run in progress.
 class Runner {
@@ -38,7 +35,7 @@ class Runner {
     } catch (const InputError& error) {
       outcome.skipped = true;
       ++run.skipped;
-      if (run.faults.size() < kFaultsTold) run.faults.emplace_back(error.what());
+      if (run.faults.size() < SkippedFrames::kReasonsKept) run.faults.emplace_back(error.what());
     }
     run.frames.push_back(std::move(outcome));
     if (run.frames.size() == kHopeless && run.skipped == static_cast<int>(kHopeless))

@@ -192,25 +192,28 @@ std::vector<LoopClosure> loops_from_json(const Json& json) {
 Json result_json(const RunResult& run) {
   const MappingOutcome& m = run.mapping;
   const TrajectoryScore& t = run.trajectory;
-  return {{"place", place_json(run.place)},
-          {"mapping",
-           {{"dropped", m.dropped},
-            {"failures", m.failures},
-            {"restarts", m.restarts},
-            {"before_map", m.before_map},
-            {"gave_up", m.gave_up},
-            {"offered", m.offered},
-            {"loops", loops_json(m.loops)},
-            {"matches", matches_json(m.matches)}}},
-          {"trajectory",
-           {{"offered", t.offered},
-            {"tracked", t.tracked},
-            {"completeness", t.completeness},
-            {"ate_rmse_m", number(t.ate_rmse_m)},
-            {"ate_first_pose_m", number(t.ate_first_pose_m)},
-            {"rpe_frame_rmse_m", number(t.rpe_frame_rmse_m)},
-            {"rpe_second_rmse_m", number(t.rpe_second_rmse_m)}}},
-          {"map_digest", hex(run.map_digest)}};
+  Json json = {{"place", place_json(run.place)},
+               {"mapping",
+                {{"dropped", m.dropped},
+                 {"failures", m.failures},
+                 {"restarts", m.restarts},
+                 {"before_map", m.before_map},
+                 {"gave_up", m.gave_up},
+                 {"offered", m.offered},
+                 {"loops", loops_json(m.loops)},
+                 {"matches", matches_json(m.matches)}}},
+               {"trajectory",
+                {{"offered", t.offered},
+                 {"tracked", t.tracked},
+                 {"completeness", t.completeness},
+                 {"ate_rmse_m", number(t.ate_rmse_m)},
+                 {"ate_first_pose_m", number(t.ate_first_pose_m)},
+                 {"rpe_frame_rmse_m", number(t.rpe_frame_rmse_m)},
+                 {"rpe_second_rmse_m", number(t.rpe_second_rmse_m)}}},
+               {"map_digest", hex(run.map_digest)}};
+  if (m.skipped.count > 0)
+    json["mapping"]["skipped"] = {{"count", m.skipped.count}, {"reasons", m.skipped.reasons}};
+  return json;
 }
 
 void read_result(const Json& json, RunResult& run) {
@@ -225,6 +228,8 @@ void read_result(const Json& json, RunResult& run) {
   run.mapping.offered = m.at("offered");
   run.mapping.loops = loops_from_json(m.at("loops"));
   run.mapping.matches = matches_from_json(m.at("matches"));
+  if (m.contains("skipped"))
+    run.mapping.skipped = {m.at("skipped").at("count"), m.at("skipped").at("reasons")};
   const Json& t = json.at("trajectory");
   run.trajectory.offered = t.at("offered");
   run.trajectory.tracked = t.at("tracked");

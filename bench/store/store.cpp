@@ -203,6 +203,10 @@ nlohmann::ordered_json to_json(const SuiteOverrides& o) {
       {"trials", o.trials ? nlohmann::ordered_json(*o.trials) : nlohmann::ordered_json()},
       {"frames", o.max_frames ? nlohmann::ordered_json(*o.max_frames) : nlohmann::ordered_json()}};
   if (o.frame != SceneFrame{}) json["scene_frame"] = to_json(o.frame);
+  if (!o.set.empty()) json["set"] = o.set;
+  for (const auto& [pattern, found] : o.found)
+    for (const FoundRecording& recording : found)
+      json["found"][pattern].push_back({recording.sequence, recording.scene_type});
   return json;
 }
 
@@ -212,6 +216,11 @@ SuiteOverrides overrides_from_json(const nlohmann::json& json) {
   if (!json.at("trials").is_null()) o.trials = whole_number<int>(json.at("trials"));
   if (!json.at("frames").is_null()) o.max_frames = whole_number<std::size_t>(json.at("frames"));
   if (json.contains("scene_frame")) o.frame = scene_frame_from_json(json.at("scene_frame"));
+  if (json.contains("set")) o.set = json.at("set");
+  if (json.contains("found"))
+    for (const auto& [pattern, found] : json.at("found").items())
+      for (const auto& recording : found)
+        o.found[pattern].push_back({recording.at(0), recording.at(1)});
   return o;
 }
 
@@ -294,7 +303,9 @@ void Store::plan(const Suite& suite, const SuiteOverrides& overrides,
     s.bind(2, suite.name);
     s.bind(3, fs::absolute(suite.file).lexically_normal().string());
     s.bind(4, read_file(suite.file));
-    s.bind(5, to_json(overrides).dump());
+    SuiteOverrides stored = overrides;
+    stored.found = suite.found;  // read back where the recordings need not be
+    s.bind(5, to_json(stored).dump());
     s.exec();
     database_->exec("DELETE FROM plan");
     SQLite::Statement row(*database_, insert_row("plan", 3));

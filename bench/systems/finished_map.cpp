@@ -28,11 +28,16 @@ void fields(A& a, T& loop) {
   auto& [stamp_ns, old_stamp_ns, old_from_new] = loop;
   a(stamp_ns, old_stamp_ns, old_from_new);
 }
+template <class A, Either<SkippedFrames> T>
+void fields(A& a, T& skipped) {
+  auto& [count, reasons] = skipped;
+  a(count, reasons);
+}
 template <class A, Either<MappingOutcome> T>
 void fields(A& a, T& outcome) {
-  auto& [calls, dropped, failures, restarts, before_map, gave_up, offered, matches, loops] =
-      outcome;
-  a(calls, dropped, failures, restarts, before_map, gave_up, offered, loops);
+  auto& [calls, dropped, failures, restarts, before_map, gave_up, offered, matches, loops,
+         skipped] = outcome;
+  a(calls, dropped, failures, restarts, before_map, gave_up, offered, loops, skipped);
   for (auto& counts : matches) a(counts);
 }
 

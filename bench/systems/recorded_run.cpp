@@ -63,14 +63,16 @@ Trajectory with_frame_stamps(Trajectory trajectory, std::span<const Stamp> frame
 
 }  // namespace
 
-std::vector<Stamp> write_dataset(const fs::path& folder, const Camera& camera, std::size_t count,
-                                 const std::function<RgbdFrame(std::size_t)>& frame) {
+std::vector<Stamp> write_dataset(
+    const fs::path& folder, const Camera& camera, std::size_t count,
+    const std::function<std::optional<RgbdFrame>(std::size_t)>& frame) {
   std::vector<Stamp> stamps;
   TumWriter writer(folder, camera);
   for (std::size_t i = 0; i < count; ++i) {
-    const RgbdFrame seen = frame(i);
-    writer.add(seen);
-    stamps.push_back(seen.stamp_ns);
+    const std::optional<RgbdFrame> seen = frame(i);
+    if (!seen) continue;
+    writer.add(*seen);
+    stamps.push_back(seen->stamp_ns);
   }
   writer.finish();
   return stamps;

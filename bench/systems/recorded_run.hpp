@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "bench/plan/outside_program.hpp"
@@ -16,10 +17,10 @@ inline constexpr Stamp kStampTolerance_ns = 1'000'000;
 
 /// A folder in TUM's layout for an outside program: pictures, lists, labels where the frames have
 /// some, calibration. The truth is not in it. @returns the stamps, in order.
-/// @param frame  delivers frame i of the list
+/// @param frame  delivers frame i of the list; nullopt leaves it out
 std::vector<Stamp> write_dataset(const std::filesystem::path& folder, const Camera& camera,
                                  std::size_t count,
-                                 const std::function<RgbdFrame(std::size_t)>& frame);
+                                 const std::function<std::optional<RgbdFrame>(std::size_t)>& frame);
 
 /// Runs an outside program in trajectory mode, under its limits.
 /// @param folder  holds write_dataset()'s folder as `dataset` and nothing else; the program is to

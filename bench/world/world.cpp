@@ -2,14 +2,21 @@
 #include "bench/world/world.hpp"
 
 #include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
 
 #include "bench/inputs/inputs.hpp"
+#include "bench/inputs/recorded_camera.hpp"
 #include "bench/provenance/digest.hpp"
 #include "bench/world/cached_light.hpp"
 #include "scenes/load.hpp"
 #include "sim/sensors/shutter.hpp"
 #include "sim/world/lit_scene.hpp"
+#include "sim/world/sequence.hpp"
 #include "sim/world/travel.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/path_length.hpp"
 
 namespace mh {
 namespace {
@@ -19,26 +26,103 @@ PathFacts facts(const DrivenPath& path) {
           path.max_penetration_m};
 }
 
-}  // namespace
+/// The first frames of a recording, and what is true of their time.
+class RecordedFrames : public Sequence {
+ public:
+  RecordedFrames(std::unique_ptr<Sequence> all, std::size_t at_most)
+      : all_(std::move(all)), size_(std::min(at_most, all_->size())) {
+    if (all_->truth() == nullptr || size_ == 0) return;
+    Stamp first_ns = stamp_ns(0), last_ns = first_ns;
+    for (std::size_t i = 0; i < size_; ++i) {
+      first_ns = std::min(first_ns, stamp_ns(i));
+      last_ns = std::max(last_ns, stamp_ns(i));
+    }
+    constexpr Stamp kMargin_ns = 100'000'000;  // more than poses are paired or interpolated over
+    truth_.emplace();
+    for (const TimedPose& pose : *all_->truth())
+      if (pose.stamp_ns >= first_ns - kMargin_ns && pose.stamp_ns <= last_ns + kMargin_ns)
+        truth_->push_back(pose);
+  }
+  const Camera& camera() const override { return all_->camera(); }
+  std::size_t size() const override { return size_; }
+  Stamp stamp_ns(std::size_t i) const override { return all_->stamp_ns(i); }
+  RgbdFrame frame(std::size_t i, RandomStream noise) const override {
+    return all_->frame(i, noise);
+  }
+  const Trajectory* truth() const override {
+    return truth_ && !truth_->empty() ? &*truth_ : nullptr;
+  }
 
-PlaceFacts facts(const World& world) {
-  PlaceFacts f{.scene = world.scene->name,
-               .robot = world.robot.name,
-               .scene_digest = digest(*world.scene),
-               .path_digest = digest(world.mapping.camera),
+ private:
+  std::unique_ptr<Sequence> all_;
+  std::size_t size_;
+  std::optional<Trajectory> truth_;
+};
+
+PathFacts recorded_path(const Sequence& sequence) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  return {sequence.size(), sequence.truth() ? path_length_m(*sequence.truth()) : kUnknown, kUnknown,
+          kUnknown, kUnknown};
+}
+
+PlaceFacts recorded_facts(const World& world, const RunSpec& spec) {
+  const auto digest_of = [&](const char* name) {
+    const auto input = std::ranges::find(world.inputs, name, &InputDigest::name);
+    return input == world.inputs.end() ? 0 : input->digest;
+  };
+  const auto truth = [](const Sequence& sequence) {
+    return sequence.truth() ? digest(*sequence.truth()) : 0;
+  };
+  PlaceFacts f{.scene = split_sequence(spec.environment.sequence).second.stem().string(),
+               .robot = "",
+               .scene_digest = digest_of("sequence"),
+               .path_digest = truth(*world.mapping),
                .vocabulary_digest = world.vocabulary ? world.vocabulary->digest() : 0,
                .vocabulary_words = world.vocabulary ? world.vocabulary->size() : 0,
-               .mapping = facts(world.mapping),
+               .mapping = recorded_path(*world.mapping),
                .second = {},
                .cut = world.cut,
                .inputs = world.inputs};
-  if (world.second_scene) {
-    const std::uint64_t second = digest(*world.second_scene);
+  if (!world.second) return f;
+  const std::uint64_t scene = digest_of("queries"), path = truth(*world.second);
+  f.scene_digest = digest_bytes(&scene, sizeof scene, f.scene_digest);
+  f.path_digest = digest_bytes(&path, sizeof path, f.path_digest);
+  f.second = recorded_path(*world.second);
+  return f;
+}
+
+}  // namespace
+
+void simulate(World& world, LabelMode labels) {
+  const SimulatedPlace& p = *world.simulated;
+  world.mapping = std::make_shared<SimulatedSequence>(p.renderer, p.robot.camera, p.mapping.camera,
+                                                      p.sensors, labels, p.pedestrian_scene);
+  if (p.second)
+    world.second =
+        std::make_shared<SimulatedSequence>(p.second_renderer ? p.second_renderer : p.renderer,
+                                            p.robot.camera, p.second->camera, p.sensors, labels);
+}
+
+PlaceFacts facts(const World& world, const RunSpec& spec) {
+  if (!world.simulated) return recorded_facts(world, spec);
+  const SimulatedPlace& place = *world.simulated;
+  PlaceFacts f{.scene = place.scene->name,
+               .robot = place.robot.name,
+               .scene_digest = digest(*place.scene),
+               .path_digest = digest(place.mapping.camera),
+               .vocabulary_digest = world.vocabulary ? world.vocabulary->digest() : 0,
+               .vocabulary_words = world.vocabulary ? world.vocabulary->size() : 0,
+               .mapping = facts(place.mapping),
+               .second = {},
+               .cut = world.cut,
+               .inputs = world.inputs};
+  if (place.second_scene) {
+    const std::uint64_t second = digest(*place.second_scene);
     f.scene_digest = digest_bytes(&second, sizeof second, f.scene_digest);
   }
-  if (world.second) {
-    f.second = facts(*world.second);
-    const std::uint64_t second = digest(world.second->camera);
+  if (place.second) {
+    f.second = facts(*place.second);
+    const std::uint64_t second = digest(place.second->camera);
     f.path_digest = digest_bytes(&second, sizeof second, f.path_digest);
   }
   return f;
@@ -46,21 +130,49 @@ PlaceFacts facts(const World& world) {
 
 namespace {
 
+std::shared_ptr<const Vocabulary> load_vocabulary(const RunSpec& spec, World& world) {
+  if (spec.vocabulary.empty()) return nullptr;
+  return std::make_shared<const Vocabulary>(noted(world.inputs, "vocabulary", spec.vocabulary, [&] {
+    return Vocabulary::load(spec.vocabulary);
+  }));
+}
+
+/// The recordings of a run, with the inputs of everything but an outside program.
+World open_recordings(const RunSpec& spec) {
+  const Environment& e = spec.environment;
+  World world;
+  const auto open = [&](const char* name, const std::string& sequence) {
+    OpenedRecording opened = noted(world.inputs, name, split_sequence(sequence).second, [&] {
+      return open_recorded(e, sequence, spec.labels == LabelMode::kRecorded);
+    });
+    const std::size_t all = opened.sequence->size();
+    world.cut = world.cut || (spec.max_frames && *spec.max_frames < all);
+    return std::make_shared<const RecordedFrames>(std::move(opened.sequence),
+                                                  spec.max_frames.value_or(all));
+  };
+  world.mapping = open("sequence", e.sequence);
+  if (e.queries) world.second = open("queries", *e.queries);
+  if (world.second && world.second->camera() != world.mapping->camera())
+    throw InputError(fmt::format("{}: was taken with another camera than {}: a system has one",
+                                 *e.queries, e.sequence));
+  world.vocabulary = load_vocabulary(spec, world);
+  return world;
+}
+
 /// With the inputs of everything but an outside program.
 World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
             const BakeWatch& baked) {
   const Environment& environment = spec.environment;
-  World world;
+  World built;
+  SimulatedPlace& world = built.simulated.emplace();
   const auto input = [&](const char* name, const std::filesystem::path& source, auto&& load) {
-    return noted(world.inputs, name, source, load);
+    return noted(built.inputs, name, source, load);
   };
   const auto shorten = [&](DrivenPath& path) {
-    if (spec.max_frames && cut(path, *spec.max_frames)) world.cut = true;
+    if (spec.max_frames && cut(path, *spec.max_frames)) built.cut = true;
   };
   world.robot = input("robot", environment.robot, [&] { return load_robot(environment.robot); });
-  if (!spec.vocabulary.empty())
-    world.vocabulary = std::make_shared<const Vocabulary>(
-        input("vocabulary", spec.vocabulary, [&] { return Vocabulary::load(spec.vocabulary); }));
+  built.vocabulary = load_vocabulary(spec, built);
   world.sensors = input("level", spec.level, [&] { return load_sensor_config(spec.level); });
   if (environment.sensors)
     world.sensors = input("sensors", *environment.sensors,
@@ -108,7 +220,7 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   }
   lose_frames(world.mapping);
   shorten(world.mapping);
-  if (!environment.query_tour) return world;
+  if (!environment.query_tour) return built;
 
   if (environment.query_scene) {
     world.second_scene = lit_scene("query_scene", *environment.query_scene);
@@ -120,14 +232,16 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   });
   lose_frames(*world.second);
   shorten(*world.second);
-  return world;
+  return built;
 }
 
 }  // namespace
 
 World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
                   const BakeWatch& baked) {
-  World world = build(spec, threads, cache, say, baked);
+  World world = spec.environment.is_recorded() ? open_recordings(spec)
+                                               : build(spec, threads, cache, say, baked);
+  if (world.simulated) simulate(world, spec.labels);
   std::ranges::move(inputs_of_program(spec), std::back_inserter(world.inputs));
   std::ranges::sort(world.inputs, {}, &InputDigest::name);
   return world;

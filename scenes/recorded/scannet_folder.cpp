@@ -10,9 +10,11 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
+#include "scenes/recorded/class_map.hpp"
 #include "scenes/scannet/files.hpp"
 #include "scenes/scannet/label_images.hpp"
 #include "scenes/scannet/label_table.hpp"
+#include "scenes/scannet/scene_info.hpp"
 #include "scenes/scannet/sens.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
@@ -74,7 +76,8 @@ class ColorPixels {
 
 class ScannetSequence : public Sequence {
  public:
-  ScannetSequence(const fs::path& path, std::vector<std::string>& notes)
+  ScannetSequence(const fs::path& path, const RecordingConfig& config,
+                  std::vector<std::string>& notes)
       : recording_(open_recording(path)),
         camera_(camera_of(recording_->info().depth)),
         pixels_(recording_->info()) {
@@ -89,21 +92,32 @@ class ScannetSequence : public Sequence {
       if (const auto world_from_device = recording_->world_from_device(i))
         truth_.push_back({recording_->stamp_ns(i), *world_from_device * device_from_camera});
     for (const ClassInfo& info : classes()) palette_.push_back(ClassDistribution::one_hot(info.id));
-    std::error_code error;
-    const fs::path folder = fs::is_directory(path, error) ? path : path.parent_path();
-    labels_ = find_label_images(folder.empty() ? "." : folder, "label-filt");
+    fs::path folder = is_folder(path) ? path : path.parent_path();
+    if (folder.empty()) folder = ".";
+    labels_ = find_label_images(folder, "label-filt");
     if (labels_ == nullptr) return;
-    const std::vector<fs::path> tables = find_label_tables(folder);
-    if (tables.empty()) {
+    fs::path table = config.classes;
+    if (const auto tables = find_label_tables(folder); table.empty() && !tables.empty())
+      table = tables[0];
+    if (table.empty()) {
       labels_ = nullptr;
       notes.push_back(fmt::format("{}: labels are left out: neither {} nor {} lies beside them",
                                   folder.string(), kLabelTableV2, kLabelTableV1));
       return;
     }
     note_missing_labels(notes);
-    const LabelTable table = load_label_table(tables[0]);
-    for (const auto& [id, class_id] : table.class_of_id)
-      if (id < class_of_id_.size()) class_of_id_[id] = class_id;
+    class_of_id_ = load_class_map(table);
+  }
+
+  bool has_labels() const { return labels_ != nullptr; }
+  void leave_out_labels() { labels_.reset(); }
+  std::vector<fs::path> files() const {
+    std::vector<fs::path> files = recording_->files();
+    if (labels_ == nullptr) return files;
+    for (std::size_t i = 0; i < size(); ++i)
+      if (const fs::path file = labels_->file(recording_->number(i)); !file.empty())
+        files.push_back(file);
+    return files;
   }
 
   const Camera& camera() const override { return camera_; }
@@ -182,7 +196,8 @@ class ScannetSequence : public Sequence {
       for (int x = 0; x < result.width(); ++x) {
         const int u = as_color ? cvRound(columns.at<float>(y, x)) : x;
         const int v = as_color ? cvRound(rows.at<float>(y, x)) : y;
-        if (ids.contains(u, v)) result(x, y) = class_of_id_[ids(u, v)];
+        if (ids.contains(u, v) && ids(u, v) < class_of_id_.size())
+          result(x, y) = class_of_id_[ids(u, v)];
       }
     return result;
   }
@@ -192,9 +207,35 @@ class ScannetSequence : public Sequence {
   Trajectory truth_;  // of the frames with a valid pose
   ColorPixels pixels_;
   std::unique_ptr<LabelImages> labels_;
-  std::array<ClassId, 65536> class_of_id_{};
+  ClassMap class_of_id_;
   std::vector<ClassDistribution> palette_;
 };
+
+bool is_scannet_recording(const fs::path& path) {
+  if (!is_folder(path)) return path.extension() == ".sens";
+  return (is_folder(path / "color") && is_folder(path / "depth")) ||
+         !list_folder(path, "*.sens").empty();
+}
+
+OpenedRecording open_recorded(const fs::path& path, const RecordingConfig& config) {
+  OpenedRecording opened;
+  auto sequence = std::make_unique<ScannetSequence>(path, config, opened.notes);
+  opened.files = sequence->files();
+  opened.has_labels = sequence->has_labels();
+  if (!config.labels) sequence->leave_out_labels();
+  opened.sequence = std::move(sequence);
+  return opened;
+}
+
+std::string scene_type(const fs::path& path) {
+  std::error_code error;
+  fs::path place = fs::absolute(path, error).lexically_normal();
+  if (!place.has_filename()) place = place.parent_path();  // "scene0000_00/"
+  const fs::path info = is_folder(place) ? place / (place.filename().string() + ".txt")
+                                         : fs::path(place).replace_extension(".txt");
+  if (!is_file(info)) return "";
+  return parse_scannet_info(read_file(info), info.string()).scene_type;
+}
 
 template <class Id>
 Grid2d<std::uint16_t> widened(const Grid2d<Id>& ids) {
@@ -221,8 +262,11 @@ RecordedLens recorded_lens(const Camera& camera) {
 }
 
 std::unique_ptr<Sequence> open_scannet(const fs::path& path, std::vector<std::string>& notes) {
-  return std::make_unique<ScannetSequence>(path, notes);
+  return std::make_unique<ScannetSequence>(path, RecordingConfig(), notes);
 }
+
+const SequenceReader kScannetReader{"scannet", "FOLDER, scannet:FILE.sens", is_scannet_recording,
+                                    open_recorded, scene_type};
 
 void write_scannet_recording(const fs::path& folder, const Camera& camera, std::size_t frames,
                              const std::function<ExactFrame(std::size_t index)>& frame_at) {

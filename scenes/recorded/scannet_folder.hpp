@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/recorded/open_sequence.hpp"
 #include "scenes/recorded/sequence_writer.hpp"
 #include "scenes/scannet/recording.hpp"
 #include "slam/core/sequence.hpp"
@@ -23,6 +24,10 @@ namespace mh {
 /// @throws InputError naming file and place.
 std::unique_ptr<Sequence> open_scannet(const std::filesystem::path& path,
                                        std::vector<std::string>& notes);
+
+/// ScanNet's layouts. The calibration is their own; a class map takes the label table's place. The
+/// scene type is that of NAME.txt beside the frames, NAME being the folder's or the .sens file's.
+extern const SequenceReader kScannetReader;
 
 /// Of the 16-bit depth that is written.
 inline constexpr double kScannetDepthPerMeter = 1000;

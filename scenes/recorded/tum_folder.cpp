@@ -65,7 +65,8 @@ class ByStamp {
 };
 
 /// A frame's picture. What it announces is looked at before anything is decoded.
-cv::Mat read_frame_picture(const fs::path& file, int type, const Camera& camera) {
+cv::Mat read_frame_picture(const fs::path& file, std::initializer_list<int> types,
+                           const Camera& camera) {
   const std::string bytes = read_file(file);
   const auto check_size = [&](std::int64_t width, std::int64_t height) {
     if (width != camera.width_px || height != camera.height_px)
@@ -79,23 +80,26 @@ cv::Mat read_frame_picture(const fs::path& file, int type, const Camera& camera)
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", file.string(), error.what()));
   }
-  if (picture.type() != type)
+  if (std::ranges::find(types, picture.type()) == types.end())
     throw InputError(fmt::format("{}: has the wrong number of bits or channels", file.string()));
   check_size(picture.cols, picture.rows);
   return picture;
 }
 
-SemanticImage one_hot(const cv::Mat& ids, const fs::path& file) {
+SemanticImage one_hot(const cv::Mat& ids, const fs::path& file, const ClassMap* map) {
   SemanticImage semantics;
   semantics.index = Grid2d<std::uint8_t>(ids.cols, ids.rows);
   for (const ClassInfo& info : classes())
     semantics.palette.push_back(ClassDistribution::one_hot(info.id));
   for (int y = 0; y < ids.rows; ++y)
     for (int x = 0; x < ids.cols; ++x) {
-      const std::uint8_t id = ids.at<std::uint8_t>(y, x);
-      if (id >= semantics.palette.size())
+      const std::uint16_t id = ids.depth() == CV_16U ? ids.at<std::uint16_t>(y, x)
+                                                     : std::uint16_t{ids.at<std::uint8_t>(y, x)};
+      if (map == nullptr && id >= semantics.palette.size())
         throw InputError(fmt::format("{}: class {} is unknown", file.string(), id));
-      semantics.index(x, y) = id;
+      semantics.index(x, y) = map == nullptr     ? static_cast<std::uint8_t>(id)
+                              : id < map->size() ? (*map)[id]
+                                                 : kVoid;
     }
   return semantics;
 }
@@ -105,14 +109,14 @@ SemanticImage one_hot(const cv::Mat& ids, const fs::path& file) {
 std::vector<RecordedFrame> load_tum_folder(const fs::path& folder,
                                            std::vector<std::string>* notes) {
   const fs::path both = folder / "associations.txt";
-  const bool associated = !fs::exists(folder / "rgb.txt") && fs::exists(both);
+  const bool associated = !is_there(folder / "rgb.txt") && is_there(both);
   const fs::path list = associated ? both : folder / "rgb.txt";
   const std::vector<Listed> color = read_list(list);
   if (color.empty()) throw InputError(fmt::format("{}: lists no picture", list.string()));
   const std::vector<Listed> depth =
       associated ? read_list(both, 2) : read_list(folder / "depth.txt");
   std::vector<Listed> labels;
-  if (fs::exists(folder / "label.txt")) labels = read_list(folder / "label.txt");
+  if (is_there(folder / "label.txt")) labels = read_list(folder / "label.txt");
   const ByStamp depth_at(depth), labels_at(labels);
   std::vector<RecordedFrame> frames;
   for (std::size_t i = 0; i < color.size(); ++i) {
@@ -132,9 +136,10 @@ std::vector<RecordedFrame> load_tum_folder(const fs::path& folder,
   return frames;
 }
 
-RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera) {
-  const cv::Mat color = read_frame_picture(recorded.color, CV_8UC3, camera.camera);
-  const cv::Mat depth = read_frame_picture(recorded.depth, CV_16UC1, camera.camera);
+RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera,
+                     const ClassMap* classes) {
+  const cv::Mat color = read_frame_picture(recorded.color, {CV_8UC3}, camera.camera);
+  const cv::Mat depth = read_frame_picture(recorded.depth, {CV_16UC1}, camera.camera);
   RgbdFrame frame;
   frame.stamp_ns = recorded.stamp_ns;
   frame.color = Grid2d<Rgb8>(color.cols, color.rows);
@@ -147,9 +152,11 @@ RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera
       frame.depth_m(x, y) =
           static_cast<float>(depth.at<std::uint16_t>(y, x) / camera.depth_per_meter);
     }
-  if (!recorded.classes.empty())
-    frame.semantics =
-        one_hot(read_frame_picture(recorded.classes, CV_8UC1, camera.camera), recorded.classes);
+  if (recorded.classes.empty()) return frame;
+  const std::initializer_list<int> ours = {CV_8UC1}, foreign = {CV_8UC1, CV_16UC1};
+  frame.semantics = one_hot(
+      read_frame_picture(recorded.classes, classes == nullptr ? ours : foreign, camera.camera),
+      recorded.classes, classes);
   return frame;
 }
 

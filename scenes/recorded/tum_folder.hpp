@@ -10,6 +10,7 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include "scenes/recorded/class_map.hpp"
 #include "scenes/recorded/frame_files.hpp"
 #include "scenes/recorded/sequence_writer.hpp"
 #include "slam/core/camera.hpp"
@@ -38,8 +39,11 @@ struct RecordedFrame {
 std::vector<RecordedFrame> load_tum_folder(const std::filesystem::path& folder,
                                            std::vector<std::string>* notes = nullptr);
 
-/// Reads the pictures of one frame. @throws InputError naming the picture.
-RgbdFrame read_frame(const RecordedFrame& frame, const RecordedCamera& camera);
+/// Reads the pictures of one frame.
+/// @param classes  what the ids of its label picture mean; null: they are our classes, 8 bits
+/// @throws InputError naming the picture.
+RgbdFrame read_frame(const RecordedFrame& frame, const RecordedCamera& camera,
+                     const ClassMap* classes = nullptr);
 
 /// Writes sequences in TUM's layout: rgb/ and depth/ (16 bit, 5000 per meter), label/ (class ids, 8
 /// bit), their lists, associations.txt, camera.yaml and camera_info.yaml; with truth also instance/

@@ -36,18 +36,15 @@ std::optional<std::uint32_t> number_of_name(const fs::path& name) {
 
 NumberedFiles::NumberedFiles(const fs::path& folder,
                              std::initializer_list<std::string_view> endings) {
-  std::error_code error;
-  if (!fs::is_directory(folder, error))
-    throw InputError(fmt::format("{}: is no folder", folder.string()));
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    const std::string ending = entry.path().extension().string();
-    if (std::ranges::find(endings, std::string_view(ending)) == endings.end()) continue;
-    const auto number = number_of_name(entry.path());
-    if (!number) continue;
-    // Of two files with one number the first by name counts, in whatever order the disk lists them.
-    const auto [place, is_new] = files_.try_emplace(*number, entry.path());
-    if (!is_new) place->second = std::min(place->second, entry.path());
-  }
+  if (!is_folder(folder)) throw InputError(fmt::format("{}: is no folder", folder.string()));
+  for (const std::string_view ending : endings)
+    for (const std::string& name : list_folder(folder, fmt::format("*{}", ending))) {
+      const auto number = number_of_name(name);
+      if (!number) continue;
+      // Of two files with one number the first by name counts.
+      const auto [place, is_new] = files_.try_emplace(*number, folder / name);
+      if (!is_new) place->second = std::min(place->second, folder / name);
+    }
 }
 
 std::vector<std::uint32_t> NumberedFiles::numbers() const {

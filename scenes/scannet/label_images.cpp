@@ -34,6 +34,9 @@ class LabelFolder : public LabelImages {
       : files_(folder, {".png"}), place_(folder.string()) {}
   const std::string& place() const override { return place_; }
   bool contains(std::uint32_t number) const override { return files_.contains(number); }
+  fs::path file(std::uint32_t number) const override {
+    return files_.contains(number) ? files_.file(number) : fs::path();
+  }
   std::optional<Grid2d<std::uint16_t>> read(std::uint32_t number) const override {
     if (!files_.contains(number)) return std::nullopt;
     const fs::path& file = files_.file(number);
@@ -210,14 +213,10 @@ class ZipWriter : public LabelImageWriter {
 }  // namespace
 
 std::unique_ptr<LabelImages> find_label_images(const fs::path& folder, const std::string& kind) {
-  std::error_code error;
-  if (fs::is_directory(folder / kind, error)) return std::make_unique<LabelFolder>(folder / kind);
-  const std::string ending = fmt::format("_2d-{}.zip", kind);
-  std::vector<fs::path> zips;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-    if (entry.path().filename().string().ends_with(ending)) zips.push_back(entry.path());
+  if (is_folder(folder / kind)) return std::make_unique<LabelFolder>(folder / kind);
+  const std::vector<std::string> zips = list_folder(folder, fmt::format("*_2d-{}.zip", kind));
   if (zips.empty()) return nullptr;
-  const fs::path& first = *std::ranges::min_element(zips);
+  const fs::path first = folder / zips.front();
   return open_label_zip(map_file(first, MapPages::kAsTouched), first.string());
 }
 

@@ -22,6 +22,9 @@ class LabelImages {
   virtual const std::string& place() const = 0;
   /// Whether a frame has one.
   virtual bool contains(std::uint32_t number) const = 0;
+  /// The file that holds a frame's, read when it is asked for; empty where there is none, or where
+  /// all are in one file that was read.
+  virtual std::filesystem::path file(std::uint32_t) const { return {}; }
   /// The picture of a frame; nullopt where there is none. @throws InputError if it is damaged.
   virtual std::optional<Grid2d<std::uint16_t>> read(std::uint32_t number) const = 0;
 };

@@ -75,6 +75,13 @@ class ExtractedFolder : public Recording {
   std::uint32_t number(std::size_t index) const override { return numbers_[index]; }
   std::optional<SE3> world_from_device(std::size_t index) const override { return poses_[index]; }
 
+  std::vector<fs::path> files() const override {
+    std::vector<fs::path> files;
+    for (const std::uint32_t number : numbers_)
+      files.insert(files.end(), {color_.file(number), depth_.file(number)});
+    return files;
+  }
+
   RecordedMoment frame(std::size_t index) const override {
     const fs::path color_file = color_.file(numbers_[index]);
     const fs::path depth_file = depth_.file(numbers_[index]);
@@ -114,7 +121,7 @@ class ExtractedFolder : public Recording {
     const fs::path intrinsics = folder_ / "intrinsic" / ("intrinsic_" + which + ".txt");
     const fs::path extrinsics = folder_ / "intrinsic" / ("extrinsic_" + which + ".txt");
     return lens_of(read_matrix(intrinsics),
-                   fs::exists(extrinsics) ? read_matrix(extrinsics) : Eigen::Matrix4d::Identity(),
+                   is_there(extrinsics) ? read_matrix(extrinsics) : Eigen::Matrix4d::Identity(),
                    static_cast<int>(size.width), static_cast<int>(size.height),
                    intrinsics.string());
   }
@@ -133,9 +140,9 @@ class ExtractedFolder : public Recording {
 
   std::optional<SE3> read_pose(std::uint32_t number) {
     const fs::path file = folder_ / "pose" / fmt::format("{}.txt", number);
-    if (fs::exists(file)) return pose_of(read_matrix(file), file.string());
+    if (is_there(file)) return pose_of(read_matrix(file), file.string());
     const fs::path padded = folder_ / "pose" / fmt::format("{:06}.txt", number);
-    if (!fs::exists(padded)) {
+    if (!is_there(padded)) {
       ++missing_poses_;
       return std::nullopt;
     }
@@ -162,10 +169,7 @@ class ExtractedFolder : public Recording {
 /// The .sens files of a folder.
 std::vector<fs::path> sens_files(const fs::path& folder) {
   std::vector<fs::path> files;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ".sens") files.push_back(entry.path());
-  std::ranges::sort(files);
+  for (const std::string& name : list_folder(folder, "*.sens")) files.push_back(folder / name);
   return files;
 }
 
@@ -231,11 +235,10 @@ Eigen::Matrix4d matrix_of(const SE3& pose) {
 }
 
 std::unique_ptr<Recording> open_recording(const fs::path& path) {
-  std::error_code error;
-  if (!fs::exists(path, error))
+  if (!is_there(path))
     throw InputError(fmt::format("{}: cannot be read: no such file", path.string()));
-  if (!fs::is_directory(path, error)) return open_sens(path);
-  if (fs::is_directory(path / "color", error)) return std::make_unique<ExtractedFolder>(path);
+  if (!is_folder(path)) return open_sens(path);
+  if (is_folder(path / "color")) return std::make_unique<ExtractedFolder>(path);
   const std::vector<fs::path> files = sens_files(path);
   if (files.empty())
     throw InputError(

@@ -56,6 +56,8 @@ class Recording {
   virtual std::optional<SE3> world_from_device(std::size_t index) const = 0;
   /// @throws InputError naming file and frame if its pictures cannot be had.
   virtual RecordedMoment frame(std::size_t index) const = 0;
+  /// The files that frame() reads; none where all is in the file that was opened.
+  virtual std::vector<std::filesystem::path> files() const { return {}; }
 
  protected:
   std::vector<std::string> notes_;

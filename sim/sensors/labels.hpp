@@ -14,8 +14,9 @@ namespace mh {
 /// the same of one instant, the stamp, as if a labeled mesh were drawn at the frame's pose (so
 /// ScanNet's are made). kBoxes: the bounding box of the visible pixels of each instance of a COCO
 /// class is filled with its class, all else is background. kDetector: as a network would draw those
-/// boxes, see DetectorConfig. kNone: none.
-enum class LabelMode { kNone, kExact, kAnnotated, kBoxes, kDetector };
+/// boxes, see DetectorConfig. kNone: none. kRecorded: those that a recording brings; nothing that
+/// is simulated has them.
+enum class LabelMode { kNone, kExact, kAnnotated, kBoxes, kDetector, kRecorded };
 
 /// Each pixel has the class of what is seen there, not a box's.
 inline bool is_per_pixel(LabelMode mode) {

@@ -86,7 +86,7 @@ ReadRecord decode_read_record(std::string_view bytes) {
 
 thread_local ReadScope* ReadScope::innermost_ = nullptr;
 
-ReadScope::ReadScope() : outer_(innermost_) {
+ReadScope::ReadScope(Outer outer) : outer_(innermost_), tells_outer_(outer == Outer::kIsTold) {
   innermost_ = this;
 }
 
@@ -95,8 +95,10 @@ ReadScope::~ReadScope() {
 }
 
 void ReadScope::report(const FileObservation& observation) {
-  for (ReadScope* scope = innermost_; scope != nullptr; scope = scope->outer_)
+  for (ReadScope* scope = innermost_; scope != nullptr; scope = scope->outer_) {
     scope->record_.observations.push_back(observation);
+    if (!scope->tells_outer_) return;
+  }
 }
 
 void ReadScope::report(const ReadRecord& record) {

@@ -47,7 +47,9 @@ ReadRecord decode_read_record(std::string_view bytes);
 /// map_file() or YamlReader is noted. Scopes nest: the outer one notes what the inner one does.
 class ReadScope {
  public:
-  ReadScope();
+  /// Whether the scope around this one notes what this one does.
+  enum class Outer { kIsTold, kIsNotTold };
+  explicit ReadScope(Outer outer = Outer::kIsTold);
   ~ReadScope();
   ReadScope(const ReadScope&) = delete;
   ReadScope& operator=(const ReadScope&) = delete;
@@ -65,6 +67,7 @@ class ReadScope {
   static thread_local ReadScope* innermost_;
   ReadRecord record_;
   ReadScope* const outer_;
+  const bool tells_outer_;
 };
 
 /// Tells the scopes of this thread that a file was read; costs nothing where there are none.

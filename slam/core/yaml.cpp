@@ -79,6 +79,47 @@ YamlReader YamlReader::parse(const std::string& text, const std::string& name) {
   }
 }
 
+namespace {
+
+/// Text with each ${name} replaced.
+std::string replaced(const std::string& text,
+                     const std::function<std::string(const std::string&)>& value_of) {
+  std::string result;
+  std::size_t from = 0;
+  for (std::size_t at = text.find("${"); at != std::string::npos; at = text.find("${", from)) {
+    const std::size_t end = text.find('}', at);
+    if (end == std::string::npos) break;
+    result += text.substr(from, at - from) + value_of(text.substr(at + 2, end - at - 2));
+    from = end + 1;
+  }
+  return result + text.substr(from);
+}
+
+/// In every word below a node, in place.
+void replace_words(YAML::Node node, const std::string& file,
+                   const std::function<std::string(const std::string&)>& value_of) {
+  if (node.IsScalar() && node.Scalar().find("${") != std::string::npos) {
+    try {
+      node = replaced(node.Scalar(), value_of);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}", place_in(file, node), error.what()));
+    }
+  } else if (node.IsSequence()) {
+    for (YAML::Node item : node) replace_words(item, file, value_of);
+  } else if (node.IsMap()) {
+    for (auto entry : node) replace_words(entry.second, file, value_of);
+  }
+}
+
+}  // namespace
+
+YamlReader YamlReader::parse(const std::string& text, const std::string& name,
+                             const std::function<std::string(const std::string&)>& value_of) {
+  const YamlReader reader = parse(text, name);
+  replace_words(*reader.node_, name, value_of);
+  return reader;
+}
+
 bool YamlReader::is_scalar() const {
   return node_->IsScalar();
 }

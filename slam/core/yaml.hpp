@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -28,6 +29,10 @@ class YamlReader {
   static YamlReader load(const std::filesystem::path& file);
   /// Parses text; `name` stands for the file in messages.
   static YamlReader parse(const std::string& text, const std::string& name);
+  /// The same, with `${name}` in each of its words replaced by what `value_of` gives for the name.
+  /// @param value_of  may throw InputError, which is then told with the place
+  static YamlReader parse(const std::string& text, const std::string& name,
+                          const std::function<std::string(const std::string&)>& value_of);
 
   bool has(const std::string& key) const;
   /// The child under a key. @throws InputError if absent.

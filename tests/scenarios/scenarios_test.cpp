@@ -38,7 +38,7 @@ RunFigures run(const RunSpec& spec, const World& world, const Fault& fault) {
     SlamConfig config;
     config = spec.slam;
     fault.settings(config);
-    return make_our_system(world.robot.camera, config, world.vocabulary);
+    return make_our_system(world.mapping->camera(), config, world.vocabulary);
   };
   return figures(run_one(spec, world, tools));
 }

@@ -112,9 +112,16 @@ inline RgbdFrame fake_frame(std::size_t index, RandomStream noise) {
   return frame;
 }
 
+/// Of their size.
+inline Camera fake_camera() {
+  Camera camera;
+  camera.width_px = camera.height_px = 2;
+  return camera;
+}
+
 /// So many of them, in order.
 inline MadeSequence fake_frames(std::size_t count) {
-  return {count, fake_frame};
+  return {count, fake_frame, fake_camera()};
 }
 
 }  // namespace mh

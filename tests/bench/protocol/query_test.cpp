@@ -42,10 +42,13 @@ TEST(Query, EachAttemptAtEachFrameHasItsOwnNoiseAndDraws) {
   FakeSystem system = mapped();
   system.answers_at = [](Stamp) { return 0; };
   std::set<std::uint64_t> noise, draws;
-  const MadeSequence spy(300, [&](std::size_t index, RandomStream stream) {
-    noise.insert(stream.key());
-    return fake_frame(index, stream);
-  });
+  const MadeSequence spy(
+      300,
+      [&](std::size_t index, RandomStream stream) {
+        noise.insert(stream.key());
+        return fake_frame(index, stream);
+      },
+      fake_camera());
   system.on_query = [&](RandomStream stream) { draws.insert(stream.key()); };
   for (const std::size_t index : {29, 59}) query(system, index, spy, {}, RandomStream(1));
   EXPECT_EQ(noise.size(), 10u);
@@ -102,11 +105,14 @@ TEST(Query, TheDigestsOfPosesAndImagesAreOfEveryAttempt) {
     };
     poses.insert(query(system, 59, fake_frames(300), {}, RandomStream(1)).pose_digest);
     int shown = 0;
-    const MadeSequence tampered(300, [&](std::size_t index, RandomStream noise) {
-      RgbdFrame frame = fake_frame(index, noise);
-      if (++shown == changed) frame.color(0, 0).b = 255;
-      return frame;
-    });
+    const MadeSequence tampered(
+        300,
+        [&](std::size_t index, RandomStream noise) {
+          RgbdFrame frame = fake_frame(index, noise);
+          if (++shown == changed) frame.color(0, 0).b = 255;
+          return frame;
+        },
+        fake_camera());
     images.insert(query(system, 59, tampered, {}, RandomStream(1)).image_digest);
   }
   EXPECT_EQ(poses.size(), 3u);

@@ -12,8 +12,8 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/inputs/recorded_camera.hpp"
 #include "bench/metrics/evaluate.hpp"
-#include "bench/run/recorded_camera.hpp"
 #include "bench/systems/stage_clock.hpp"
 #include "scenes/recorded/frame_sequence.hpp"
 #include "scenes/recorded/tum_folder.hpp"

@@ -137,28 +137,32 @@ struct Place {
     suite.systems = {{SystemKind::kSemantic, "semantic", {}}, {SystemKind::kPlain, "plain", {}}};
     suite.compare = {{0, 1}};
     suite.labels = {LabelMode::kExact, LabelMode::kBoxes};
-    world.renderer = std::make_shared<FakeRenderer>();
-    world.scene = std::make_shared<const Scene>();
     world.vocabulary = std::make_shared<const Vocabulary>();
-    world.robot.camera.width_px = 16;
-    world.robot.camera.height_px = 12;
-    world.robot.camera.cx_px = 7.5;
-    world.robot.camera.cy_px = 5.5;
-    world.robot.camera.fx_px = world.robot.camera.fy_px = 16;
-    world.mapping.camera = straight_path(150);
-    world.second = DrivenPath{};
-    world.second->camera = straight_path(90);
+    SimulatedPlace& place = world.simulated.emplace();
+    place.renderer = std::make_shared<FakeRenderer>();
+    place.scene = std::make_shared<const Scene>();
+    place.robot.camera.width_px = 16;
+    place.robot.camera.height_px = 12;
+    place.robot.camera.cx_px = 7.5;
+    place.robot.camera.cy_px = 5.5;
+    place.robot.camera.fx_px = place.robot.camera.fy_px = 16;
+    place.mapping.camera = straight_path(150);
+    place.second = DrivenPath{};
+    place.second->camera = straight_path(90);
   }
   std::vector<RunResult> run(const TamperRun& tamper = {}) const {
     std::vector<RunResult> results;
-    for (const RunSpec& spec : expand(suite))
-      results.push_back(run_one(spec, world,
+    for (const RunSpec& spec : expand(suite)) {
+      World as_seen = world;
+      simulate(as_seen, spec.labels);
+      results.push_back(run_one(spec, as_seen,
                                 {.system =
                                      [](const RunSpec& s, const World&) {
                                        return std::make_unique<MixingSystem>(
                                            s.system.kind == SystemKind::kSemantic, 2);
                                      },
                                  .tamper = tamper ? tamper(spec) : RunTamper{}}));
+    }
     return results;
   }
 };
@@ -281,7 +285,7 @@ TEST(Verify, FindsAPixelOfAQuery) {
 
 TEST(Verify, SeesAnotherPath) {
   Place a, b;
-  b.world.second->camera.back().stamp_ns += 1;
+  b.world.simulated->second->camera.back().stamp_ns += 1;
   const auto difference = first_difference(a.run(), b.run());
   ASSERT_TRUE(difference);
   EXPECT_EQ(describe(*difference), "semantic-exact-fake-0: world: path differs");
@@ -526,7 +530,7 @@ TEST(Topdown, KeepsItsTextWithinTheMarginsAndItsAnswersOnThePlan) {
   constexpr int kText = 80;  // title and subtitle; the plan begins below
   EXPECT_EQ(cv::norm(near.rowRange(0, kText), far.rowRange(0, kText)), 0) << "drawn over the title";
   EXPECT_GT(cv::norm(near, far), 0);
-  place.world.robot.name = std::string(200, 'w');
+  place.world.simulated->robot.name = std::string(200, 'w');
   EXPECT_EQ(ink(drawn().rowRange(0, kText).colRange(1180, 1200)), 0) << "cut at the edge";
   // Of a program that answers with a trajectory alone nothing was asked.
   run.points[0].second_tour.clear();
@@ -565,7 +569,7 @@ TEST(Topdown, FailuresLieOnTopHeadingsShowAndThePathsCanBeTold) {
       SE3(Eigen::AngleAxisd(1, Eigen::Vector3d::UnitZ()).toRotationMatrix() * level,
           here.translation());
   EXPECT_GT(cv::norm(picture, drawn(answered, turned)), 0) << "no heading";
-  run.estimate = place.world.mapping.camera;  // a path that is just right
+  run.estimate = place.world.simulated->mapping.camera;  // a path that is just right
   run.trajectory.dock_from_estimate = SE3();
   const cv::Mat both = drawn(answered, failed);
   EXPECT_GT(pixels_of(both, {165, 205, 150}), 50) << "the true path is hidden";
@@ -586,7 +590,7 @@ TEST(Topdown, FurnitureIsCutAt40CmAndWallsAt120CmAboveTheFloor) {
           scene.positions_m.emplace_back(x, 1.5F, static_cast<float>(z_m));
       scene.triangles = {{0, 1, 2}, {1, 3, 2}};
       scene.class_of = {1, 1};
-      place.world.scene = std::make_shared<const Scene>(scene);
+      place.world.simulated->scene = std::make_shared<const Scene>(scene);
       return draw_topdown(place.world, run, QuerySet::kSecondTour);
     };
     const cv::Mat none = drawn(0.01), furniture = drawn(0.41), wall = drawn(1.21);
@@ -607,7 +611,7 @@ TEST(Topdown, TheLegendTellsHowFarThePathsAreApart) {
   RunResult run = place.run()[0];
   run.trajectory.dock_from_estimate = SE3();
   const auto legend = [&](const Eigen::Vector3d& first_off, const Eigen::Vector3d& others_off) {
-    run.estimate = place.world.mapping.camera;
+    run.estimate = place.world.simulated->mapping.camera;
     for (TimedPose& pose : run.estimate) {
       const Eigen::Vector3d& off = &pose == &run.estimate[0] ? first_off : others_off;
       pose.world_from_camera =
@@ -745,12 +749,12 @@ TEST(Results, WhatAnOutsideProgramDoesNotTellIsUnknown) {
 
 TEST(Results, ACutRunSaysSo) {
   Place place;
-  place.world.mapping.base = place.world.mapping.camera;
-  place.world.mapping.length_m = 63;
-  EXPECT_FALSE(cut(place.world.mapping, 150));
-  EXPECT_EQ(place.world.mapping.length_m, 63);
-  ASSERT_TRUE(cut(place.world.mapping, 101));
-  EXPECT_NEAR(place.world.mapping.length_m, 1.0, 1e-9);  // 100 steps of 1 cm
+  place.world.simulated->mapping.base = place.world.simulated->mapping.camera;
+  place.world.simulated->mapping.length_m = 63;
+  EXPECT_FALSE(cut(place.world.simulated->mapping, 150));
+  EXPECT_EQ(place.world.simulated->mapping.length_m, 63);
+  ASSERT_TRUE(cut(place.world.simulated->mapping, 101));
+  EXPECT_NEAR(place.world.simulated->mapping.length_m, 1.0, 1e-9);  // 100 steps of 1 cm
   EXPECT_TRUE(results_json(place.suite, place.run())["suite"]["frames"].is_null());
   place.suite.max_frames = 101;
   place.world.cut = true;

@@ -147,6 +147,29 @@ class StoreFile : public testing::Test {
   fs::path folder_;
 };
 
+// What patterns found and what --set gave stands in the results: they are read where no scan is.
+TEST_F(StoreFile, ASuiteOfRecordingsIsReadBackWhereTheRecordingsAreNot) {
+  for (const char* name : {"scene0000_00", "scene0001_00"}) {
+    fs::create_directories(folder_ / "scans" / name / "color");
+    fs::create_directories(folder_ / "scans" / name / "depth");
+  }
+  write_atomically(folder_ / "words", "x");
+  write_atomically(folder_ / "suite.yaml",
+                   "environments:\n- {sequences: '${scans}/scene*', category: scan}\n"
+                   "vocabulary: words\nsystems: [plain]\nlabels: [none]\n");
+  SuiteOverrides overrides;
+  overrides.set["scans"] = (folder_ / "scans").string();
+  const Suite suite = load_suite(folder_ / "suite.yaml", overrides);
+  Store store(folder_ / "results.sqlite");
+  store.plan(suite, overrides, {{"run", "key"}});
+  fs::remove_all(folder_ / "scans");
+  const Suite again = store.planned_suite();
+  ASSERT_EQ(again.environments.size(), 2U);
+  EXPECT_EQ(again.environments[1].sequence, suite.environments[1].sequence);
+  EXPECT_EQ(again.set, overrides.set);
+  EXPECT_EQ(again.found, suite.found);
+}
+
 TEST_F(StoreFile, NoFlippedByteChangesWhatIsExported) {
   const fs::path good = folder_ / "good.sqlite", bad = folder_ / "bad.sqlite";
   write_results(good);

@@ -43,7 +43,8 @@ std::unique_ptr<System> frozen() {
 }
 
 QueryAnswer ask(const System& system, std::size_t index) {
-  const MadeSequence frames(index + 1, [](std::size_t i, RandomStream) { return frame(i); });
+  const MadeSequence frames(
+      index + 1, [](std::size_t i, RandomStream) { return frame(i); }, BoxRoom::camera());
   return query(system, index, frames, ProtocolConfig{}, RandomStream(3));
 }
 

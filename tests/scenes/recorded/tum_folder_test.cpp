@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/run/recorded_camera.hpp"
+#include "bench/inputs/recorded_camera.hpp"
 #include "scenes/picture_file.hpp"
 #include "scenes/recorded/tum_folder.hpp"
 #include "slam/core/error.hpp"

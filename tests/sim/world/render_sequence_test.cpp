@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "bench/run/recorded_camera.hpp"
+#include "bench/inputs/recorded_camera.hpp"
 #include "scenes/recorded/frame_files.hpp"
 #include "scenes/recorded/scannet_folder.hpp"
 #include "scenes/recorded/tum_folder.hpp"

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/inputs/recorded_camera.hpp"
+
+#include <fmt/format.h>
+
+#include "slam/core/error.hpp"
+
+namespace mh {
+
+RecordedCamera recorded_camera(const Settings& settings) {
+  return {settings.camera, settings.depth_per_meter, settings.exchange_red_blue};
+}
+
+std::function<RecordedCamera(const std::filesystem::path&)> camera_reader(Settings* read) {
+  return [read](const std::filesystem::path& file) {
+    const Settings settings = load_settings(file);
+    if (!settings.has_camera)
+      throw InputError(fmt::format("{}: key 'camera' is missing", file.string()));
+    if (read != nullptr) *read = settings;
+    return recorded_camera(settings);
+  };
+}
+
+OpenedRecording open_recorded(const Environment& environment, const std::string& sequence,
+                              bool labels) {
+  return open_sequence(sequence, {.calibration = environment.settings.value_or(""),
+                                  .classes = environment.classes.value_or(""),
+                                  .labels = labels,
+                                  .read_camera = camera_reader()});
+}
+
+RecordedCamera load_recorded_camera(const std::filesystem::path& file) {
+  return recorded_camera(load_settings(file));
+}
+
+}  // namespace mh

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "slam/core/error.hpp"
+#include "slam/core/sequence.hpp"
+
+namespace mh {
+
+/// Frames of a recording that no system was shown: they cannot be read, have another size than the
+/// camera's, or stamps that do not increase.
+struct SkippedFrames {
+  static constexpr std::size_t kReasonsKept = 5;
+  std::size_t count = 0;
+  std::vector<std::string> reasons;  ///< of the first few, one line each
+  void add(std::string reason);
+  friend bool operator==(const SkippedFrames&, const SkippedFrames&) = default;
+};
+
+/// A frame that no system can be shown.
+struct UnusableFrame : InputError {
+  using InputError::InputError;
+};
+
+/// When not one of so many frames at the start can be used, nothing is to be hoped for.
+inline constexpr std::size_t kHopeless = 10;
+
+/// Frame i. @throws UnusableFrame if it cannot be read or has another size than the camera's.
+RgbdFrame usable_frame(const Sequence& sequence, std::size_t i, RandomStream noise);
+
+/// Which frames have a stamp to be shown with: the most whose stamps increase, the earlier of equal
+/// ones. So a clock that jumps for one frame costs that frame.
+std::vector<bool> increasing_stamps(const Sequence& sequence);
+
+/// Why frame i, which increasing_stamps() leaves out, is left out.
+std::string stamp_fault(const Sequence& sequence, std::size_t i);
+
+/// Reads the first kHopeless frames of a recording until one can be used.
+/// @throws InputError of the first if none can.
+void require_usable_frames(const Sequence& sequence);
+
+}  // namespace mh

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/recorded/class_map.hpp"
+
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "scenes/scannet/label_table.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/yaml.hpp"
+
+namespace mh {
+namespace {
+
+constexpr std::uint32_t kGreatest = 65535;  // of 16 bits
+
+void set(ClassMap& map, std::uint32_t id, ClassId class_id) {
+  if (id >= map.size()) map.resize(id + 1, kVoid);
+  map[id] = class_id;
+}
+
+}  // namespace
+
+ClassMap load_class_map(const std::filesystem::path& file) {
+  ClassMap map;
+  if (file.extension() == ".tsv") {
+    for (const auto& [id, class_id] : load_label_table(file).class_of_id)
+      if (id <= kGreatest) set(map, id, class_id);
+    return map;
+  }
+  YamlReader yaml = YamlReader::load(file);
+  for (const auto& [key, node] : yaml.entries()) {
+    std::uint32_t id = 0;
+    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), id);
+    if (error != std::errc() || end != key.data() + key.size() || id > kGreatest)
+      node.fail(fmt::format("'{}' is no id from 0 to {}", key, kGreatest));
+    const std::string word = node.as_string();
+    const auto class_id = word == "void" ? std::optional(kVoid) : class_by_name(word);
+    if (!class_id) node.fail(fmt::format("'{}' is no class", word));
+    set(map, id, *class_id);
+  }
+  return map;
+}
+
+}  // namespace mh

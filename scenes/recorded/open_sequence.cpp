@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/recorded/open_sequence.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "scenes/recorded/frame_sequence.hpp"
+#include "scenes/recorded/scannet_folder.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/read_record.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kReaders = {&kTumReader, &kScannetReader};
+
+/// Puts a file's content into the scopes that are open; one that is gone is noted as that.
+void note_content(const fs::path& file) {
+  try {
+    read_file(file);
+  } catch (const InputError&) {  // a frame that cannot be read is skipped, not the recording
+  }
+}
+
+}  // namespace
+
+std::span<const SequenceReader* const> sequence_readers() {
+  return kReaders;
+}
+
+std::string sequence_forms() {
+  std::string forms;
+  for (const SequenceReader* reader : kReaders)
+    forms += fmt::format("{}{}:{}", forms.empty() ? "" : ", ", reader->name, reader->place);
+  return forms;
+}
+
+std::pair<std::string, fs::path> split_sequence(const std::string& source) {
+  for (const SequenceReader* reader : kReaders)
+    if (const std::string mark = std::string(reader->name) + ":"; source.starts_with(mark))
+      return {reader->name, source.substr(mark.size())};
+  return {"", source};
+}
+
+std::string join_sequence(const std::string& layout, const fs::path& path) {
+  return layout.empty() ? path.string() : layout + ":" + path.string();
+}
+
+const SequenceReader& reader_of(const std::string& source) {
+  const auto [layout, path] = split_sequence(source);
+  for (const SequenceReader* reader : kReaders)
+    if (layout.empty() ? reader->recognizes(path) : layout == reader->name) return *reader;
+  if (!is_there(path))
+    throw InputError(fmt::format("'{}' is no folder, nor {}", source, sequence_forms()));
+  throw InputError(fmt::format("{}: {}; name its layout: {}", path.string(),
+                               is_folder(path)
+                                   ? "holds neither rgb.txt nor associations.txt nor anything else "
+                                     "that tells its layout"
+                                   : "is a file of no layout of recordings",
+                               sequence_forms()));
+}
+
+OpenedRecording open_sequence(const std::string& source, const RecordingConfig& config) {
+  const fs::path path = split_sequence(source).second;
+  if (!ReadScope::is_open()) return reader_of(source).open(path, config);
+  OpenedRecording opened;
+  std::uint64_t all = 0;
+  {
+    const ReadScope scope(ReadScope::Outer::kIsNotTold);
+    opened = reader_of(source).open(path, config);
+    std::ranges::for_each(opened.files, note_content);
+    all = digest(scope.record());
+  }
+  ReadScope::report({FileObservation::Kind::kRead, path / "recording", all});
+  return opened;
+}
+
+}  // namespace mh

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenes/recorded/tum_folder.hpp"
+#include "slam/core/sequence.hpp"
+
+namespace mh {
+
+/// How a recording is to be opened.
+struct RecordingConfig {
+  std::filesystem::path calibration;  ///< a file; empty: what lies beside the frames, or in them
+  std::filesystem::path classes;      ///< class map of its labels; empty: they are our classes
+  bool labels = true;                 ///< false: frames come without
+  /// Reads a calibration file, for layouts that leave it to one. @throws InputError
+  std::function<RecordedCamera(const std::filesystem::path&)> read_camera = {};
+};
+
+/// A recording, opened.
+struct OpenedRecording {
+  std::unique_ptr<Sequence> sequence;
+  bool has_labels = false;                   ///< it holds some, wanted or not
+  std::vector<std::filesystem::path> files;  ///< that frames are read from when they are asked for
+  std::vector<std::string> notes;            ///< what could not be used, one line each
+};
+
+/// A layout of recordings. To add one: a file with its SequenceReader, a line in the table of
+/// open_sequence.cpp, docs/recordings.md, a test.
+struct SequenceReader {
+  const char* name;   ///< before the colon: "tum"
+  const char* place;  ///< what is named behind it: "FOLDER"
+  /// Whether a path that names no layout looks like one of these. Throws nothing.
+  bool (*recognizes)(const std::filesystem::path&);
+  /// @throws InputError naming file and place.
+  OpenedRecording (*open)(const std::filesystem::path&, const RecordingConfig&);
+  /// The kind of place as the data set calls it ("Bedroom / Hotel"), "" where it tells none; null
+  /// for layouts that never tell.
+  std::string (*scene_type)(const std::filesystem::path&);
+};
+
+/// Every layout, in the order in which a path is held against them.
+std::span<const SequenceReader* const> sequence_readers();
+
+/// "tum:FOLDER or scannet:FOLDER": what a user may name.
+std::string sequence_forms();
+
+/// A recording by its name parted: the layout ("" where none is named) and the path.
+/// "C:house" names no layout: it is a path.
+std::pair<std::string, std::filesystem::path> split_sequence(const std::string& source);
+/// The same name with another path.
+std::string join_sequence(const std::string& layout, const std::filesystem::path& path);
+
+/// The layout of a recording: by its name, else by what lies there.
+/// @throws InputError if it is neither named nor recognized.
+const SequenceReader& reader_of(const std::string& source);
+
+/// Opens a recording, "LAYOUT:PATH" or a path whose layout is recognized. A ReadScope that is open
+/// notes one observation: the digest of everything that the recording is made of, each picture
+/// included, which reads all of it.
+/// @throws InputError naming file and place.
+OpenedRecording open_sequence(const std::string& source, const RecordingConfig& config);
+
+}  // namespace mh

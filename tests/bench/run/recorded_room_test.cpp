@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// A simulated tour and the recording that is written of it are the same to a run.
+#include <unistd.h>
+
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "bench/plan/suite.hpp"
+#include "bench/provenance/digest.hpp"
+#include "bench/run/run_one.hpp"
+#include "scenes/recorded/frame_files.hpp"
+#include "scenes/recorded/tum_folder.hpp"
+#include "source_dir.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kFrames = 62;
+
+World built(const RunSpec& spec) {
+  return build_world(spec, 1, Cache(MH_TEST_CACHE), [](std::string_view) {});
+}
+
+/// Depth as a file of 16 bits holds it: the one thing that a recording changes of a frame.
+void round_depth(RgbdFrame& frame) {
+  for (float& depth_m : frame.depth_m)
+    depth_m = static_cast<float>(depth_units(depth_m) / kDepthPerMeter);
+}
+
+TEST(RecordedTour, GivesTheBitsOfTheSimulationWhereThatHasNoNoise) {
+  const Suite ci = load_suite(MH_SOURCE_DIR "/bench/suites/ci.yaml", {.trials = 1});
+  RunSpec spec = expand(ci).front();
+  spec.system = {SystemKind::kSemantic, "semantic", {}};
+  spec.labels = LabelMode::kExact;
+  spec.level = MH_SOURCE_DIR "/sim/sensors/levels/ideal.yaml";
+  spec.max_frames = kFrames;
+  spec.environment.query_tour.reset();
+  const World simulated = built(spec);
+  const RunTools tools = {
+      .tamper = {.frame = [](std::size_t, RgbdFrame& f) { round_depth(f); }, .report = {}},
+      .occupancy = false};
+  const RunResult drawn = run_one(spec, simulated, tools);
+
+  const fs::path folder = fs::temp_directory_path() / fmt::format("mh_recorded_tour_{}", getpid());
+  TumWriter writer(folder, simulated.mapping->camera());
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    ExactFrame frame{.seen = simulated.mapping->frame(i, RandomStream(5).fork(i)),
+                     .classes = {},
+                     .instances = {},
+                     .world_from_camera = (*simulated.mapping->truth())[i].world_from_camera};
+    frame.classes = class_image(frame.seen.semantics);
+    frame.instances = Grid2d<InstanceId>(frame.classes.width(), frame.classes.height());
+    writer.add(i, frame);
+  }
+  writer.finish();
+  RunSpec of_recording = spec;
+  of_recording.environment = {};
+  of_recording.environment.name = "recorded";
+  of_recording.environment.sequence = "tum:" + folder.string();
+  of_recording.level = kRecordedLevel;
+  of_recording.labels = LabelMode::kRecorded;
+  const RunResult read = run_one(of_recording, built(of_recording), {.occupancy = false});
+  fs::remove_all(folder);
+
+  EXPECT_EQ(digest(read.estimate), digest(drawn.estimate));
+  EXPECT_EQ(read.estimate.size(), drawn.estimate.size());
+  ASSERT_EQ(read.mapping.calls.size(), drawn.mapping.calls.size());
+  for (std::size_t i = 0; i < read.mapping.calls.size(); ++i) {
+    EXPECT_EQ(read.mapping.calls[i].image_digest, drawn.mapping.calls[i].image_digest) << i;
+    EXPECT_EQ(read.mapping.calls[i].pose_digest, drawn.mapping.calls[i].pose_digest) << i;
+  }
+  EXPECT_NEAR(read.trajectory.ate_rmse_m.value(), drawn.trajectory.ate_rmse_m.value(), 1e-6);
+  const auto& asked = read.points.front().held_out;
+  ASSERT_EQ(asked.size(), test_frames(kFrames, spec.protocol).size());
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    EXPECT_EQ(asked[i].answer.pose_digest, drawn.points.front().held_out[i].answer.pose_digest);
+    EXPECT_EQ(asked[i].correct, drawn.points.front().held_out[i].correct);
+  }
+}
+
+}  // namespace
+}  // namespace mh

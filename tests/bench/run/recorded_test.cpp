@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recordings as environments of suites: mapped, asked about and kept as a scene is.
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "bench/inputs/inputs.hpp"
+#include "bench/inputs/run_key.hpp"
+#include "bench/provenance/digest.hpp"
+#include "bench/report/table.hpp"
+#include "bench/report/write.hpp"
+#include "bench/results/summary.hpp"
+#include "bench/run/run_one.hpp"
+#include "bench/store/store.hpp"
+#include "bench/systems/ours.hpp"
+#include "scenes/recorded/frame_files.hpp"
+#include "scenes/recorded/open_sequence.hpp"
+#include "scenes/recorded/scannet_folder.hpp"
+#include "scenes/recorded/sequence_writer.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/trajectory_io.hpp"
+#include "source_dir.hpp"
+#include "tests/slam/pipeline/box_room_slam.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+using testing_support::box_room_frame;
+using testing_support::BoxRoom;
+using testing_support::kTurnFrames;
+
+std::shared_ptr<const Vocabulary> vocabulary() {
+  static const auto trained = testing_support::box_room_vocabulary();
+  return trained;
+}
+
+ExactFrame exact_frame(int i) {
+  ExactFrame frame{
+      .seen = box_room_frame(i), .classes = {}, .instances = {}, .world_from_camera = {}};
+  frame.classes = class_image(frame.seen.semantics);
+  frame.instances =
+      Grid2d<InstanceId>(frame.classes.width(), frame.classes.height(), InstanceId{1});
+  frame.world_from_camera = BoxRoom::round_trip(i, kTurnFrames);
+  return frame;
+}
+
+/// Frames first .. last - 1 of a turn in the box room, as the bench finds them.
+void record(const fs::path& folder, const std::string& layout, int first, int last) {
+  const auto writer = make_sequence_writer(layout, folder, BoxRoom::camera());
+  for (int i = first; i < last; ++i)
+    writer->add(static_cast<std::size_t>(i - first), exact_frame(i));
+  writer->finish();
+}
+
+void write(const fs::path& file, const std::string& content) {
+  std::ofstream(file, std::ios::binary) << content;
+}
+
+/// Sixteen numbers that mark a frame without a pose.
+std::string lost() {
+  std::string text;
+  for (int i = 0; i < 16; ++i) text += "-inf ";
+  return text;
+}
+
+void expect_same(const Trajectory& a, const Trajectory& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].stamp_ns, b[i].stamp_ns);
+    EXPECT_LT((a[i].world_from_camera.inverse() * b[i].world_from_camera).log().norm(), 1e-12);
+  }
+}
+
+class Recorded : public testing::Test {
+ protected:
+  Recorded()
+      : folder_(fs::temp_directory_path() /
+                fmt::format("mh_recorded_{}_{}",
+                            testing::UnitTest::GetInstance()->current_test_info()->name(),
+                            getpid())) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    spec_.name = "semantic-recorded-recorded-0";
+    spec_.environment.name = spec_.environment.category = "room";
+    spec_.environment.sequence = "tum:" + room().string();
+    spec_.level = kRecordedLevel;
+    spec_.system = {SystemKind::kSemantic, "semantic", {}};
+    spec_.labels = LabelMode::kRecorded;
+    spec_.points = {SemanticConfig{}};
+  }
+  ~Recorded() override { fs::remove_all(folder_); }
+
+  fs::path room() const { return folder_ / "room"; }
+  World world() const {
+    return build_world(spec_, 1, Cache(), [](std::string_view) {});
+  }
+  RunResult run() const { return run(world()); }
+  RunResult run(const World& world) const {
+    return run_one(spec_, world,
+                   {.folder = folder_, .system = [](const RunSpec& spec, const World& place) {
+                      return make_our_system(
+                          place.mapping->camera(),
+                          testing_support::box_room_settings(spec.points.front()), vocabulary());
+                    }});
+  }
+  std::string key() const {
+    const std::vector<InputDigest> inputs = InputReader().inputs_of(spec_);
+    return run_key(spec_, inputs);
+  }
+
+  fs::path folder_;
+  RunSpec spec_;
+};
+
+TEST_F(Recorded, AFolderIsMappedAndItsHeldOutFramesAndASecondRecordingAreAskedAbout) {
+  record(room(), "tum", 0, 90);
+  record(folder_ / "again", "tum", 10, 75);
+  spec_.environment.queries = "tum:" + (folder_ / "again").string();
+  const World place = world();
+  EXPECT_FALSE(place.simulated);
+  const RunResult result = run(place);
+  EXPECT_EQ(result.trajectory.completeness, 1.0);
+  EXPECT_LT(result.trajectory.ate_rmse_m.value(), 0.02);
+  EXPECT_EQ(result.mapping.skipped, SkippedFrames{});
+  const PointResult& answers = result.points.front();
+  ASSERT_EQ(answers.held_out.size(), 3U);
+  ASSERT_EQ(answers.second_tour.size(), 2U);
+  for (const QuerySet set : kQuerySets)
+    for (const QueryScore& q : queries(answers, set)) {
+      EXPECT_TRUE(q.correct) << name(set) << q.answer.index;
+      EXPECT_LT(q.distance_m.value(), 0.05);
+      EXPECT_GT(q.answer.candidates->label_mass, 0.01) << "its labels are not seen";
+    }
+  EXPECT_TRUE(result.volume);
+  EXPECT_EQ(result.grid.cells.size(), 0U) << "nobody knows where the floor is";
+  EXPECT_EQ(result.place.scene, "room");
+  EXPECT_EQ(result.place.mapping.frames, 90U);
+  EXPECT_GT(result.place.mapping.length_m, 0.1);
+
+  const fs::path out = folder_ / "run";
+  write_run(out, place, result, "k1");
+  for (const char* file : {"truth.tum", "estimate.tum", "map.bt"})
+    EXPECT_TRUE(fs::exists(out / file)) << file;
+  for (const char* file : {"topdown.png", "map.pgm"}) EXPECT_FALSE(fs::exists(out / file)) << file;
+  EXPECT_FALSE(shows_another_run(out, "k1"));
+  EXPECT_TRUE(shows_another_run(out, "k2"));
+  remove_run(out);
+  EXPECT_TRUE(fs::is_empty(out));
+}
+
+TEST_F(Recorded, WithoutLabelsItsFramesHaveNoneAndTheRunIsTheSameButForThem) {
+  record(room(), "tum", 0, 40);
+  spec_.labels = LabelMode::kNone;
+  EXPECT_TRUE(world().mapping->frame(0, RandomStream()).semantics.index.empty());
+  const auto without = key();
+  spec_.labels = LabelMode::kRecorded;
+  EXPECT_FALSE(world().mapping->frame(0, RandomStream()).semantics.index.empty());
+  EXPECT_NE(key(), without);
+}
+
+TEST_F(Recorded, WithoutATruthAnswersAreSuccessesAndNothingElseIsSaid) {
+  record(room(), "tum", 0, 65);
+  fs::remove(room() / "groundtruth.txt");
+  RunResult result = run();
+  EXPECT_EQ(result.trajectory.completeness, 1.0);
+  EXPECT_FALSE(result.trajectory.ate_rmse_m || result.trajectory.ate_first_pose_m);
+  const QuerySummary s = summarize(result.points.front().held_out);
+  EXPECT_EQ(s.queries, 2);
+  EXPECT_EQ(s.success, 1);
+  EXPECT_FALSE(s.correct || s.wrong || s.distance_mean_m);
+
+  Store store(folder_ / "results.sqlite");
+  store.put("key", result, {});
+  const RunResult loaded = store.load("key", spec_);
+  EXPECT_TRUE(loaded.truth.empty());
+  expect_same(loaded.estimate, result.estimate);
+  EXPECT_FALSE(summarize(loaded.points.front().held_out).correct);
+  EXPECT_TRUE(std::isnan(loaded.place.mapping.length_m));
+
+  // The paper's way needs no truth: between the estimates before and after.
+  spec_.protocol.truth = QueryTruth::kInterpolated;
+  EXPECT_EQ(summarize(run().points.front().held_out).correct, 1.0);
+}
+
+// A tracking system tells the truth at its own rate; what is stored is what was told.
+TEST_F(Recorded, ATruthOfOtherMomentsIsAskedBetweenThem) {
+  record(room(), "tum", 0, 60);
+  Trajectory truth;
+  for (int i = 0; i < 60 * 4; ++i) {
+    const double at = 0.25 * i + 0.1;
+    const int before = static_cast<int>(at);
+    const SE3 a = BoxRoom::round_trip(before, kTurnFrames),
+              b = BoxRoom::round_trip(before + 1, kTurnFrames);
+    const double share = at - before;
+    truth.push_back({static_cast<Stamp>(at * testing_support::kFrame_ns),
+                     SE3(a.quaternion().slerp(share, b.quaternion()),
+                         (1 - share) * a.translation() + share * b.translation())});
+  }
+  write_tum(room() / "groundtruth.txt", truth);
+  const RunResult result = run();
+  EXPECT_LT(result.trajectory.ate_rmse_m.value(), 0.02);
+  ASSERT_EQ(result.points.front().held_out.size(), 2U);
+  for (const QueryScore& q : result.points.front().held_out) {
+    EXPECT_TRUE(q.correct);
+    const SE3 really = BoxRoom::round_trip(static_cast<int>(q.answer.index), kTurnFrames);
+    EXPECT_LT((q.true_world_from_camera->inverse() * really).log().norm(), 1e-3);
+  }
+  Store store(folder_ / "results.sqlite");
+  store.put("key", result, {});
+  const RunResult loaded = store.load("key", spec_);
+  expect_same(loaded.truth, result.truth);
+  expect_same(loaded.estimate, result.estimate);
+}
+
+TEST_F(Recorded, FramesThatCannotBeUsedAreSkippedAndCounted) {
+  record(room(), "tum", 0, 70);
+  const std::vector<RecordedFrame> files = load_tum_folder(room());
+  write(files[10].color, "no picture");
+  fs::remove(files[12].depth);
+  write(files[29].color, "no picture");  // a test frame
+  // The second half of another size; then a stamp that repeats and one that goes back.
+  Camera small = BoxRoom::camera();
+  small.width_px /= 2;
+  TumWriter other(folder_ / "small", small);
+  for (int i = 60; i < 65; ++i)
+    other.add({files[static_cast<std::size_t>(i)].stamp_ns,
+               Grid2d<Rgb8>(small.width_px, small.height_px),
+               Grid2d<float>(small.width_px, small.height_px, 1.0F),
+               {}});
+  other.finish();
+  for (std::size_t i = 60; i < 65; ++i)
+    fs::copy_file(folder_ / "small" / "rgb" / files[i].color.filename(), files[i].color,
+                  fs::copy_options::overwrite_existing);
+  std::string list = read_file(room() / "rgb.txt");
+  const std::size_t line = list.find('\n') + 1;
+  list += list.substr(line, list.find('\n', line) + 1 - line);  // the first frame once more
+  write(room() / "rgb.txt", list);
+
+  const RunResult result = run();
+  EXPECT_EQ(result.mapping.skipped.count, 9U);
+  EXPECT_EQ(result.mapping.skipped.reasons.size(), SkippedFrames::kReasonsKept);
+  EXPECT_NE(result.mapping.skipped.reasons[0].find(files[10].color.filename().string()),
+            std::string::npos);
+  EXPECT_EQ(result.points.front().held_out.size(), 1U);  // frame 59
+  EXPECT_EQ(result.trajectory.tracked, 61U);
+  Store store(folder_ / "results.sqlite");
+  store.put("key", result, {});
+  EXPECT_EQ(store.load("key", spec_).mapping.skipped, result.mapping.skipped);
+  Suite suite;
+  suite.environments = {spec_.environment};
+  suite.levels = {kRecordedLevel};
+  suite.systems = {spec_.system};
+  suite.labels = {LabelMode::kRecorded};
+  const std::string table = results_table(suite, std::span(&result, 1));
+  EXPECT_NE(table.find("room: 9 frames skipped, the first: "), std::string::npos) << table;
+  EXPECT_NE(table.find("differ in RANSAC's draws alone"), std::string::npos);
+}
+
+TEST_F(Recorded, ARecordingOfWhichNothingCanBeReadIsOneError) {
+  record(room(), "tum", 0, 15);
+  for (const RecordedFrame& frame : load_tum_folder(room())) write(frame.depth, "no picture");
+  try {
+    run();
+    FAIL() << "mapped";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("depth"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(require_usable_frames(*world().mapping), InputError);
+}
+
+TEST_F(Recorded, ScanNetsFramesWithoutAPoseAreMappedAndNotScored) {
+  record(room(), "scannet-frames", 0, 90);
+  spec_.environment.sequence = "scannet:" + room().string();
+  for (const int invalid : {40, 41, 59})
+    write(room() / "pose" / fmt::format("{}.txt", invalid), lost());
+  const RunResult result = run();
+  EXPECT_EQ(result.trajectory.completeness, 1.0);
+  EXPECT_LT(result.trajectory.ate_rmse_m.value(), 0.03);
+  ASSERT_EQ(result.points.front().held_out.size(), 2U);  // 29 and 89
+  EXPECT_EQ(result.points.front().held_out[1].answer.index, 89U);
+  EXPECT_TRUE(result.points.front().held_out[1].correct);
+  EXPECT_GT(result.points.front().held_out[0].answer.candidates->label_mass, 0.01);
+
+  for (int i = 0; i < 90; ++i) write(room() / "pose" / fmt::format("{}.txt", i), lost());
+  const RunResult unknown = run();
+  EXPECT_FALSE(unknown.trajectory.ate_rmse_m);
+  EXPECT_EQ(unknown.points.front().held_out.size(), 3U);
+  EXPECT_FALSE(summarize(unknown.points.front().held_out).correct);
+}
+
+TEST_F(Recorded, ACutRecordingSaysSo) {
+  record(room(), "tum", 0, 60);
+  spec_.max_frames = 40;
+  const World place = world();
+  EXPECT_TRUE(place.cut);
+  EXPECT_EQ(place.mapping->size(), 40U);
+  EXPECT_EQ(place.mapping->truth()->size(), 43U) << "what is true 0.1 s around its frames";
+  spec_.max_frames = 60;
+  EXPECT_FALSE(world().cut);
+}
+
+// ---- keys
+// ----------------------------------------------------------------------------------------
+
+/// Each file below a folder with one byte changed, in turn: the key is another, or nothing can be
+/// read any more. What is no part of the recording changes nothing.
+void expect_all_count(const fs::path& folder, const std::function<std::string()>& key,
+                      const std::function<bool(const fs::path&)>& counts) {
+  const std::string before = key();
+  EXPECT_EQ(key(), before);
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    const std::string content = read_file(entry.path());
+    for (const std::size_t at : {std::size_t{0}, content.size() / 2, content.size() - 1}) {
+      std::string changed = content;
+      changed[at] = static_cast<char>(changed[at] ^ 1);
+      write(entry.path(), changed);
+      std::string now;
+      try {
+        now = key();
+      } catch (const InputError& error) {
+        now = error.what();
+      }
+      EXPECT_EQ(now != before, counts(entry.path())) << entry.path() << ", byte " << at;
+    }
+    write(entry.path(), content);
+  }
+  EXPECT_EQ(key(), before);
+}
+
+TEST_F(Recorded, TheKeyOfARunHoldsEveryByteOfATumFolder) {
+  record(room(), "tum", 0, 2);
+  write(folder_ / "classes.yaml", "1: chair\n2: table\n");
+  spec_.environment.classes = folder_ / "classes.yaml";
+  expect_all_count(
+      folder_, [&] { return key(); },
+      [&](const fs::path& file) {
+        const std::string name = file.lexically_relative(room()).string();
+        return !name.starts_with("instance") && name != "associations.txt" &&
+               name != "camera_info.yaml" && file.filename() != ".modelhouse";
+      });
+  // What a run is built of is what its key was made of.
+  EXPECT_EQ(run_key(spec_, world().inputs), key());
+  // Where it lies is no part of it.
+  const std::string before = key();
+  fs::create_directories(folder_ / "elsewhere");
+  fs::rename(room(), folder_ / "elsewhere" / "room");
+  spec_.environment.sequence = "tum:" + (folder_ / "elsewhere" / "room").string();
+  EXPECT_EQ(key(), before);
+}
+
+TEST_F(Recorded, TheKeyOfARunHoldsEveryByteOfAScanNetRecording) {
+  record(room(), "scannet-frames", 0, 2);
+  spec_.environment.sequence = "scannet:" + room().string();
+  expect_all_count(
+      room(), [&] { return key(); },
+      [&](const fs::path& file) {
+        const std::string name = file.lexically_relative(room()).string();
+        return !name.starts_with("instance-filt") && name != "_info.txt";
+      });
+  EXPECT_EQ(run_key(spec_, world().inputs), key());
+
+  write_scannet_recording(folder_ / "sens", BoxRoom::camera(), 2,
+                          [](std::size_t i) { return exact_frame(static_cast<int>(i)); });
+  spec_.environment.sequence = "scannet:" + (folder_ / "sens").string();
+  expect_all_count(
+      folder_ / "sens", [&] { return key(); },
+      [&](const fs::path& file) {
+        return file.filename().string().find("instance-filt") == std::string::npos;
+      });
+}
+
+}  // namespace
+}  // namespace mh
