@@ -149,6 +149,7 @@ struct Place {
     place.mapping.camera = straight_path(150);
     place.second = DrivenPath{};
     place.second->camera = straight_path(90);
+    simulate(world, LabelMode::kNone);
   }
   std::vector<RunResult> run(const TamperRun& tamper = {}) const {
     std::vector<RunResult> results;
