@@ -23,10 +23,17 @@ std::function<RecordedCamera(const std::filesystem::path&)> camera_reader(Settin
 
 OpenedRecording open_recorded(const Environment& environment, const std::string& sequence,
                               bool labels) {
-  return open_sequence(sequence, {.calibration = environment.settings.value_or(""),
-                                  .classes = environment.classes.value_or(""),
-                                  .labels = labels,
-                                  .read_camera = camera_reader()});
+  Settings read;
+  OpenedRecording opened =
+      open_sequence(sequence, {.calibration = environment.settings.value_or(""),
+                               .classes = environment.classes.value_or(""),
+                               .labels = labels,
+                               .read_camera = camera_reader(&read)});
+  if (environment.settings && read.has_camera && read.slam != SlamConfig{})
+    opened.notes.push_back(
+        fmt::format("{}: its settings of SLAM do not count in a suite: name them in `slam:`",
+                    environment.settings->string()));
+  return opened;
 }
 
 RecordedCamera load_recorded_camera(const std::filesystem::path& file) {

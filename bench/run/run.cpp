@@ -40,6 +40,7 @@ namespace fs = std::filesystem;
 /// Whether frames of an environment's recordings can be had, with labels where these are wanted.
 void check_recordings(const Environment& e, LabelMode labels,
                       const std::function<void(std::string_view)>& say) {
+  std::optional<Camera> camera;
   for (const std::string& sequence : {e.sequence, e.queries.value_or("")}) {
     if (sequence.empty()) continue;
     say(fmt::format("checking {}", sequence));
@@ -48,6 +49,10 @@ void check_recordings(const Environment& e, LabelMode labels,
     if (wanted && !opened.has_labels)
       throw InputError(fmt::format("{}: holds no labels: take `labels: [none]` for it", sequence));
     require_usable_frames(*opened.sequence);
+    if (camera && *camera != opened.sequence->camera())
+      throw InputError(fmt::format("{}: was taken with another camera than {}: a system has one",
+                                   sequence, e.sequence));
+    camera = opened.sequence->camera();
     if (opened.sequence->truth() == nullptr)
       say(
           fmt::format("warning: {}: nobody tells where its camera was: answers are successes, and "

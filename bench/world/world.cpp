@@ -152,9 +152,6 @@ World open_recordings(const RunSpec& spec) {
   };
   world.mapping = open("sequence", e.sequence);
   if (e.queries) world.second = open("queries", *e.queries);
-  if (world.second && world.second->camera() != world.mapping->camera())
-    throw InputError(fmt::format("{}: was taken with another camera than {}: a system has one",
-                                 *e.queries, e.sequence));
   world.vocabulary = load_vocabulary(spec, world);
   return world;
 }

@@ -2,6 +2,7 @@
 // Recordings as environments of suites: mapped, asked about and kept as a scene is.
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -16,6 +17,7 @@
 #include "bench/report/table.hpp"
 #include "bench/report/write.hpp"
 #include "bench/results/summary.hpp"
+#include "bench/run/run.hpp"
 #include "bench/run/run_one.hpp"
 #include "bench/store/store.hpp"
 #include "bench/systems/ours.hpp"
@@ -273,6 +275,53 @@ TEST_F(Recorded, ARecordingOfWhichNothingCanBeReadIsOneError) {
     EXPECT_NE(std::string(error.what()).find("depth"), std::string::npos) << error.what();
   }
   EXPECT_THROW(require_usable_frames(*world().mapping), InputError);
+}
+
+TEST_F(Recorded, WhatCannotBeRunIsToldBeforeAnythingIsWritten) {
+  record(room(), "tum", 0, 12);
+  Suite suite;
+  suite.environments = {spec_.environment};
+  suite.levels = {kRecordedLevel};
+  suite.systems = {{SystemKind::kSemantic, "semantic", {}}};
+  suite.labels = {LabelMode::kRecorded};
+  std::vector<std::string> said;
+  const auto error = [&] {
+    try {
+      run_suite(suite, {},
+                {.out = folder_, .shard = {}, .cache = {}, .say = [&](std::string_view line) {
+                   said.emplace_back(line);
+                 }});
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  const auto expect_told = [&](const std::string& part) {
+    const std::string message = error();
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+    EXPECT_FALSE(fs::exists(folder_ / "results.sqlite"));
+  };
+  Camera other = BoxRoom::camera();
+  other.fx_px += 1;
+  TumWriter writer(folder_ / "other", other);
+  for (int i = 0; i < 3; ++i) writer.add(static_cast<std::size_t>(i), exact_frame(i));
+  writer.finish();
+  suite.environments[0].queries = "tum:" + (folder_ / "other").string();
+  expect_told("was taken with another camera than");
+  suite.environments[0].queries.reset();
+  fs::remove(room() / "label.txt");
+  expect_told("holds no labels");
+  suite.labels = {LabelMode::kNone};
+  // A settings file is the calibration alone.
+  std::string settings = read_file(room() / "camera.yaml");
+  settings.replace(settings.find("nFeatures: 1000"), 15, "nFeatures: 1700");
+  write(folder_ / "settings.yaml", settings);
+  suite.environments[0].settings = folder_ / "settings.yaml";
+  for (const RecordedFrame& frame : load_tum_folder(room())) write(frame.color, "no picture");
+  expect_told("rgb");
+  EXPECT_TRUE(std::ranges::any_of(said, [](const std::string& line) {
+    return line.find("its settings of SLAM do not count in a suite") != std::string::npos;
+  }));
 }
 
 TEST_F(Recorded, ScanNetsFramesWithoutAPoseAreMappedAndNotScored) {
