@@ -39,23 +39,6 @@ std::string run_digest(const RunResult& run) {
   return hex(sum);
 }
 
-/// Share of the pairs compared with the local map whose labels disagree: what labels are worth.
-std::optional<double> penalized(MatchCounts matches) {
-  const MatcherCounts& c = at(matches, Matcher::kLocalMap);
-  if (c.compared == 0) return std::nullopt;
-  return static_cast<double>(c.penalized) / static_cast<double>(c.compared);
-}
-
-void add_queries(const std::string& set, const QuerySummary& s, RunFigures& figures) {
-  if (s.queries == 0) return;  // nothing was asked
-  auto& values = figures.values;
-  values[set + ".queries"] = s.queries;
-  values[set + ".success"] = s.success;
-  values[set + ".correct"] = s.correct;
-  values[set + ".false"] = s.wrong;
-  values[set + ".distance_median_m"] = s.distance_median_m;
-}
-
 /// "name=digest of content", so that a file may move and still be the same.
 std::string content(std::string_view what, const std::filesystem::path& file) {
   const std::string text = is_generated(file) ? file.string() : read_file(file);
@@ -85,17 +68,14 @@ RunFigures figures(const RunResult& run) {
                      .system = system + "-" + level_name(spec.level),
                      .seed = spec.seed,
                      .digest = run_digest(run)};
-  auto& values = figures.values;
-  values["offered"] = static_cast<double>(run.trajectory.offered);
-  values["completeness"] = run.trajectory.completeness;
-  values["ate_rmse_m"] = run.trajectory.ate_rmse_m;
-  values["rpe_frame_rmse_m"] = run.trajectory.rpe_frame_rmse_m;
-  values["restarts"] = run.mapping.restarts;
-  values["penalized"] = penalized(run.mapping.matches);
-  values["dropped"] = static_cast<double>(run.mapping.dropped.size());
-  if (!run.points.empty())
-    for (const QuerySet set : kQuerySets)
-      add_queries(std::string(name(set)), summarize(queries(run.points.front(), set)), figures);
+  if (run.points.empty()) return figures;
+  // What may be judged, and what shares are of.
+  const std::vector<Figure> all = figures_of(run, 0);
+  for (const Figure& figure : all)
+    if (figure.metric.better != Better::kNeither || std::ranges::any_of(all, [&](const Figure& f) {
+          return f.metric.count == figure.metric.name;
+        }))
+      figures.values[figure.metric.name] = figure.value;
   return figures;
 }
 

@@ -97,7 +97,7 @@ ChangeVerdict judge(double change, double tolerance, Better better) {
   return (change > 0) == (better == Better::kMore) ? ChangeVerdict::kBetter : ChangeVerdict::kWorse;
 }
 
-Change compare(const Pairing& pairing, const Measure& measure, const Tolerance& tolerance) {
+Change compare(const Pairing& pairing, const Metric& measure, const Tolerance& tolerance) {
   Change c{.scenario = pairing.scenario, .system = pairing.system, .measure = &measure};
   std::vector<std::optional<double>> before, after, counts;
   std::vector<double> changes;
@@ -131,14 +131,14 @@ const Tolerance* tolerance_for(const GateConfig& config, std::string_view scenar
 }
 
 /// Whether anything was ever asked of this measure: a scenario without a second tour has none.
-bool is_asked(const Pairing& pairing, const Measure& measure) {
+bool is_asked(const Pairing& pairing, const Metric& measure) {
   return std::ranges::any_of(pairing.runs, [&](const auto& pair) {
     return pair.first->values.contains(measure.name) || pair.second->values.contains(measure.name);
   });
 }
 
 /// Whether it has a figure anywhere.
-bool occurs(const Pairing& pairing, const Measure& measure) {
+bool occurs(const Pairing& pairing, const Metric& measure) {
   return std::ranges::any_of(pairing.runs, [&](const auto& pair) {
     return figure(*pair.first, measure.name) || figure(*pair.second, measure.name);
   });
@@ -187,7 +187,8 @@ GateResult compare(std::span<const RunFigures> baseline, std::span<const RunFigu
       else if (same_origin)
         result.unrepeatable.push_back(run_name(*after));
     }
-    for (const Measure& measure : measures()) {
+    for (const Metric& measure : all_metrics()) {
+      if (measure.better == Better::kNeither) continue;
       const Tolerance* tolerance = tolerance_for(config, pairing.scenario, measure.name);
       if (tolerance == nullptr) continue;
       if (occurs(pairing, measure))

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bench/check/figures.hpp"
+#include "bench/metrics/measures.hpp"
 #include "bench/plan/gate_config.hpp"
-#include "bench/plan/measures.hpp"
 
 namespace mh {
 
@@ -18,7 +18,7 @@ std::string_view name(ChangeVerdict verdict);
 
 struct Change {
   std::string scenario, system;
-  const Measure* measure = nullptr;
+  const Metric* measure = nullptr;
   std::size_t pairs = 0;                          ///< seeds
   std::optional<double> before = {}, after = {};  ///< medians over the seeds that have the figure
   /// Median over the seeds of after - before. Infinite where most seeds lost or gained the figure:

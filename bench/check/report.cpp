@@ -28,10 +28,11 @@ std::string sentence(const Change& c) {
         "{}, {}: {} {} in most runs ({} -> {})", c.scenario, c.system, c.measure->name,
         c.verdict == ChangeVerdict::kWorse ? "is undetermined now" : "is determined now",
         shown(c.before), shown(c.after));
+  const std::string_view unit = c.measure->unit == "%" ? "" : c.measure->unit;
   return fmt::format("{}, {}: {} {} by {:.4f}{}{} ({} -> {}; tolerance {:.4f}, {})", c.scenario,
                      c.system, c.measure->name, c.change > 0 ? "rose" : "fell", std::abs(c.change),
-                     c.measure->unit.empty() ? "" : " ", c.measure->unit, shown(c.before),
-                     shown(c.after), c.tolerance, counted(c.pairs, "seed"));
+                     unit.empty() ? "" : " ", unit, shown(c.before), shown(c.after), c.tolerance,
+                     counted(c.pairs, "seed"));
 }
 
 std::string list(const GateResult& result, ChangeVerdict verdict, const std::string& heading) {

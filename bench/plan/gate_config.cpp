@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/plan/measures.hpp"
+#include "bench/metrics/measures.hpp"
 
 namespace mh {
 namespace {

@@ -25,7 +25,7 @@ LoopAudit audit_loops(std::span<const LoopClosure> loops, const Trajectory& trut
     const double angle_rad = angle_between_rad(loop.old_from_new, exact);
     audit.worst_m = std::max(audit.worst_m, distance_m);
     audit.worst_rad = std::max(audit.worst_rad, angle_rad);
-    audit.wrong += distance_m > config.correct_distance_m || angle_rad > most_rad ? 1 : 0;
+    audit.false_positive += distance_m > config.correct_distance_m || angle_rad > most_rad ? 1 : 0;
   }
   return audit;
 }

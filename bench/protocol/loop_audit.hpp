@@ -5,17 +5,17 @@
 
 #include "bench/protocol/config.hpp"
 #include "slam/core/trajectory.hpp"
-#include "slam/pipeline/report.hpp"
+#include "slam/loop/closure.hpp"
 
 namespace mh {
 
 /// What became of the loops that a system closed.
 struct LoopAudit {
   int closed = 0;
-  int wrong = 0;         ///< farther from the truth than a correct answer may be
-  int unknown = 0;       ///< between moments of which the truth knows nothing: not judged
-  double worst_m = 0;    ///< largest error of a loop's relative position
-  double worst_rad = 0;  ///< and of its relative rotation
+  int false_positive = 0;  ///< farther from the truth than a correct answer may be
+  int unknown = 0;         ///< between moments of which the truth knows nothing: not judged
+  double worst_m = 0;      ///< largest error of a loop's relative position
+  double worst_rad = 0;    ///< and of its relative rotation
   friend bool operator==(const LoopAudit&, const LoopAudit&) = default;
 };
 

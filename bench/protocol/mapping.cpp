@@ -88,7 +88,7 @@ MappingOutcome map_sequence(System& system, const Sequence& sequence, const Prot
     }
     const RandomStream draws =
         stream.fork(kSlam).fork(static_cast<std::uint64_t>(outcome.restarts)).fork(i);
-    const StepReport report = system.track(frame, draws);
+    const SystemReport report = system.track(frame, draws);
     outcome.calls.push_back({.index = i,
                              .stamp_ns = frame.stamp_ns,
                              .restart = outcome.restarts,

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "bench/protocol/config.hpp"
 #include "bench/protocol/system.hpp"
 #include "bench/protocol/usable_frame.hpp"
+#include "bench/provenance/digest.hpp"
 #include "slam/core/sequence.hpp"
 
 namespace mh {
@@ -18,32 +20,63 @@ struct MappedFrame {
   Stamp stamp_ns = 0;
   int restart = 0;  ///< restarts so far: it keys the random streams
   TrackStatus status = TrackStatus::kLost;
-  int inliers = 0;
+  std::optional<int> inliers;  ///< where the system tells
   bool keyframe_added = false;
   std::uint64_t image_digest = 0;
   std::uint64_t matching_digest = 0;
   std::uint64_t pose_digest = 0;
 };
 
+template <Either<MappedFrame> F, class Visit>
+void fields(F& call, Visit& v) {
+  auto& [index, stamp_ns, restart, status, inliers, keyframe_added, image_digest, matching_digest,
+         pose_digest] = call;
+  v("frame", index);
+  v("stamp_ns", stamp_ns);
+  v("restart", restart);
+  v("status", status);
+  v("inliers", inliers);
+  v("keyframe", keyframe_added);
+  v("image", as_digest(image_digest));
+  v("matching", as_digest(matching_digest));
+  v("pose", as_digest(pose_digest));
+}
+
 struct MappingOutcome {
   std::vector<MappedFrame> calls;
-  std::vector<std::size_t> dropped;  ///< frames removed after too many failed restarts, in order
-  int failures = 0;                  ///< times that tracking was lost
-  int restarts = 0;                  ///< rewinds
-  int before_map = 0;                ///< frames at the start that gave no map yet
-  bool gave_up = false;              ///< ProtocolConfig::max_effort was spent
-  std::size_t offered = 0;           ///< frames of the sequence that are no test frames
-  MatchCounts matches{};             ///< summed over all track calls
-  std::vector<LoopClosure> loops;    ///< closed on the way, in order
-  SkippedFrames skipped;             ///< of those offered; queries' are counted by the run
+  std::vector<std::size_t> dropped;    ///< frames removed after too many failed restarts, in order
+  int failures = 0;                    ///< times that tracking was lost
+  int restarts = 0;                    ///< rewinds
+  int before_map = 0;                  ///< frames at the start that gave no map yet
+  bool gave_up = false;                ///< ProtocolConfig::max_effort was spent
+  std::size_t offered = 0;             ///< frames of the sequence that are no test frames
+  std::optional<MatchCounts> matches;  ///< summed over all track calls, where the system tells
+  std::vector<LoopClosure> loops;      ///< closed on the way, in order
+  SkippedFrames skipped;               ///< of those offered; queries' are counted by the run
 };
+
+/// But for the calls.
+template <Either<MappingOutcome> O, class Visit>
+void fields(O& outcome, Visit& v) {
+  auto& [calls, dropped, failures, restarts, before_map, gave_up, offered, matches, loops,
+         skipped] = outcome;
+  v("dropped", dropped);
+  v("failures", failures);
+  v("restarts", restarts);
+  v("before_map", before_map);
+  v("gave_up", gave_up);
+  v("offered", offered);
+  v("matches", matches);
+  v("loops", loops);
+  v("skipped", skipped);
+}
 
 /// Test frames are the last of every `test_interval`: 29, 59, ... at 30.
 bool is_test_frame(std::size_t index, const ProtocolConfig& config);
 
 /// Frame and report of a track call as it happens: for progress and for keeping keyframe depth.
 using MappingObserver =
-    std::function<void(const MappedFrame&, const RgbdFrame&, const StepReport&)>;
+    std::function<void(const MappedFrame&, const RgbdFrame&, const SystemReport&)>;
 
 /// Maps a sequence (section 3.1 of the paper). A failure is a frame reported lost while tracking
 /// was on, or a frame reported lost at which the feed had failed before. After a failure at frame i

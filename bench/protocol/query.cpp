@@ -56,7 +56,7 @@ QueryAnswer query(const System& frozen, std::size_t index, const Sequence& seque
       answer.blank_frames =
           lose(*session, frame, config.max_blank_frames, stream.fork(kBlank).fork(index));
 
-    const StepReport report = session->feed(frame, draws.fork(key));
+    const SystemReport report = session->feed(frame, draws.fork(key));
     ++answer.attempts;
     answer.stage = std::max(answer.stage, report.relocalization);
     if (attempt == 0) answer.candidates = report.candidates;

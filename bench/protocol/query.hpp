@@ -16,14 +16,31 @@ struct QueryAnswer {
   int blank_frames = 0;                  ///< shown until the system was lost
   int attempts = 0;                      ///< times that the test frame was shown
   std::optional<SE3> world_from_camera;  ///< the first pose that was returned
-  /// The furthest stage that an attempt reached; kVerified where a pose was returned.
-  RelocalizationStage stage = RelocalizationStage::kNone;
-  std::optional<CandidateCounts> candidates;  ///< of the first attempt
-  MatchCounts matches{};                      ///< summed over attempts
-  std::uint64_t image_digest = 0;             ///< chained over attempts
+  /// The furthest stage that an attempt reached, where the system tells; kVerified where a pose was
+  /// returned.
+  std::optional<RelocalizationStage> stage;
+  Candidates candidates;               ///< of the first attempt
+  std::optional<MatchCounts> matches;  ///< summed over attempts
+  std::uint64_t image_digest = 0;      ///< chained over attempts
   std::uint64_t matching_digest = 0;
   std::uint64_t pose_digest = 0;
 };
+
+template <Either<QueryAnswer> A, class Visit>
+void fields(A& answer, Visit& v) {
+  auto& [index, blank_frames, attempts, world_from_camera, stage, candidates, matches, image_digest,
+         matching_digest, pose_digest] = answer;
+  v("frame", index);
+  v("blank_frames", blank_frames);
+  v("attempts", attempts);
+  v("estimate", world_from_camera);
+  v("stage", stage);
+  v("candidates", candidates);
+  v("matchers", matches);
+  v("image", as_digest(image_digest));
+  v("matching", as_digest(matching_digest));
+  v("pose", as_digest(pose_digest));
+}
 
 /// A black picture without depth or labels: what the paper shows between test frames.
 RgbdFrame blank_frame(int width_px, int height_px, Stamp stamp_ns);

@@ -93,7 +93,7 @@ QueryScore score(const QueryAnswer& answer, const QueryMoment& moment,
     s.correct =
         *s.distance_m <= config.correct_distance_m && *s.angle_deg <= config.correct_angle_deg;
   }
-  s.wrong = is_judged(s) && !s.correct;
+  s.false_positive = is_judged(s) && !s.correct;
   return s;
 }
 

@@ -76,11 +76,27 @@ struct QueryScore {
   bool success = false;                            ///< a pose was returned (the paper's measure)
   // Both false where the answer cannot be judged.
   bool correct = false;  ///< and lies within the limits of the protocol
-  bool wrong = false;    ///< returned, and outside them (or nothing was mapped to compare with)
+  bool false_positive =
+      false;  ///< returned, and outside them (or nothing was mapped to compare with)
   // Absent where nothing was answered, or nothing was mapped that an answer may be compared with.
   std::optional<double> distance_m = {}, angle_deg = {};  ///< to the local truth
   std::optional<double> aligned_distance_m = {};  ///< to the truth after aligning the trajectory
 };
+
+template <Either<QueryScore> S, class Visit>
+void fields(S& score, Visit& v) {
+  auto& [answer, stamp_ns, true_world_from_camera, success, correct, false_positive, distance_m,
+         angle_deg, aligned_distance_m] = score;
+  fields(answer, v);
+  v("stamp_ns", stamp_ns);
+  v("truth", true_world_from_camera);
+  v("success", success);
+  v("correct", correct);
+  v("false_positive", false_positive);
+  v("distance_m", distance_m);
+  v("angle_deg", angle_deg);
+  v("aligned_distance_m", aligned_distance_m);
+}
 
 /// Whether it is known if an answer was correct: there is a truth, or a distance without one
 /// (QueryTruth::kInterpolated).

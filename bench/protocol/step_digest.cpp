@@ -6,6 +6,8 @@
 namespace mh {
 namespace {
 
+constexpr int kUntold = -1;  ///< no count
+
 template <class T>
 std::uint64_t digest_value(const T& value, std::uint64_t seed) {
   return digest_bytes(&value, sizeof value, seed);
@@ -13,19 +15,23 @@ std::uint64_t digest_value(const T& value, std::uint64_t seed) {
 
 }  // namespace
 
-std::uint64_t digest_of_matching(const StepReport& report) {
-  const int numbers[] = {static_cast<int>(report.status), report.keypoints, report.inliers,
-                         report.keyframe_added ? 1 : 0, static_cast<int>(report.relocalization)};
+std::uint64_t digest_of_matching(const SystemReport& report) {
+  const int numbers[] = {
+      static_cast<int>(report.status), report.keypoints.value_or(kUntold),
+      report.inliers.value_or(kUntold), report.keyframe_added ? 1 : 0,
+      report.relocalization ? static_cast<int>(*report.relocalization) : kUntold};
   std::uint64_t d = digest_value(numbers, 0);
-  for (const MatcherCounts& counts : report.matches) {
+  for (const MatcherCounts& counts : report.matches.value_or(MatchCounts{})) {
     const std::int64_t c[] = {counts.compared, counts.penalized, counts.rejected_by_xi,
                               counts.ratio_helped};
     d = digest_value(c, d);
   }
-  if (report.candidates) {
-    const CandidateCounts& c = *report.candidates;
-    const int counts[] = {c.keyframes, c.c1, c.c2, c.c3, c.final};
-    d = digest_value(c.label_mass, digest_value(counts, d));
+  if (report.candidates != Candidates{}) {
+    const Candidates& c = report.candidates;
+    const int counts[] = {c.keyframes.value_or(kUntold), c.c1.value_or(kUntold),
+                          c.c2.value_or(kUntold), c.c3.value_or(kUntold),
+                          c.final.value_or(kUntold)};
+    d = digest_value(c.label_mass.value_or(kUntold), digest_value(counts, d));
   }
   return d;
 }

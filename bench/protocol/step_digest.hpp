@@ -3,11 +3,11 @@
 
 #include <cstdint>
 
-#include "slam/pipeline/report.hpp"
+#include "bench/protocol/report.hpp"
 
 namespace mh {
 
 /// Everything that a step said of its matching and relocalizing, the pose apart.
-std::uint64_t digest_of_matching(const StepReport& report);
+std::uint64_t digest_of_matching(const SystemReport& report);
 
 }  // namespace mh

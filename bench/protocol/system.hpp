@@ -4,11 +4,11 @@
 #include <memory>
 #include <string>
 
+#include "bench/protocol/report.hpp"
 #include "slam/config/semantics.hpp"
 #include "slam/core/random.hpp"
 #include "slam/core/rgbd_frame.hpp"
 #include "slam/core/trajectory.hpp"
-#include "slam/pipeline/report.hpp"
 
 namespace mh {
 
@@ -18,7 +18,7 @@ class RelocalizationSession {
  public:
   virtual ~RelocalizationSession() = default;
   /// Shows one frame. A report whose status is not kLost carries a pose.
-  virtual StepReport feed(const RgbdFrame& frame, RandomStream stream) = 0;
+  virtual SystemReport feed(const RgbdFrame& frame, RandomStream stream) = 0;
 };
 
 /// What a system keeps of one query between sessions that differ in settings alone; opaque. It
@@ -28,17 +28,13 @@ class QueryMemo {
   virtual ~QueryMemo() = default;
 };
 
-/// In counts of inliers and candidates: what a system did not tell. An unknown label mass is no
-/// number.
-inline constexpr int kUnknownCount = -1;
-
 /// A SLAM system under test, as the protocol drives it. It sees frames and nothing else.
 class System {
  public:
   virtual ~System() = default;
 
   /// Processes the next frame, mapping included. All random draws come from the stream.
-  virtual StepReport track(const RgbdFrame& frame, RandomStream stream) = 0;
+  virtual SystemReport track(const RgbdFrame& frame, RandomStream stream) = 0;
   /// The feed goes back in time: tracking counts as lost, the map stays.
   virtual void rewind() = 0;
   /// Forgets everything, the map too.

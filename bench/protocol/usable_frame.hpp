@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slam/core/error.hpp"
+#include "slam/core/fields.hpp"
 #include "slam/core/sequence.hpp"
 
 namespace mh {
@@ -19,6 +20,13 @@ struct SkippedFrames {
   void add(std::string reason);
   friend bool operator==(const SkippedFrames&, const SkippedFrames&) = default;
 };
+
+template <Either<SkippedFrames> S, class Visit>
+void fields(S& skipped, Visit& v) {
+  auto& [count, reasons] = skipped;
+  v("frames", count);
+  v("reasons", reasons);
+}
 
 /// A frame that no system can be shown.
 struct UnusableFrame : InputError {

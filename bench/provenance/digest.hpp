@@ -23,6 +23,18 @@ std::uint64_t digest(const Trajectory& trajectory);
 /// 16 hexadecimal digits.
 std::string hex(std::uint64_t digest);
 
+/// Marks a digest in a list of fields (slam/core/fields.hpp).
+template <class T>
+struct Digest {
+  T& value;
+};
+inline Digest<std::uint64_t> as_digest(std::uint64_t& value) {
+  return {value};
+}
+inline Digest<const std::uint64_t> as_digest(const std::uint64_t& value) {
+  return {value};
+}
+
 /// xxh3-128 of a text, in hexadecimal.
 std::string text_key(std::string_view text);
 

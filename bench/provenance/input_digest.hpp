@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "bench/provenance/digest.hpp"
+#include "slam/core/fields.hpp"
+
 namespace mh {
 
 /// A file that was read, by its name and the xxh3-64 of its content.
@@ -14,6 +17,13 @@ struct FileDigest {
   std::uint64_t digest = 0;
   friend auto operator<=>(const FileDigest&, const FileDigest&) = default;
 };
+
+template <Either<FileDigest> F, class Visit>
+void fields(F& file_digest, Visit& v) {
+  auto& [file, digest] = file_digest;
+  v("file", file);
+  v("digest", as_digest(digest));
+}
 
 /// Something that the results depend on.
 struct InputDigest {
@@ -26,5 +36,13 @@ struct InputDigest {
   std::vector<FileDigest> files = {};  ///< that were read, sorted, each once
   friend bool operator==(const InputDigest&, const InputDigest&) = default;
 };
+
+template <Either<InputDigest> I, class Visit>
+void fields(I& input, Visit& v) {
+  auto& [name, digest, files] = input;
+  v("name", name);
+  v("digest", as_digest(digest));
+  v("files", files);
+}
 
 }  // namespace mh

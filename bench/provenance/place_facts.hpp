@@ -17,6 +17,16 @@ struct PathFacts {
   double length_m = 0, turned_in_place_rad = 0, contact_time_s = 0, max_penetration_m = 0;
 };
 
+template <Either<PathFacts> P, class Visit>
+void fields(P& path, Visit& v) {
+  auto& [frames, length_m, turned_in_place_rad, contact_time_s, max_penetration_m] = path;
+  v("frames", frames);
+  v("length_m", length_m);
+  v("turned_in_place_rad", turned_in_place_rad);
+  v("contact_time_s", contact_time_s);
+  v("max_penetration_m", max_penetration_m);
+}
+
 /// What a run says of its surroundings, so that results need no world beside them.
 struct PlaceFacts {
   std::string scene, robot;  ///< their names
@@ -27,5 +37,21 @@ struct PlaceFacts {
   bool cut = false;  ///< the tours were cut after RunSpec::max_frames
   std::vector<InputDigest> inputs;
 };
+
+template <Either<PlaceFacts> P, class Visit>
+void fields(P& place, Visit& v) {
+  auto& [scene, robot, scene_digest, path_digest, vocabulary_digest, vocabulary_words, mapping,
+         second, cut, inputs] = place;
+  v("scene", scene);
+  v("robot", robot);
+  v("scene_digest", as_digest(scene_digest));
+  v("path_digest", as_digest(path_digest));
+  v("vocabulary_digest", as_digest(vocabulary_digest));
+  v("vocabulary_words", vocabulary_words);
+  v("mapping_tour", mapping);
+  v("query_tour", second);
+  v("cut", cut);
+  v("inputs", inputs);
+}
 
 }  // namespace mh

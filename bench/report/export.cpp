@@ -31,8 +31,25 @@ std::string latex_cell(std::string_view text) {
   return safe;
 }
 
-std::string cell(const std::optional<double>& value, const char* format = "{:.4f}") {
-  return value ? fmt::format(fmt::runtime(format), *value) : std::string("--");
+/// "& ATE m & RPE m/fr": the figures of an overview.
+template <class Score>
+std::string latex_overview_headings() {
+  std::string text;
+  for (const Figure& figure : figures_of(Score()))
+    if (figure.metric.in_overview) text += " & " + latex_cell(figure.metric.heading);
+  return text;
+}
+
+std::string latex_overview(const std::vector<Figure>& figures, bool known) {
+  std::string text;
+  for (const Figure& figure : figures) {
+    if (!figure.metric.in_overview) continue;
+    std::string cell = known ? shown(figure) : "-";
+    if (cell == "-") cell = "--";
+    if (cell.ends_with('%')) cell.replace(cell.size() - 1, 1, "\\,\\%");
+    text += " & " + cell;
+  }
+  return text;
 }
 
 nlohmann::ordered_json to_json(const Store::Value& value) {
@@ -106,12 +123,12 @@ std::string export_latex(const Store& store) {
   const Suite suite = store.planned_suite();
   const BenchResults results = load_results(store, suite);
   const std::vector<SlamConfig> points = parameter_points(suite);
-  std::string text = fmt::format(
-      "\\begin{{tabular}}{{llll{0}lrrrlrrr}}\n\\toprule\n"
-      "environment & level & labels & system & {1}trials & complete & ATE (m) & RPE (m) & queries "
-      "& "
-      "success & correct & distance (m) \\\\\n\\midrule\n",
-      std::string(suite.sweep.varied.size(), 'r'), latex_headings(suite.sweep));
+  std::string headings = "environment & level & labels & system & " + latex_headings(suite.sweep) +
+                         "trials" + latex_overview_headings<TrajectoryScore>() + " & queries" +
+                         latex_overview_headings<QuerySummary>();
+  const auto columns = static_cast<std::size_t>(std::ranges::count(headings, '&')) + 1;
+  std::string text = fmt::format("\\begin{{tabular}}{{llll{}}}\n\\toprule\n{} \\\\\n\\midrule\n",
+                                 std::string(columns - 4, 'r'), headings);
   for (const Row& row : make_rows(suite, results.runs, results.failed)) {
     const SystemSpec& system = suite.systems[row.system];
     const SlamConfig seen = settings_of(system, points[row.parameters]);
@@ -129,20 +146,18 @@ std::string export_latex(const Store& store) {
     head += row.trials.size() == trials ? fmt::format("{}", trials)
                                         : fmt::format("{} of {}", row.trials.size(), trials);
     if (row.failed > 0) head += fmt::format(", {} failed", row.failed);
-    const auto share = [](double value) { return fmt::format("{:.2f}\\,\\%", 100 * value); };
-    head += fmt::format(
-        " & {} & {} & {}", row.trials.empty() ? "--" : share(row.trajectory.completeness),
-        cell(row.trajectory.ate_rmse_m), cell(row.trajectory.rpe_frame_rmse_m, "{:.5f}"));
+    head += latex_overview(figures_of(row.trajectory), !row.trials.empty());
+    const auto add_row = [&](std::string_view set, const QuerySummary& summary) {
+      text += head + " & " + latex_cell(set) +
+              latex_overview(figures_of(summary), summary.queries > 0) + " \\\\\n";
+    };
     bool asked = false;
     for (const QuerySet set : kQuerySets) {
-      const QuerySummary& s = summary(row, set);
-      if (s.queries == 0) continue;
+      if (summary(row, set).queries == 0) continue;
       asked = true;
-      text += fmt::format("{} & {} & {} & {} & {} \\\\\n", head, latex_cell(name(set)),
-                          share(s.success), s.correct ? share(*s.correct) : "--",
-                          cell(s.distance_mean_m));
+      add_row(name(set), summary(row, set));
     }
-    if (!asked) text += head + " & -- & -- & -- & -- \\\\\n";
+    if (!asked) add_row("--", {});
   }
   return text + "\\bottomrule\n\\end{tabular}\n";
 }

@@ -9,7 +9,7 @@
 
 namespace mh {
 
-inline constexpr const char* kResultsFormat = "modelhouse-results-3";
+inline constexpr const char* kResultsFormat = "modelhouse-results-4";
 
 /// Everything about a suite's results that is a function of suite, binary and seeds: the resolved
 /// settings, digests, one entry per run with its queries, the rows of the table, the comparisons.

@@ -46,7 +46,8 @@ std::optional<double> in_percent(const std::optional<double>& share) {
 std::vector<PanelMeasure> panel_measures() {
   return {
       {"correct answers, %", kGood, 1, [](const QuerySummary& s) { return in_percent(s.correct); }},
-      {"false answers, %", kBad, 1, [](const QuerySummary& s) { return in_percent(s.wrong); }},
+      {"false answers, %", kBad, 1,
+       [](const QuerySummary& s) { return in_percent(s.false_positive); }},
       {"mean distance, mm", kBad, 1, [](const QuerySummary& s) -> std::optional<double> {
          if (!s.distance_mean_m) return std::nullopt;
          return 1e3 * *s.distance_mean_m;

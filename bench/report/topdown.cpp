@@ -187,10 +187,10 @@ void draw_query(Canvas& canvas, const PlanView& view, const QueryScore& q,
   const Eigen::Vector2d at = q.true_world_from_camera->translation().head<2>();
   const cv::Point2d truth = view(at);
   if (q.success) {
-    const Rgb8 color = q.wrong ? kBad : kGood;
+    const Rgb8 color = q.false_positive ? kBad : kGood;
     const SE3 plan_from_answer = plan_from_estimate * *q.answer.world_from_camera;
     const Eigen::Vector2d p = plan_from_answer.translation().head<2>();
-    if (q.wrong) canvas.line(truth, view(up_to_the_edge(view.bounds, at, p)), kBad, 1);
+    if (q.false_positive) canvas.line(truth, view(up_to_the_edge(view.bounds, at, p)), kBad, 1);
     if (view.bounds.contain(p)) {
       canvas.ring(view(p), kRing, color, kStroke);
       draw_heading(canvas, view(p), plan_from_answer, kRing, color);
@@ -205,7 +205,7 @@ void draw_query(Canvas& canvas, const PlanView& view, const QueryScore& q,
 /// picture is looked at for.
 void draw_queries(Canvas& canvas, const PlanView& view, const std::vector<QueryScore>& queries,
                   const SE3& plan_from_estimate) {
-  const auto rank = [](const QueryScore& q) { return !q.success ? 1 : q.wrong ? 2 : 0; };
+  const auto rank = [](const QueryScore& q) { return !q.success ? 1 : q.false_positive ? 2 : 0; };
   for (int of = 0; of <= 2; ++of)
     for (const QueryScore& q : queries)
       if (rank(q) == of) draw_query(canvas, view, q, plan_from_estimate);
@@ -337,13 +337,12 @@ cv::Mat draw_topdown(const World& world, const RunResult& run, QuerySet set) {
   draw_slice(canvas, view, walls, kWall, 2.2);
   draw_room_names(canvas, view, *world.simulated->scene, marks(view, world, run, set, furniture));
   draw_path(canvas, view, world.simulated->mapping.camera, SE3(), kTruth, kTruthWidth);
-  draw_path(canvas, view, run.estimate, run.trajectory.dock_from_estimate, kEstimate,
-            kEstimateWidth);
-  draw_queries(canvas, view, queries(run.points.front(), set), run.trajectory.dock_from_estimate);
+  draw_path(canvas, view, run.estimate, run.frames.dock_from_estimate, kEstimate, kEstimateWidth);
+  draw_queries(canvas, view, queries(run.points.front(), set), run.frames.dock_from_estimate);
   draw_header(canvas, world, run, set);
   const double legend_y = kHeader + plan_height + 36;
   const auto apart_m = farthest_apart_m(world.simulated->mapping.camera, run.estimate,
-                                        run.trajectory.dock_from_estimate);
+                                        run.frames.dock_from_estimate);
   draw_legend(canvas, legend_y,
               apart_m ? fmt::format(", at most {:.3f} m off", *apart_m) : std::string(),
               !queries(run.points.front(), set).empty(), !run.grid.cells.empty());

@@ -9,7 +9,7 @@
 namespace mh {
 namespace {
 
-std::optional<double> mean_of_known(const std::vector<std::optional<double>>& values) {
+std::optional<double> mean_of_known(std::span<const std::optional<double>> values) {
   std::vector<double> known;
   for (const auto& value : values)
     if (value) known.push_back(*value);
@@ -20,9 +20,7 @@ QuerySummary mean_summary(const std::vector<const Row*>& scenes, QuerySet set) {
   std::vector<QuerySummary> all;
   for (const Row* row : scenes)
     if (summary(*row, set).queries > 0) all.push_back(summary(*row, set));
-  if (all.empty()) return {};
-  return reduce(
-      all, [](const std::vector<double>& values) { return mean(values); }, mean_of_known);
+  return reduce(std::span(std::as_const(all)), mean_of_known);
 }
 
 bool has_result(const Row* row) {
@@ -43,16 +41,9 @@ CategoryRow together(std::string category, std::vector<const Row*> scenes, std::
   c.parameters = any.parameters;
   c.labels = any.labels;
   c.scenes = scenes.size();
-  std::vector<double> completeness;
-  std::vector<std::optional<double>> ate, rpe;
-  for (const Row* row : scenes) {
-    completeness.push_back(row->trajectory.completeness);
-    ate.push_back(row->trajectory.ate_rmse_m);
-    rpe.push_back(row->trajectory.rpe_frame_rmse_m);
-  }
-  c.completeness = mean(completeness);
-  c.ate_rmse_m = mean_of_known(ate);
-  c.rpe_frame_rmse_m = mean_of_known(rpe);
+  std::vector<TrajectoryScore> trajectories;
+  for (const Row* row : scenes) trajectories.push_back(row->trajectory);
+  c.trajectory = reduce(std::span(std::as_const(trajectories)), mean_of_known);
   c.held_out = mean_summary(scenes, QuerySet::kHeldOut);
   c.second_tour = mean_summary(scenes, QuerySet::kSecondTour);
   return c;
@@ -78,7 +69,7 @@ std::vector<const Row*> scenes_of(const Suite& suite, std::span<const Row> rows,
 }
 
 /// First minus second in one scene.
-using Measure = PairedDifference (*)(const Row&, const Row&, QuerySet);
+using Difference = PairedDifference (*)(const Row&, const Row&, QuerySet);
 
 template <auto QuerySummary::*kField>
 PairedDifference share(const Row& a, const Row& b, QuerySet set) {
@@ -100,12 +91,12 @@ std::vector<Comparison> compare(const std::vector<const Row*>& first,
                                 const std::vector<const Row*>& second, LabelMode labels,
                                 std::uint64_t seed) {
   std::vector<Comparison> comparisons;
-  const auto add = [&](const std::string& what, Measure measure, QuerySet set, bool shares,
+  const auto add = [&](const std::string& what, Difference between_rows, QuerySet set, bool shares,
                        bool more_is_better, bool in_family) {
     std::vector<PairedDifference> differences;
     for (std::size_t i = 0; i < first.size(); ++i)
       differences.push_back(has_result(first[i]) && has_result(second[i])
-                                ? measure(*first[i], *second[i], set)
+                                ? between_rows(*first[i], *second[i], set)
                                 : PairedDifference{});
     comparisons.push_back(compare_scenes(what, differences, shares, seed));
     comparisons.back().more_is_better = more_is_better;
@@ -118,7 +109,7 @@ std::vector<Comparison> compare(const std::vector<const Row*>& first,
     };
     add(what("success"), share<&QuerySummary::success>, set, true, true, true);
     add(what("correct"), share<&QuerySummary::correct>, set, true, true, false);
-    add(what("false"), share<&QuerySummary::wrong>, set, true, false, false);
+    add(what("false positive"), share<&QuerySummary::false_positive>, set, true, false, false);
     add(what("distance where both answer, m"), distance, set, false, false, true);
   }
   add(fmt::format("ATE where both track, m, {}", with_labels(labels)), ate, QuerySet::kHeldOut,

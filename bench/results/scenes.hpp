@@ -19,12 +19,11 @@ struct CategoryRow {
   std::string category;
   std::size_t level = 0, system = 0, parameters = 0;
   LabelMode labels = LabelMode::kNone;
-  std::size_t scenes = 0;  ///< where the system has a result: what all below is over; may be 0
-  std::size_t of = 0;      ///< scenes of the category in the suite
-  std::size_t failed = 0;  ///< runs that failed, in all of them
-  double completeness = 0;
-  std::optional<double> ate_rmse_m, rpe_frame_rmse_m;  ///< over the scenes that have one
-  QuerySummary held_out, second_tour;                  ///< over the scenes with such queries
+  std::size_t scenes = 0;      ///< where the system has a result: what all below is over; may be 0
+  std::size_t of = 0;          ///< scenes of the category in the suite
+  std::size_t failed = 0;      ///< runs that failed, in all of them
+  TrajectoryScore trajectory;  ///< each figure over the scenes that have it
+  QuerySummary held_out, second_tour;  ///< over the scenes with such queries
 };
 inline const QuerySummary& summary(const CategoryRow& row, QuerySet set) {
   return set == QuerySet::kHeldOut ? row.held_out : row.second_tour;

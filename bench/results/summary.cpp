@@ -3,57 +3,41 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "bench/results/trajectory_score.hpp"
+#include "bench/metrics/measures.hpp"
 
 namespace mh {
 namespace {
 
-template <class Get>
-double median_over(const std::vector<Trial>& trials, Get get) {
-  std::vector<double> values;
-  for (const Trial& trial : trials) values.push_back(static_cast<double>(get(*trial.run)));
-  return median(std::move(values));
+/// Over a row's trials, field by field the median of a score.
+template <class GetScore>
+auto median_score(const std::vector<Trial>& trials, GetScore get) {
+  std::vector<decltype(get(trials.front()))> scores;
+  for (const Trial& trial : trials) scores.push_back(get(trial));
+  return reduce(std::span(std::as_const(scores)), median_of_known);
 }
 
 QuerySummary median_summary(const std::vector<Trial>& trials, QuerySet set) {
-  std::vector<QuerySummary> all;
-  for (const Trial& trial : trials) all.push_back(summarize(queries(*trial.point, set)));
-  return reduce(
-      all, [](const std::vector<double>& values) { return median(values); },
-      [](const std::vector<std::optional<double>>& values) { return median_of_known(values); });
-}
-
-void add(MatchCounts& sum, const MatchCounts& counts) {
-  for (std::size_t m = 0; m < sum.size(); ++m) sum[m] += counts[m];
+  return median_score(trials, [&](const Trial& t) { return summarize(queries(*t.point, set)); });
 }
 
 /// Fills in what follows from the trials.
 Row fill_in(Row row) {
-  row.trajectory.completeness =
-      median_over(row.trials, [](const RunResult& run) { return run.trajectory.completeness; });
-  for (std::optional<double> TrajectoryScore::*field :
-       {&TrajectoryScore::ate_rmse_m, &TrajectoryScore::ate_first_pose_m,
-        &TrajectoryScore::rpe_frame_rmse_m, &TrajectoryScore::rpe_second_rmse_m}) {
-    std::vector<std::optional<double>> values;
-    for (const Trial& trial : row.trials) values.push_back(trial.run->trajectory.*field);
-    row.trajectory.*field = median_of_known(values);
-  }
-  row.restarts = median_over(row.trials, [](const RunResult& r) { return r.mapping.restarts; });
-  row.dropped =
-      median_over(row.trials, [](const RunResult& r) { return r.mapping.dropped.size(); });
+  row.trajectory = median_score(row.trials, [](const Trial& t) { return t.run->trajectory; });
+  row.mapping = median_score(row.trials, [](const Trial& t) { return count(t.run->mapping); });
   row.held_out = median_summary(row.trials, QuerySet::kHeldOut);
   row.second_tour = median_summary(row.trials, QuerySet::kSecondTour);
 
   std::vector<double> track_ms, relocalize_ms;
   for (const Trial& trial : row.trials) {
-    add(row.matches, trial.run->mapping.matches);
+    add(trial.run->mapping.matches, row.matches);
     for (const QuerySet set : kQuerySets)
-      for (const QueryScore& q : queries(*trial.point, set)) add(row.matches, q.answer.matches);
+      for (const QueryScore& q : queries(*trial.point, set)) add(q.answer.matches, row.matches);
     const CallTimes& times = trial.run->times;
     track_ms.insert(track_ms.end(), times.track_ms.begin(), times.track_ms.end());
     relocalize_ms.insert(relocalize_ms.end(), times.relocalize_ms.begin(),
@@ -137,22 +121,17 @@ std::optional<std::size_t> find_point(const RunSpec& spec, const SlamConfig& set
 
 }  // namespace
 
-std::string_view name(QuerySet set) {
-  return set == QuerySet::kHeldOut ? "held_out" : "second_tour";
-}
-
 namespace {
 
-/// Mean of a number over the queries whose candidates tell it; absent where none does.
+/// Mean of a number over the queries of which the system tells it; absent where it tells none.
 template <class Get>
 std::optional<double> mean_told(std::span<const QueryScore> queries, Get get) {
   double sum = 0, count = 0;
-  for (const QueryScore& q : queries) {
-    const double value = q.answer.candidates ? get(*q.answer.candidates) : std::nan("");
-    if (std::isnan(value)) continue;
-    sum += value;
-    ++count;
-  }
+  for (const QueryScore& q : queries)
+    if (const std::optional<double> value = get(q.answer.candidates)) {
+      sum += *value;
+      ++count;
+    }
   return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
@@ -162,11 +141,11 @@ QuerySummary summarize(std::span<const QueryScore> queries) {
   QuerySummary s;
   if (queries.empty()) return s;
   std::vector<double> distances, aligned;
-  double correct = 0, wrong = 0;
+  double correct = 0, false_positive = 0;
   for (const QueryScore& q : queries) {
     s.success += q.success;
     correct += q.correct;
-    wrong += q.wrong;
+    false_positive += q.false_positive;
     s.attempts += q.answer.attempts;
     if (q.distance_m) distances.push_back(*q.distance_m);
     if (q.aligned_distance_m) aligned.push_back(*q.aligned_distance_m);
@@ -175,21 +154,18 @@ QuerySummary summarize(std::span<const QueryScore> queries) {
   for (double* share : {&s.success, &s.attempts}) *share /= s.queries;
   if (std::ranges::any_of(queries, is_judged)) {
     s.correct = correct / s.queries;
-    s.wrong = wrong / s.queries;
+    s.false_positive = false_positive / s.queries;
   }
-  for (const auto& [field, count] :
-       {std::pair(&QuerySummary::keyframes, &CandidateCounts::keyframes),
-        {&QuerySummary::c1, &CandidateCounts::c1},
-        {&QuerySummary::c2, &CandidateCounts::c2},
-        {&QuerySummary::c3, &CandidateCounts::c3},
-        {&QuerySummary::final, &CandidateCounts::final}})
-    s.*field = mean_told(queries, [count = count](const CandidateCounts& c) {
-      return c.*count == kUnknownCount ? std::nan("") : c.*count;
-    });
-  s.single_candidate = mean_told(queries, [](const CandidateCounts& c) {
-    return c.final == kUnknownCount ? std::nan("") : static_cast<double>(c.final == 1);
+  for (const auto& [field, count] : {std::pair(&QuerySummary::keyframes, &Candidates::keyframes),
+                                     {&QuerySummary::c1, &Candidates::c1},
+                                     {&QuerySummary::c2, &Candidates::c2},
+                                     {&QuerySummary::c3, &Candidates::c3},
+                                     {&QuerySummary::final, &Candidates::final}})
+    s.*field = mean_told(queries, [count = count](const Candidates& c) { return c.*count; });
+  s.single_candidate = mean_told(queries, [](const Candidates& c) {
+    return c.final ? std::optional<double>(*c.final == 1) : std::nullopt;
   });
-  s.label_mass = mean_told(queries, [](const CandidateCounts& c) { return c.label_mass; });
+  s.label_mass = mean_told(queries, [](const Candidates& c) { return c.label_mass; });
   if (distances.empty()) return s;
   s.distance_mean_m = mean(distances);
   s.aligned_distance_mean_m = mean(aligned);
@@ -197,28 +173,28 @@ QuerySummary summarize(std::span<const QueryScore> queries) {
   return s;
 }
 
-QuerySummary reduce(
-    std::span<const QuerySummary> summaries,
-    const std::function<double(const std::vector<double>&)>& of,
-    const std::function<std::optional<double>(const std::vector<std::optional<double>>&)>&
-        of_known) {
-  QuerySummary result;
-  for (double QuerySummary::*field :
-       {&QuerySummary::queries, &QuerySummary::success, &QuerySummary::attempts}) {
-    std::vector<double> values;
-    for (const QuerySummary& s : summaries) values.push_back(s.*field);
-    result.*field = of(values);
+MappingCounts count(const MappingOutcome& mapping) {
+  MappingCounts counts;
+  counts.failures = mapping.failures;
+  counts.restarts = mapping.restarts;
+  counts.dropped = static_cast<double>(mapping.dropped.size());
+  if (!mapping.matches) return counts;
+  const MatcherCounts& c = at(*mapping.matches, Matcher::kLocalMap);
+  if (c.compared > 0)
+    counts.penalized = static_cast<double>(c.penalized) / static_cast<double>(c.compared);
+  return counts;
+}
+
+std::vector<Figure> figures_of(const RunResult& run, std::size_t point) {
+  std::vector<Figure> figures = figures_of(run.trajectory);
+  std::ranges::move(figures_of(count(run.mapping)), std::back_inserter(figures));
+  for (const QuerySet set : kQuerySets) {
+    const QuerySummary summary = summarize(queries(run.points[point], set));
+    if (summary.queries == 0) continue;
+    for (Figure& figure : figures_of(summary))
+      figures.push_back({of_set(set, std::move(figure.metric)), figure.value});
   }
-  for (std::optional<double> QuerySummary::*field :
-       {&QuerySummary::correct, &QuerySummary::wrong, &QuerySummary::distance_mean_m,
-        &QuerySummary::distance_median_m, &QuerySummary::aligned_distance_mean_m,
-        &QuerySummary::keyframes, &QuerySummary::c1, &QuerySummary::c2, &QuerySummary::c3,
-        &QuerySummary::final, &QuerySummary::single_candidate, &QuerySummary::label_mass}) {
-    std::vector<std::optional<double>> values;
-    for (const QuerySummary& s : summaries) values.push_back(s.*field);
-    result.*field = of_known(values);
-  }
-  return result;
+  return figures;
 }
 
 std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs,

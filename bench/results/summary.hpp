@@ -2,40 +2,23 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "bench/metrics/mapping_counts.hpp"
 #include "bench/results/run_result.hpp"
 #include "bench/results/statistics.hpp"
 
 namespace mh {
 
-/// The answers of one run to one set of queries, or the median of that over trials.
-struct QuerySummary {
-  double queries = 0;
-  double success = 0;  ///< share of all queries
-  /// Likewise; absent where none can be judged, since nobody knows the truth.
-  std::optional<double> correct, wrong;
-  /// Over the queries that were answered, local truth; absent where none was.
-  std::optional<double> distance_mean_m, distance_median_m;
-  std::optional<double> aligned_distance_mean_m;  ///< the same, in the globally aligned frame
-  double attempts = 0;                            ///< mean
-  /// Candidate keyframes left after equations 3, 4, 5 and 6: mean counts over the queries where the
-  /// system tells them; absent where it tells none.
-  std::optional<double> keyframes, c1, c2, c3, final;
-  std::optional<double> single_candidate;  ///< share of queries with exactly one left
-  std::optional<double> label_mass;        ///< mean share of the query vector held by labels
-};
 QuerySummary summarize(std::span<const QueryScore> queries);
 
-/// Field by field, one summary of many: `of` over the values, `of_known` where some may be absent.
-QuerySummary reduce(
-    std::span<const QuerySummary> summaries,
-    const std::function<double(const std::vector<double>&)>& of,
-    const std::function<std::optional<double>(const std::vector<std::optional<double>>&)>&
-        of_known);
+MappingCounts count(const MappingOutcome& mapping);
+
+/// Every figure of a run under one of its parameter points, under its name in all_metrics(). A set
+/// that was not asked has none.
+std::vector<Figure> figures_of(const RunResult& run, std::size_t point);
 
 /// A run and one of its parameter points.
 struct Trial {
@@ -52,9 +35,9 @@ struct Row {
   std::vector<Trial> trials;   ///< those that are done
   std::size_t failed = 0;      ///< runs of it that failed
   TrajectoryScore trajectory;  ///< medians over the trials that have the score
-  double restarts = 0, dropped = 0;
+  MappingCounts mapping;       ///< likewise
   QuerySummary held_out, second_tour;
-  MatchCounts matches{};  ///< summed over trials, mapping and queries
+  std::optional<MatchCounts> matches;  ///< summed over trials, mapping and queries, where reported
   TimeSummary track, relocalize;
 };
 inline const QuerySummary& summary(const Row& row, QuerySet set) {

@@ -9,7 +9,6 @@
 
 #include "bench/inputs/run_key.hpp"
 #include "bench/provenance/digest.hpp"
-#include "bench/results/trajectory_score.hpp"
 #include "bench/run/occupancy.hpp"
 #include "bench/systems/conversation.hpp"
 #include "bench/systems/finished_map.hpp"
@@ -117,7 +116,7 @@ class QueryRound {
           const QueryAnswer answer =
               query(frozen, index, frames, spec_.protocol, stream_, memo.get());
           scores[p]->push_back(
-              score(answer, moment, anchor, run_.trajectory.truth_from_estimate, spec_.protocol));
+              score(answer, moment, anchor, run_.frames.truth_from_estimate, spec_.protocol));
         } catch (const UnusableFrame& error) {
           if (p == 0) run_.mapping.skipped.add(error.what());
         }
@@ -223,7 +222,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   const auto integrate = [&] {
     const ProcessorTimer timer(run.products_s);
     if (tools.occupancy)
-      run.volume = depths.integrate(camera, run.estimate, run.trajectory.dock_from_estimate);
+      run.volume = depths.integrate(camera, run.estimate, run.frames.dock_from_estimate);
   };
 
   std::unique_ptr<System> inner =
@@ -234,6 +233,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     run.estimate = run_recorded(spec, frames, stream.fork(kMapping), tools.folder, tools.status,
                                 run.mapping.skipped);
     run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
+    run.frames = frames_of(run.estimate, run.truth);
     integrate();
     run.points.resize(spec.points.size());
   } else {
@@ -243,11 +243,12 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
       system.freeze();
       run.estimate = system.trajectory();
       run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
+      run.frames = frames_of(run.estimate, run.truth);
     };
     const auto map_now = [&] {
       run.mapping =
           map_sequence(system, frames, spec.protocol, stream.fork(kMapping),
-                       [&](const MappedFrame& call, const RgbdFrame& frame, const StepReport&) {
+                       [&](const MappedFrame& call, const RgbdFrame& frame, const SystemReport&) {
                          const ProcessorTimer timer(run.products_s);
                          if (call.keyframe_added && tools.occupancy) depths.keep(frame);
                          work.reached(call.index + 1);

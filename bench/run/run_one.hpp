@@ -16,7 +16,7 @@ namespace mh {
 /// anybody else does. Empty in every real run.
 struct RunTamper {
   std::function<void(std::size_t index, RgbdFrame&)> frame;
-  std::function<void(std::size_t call, StepReport&)> report;  ///< of track calls
+  std::function<void(std::size_t call, SystemReport&)> report;  ///< of track calls
 };
 
 /// The system of a run: our own SLAM with the run's settings, or an outside program in

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "bench/provenance/digest.hpp"
-#include "bench/store/schema.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
@@ -88,6 +87,12 @@ void add_row_digest(SQLite::Database& db) {
   db.createFunction("row_digest", -1, true, nullptr, row_digest, nullptr, nullptr, nullptr);
 }
 
+int column_count(SQLite::Database& db, const std::string& table) {
+  return db.execAndGet(fmt::format("SELECT count(*) FROM pragma_table_info('{}')", table))
+             .getInt() -
+         1;
+}
+
 std::string insert_row(const std::string& table, int values, const char* verb) {
   std::string marks = "?1";
   for (int i = 2; i <= values; ++i) marks += fmt::format(", ?{}", i);
@@ -113,19 +118,6 @@ std::map<std::string, std::string> schema_texts(SQLite::Database& db) {
   SQLite::Statement s(db, "SELECT name, sql FROM sqlite_master WHERE type = 'table'");
   while (s.executeStep()) texts[s.getColumn(0).getString()] = s.getColumn(1).getString();
   return texts;
-}
-
-void rebuild_with_digests(SQLite::Database& db) {
-  SQLite::Database fresh(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-  fresh.exec(kSchema);
-  const auto texts = schema_texts(fresh);
-  for (const std::string table : kDigestedTables) {
-    db.exec(fmt::format("ALTER TABLE {0} RENAME TO old_{0}", table));
-    db.exec(texts.at(table));
-    db.exec(fmt::format("INSERT INTO {0} SELECT *, row_digest({1}) FROM old_{0}", table,
-                        columns_of(db, table).values));
-    db.exec(fmt::format("DROP TABLE old_{}", table));
-  }
 }
 
 }  // namespace mh

@@ -21,15 +21,15 @@ inline constexpr const char* kDigestedTables[] = {"suite", "plan",   "runs",    
 /// number's digest is that of its value: 3 and 3.0 have the same.
 void add_row_digest(SQLite::Database& db);
 
+/// How many columns a table has, but for the digest.
+int column_count(SQLite::Database& db, const std::string& table);
+
 /// "INSERT INTO plan VALUES (?1, ?2, ?3, row_digest('plan', ?1, ?2, ?3))" of so many values.
 std::string insert_row(const std::string& table, int values, const char* verb = "INSERT");
 
 /// Looks at every row. @throws InputError naming file, table and the first row whose digest is not
 /// that of its values.
 void require_whole_rows(SQLite::Database& db, const std::filesystem::path& file);
-
-/// Makes each table of an older file one of today's schema, its rows with their digests.
-void rebuild_with_digests(SQLite::Database& db);
 
 /// The text that created each table of a database, by its name.
 std::map<std::string, std::string> schema_texts(SQLite::Database& db);

@@ -1,28 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/store/store.hpp"
 
-#include <fcntl.h>
-#include <sqlite3.h>
 #include <unistd.h>
 
 #include <charconv>
 #include <chrono>
 #include <ctime>
 #include <fstream>
-#include <map>
-#include <thread>
 
-#include <SQLiteCpp/Backup.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "bench/plan/runs.hpp"
 #include "bench/plan/spec_json.hpp"
 #include "bench/provenance/fingerprint.hpp"
+#include "bench/store/database.hpp"
 #include "bench/store/guard.hpp"
 #include "bench/store/result_rows.hpp"
 #include "bench/store/row_digest.hpp"
-#include "bench/store/schema.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/json_number.hpp"
@@ -32,8 +27,6 @@ namespace mh {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int kBusy_ms = 60000;
 
 std::int64_t now_s() {
   return std::chrono::duration_cast<std::chrono::seconds>(
@@ -57,12 +50,6 @@ std::int64_t start_of_process(std::int64_t process) {
   std::string field;
   for (int i = 0; i < 20; ++i) fields >> field;  // the 22nd of all
   return fields ? std::strtoll(field.c_str(), nullptr, 10) : 0;
-}
-
-InputError made_otherwise(const fs::path& file, const std::string& run, const fs::path& than_in) {
-  return InputError(
-      fmt::format("{}: run '{}' was made with other settings, input or code than in {}",
-                  file.string(), run, than_in.string()));
 }
 
 void put_cost(SQLite::Database& db, const std::string& key, const RunCost& cost,
@@ -91,109 +78,6 @@ void end_claim(SQLite::Database& db, const std::string& key) {
   SQLite::Statement s(db, "DELETE FROM claims WHERE key = ?");
   s.bind(1, key);
   s.exec();
-}
-
-/// A transaction that is begun for writing at once, so that it never has to be given up later.
-SQLite::Transaction writing(SQLite::Database& db) {
-  return SQLite::Transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-}
-
-/// Two processes that open a new file at once refuse each other the change without waiting.
-void enter_wal(SQLite::Database& db) {
-  constexpr int kTries = 200;
-  for (int tries = 1;; ++tries) {
-    try {
-      if (db.execAndGet("PRAGMA journal_mode").getString() != "wal")
-        db.exec("PRAGMA journal_mode = WAL");
-      return;
-    } catch (const SQLite::Exception& error) {
-      if (error.getErrorCode() != SQLITE_BUSY || tries == kTries) throw;
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-  }
-}
-
-/// Merging copies whole rows, so that a column more or less is an error, and one of another type
-/// would give other numbers. Other tables do no harm.
-void require_schema(SQLite::Database& db, const fs::path& file) {
-  SQLite::Database fresh(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-  fresh.exec(kSchema);
-  auto found = schema_texts(db);
-  for (const auto& [table, expected] : schema_texts(fresh))
-    if (found[table] != expected)
-      throw InputError(fmt::format(
-          "{}: does not hold what a results file must (the columns of the table '{}'): put back a "
-          "copy, or move it away and run again",
-          file.string(), table));
-}
-
-int version_of(SQLite::Database& db) {
-  return db.execAndGet("PRAGMA user_version").getInt();
-}
-
-void refuse_newer(SQLite::Database& db, const fs::path& file) {
-  if (const int version = version_of(db); version > kSchemaVersion)
-    throw InputError(
-        fmt::format("{}: has schema {}, this version of modelhouse reads up to {}: use a newer one",
-                    file.string(), version, kSchemaVersion));
-}
-
-/// SQLite's own look at its pages; rows are for require_whole_rows().
-void require_whole_pages(SQLite::Database& db, const fs::path& file) {
-  if (const std::string found = db.execAndGet("PRAGMA quick_check(1)").getString(); found != "ok")
-    throw InputError(
-        fmt::format("{}: is damaged ({}): put back a copy, or move it away and run again",
-                    file.string(), found));
-}
-
-void bring_up_to_date(SQLite::Database& db) {
-  SQLite::Transaction transaction = writing(db);
-  const int version = version_of(db);
-  if (version >= kSchemaVersion) return;  // another process was quicker
-  if (version == 1) db.exec(kFromSchema1);
-  rebuild_with_digests(db);
-  db.exec(fmt::format("PRAGMA user_version = {}", kSchemaVersion));
-  transaction.commit();
-}
-
-void open_schema(SQLite::Database& db, const fs::path& file) {
-  refuse_newer(db, file);
-  enter_wal(db);
-  db.exec("PRAGMA synchronous = FULL");
-  if (version_of(db) == 0) {
-    SQLite::Transaction transaction = writing(db);
-    if (version_of(db) == 0) {  // no other process was quicker
-      if (db.execAndGet("SELECT count(*) FROM sqlite_master").getInt() != 0)
-        throw InputError(fmt::format("{}: is a database, but no results file", file.string()));
-      db.exec(kSchema);
-      db.exec(fmt::format("PRAGMA user_version = {}", kSchemaVersion));
-    }
-    transaction.commit();
-  }
-  require_whole_pages(db, file);
-  if (version_of(db) < kSchemaVersion) bring_up_to_date(db);
-  require_schema(db, file);
-}
-
-/// Whether SQLite may write the file and, beside it, its log.
-bool may_be_written(const fs::path& file) {
-  const fs::path folder = fs::absolute(file).parent_path();
-  return faccessat(AT_FDCWD, file.c_str(), W_OK, AT_EACCESS) == 0 &&
-         faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) == 0;
-}
-
-fs::path log_of(const fs::path& file) {
-  return file.string() + "-wal";
-}
-
-/// The name under which SQLite opens a file that nobody writes, without a lock or a log.
-std::string as_immutable(const fs::path& file) {
-  std::string name = "file:";
-  for (const char c : fs::absolute(file).string())
-    name += std::string_view("%?#").find(c) == std::string_view::npos
-                ? std::string(1, c)
-                : fmt::format("%{:02X}", static_cast<unsigned>(c));
-  return name + "?immutable=1";
 }
 
 nlohmann::ordered_json to_json(const SuiteOverrides& o) {
@@ -227,13 +111,7 @@ SuiteOverrides overrides_from_json(const nlohmann::json& json) {
 }  // namespace
 
 Store::Store(fs::path file) : file_(std::move(file)) {
-  guarded(file_, [&] {
-    database_ = std::make_unique<SQLite::Database>(
-        fs::absolute(file_).string(),
-        SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE | SQLite::OPEN_URI, kBusy_ms);
-    add_row_digest(*database_);
-    open_schema(*database_, file_);
-  });
+  guarded(file_, [&] { database_ = open_to_write(file_); });
 }
 Store::Store() = default;
 Store::~Store() = default;
@@ -246,48 +124,13 @@ Store Store::open_to_read(const fs::path& file) {
   require_readable(found);
   Store store;
   store.file_ = found;
-  guarded(found, [&] { store.open_unchanged(); });
+  guarded(found, [&] {
+    UnchangedFile opened = open_unchanged(found);
+    store.opened_ = std::move(opened.name);
+    store.copy_ = std::move(opened.copy);
+    store.database_ = std::move(opened.database);
+  });
   return store;
-}
-
-void Store::open_unchanged() {
-  const auto open = [&](const std::string& name) {
-    opened_ = name;
-    database_ = std::make_unique<SQLite::Database>(name, SQLite::OPEN_READWRITE | SQLite::OPEN_URI,
-                                                   kBusy_ms);
-    add_row_digest(*database_);
-  };
-  const auto copy_to = [&] {
-    copy_ = std::make_unique<TemporaryFolder>(fs::temp_directory_path());
-    return copy_->path() / "results.sqlite";
-  };
-  std::error_code error;
-  if (may_be_written(file_)) {
-    open(fs::absolute(file_).string());
-  } else if (const auto left = fs::file_size(log_of(file_), error); error || left == 0) {
-    open(as_immutable(file_));
-  } else {  // what stands in the log has to be put into some file
-    const fs::path copy = copy_to();
-    write_atomically(copy, read_file(file_));
-    write_atomically(log_of(copy), read_file(log_of(file_)));
-    open(copy.string());
-  }
-  refuse_newer(*database_, file_);
-  require_whole_pages(*database_, file_);
-  if (version_of(*database_) < kSchemaVersion) {
-    if (version_of(*database_) == 0)
-      throw InputError(fmt::format("{}: is a database, but no results file", file_.string()));
-    const std::unique_ptr<SQLite::Database> old = std::move(database_);
-    const fs::path copy = copy_to();
-    {
-      SQLite::Database fresh(copy.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-      SQLite::Backup(fresh, *old).executeStep(-1);
-    }
-    open(copy.string());
-    bring_up_to_date(*database_);
-  }
-  require_schema(*database_, file_);
-  require_whole_rows(*database_, file_);
 }
 
 void Store::check() const {
@@ -297,7 +140,7 @@ void Store::check() const {
 void Store::plan(const Suite& suite, const SuiteOverrides& overrides,
                  const std::vector<std::pair<std::string, std::string>>& key_of_name) {
   guarded(file_, [&] {
-    SQLite::Transaction transaction = writing(*database_);
+    SQLite::Transaction transaction = begin_writing(*database_);
     SQLite::Statement s(*database_, insert_row("suite", 5, "INSERT OR REPLACE"));
     s.bind(1, 1);
     s.bind(2, suite.name);
@@ -362,7 +205,7 @@ std::string Store::error(const std::string& key) const {
 
 bool Store::claim(const std::string& key) {
   return guarded(file_, [&] {
-    SQLite::Transaction transaction = writing(*database_);
+    SQLite::Transaction transaction = begin_writing(*database_);
     if (status(key)) return false;
     SQLite::Statement s(*database_,
                         "SELECT host, process, started, beat FROM claims WHERE key = ?");
@@ -403,7 +246,7 @@ void Store::beat() {
 
 void Store::put(const std::string& key, const RunResult& run, const RunCost& cost) {
   guarded(file_, [&] {
-    SQLite::Transaction transaction = writing(*database_);
+    SQLite::Transaction transaction = begin_writing(*database_);
     forget_rows(*database_, key);
     put_rows(*database_, key, run);
     put_cost(*database_, key, cost, calls_json(run.times).dump());
@@ -415,7 +258,7 @@ void Store::put(const std::string& key, const RunResult& run, const RunCost& cos
 void Store::put_failure(const std::string& key, const RunSpec& spec, const std::string& error,
                         const RunCost& cost) {
   guarded(file_, [&] {
-    SQLite::Transaction transaction = writing(*database_);
+    SQLite::Transaction transaction = begin_writing(*database_);
     forget_rows(*database_, key);
     put_run(*database_, key, spec, error, "");
     put_cost(*database_, key, cost, "");
@@ -432,7 +275,7 @@ void Store::forget_failure(const std::string& key) {
 
 void Store::forget(const std::string& key) {
   guarded(file_, [&] {
-    SQLite::Transaction transaction = writing(*database_);
+    SQLite::Transaction transaction = begin_writing(*database_);
     forget_rows(*database_, key);
     transaction.commit();
   });
@@ -445,83 +288,6 @@ RunResult Store::load(const std::string& key, const RunSpec& spec) const {
 double Store::largest_rss_mb() const {
   return guarded(file_, [&] {
     return database_->execAndGet("SELECT coalesce(max(max_rss_mb), 0) FROM times").getDouble();
-  });
-}
-
-void Store::check_mergeable(const std::vector<fs::path>& files) {
-  std::map<std::string, std::pair<std::string, fs::path>> planned;  // of each run: key, first file
-  std::optional<std::pair<Suite, fs::path>> first;
-  for (const fs::path& file : files) {
-    const Store store = open_to_read(file);
-    const auto keys = store.planned_keys();
-    if (keys.empty()) continue;
-    const Suite suite = store.planned_suite();
-    if (!first) first.emplace(suite, file);
-    const auto differs = [&](const std::string& what, const auto& here, const auto& there) {
-      return InputError(
-          fmt::format("{}: {} {}, {} has {}: parts of one suite must not differ in it",
-                      file.string(), what, here, first->second.string(), there));
-    };
-    if (suite.name != first->first.name)
-      throw InputError(fmt::format("{}: holds results of the suite '{}', {} of '{}'", file.string(),
-                                   suite.name, first->second.string(), first->first.name));
-    for (const auto& [run, key] : keys) {
-      const auto [of_run, is_new] = planned.try_emplace(run, key, file);
-      if (!is_new && of_run->second.first != key)
-        throw made_otherwise(file, run, of_run->second.second);
-    }
-    if (suite.trials != first->first.trials)
-      throw differs("was run with --trials", suite.trials, first->first.trials);
-    // A damaged run is found here, while its file can be named and nothing is written.
-    const std::map<std::string, std::string> key_of(keys.begin(), keys.end());
-    for (const RunSpec& spec : expand(suite))
-      if (const auto key = key_of.find(spec.name);
-          key != key_of.end() && store.status(key->second) == RunStatus::kDone)
-        store.load(key->second, spec);
-    // Every part plans the whole suite, whatever its own share.
-    if (keys.size() != planned.size())
-      throw differs("number of runs:", keys.size(), planned.size());
-    const auto margin = [](const Suite& s) { return s.non_inferiority_margin.value_or(0); };
-    if (margin(suite) != margin(first->first))
-      throw differs("non_inferiority_margin", margin(suite), margin(first->first));
-  }
-}
-
-std::size_t Store::merge(const fs::path& other) {
-  const Store source = open_to_read(other);
-  return guarded(file_, [&] {
-    std::size_t taken = 0;
-    SQLite::Statement attach(*database_, "ATTACH ? AS other");
-    attach.bind(1, source.opened_);
-    attach.exec();
-    {
-      SQLite::Transaction transaction = writing(*database_);
-      SQLite::Statement clash(*database_,
-                              "SELECT a.name FROM plan a JOIN other.plan b ON a.name = b.name "
-                              "WHERE a.key <> b.key LIMIT 1");
-      if (clash.executeStep()) throw made_otherwise(other, clash.getColumn(0).getString(), file_);
-      clash.reset();
-      database_->exec("INSERT OR IGNORE INTO suite SELECT * FROM other.suite");
-      // What is finished here stays; a failure gives way to a result.
-      database_->exec(
-          "CREATE TEMP TABLE wanted AS SELECT key FROM other.runs o WHERE NOT EXISTS "
-          "(SELECT 1 FROM runs r WHERE r.key = o.key AND (r.status = 'done' OR o.status = "
-          "'failed'))");
-      taken = database_->execAndGet("SELECT COUNT(*) FROM wanted").getUInt();
-      for (const char* table :
-           {"runs", "points", "metrics", "calls", "frames", "queries", "times"}) {
-        database_->exec(
-            fmt::format("DELETE FROM {0} WHERE key IN (SELECT key FROM wanted)", table));
-        database_->exec(fmt::format(
-            "INSERT INTO {0} SELECT * FROM other.{0} WHERE key IN (SELECT key FROM wanted)",
-            table));
-      }
-      database_->exec("INSERT OR IGNORE INTO plan SELECT * FROM other.plan");
-      database_->exec("DROP TABLE wanted");
-      transaction.commit();
-    }
-    database_->exec("DETACH other");
-    return taken;
   });
 }
 

@@ -38,7 +38,7 @@ enum class RunStatus { kDone, kFailed };
 
 /// The results of a suite in one SQLite file (docs/store.md). A result is put in one transaction:
 /// it is there as a whole or not at all, whenever a process dies. Several processes may use one
-/// file. Errors tell what to do: InputError for a file that is damaged, of a newer schema or no
+/// file. Errors tell what to do: InputError for a file that is damaged, of another schema or no
 /// results file, MachineError for a full disk or a file that another process will not let go.
 class Store {
  public:
@@ -47,8 +47,7 @@ class Store {
   ~Store();
   Store(Store&&) noexcept;
   /// Opens a file, or the one in a folder, without changing it: it may lie where nothing can be
-  /// written, and one of an older schema is brought up to date in a copy. (A log that a killed
-  /// process left beside it is taken in, as SQLite does.)
+  /// written. (A log that a killed process left beside it is taken in, as SQLite does.)
   /// @throws InputError if it is not there; as check()
   static Store open_to_read(const std::filesystem::path& file);
   /// @throws InputError naming file, table and row if a row is not what was put.
@@ -104,7 +103,6 @@ class Store {
 
  private:
   Store();
-  void open_unchanged();
 
   std::filesystem::path file_;
   std::string opened_;  ///< what SQLite opened to read: a copy's name, or one that says how

@@ -121,8 +121,8 @@ class Conversation {
 
   /// Asks about a frame: what every answer to one may hold, as a report. A pose makes it
   /// `with_pose`, no pose kLost.
-  StepReport ask_about(const std::string& what, const RgbdFrame& frame, RandomStream stream,
-                       TrackStatus with_pose, Json fields = Json::object()) {
+  SystemReport ask_about(const std::string& what, const RgbdFrame& frame, RandomStream stream,
+                         TrackStatus with_pose, Json fields = Json::object()) {
     const FrameFiles files = show(frame, scratch_.path);
     fields["stamp"] = format_stamp(frame.stamp_ns);
     fields["color"] = files.color.string();
@@ -131,11 +131,11 @@ class Conversation {
     fields["seed"] = stream.bits(0) >> 33;  // fits an int everywhere
     const Json answer =
         ask(what, fields, {"pose", "keypoints", "inliers", "keyframe", "stage", "candidates"});
-    StepReport report;
+    SystemReport report;
     report.world_from_camera = pose(answer);
     report.status = report.world_from_camera ? with_pose : TrackStatus::kLost;
     report.keypoints = count(answer, "keypoints");
-    report.inliers = count(answer, "inliers", kUnknownCount);
+    report.inliers = count(answer, "inliers");
     if (const auto it = answer.find("keyframe"); it != answer.end()) {
       if (!it->is_boolean()) fail(fmt::format("gave a keyframe of {}", shortened(it->dump())));
       report.keyframe_added = *it;
@@ -211,47 +211,45 @@ class Conversation {
     return SE3(rotation, Eigen::Vector3d(v[0], v[1], v[2]));
   }
 
-  /// @param fallback  where the program does not tell it
-  int count(const Json& from, const char* key, int fallback = 0) {
+  std::optional<int> count(const Json& from, const char* key) {
     const auto it = from.find(key);
-    if (it == from.end()) return fallback;
+    if (it == from.end()) return std::nullopt;
     if (!it->is_number_integer() || *it < 0 || *it > 1'000'000'000)
       fail(fmt::format("gave {} of {}: expected a count", key, shortened(it->dump())));
-    return *it;
+    return it->get<int>();
   }
 
-  RelocalizationStage stage(const Json& answer) {
+  std::optional<RelocalizationStage> stage(const Json& answer) {
     const auto it = answer.find("stage");
-    if (it == answer.end()) return RelocalizationStage::kNone;
-    for (const auto s : {RelocalizationStage::kNone, RelocalizationStage::kNoCandidate,
-                         RelocalizationStage::kMatches, RelocalizationStage::kPnp,
-                         RelocalizationStage::kInliers, RelocalizationStage::kVerified})
-      if (*it == std::string(name(s))) {
-        if (!answer["pose"].is_null() && s != RelocalizationStage::kNone &&
-            s != RelocalizationStage::kVerified)
-          fail(fmt::format("gave a pose and the stage \"{}\", which is one of failure", name(s)));
-        return s;
-      }
-    fail(fmt::format("gave an unknown stage {}", shortened(it->dump())));
+    if (it == answer.end()) return std::nullopt;
+    const auto told = it->is_string()
+                          ? value_of(it->get<std::string>(), words(RelocalizationStage{}))
+                          : std::nullopt;
+    if (!told) fail(fmt::format("gave an unknown stage {}", shortened(it->dump())));
+    if (!answer["pose"].is_null() && told != RelocalizationStage::kNone &&
+        told != RelocalizationStage::kVerified)
+      fail(fmt::format("gave a pose and the stage \"{}\", which is one of failure", name(*told)));
+    return told;
   }
 
-  std::optional<CandidateCounts> candidates(const Json& answer) {
+  Candidates candidates(const Json& answer) {
     const auto it = answer.find("candidates");
-    if (it == answer.end() || it->is_null()) return std::nullopt;
+    if (it == answer.end() || it->is_null()) return {};
     if (!it->is_object()) fail(fmt::format("gave candidates of {}", shortened(it->dump())));
     for (const auto& [key, value] : it->items())
       if (!std::set<std::string>{"keyframes", "c1", "c2", "c3", "final"}.contains(key))
         fail(fmt::format("gave an unknown key 'candidates.{}'", shortened(key)));
-    const CandidateCounts told{.keyframes = count(*it, "keyframes", kUnknownCount),
-                               .c1 = count(*it, "c1", kUnknownCount),
-                               .c2 = count(*it, "c2", kUnknownCount),
-                               .c3 = count(*it, "c3", kUnknownCount),
-                               .final = count(*it, "final", kUnknownCount),
-                               .label_mass = std::nan("")};
-    int left = kUnknownCount;
-    for (const int number : {told.keyframes, told.c1, told.c2, told.c3, told.final}) {
-      if (number == kUnknownCount) continue;
-      if (left != kUnknownCount && number > left)
+    const Candidates told{.keyframes = count(*it, "keyframes"),
+                          .c1 = count(*it, "c1"),
+                          .c2 = count(*it, "c2"),
+                          .c3 = count(*it, "c3"),
+                          .final = count(*it, "final"),
+                          .label_mass = {}};
+    std::optional<int> left;
+    for (const std::optional<int>& number :
+         {told.keyframes, told.c1, told.c2, told.c3, told.final}) {
+      if (!number) continue;
+      if (left && *number > *left)
         fail(fmt::format("gave candidates of {}: a step cannot leave more than the one before it",
                          shortened(it->dump())));
       left = number;
@@ -273,10 +271,10 @@ class ConversationSystem : public System {
                      const fs::path& log)
       : talk_(std::make_unique<Conversation>(program, camera, seed, log)) {}
 
-  StepReport track(const RgbdFrame& frame, RandomStream stream) override {
+  SystemReport track(const RgbdFrame& frame, RandomStream stream) override {
     assert(!frozen_);
     shown_.insert(frame.stamp_ns);
-    const StepReport report = talk_->ask_about("track", frame, stream, TrackStatus::kTracked);
+    const SystemReport report = talk_->ask_about("track", frame, stream, TrackStatus::kTracked);
     if (report.world_from_camera)
       poses_[frame.stamp_ns] = *report.world_from_camera;
     else
@@ -302,7 +300,8 @@ class ConversationSystem : public System {
   }
   std::unique_ptr<RelocalizationSession> open_session() const override;
 
-  StepReport relocalize(std::uint64_t session, const RgbdFrame& frame, RandomStream stream) const {
+  SystemReport relocalize(std::uint64_t session, const RgbdFrame& frame,
+                          RandomStream stream) const {
     assert(session == sessions_);  // an older one would have to be remembered by the program
     return talk_->ask_about(is_blank(frame) ? "blank" : "relocalize", frame, stream,
                             TrackStatus::kRelocalized, {{"session", session}});
@@ -349,7 +348,7 @@ class ConversationSession : public RelocalizationSession {
  public:
   ConversationSession(const ConversationSystem& system, std::uint64_t number)
       : system_(system), number_(number) {}
-  StepReport feed(const RgbdFrame& frame, RandomStream stream) override {
+  SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
     return system_.relocalize(number_, frame, stream);
   }
 

@@ -8,46 +8,32 @@
 namespace mh {
 namespace archive {
 
-// Brackets name every field: a new one without a place here does not compile.
-template <class A, Either<MappedFrame> T>
-void fields(A& a, T& call) {
-  auto& [index, stamp_ns, restart, status, inliers, keyframe_added, image_digest, matching_digest,
-         pose_digest] = call;
-  auto status_number = static_cast<int>(status);
-  a(index, stamp_ns, restart, status_number, inliers, keyframe_added, image_digest, matching_digest,
-    pose_digest);
-  if constexpr (A::kReads) status = static_cast<TrackStatus>(status_number);
+/// A record by its list of fields, without their names.
+template <class A, class T>
+requires Either<T, MappingOutcome> || Either<T, MappedFrame> || Either<T, LoopClosure> ||
+    Either<T, SkippedFrames> || Either<T, MatcherCounts>
+void fields(A& a, T& record) {
+  const auto visit = [&](const char*, auto&& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_enum_v<Value>) {
+      auto number = static_cast<int>(value);
+      a(number);
+      if constexpr (A::kReads) value = static_cast<Value>(number);
+    } else if constexpr (requires { value.value; }) {
+      a(value.value);
+    } else {
+      a(value);
+    }
+  };
+  mh::fields(record, visit);
 }
-template <class A, Either<MatcherCounts> T>
-void fields(A& a, T& counts) {
-  auto& [compared, penalized, rejected_by_xi, ratio_helped] = counts;
-  a(compared, penalized, rejected_by_xi, ratio_helped);
-}
-template <class A, Either<LoopClosure> T>
-void fields(A& a, T& loop) {
-  auto& [stamp_ns, old_stamp_ns, old_from_new] = loop;
-  a(stamp_ns, old_stamp_ns, old_from_new);
-}
-template <class A, Either<SkippedFrames> T>
-void fields(A& a, T& skipped) {
-  auto& [count, reasons] = skipped;
-  a(count, reasons);
-}
-template <class A, Either<MappingOutcome> T>
-void fields(A& a, T& outcome) {
-  auto& [calls, dropped, failures, restarts, before_map, gave_up, offered, matches, loops,
-         skipped] = outcome;
-  a(calls, dropped, failures, restarts, before_map, gave_up, offered, loops, skipped);
-  for (auto& counts : matches) a(counts);
-}
-
 }  // namespace archive
 
 std::string encode(const FinishedMap& map) {
   std::ostringstream volume;
   map.volume->write_bt(volume);
   archive::Writer writer;
-  writer(map.outcome, map.system, volume.str());
+  writer(map.outcome.calls, map.outcome, map.system, volume.str());
   return writer.take();
 }
 
@@ -55,7 +41,7 @@ FinishedMap decode_finished_map(const std::string& bytes, const std::string& nam
   archive::Reader reader(bytes, name);
   FinishedMap map;
   std::string volume;
-  reader(map.outcome, map.system, volume);
+  reader(map.outcome.calls, map.outcome, map.system, volume);
   reader.require(reader.at_end(), "it goes on after its end");
   std::istringstream stream(volume);
   map.volume = std::make_shared<const OccupancyMapper>(OccupancyMapper::read_bt(stream, name));

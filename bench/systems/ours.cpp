@@ -12,11 +12,26 @@
 namespace mh {
 namespace {
 
+SystemReport told(const StepReport& step) {
+  SystemReport report{.status = step.status,
+                      .world_from_camera = step.world_from_camera,
+                      .keypoints = step.keypoints,
+                      .inliers = step.inliers,
+                      .keyframe_added = step.keyframe_added,
+                      .loop = step.loop,
+                      .relocalization = step.relocalization,
+                      .candidates = {},
+                      .matches = step.matches};
+  if (const auto& c = step.candidates)
+    report.candidates = {c->keyframes, c->c1, c->c2, c->c3, c->final, c->label_mass};
+  return report;
+}
+
 class OurSession : public RelocalizationSession {
  public:
   explicit OurSession(const SlamState& frozen) : frozen_(frozen) {}
-  StepReport feed(const RgbdFrame& frame, RandomStream stream) override {
-    return localize(frozen_, tracker_, frame, stream);
+  SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
+    return told(localize(frozen_, tracker_, frame, stream));
   }
 
  private:
@@ -40,16 +55,16 @@ class RememberingSession : public RelocalizationSession {
  public:
   RememberingSession(const SlamState& frozen, OurMemo& memo) : frozen_(frozen), memo_(memo) {}
 
-  StepReport feed(const RgbdFrame& frame, RandomStream stream) override {
+  SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
     if (found_) {  // a frame after that in which it was found: hardly ever asked for
       localize(frozen_, tracker_, found_->first, found_->second);
       found_.reset();
     }
-    if (tracker_.last) return localize(frozen_, tracker_, frame, stream);
+    if (tracker_.last) return told(localize(frozen_, tracker_, frame, stream));
     const StepReport report =
         localize(frozen_, frame, stream, memo_.of(stream, frozen_.config.semantics));
     if (report.status != TrackStatus::kLost) found_.emplace(frame, stream);
-    return report;
+    return told(report);
   }
 
  private:
@@ -65,9 +80,9 @@ class OurSystem : public System {
             std::shared_ptr<const Vocabulary> vocabulary)
       : state_(make_slam(camera, config, std::move(vocabulary))) {}
 
-  StepReport track(const RgbdFrame& frame, RandomStream stream) override {
+  SystemReport track(const RgbdFrame& frame, RandomStream stream) override {
     assert(!frozen_);
-    return step(state_, frame, stream);
+    return told(step(state_, frame, stream));
   }
   void rewind() override { mh::rewind(state_); }
   void reset() override { state_ = make_slam(state_.camera, state_.config, state_.vocabulary); }

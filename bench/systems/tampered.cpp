@@ -8,11 +8,12 @@ namespace {
 
 class TamperedSystem : public System {
  public:
-  TamperedSystem(std::unique_ptr<System> inner, std::function<void(std::size_t, StepReport&)> hand)
+  TamperedSystem(std::unique_ptr<System> inner,
+                 std::function<void(std::size_t, SystemReport&)> hand)
       : inner_(std::move(inner)), hand_(std::move(hand)) {}
 
-  StepReport track(const RgbdFrame& frame, RandomStream stream) override {
-    StepReport report = inner_->track(frame, stream);
+  SystemReport track(const RgbdFrame& frame, RandomStream stream) override {
+    SystemReport report = inner_->track(frame, stream);
     hand_(calls_++, report);
     return report;
   }
@@ -34,14 +35,14 @@ class TamperedSystem : public System {
 
  private:
   std::unique_ptr<System> inner_;
-  std::function<void(std::size_t, StepReport&)> hand_;
+  std::function<void(std::size_t, SystemReport&)> hand_;
   std::size_t calls_ = 0;
 };
 
 }  // namespace
 
 std::unique_ptr<System> make_tampered(std::unique_ptr<System> inner,
-                                      std::function<void(std::size_t, StepReport&)> hand) {
+                                      std::function<void(std::size_t, SystemReport&)> hand) {
   return std::make_unique<TamperedSystem>(std::move(inner), std::move(hand));
 }
 

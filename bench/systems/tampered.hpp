@@ -11,6 +11,6 @@ namespace mh {
 /// A system whose answers to track() pass through a hand that may change them: what the tests of
 /// `verify` need to seed a difference. `call` counts track calls from 0.
 std::unique_ptr<System> make_tampered(std::unique_ptr<System> inner,
-                                      std::function<void(std::size_t call, StepReport&)> hand);
+                                      std::function<void(std::size_t call, SystemReport&)> hand);
 
 }  // namespace mh

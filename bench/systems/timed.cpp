@@ -23,11 +23,11 @@ class TimedSession : public RelocalizationSession {
   using Note = std::function<void(bool blank, double wall_ms, double processor_s)>;
   TimedSession(std::unique_ptr<RelocalizationSession> inner, Note note)
       : inner_(std::move(inner)), note_(std::move(note)) {}
-  StepReport feed(const RgbdFrame& frame, RandomStream stream) override {
+  SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
     const bool blank = is_blank(frame);
     const auto start = Clock::now();
     const double processor_before_s = processor_time_s();
-    StepReport report = inner_->feed(frame, stream);
+    SystemReport report = inner_->feed(frame, stream);
     note_(blank, ms_since(start), processor_time_s() - processor_before_s);
     return report;
   }
@@ -47,10 +47,10 @@ double processor_time_s() {
 
 TimedSystem::TimedSystem(std::unique_ptr<System> inner) : inner_(std::move(inner)) {}
 
-StepReport TimedSystem::track(const RgbdFrame& frame, RandomStream stream) {
+SystemReport TimedSystem::track(const RgbdFrame& frame, RandomStream stream) {
   const auto start = Clock::now();
   const ProcessorTimer timer(processor_s_);
-  StepReport report = inner_->track(frame, stream);
+  SystemReport report = inner_->track(frame, stream);
   track_ms_.push_back(ms_since(start));
   return report;
 }

@@ -31,7 +31,7 @@ class TimedSystem : public System {
  public:
   explicit TimedSystem(std::unique_ptr<System> inner);
 
-  StepReport track(const RgbdFrame& frame, RandomStream stream) override;
+  SystemReport track(const RgbdFrame& frame, RandomStream stream) override;
   void rewind() override;
   void reset() override;
   void freeze() override;

@@ -29,15 +29,6 @@ static_assert(std::endian::native == std::endian::little, "numbers are stored as
 
 template <class T>
 concept Number = std::is_arithmetic_v<T>;
-template <class T>
-inline constexpr bool kIsVector = false;
-template <class T>
-inline constexpr bool kIsVector<std::vector<T>> = true;
-template <class T>
-inline constexpr bool kIsOptional = false;
-template <class T>
-inline constexpr bool kIsOptional<std::optional<T>> = true;
-
 /// Appends values to a string of bytes.
 class Writer {
  public:
@@ -62,6 +53,8 @@ class Writer {
     } else if constexpr (kIsVector<T> || std::is_same_v<T, std::string> ||
                          std::is_same_v<T, LandmarkTable>) {
       put(static_cast<std::uint64_t>(value.size()));
+      for (const auto& element : value) put(element);
+    } else if constexpr (kIsArray<T>) {
       for (const auto& element : value) put(element);
     } else if constexpr (kIsOptional<T>) {
       put(value.has_value());
@@ -116,6 +109,8 @@ class Reader {
         value.push_back(std::move(element));
       }
       value.shrink_to_fit();
+    } else if constexpr (kIsArray<T>) {
+      for (auto& element : value) get(element);
     } else if constexpr (kIsOptional<T>) {
       bool there = false;
       get(there);

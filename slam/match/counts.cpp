@@ -39,4 +39,10 @@ void add(const MatchCounts& more, MatchCounts& counts) {
   for (std::size_t m = 0; m < counts.size(); ++m) counts[m] += more[m];
 }
 
+void add(const std::optional<MatchCounts>& more, std::optional<MatchCounts>& counts) {
+  if (!more) return;
+  if (!counts) counts.emplace();
+  add(*more, *counts);
+}
+
 }  // namespace mh

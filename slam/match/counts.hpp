@@ -3,7 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
+
+#include "slam/core/fields.hpp"
 
 namespace mh {
 
@@ -30,12 +33,28 @@ struct MatcherCounts {
       0;  ///< pairs that pass the ratio test only because xi inflated the second best
   MatcherCounts& operator+=(const MatcherCounts& other);
 };
+
+template <Either<MatcherCounts> C, class Visit>
+void fields(C& counts, Visit& v) {
+  auto& [compared, penalized, rejected_by_xi, ratio_helped] = counts;
+  v("compared", compared);
+  v("penalized", penalized);
+  v("rejected_by_xi", rejected_by_xi);
+  v("ratio_helped", ratio_helped);
+}
+template <>
+inline constexpr bool kAsList<MatcherCounts> = true;
 using MatchCounts = std::array<MatcherCounts, static_cast<std::size_t>(Matcher::kCount)>;
 
 /// Adds counts to others, matcher by matcher.
 void add(const MatchCounts& more, MatchCounts& counts);
+/// The same where either may be unknown: what is unknown adds nothing.
+void add(const std::optional<MatchCounts>& more, std::optional<MatchCounts>& counts);
 
 inline MatcherCounts& at(MatchCounts& counts, Matcher matcher) {
+  return counts[static_cast<std::size_t>(matcher)];
+}
+inline const MatcherCounts& at(const MatchCounts& counts, Matcher matcher) {
   return counts[static_cast<std::size_t>(matcher)];
 }
 

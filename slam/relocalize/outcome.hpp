@@ -1,14 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string_view>
+#include "slam/core/words.hpp"
 
 namespace mh {
 
 /// Where an attempt to relocalize ended: the farthest stage that any candidate reached and failed,
 /// or kVerified.
 enum class RelocalizationStage { kNone, kNoCandidate, kMatches, kPnp, kInliers, kVerified };
-std::string_view name(RelocalizationStage stage);
+
+constexpr Names<RelocalizationStage, 6> words(RelocalizationStage) {
+  return {{{"none", RelocalizationStage::kNone},
+           {"no_candidate", RelocalizationStage::kNoCandidate},
+           {"matches", RelocalizationStage::kMatches},
+           {"pnp", RelocalizationStage::kPnp},
+           {"inliers", RelocalizationStage::kInliers},
+           {"verified", RelocalizationStage::kVerified}}};
+}
+constexpr std::string_view name(RelocalizationStage stage) {
+  return name_of(stage, words(stage));
+}
 
 /// Keyframes left after each step of Algorithm 1.
 struct CandidateCounts {

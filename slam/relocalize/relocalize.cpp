@@ -138,24 +138,6 @@ class CandidateTrial {
 
 }  // namespace
 
-std::string_view name(RelocalizationStage stage) {
-  switch (stage) {
-    case RelocalizationStage::kNone:
-      return "none";
-    case RelocalizationStage::kNoCandidate:
-      return "no_candidate";
-    case RelocalizationStage::kMatches:
-      return "matches";
-    case RelocalizationStage::kPnp:
-      return "pnp";
-    case RelocalizationStage::kInliers:
-      return "inliers";
-    case RelocalizationStage::kVerified:
-      return "verified";
-  }
-  return "?";
-}
-
 std::vector<KeyframeId> neighborhood(const Map& map, KeyframeId k,
                                      const std::function<bool(KeyframeId)>& belongs) {
   std::vector<KeyframeId> result{k};

@@ -21,11 +21,11 @@ class FakeSystem : public System {
 
   explicit FakeSystem(Tracks tracks) : tracks_(std::move(tracks)) {}
 
-  StepReport track(const RgbdFrame& frame, RandomStream stream) override {
+  SystemReport track(const RgbdFrame& frame, RandomStream stream) override {
     fed.push_back(frame.stamp_ns);
     streams.push_back(stream.key());
     const bool tracked = tracks_(frame.stamp_ns, ++showings_[frame.stamp_ns]);
-    StepReport report;
+    SystemReport report;
     report.status = tracked ? TrackStatus::kTracked : TrackStatus::kLost;
     if (!tracked) return report;
     report.world_from_camera = pose(frame.stamp_ns);
@@ -54,7 +54,7 @@ class FakeSystem : public System {
   /// Told the stream of every frame that a session is shown.
   std::function<void(RandomStream)> on_query = [](RandomStream) {};
   /// Changes what is reported of the n-th showing of a test frame (n = 1, 2, ...).
-  std::function<void(int attempt, StepReport& report)> on_report = [](int, StepReport&) {};
+  std::function<void(int attempt, SystemReport& report)> on_report = [](int, SystemReport&) {};
   /// How many blank frames are still believed to be tracked.
   int believes_blanks = 0;
 
@@ -72,8 +72,8 @@ class FakeSystem : public System {
 class FakeSession : public RelocalizationSession {
  public:
   explicit FakeSession(const FakeSystem& system) : system_(system) {}
-  StepReport feed(const RgbdFrame& frame, RandomStream stream) override {
-    StepReport report;
+  SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
+    SystemReport report;
     system_.on_query(stream);
     const bool blank = frame.depth_m(0, 0) == 0.0F;
     if (blank) {
@@ -83,7 +83,7 @@ class FakeSession : public RelocalizationSession {
     }
     const bool found = ++attempts_ == system_.answers_at(frame.stamp_ns);
     report.relocalization = found ? RelocalizationStage::kVerified : RelocalizationStage::kMatches;
-    report.candidates = CandidateCounts{.keyframes = 10, .c1 = 9, .c2 = 4, .c3 = 3, .final = 1};
+    report.candidates = {.keyframes = 10, .c1 = 9, .c2 = 4, .c3 = 3, .final = 1, .label_mass = {}};
     system_.on_report(attempts_, report);
     if (!found) return report;
     report.status = TrackStatus::kRelocalized;

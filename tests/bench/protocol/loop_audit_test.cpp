@@ -35,7 +35,7 @@ TEST(AuditLoops, TakesTheTrueRelativePoseForRight) {
   const std::vector<LoopClosure> loops = {exact_loop(40, 3), exact_loop(49, 10)};
   const LoopAudit audit = audit_loops(loops, truth(), {});
   EXPECT_EQ(audit.closed, 2);
-  EXPECT_EQ(audit.wrong, 0);
+  EXPECT_EQ(audit.false_positive, 0);
   EXPECT_NEAR(audit.worst_m, 0.0, 1e-12);
   EXPECT_NEAR(audit.worst_rad, 0.0, 1e-6);
   EXPECT_EQ(audit_loops({}, truth(), {}), LoopAudit{});
@@ -48,12 +48,12 @@ TEST(AuditLoops, IsWrongBeyondWhatACorrectAnswerMayBeOff) {
     loop.old_from_new = loop.old_from_new * error;
     return audit_loops(std::span(&loop, 1), truth(), config);
   };
-  EXPECT_EQ(off_by(moved(0.24)).wrong, 0);
+  EXPECT_EQ(off_by(moved(0.24)).false_positive, 0);
   EXPECT_NEAR(off_by(moved(0.24)).worst_m, 0.24, 1e-9);
-  EXPECT_EQ(off_by(moved(0.26)).wrong, 1);
-  EXPECT_EQ(off_by(turned(0.17)).wrong, 0);
+  EXPECT_EQ(off_by(moved(0.26)).false_positive, 1);
+  EXPECT_EQ(off_by(turned(0.17)).false_positive, 0);
   EXPECT_NEAR(off_by(turned(0.17)).worst_rad, 0.17, 1e-6);
-  EXPECT_EQ(off_by(turned(0.18)).wrong, 1);
+  EXPECT_EQ(off_by(turned(0.18)).false_positive, 1);
 }
 
 TEST(AuditLoops, OfAMomentThatTheTruthDoesNotKnowIsNotJudged) {
@@ -62,7 +62,7 @@ TEST(AuditLoops, OfAMomentThatTheTruthDoesNotKnowIsNotJudged) {
   const LoopAudit audit = audit_loops(std::span(&loop, 1), truth(), {});
   EXPECT_EQ(audit.closed, 1);
   EXPECT_EQ(audit.unknown, 1);
-  EXPECT_EQ(audit.wrong, 0);
+  EXPECT_EQ(audit.false_positive, 0);
 }
 
 }  // namespace

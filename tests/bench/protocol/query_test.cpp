@@ -34,8 +34,7 @@ TEST(Query, StopsAtTheFirstPoseThatComesBack) {
   EXPECT_EQ(answer.attempts, 3);
   EXPECT_EQ(answer.blank_frames, 1);
   EXPECT_EQ(answer.stage, RelocalizationStage::kVerified);
-  ASSERT_TRUE(answer.candidates);
-  EXPECT_EQ(answer.candidates->c2, 4);
+  EXPECT_EQ(answer.candidates.c2, 4);
 }
 
 TEST(Query, EachAttemptAtEachFrameHasItsOwnNoiseAndDraws) {
@@ -67,19 +66,20 @@ TEST(Query, GivesUpAfterFiveAttemptsAndNamesTheStage) {
 TEST(Query, CandidatesAreThoseOfTheFirstAttemptAndPairsAreSummed) {
   FakeSystem system = mapped();
   system.answers_at = [](Stamp) { return 3; };
-  system.on_report = [](int attempt, StepReport& report) {
-    report.candidates->final = 10 + attempt;
-    report.matches[2].compared = attempt;
+  system.on_report = [](int attempt, SystemReport& report) {
+    report.candidates.final = 10 + attempt;
+    report.matches.emplace();
+    (*report.matches)[2].compared = attempt;
   };
   const QueryAnswer answer = query(system, 59, fake_frames(300), {}, RandomStream(1));
-  ASSERT_TRUE(answer.candidates);
-  EXPECT_EQ(answer.candidates->final, 11);
-  EXPECT_EQ(answer.matches[2].compared, 1 + 2 + 3);
+  EXPECT_EQ(answer.candidates.final, 11);
+  ASSERT_TRUE(answer.matches);
+  EXPECT_EQ((*answer.matches)[2].compared, 1 + 2 + 3);
   // Where the first tells none, none are known.
-  system.on_report = [](int attempt, StepReport& report) {
-    if (attempt == 1) report.candidates.reset();
+  system.on_report = [](int attempt, SystemReport& report) {
+    if (attempt == 1) report.candidates = {};
   };
-  EXPECT_FALSE(query(system, 59, fake_frames(300), {}, RandomStream(1)).candidates);
+  EXPECT_EQ(query(system, 59, fake_frames(300), {}, RandomStream(1)).candidates, Candidates{});
 }
 
 TEST(Query, TheDigestOfMatchingIsOfEveryAttempt) {
@@ -87,8 +87,10 @@ TEST(Query, TheDigestOfMatchingIsOfEveryAttempt) {
   system.answers_at = [](Stamp) { return 3; };
   std::set<std::uint64_t> seen;
   for (const int changed : {0, 1, 2, 3}) {  // 0: none
-    system.on_report = [&](int attempt, StepReport& report) {
-      if (attempt == changed) report.matches[0].compared = 1;
+    system.on_report = [&](int attempt, SystemReport& report) {
+      if (attempt != changed) return;
+      report.matches.emplace();
+      (*report.matches)[0].compared = 1;
     };
     seen.insert(query(system, 59, fake_frames(300), {}, RandomStream(1)).matching_digest);
   }
@@ -100,7 +102,7 @@ TEST(Query, TheDigestsOfPosesAndImagesAreOfEveryAttempt) {
   system.answers_at = [](Stamp) { return 3; };
   std::set<std::uint64_t> poses, images;
   for (const int changed : {0, 1, 2}) {  // 0: none; a pose of a lost system is one, too
-    system.on_report = [&](int attempt, StepReport& report) {
+    system.on_report = [&](int attempt, SystemReport& report) {
       if (attempt == changed) report.world_from_camera = SE3();
     };
     poses.insert(query(system, 59, fake_frames(300), {}, RandomStream(1)).pose_digest);
@@ -308,15 +310,15 @@ TEST(Score, TellsCorrectFromWrong) {
     return score(answer, truth, anchor, SE3(), config);
   };
   const QueryScore good = with(at(0.2, 0, 0.1));
-  EXPECT_TRUE(good.success && good.correct && !good.wrong);
+  EXPECT_TRUE(good.success && good.correct && !good.false_positive);
   EXPECT_NEAR(good.distance_m.value(), 0.2, 1e-12);
   EXPECT_NEAR(good.angle_deg.value(), 5.7296, 1e-3);
   const QueryScore far = with(at(0.3, 0, 0));
-  EXPECT_TRUE(far.success && !far.correct && far.wrong);
+  EXPECT_TRUE(far.success && !far.correct && far.false_positive);
   const QueryScore turned = with(at(0, 0, 0.2));
-  EXPECT_TRUE(turned.success && !turned.correct && turned.wrong);
+  EXPECT_TRUE(turned.success && !turned.correct && turned.false_positive);
   const QueryScore none = with(std::nullopt);
-  EXPECT_TRUE(!none.success && !none.correct && !none.wrong);
+  EXPECT_TRUE(!none.success && !none.correct && !none.false_positive);
 }
 
 TEST(InterpolatedPose, OfTheTruthIsNotThatOfAFrameWhosePoseIsInvalid) {
@@ -351,7 +353,7 @@ TEST(Score, WithoutATruthAnAnswerIsASuccessAndNothingElse) {
   ProtocolConfig config;
   EXPECT_FALSE(find_anchor(estimate, {}, unknown, NearestBy::kTime, config));
   const QueryScore s = score(answer, unknown, std::nullopt, SE3(), config);
-  EXPECT_TRUE(s.success && !s.correct && !s.wrong && !is_judged(s));
+  EXPECT_TRUE(s.success && !s.correct && !s.false_positive && !is_judged(s));
   EXPECT_FALSE(s.distance_m || s.angle_deg || s.aligned_distance_m);
   // The paper's own way needs none.
   config.truth = QueryTruth::kInterpolated;
@@ -366,7 +368,7 @@ TEST(Score, AnAnswerWithoutAnyMapIsFalseAndItsDistanceUnknown) {
   QueryAnswer answer;
   answer.world_from_camera = at(5, 5, 0);
   const QueryScore s = score(answer, {0, at(0, 0, 0)}, std::nullopt, SE3(), {});
-  EXPECT_TRUE(s.success && !s.correct && s.wrong);
+  EXPECT_TRUE(s.success && !s.correct && s.false_positive);
   EXPECT_FALSE(s.distance_m || s.angle_deg || s.aligned_distance_m);
 }
 

@@ -40,17 +40,17 @@ inline std::vector<QueryScore> made_up_queries(const MadeUpAnswers& a) {
     q.stamp_ns = static_cast<Stamp>(q.answer.index);
     q.true_world_from_camera = SE3();
     q.answer.attempts = a.attempts[i];
-    q.answer.candidates = CandidateCounts{.keyframes = a.keyframes,
-                                          .c1 = a.c1,
-                                          .c2 = a.c2,
-                                          .c3 = a.c3,
-                                          .final = a.final[i],
-                                          .label_mass = a.label_mass};
+    q.answer.candidates = {.keyframes = a.keyframes,
+                           .c1 = a.c1,
+                           .c2 = a.c2,
+                           .c3 = a.c3,
+                           .final = a.final[i],
+                           .label_mass = a.label_mass};
     q.answer.stage = a.unanswered;
     if (i < a.distances_m.size()) {
       q.success = true;
       q.correct = i < static_cast<std::size_t>(a.correct);
-      q.wrong = !q.correct;
+      q.false_positive = !q.correct;
       q.answer.stage = RelocalizationStage::kVerified;
       q.answer.world_from_camera = SE3();
       q.distance_m = a.distances_m[i];
@@ -67,17 +67,15 @@ inline RunResult made_up_run(const RunSpec& spec, const MadeUpFigures& figures) 
   run.spec = spec;
   run.place.scene = "room";
   run.trajectory = {.offered = 1000,
-                    .tracked = static_cast<std::size_t>(1000 * figures.completeness),
-                    .completeness = figures.completeness,
+                    .tracked = 1000 * figures.completeness,
                     .ate_rmse_m = figures.ate_m,
                     .ate_first_pose_m = figures.first_pose_m,
                     .rpe_frame_rmse_m = figures.rpe_frame_m,
                     .rpe_second_rmse_m = figures.rpe_second_m,
-                    .truth_from_estimate = {},
-                    .dock_from_estimate = {}};
+                    .completeness = figures.completeness};
   run.mapping.restarts = figures.restarts;
   for (std::size_t i = 0; i < figures.dropped; ++i) run.mapping.dropped.push_back(i);
-  run.mapping.matches[0] = figures.pairs;
+  run.mapping.matches.emplace()[0] = figures.pairs;
   run.points = {{.held_out = made_up_queries(figures.held_out),
                  .second_tour = made_up_queries(figures.second_tour)}};
   run.times.track_ms = figures.track_ms;

@@ -138,7 +138,7 @@ TEST_F(Recorded, AFolderIsMappedAndItsHeldOutFramesAndASecondRecordingAreAskedAb
     for (const QueryScore& q : queries(answers, set)) {
       EXPECT_TRUE(q.correct) << name(set) << q.answer.index;
       EXPECT_LT(q.distance_m.value(), 0.05);
-      EXPECT_GT(q.answer.candidates->label_mass, 0.01) << "its labels are not seen";
+      EXPECT_GT(q.answer.candidates.label_mass.value_or(0), 0.01) << "its labels are not seen";
     }
   EXPECT_TRUE(result.volume);
   EXPECT_EQ(result.grid.cells.size(), 0U) << "nobody knows where the floor is";
@@ -176,7 +176,7 @@ TEST_F(Recorded, WithoutATruthAnswersAreSuccessesAndNothingElseIsSaid) {
   const QuerySummary s = summarize(result.points.front().held_out);
   EXPECT_EQ(s.queries, 2);
   EXPECT_EQ(s.success, 1);
-  EXPECT_FALSE(s.correct || s.wrong || s.distance_mean_m);
+  EXPECT_FALSE(s.correct || s.false_positive || s.distance_mean_m);
 
   Store store(folder_ / "results.sqlite");
   store.put("key", result, {});
@@ -335,7 +335,7 @@ TEST_F(Recorded, ScanNetsFramesWithoutAPoseAreMappedAndNotScored) {
   ASSERT_EQ(result.points.front().held_out.size(), 2U);  // 29 and 89
   EXPECT_EQ(result.points.front().held_out[1].answer.index, 89U);
   EXPECT_TRUE(result.points.front().held_out[1].correct);
-  EXPECT_GT(result.points.front().held_out[0].answer.candidates->label_mass, 0.01);
+  EXPECT_GT(result.points.front().held_out[0].answer.candidates.label_mass.value_or(0), 0.01);
 
   for (int i = 0; i < 90; ++i) write(room() / "pose" / fmt::format("{}.txt", i), lost());
   const RunResult unknown = run();

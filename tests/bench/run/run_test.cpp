@@ -14,13 +14,13 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
+#include "bench/metrics/trajectory_score.hpp"
 #include "bench/report/json.hpp"
 #include "bench/report/sweep.hpp"
 #include "bench/report/table.hpp"
 #include "bench/report/topdown.hpp"
 #include "bench/report/write.hpp"
 #include "bench/results/scenes.hpp"
-#include "bench/results/trajectory_score.hpp"
 #include "bench/verify/verify.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/core/counted.hpp"
@@ -53,8 +53,8 @@ class MixingSystem : public System {
   MixingSystem(bool looks_at_labels, int failures)
       : looks_at_labels_(looks_at_labels), failures_(failures) {}
 
-  StepReport track(const RgbdFrame& frame, RandomStream stream) override {
-    StepReport report;
+  SystemReport track(const RgbdFrame& frame, RandomStream stream) override {
+    SystemReport report;
     if (frame.stamp_ns == 70 * kPeriod && ++showings_ <= failures_) return report;
     const double wobble = mix(frame, stream);
     report.status = TrackStatus::kTracked;
@@ -76,10 +76,11 @@ class MixingSystem : public System {
   std::unique_ptr<RelocalizationSession> open_session() const override {
     struct Session : RelocalizationSession {
       explicit Session(const MixingSystem& s) : system(s) {}
-      StepReport feed(const RgbdFrame& frame, RandomStream stream) override {
-        StepReport report;
+      SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
+        SystemReport report;
         if (frame.depth_m(0, 0) == 0) return report;
-        report.candidates = CandidateCounts{.keyframes = 10, .c1 = 9, .c2 = 4, .c3 = 3, .final = 1};
+        report.candidates = {
+            .keyframes = 10, .c1 = 9, .c2 = 4, .c3 = 3, .final = 1, .label_mass = {}};
         report.status = TrackStatus::kRelocalized;
         report.relocalization = RelocalizationStage::kVerified;
         report.world_from_camera =
@@ -256,7 +257,7 @@ TEST(Verify, FindsOnePoseAndNamesIt) {
   const auto shift = [](const RunSpec& spec) {
     RunTamper tamper;
     if (spec.system.kind == SystemKind::kPlain)
-      tamper.report = [](std::size_t call, StepReport& report) {
+      tamper.report = [](std::size_t call, SystemReport& report) {
         if (call == 41)
           report.world_from_camera =
               *report.world_from_camera * SE3(Eigen::Matrix3d::Identity(), {0, 0, 1e-15});
@@ -313,7 +314,8 @@ TEST(Scenes, MeansAreOfMediansAndScenesArePaired) {
   std::vector<std::string> seen;
   for (const CategoryRow& row : categories)
     if (row.labels == LabelMode::kExact && place.suite.systems[row.system].name == "plain")
-      seen.push_back(fmt::format("{} {} {}", row.category, row.scenes, row.completeness));
+      seen.push_back(
+          fmt::format("{} {} {}", row.category, row.scenes, row.trajectory.completeness));
   EXPECT_EQ(seen,
             (std::vector<std::string>{"fake 2 0.75", "hall 1 1", "all 3 0.8333333333333334"}));
   const std::vector<SceneFamily> families = compare_over_scenes(place.suite, rows);
@@ -351,9 +353,9 @@ TEST(Results, WhatIsUndeterminedIsNull) {
   std::vector<QueryScore> without_map(3);
   for (QueryScore& q : without_map) {
     q.true_world_from_camera = SE3();
-    q.success = q.wrong = true;
+    q.success = q.false_positive = true;
   }
-  EXPECT_EQ(summarize(without_map).wrong, 1.0);
+  EXPECT_EQ(summarize(without_map).false_positive, 1.0);
   EXPECT_FALSE(summarize(without_map).distance_mean_m);
   EXPECT_FALSE(summarize(without_map).aligned_distance_mean_m);
 }
@@ -363,11 +365,11 @@ TEST(Results, OfAnswersThatNobodyCanJudgeNothingIsSaidButTheirSuccess) {
   queries[1].success = true;
   const QuerySummary s = summarize(queries);
   EXPECT_EQ(s.success, 0.25);
-  EXPECT_FALSE(s.correct || s.wrong || s.distance_mean_m);
+  EXPECT_FALSE(s.correct || s.false_positive || s.distance_mean_m);
   queries[3].true_world_from_camera = SE3();
   queries[3].success = queries[3].correct = true;
   EXPECT_EQ(summarize(queries).correct, 0.25);
-  EXPECT_EQ(summarize(queries).wrong, 0.0);
+  EXPECT_EQ(summarize(queries).false_positive, 0.0);
 
   Place place;
   std::vector<RunResult> runs = place.run();
@@ -375,16 +377,20 @@ TEST(Results, OfAnswersThatNobodyCanJudgeNothingIsSaidButTheirSuccess) {
     for (QueryScore& q : run.points.front().held_out) {
       q.true_world_from_camera.reset();
       q.distance_m = q.angle_deg = q.aligned_distance_m = {};
-      q.correct = q.wrong = false;
+      q.correct = q.false_positive = false;
     }
   const auto json = results_json(place.suite, runs);
   EXPECT_TRUE(json["rows"][0]["held_out"]["success"].is_number());
   EXPECT_TRUE(json["rows"][0]["held_out"]["correct"].is_null());
-  EXPECT_TRUE(json["rows"][0]["held_out"]["false"].is_null());
+  EXPECT_TRUE(json["rows"][0]["held_out"]["false_positive"].is_null());
   EXPECT_TRUE(json["rows"][0]["second_tour"]["correct"].is_number());
   const auto query = json["runs"][0]["points"][0]["held_out"][0];
-  EXPECT_TRUE(query["correct"].is_null() && query["false"].is_null() && query["truth"].is_null());
-  EXPECT_NE(results_table(place.suite, runs).find("-        -"), std::string::npos);
+  EXPECT_TRUE(query["correct"].is_null() && query["false_positive"].is_null() &&
+              query["truth"].is_null());
+  const std::string table = results_table(place.suite, runs);
+  EXPECT_TRUE(
+      std::regex_search(table, std::regex("held out +success[^\n]*\n +[a-z]+ +[0-9.]+% +- +- ")))
+      << table;
 }
 
 TEST(Sweep, TheBestPointIsComparedWithTheSuitesOwnSettings) {
@@ -522,7 +528,7 @@ TEST(Topdown, KeepsItsTextWithinTheMarginsAndItsAnswersOnThePlan) {
   };
   QueryScore& q = run.points[0].second_tour[0];
   q.correct = false;
-  q.wrong = true;
+  q.false_positive = true;
   q.answer.world_from_camera = SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, 1, 1));
   const cv::Mat near = drawn();
   q.answer.world_from_camera = SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, 8, 1));
@@ -549,7 +555,7 @@ TEST(Topdown, FailuresLieOnTopHeadingsShowAndThePathsCanBeTold) {
   const SE3 here(level, Eigen::Vector3d(0.5, 0.5, 1));
   QueryScore answered = asked[0], failed = asked[0];
   answered.success = answered.correct = true;
-  answered.wrong = failed.success = failed.correct = failed.wrong = false;
+  answered.false_positive = failed.success = failed.correct = failed.false_positive = false;
   answered.true_world_from_camera = failed.true_world_from_camera = here;
   answered.answer.world_from_camera = here;
   const auto drawn = [&](const QueryScore& first, const QueryScore& second) {
@@ -571,7 +577,7 @@ TEST(Topdown, FailuresLieOnTopHeadingsShowAndThePathsCanBeTold) {
           here.translation());
   EXPECT_GT(cv::norm(picture, drawn(answered, turned)), 0) << "no heading";
   run.estimate = place.world.simulated->mapping.camera;  // a path that is just right
-  run.trajectory.dock_from_estimate = SE3();
+  run.frames.dock_from_estimate = SE3();
   const cv::Mat both = drawn(answered, failed);
   EXPECT_GT(pixels_of(both, {165, 205, 150}), 50) << "the true path is hidden";
   EXPECT_GT(pixels_of(both, {10, 84, 196}), 50) << "the estimated path is hidden";
@@ -610,7 +616,7 @@ TEST(Topdown, FurnitureIsCutAt40CmAndWallsAt120CmAboveTheFloor) {
 TEST(Topdown, TheLegendTellsHowFarThePathsAreApart) {
   Place place;
   RunResult run = place.run()[0];
-  run.trajectory.dock_from_estimate = SE3();
+  run.frames.dock_from_estimate = SE3();
   const auto legend = [&](const Eigen::Vector3d& first_off, const Eigen::Vector3d& others_off) {
     run.estimate = place.world.simulated->mapping.camera;
     for (TimedPose& pose : run.estimate) {
@@ -659,7 +665,7 @@ TEST(Scenes, WhereRunsFailedItIsSaidOverHowManyScenesTheMeanIs) {
     EXPECT_NE(table.find(part), std::string::npos) << part << table;
   EXPECT_EQ(table.find("inf"), std::string::npos) << table;
   const auto json = results_json(place.suite, runs, failed);
-  EXPECT_TRUE(json["categories"][3]["completeness"].is_null());
+  EXPECT_TRUE(json["categories"][3]["trajectory"].is_null());
   EXPECT_EQ(json["categories"][5]["of_scenes"], 2);
 }
 
@@ -724,14 +730,12 @@ TEST(Results, WhatAnOutsideProgramDoesNotTellIsUnknown) {
   ASSERT_EQ(runs[1].spec.system.kind, SystemKind::kOutside);
   for (QueryScore& q : runs[1].points[0].held_out) {
     q.success = false;
-    q.answer.stage = RelocalizationStage::kNone;
-    q.answer.candidates = CandidateCounts{.keyframes = kUnknownCount,
-                                          .c1 = kUnknownCount,
-                                          .c2 = kUnknownCount,
-                                          .c3 = kUnknownCount,
-                                          .final = 5,
-                                          .label_mass = std::nan("")};
+    q.answer.stage.reset();
+    q.answer.matches.reset();
+    q.answer.candidates = {};
+    q.answer.candidates.final = 5;
   }
+  runs[1].mapping.matches.reset();
   const QuerySummary s = summarize(runs[1].points[0].held_out);
   EXPECT_FALSE(s.c1 || s.keyframes || s.label_mass);
   EXPECT_EQ(s.final, 5.0);
@@ -740,7 +744,7 @@ TEST(Results, WhatAnOutsideProgramDoesNotTellIsUnknown) {
   EXPECT_TRUE(
       std::regex_search(table, std::regex("odometry_of_theirs +- +- +- +- +5\\.00 +0\\.0% +-\n")))
       << table;
-  EXPECT_NE(table.find(" 5 not told\n"), std::string::npos) << table;
+  EXPECT_NE(table.find(" 5 not reported\n"), std::string::npos) << table;
   EXPECT_EQ(table.find("penalized"), std::string::npos) << table;
   const auto query = results_json(place.suite, runs)["runs"][1]["points"][0]["held_out"][0];
   EXPECT_TRUE(query["stage"].is_null());

@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
+#include "bench/metrics/trajectory_score.hpp"
 #include "bench/protocol/query.hpp"
 #include "bench/protocol/score.hpp"
 #include "bench/provenance/digest.hpp"
-#include "bench/results/trajectory_score.hpp"
 #include "bench/systems/conversation.hpp"
 #include "bench/systems/recorded_run.hpp"
 #include "scenes/recorded/frame_files.hpp"
@@ -137,9 +137,8 @@ TEST_F(OutsideOdometry, GoesThroughTheWholeProtocol) {
   for (const std::size_t index : test_frames(kCount, {})) {
     const QueryAnswer answer = query(*system, index, frames(), {}, RandomStream(2));
     EXPECT_EQ(answer.blank_frames, 1);
-    ASSERT_TRUE(answer.candidates) << index;
-    EXPECT_GE(answer.candidates->keyframes, 2);
-    EXPECT_GE(answer.candidates->final, 1);
+    EXPECT_GE(answer.candidates.keyframes, 2);
+    EXPECT_GE(answer.candidates.final, 1);
     const QueryScore q =
         mh::score(answer, path_[index],
                   nearest_mapped(estimate, path_, path_[index], NearestBy::kTime), SE3(), {});
@@ -167,7 +166,7 @@ TEST_F(OutsideOdometry, RewindKeepsTheMapAndResetForgetsIt) {
   system->rewind();
   const auto again = system->track(frame(12, stream), stream);
   ASSERT_TRUE(again.world_from_camera);
-  EXPECT_TRUE(again.candidates) << "it was lost, so that it had to relocalize";
+  EXPECT_NE(again.candidates, Candidates{}) << "it was lost, so that it had to relocalize";
   EXPECT_GT(again.world_from_camera->translation().norm(), 0.05);
   EXPECT_EQ(system->trajectory().size(), 20u);
   system->reset();

@@ -34,7 +34,8 @@ RunResult some_run() {
   RunResult run;
   run.spec.name = "run";
   run.spec.points.resize(2);
-  run.mapping.calls = {{.index = 3, .stamp_ns = 30}, {.index = 4, .stamp_ns = 40, .restart = 2}};
+  run.mapping.calls = {{.index = 3, .stamp_ns = 30, .inliers = {}},
+                       {.index = 4, .stamp_ns = 40, .restart = 2, .inliers = {}}};
   run.estimate = {{30, SE3()}, {40, SE3()}};
   QueryScore first, second;
   first.answer.index = 29;
@@ -139,30 +140,31 @@ TEST(Digests, EachSeesItsOwnAndNoOther) {
 }
 
 TEST(DigestOfMatching, SeesAllThatAStepSaidOfItButThePose) {
-  StepReport report;
-  report.candidates.emplace();
+  SystemReport report;
+  report.candidates = {.keyframes = 0, .c1 = 0, .c2 = 0, .c3 = 0, .final = 0, .label_mass = 0};
+  report.matches.emplace();
   std::set<std::uint64_t> seen = {digest_of_matching(report)};
   std::size_t changes = 1;
-  const auto change = [&](const std::function<void(StepReport&)>& with) {
-    StepReport changed = report;
+  const auto change = [&](const std::function<void(SystemReport&)>& with) {
+    SystemReport changed = report;
     with(changed);
     seen.insert(digest_of_matching(changed));
     EXPECT_EQ(seen.size(), ++changes) << "change " << changes;
   };
-  change([](StepReport& r) { r.status = TrackStatus::kTracked; });
-  change([](StepReport& r) { r.keypoints = 1; });
-  change([](StepReport& r) { r.inliers = 1; });
-  change([](StepReport& r) { r.keyframe_added = true; });
-  change([](StepReport& r) { r.relocalization = RelocalizationStage::kPnp; });
-  for (std::size_t m = 0; m < report.matches.size(); ++m)
+  change([](SystemReport& r) { r.status = TrackStatus::kTracked; });
+  change([](SystemReport& r) { r.keypoints = 1; });
+  change([](SystemReport& r) { r.inliers = 1; });
+  change([](SystemReport& r) { r.keyframe_added = true; });
+  change([](SystemReport& r) { r.relocalization = RelocalizationStage::kPnp; });
+  for (std::size_t m = 0; m < report.matches->size(); ++m)
     for (const auto count : {&MatcherCounts::compared, &MatcherCounts::penalized,
                              &MatcherCounts::rejected_by_xi, &MatcherCounts::ratio_helped})
-      change([=](StepReport& r) { r.matches[m].*count = 1; });
-  for (const auto count : {&CandidateCounts::keyframes, &CandidateCounts::c1, &CandidateCounts::c2,
-                           &CandidateCounts::c3, &CandidateCounts::final})
-    change([=](StepReport& r) { (*r.candidates).*count = 1; });
-  change([](StepReport& r) { r.candidates->label_mass = 0.5; });
-  change([](StepReport& r) { r.candidates.reset(); });
+      change([=](SystemReport& r) { (*r.matches)[m].*count = 1; });
+  for (const auto count : {&Candidates::keyframes, &Candidates::c1, &Candidates::c2,
+                           &Candidates::c3, &Candidates::final})
+    change([=](SystemReport& r) { r.candidates.*count = 1; });
+  change([](SystemReport& r) { r.candidates.label_mass = 0.5; });
+  change([](SystemReport& r) { r.candidates = {}; });
   report.world_from_camera = SE3();
   EXPECT_TRUE(seen.contains(digest_of_matching(report))) << "the pose has a digest of its own";
 }

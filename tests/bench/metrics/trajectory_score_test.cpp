@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/results/trajectory_score.hpp"
+#include "bench/metrics/trajectory_score.hpp"
 
 #include <gtest/gtest.h>
 

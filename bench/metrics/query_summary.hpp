@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bench/metrics/metric.hpp"
+
+namespace mh {
+
+/// Which test frames: never pooled with one another.
+enum class QuerySet { kHeldOut, kSecondTour };
+inline constexpr QuerySet kQuerySets[] = {QuerySet::kHeldOut, QuerySet::kSecondTour};
+inline std::string_view name(QuerySet set) {
+  return set == QuerySet::kHeldOut ? "held_out" : "second_tour";
+}
+
+/// The answers of one run to one set of queries, or one value of many such.
+struct QuerySummary {
+  double queries = 0;
+  double success = 0;  ///< share of all queries
+  /// Likewise; absent where none can be judged, since nobody knows the truth.
+  std::optional<double> correct, false_positive;
+  /// Over the queries that were answered, local truth; absent where none was.
+  std::optional<double> distance_mean_m, distance_median_m;
+  std::optional<double> aligned_distance_mean_m;  ///< the same, in the globally aligned frame
+  double attempts = 0;                            ///< mean
+  /// Candidate keyframes left after equations 3, 4, 5 and 6: mean counts over the queries where the
+  /// system tells them; absent where it tells none.
+  std::optional<double> keyframes, c1, c2, c3, final;
+  std::optional<double> single_candidate;  ///< share of queries with exactly one left
+  std::optional<double> label_mass;        ///< mean share of the query vector held by labels
+};
+
+template <Either<QuerySummary> S, class Visit>
+void fields(S& summary, Visit& v) {
+  using enum Better;
+  auto& [queries, success, correct, false_positive, distance_mean_m, distance_median_m,
+         aligned_distance_mean_m, attempts, keyframes, c1, c2, c3, final, single_candidate,
+         label_mass] = summary;
+  v(Metric{.name = "queries"}, queries);
+  v(Metric{"success", "success", "%", 2, kMore, "queries", true}, success);
+  v(Metric{"correct", "correct", "%", 2, kMore, "queries", true}, correct);
+  v(Metric{"false_positive", "false pos.", "%", 2, kLess, "queries", true}, false_positive);
+  v(Metric{"distance_mean_m", "mean m", "m", 4, kLess, "", true}, distance_mean_m);
+  v(Metric{"distance_median_m", "median m", "m", 4, kLess}, distance_median_m);
+  v(Metric{"aligned_distance_mean_m", "aligned m", "m", 4, kLess}, aligned_distance_mean_m);
+  v(Metric{"attempts", "attempts", "", 2, kLess}, attempts);
+  v(Metric{.name = "candidates.keyframes"}, keyframes);
+  v(Metric{.name = "candidates.c1"}, c1);
+  v(Metric{.name = "candidates.c2"}, c2);
+  v(Metric{.name = "candidates.c3"}, c3);
+  v(Metric{.name = "candidates.final"}, final);
+  v(Metric{.name = "candidates.single", .unit = "%"}, single_candidate);
+  v(Metric{.name = "candidates.label_mass", .unit = "%"}, label_mass);
+}
+
+}  // namespace mh

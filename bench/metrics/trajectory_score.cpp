@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/metrics/trajectory_score.hpp"
+
+#include "bench/metrics/evaluate.hpp"
+
+namespace mh {
+namespace {
+
+/// A root mean square of no errors is unknown, not 0.
+std::optional<double> rmse(const ErrorStatistics& s) {
+  return s.count > 0 ? std::optional(s.rmse) : std::nullopt;
+}
+
+}  // namespace
+
+TrajectoryScore score_trajectory(const Trajectory& estimate, const Trajectory& truth,
+                                 std::size_t offered) {
+  const Evaluation e = evaluate(truth, estimate);
+  TrajectoryScore score;
+  score.offered = static_cast<double>(offered);
+  score.tracked = static_cast<double>(estimate.size());
+  score.completeness = offered == 0 ? 0 : score.tracked / score.offered;
+  score.ate_rmse_m = rmse(e.ape_translation_m);
+  score.rpe_frame_rmse_m = rmse(e.rpe[0].translation_m);
+  score.rpe_second_rmse_m = rmse(e.rpe[1].translation_m);
+  // One pose laid over itself has no error to tell of.
+  if (e.pairs > 1)
+    score.ate_first_pose_m = rmse(ape_translation(truth, estimate, Alignment::kOrigin));
+  return score;
+}
+
+EstimateFrames frames_of(const Trajectory& estimate, const Trajectory& truth) {
+  EstimateFrames frames;
+  const MatchedTrajectories matched = match_by_stamp(truth, estimate);
+  if (matched.size() == 0) return frames;
+  frames.dock_from_estimate = matched.truth.front().world_from_camera *
+                              matched.estimate.front().world_from_camera.inverse();
+  const std::optional<Similarity> aligned = align(matched, Alignment::kSe3);
+  frames.truth_from_estimate =
+      aligned ? SE3(aligned->rotation, aligned->translation_m) : frames.dock_from_estimate;
+  return frames;
+}
+
+}  // namespace mh

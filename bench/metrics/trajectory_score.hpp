@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bench/metrics/metric.hpp"
+#include "slam/core/trajectory.hpp"
+
+namespace mh {
+
+/// How good a mapping tour's trajectory is. An error is absent where the path does not determine
+/// it: too short, or on a line.
+struct TrajectoryScore {
+  double offered = 0;                       ///< frames
+  double tracked = 0;                       ///< frames with a pose in the end
+  std::optional<double> ate_rmse_m;         ///< after SE(3) alignment without scale
+  std::optional<double> ate_first_pose_m;   ///< in the frame of dock_from_estimate
+  std::optional<double> rpe_frame_rmse_m;   ///< translation error per frame step
+  std::optional<double> rpe_second_rmse_m;  ///< translation error per second
+  double completeness = 0;                  ///< tracked / offered
+};
+
+template <Either<TrajectoryScore> S, class Visit>
+void fields(S& score, Visit& v) {
+  using enum Better;
+  auto& [offered, tracked, ate_rmse_m, ate_first_pose_m, rpe_frame_rmse_m, rpe_second_rmse_m,
+         completeness] = score;
+  v(Metric{.name = "offered"}, offered);
+  v(Metric{.name = "tracked"}, tracked);
+  v(Metric{"ate_rmse_m", "ATE m", "m", 4, kLess, "", true}, ate_rmse_m);
+  v(Metric{"ate_first_pose_m", "first pose m", "m", 4, kLess}, ate_first_pose_m);
+  v(Metric{"rpe_frame_rmse_m", "RPE m/fr", "m", 5, kLess, "", true}, rpe_frame_rmse_m);
+  v(Metric{"rpe_second_rmse_m", "RPE m/s", "m", 5, kLess}, rpe_second_rmse_m);
+  v(Metric{"completeness", "complete", "%", 2, kMore, "offered", true}, completeness);
+}
+
+/// ATE, RPE and completeness of an estimate, by the definitions of evaluate().
+/// @param truth    every frame of the sequence
+/// @param offered  frames that the system was to map
+TrajectoryScore score_trajectory(const Trajectory& estimate, const Trajectory& truth,
+                                 std::size_t offered);
+
+/// Where an estimate's world lies in the true one.
+struct EstimateFrames {
+  /// By least squares over all positions. A path that determines no alignment (too short, on a
+  /// line) is laid over by its first pose.
+  SE3 truth_from_estimate;
+  /// The first tracked pose put onto the truth, nothing else: a robot knows where its dock stands.
+  /// The frame of the occupancy map and of the pictures.
+  SE3 dock_from_estimate;
+};
+EstimateFrames frames_of(const Trajectory& estimate, const Trajectory& truth);
+
+}  // namespace mh

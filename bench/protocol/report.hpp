@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "slam/core/fields.hpp"
+#include "slam/core/se3.hpp"
+#include "slam/core/track_status.hpp"
+#include "slam/loop/closure.hpp"
+#include "slam/match/counts.hpp"
+#include "slam/relocalize/outcome.hpp"
+
+namespace mh {
+
+/// Keyframes left after each step of Algorithm 1, as far as a system tells.
+struct Candidates {
+  std::optional<int> keyframes;      ///< in the map
+  std::optional<int> c1, c2, c3;     ///< after equations 3, 4 and 5
+  std::optional<int> final;          ///< after equation 6
+  std::optional<double> label_mass;  ///< share of the query vector's L1 mass held by labels
+  friend bool operator==(const Candidates&, const Candidates&) = default;
+};
+
+template <Either<Candidates> C, class Visit>
+void fields(C& candidates, Visit& v) {
+  auto& [keyframes, c1, c2, c3, final, label_mass] = candidates;
+  v("keyframes", keyframes);
+  v("c1", c1);
+  v("c2", c2);
+  v("c3", c3);
+  v("final", final);
+  v("label_mass", label_mass);
+}
+
+/// What a system reports of one frame. What it does not report is absent.
+struct SystemReport {
+  TrackStatus status = TrackStatus::kLost;
+  std::optional<SE3> world_from_camera;  ///< in the system's own world
+  std::optional<int> keypoints, inliers;
+  bool keyframe_added = false;
+  std::optional<LoopClosure> loop;  ///< if one was closed
+  std::optional<RelocalizationStage> relocalization;
+  Candidates candidates;  ///< when relocalization was tried
+  std::optional<MatchCounts> matches;
+};
+
+}  // namespace mh

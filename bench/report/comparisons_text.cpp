@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/report/comparisons_text.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "slam/core/counted.hpp"
+
+namespace mh {
+namespace {
+
+/// The two systems of a family, by name.
+struct PairNames {
+  const std::string &first, &second;
+  PairNames(const Suite& suite, const SystemPair& pair)
+      : first(suite.systems[pair.first].name), second(suite.systems[pair.second].name) {}
+};
+
+std::string comparison_line(const PairNames& names, const Comparison& c) {
+  if (c.pairs == 0) return fmt::format("  {:<62}-  (no pairs)\n", c.what);
+  const Verdict v = verdict(c);
+  const std::string word =
+      v == Verdict::kFirstBetter    ? names.first + " is better"
+      : v == Verdict::kSecondBetter ? names.second + " is better"
+      : std::isfinite(c.detectable)
+          ? fmt::format("undecided; smallest detectable difference {:.4f}", c.detectable)
+          : std::string("undecided; too few pairs");
+  const std::string corrected =
+      c.in_family ? fmt::format("(Holm {:.4f})  {}", c.p_holm, word) : "(beside the family)";
+  return fmt::format("  {:<62}{:+.4f} {}  p = {:.4f} {}\n", c.what, c.difference, interval(c), c.p,
+                     corrected);
+}
+
+/// Of a comparison of success where the suite states a margin.
+std::string margin_line(const Suite& suite, const PairNames& names, const Comparison& c) {
+  if (!suite.non_inferiority_margin || c.pairs == 0 || !c.what.starts_with("success")) return "";
+  const double margin = *suite.non_inferiority_margin;
+  const std::string finding = fmt::format("{} is not worse", names.first);
+  return fmt::format("  {:<62}{} by more than the {:.3f} stated beforehand\n", "",
+                     not_inferior(c, margin) ? finding
+                     : enough_for(c, margin) ? "not shown that " + finding
+                                             : "too few pairs to show that " + finding,
+                     margin);
+}
+
+/// "semantic minus plain, level pepper: HOW, 95 % intervals, Holm over 4 comparisons of WHAT"
+std::string heading(const Suite& suite, const SystemPair& systems, std::size_t level,
+                    std::span<const Comparison> comparisons, const char* how, const char* what) {
+  const PairNames names(suite, systems);
+  return fmt::format("\n{} minus {}, level {}: {}, Holm over {} of {}\n", names.first, names.second,
+                     level_name(suite.levels[level]), how,
+                     counted(family_size(comparisons), "comparison"), what);
+}
+
+}  // namespace
+
+std::string interval(const Comparison& c) {
+  return std::isfinite(c.low) && std::isfinite(c.high)
+             ? fmt::format("[{:+.4f}, {:+.4f}]", c.low, c.high)
+             : std::string("-");
+}
+
+std::string comparisons_text(const Suite& suite, const Family& family) {
+  std::string text = heading(suite, family.systems, family.level, family.comparisons,
+                             "blocks of queries resampled, 95 % intervals", "success and distance");
+  if (suite.trials == 1)
+    text += "  one trial: this holds for these maps; other seeds draw other maps (--trials 10)\n";
+  const PairNames names(suite, family.systems);
+  for (const Comparison& c : family.comparisons)
+    text += comparison_line(names, c) + margin_line(suite, names, c);
+  return text;
+}
+
+std::string comparisons_text(const Suite& suite, const SceneFamily& family) {
+  std::string text = heading(suite, family.systems, family.level, family.comparisons,
+                             "scenes resampled, 95 % intervals, Wilcoxon signed-rank",
+                             "success, distance and ATE");
+  const PairNames names(suite, family.systems);
+  const std::size_t scenes = suite.environments.size();
+  for (const Comparison& c : family.comparisons) {
+    if (c.pairs < scenes)
+      text += fmt::format("  over {} of {}, where both have a value:\n", c.pairs,
+                          counted(scenes, "scene"));
+    text += comparison_line(names, c) + margin_line(suite, names, c);
+  }
+  return text;
+}
+
+}  // namespace mh

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "bench/results/scenes.hpp"
+
+namespace mh {
+
+/// "[-0.0123, +0.0456]"; "-" where too few pairs leave it open.
+std::string interval(const Comparison& comparison);
+
+/// What two systems differ in, line by line, in one place or over scenes.
+std::string comparisons_text(const Suite& suite, const Family& family);
+std::string comparisons_text(const Suite& suite, const SceneFamily& family);
+
+}  // namespace mh

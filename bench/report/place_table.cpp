@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/report/place_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "bench/report/comparisons_text.hpp"
+#include "bench/report/text_table.hpp"
+#include "bench/report/wording.hpp"
+#include "slam/core/counted.hpp"
+
+namespace mh {
+namespace {
+
+/// Rows that differ in nothing but the system.
+struct Block {
+  const Suite& suite;
+  std::span<const Row> all;  ///< of the whole table
+  std::vector<const Row*> rows;
+  std::vector<const Row*> detailed;  ///< those that were not already shown with other labels
+  const SystemSpec& system(const Row* row) const { return suite.systems[row->system]; }
+};
+
+std::string meters(const std::optional<double>& value) {
+  return value ? fmt::format("{:.4f}", *value) : std::string("-");
+}
+
+/// Queries put to the system that was asked most.
+double most_queries(const Block& block, QuerySet set) {
+  double most = 0;
+  for (const Row* row : block.rows) most = std::max(most, summary(*row, set).queries);
+  return most;
+}
+
+std::string title(QuerySet set) {
+  return set == QuerySet::kHeldOut ? "held-out frames (the paper's way)" : "second tour";
+}
+
+/// In the form of the paper's Table 2. Empty where nobody was asked anything, as in a suite of
+/// outside trajectories.
+std::string paper_table(const Block& block) {
+  const bool is_published = block.suite.published == Published::kTable2;
+  const auto asked = [&](QuerySet set) { return most_queries(block, set) > 0; };
+  if (!is_published && std::ranges::none_of(kQuerySets, asked)) return "";
+  TextTable table({"", "Reloc. success (%)", "Average distance (m)"});
+  for (const QuerySet set : kQuerySets) {
+    if (!asked(set)) continue;
+    table.add_line(fmt::format("{}, {}", title(set),
+                               counted(std::lround(most_queries(block, set)), "query", "queries")));
+    for (const Row* row : block.rows) {
+      const QuerySummary& s = summary(*row, set);
+      const bool saturated = !block.system(row).sees_labels() && s.success > kSaturated;
+      const std::string lacking = incomplete(block.suite, *row);
+      table.add(
+          {"  " + block.system(row).name,
+           s.queries > 0 ? fmt::format("{:.2f}", 100 * s.success) : "-", meters(s.distance_mean_m)},
+          !lacking.empty() ? lacking
+          : saturated      ? "saturated"
+                           : "");
+    }
+  }
+  if (is_published) {
+    table.add_line(
+        "published, other data (the paper's Table 2: a real house of 60 m2, YOLOv3 boxes)");
+    table.add({"  the paper's semantic system", "79.25", "0.0512"});
+    table.add({"  ORB-SLAM2", "71.43", "0.0945"});
+  }
+  const std::string rule = std::string(90, '-') + "\n";
+  return rule + table.text() + rule;
+}
+
+/// The headings of a score's figures, behind a title.
+template <class... Scores>
+std::vector<std::string> headings(std::string title) {
+  std::vector<std::string> all{std::move(title)};
+  const auto add = [&](const std::vector<Figure>& figures) {
+    for (const Figure& figure : figures)
+      if (!figure.metric.heading.empty()) all.emplace_back(figure.metric.heading);
+  };
+  (add(figures_of(Scores())), ...);
+  return all;
+}
+
+/// Its figures that have a heading; "-" where nothing is known.
+void add_cells(const std::vector<Figure>& figures, bool known, std::vector<std::string>& cells) {
+  for (const Figure& figure : figures)
+    if (!figure.metric.heading.empty()) cells.push_back(known ? shown(figure) : "-");
+}
+
+std::string query_details(const Block& block, QuerySet set) {
+  TextTable table(headings<QuerySummary>(std::string(short_title(set))));
+  for (const Row* row : block.detailed) {
+    const QuerySummary& s = summary(*row, set);
+    std::vector<std::string> cells{block.system(row).name};
+    add_cells(figures_of(s), s.queries > 0, cells);
+    table.add(std::move(cells));
+  }
+  return table.text();
+}
+
+/// Keyframes left after the steps of Algorithm 1, as counts and as shares of the map; "-" is what a
+/// program did not report.
+std::string candidate_details(const Block& block, QuerySet set) {
+  TextTable table({std::string(short_title(set)), "keyframes", "after eq. 3", "after eq. 4",
+                   "after eq. 5", "after eq. 6", "one left", "label mass"});
+  for (const Row* row : block.detailed) {
+    const QuerySummary& s = summary(*row, set);
+    if (s.queries == 0) continue;
+    const auto left = [&](const std::optional<double>& count) {
+      if (!count) return std::string("-");
+      if (!s.keyframes) return fmt::format("{:.2f}", *count);
+      return fmt::format("{:.2f} ({:.2f}%)", *count, 100 * *count / std::max(1.0, *s.keyframes));
+    };
+    const auto share = [](const std::optional<double>& value) {
+      return value ? fmt::format("{:.1f}%", 100 * *value) : std::string("-");
+    };
+    table.add({block.system(row).name, s.keyframes ? fmt::format("{:.0f}", *s.keyframes) : "-",
+               left(s.c1), left(s.c2), left(s.c3), left(s.final), share(s.single_candidate),
+               share(s.label_mass)});
+  }
+  return table.text();
+}
+
+std::string failing_stages(const Block& block) {
+  std::string text;
+  for (const Row* row : block.detailed)
+    for (const QuerySet set : kQuerySets) {
+      std::map<std::optional<RelocalizationStage>, int> stages;
+      for (const Trial& trial : row->trials)
+        for (const QueryScore& q : queries(*trial.point, set))
+          if (!q.success) ++stages[q.answer.stage];
+      if (stages.empty()) continue;
+      text += fmt::format("  {}, {}: unanswered, by the stage reached:", block.system(row).name,
+                          name(set));
+      const char* comma = "";
+      for (const auto& [stage, count] : stages) {
+        text += fmt::format("{} {} {}", comma, count, stage ? name(*stage) : "not reported");
+        comma = ",";
+      }
+      text += "\n";
+    }
+  return text;
+}
+
+std::string mapping_details(const Block& block) {
+  TextTable table(headings<TrajectoryScore, MappingCounts>("mapping"));
+  for (const Row* row : block.detailed) {
+    std::vector<std::string> cells{block.system(row).name};
+    const bool known = !row->trials.empty();
+    add_cells(figures_of(row->trajectory), known, cells);
+    add_cells(figures_of(row->mapping), known, cells);
+    table.add(std::move(cells), incomplete(block.suite, *row));
+  }
+  return table.text();
+}
+
+/// What xi did, matcher by matcher.
+std::string penalties(const Block& block) {
+  std::string text;
+  for (const Row* row : block.rows) {
+    if (!block.system(row).weighs_labels() || !row->matches) continue;
+    TextTable table({"descriptor pairs", "compared", "penalized by xi", "rejected by it",
+                     "ratio tests it helped"});
+    for (std::size_t m = 0; m < row->matches->size(); ++m) {
+      const MatcherCounts& c = (*row->matches)[m];
+      const double share = c.compared > 0 ? 100.0 * static_cast<double>(c.penalized) /
+                                                static_cast<double>(c.compared)
+                                          : 0.0;
+      table.add({std::string(name(static_cast<Matcher>(m))), std::to_string(c.compared),
+                 fmt::format("{} ({:.1f}%)", c.penalized, share), std::to_string(c.rejected_by_xi),
+                 std::to_string(c.ratio_helped)});
+    }
+    text += table.text();
+  }
+  return text;
+}
+
+std::string common_ate(const Block& block) {
+  std::string text;
+  for (const auto& [first, second] : block.suite.compare) {
+    const auto row_of = [&](std::size_t system) -> const Row* {
+      const auto row = std::ranges::find_if(
+          block.rows, [&](const Row* r) { return r->system == system && !r->trials.empty(); });
+      return row == block.rows.end() ? nullptr : *row;
+    };
+    const Row *one = row_of(first), *other = row_of(second);
+    if (one == nullptr || other == nullptr) continue;
+    const auto [a, b] = ate_over_common_frames(*one, *other);
+    text += fmt::format("  ATE over the frames that both tracked, m: {} {}, {} {}\n",
+                        block.system(one).name, meters(a), block.system(other).name, meters(b));
+  }
+  return text;
+}
+
+std::string block_text(const Block& block) {
+  const Suite& suite = block.suite;
+  const Row& row = *block.rows.front();
+  std::string text = fmt::format(
+      "\n{}, level {}, {}, {}{}{}\n",
+      suite.environments.size() > 1 ? suite.environments[row.environment].name : suite.name,
+      level_name(suite.levels[row.level]), with_labels(row.labels), counted(suite.trials, "trial"),
+      suite.trials == 1 ? "" : " (medians)", shortened(suite, block.all));
+  text += paper_table(block);
+  for (const QuerySet set : kQuerySets)
+    if (most_queries(block, set) > 0)
+      text += query_details(block, set) + candidate_details(block, set);
+  text += failing_stages(block) + mapping_details(block);
+  if (block.detailed.size() < block.rows.size())
+    text +=
+        "  plain: the same runs as above, since it looks at no labels; their details stand there\n";
+  return text + common_ate(block) + penalties(block);
+}
+
+}  // namespace
+
+std::string place_table(const Suite& suite, std::span<const Row> rows) {
+  std::string text;
+  for (auto first = rows.begin(); first != rows.end();) {
+    Block block{suite, rows, {}, {}};
+    auto end = first;
+    for (; end != rows.end() && end->level == first->level && end->labels == first->labels; ++end) {
+      block.rows.push_back(&*end);
+      if (!already_shown(suite, *end)) block.detailed.push_back(&*end);
+    }
+    text += block_text(block);
+    first = end;
+  }
+  for (const Family& family : compare_systems(suite, rows)) text += comparisons_text(suite, family);
+  return text;
+}
+
+}  // namespace mh

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/report/run_json.hpp"
+
+#include <numbers>
+
+#include "bench/plan/spec_json.hpp"
+#include "bench/protocol/loop_audit.hpp"
+#include "bench/provenance/json_fields.hpp"
+#include "bench/report/figures_json.hpp"
+
+namespace mh {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Its inputs by name, without the files that they were read from: reproduction.json lists those.
+Json place_json(const PlaceFacts& place) {
+  Json json = json_of(place);
+  json["inputs"] = Json::object();
+  for (const InputDigest& input : place.inputs) json["inputs"][input.name] = hex(input.digest);
+  return json;
+}
+
+/// A query by its list of fields. Digests are chained for the whole run, counts of matches summed:
+/// they stand there.
+Json query_json(const QueryScore& query) {
+  Json json = Json::object();
+  const auto add = [&](const char* name, const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (!kIsDigest<Value> && !std::is_same_v<Value, std::optional<MatchCounts>>)
+      json[name] = json_of(value);
+  };
+  fields(query, add);
+  if (!is_judged(query)) json["correct"] = json["false_positive"] = nullptr;
+  return json;
+}
+
+Json digests_json(const RunResult& run) {
+  std::uint64_t images = 0, poses = 0;
+  const auto chain = [](std::uint64_t& sum, std::uint64_t next) {
+    sum = digest_bytes(&next, sizeof next, sum);
+  };
+  for (const MappedFrame& call : run.mapping.calls) {
+    chain(images, call.image_digest);
+    chain(poses, call.pose_digest);
+  }
+  for (const PointResult& point : run.points)
+    for (const QuerySet set : kQuerySets)
+      for (const QueryScore& q : queries(point, set)) {
+        chain(images, q.answer.image_digest);
+        chain(poses, q.answer.pose_digest);
+      }
+  return {
+      {"images", hex(images)}, {"poses", hex(poses)}, {"trajectory", hex(digest(run.estimate))}};
+}
+
+/// What an outside program does not have.
+Json settings_json(const RunSpec& spec, Json settings) {
+  return spec.system.takes_settings() ? std::move(settings) : Json();
+}
+
+Json points_json(const RunResult& run) {
+  Json points = Json::array();
+  for (std::size_t i = 0; i < run.points.size(); ++i) {
+    Json point = {{"settings", settings_json(run.spec, to_json(run.spec.points[i]))}};
+    for (const QuerySet set : kQuerySets) {
+      Json list = Json::array();
+      for (const QueryScore& q : queries(run.points[i], set)) list.push_back(query_json(q));
+      point[std::string(name(set))] = std::move(list);
+    }
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
+Json loops_json(const LoopAudit& loops) {
+  const bool judged = loops.closed == 0 || loops.unknown < loops.closed;
+  return {{"closed", loops.closed},
+          {"false_positive", judged ? Json(loops.false_positive) : Json()},
+          {"worst_m", judged ? Json(loops.worst_m) : Json()},
+          {"worst_deg", judged ? Json(loops.worst_rad * 180.0 / std::numbers::pi) : Json()}};
+}
+
+}  // namespace
+
+Json run_json(const RunResult& run) {
+  const MappingOutcome& m = run.mapping;
+  std::size_t keyframes = 0;
+  for (const MappedFrame& call : m.calls) keyframes += call.keyframe_added ? 1 : 0;
+  return {{"name", run.spec.name},
+          {"status", "done"},
+          {"environment", run.spec.environment.name},
+          {"system", run.spec.system.name},
+          {"labels", name(run.spec.labels)},
+          {"level", level_name(run.spec.level)},
+          {"trial", run.spec.trial},
+          {"seed", run.spec.seed},
+          {"place", place_json(run.place)},
+          {"digests", digests_json(run)},
+          {"mapping",
+           {{"settings", settings_json(run.spec, to_json(run.spec.slam))},
+            {"track_calls", m.calls.size()},
+            {"failures", m.failures},
+            {"restarts", m.restarts},
+            {"dropped", m.dropped},
+            {"before_map", m.before_map},
+            {"gave_up", m.gave_up},
+            {"skipped", json_of(m.skipped)},
+            {"keyframes_made", keyframes},
+            {"loops", loops_json(audit_loops(m.loops, run.truth, run.spec.protocol))},
+            {"matchers", matches_json(m.matches)}}},
+          {"trajectory", figures_json(figures_of(run.trajectory))},
+          {"points", points_json(run)}};
+}
+
+Json run_json(const FailedRun& run) {
+  return {{"name", run.spec.name},
+          {"status", "failed"},
+          {"error", run.error},
+          {"environment", run.spec.environment.name},
+          {"system", run.spec.system.name},
+          {"labels", name(run.spec.labels)},
+          {"level", level_name(run.spec.level)},
+          {"trial", run.spec.trial},
+          {"seed", run.spec.seed}};
+}
+
+}  // namespace mh

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "bench/results/run_result.hpp"
+
+namespace mh {
+
+/// All that a run gave, but for its times.
+nlohmann::ordered_json run_json(const RunResult& run);
+nlohmann::ordered_json run_json(const FailedRun& run);
+
+}  // namespace mh

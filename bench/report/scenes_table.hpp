@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "bench/results/summary.hpp"
+
+namespace mh {
+
+/// A suite of many places, in the form of the paper's Table 1: a row per category and system, then
+/// what the systems differ in over scenes.
+std::string scenes_table(const Suite& suite, std::span<const Row> rows);
+
+}  // namespace mh

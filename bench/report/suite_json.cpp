@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/report/suite_json.hpp"
+
+#include "bench/plan/shipped.hpp"
+#include "bench/plan/spec_json.hpp"
+#include "bench/provenance/json_fields.hpp"
+#include "scenes/recorded/open_sequence.hpp"
+
+namespace mh {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A path relative to the suite's folder, however the suite itself was named; what another
+/// folder's suite takes of what is shipped, relative to that.
+std::string from_suite(const Suite& suite, const std::filesystem::path& file) {
+  const auto here = std::filesystem::current_path();
+  const auto folder = (here / suite.file).parent_path().lexically_normal();
+  const auto is_outside = [](const std::filesystem::path& relative) {
+    return relative.empty() || *relative.begin() == "..";
+  };
+  const std::filesystem::path shipped = file.lexically_relative(data_folder());
+  if (!is_outside(shipped) && is_outside(folder.lexically_relative(data_folder())))
+    return shipped.generic_string();
+  return (here / file).lexically_normal().lexically_relative(folder).generic_string();
+}
+
+Json source_json(const Suite& suite, const std::filesystem::path& source) {
+  return is_generated(source) ? source.string() : from_suite(suite, source);
+}
+
+Json recorded_json(const Suite& suite, const Environment& e) {
+  const auto name_of = [&](const std::string& sequence) {
+    const auto [layout, path] = split_sequence(sequence);
+    return join_sequence(layout, from_suite(suite, path));
+  };
+  return {{"name", e.name},
+          {"category", e.category},
+          {"sequence", name_of(e.sequence)},
+          {"queries", e.queries ? Json(name_of(*e.queries)) : Json()},
+          {"settings", e.settings ? Json(from_suite(suite, *e.settings)) : Json()},
+          {"classes", e.classes ? Json(from_suite(suite, *e.classes)) : Json()}};
+}
+
+Json environment_json(const Suite& suite, const Environment& e) {
+  if (e.is_recorded()) return recorded_json(suite, e);
+  return {{"name", e.name},
+          {"category", e.category},
+          {"scene", source_json(suite, e.scene)},
+          {"robot", from_suite(suite, e.robot)},
+          {"mapping_tour", source_json(suite, e.mapping_tour)},
+          {"query_tour", e.query_tour ? source_json(suite, *e.query_tour) : Json()}};
+}
+
+Json system_json(const SystemSpec& system) {
+  if (!system.is_program()) return system.name;
+  return {{"name", system.name},
+          {"command", system.outside.command},
+          {"protocol", name(system.outside.mode)},
+          {"inputs", system.outside.inputs}};
+}
+
+Json sweep_json(const Sweep& sweep) {
+  if (sweep.points.empty()) return nullptr;
+  Json points = Json::array();
+  for (const SlamConfig& point : sweep.points) {
+    Json values;
+    const Json settings = to_json(point);
+    for (const std::string& name : sweep.varied) {
+      const std::size_t dot = name.find('.');
+      values[name] = settings.at(name.substr(0, dot)).at(name.substr(dot + 1));
+    }
+    points.push_back(std::move(values));
+  }
+  return {{"map", name(sweep.map)}, {"varied", sweep.varied}, {"points", points}};
+}
+
+}  // namespace
+
+Json suite_json(const Suite& suite) {
+  Json levels = Json::array(), systems = Json::array(), labels = Json::array();
+  Json environments = Json::array();
+  for (const Environment& e : suite.environments)
+    environments.push_back(environment_json(suite, e));
+  for (const auto& level : suite.levels)
+    levels.push_back(level == kRecordedLevel ? kRecordedLevel : from_suite(suite, level));
+  for (const SystemSpec& system : suite.systems) systems.push_back(system_json(system));
+  for (const LabelMode mode : suite.labels) labels.push_back(name(mode));
+  return {
+      {"name", suite.name},
+      {"environments", environments},
+      {"vocabulary", suite.vocabulary.empty() ? Json() : Json(from_suite(suite, suite.vocabulary))},
+      {"levels", levels},
+      {"systems", systems},
+      {"labels", labels},
+      {"trials", suite.trials},
+      {"frames", suite.max_frames ? Json(*suite.max_frames) : Json()},
+      {"seed", suite.seed},
+      {"slam", to_json(suite.slam)},
+      {"parameters", sweep_json(suite.sweep)},
+      {"non_inferiority_margin", json_of(suite.non_inferiority_margin)},
+      {"protocol", to_json(suite.protocol)}};
+}
+
+}  // namespace mh

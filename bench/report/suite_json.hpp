@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "bench/plan/suite.hpp"
+
+namespace mh {
+
+/// A suite with all its settings resolved; paths are relative to its folder, however it was named.
+nlohmann::ordered_json suite_json(const Suite& suite);
+
+}  // namespace mh

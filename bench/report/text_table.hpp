@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mh {
+
+/// Rows of cells under headings, for a terminal. Each column is as wide as its widest cell, two
+/// blanks stand between, every line begins with two.
+class TextTable {
+ public:
+  /// @param left  how many columns, from the first, are set to the left; the others to the right
+  explicit TextTable(std::vector<std::string> headings, std::size_t left = 1);
+
+  /// @param remark  stands behind the row, beyond all columns
+  void add(std::vector<std::string> cells, std::string remark = {});
+  /// A line of text between rows.
+  void add_line(std::string text);
+
+  std::string text() const;
+
+ private:
+  struct Line {
+    std::vector<std::string> cells;
+    std::string rest;
+  };
+  std::size_t left_;
+  std::vector<Line> lines_;
+};
+
+}  // namespace mh

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "slam/core/fields.hpp"
+#include "slam/core/trajectory.hpp"
+
+namespace mh {
+
+/// A moment of a mapping tour: where the camera was, and where the system saw it in the end. A
+/// recording's truth may have other stamps than its frames, or be unknown.
+struct FrameRow {
+  std::int64_t frame = 0;
+  Stamp stamp_ns = 0;
+  std::optional<SE3> truth;
+  std::optional<SE3> estimate;
+};
+
+template <Either<FrameRow> F, class Visit>
+void fields(F& row, Visit& v) {
+  auto& [frame, stamp_ns, truth, estimate] = row;
+  v("frame", frame);
+  v("stamp_ns", stamp_ns);
+  v("truth", truth);
+  v("estimate", estimate);
+}
+
+}  // namespace mh

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "slam/core/fields.hpp"
+#include "slam/core/rgbd_frame.hpp"
+#include "slam/core/se3.hpp"
+
+namespace mh {
+
+/// A loop that was closed: two keyframes and where the one is as seen from the other, by what both
+/// see. For whoever knows the truth.
+struct LoopClosure {
+  Stamp stamp_ns = 0, old_stamp_ns = 0;  ///< of the newest keyframe and of the one recognized
+  SE3 old_from_new;                      ///< old camera from new camera
+};
+
+template <Either<LoopClosure> L, class Visit>
+void fields(L& loop, Visit& v) {
+  auto& [stamp_ns, old_stamp_ns, old_from_new] = loop;
+  v("stamp_ns", stamp_ns);
+  v("old_stamp_ns", old_stamp_ns);
+  v("old_from_new", old_from_new);
+}
+
+}  // namespace mh
