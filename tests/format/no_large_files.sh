@@ -1,0 +1,14 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# Names the files among its arguments that are larger than 1 MB; assets/ may hold what the program
+# needs.
+status=0
+for file in "$@"; do
+  [[ $file == assets/* || ! -f $file ]] && continue
+  size=$(stat -c %s -- "$file")
+  if (( size > 1000000 )); then
+    echo "$file: has $size bytes; data of over 1 MB stays out of the repository"
+    status=1
+  fi
+done
+exit $status
