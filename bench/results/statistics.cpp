@@ -32,22 +32,24 @@ std::vector<std::size_t> draw_blocks(std::size_t n, std::size_t block, RandomStr
   return chosen;
 }
 
-/// Difference, interval and detectable difference by a circular block bootstrap. `means` takes the
-/// resampled means, sorted; it stays empty where there are too few pairs.
+constexpr std::size_t kFewestPairs = 4;  // of fewer, resampling says nothing
+
+/// Difference, interval and detectable difference by a circular block bootstrap.
 Comparison resample(std::string what, std::span<const PairedDifference> pairs, std::size_t block,
-                    bool shares, std::uint64_t seed, int resamples, std::vector<double>& means) {
+                    bool shares, std::uint64_t seed, int resamples) {
   Comparison c{.what = std::move(what)};
   const std::size_t n = pairs.size();
   for (const PairedDifference& q : pairs) c.pairs += q.present ? 1 : 0;
   std::vector<std::size_t> all(n);
   std::iota(all.begin(), all.end(), std::size_t{0});
   c.difference = mean_difference(pairs, all);
-  if (c.pairs < 4) {
+  if (c.pairs < kFewestPairs) {
     c.low = -INFINITY;
     c.high = INFINITY;
     c.detectable = INFINITY;
     return c;
   }
+  std::vector<double> means;
   means.reserve(static_cast<std::size_t>(resamples));
   for (int r = 0; r < resamples; ++r) {
     const RandomStream stream = RandomStream(seed).fork(static_cast<std::uint64_t>(r));
@@ -98,8 +100,7 @@ Comparison compare_paired(std::string what, std::span<const PairedDifference> qu
                           std::uint64_t seed, int resamples) {
   const auto block = std::max<std::size_t>(
       2, static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(queries.size())))));
-  std::vector<double> means;
-  Comparison c = resample(std::move(what), queries, block, shares, seed, resamples, means);
+  Comparison c = resample(std::move(what), queries, block, shares, seed, resamples);
   std::vector<double> sums;  // of blocks in which anything is known
   for (std::size_t first = 0; first < queries.size(); first += block) {
     const auto part = queries.subspan(first, std::min(block, queries.size() - first));
@@ -107,7 +108,7 @@ Comparison compare_paired(std::string what, std::span<const PairedDifference> qu
     sums.push_back(0);
     for (const PairedDifference& q : part) sums.back() += q.present ? q.difference : 0.0;
   }
-  if (!means.empty()) c.p = sign_flip(sums, seed);
+  if (c.pairs >= kFewestPairs) c.p = sign_flip(sums, seed);
   note_least_p(c, sums.size());
   return c;
 }
@@ -149,9 +150,8 @@ Comparison compare_scenes(std::string what, std::span<const PairedDifference> sc
       known.push_back(scene);
       differences.push_back(scene.difference);
     }
-  std::vector<double> means;
-  Comparison c = resample(std::move(what), known, 1, shares, seed, resamples, means);
-  if (!means.empty()) c.p = wilcoxon_signed_rank(differences);
+  Comparison c = resample(std::move(what), known, 1, shares, seed, resamples);
+  if (c.pairs >= kFewestPairs) c.p = wilcoxon_signed_rank(differences);
   note_least_p(c, c.pairs);
   return c;
 }
