@@ -21,6 +21,7 @@ TrajectoryScore score_trajectory(const Trajectory& estimate, const Trajectory& t
   score.tracked = static_cast<double>(estimate.size());
   score.completeness = offered == 0 ? 0 : score.tracked / score.offered;
   score.ate_rmse_m = rmse(e.ape_translation_m);
+  score.ate_rmse_deg = rmse(e.ape_rotation_deg);
   score.rpe_frame_rmse_m = rmse(e.rpe[0].translation_m);
   score.rpe_second_rmse_m = rmse(e.rpe[1].translation_m);
   // One pose laid over itself has no error to tell of.

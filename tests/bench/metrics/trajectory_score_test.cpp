@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/metrics/trajectory_score.hpp"
 
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 namespace mh {
@@ -29,6 +31,22 @@ TEST(ScoreTrajectory, AMapOfAnotherScaleHasAnError) {
   const auto score = score_trajectory(twice, arc(0, 40), 40);
   ASSERT_TRUE(score.ate_rmse_m);
   EXPECT_GT(*score.ate_rmse_m, 0.5);
+}
+
+// Each camera turned by 3 degrees about its own axis: positions fit exactly, so nothing aligns it
+// away.
+TEST(ScoreTrajectory, OrientationsHaveAnErrorOfTheirOwn) {
+  Trajectory turned = arc(0, 40);
+  const double angle_rad = 3.0 * std::numbers::pi / 180.0;
+  for (TimedPose& pose : turned)
+    pose.world_from_camera =
+        pose.world_from_camera *
+        SE3(Eigen::AngleAxisd(angle_rad, Eigen::Vector3d(1, 2, 2) / 3).toRotationMatrix(),
+            Eigen::Vector3d::Zero());
+  const TrajectoryScore score = score_trajectory(turned, arc(0, 40), 40);
+  ASSERT_TRUE(score.ate_rmse_deg);
+  EXPECT_NEAR(*score.ate_rmse_deg, 3.0, 1e-6);
+  EXPECT_NEAR(score.ate_rmse_m.value(), 0.0, 1e-9);
 }
 
 }  // namespace

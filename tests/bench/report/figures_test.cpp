@@ -30,6 +30,7 @@ namespace fs = std::filesystem;
 const MadeUpFigures kSemantic = {
     .completeness = 0.875,
     .ate_m = 0.0111,
+    .ate_deg = 0.75,
     .first_pose_m = 0.0222,
     .rpe_frame_m = 0.00333,
     .rpe_second_m = 0.00444,
@@ -65,6 +66,7 @@ const MadeUpFigures kSemantic = {
 // 22 / 8 = 2.75. Second tour, of 5: 4 answered, 1 correct, 3 false; mean 0.7, median 0.75.
 const MadeUpFigures kPlain = {.completeness = 0.625,
                               .ate_m = 0.0555,
+                              .ate_deg = 0.25,
                               .first_pose_m = 0.0666,
                               .rpe_frame_m = 0.00777,
                               .rpe_second_m = 0.00888,
@@ -197,13 +199,13 @@ TEST_F(Figures, OfCandidatesStandUnderTheirEquations) {
 
 TEST_F(Figures, OfMappingStandUnderTheirHeadings) {
   const std::string table = results_table(suite_, runs_);
-  const Cells mapping = {"mapping", "ATE m",    "first pose m", "RPE m/fr",
-                         "RPE m/s", "complete", "restarts",     "dropped"};
-  EXPECT_EQ(below(table, mapping, "semantic"),
-            (Cells{"semantic", "0.0111", "0.0222", "0.00333", "0.00444", "87.50%", "6", "7"}))
+  const Cells mapping = {"mapping", "ATE m",    "ATE deg",  "first pose m", "RPE m/fr",
+                         "RPE m/s", "complete", "restarts", "dropped"};
+  EXPECT_EQ(below(table, mapping, "semantic"), (Cells{"semantic", "0.0111", "0.750", "0.0222",
+                                                      "0.00333", "0.00444", "87.50%", "6", "7"}))
       << table;
-  EXPECT_EQ(below(table, mapping, "plain"),
-            (Cells{"plain", "0.0555", "0.0666", "0.00777", "0.00888", "62.50%", "8", "9"}));
+  EXPECT_EQ(below(table, mapping, "plain"), (Cells{"plain", "0.0555", "0.250", "0.0666", "0.00777",
+                                                   "0.00888", "62.50%", "8", "9"}));
   for (const char* line : {"  semantic, held_out: unanswered, by the stage reached: 2 inliers\n",
                            "  semantic, second_tour: unanswered, by the stage reached: 2 pnp\n",
                            "  plain, held_out: unanswered, by the stage reached: 3 pnp\n",
@@ -298,7 +300,7 @@ TEST_F(Figures, OfTheJsonsRowsHaveTheirNames) {
   const nlohmann::json semantic = rounded(json["rows"][0]), plain = rounded(json["rows"][1]);
   EXPECT_EQ(semantic["system"], "semantic");
   EXPECT_EQ(semantic["trajectory"], nlohmann::json::parse(R"({"completeness": 0.875,
-      "ate_rmse_m": 0.0111, "ate_first_pose_m": 0.0222, "rpe_frame_rmse_m": 0.00333,
+      "ate_rmse_m": 0.0111, "ate_rmse_deg": 0.75, "ate_first_pose_m": 0.0222, "rpe_frame_rmse_m": 0.00333,
       "rpe_second_rmse_m": 0.00444, "offered": 1000.0, "tracked": 875.0})"));
   EXPECT_EQ(semantic["mapping"], nlohmann::json::parse(R"({"failures": 0.0, "restarts": 6.0,
       "dropped": 7.0, "penalized": null})"));
@@ -320,7 +322,7 @@ TEST_F(Figures, OfTheJsonsRowsHaveTheirNames) {
 TEST_F(Figures, OfTheJsonsRunsHaveTheirNames) {
   const nlohmann::json run = rounded(results_json(suite_, runs_)["runs"][0]);
   EXPECT_EQ(run["trajectory"], nlohmann::json::parse(R"({"completeness": 0.875,
-      "ate_rmse_m": 0.0111, "ate_first_pose_m": 0.0222, "rpe_frame_rmse_m": 0.00333,
+      "ate_rmse_m": 0.0111, "ate_rmse_deg": 0.75, "ate_first_pose_m": 0.0222, "rpe_frame_rmse_m": 0.00333,
       "rpe_second_rmse_m": 0.00444, "offered": 1000.0, "tracked": 875.0})"));
   EXPECT_EQ(run["points"][0]["held_out"].size(), 8u);
   EXPECT_EQ(run["points"][0]["second_tour"].size(), 5u);
@@ -364,6 +366,7 @@ TEST_F(Figures, OfTheCsvStandUnderTheirHeadings) {
   EXPECT_EQ(cell["system"], "semantic");
   for (const auto& [name, value] :
        std::map<std::string, double>{{"ate_rmse_m", 0.0111},
+                                     {"ate_rmse_deg", 0.75},
                                      {"ate_first_pose_m", 0.0222},
                                      {"rpe_frame_rmse_m", 0.00333},
                                      {"rpe_second_rmse_m", 0.00444},

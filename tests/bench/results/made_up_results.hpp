@@ -24,7 +24,8 @@ struct MadeUpAnswers {
 
 /// All that a run is to tell; no two numbers are equal.
 struct MadeUpFigures {
-  double completeness = 0, ate_m = 0, first_pose_m = 0, rpe_frame_m = 0, rpe_second_m = 0;
+  double completeness = 0, ate_m = 0, ate_deg = 0, first_pose_m = 0, rpe_frame_m = 0,
+         rpe_second_m = 0;
   int restarts = 0;
   std::size_t dropped = 0;
   MadeUpAnswers held_out, second_tour;
@@ -69,6 +70,7 @@ inline RunResult made_up_run(const RunSpec& spec, const MadeUpFigures& figures) 
   run.trajectory = {.offered = 1000,
                     .tracked = 1000 * figures.completeness,
                     .ate_rmse_m = figures.ate_m,
+                    .ate_rmse_deg = figures.ate_deg,
                     .ate_first_pose_m = figures.first_pose_m,
                     .rpe_frame_rmse_m = figures.rpe_frame_m,
                     .rpe_second_rmse_m = figures.rpe_second_m,
