@@ -18,24 +18,15 @@
 namespace mh {
 namespace {
 
-void chain(std::uint64_t& sum, std::uint64_t next) {
-  sum = digest_bytes(&next, sizeof next, sum);
-}
-
 std::string run_digest(const RunResult& run) {
   std::uint64_t sum = digest(run.estimate);
-  for (const MappedFrame& call : run.mapping.calls) {
-    chain(sum, call.image_digest);
-    chain(sum, call.matching_digest);
-    chain(sum, call.pose_digest);
-  }
-  for (const PointResult& point : run.points)
-    for (const QuerySet set : kQuerySets)
-      for (const QueryScore& q : queries(point, set)) {
-        chain(sum, q.answer.image_digest);
-        chain(sum, q.answer.matching_digest);
-        chain(sum, q.answer.pose_digest);
-      }
+  const auto add = [&](const auto& shown) {
+    sum = chained(sum, shown.image_digest);
+    sum = chained(sum, shown.matching_digest);
+    sum = chained(sum, shown.pose_digest);
+  };
+  for (const MappedFrame& call : run.mapping.calls) add(call);
+  for_each_query(run, [&](const QueryScore& q) { add(q.answer); });
   return hex(sum);
 }
 

@@ -188,7 +188,6 @@ GateResult compare(std::span<const RunFigures> baseline, std::span<const RunFigu
         result.unrepeatable.push_back(run_name(*after));
     }
     for (const Metric& measure : all_metrics()) {
-      if (measure.better == Better::kNeither) continue;
       const Tolerance* tolerance = tolerance_for(config, pairing.scenario, measure.name);
       if (tolerance == nullptr) continue;
       if (occurs(pairing, measure))

@@ -83,6 +83,24 @@ fs::path read_tour(const YamlReader& node, const SuitePaths& paths, int index) {
   return read_source(node, paths, index, Shipped::kTour);
 }
 
+/// What an entry calls what it makes, and how many of it; `name` with {i} where there are several.
+struct EntryNames {
+  std::string category, name;
+  int count = 1;
+};
+
+EntryNames read_names(YamlReader& node) {
+  EntryNames names;
+  names.count = static_cast<int>(node.integer_or("count", 1, 1, 100000));
+  names.category = node.string("category");
+  check_folder_name(node.at("category"), names.category);
+  names.name = node.string("name", node.has("count") ? names.category + "-{i}" : names.category);
+  if (names.count > 1 && names.name.find("{i}") == std::string::npos)
+    node.at("name").fail(
+        fmt::format("'{}' needs an {{i}}: there are {} of it", names.name, names.count));
+  return names;
+}
+
 /// A recording by its name, its path seen from the suite.
 std::string read_sequence(const YamlReader& node, const SuitePaths& paths, int index) {
   const auto [layout, path] = split_sequence(with_index(node.as_string(), index));
@@ -127,12 +145,7 @@ Environment recorded_environment(std::string name, std::string category, std::st
 }
 
 std::vector<Environment> read_recorded_entry(YamlReader node, const SuitePaths& paths) {
-  const auto count = static_cast<int>(node.integer_or("count", 1, 1, 100000));
-  const std::string category = node.string("category");
-  check_folder_name(node.at("category"), category);
-  const std::string name = node.string("name", node.has("count") ? category + "-{i}" : category);
-  if (count > 1 && name.find("{i}") == std::string::npos)
-    node.at("name").fail(fmt::format("'{}' needs an {{i}}: there are {} of it", name, count));
+  const auto [category, name, count] = read_names(node);
   const YamlReader sequence = node.at("sequence");
   const BesideFrames beside(node, paths);
   node.finish();
@@ -229,12 +242,7 @@ void read_pattern_entry(YamlReader node, const SuitePaths& paths, Environments& 
 std::vector<Environment> read_entry(YamlReader node, const SuitePaths& paths,
                                     const std::optional<fs::path>& default_robot) {
   if (node.has("sequence")) return read_recorded_entry(node, paths);
-  const auto count = static_cast<int>(node.integer_or("count", 1, 1, 100000));
-  const std::string category = node.string("category");
-  check_folder_name(node.at("category"), category);
-  const std::string name = node.string("name", node.has("count") ? category + "-{i}" : category);
-  if (count > 1 && name.find("{i}") == std::string::npos)
-    node.at("name").fail(fmt::format("'{}' needs an {{i}}: there are {} of it", name, count));
+  const auto [category, name, count] = read_names(node);
   const YamlReader scene = node.at("scene");
   const auto tour = node.find("mapping_tour");
   const auto query_tour = node.find("query_tour");

@@ -11,10 +11,6 @@ namespace {
 
 enum StreamName : std::uint64_t { kNoise = 1, kSlam = 2, kBlank = 3 };
 
-std::uint64_t chain(std::uint64_t sum, std::uint64_t next) {
-  return digest_bytes(&next, sizeof next, sum);
-}
-
 /// Shows blank frames until the session reports that it is lost.
 int lose(RelocalizationSession& session, const RgbdFrame& like, int at_most, RandomStream stream) {
   const RgbdFrame blank = blank_frame(like.color.width(), like.color.height(), like.stamp_ns);
@@ -61,9 +57,9 @@ QueryAnswer query(const System& frozen, std::size_t index, const Sequence& seque
     answer.stage = std::max(answer.stage, report.relocalization);
     if (attempt == 0) answer.candidates = report.candidates;
     add(report.matches, answer.matches);
-    answer.image_digest = chain(answer.image_digest, digest(frame));
-    answer.matching_digest = chain(answer.matching_digest, digest_of_matching(report));
-    answer.pose_digest = chain(answer.pose_digest, digest(report.world_from_camera));
+    answer.image_digest = chained(answer.image_digest, digest(frame));
+    answer.matching_digest = chained(answer.matching_digest, digest_of_matching(report));
+    answer.pose_digest = chained(answer.pose_digest, digest(report.world_from_camera));
     if (report.status != TrackStatus::kLost && report.world_from_camera) {
       answer.world_from_camera = report.world_from_camera;
       break;

@@ -31,6 +31,10 @@ std::uint64_t digest_bytes(const void* data, std::size_t size, std::uint64_t see
   return XXH3_64bits_withSeed(data, size, seed);
 }
 
+std::uint64_t chained(std::uint64_t sum, std::uint64_t next) {
+  return digest_bytes(&next, sizeof next, sum);
+}
+
 std::uint64_t digest_file(const std::filesystem::path& file, std::uint64_t seed) {
   const std::string content = read_file(file);
   return digest_bytes(content.data(), content.size(), seed);

@@ -37,19 +37,12 @@ Json query_json(const QueryScore& query) {
 
 Json digests_json(const RunResult& run) {
   std::uint64_t images = 0, poses = 0;
-  const auto chain = [](std::uint64_t& sum, std::uint64_t next) {
-    sum = digest_bytes(&next, sizeof next, sum);
+  const auto add = [&](const auto& shown) {
+    images = chained(images, shown.image_digest);
+    poses = chained(poses, shown.pose_digest);
   };
-  for (const MappedFrame& call : run.mapping.calls) {
-    chain(images, call.image_digest);
-    chain(poses, call.pose_digest);
-  }
-  for (const PointResult& point : run.points)
-    for (const QuerySet set : kQuerySets)
-      for (const QueryScore& q : queries(point, set)) {
-        chain(images, q.answer.image_digest);
-        chain(poses, q.answer.pose_digest);
-      }
+  for (const MappedFrame& call : run.mapping.calls) add(call);
+  for_each_query(run, [&](const QueryScore& q) { add(q.answer); });
   return {
       {"images", hex(images)}, {"poses", hex(poses)}, {"trajectory", hex(digest(run.estimate))}};
 }

@@ -62,4 +62,12 @@ inline const std::vector<QueryScore>& queries(const PointResult& point, QuerySet
   return set == QuerySet::kHeldOut ? point.held_out : point.second_tour;
 }
 
+/// Calls visit(query) for every query of a run: by point, then set, then as they were put.
+template <class Visit>
+void for_each_query(const RunResult& run, Visit visit) {
+  for (const PointResult& point : run.points)
+    for (const QuerySet set : kQuerySets)
+      for (const QueryScore& query : queries(point, set)) visit(query);
+}
+
 }  // namespace mh

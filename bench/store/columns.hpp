@@ -50,7 +50,8 @@ class ColumnTexts {
                    : fmt::format("  {} {}{},\n", name, std::is_integral_v<T> ? "INTEGER" : "TEXT",
                                  constraint);
     } else {
-      fields(std::as_const(*std::make_unique<T>()), *this);
+      const T record{};
+      fields(record, *this);
     }
   }
 
@@ -61,7 +62,8 @@ class ColumnTexts {
 template <class Record>
 std::string columns_of() {
   ColumnTexts texts;
-  fields(std::as_const(*std::make_unique<Record>()), texts);
+  const Record record{};
+  fields(record, texts);
   return texts.text();
 }
 

@@ -12,7 +12,7 @@
 namespace mh {
 namespace {
 
-SystemReport told(const StepReport& step) {
+SystemReport as_report(const StepReport& step) {
   SystemReport report{.status = step.status,
                       .world_from_camera = step.world_from_camera,
                       .keypoints = step.keypoints,
@@ -31,7 +31,7 @@ class OurSession : public RelocalizationSession {
  public:
   explicit OurSession(const SlamState& frozen) : frozen_(frozen) {}
   SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
-    return told(localize(frozen_, tracker_, frame, stream));
+    return as_report(localize(frozen_, tracker_, frame, stream));
   }
 
  private:
@@ -60,11 +60,11 @@ class RememberingSession : public RelocalizationSession {
       localize(frozen_, tracker_, found_->first, found_->second);
       found_.reset();
     }
-    if (tracker_.last) return told(localize(frozen_, tracker_, frame, stream));
+    if (tracker_.last) return as_report(localize(frozen_, tracker_, frame, stream));
     const StepReport report =
         localize(frozen_, frame, stream, memo_.of(stream, frozen_.config.semantics));
     if (report.status != TrackStatus::kLost) found_.emplace(frame, stream);
-    return told(report);
+    return as_report(report);
   }
 
  private:
@@ -82,7 +82,7 @@ class OurSystem : public System {
 
   SystemReport track(const RgbdFrame& frame, RandomStream stream) override {
     assert(!frozen_);
-    return told(step(state_, frame, stream));
+    return as_report(step(state_, frame, stream));
   }
   void rewind() override { mh::rewind(state_); }
   void reset() override { state_ = make_slam(state_.camera, state_.config, state_.vocabulary); }

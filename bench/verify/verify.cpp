@@ -19,10 +19,6 @@ namespace {
 
 constexpr int kFewJobs = 1, kManyJobs = 4;
 
-std::uint64_t chain(std::uint64_t sum, std::uint64_t next) {
-  return digest_bytes(&next, sizeof next, sum);
-}
-
 /// The stage at which one showing of a frame differs; empty if none does.
 template <class Shown>
 std::string stage_of_difference(const Shown& a, const Shown& b) {
@@ -95,18 +91,18 @@ std::optional<Difference> first_difference(std::span<const RunResult> a,
 ExecutionDigests digests(const Suite& suite, std::span<const RunResult> runs) {
   ExecutionDigests d;
   const auto take = [&](const auto& shown) {
-    d.images = chain(d.images, shown.image_digest);
-    d.matching = chain(d.matching, shown.matching_digest);
-    d.poses = chain(d.poses, shown.pose_digest);
+    d.images = chained(d.images, shown.image_digest);
+    d.matching = chained(d.matching, shown.matching_digest);
+    d.poses = chained(d.poses, shown.pose_digest);
   };
   for (const RunResult& run : runs) {
-    d.scene = chain(d.scene, run.place.scene_digest);
-    d.path = chain(d.path, run.place.path_digest);
+    d.scene = chained(d.scene, run.place.scene_digest);
+    d.path = chained(d.path, run.place.path_digest);
     for (const MappedFrame& call : run.mapping.calls) take(call);
     for (const PointResult& point : run.points)
       for (const QuerySet set : kQuerySets)
         for (const QueryScore& q : queries(point, set)) take(q.answer);
-    d.maps = chain(d.maps, run.map_digest);
+    d.maps = chained(d.maps, run.map_digest);
   }
   const std::string text = results_json(suite, runs).dump();
   d.results = digest_bytes(text.data(), text.size());

@@ -65,6 +65,18 @@ PathFacts recorded_path(const Sequence& sequence) {
           kUnknown, kUnknown};
 }
 
+/// What is told alike of simulated places and of recordings.
+PlaceFacts common_facts(const World& world) {
+  PlaceFacts f;
+  if (world.vocabulary) {
+    f.vocabulary_digest = world.vocabulary->digest();
+    f.vocabulary_words = world.vocabulary->size();
+  }
+  f.cut = world.cut;
+  f.inputs = world.inputs;
+  return f;
+}
+
 PlaceFacts recorded_facts(const World& world, const RunSpec& spec) {
   const auto digest_of = [&](const char* name) {
     const auto input = std::ranges::find(world.inputs, name, &InputDigest::name);
@@ -73,20 +85,14 @@ PlaceFacts recorded_facts(const World& world, const RunSpec& spec) {
   const auto truth = [](const Sequence& sequence) {
     return sequence.truth() ? digest(*sequence.truth()) : 0;
   };
-  PlaceFacts f{.scene = split_sequence(spec.environment.sequence).second.stem().string(),
-               .robot = "",
-               .scene_digest = digest_of("sequence"),
-               .path_digest = truth(*world.mapping),
-               .vocabulary_digest = world.vocabulary ? world.vocabulary->digest() : 0,
-               .vocabulary_words = world.vocabulary ? world.vocabulary->size() : 0,
-               .mapping = recorded_path(*world.mapping),
-               .second = {},
-               .cut = world.cut,
-               .inputs = world.inputs};
+  PlaceFacts f = common_facts(world);
+  f.scene = split_sequence(spec.environment.sequence).second.stem().string();
+  f.scene_digest = digest_of("sequence");
+  f.path_digest = truth(*world.mapping);
+  f.mapping = recorded_path(*world.mapping);
   if (!world.second) return f;
-  const std::uint64_t scene = digest_of("queries"), path = truth(*world.second);
-  f.scene_digest = digest_bytes(&scene, sizeof scene, f.scene_digest);
-  f.path_digest = digest_bytes(&path, sizeof path, f.path_digest);
+  f.scene_digest = chained(f.scene_digest, digest_of("queries"));
+  f.path_digest = chained(f.path_digest, truth(*world.second));
   f.second = recorded_path(*world.second);
   return f;
 }
@@ -106,24 +112,16 @@ void simulate(World& world, LabelMode labels) {
 PlaceFacts facts(const World& world, const RunSpec& spec) {
   if (!world.simulated) return recorded_facts(world, spec);
   const SimulatedPlace& place = *world.simulated;
-  PlaceFacts f{.scene = place.scene->name,
-               .robot = place.robot.name,
-               .scene_digest = digest(*place.scene),
-               .path_digest = digest(place.mapping.camera),
-               .vocabulary_digest = world.vocabulary ? world.vocabulary->digest() : 0,
-               .vocabulary_words = world.vocabulary ? world.vocabulary->size() : 0,
-               .mapping = facts(place.mapping),
-               .second = {},
-               .cut = world.cut,
-               .inputs = world.inputs};
-  if (place.second_scene) {
-    const std::uint64_t second = digest(*place.second_scene);
-    f.scene_digest = digest_bytes(&second, sizeof second, f.scene_digest);
-  }
+  PlaceFacts f = common_facts(world);
+  f.scene = place.scene->name;
+  f.robot = place.robot.name;
+  f.scene_digest = digest(*place.scene);
+  f.path_digest = digest(place.mapping.camera);
+  f.mapping = facts(place.mapping);
+  if (place.second_scene) f.scene_digest = chained(f.scene_digest, digest(*place.second_scene));
   if (place.second) {
     f.second = facts(*place.second);
-    const std::uint64_t second = digest(place.second->camera);
-    f.path_digest = digest_bytes(&second, sizeof second, f.path_digest);
+    f.path_digest = chained(f.path_digest, digest(place.second->camera));
   }
   return f;
 }

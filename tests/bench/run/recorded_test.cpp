@@ -37,11 +37,7 @@ namespace fs = std::filesystem;
 using testing_support::box_room_frame;
 using testing_support::BoxRoom;
 using testing_support::kTurnFrames;
-
-std::shared_ptr<const Vocabulary> vocabulary() {
-  static const auto trained = testing_support::box_room_vocabulary();
-  return trained;
-}
+using testing_support::vocabulary;
 
 ExactFrame exact_frame(int i) {
   ExactFrame frame{

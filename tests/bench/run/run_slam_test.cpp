@@ -30,11 +30,7 @@ namespace fs = std::filesystem;
 using testing_support::box_room_frame;
 using testing_support::BoxRoom;
 using testing_support::kFrame_ns;
-
-std::shared_ptr<const Vocabulary> vocabulary() {
-  static const auto trained = testing_support::box_room_vocabulary();
-  return trained;
-}
+using testing_support::vocabulary;
 
 SlamState start() {
   return make_slam(BoxRoom::camera(), testing_support::box_room_settings(), vocabulary());

@@ -48,7 +48,7 @@ Vector6d injected() {
 TEST(Loop, CutsInjectedDriftByFiveTimes) {
   SlamConfig config = testing_support::box_room_settings(SemanticConfig{});
   config.track.near_distance_m = 0;
-  SlamState state = make_slam(BoxRoom::camera(), config, testing_support::box_room_vocabulary());
+  SlamState state = make_slam(BoxRoom::camera(), config, testing_support::vocabulary());
   double before_m = 0, after_m = 0;
   int closed_at = -1;
   for (int i = 0; i < kTurnFrames + 60 && closed_at < 0; ++i) {
@@ -85,7 +85,7 @@ TEST(Loop, IsRefusedWhereItTellsOfMoreDriftThanCanBe) {
   config.track.near_distance_m = 0;
   config.loop.max_drift_m = 0.02;  // less than what any two ends of the bent map are apart
   config.loop.max_drift_share = 0;
-  SlamState state = make_slam(BoxRoom::camera(), config, testing_support::box_room_vocabulary());
+  SlamState state = make_slam(BoxRoom::camera(), config, testing_support::vocabulary());
   for (int i = 0; i < kTurnFrames + 60; ++i) {
     if (i == 120) inject_drift(state, injected());
     const StepReport report =

@@ -23,6 +23,12 @@ inline std::shared_ptr<const Vocabulary> box_room_vocabulary(int depth = 3) {
       Vocabulary::train(images, {.branching = 10, .depth = depth}));
 }
 
+/// The one of the usual depth, trained once for all tests of a program.
+inline std::shared_ptr<const Vocabulary> vocabulary() {
+  static const auto trained = box_room_vocabulary();
+  return trained;
+}
+
 inline SlamConfig box_room_settings(const SemanticConfig& semantics = {}) {
   SlamConfig config;
   config.features.count = 500;  // the pictures are a quarter of the usual size

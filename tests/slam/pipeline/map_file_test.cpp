@@ -21,11 +21,7 @@ namespace {
 
 using testing_support::box_room_frame;
 using testing_support::BoxRoom;
-
-std::shared_ptr<const Vocabulary> vocabulary() {
-  static const auto trained = testing_support::box_room_vocabulary();
-  return trained;
-}
+using testing_support::vocabulary;
 
 SlamState start() {
   SlamConfig config = testing_support::box_room_settings();

@@ -14,11 +14,7 @@ namespace {
 using testing_support::BoxRoom;
 using testing_support::kFrame_ns;
 using testing_support::kTurnFrames;
-
-std::shared_ptr<const Vocabulary> vocabulary() {
-  static const auto trained = testing_support::box_room_vocabulary();
-  return trained;
-}
+using testing_support::vocabulary;
 
 SlamConfig settings(const SemanticConfig& semantics) {
   return testing_support::box_room_settings(semantics);
