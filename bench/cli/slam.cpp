@@ -13,6 +13,9 @@
 #include "bench/cli/scene_option.hpp"
 #include "bench/cli/slam_report.hpp"
 #include "bench/inputs/recorded_camera.hpp"
+#include "bench/run/run_one.hpp"
+#include "bench/systems/ours.hpp"
+#include "bench/world/first_frames.hpp"
 #include "scenes/recorded/open_sequence.hpp"
 #include "sim/world/scene_sequence.hpp"
 #include "slam/core/counted.hpp"
@@ -35,9 +38,9 @@ struct Options {
   SceneFrameOption frame;
   std::string tour, robot, level;
   std::optional<double> gamma, xi;
-  bool plain = false;
+  bool plain = false, localize = false, resume = false, protocol = false;
+  std::size_t frames = SIZE_MAX;
   std::uint64_t seed = 0;
-  SlamRunOptions run;
 };
 
 struct Source {
@@ -114,7 +117,10 @@ SlamState first_state(const Options& options, const std::shared_ptr<const Vocabu
     if (state.camera != settings.camera)
       throw InputError(fmt::format("{}: was made with another camera", options.map));
     if (!options.settings.empty()) apply_settings(options, state.config, settings.notes);
-    if (!options.run.resume) rewind(state);
+    if (!options.resume) {  // its own frames are another sequence's
+      rewind(state);
+      state.tracked_frames.clear();
+    }
   }
   SemanticConfig semantics = state.config.semantics;
   if (options.gamma) semantics.gamma = *options.gamma;
@@ -126,10 +132,12 @@ SlamState first_state(const Options& options, const std::shared_ptr<const Vocabu
 }
 
 void check(const Options& options) {
-  if (options.run.localize && options.map.empty())
+  if (options.localize && options.map.empty())
     throw InputError("--localize needs a map: name one by --map");
-  if (options.run.resume && options.map.empty())
+  if (options.resume && options.map.empty())
     throw InputError("--resume needs a map: name one by --map");
+  if (options.resume && options.protocol)
+    throw InputError("--protocol and --resume: held-out frames are asked for by a whole run");
   if (options.source.starts_with(kScene)) {
     if (!options.classes.empty())
       throw InputError("--classes is for recordings, but the source is a scene");
@@ -143,16 +151,23 @@ void check(const Options& options) {
                                    options.source));
 }
 
-/// @throws InputError if the sequence ends no later than what the map's run was fed.
-void need_something_left(const Options& options, const SlamState& state, const Sequence& frames) {
+/// The first frame that the map's run was not fed yet.
+/// @throws InputError if none is left
+std::size_t first_frame(const Options& options, const SlamState& state, const Sequence& frames) {
+  if (!options.resume) return 0;
   if (!state.last_stamp_ns)
-    throw InputError(fmt::format("{}: holds no run that could go on", options.map));
+    throw InputError(fmt::format("{}: holds no run that could be resumed", options.map));
+  std::size_t first = 0;
   Stamp last_ns = -1;
-  for (std::size_t i = 0; i < frames.size(); ++i) last_ns = std::max(last_ns, frames.stamp_ns(i));
-  if (last_ns <= *state.last_stamp_ns)
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    last_ns = std::max(last_ns, frames.stamp_ns(i));
+    if (last_ns <= *state.last_stamp_ns) first = i + 1;
+  }
+  if (first == frames.size())
     throw InputError(fmt::format(
         "{}: nothing is left to go on with: it ends at {} s, and the run of {} was fed until {} s",
         options.source, format_stamp(last_ns), options.map, format_stamp(*state.last_stamp_ns)));
+  return first;
 }
 
 /// A map may take the place of a map, of nothing else.
@@ -163,6 +178,38 @@ void need_no_other_file(const fs::path& map) {
         fmt::format("--save-map {}: is a file, but no map: name another", map.string()));
 }
 
+/// The protocol on one sequence: that of the bench, or a camera's feed without held-out frames.
+RunResult run_sequence(const Options& options, const World& world, SlamState& state,
+                       std::size_t first, const StepObservers& observers,
+                       const MappingObserver& watch) {
+  // As many as the original ORB-SLAM2 gives up; under the bench's protocol the feed goes back.
+  constexpr int kSmallMap = 5;
+  RunSpec spec;
+  spec.environment.sequence = options.source;
+  spec.seed = options.seed;
+  spec.slam = state.config;
+  spec.points = {state.config.semantics};
+  if (!options.protocol) spec.protocol = live_feed();
+  const OurSystemOptions ours{.observers = observers,
+                              .small_map = options.protocol ? 0 : kSmallMap};
+  if (!options.localize)
+    return run_one(
+        spec, world,
+        {.system = [&](const RunSpec&, const World&) { return make_our_system(state, ours); },
+         .observe = watch,
+         .first = first,
+         .occupancy = false});
+  const auto frozen = make_our_system(state, ours);
+  frozen->freeze();
+  Localization found =
+      localize_sequence(*frozen, *world.mapping, spec.protocol, RandomStream(options.seed), watch);
+  RunResult run;
+  run.spec = std::move(spec);
+  run.mapping = std::move(found.outcome);
+  run.estimate = std::move(found.trajectory);
+  return run;
+}
+
 void run(Options options) {
   check(options);
   resolve(options.vocabulary, Shipped::kVocabulary);
@@ -170,11 +217,8 @@ void run(Options options) {
   const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
   Source source = open_source(options);
   // Before the work: a slip costs no minutes.
-  std::optional<Trajectory> truth;
-  if (!options.truth.empty())
-    truth = read_tum(options.truth);
-  else if (const Trajectory* known = source.frames->truth())
-    truth = *known;
+  std::optional<Trajectory> named_truth;
+  if (!options.truth.empty()) named_truth = read_tum(options.truth);
   const OutputFolder folder(options.out, "slam", {kSlamFiles.begin(), kSlamFiles.end()});
   for (const char* name : kSlamFiles) {
     const fs::path file = fs::path(options.out) / name;
@@ -190,42 +234,53 @@ void run(Options options) {
     need_no_other_file(options.save_map);
   }
   SlamState state = first_state(options, vocabulary, source.settings);
-  if (options.run.resume) need_something_left(options, state, *source.frames);
+  const std::size_t first = first_frame(options, state, *source.frames);
   for (const std::string& note : source.settings.notes) fmt::print(stderr, "slam: {}\n", note);
+  const std::size_t end = first + std::min(options.frames, source.frames->size() - first);
+  const World world{.mapping = first_frames(std::move(source.frames), end, named_truth),
+                    .second = nullptr,
+                    .simulated = {},
+                    .vocabulary = vocabulary,
+                    .cut = false,
+                    .inputs = {}};
 
   Progress progress("slam");
   StageClock clock;
+  FrameLog log;
   std::vector<double> frame_ms;
   double running_ms = 0;
   const StepObservers observers{.stage = [&](Stage stage, StageEvent e) { clock(stage, e); },
                                 .matches = nullptr};
-  const auto watch = [&](std::size_t done, std::size_t all, const SlamRun& so_far) {
+  const auto watch = [&](const MappedFrame& call, const RgbdFrame&, const SystemReport& report) {
+    log.add(call, report);
     clock.end_frame();
     double ms = 0;
     for (const double stage_ms : clock.frames().back()) ms += stage_ms;
-    if (!so_far.frames.back().skipped) {
-      frame_ms.push_back(ms);
-      running_ms += ms;
-    }
-    progress.share(static_cast<double>(done) / static_cast<double>(all),
-                   fmt::format("{} tracked, {}, {}, SLAM {:.1f} ms a frame", so_far.tracked,
+    frame_ms.push_back(ms);
+    running_ms += ms;
+    progress.share(static_cast<double>(call.index + 1 - first) / static_cast<double>(end - first),
+                   fmt::format("{} tracked, {}, {}, SLAM {:.1f} ms a frame", log.tracked,
                                counted(state.map.keyframe_count(), "keyframe"),
                                counted(state.map.landmark_count(), "landmark"),
-                               running_ms / std::max<double>(1, frame_ms.size())));
+                               running_ms / static_cast<double>(frame_ms.size())));
   };
-  options.run.noise = RandomStream(options.seed);
-  const SlamRun result =
-      run_slam(state, *source.frames, options.run, RandomStream(options.seed), observers, watch);
+  const RunResult result = run_sequence(options, world, state, first, observers, watch);
+  if (state.map.empty())
+    throw InputError(fmt::format(
+        "nothing could be mapped: none of {} showed 100 keypoints with depth to begin with",
+        counted(result.mapping.offered, "frame")));
   if (!options.save_map.empty()) save_slam(options.save_map, state);
 
+  const Trajectory* truth = world.mapping->truth();
   const SlamReport report{
       .state = state,
       .run = result,
+      .log = log,
       .clock = clock,
       .frame_ms = std::move(frame_ms),
-      .evaluation = truth ? std::optional(evaluate(*truth, result.trajectory)) : std::nullopt,
-      .source = options.source,
-      .seed = options.seed};
+      .evaluation = truth ? std::optional(evaluate(*truth, result.estimate)) : std::nullopt,
+      .frames_csv = log.csv(*world.mapping, result.spec.protocol, first),
+      .source = options.source};
   progress.end();
   write_slam_files(options.out, report, source.settings);
   print_slam_report(report);
@@ -253,15 +308,18 @@ void add_slam(CLI::App& app) {
   command->add_option("--out", options->out, "Folder for the results")->required();
   command->add_option("--map", options->map, "Map file to begin with");
   CLI::Option* localize =
-      command->add_flag("--localize", options->run.localize, "The map stays as it is");
+      command->add_flag("--localize", options->localize, "The map stays as it is");
+  command->add_flag("--resume", options->resume, "Resumes the sequence where the map's run stopped")
+      ->excludes(localize);
   command
-      ->add_flag("--resume", options->run.resume,
-                 "Goes on with the sequence where the map's run stopped")
+      ->add_flag("--protocol", options->protocol,
+                 "As a suite runs it: frames are held out and asked for when the map is done, and "
+                 "the feed goes back where tracking is lost")
       ->excludes(localize);
   command->add_option("--save-map", options->save_map, "Map file to write")->excludes(localize);
   command->add_option("--truth", options->truth,
                       "True trajectory (TUM text) (default: the folder's groundtruth.txt)");
-  command->add_option("--frames", options->run.count, "At most so many frames")
+  command->add_option("--frames", options->frames, "At most so many frames")
       ->default_str("all")
       ->check(CLI::Range(1, 100000000));
   command->add_option("--tour", options->tour, "scene: tour (YAML), or the name of a shipped one");

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/provenance/digest.hpp"
+#include "bench/results/summary.hpp"
 #include "bench/systems/timed.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/files.hpp"
@@ -43,21 +44,27 @@ Json times_json(const SlamReport& report) {
   return times;
 }
 
+/// The answers to the frames that were held out; null where none was.
+const std::vector<QueryScore>* held_out_of(const RunResult& run) {
+  if (run.points.empty() || run.points.front().held_out.empty()) return nullptr;
+  return &run.points.front().held_out;
+}
+
 Json summary_json(const SlamReport& report) {
-  const SlamRun& run = report.run;
+  const RunResult& run = report.run;
   Json json = {{"source", report.source},
-               {"seed", report.seed},
-               {"frames", run.frames.size()},
-               {"tracked", run.tracked},
-               {"completeness", run.completeness()},
-               {"lost", run.lost},
-               {"skipped", run.skipped},
-               {"relocalized", run.relocalized},
-               {"started_anew", run.started_anew},
+               {"seed", run.spec.seed},
+               {"frames", run.mapping.offered},
+               {"tracked", report.log.tracked},
+               {"completeness", report.completeness()},
+               {"lost", report.lost()},
+               {"skipped", run.mapping.skipped.count},
+               {"relocalized", report.log.relocalized},
+               {"map_resets", report.log.map_resets},
                {"keyframes", report.state.map.keyframe_count()},
                {"landmarks", report.state.map.landmark_count()},
-               {"loops", run.loops},
-               {"trajectory_digest", hex(digest(run.trajectory))},
+               {"loops", report.log.loops},
+               {"trajectory_digest", hex(digest(run.estimate))},
                {"map_digest", hex(report.state.map.digest())}};
   if (report.evaluation) {
     const Evaluation& e = *report.evaluation;
@@ -65,7 +72,17 @@ Json summary_json(const SlamReport& report) {
     json["truth"] = {{"pairs", e.pairs},
                      {"ate_rmse_m", known ? Json(e.ape_translation_m.rmse) : Json()}};
   }
-  json["faults"] = run.faults;
+  if (const auto* held_out = held_out_of(run)) {
+    const QuerySummary answers = summarize(*held_out);
+    json["restarts"] = run.mapping.restarts;
+    json["dropped"] = run.mapping.dropped.size();
+    json["held_out"] = {{"queries", answers.queries}, {"success", answers.success}};
+    if (answers.correct) {
+      json["held_out"]["correct"] = *answers.correct;
+      json["held_out"]["false_positive"] = *answers.false_positive;
+    }
+  }
+  json["faults"] = run.mapping.skipped.reasons;
   json["times"] = times_json(report);
   json["peak_memory_mb"] = peak_memory_mb();
   return json;
@@ -75,9 +92,9 @@ Json summary_json(const SlamReport& report) {
 
 void write_slam_files(const std::filesystem::path& folder, const SlamReport& report,
                       const Settings& settings) {
-  const std::array<std::string, kSlamFiles.size()> contents{format_tum(report.run.trajectory),
-                                                            format_kitti(report.run.trajectory),
-                                                            frames_csv(report.run),
+  const std::array<std::string, kSlamFiles.size()> contents{format_tum(report.run.estimate),
+                                                            format_kitti(report.run.estimate),
+                                                            report.frames_csv,
                                                             landmarks_ply(report.state.map),
                                                             keyframes_ply(report.state.map),
                                                             keyframes_json(report.state.map),
@@ -93,18 +110,31 @@ void write_slam_files(const std::filesystem::path& folder, const SlamReport& rep
 }
 
 void print_slam_report(const SlamReport& report) {
-  const SlamRun& run = report.run;
-  for (const std::string& fault : run.faults) fmt::print("skipped: {}\n", fault);
-  if (const int more = run.skipped - static_cast<int>(run.faults.size()); more > 0)
+  const RunResult& run = report.run;
+  const FrameLog& log = report.log;
+  const SkippedFrames& skipped = run.mapping.skipped;
+  for (const std::string& reason : skipped.reasons) fmt::print("skipped: {}\n", reason);
+  if (const std::size_t more = skipped.count - skipped.reasons.size(); more > 0)
     fmt::print("skipped: {} more\n", more);
-  fmt::print("{} of {} tracked ({:.1f} %); {} lost, {} skipped, {} relocalized\n", run.tracked,
-             counted(run.frames.size(), "frame"), 100 * run.completeness(), run.lost, run.skipped,
-             run.relocalized);
-  if (run.started_anew > 0)
+  fmt::print("{} of {} tracked ({:.1f} %); {} lost, {} skipped, {} relocalized\n", log.tracked,
+             counted(run.mapping.offered, "frame"), 100 * report.completeness(), report.lost(),
+             skipped.count, log.relocalized);
+  if (log.map_resets > 0)
     fmt::print("started anew {}: tracking was lost while the map was small\n",
-               counted(run.started_anew, "time"));
+               counted(log.map_resets, "time"));
+  if (const auto* held_out = held_out_of(run)) {
+    const QuerySummary answers = summarize(*held_out);
+    fmt::print("{}, {}; held out and asked for: {}, {:.1f} % answered",
+               counted(run.mapping.restarts, "restart"),
+               counted(run.mapping.dropped.size(), "frame") + " dropped",
+               counted(held_out->size(), "frame"), 100 * answers.success);
+    if (answers.correct)
+      fmt::print(", {:.1f} % correct, {:.1f} % false", 100 * *answers.correct,
+                 100 * *answers.false_positive);
+    fmt::print("\n");
+  }
   fmt::print("{}, {}, {} closed\n", counted(report.state.map.keyframe_count(), "keyframe"),
-             counted(report.state.map.landmark_count(), "landmark"), counted(run.loops, "loop"));
+             counted(report.state.map.landmark_count(), "landmark"), counted(log.loops, "loop"));
   if (report.evaluation) {
     const Evaluation& e = *report.evaluation;
     if (e.ape_translation_m.count > 0)

@@ -8,21 +8,28 @@
 #include <vector>
 
 #include "bench/metrics/evaluate.hpp"
-#include "bench/run/run_slam.hpp"
+#include "bench/results/run_result.hpp"
+#include "bench/run/frame_log.hpp"
 #include "bench/systems/stage_clock.hpp"
 #include "slam/pipeline/settings.hpp"
+#include "slam/pipeline/slam.hpp"
 
 namespace mh::cli {
 
-/// A SLAM run as it is told at its end.
+/// A run on one sequence as it is reported at its end.
 struct SlamReport {
   const SlamState& state;
-  const SlamRun& run;
+  const RunResult& run;
+  const FrameLog& log;
   const StageClock& clock;
   std::vector<double> frame_ms;          ///< of each frame that was processed, reading apart
   std::optional<Evaluation> evaluation;  ///< where the truth is known
-  std::string source;
-  std::uint64_t seed = 0;
+  std::string frames_csv, source;
+
+  int lost() const {
+    return static_cast<int>(run.mapping.offered - run.mapping.skipped.count) - log.tracked;
+  }
+  double completeness() const { return log.tracked / static_cast<double>(run.mapping.offered); }
 };
 
 /// What write_slam_files() writes; the last one is there only if all are.

@@ -211,6 +211,8 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   protocol.section("protocol");
   fields(suite.protocol, protocol);
   protocol.finish();
+  if (suite.protocol.test_interval == 1)
+    yaml.at("protocol").at("test_interval").fail("would hold out every frame");
   if (const auto margin = yaml.find("non_inferiority_margin"))
     suite.non_inferiority_margin = margin->as_double(0.0, 1.0);
   if (const auto check = yaml.find("check")) {

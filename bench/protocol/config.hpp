@@ -19,6 +19,16 @@ constexpr std::array<std::pair<std::string_view, DropReset>, 2> setting_words(Dr
   return {{{"counter", DropReset::kCounter}, {"map", DropReset::kMap}}};
 }
 
+/// What the feed does when tracking was lost.
+enum class OnFailure {
+  kRewind,    ///< it goes back (section 3.1 of the paper)
+  kContinue,  ///< it goes on with the next frame, as a camera does
+};
+
+constexpr std::array<std::pair<std::string_view, OnFailure>, 2> setting_words(OnFailure) {
+  return {{{"rewind", OnFailure::kRewind}, {"continue", OnFailure::kContinue}}};
+}
+
 /// What a query's answer is compared with.
 enum class QueryTruth {
   kLocal,  ///< the nearest mapped frame's estimate, carried on by the true motion to the query
@@ -34,7 +44,8 @@ constexpr std::array<std::pair<std::string_view, QueryTruth>, 2> setting_words(Q
 
 /// The paper's sections 3.1 and 3.2, each number settable.
 struct ProtocolConfig {
-  int test_interval = 30;
+  int test_interval = 30;  ///< 0: no frame is held out
+  OnFailure on_failure = OnFailure::kRewind;
   int rewind_frames = 50;
   int restarts_per_frame = 5;
   DropReset reset = DropReset::kCounter;
@@ -49,12 +60,22 @@ struct ProtocolConfig {
   friend bool operator==(const ProtocolConfig&, const ProtocolConfig&) = default;
 };
 
+/// The feed of a camera: every frame once, none held out.
+inline ProtocolConfig live_feed() {
+  ProtocolConfig config;
+  config.test_interval = 0;
+  config.on_failure = OnFailure::kContinue;
+  return config;
+}
+
 template <Either<ProtocolConfig> C, class Visit>
 void fields(C& c, Visit& v) {
-  auto& [test_interval, rewind_frames, restarts_per_frame, reset, max_effort, query_attempts,
-         max_blank_frames, correct_distance_m, correct_angle_deg, truth] = c;
-  v("test_interval", test_interval, {2, 100000},
-    "every so many frames one is held out as a test frame");
+  auto& [test_interval, on_failure, rewind_frames, restarts_per_frame, reset, max_effort,
+         query_attempts, max_blank_frames, correct_distance_m, correct_angle_deg, truth] = c;
+  v("test_interval", test_interval, {0, 100000},
+    "every so many frames one is held out as a test frame; 0: none");
+  v("on_failure", on_failure, {},
+    "where tracking is lost the feed goes back (rewind) or on (continue)");
   v("rewind_frames", rewind_frames, {1, 100000}, "how far the feed goes back after a failure");
   v("restarts_per_frame", restarts_per_frame, {0, 1000},
     "failed restarts after which the offending frame is dropped");

@@ -41,10 +41,37 @@ void note_tracked(Feed& feed, std::size_t index) {
   }
 }
 
+/// A frame was shown, and this is what was reported of it.
+void note(MappingOutcome& outcome, std::size_t index, const RgbdFrame& frame,
+          const SystemReport& report, const MappingObserver& observe) {
+  outcome.calls.push_back({.index = index,
+                           .stamp_ns = frame.stamp_ns,
+                           .restart = outcome.restarts,
+                           .status = report.status,
+                           .inliers = report.inliers,
+                           .keyframe_added = report.keyframe_added,
+                           .map_reset = report.map_reset,
+                           .image_digest = digest(frame),
+                           .matching_digest = digest_of_matching(report),
+                           .pose_digest = digest(report.world_from_camera)});
+  add(report.matches, outcome.matches);
+  if (report.loop) outcome.loops.push_back(*report.loop);
+  if (observe) observe(outcome.calls.back(), frame, report);
+}
+
 }  // namespace
 
 bool is_test_frame(std::size_t index, const ProtocolConfig& config) {
-  return (index + 1) % static_cast<std::size_t>(config.test_interval) == 0;
+  return config.test_interval > 0 &&
+         (index + 1) % static_cast<std::size_t>(config.test_interval) == 0;
+}
+
+std::vector<std::size_t> offered_frames(std::size_t count, const ProtocolConfig& config,
+                                        std::size_t first) {
+  std::vector<std::size_t> indices;
+  for (std::size_t i = first; i < count; ++i)
+    if (!is_test_frame(i, config)) indices.push_back(i);
+  return indices;
 }
 
 RandomStream mapping_noise(RandomStream stream, int restart) {
@@ -52,22 +79,17 @@ RandomStream mapping_noise(RandomStream stream, int restart) {
 }
 
 MappingOutcome map_sequence(System& system, const Sequence& sequence, const ProtocolConfig& config,
-                            RandomStream stream, const MappingObserver& observe) {
+                            RandomStream stream, const MappingObserver& observe,
+                            std::size_t first) {
   const std::size_t count = sequence.size();
   MappingOutcome outcome;
-  for (std::size_t i = 0; i < count; ++i) outcome.offered += is_test_frame(i, config) ? 0 : 1;
-  const std::vector<bool> has_stamp = increasing_stamps(sequence);
+  outcome.offered = offered_frames(count, config, first).size();
+  UsableFrames frames(sequence);
   std::vector<bool> out(count, false);  // dropped or skipped
-  const auto skip = [&](std::size_t i, const std::string& reason) {
-    out[i] = true;
-    outcome.skipped.add(reason);
-    if (outcome.calls.empty() && outcome.skipped.count == kHopeless)
-      throw InputError(outcome.skipped.reasons.front());
-  };
   const std::size_t max_calls = std::max(
       count + 1000, static_cast<std::size_t>(config.max_effort * static_cast<double>(count)));
 
-  Feed feed;
+  Feed feed{.next = first, .mapped = first > 0};
   while (feed.next < count) {
     const std::size_t i = feed.next++;
     if (is_test_frame(i, config) || out[i]) continue;
@@ -75,38 +97,26 @@ MappingOutcome map_sequence(System& system, const Sequence& sequence, const Prot
       outcome.gave_up = true;
       break;
     }
-    if (!has_stamp[i]) {
-      skip(i, stamp_fault(sequence, i));
-      continue;
-    }
-    RgbdFrame frame;
-    try {
-      frame = usable_frame(sequence, i, mapping_noise(stream, outcome.restarts));
-    } catch (const UnusableFrame& error) {
-      skip(i, error.what());
+    const auto frame = frames.frame(i, mapping_noise(stream, outcome.restarts));
+    if (!frame) {
+      out[i] = true;
       continue;
     }
     const RandomStream draws =
         stream.fork(kSlam).fork(static_cast<std::uint64_t>(outcome.restarts)).fork(i);
-    const SystemReport report = system.track(frame, draws);
-    outcome.calls.push_back({.index = i,
-                             .stamp_ns = frame.stamp_ns,
-                             .restart = outcome.restarts,
-                             .status = report.status,
-                             .inliers = report.inliers,
-                             .keyframe_added = report.keyframe_added,
-                             .image_digest = digest(frame),
-                             .matching_digest = digest_of_matching(report),
-                             .pose_digest = digest(report.world_from_camera)});
-    add(report.matches, outcome.matches);
-    if (report.loop) outcome.loops.push_back(*report.loop);
-    if (observe) observe(outcome.calls.back(), frame, report);
+    const SystemReport report = system.track(*frame, draws);
+    note(outcome, i, *frame, report, observe);
 
     if (report.status != TrackStatus::kLost) {
       note_tracked(feed, i);
       continue;
     }
     if (!feed.mapped) ++outcome.before_map;
+    if (config.on_failure == OnFailure::kContinue) {
+      outcome.failures += feed.tracking ? 1 : 0;
+      feed.tracking = false;
+      continue;
+    }
     if (!is_failure(feed, i)) continue;
 
     ++outcome.failures;
@@ -125,9 +135,30 @@ MappingOutcome map_sequence(System& system, const Sequence& sequence, const Prot
       feed.mapped = false;
     }
   }
-  if (outcome.calls.empty() && outcome.skipped.count > 0)
-    throw InputError(outcome.skipped.reasons.front());
+  frames.require_any();
+  outcome.skipped = frames.skipped();
   return outcome;
+}
+
+Localization localize_sequence(const System& frozen, const Sequence& sequence,
+                               const ProtocolConfig& config, RandomStream stream,
+                               const MappingObserver& observe) {
+  Localization found;
+  const std::vector<std::size_t> offered = offered_frames(sequence.size(), config);
+  found.outcome.offered = offered.size();
+  UsableFrames frames(sequence);
+  const auto session = frozen.open_session();
+  for (const std::size_t i : offered) {
+    const auto frame = frames.frame(i, mapping_noise(stream, 0));
+    if (!frame) continue;
+    const SystemReport report = session->feed(*frame, stream.fork(kSlam).fork(0).fork(i));
+    note(found.outcome, i, *frame, report, observe);
+    if (report.status != TrackStatus::kLost)
+      found.trajectory.push_back({frame->stamp_ns, *report.world_from_camera});
+  }
+  frames.require_any();
+  found.outcome.skipped = frames.skipped();
+  return found;
 }
 
 }  // namespace mh

@@ -22,6 +22,7 @@ struct MappedFrame {
   TrackStatus status = TrackStatus::kLost;
   std::optional<int> inliers;  ///< where the system tells
   bool keyframe_added = false;
+  bool map_reset = false;  ///< as SystemReport
   std::uint64_t image_digest = 0;
   std::uint64_t matching_digest = 0;
   std::uint64_t pose_digest = 0;
@@ -29,14 +30,15 @@ struct MappedFrame {
 
 template <Either<MappedFrame> F, class Visit>
 void fields(F& call, Visit& v) {
-  auto& [index, stamp_ns, restart, status, inliers, keyframe_added, image_digest, matching_digest,
-         pose_digest] = call;
+  auto& [index, stamp_ns, restart, status, inliers, keyframe_added, map_reset, image_digest,
+         matching_digest, pose_digest] = call;
   v("frame", index);
   v("stamp_ns", stamp_ns);
   v("restart", restart);
   v("status", status);
   v("inliers", inliers);
   v("keyframe", keyframe_added);
+  v("map_reset", map_reset);
   v("image", as_digest(image_digest));
   v("matching", as_digest(matching_digest));
   v("pose", as_digest(pose_digest));
@@ -71,14 +73,19 @@ void fields(O& outcome, Visit& v) {
   v("skipped", skipped);
 }
 
-/// Test frames are the last of every `test_interval`: 29, 59, ... at 30.
+/// Test frames are the last of every `test_interval`: 29, 59, ... at 30; none at 0.
 bool is_test_frame(std::size_t index, const ProtocolConfig& config);
+
+/// The frames of a sequence from `first` on that are no test frames, in order.
+std::vector<std::size_t> offered_frames(std::size_t count, const ProtocolConfig& config,
+                                        std::size_t first = 0);
 
 /// Frame and report of a track call as it happens: for progress and for keeping keyframe depth.
 using MappingObserver =
     std::function<void(const MappedFrame&, const RgbdFrame&, const SystemReport&)>;
 
-/// Maps a sequence (section 3.1 of the paper). A failure is a frame reported lost while tracking
+/// Maps a sequence (section 3.1 of the paper; at OnFailure::kContinue each frame is shown once, and
+/// what follows on rewinds does not apply). A failure is a frame reported lost while tracking
 /// was on, or a frame reported lost at which the feed had failed before. After a failure at frame i
 /// the feed goes back to i - 50 and goes on with the map as it is; frames reported lost on the way
 /// back to i are no failures: the system is still relocalizing there. After five restarts in a row
@@ -93,9 +100,24 @@ using MappingObserver =
 /// A frame that no system can be shown (SkippedFrames) is skipped, as if it were not there.
 ///
 /// Noise and SLAM draw from streams keyed by (restart, frame), so that a restart is no replica.
+/// @param first  frames before it are not offered: the system was fed them by an earlier call
 /// @throws InputError if none of the first kHopeless frames can be shown, or none at all.
 MappingOutcome map_sequence(System& system, const Sequence& sequence, const ProtocolConfig& config,
-                            RandomStream stream, const MappingObserver& observe = {});
+                            RandomStream stream, const MappingObserver& observe = {},
+                            std::size_t first = 0);
+
+/// What came of a sequence that was looked for in a finished map.
+struct Localization {
+  MappingOutcome outcome;
+  Trajectory trajectory;  ///< the frames that were found, in the map's world
+};
+
+/// Shows a whole sequence to one session before a frozen map: found in one frame, the camera is
+/// tracked to the next. Test frames and frames that cannot be shown are passed over.
+/// @throws InputError as map_sequence()
+Localization localize_sequence(const System& frozen, const Sequence& sequence,
+                               const ProtocolConfig& config, RandomStream stream,
+                               const MappingObserver& observe = {});
 
 /// The noise stream of mapping frames after so many restarts; equal for every system.
 RandomStream mapping_noise(RandomStream stream, int restart);

@@ -38,6 +38,7 @@ struct SystemReport {
   std::optional<SE3> world_from_camera;  ///< in the system's own world
   std::optional<int> keypoints, inliers;
   bool keyframe_added = false;
+  bool map_reset = false;  ///< it gave its map up and began another: earlier poses are void
   std::optional<LoopClosure> loop;  ///< if one was closed
   std::optional<RelocalizationStage> relocalization;
   Candidates candidates;  ///< when relocalization was tried

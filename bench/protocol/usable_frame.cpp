@@ -58,6 +58,30 @@ std::string stamp_fault(const Sequence& sequence, std::size_t i) {
                      format_stamp(sequence.stamp_ns(i)));
 }
 
+std::optional<RgbdFrame> UsableFrames::frame(std::size_t i, RandomStream noise) {
+  if (!has_stamp_[i]) {
+    skip(stamp_fault(sequence_, i));
+    return std::nullopt;
+  }
+  try {
+    RgbdFrame shown = usable_frame(sequence_, i, noise);
+    any_shown_ = true;
+    return shown;
+  } catch (const UnusableFrame& error) {
+    skip(error.what());
+    return std::nullopt;
+  }
+}
+
+void UsableFrames::require_any() const {
+  if (!any_shown_ && skipped_.count > 0) throw InputError(skipped_.reasons.front());
+}
+
+void UsableFrames::skip(const std::string& reason) {
+  skipped_.add(reason);
+  if (skipped_.count == kHopeless) require_any();
+}
+
 void require_usable_frames(const Sequence& sequence) {
   std::string first_fault = "the recording has no frame";
   for (std::size_t i = 0; i < std::min(kHopeless, sequence.size()); ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,28 @@ std::vector<bool> increasing_stamps(const Sequence& sequence);
 
 /// Why frame i, which increasing_stamps() leaves out, is left out.
 std::string stamp_fault(const Sequence& sequence, std::size_t i);
+
+/// The frames of a sequence that can be shown; of the others it remembers why not.
+class UsableFrames {
+ public:
+  explicit UsableFrames(const Sequence& sequence)
+      : sequence_(sequence), has_stamp_(increasing_stamps(sequence)) {}
+
+  /// Frame i; nullopt if it cannot be shown.
+  /// @throws InputError when none of the first kHopeless that were asked for can be.
+  std::optional<RgbdFrame> frame(std::size_t i, RandomStream noise);
+  /// To be called at the end. @throws InputError if frames were asked for and none could be shown.
+  void require_any() const;
+  const SkippedFrames& skipped() const { return skipped_; }
+
+ private:
+  void skip(const std::string& reason);
+
+  const Sequence& sequence_;
+  std::vector<bool> has_stamp_;
+  bool any_shown_ = false;
+  SkippedFrames skipped_;
+};
 
 /// Reads the first kHopeless frames of a recording until one can be used.
 /// @throws InputError of the first if none can.

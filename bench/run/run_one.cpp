@@ -168,26 +168,16 @@ Trajectory run_recorded(const RunSpec& spec, const Sequence& mapping, RandomStre
                         const std::filesystem::path& folder,
                         const std::function<void(std::string_view)>& status,
                         SkippedFrames& skipped) {
-  const std::vector<bool> has_stamp = increasing_stamps(mapping);
-  std::vector<std::size_t> offered;
-  for (std::size_t i = 0; i < mapping.size(); ++i)
-    if (!is_test_frame(i, spec.protocol)) offered.push_back(i);
+  const std::vector<std::size_t> offered = offered_frames(mapping.size(), spec.protocol);
+  UsableFrames frames(mapping);
   ProgramFolder given(folder);
-  const auto frame_of = [&](std::size_t i) -> std::optional<RgbdFrame> {
-    try {
-      if (has_stamp[i]) return usable_frame(mapping, i, mapping_noise(stream, 0));
-      skipped.add(stamp_fault(mapping, i));
-    } catch (const UnusableFrame& error) {
-      skipped.add(error.what());
-    }
-    return std::nullopt;
-  };
   const std::vector<Stamp> stamps =
       write_dataset(given.path() / "dataset", mapping.camera(), offered.size(), [&](std::size_t i) {
         status(fmt::format("writing frame {} of {}", i + 1, offered.size()));
-        return frame_of(offered[i]);
+        return frames.frame(offered[i], mapping_noise(stream, 0));
       });
-  if (stamps.empty() && skipped.count > 0) throw InputError(skipped.reasons.front());
+  frames.require_any();
+  skipped = frames.skipped();
   status(fmt::format("runs over {}", counted(offered.size(), "frame")));
   Trajectory trajectory =
       run_on_dataset(spec.system.outside, given.path(), stamps, spec.seed, folder / "outside.log");
@@ -228,8 +218,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   std::unique_ptr<System> inner =
       tools.system ? tools.system(spec, world) : make_system(spec, world, tools.folder);
   if (inner == nullptr) {  // a program that answers with a trajectory: nothing to ask it
-    for (std::size_t i = 0; i < mapping.size(); ++i)
-      run.mapping.offered += is_test_frame(i, spec.protocol) ? 0 : 1;
+    run.mapping.offered = offered_frames(mapping.size(), spec.protocol).size();
     run.estimate = run_recorded(spec, frames, stream.fork(kMapping), tools.folder, tools.status,
                                 run.mapping.skipped);
     run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
@@ -246,14 +235,16 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
       run.frames = frames_of(run.estimate, run.truth);
     };
     const auto map_now = [&] {
-      run.mapping =
-          map_sequence(system, frames, spec.protocol, stream.fork(kMapping),
-                       [&](const MappedFrame& call, const RgbdFrame& frame, const SystemReport&) {
-                         const ProcessorTimer timer(run.products_s);
-                         if (call.keyframe_added && tools.occupancy) depths.keep(frame);
-                         work.reached(call.index + 1);
-                         tools.status(status_of(call, mapping.size()));
-                       });
+      run.mapping = map_sequence(
+          system, frames, spec.protocol, stream.fork(kMapping),
+          [&](const MappedFrame& call, const RgbdFrame& frame, const SystemReport& report) {
+            const ProcessorTimer timer(run.products_s);
+            if (call.keyframe_added && tools.occupancy) depths.keep(frame);
+            if (tools.observe) tools.observe(call, frame, report);
+            work.reached(call.index + 1);
+            tools.status(status_of(call, mapping.size()));
+          },
+          tools.first);
       take_trajectory();
       integrate();
     };

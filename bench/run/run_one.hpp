@@ -36,6 +36,8 @@ struct RunTools {
   std::function<void(std::string_view)> status = [](std::string_view) {};
   /// Makes the system in make_system()'s place: for tests.
   std::function<std::unique_ptr<System>(const RunSpec&, const World&)> system = {};
+  MappingObserver observe = {};  ///< Told of each frame that is mapped
+  std::size_t first = 0;         ///< frames before it were mapped already, by this very system
   RunTamper tamper = {};
   bool occupancy = true;  ///< false: RunResult::volume stays null and its grid empty
   Cache maps = Cache();   ///< a finished map of the same mapping is taken from here, or kept here

@@ -130,16 +130,16 @@ class Conversation {
     if (!files.labels.empty()) fields["labels"] = files.labels.string();
     fields["seed"] = stream.bits(0) >> 33;  // fits an int everywhere
     const Json answer =
-        ask(what, fields, {"pose", "keypoints", "inliers", "keyframe", "stage", "candidates"});
+        ask(what, fields,
+            {"pose", "keypoints", "inliers", "keyframe", "map_reset", "stage", "candidates"});
     SystemReport report;
     report.world_from_camera = pose(answer);
     report.status = report.world_from_camera ? with_pose : TrackStatus::kLost;
     report.keypoints = count(answer, "keypoints");
     report.inliers = count(answer, "inliers");
-    if (const auto it = answer.find("keyframe"); it != answer.end()) {
-      if (!it->is_boolean()) fail(fmt::format("gave a keyframe of {}", shortened(it->dump())));
-      report.keyframe_added = *it;
-    }
+    report.keyframe_added = flag(answer, "keyframe");
+    report.map_reset = flag(answer, "map_reset");
+    if (report.map_reset && what != "track") fail("gave up a map that must not change any more");
     report.relocalization = stage(answer);
     report.candidates = candidates(answer);
     return report;
@@ -211,6 +211,13 @@ class Conversation {
     return SE3(rotation, Eigen::Vector3d(v[0], v[1], v[2]));
   }
 
+  bool flag(const Json& answer, const char* key) {
+    const auto it = answer.find(key);
+    if (it == answer.end()) return false;
+    if (!it->is_boolean()) fail(fmt::format("gave a {} of {}", key, shortened(it->dump())));
+    return *it;
+  }
+
   std::optional<int> count(const Json& from, const char* key) {
     const auto it = from.find(key);
     if (it == from.end()) return std::nullopt;
@@ -275,6 +282,7 @@ class ConversationSystem : public System {
     assert(!frozen_);
     shown_.insert(frame.stamp_ns);
     const SystemReport report = talk_->ask_about("track", frame, stream, TrackStatus::kTracked);
+    if (report.map_reset) poses_.clear();
     if (report.world_from_camera)
       poses_[frame.stamp_ns] = *report.world_from_camera;
     else

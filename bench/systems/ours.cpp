@@ -29,13 +29,15 @@ SystemReport as_report(const StepReport& step) {
 
 class OurSession : public RelocalizationSession {
  public:
-  explicit OurSession(const SlamState& frozen) : frozen_(frozen) {}
+  OurSession(const SlamState& frozen, const StepObservers& observers)
+      : frozen_(frozen), observers_(observers) {}
   SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
-    return as_report(localize(frozen_, tracker_, frame, stream));
+    return as_report(localize(frozen_, tracker_, frame, stream, observers_));
   }
 
  private:
-  const SlamState& frozen_;  // outlived by the system that opened the session
+  const SlamState& frozen_;  // like the observers outlived by the system that opened the session
+  const StepObservers& observers_;
   Tracker tracker_;
 };
 
@@ -76,13 +78,19 @@ class RememberingSession : public RelocalizationSession {
 
 class OurSystem : public System {
  public:
-  OurSystem(const Camera& camera, const SlamConfig& config,
-            std::shared_ptr<const Vocabulary> vocabulary)
-      : state_(make_slam(camera, config, std::move(vocabulary))) {}
+  explicit OurSystem(SlamState own)
+      : own_(std::make_unique<SlamState>(std::move(own))), state_(*own_) {}
+  OurSystem(SlamState& state, const OurSystemOptions& options)
+      : state_(state), options_(options), found_(!state.tracked_frames.empty()) {}
 
   SystemReport track(const RgbdFrame& frame, RandomStream stream) override {
     assert(!frozen_);
-    return as_report(step(state_, frame, stream));
+    const StepReport report = step(state_, frame, stream, options_.observers);
+    const bool lost = report.status == TrackStatus::kLost;
+    if (lost && found_ && state_.map.keyframe_count() <= options_.small_map)
+      if (auto first = begin_anew(frame, stream)) return *first;
+    found_ = found_ || !lost;
+    return as_report(report);
   }
   void rewind() override { mh::rewind(state_); }
   void reset() override { state_ = make_slam(state_.camera, state_.config, state_.vocabulary); }
@@ -102,7 +110,7 @@ class OurSystem : public System {
   std::unique_ptr<QueryMemo> make_memo() const override { return std::make_unique<OurMemo>(); }
   std::unique_ptr<RelocalizationSession> open_session() const override {
     assert(frozen_);
-    return std::make_unique<OurSession>(state_);
+    return std::make_unique<OurSession>(state_, options_.observers);
   }
   std::unique_ptr<RelocalizationSession> open_session_with(QueryMemo& memo) const override {
     assert(frozen_);
@@ -110,7 +118,21 @@ class OurSystem : public System {
   }
 
  private:
-  SlamState state_;
+  /// Another map in the place of this one, if the frame can begin it.
+  std::optional<SystemReport> begin_anew(const RgbdFrame& frame, RandomStream stream) {
+    SlamState anew = make_slam(state_.camera, state_.config, state_.vocabulary);
+    const StepReport first = step(anew, frame, stream, options_.observers);
+    if (first.status != TrackStatus::kInitialized) return std::nullopt;
+    state_ = std::move(anew);
+    SystemReport report = as_report(first);
+    report.map_reset = true;
+    return report;
+  }
+
+  std::unique_ptr<SlamState> own_;
+  SlamState& state_;
+  OurSystemOptions options_;
+  bool found_ = false;  ///< in this map, a frame was tracked
   bool frozen_ = false;
 };
 
@@ -118,7 +140,11 @@ class OurSystem : public System {
 
 std::unique_ptr<System> make_our_system(const Camera& camera, const SlamConfig& config,
                                         std::shared_ptr<const Vocabulary> vocabulary) {
-  return std::make_unique<OurSystem>(camera, config, std::move(vocabulary));
+  return std::make_unique<OurSystem>(make_slam(camera, config, std::move(vocabulary)));
+}
+
+std::unique_ptr<System> make_our_system(SlamState& state, const OurSystemOptions& options) {
+  return std::make_unique<OurSystem>(state, options);
 }
 
 }  // namespace mh

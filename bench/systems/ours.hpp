@@ -13,4 +13,16 @@ namespace mh {
 std::unique_ptr<System> make_our_system(const Camera& camera, const SlamConfig& config,
                                         std::shared_ptr<const Vocabulary> vocabulary);
 
+struct OurSystemOptions {
+  StepObservers observers = {};
+  /// A map of at most so many keyframes is given up when tracking is lost, with the first lost
+  /// frame that can begin another, as the original ORB-SLAM2 does: so little is soon made again,
+  /// and a place that was seen for a moment may never come back. 0: no map is.
+  int small_map = 0;
+};
+
+/// The same over a state of the caller's, which outlives it: a map that was loaded, or that is to
+/// be saved.
+std::unique_ptr<System> make_our_system(SlamState& state, const OurSystemOptions& options);
+
 }  // namespace mh

@@ -10,6 +10,7 @@
 #include "bench/inputs/recorded_camera.hpp"
 #include "bench/provenance/digest.hpp"
 #include "bench/world/cached_light.hpp"
+#include "bench/world/first_frames.hpp"
 #include "scenes/load.hpp"
 #include "sim/sensors/shutter.hpp"
 #include "sim/world/lit_scene.hpp"
@@ -25,39 +26,6 @@ PathFacts facts(const DrivenPath& path) {
   return {path.camera.size(), path.length_m, path.turned_in_place_rad, path.contact_time_s,
           path.max_penetration_m};
 }
-
-/// The first frames of a recording, and what is true of their time.
-class RecordedFrames : public Sequence {
- public:
-  RecordedFrames(std::unique_ptr<Sequence> all, std::size_t at_most)
-      : all_(std::move(all)), size_(std::min(at_most, all_->size())) {
-    if (all_->truth() == nullptr || size_ == 0) return;
-    Stamp first_ns = stamp_ns(0), last_ns = first_ns;
-    for (std::size_t i = 0; i < size_; ++i) {
-      first_ns = std::min(first_ns, stamp_ns(i));
-      last_ns = std::max(last_ns, stamp_ns(i));
-    }
-    constexpr Stamp kMargin_ns = 100'000'000;  // more than poses are paired or interpolated over
-    truth_.emplace();
-    for (const TimedPose& pose : *all_->truth())
-      if (pose.stamp_ns >= first_ns - kMargin_ns && pose.stamp_ns <= last_ns + kMargin_ns)
-        truth_->push_back(pose);
-  }
-  const Camera& camera() const override { return all_->camera(); }
-  std::size_t size() const override { return size_; }
-  Stamp stamp_ns(std::size_t i) const override { return all_->stamp_ns(i); }
-  RgbdFrame frame(std::size_t i, RandomStream noise) const override {
-    return all_->frame(i, noise);
-  }
-  const Trajectory* truth() const override {
-    return truth_ && !truth_->empty() ? &*truth_ : nullptr;
-  }
-
- private:
-  std::unique_ptr<Sequence> all_;
-  std::size_t size_;
-  std::optional<Trajectory> truth_;
-};
 
 PathFacts recorded_path(const Sequence& sequence) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -145,8 +113,7 @@ World open_recordings(const RunSpec& spec) {
     });
     const std::size_t all = opened.sequence->size();
     world.cut = world.cut || (spec.max_frames && *spec.max_frames < all);
-    return std::make_shared<const RecordedFrames>(std::move(opened.sequence),
-                                                  spec.max_frames.value_or(all));
+    return first_frames(std::move(opened.sequence), spec.max_frames.value_or(all));
   };
   world.mapping = open("sequence", e.sequence);
   if (e.queries) world.second = open("queries", *e.queries);

@@ -232,6 +232,54 @@ TEST_F(SlamCommand, FindsBadFilesBeforeTheWork) {
   refused_at_once(" --save-map " + path("words.mhvoc/map"), "words.mhvoc: cannot be made a folder");
 }
 
+TEST_F(SlamCommand, WithoutDepthNothingIsMappedAndThatIsReported) {
+  TumWriter writer(folder_ / "flat", BoxRoom::camera());
+  for (int i = 0; i < 5; ++i) {
+    RgbdFrame frame = testing_support::box_room_frame(i);
+    std::fill(frame.depth_m.begin(), frame.depth_m.end(), 0.0F);
+    writer.add(frame);
+  }
+  writer.finish();
+  expect_refused(path("flat") + " --out " + path("no"),
+                 "nothing could be mapped: none of 5 frames");
+  EXPECT_FALSE(fs::exists(folder_ / "no/summary.json"));
+}
+
+// One runner: what `bench` makes of a recording, `slam` makes, to the bit.
+TEST_F(SlamCommand, RunsTheProtocolOfTheBench) {
+  const auto by_bench = [&](const std::string& name, const std::string& protocol) {
+    const fs::path suite = folder_ / (name + ".yaml"), out = folder_ / (name + "_suite");
+    std::ofstream(suite) << "environments: [{category: room, sequence: 'tum:room'}]\n"
+                            "vocabulary: words.mhvoc\nlabels: [recorded]\nsystems: [semantic]\n"
+                            "slam: {keyframe: {close_depth_m: 3}}  # as camera.yaml has it\n"
+                            "seed: 3\nprotocol: "
+                         << protocol << "\n";
+    EXPECT_EQ(std::system((std::string(MH_EXECUTABLE) + " bench " + suite.string() + " --out " +
+                           out.string() + " --jobs 1 --cache " + path("cache") + " >" +
+                           path("bench.log") + " 2>&1")
+                              .c_str()),
+              0)
+        << read_file(folder_ / "bench.log");
+    for (const auto& entry : fs::recursive_directory_iterator(out))
+      if (entry.path().filename() == "estimate.tum") return read_file(entry.path());
+    return std::string("no estimate");
+  };
+  ASSERT_EQ(run(path("room") + " --seed 3 --out " + path("live")), 0) << err_;
+  EXPECT_EQ(read_file(folder_ / "live/estimate.tum"),
+            by_bench("as_live", "{test_interval: 0, on_failure: continue}"));
+  ASSERT_EQ(run(path("room") + " --seed 3 --protocol --out " + path("held")), 0) << err_;
+  EXPECT_EQ(read_file(folder_ / "held/estimate.tum"), by_bench("as_paper", "{}"));
+  EXPECT_NE(out_.find("49 of 49 frames tracked (100.0 %)"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("0 restarts, 0 frames dropped; held out and asked for: 1 frame, 100.0 % "
+                      "answered, 100.0 % correct, 0.0 % false"),
+            std::string::npos)
+      << out_;
+  EXPECT_EQ(summary("held")["held_out"]["queries"], 1);
+  EXPECT_NE(read_file(folder_ / "held/frames.csv").find(",held_out,"), std::string::npos);
+  expect_refused(path("room") + " --protocol --resume --map x --out " + path("no"),
+                 "--protocol and --resume");
+}
+
 TEST_F(SlamCommand, PrintsItsSettings) {
   ASSERT_EQ(run("--print-settings"), 0) << err_;
   EXPECT_EQ(out_, format_slam_config({}, true));

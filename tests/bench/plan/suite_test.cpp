@@ -240,7 +240,7 @@ INSTANTIATE_TEST_SUITE_P(
             "1.2 is outside [0, 1)"},
         BadLine{"parameters: {map: fixed, sobol: {points: 4, ranges: {}}}\n", "names no setting"},
         BadLine{"non_inferiority_margin: 2\n", "2 is outside [0, 1]"},
-        BadLine{"protocol: {test_interval: 1}\n", "protocol.test_interval: 1 is outside"},
+        BadLine{"protocol: {test_interval: 1}\n", "would hold out every frame"},
         BadLine{"protocol: {reset: all}\n", "'all' is none of counter, map"},
         BadLine{"trials: 0\n", "trials: 0 is outside"},
         BadLine{"trials: 1.5\n", "trials: '1.5' is not a whole number"},

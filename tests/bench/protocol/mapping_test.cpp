@@ -141,6 +141,26 @@ TEST(MapSequence, TwoOffendingFramesInARowAreDroppedOneAfterTheOther) {
   EXPECT_EQ(system.trajectory().size(), 114u);
 }
 
+TEST(MapSequence, AFeedThatContinuesShowsEachFrameOnceAndHoldsNoneOut) {
+  FakeSystem system([](Stamp frame, int) { return frame < 40 || frame >= 50; });
+  std::vector<std::size_t> seen;
+  const MappingOutcome outcome = map_sequence(
+      system, fake_frames(kCount), live_feed(), RandomStream(1),
+      [&](const MappedFrame& call, const RgbdFrame&, const SystemReport&) {
+        seen.push_back(call.index);
+      },
+      7);
+  EXPECT_EQ(outcome.offered, 113u);
+  ASSERT_EQ(system.fed.size(), 113u);
+  for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], i + 7);
+  EXPECT_EQ(outcome.failures, 1) << "ten lost frames in a row are one failure";
+  EXPECT_EQ(outcome.restarts + system.rewinds, 0);
+  // A frame's draws are those of a feed from the start.
+  FakeSystem whole([](Stamp, int) { return true; });
+  map_sequence(whole, fake_frames(kCount), live_feed(), RandomStream(1));
+  EXPECT_EQ(std::vector(whole.streams.begin() + 7, whole.streams.end()), system.streams);
+}
+
 TEST(MapSequence, PassesOverFramesBeforeTheMapExists) {
   FakeSystem system([](Stamp frame, int) { return frame >= 7; });
   const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), {}, RandomStream(1));

@@ -54,7 +54,7 @@ class TumFr1RpySuite : public testing::Test {
 
 // The original ORB-SLAM2 tracks all of them at 0.0257 m.
 TEST_F(TumFr1RpySuite, AllFramesAreMappedAsWellAsBySlam) {
-  const Suite all = suite("[plain]", "protocol: {test_interval: 100000}\n");
+  const Suite all = suite("[plain]", "protocol: {test_interval: 0}\n");
   const std::vector<RunSpec> specs = expand(all);
   ASSERT_EQ(specs.size(), 1U);
   EXPECT_EQ(specs[0].name, "plain-recorded-0");

@@ -418,6 +418,7 @@ TEST_F(OutsideFaults, AnswersThatAreNone) {
   EXPECT_HOLDS(answers(R"({"pose":null})"), "gave no request number");
   EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"mood":"good"})"), "unknown key 'mood'");
   EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"inliers":-1})"), "expected a count");
+  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"map_reset":1})"), "gave a map_reset of 1");
   EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"candidates":{"c4":1}})"), "'candidates.c4'");
   EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"candidates":{"keyframes":3,"final":9}})"),
                "a step cannot leave more than the one before it");
@@ -450,6 +451,24 @@ TEST_F(OutsideFaults, AFinalTrajectoryHoldsShownFramesOnly) {
   EXPECT_HOLDS(freeze_error(R"(["0.000000007 4e30 0 0 0 0 0 1"])"),
                "a pose more than 1e+06 m away in its trajectory, at 0.000000007");
   EXPECT_HOLDS(freeze_error("7"), "no list of lines");
+}
+
+TEST_F(OutsideFaults, PosesInAMapThatWasGivenUpAreVoid) {
+  const OutsideProgram p =
+      says(R"(echo '{"id":2,"pose":[1,0,0,0,0,0,1]}'; read -r line; )"
+           R"(echo '{"id":3,"pose":[0,0,0,0,0,0,1],"map_reset":true}'; read -r line; )"
+           R"(echo '{"id":4}'; read -r line; )"
+           R"(echo '{"id":5,"pose":[0,0,0,0,0,0,1],"map_reset":true}'; sleep 60)");
+  const auto system = make_conversation_system(p, camera_, 0, folder_ / "log");
+  EXPECT_FALSE(system->track(fake_frame(7, RandomStream(1)), RandomStream(2)).map_reset);
+  EXPECT_TRUE(system->track(fake_frame(8, RandomStream(1)), RandomStream(2)).map_reset);
+  const Trajectory t = system->trajectory();
+  ASSERT_EQ(t.size(), 1u);
+  EXPECT_EQ(t[0].stamp_ns, 8);
+  system->freeze();
+  const auto session = system->open_session();
+  EXPECT_HOLDS(error_of(p, [&] { session->feed(fake_frame(9, RandomStream(1)), RandomStream(2)); }),
+               "gave up a map that must not change any more");
 }
 
 TEST_F(OutsideFaults, CommandsAreCheckedBeforeTheyRun) {

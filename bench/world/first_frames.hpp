@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+
+#include "slam/core/sequence.hpp"
+
+namespace mh {
+
+/// The first frames of a sequence, and what is true of their time.
+/// @param truth  takes the place of the sequence's own
+std::shared_ptr<const Sequence> first_frames(std::unique_ptr<Sequence> all, std::size_t at_most,
+                                             std::optional<Trajectory> truth = std::nullopt);
+
+}  // namespace mh
