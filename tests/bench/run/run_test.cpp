@@ -169,6 +169,14 @@ struct Place {
   }
 };
 
+/// Three points, whose queries one map answers.
+void vary_alpha(Suite& suite) {
+  for (const double alpha : {0.5, 0.6, 0.7}) {
+    suite.sweep.points.push_back(suite.slam);
+    suite.sweep.points.back().semantics.alpha = alpha;
+  }
+}
+
 TEST(RunOne, IsAFunctionOfItsSpecAndWorld) {
   const Place place;
   const auto once = place.run(), again = place.run();
@@ -180,13 +188,27 @@ TEST(RunOne, IsAFunctionOfItsSpecAndWorld) {
 
 TEST(RunOne, PutsTheQueriesUnderEachPoint) {
   Place place;
-  for (const double alpha : {0.5, 0.6, 0.7}) {
-    place.suite.sweep.points.push_back(place.suite.slam);
-    place.suite.sweep.points.back().semantics.alpha = alpha;
-  }
+  vary_alpha(place.suite);
   const auto runs = place.run();
   ASSERT_EQ(runs[0].points.size(), 3u);
   for (const PointResult& point : runs[0].points) EXPECT_EQ(point.held_out.size(), 5u);
+}
+
+// A piece of work is a frame or one query under one point: 150 + 3 (5 + 3).
+TEST(RunOne, ReportsTheShareOfItsWorkThatIsDone) {
+  Place place;
+  vary_alpha(place.suite);
+  const RunSpec spec = expand(place.suite)[0];
+  ASSERT_EQ(spec.points.size(), 3u);
+  std::vector<double> shares;
+  run_one(spec, place.world,
+          {.progress = [&](double share) { shares.push_back(share); },
+           .system = [](const RunSpec&,
+                        const World&) { return std::make_unique<MixingSystem>(true, 2); }});
+  EXPECT_TRUE(std::ranges::is_sorted(shares));
+  EXPECT_EQ(shares.back(), 1.0);
+  EXPECT_EQ(shares.end() - std::ranges::find(shares, 150.0 / 174), 25)
+      << "all is mapped, then each query";
 }
 
 TEST(RunOne, CountsWhatHappened) {
