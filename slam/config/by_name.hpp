@@ -10,25 +10,25 @@
 
 namespace mh {
 
-// Settings of SLAM by their full names: "features.count". Where a function takes a name, it is one
-// of setting_names(); std::logic_error otherwise.
+// SLAM settings by full name: "features.count". @pre A name passed in is one of setting_names();
+// otherwise std::logic_error.
 
 /// In the order of the settings file.
 std::vector<std::string> setting_names();
 bool is_setting(std::string_view name);
 
-/// As a settings file writes it.
+/// The value as a settings file writes it.
 std::string setting_text(const SlamConfig& config, std::string_view name);
-/// As a number: a switch is 0 or 1, a word its place among those that are possible.
+/// The value as a number: a switch is 0 or 1, a word its index among the allowed words.
 double setting_value(const SlamConfig& config, std::string_view name);
 
-/// Whether its value is a number: neither a switch nor a word.
+/// Whether the setting is numeric, that is, neither a switch nor a word.
 bool is_number(std::string_view name);
 
-/// Reads the value of a setting. @throws InputError at its place if it is out of range.
+/// Reads the value of a setting. @throws InputError at its place in the file if it is out of range.
 void read_setting(SlamConfig& config, std::string_view name, const YamlReader& value);
-/// Puts a setting between two values: low at share 0, high at share 1; a whole number is the
-/// nearest. No effect on what is no number.
+/// Interpolates a setting: low at share 0, high at share 1; integers are rounded to the nearest. No
+/// effect on settings that are not numbers.
 void set_between(SlamConfig& config, std::string_view name, double low, double high, double share);
 
 }  // namespace mh

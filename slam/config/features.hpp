@@ -6,12 +6,12 @@
 namespace mh {
 
 struct FeatureConfig {
-  int count = 1000;            ///< keypoints wanted per frame
+  int count = 1000;            ///< keypoints per frame, at most
   int levels = 8;              ///< pyramid levels
   double scale = 1.2;          ///< between levels
   int fast_threshold = 20;     ///< gray levels
-  int fast_threshold_low = 7;  ///< used in cells where the first finds nothing
-  double max_depth_m = 8.0;    ///< depth beyond is dropped
+  int fast_threshold_low = 7;  ///< used in cells where the first threshold finds nothing
+  double max_depth_m = 8.0;    ///< larger depths are dropped
   friend bool operator==(const FeatureConfig&, const FeatureConfig&) = default;
 };
 

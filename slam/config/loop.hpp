@@ -7,22 +7,23 @@ namespace mh {
 
 struct LoopConfig {
   bool enabled = true;
-  bool augmented = false;  ///< candidates by equation 1 with labels; else by words alone
+  bool augmented = false;  ///< candidates by equation 1 with labels; otherwise by words alone
   int min_gap = 10;        ///< keyframes between the two ends, at least
-  /// The ends share fewer landmarks than this: chance matches across a drift of some centimeters
-  /// tie them too loosely to undo it.
+  /// Below this number of shared landmarks, chance matches across a drift of a few centimeters tie
+  /// the ends too loosely to correct it.
   int loosely_shared = 60;
-  /// A candidate's similarity, at least, as a share of that of the least alike strong neighbor.
+  /// Minimum similarity of a candidate, as a share of the similarity of the least similar strong
+  /// neighbor.
   double min_similarity_share = 0.5;
-  int agreeing = 2;            ///< keyframes that must tell of the same drift,
-  int patience = 5;            ///< each at most so many keyframes after the one before
-  double same_drift_m = 0.10;  ///< what counts as the same
+  int agreeing = 2;            ///< keyframes that must agree on the same drift,
+  int patience = 5;            ///< each at most this many keyframes after the previous one
+  double same_drift_m = 0.10;  ///< tolerance for "the same" drift
   double same_drift_rad = 0.05;
-  /// Nobody drifts by more than this, and this share of the way between the ends: what looks so is
-  /// another place that looks the same.
+  /// Largest plausible drift: absolute, and as a share of the path between the ends. Anything
+  /// larger is a different place that looks the same.
   double max_drift_m = 0.3, max_drift_share = 0.03;
   double max_drift_rad = 0.35;
-  double negligible_m = 0.01;  ///< below, landmarks are joined but poses stay
+  double negligible_m = 0.01;  ///< below this, landmarks are merged but poses stay
   double negligible_rad = 0.003;
   friend bool operator==(const LoopConfig&, const LoopConfig&) = default;
 };

@@ -9,12 +9,12 @@ namespace mh {
 struct RelocalizeConfig {
   int min_word_matches = 15;
   int min_inliers = 50;  ///< to accept a pose
-  /// How far the disparity of a true pair strays (one standard deviation, beside the keypoint's own
-  /// as in Camera) before the pose is refined on the local map; at least the camera's own counts.
-  /// The camera's tells of one reading. Here the landmark comes from another reading (0.1 px), the
-  /// pose from a handful of points (1 cm at 1.4 m: 0.2 px), and color and depth were neither taken
-  /// at the same moment nor is a structured-light sensor free of warp (0.2 px): 0.3 px together,
-  /// which is what pairs of real recordings show (docs/slam.md).
+  /// Standard deviation of a true pair's disparity error (in addition to the keypoint's own, as in
+  /// Camera) before the pose is refined on the local map; never less than the camera's own. The
+  /// camera's value describes a single reading. Here the landmark comes from another reading (0.1
+  /// px), the pose from a handful of points (1 cm at 1.4 m: 0.2 px), color and depth are not
+  /// captured at the same instant, and structured-light sensors warp (0.2 px): 0.3 px together,
+  /// which is what pairs in real recordings show (docs/slam.md).
   double disparity_sigma_px = 0.3;
   RansacConfig ransac;
   friend bool operator==(const RelocalizeConfig&, const RelocalizeConfig&) = default;

@@ -9,7 +9,7 @@
 
 namespace mh {
 
-/// What is counted as n in equation 3 (Algorithm 1 leaves it open).
+/// What n of equation 3 counts (Algorithm 1 leaves it open).
 enum class Overlap {
   kLabels,     ///< distinct labels, as Algorithm 1's text says
   kAugmented,  ///< members of the augmented vector: labels and words
@@ -31,8 +31,8 @@ struct SemanticConfig {
   Overlap overlap = Overlap::kAugmented;
   bool void_is_a_label = false;
 
-  /// These settings with the method switched off: the plain system. What is not of the method
-  /// (alpha, beta) stays.
+  /// These settings with the method switched off: the plain system. Settings that are not part of
+  /// the method (alpha, beta) are kept.
   SemanticConfig neutralized() const {
     SemanticConfig plain = *this;
     plain.gamma = 0.0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Each file of this folder holds one section of the settings of SLAM: a struct with the defaults,
-// and beside it the list of its fields (slam/core/setting.hpp). Settings files, suites, sweeps, map
-// files and the table of the docs are made from the lists.
+// Each file of this folder holds one section of the SLAM settings: a struct with its defaults and
+// the list of its fields (slam/core/setting.hpp). Settings files, suites, sweeps, map files and the
+// tables in the docs are generated from these lists.
 
 #include "slam/core/setting.hpp"
 

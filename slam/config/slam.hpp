@@ -13,7 +13,8 @@
 
 namespace mh {
 
-/// One SLAM run: everything that decides its result beside vocabulary and frames.
+/// Configuration of one SLAM run: everything besides vocabulary and frames that determines its
+/// result.
 struct SlamConfig {
   FeatureConfig features;
   SemanticConfig semantics;
@@ -27,8 +28,8 @@ struct SlamConfig {
   friend bool operator==(const SlamConfig&, const SlamConfig&) = default;
 };
 
-/// Calls visit.section(name) before each part of the settings and visit(name, value, range, note)
-/// for each field.
+/// Calls visit.section(name) before each section and visit(name, value, range, note) for each
+/// field.
 template <Either<SlamConfig> C, class Visit>
 void for_each_setting(C& config, Visit&& visit) {
   auto& [features, semantics, match, pose, bundle, keyframe, track, relocalize, loop] = config;
@@ -47,7 +48,7 @@ void for_each_setting(C& config, Visit&& visit) {
   part("loop", loop);
 }
 
-/// @throws InputError naming field and value.
+/// @throws InputError naming the field and its value.
 void validate(const SlamConfig& config);
 
 }  // namespace mh

@@ -6,19 +6,21 @@
 namespace mh {
 
 struct TrackConfig {
-  int min_inliers = 20;            ///< after the local map, to count as tracked
-  int min_inliers_sparse = 10;     ///< the same where that is more than a sixth of the keypoints
+  int min_inliers = 20;            ///< after the local map, for a frame to count as tracked
+  int min_inliers_sparse = 10;     ///< lower limit where a sixth of the keypoints is fewer than
+                                   ///< min_inliers
   int min_inliers_frame = 8;       ///< after the motion model
-  double search_radius_px = 15;    ///< around the predicted place, at octave 0
-  double local_radius_px = 5;      ///< around the place by the tracked pose, at octave 0
+  double search_radius_px = 15;    ///< around the predicted position, at octave 0
+  double local_radius_px = 5;      ///< around the position by the tracked pose, at octave 0
   int local_keyframes = 60;        ///< at most, in the local map
-  double near_distance_m = 2.5;    ///< keyframes this near and
-  double near_angle_rad = 0.9;     ///< facing this alike join the local map, whatever they share
-  double sure_position_m = 0.015;  ///< a pose less sure than this (one standard deviation) or
-  double sure_angle_rad = 0.01;    ///< than this by its picture alone is weighed against the motion
-  double coast_s = 1.0;  ///< a lost camera is looked for so long where its motion would take it
-  /// From the first row to the last of a rolling shutter, whose middle row is of the stamp; 0: all
-  /// rows are.
+  double near_distance_m = 2.5;    ///< keyframes this near that
+  double near_angle_rad = 0.9;     ///< face within this angle join the local map, whatever they
+                                   ///< share
+  double sure_position_m = 0.015;  ///< a pose less certain than this (one standard deviation) or
+  double sure_angle_rad = 0.01;    ///< than this, by its image alone, is fused with the motion
+  double coast_s = 1.0;  ///< how long a lost camera is searched for along its predicted motion
+  /// Rolling-shutter readout from the first row to the last; the stamp is that of the middle row.
+  /// 0: global shutter.
   double readout_s = 0;
   friend bool operator==(const TrackConfig&, const TrackConfig&) = default;
 };

@@ -6,8 +6,8 @@
 
 namespace mh {
 
-/// Bytes of all files that this process has read so far, by report_read(): the time and memory that
-/// a reader may take are measured by it.
+/// Total bytes of all files that this process has read, counted by report_read(). Readers' time and
+/// memory limits scale with it.
 inline std::atomic<std::uint64_t> g_bytes_read{0};
 
 }  // namespace mh

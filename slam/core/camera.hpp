@@ -20,21 +20,21 @@ struct Camera {
   double cx_px = 319.5, cy_px = 239.5;
   Distortion distortion;
   double rate_hz = 30.0;
-  /// Baseline of the depth sensor's triangulation; gives a depth its disparity fx * b / z and so
+  /// Baseline of the depth sensor's triangulation: a depth z has disparity fx * b / z, which sets
   /// its weight. 0.075 m: PrimeSense, Khoshelham and Elberink, Sensors 2012.
   double baseline_m = 0.075;
-  /// Standard deviation of that disparity beside a keypoint's own (1 px at octave 0, growing alike:
-  /// a keypoint out of place takes its depth from there). 0.1 px: an Xtion's 0.0019 z^2 m, Nguyen
-  /// et al., 3DIMPVT 2012, at fx = 577 px.
+  /// Standard deviation of that disparity in addition to the keypoint's own (1 px at octave 0,
+  /// scaled with the octave: a misplaced keypoint reads its depth at the wrong pixel). 0.1 px: an
+  /// Xtion's 0.0019 z^2 m, Nguyen et al., 3DIMPVT 2012, at fx = 577 px.
   double disparity_sigma_px = 0.1;
 
-  /// Pixel (undistorted) of a point in front of the camera; its z must be positive.
+  /// Projects a point to its (undistorted) pixel. @pre z is positive.
   Eigen::Vector2d project(const Eigen::Vector3d& point_in_camera) const {
     const double inverse_z = 1.0 / point_in_camera.z();
     return {fx_px * point_in_camera.x() * inverse_z + cx_px,
             fy_px * point_in_camera.y() * inverse_z + cy_px};
   }
-  /// Point at depth z (m) behind an undistorted pixel.
+  /// Back-projects an undistorted pixel to the point at depth z (m).
   Eigen::Vector3d unproject(double u_px, double v_px, double depth_m) const {
     return {(u_px - cx_px) / fx_px * depth_m, (v_px - cy_px) / fy_px * depth_m, depth_m};
   }
@@ -46,8 +46,8 @@ struct Camera {
   friend bool operator==(const Camera&, const Camera&) = default;
 };
 
-/// @throws InputError naming the field when a size or focal length is not positive,
-/// or the principal point lies outside the image.
+/// @throws InputError naming the field when a size or focal length is not positive, or the
+/// principal point is outside the image.
 void validate(const Camera& camera);
 
 }  // namespace mh

@@ -8,7 +8,7 @@
 namespace mh {
 
 /// "1 run", "2 runs", "0 runs".
-/// @param more  the word of many, where another s does not make it: "queries"
+/// @param more  the plural where it is not the word plus "s": "queries"
 std::string counted(std::integral auto count, std::string_view one, std::string_view more = {}) {
   std::string text = std::to_string(count) + " ";
   if (count == 1) return text.append(one);

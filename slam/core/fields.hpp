@@ -9,16 +9,16 @@
 
 namespace mh {
 
-// How records are listed. Beside a struct stands `fields(record, visit)`, which calls
-// visit(name, value) for each field. Its brackets name every field of the struct, so that a field
-// without a line does not compile. What writes and reads records (results files, JSON, maps) is a
-// visitor; a list may say more of a value by its type (Digest).
+// How records are listed. Each struct comes with `fields(record, visit)`, which calls visit(name,
+// value) for each field. Its structured binding names every field of the struct, so a field missing
+// from the list does not compile. Everything that writes or reads records (results files, JSON,
+// maps) is a visitor; a wrapper type in the list can carry more about a value (Digest).
 
-/// T is U or const U: one list of fields, fields(U&, visit), serves readers and writers.
+/// T is U or const U: one field list, fields(U&, visit), serves both readers and writers.
 template <class T, class U>
 concept Either = std::same_as<std::remove_const_t<T>, U>;
 
-// What visitors tell apart.
+// Type categories that visitors distinguish.
 template <class T>
 inline constexpr bool kIsVector = false;
 template <class T>
@@ -31,7 +31,7 @@ template <class T>
 inline constexpr bool kIsOptional = false;
 template <class T>
 inline constexpr bool kIsOptional<std::optional<T>> = true;
-/// Whether a record of numbers is written as a list of them, without names: there are many of it.
+/// Whether a record of numbers is written as an unnamed list, because there are many of them.
 template <class T>
 inline constexpr bool kAsList = false;
 

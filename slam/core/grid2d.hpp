@@ -11,8 +11,8 @@
 
 namespace mh {
 
-/// Gives memory from the start of a line of the cache on, so that rows can be written by whole
-/// lines, and leaves as it is what no value is given for.
+/// Allocator that aligns memory to cache lines, so that rows can be written in whole lines, and
+/// leaves elements uninitialized unless given a value.
 template <class T>
 struct LineAllocator {
   using value_type = T;
@@ -21,8 +21,8 @@ struct LineAllocator {
   LineAllocator() = default;
   template <class U>
   LineAllocator(const LineAllocator<U>&) noexcept {}
-  /// Where the line begins is told by the byte before it. (Memory aligned by the C library 2.36
-  /// does not find its way back to it: what a long run holds grew by the frame.)
+  /// The byte before the aligned start stores the offset. (The aligned allocation of the C library
+  /// 2.36 does not get its memory back: a long run grew with every frame.)
   T* allocate(std::size_t count) {
     auto* memory = static_cast<unsigned char*>(::operator new(count * sizeof(T) + kLine));
     const std::size_t shift = kLine - reinterpret_cast<std::uintptr_t>(memory) % kLine;
@@ -40,11 +40,11 @@ struct LineAllocator {
   friend bool operator==(const LineAllocator&, const LineAllocator&) { return true; }
 };
 
-/// For a Grid2d all of whose elements are about to be written: they start as memory has them.
+/// Tag for a Grid2d whose elements are all about to be written: they start uninitialized.
 struct Unfilled {};
 
-/// A dense row-major 2D array: images, label maps, occupancy. Pixel centers lie at integers;
-/// (0, 0) is the upper left element.
+/// A dense row-major 2D array: images, label maps, occupancy. Pixel centers are at integers; (0, 0)
+/// is the upper left element.
 template <class T>
 class Grid2d {
  public:

@@ -12,8 +12,8 @@
 
 namespace mh {
 
-/// The whole number that a value of a JSON text tells; nlohmann's get<>() would cut it to fit.
-/// @throws InputError saying what stands there instead and which numbers may.
+/// Returns a JSON value as an integer of exactly that value; nlohmann's get<>() would truncate.
+/// @throws InputError naming the value found and the allowed range.
 template <std::integral To, class Json>
 To whole_number(const Json& value) {
   std::optional<To> number;

@@ -20,26 +20,27 @@ inline constexpr ClassId kBackground = 41;
 struct ClassInfo {
   ClassId id = kVoid;
   std::string_view name;             ///< lower case, as in NYU40 or COCO
-  ClassId nyu40 = kVoid;             ///< the NYU40 id that stands for it in NYU40/ScanNet files
+  ClassId nyu40 = kVoid;             ///< the NYU40 id used for it in NYU40/ScanNet files
   int coco80 = -1;                   ///< index among the 80 COCO detection classes, -1 = none
-  std::uint8_t r = 0, g = 0, b = 0;  ///< drawing color
+  std::uint8_t r = 0, g = 0, b = 0;  ///< display color
 };
 
 /// Every class, ordered by id: classes()[id].id == id.
 std::span<const ClassInfo> classes();
 
-/// The class with that name (or a known synonym: "tv", "refrigerator", ...); nullopt if none.
+/// Returns the class with that name (or a known synonym: "tv", "refrigerator", ...); nullopt if
+/// unknown.
 std::optional<ClassId> class_by_name(std::string_view name);
 
-/// A sparse distribution over classes: (class, probability) ordered by class; probabilities sum to
-/// at most 1. Empty means void.
+/// Sparse distribution over classes: (class, probability) ordered by class; probabilities sum to at
+/// most 1. Empty means void.
 struct ClassDistribution {
   std::vector<std::pair<ClassId, float>> entries;
 
   static ClassDistribution one_hot(ClassId id) {
     return id == kVoid ? ClassDistribution{} : ClassDistribution{{{id, 1.0F}}};
   }
-  /// The most probable class, the smallest id among equals; void if empty.
+  /// The most probable class, ties to the smallest id; void if empty.
   ClassId most_probable() const;
   friend bool operator==(const ClassDistribution&, const ClassDistribution&) = default;
 };

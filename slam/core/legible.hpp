@@ -6,11 +6,11 @@
 
 namespace mh {
 
-/// A text from somebody's file as it may be printed and written into JSON: what is no UTF-8 and
-/// what a terminal would obey (escapes, tabs, ends of lines, turns of direction) becomes '?', byte
-/// by byte. A pattern of the result matches the text itself, as '?' stands for any letter in it.
+/// Makes untrusted text safe to print and to write into JSON: invalid UTF-8 and anything a terminal
+/// would act on (escapes, tabs, line ends, bidirectional controls) becomes '?', byte by byte. Used
+/// as a pattern, the result still matches the original text, since '?' matches any character.
 std::string legible(std::string text);
-/// The same without a copy.
+/// Whether legible() would leave the text unchanged.
 bool is_legible(std::string_view text);
 
 }  // namespace mh

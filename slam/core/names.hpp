@@ -12,7 +12,7 @@
 
 namespace mh {
 
-/// The value of a word in a file. @throws InputError listing the words that are known.
+/// Looks up the value of a word in a file. @throws InputError listing the known words.
 template <class T, std::size_t N>
 T one_of(const YamlReader& node, const Names<T, N>& names) {
   const std::string word = node.as_string();

@@ -10,12 +10,12 @@
 
 namespace mh {
 
-/// A number that a file tells, as a To; nullopt where no To is exactly that number: what is too
-/// large, negative, broken or not finite.
+/// Converts a number read from a file to To; nullopt if it is not exactly representable: too large,
+/// negative, fractional or not finite.
 template <std::integral To, class From>
 requires std::is_arithmetic_v<From> std::optional<To> narrowed(From value) {
   if constexpr (std::is_floating_point_v<From>) {
-    // One past the greatest To is a power of two, which any floating point type holds.
+    // One past the largest To is a power of two, which any floating-point type represents exactly.
     const From end = std::ldexp(From{1}, std::numeric_limits<To>::digits);
     const From begin = std::is_signed_v<To> ? -end : From{0};
     if (!(value >= begin && value < end) || value != std::trunc(value)) return std::nullopt;

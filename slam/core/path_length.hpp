@@ -10,7 +10,7 @@ namespace mh {
 /// Length (m) of the polyline through the positions.
 double path_length_m(const Trajectory& trajectory);
 
-/// Length (m) of its piece that ends with pose i. @pre i > 0
+/// Length (m) of the segment that ends at pose i. @pre i > 0
 double step_length_m(const Trajectory& trajectory, std::size_t i);
 
 }  // namespace mh

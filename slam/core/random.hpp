@@ -7,8 +7,8 @@
 
 namespace mh {
 
-/// Mixes a 64-bit value so that every input bit reaches every output bit (the finaliser of
-/// Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014).
+/// Mixes a 64-bit value so that every input bit reaches every output bit (the finalizer of Steele,
+/// Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014).
 constexpr std::uint64_t mix(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15ULL;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -16,8 +16,8 @@ constexpr std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// Counter-based random numbers: each draw is a pure function of (key, index), so that no draw
-/// depends on the order or the thread in which others are made. Keys are derived, never shared:
+/// Counter-based random numbers: each draw is a pure function of (key, index), so no draw depends
+/// on the order or thread of the others. Keys are derived, never shared:
 /// RandomStream(seed).fork(kDepthNoise).fork(frame).uniform(pixel).
 class RandomStream {
  public:

@@ -9,45 +9,46 @@
 
 namespace mh {
 
-/// One answer of the file system that what was loaded depends on.
+/// One answer from the file system that a load depended on.
 struct FileObservation {
   enum class Kind : std::uint8_t {
-    kAbsent,  ///< looked for and not there, or there and not to be read
-    kFile,    ///< looked for and there
-    kFolder,  ///< likewise
-    kOther,   ///< likewise, neither file nor folder: a pipe, a device
+    kAbsent,  ///< looked for and missing, or present but unreadable
+    kFile,    ///< looked for and found
+    kFolder,  ///< looked for and found
+    kOther,   ///< looked for and found, but neither file nor folder: a pipe, a device
     kListed,  ///< the names in a folder that match a pattern; path = folder / pattern
     kRead,    ///< the whole content of a file
   };
   Kind kind = Kind::kAbsent;
-  std::filesystem::path path;  ///< as it was named
+  std::filesystem::path path;  ///< as it was spelled by the caller
   std::uint64_t digest = 0;    ///< xxh3-64 of the names (kListed) or the content (kRead), else 0
   friend bool operator==(const FileObservation&, const FileObservation&) = default;
 };
 
-/// All that a load saw of the file system, in the order in which it asked. A loader decides what it
-/// asks next by the answers so far; hence equal answers in the same order mean the same load, and
-/// where the files lie need not be part of it.
+/// Everything that a load observed of the file system, in the order of its requests. A loader
+/// chooses its next request by the answers so far, so equal answers in the same order imply the
+/// same load, and file locations need not be part of the record.
 struct ReadRecord {
   std::vector<FileObservation> observations;
   void append(const ReadRecord& more);
   friend bool operator==(const ReadRecord&, const ReadRecord&) = default;
 };
 
-/// xxh3-64 of a record: kinds, contents and, of files, the last part of their names. The same
+/// xxh3-64 of a record: kinds, contents and, for files, the last component of their names. The same
 /// folder elsewhere has the same digest.
 std::uint64_t digest(const ReadRecord& record);
 
-/// A record as bytes, to be handed from one process to another, and back.
-/// @throws InputError if the bytes hold no record.
+/// Serializes a record, to pass it from one process to another, and back.
+/// @throws InputError if the bytes are not a record.
 std::string encode(const ReadRecord& record);
 ReadRecord decode_read_record(std::string_view bytes);
 
-/// While it lives, everything that this thread reads or looks for through slam/core/files.hpp,
-/// map_file() or YamlReader is noted. Scopes nest: the outer one notes what the inner one does.
+/// While in scope, records everything that this thread reads or looks for through
+/// slam/core/files.hpp, map_file() or YamlReader. Scopes nest: the outer one also records what the
+/// inner one does.
 class ReadScope {
  public:
-  /// Whether the scope around this one notes what this one does.
+  /// Whether the enclosing scope also records what this one does.
   enum class Outer { kIsTold, kIsNotTold };
   explicit ReadScope(Outer outer = Outer::kIsTold);
   ~ReadScope();
@@ -56,10 +57,10 @@ class ReadScope {
 
   const ReadRecord& record() const { return record_; }
 
-  /// Whether anybody on this thread listens.
+  /// Whether any scope is open on this thread.
   static bool is_open() { return innermost_ != nullptr; }
-  /// Tells the scopes of this thread: of a reader that opens files in a way of its own, or of what
-  /// another process read.
+  /// Reports an observation to the scopes of this thread: for readers that open files by other
+  /// means, or for what another process read.
   static void report(const FileObservation& observation);
   static void report(const ReadRecord& record);
 
@@ -70,9 +71,9 @@ class ReadScope {
   const bool tells_outer_;
 };
 
-/// Tells the scopes of this thread that a file was read; costs nothing where there are none.
+/// Reports to the scopes of this thread that a file was read; free if there are none.
 void report_read(const std::filesystem::path& file, std::string_view content);
-/// Likewise that it was looked for and is not there, or cannot be read.
+/// Reports that a file was looked for and is missing, or cannot be read.
 void report_absent(const std::filesystem::path& file);
 
 }  // namespace mh

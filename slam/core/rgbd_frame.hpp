@@ -19,8 +19,8 @@ struct Rgb8 {
 };
 
 /// Per-pixel class distributions, stored as a palette: pixel (x, y) has distribution
-/// palette[index(x, y)]. Exact labels need one entry per class, a detector one per detection.
-/// An empty index grid means that the frame carries no labels at all.
+/// palette[index(x, y)]. Exact labels need one entry per class, a detector one per detection. An
+/// empty index grid means that the frame has no labels.
 struct SemanticImage {
   Grid2d<std::uint8_t> index;
   std::vector<ClassDistribution> palette;
@@ -33,7 +33,7 @@ struct SemanticImage {
   friend bool operator==(const SemanticImage&, const SemanticImage&) = default;
 };
 
-/// All that SLAM ever sees of a moment: no pose, no instance ids, no truth.
+/// Everything SLAM sees of one instant: no pose, no instance ids, no ground truth.
 struct RgbdFrame {
   Stamp stamp_ns = 0;
   Grid2d<Rgb8> color;

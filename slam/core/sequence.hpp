@@ -10,9 +10,8 @@
 
 namespace mh {
 
-/// What a camera delivered, in the order in which it was taken, wherever it comes from: a
-/// recording, a scene that is rendered as it is asked for. The stamps of a faulty recording may go
-/// back.
+/// What a camera delivered, in capture order, whatever the source: a recording, or a scene rendered
+/// on demand. The stamps of a faulty recording may go backward.
 class Sequence {
  public:
   virtual ~Sequence() = default;
@@ -20,12 +19,13 @@ class Sequence {
   virtual const Camera& camera() const = 0;
   virtual std::size_t size() const = 0;
   virtual Stamp stamp_ns(std::size_t i) const = 0;
-  /// Frame i. Equal arguments give equal bits, whenever and in whatever order they are asked for.
-  /// @param noise  of the sensors; a recording has noise of its own and ignores it
-  /// @throws InputError if this frame cannot be had; others may.
+  /// Returns frame i. Equal arguments give equal bits, regardless of when and in what order frames
+  /// are requested.
+  /// @param noise  of the sensors; a recording contains its own noise and ignores it
+  /// @throws InputError if this frame is unavailable; others may still work.
   virtual RgbdFrame frame(std::size_t i, RandomStream noise) const = 0;
-  /// Where the cameras really were, ordered by stamp; null where nobody knows. Frames without a
-  /// valid pose are absent.
+  /// Ground-truth camera poses, ordered by stamp; null if unknown. Frames without a valid pose are
+  /// absent.
   virtual const Trajectory* truth() const = 0;
 };
 

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// How settings are listed. Beside a struct of settings stands the list of its fields, each with
-// name, range and meaning: `fields(config, visit)` calls visit(name, value, range, note) for each.
-// Its brackets name every field of the struct, so that a field without a line does not compile.
-// What checks, reads, writes and documents settings is made from the lists (settings_io.hpp).
+// How settings are listed. Each settings struct comes with the list of its fields, each with name,
+// range and meaning: `fields(config, visit)` calls visit(name, value, range, note) for each. Its
+// structured binding names every field of the struct, so a field missing from the list does not
+// compile. Everything that checks, reads, writes and documents settings uses these lists
+// (settings_io.hpp).
 
 #include "slam/core/fields.hpp"
 
 namespace mh {
 
-/// The values that a setting may take: [min, max], or [min, max) where open. Of words and switches
-/// it says nothing.
+/// The values that a setting may take: [min, max], or [min, max) if open. Ignored for words and
+/// switches.
 struct SettingRange {
   double min = 0, max = 1;
   bool open = false;

@@ -16,8 +16,8 @@
 
 namespace mh {
 
-// Visitors of settings' field lists. A setting is an int, a double, a bool or an enumeration E, for
-// which setting_words(E) gives its Names.
+// Visitors of settings' field lists. A setting is an int, a double, a bool or an enumeration E,
+// whose Names setting_words(E) returns.
 
 /// "[0, 1)"
 inline std::string interval(const SettingRange& range) {
@@ -29,7 +29,7 @@ inline bool allows(const SettingRange& range, double value) {
          !(range.open && value == range.max);
 }
 
-/// Reads sections of a YAML mapping; what is absent keeps its value. Call finish() at the end.
+/// Reads sections of a YAML mapping; absent keys keep their values. Call finish() at the end.
 class SettingsReader {
  public:
   explicit SettingsReader(YamlReader& yaml) : yaml_(yaml) {}
@@ -38,7 +38,7 @@ class SettingsReader {
     finish();
     section_ = yaml_.find(name);
   }
-  /// @throws InputError at a key of the last section that is no field of it.
+  /// @throws InputError at a key of the last section that is not one of its fields.
   void finish() const {
     if (section_) section_->finish();
   }
@@ -48,7 +48,7 @@ class SettingsReader {
     if (const auto node = section_ ? section_->find(key) : std::nullopt) read(*node, value, range);
   }
 
-  /// One value. @throws InputError at its place.
+  /// Reads one value. @throws InputError at its place.
   template <class T>
   static void read(const YamlReader& node, T& value, const SettingRange& range) {
     if constexpr (std::is_same_v<T, bool>) {
@@ -71,8 +71,8 @@ class SettingsReader {
   std::optional<YamlReader> section_;
 };
 
-/// Writes settings as YAML that SettingsReader takes back bit for bit; with notes each line ends in
-/// a comment that says what it means and which values it may take.
+/// Writes settings as YAML that SettingsReader reads back bit for bit; with notes, each line ends
+/// in a comment stating the meaning and the allowed values.
 class SettingsWriter {
  public:
   explicit SettingsWriter(bool notes = false) : notes_(notes) {}
@@ -98,7 +98,7 @@ class SettingsWriter {
     if constexpr (std::is_enum_v<T>) {
       return std::string(name_of(value, setting_words(T{})));
     } else {
-      return fmt::format("{}", value);  // doubles: the shortest that reads back equal
+      return fmt::format("{}", value);  // doubles: the shortest text that reads back equal
     }
   }
 
@@ -107,10 +107,10 @@ class SettingsWriter {
   std::string text_;
 };
 
-/// Finds the first number out of its range. @throws InputError naming it.
+/// Finds the first number that is out of range. @throws InputError naming it.
 class SettingsCheck {
  public:
-  /// @param what  begins the message: "slam settings"
+  /// @param what  starts the message: "slam settings"
   explicit SettingsCheck(std::string what) : what_(std::move(what)) {}
 
   void section(const char* name) { section_ = name; }

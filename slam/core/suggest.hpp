@@ -9,7 +9,7 @@
 
 namespace mh {
 
-/// The words of a list of something, for the functions below.
+/// Collects the words of a range, for the functions below.
 template <class Range, class Word = std::identity>
 std::vector<std::string> words_of(const Range& range, Word word = {}) {
   std::vector<std::string> words;
@@ -17,18 +17,18 @@ std::vector<std::string> words_of(const Range& range, Word word = {}) {
   return words;
 }
 
-/// The word that a misspelt one was probably meant to be: the one that the fewest edits lead to
-/// (a character more, less, another, or two neighbors swapped; letter case, blank, '-' and '_' do
-/// not count), the first of equals; nullopt where more than a third of the word is wrong.
+/// Returns the word most likely meant by a misspelled one: the one the fewest edits away (insert,
+/// delete, replace, or swap two neighboring characters; letter case, blanks, '-' and '_' do not
+/// count), ties to the first; nullopt if more than a third of the word is wrong.
 std::optional<std::string> nearest_word(std::string_view word,
                                         const std::vector<std::string>& valid);
 
-/// "; did you mean 'pepper'?", to be put behind a message; "" where no word is near.
+/// "; did you mean 'pepper'?", to append to a message; "" if no word is close.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& valid);
 
-/// What helps whoever wrote a word that is not valid, to be put behind the message:
-/// "; did you mean 'pepper'? There are: handheld, ideal, pepper". Long lists are cut.
-/// @param all  where the whole list stands, told where it is cut: "modelhouse reference classes"
+/// Help for the author of an invalid word, to append to the message: "; did you mean 'pepper'?
+/// There are: handheld, ideal, pepper". Long lists are cut.
+/// @param all  where to find the whole list, mentioned if it is cut: "modelhouse reference classes"
 std::string hint(std::string_view word, const std::vector<std::string>& valid,
                  std::string_view all = {});
 

@@ -6,25 +6,24 @@
 
 namespace mh {
 
-/// A folder that is ours to remove: a true folder (no link) that holds our marker, which is locked
-/// while somebody works in it.
+/// A folder that we may remove: a real folder (not a link) with our marker file, which stays locked
+/// while in use.
 class OwnedFolder {
  public:
   OwnedFolder() = default;
   OwnedFolder(OwnedFolder&&) noexcept;
   OwnedFolder& operator=(OwnedFolder&&) = delete;
-  /// Lets go of it; it stays.
+  /// Releases the lock; the folder stays.
   ~OwnedFolder();
 
-  /// Makes the folder, which must not be there; its parent must. nullopt if anything of its name
-  /// is.
+  /// Creates the folder, whose parent must exist; nullopt if the name is already taken.
   /// @throws as throw_unwritable()
   static std::optional<OwnedFolder> make(const std::filesystem::path& folder);
-  /// Takes one that nobody holds; nullopt if there is none of that name that is ours.
+  /// Takes over one that is not in use; nullopt if there is no folder of ours by that name.
   static std::optional<OwnedFolder> take(const std::filesystem::path& folder);
 
   const std::filesystem::path& path() const { return path_; }
-  /// With all that is in it. No link is followed.
+  /// Removes the folder with its contents. Links are not followed.
   void remove();
 
   static constexpr const char* kMarker = ".modelhouse-work";
@@ -34,8 +33,8 @@ class OwnedFolder {
   int marker_ = -1;  ///< open and locked
 };
 
-/// A hidden folder that goes when it is left; one that a killed process left goes with the next in
-/// the same parent, by the same host.
+/// A hidden folder that is removed at the end of its scope; one left behind by a killed process is
+/// removed with the next one made in the same parent by the same host.
 class TemporaryFolder {
  public:
   /// @throws as make_output_folder()

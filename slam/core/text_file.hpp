@@ -7,11 +7,11 @@
 
 namespace mh {
 
-/// A file's text without the byte-order mark that some editors put before UTF-8.
-/// @throws InputError naming the file if the mark is that of UTF-16.
+/// A file's text without the UTF-8 byte-order mark that some editors prepend.
+/// @throws InputError naming the file if the mark is UTF-16's.
 std::string_view without_mark(std::string_view text, const std::filesystem::path& file);
 
-/// Whole content of a text file, without_mark(). @throws InputError naming it.
+/// Returns the whole content of a text file, without_mark(). @throws InputError naming it.
 std::string read_text(const std::filesystem::path& file);
 
 }  // namespace mh

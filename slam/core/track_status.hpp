@@ -5,7 +5,7 @@
 
 namespace mh {
 
-/// What a system says of a frame: only kLost comes without a pose.
+/// What a system reports for a frame: only kLost comes without a pose.
 enum class TrackStatus { kInitialized, kTracked, kRelocalized, kLost };
 
 constexpr Names<TrackStatus, 4> words(TrackStatus) {

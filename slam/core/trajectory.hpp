@@ -8,7 +8,7 @@
 
 namespace mh {
 
-/// Where the camera was at a moment.
+/// The camera pose at a time.
 struct TimedPose {
   Stamp stamp_ns = 0;
   SE3 world_from_camera;

@@ -8,7 +8,7 @@
 
 namespace mh {
 
-/// The words of an enumeration, in files both ways.
+/// The words of an enumeration, for reading and writing files.
 template <class T, std::size_t N>
 using Names = std::array<std::pair<std::string_view, T>, N>;
 

@@ -15,22 +15,22 @@
 #include "slam/core/error.hpp"
 
 namespace YAML {
-class Node;  // its headers stay out of everybody's
+class Node;  // keeps its headers out of every including file
 }
 
 namespace mh {
 
-/// A strict view of one YAML mapping or value. Every error is an InputError of the form
-/// "file:line: place: what is wrong with which value". Keys that nobody asked for are errors too:
-/// call finish() when a mapping has been read.
+/// A strict view of one YAML mapping or value. Every error is an InputError of the form "file:line:
+/// place: what is wrong with which value". Keys that were never read are errors too: call finish()
+/// after reading a mapping.
 class YamlReader {
  public:
-  /// Parses a file. @throws InputError if it is missing or is no YAML.
+  /// Parses a file. @throws InputError if it is missing or not YAML.
   static YamlReader load(const std::filesystem::path& file);
-  /// Parses text; `name` stands for the file in messages.
+  /// Parses text; `name` names the file in messages.
   static YamlReader parse(const std::string& text, const std::string& name);
-  /// The same, with `${name}` in each of its words replaced by what `value_of` gives for the name.
-  /// @param value_of  may throw InputError, which is then told with the place
+  /// The same, with `${name}` in each of its words replaced by value_of(name).
+  /// @param value_of  may throw InputError, which is then reported with the place
   static YamlReader parse(const std::string& text, const std::string& name,
                           const std::function<std::string(const std::string&)>& value_of);
 
@@ -39,17 +39,17 @@ class YamlReader {
   YamlReader at(const std::string& key);
   /// The child under a key, nullopt if absent.
   std::optional<YamlReader> find(const std::string& key);
-  /// The elements of this sequence. @throws InputError if it is none.
+  /// The elements of this sequence. @throws InputError if it is not one.
   std::vector<YamlReader> items() const;
-  /// The entries of this mapping in file order, all counted as read. @throws InputError if it is
-  /// none.
+  /// The entries of this mapping in file order, all marked as read. @throws InputError if it is not
+  /// a mapping.
   std::vector<std::pair<std::string, YamlReader>> entries();
 
   bool is_scalar() const;
   bool is_sequence() const;
   bool is_map() const;
 
-  /// This scalar. @throws InputError on the wrong type.
+  /// This scalar's value. @throws InputError on the wrong type.
   std::string as_string() const;
   bool as_bool() const;
   double as_double(double min = -kInf, double max = kInf) const;  ///< finite, within [min, max]
@@ -70,9 +70,9 @@ class YamlReader {
   std::int64_t integer_or(const std::string& key, std::int64_t fallback, std::int64_t min,
                           std::int64_t max);
 
-  /// @throws InputError if this mapping has a key that was never asked for.
+  /// @throws InputError if this mapping has a key that was never read.
   void finish() const;
-  /// An InputError at this place.
+  /// Throws an InputError at this place.
   [[noreturn]] void fail(const std::string& what) const;
 
   const std::string& file() const { return file_; }

@@ -6,7 +6,8 @@
 
 namespace mh {
 
-/// One brightness comparison of BRIEF: bit = I(x1, y1) < I(x2, y2), in pixels from the keypoint.
+/// One brightness comparison of BRIEF: bit = I(x1, y1) < I(x2, y2), offsets in px from the
+/// keypoint.
 struct BriefPair {
   std::int8_t x1, y1, x2, y2;
 };

@@ -9,23 +9,22 @@
 
 namespace mh {
 
-/// FAST corners above `threshold`, at least `edge_px` from the border. Cells of about 36 px that
-/// hold none give theirs above `low_threshold`. Strongest first.
+/// Finds FAST corners above `threshold`, at least `edge_px` from the border. Cells of about 36 px
+/// without any use `low_threshold` instead. Strongest first.
 std::vector<Corner> find_corners(const cv::Mat& image, int edge_px, int threshold,
                                  int low_threshold);
 
-/// Picks `count` corners that are strong and spread evenly: from the strongest down, none closer to
-/// one already taken than a spacing (larger of |dx| and |dy|). The spacing is half the greatest one
-/// that yields `count` (adaptive non-maximal suppression after Bailo et al., Pattern Recognition
-/// Letters 2018, who take the greatest; that prefers faint corners in lonely places: in rendered
-/// rooms half of it finds 68 % of corners again in the next picture, where the greatest finds 49 %
-/// and no spacing at all 74 %).
+/// Picks `count` strong, evenly spread corners: strongest first, skipping any closer than a spacing
+/// (larger of |dx| and |dy|) to one already picked. The spacing is half the largest that yields
+/// `count` (adaptive non-maximal suppression after Bailo et al., Pattern Recognition Letters 2018,
+/// who use the largest; that favors faint, isolated corners: in rendered rooms, half the spacing
+/// re-detects 68 % of corners in the next image, the largest 49 % and no spacing at all 74 %).
 /// @param corners  strongest first.
 /// @returns min(count, corners.size()) corners, strongest first.
 std::vector<Corner> spread(const std::vector<Corner>& corners, int count);
 
-/// Shares `total` features out to levels in a geometric series of ratio `ratio`, finest level
-/// first. What a level cannot supply goes to others, the finest first.
+/// Distributes `total` features over levels in a geometric series of ratio `ratio`, finest level
+/// first. What a level cannot supply goes to the others, the finest first.
 /// @param available  corners found per level.
 std::vector<int> share_out(int total, double ratio, const std::vector<int>& available);
 

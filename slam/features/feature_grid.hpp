@@ -10,14 +10,14 @@
 
 namespace mh {
 
-/// Keypoints of one frame in square cells, so that those near a pixel are found without a scan.
+/// Keypoints of one frame in square cells, to find those near a pixel without a full scan.
 class FeatureGrid {
  public:
   FeatureGrid() = default;
   FeatureGrid(const std::vector<Keypoint>& keypoints, const Camera& camera);
 
   /// Calls visit(index) for every keypoint whose cell touches the square of half-width radius_px
-  /// around (u_px, v_px): a superset of those within it, in an order fixed by the input.
+  /// around (u_px, v_px): a superset of those inside, in an order fixed by the input.
   template <class Visit>
   void for_each_near(float u_px, float v_px, float radius_px, Visit visit) const {
     const int x0 = column(u_px - radius_px), x1 = column(u_px + radius_px);
@@ -37,7 +37,7 @@ class FeatureGrid {
   }
 
   int columns_ = 0, rows_ = 0;
-  std::vector<std::uint32_t> start_;  // per cell, one more at the end
+  std::vector<std::uint32_t> start_;  // start of each cell in order_, plus the end
   std::vector<std::uint32_t> order_;  // keypoint indices by cell
 };
 

@@ -20,8 +20,8 @@ inline int hamming(const Descriptor& a, const Descriptor& b) {
          std::popcount(a[3] ^ b[3]);
 }
 
-/// Patches of orientation and descriptor reach that far: pixels of its level that a keypoint keeps
-/// from the border.
+/// Radius of the patches for orientation and descriptor: keypoints keep this distance (px of their
+/// level) from the border.
 inline constexpr int kPatchReach_px = 19;
 
 struct Keypoint {
@@ -41,13 +41,13 @@ struct Features {
 
 /// ORB (Rublee et al., ICCV 2011): FAST-9 corners on an image pyramid, spread evenly over image and
 /// levels, each with its orientation, rotated BRIEF, depth and label. Descriptors equal cv::ORB's
-/// bit for bit at the same pixel and angle; the rest departs from it: corners lie between pixels,
+/// bit for bit at the same pixel and angle; the rest differs: corners have subpixel positions,
 /// levels are mapped center to center (cv::ORB is off by up to 1.3 px at scale 3.6), thresholds are
-/// lowered where nothing is found. Depth and label are those of the nearest pixel of the picture as
-/// it was taken, before undistortion. Ordered by octave, then strength.
+/// lowered where no corner is found. Depth and label are those of the nearest pixel of the original
+/// image, before undistortion. Ordered by octave, then strength.
 /// @param frame  depth and semantics may be empty. Depth that is NaN, infinite, not positive or
-///               beyond config.max_depth_m counts as none.
-/// @returns config.count keypoints, fewer where the picture shows fewer corners.
+///               beyond config.max_depth_m is treated as missing.
+/// @returns config.count keypoints, fewer if the image has fewer corners.
 /// @throws InputError if the frame's size is not the camera's.
 Features extract(const RgbdFrame& frame, const Camera& camera, const FeatureConfig& config);
 

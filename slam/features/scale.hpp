@@ -5,7 +5,7 @@
 
 namespace mh {
 
-/// config.scale^octave: how much coarser the pixels of a pyramid level are than the picture's.
+/// config.scale^octave: pixel size at a pyramid level relative to the full image.
 double level_scale(const FeatureConfig& config, int octave);
 /// ln(config.scale).
 double log_of_scale(const FeatureConfig& config);

@@ -9,13 +9,13 @@
 
 namespace mh {
 
-/// Pixels as a camera without distortion would show them, good to 1/1000 px wherever
-/// require_undistortable() is content.
+/// Maps pixels to where a camera without distortion would show them, accurate to 1/1000 px for
+/// cameras that pass require_undistortable().
 void undistort(const Camera& camera, std::vector<Eigen::Vector2d>& points_px);
 
-/// @throws InputError naming coefficients and pixel if the camera's distortion cannot be undone all
-/// over its picture: where it folds the picture, or is so strong that the search for the ray ends
-/// nowhere.
+/// @throws InputError naming coefficients and pixel if the camera's distortion cannot be inverted
+/// over the whole image: where it folds the image, or is so strong that the search for the ray does
+/// not converge.
 void require_undistortable(const Camera& camera);
 
 }  // namespace mh

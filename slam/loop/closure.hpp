@@ -7,10 +7,10 @@
 
 namespace mh {
 
-/// A loop that was closed: two keyframes and where the one is as seen from the other, by what both
-/// see. For whoever knows the truth.
+/// A closed loop: two keyframes and their relative pose, estimated from what both see. For
+/// evaluation against ground truth.
 struct LoopClosure {
-  Stamp stamp_ns = 0, old_stamp_ns = 0;  ///< of the newest keyframe and of the one recognized
+  Stamp stamp_ns = 0, old_stamp_ns = 0;  ///< of the newest keyframe and of the recognized one
   SE3 old_from_new;                      ///< old camera from new camera
 };
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// How a map and what belongs to it become bytes and back. One list of fields per type serves both
-// directions; its brackets name every field, so that it does not compile once one is added that has
-// no place here.
+// Serialization of a map and its parts. One list of fields per type serves both directions; its
+// structured binding names every field, so a newly added field that is missing here does not
+// compile.
 
 #include <array>
 #include <bit>
@@ -29,7 +29,7 @@ static_assert(std::endian::native == std::endian::little, "numbers are stored as
 
 template <class T>
 concept Number = std::is_arithmetic_v<T>;
-/// Appends values to a string of bytes.
+/// Appends values to a byte string.
 class Writer {
  public:
   static constexpr bool kReads = false;
@@ -67,8 +67,8 @@ class Writer {
   std::string bytes_;
 };
 
-/// Takes values from the front of a string of bytes. @throws InputError naming the file where it
-/// ends too soon or a value cannot be.
+/// Takes values from the front of a byte string. @throws InputError naming the file if it ends too
+/// soon or a value is impossible.
 class Reader {
  public:
   static constexpr bool kReads = true;
@@ -101,7 +101,7 @@ class Reader {
     } else if constexpr (kIsVector<T> || std::is_same_v<T, std::string>) {
       std::uint64_t size = 0;
       get(size);
-      // One by one: a size that lies runs out of bytes before it runs out of memory.
+      // One by one, so that a false size runs out of bytes before it runs out of memory.
       value.clear();
       for (std::uint64_t i = 0; i < size; ++i) {
         typename T::value_type element{};
@@ -152,7 +152,8 @@ void fields(A& a, T& pose) {
   a(translation);
   if constexpr (A::kReads) {
     const Eigen::Matrix3d off = rotation * rotation.transpose() - Eigen::Matrix3d::Identity();
-    // Far above what products of rotations lose, far below any rotation that is none.
+    // Far above the error that products of rotations accumulate, far below anything that is not a
+    // rotation.
     a.require(off.norm() < 1e-3 && rotation.determinant() > 0, "a rotation is none");
     pose = SE3(rotation, translation);
   }
@@ -195,7 +196,7 @@ void fields(A& a, T& neighbor) {
 }
 template <class A, Either<Keyframe> T>
 void fields(A& a, T& keyframe) {
-  // The grid is made anew from the keypoints.
+  // The grid is rebuilt from the keypoints.
   auto& [id, stamp_ns, camera_from_world, features, grid, words, landmarks, covisible, erased,
          parent, camera_from_parent] = keyframe;
   a(id, stamp_ns, camera_from_world, features, words, landmarks, covisible, erased, parent,
@@ -228,11 +229,12 @@ void fields(A& a, T& camera) {
     disparity_sigma_px);
 }
 
-/// The map's own bytes.
+/// Writes the map itself.
 void write_map(Writer& writer, const Map& map);
-/// @param levels  of the pyramid its keypoints come from.
-/// @param words   of the vocabulary.
-/// @throws InputError where the bytes are no map whose parts fit together.
+/// Reads a map.
+/// @param levels  pyramid levels of its keypoints.
+/// @param words  in the vocabulary.
+/// @throws InputError if the bytes are not a consistent map.
 Map read_map(Reader& reader, const Camera& camera, int levels, std::size_t words);
 
 }  // namespace mh::archive

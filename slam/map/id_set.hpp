@@ -8,14 +8,14 @@
 
 namespace mh {
 
-/// A set of ids for marking what a stage has met. It is as large as what is put into it, not as the
-/// map: bits lie in pages of 4096 ids that are made where an id falls into them, so that a stage's
-/// cost does not grow with a map of which it sees a part. Ids are handed out in order and what is
-/// near was mapped together: few pages hold many ids.
+/// A set of ids for marking what a stage has visited. Memory grows with its members, not with the
+/// map: bits are stored in pages of 4096 ids, allocated on first use, so that a stage's cost does
+/// not grow with the parts of the map that it does not see. Ids are assigned in order, and
+/// landmarks that are near each other were mapped together: few pages cover many ids.
 template <class IdType>
 class IdSet {
  public:
-  /// @returns whether it is new.
+  /// @returns whether it was new.
   bool insert(IdType id) {
     const std::size_t page = id.value / kPageIds;
     if (page >= page_of_.size()) page_of_.resize(page + 1, kNone);

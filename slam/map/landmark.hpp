@@ -26,14 +26,15 @@ struct Landmark {
   // Derived from the observations by Map::refresh().
   Descriptor descriptor{};  ///< the observed one with the least median distance to the others
   ClassId label = kVoid;    ///< of the observation that supplies the descriptor
-  Eigen::Vector3d mean_direction = Eigen::Vector3d::UnitZ();  ///< from cameras to the landmark
+  Eigen::Vector3d mean_direction = Eigen::Vector3d::UnitZ();  ///< mean over observations, from
+                                                              ///< camera to landmark
   double min_distance_m = 0, max_distance_m = 0;  ///< range in which the pyramid can match it
 
   KeyframeId first_keyframe;
-  int visible = 1;  ///< frames in which it was expected
+  int visible = 1;  ///< frames in which it was expected to be seen
   int found = 1;    ///< frames in which it was an inlier
   bool erased = false;
-  bool described = false;  ///< descriptor and label are of these observations; kept in no file
+  bool described = false;  ///< descriptor and label match these observations; not saved to files
 };
 
 }  // namespace mh

@@ -12,12 +12,12 @@
 
 namespace mh {
 
-/// Landmarks by id. Ids are given in order and never again; references last until their landmark is
-/// erased. An erased one leaves four bytes behind, and its id names the tombstone that all share: a
-/// robot that lives in one house makes ten times the landmarks that stand.
+/// Landmarks by id. Ids are assigned in order and never reused; references stay valid until their
+/// landmark is erased. An erased landmark leaves four bytes behind, and its id maps to one shared
+/// tombstone: a robot that lives in one house creates ten times as many landmarks as are live.
 class LandmarkTable {
  public:
-  /// Walks over all ids ever given, erased ones as the tombstone.
+  /// Iterates over all ids ever assigned; erased ones yield the tombstone.
   class Iterator {
    public:
     using iterator_category = std::input_iterator_tag;
@@ -42,18 +42,18 @@ class LandmarkTable {
 
   LandmarkTable() : pool_(1) { pool_[kTombstone].erased = true; }
 
-  /// How many ids were ever given.
+  /// Number of ids ever assigned.
   std::size_t size() const { return place_of_.size(); }
   const Landmark& operator[](LandmarkId id) const { return pool_[place_of_[id.value]]; }
   Iterator begin() const { return {*this, 0}; }
   Iterator end() const { return {*this, static_cast<std::uint32_t>(size())}; }
 
-  /// A landmark to write to; null if it was erased.
+  /// A mutable landmark; null if erased.
   Landmark* find(LandmarkId id) {
     const std::uint32_t place = place_of_[id.value];
     return place == kTombstone ? nullptr : &pool_[place];
   }
-  /// Gives it the next id. One that is erased already becomes a tombstone.
+  /// Adds a landmark under the next id. One that is already erased becomes a tombstone.
   LandmarkId add(Landmark landmark) {
     const LandmarkId id{static_cast<std::uint32_t>(size())};
     if (landmark.erased) {
@@ -71,10 +71,10 @@ class LandmarkTable {
     }
     return id;
   }
-  /// @pre it stands
+  /// @pre the landmark is live
   void erase(LandmarkId id) {
     std::uint32_t& place = place_of_[id.value];
-    pool_[place] = Landmark{};  // gives back the memory of its observations
+    pool_[place] = Landmark{};  // frees its observations
     free_.push_back(place);
     place = kTombstone;
   }
@@ -83,7 +83,7 @@ class LandmarkTable {
   static constexpr std::uint32_t kTombstone = 0;
   std::deque<Landmark> pool_;
   std::vector<std::uint32_t> place_of_;  // in pool_, by id
-  std::vector<std::uint32_t> free_;      // places in pool_
+  std::vector<std::uint32_t> free_;      // unused slots of pool_
 };
 
 }  // namespace mh

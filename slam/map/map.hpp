@@ -34,20 +34,20 @@ struct Keyframe {
     KeyframeId id;
     int shared = 0;  ///< landmarks seen by both
   };
-  std::vector<Neighbor> covisible;  ///< at least kMinShared; most shared first, then by id
+  std::vector<Neighbor> covisible;  ///< at least kMinShared; ordered by most shared, then by id
 
   bool erased = false;
-  KeyframeId parent;       ///< what an erased keyframe's pose hangs on
+  KeyframeId parent;       ///< an erased keyframe's pose is relative to this one
   SE3 camera_from_parent;  ///< valid if erased
 };
 
-/// Keyframes, landmarks and who sees whom. Entities are addressed by id; erased ones stay as
-/// tombstones. Invariants (check_invariants()): an observation and the keyframe's
-/// landmark slot always name each other; erased entities are named by nobody; covisibility is
+/// Keyframes, landmarks and the observations that link them. Entities are addressed by id; erased
+/// ones remain as tombstones. Invariants (check_invariants()): an observation and the keyframe's
+/// landmark slot always refer to each other; nothing refers to erased entities; covisibility is
 /// symmetric.
 class Map {
  public:
-  /// Least number of shared landmarks that makes two keyframes neighbors.
+  /// Minimum number of shared landmarks for two keyframes to be neighbors.
   static constexpr int kMinShared = 15;
 
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
@@ -58,30 +58,31 @@ class Map {
   int landmark_count() const { return landmark_count_; }
   bool empty() const { return keyframe_count_ == 0; }
 
-  /// A map of these parts, as keyframes() and landmarks() gave them; ids within range are taken for
-  /// granted. @throws std::logic_error naming the invariant that they break.
+  /// Rebuilds a map from its keyframes() and landmarks(). @pre ids are within range. @throws
+  /// std::logic_error naming the invariant that they violate.
   static Map restore(std::vector<Keyframe> keyframes, std::vector<Landmark> landmarks);
 
-  /// Takes over a keyframe without landmarks; gives it its id.
+  /// Adds a keyframe that has no landmarks yet and assigns its id.
   KeyframeId add(Keyframe keyframe);
   LandmarkId add_landmark(const Eigen::Vector3d& position_in_world, KeyframeId keyframe,
                           std::uint32_t feature);
   /// No effect if the keyframe sees the landmark already or the feature has one.
   bool add_observation(LandmarkId landmark, KeyframeId keyframe, std::uint32_t feature);
-  /// Erases the landmark when nobody is left to see it.
+  /// Erases the landmark too if no observation is left.
   void erase_observation(LandmarkId landmark, KeyframeId keyframe);
   void erase(LandmarkId landmark);
-  /// Moves the observations of `from` to `into` (where a keyframe sees both, into's stays), then
-  /// erases `from`.
+  /// Moves the observations of `from` to `into` (if a keyframe sees both, that of `into` stays),
+  /// then erases `from`.
   void fuse(LandmarkId from, LandmarkId into);
-  /// Erases a keyframe; its pose hangs on its best neighbor from then on. The last one stays.
+  /// Erases a keyframe; from then on its pose is stored relative to its best neighbor. The last
+  /// keyframe cannot be erased.
   void erase(KeyframeId keyframe);
 
   void set_pose(KeyframeId id, const SE3& camera_from_world);
   void set_position(LandmarkId id, const Eigen::Vector3d& position_in_world) {
     if (Landmark* l = landmarks_.find(id)) l->position_in_world = position_in_world;
   }
-  /// Describes a standing keyframe's view anew.
+  /// Replaces the word index of a live keyframe.
   void set_words(KeyframeId id, WordIndex words);
   void count_visible(LandmarkId id) {
     if (Landmark* l = landmarks_.find(id)) ++l->visible;
@@ -90,16 +91,16 @@ class Map {
     if (Landmark* l = landmarks_.find(id)) ++l->found;
   }
 
-  /// Brings descriptor, label, mean direction and distance range of a landmark up to date.
+  /// Updates descriptor, label, mean direction and distance range of a landmark.
   void refresh(LandmarkId id, const FeatureConfig& config);
-  /// Counts anew which keyframes share landmarks with this one, on both sides.
+  /// Recounts which keyframes share landmarks with this one, on both sides.
   void update_covisibility(KeyframeId id);
 
-  /// Standing keyframes that share labels or words with a view, by id.
+  /// Live keyframes that share labels or words with a view, by id.
   std::vector<InvertedIndex::Score> sharing(const AugmentedVector& view) const {
     return inverted_index_.query(view);
   }
-  /// Standing keyframes whose cameras may be within a distance of a place (a superset), by id.
+  /// Live keyframes whose cameras may be within a distance of a position (a superset), by id.
   std::vector<KeyframeId> keyframes_near(const Eigen::Vector3d& place_in_world,
                                          double distance_m) const {
     return position_index_.near(place_in_world, distance_m);
@@ -107,12 +108,12 @@ class Map {
 
   /// Pose of any keyframe ever added, through its parents if it was erased.
   SE3 camera_from_world(KeyframeId id) const;
-  /// The keyframe itself if it stands, else the nearest standing one up its parents.
+  /// The keyframe itself if it is live, otherwise its nearest live ancestor.
   KeyframeId live_keyframe(KeyframeId id) const;
 
-  /// @throws std::logic_error naming the broken invariant.
+  /// @throws std::logic_error naming the violated invariant.
   void check_invariants() const;
-  /// xxh3-64 over everything that a map file holds of the map: equal digests, equal maps.
+  /// xxh3-64 over everything that a map file stores of the map: equal digests, equal maps.
   std::uint64_t digest() const;
 
  private:

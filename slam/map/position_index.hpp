@@ -11,14 +11,14 @@
 
 namespace mh {
 
-/// Keyframes by where their cameras stood, in cubes of kCell_m: those near a place are found
-/// without a look at the others.
+/// Keyframes indexed by camera position, in cubes of kCell_m: finds those near a position without
+/// visiting the others.
 class PositionIndex {
  public:
   void add(KeyframeId keyframe, const Eigen::Vector3d& position_in_world);
-  /// @param position_in_world  the one that it was added with.
+  /// @param position_in_world  the position it was added with.
   void remove(KeyframeId keyframe, const Eigen::Vector3d& position_in_world);
-  /// All keyframes in cubes that a ball touches (a superset of those within it), by id.
+  /// All keyframes in cubes that a ball intersects (a superset of those inside it), by id.
   std::vector<KeyframeId> near(const Eigen::Vector3d& center_in_world, double radius_m) const;
 
  private:
@@ -26,7 +26,7 @@ class PositionIndex {
   using Cell = std::array<int, 3>;
   static Cell cell_of(const Eigen::Vector3d& position_in_world);
 
-  std::map<Cell, std::vector<KeyframeId>> cells_;  // none is empty
+  std::map<Cell, std::vector<KeyframeId>> cells_;  // no cell is empty
 };
 
 }  // namespace mh

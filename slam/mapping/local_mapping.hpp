@@ -5,22 +5,22 @@
 
 namespace mh {
 
-/// Gives every close feature with depth (and at least the nearest hundred) a landmark of its own.
+/// Creates a landmark for every close feature with depth (and at least for the nearest hundred).
 void add_landmarks_from_depth(Map& map, KeyframeId keyframe, const SlamContext& context);
 
-// `map` is the context's own, to be changed.
+// `map` is the context's own map, which is modified.
 
-/// All that a new keyframe sets off, in order: young landmarks that did not prove themselves go,
-/// new ones are triangulated with neighbors, doubles are fused, the neighborhood is adjusted,
-/// redundant keyframes go.
+/// Processes a new keyframe, in order: culls young landmarks that did not prove themselves,
+/// triangulates new ones with neighbors, fuses duplicates, adjusts the neighborhood, culls
+/// redundant keyframes.
 void map_keyframe(Map& map, KeyframeId keyframe, const SlamContext& context);
 
-// The stages of map_keyframe, each on its own for tests.
+// The stages of map_keyframe, exposed for tests.
 void cull_young_landmarks(Map& map, KeyframeId newest);
 void triangulate_with_neighbors(Map& map, KeyframeId keyframe, const SlamContext& context);
 void fuse_with_neighbors(Map& map, KeyframeId keyframe, const SlamContext& context);
 void adjust_neighborhood(Map& map, KeyframeId keyframe, const SlamContext& context);
-/// Bundle adjustment of the whole map; the first keyframe is held.
+/// Bundle adjustment of the whole map; the first keyframe is fixed.
 void adjust_all(Map& map, const SlamContext& context);
 void cull_redundant_keyframes(Map& map, KeyframeId newest, const SlamContext& context);
 

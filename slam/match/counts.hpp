@@ -10,7 +10,7 @@
 
 namespace mh {
 
-/// The places where descriptors are compared.
+/// The stages that compare descriptors.
 enum class Matcher {
   kMotionModel,
   kReferenceKeyframe,
@@ -24,11 +24,11 @@ enum class Matcher {
 };
 std::string_view name(Matcher matcher);
 
-/// What equation 2 did in one matcher during one step.
+/// Effect of equation 2 in one matcher during one step.
 struct MatcherCounts {
   std::int64_t compared = 0;        ///< descriptor pairs
-  std::int64_t penalized = 0;       ///< of them, labels known and different: distance times xi
-  std::int64_t rejected_by_xi = 0;  ///< best pairs under the threshold before xi, over it after
+  std::int64_t penalized = 0;       ///< of these, labels known and different: distance times xi
+  std::int64_t rejected_by_xi = 0;  ///< best pairs below the threshold before xi, above it after
   std::int64_t ratio_helped =
       0;  ///< pairs that pass the ratio test only because xi inflated the second best
   MatcherCounts& operator+=(const MatcherCounts& other);
@@ -46,9 +46,9 @@ template <>
 inline constexpr bool kAsList<MatcherCounts> = true;
 using MatchCounts = std::array<MatcherCounts, static_cast<std::size_t>(Matcher::kCount)>;
 
-/// Adds counts to others, matcher by matcher.
+/// Adds `more` to `counts`, matcher by matcher.
 void add(const MatchCounts& more, MatchCounts& counts);
-/// The same where either may be unknown: what is unknown adds nothing.
+/// The same if either may be unknown: an unknown term adds nothing.
 void add(const std::optional<MatchCounts>& more, std::optional<MatchCounts>& counts);
 
 inline MatcherCounts& at(MatchCounts& counts, Matcher matcher) {

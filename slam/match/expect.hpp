@@ -14,14 +14,14 @@ namespace mh {
 /// scale^octave: the standard deviation (px) of a keypoint found at that octave.
 float octave_scale(const FeatureConfig& config, int octave);
 
-/// Where and at which octave a landmark should appear to a camera; nullopt if it lies outside the
-/// image, outside the distances its octaves can match, or is seen from more than 60 degrees off.
+/// Predicts where and at which octave a landmark appears to a camera; nullopt if it is outside the
+/// image, outside the distances that its octaves can match, or seen from more than 60 degrees off.
 /// @param radius_px  search radius at octave 0; grows with the predicted octave's scale.
 std::optional<ProjectionTarget> expect(const Landmark& landmark, const SE3& camera_from_world,
                                        const Eigen::Vector3d& camera_in_world, const Camera& camera,
                                        const FeatureConfig& features, float radius_px);
 
-/// A landmark seen at a feature, as the optimizers take it.
+/// A landmark seen at a feature, as input of the optimizers.
 PoseObservation observe(const Eigen::Vector3d& point_in_world, const Keypoint& keypoint,
                         const Camera& camera, const FeatureConfig& features);
 

@@ -20,7 +20,7 @@ struct LabeledDescriptor {
   ClassId label;
 };
 
-/// Equation 2 over ORB descriptors, keeping count of what it did.
+/// Equation 2 over ORB descriptors, with counts of its effect.
 class SemanticMatcher {
  public:
   SemanticMatcher(const SemanticConfig& config, MatcherCounts& counts)
@@ -39,7 +39,8 @@ class SemanticMatcher {
     counts_.penalized += disagree;
     return {plain, semantic_distance(plain, disagree, xi_)};
   }
-  /// The best of several under a gate: nearest by semantic distance, ratio test against the second.
+  /// Best match under a gate: nearest by semantic distance, with the second nearest for the ratio
+  /// test.
   struct Best {
     std::uint32_t index = UINT32_MAX;
     Distance first{1e9F, 1e9F}, second{1e9F, 1e9F};
@@ -57,7 +58,7 @@ class SemanticMatcher {
       }
     }
   };
-  /// Applies gate and ratio test (ratio >= 1: none) and counts where xi changed the outcome.
+  /// Applies gate and ratio test (ratio >= 1: no test) and counts where xi changed the outcome.
   bool accept(const Best& best, float max_distance, float ratio);
 
  private:
@@ -66,7 +67,7 @@ class SemanticMatcher {
   MatcherCounts& counts_;
 };
 
-/// Something with a place in the image, looked for among a frame's features.
+/// A point with a predicted image position, to be searched for among a frame's features.
 struct ProjectionTarget {
   float u_px = 0, v_px = 0;
   float disparity_px = -1;  ///< negative = not compared
@@ -74,17 +75,17 @@ struct ProjectionTarget {
   int min_octave = 0, max_octave = 0;
   const Descriptor* descriptor = nullptr;
   ClassId label = kVoid;
-  float angle_rad = -1;  ///< orientation to agree with; negative = none
+  float angle_rad = -1;  ///< required orientation; negative = any
 };
 
 struct ProjectionGate {
   float max_distance = 50;   ///< after equation 2
-  float ratio = 1.0F;        ///< of two best on the same octave; >= 1: no ratio test
+  float ratio = 1.0F;        ///< of the best two on the same octave; >= 1: no ratio test
   bool check_angle = false;  ///< keep the dominant rotations only
 };
 
-/// For each target the feature that it matches, or none. A feature goes to the target with the
-/// smallest distance (the first of equals); features with taken[i] != 0 are passed over.
+/// Returns for each target the feature that it matches, or none. A feature goes to the target with
+/// the smallest distance (ties to the first); features with taken[i] != 0 are skipped.
 std::vector<std::int32_t> match_by_projection(std::span<const ProjectionTarget> targets,
                                               const Features& features, const FeatureGrid& grid,
                                               std::span<const std::uint8_t> taken,
@@ -94,11 +95,11 @@ struct FeatureMatch {
   std::uint32_t a = 0, b = 0;  ///< feature indices
 };
 
-/// A frame's features as match_by_words() takes them.
+/// A frame's features as input of match_by_words().
 struct WordView {
   const Features& features;
   const WordIndex& words;
-  std::span<const std::uint8_t> use;  ///< which features take part, one flag each
+  std::span<const std::uint8_t> use;  ///< one flag per feature: whether it takes part
 };
 
 struct WordGate {
@@ -106,8 +107,8 @@ struct WordGate {
   float ratio = 1.0F;       ///< best over second best; >= 1: no ratio test
 };
 
-/// Matches features of two frames that fall under the same vocabulary node: nearest neighbor with
-/// gate, ratio test and dominant rotation; each feature at most once.
+/// Matches features of two frames under the same vocabulary node: nearest neighbor with gate, ratio
+/// test and dominant rotation; each feature at most once.
 /// @param compatible  geometric test of a pair, e.g. the epipolar line; may be empty.
 std::vector<FeatureMatch> match_by_words(
     const WordView& a, const WordView& b, const WordGate& gate, SemanticMatcher matcher,

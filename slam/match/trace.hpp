@@ -9,26 +9,26 @@
 
 namespace mh {
 
-/// Two views of what a matcher took for the same thing, as it came out of the matcher: before any
-/// pose threw out outliers.
+/// Two views that a matcher took for the same point, as the matcher returned them: before any pose
+/// estimate rejected outliers.
 struct MatchedPair {
   static constexpr std::uint32_t kNone = UINT32_MAX;
 
   Matcher matcher{};
-  KeyframeId seen_in;         ///< whose feature it is; invalid = the frame of this step
-  std::uint32_t feature = 0;  ///< of the frame or of seen_in
-  LandmarkId landmark;        ///< what it was paired with; invalid = a keypoint without one
-  KeyframeId keyframe;        ///< whose feature lent the other descriptor (the newest keyframe's,
-                              ///< when triangulating); invalid = the landmark's own, or in the
-                              ///< motion model the last frame's
+  KeyframeId seen_in;         ///< owner of the feature; invalid = the current frame
+  std::uint32_t feature = 0;  ///< of the current frame or of seen_in
+  LandmarkId landmark;        ///< the landmark it was matched to; invalid = a keypoint without one
+  KeyframeId keyframe;        ///< owner of the feature that supplied the other descriptor (the
+                              ///< newest keyframe when triangulating); invalid = the landmark's
+                              ///< own, or in the motion model the last frame's
   std::uint32_t other_feature = kNone;  ///< of that keyframe or of the last frame
   float distance_bits = 0;              ///< after equation 2
   bool penalized = false;               ///< labels known and different
   friend bool operator==(const MatchedPair&, const MatchedPair&) = default;
 };
 
-/// Every pair that the matchers of a step accepted, in order. What is not asked for costs a test of
-/// a null pointer per call of a matcher.
+/// Every pair that the matchers of a step accepted, in order. A disabled trace costs one
+/// null-pointer test per matcher call.
 using MatchTrace = std::vector<MatchedPair>;
 
 }  // namespace mh

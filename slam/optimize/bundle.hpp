@@ -20,7 +20,7 @@ struct BundleObservation {
   float sigma_px = 1;
 };
 
-/// Poses [0, free_poses) are adjusted, the rest are held fixed. Observations are ordered by point.
+/// Poses [0, free_poses) are adjusted, the rest are fixed. Observations are ordered by point.
 struct BundleProblem {
   std::vector<SE3> camera_from_world;
   std::uint32_t free_poses = 0;
@@ -41,9 +41,9 @@ struct BundleResult {
 /// Jacobians (Triggs et al., "Bundle adjustment: a modern synthesis", 1999); the residuals of
 /// PoseObservation. Single-threaded; sums in input order.
 ///
-/// Observations of points behind their camera take no part (a step that would move a point there is
-/// charged for it). A point that its observations do not determine (one, without depth) stays where
-/// it is and its observation takes no part; a pose without observations stays too.
+/// Observations of points behind their camera are ignored (a step that moves a point there is
+/// penalized). A point that its observations do not determine (one, without depth) stays fixed and
+/// its observation is ignored; a pose without observations stays too.
 /// @pre indices within range, observations ordered by point (asserted).
 BundleResult adjust(const BundleProblem& problem, const Camera& camera,
                     const BundleConfig& config = {});

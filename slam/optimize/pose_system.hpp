@@ -9,27 +9,27 @@
 
 namespace mh {
 
-/// The system that bundle adjustment leaves for the poses once points are eliminated: symmetric,
-/// positive definite, blocks of 6x6. Few poses: all blocks, solved by Cholesky. Many: only blocks
-/// of poses that some point couples, solved by conjugate gradients, so that memory and time grow
-/// with the couplings and not with the square and the cube of the poses.
+/// The reduced system that bundle adjustment solves for the poses once points are eliminated:
+/// symmetric, positive definite, blocks of 6x6. Few poses: dense, solved by Cholesky. Many: only
+/// blocks of poses coupled by a point, solved by conjugate gradients, so that memory and time grow
+/// with the couplings and not with the square and the cube of the number of poses.
 class PoseSystem {
  public:
   using Block = Eigen::Matrix<double, 6, 6>;
-  /// Up to here a dense matrix is small (8 MB) and its factor the fastest way.
+  /// Up to this size a dense matrix is small (8 MB) and factoring it is fastest.
   static constexpr std::uint32_t kDirectPoses = 160;
-  /// Residual, relative to the right side, at which conjugate gradients end: far below what a step
-  /// of Levenberg-Marquardt leaves.
+  /// Residual, relative to the right-hand side, at which conjugate gradients stop: far below the
+  /// error of a Levenberg-Marquardt step.
   static constexpr double kTolerance = 1e-8;
 
-  /// @param coupled  pairs of poses (any order, repeated at will) whose blocks will be used.
+  /// @param coupled  pairs of poses (any order, repetitions allowed) whose blocks will be used.
   PoseSystem(std::uint32_t poses,
              const std::vector<std::pair<std::uint32_t, std::uint32_t>>& coupled);
   PoseSystem() = default;
 
   std::uint32_t poses() const { return poses_; }
   void set_zero();
-  /// Block of the lower triangle; of diagonal blocks the lower triangle alone is read.
+  /// Block of the lower triangle; of diagonal blocks only the lower triangle is read.
   /// @pre row >= column; the same pose or a coupled pair
   Block& at(std::uint32_t row, std::uint32_t column) { return blocks_[index(row, column)]; }
   /// Solves in place. @returns false if the system is not positive definite.
@@ -47,8 +47,8 @@ class PoseSystem {
 
   std::uint32_t poses_ = 0;
   std::vector<Block> blocks_;          // row by row
-  std::vector<std::size_t> start_;     // of each row's blocks, one more at the end; many poses only
-  std::vector<std::uint32_t> column_;  // of each block, ascending in a row
+  std::vector<std::size_t> start_;     // start of each row's blocks, plus the end; many poses only
+  std::vector<std::uint32_t> column_;  // of each block, ascending within a row
 };
 
 }  // namespace mh

@@ -10,8 +10,8 @@
 
 namespace mh {
 
-/// A point nearer than this to the camera's plane (or behind it) cannot have been seen: 1 cm is
-/// well inside the blind zone of every depth camera and keeps 1/z far from overflow.
+/// A point nearer than this to the camera plane (or behind it) cannot have been seen: 1 cm is well
+/// inside the blind zone of every depth camera and keeps 1/z far from overflow.
 inline constexpr double kMinimumDepth_m = 0.01;
 
 /// One measurement (u, v[, disparity]) in px; disparity < 0 = no depth.
@@ -39,7 +39,8 @@ inline Eigen::Vector3d reprojection_residual(const Eigen::Vector3d& point_in_cam
               : 0.0};
 }
 
-/// Derivative of that residual by the point in the camera's frame; third row 0 without depth.
+/// Derivative of that residual with respect to the point in the camera frame; third row 0 without
+/// depth.
 inline Eigen::Matrix3d reprojection_jacobian(const Eigen::Vector3d& point_in_camera,
                                              const ImageMeasurement& measured,
                                              const Camera& camera) {
@@ -55,17 +56,18 @@ inline Eigen::Matrix3d reprojection_jacobian(const Eigen::Vector3d& point_in_cam
   return jacobian;
 }
 
-/// Derivative of p = T X by a left perturbation T <- exp(delta) T: [I | -hat(p)] (Barfoot 7.179).
+/// Derivative of p = T X with respect to a left perturbation T <- exp(delta) T: [I | -hat(p)]
+/// (Barfoot 7.179).
 inline Eigen::Matrix<double, 3, 6> perturbation_jacobian(const Eigen::Vector3d& point_in_camera) {
   Eigen::Matrix<double, 3, 6> jacobian;
   jacobian << Eigen::Matrix3d::Identity(), -hat(point_in_camera);
   return jacobian;
 }
 
-/// What one observation says about its point in the camera's frame: with the residual r, its
+/// What one observation contributes for its point in the camera frame: with the residual r, its
 /// Jacobian J and weight w, information = w J^T J and gradient = w J^T r. Pose and point blocks of
 /// the normal equations are rotations and cross products of these, which is cheaper than
-/// multiplying out 3x6 Jacobians.
+/// multiplying 3x6 Jacobians.
 struct CameraFrameTerm {
   Eigen::Matrix3d information;
   Eigen::Vector3d gradient;
@@ -102,18 +104,19 @@ inline Eigen::Matrix3d cross_columns(const Eigen::Vector3d& p, const Eigen::Matr
   return result;
 }
 
-/// Huber's loss of a squared whitened residual, quadratic up to the gate (squared too):
-/// rho(s) = s, or 2 sqrt(s gate) - gate beyond.
+/// Huber loss of a squared whitened residual, quadratic up to the gate (also squared): rho(s) = s,
+/// or 2 sqrt(s gate) - gate beyond.
 inline double huber_loss(double chi2, double gate) {
   return chi2 <= gate ? chi2 : 2.0 * std::sqrt(chi2 * gate) - gate;
 }
-/// Its derivative by chi2: the weight of the residual in iteratively reweighted least squares.
+/// Its derivative with respect to chi2: the weight of the residual in iteratively reweighted least
+/// squares.
 inline double huber_weight(double chi2, double gate) {
   return chi2 <= gate ? 1.0 : std::sqrt(gate / chi2);
 }
 
-/// Squared residual charged for a point that a trial step has moved behind its camera: as dear as
-/// a miss by 1000 standard deviations, so that no step gains by hiding a point.
+/// Squared residual charged for a point that a trial step has moved behind its camera: as expensive
+/// as a miss by 1000 standard deviations, so that no step gains by hiding a point.
 inline constexpr double kBehindChi2 = 1e6;
 
 }  // namespace mh

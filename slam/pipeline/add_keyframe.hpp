@@ -6,7 +6,7 @@
 
 namespace mh {
 
-/// Makes a frame a keyframe: maps it, then looks for a loop and closes it. The frame keeps its
+/// Turns a frame into a keyframe: maps it, then looks for a loop and closes it. The frame keeps its
 /// features.
 KeyframeId add_keyframe(SlamState& state, PreparedFrame& frame, const TrackedPose& tracked,
                         RandomStream stream, const StepObservers& observers, StepReport& report);

@@ -7,12 +7,12 @@
 
 namespace mh {
 
-/// Landmarks as a PLY point cloud (text): x y z (m, the map's world), red green blue of their
-/// class, label (class id), observations (keyframes that see it).
+/// Landmarks as a PLY point cloud (text): x y z (m, map frame), red green blue of the class, label
+/// (class id), observations (number of keyframes that see it).
 std::string landmarks_ply(const Map& map);
 
-/// Keyframes as a PLY (text): their cameras' places as vertices with the number of landmarks they
-/// see, covisibility as edges with the number of landmarks shared.
+/// Keyframes as PLY (text): camera positions as vertices with the number of landmarks seen,
+/// covisibility as edges with the number of landmarks shared.
 std::string keyframes_ply(const Map& map);
 
 /// Keyframes and covisibility as JSON: `keyframes` with id, stamp_ns, position_m and

@@ -8,16 +8,16 @@
 
 namespace mh {
 
-/// The context of one frame's step; matches are counted in its report.
+/// The context for one frame's step; matches are counted in its report.
 SlamContext context_of(const SlamState& state, const StepObservers& observers, StepReport& report);
 
-/// Finds the camera of a frame in the map: from the frames before; where that does not hold,
-/// anywhere. Reads the map, never writes it.
+/// Localizes a frame in the map: by tracking from previous frames; if that fails, by
+/// relocalization. Reads the map, never writes it.
 std::optional<Located> locate(const SlamState& state, const Tracker& tracker, PreparedFrame& frame,
                               RandomStream stream, const StepObservers& observers,
                               StepReport& report);
 
-/// Refines a pose on the part of the map that it sees.
+/// Refines a pose on the local map.
 /// @returns nullopt below `min_inliers`.
 std::optional<Located> confirm_in_local_map(const PreparedFrame& frame, const TrackedPose& tracked,
                                             int min_inliers, const SlamContext& context,

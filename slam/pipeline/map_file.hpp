@@ -12,20 +12,20 @@ namespace mh {
 
 inline constexpr std::uint32_t kMapFileVersion = 5;
 
-/// A map file holds all of a SlamState but the vocabulary, which it names by its digest: a run that
-/// is saved and loaded in between goes on with the same bits as one that was not. Equal states
-/// give equal bytes, and loading changes nothing.
+/// Serializes all of a SlamState except the vocabulary, which is referenced by its digest: a run
+/// that is saved and loaded resumes bit-identically to one that was not. Equal states give equal
+/// bytes, and loading changes nothing.
 std::string encode_slam(const SlamState& state);
-/// @param name  stands for the file in messages.
-/// @throws InputError naming the fault: not a map file, another version, cut short, checksum wrong,
+/// @param name  names the file in messages.
+/// @throws InputError naming the fault: not a map file, another version, truncated, checksum wrong,
 /// made with another vocabulary, or parts that do not fit together.
 SlamState decode_slam(const std::string& bytes, const std::string& name,
                       std::shared_ptr<const Vocabulary> vocabulary);
 
-/// Whether a file begins as a map file does.
+/// Whether a file starts like a map file.
 bool is_map_file(const std::filesystem::path& file);
 
-/// The same to and from a file; it is written whole or not at all.
+/// The same to and from a file, written atomically.
 void save_slam(const std::filesystem::path& file, const SlamState& state);
 SlamState load_slam(const std::filesystem::path& file,
                     std::shared_ptr<const Vocabulary> vocabulary);

@@ -8,7 +8,7 @@
 
 namespace mh {
 
-/// The stages of a step. kWords happens within others, where words are first asked for.
+/// The stages of a step. kWords runs inside others, when words are first needed.
 enum class Stage {
   kFeatures,
   kWords,
@@ -23,11 +23,11 @@ std::string_view name(Stage stage);
 
 enum class StageEvent { kBegin, kEnd };
 
-/// What the caller wants to be told while a step runs. Nothing of it reaches the algorithms: with
-/// and without observers the results have the same bits.
+/// Optional callbacks during a step. They do not affect the algorithms: results are bit-identical
+/// with and without observers.
 struct StepObservers {
-  std::function<void(Stage, StageEvent)> stage;  ///< e.g. a clock; begins and ends nest
-  MatchTrace* matches = nullptr;                 ///< gets every pair that a matcher accepts
+  std::function<void(Stage, StageEvent)> stage;  ///< e.g. a timer; stages nest
+  MatchTrace* matches = nullptr;                 ///< receives every pair that a matcher accepts
 };
 
 }  // namespace mh

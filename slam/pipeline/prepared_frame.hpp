@@ -8,7 +8,7 @@
 
 namespace mh {
 
-/// Reports a stage to the observers for as long as this lives.
+/// Reports a stage to the observers for its lifetime.
 class InStage {
  public:
   InStage(const StepObservers& observers, Stage stage) : observers_(observers), stage_(stage) {
@@ -25,7 +25,7 @@ class InStage {
   Stage stage_;
 };
 
-/// A frame's features, indexed. Words are looked up only where a stage asks for them.
+/// A frame's features, indexed. Words are computed only when a stage needs them.
 struct PreparedFrame {
   Stamp stamp_ns;
   Features features;
@@ -33,17 +33,18 @@ struct PreparedFrame {
   std::optional<WordIndex> words;
 };
 
-/// extract(), as a stage.
+/// extract(), reported as a stage.
 Features observed_features(const RgbdFrame& frame, const SlamState& state,
                            const StepObservers& observers);
 
-/// @param tracker  that of the frames before, which knows how a rolling shutter moved
+/// @param tracker  state after the previous frames; knows how the camera moves during a rolling
+///                 shutter
 PreparedFrame prepare(Stamp stamp_ns, Features features, const SlamState& state,
                       const Tracker& tracker);
 
-/// The frame with its words, which are looked up at the first call.
+/// The frame with its words, which are computed on the first call.
 Query with_words(PreparedFrame& frame, const SlamState& state, const StepObservers& observers);
-/// The frame with what words it has by now.
+/// The frame with the words that it has so far.
 Query without_words(const PreparedFrame& frame);
 
 }  // namespace mh

@@ -11,7 +11,7 @@
 
 namespace mh {
 
-/// All that a step hands out: plain data, no reference into the system.
+/// Everything that a step returns: plain data, no references into the system.
 struct StepReport {
   TrackStatus status = TrackStatus::kLost;
   std::optional<SE3> world_from_camera;
@@ -21,7 +21,7 @@ struct StepReport {
   bool loop_closed = false;
   std::optional<LoopClosure> loop;  ///< if one was closed
   RelocalizationStage relocalization = RelocalizationStage::kNone;
-  std::optional<CandidateCounts> candidates;  ///< when relocalization was tried
+  std::optional<CandidateCounts> candidates;  ///< if relocalization was tried
   MatchCounts matches{};
 };
 

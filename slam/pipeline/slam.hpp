@@ -19,13 +19,13 @@
 
 namespace mh {
 
-/// A tracked frame, remembered relative to its reference keyframe, so that it moves with the map.
+/// A tracked frame, stored relative to its reference keyframe so that it moves with the map.
 struct TrackedFrame {
   KeyframeId reference;
   SE3 camera_from_reference;
 };
 
-/// The whole state of one SLAM run: a value. Copying it copies the map.
+/// The complete state of one SLAM run: a value. Copying it copies the map.
 struct SlamState {
   Camera camera;
   SlamConfig config;
@@ -33,42 +33,43 @@ struct SlamState {
   Map map;
   Tracker tracker;
   LoopMemory loop_memory;
-  std::map<Stamp, TrackedFrame> tracked_frames;  ///< the last attempt at each stamp, if it held
-  std::optional<Stamp> last_stamp_ns;            ///< of the last frame fed
+  std::map<Stamp, TrackedFrame> tracked_frames;  ///< the last attempt at each stamp, if it
+                                                 ///< succeeded
+  std::optional<Stamp> last_stamp_ns;            ///< of the last frame processed
 };
 
 /// @throws InputError naming the field of camera or config that is out of range, or a distortion
-/// that cannot be undone.
+/// that cannot be inverted.
 SlamState make_slam(const Camera& camera, const SlamConfig& config,
                     std::shared_ptr<const Vocabulary> vocabulary);
 
 /// Processes one frame, mapping included: the whole system on one page (step.cpp). The first frame
-/// with enough depth becomes the world's origin. Random draws depend on the stream alone.
-/// @throws InputError if the frame does not fit the camera or its stamp does not grow.
+/// with enough depth defines the world origin. Random draws depend only on the stream.
+/// @throws InputError if the frame does not fit the camera or its stamp does not increase.
 StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream,
                 const StepObservers& observers = {});
 
-/// The same from features that are at hand already: a cache, a synthetic world. step(state, frame,
-/// stream) is this after extract().
-/// @throws InputError if the stamp does not grow or there are not as many descriptors as keypoints.
+/// The same from existing features: from a cache or a synthetic world. step(state, frame, stream)
+/// is extract() followed by this.
+/// @throws InputError if the stamp does not increase or the numbers of descriptors and keypoints
+/// differ.
 StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStream stream,
                 const StepObservers& observers = {});
 
 /// @throws InputError naming both if a frame's stamp is not later than the last one's.
 void require_increasing_stamp(Stamp stamp_ns, std::optional<Stamp> last_ns);
 
-/// The feed goes back: tracking counts as lost and earlier stamps are accepted; the map stays.
+/// Restarts the input: tracking is lost and earlier stamps are accepted; the map stays.
 void rewind(SlamState& state);
 
-/// Localization against a map that no longer changes. The tracker is the caller's, so that many
-/// queries start from equal states: Tracker{} is lost. Stamps are not checked.
+/// Localizes a frame in a frozen map. The caller owns the tracker, so that many queries can start
+/// from equal states: Tracker{} is lost. Stamps are not checked.
 StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& frame,
                     RandomStream stream, const StepObservers& observers = {});
 
-/// What localizations of one frame under one stream, each from a lost tracker, may share while xi
-/// and the policy on void stay the same: features, words, attempts at candidates, refined poses.
-/// Settings that choose other candidates (gamma, alpha, beta, overlap) then cost their choice
-/// alone.
+/// What localizations of one frame under one stream, each from a lost tracker, can share while xi
+/// and the void policy stay the same: features, words, attempts at candidates, refined poses.
+/// Settings that choose other candidates (gamma, alpha, beta, overlap) then cost only that choice.
 class LocalizeMemo {
  public:
   LocalizeMemo();
@@ -81,19 +82,18 @@ class LocalizeMemo {
   std::unique_ptr<Content> content_;
 };
 
-/// localize() from a lost tracker that is not needed afterwards, with what is known already.
-/// @param memo  of the same frame, stream and map, and of no other xi or policy on void
+/// localize() from a lost tracker that is discarded afterwards, reusing earlier results.
+/// @param memo  of the same frame, stream and map, and of the same xi and void policy
 StepReport localize(const SlamState& frozen, const RgbdFrame& frame, RandomStream stream,
                     LocalizeMemo& memo);
 
-/// From now on the map answers, and is gone on with, by these settings: its keyframes' vectors
-/// (equation 1) are weighed anew where gamma or the policy on void changes.
-/// @throws InputError naming the setting that is out of range; nothing has changed then.
+/// Changes the semantic settings by which the map answers queries and is extended from now on: its
+/// keyframes' vectors (equation 1) are reweighted if gamma or the void policy changes.
+/// @throws InputError naming the setting that is out of range; then nothing has changed.
 void set_query_settings(SlamState& state, const SemanticConfig& settings);
 
-/// Each tracked frame once (its last attempt), ordered by stamp, as its pose relative to its
-/// reference keyframe composed with that keyframe's pose now. The frame of reference is the first
-/// camera.
+/// Each tracked frame once (its last attempt), ordered by stamp: its pose relative to its reference
+/// keyframe, composed with that keyframe's current pose. The reference frame is the first camera.
 Trajectory trajectory(const SlamState& state);
 
 }  // namespace mh

@@ -5,8 +5,8 @@
 
 namespace mh {
 
-/// Where an attempt to relocalize ended: the farthest stage that any candidate reached and failed,
-/// or kVerified.
+/// Where a relocalization attempt ended: the last stage that any candidate reached and failed, or
+/// kVerified.
 enum class RelocalizationStage { kNone, kNoCandidate, kMatches, kPnp, kInliers, kVerified };
 
 constexpr Names<RelocalizationStage, 6> words(RelocalizationStage) {
@@ -26,7 +26,7 @@ struct CandidateCounts {
   int keyframes = 0;           ///< in the map
   int c1 = 0, c2 = 0, c3 = 0;  ///< after equations 3, 4 and 5
   int final = 0;               ///< after equation 6
-  double label_mass = 0;       ///< share of the query vector's L1 mass held by labels
+  double label_mass = 0;       ///< share of the query vector's L1 mass that comes from labels
 };
 
 }  // namespace mh

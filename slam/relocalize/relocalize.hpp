@@ -23,22 +23,23 @@ struct RelocalizationResult {
   KeyframeId keyframe;  ///< the candidate that led to the pose
 };
 
-/// N_k of equation 5: a keyframe and its best covisible ones, ten at most.
-/// @param belongs  which keyframes count at all; empty = all
+/// N_k of equation 5: a keyframe and its best covisible ones, at most ten.
+/// @param belongs  which keyframes are eligible; empty = all
 std::vector<KeyframeId> neighborhood(const Map& map, KeyframeId k,
                                      const std::function<bool(KeyframeId)>& belongs = {});
 
-/// Algorithm 1 over the whole map. Where the query has no label member, words are counted.
+/// Algorithm 1 over the whole map. If the query has no label members, words are counted.
 CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedVector& query,
                                                 const SemanticConfig& config);
 
-/// Which matchers a search reports under: relocalization and loop closing count apart.
+/// The matchers that a search reports under: relocalization and loop closing are counted
+/// separately.
 struct PlaceMatchers {
   Matcher words = Matcher::kRelocalizationWords;
   Matcher projection = Matcher::kRelocalizationProjection;
 };
 
-/// What came of trying one candidate.
+/// Result of trying one candidate.
 struct CandidateAttempt {
   RelocalizationStage stage = RelocalizationStage::kMatches;
   SE3 camera_from_world;
@@ -47,20 +48,20 @@ struct CandidateAttempt {
   MatchCounts counts{};  ///< of this attempt alone
 };
 
-/// Attempts of one query under one stream and one xi against the candidates that were tried so far:
-/// searches that merely choose other candidates need not make them again.
+/// Attempts of one query under one stream and one xi for the candidates tried so far: searches that
+/// merely choose other candidates can reuse them.
 using AttemptMemo = std::map<KeyframeId, CandidateAttempt>;
 
-/// Tries candidate keyframes in order: matches by words, PnP with RANSAC, refinement, guided
-/// search. The first that holds wins; `candidates` of the result stays empty. A memo changes
-/// nothing but the work.
+/// Tries candidate keyframes in order: matching by words, PnP with RANSAC, refinement, guided
+/// search. The first success wins; `candidates` of the result stays empty. A memo saves work and
+/// does not change the result.
 RelocalizationResult try_candidates(const Query& query, std::span<const KeyframeId> candidates,
                                     const SlamContext& context, RandomStream stream,
                                     PlaceMatchers matchers = {}, AttemptMemo* memo = nullptr);
 
-/// Finds the camera in the map without any guess: Algorithm 1 chooses the candidates, in order of
-/// score. Depth is weighed by RelocalizeConfig::disparity_sigma_px: the pose is one to begin from,
-/// which the local map, weighing depth as the camera does, has to confirm.
+/// Localizes the camera in the map without an initial guess: Algorithm 1 chooses the candidates, in
+/// order of score. Depth is weighted by RelocalizeConfig::disparity_sigma_px: the pose is a
+/// starting point that the local map, weighting depth as the camera does, must confirm.
 RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,
                                 AttemptMemo* memo = nullptr);
 

@@ -2,7 +2,7 @@
 #pragma once
 
 // Semantically augmented scene representation: equation 1 of "Spatial Perception by Object-Aware
-// Visual Scene Representation", and the L1 score over it. Needs the standard library alone.
+// Visual Scene Representation", and the L1 score over it. Depends only on the standard library.
 
 #include <algorithm>
 #include <cmath>
@@ -23,12 +23,12 @@ struct WeightedMember {
 };
 
 /// Equation 1 as one sparse vector, L1-normalized over labels and words together. Each part is
-/// ordered by id and holds positive weights only: what weighs nothing is no member.
+/// ordered by id and has positive weights only: an element of zero weight is not a member.
 struct AugmentedVector {
   std::vector<WeightedMember> labels;
   std::vector<WeightedMember> words;
 
-  /// Share of the L1 mass that labels hold, in [0, 1].
+  /// Share of the L1 mass that comes from labels, in [0, 1].
   double label_mass() const {
     double mass = 0;
     for (const WeightedMember& member : labels) mass += member.weight;
@@ -66,7 +66,7 @@ void for_each_common(std::span<const WeightedMember> a, std::span<const Weighted
 
 }  // namespace semantics_detail
 
-/// Equation 1: labels weigh gamma * |P_l|, visual words eta_v * |P_v|; then L1-normalized.
+/// Equation 1: labels have weight gamma * |P_l|, visual words eta_v * |P_v|; then L1-normalized.
 /// @param labels  one per keypoint; kNoLabel adds nothing (VoidPolicy::kUnknown).
 /// @param words   one per keypoint.
 /// @param gamma   factor of labels, >= 0.
@@ -95,7 +95,7 @@ AugmentedVector augmented_vector(std::span<const Label> labels,
   return vector;
 }
 
-/// The same frame without its labels: words alone, normalized anew.
+/// The same vector without its labels: words alone, renormalized.
 inline AugmentedVector words_alone(const AugmentedVector& vector) {
   AugmentedVector plain;
   plain.words = vector.words;
@@ -105,10 +105,10 @@ inline AugmentedVector words_alone(const AugmentedVector& vector) {
   return plain;
 }
 
-/// ||f, k||_1 of the paper as a similarity: 1 - |f - k|_1 / 2 over normalized vectors, in [0, 1];
-/// 1 for equal vectors, 0 where nothing is shared (Nister and Stewenius, CVPR 2006). Summed over
-/// the shared members alone: |f - k|_1 = 2 - sum(|f| + |k| - |f - k|), so 1 - |f - k|_1 / 2 is the
-/// sum of the smaller shares.
+/// ||f, k||_1 of the paper as a similarity: 1 - |f - k|_1 / 2 over normalized vectors, in [0, 1]; 1
+/// for equal vectors, 0 if nothing is shared (Nister and Stewenius, CVPR 2006). Summed over the
+/// shared members only: |f - k|_1 = 2 - sum(|f| + |k| - |f - k|), so 1 - |f - k|_1 / 2 is the sum
+/// of the smaller shares.
 inline double l1_similarity(const AugmentedVector& f, const AugmentedVector& k) {
   double sum = 0;
   const auto add_smaller = [&](double a, double b) { sum += std::min(a, b); };
@@ -117,7 +117,7 @@ inline double l1_similarity(const AugmentedVector& f, const AugmentedVector& k) 
   return sum;
 }
 
-/// |L_f intersect L_k| over labels, and the same over words: what n of equation 3 may count.
+/// |L_f intersect L_k| over labels, and the same over words: the choices for n of equation 3.
 inline int shared_labels(const AugmentedVector& f, const AugmentedVector& k) {
   int n = 0;
   semantics_detail::for_each_common(f.labels, k.labels, [&](double, double) { ++n; });

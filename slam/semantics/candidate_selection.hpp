@@ -2,7 +2,7 @@
 #pragma once
 
 // Keyframe-candidate selection: equations 3 to 6 (Algorithm 1) of "Spatial Perception by
-// Object-Aware Visual Scene Representation". Needs the standard library alone.
+// Object-Aware Visual Scene Representation". Depends only on the standard library.
 
 #include <algorithm>
 #include <cstddef>
@@ -17,19 +17,19 @@ struct Candidate {
   double score = 0;  ///< a of equation 5: summed similarity of the keyframe's neighborhood
 };
 
-/// What Algorithm 1 selects, and how many keyframes were left after each of its steps.
+/// Result of Algorithm 1, with the number of keyframes left after each step.
 template <class Key>
 struct CandidateSelection {
   std::vector<Candidate<Key>> candidates;  ///< equation 6; descending score, ties by key
   int c1 = 0, c2 = 0, c3 = 0;
 };
 
-/// Algorithm 1. Comparisons are strict, as printed. Departs from the print where it is silent: a
-/// k_best that several k share is kept once, with its largest a.
+/// Algorithm 1. Comparisons are strict, as printed. Resolves one point that the paper leaves open:
+/// a k_best shared by several k is kept once, with its largest a.
 /// @param keyframes   all keyframes of the map.
-/// @param overlap     overlap(k) -> n of equation 3, 0 = shares nothing.
+/// @param overlap     overlap(k) -> n of equation 3, 0 = nothing shared.
 /// @param neighbors  neighbors(k) -> range of keyframes: k itself and its neighbors.
-/// @param similarity  similarity(k) -> ||L_f, L_k||_1, larger = more alike.
+/// @param similarity  similarity(k) -> ||L_f, L_k||_1, larger = more similar.
 /// @param alpha, beta thresholds of equations 4 and 6, in [0, 1).
 template <class Key, class Overlap, class Neighbors, class Similarity>
 CandidateSelection<Key> select_candidates(std::span<const Key> keyframes, Overlap overlap,

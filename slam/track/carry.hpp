@@ -14,17 +14,17 @@ struct Located {
   TrackedPose tracked;
   KeyframeId reference;               ///< keyframe that shares most landmarks
   std::vector<LandmarkId> expected;   ///< landmarks that should have been visible
-  std::optional<Motion> motion = {};  ///< with this frame taken in
+  std::optional<Motion> motion = {};  ///< updated with this frame
 };
 
-/// Takes a frame that followed the last one into the motion. Where the picture alone leaves its
-/// pose unsure (few points in a narrow strip: turning and shifting look alike), it is put between
-/// where it was seen and where the motion leads, each by its covariance.
+/// Updates the motion filter with a frame that follows the last one. If the image alone leaves the
+/// pose uncertain (few points in a narrow strip: rotation and translation look alike), the pose is
+/// fused with the predicted one, each weighted by its covariance.
 void weigh(Located& located, const Tracker& tracker, Stamp stamp_ns, const TrackConfig& config);
 
-/// A frame placed by its motion alone, where the last one's points have left the picture: a corner
-/// so bare that a turn lets go of all it showed. The motion must be as sure as a picture must be,
-/// and what the frame shows itself enough to hold the next one.
+/// Places a frame by motion alone when the last frame's points have left the image: for example a
+/// turn in so bare a corner that nothing seen before remains in view. The motion must be as certain
+/// as an image must be, and the frame itself must show enough to track the next one.
 std::optional<Located> carry(const Tracker& tracker, Stamp stamp_ns, const Features& features,
                              const SlamContext& context);
 

@@ -10,10 +10,10 @@
 
 namespace mh {
 
-/// Who holds which member of equation 1: for each label and word the keyframes that have it, and
-/// with which weight (Sivic and Zisserman, ICCV 2003). A query touches what it shares with the map
-/// and nothing else. Its figures are those of l1_similarity(), shared_labels() and shared_words()
-/// against each keyframe, bit for bit, whatever the order in which keyframes came and went.
+/// Inverted index over the members of equation 1: for each label and word, the keyframes that have
+/// it and their weights (Sivic and Zisserman, ICCV 2003). A query visits only what it shares with
+/// the map. Scores equal those of l1_similarity(), shared_labels() and shared_words() against each
+/// keyframe, bit for bit, in whatever order keyframes were added and erased.
 class InvertedIndex {
  public:
   /// What a query and one keyframe have in common.
@@ -24,22 +24,22 @@ class InvertedIndex {
     friend bool operator==(const Score&, const Score&) = default;
   };
 
-  /// @pre the keyframe is not held.
+  /// @pre the keyframe is not in the index.
   void add(KeyframeId keyframe, const AugmentedVector& vector);
   /// @pre the keyframe was added with this very vector.
   void erase(KeyframeId keyframe, const AugmentedVector& vector);
 
-  /// One score for each keyframe that shares anything, in the order of their ids.
+  /// One score for each keyframe that shares any member, in order of id.
   std::vector<Score> query(const AugmentedVector& vector) const;
 
-  std::size_t size() const { return size_; }  ///< keyframes held
+  std::size_t size() const { return size_; }  ///< keyframes in the index
 
  private:
   struct Posting {
     KeyframeId keyframe;
     double weight = 0;
   };
-  /// Looked up by id, never walked through; each list is ordered by keyframe.
+  /// Looked up by id, never iterated over; each list is ordered by keyframe.
   using Postings = std::unordered_map<std::uint32_t, std::vector<Posting>>;
 
   static void insert(Postings& postings, KeyframeId keyframe,

@@ -10,13 +10,13 @@
 
 namespace mh {
 
-/// A vocabulary as plain data: what training and reading make, and what the file holds. Nodes stand
-/// breadth first, the children of a node side by side in the order of their parents.
+/// A vocabulary as plain data: the result of training and reading, and the content of the file.
+/// Nodes are in breadth-first order; siblings are contiguous, in the order of their parents.
 struct VocabularyTree {
-  std::uint32_t branching = 0;             ///< most children of a node, 2 to 255
+  std::uint32_t branching = 0;             ///< maximum children of a node, 2 to 255
   std::uint32_t depth = 0;                 ///< levels below the root
-  std::uint32_t images = 0;                ///< trained on; 0 = not known
-  std::uint64_t descriptors = 0;           ///< in these images; 0 = not known
+  std::uint32_t images = 0;                ///< trained on; 0 = unknown
+  std::uint64_t descriptors = 0;           ///< in these images; 0 = unknown
   std::vector<Descriptor> centers;         ///< of each node; the root's is zero
   std::vector<std::uint8_t> child_counts;  ///< of each node; 0 = a word
   std::vector<float> idf;                  ///< of each word, in the order of their nodes
@@ -25,12 +25,12 @@ struct VocabularyTree {
 /// The bytes of a vocabulary file.
 std::string encode(const VocabularyTree& tree);
 
-/// Reads DBoW2's text format (that of ORB-SLAM's ORBvoc.txt): a line "k L scoring weighting", then
-/// for each node but the root, whose ids count from 1 in the order of lines, a line "parent is_leaf
-/// byte*32 weight". Words are numbered anew, breadth first; scoring and weighting are checked and
-/// not used, since a word weighs what its line says and views are compared by L1.
+/// Reads DBoW2's text format (ORB-SLAM's ORBvoc.txt): a line "k L scoring weighting", then for each
+/// node but the root, whose ids count from 1 in the order of lines, a line "parent is_leaf byte*32
+/// weight". Words are renumbered breadth first; scoring and weighting are checked and not used,
+/// since word weights come from the lines and views are compared by L1.
 /// @param name  of the file, for messages.
-/// @throws InputError "name:line: ..." on anything that is not such a tree.
+/// @throws InputError "name:line: ..." if the text is not such a tree.
 VocabularyTree read_dbow2_text(std::string_view text, const std::string& name);
 
 }  // namespace mh

@@ -16,9 +16,9 @@ namespace mh {
 struct VocabularyTree;
 using WordId = std::uint32_t;
 
-/// A tree of visual words: hierarchical k-medians over binary descriptors (Galvez-Lopez and
-/// Tardos, T-RO 2012, after Nister and Stewenius, CVPR 2006). Default-constructed it is empty and
-/// can only be assigned to. Immutable; copies share one tree, which may lie in a mapped file.
+/// A tree of visual words: hierarchical k-medians over binary descriptors (Galvez-Lopez and Tardos,
+/// T-RO 2012, after Nister and Stewenius, CVPR 2006). Default-constructed it is empty and can only
+/// be assigned to. Immutable; copies share one tree, which may be in a mapped file.
 class Vocabulary {
  public:
   struct TrainConfig {
@@ -29,37 +29,36 @@ class Vocabulary {
   };
   struct Quantized {
     WordId word = 0;
-    /// Ancestor at the direct index's level, kDirectIndexLevel below the root (the leaf itself
-    /// where the tree ends sooner): only features under the same node are compared.
+    /// Ancestor at the direct index's level, kDirectIndexLevel below the root (the leaf itself if
+    /// the tree ends sooner): only features under the same node are compared.
     std::uint32_t node = 0;
   };
 
-  /// branching^2 nodes, 100 as a rule: with 1,000 features in a picture some 10 share a node.
+  /// branching^2 nodes, typically 100: with 1,000 features in an image some 10 share a node.
   static constexpr int kDirectIndexLevel = 2;
   static constexpr std::uint32_t kFileVersion = 2;
 
-  /// Trains on the descriptors of many images. Deterministic: same images, config, same tree.
+  /// Trains on the descriptors of many images. Deterministic: same images and config, same tree.
   /// Weights are idf = ln(images / images with the word); every word occurs in some image.
-  /// @throws std::invalid_argument naming a setting out of range; InputError if there is no
-  /// descriptor at all.
+  /// @throws std::invalid_argument naming a setting out of range; InputError if there are no
+  /// descriptors.
   static Vocabulary train(std::span<const std::vector<Descriptor>> images,
                           const TrainConfig& config);
 
-  /// A tree made elsewhere. @throws InputError if it is no consistent tree.
+  /// Wraps an existing tree. @throws InputError if it is inconsistent.
   explicit Vocabulary(const VocabularyTree& tree);
   Vocabulary() = default;
 
-  /// Maps a file of our own into memory (held_bytes.hpp says what that asks of the file), or reads
-  /// one in DBoW2's text format (read_dbow2_text()), which takes some hundred times as long.
-  /// @throws InputError naming file and fault: missing, not a vocabulary, another version, cut
-  /// short, checksum wrong; of a text its line.
+  /// Maps a file of our own into memory (held_bytes.hpp states the requirements), or reads one in
+  /// DBoW2's text format (read_dbow2_text()), which takes about a hundred times as long.
+  /// @throws InputError naming file and fault: missing, not a vocabulary, another version,
+  /// truncated, checksum wrong; for text, its line.
   static Vocabulary load(const std::filesystem::path& file);
-  /// In our own format; written to a temporary, then renamed. @throws InputError if it cannot be
-  /// written.
+  /// Saves in our own format, atomically. @throws InputError if it cannot be written.
   void save(const std::filesystem::path& file) const;
 
-  /// The word a descriptor belongs to: from the root down, always to the nearest child in Hamming
-  /// distance, the first among equals. @pre not empty.
+  /// Returns the word of a descriptor: from the root down, always the nearest child in Hamming
+  /// distance, ties to the first. @pre not empty.
   Quantized quantize(const Descriptor& descriptor) const;
 
   std::size_t size() const { return idf_.size(); }  ///< number of words
@@ -67,20 +66,20 @@ class Vocabulary {
   int branching() const { return branching_; }
   int depth() const { return depth_; }
   std::size_t node_count() const { return centers_.size(); }
-  std::uint32_t training_images() const { return training_images_; }  ///< 0 = not known
+  std::uint32_t training_images() const { return training_images_; }  ///< 0 = unknown
   std::uint64_t training_descriptors() const { return training_descriptors_; }
-  /// Of the file's content: equal digests, equal vocabularies. 0 if empty.
+  /// Of the content of the file: equal digests, equal vocabularies. 0 if empty.
   std::uint64_t digest() const { return digest_; }
 
  private:
   /// @throws InputError "name: ..." unless the bytes are those of a vocabulary file.
   Vocabulary(HeldBytes bytes, const std::string& name);
 
-  HeldBytes bytes_;  ///< the whole file; what follows points into it
+  HeldBytes bytes_;  ///< the whole file; the members below point into it
   std::span<const Descriptor> centers_;
   std::span<const float> idf_;
   const std::uint8_t* child_counts_ = nullptr;
-  /// Per node: its first child, or its word where it has no child.
+  /// Per node: its first child, or its word if it has no children.
   std::shared_ptr<const std::vector<std::uint32_t>> links_;
   int branching_ = 0;
   int depth_ = 0;

@@ -13,10 +13,10 @@ namespace mh {
 
 class Vocabulary;
 
-/// A frame's features as the bag of words sees them.
+/// A frame's bag of words.
 struct WordIndex {
   AugmentedVector vector;  ///< equation 1
-  /// (node, feature) ordered: features under the same node of the vocabulary may match.
+  /// Ordered pairs (node, feature): features under the same vocabulary node may match.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> by_node;
 };
 
