@@ -13,30 +13,31 @@ namespace mh {
 
 inline constexpr std::string_view kBaselineFormat = "modelhouse-baseline-1";
 
-/// Figures that were committed as what is expected.
+/// The committed figures that later runs are compared with.
 struct Baseline {
   std::string suite;         ///< its name
-  std::string suite_digest;  ///< of what its runs are: scenes, tours, systems, seeds, protocol
-  /// Program and machine that made the figures: where all of it is equal, so must be the bits.
+  std::string suite_digest;  ///< of its runs' scenes, tours, systems, seeds, protocol
+  /// Program and machine that produced the figures: if all of it is equal, the bits must be too.
   nlohmann::ordered_json origin;
-  /// What a change may change and a program is compared under (see gate_settings). Null in a
-  /// baseline of an older program.
+  /// What a change may alter along with the program (see gate_settings). Null in a baseline written
+  /// by an older program.
   nlohmann::ordered_json settings = {};
   std::vector<RunFigures> runs = {};
 };
 
-/// "slam/xi: 1.5 -> 3.0" for each setting that differs; a baseline without settings tells of none.
+/// "slam/xi: 1.5 -> 3.0" for each setting that differs; empty for a baseline without settings.
 std::vector<std::string> changed_settings(const Baseline& before, const Baseline& now);
 
-/// One line per run, so that a change of one run is a change of one line.
+/// One line per run, so that a change in one run changes one line.
 std::string to_text(const Baseline& baseline);
 void save_baseline(const Baseline& baseline, const std::filesystem::path& file);
 
-/// @throws InputError naming the file if it is missing, no baseline, of a newer format or damaged.
+/// @throws InputError naming the file if it is missing, not a baseline, damaged, or of a newer
+/// format.
 Baseline load_baseline(const std::filesystem::path& file);
 
-/// @throws InputError if the baseline was made from another suite, or from other scenes, tours,
-/// systems, seeds or protocol under its name.
+/// @throws InputError if the baseline was made from another suite, or under the same name from
+/// other scenes, tours, systems, seeds or protocol.
 void check_suite(const Baseline& baseline, const std::filesystem::path& file,
                  const std::string& suite, const std::string& suite_digest);
 

@@ -8,7 +8,7 @@
 
 namespace mh {
 
-/// What the gate keeps of one run. A figure that the run did not determine is absent.
+/// What the gate records of one run. A figure that the run did not determine is absent.
 struct RunFigures {
   std::string scenario;
   std::string system;  ///< system, labels and level: "semantic-exact-pepper"

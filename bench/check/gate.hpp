@@ -12,7 +12,7 @@
 
 namespace mh {
 
-/// What became of one measure of one system in one scenario.
+/// How one measure of one system changed in one scenario.
 enum class ChangeVerdict { kSame, kWithin, kBetter, kWorse };
 std::string_view name(ChangeVerdict verdict);
 
@@ -22,14 +22,14 @@ struct Change {
   std::size_t pairs = 0;                          ///< seeds
   std::optional<double> before = {}, after = {};  ///< medians over the seeds that have the figure
   /// Median over the seeds of after - before. Infinite where most seeds lost or gained the figure:
-  /// a figure that is lost counts as the worst there is.
+  /// a lost figure is treated as the worst possible.
   double change = 0;
   double tolerance = 0;
-  /// A true worsening of this size is found with 80 % power: tolerance + 0.84 standard errors of
-  /// the median paired change. That error is what chance alone would make of it if the program
-  /// were another but no worse: draws of before and after independent, spread as over the
-  /// baseline's seeds, so 1.2533 sqrt(2) s / sqrt(seeds). For shares at least the next step of
-  /// 1 / queries above the tolerance.
+  /// A true worsening of this size is detected with 80 % power: tolerance + 0.84 standard errors of
+  /// the median paired change. That is the error due to chance alone for a different but no worse
+  /// program: before and after drawn independently, with the spread over the baseline's seeds, so
+  /// 1.2533 sqrt(2) s / sqrt(seeds). For shares, at least the next step of 1 / queries above the
+  /// tolerance.
   double detectable = 0;
   ChangeVerdict verdict = ChangeVerdict::kSame;
 };
@@ -37,13 +37,13 @@ struct Change {
 struct GateResult {
   std::vector<Change> changes;  ///< by scenario and system in the baseline's order, then measure
   std::size_t runs = 0;
-  std::size_t identical = 0;              ///< runs whose digest is the baseline's
-  std::vector<std::string> unrepeatable;  ///< runs that differ though program and machine do not
-  /// What has a tolerance but no figure, before or now: "corridor, plain-pepper: ate_rmse_m".
+  std::size_t identical = 0;              ///< runs whose digest equals the baseline's
+  std::vector<std::string> unrepeatable;  ///< runs that differ on the same program and machine
+  /// Measures with a tolerance but no figure, before or now: "corridor, plain-pepper: ate_rmse_m".
   std::vector<std::string> not_measured = {};
   bool same_origin = false;  ///< program, machine and settings are those of the baseline
-  std::vector<std::string> changed_settings = {};  ///< what the baseline was made with otherwise
-  bool settings_known = true;                      ///< whether the baseline tells its settings
+  std::vector<std::string> changed_settings = {};  ///< settings that differ from the baseline's
+  bool settings_known = true;                      ///< whether the baseline records its settings
 
   std::size_t worse() const;
   std::size_t better() const;
@@ -51,9 +51,9 @@ struct GateResult {
 };
 
 /// Pairs the runs by scenario, system and seed and judges each median paired change.
-/// @param same_origin  the baseline was made by this very program with these settings on this kind
-///                     of machine, so that each digest must be the same
-/// @throws InputError if the two hold different runs.
+/// @param same_origin  the baseline was made by this same program with these settings on this kind
+///                     of machine, so that every digest must match
+/// @throws InputError if the two contain different runs.
 GateResult compare(std::span<const RunFigures> baseline, std::span<const RunFigures> current,
                    const GateConfig& config, bool same_origin);
 

@@ -12,14 +12,14 @@
 namespace mh {
 
 /// The gate's findings as text: each judged measure with its change, its tolerance and the smallest
-/// change that could have been seen; then what moved, by how much and where.
+/// detectable change; then what changed, by how much and where.
 std::string gate_report(const GateResult& result, const std::string& suite);
 
 /// The same as JSON.
 nlohmann::ordered_json gate_json(const GateResult& result, const std::string& suite);
 
 /// The same as JUnit XML: a suite per scenario, a case per system and measure, and a case for the
-/// digests where they had to be equal.
+/// digests if they had to be equal.
 std::string gate_junit(const GateResult& result, const std::string& suite);
 
 /// JUnit XML of a gate that could not judge: an error per run that failed.

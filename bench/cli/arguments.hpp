@@ -13,40 +13,40 @@
 
 namespace mh::cli {
 
-/// A finite number from `least` to `greatest`. (CLI::Range takes "nan": it is neither too small nor
-/// too large.)
+/// Accepts a finite number from `least` to `greatest`. (CLI::Range accepts "nan", which is neither
+/// too small nor too large.)
 CLI::Validator number_between(double least, double greatest);
 
-/// A seed: a whole number from 0 to 2^64 - 1, where parsing alone would let others wrap round.
+/// Accepts a seed: an integer from 0 to 2^64 - 1. Parsing alone would let others wrap around.
 CLI::Validator seed_number();
 
-/// One of some words; a slip is told the nearest of them.
+/// Accepts one of the given words; for a misspelling, the error suggests the nearest.
 CLI::Validator one_of_words(std::vector<std::string> words);
 
-/// Puts the file that a word stands for in its place (find_shipped, find_scene for scenes); leaves
-/// an empty one alone.
+/// Replaces a shipped name by its file (find_shipped; find_scene for scenes); leaves an empty one
+/// alone.
 void resolve(std::string& word, Shipped what);
 
-/// Finds out before the work whether a file can be written there; makes its folder.
-/// @param read  what the command reads: none of it is overwritten
+/// Checks before any work is done that a file can be written there; creates its folder.
+/// @param read  what the command reads; none of it may be overwritten
 /// @throws InputError naming file or folder; DiskFullError.
 void need_writable(const std::filesystem::path& file,
                    const std::vector<std::filesystem::path>& read = {});
 
-/// Finds out, before anything is written, whether a file to be written is one that was read: of a
-/// scene that is every file it was loaded from.
+/// Checks, before anything is written, that the output file is not one that was read; for a scene,
+/// that means every file it was loaded from.
 /// @throws InputError naming the file.
 void need_not_read(const std::filesystem::path& file, const ReadRecord& record);
 
-/// The folder that a command writes into, made before the work: one that cannot be written costs no
-/// minutes. Work that is refused before it wrote anything leaves no empty folder. A file in it,
-/// `.modelhouse`, names the commands that wrote there: what they wrote they may replace.
+/// A command's output folder, created before any work is done, so that an unwritable one fails at
+/// once. If the command is refused before it wrote anything, no empty folder is left behind. A file
+/// in it, `.modelhouse`, names the commands that wrote there: they may replace what they wrote.
 class OutputFolder {
  public:
   /// @param command  "drive", as the user calls it
-  /// @param names    of what it is going to write there
-  /// @throws InputError if something of such a name is there that the command did not write; as
-  ///         make_output_folder()
+  /// @param names    of the files that it will write there
+  /// @throws InputError if a file of such a name exists that the command did not write; as
+  /// make_output_folder()
   OutputFolder(const std::filesystem::path& folder, const std::string& command,
                std::vector<std::string> names);
   ~OutputFolder();
@@ -58,7 +58,7 @@ class OutputFolder {
 
   const std::filesystem::path folder_;
   const std::vector<std::string> names_;
-  std::optional<std::string> mark_before_;   // what .modelhouse held; engaged if it was changed
+  std::optional<std::string> mark_before_;   // previous .modelhouse; set if it was changed
   std::vector<std::filesystem::path> made_;  // innermost first
 };
 

@@ -5,10 +5,10 @@
 
 namespace mh::cli {
 
-/// Thrown by a command that did its work and found that the check failed: exit code 1.
+/// Thrown by a command that completed but whose check failed: exit code 1.
 struct CheckFailed {};
 
-// Each adds one subcommand; its work is done in the callback, after all of the line was parsed.
+// Each adds one subcommand; its work runs in the callback, after the whole command line is parsed.
 void add_bench(CLI::App& app);
 void add_check(CLI::App& app);
 void add_drive(CLI::App& app);
@@ -24,7 +24,7 @@ void add_sensors(CLI::App& app);
 void add_slam(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_vocabulary(CLI::App& app);
-/// `completion` and `manual`, which are made from all of `app`.
+/// Adds `completion` and `manual`, which are generated from all of `app`.
 void add_declarations(CLI::App& app);
 
 }  // namespace mh::cli

@@ -10,39 +10,39 @@ namespace mh::cli {
 
 /// An option, flag or positional argument as it was declared.
 struct OptionDeclaration {
-  std::vector<std::string> names;  ///< "--jobs"; of a positional argument "suite"
+  std::vector<std::string> names;  ///< "--jobs"; for a positional argument, "suite"
   std::string meaning;
   std::string usual;                 ///< the default; "" = none
-  std::vector<std::string> choices;  ///< words that are valid or shipped under a name
+  std::vector<std::string> choices;  ///< valid words, or names of shipped files
   bool takes_value = false, positional = false, required = false;
 };
 
-/// A command with what it takes.
+/// A command with its options and subcommands.
 struct CommandDeclaration {
-  std::string path;  ///< "scene info"; "" of the program itself
+  std::string path;  ///< "scene info"; "" for the program itself
   std::string meaning, footer;
-  std::vector<std::string> commands = {};  ///< below it, by their last word
+  std::vector<std::string> commands = {};  ///< subcommands, by their last word
   std::vector<OptionDeclaration> options = {};
 };
 
-/// Every command that help lists, each before those below it. Completion, manual page and the help
-/// after a slip are made from these, so that none can fall behind.
+/// Returns every command that help lists, each before its subcommands. Completion, the manual page
+/// and the hints after a mistake are all generated from these, so that none can become outdated.
 std::vector<CommandDeclaration> declarations(const CLI::App& app);
 
-/// The declaration of a command; never absent for a path that declarations() gave.
+/// Finds the declaration of a command; always present for a path that declarations() returned.
 const CommandDeclaration& find_command(const std::vector<CommandDeclaration>& all,
                                        const std::string& path);
 
-/// A script for "bash", "zsh" or "fish".
+/// Returns the completion script for "bash", "zsh" or "fish".
 std::string completion_script(const std::vector<CommandDeclaration>& all, const std::string& shell);
 
-/// A manual page in roff.
+/// Returns the manual page in roff.
 std::string manual_page(const std::vector<CommandDeclaration>& all);
 
-/// What went wrong on the command line, in one line, with what may have been meant.
+/// Explains in one line what is wrong with the command line, with a suggestion of what was meant.
 std::string explain(const CLI::ParseError& error, const CLI::App& app);
 
-/// The command that a line reached before it ended or failed.
+/// Returns the innermost command that was parsed before the line ended or failed.
 const CLI::App& reached(const CLI::App& app);
 
 }  // namespace mh::cli

@@ -15,17 +15,17 @@ namespace mh::cli {
 void finish(const std::filesystem::path& out, const Suite& suite, const BenchResults& results,
             bool json);
 
-/// The names that `bench` and `merge` give to what they write into a folder; none where a results
-/// file shows that they did so before.
+/// Returns the names of the files that `bench` and `merge` write into a folder; empty if a results
+/// file shows that they already wrote there.
 std::vector<std::string> names_written(const std::filesystem::path& out, const Suite& suite);
 
-/// Draws how far a suite has come.
+/// Displays the progress of a suite.
 void show(Progress& progress, const PoolProgress& suite);
 
-/// Does nothing if there are none.
-/// @param why     where, or what, the cause is
-/// @param advice  what helps unless all of them met bad input
-/// @throws InputError if all of them met bad input, else MachineError, naming the first.
+/// Throws if any run failed; otherwise does nothing.
+/// @param why     the cause, or where to find it
+/// @param advice  what to do, unless all of them failed on bad input
+/// @throws InputError if all of them failed on bad input, else MachineError, naming the first.
 void throw_failures(const std::vector<FailedRun>& failed, const std::string& why,
                     const std::string& advice);
 

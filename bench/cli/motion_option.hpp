@@ -26,8 +26,8 @@ struct MotionOption {
                        "handheld[:SEED[:FRAMES]], replay:FILE.tum or "
                        "commands:FILE.yaml");
   }
-  /// The motion, a shipped tour's name replaced by its file.
-  /// @throws InputError unless exactly one of the two was given, or if a bare word is no motion
+  /// Returns the motion, with a shipped tour's name replaced by its file.
+  /// @throws InputError unless exactly one of the two was given, or if a bare word is not a motion
   std::string given() const {
     if (motion.empty() == tour.empty())
       throw InputError("give the motion once: as TOUR or as --motion");

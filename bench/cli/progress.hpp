@@ -9,8 +9,8 @@
 
 namespace mh::cli {
 
-/// Tells how far long work has come, with the time to go: a bar that is drawn over itself and stays
-/// within one line on a terminal, a plain line every tenth of the work elsewhere.
+/// Reports the progress of long work with the time remaining: on a terminal, a bar that redraws
+/// itself within one line; elsewhere, a plain line at every tenth of the work.
 class Progress {
  public:
   explicit Progress(std::string what, std::FILE* to = stderr);
@@ -19,14 +19,14 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void say(std::string_view stage);
-  /// The time to go is told once a twentieth of the work was measured, from the first that was
-  /// done: preparations before it would make it look slow.
+  /// The time remaining is shown once 1/20 of the work has been measured, counted from the first
+  /// progress: preparation before it would bias the estimate.
   /// @param done     in [0, 1]
-  /// @param figures  shown behind: how the work stands
+  /// @param figures  shown after the bar: status of the work
   void share(double done, std::string_view figures = {});
-  /// The same where the caller knows better how long it will take; nullopt: nobody knows yet.
+  /// The same with the caller's own estimate of the time remaining; nullopt: not known yet.
   void share(double done, std::string_view figures, std::optional<double> to_go_s);
-  /// Leaves the bar's line: what is printed next begins a line of its own.
+  /// Ends the bar's line: what is printed next starts on a new line.
   void end();
 
  private:
@@ -40,8 +40,9 @@ class Progress {
   std::chrono::steady_clock::time_point start_;
 };
 
-/// One line of at most `columns` characters: the bar gives way first, then the last figures do.
-/// @param figures  parted by ", "
+/// Returns one line of at most `columns` characters: the bar shrinks first, then the last figures
+/// are dropped.
+/// @param figures  separated by ", "
 std::string bar_line(std::string_view what, double done, std::string_view to_go,
                      std::string_view figures, std::size_t columns);
 

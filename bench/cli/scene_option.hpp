@@ -14,7 +14,7 @@
 
 namespace mh::cli {
 
-/// What the command line tells of a scene's frame: --up and --floor-z.
+/// The command line's options for a scene's frame: --up and --floor-z.
 struct SceneFrameOption {
   std::optional<std::string> up;
   std::optional<double> floor_z_m;

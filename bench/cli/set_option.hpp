@@ -13,7 +13,7 @@
 
 namespace mh::cli {
 
-/// What the command line puts in the place of `${NAME}` in a suite: --set NAME=VALUE.
+/// The command line's values for `${NAME}` in a suite: --set NAME=VALUE.
 struct SetOption {
   std::vector<std::string> given;
 
@@ -36,7 +36,8 @@ struct SetOption {
       const std::string name = word.substr(0, equals);
       std::string value = word.substr(equals + 1);
       std::error_code error;
-      // The suite's own paths are seen from its folder; what a user names is seen from theirs.
+      // The suite's paths are relative to its folder; the user's are relative to the working
+      // directory.
       if (!value.empty() && fs::exists(value, error))
         value = fs::absolute(value).lexically_normal().string();
       if (!values.emplace(name, value).second)

@@ -16,14 +16,14 @@
 
 namespace mh::cli {
 
-/// A run on one sequence as it is reported at its end.
+/// The final report of a run on one sequence.
 struct SlamReport {
   const SlamState& state;
   const RunResult& run;
   const FrameLog& log;
   const StageClock& clock;
-  std::vector<double> frame_ms;          ///< of each frame that was processed, reading apart
-  std::optional<Evaluation> evaluation;  ///< where the truth is known
+  std::vector<double> frame_ms;          ///< of each processed frame, without reading it
+  std::optional<Evaluation> evaluation;  ///< if the truth is known
   std::string frames_csv, source;
 
   int lost() const {
@@ -32,12 +32,12 @@ struct SlamReport {
   double completeness() const { return log.tracked / static_cast<double>(run.mapping.offered); }
 };
 
-/// What write_slam_files() writes; the last one is there only if all are.
+/// Files that write_slam_files() writes; the last one exists only if all do.
 inline constexpr std::array<const char*, 8> kSlamFiles{
     "estimate.tum",  "estimate.kitti", "frames.csv",    "landmarks.ply",
     "keyframes.ply", "keyframes.json", "settings.yaml", "summary.json"};
 
-/// @throws DiskFullError; what an earlier run wrote into the folder is still there then
+/// @throws DiskFullError; the files of an earlier run are then still in the folder
 void write_slam_files(const std::filesystem::path& folder, const SlamReport& report,
                       const Settings& settings);
 void print_slam_report(const SlamReport& report);

@@ -9,8 +9,8 @@
 
 namespace mh {
 
-/// A picture drawn at twice its size and scaled down in the end, so that lines and letters are
-/// smooth. All lengths are in pixels of the finished picture.
+/// An image drawn at twice its size and scaled down at the end, so that lines and letters are
+/// smooth. All lengths are in pixels of the finished image.
 class Canvas {
  public:
   Canvas(int width_px, int height_px, Rgb8 background = {255, 255, 255});
@@ -28,10 +28,10 @@ class Canvas {
   void text(const std::string& text, cv::Point2d at, double size, Rgb8 color = {40, 40, 40},
             Align align = Align::kLeft, bool bold = false);
   static double text_width(const std::string& text, double size, bool bold = false);
-  /// Puts a picture (8-bit BGR) into a rectangle.
+  /// Draws an image (8-bit BGR) into a rectangle.
   void picture(const cv::Mat& bgr, double x, double y, double width, double height);
 
-  cv::Mat finish() const;  ///< 8-bit BGR at its real size
+  cv::Mat finish() const;  ///< 8-bit BGR at its final size
 
  private:
   int width_, height_;

@@ -20,22 +20,23 @@ struct View {
   Grid2d<ClassId> classes;
 };
 
-/// Rows of color, depth in false color and labels in class colors, with a depth scale and the
+/// Draws rows of color, depth in false color and labels in class colors, with a depth scale and the
 /// names of the classes seen.
 cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& views);
 
-/// The colors of many views, `columns` in a row, with or without their captions.
+/// Draws the color images of many views, `columns` in a row, with or without their captions.
 cv::Mat draw_gallery(const std::vector<View>& views, int columns, bool captions);
 
-/// Exact pictures from a few poses spread evenly over a path.
+/// Renders exact images from a few poses spread evenly over a path.
 std::vector<View> views_along(const Trajectory& path, const Renderer& renderer,
                               const Camera& camera, std::size_t count);
 
-/// Exact pictures that show a scene to a person: each room from the two corners at eye height that
-/// show most of what stands in it; without a plan, from where most is to be seen (viewpoints).
+/// Renders exact images that show a scene to a person: each room from the two corners that, at eye
+/// height, show most of its contents; without a plan, from the most revealing viewpoints
+/// (viewpoints()).
 std::vector<View> views_of(const Scene& scene, const Renderer& renderer);
 
-/// A camera at `eye` that looks at `target`, upright.
+/// Returns the pose of an upright camera at `eye` that looks at `target`.
 SE3 look_at(const Eigen::Vector3d& eye_m, const Eigen::Vector3d& target_m);
 
 }  // namespace mh

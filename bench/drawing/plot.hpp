@@ -8,7 +8,7 @@
 
 namespace mh {
 
-/// Points of one plot: a line where the source's formula is drawn, dots where it was measured.
+/// Points of one plot: a line for the source's formula, dots for measurements.
 struct Series {
   std::string name;
   bool dots = false;
@@ -20,7 +20,7 @@ struct Plot {
   std::vector<Series> series;
 };
 
-/// Plots side by side, three in a row, each with linear axes from zero or the least value.
+/// Draws plots side by side, three in a row, each with linear axes from zero or the lowest value.
 cv::Mat draw_plots(const std::string& title, const std::vector<Plot>& plots);
 
 }  // namespace mh

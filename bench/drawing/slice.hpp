@@ -10,14 +10,14 @@
 
 namespace mh {
 
-/// A straight piece of a horizontal section through a scene.
+/// A line segment of a horizontal section through a scene.
 struct SliceSegment {
   Eigen::Vector2d from_m, to_m;
   ClassId class_id = kVoid;
 };
 
-/// Where the plane z = height cuts the scene's triangles, in face order. Vertices that lie in the
-/// plane count as above it, so that every cut triangle gives one segment.
+/// Intersects the scene's triangles with the plane z = height, in face order. Vertices in the plane
+/// are treated as above it, so that every cut triangle gives one segment.
 std::vector<SliceSegment> slice(const Scene& scene, double height_m);
 
 }  // namespace mh

@@ -11,7 +11,7 @@
 
 namespace mh {
 
-/// Greatest distance of two stamps that are taken for the same moment: 0.01 s, as in `evo`.
+/// Largest difference of two stamps that are treated as the same moment: 0.01 s, as in `evo`.
 inline constexpr Stamp kMaxStampDifference_ns = 10'000'000;
 
 /// Two trajectories of equal length: element i of one belongs to element i of the other.
@@ -24,15 +24,15 @@ struct MatchedTrajectories {
 
 /// Pairs poses by stamp: each pose of the shorter trajectory (the estimate if equal) takes the
 /// nearest of the longer one, the earlier of two equally near, if at most max_difference away. As
-/// `evo` does, but for one thing: where several poses claim the same one, only the nearest of them
-/// (the earliest if equal) gets it, so that nothing counts twice.
+/// `evo` does, with one exception: if several poses claim the same one, only the nearest of them
+/// (the earliest if equal) gets it, so that no pose is counted twice.
 /// @pre both ordered by strictly increasing stamp.
 MatchedTrajectories match_by_stamp(const Trajectory& truth, const Trajectory& estimate,
                                    Stamp max_difference_ns = kMaxStampDifference_ns);
 
-/// How an estimate is laid over the truth before absolute errors are taken.
+/// How an estimate is aligned with the truth before absolute errors are computed.
 enum class Alignment {
-  kNone,    ///< as it is: both share a world
+  kNone,    ///< unchanged: both share a world
   kOrigin,  ///< first pose onto first pose
   kSe3,     ///< rotation and translation by least squares over all positions
   kSim3,    ///< and scale
@@ -57,15 +57,15 @@ struct Similarity {
 /// with_scale (Umeyama, "Least-squares estimation of transformation parameters between two point
 /// patterns", PAMI 1991, equations 34 to 43).
 /// @pre equal lengths.
-/// @returns nullopt where the rotation is undetermined: fewer than three points, or all on a line.
+/// @returns nullopt if the rotation is undetermined: fewer than three points, or all on a line.
 std::optional<Similarity> umeyama(std::span<const Eigen::Vector3d> source,
                                   std::span<const Eigen::Vector3d> target, bool with_scale);
 
-/// truth_from_estimate over matched poses. @returns nullopt where nothing was matched or umeyama()
-/// has no answer.
+/// Returns truth_from_estimate over matched poses; nullopt if nothing was matched or umeyama() is
+/// undetermined.
 std::optional<Similarity> align(const MatchedTrajectories& matched, Alignment alignment);
 
-/// Every pose of a trajectory carried over, for example to draw an estimate over the truth.
+/// Transforms every pose of a trajectory, for example to draw an estimate over the truth.
 Trajectory transformed(const Similarity& target_from_source, const Trajectory& trajectory);
 
 }  // namespace mh

@@ -23,23 +23,23 @@ struct RelativeScore {
   ErrorStatistics rotation_deg;
 };
 
-/// Everything that an estimate's report needs.
+/// Everything needed to report on an estimate.
 struct Evaluation {
   std::size_t truth_poses = 0;
   std::size_t estimate_poses = 0;
   std::size_t pairs = 0;  ///< matched by stamp; at 0 every statistic below has count 0
   double truth_path_m = 0, estimate_path_m = 0;  ///< through the matched poses
   Alignment alignment = Alignment::kSe3;
-  /// truth_from_estimate; nullopt where it is undetermined (then ape_* have count 0).
+  /// truth_from_estimate; nullopt if it is undetermined (then ape_* have count 0).
   std::optional<Similarity> truth_from_estimate;
   ErrorStatistics ape_translation_m;  ///< its rmse is the ATE
   ErrorStatistics ape_rotation_deg;
-  ErrorStatistics ape_unaligned_m;  ///< without alignment, where both share a world
+  ErrorStatistics ape_unaligned_m;  ///< without alignment, if both share a world
   std::vector<RelativeScore> rpe;   ///< in the order of options.rpe_deltas
 };
 
-/// Scores an estimate against the truth. RPE pairs are chosen on the estimate as it came, before
-/// any alignment. @throws InputError on a bad RPE delta.
+/// Scores an estimate against the truth. RPE pairs are chosen on the original estimate, before any
+/// alignment. @throws InputError on a bad RPE delta.
 Evaluation evaluate(const Trajectory& truth, const Trajectory& estimate,
                     const EvaluationOptions& options = {});
 

@@ -5,13 +5,13 @@
 
 namespace mh {
 
-/// What a mapping took, beside its trajectory.
+/// Counts of a mapping, in addition to its trajectory.
 struct MappingCounts {
   double failures = 0;  ///< times that tracking was lost
   double restarts = 0;  ///< rewinds
-  double dropped = 0;   ///< frames given up
-  /// Share of the pairs compared with the local map whose labels disagree: what labels are worth.
-  /// Absent where the system tells of none.
+  double dropped = 0;   ///< frames dropped for good
+  /// Share of the pairs compared with the local map whose labels disagree: how much labels
+  /// contribute. Absent if the system does not report it.
   std::optional<double> penalized;
 };
 

@@ -9,13 +9,14 @@
 
 namespace mh {
 
-/// Every figure of one run: of its mapping by name, of its queries as "held_out.success".
+/// Every metric of one run: those of its mapping by name, those of its queries as
+/// "held_out.success".
 std::span<const Metric> all_metrics();
 
-/// The metric of a set's queries under its name among those of a run.
+/// Returns the metric of a query set under its name among those of a run.
 Metric of_set(QuerySet set, Metric metric);
 
-/// A metric that the gate may judge. nullptr if there is none of that name.
+/// Finds a metric that the gate may judge; nullptr if there is none of that name.
 const Metric* find_measure(std::string_view name);
 
 }  // namespace mh

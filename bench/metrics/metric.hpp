@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// How figures are listed. Beside each struct of scores stands the list of its fields:
-// `fields(score, visit)` calls visit(Metric, value) for each, a double or, where it may be unknown,
-// an optional one. Its brackets name every field of the struct, so that a field without a line does
-// not compile. Files, tables, exports and the gate are made from the lists: a new figure is a
-// field, its line, and what computes it.
+// How figures are listed. Next to each struct of scores is the list of its fields: `fields(score,
+// visit)` calls visit(Metric, value) for each; the value is a double or, if it may be unknown, an
+// optional one. Its structured binding names every field of the struct, so that a field without a
+// line does not compile. Files, tables, exports and the gate are generated from these lists: a new
+// figure needs a field, its line, and the code that computes it.
 
 #include <functional>
 #include <optional>
@@ -21,15 +21,15 @@ namespace mh {
 
 enum class Better { kNeither, kLess, kMore };
 
-/// What is known of a figure, wherever it is stored, printed or judged.
+/// Describes a figure wherever it is stored, printed or judged.
 struct Metric {
   std::string name;                  ///< its key in JSON, CSV, SQL and the gate
-  std::string_view heading{};        ///< of its column in the tables; empty: it has none
+  std::string_view heading{};        ///< of its column in the tables; empty: no column
   std::string_view unit{};           ///< "m"; "%": a share, stored as 0 to 1 and printed times 100
   int decimals = 0;                  ///< in tables
-  Better better = Better::kNeither;  ///< where it is kNeither the gate does not judge it
-  std::string count{};               ///< of a share: the figure that holds its denominator
-  bool in_overview = false;          ///< stands in tables of many places or settings as well
+  Better better = Better::kNeither;  ///< kNeither: the gate does not judge it
+  std::string count{};               ///< for a share: the figure that is its denominator
+  bool in_overview = false;          ///< also shown in tables of many places or settings
 };
 
 struct Figure {
@@ -37,10 +37,10 @@ struct Figure {
   std::optional<double> value;
 };
 
-/// "0.0123", "87.50%"; "-" of what is unknown.
+/// "0.0123", "87.50%"; "-" if unknown.
 std::string shown(const Figure& figure);
 
-/// The figures of a score, in the order of its list.
+/// Returns the figures of a score, in the order of its list.
 template <class Score>
 std::vector<Figure> figures_of(const Score& score) {
   std::vector<Figure> figures;
@@ -51,10 +51,10 @@ std::vector<Figure> figures_of(const Score& score) {
   return figures;
 }
 
-/// One value of many, known or unknown; unknown where nothing can be said.
+/// Reduces many values, known or unknown, to one; unknown if it cannot be determined.
 using Reduction = std::function<std::optional<double>(std::span<const std::optional<double>>)>;
 
-/// Field by field, one score of many.
+/// Reduces many scores to one, field by field.
 template <class Score>
 Score reduce(std::span<const Score> scores, const Reduction& reduction) {
   std::vector<std::vector<std::optional<double>>> values;

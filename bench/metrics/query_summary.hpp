@@ -5,25 +5,25 @@
 
 namespace mh {
 
-/// Which test frames: never pooled with one another.
+/// Which test frames; the sets are never pooled.
 enum class QuerySet { kHeldOut, kSecondTour };
 inline constexpr QuerySet kQuerySets[] = {QuerySet::kHeldOut, QuerySet::kSecondTour};
 inline std::string_view name(QuerySet set) {
   return set == QuerySet::kHeldOut ? "held_out" : "second_tour";
 }
 
-/// The answers of one run to one set of queries, or one value of many such.
+/// Summary of one run's answers to one set of queries, or of many such summaries.
 struct QuerySummary {
   double queries = 0;
   double success = 0;  ///< share of all queries
-  /// Likewise; absent where none can be judged, since nobody knows the truth.
+  /// Shares of all queries; absent if none can be judged because the truth is unknown.
   std::optional<double> correct, false_positive;
-  /// Over the queries that were answered, local truth; absent where none was.
+  /// Over the answered queries, to the local truth; absent if none was answered.
   std::optional<double> distance_mean_m, distance_median_m;
   std::optional<double> aligned_distance_mean_m;  ///< the same, in the globally aligned frame
   double attempts = 0;                            ///< mean
-  /// Candidate keyframes left after equations 3, 4, 5 and 6: mean counts over the queries where the
-  /// system tells them; absent where it tells none.
+  /// Candidate keyframes left after equations 3, 4, 5 and 6: mean counts over the queries for which
+  /// the system reports them; absent if it reports none.
   std::optional<double> keyframes, c1, c2, c3, final;
   std::optional<double> single_candidate;  ///< share of queries with exactly one left
   std::optional<double> label_mass;        ///< mean share of the query vector held by labels

@@ -6,11 +6,11 @@
 
 namespace mh {
 
-/// How good a mapping tour's trajectory is. An error is absent where the path does not determine
-/// it: too short, or on a line.
+/// Quality of a mapping tour's trajectory. An error is absent if the path does not determine it:
+/// too short, or on a line.
 struct TrajectoryScore {
   double offered = 0;                       ///< frames
-  double tracked = 0;                       ///< frames with a pose in the end
+  double tracked = 0;                       ///< frames with a pose at the end
   std::optional<double> ate_rmse_m;         ///< after SE(3) alignment without scale
   std::optional<double> ate_rmse_deg;       ///< of orientations, after the same alignment
   std::optional<double> ate_first_pose_m;   ///< in the frame of dock_from_estimate
@@ -34,19 +34,19 @@ void fields(S& score, Visit& v) {
   v(Metric{"completeness", "complete", "%", 2, kMore, "offered", true}, completeness);
 }
 
-/// ATE, RPE and completeness of an estimate, by the definitions of evaluate().
+/// Computes ATE, RPE and completeness of an estimate, by the definitions of evaluate().
 /// @param truth    every frame of the sequence
-/// @param offered  frames that the system was to map
+/// @param offered  frames that the system was supposed to map
 TrajectoryScore score_trajectory(const Trajectory& estimate, const Trajectory& truth,
                                  std::size_t offered);
 
-/// Where an estimate's world lies in the true one.
+/// Where an estimate's world is in the true one.
 struct EstimateFrames {
   /// By least squares over all positions. A path that determines no alignment (too short, on a
-  /// line) is laid over by its first pose.
+  /// line) is aligned by its first pose.
   SE3 truth_from_estimate;
-  /// The first tracked pose put onto the truth, nothing else: a robot knows where its dock stands.
-  /// The frame of the occupancy map and of the pictures.
+  /// Aligns the first tracked pose with the truth, nothing else: a robot knows where its dock is.
+  /// The frame of the occupancy map and of the images.
   SE3 dock_from_estimate;
 };
 EstimateFrames frames_of(const Trajectory& estimate, const Trajectory& truth);

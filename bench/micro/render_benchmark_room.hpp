@@ -13,7 +13,7 @@
 namespace mh {
 
 /// A room with 225 boxes in it, all cut into even triangles, with textures of block noise at 2 mm
-/// per texel (near the worst case for a texture cache) and light that varies over it.
+/// per texel (near the worst case for a texture cache) and spatially varying light.
 class BenchmarkRoom {
  public:
   /// @param wall_cells, box_cells  per side of each wall and of each box

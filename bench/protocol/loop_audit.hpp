@@ -9,19 +9,20 @@
 
 namespace mh {
 
-/// What became of the loops that a system closed.
+/// Correctness of the loops that a system closed.
 struct LoopAudit {
   int closed = 0;
   int false_positive = 0;  ///< farther from the truth than a correct answer may be
-  int unknown = 0;         ///< between moments of which the truth knows nothing: not judged
+  int unknown = 0;         ///< at moments for which the truth is unknown: not judged
   double worst_m = 0;      ///< largest error of a loop's relative position
-  double worst_rad = 0;    ///< and of its relative rotation
+  double worst_rad = 0;    ///< largest error of its relative rotation
   friend bool operator==(const LoopAudit&, const LoopAudit&) = default;
 };
 
-/// Compares each loop's relative pose with the true one. A loop is wrong beyond
-/// config.correct_distance_m or config.correct_angle_deg, as an answer to a query is.
-/// @param truth  ordered by stamp; read at a loop's moments as at a query's (kMaxTruthGap_ns)
+/// Compares each loop's relative pose with the true one. A loop is a false positive beyond
+/// config.correct_distance_m or config.correct_angle_deg, as is an answer to a query.
+/// @param truth  ordered by stamp; interpolated at a loop's moments as at a query's
+///               (kMaxTruthGap_ns)
 LoopAudit audit_loops(std::span<const LoopClosure> loops, const Trajectory& truth,
                       const ProtocolConfig& config);
 

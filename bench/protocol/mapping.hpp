@@ -20,7 +20,7 @@ struct MappedFrame {
   Stamp stamp_ns = 0;
   int restart = 0;  ///< restarts so far: it keys the random streams
   TrackStatus status = TrackStatus::kLost;
-  std::optional<int> inliers;  ///< where the system tells
+  std::optional<int> inliers;  ///< if the system reports it
   bool keyframe_added = false;
   bool map_reset = false;  ///< as SystemReport
   std::uint64_t image_digest = 0;
@@ -49,15 +49,15 @@ struct MappingOutcome {
   std::vector<std::size_t> dropped;    ///< frames removed after too many failed restarts, in order
   int failures = 0;                    ///< times that tracking was lost
   int restarts = 0;                    ///< rewinds
-  int before_map = 0;                  ///< frames at the start that gave no map yet
-  bool gave_up = false;                ///< ProtocolConfig::max_effort was spent
-  std::size_t offered = 0;             ///< frames of the sequence that are no test frames
-  std::optional<MatchCounts> matches;  ///< summed over all track calls, where the system tells
-  std::vector<LoopClosure> loops;      ///< closed on the way, in order
-  SkippedFrames skipped;               ///< of those offered; queries' are counted by the run
+  int before_map = 0;                  ///< frames at the start, before there was a map
+  bool gave_up = false;                ///< ProtocolConfig::max_effort was used up
+  std::size_t offered = 0;             ///< frames of the sequence that are not test frames
+  std::optional<MatchCounts> matches;  ///< summed over all track calls, if the system reports them
+  std::vector<LoopClosure> loops;      ///< closed during the mapping, in order
+  SkippedFrames skipped;  ///< of the offered frames; those of queries are counted by the run
 };
 
-/// But for the calls.
+/// All fields except the calls.
 template <Either<MappingOutcome> O, class Visit>
 void fields(O& outcome, Visit& v) {
   auto& [calls, dropped, failures, restarts, before_map, gave_up, offered, matches, loops,
@@ -73,53 +73,56 @@ void fields(O& outcome, Visit& v) {
   v("skipped", skipped);
 }
 
-/// Test frames are the last of every `test_interval`: 29, 59, ... at 30; none at 0.
+/// Whether frame `index` is a test frame, the last of every `test_interval`: 29, 59, ... at 30;
+/// none at 0.
 bool is_test_frame(std::size_t index, const ProtocolConfig& config);
 
-/// The frames of a sequence from `first` on that are no test frames, in order.
+/// Returns the frames of a sequence from `first` on that are not test frames, in order.
 std::vector<std::size_t> offered_frames(std::size_t count, const ProtocolConfig& config,
                                         std::size_t first = 0);
 
-/// Frame and report of a track call as it happens: for progress and for keeping keyframe depth.
+/// Frame and report of a track call as it happens: for progress reports and to retain keyframe
+/// depth.
 using MappingObserver =
     std::function<void(const MappedFrame&, const RgbdFrame&, const SystemReport&)>;
 
-/// Maps a sequence (section 3.1 of the paper; at OnFailure::kContinue each frame is shown once, and
-/// what follows on rewinds does not apply). A failure is a frame reported lost while tracking
-/// was on, or a frame reported lost at which the feed had failed before. After a failure at frame i
-/// the feed goes back to i - 50 and goes on with the map as it is; frames reported lost on the way
-/// back to i are no failures: the system is still relocalizing there. After five restarts in a row
-/// that did not get past the trouble, the frame that failed last is dropped, the feed goes back 50
-/// once more and the count starts again. Frames reported lost before anything is mapped are passed
-/// over: there is nothing to go back to.
+/// Maps a sequence (section 3.1 of the paper; with OnFailure::kContinue, each frame is shown once
+/// and the rules on rewinds below do not apply). A failure is a frame reported lost while tracking
+/// was on, or a frame reported lost at which the feed failed before. After a failure at frame i the
+/// feed rewinds to i - 50 and continues with the map as it is; frames reported lost on the way back
+/// to i are not failures: the system is still relocalizing there. After five consecutive restarts
+/// that did not get past frame i, the frame that failed last is dropped, the feed rewinds by 50
+/// once more and the count starts over. Frames reported lost before anything is mapped are skipped:
+/// there is nothing to rewind to.
 ///
-/// Ends: the frame to get past only moves forward, a drop removes a frame for good, and between two
-/// of these events there are at most five restarts; beyond max_effort * count track calls (or
+/// Terminates: the frame to get past only moves forward, a drop removes a frame for good, and there
+/// are at most five restarts between two of these events; beyond max_effort * count track calls (or
 /// count + 1,000, if more) the rest stays unmapped.
 ///
-/// A frame that no system can be shown (SkippedFrames) is skipped, as if it were not there.
+/// A frame that cannot be shown to any system (SkippedFrames) is skipped, as if it were not there.
 ///
-/// Noise and SLAM draw from streams keyed by (restart, frame), so that a restart is no replica.
-/// @param first  frames before it are not offered: the system was fed them by an earlier call
+/// Noise and SLAM draw from streams keyed by (restart, frame), so that a restart does not replay
+/// the same draws.
+/// @param first  frames before it are not offered: an earlier call already fed them to the system
 /// @throws InputError if none of the first kHopeless frames can be shown, or none at all.
 MappingOutcome map_sequence(System& system, const Sequence& sequence, const ProtocolConfig& config,
                             RandomStream stream, const MappingObserver& observe = {},
                             std::size_t first = 0);
 
-/// What came of a sequence that was looked for in a finished map.
+/// Result of localizing a sequence in a finished map.
 struct Localization {
   MappingOutcome outcome;
-  Trajectory trajectory;  ///< the frames that were found, in the map's world
+  Trajectory trajectory;  ///< of the localized frames, in the map's world
 };
 
-/// Shows a whole sequence to one session before a frozen map: found in one frame, the camera is
-/// tracked to the next. Test frames and frames that cannot be shown are passed over.
+/// Localizes a whole sequence in a frozen map with one session: once relocalized in a frame, the
+/// camera is tracked to the next. Test frames and frames that cannot be shown are skipped.
 /// @throws InputError as map_sequence()
 Localization localize_sequence(const System& frozen, const Sequence& sequence,
                                const ProtocolConfig& config, RandomStream stream,
                                const MappingObserver& observe = {});
 
-/// The noise stream of mapping frames after so many restarts; equal for every system.
+/// Returns the noise stream of mapping frames after so many restarts; the same for every system.
 RandomStream mapping_noise(RandomStream stream, int restart);
 
 }  // namespace mh

@@ -10,13 +10,13 @@
 
 namespace mh {
 
-/// What a system answered to one test frame.
+/// A system's answer to one test frame.
 struct QueryAnswer {
   std::size_t index = 0;                 ///< of the test frame in its sequence
   int blank_frames = 0;                  ///< shown until the system was lost
   int attempts = 0;                      ///< times that the test frame was shown
-  std::optional<SE3> world_from_camera;  ///< the first pose that was returned
-  /// The furthest stage that an attempt reached, where the system tells; kVerified where a pose was
+  std::optional<SE3> world_from_camera;  ///< the first returned pose
+  /// The furthest stage that an attempt reached, if the system reports it; kVerified if a pose was
   /// returned.
   std::optional<RelocalizationStage> stage;
   Candidates candidates;               ///< of the first attempt
@@ -42,22 +42,22 @@ void fields(A& answer, Visit& v) {
   v("pose", as_digest(pose_digest));
 }
 
-/// A black picture without depth or labels: what the paper shows between test frames.
+/// A black image without depth or labels, which the paper shows between test frames.
 RgbdFrame blank_frame(int width_px, int height_px, Stamp stamp_ns);
 
 /// Whether a frame shows nothing at all, as blank_frame() does.
 bool is_blank(const RgbdFrame& frame);
 
-/// Puts one test frame to a frozen system (section 3.2 of the paper): a fresh session, blank frames
-/// until it is lost, then the test frame up to config.query_attempts times or until a pose comes
-/// back. Noise and SLAM draw from streams keyed by (test frame, attempt) alone: the answer depends
-/// on no other query.
+/// Queries a frozen system with one test frame (section 3.2 of the paper): a fresh session, blank
+/// frames until it is lost, then the test frame up to config.query_attempts times or until a pose
+/// is returned. Noise and SLAM draw from streams keyed by (test frame, attempt) alone: the answer
+/// depends on no other query.
 /// @throws UnusableFrame if the frame cannot be shown.
-/// @param memo  of frozen.make_memo(), for this query alone; null or not, the answer is the same
+/// @param memo  from frozen.make_memo(), for this query alone, or null; does not change the answer
 QueryAnswer query(const System& frozen, std::size_t index, const Sequence& sequence,
                   const ProtocolConfig& config, RandomStream stream, QueryMemo* memo = nullptr);
 
-/// The test frames of a sequence, in order.
+/// Returns the test frames of a sequence, in order.
 std::vector<std::size_t> test_frames(std::size_t count, const ProtocolConfig& config);
 
 }  // namespace mh

@@ -12,7 +12,7 @@
 
 namespace mh {
 
-/// Keyframes left after each step of Algorithm 1, as far as a system tells.
+/// Keyframes left after each step of Algorithm 1, if the system reports them.
 struct Candidates {
   std::optional<int> keyframes;      ///< in the map
   std::optional<int> c1, c2, c3;     ///< after equations 3, 4 and 5
@@ -32,13 +32,13 @@ void fields(C& candidates, Visit& v) {
   v("label_mass", label_mass);
 }
 
-/// What a system reports of one frame. What it does not report is absent.
+/// A system's report on one frame. What it does not report is absent.
 struct SystemReport {
   TrackStatus status = TrackStatus::kLost;
   std::optional<SE3> world_from_camera;  ///< in the system's own world
   std::optional<int> keypoints, inliers;
   bool keyframe_added = false;
-  bool map_reset = false;  ///< it gave its map up and began another: earlier poses are void
+  bool map_reset = false;  ///< it discarded its map and started a new one: earlier poses are void
   std::optional<LoopClosure> loop;  ///< if one was closed
   std::optional<RelocalizationStage> relocalization;
   Candidates candidates;  ///< when relocalization was tried

@@ -9,20 +9,20 @@
 
 namespace mh {
 
-/// Which mapped frame vouches for a query's true place in the map.
+/// Which mapped frame anchors a query's true pose in the map.
 enum class NearestBy {
-  kTime,   ///< held-out frames: the mapped frame next in time
-  kPlace,  ///< another tour: the mapped frame that really was nearest, 1 rad counting as 1 m
+  kTime,   ///< held-out frames: the mapped frame nearest in time
+  kPlace,  ///< another tour: the mapped frame truly nearest, 1 rad equivalent to 1 m
 };
 
 /// The mapped frame, by index into `truth` (the mapping sequence) and its estimate.
 struct Anchor {
   SE3 estimate;  ///< world_from_camera of the system
-  SE3 truth;     ///< world_from_camera, really
+  SE3 truth;     ///< world_from_camera, true
   Stamp stamp_ns = 0;
 };
 
-/// A query's moment, and where its camera really was: absent where nobody knows.
+/// A query's moment and its camera's true pose, absent if unknown.
 struct QueryMoment {
   Stamp stamp_ns = 0;
   std::optional<SE3> true_world_from_camera = {};
@@ -32,53 +32,54 @@ struct QueryMoment {
   QueryMoment(const TimedPose& truth) : QueryMoment(truth.stamp_ns, truth.world_from_camera) {}
 };
 
-/// Where the query camera is in the system's own map, exactly: the anchor's estimated pose
-/// composed with the true motion from the anchor to the query. Drift of the map elsewhere does not
-/// count (the paper's 0.02 m beside an APE of 0.2 m shows that its distance was local too).
+/// Exact pose of the query camera in the system's own map: the anchor's estimated pose composed
+/// with the true motion from the anchor to the query. Drift of the map elsewhere has no effect (the
+/// paper's 0.02 m, at an APE of 0.2 m, shows that its distance was local too).
 SE3 local_truth(const Anchor& anchor, const SE3& true_world_from_camera);
 
-/// The anchor of a query; nullopt where nothing was mapped. Ties go to the earlier frame.
+/// Returns the anchor of a query; nullopt if nothing was mapped. Ties go to the earlier frame.
 std::optional<Anchor> nearest_mapped(const Trajectory& estimate, const Trajectory& mapping_truth,
                                      const TimedPose& true_query, NearestBy by);
 
-/// Neighbors in time that a pose may be interpolated between lie at most this far apart: held-out
-/// frames miss one frame or two, and beyond that an interpolation says nothing.
+/// Largest gap between neighbors in time that a pose may be interpolated between: held-out frames
+/// leave out one frame or two; beyond that, an interpolation is meaningless.
 inline constexpr Stamp kMaxNeighborGap_ns = 500'000'000;
 
-/// Likewise for the truth, which a recording may tell at other moments than its frames'. Over this
-/// gap g a hand that accelerates by 5 m/s2 and 10 rad/s2 leaves the interpolation by a g^2 / 8: 1.6
-/// mm and 0.2 degrees. It is less than two frames at 30 Hz, so that a frame whose own pose is
-/// invalid gets none of its neighbors'.
+/// The same for the truth, which a recording may give at other moments than its frames'. Over this
+/// gap g a hand that accelerates by 5 m/s2 and 10 rad/s2 deviates from the interpolation by a
+/// g^2/8: 1.6 mm and 0.2 degrees. It is less than two frames at 30 Hz, so that a frame whose own
+/// pose is invalid does not get one from its neighbors.
 inline constexpr Stamp kMaxTruthGap_ns = 50'000'000;
 
-/// The pose at a moment: the one of that stamp, else between its neighbors in time, position
-/// linearly, rotation along the shortest turn. Of mapped frames it is where the query camera is in
-/// the system's own map by the paper's estimate.
-/// nullopt if a neighbor is missing or they lie more than max_gap_ns apart.
+/// Returns the pose at a moment: the one of that stamp, else interpolated between its neighbors in
+/// time, position linearly, rotation along the shortest arc. For mapped frames, this is the query
+/// camera's pose in the system's own map by the paper's estimate. nullopt if a neighbor is missing
+/// or they are more than max_gap_ns apart.
 std::optional<SE3> interpolated_pose(const Trajectory& trajectory, Stamp stamp_ns,
                                      Stamp max_gap_ns = kMaxNeighborGap_ns);
 
-/// Where the camera of a query was, as a trajectory of the truth tells it.
-/// @param truth  may be null: nobody knows
+/// Returns a query's moment with its true camera pose, by a true trajectory.
+/// @param truth  may be null: unknown
 QueryMoment moment_of(Stamp stamp_ns, const Trajectory* truth);
 
-/// The anchor that config.truth asks for. Interpolation is for held-out frames: a query found by
-/// place has no neighbors in time, and is compared as by kLocal. It alone needs no truth.
+/// Returns the anchor that config.truth prescribes. Interpolation is for held-out frames: a query
+/// anchored by place has no neighbors in time and is compared as by kLocal. Only interpolation
+/// needs no truth.
 std::optional<Anchor> find_anchor(const Trajectory& estimate, const Trajectory& mapping_truth,
                                   const QueryMoment& query, NearestBy by,
                                   const ProtocolConfig& config);
 
-/// One answer beside the truth.
+/// One answer compared with the truth.
 struct QueryScore {
   QueryAnswer answer;
   Stamp stamp_ns = 0;
-  std::optional<SE3> true_world_from_camera = {};  ///< absent where nobody knows
+  std::optional<SE3> true_world_from_camera = {};  ///< absent if unknown
   bool success = false;                            ///< a pose was returned (the paper's measure)
-  // Both false where the answer cannot be judged.
-  bool correct = false;  ///< and lies within the limits of the protocol
+  // Both false if the answer cannot be judged.
+  bool correct = false;  ///< returned, and within the protocol's limits
   bool false_positive =
       false;  ///< returned, and outside them (or nothing was mapped to compare with)
-  // Absent where nothing was answered, or nothing was mapped that an answer may be compared with.
+  // Absent if nothing was answered, or nothing was mapped that an answer could be compared with.
   std::optional<double> distance_m = {}, angle_deg = {};  ///< to the local truth
   std::optional<double> aligned_distance_m = {};  ///< to the truth after aligning the trajectory
 };
@@ -98,7 +99,7 @@ void fields(S& score, Visit& v) {
   v("aligned_distance_m", aligned_distance_m);
 }
 
-/// Whether it is known if an answer was correct: there is a truth, or a distance without one
+/// Whether an answer can be judged: there is a truth, or a distance without one
 /// (QueryTruth::kInterpolated).
 inline bool is_judged(const QueryScore& q) {
   return q.true_world_from_camera.has_value() || q.distance_m.has_value();

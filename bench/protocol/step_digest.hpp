@@ -7,7 +7,7 @@
 
 namespace mh {
 
-/// Everything that a step said of its matching and relocalizing, the pose apart.
+/// Digest of everything that a step reported on its matching and relocalization, except the pose.
 std::uint64_t digest_of_matching(const SystemReport& report);
 
 }  // namespace mh

@@ -12,8 +12,8 @@
 
 namespace mh {
 
-/// Frames of a recording that no system was shown: they cannot be read, have another size than the
-/// camera's, or stamps that do not increase.
+/// Frames of a recording that were shown to no system: they cannot be read, differ in size from the
+/// camera's, or have stamps that do not increase.
 struct SkippedFrames {
   static constexpr std::size_t kReasonsKept = 5;
   std::size_t count = 0;
@@ -29,34 +29,35 @@ void fields(S& skipped, Visit& v) {
   v("reasons", reasons);
 }
 
-/// A frame that no system can be shown.
+/// Thrown for a frame that cannot be shown to any system.
 struct UnusableFrame : InputError {
   using InputError::InputError;
 };
 
-/// When not one of so many frames at the start can be used, nothing is to be hoped for.
+/// If none of this many frames at the start is usable, the recording is hopeless.
 inline constexpr std::size_t kHopeless = 10;
 
-/// Frame i. @throws UnusableFrame if it cannot be read or has another size than the camera's.
+/// Returns frame i. @throws UnusableFrame if it cannot be read or differs in size from the
+/// camera's.
 RgbdFrame usable_frame(const Sequence& sequence, std::size_t i, RandomStream noise);
 
-/// Which frames have a stamp to be shown with: the most whose stamps increase, the earlier of equal
-/// ones. So a clock that jumps for one frame costs that frame.
+/// Which frames can be shown by their stamps: the largest subset whose stamps increase, the earlier
+/// of equal ones. So a clock that jumps for one frame costs only that frame.
 std::vector<bool> increasing_stamps(const Sequence& sequence);
 
-/// Why frame i, which increasing_stamps() leaves out, is left out.
+/// Why increasing_stamps() leaves out frame i.
 std::string stamp_fault(const Sequence& sequence, std::size_t i);
 
-/// The frames of a sequence that can be shown; of the others it remembers why not.
+/// The frames of a sequence that can be shown; records why the others cannot.
 class UsableFrames {
  public:
   explicit UsableFrames(const Sequence& sequence)
       : sequence_(sequence), has_stamp_(increasing_stamps(sequence)) {}
 
-  /// Frame i; nullopt if it cannot be shown.
-  /// @throws InputError when none of the first kHopeless that were asked for can be.
+  /// Returns frame i; nullopt if it cannot be shown.
+  /// @throws InputError if none of the first kHopeless requested frames can be shown.
   std::optional<RgbdFrame> frame(std::size_t i, RandomStream noise);
-  /// To be called at the end. @throws InputError if frames were asked for and none could be shown.
+  /// To be called at the end. @throws InputError if frames were requested and none could be shown.
   void require_any() const;
   const SkippedFrames& skipped() const { return skipped_; }
 
@@ -70,7 +71,7 @@ class UsableFrames {
 };
 
 /// Reads the first kHopeless frames of a recording until one can be used.
-/// @throws InputError of the first if none can.
+/// @throws InputError of the first frame if none can.
 void require_usable_frames(const Sequence& sequence);
 
 }  // namespace mh

@@ -5,9 +5,9 @@
 
 namespace mh {
 
-/// Digest of the sources that decide a scene's baked light.
+/// Digest of the sources that determine a scene's baked light.
 std::string_view code_of_light();
-/// Digest of the sources that decide what a run gives.
+/// Digest of the sources that determine a run's result.
 std::string_view code_of_run();
 /// `git describe` of what was built; empty outside a repository.
 std::string_view built_commit();

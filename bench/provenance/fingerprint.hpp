@@ -5,10 +5,10 @@
 
 namespace mh {
 
-/// Compiler, build type and the versions of the libraries that results depend on.
+/// Compiler, build type and versions of the libraries that results depend on.
 nlohmann::ordered_json build_json();
 
-/// Build and machine, since the last bits may depend on them. Part of what tells times, never of
+/// Build and machine, since the last bits may depend on them. Part of the files of times, never of
 /// results.json.
 nlohmann::ordered_json fingerprint_json();
 

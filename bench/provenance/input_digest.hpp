@@ -11,9 +11,9 @@
 
 namespace mh {
 
-/// A file that was read, by its name and the xxh3-64 of its content.
+/// A file that was read, with the xxh3-64 of its content.
 struct FileDigest {
-  std::string file;  ///< seen from the folder of what named it
+  std::string file;  ///< relative to the folder of the file that named it
   std::uint64_t digest = 0;
   friend auto operator<=>(const FileDigest&, const FileDigest&) = default;
 };
@@ -27,13 +27,13 @@ void fields(F& file_digest, Visit& v) {
 
 /// Something that the results depend on.
 struct InputDigest {
-  /// scene, robot, mapping_tour, query_tour, vocabulary, level; "SYSTEM: WORD" of what an outside
-  /// program's command names.
+  /// scene, robot, mapping_tour, query_tour, vocabulary, level; "SYSTEM: WORD" for a file that an
+  /// outside program's command names.
   std::string name;
-  /// Of all that was read for it, and of what was looked for and not there
+  /// Of everything that was read for it, and of what was looked for but not found
   /// (bench/inputs/inputs.hpp).
   std::uint64_t digest = 0;
-  std::vector<FileDigest> files = {};  ///< that were read, sorted, each once
+  std::vector<FileDigest> files = {};  ///< that were read, sorted, without duplicates
   friend bool operator==(const InputDigest&, const InputDigest&) = default;
 };
 

@@ -19,8 +19,8 @@
 #include "slam/core/se3.hpp"
 #include "slam/core/words.hpp"
 
-// Records as JSON, by their lists of fields (slam/core/fields.hpp). What is unknown or not finite
-// is null, a digest 16 hexadecimal digits, a pose [x, y, z, qx, qy, qz, qw].
+// Records as JSON, by their lists of fields (slam/core/fields.hpp). Values that are unknown or not
+// finite become null, a digest 16 hexadecimal digits, a pose [x, y, z, qx, qy, qz, qw].
 
 namespace mh {
 
@@ -29,7 +29,7 @@ inline constexpr bool kIsDigest = false;
 template <class T>
 inline constexpr bool kIsDigest<Digest<T>> = true;
 
-/// What a list of fields calls a field: its name, or what is known of a figure (bench/metrics).
+/// JSON key of a field in a list of fields: its name, or that of its metric (bench/metrics).
 inline std::string key_of(const char* name) {
   return name;
 }
@@ -74,7 +74,7 @@ nlohmann::ordered_json json_of(const T& value) {
   }
 }
 
-/// Takes back what json_of() wrote. @throws nlohmann::json::exception, InputError where it is
+/// Reads back what json_of() wrote. @throws nlohmann::json::exception, InputError if it is
 /// something else.
 template <class T>
 void read_json(const nlohmann::ordered_json& json, T&& value) {

@@ -11,7 +11,7 @@
 
 namespace mh {
 
-/// What is told of a driven path. NaN: unknown, since the path was cut.
+/// Reported facts of a driven path. NaN: unknown, since the path was cut.
 struct PathFacts {
   std::size_t frames = 0;
   double length_m = 0, turned_in_place_rad = 0, contact_time_s = 0, max_penetration_m = 0;
@@ -27,7 +27,7 @@ void fields(P& path, Visit& v) {
   v("max_penetration_m", max_penetration_m);
 }
 
-/// What a run says of its surroundings, so that results need no world beside them.
+/// What a run records of its place, so that its results can be read without the world.
 struct PlaceFacts {
   std::string scene, robot;  ///< their names
   std::uint64_t scene_digest = 0, path_digest = 0, vocabulary_digest = 0;

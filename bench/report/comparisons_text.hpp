@@ -7,10 +7,10 @@
 
 namespace mh {
 
-/// "[-0.0123, +0.0456]"; "-" where too few pairs leave it open.
+/// "[-0.0123, +0.0456]"; "-" if there are too few pairs to bound it.
 std::string interval(const Comparison& comparison);
 
-/// What two systems differ in, line by line, in one place or over scenes.
+/// Reports the differences between two systems, line by line, in one place or over scenes.
 std::string comparisons_text(const Suite& suite, const Family& family);
 std::string comparisons_text(const Suite& suite, const SceneFamily& family);
 

@@ -11,13 +11,13 @@ namespace mh {
 
 inline constexpr const char* kResultsFormat = "modelhouse-results-4";
 
-/// Everything about a suite's results that is a function of suite, binary and seeds: the resolved
-/// settings, digests, one entry per run with its queries, the rows of the table, the comparisons.
+/// All of a suite's results that are a function of suite, binary and seeds: the resolved settings,
+/// digests, one entry per run with its queries, the rows of the table, the comparisons.
 nlohmann::ordered_json results_json(const Suite& suite, std::span<const RunResult> runs,
                                     std::span<const FailedRun> failed = {},
                                     std::span<const std::string> missing = {});
 
-/// What it takes to make the results again: the command, which works from any folder, the commit
+/// Everything needed to reproduce the results: the command, which works from any folder, the commit
 /// and digest of the code, build and machine, the resolved suite, seeds and digests of the inputs.
 nlohmann::ordered_json reproduction_json(const Suite& suite, std::span<const RunResult> runs);
 

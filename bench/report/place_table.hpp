@@ -8,8 +8,8 @@
 
 namespace mh {
 
-/// A suite of one place: everything about it, a block for each level and kind of labels, then what
-/// the systems differ in.
+/// Table of a suite of one place: a block for each level and kind of labels, then how the systems
+/// differ.
 std::string place_table(const Suite& suite, std::span<const Row> rows);
 
 }  // namespace mh

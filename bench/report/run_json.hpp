@@ -7,7 +7,7 @@
 
 namespace mh {
 
-/// All that a run gave, but for its times.
+/// Everything that a run produced, except its times.
 nlohmann::ordered_json run_json(const RunResult& run);
 nlohmann::ordered_json run_json(const FailedRun& run);
 

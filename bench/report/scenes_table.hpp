@@ -8,8 +8,8 @@
 
 namespace mh {
 
-/// A suite of many places, in the form of the paper's Table 1: a row per category and system, then
-/// what the systems differ in over scenes.
+/// Table of a suite of many places, in the form of the paper's Table 1: a row per category and
+/// system, then how the systems differ over scenes.
 std::string scenes_table(const Suite& suite, std::span<const Row> rows);
 
 }  // namespace mh

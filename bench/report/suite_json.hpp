@@ -7,7 +7,8 @@
 
 namespace mh {
 
-/// A suite with all its settings resolved; paths are relative to its folder, however it was named.
+/// Returns a suite with all its settings resolved; paths are relative to its folder, however it was
+/// named.
 nlohmann::ordered_json suite_json(const Suite& suite);
 
 }  // namespace mh

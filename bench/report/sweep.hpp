@@ -10,10 +10,11 @@
 
 namespace mh {
 
-/// The answers over a sweep: for each set of queries the shares of correct and of false answers and
-/// the mean distance. A grid over one or two parameters is a heat map with its values; anything
-/// else shows each pair of parameters, a dot per point. The point with most correct answers is
-/// framed, its difference to the suite's own settings stands below with its 95 % interval.
+/// Draws the answers over a sweep: for each query set, the shares of correct and of false positive
+/// answers and the mean distance. A grid over one or two parameters is a heat map with its values;
+/// anything else shows each pair of parameters, with a dot per point. The point with the most
+/// correct answers is framed; its difference from the suite's own settings is printed below with
+/// its 95 % interval.
 cv::Mat draw_sweep(const Suite& suite, std::span<const Row> rows, const SweepResult& result);
 
 /// "sweep-semantic-exact-pepper.png"

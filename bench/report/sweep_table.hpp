@@ -8,7 +8,8 @@
 
 namespace mh {
 
-/// A row per parameter point and system, then the points that answer most.
+/// Table of a sweep: a row per parameter point and system, then the points with the most correct
+/// answers.
 std::string sweep_table(const Suite& suite, std::span<const Row> rows);
 
 }  // namespace mh

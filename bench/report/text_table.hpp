@@ -7,16 +7,16 @@
 
 namespace mh {
 
-/// Rows of cells under headings, for a terminal. Each column is as wide as its widest cell, two
-/// blanks stand between, every line begins with two.
+/// Rows of cells under headings, for a terminal. Each column is as wide as its widest cell, columns
+/// are separated by two spaces, and every line starts with two.
 class TextTable {
  public:
-  /// @param left  how many columns, from the first, are set to the left; the others to the right
+  /// @param left  how many columns, from the first, are left-aligned; the others are right-aligned
   explicit TextTable(std::vector<std::string> headings, std::size_t left = 1);
 
-  /// @param remark  stands behind the row, beyond all columns
+  /// @param remark  printed after the row, beyond all columns
   void add(std::vector<std::string> cells, std::string remark = {});
-  /// A line of text between rows.
+  /// Adds a line of text between rows.
   void add_line(std::string text);
 
   std::string text() const;

@@ -9,10 +9,10 @@
 
 namespace mh {
 
-/// The house from above as in the paper's Figure 5c: floor plan, occupancy map of the run beneath,
-/// true and estimated path, and for each query an 'x' where the camera was and an 'o' where the
-/// system believed it to be. Estimates are drawn in the frame of the dock: drift shows. Queries are
-/// those of the run's first parameter point.
+/// Draws the house from above as in the paper's Figure 5c: the floor plan over the run's occupancy
+/// map, true and estimated path, and for each query an 'x' at the camera's true position and an 'o'
+/// at the estimated one. Estimates are drawn in the frame of the dock, so that drift shows. Queries
+/// are those of the run's first parameter point.
 /// @pre world.simulated
 cv::Mat draw_topdown(const World& world, const RunResult& run, QuerySet set);
 

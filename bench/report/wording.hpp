@@ -9,30 +9,30 @@
 
 namespace mh {
 
-// What the tables of results have in common.
+// Text that the tables of results share.
 
-/// Above this share of successes of a system without labels nothing is left to be gained by them.
+/// Above this success rate of a system without labels, labels have nothing left to gain.
 inline constexpr double kSaturated = 0.97;
 
 /// "held out", "2nd tour"
 std::string_view short_title(QuerySet set);
 
-/// ", first 200 frames" behind what was cut; empty otherwise.
+/// ", first 200 frames" if the tours were cut; empty otherwise.
 std::string shortened(const Suite& suite, std::span<const Row> rows);
 
-/// "2 of 3 trials, 1 failed" of a row that lacks some; empty otherwise.
+/// "2 of 3 trials, 1 failed" for a row that lacks some; empty otherwise.
 std::string incomplete(const Suite& suite, const Row& row);
-/// The same of scenes: "1 of 2 scenes, 3 runs failed".
+/// The same for scenes: "1 of 2 scenes, 3 runs failed".
 std::string incomplete(const CategoryRow& row);
 
-/// A system that sees no labels runs once and stands beside each kind of labels: whether this row
-/// stood with an earlier kind already.
+/// Whether this row was already shown with an earlier kind of labels: a system that sees no labels
+/// runs once and is shown with each kind.
 bool already_shown(const Suite& suite, const Row& row);
 
-/// Headings of the figures that stand in an overview of a trajectory, of answers.
+/// Headings of the figures in an overview of a trajectory, of answers.
 std::vector<std::string> trajectory_headings();
 std::vector<std::string> query_headings(QuerySet set);
-/// Their cells; "-" where nothing was asked.
+/// Their cells; "-" if there were no queries.
 std::vector<std::string> trajectory_cells(const CategoryRow& row);
 std::vector<std::string> query_cells(const CategoryRow& row, QuerySet set);
 

@@ -10,23 +10,23 @@
 
 namespace mh {
 
-/// Writes what is large about a run into its folder: truth.tum, estimate.tum, map.bt, map.pgm,
-/// map.yaml and topdown.png, which holds the run's key. Of a recording, whose floor nobody knows,
-/// there is no map.pgm and no picture, and run.key holds the key. Each file appears whole or not at
-/// all.
+/// Writes the large files of a run into its folder: truth.tum, estimate.tum, map.bt, map.pgm,
+/// map.yaml and topdown.png, which contains the run's key. For a recording, whose floor is unknown,
+/// there is no map.pgm and no image, and run.key contains the key. Each file appears whole or not
+/// at all.
 void write_run(const std::filesystem::path& folder, const World& world, const RunResult& run,
                const std::string& key);
-/// Removes what write_run() writes, nothing else: another run's files must not stand beside the
-/// result of one that fails, or that is under way.
+/// Removes what write_run() writes and nothing else: files of an earlier run must not remain next
+/// to the result of one that fails or is in progress.
 void remove_run(const std::filesystem::path& folder);
-/// Whether a folder holds files of write_run(), and not those of the run of that key.
+/// Whether a folder contains files of write_run() from a run other than the one with that key.
 bool shows_another_run(const std::filesystem::path& folder, const std::string& key);
 
-/// The contact sheet of a simulated environment, unless the one that is there was made of the same
-/// scene, robot, way and code.
+/// The contact sheet of a simulated environment, unless the existing one was made from the same
+/// scene, robot, path and code.
 void write_views(const std::filesystem::path& file, const World& world, const RunSpec& spec);
 
-/// Writes what a suite's runs gave together: results.json, times.json, table.txt, times.txt.
+/// Writes the combined results of a suite's runs: results.json, times.json, table.txt, times.txt.
 /// @returns the printed table.
 std::string write_results(const std::filesystem::path& folder, const Suite& suite,
                           std::span<const RunResult> runs, std::span<const FailedRun> failed = {},

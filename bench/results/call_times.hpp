@@ -10,7 +10,7 @@ struct CallTimes {
   std::vector<double> track_ms;
   std::vector<double> relocalize_ms;  ///< of queries' own frames
   std::vector<double> blank_ms;       ///< of the blank frames before them
-  double processor_s = 0;             ///< of all calls but save and restore, in this process
+  double processor_s = 0;             ///< of all calls except save and restore, in this process
 };
 
 /// Median and 95th percentile, ms.

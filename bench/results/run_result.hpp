@@ -23,15 +23,15 @@ struct PointResult {
   std::vector<QueryScore> second_tour;  ///< never pooled with held_out
 };
 
-/// When and where a run's times were measured: those of different sittings do not compare.
+/// When and where a run's times were measured: times of different sessions are not comparable.
 struct Circumstances {
   std::string host;
-  std::string sitting;  ///< when the command began that made the run, UTC; empty: unknown
-  int jobs = 0;         ///< runs that it had at work side by side
-  double load = 0;      ///< of the last minute, processes at work per processor
+  std::string sitting;  ///< when the command that made the run started, UTC; empty: unknown
+  int jobs = 0;         ///< runs that it executed in parallel
+  double load = 0;      ///< load average of the last minute, per processor
 };
 
-/// All that one run gave.
+/// Everything that one run produced.
 struct RunResult {
   RunSpec spec;
   PlaceFacts place;
@@ -42,17 +42,17 @@ struct RunResult {
   EstimateFrames frames;
   std::vector<PointResult> points;                ///< as spec.points
   std::shared_ptr<const OccupancyMapper> volume;  ///< keyframe depth at its final poses, dock frame
-  OccupancyGrid grid;                             ///< what of it stands in a robot's way
+  OccupancyGrid grid;                             ///< the part of it that obstructs a robot
   std::uint64_t map_digest = 0;                   ///< of trajectory and grid
   CallTimes times;                                ///< not deterministic: never part of results.json
-  // Likewise not deterministic. Processor time of making the frames, and of what is neither SLAM
-  // nor scored: octree, grid, pictures.
+  // Not deterministic either. CPU time spent on making the frames, and on products that are neither
+  // SLAM nor scored: octree, grid, images.
   double frames_s = 0, products_s = 0;
   double wall_s = 0;
   Circumstances circumstances;
 };
 
-/// A run that came to nothing.
+/// A run that failed.
 struct FailedRun {
   RunSpec spec;
   std::string error;
@@ -62,7 +62,7 @@ inline const std::vector<QueryScore>& queries(const PointResult& point, QuerySet
   return set == QuerySet::kHeldOut ? point.held_out : point.second_tour;
 }
 
-/// Calls visit(query) for every query of a run: by point, then set, then as they were put.
+/// Calls visit(query) for every query of a run: by point, then set, then query order.
 template <class Visit>
 void for_each_query(const RunResult& run, Visit visit) {
   for (const PointResult& point : run.points)

@@ -10,19 +10,19 @@
 
 namespace mh {
 
-/// Name of the category that holds all scenes.
+/// Name of the category that contains all scenes.
 inline constexpr std::string_view kAllCategories = "all";
 
-/// The scenes of one category taken together, in the form of the paper's Table 1: of each scene the
-/// median over trials (a Row), of these the mean.
+/// The scenes of one category combined, in the form of the paper's Table 1: the mean over scenes of
+/// each scene's median over trials (a Row).
 struct CategoryRow {
   std::string category;
   std::size_t level = 0, system = 0, parameters = 0;
   LabelMode labels = LabelMode::kNone;
-  std::size_t scenes = 0;      ///< where the system has a result: what all below is over; may be 0
-  std::size_t of = 0;          ///< scenes of the category in the suite
-  std::size_t failed = 0;      ///< runs that failed, in all of them
-  TrajectoryScore trajectory;  ///< each figure over the scenes that have it
+  std::size_t scenes = 0;  ///< where the system has a result; all figures are over these; may be 0
+  std::size_t of = 0;      ///< scenes of the category in the suite
+  std::size_t failed = 0;  ///< runs that failed, in all of them
+  TrajectoryScore trajectory;          ///< each figure over the scenes that have it
   QuerySummary held_out, second_tour;  ///< over the scenes with such queries
 };
 inline const QuerySummary& summary(const CategoryRow& row, QuerySet set) {
@@ -34,8 +34,8 @@ inline const QuerySummary& summary(const CategoryRow& row, QuerySet set) {
 std::vector<CategoryRow> make_category_rows(const Suite& suite, std::span<const Row> rows);
 
 /// First minus second of each pair that the suite compares, over scenes: one family per pair, level
-/// and parameter point, corrected by Holm. Success, correct, false, distance over the queries that
-/// both answered, ATE over the frames that both tracked.
+/// and parameter point, corrected by Holm. Success, correct, false positive, distance over the
+/// queries that both answered, ATE over the frames that both tracked.
 struct SceneFamily {
   std::size_t level = 0, parameters = 0;
   SystemPair systems;
@@ -43,12 +43,12 @@ struct SceneFamily {
 };
 std::vector<SceneFamily> compare_over_scenes(const Suite& suite, std::span<const Row> rows);
 
-/// Whether a loss as large as the margin would show among so many pairs: by the rule of three,
-/// fewer than 3 / margin may well hold none of it.
+/// Whether there are enough pairs to detect a loss as large as the margin: by the rule of three,
+/// fewer than 3 / margin may well contain no loss at all.
 bool enough_for(const Comparison& success, double margin);
 
 /// Whether the interval of a share stays above -margin, over enough pairs: not inferior by more
-/// than that.
+/// than the margin.
 bool not_inferior(const Comparison& success, double margin);
 
 }  // namespace mh

@@ -9,11 +9,11 @@
 
 namespace mh {
 
-/// The middle value (mean of the two middle ones); 0 of nothing.
+/// The middle value (mean of the two middle ones); 0 for an empty list.
 double median(std::vector<double> values);
-/// The median of those that are known; absent if none is.
+/// The median of the known values; absent if none is known.
 std::optional<double> median_of_known(std::span<const std::optional<double>> values);
-/// 0 of nothing.
+/// 0 for an empty list.
 double mean(std::span<const double> values);
 
 /// One paired observation: the difference first - second of one query, where both have a value.
@@ -31,54 +31,54 @@ inline PairedDifference paired_difference(const std::optional<double>& first,
 struct Comparison {
   std::string what;  ///< e.g. "success, held-out, exact labels"
   bool more_is_better = true;
-  bool in_family = true;     ///< false: shown beside the family that was declared, never judged
-  std::size_t pairs = 0;     ///< queries (or scenes) where both have a value; 0: nothing is known
+  bool in_family = true;     ///< false: shown alongside the declared family, never judged
+  std::size_t pairs = 0;     ///< queries (or scenes) where both have a value; 0: unknown
   double difference = 0;     ///< mean of first - second
   double low = 0, high = 0;  ///< 95 % bootstrap interval
-  double p = 1;              ///< two-sided; of queries by flipped signs, of scenes Wilcoxon's
+  double p = 1;              ///< two-sided; for queries by sign flips, for scenes Wilcoxon's
   double p_holm = 1;         ///< corrected over the family (see holm)
-  /// The true difference that would be found with 80 % power at the 5 % level: 2.8 standard errors;
-  /// for shares at least 3 / pairs, since differences of which none was seen may still be there.
-  /// Infinite where even the clearest difference could not reach the 5 % level: too few pairs.
+  /// The true difference that would be detected with 80 % power at the 5 % level: 2.8 standard
+  /// errors; for shares at least 3 / pairs, since differences may exist even if none was observed.
+  /// Infinite if even the clearest difference could not reach the 5 % level: too few pairs.
   double detectable = 0;
 };
 
 /// Two-sided p of Wilcoxon's signed-rank test that paired differences are symmetric about 0
-/// (Wilcoxon, 1945). Exact: the distribution over all signs, ties by middle ranks; differences of 0
-/// are left out. 1 where nothing is left.
+/// (Wilcoxon, 1945). Exact: the distribution over all signs, ties get mid-ranks; differences of 0
+/// are left out. 1 if nothing is left.
 double wilcoxon_signed_rank(std::span<const double> differences);
 
-/// Mean difference of two systems over scenes: scenes are independent of one another, so they are
-/// resampled one by one for the interval, and p is Wilcoxon's. Scenes where one of the two has no
-/// value are left out; with fewer than 4 left the interval stays wide open.
+/// Mean difference of two systems over scenes: scenes are independent, so they are resampled
+/// individually for the interval, and p is Wilcoxon's. Scenes where one of the two has no value are
+/// left out; with fewer than 4 left the interval stays wide open.
 /// @param scenes  per scene, the difference of the two systems' medians over trials
 Comparison compare_scenes(std::string what, std::span<const PairedDifference> scenes, bool shares,
                           std::uint64_t seed, int resamples = 10000);
 
 /// Two-sided p of a sign-flip test (Fisher, 1935) that sums are symmetric about 0: the share of
-/// sign patterns under which their mean is at least as far from 0 as it is. Exact, over all
-/// patterns, up to 14 sums; beyond that (1 + hits) / (1 + draws) over 20,000 patterns drawn from
-/// the seed.
+/// sign patterns under which their mean is at least as far from 0 as the observed one. Exact, over
+/// all patterns, up to 14 sums; beyond that (1 + hits) / (1 + draws) over 20,000 patterns drawn
+/// from the seed.
 double sign_flip(std::span<const double> sums, std::uint64_t seed);
 
 /// Mean difference of two systems over the queries of one house. Neighboring queries see the same
-/// place, so blocks of max(2, n^(1/3)) consecutive ones are taken together: the interval is that of
-/// a circular block bootstrap (Politis and Romano, 1992), p that of sign_flip() over the sums of
-/// blocks that do not overlap. Fewer than 6 such blocks cannot be significant: 2 of 32 patterns are
-/// as extreme as any. Deterministic: draws come from the seed. With fewer than 4 pairs the interval
-/// stays wide open.
+/// place, so they are grouped into blocks of max(2, n^(1/3)) consecutive ones: the interval is that
+/// of a circular block bootstrap (Politis and Romano, 1992), p that of sign_flip() over the sums of
+/// blocks that do not overlap. Fewer than 6 such blocks cannot be significant: with 5, 2 of the 32
+/// patterns are as extreme as any. Deterministic: draws come from the seed. With fewer than 4 pairs
+/// the interval stays wide open.
 /// @param shares  whether the observations are yes or no
 Comparison compare_paired(std::string what, std::span<const PairedDifference> queries, bool shares,
                           std::uint64_t seed, int resamples = 10000);
 
-/// Whether Holm's correction counts it: one of the family, of which there is anything to compare.
+/// Whether Holm's correction includes it: part of the family, with at least one pair to compare.
 bool counts(const Comparison& comparison);
 std::size_t family_size(std::span<const Comparison> comparisons);
 
-/// Holm's correction over those that count, in place (Holm, 1979).
+/// Applies Holm's correction (Holm, 1979) in place to the comparisons for which counts() holds.
 void holm(std::span<Comparison> comparisons);
 
-/// Whether the rule of DESIGN section 5 lets the word *better* be printed, and of whom.
+/// Whether a result may be called *better*, and which system's.
 enum class Verdict { kUndecided, kFirstBetter, kSecondBetter };
 Verdict verdict(const Comparison& comparison);
 

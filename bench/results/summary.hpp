@@ -16,8 +16,8 @@ QuerySummary summarize(std::span<const QueryScore> queries);
 
 MappingCounts count(const MappingOutcome& mapping);
 
-/// Every figure of a run under one of its parameter points, under its name in all_metrics(). A set
-/// that was not asked has none.
+/// Every figure of a run under one of its parameter points, under its name in all_metrics(). A
+/// query set that was not used has none.
 std::vector<Figure> figures_of(const RunResult& run, std::size_t point);
 
 /// A run and one of its parameter points.
@@ -33,7 +33,7 @@ struct Row {
   LabelMode labels = LabelMode::kNone;
   std::size_t parameters = 0;  ///< index into parameter_points(suite)
   std::vector<Trial> trials;   ///< those that are done
-  std::size_t failed = 0;      ///< runs of it that failed
+  std::size_t failed = 0;      ///< its failed runs
   TrajectoryScore trajectory;  ///< medians over the trials that have the score
   MappingCounts mapping;       ///< likewise
   QuerySummary held_out, second_tour;
@@ -44,13 +44,13 @@ inline const QuerySummary& summary(const Row& row, QuerySet set) {
   return set == QuerySet::kHeldOut ? row.held_out : row.second_tour;
 }
 
-/// One row per environment, level, labels, parameter point and system, in this order, where there
-/// is a run of it. The plain system, run once without labels, stands beside each kind of label.
-/// @param failed  counted in their rows; a row of which nothing else is left has no trials
+/// Returns one row per environment, level, labels, parameter point and system that has a run, in
+/// this order. The plain system, run once without labels, appears with each kind of labels.
+/// @param failed  counted in their rows; a row with only failed runs has no trials
 std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs,
                            std::span<const FailedRun> failed = {});
 
-/// What is compared: rows that differ in nothing but the system.
+/// What is compared: rows that differ only in the system.
 struct Family {
   std::size_t environment = 0, level = 0;
   SystemPair systems;
@@ -59,16 +59,17 @@ struct Family {
 
 /// First minus second of each pair that the suite compares, at its first parameter point, for each
 /// environment, level, label kind, query set and measure. The family of one pair, environment and
-/// level, over which Holm corrects, are the two figures of the paper's Table 2 for each label kind
-/// and query set: success, and the distance where both answer. *Correct* stands beside it: where
-/// nothing is false it is success.
+/// level, which Holm's correction covers, is the two figures of the paper's Table 2 for each label
+/// kind and query set: success, and the distance where both answer. *Correct* is shown alongside:
+/// without false positives it equals success.
 std::vector<Family> compare_systems(const Suite& suite, std::span<const Row> rows);
 
-/// Distances over the queries that both answered, first minus second, by blocks of queries.
+/// Compares distances over the queries that both answered, first minus second, by blocks of
+/// queries.
 Comparison compare_distances(const Row& first, const Row& second, QuerySet set,
                              std::string what = "", std::uint64_t seed = 0);
 
-/// Shares of correct answers likewise.
+/// Compares shares of correct answers in the same way.
 Comparison compare_correct(const Row& first, const Row& second, QuerySet set, std::uint64_t seed);
 
 /// ATE over the frames that both tracked, median over the trials that both have: first, second.

@@ -10,24 +10,24 @@
 
 namespace mh {
 
-/// A run that is being worked off.
+/// A run in progress.
 struct RunAtWork {
   RunSpec spec;
   double age_s = 0;      ///< since its start
-  double working_s = 0;  ///< since it told of work done for the first time
+  double working_s = 0;  ///< since it first reported progress
   double share = 0;      ///< of its work done, in [0, 1]
 };
 
-/// Tells the time to go from what finished runs took: those of the same system in the same
-/// environment, else of the same system, else of any.
+/// Estimates the time remaining from the durations of finished runs: those of the same system in
+/// the same environment, else of the same system, else of any.
 class Forecast {
  public:
   void note(const RunSpec& finished, double wall_s);
-  /// Of a run like that from start to end; nullopt before anything has finished.
+  /// Duration of such a run from start to end; nullopt before anything has finished.
   std::optional<double> of(const RunSpec& run) const;
-  /// Nullopt where it cannot be told: runs wait and none has finished, or the runs at work have
-  /// done less than a tenth of theirs.
-  /// @param jobs  runs side by side
+  /// nullopt if unknown: runs are waiting and none has finished, or the runs in progress are less
+  /// than 1/10 done.
+  /// @param jobs  runs in parallel
   std::optional<double> to_go_s(const std::vector<RunSpec>& waiting,
                                 const std::vector<RunAtWork>& at_work, int jobs) const;
 

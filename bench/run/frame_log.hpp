@@ -9,8 +9,8 @@
 
 namespace mh {
 
-/// What was reported of each frame of a sequence, as a MappingObserver hears it: the last attempt
-/// counts, and frames of a map that was given up count as lost.
+/// Collects, as a MappingObserver, the report on each frame of a sequence: the last attempt counts,
+/// and frames of a discarded map are treated as lost.
 class FrameLog {
  public:
   void add(const MappedFrame& call, const SystemReport& report);
@@ -19,10 +19,10 @@ class FrameLog {
   int map_resets = 0;
   bool last_was_lost = false;
 
-  /// A line for each frame of the sequence from `first` on: stamp, status, keypoints, inliers,
-  /// whether it became a keyframe or closed a loop, and where relocalization ended, if it was
-  /// tried, with the candidates after each step. The status of frames that no system was shown is
-  /// `skipped`, that of test frames `held_out`.
+  /// Returns a line for each frame of the sequence from `first` on: stamp, status, keypoints,
+  /// inliers, whether it became a keyframe or closed a loop, and, if relocalization was tried, the
+  /// stage it reached and the candidates after each step. The status of frames that were not shown
+  /// is `skipped`, that of test frames `held_out`.
   std::string csv(const Sequence& sequence, const ProtocolConfig& config,
                   std::size_t first = 0) const;
 

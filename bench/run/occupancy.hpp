@@ -11,10 +11,10 @@
 
 namespace mh {
 
-/// Depth of keyframes, kept until their poses are final: a sixteenth of the pixels.
+/// Depth of keyframes, kept until their poses are final: 1/16 of the pixels.
 class KeyframeDepths {
  public:
-  /// A frame seen again (after a rewind) takes the place of what was kept of it.
+  /// A frame seen again (after a rewind) replaces the earlier one.
   void keep(const RgbdFrame& frame);
 
   /// The octree of all kept frames that have a pose in `estimate`, in the frame of

@@ -12,11 +12,11 @@
 
 namespace mh {
 
-/// Thrown when the user ended the work (Ctrl-C, SIGTERM): every process is gone, what is finished
-/// is kept.
+/// Thrown when the user interrupted the work (Ctrl-C, SIGTERM): every process has ended, finished
+/// results are kept.
 struct Interrupted {
   int signal = 0;
-  bool goes_on = true;  ///< whether the same command finds what is finished
+  bool goes_on = true;  ///< whether the same command resumes from the finished results
 };
 
 /// A run and the key of its result.
@@ -25,21 +25,21 @@ struct Job {
   std::string key;
 };
 
-/// How the error of a run begins that met bad input: the user can mend it, not the machine.
+/// Prefix of the error of a run that failed on bad input, which the user can fix.
 inline constexpr std::string_view kBadInputMark = "bad input: ";
 
-/// How far the work has come.
+/// Progress of the work.
 struct PoolProgress {
   double share = 0;  ///< of all runs done, in [0, 1]
   std::size_t done = 0, failed = 0;
-  std::optional<double> to_go_s;  ///< nullopt while nothing is known to tell it from
-  std::string status;  ///< where a run at work stands: "plain-pepper-0: frame 120 of 4490, lost"
+  std::optional<double> to_go_s;  ///< nullopt while there is nothing to estimate it from
+  std::string status;  ///< status of a run in progress: "plain-pepper-0: frame 120 of 4490, lost"
 };
 
 struct PoolOptions {
-  int jobs = 1;                 ///< processes side by side; never changes a result
+  int jobs = 1;                 ///< parallel processes; never changes a result
   double time_limit_s = 14400;  ///< wall time of one run; 0 = none
-  double memory_limit_mb = 0;   ///< resident set of one run; 0 = none
+  double memory_limit_mb = 0;   ///< resident set size of one run; 0 = none
   std::filesystem::path executable;
   std::filesystem::path work_folder;  ///< for logs and descriptions of runs; exists
   /// The command line of a run's process. It finishes by putting the result into the store.
@@ -49,9 +49,9 @@ struct PoolOptions {
   std::function<void(const PoolProgress&)> progress = [](const PoolProgress&) {};
 };
 
-/// Works off the runs that the store does not hold yet, each in a process of its own, and returns
-/// when it holds all of them, done or failed. Runs that another process has claimed are left to it
-/// and waited for.
+/// Executes the runs that are not in the store yet, each in its own process, and returns when all
+/// are in the store, done or failed. Runs that another process has claimed are left to it and
+/// waited for.
 ///
 /// - A further process starts only while the memory that the running ones still need (by what was
 ///   measured of finished ones) and its own are available; one always runs.

@@ -29,39 +29,39 @@ struct BenchOptions {
   std::filesystem::path out;  ///< exists; holds results.sqlite and a folder per run
   int jobs = 1;               ///< never changes a result
   Shard shard;
-  /// None: light is baked for this command alone (once), and each run maps anew.
+  /// nullopt: light is baked for this command alone (once), and each run redoes its mapping.
   std::optional<std::filesystem::path> cache;
   double time_limit_s = 14400;  ///< of one run; 0 = none
   double memory_limit_mb = 0;   ///< of one run; 0 = none
   bool retry_failed = false;
-  /// Nothing but what is scored: no occupancy map, no pictures and no files of runs.
+  /// Metrics only: no occupancy map, no images and no files of runs.
   bool figures_alone = false;
   std::filesystem::path executable = "/proc/self/exe";  ///< has the subcommand `run-one`
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(const PoolProgress&)> progress = [](const PoolProgress&) {};
 };
 
-/// A file changed while the runs that read it were at work.
+/// Thrown if an input file changed during the runs that read it.
 struct InputChanged : InputError {
   using InputError::InputError;
 };
 
-/// Works off a suite into options.out / "results.sqlite". A finished run is never repeated.
+/// Runs a suite into options.out / "results.sqlite". A finished run is never repeated.
 /// @throws InputError if an input cannot be read; Interrupted on Ctrl-C.
 BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
                        const BenchOptions& options);
 
-/// One run in this process, start to end: builds its world, works it off, writes its files into
-/// folder / its name, and puts it into the store. What a process of the pool does.
+/// One run in this process, start to end, as a process of the pool does it: builds its world,
+/// executes it, writes its files into folder / its name, and puts it into the store.
 struct RunOrder {
   std::filesystem::path description;  ///< JSON of the RunSpec
   std::filesystem::path store, folder;
   std::filesystem::path cache;  ///< for baked light; empty: keeps nothing
-  std::filesystem::path maps;   ///< for finished maps; likewise
+  std::filesystem::path maps;   ///< for finished maps; empty: keeps nothing
   std::string key;
   std::string views;           ///< file name of the environment's contact sheet
-  std::string sitting;         ///< when the command began that gives this order
-  int jobs = 1;                ///< runs at work side by side; threads for baking light
+  std::string sitting;         ///< start of the command that issued this order
+  int jobs = 1;                ///< parallel runs; threads for baking light
   bool figures_alone = false;  ///< as BenchOptions
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(double)> progress = [](double) {};

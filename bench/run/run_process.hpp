@@ -13,27 +13,27 @@
 
 namespace mh {
 
-/// What a run's process returns when it met a full disk: no fault of the run.
+/// Exit code of a run's process on a full disk: not the run's fault.
 inline constexpr int kDiskFullCode = 4;
-/// That it read other files than those that its key was made of.
+/// Exit code if the input files changed since the run's key was made.
 inline constexpr int kInputChangedCode = 5;
-/// ... or bad input that shows in the work alone.
+/// Exit code on bad input that is found only during the run.
 inline constexpr int kBadInputCode = 2;
 
-/// How a line begins that tells where a run stands; the latest counts.
+/// First character of a line that reports a run's status; the latest counts.
 inline constexpr char kStatusMark = '~';
 
 /// How a process ended.
 struct ProcessEnd {
   bool good = false;
-  int signal = 0;       ///< that ended it; 0 = it returned
-  int code = 0;         ///< that it returned
+  int signal = 0;       ///< that killed it; 0 = it exited
+  int code = 0;         ///< exit code
   std::string message;  ///< the last line of its standard error
   RunCost cost;
 };
 
-/// A process of our own executable that works off one run. It dies with this one. What it prints on
-/// standard output are shares of the work done, one per line, and the names of long stages.
+/// A process of our own executable that executes one run. It dies with this one. On standard output
+/// it prints the share of the work done, one per line, and the names of long stages.
 class RunProcess {
  public:
   /// @param log  file for its standard error
@@ -44,20 +44,20 @@ class RunProcess {
   RunProcess(const RunProcess&) = delete;
   RunProcess& operator=(const RunProcess&) = delete;
 
-  /// Its end, once; nullopt while it runs.
+  /// Returns its end, once; nullopt while it runs.
   std::optional<ProcessEnd> poll();
   void kill();
 
-  double share() const { return share_; }  ///< of its work done, as of the last poll
-  /// The stages that it has told since they were taken last.
+  double share() const { return share_; }  ///< share of its work done, as of the last poll
+  /// Returns the stages that it has reported since the last call.
   std::vector<std::string> take_stages();
-  /// Where the run stands, in its own words; "" before it told.
+  /// The run's latest status line; "" before the first.
   const std::string& status() const { return status_; }
   double age_s() const;
-  /// Seconds since it told of work done for the first time: without light and other preparations.
+  /// Seconds since it first reported progress: excludes light and other preparation.
   double working_s() const;
   double rss_mb() const;
-  int output() const { return output_; }  ///< readable when it told something
+  int output() const { return output_; }  ///< readable when it has reported something
 
  private:
   void read_shares();
@@ -72,7 +72,7 @@ class RunProcess {
   std::chrono::steady_clock::time_point start_, first_share_;
 };
 
-/// Called by such a process: it is killed when `parent` dies.
+/// Called by such a process, so that it is killed when `parent` dies.
 void die_with(pid_t parent);
 
 }  // namespace mh

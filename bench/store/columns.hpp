@@ -14,15 +14,15 @@
 #include "bench/provenance/json_fields.hpp"
 #include "bench/store/row_digest.hpp"
 
-// Records as rows of SQL tables, by their lists of fields: what the columns are, and their values
-// both ways. Records within a record stand among its columns; a pose is seven of them; a list is a
-// text in JSON; what is unknown or not finite is null.
+// Records as rows of SQL tables, by their lists of fields: the column definitions, and values in
+// both directions. Nested records are flattened into columns; a pose takes seven; a list is JSON
+// text; values that are unknown or not finite are null.
 
 namespace mh {
 
 inline constexpr const char* kPoseColumns[] = {"tx", "ty", "tz", "qx", "qy", "qz", "qw"};
 
-/// Whether one column holds a value of this type.
+/// Whether one column can store a value of this type.
 template <class T>
 inline constexpr bool kIsColumn = std::is_arithmetic_v<T> || std::is_enum_v<T> || kIsDigest<T> ||
                                   kIsArray<T> || kIsVector<T> || std::is_same_v<T, std::string>;
@@ -67,10 +67,10 @@ std::string columns_of() {
   return texts.text();
 }
 
-/// Puts rows into a table, value after value in the order of its columns.
+/// Inserts rows into a table, value by value in column order.
 class RowWriter {
  public:
-  /// @param columns  but for the digest
+  /// @param columns  without the digest
   RowWriter(SQLite::Database& db, const std::string& table)
       : statement_(db, insert_row(table, column_count(db, table))) {}
 
@@ -120,7 +120,7 @@ class RowWriter {
   int next_ = 1;
 };
 
-/// Takes the values of a row, one column after another.
+/// Reads the values of a row, one column after another.
 class RowReader {
  public:
   explicit RowReader(SQLite::Statement& row, int first = 0) : row_(row), next_(first) {}

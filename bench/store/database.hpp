@@ -11,23 +11,24 @@
 
 namespace mh {
 
-// A results file as an SQLite database that holds what it must.
-// @throws InputError if it is damaged, of another schema or no results file.
+// A results file as an SQLite database whose content has been checked.
+// @throws InputError if it is damaged, has another schema or is not a results file.
 
 /// Opens or creates the file.
 std::unique_ptr<SQLite::Database> open_to_write(const std::filesystem::path& file);
 
-/// A file that was opened to be read.
+/// A file that was opened for reading.
 struct UnchangedFile {
-  std::string name;  ///< what SQLite opened: the file, a copy, or a name that says how
+  std::string name;  ///< what SQLite opened: the file, a copy, or a URI with options
   std::unique_ptr<TemporaryFolder> copy;
-  std::unique_ptr<SQLite::Database> database;  ///< closed before its copy goes
+  std::unique_ptr<SQLite::Database> database;  ///< closed before its copy is removed
 };
 
-/// Opens a file without changing it; it may lie where nothing can be written. Looks at every row.
+/// Opens a file without changing it; it may be in a read-only place. Checks every row.
 UnchangedFile open_unchanged(const std::filesystem::path& file);
 
-/// A transaction that is begun for writing at once, so that it never has to be given up later.
+/// Begins a transaction that locks for writing immediately, so that it never has to be abandoned
+/// later.
 SQLite::Transaction begin_writing(SQLite::Database& db);
 
 }  // namespace mh

@@ -8,7 +8,7 @@
 
 namespace mh {
 
-/// A moment of a mapping tour: where the camera was, and where the system saw it in the end. A
+/// A moment of a mapping tour: the camera's true pose and the system's final estimate. A
 /// recording's truth may have other stamps than its frames, or be unknown.
 struct FrameRow {
   std::int64_t frame = 0;

@@ -7,11 +7,11 @@
 
 namespace mh {
 
-/// Throws what SQLite's error means to the user: InputError or MachineError in one line that says
-/// what to do.
+/// Translates SQLite's error for the user: throws InputError or MachineError with one line that
+/// states what to do.
 [[noreturn]] void throw_meaning(const std::filesystem::path& file, const SQLite::Exception& error);
 
-/// Calls `work`; SQLite's errors leave as ours.
+/// Calls `work`; translates SQLite's errors into ours.
 template <class Work>
 auto guarded(const std::filesystem::path& file, const Work& work) {
   try {

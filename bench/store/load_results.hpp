@@ -10,14 +10,14 @@
 
 namespace mh {
 
-/// What a store holds of a suite.
+/// A store's results for a suite.
 struct BenchResults {
   std::vector<RunResult> runs;       ///< finished ones, in the order of expand(suite)
   std::vector<FailedRun> failed;     ///< likewise
   std::vector<std::string> missing;  ///< names of those that are neither: of other shards
 };
 
-/// What the store holds of the suite that was planned last.
+/// Loads the store's results for the suite that was planned last.
 BenchResults load_results(const Store& store, const Suite& suite);
 
 }  // namespace mh

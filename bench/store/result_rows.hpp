@@ -11,13 +11,13 @@
 
 namespace mh {
 
-// A run as rows of the tables of schema.hpp, both ways. All within the caller's transaction.
+// Converts a run to rows of the tables of schema.hpp and back. All within the caller's transaction.
 
 void put_run(SQLite::Database& db, const std::string& key, const RunSpec& spec,
              const std::string& error, const std::string& result);
 void put_rows(SQLite::Database& db, const std::string& key, const RunResult& run);
 void forget_rows(SQLite::Database& db, const std::string& key);
-/// @param file  that the database lies in, for messages
+/// @param file  that contains the database, for messages
 RunResult load_rows(SQLite::Database& db, const std::filesystem::path& file, const std::string& key,
                     const RunSpec& spec);
 

@@ -9,26 +9,26 @@
 
 namespace mh {
 
-// Each row of a results file but those of `claims` carries, as its last column, a digest of its
-// table's name and its other values: SQLite has no checksums, and a flipped bit in a number is a
+// Each row of a results file, except in `claims`, has as its last column a digest of its table's
+// name and its other values: SQLite has no checksums, and a number with a flipped bit is still a
 // number.
 
 /// The tables whose rows carry one, in the order of the schema.
 inline constexpr const char* kDigestedTables[] = {"suite", "plan",   "runs",    "points", "metrics",
                                                   "calls", "frames", "queries", "times"};
 
-/// Makes the SQL function row_digest(table, value, ...) known to a connection: a 64-bit integer. A
-/// number's digest is that of its value: 3 and 3.0 have the same.
+/// Registers the SQL function row_digest(table, value, ...) with a connection; it returns a 64-bit
+/// integer. A number's digest is that of its value: 3 and 3.0 have the same.
 void add_row_digest(SQLite::Database& db);
 
-/// How many columns a table has, but for the digest.
+/// How many columns a table has, without the digest.
 int column_count(SQLite::Database& db, const std::string& table);
 
-/// "INSERT INTO plan VALUES (?1, ?2, ?3, row_digest('plan', ?1, ?2, ?3))" of so many values.
+/// "INSERT INTO plan VALUES (?1, ?2, ?3, row_digest('plan', ?1, ?2, ?3))" for that many values.
 std::string insert_row(const std::string& table, int values, const char* verb = "INSERT");
 
-/// Looks at every row. @throws InputError naming file, table and the first row whose digest is not
-/// that of its values.
+/// Checks every row. @throws InputError naming file, table and the first row whose digest does not
+/// match its values.
 void require_whole_rows(SQLite::Database& db, const std::filesystem::path& file);
 
 /// The text that created each table of a database, by its name.

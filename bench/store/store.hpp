@@ -27,37 +27,38 @@ struct RunCost {
   double wall_s = 0;
   double cpu_s = 0;  ///< user and system time of its process
   // Of cpu_s:
-  double slam_s = 0;      ///< inside the system under test, as far as it works in our process
+  double slam_s = 0;      ///< inside the system under test, if it works in our process
   double frames_s = 0;    ///< making its frames: scene, light and drives included
   double products_s = 0;  ///< occupancy map, pictures and files of the run
   double max_rss_mb = 0;
-  Circumstances circumstances = {};  ///< but for the host, which the store knows
+  Circumstances circumstances = {};  ///< without the host, which the store knows
 };
 
 enum class RunStatus { kDone, kFailed };
 
-/// The results of a suite in one SQLite file (docs/store.md). A result is put in one transaction:
-/// it is there as a whole or not at all, whenever a process dies. Several processes may use one
-/// file. Errors tell what to do: InputError for a file that is damaged, of another schema or no
-/// results file, MachineError for a full disk or a file that another process will not let go.
+/// The results of a suite in one SQLite file (docs/store.md). A result is stored in one
+/// transaction: it is there as a whole or not at all, whenever a process dies. Several processes
+/// may use one file. Errors state what to do: InputError for a file that is damaged, has another
+/// schema or is not a results file; MachineError for a full disk or a file that another process
+/// keeps locked.
 class Store {
  public:
   /// Opens or creates the file.
   explicit Store(std::filesystem::path file);
   ~Store();
   Store(Store&&) noexcept;
-  /// Opens a file, or the one in a folder, without changing it: it may lie where nothing can be
-  /// written. (A log that a killed process left beside it is taken in, as SQLite does.)
-  /// @throws InputError if it is not there; as check()
+  /// Opens a file, or the one in a folder, without changing it: it may be in a read-only place. (A
+  /// log that a killed process left next to it is applied, as SQLite does.)
+  /// @throws InputError if it does not exist; as check()
   static Store open_to_read(const std::filesystem::path& file);
-  /// @throws InputError naming file, table and row if a row is not what was put.
+  /// @throws InputError naming file, table and row if a row is not what was stored.
   void check() const;
 
-  /// Remembers the suite and which result belongs to which of its runs, in the place of what was
-  /// remembered before. Results stay.
+  /// Records the suite and which result belongs to which of its runs, replacing the earlier record.
+  /// Results stay.
   void plan(const Suite& suite, const SuiteOverrides& overrides,
             const std::vector<std::pair<std::string, std::string>>& key_of_name);
-  /// The suite that was remembered. @throws InputError if there is none, or if its files are gone.
+  /// The recorded suite. @throws InputError if there is none, or if its files are gone.
   Suite planned_suite() const;
   std::vector<std::pair<std::string, std::string>> planned_keys() const;  ///< name, key; in order
 
@@ -65,38 +66,38 @@ class Store {
   /// Error of a failed run; empty if it did not fail.
   std::string error(const std::string& key) const;
 
-  /// Takes a run that is neither finished nor being worked on; a claim whose process has died, or
-  /// has not shown itself for kClaimLife_s from another host, is taken over.
+  /// Claims a run that is neither finished nor in progress; a claim whose process has died, or has
+  /// not shown itself for kClaimLife_s from another host, is taken over.
   bool claim(const std::string& key);
   void release(const std::string& key);
   void beat();  ///< this process's claims are alive
   static constexpr int kClaimLife_s = 120;
 
-  /// Each ends the claim. A failed run's result takes no part in the tables.
+  /// Each ends the claim. A failed run's result is excluded from the tables.
   void put(const std::string& key, const RunResult& run, const RunCost& cost);
   void put_failure(const std::string& key, const RunSpec& spec, const std::string& error,
                    const RunCost& cost);
   void forget_failure(const std::string& key);
-  /// Takes a result out, so that it is made anew.
+  /// Removes a result, so that it is rerun.
   void forget(const std::string& key);
 
   /// A finished run; `spec` supplies names and paths. Without its volume and grid.
   RunResult load(const std::string& key, const RunSpec& spec) const;
-  /// The largest resident set of a finished run, MB; 0 of none.
+  /// The largest resident set of a finished run, MB; 0 if none.
   double largest_rss_mb() const;
 
-  /// Takes over what another store holds and this one lacks; returns how many runs that were.
+  /// Copies the results of another store that this one lacks; returns how many runs that were.
   /// @throws InputError if a run of one name was planned with different settings, code or input.
   std::size_t merge(const std::filesystem::path& other);
-  /// What merging them all would find. @throws InputError as merge() does, or if they are results
-  /// of different suites, of one with different trials, or of other runs of it, or if one of their
-  /// results is damaged.
+  /// Checks that all files can be merged. @throws InputError as merge() does, or if they are
+  /// results of different suites, or of one suite with different trials or other runs, or if one of
+  /// their results is damaged.
   static void check_mergeable(const std::vector<std::filesystem::path>& files);
 
   /// Rows of a query, for exports: column names first.
   using Value = std::variant<std::monostate, std::int64_t, double, std::string>;  ///< null first
   std::vector<std::vector<Value>> values(const std::string& sql) const;
-  /// The same as text: null is empty, numbers are printed so that they read back.
+  /// The same as text: null is empty, numbers are printed so that they round-trip.
   std::vector<std::vector<std::string>> rows(const std::string& sql) const;
 
   const std::filesystem::path& file() const { return file_; }
@@ -105,15 +106,15 @@ class Store {
   Store();
 
   std::filesystem::path file_;
-  std::string opened_;  ///< what SQLite opened to read: a copy's name, or one that says how
+  std::string opened_;  ///< what SQLite opened to read: a copy's name, or a URI with options
   std::unique_ptr<TemporaryFolder> copy_;
   std::unique_ptr<SQLite::Database> database_;  ///< closed before its copy goes
 };
 
-/// This moment, "2026-11-22T07:08:40Z".
+/// The current time, "2026-11-22T07:08:40Z".
 std::string utc_now();
 
-/// The number that prints as itself: shortest text that reads back as the same double.
+/// The shortest text that reads back as the same double.
 std::string exact(double value);
 
 }  // namespace mh

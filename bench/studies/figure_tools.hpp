@@ -10,7 +10,7 @@
 #include "bench/drawing/plot.hpp"
 #include "sim/sensors/sensors.hpp"
 
-// What the figures of the sensor models share.
+// Helpers that the figures of the sensor models share.
 namespace mh::figure {
 
 inline constexpr double kDegree = std::numbers::pi / 180.0;

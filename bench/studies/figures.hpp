@@ -7,8 +7,8 @@
 
 namespace mh {
 
-// The figure that each sensor model's source gives (lines) beside what the model does when it is
-// measured (dots). Some seconds in all.
+// Figures of the sensor models: each source's published curve (lines) with measurements of our
+// model (dots). A few seconds in all.
 std::vector<Plot> depth_figures();
 std::vector<Plot> light_figures();
 std::vector<Plot> label_figures();

@@ -9,8 +9,8 @@
 
 namespace mh {
 
-/// What is measured of a picture to tell how hard it is for features: texture, blankness,
-/// sharpness. In the order of kImageQuantities.
+/// Measures of how hard an image is for features: texture, blankness, sharpness. In the order of
+/// kImageQuantities.
 inline constexpr std::size_t kImageQuantityCount = 8;
 using ImageStatistics = std::array<double, kImageQuantityCount>;
 
@@ -28,18 +28,18 @@ inline constexpr std::array<ImageQuantity, kImageQuantityCount> kImageQuantities
     {"laplacian_variance", "variance of the Laplacian"},
 }};
 
-/// Measures a picture scaled to 640x480:
-/// - corners by cv::FAST with suppression of non-maxima; keypoints by cv::ORB (8 levels of 1.2, at
+/// Measures an image scaled to 640x480:
+/// - corners by cv::FAST with non-maximum suppression; keypoints by cv::ORB (8 levels of 1.2, at
 ///   most 2000, threshold 20);
-/// - the length of the gradient by Sobel / 8; a cell of 40x30 pixels is blank where 95 % of its
-///   gradients are below 3;
+/// - the gradient magnitude by Sobel / 8; a cell of 40x30 pixels is blank if 95 % of its gradients
+///   are below 3;
 /// - the slope of log power over log frequency from 8 to 159 cycles, averaged over rings, of the
 ///   middle 480x480 under a Hann window;
 /// - the variance of the 4-neighbor Laplacian.
 /// @param gray 8 bits, one channel, not empty
 ImageStatistics measure_image(const cv::Mat& gray);
 
-/// The value below which that share of a list lies, interpolated between neighbors; NaN if empty.
+/// The value below which that share of a list falls, interpolated between neighbors; NaN if empty.
 double percentile(std::vector<double> values, double share);
 
 }  // namespace mh

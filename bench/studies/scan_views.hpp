@@ -9,10 +9,11 @@
 
 namespace mh {
 
-/// Views (world_from_camera) of somebody who walks through the scene with a depth camera, up and
-/// down and into all corners. Places are drawn from the free part of the rooms (0.3 m from every
-/// object's box), 1.1 to 1.6 m high; the camera looks anywhere, up to 30 degrees down and 12 up.
-/// @throws InputError if the scene has no room, or none with a free place
+/// Returns views (world_from_camera) of a person who scans the scene with a depth camera, up and
+/// down and into all corners. Positions are drawn from the free space of the rooms (0.3 m from
+/// every object's box), 1.1 to 1.6 m high; the camera looks anywhere, up to 30 degrees down and 12
+/// up.
+/// @throws InputError if the scene has no room, or none with free space
 std::vector<SE3> scan_views(const Scene& scene, std::uint64_t seed, std::size_t count);
 
 }  // namespace mh

@@ -10,21 +10,21 @@
 
 namespace mh {
 
-/// What is looked at, where a model has no dial for its strength.
+/// What is viewed, for a model without a strength setting.
 struct Look {
-  double baseline = 1;      ///< times the sensor's own
-  double far = 1;           ///< the scene is so many times as large
-  int pixel = 1;            ///< so many times as wide
-  double eye_m = 0;         ///< above the floor; 0 = as the view is
-  bool over_color = false;  ///< edges of the depth over the color picture
+  double baseline = 1;      ///< factor on the sensor's baseline
+  double far = 1;           ///< factor on the scene's size
+  int pixel = 1;            ///< factor on the pixel width
+  double eye_m = 0;         ///< above the floor; 0 = the view's own height
+  bool over_color = false;  ///< edges of the depth over the color image
 };
 
-/// One factor: what it is called, and what makes it mild and strong.
+/// One factor: its name, and its mild and strong settings.
 struct Factor {
   std::string name;
   std::array<std::string, 3> captions;
   std::array<std::function<void(SensorConfig&)>, 3> settings;
-  int crop_px = 640;  ///< width of the part that is shown, from the middle
+  int crop_px = 640;  ///< width of the central part that is shown
   std::array<Look, 3> looks = {};
 };
 
@@ -33,12 +33,12 @@ std::vector<Factor> color_factors();
 std::vector<Factor> depth_factors();
 std::vector<Factor> frame_factors();
 std::vector<Factor> label_factors();
-/// Exact boxes, one network and another: told apart by the seed of their labels, of which
-/// kExactBoxes stands for no network.
+/// Exact boxes, one network and another, distinguished by the seed of their labels; kExactBoxes
+/// means no network.
 Factor detector_factor();
 inline constexpr std::uint64_t kExactBoxes = 100;
 
-/// What each setting begins with.
+/// The configuration that each setting starts from.
 SensorConfig everything_off();
 
 }  // namespace mh

@@ -11,9 +11,9 @@
 namespace mh {
 
 /// Contact sheets of the sensor factors, one row each: off, mild, strong, all from the same pose
-/// and motion (forward at 0.4 m/s while turning at 1 rad/s), where the scene shows most objects.
-/// A factor without a dial for its strength is stronger in a larger room, with larger pixels or
-/// from nearer the floor, as its caption says.
+/// and motion (forward at 0.4 m/s while turning at 1 rad/s), where the scene shows the most
+/// objects. A factor without a strength setting is made stronger by a larger room, larger pixels or
+/// a lower viewpoint, as its caption states.
 struct SensorSheets {
   cv::Mat color, depth, frames, labels;
 };

@@ -17,7 +17,7 @@ struct MeasuredPlace {
   double at(std::size_t quantity, double share) const;  ///< percentile over its frames
 };
 
-/// Percentiles 5, 25, 50, 75, 95 of each quantity, as carried over from real frames.
+/// Percentiles 5, 25, 50, 75, 95 of each quantity, measured on real frames.
 struct RealFrames {
   std::string name, source;
   std::array<std::array<double, 5>, kImageQuantityCount> percentiles;
@@ -31,7 +31,7 @@ std::vector<RealFrames> load_real_frames(const std::filesystem::path& file);
 struct RealismRow {
   std::array<double, 5> ours;        ///< percentiles over all frames
   double median_of_places = 0;       ///< of the places' medians
-  bool in_range = false;             ///< it lies between the real frames' 25th and 75th percentile
+  bool in_range = false;             ///< it is between the real frames' 25th and 75th percentiles
   double spread_ratio = 0;           ///< 5th to 95th percentile over frames: ours / theirs
   std::vector<std::size_t> outside;  ///< places whose median is beyond their 5th or 95th
 };

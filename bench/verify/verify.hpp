@@ -9,7 +9,7 @@
 
 namespace mh {
 
-/// Where two executions of one suite part for the first time.
+/// Where two executions of one suite first differ.
 struct Difference {
   std::string run;    ///< empty: before any run
   std::string phase;  ///< "world", "mapping", "held_out", "second_tour" or "result"
@@ -22,7 +22,7 @@ struct Difference {
 /// One line: "semantic-exact-pepper-0: mapping: frame 37: image differs".
 std::string describe(const Difference& difference);
 
-/// Compares stage by stage in the order in which things happened; nullopt where every bit agrees.
+/// Compares stage by stage in the order of execution; nullopt if every bit agrees.
 std::optional<Difference> first_difference(const RunResult& a, const RunResult& b);
 std::optional<Difference> first_difference(std::span<const RunResult> a,
                                            std::span<const RunResult> b);
@@ -39,7 +39,7 @@ struct Verification {
   std::optional<Difference> difference;
 };
 
-/// Executes a suite twice from the files on, once with 1 job and once with 4, sharing nothing (no
+/// Executes a suite twice from its files, once with 1 job and once with 4, sharing nothing (no
 /// store, no cache), and compares.
 /// @throws MachineError if a run failed.
 Verification verify(const Suite& suite, const SuiteOverrides& overrides, BenchOptions options);

@@ -10,11 +10,11 @@
 
 namespace mh {
 
-/// Told what is being done, one short line each, not beginning with a digit.
+/// Receives what is being done, one short line each, not starting with a digit.
 using Say = std::function<void(std::string_view)>;
 
-/// Gives a scene that has lamps but no baked light its light, from the cache where it is there.
-/// @param say    told when the light has to be baked; may be empty
+/// Adds baked light to a scene that has lamps but none yet, from the cache if it is there.
+/// @param say    called when the light has to be baked; may be empty
 /// @param baked  as of bake_light
 void light_from_cache(Scene& scene, int threads, const Cache& cache, const Say& say = {},
                       const BakeWatch& baked = {});

@@ -9,8 +9,8 @@
 
 namespace mh {
 
-/// The first frames of a sequence, and what is true of their time.
-/// @param truth  takes the place of the sequence's own
+/// The first frames of a sequence, with the truth of their time span.
+/// @param truth  replaces the sequence's own
 std::shared_ptr<const Sequence> first_frames(std::unique_ptr<Sequence> all, std::size_t at_most,
                                              std::optional<Trajectory> truth = std::nullopt);
 

@@ -23,38 +23,38 @@
 
 namespace mh {
 
-/// A simulated place, lit and driven through.
+/// A simulated place, lit, with its driven paths.
 struct SimulatedPlace {
   std::shared_ptr<const Scene> scene;
   std::shared_ptr<const Renderer> renderer;
   Robot robot;
   DrivenPath mapping;
-  std::optional<DrivenPath> second;           ///< the second tour, where the environment has one
-  std::shared_ptr<const Scene> second_scene;  ///< where it takes place; null: the same scene
-  std::shared_ptr<const Renderer> second_renderer;  ///< of that scene, likewise
+  std::optional<DrivenPath> second;           ///< the second tour, if the environment has one
+  std::shared_ptr<const Scene> second_scene;  ///< the second tour's scene; null: the same scene
+  std::shared_ptr<const Renderer> second_renderer;  ///< of that scene; null: the same renderer
   std::shared_ptr<const PedestrianScene>
-      pedestrian_scene;  ///< with whoever is about during the mapping; or null
+      pedestrian_scene;  ///< with the pedestrians that are present during the mapping; or null
   SensorConfig sensors;  ///< the level
 };
 
-/// Where one run takes place, built once and then only read.
+/// The environment of one run, built once and then only read.
 struct World {
   std::shared_ptr<const Sequence> mapping;  ///< what is mapped
-  std::shared_ptr<const Sequence> second;   ///< what is asked about beside it; or null
-  std::optional<SimulatedPlace> simulated;  ///< of what they are made; a recording has none
+  std::shared_ptr<const Sequence> second;   ///< what is queried in addition; or null
+  std::optional<SimulatedPlace> simulated;  ///< what they are made from; a recording has none
   std::shared_ptr<const Vocabulary> vocabulary;
   bool cut = false;                 ///< the sequences were cut after RunSpec::max_frames
   std::vector<InputDigest> inputs;  ///< what was read to build it, by name
 };
 
-/// Makes the sequences of a simulated world anew, of its paths as they are.
+/// Rebuilds the sequences of a simulated world from its existing paths.
 void simulate(World& world, LabelMode labels);
 
-/// What results tell of it.
+/// What results record of it.
 PlaceFacts facts(const World& world, const RunSpec& spec);
 
 /// Loads scene, robot, vocabulary and level of a run, bakes the light, drives both tours; or opens
-/// its recordings. Says what takes long: baking.
+/// its recordings. Reports baking through `say`, since it takes long.
 /// @throws InputError if a file is bad or a tour cannot be driven.
 World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
                   const BakeWatch& baked = {});
