@@ -10,21 +10,21 @@ namespace mh {
 
 struct AutomaticTourConfig {
   std::uint64_t seed = 0;
-  double apart_m = 1.6;     ///< between the places that are visited, about
+  double apart_m = 1.6;     ///< approximate distance between visited places
   std::size_t places = 24;  ///< at most
 };
 
-/// A tour through all of the floor that the robot can reach (the largest connected part of it): a
-/// look around at the start, a round trip through places spread over it, back to the start facing
-/// as at first. Another seed begins elsewhere and visits other places.
-/// @pre the scene's floor is z = 0 (LevelScene), as of all motions
-/// @throws InputError if the scene has no floor, or no room on it for the robot.
+/// Makes a tour through the whole floor that the robot can reach (its largest connected part): a
+/// look around at the start, a round trip through places spread over it, and back to the start with
+/// the initial heading. Another seed starts elsewhere and visits other places.
+/// @pre the scene's floor is z = 0 (LevelScene), as for all motions
+/// @throws InputError if the scene has no floor, or no space on it for the robot.
 Tour automatic_tour(const Scene& scene, const Robot& robot, const AutomaticTourConfig& config = {});
 
-/// The tour with ways over the free floor in the place of straight lines: waypoints that avoid what
-/// stands between two of its own are put before the latter.
-/// @throws InputError naming tour, line and waypoint where one cannot be reached, and what stands
-/// there.
+/// Returns the tour with paths over the free floor instead of straight lines: waypoints that avoid
+/// obstacles between two of its own are inserted before the latter.
+/// @throws InputError naming tour, line and the waypoint that cannot be reached, and what blocks
+/// it.
 Tour planned(const Scene& scene, const Robot& robot, const Tour& tour);
 
 }  // namespace mh

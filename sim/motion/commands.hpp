@@ -11,23 +11,24 @@
 
 namespace mh {
 
-/// What the base should do for a while: a velocity in its own frame; where the head should look.
+/// Commands for a period of time: the base's velocity in its own frame, and where the head should
+/// look.
 struct VelocityCommand {
   double duration_s = 0;
   double forward_m_per_s = 0, left_m_per_s = 0, turn_rad_per_s = 0;
-  // None: as before. At first 0.
+  // nullopt: as before; initially 0.
   std::optional<double> head_yaw_rad = {}, head_pitch_rad = {};
   int line = 0;  ///< in the script's file, for messages; 0 = none
 };
 
-/// A robot steered by hand, written down.
+/// A script of a robot steered by hand.
 struct CommandScript {
   std::string name;
-  std::filesystem::path file;  ///< where it came from, for messages
+  std::filesystem::path file;  ///< its source, for messages
   Eigen::Vector2d start_m = Eigen::Vector2d::Zero();
   double start_heading_rad = 0;
   int start_line = 0;  ///< in the file, for messages; 0 = none
-  bool reflex = true;  ///< the external-collision reflex is awake
+  bool reflex = true;  ///< the external-collision reflex is active
   std::vector<VelocityCommand> commands;
 };
 
@@ -39,15 +40,15 @@ CommandScript load_commands(const std::filesystem::path& file);
 
 struct CommandedDrive {
   DrivenPath path;
-  double reflex_time_s = 0;  ///< spent slower than asked because something was near
+  double reflex_time_s = 0;  ///< spent below the commanded speed because something was near
 };
 
-/// Drives the robot as the script says, by physics: velocity, acceleration, jerk and rim speed
-/// within its limits, the head's joints within theirs. Unlike a tour, a script arrives nowhere:
-/// where something is in the way, the robot stops before it (reflex) or at it.
-/// @param others  that move about
-/// @throws InputError if the robot has no jerk limit, the start is inside something, a head angle
-/// is out of the joint's range (naming file and line).
+/// Drives the robot by the script, with physics: velocity, acceleration, jerk and wheel rim speed
+/// stay within its limits, the head's joints within theirs. Unlike a tour, a script has no
+/// destination: if something is in the way, the robot stops before it (reflex) or against it.
+/// @param others  moving obstacles
+/// @throws InputError if the robot has no jerk limit, the start is inside something, or a head
+/// angle is out of the joint's range (naming file and line).
 CommandedDrive drive(const Scene& scene, const Robot& robot, const CommandScript& script,
                      const std::vector<MovingObstacle>& others = {});
 

@@ -12,28 +12,28 @@
 
 namespace mh::by_hand {
 
-inline constexpr double kHead_m = 1.9;  ///< what hangs higher is in nobody's way
+inline constexpr double kHead_m = 1.9;  ///< what hangs higher is not in the way
 
-/// Where a person can walk, with as much room as the place allows.
+/// Where a person can walk, with as much clearance as the place allows.
 struct Ground {
   FloorGrid floor;  ///< between foot and head
-  FloorGrid eyes;   ///< at the camera's height: what ends the view
+  FloorGrid eyes;   ///< at the camera's height: what blocks the view
   Grid2d<std::uint8_t> region;
   double clearance_m = 0;
   double area_m2 = 0;
 };
 
 /// @param height_m  of the camera
-/// @throws InputError if there is no floor, or nowhere on it room for a person
+/// @throws InputError if there is no floor, or no space on it for a person
 Ground ground_of(const Scene& scene, double height_m);
 
-/// Where the feet are in each frame, and how fast they go.
+/// Position and speed of the feet in each frame.
 struct Feet {
   std::vector<Eigen::Vector2d> at_m;
   std::vector<double> speed_m_per_s;
 };
-/// @param bouts   of which lengths and speeds are drawn
-/// @param places  seed of the places that are passed
+/// @param bouts   stream for their lengths and speeds
+/// @param places  seed of the visited places
 Feet feet_on(const Ground& ground, const HandheldConfig& config, std::size_t frames, double rate_hz,
              RandomStream bouts, std::uint64_t places);
 

@@ -17,7 +17,7 @@ namespace mh::by_hand {
 struct Looks {
   std::vector<double> yaw_rad, pitch_rad;
 };
-/// One looks as somebody does who scans a room, turn after turn.
+/// Simulates the gaze of a person who scans a room, turn after turn.
 Looks looks_along(const Scene& scene, const std::vector<Eigen::Vector2d>& feet_m,
                   const Ground& ground, const Camera& camera, const HandheldConfig& config,
                   RandomStream stream);

@@ -15,47 +15,47 @@
 namespace mh {
 
 /// One leg of a tour: drive to a place, turn in place there, pause there. A waypoint with neither
-/// turn nor pause is passed without stopping, its corner cut by a bow (PathConfig::cut_m).
+/// turn nor pause is passed without stopping; its corner is rounded by an arc (PathConfig::cut_m).
 struct Waypoint {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
-  // Where the base looks on the way: to look_at_m if given; else it turns over the leg until it
-  // has heading_rad at arrival, if given; else it faces the way of travel.
+  // Where the base faces on the way: look_at_m if given; else it turns over the leg to reach
+  // heading_rad at arrival, if given; else it faces the direction of travel.
   std::optional<double> heading_rad = {};
   std::optional<Eigen::Vector2d> look_at_m = {};
-  double turn_rad = 0.0;  ///< turned in place at arrival, counter-clockwise; may exceed a round
+  double turn_rad = 0.0;  ///< turned in place at arrival, counter-clockwise; may exceed a full turn
   double pause_s = 0.0;   ///< rest after the turn
   int line = 0;           ///< in the tour's file, for messages; 0 = none
 };
 
 struct Tour {
   std::string name;
-  std::filesystem::path file;  ///< where it came from, for messages
+  std::filesystem::path file;  ///< its source, for messages
   Eigen::Vector2d start_m = Eigen::Vector2d::Zero();
   double start_heading_rad = 0.0;
   int start_line = 0;  ///< in the file, for messages; 0 = none
-  // A tour may be driven more gently than the robot could; never faster.
+  // A tour may limit the robot below its own maximum; never above.
   std::optional<double> max_velocity_m_per_s;
   std::optional<double> max_turn_rad_per_s;
-  bool plan = false;  ///< ways over the free floor between waypoints instead of straight lines
+  bool plan = false;  ///< paths over the free floor between waypoints instead of straight lines
   std::vector<Waypoint> waypoints;
 };
 
-/// Reads a tour (YAML): `name`; `start: {position: [x, y], heading_deg}`; optional
-/// `speed_m_per_s`, `turn_deg_per_s`, `plan` (true or false); `waypoints`, a list of mappings with
-/// any of `to: [x, y]`, `heading_deg`, `face: travel | [x, y]`, `turn_deg`, `pause_s`. Without `to`
-/// it stays in place.
+/// Reads a tour (YAML): `name`; `start: {position: [x, y], heading_deg}`; optional `speed_m_per_s`,
+/// `turn_deg_per_s`, `plan` (true or false); `waypoints`, a list of mappings with any of `to: [x,
+/// y]`, `heading_deg`, `face: travel | [x, y]`, `turn_deg`, `pause_s`. Without `to` the robot stays
+/// in place.
 /// @throws InputError naming file, line, field and value.
 Tour load_tour(const std::filesystem::path& file);
 
-/// The most that the base did, from one step of the physics to the next, contacts apart; over the
-/// floor and in turning.
+/// Peak motion of the base between consecutive physics steps, excluding contacts; translation and
+/// rotation.
 struct DrivePeaks {
   double m_per_s = 0, m_per_s2 = 0, m_per_s3 = 0;
   double rad_per_s = 0, rad_per_s2 = 0, rad_per_s3 = 0;
-  double rim_m_per_s = 0;  ///< of any wheel, where the robot has wheels
+  double rim_m_per_s = 0;  ///< of any wheel, if the robot has wheels
 };
 
-/// What the robot really did: base and camera, at the camera's rate.
+/// The robot's actual motion: base and camera, at the camera's rate.
 struct DrivenPath {
   std::vector<TimedPose> camera;            ///< world_from_camera, stamps of frames
   std::vector<TimedPose> base;              ///< world_from_base, same stamps
@@ -64,16 +64,17 @@ struct DrivenPath {
   double turned_in_place_rad = 0.0;
   double max_penetration_m = 0.0;
   double contact_time_s = 0.0;  ///< time spent touching something
-  DrivePeaks peaks;             ///< all 0 where no physics moved the camera
+  DrivePeaks peaks;             ///< all 0 if the camera was not moved by physics
 };
 
-/// Drives the robot through the scene with Bullet, along the reference_motion of the tour,
-/// velocity, acceleration and (where the robot has such a limit) jerk limited, and samples the
-/// camera. Stamps are round(i * 1e9 / rate). The base comes from Bullet's body, the camera from the
-/// base and base_from_camera; nothing is added. Ways are planned first where the tour says so.
-/// @param others  that move about; who runs into the robot pushes it, a tour waits for nobody
-/// @throws InputError naming tour, waypoint, place and what stands in the way if a waypoint is not
-/// reached, or if the start pose is inside something or outside the rooms.
+/// Drives the robot through the scene with Bullet, along the reference_motion of the tour, limited
+/// in velocity, acceleration and (if the robot has such a limit) jerk, and samples the camera.
+/// Stamps are round(i * 1e9 / rate). The base comes from Bullet's body, the camera from the base
+/// and base_from_camera; nothing is added. Paths are planned first if the tour requests it.
+/// @param others  moving obstacles; one that runs into the robot pushes it, and a tour does not
+///                wait
+/// @throws InputError naming tour, waypoint, place and the obstacle if a waypoint is not reached,
+/// or if the start pose is inside something or outside the rooms.
 DrivenPath drive(const Scene& scene, const Robot& robot, const Tour& tour,
                  const std::vector<MovingObstacle>& others = {});
 

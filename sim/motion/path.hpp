@@ -9,8 +9,8 @@
 namespace mh {
 
 struct PathConfig {
-  /// A bow begins and ends at most this far from its corner, m; so a right angle is rounded with
-  /// this radius and passes the corner at a distance of 0.41 of it.
+  /// An arc starts and ends at most this far from its corner, m; so a right angle is rounded with
+  /// this radius and passes the corner at 0.41 of it.
   double cut_m = 0.45;
 };
 
@@ -20,17 +20,17 @@ struct PathPoint {
   double curvature_per_m = 0;  ///< positive to the left
 };
 
-/// A plane curve through given corners: straight lines joined by tangent arcs. Begins and ends
+/// A planar curve along given corners: straight lines joined by tangent arcs. Starts and ends
 /// exactly at the first and last corner.
 class RoundedPath {
  public:
-  /// @param corners_m at least two, each apart from the next; no corner turns back on itself.
+  /// @param corners_m  at least two, each distinct from the next; no corner reverses direction.
   RoundedPath(std::span<const Eigen::Vector2d> corners_m, const PathConfig& config = {});
 
   double length_m() const { return length_m_; }
-  /// The point at arc length s; beyond either end the path goes on straight.
+  /// The point at arc length s; beyond either end the path continues straight.
   PathPoint at(double s_m) const;
-  /// Arc length of the point that stands for corner i (the middle of its bow).
+  /// Arc length of the point that represents corner i (the middle of its arc).
   double corner_s_m(std::size_t i) const { return corner_s_m_[i]; }
 
  private:
@@ -51,19 +51,20 @@ struct SpeedLimits {
   double across_m_per_s2 = 0;  ///< v^2 * curvature
 };
 
-/// The fastest speed at each arc length, from rest at the beginning of the path to rest at its end,
-/// with which the robot takes every bow.
+/// The highest speed at each arc length, from rest at the start of the path to rest at its end,
+/// within the limits on every arc.
 class SpeedProfile {
  public:
   SpeedProfile(const RoundedPath& path, const SpeedLimits& limits);
   double at(double s_m) const;  ///< m/s
   double duration_s() const { return time_s_.back(); }
-  /// Arc length reached at a time; that of the end from then on.
+  /// Arc length reached at a time; the end's from then on.
   double s_at(double time_s) const;
 
  private:
   double spacing_m_ = 0;
-  // At places that far apart: v^2, which changes linearly under constant acceleration, and when.
+  // At samples this far apart: v^2, which changes linearly under constant acceleration, and the
+  // time.
   std::vector<double> squared_, time_s_;
 };
 

@@ -7,16 +7,16 @@
 
 namespace mh {
 
-/// Off what was asked by more than this, the base was pushed.
+/// A deviation from the command by more than this means that the base was pushed.
 inline constexpr double kPushed_m_per_s = 1e-3;
 
-/// Keeps the most that the base did, from one step of the physics to the next.
+/// Records the base's peak motion between consecutive physics steps.
 class PeakMeter {
  public:
   explicit PeakMeter(double step_s) : step_s_(step_s) {}
-  /// @param wheels  null where the robot has none
+  /// @param wheels  null if the robot has none
   void add(const BaseState& state, const OmniWheels* wheels);
-  /// A contact changed the velocity, which is no acceleration of the motors'.
+  /// A contact changed the velocity, which is not an acceleration by the motors.
   void pushed(const BaseState& state);
   const DrivePeaks& peaks() const { return peaks_; }
 

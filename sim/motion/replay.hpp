@@ -12,18 +12,18 @@
 namespace mh {
 
 struct ReplayConfig {
-  /// Where the first pose is put: x, y (m) and the turn about z (rad) of the whole trajectory.
-  /// None: the first of the placings, seeded, along which the camera touches nothing.
+  /// Placement of the first pose: x, y (m), and the rotation about z (rad) of the whole trajectory.
+  /// nullopt: the first of the seeded placements along which the camera touches nothing.
   std::optional<Eigen::Vector3d> at;
   std::uint64_t seed = 0;
   double room_m = 0.12;  ///< the camera keeps at least this far from everything
 };
 
-/// Moves a camera through a scene as somebody else once moved one: a recorded trajectory (z up, as
-/// TUM's are), sampled at the camera's rate, moved and turned about z as a whole; heights stay.
-/// Between two poses the camera moves by a constant twist. Stamps begin at 0.
+/// Moves a camera through a scene along a recorded trajectory (z up, as in TUM's), sampled at the
+/// camera's rate, translated and rotated about z as a whole; heights stay. Between two poses the
+/// camera moves by a constant twist. Stamps start at 0.
 /// @param name  of the trajectory, for messages
-/// @throws InputError if the trajectory has fewer than two poses, or no placing in the scene keeps
+/// @throws InputError if the trajectory has fewer than two poses, or no placement in the scene is
 /// clear of everything.
 DrivenPath replay(const Scene& scene, const Camera& camera, const Trajectory& recorded,
                   const std::string& name, const ReplayConfig& config = {});

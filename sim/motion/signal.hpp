@@ -9,7 +9,7 @@
 
 namespace mh::by_hand {
 
-/// A signal of given root mean square whose power lies evenly in a band: 16 sines of seeded
+/// A signal of given root mean square with its power spread evenly over a band: 16 sines of seeded
 /// frequency and phase.
 class BandNoise {
  public:
@@ -21,7 +21,7 @@ class BandNoise {
   double amplitude_ = 0;
 };
 
-/// Mean over a Gaussian window; the ends are held.
+/// Smooths by a Gaussian window; the end values are repeated.
 std::vector<double> smoothed(const std::vector<double>& values, double sigma_frames);
 
 }  // namespace mh::by_hand

@@ -13,8 +13,7 @@ namespace mh {
 /// [x, y] in meters, within a kilometer of the origin.
 Eigen::Vector2d read_place(const YamlReader& yaml);
 
-/// Where a motion begins, as files of motions write it: `start: {position: [x, y], heading_deg:
-/// h}`.
+/// Where a motion starts, as written in motion files: `start: {position: [x, y], heading_deg: h}`.
 struct Start {
   Eigen::Vector2d place_m;
   double heading_rad = 0;
@@ -22,13 +21,14 @@ struct Start {
 };
 Start read_start(YamlReader& motion);
 
-/// "FILE:LINE", or "FILE" where the line is 0: where a message's place begins.
+/// "FILE:LINE", or "FILE" if the line is 0: the start of a message.
 std::string file_and_line(const std::filesystem::path& file, int line);
 
-/// ", as it lies in no room of SCENE", or "" where it lies in one or the scene has none.
+/// ", as it lies in no room of SCENE", or "" if it is in a room or the scene has none.
 std::string outside_rooms(const Scene& scene, const Eigen::Vector2d& place_m);
 
-/// " against NAME", or "" where the instance is none. One that the scene has not moves about.
+/// " against NAME", or "" if there is no instance. An instance that is not in the scene is a moving
+/// obstacle.
 std::string against(const Scene& scene, InstanceId instance);
 
 /// @param where  file and line, for the message

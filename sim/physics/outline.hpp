@@ -9,17 +9,17 @@
 
 namespace mh {
 
-/// A piece of the outline that obstacles have on the floor.
+/// An edge of the obstacles' outline on the floor.
 struct OutlineEdge {
   Eigen::Vector2f a_m, b_m;
   InstanceId instance = 0;
 };
 
-/// The outline, seen from above, of everything between two heights: what an upright cylinder that
-/// reaches past both can run into. Of the faces' edges those are left out that have a face on both
-/// sides, since who comes from outside meets another first.
-/// @returns each edge once, in the order of its ends; for edges shared by several instances, the
-/// one of the first face
+/// Returns the outline, seen from above, of everything between two heights: what an upright
+/// cylinder that extends past both can collide with. Edges with a face on both sides are left out,
+/// since anything that comes from outside hits another edge first.
+/// @returns each edge once, sorted by its ends; an edge shared by several instances gets that of
+/// the first face
 std::vector<OutlineEdge> floor_outline(const Scene& scene, float bottom_m, float top_m);
 
 }  // namespace mh

@@ -7,9 +7,9 @@
 
 namespace mh {
 
-/// Where the base (a sphere that stands for a disc) touches the outline. Bullet's own pairing of a
-/// sphere with a mesh lets a shallow contact take the place of a deep one that points the same way,
-/// and furniture has many layers a few millimeters apart.
+/// Contacts of the base (a sphere that represents a disc) with the outline. Bullet's own
+/// sphere-mesh collision lets a shallow contact replace a deep one in the same direction, and
+/// furniture has many layers a few millimeters apart.
 class OutlineContacts final : public btCollisionAlgorithm {
  public:
   struct Maker final : btCollisionAlgorithmCreateFunc {
@@ -38,8 +38,8 @@ class OutlineContacts final : public btCollisionAlgorithm {
   }
 
  private:
-  static constexpr btScalar kReach_m = 0.005F;  // farther than a step goes
-  static constexpr btScalar kSameWay = 0.995F;  // 6 deg: the deeper of two such contacts is enough
+  static constexpr btScalar kReach_m = 0.005F;  // farther than one step moves
+  static constexpr btScalar kSameWay = 0.995F;  // 6 deg: of two such contacts, the deeper suffices
 
   struct Near {
     btScalar distance_m;
@@ -47,7 +47,7 @@ class OutlineContacts final : public btCollisionAlgorithm {
     btVector3 point;  // of the wall, at the height of the base's middle
   };
 
-  /// Walls within a distance of the center, the nearest first.
+  /// Finds walls within a distance of the center, nearest first.
   void find_near(const btBvhTriangleMeshShape& walls, const btVector3& center, btScalar most_m);
 
   btPersistentManifold* manifold_;

@@ -10,41 +10,43 @@ namespace mh {
 struct BakeConfig {
   int samples = 128;     ///< hemisphere rays per vertex, rounded up to whole packets of 16
   int bounces = 2;       ///< diffuse interreflections
-  int sun_samples = 16;  ///< shadow rays per sun and per lamp, rounded up likewise
-  int smoothing = 6;     ///< rounds of averaging the indirect part over neighboring vertices
+  int sun_samples = 16;  ///< shadow rays per sun and per lamp, rounded up in the same way
+  int smoothing = 6;     ///< iterations of averaging the indirect part over neighboring vertices
   std::uint64_t seed = 0;
-  int threads = 2;        ///< never changes a bit of the result
+  int threads = 2;        ///< never changes the result
   bool portable = false;  ///< pin Embree to AVX2, so that light agrees across processors
 };
 
-/// Told the share of the rays that are traced, in [0, 1].
+/// Receives the share of the rays that have been traced, in [0, 1].
 using BakeWatch = std::function<void(double)>;
 
-/// Digest (xxh3-64) of all that decides what bake_light makes of a scene: its code's version and
-/// the config without `threads`. With the scene's own digest, the key of a baked scene.
+/// Digest (xxh3-64) of everything that determines bake_light's result for a scene: its code's
+/// version and the config without `threads`. With the scene's own digest, the key of a baked scene.
 std::uint64_t digest(const BakeConfig& config);
 
 /// Computes Scene::light (irradiance / pi at every vertex, linear RGB) by ray tracing: sun through
-/// windows, sphere lamps with soft shadows, sky and glowing surfaces seen by hemisphere rays, and
-/// `bounces` diffuse interreflections gathered from the vertices' light of the round before.
+/// windows, sphere lamps with soft shadows, sky and luminous surfaces by hemisphere rays, and
+/// `bounces` diffuse interreflections gathered from the vertices' light of the previous bounce.
 ///
-/// What a vertex stands for, where a scene is not a textbook's:
-/// - Light is that of the side that the faces' normals show. Only where that side gets next to none
-///   (a closed box turned inside out) the other side's is taken. "The brighter side" would let the
+/// How vertices are handled in real-world scenes:
+/// - Light is that of the side that the faces' normals point to. Only if that side gets almost none
+///   (a closed box turned inside out), the other side's is used. "The brighter side" would let the
 ///   sky shine through every thin outer wall.
-/// - Light is measured all over the nearer half of the vertex's faces, so that a vertex in a corner
-///   is not measured inside the neighboring wall, and the edge of a shadow becomes a ramp as wide
-///   as the faces instead of a staircase.
-/// - A vertex inside something solid (furniture standing on a tessellated floor) sees mostly backs
-///   of faces; its light is filled in from its neighbors, lest it darkens the floor around.
-/// - Glowing faces cast no shadow for suns and lamps (lamp shades, window panes), and within reach
-///   of a lamp's center (three radii, at least 0.3 m) their glow is that lamp's, not counted twice.
-/// Deterministic: random numbers are counted by (seed, vertex).
+/// - Light is sampled all over the nearer half of the vertex's faces, so that a vertex in a corner
+///   is not sampled inside the neighboring wall, and the edge of a shadow becomes a ramp as wide as
+///   the faces instead of a staircase.
+/// - A vertex inside something solid (furniture standing on a tessellated floor) sees mostly back
+///   faces; its light is filled in from its neighbors, so that it does not darken the surrounding
+///   floor.
+/// - Luminous faces cast no shadow for suns and lamps (lamp shades, window panes), and near a
+///   lamp's center (three radii, at least 0.3 m) their emission is that lamp's and is not counted
+///   twice.
+/// Deterministic: random numbers are keyed by (seed, vertex).
 /// @param watch  may be empty; called from any thread, never from two at once
 /// @throws std::invalid_argument if a count is negative or samples is 0.
 void bake_light(Scene& scene, const BakeConfig& config = {}, const BakeWatch& watch = {});
 
-/// The exposure (see RenderConfig) under which the median of what is seen comes out as
+/// Returns the exposure (see RenderConfig) that maps the median of visible radiance to
 /// `median_radiance` (linear; 0.2 is sRGB 124). Measured with rays from places in the rooms at the
 /// height of a robot's camera, up to 34 deg up and down, or from anywhere in a scene without a
 /// plan. 1 for an empty or black scene.

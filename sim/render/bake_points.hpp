@@ -12,25 +12,26 @@
 
 namespace mh {
 
-/// Where and which way the light of each vertex is measured: not in the vertex itself, which may
-/// lie in a corner or on the edge of a shadow, but spread over the nearer half of its faces.
+/// Positions and directions at which the light of each vertex is sampled: not at the vertex itself,
+/// which may be in a corner or on the edge of a shadow, but spread over the nearer half of its
+/// faces.
 class BakePoints {
  public:
   explicit BakePoints(const Scene& scene);
 
   std::size_t size() const { return normals_.size(); }
-  /// Unit normal, the area-weighted mean of the faces'; z where they have no area.
+  /// Unit normal, the area-weighted mean of the faces'; z if they have no area.
   const Eigen::Vector3f& normal(std::size_t vertex) const { return normals_[vertex]; }
-  /// Sample i of the places where a vertex's light is measured, lifted off the surface to the
+  /// Sample i of the positions where a vertex's light is sampled, lifted off the surface to the
   /// normal's side (side = 1) or the other one (-1). `shift` in [0, 1) varies the pattern.
   Eigen::Vector3f origin_m(std::size_t vertex, int i, float shift, float side) const;
 
  private:
   const Scene& scene_;
   std::vector<Eigen::Vector3f> normals_;
-  std::vector<std::size_t> begin_;      // of a vertex's corners in faces_
+  std::vector<std::size_t> begin_;      // start of each vertex's corners in faces_
   std::vector<std::uint32_t> faces_;    // face x 4 + corner
-  std::vector<Eigen::Vector3f> lifts_;  // by face: a short way off it
+  std::vector<Eigen::Vector3f> lifts_;  // by face: a small offset off its surface
 };
 
 /// The vertices that share an edge with each vertex, ascending.

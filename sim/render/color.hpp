@@ -15,11 +15,11 @@ float srgb_to_linear(std::uint8_t value);
 Eigen::Vector3f srgb_to_linear(Rgb8 color);
 
 /// The nearest 8-bit sRGB value of a linear one, clamped to [0, 1]; a table of 2^14 entries, whose
-/// steps are below a quarter of a gray level.
+/// steps are below 1/4 of a gray level.
 std::uint8_t linear_to_srgb(float linear);
 
-/// The table behind linear_to_srgb: entry i stands for linear i / kSrgbTableMax. Four bytes can be
-/// read from every entry on.
+/// The table behind linear_to_srgb: entry i is for linear i / kSrgbTableMax. Four bytes can be read
+/// starting at any entry.
 inline constexpr int kSrgbTableMax = 16383;
 extern const std::array<std::uint8_t, kSrgbTableMax + 4> kSrgbTable;
 

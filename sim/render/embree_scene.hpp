@@ -14,7 +14,7 @@
 
 namespace mh {
 
-/// Flushes denormals to zero on this thread while it lives, as Embree asks for.
+/// Flushes denormals to zero on this thread during its lifetime, as Embree recommends.
 class FlushDenormals {
  public:
   FlushDenormals();
@@ -26,12 +26,12 @@ class FlushDenormals {
   unsigned saved_;
 };
 
-/// Which faces a ray can meet: bits of RTCRay::mask.
+/// Which faces a ray can hit: bits of RTCRay::mask.
 inline constexpr unsigned kOpaqueFaces = 1;
 inline constexpr unsigned kLuminousFaces = 2;  ///< faces of materials that emit light
 inline constexpr unsigned kAllFaces = ~0U;
 
-/// Where faces have holes: what an intersection filter asks. A texel is whole or a hole, without
+/// Holes in faces, for an intersection filter. A texel is either opaque or a hole, without
 /// blending, so that depth and labels are those of one surface.
 struct CutOuts {
   struct Face {
@@ -43,18 +43,18 @@ struct CutOuts {
   bool is_hole(unsigned primitive, float u, float v) const;
 };
 
-/// What stops a ray, or what a ray passes and is tinted by (Material::transmission).
+/// Faces that stop a ray, or faces that a ray passes through and is tinted by
+/// (Material::transmission).
 enum class Faces { kSurfaces, kGlass };
 
-/// Surfaces or panes of a scene in an Embree hierarchy; owns all that it needs. Tracing is safe
-/// from several threads. One place for the differences between Embree 3 and 4.
+/// The surfaces or panes of a scene in an Embree BVH; owns everything that it needs. Tracing is
+/// thread-safe. Hides the differences between Embree 3 and 4.
 class EmbreeScene {
  public:
-  /// @param portable pins the instruction set to AVX2, so that results agree across processors.
-  /// @param watertight no ray slips between two faces that share an edge; a fifth slower. Without
-  /// it
-  ///                   one in two million of a camera's rays does, and many that start on a face.
-  /// @throws MachineError if Embree fails (out of memory, or no AVX2 where it is pinned).
+  /// @param portable    pins the instruction set to AVX2, so that results agree across processors.
+  /// @param watertight  no ray slips between two faces that share an edge; 1/5 slower. Otherwise,
+  ///                    one in two million camera rays does, and many that start on a face.
+  /// @throws MachineError if Embree fails (out of memory, or no AVX2 when pinned to it).
   EmbreeScene(const Scene& scene, int build_threads, bool portable, bool watertight = false,
               Faces which = Faces::kSurfaces);
   ~EmbreeScene();
@@ -63,12 +63,13 @@ class EmbreeScene {
 
   /// Traces 16 rays to their first hits; lanes whose `valid` is 0 are left alone.
   void intersect16(const int* valid, RTCRayHit16& rays, bool coherent) const;
-  /// The same ray by ray: what packets are measured against.
+  /// The same ray by ray: the baseline that packets are compared with.
   void intersect_each(RTCRayHit16& rays) const;
-  /// Tells for 16 rays whether anything is in the way: their tfar becomes -infinity.
+  /// Tests for 16 rays whether anything is in the way: the tfar of an occluded one becomes
+  /// -infinity.
   void occluded16(const int* valid, RTCRay16& rays) const;
 
-  /// Index in Scene::triangles of a hit.
+  /// Returns a hit's index in Scene::triangles.
   std::uint32_t face_of(unsigned geometry_id, unsigned primitive_id) const {
     return faces_[first_[geometry_id] + primitive_id];
   }

@@ -7,17 +7,18 @@
 
 namespace mh {
 
-/// Light within [0, 1]: what is brighter than white is white.
+/// Clamps light to [0, 1]: anything brighter than white is white.
 inline __m256 up_to_white(__m256 linear) {
   return _mm256_min_ps(_mm256_max_ps(linear, _mm256_setzero_ps()), _mm256_set1_ps(1.0F));
 }
 
-/// How many bytes after the last one of each row encode() writes over.
+/// How many bytes past the end of each row encode() overwrites.
 inline constexpr std::size_t kSpareAfterEncode = 4;
 
-/// Eight linear colors, two and two, to sRGB: the same as linear_to_srgb(), but that halves of the
-/// table's steps go to the even one.
-/// @param first, second  where the first and the last four pixels go, and kSpareAfterEncode more
+/// Converts eight linear colors, in pairs, to sRGB: the same as linear_to_srgb(), except that half
+/// steps of the table round to even.
+/// @param first, second  destinations of the first and the last four pixels, with kSpareAfterEncode
+///                       spare bytes
 inline void encode(const __m256* light, Rgb8* first, Rgb8* second) {
   const auto* table = reinterpret_cast<const int*>(kSrgbTable.data());
   const auto code = [&](__m256 linear) {

@@ -9,8 +9,8 @@
 
 namespace mh {
 
-// The functions of OpenGL that are used, as (name, its type's name). OSMesa is loaded at run time,
-// so that a machine without it runs everything else, and so are they.
+// The OpenGL functions used, as (name, its type's name). OSMesa and they are loaded at run time, so
+// that a machine without OSMesa runs everything else.
 #define MH_GL_FUNCTIONS(F)                            \
   F(ActiveTexture, ACTIVETEXTURE)                     \
   F(AttachShader, ATTACHSHADER)                       \
@@ -71,11 +71,11 @@ struct Gl {
 #undef MH_DECLARE
 };
 
-/// A context of OpenGL 4.5 without a window. All that depends on where it comes from stands in
-/// osmesa_context.cpp: OSMesa has left Mesa 25.1, EGL may take its place there.
+/// An OpenGL 4.5 context without a window. Everything that depends on its provider is in
+/// osmesa_context.cpp: OSMesa was removed from Mesa 25.1; EGL could replace it there.
 class OffscreenContext {
  public:
-  /// @throws MachineError if there is no OSMesa, or not one that can do what is needed.
+  /// @throws MachineError if there is no OSMesa, or it lacks a required feature.
   OffscreenContext();
   ~OffscreenContext();
   OffscreenContext(const OffscreenContext&) = delete;
@@ -83,7 +83,7 @@ class OffscreenContext {
 
   const Gl& gl() const { return gl_; }
 
-  /// The calling thread's context while it lives; one at a time.
+  /// Makes it the calling thread's context during its lifetime; one at a time.
   class Current {
    public:
     explicit Current(const OffscreenContext& context);

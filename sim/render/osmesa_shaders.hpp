@@ -3,8 +3,9 @@
 
 namespace mh {
 
-// The camera's frame is x right, y down, z forward; row 0 of a picture is the first that is read
-// back, so nothing is turned over. Depth is reversed (near / z), which is finest in floats.
+// The camera's frame is x right, y down, z forward; row 0 of an image is the first that is read
+// back, so nothing is flipped. Depth is reversed (near / z), which has the best precision in
+// floats.
 inline constexpr const char* kVertexShader = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 uv;
@@ -23,9 +24,9 @@ void main() {
 }
 )";
 
-// The level of detail follows TextureTable::look_up: the texels that a pixel covers.
-// Holes follow CutOuts::is_hole. Only a scene that has any pays for them: a shader that may discard
-// is tested for depth after it has run.
+// The level of detail follows TextureTable::look_up: the texels that a pixel covers. Holes follow
+// CutOuts::is_hole. Only a scene with holes pays for them: with a shader that may discard, the
+// depth test runs after it.
 inline constexpr const char* kVersion = "#version 450 core\n";
 inline constexpr const char* kVersionWithHoles = "#version 450 core\n#define HOLES\n";
 inline constexpr const char* kFragmentShader = R"(

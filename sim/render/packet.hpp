@@ -16,7 +16,7 @@ namespace mh {
 inline constexpr int kSide = 4;  ///< a packet is a square of 4 x 4 pixels
 inline constexpr int kLanes = 16;
 
-/// Where in a pixel a ray goes through it, px from its center.
+/// Where a ray passes through a pixel, px from its center.
 struct Offset {
   float x = 0, y = 0;
 };
@@ -24,9 +24,8 @@ struct Pixel {
   int x = 0, y = 0;
 };
 
-/// Everything of one picture that does not change from tile to tile. The direction through a pixel
-/// is column + row, with z = 1 in the camera's frame, so that the distance along a ray is the
-/// depth.
+/// Everything of one image that does not change between tiles. The direction through a pixel is
+/// column + row, with z = 1 in the camera's frame, so that the distance along a ray is the depth.
 struct View {
   View(const Camera& camera, const SE3& world_from_camera)
       : width(camera.width_px),
@@ -48,7 +47,7 @@ struct View {
     }
   }
 
-  /// What an offset adds to a direction.
+  /// Returns what an offset adds to a direction.
   std::array<float, 3> beside(const Offset& offset) const {
     const float a = offset.x * pixel_width, b = offset.y * pixel_height;
     return {rotation(0, 0) * a + rotation(0, 1) * b, rotation(1, 0) * a + rotation(1, 1) * b,
@@ -62,7 +61,7 @@ struct View {
   Eigen::Matrix3f rotation;                       // world_from_camera
   Eigen::Vector3f origin;                         // m, world
   float pixel_width, pixel_height;                // at unit depth
-  std::array<std::vector<float>, 3> column, row;  // world x, y, z; whole packets of them
+  std::array<std::vector<float>, 3> column, row;  // world x, y, z; padded to whole packets
 };
 
 /// Sixteen rays from the camera.

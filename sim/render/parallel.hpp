@@ -7,9 +7,9 @@
 
 namespace mh {
 
-/// Calls work(i, state) once for every i in [0, count), from up to `threads` threads, each with a
-/// state of its own from make_state(). The caller makes sure that each i writes its own output only
-/// and finds nothing of another's in the state, so that the thread count changes no bit.
+/// Calls work(i, state) once for every i in [0, count), from up to `threads` threads, each with its
+/// own state from make_state(). The caller ensures that each i writes only its own output and
+/// depends on nothing that another i left in the state, so that the thread count changes no bit.
 template <class MakeState, class Work>
 void parallel_for(int count, int threads, const MakeState& make_state, const Work& work) {
   std::atomic<int> next = 0;

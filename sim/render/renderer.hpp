@@ -13,19 +13,18 @@
 
 namespace mh {
 
-/// RenderedFrame::faces where a pixel shows none.
+/// Value of RenderedFrame::faces for a pixel that shows no face.
 inline constexpr std::uint32_t kNoFace = ~std::uint32_t{0};
 
-/// The exact picture of a moment: no noise, no lens. All grids have the camera's size. All but the
-/// color is that of the ray through the pixel's center; so is the color, unless it is smoothed
-/// (Antialiasing).
+/// The exact image of a moment: no noise, no lens. All grids have the camera's size. Everything is
+/// sampled by the ray through the pixel's center, except color if it is smoothed (Antialiasing).
 struct RenderedFrame {
   Grid2d<Rgb8> color;            ///< sRGB
   Grid2d<float> depth_m;         ///< along the optical axis; 0 = nothing hit
   Grid2d<ClassId> classes;       ///< kVoid where nothing was hit
   Grid2d<InstanceId> instances;  ///< 0 where nothing was hit
-  /// Linear radiance that is white in the picture is 1 / exposure; 0: the scene shows colors of
-  /// its own and no light, so that nothing tells how bright it is.
+  /// Linear radiance that is white in the image is 1 / exposure; 0: the scene shows its own unlit
+  /// colors, so that its brightness is unknown.
   float exposure = 0.0F;
 
   // On request (ExtraOutputs), else empty.
@@ -42,10 +41,10 @@ struct ExtraOutputs {
   bool points = false;
 };
 
-/// How color becomes the mean of light over a pixel, as that of a sensor's cell is.
+/// How color approximates the mean of light over a pixel, which a sensor cell measures.
 enum class Antialiasing {
-  kNone,        ///< the ray through the center alone
-  kEdges,       ///< two more rays where objects or depth have an edge; textures are filtered anyway
+  kNone,        ///< only the ray through the center
+  kEdges,       ///< two more rays at edges of objects or depth; textures are filtered anyway
   kSupersample  ///< four rays in each pixel, 2 x 2
 };
 
@@ -58,8 +57,8 @@ class Renderer {
   virtual RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const = 0;
 };
 
-/// What both renderers refuse: a size or focal length out of range. The principal point may lie
-/// anywhere: a rolling shutter renders strips of a picture, most of which do not hold it.
+/// What both renderers refuse: a size or focal length out of range. The principal point may be
+/// anywhere: a rolling shutter renders strips of an image, most of which do not contain it.
 /// @throws InputError naming the field.
 inline void check_projection(Camera camera) {
   camera.cx_px = camera.cy_px = 0;
@@ -67,19 +66,19 @@ inline void check_projection(Camera camera) {
 }
 
 struct RenderConfig {
-  int threads = 1;        ///< threads over tiles of one picture; never changes a bit of it
+  int threads = 1;        ///< threads over tiles of one image; never changes the image
   float exposure = 1.0F;  ///< linear radiance that maps to white is 1 / exposure
   Antialiasing antialiasing = Antialiasing::kEdges;
   ExtraOutputs extra{};
-  bool portable = false;  ///< pin Embree to AVX2, so that pictures agree across processors
+  bool portable = false;  ///< pin Embree to AVX2, so that images agree across processors
 };
 
 /// Ray-traces with Embree. Keeps no reference to the scene.
 std::unique_ptr<Renderer> make_embree_renderer(const Scene& scene, const RenderConfig& config = {});
 
-/// Rasterizes with OSMesa: the independent oracle. Shows the centers of pixels only (kNone) and no
-/// extra outputs; `threads` and `portable` mean nothing to it. Pictures are made one at a time.
-/// Keeps no reference to the scene.
+/// Rasterizes with OSMesa: the independent oracle. Samples pixel centers only (kNone), without
+/// extra outputs; ignores `threads` and `portable`. Renders one image at a time. Keeps no reference
+/// to the scene.
 /// @throws MachineError if this build or this machine has no OSMesa.
 std::unique_ptr<Renderer> make_osmesa_renderer(const Scene& scene, const RenderConfig& config = {});
 

@@ -42,7 +42,7 @@ inline Float8 abs8(Float8 value) {
 inline Float8 to_float(Int8 value) {
   return __builtin_convertvector(value, Float8);
 }
-/// Cuts towards zero.
+/// Truncates toward zero.
 inline Int8 to_int(Float8 value) {
   return __builtin_convertvector(value, Int8);
 }
@@ -57,7 +57,7 @@ inline std::array<Float8, 4> spread_fields(const float* from) {
   return {splat(from[0]), splat(from[1]), splat(from[2]), splat(from[3])};
 }
 
-/// Four fields of eight lanes, from one 16-byte piece of memory per lane.
+/// Four fields of eight lanes, from 16 contiguous bytes per lane.
 inline std::array<Float8, 4> load_fields(const std::array<const float*, 8>& from) {
   const auto pair = [&](std::size_t i) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(from[i])),

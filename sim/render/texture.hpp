@@ -14,56 +14,57 @@
 
 namespace mh {
 
-/// Mean color of a picture in linear light; white if it is empty.
+/// Mean color of an image in linear light; white if it is empty.
 Eigen::Vector3f mean_linear(const Grid2d<Rgb8>& picture);
 
-/// The same picture at full size, half, a quarter, ... down to one texel (at most kMipLevels of
-/// them), averaged over areas in linear light.
+/// The same image at full size, 1/2, 1/4, ... down to one texel (at most kMipLevels levels),
+/// averaged over areas in linear light.
 inline constexpr int kMipLevels = 16;
 std::vector<Grid2d<Eigen::Vector3f>> mip_pyramid(const Grid2d<Rgb8>& picture);
 
-/// The pictures of a scene with their mip pyramids, filtered in linear light. They repeat. Texel
-/// centers lie at half-integers, (u, v) = (0, 0) is the outer corner of the first texel.
+/// The textures of a scene with their mip pyramids, filtered in linear light. They repeat. Texel
+/// centers are at half-integers, (u, v) = (0, 0) is the outer corner of the first texel.
 ///
 /// Laid out for lookups without branches: texels are three 16-bit channels, each level has a copy
 /// of its first column and row at its end, so that the neighbors of a lookup are one load of 16
-/// bytes each (the last four mean nothing), and the last level is repeated, so that the next
-/// coarser one always exists.
+/// bytes each (the last four are ignored), and the last level is repeated, so that the next coarser
+/// one always exists.
 class TextureTable {
  public:
-  /// A texture of one white texel, which every table has.
+  /// A texture of one white texel, which every table contains.
   static constexpr std::uint32_t kWhite = 0;
 
   TextureTable() { add(Grid2d<Rgb8>(1, 1, {255, 255, 255})); }
 
-  /// Makes room for pictures about to be added, so that the table never holds more than they need.
+  /// Reserves memory for images about to be added, so that the table never takes more than they
+  /// need.
   /// @throws InputError if there are more texels than it can count.
   void reserve(std::span<const Grid2d<Rgb8>* const> pictures);
-  /// @returns where the picture's level 0 is in the table.
+  /// @returns the position of the image's level 0 in the table.
   std::uint32_t add(const Grid2d<Rgb8>& picture);
 
   /// What eight lanes are to read.
   struct Lookup {
-    /// The left ones of four pairs of texels: fine upper and lower, coarse upper and lower.
+    /// The left texels of four pairs: fine upper and lower, coarse upper and lower.
     alignas(32) std::array<std::array<unsigned, 8>, 4> texels;
-    /// Shares of 65536, four of 16 bits per lane. Across: fine left and right, coarse left and
+    /// Weights out of 65536, four of 16 bits per lane. Across: fine left and right, coarse left and
     /// right, which sum to one; down: fine upper and lower, coarse upper and lower.
     alignas(32) std::array<std::uint64_t, 8> across, down;
   };
 
-  /// Where eight lanes look.
+  /// Where eight lanes sample.
   struct Place {
     Float8 u, v;   // within [0, 1)
     Float8 blend;  // share of the coarser level
     alignas(32) std::array<unsigned, 8> level;
   };
-  /// Of a trilinear lookup at (u, v). Apart from look_up, so that one can go on while another
-  /// waits.
+  /// Prepares a trilinear lookup at (u, v). Separate from look_up, so that one can proceed while
+  /// another waits.
   /// @param first   add's results, as bits
-  /// @param texels  of level 0 that a pixel covers; the level at which it would cover one is read:
-  ///                half the logarithm to base 2, to within 0.05.
+  /// @param texels  texels of level 0 that a pixel covers; the level at which it would cover one is
+  ///                read: half the base-2 logarithm, to within 0.05.
   Place place(Float8 first, Float8 u, Float8 v, Float8 texels) const;
-  /// Asks for the texels, too.
+  /// Also prefetches the texels.
   void look_up(const Place& place, Lookup& lookup) const;
 
   /// The filtered colors of a lane and the next one: linear RGB, channel 3 = 0.
@@ -91,7 +92,7 @@ class TextureTable {
         _mm256_mulhi_epu16(column, _mm256_shuffle_epi8(across, spread(0, 2, 4, 6)));
     const __m128i left_right =
         _mm_add_epi16(_mm256_castsi256_si128(shares), _mm256_extracti128_si256(shares, 1));
-    // Left texel's three channels and the right one's: channel 3 of the sum means nothing.
+    // Left texel's three channels and the right one's: channel 3 of the sum is ignored.
     const __m128i sum = _mm_add_epi16(left_right, _mm_srli_si128(left_right, 6));
     return _mm_blend_epi16(sum, _mm_setzero_si128(), 1 << 3);
   }
@@ -112,7 +113,7 @@ class TextureTable {
         _mm_loadu_si128(reinterpret_cast<const __m128i*>(b)), 1);
   }
   /// Picks the 16-bit number at byte a, b, c, d for the three channels of each of four texels; 0
-  /// behind each two.
+  /// after each two.
   static __m256i spread(int a, int b, int c, int d) {
     const auto twice = [](int at) { return static_cast<short>(at | (at + 1) << 8); };
     constexpr short kZero = -1;
@@ -122,7 +123,7 @@ class TextureTable {
   }
 
   std::vector<Level> levels_;
-  std::vector<std::uint16_t> texels_;  // and kBehind more, lest a load reads beyond
+  std::vector<std::uint16_t> texels_;  // and kBehind more, so that no load reads past the end
 };
 
 }  // namespace mh

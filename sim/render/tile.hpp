@@ -16,16 +16,16 @@
 
 namespace mh {
 
-/// Rows of one output of a tile, on their way to a picture.
+/// Rows of one output of a tile, on the way to an image.
 template <class T, int kWidth, int kHeight, std::size_t kSpare = 0>
 class TileRows {
  public:
-  /// From column x of row y on, and kSpare bytes after the row's end.
+  /// Points to column x of row y; kSpare bytes are writable past the row's end.
   T* at(int x, int y) { return reinterpret_cast<T*>(bytes_.data() + kStride * row(y)) + x; }
 
-  /// To a picture's (x0, y0) and after, what lies in it. Whole lines of the cache go past the
-  /// caches: a picture is larger than they are, and fetching a line first, only to write over all
-  /// of it, costs more than shading it.
+  /// Copies the part inside the image to (x0, y0) and beyond. Whole cache lines are written by
+  /// streaming stores: an image is larger than the caches, and fetching a line only to overwrite
+  /// all of it costs more than shading it.
   void store(int x0, int y0, Grid2d<T>& grid) const {
     const int columns = std::min(kWidth, grid.width() - x0);
     for (int y = 0; y < std::min(kHeight, grid.height() - y0); ++y) {
@@ -58,7 +58,7 @@ class Tile {
  public:
   static constexpr int kPackets = 16, kWidth = kSide * kPackets, kHeight = kSide;
 
-  /// What the lanes of packet k show; packets of a row are set from left to right.
+  /// Sets what the lanes of packet k show; packets of a row are set from left to right.
   void set(std::size_t k, const Radiance& light, const Seen& seen) {
     const int x = kSide * static_cast<int>(k);
     static_assert(kSide == 4 && kLanes == 16);
@@ -71,7 +71,7 @@ class Tile {
     }
   }
 
-  /// Everything of it to where it belongs in a frame; other threads see it after _mm_sfence().
+  /// Stores the whole tile at its place in a frame; other threads see it after _mm_sfence().
   void store(int x0, int y0, RenderedFrame& frame) const {
     color_.store(x0, y0, frame.color);
     depth_m_.store(x0, y0, frame.depth_m);
@@ -83,7 +83,7 @@ class Tile {
   /// Instance and class of four faces.
   static void name(const FaceRecord* const* records, InstanceId* instances, ClassId* classes) {
     static_assert(offsetof(FaceRecord, instance) == 6 && offsetof(FaceRecord, class_id) == 14);
-    const auto names = [&](std::size_t i) {  // in the upper half of a word each
+    const auto names = [&](std::size_t i) {  // each in the upper half of a word
       const auto* first = reinterpret_cast<const float*>(records[i]);
       const auto* second = reinterpret_cast<const float*>(records[i + 1]);
       return _mm_castps_si128(_mm_shuffle_ps(_mm_load_ps(first), _mm_load_ps(second), 0xDD));

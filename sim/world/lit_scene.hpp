@@ -15,24 +15,23 @@
 
 namespace mh {
 
-/// Gives a scene that has lamps but no baked light its light.
-/// @param baked  told the share that is baked, from any thread but never from two at once; may be
-///               empty
+/// Bakes the light of a scene that has lamps but no baked light.
+/// @param baked  receives the baked share, from any thread but never from two at once; may be empty
 void light_scene(Scene& scene, int threads, const BakeWatch& baked = {});
 
-/// A scene ready to be looked at: loaded and lit. @throws InputError naming file and place.
+/// Returns a scene ready to be rendered: loaded and lit. @throws InputError naming file and place.
 /// @param warnings, frame  as of load_scene
 Scene load_lit_scene(const std::filesystem::path& file, int threads,
                      std::vector<std::string>* warnings = nullptr, const SceneFrame& frame = {},
                      const BakeWatch& baked = {});
 
-/// A renderer with the exposure that suits the scene; one that shows its own colors unlit is shown
-/// as it is.
+/// Returns a renderer with an exposure that suits the scene; a scene with its own unlit colors is
+/// shown as it is.
 /// @param renderer  see make_renderer
 std::unique_ptr<Renderer> make_scene_renderer(const Scene& scene,
                                               std::string_view renderer = "embree");
 
-/// The scene with a pedestrian, shown with the scene's exposure.
+/// Returns the scene with a pedestrian, rendered with the scene's exposure.
 std::shared_ptr<const PedestrianScene> make_pedestrian_scene(
     const Scene& scene, std::shared_ptr<const Renderer> renderer, const Pedestrian& pedestrian);
 

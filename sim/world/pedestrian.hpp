@@ -12,23 +12,23 @@
 
 namespace mh {
 
-/// A person who walks to and fro along a line of places.
+/// A person who walks back and forth along a line of places.
 struct Pedestrian {
   std::vector<Eigen::Vector2d> path_m;  ///< two places or more, world
   double speed_m_per_s = 1.2;           ///< above 0
-  double start_s = 0;                   ///< when he sets off; he waits in the first place till then
+  double start_s = 0;  ///< when the pedestrian sets off; waits at the first place until then
 };
 
-/// Reads one (YAML): `path: [[x, y], ...]`, optional `speed_m_per_s`, `start_s`.
+/// Reads a pedestrian (YAML): `path: [[x, y], ...]`, optional `speed_m_per_s`, `start_s`.
 /// @throws InputError naming file, line, field and value.
 Pedestrian load_pedestrian(const std::filesystem::path& file);
 
-/// Where the pedestrian stands, facing the way he goes: x forward, z up, origin on the floor.
+/// Pose of the pedestrian, facing the direction of travel: x forward, z up, origin on the floor.
 SE3 world_from_pedestrian(const Pedestrian& pedestrian, Stamp stamp_ns);
 
-/// The pedestrian's body in his own frame: 1.72 m high, at most 0.22 m from his middle; one
+/// Builds the pedestrian's body in its own frame: 1.72 m high, at most 0.22 m from its axis; one
 /// instance of class `person`. A capsule with a head, trousers and a knitted pullover, no limbs.
-/// @param light  what reaches an upright surface, irradiance / pi, linear RGB
+/// @param light  light on a vertical surface, irradiance / pi, linear RGB
 Scene build_pedestrian(const Eigen::Vector3f& light);
 inline constexpr double kPedestrianRadius_m = 0.22;
 inline constexpr double kPedestrianHeight_m = 1.72;
@@ -36,12 +36,12 @@ inline constexpr double kPedestrianHeight_m = 1.72;
 /// The pedestrian's instance in a scene: one above its own.
 InstanceId pedestrian_instance(const Scene& scene);
 
-/// A scene with a pedestrian on its floor. The two are rendered apart and merged by depth, so
-/// the pedestrian hides what is behind him and is hidden by what is before him; he casts no shadow
-/// and takes no light from the place where he stands, but the scene's mean.
+/// A scene with a pedestrian on its floor. The two are rendered separately and merged by depth, so
+/// the pedestrian occludes what is behind and is occluded by what is in front; a pedestrian casts
+/// no shadow and is lit by the scene's mean light, not by that of its place.
 class PedestrianScene {
  public:
-  /// @param scene     what `renderer` shows; its mean light is the pedestrian's
+  /// @param scene     the scene of `renderer`; its mean light lights the pedestrian
   /// @param exposure  that of `renderer`
   PedestrianScene(const Scene& scene, std::shared_ptr<const Renderer> renderer, float exposure,
                   Pedestrian pedestrian);

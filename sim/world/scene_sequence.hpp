@@ -12,16 +12,16 @@
 
 namespace mh {
 
-/// What is needed to see a scene.
+/// What is needed to render a scene along a drive.
 struct SceneDrive {
   std::filesystem::path scene, tour, robot;
   std::filesystem::path level;  ///< of the sensors; empty = no noise
-  std::uint64_t seed = 0;       ///< of which frames arrive
+  std::uint64_t seed = 0;       ///< determines which frames are delivered
   SceneFrame frame = {};
 };
 
-/// A scene seen by a robot along a tour, with exact labels, rendered as it is asked for.
-/// @param notes  gets what could be mended in the scene, a line each; may be null
+/// Opens a scene seen by a robot along a tour, with exact labels, rendered on demand.
+/// @param notes  receives what was repaired in the scene, one line each; may be null
 /// @throws InputError naming file and place.
 std::unique_ptr<Sequence> open_scene(const SceneDrive& source,
                                      std::vector<std::string>* notes = nullptr);

@@ -10,14 +10,14 @@
 
 namespace mh {
 
-/// One moment of a shutter's path: what the camera delivers, and what was exact of it.
+/// One moment of a shutter's path: what the camera delivers, and the exact frame behind it.
 struct SensedMoment {
   RgbdFrame frame;
   RenderedFrame exact;
 };
 
-/// Exposes, senses and labels the path's i-th moment: the one way from a scene to a frame. Noise is
-/// keyed by (noise, i, pixel).
+/// Exposes, senses and labels the path's i-th moment: the only way from a scene to a frame. Noise
+/// is keyed by (noise, i, pixel).
 SensedMoment sense_moment(const Shutter& shutter, const SensorConfig& sensors, LabelMode labels,
                           std::size_t i, RandomStream noise);
 
