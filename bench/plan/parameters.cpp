@@ -5,6 +5,7 @@
 
 #include "bench/plan/names.hpp"
 #include "slam/config/by_name.hpp"
+#include "slam/config/slam.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/random.hpp"
 #include "slam/core/suggest.hpp"
@@ -47,7 +48,7 @@ void read_grid(YamlReader& node, const SlamConfig& base, Sweep& sweep) {
         points.push_back(point);
         read_setting(points.back(), name, item);
       }
-    sweep.points = std::move(points);
+    sweep.points.assign(points.begin(), points.end());
   }
 }
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "slam/config/slam.hpp"
+#include "slam/config/shared.hpp"
 #include "slam/core/yaml.hpp"
 
 namespace mh {
@@ -22,7 +22,7 @@ struct Sweep {
   SweepMap map = SweepMap::kFixed;
   std::vector<std::string>
       varied;  ///< full names (slam/config/by_name.hpp), as the suite orders them
-  std::vector<SlamConfig> points;  ///< whole settings, in the order of the results
+  std::vector<SharedSlamConfig> points;  ///< whole settings, in the order of the results
 };
 
 /// The section `parameters`: `map: fixed | rebuilt`, and either a grid (any settings, each with a

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "slam/config/slam.hpp"
+
 namespace mh {
 
 SlamConfig settings_of(const SystemSpec& system, const SlamConfig& settings) {
@@ -13,8 +15,9 @@ SlamConfig settings_of(const SystemSpec& system, const SlamConfig& settings) {
   return seen;
 }
 
-std::vector<SlamConfig> parameter_points(const Suite& suite) {
-  return suite.sweep.points.empty() ? std::vector{suite.slam} : suite.sweep.points;
+std::vector<SharedSlamConfig> parameter_points(const Suite& suite) {
+  return suite.sweep.points.empty() ? std::vector<SharedSlamConfig>{suite.slam}
+                                    : suite.sweep.points;
 }
 
 namespace {

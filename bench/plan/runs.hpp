@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/plan/suite.hpp"
+#include "slam/config/semantics.hpp"
 
 namespace mh {
 
@@ -21,7 +22,7 @@ struct RunSpec {
   LabelMode labels = LabelMode::kNone;
   int trial = 0;
   std::uint64_t seed = 0;  ///< of the trial
-  SlamConfig slam;         ///< settings while mapping; the plain system's are neutral
+  SharedSlamConfig slam;   ///< settings while mapping; the plain system's are neutral
   /// Settings of the queries: one pass over all queries for each, on the same map. At least one.
   std::vector<SemanticConfig> points;
   ProtocolConfig protocol;
@@ -33,7 +34,7 @@ struct RunSpec {
 SlamConfig settings_of(const SystemSpec& system, const SlamConfig& settings);
 
 /// The parameter points of a suite: those of its sweep, else its own settings alone.
-std::vector<SlamConfig> parameter_points(const Suite& suite);
+std::vector<SharedSlamConfig> parameter_points(const Suite& suite);
 
 /// Every run, ordered by environment, level, trial, parameters, system, labels. The plain system
 /// never looks at labels (a law with its own test), so it runs once and stands beside each kind of

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "slam/config/slam.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/json_number.hpp"
 #include "slam/core/settings_io.hpp"

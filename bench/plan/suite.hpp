@@ -15,7 +15,7 @@
 #include "bench/plan/system_spec.hpp"
 #include "bench/protocol/config.hpp"
 #include "sim/sensors/sensors.hpp"
-#include "slam/config/slam.hpp"
+#include "slam/config/shared.hpp"
 
 namespace mh {
 
@@ -44,7 +44,7 @@ struct Suite {
   std::vector<LabelMode> labels;
   int trials = 1;
   std::uint64_t seed = 0;  ///< trial t uses seed + t
-  SlamConfig slam;
+  SharedSlamConfig slam;
   Sweep sweep;
   ProtocolConfig protocol;
   /// Which systems are set against which: first minus second. A suite that says nothing compares

@@ -10,6 +10,7 @@
 
 #include "bench/results/summary.hpp"
 #include "bench/store/load_results.hpp"
+#include "slam/config/slam.hpp"
 
 namespace mh {
 namespace {
@@ -122,7 +123,7 @@ std::string latex_headings(const Sweep& sweep) {
 std::string export_latex(const Store& store) {
   const Suite suite = store.planned_suite();
   const BenchResults results = load_results(store, suite);
-  const std::vector<SlamConfig> points = parameter_points(suite);
+  const std::vector<SharedSlamConfig> points = parameter_points(suite);
   std::string headings = "environment & level & labels & system & " + latex_headings(suite.sweep) +
                          "trials" + latex_overview_headings<TrajectoryScore>() + " & queries" +
                          latex_overview_headings<QuerySummary>();

@@ -5,6 +5,7 @@
 #include "bench/plan/spec_json.hpp"
 #include "bench/provenance/json_fields.hpp"
 #include "scenes/recorded/open_sequence.hpp"
+#include "slam/config/slam.hpp"
 
 namespace mh {
 namespace {

@@ -11,6 +11,7 @@
 
 #include "bench/drawing/canvas.hpp"
 #include "slam/config/by_name.hpp"
+#include "slam/config/slam.hpp"
 
 namespace mh {
 namespace {

@@ -10,6 +10,7 @@
 #include "bench/report/text_table.hpp"
 #include "bench/report/wording.hpp"
 #include "bench/results/sweep.hpp"
+#include "slam/config/slam.hpp"
 #include "slam/core/counted.hpp"
 
 namespace mh {
@@ -64,7 +65,7 @@ std::string block_text(const Suite& suite, std::span<const CategoryRow> rows,
     headings.emplace_back("candidates");
   }
   TextTable table(std::move(headings));
-  const std::vector<SlamConfig> points = parameter_points(suite);
+  const std::vector<SharedSlamConfig> points = parameter_points(suite);
   for (const CategoryRow& row : rows) {
     const SystemSpec& system = suite.systems[row.system];
     const SlamConfig seen = settings_of(system, points[row.parameters]);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "bench/metrics/measures.hpp"
+#include "slam/config/slam.hpp"
 
 namespace mh {
 namespace {
@@ -199,7 +200,7 @@ std::vector<Figure> figures_of(const RunResult& run, std::size_t point) {
 
 std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs,
                            std::span<const FailedRun> failed) {
-  const std::vector<SlamConfig> points = parameter_points(suite);
+  const std::vector<SharedSlamConfig> points = parameter_points(suite);
   std::vector<Row> rows;
   for (std::size_t e = 0; e < suite.environments.size(); ++e)
     for (std::size_t level = 0; level < suite.levels.size(); ++level)

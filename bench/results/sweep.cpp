@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/results/sweep.hpp"
+#include "slam/config/slam.hpp"
 
 #include <algorithm>
 
@@ -20,7 +21,7 @@ std::vector<const Row*> rows_at(std::span<const Row> rows, const SweepResult& re
 }  // namespace
 
 std::vector<SweepResult> sweep_results(const Suite& suite, std::span<const Row> rows) {
-  const std::vector<SlamConfig> points = parameter_points(suite);
+  const std::vector<SharedSlamConfig> points = parameter_points(suite);
   std::vector<SweepResult> results;
   for (const CategoryRow& row : make_category_rows(suite, rows)) {
     if (row.category != kAllCategories || row.scenes == 0) continue;

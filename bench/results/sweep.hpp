@@ -14,8 +14,8 @@ namespace mh {
 struct SweepResult {
   std::size_t level = 0, system = 0;
   LabelMode labels = LabelMode::kNone;
-  std::vector<SlamConfig> points;    ///< as the suite states them
-  std::vector<CategoryRow> answers;  ///< as points
+  std::vector<SharedSlamConfig> points;  ///< as the suite states them
+  std::vector<CategoryRow> answers;      ///< as points
 };
 
 /// One per level, labels and system that sees more than one point of the sweep; in this order.

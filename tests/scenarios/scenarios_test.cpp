@@ -9,6 +9,7 @@
 #include "bench/check/report.hpp"
 #include "bench/run/run_one.hpp"
 #include "bench/systems/ours.hpp"
+#include "slam/config/slam.hpp"
 #include "source_dir.hpp"
 
 namespace mh {

@@ -18,6 +18,7 @@
 #include "bench/plan/find_program.hpp"
 #include "bench/plan/runs.hpp"
 #include "bench/plan/spec_json.hpp"
+#include "slam/config/slam.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "source_dir.hpp"
@@ -69,10 +70,10 @@ TEST_F(SuiteFile, ReadsWhatStandsThere) {
   EXPECT_EQ(suite.environments[0].scene, folder_ / "house.yaml");
   EXPECT_EQ(suite.environments[0].robot, folder_ / "robot.yaml");
   EXPECT_FALSE(suite.environments[0].query_tour);
-  EXPECT_EQ(suite.slam.semantics.gamma, 0.5);
-  EXPECT_EQ(suite.slam.semantics.xi, 2.0);
-  EXPECT_EQ(suite.slam.semantics.alpha, SemanticConfig{}.alpha);
-  EXPECT_EQ(suite.slam.semantics.overlap, Overlap::kLabels);
+  EXPECT_EQ(suite.slam->semantics.gamma, 0.5);
+  EXPECT_EQ(suite.slam->semantics.xi, 2.0);
+  EXPECT_EQ(suite.slam->semantics.alpha, SemanticConfig{}.alpha);
+  EXPECT_EQ(suite.slam->semantics.overlap, Overlap::kLabels);
   EXPECT_EQ(suite.protocol.test_interval, 10);
   EXPECT_EQ(suite.protocol.reset, DropReset::kMap);
   EXPECT_EQ(suite.protocol.truth, QueryTruth::kInterpolated);
@@ -329,9 +330,9 @@ TEST_F(SuiteFile, AGridHasEveryCombinationAndOneRunForAFixedMap) {
   const Suite suite =
       load("parameters: {map: fixed, semantics.xi: [1, 2], semantics.alpha: [0.5, 0.6, 0.7]}\n");
   ASSERT_EQ(suite.sweep.points.size(), 6u);
-  EXPECT_EQ(suite.sweep.points[4].semantics.xi, 2.0);
-  EXPECT_EQ(suite.sweep.points[4].semantics.alpha, 0.6);
-  EXPECT_EQ(suite.sweep.points[4].semantics.beta, suite.slam.semantics.beta);
+  EXPECT_EQ(suite.sweep.points[4]->semantics.xi, 2.0);
+  EXPECT_EQ(suite.sweep.points[4]->semantics.alpha, 0.6);
+  EXPECT_EQ(suite.sweep.points[4]->semantics.beta, suite.slam->semantics.beta);
   const std::vector<RunSpec> runs = expand(suite);
   ASSERT_EQ(runs.size(), 3u);
   EXPECT_EQ(runs[0].points.size(), 6u);
@@ -346,7 +347,7 @@ TEST_F(SuiteFile, ARebuiltMapMakesARunForEachPoint) {
   ASSERT_EQ(runs.size(), 4u * 2u + 2u);
   for (const RunSpec& run : runs) {
     ASSERT_EQ(run.points.size(), 1u);
-    EXPECT_EQ(run.points[0], run.slam.semantics);
+    EXPECT_EQ(run.points[0], run.slam->semantics);
   }
   EXPECT_EQ(runs[2].name, "semantic-exact-pepper-p01-0");
 }
@@ -365,11 +366,11 @@ TEST_F(SuiteFile, ASweepTakesAnySetting) {
   ASSERT_EQ(suite.sweep.points.size(), 4u);
   const std::vector<RunSpec> runs = expand(suite);
   ASSERT_EQ(runs.size(), 3u * 4u) << "exact, boxes and the plain system, which looks at them too";
-  EXPECT_EQ(runs[2].slam.features.count, 500);
-  EXPECT_FALSE(runs[2].slam.loop.enabled);
+  EXPECT_EQ(runs[2].slam->features.count, 500);
+  EXPECT_FALSE(runs[2].slam->loop.enabled);
   for (const RunSpec& run : runs) {
-    EXPECT_EQ(run.slam.track.min_inliers, 25);
-    EXPECT_EQ(run.points, std::vector{run.slam.semantics});
+    EXPECT_EQ(run.slam->track.min_inliers, 25);
+    EXPECT_EQ(run.points, std::vector{run.slam->semantics});
     EXPECT_EQ(run_spec_from_json(to_json(run)).slam, run.slam);
   }
 }

@@ -23,6 +23,7 @@
 #include "bench/results/scenes.hpp"
 #include "bench/verify/verify.hpp"
 #include "sim/world/travel.hpp"
+#include "slam/config/slam.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/temporary_folder.hpp"
@@ -172,8 +173,9 @@ struct Place {
 /// Three points, whose queries one map answers.
 void vary_alpha(Suite& suite) {
   for (const double alpha : {0.5, 0.6, 0.7}) {
-    suite.sweep.points.push_back(suite.slam);
-    suite.sweep.points.back().semantics.alpha = alpha;
+    SlamConfig point = suite.slam;
+    point.semantics.alpha = alpha;
+    suite.sweep.points.push_back(point);
   }
 }
 
@@ -421,9 +423,10 @@ TEST(Sweep, TheBestPointIsComparedWithTheSuitesOwnSettings) {
   place.suite.sweep.varied = {"semantics.gamma", "semantics.alpha"};
   for (const double gamma : {0.5, 1.0})
     for (const double alpha : {0.7, 0.8}) {
-      place.suite.sweep.points.push_back(place.suite.slam);
-      place.suite.sweep.points.back().semantics.gamma = gamma;
-      place.suite.sweep.points.back().semantics.alpha = alpha;
+      SlamConfig point = place.suite.slam;
+      point.semantics.gamma = gamma;
+      point.semantics.alpha = alpha;
+      place.suite.sweep.points.push_back(point);
     }
   std::vector<RunResult> runs = place.run();
   // Of the semantic system's five held-out answers under each point 3, 4, 5, 4 are correct.
@@ -701,8 +704,9 @@ TEST(Sweep, APointThatFailedInSomeScenesIsNeverBest) {
   place.suite.sweep.map = SweepMap::kRebuilt;
   place.suite.sweep.varied = {"semantics.alpha"};
   for (const double alpha : {0.7, 0.8}) {
-    place.suite.sweep.points.push_back(place.suite.slam);
-    place.suite.sweep.points.back().semantics.alpha = alpha;
+    SlamConfig point = place.suite.slam;
+    point.semantics.alpha = alpha;
+    place.suite.sweep.points.push_back(point);
   }
   std::vector<RunResult> all = place.run();
   for (RunResult& run : all)  // the second point answers half as often

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+namespace mh {
+
+struct SlamConfig;
+
+/// All settings of SLAM as a value that is cheap to copy and does not change. A header that holds
+/// one does not depend on every setting: include slam/config/slam.hpp where they are read.
+class SharedSlamConfig {
+ public:
+  SharedSlamConfig();                                      ///< the defaults
+  SharedSlamConfig(const SlamConfig& config);              // NOLINT(google-explicit-constructor)
+  operator const SlamConfig&() const { return *config_; }  // NOLINT(google-explicit-constructor)
+  const SlamConfig* operator->() const { return config_.get(); }
+  const SlamConfig& operator*() const { return *config_; }
+  friend bool operator==(const SharedSlamConfig& a, const SharedSlamConfig& b);
+
+ private:
+  std::shared_ptr<const SlamConfig> config_;  // never null
+};
+
+}  // namespace mh
