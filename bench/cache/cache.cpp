@@ -37,13 +37,13 @@ std::string pack(std::string_view content) {
   return packed.append(content);
 }
 
-// The Cache Directory Tagging Specification: programs for backups leave such a folder out.
+// The Cache Directory Tagging Specification: backup programs skip such a folder.
 constexpr const char* kMarker = "CACHEDIR.TAG";
 constexpr std::string_view kMarkerText =
     "Signature: 8a477f597d28d172789f06886806bc55\n"
     "# The cache of modelhouse. It removes entries of its own from here, and nothing else.\n";
 
-/// A file or folder itself, not what a link names.
+/// Whether it is a file or folder itself, not a link to one.
 bool is_own_file(const fs::path& file) {
   std::error_code error;
   return fs::symlink_status(file, error).type() == fs::file_type::regular;
@@ -57,14 +57,14 @@ bool is_key(std::string_view name) {
   return !name.empty() && name.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
-/// A key, or the name under which write_atomically() begins with one (".KEY.1234.tmp").
+/// A key, or the temporary name that write_atomically() derives from one (".KEY.1234.tmp").
 bool is_entry_name(std::string_view name) {
   if (!name.starts_with('.')) return is_key(name);
   return name.find(".tmp") != std::string_view::npos &&
          is_key(name.substr(1, name.find('.', 1) - 1));
 }
 
-/// Whether a file begins as every entry does.
+/// Whether a file starts with an entry's header.
 bool has_magic(const fs::path& file) {
   std::string head(kMagic.size(), '\0');
   return is_own_file(file) &&
@@ -73,7 +73,7 @@ bool has_magic(const fs::path& file) {
          head == kMagic;
 }
 
-/// nullopt where the file is missing, cut short or damaged.
+/// nullopt if the file is missing, truncated or damaged.
 std::optional<std::string> unpack(const fs::path& file) {
   if (!is_own_file(file)) return std::nullopt;
   std::string packed;
@@ -91,7 +91,7 @@ std::optional<std::string> unpack(const fs::path& file) {
   return packed;
 }
 
-/// Held while an entry is made; waits for another process that holds it.
+/// Held while an entry is computed; waits for another process that holds it.
 class EntryLock {
  public:
   explicit EntryLock(const fs::path& file)
@@ -127,7 +127,7 @@ fs::path Cache::own_folder() const {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(own, error))) {
     make_output_folder(folder_);
-    // Complete before it has its name: another process meets none or the whole.
+    // Complete before it gets its name: another process sees either nothing or all of it.
     std::string fresh = (folder_ / fmt::format(".{}-XXXXXX", kOwnFolder)).string();
     if (mkdtemp(fresh.data()) == nullptr) throw_unwritable(own, errno);
     fs::permissions(fresh, fs::perms::all & ~fs::perms::group_write & ~fs::perms::others_write,
@@ -169,7 +169,7 @@ std::string Cache::get(std::string_view kind, std::string_view key,
     if (!is_own_folder(folder)) return make();
   }
   const fs::path file = own / kind / key;
-  // A bounded number of lock files: two entries may share one, which costs a wait at worst.
+  // A bounded number of lock files: two entries may share one, which at worst costs a wait.
   const EntryLock lock(own / "locks" / fmt::format("{}-{}", kind, key.substr(0, 2)));
   if (auto content = unpack(file)) {
     fs::last_write_time(file, fs::file_time_type::clock::now(), error);
@@ -177,7 +177,7 @@ std::string Cache::get(std::string_view kind, std::string_view key,
   }
   std::string content = make();
   try {
-    // What does not begin as an entry does may be anybody's.
+    // A file without an entry's header may be anybody's.
     const fs::path aside = file.string() + ".found";
     const bool nothing = is_own_file(file) && fs::file_size(file, error) == 0;
     if (fs::exists(fs::symlink_status(file, error)) && !has_magic(file) && !nothing) {
@@ -187,7 +187,7 @@ std::string Cache::get(std::string_view kind, std::string_view key,
     write_atomically(file, pack(content));
     keep_within_bounds(own);
   } catch (const std::exception&) {
-    // Nothing is kept then; the work goes on.
+    // Then nothing is cached; the work continues.
   }
   return content;
 }

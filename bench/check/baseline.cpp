@@ -99,7 +99,7 @@ Baseline load_baseline(const std::filesystem::path& file) {
                                  file.string(), format, kBaselineFormat));
   try {
     return read(json);
-  } catch (const std::exception& e) {  // of the JSON, or of a number in it
+  } catch (const std::exception& e) {  // from the JSON, or from a number in it
     throw InputError(fmt::format("{}: is damaged: {}", file.string(), e.what()));
   }
 }

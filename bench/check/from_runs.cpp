@@ -30,13 +30,13 @@ std::string run_digest(const RunResult& run) {
   return hex(sum);
 }
 
-/// "name=digest of content", so that a file may move and still be the same.
+/// "name=digest of content", so that a file is the same after it was moved.
 std::string content(std::string_view what, const std::filesystem::path& file) {
   const std::string text = is_generated(file) ? file.string() : read_file(file);
   return fmt::format("{}={};", what, hex(digest_bytes(text.data(), text.size())));
 }
 
-/// The same of something that a run reads, with every file that it names.
+/// The same for something that a run reads, with every file that it names.
 std::string content(const char* what, const std::optional<std::filesystem::path>& source,
                     const std::vector<InputDigest>& inputs) {
   if (!source) return fmt::format("{}=none;", what);
@@ -60,7 +60,7 @@ RunFigures figures(const RunResult& run) {
                      .seed = spec.seed,
                      .digest = run_digest(run)};
   if (run.points.empty()) return figures;
-  // What may be judged, and what shares are of.
+  // Figures that may be judged, and the denominators of shares.
   const std::vector<Figure> all = figures_of(run, 0);
   for (const Figure& figure : all)
     if (figure.metric.better != Better::kNeither || std::ranges::any_of(all, [&](const Figure& f) {

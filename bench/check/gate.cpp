@@ -16,10 +16,10 @@ namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kPower80 = 0.84;           // normal quantile of 80 % power
-constexpr double kMedianOverMean = 1.2533;  // standard error of a median: sqrt(pi / 2) of a mean's
-constexpr double kRounding = 1e-12;         // sums of shares are equal up to this
+constexpr double kMedianOverMean = 1.2533;  // ratio of standard errors: sqrt(pi / 2)
+constexpr double kRounding = 1e-12;         // sums of shares are equal to within this
 
-/// Runs of one scenario and system: those before with those after, by seed.
+/// Runs of one scenario and system: before paired with after, by seed.
 struct Pairing {
   std::string scenario, system;
   std::vector<std::pair<const RunFigures*, const RunFigures*>> runs;
@@ -57,7 +57,7 @@ std::optional<double> figure(const RunFigures& run, std::string_view name) {
   return found == run.values.end() ? std::nullopt : found->second;
 }
 
-/// after - before; what was lost is infinitely worse, what was gained infinitely better.
+/// after - before; a lost figure is infinitely worse, a gained one infinitely better.
 double paired_change(const std::optional<double>& before, const std::optional<double>& after,
                      Better better) {
   if (before && after) return *after - *before;
@@ -66,7 +66,7 @@ double paired_change(const std::optional<double>& before, const std::optional<do
   return before ? worst : -worst;
 }
 
-/// As median(), but for values that may be infinite: between two opposite infinities lies 0.
+/// As median(), for values that may be infinite: the middle of two opposite infinities is 0.
 double median_with_infinities(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;
@@ -130,14 +130,14 @@ const Tolerance* tolerance_for(const GateConfig& config, std::string_view scenar
   return found == config.tolerances.end() ? nullptr : &found->second;
 }
 
-/// Whether anything was ever asked of this measure: a scenario without a second tour has none.
+/// Whether this measure applies: a scenario without a second tour has no queries in it.
 bool is_asked(const Pairing& pairing, const Metric& measure) {
   return std::ranges::any_of(pairing.runs, [&](const auto& pair) {
     return pair.first->values.contains(measure.name) || pair.second->values.contains(measure.name);
   });
 }
 
-/// Whether it has a figure anywhere.
+/// Whether it has a figure in any run.
 bool occurs(const Pairing& pairing, const Metric& measure) {
   return std::ranges::any_of(pairing.runs, [&](const auto& pair) {
     return figure(*pair.first, measure.name) || figure(*pair.second, measure.name);

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The whole text as a number, or nothing.
+/// Parses the whole text as a number; nullopt if it is not one.
 template <class T>
 bool parse(const std::string& text, T& value) {
   const char* const end = text.data() + text.size();
@@ -148,11 +148,11 @@ OutputFolder::~OutputFolder() {
   if (mark_before_ && !holds_any()) {
     try {
       if (!mark_before_->empty()) write_atomically(folder_ / kMark, *mark_before_);
-    } catch (const std::exception&) {  // what stands there does no harm
+    } catch (const std::exception&) {  // leftovers there do no harm
     }
     if (mark_before_->empty()) fs::remove(folder_ / kMark, error);
   }
-  for (const fs::path& made : made_) fs::remove(made, error);  // one that holds something stays
+  for (const fs::path& made : made_) fs::remove(made, error);  // one that is not empty stays
 }
 
 }  // namespace mh::cli

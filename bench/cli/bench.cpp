@@ -40,7 +40,7 @@ std::optional<std::filesystem::path> cache_folder(const Options& options) {
   return usual.empty() ? std::nullopt : std::optional(usual);
 }
 
-/// A quick look does not take the place of the suite's own results.
+/// Results of a quick look must not replace the suite's own.
 std::filesystem::path usual_folder(const Suite& suite) {
   const std::string name =
       suite.max_frames ? fmt::format("{}-first-{}", suite.name, *suite.max_frames) : suite.name;

@@ -39,8 +39,8 @@ fs::path baseline_file(const Options& options) {
   return fs::path(options.suite).replace_extension(".baseline.json");
 }
 
-/// Where an interrupted check of that suite leaves what it finished, for the same command; nullopt
-/// where there is no place for it, or another process works there.
+/// Returns where an interrupted check of that suite leaves its finished results, to be resumed by
+/// the same command; nullopt if there is no place for it, or another process works there.
 std::optional<OwnedFolder> place_for(const fs::path& suite) {
   const fs::path cache = Cache::default_folder();
   if (cache.empty()) return std::nullopt;
@@ -54,7 +54,7 @@ std::optional<OwnedFolder> place_for(const fs::path& suite) {
         Store::open_to_read(place);
         return left;
       } catch (const InputError&) {
-        left->remove();  // damaged: nothing is lost but time
+        left->remove();  // damaged: only time is lost
       }
     }
     return OwnedFolder::make(place);
@@ -63,8 +63,8 @@ std::optional<OwnedFolder> place_for(const fs::path& suite) {
   }
 }
 
-/// Runs the suite; nothing is taken from earlier results but those of the same check that was
-/// interrupted, light is shared among these runs only.
+/// Runs the suite. Reuses no earlier results except those of the same interrupted check; baked
+/// light is shared among these runs only.
 Baseline measure(const Suite& suite, const Options& of) {
   std::optional<OwnedFolder> place = place_for(suite.file);
   std::optional<TemporaryFolder> folder;
@@ -120,7 +120,7 @@ GateResult judge(const Suite& suite, const Baseline& before, const Baseline& now
   return result;
 }
 
-/// Shows what a new baseline changes, where the old one tells of the same runs, and writes it.
+/// Shows what a new baseline changes, if the old one contains the same runs, and writes it.
 void update(const Options& options, const Suite& suite, const Baseline& now) {
   const fs::path file = baseline_file(options);
   if (fs::exists(file)) {
@@ -152,7 +152,7 @@ void run(Options options) {
   if (!fs::exists(file))
     throw InputError(
         fmt::format("{}: cannot be read: no such baseline; --update makes one", file.string()));
-  const Baseline baseline = load_baseline(file);  // before the work: a slip costs no minutes
+  const Baseline baseline = load_baseline(file);  // before the work: a mistake costs no time
   check_suite(baseline, file, suite.name, gate_suite_digest(suite));
   const Baseline now = measure(suite, options);
   const GateResult result = judge(suite, baseline, now);

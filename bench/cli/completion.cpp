@@ -9,19 +9,19 @@
 namespace mh::cli {
 namespace {
 
-/// Text between single quotes, as bash, zsh and fish read it: 'it'\''s'.
+/// Quotes text in single quotes for bash, zsh and fish: 'it'\''s'.
 std::string in_quotes(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return result + "'";
 }
 
-/// The first sentence, for a list of one line each.
+/// Returns the first sentence, for one-line lists.
 std::string first_sentence(const std::string& text) {
   return text.substr(0, std::min(text.find(". "), text.find(';')));
 }
 
-/// "' bench'|' scene'|'scene info'": what a line has reached and the word that leads on.
+/// "' bench'|' scene'|'scene info'": the command reached so far and the word that continues it.
 std::string steps(const std::vector<CommandDeclaration>& all) {
   std::vector<std::string> steps;
   for (const CommandDeclaration& command : all)
@@ -37,7 +37,7 @@ std::vector<std::string> option_names(const CommandDeclaration& command) {
   return names;
 }
 
-/// Words that may stand where no option does: shipped names.
+/// Words for positional arguments: shipped names.
 std::vector<std::string> positional_words(const CommandDeclaration& command) {
   std::vector<std::string> words;
   for (const OptionDeclaration& option : command.options)

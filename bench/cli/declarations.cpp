@@ -27,7 +27,7 @@ std::vector<std::string> words_in(const std::string& type) {
   return words;
 }
 
-/// What is shipped under a name and goes where an option of that name stands.
+/// The kind of shipped file that an option of that name takes.
 std::optional<Shipped> shipped_for(const std::string& name) {
   if (name == "suite") return Shipped::kSuite;
   if (name == "scene" || name == "scenes" || name == "--scene") return Shipped::kScene;

@@ -96,7 +96,7 @@ nlohmann::ordered_json to_json(const Evaluation& e, const std::string& align) {
           {"rpe", rpe}};
 }
 
-/// A trajectory that ran away is off by millions of meters.
+/// A diverged trajectory is off by millions of meters.
 std::string cell(double error) {
   return error < 1000 ? fmt::format("{:>10.5f}", error) : fmt::format("{:>10.2e}", error);
 }
@@ -108,8 +108,8 @@ void print_row(const std::string& what, const ErrorStatistics& s) {
   fmt::print("{:>9}\n", s.count);
 }
 
-/// Both files in one format. KITTI's lines have no stamps: line i of one belongs to line i of the
-/// other.
+/// Loads both files in one format. KITTI's lines have no stamps: line i of one belongs to line i of
+/// the other.
 std::pair<Trajectory, Trajectory> load(const Options& options) {
   if (options.format == "tum") return {read_tum(options.truth), read_tum(options.estimate)};
   const auto period_ns = static_cast<Stamp>(std::llround(1e9 / options.rate_hz));

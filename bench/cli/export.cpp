@@ -21,7 +21,7 @@ void run(const Options& options) {
     need_writable(options.out,
                   {options.store, std::filesystem::path(options.store) / "results.sqlite"});
   const Store store = Store::open_to_read(options.store);
-  load_results(store, store.planned_suite());  // a damaged row is no row of a table
+  load_results(store, store.planned_suite());  // so that a damaged row is not exported
   const std::string text = options.format == "csv"    ? export_csv(store)
                            : options.format == "json" ? export_json(store)
                                                       : export_latex(store);

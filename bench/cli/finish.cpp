@@ -37,7 +37,7 @@ std::vector<std::string> names_written(const std::filesystem::path& out, const S
     names.push_back(fmt::format("views-{}.png", e.name));
   for (const RunSpec& spec : expand(suite)) {
     names.push_back(spec.name);
-    // As sweep_picture_name() has it: that of a run without its trial.
+    // As in sweep_picture_name(): the run's name without its trial.
     names.push_back(fmt::format("sweep-{}.png", spec.name.substr(0, spec.name.rfind('-'))));
   }
   return names;

@@ -38,13 +38,13 @@ int fail(int code, std::string message) {
   return code;
 }
 
-/// What stands in the buffers still has to be written: a full disk shows here at the latest.
+/// Flushes what is still buffered: a full disk shows here at the latest.
 int finish_output(int code) {
   std::cout.flush();
   const bool lost = std::fflush(stdout) != 0;
   if (!lost && std::ferror(stdout) == 0 && std::cout) return code;
   const std::string why = lost ? fmt::format(": {}", std::strerror(errno)) : "";
-  if (code != kGood && code != kCheckFailed) return code;  // said already
+  if (code != kGood && code != kCheckFailed) return code;  // already reported
   return fail(kMachineFailed, "standard output: cannot be written" + why);
 }
 
@@ -86,7 +86,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     const CLI::App& at = mh::cli::reached(app);
-    if (app.remaining(true).empty() && has_commands(at)) {  // nothing was asked for
+    if (app.remaining(true).empty() && has_commands(at)) {  // no command was given
       fmt::print("{}", app.help());
       return kBadInput;
     }

@@ -7,7 +7,7 @@
 namespace mh::cli {
 namespace {
 
-/// Text that roff takes as it is: no line of it is a request, no '-' a hyphen.
+/// Escapes text for roff: no line becomes a request, no '-' a hyphen.
 std::string roff(const std::string& text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {

@@ -21,8 +21,8 @@ struct Options {
   bool json = false;
 };
 
-/// What of a file or a folder the output does not hold yet. Each file is there whole or not at all,
-/// so that a copy that met a full disk goes on where it stopped.
+/// Copies what the output lacks of a file or folder. Each file appears whole or not at all, so that
+/// a copy that was stopped by a full disk can be resumed.
 void copy_missing(const fs::path& from, const fs::path& to) {
   if (fs::is_directory(from)) {
     make_output_folder(to);
@@ -33,7 +33,7 @@ void copy_missing(const fs::path& from, const fs::path& to) {
   }
 }
 
-/// Folders of runs and pictures that the output does not hold yet.
+/// Copies the folders of runs and the images that the output lacks.
 void copy_files(const fs::path& from, const fs::path& to) {
   for (const auto& entry : fs::directory_iterator(from)) {
     const std::string name = entry.path().filename().string();
@@ -52,7 +52,7 @@ void run(const Options& options) {
     if (!fs::is_regular_file(all.back()))
       throw InputError(fmt::format("{}: holds no results.sqlite", in));
   }
-  Store::check_mergeable(all);  // a part that is refused leaves nothing
+  Store::check_mergeable(all);  // before anything is written
   const OutputFolder folder(
       options.out, "bench",
       names_written(options.out, Store::open_to_read(all.back()).planned_suite()));

@@ -84,7 +84,7 @@ void Progress::share(double done, std::string_view figures) {
 void Progress::share(double done, std::string_view figures, std::optional<double> to_go_s) {
   done = std::clamp(done, 0.0, 1.0);
   const int steps = terminal_ ? 200 : 10;
-  // 0.3 * 10 and the like may fall just short of the step that they have reached.
+  // 0.3 * 10 and the like may fall just short of the step that they reach.
   const int step = static_cast<int>(done * steps + 1e-9);
   if (step == last_step_ && (!terminal_ || figures == last_figures_)) return;
   last_step_ = step;

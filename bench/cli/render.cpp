@@ -45,8 +45,8 @@ std::string digest_of_file(const std::string& file) {
   return file.empty() ? "" : hex(digest_file(file));
 }
 
-/// What decides the pictures: a folder is gone on with only where all of it is the same.
-/// @param robot  all that was read for it, its URDF included
+/// Everything that determines the images: a folder is resumed only if all of it is the same.
+/// @param robot  all files read for it, including its URDF
 std::string settings_of(const Options& o, const Scene& scene, const Trajectory& path,
                         const InputDigest& robot) {
   nlohmann::ordered_json json = {{"scene", o.scene},
@@ -70,7 +70,7 @@ std::string settings_of(const Options& o, const Scene& scene, const Trajectory& 
   return json.dump(2) + "\n";
 }
 
-/// Pictures of two tours in one folder would be taken for one sequence.
+/// Images of two tours in one folder would look like one sequence.
 [[noreturn]] void refuse_folder(const fs::path& folder) {
   throw InputError(
       fmt::format("{}: holds a sequence already; name another folder", folder.string()));
@@ -85,7 +85,8 @@ void refuse_older_sequence(const fs::path& folder) {
     if (entry.path().extension() == ".sens") refuse_folder(folder);
 }
 
-/// Besides pictures; none in a folder whose render.json tells what is there.
+/// Names of the written files except images; empty for a folder whose render.json states what is
+/// there.
 std::vector<std::string> names_written(const fs::path& out) {
   if (fs::exists(out / "render.json")) return {};
   std::error_code error;  // an empty name is refused when the folder is made
@@ -121,7 +122,7 @@ const MountedCamera* find_camera(const Options& options, const Robot& robot) {
       fmt::format("--camera {}: robot '{}' has no such camera", options.camera, robot.name));
 }
 
-/// Where a camera was along the robot's path.
+/// Poses of a camera along the robot's path.
 Trajectory path_of(const MountedCamera& mounted, const Equipment& e, DrivenPath path) {
   for (std::size_t i = 0; i < path.base.size(); ++i) {
     std::map<std::string, double> joints;
@@ -151,7 +152,7 @@ void run(Options options) {
        {LabelMode::kExact, LabelMode::kAnnotated, LabelMode::kBoxes, LabelMode::kDetector})
     if (options.labels == name(mode)) options.sequence.labels = mode;
   refuse_older_sequence(out);
-  make_renderer(options.renderer, Scene{});  // a machine that lacks it says so at once
+  make_renderer(options.renderer, Scene{});  // fails at once if the machine lacks it
   const OutputFolder folder(out, "render", names_written(out));
   std::vector<InputDigest> inputs;
   const Robot robot =

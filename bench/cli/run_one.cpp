@@ -49,8 +49,7 @@ void run(const Options& options) {
                  },
              .status =
                  [&](std::string_view status) {
-                   // Frames follow each other faster than anybody reads; a new stage is told at
-                   // once.
+                   // Frames pass faster than anyone can read; a new stage is reported at once.
                    constexpr auto kBetween = std::chrono::milliseconds(500);
                    const auto now = std::chrono::steady_clock::now();
                    const std::string begins(status.substr(0, status.find(' ')));

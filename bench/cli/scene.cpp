@@ -38,21 +38,21 @@ namespace mh::cli {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kThreads = 2;  // for baking light; changes no bit
+constexpr int kThreads = 2;  // for baking light; does not change the result
 
 struct Options {
   std::string scene, out, format;
   SceneFrameOption frame;
   std::vector<std::string> scenes;  ///< preview
   bool scan_look = false;           ///< make
-  int each = 0;                     ///< preview: so many of each category
+  int each = 0;                     ///< preview: number of each category
   int per_room = 2;                 ///< preview: rows of one scene's sheet
   bool no_captions = false;
   std::uint64_t seed = 0;
   bool json = false, suggest_labels = false;
 };
 
-/// Loads and says on stderr what had to be mended.
+/// Loads a scene and reports on stderr what was repaired.
 Scene load(const std::string& file, const SceneFrameOption& frame) {
   std::vector<std::string> warnings;
   Scene scene = load_scene(file, &warnings, frame.frame());
@@ -64,7 +64,7 @@ double slope_deg(const Floor& floor) {
   return std::acos(std::min(1.0, floor.up.z())) * 180 / std::numbers::pi;
 }
 
-/// How much has a class, and the most that has none.
+/// Prints how much of the surface has a class, and the largest parts without one.
 void print_labeled(const LabeledSurface& surface) {
   constexpr std::size_t kTold = 5;
   fmt::print("  labeled   {:.1f} % of {:.1f} m2 of surface\n", 100 * surface.share(),
@@ -126,13 +126,14 @@ void info(Options options) {
   fmt::print("  digest     {}\n", hex(digest(scene)));
 }
 
-/// The first views of each room, at most so many.
+/// Keeps the first views of each room, at most this many.
 void keep_of_each_room(std::vector<View>& views, int count) {
   std::map<std::string, int> kept;
   std::erase_if(views, [&](const View& view) { return ++kept[view.caption] > count; });
 }
 
-/// A scene's name and views of it, its light baked; the scene is gone when they are drawn.
+/// Returns a scene's name and views of it with its light baked; the scene is freed once they are
+/// rendered.
 std::pair<std::string, std::vector<View>> see(const std::string& name, const Options& options,
                                               const BakeWatch& baked) {
   const ReadScope reading;
@@ -174,7 +175,7 @@ void preview(const Options& options) {
   write_picture(options.out, draw_gallery(gallery, kColumns, !options.no_captions));
 }
 
-/// Also the labels that are written beside a PLY: they take the place of nothing else.
+/// Also covers the labels that are written next to a PLY: they must not replace any other file.
 void need_mesh_writable(const fs::path& out, const std::vector<fs::path>& read) {
   need_writable(out, read);
   const fs::path labels = labels_path(out);
@@ -190,16 +191,16 @@ void need_ending(const Options& options, const std::vector<std::string>& endings
   need_mesh_writable(options.out, {});
 }
 
-/// As somebody who walks through it with a depth camera would scan it.
+/// Returns the scene as scanned by a person who walks through it with a depth camera.
 Scene scanned(const Scene& scene) {
   constexpr std::size_t kViews = 90;
   const auto renderer = make_scene_renderer(scene);
   Camera camera;
-  // From anywhere, up and down too: one walk alone leaves half of the floor out.
+  // From anywhere, including up and down: a single walk misses half of the floor.
   return scan_look(scene, *renderer, camera, scan_views(scene, 0, kViews));
 }
 
-/// Bakes its light, which takes a while, and tells how far that has come.
+/// Bakes the scene's light, which takes a while, and reports progress.
 void light(Scene& scene) {
   Progress progress("light");
   light_scene(scene, kThreads, [&](double share) { progress.share(share); });
@@ -276,7 +277,8 @@ void make(const Options& options) {
     write_mesh(build_house(with_detail(plan), plan.name), options.out, options.scan_look);
 }
 
-/// Every environment of every category, and how many fall into each group of the paper's Figure 3.
+/// Lists every environment of every category, and how many are in each group of the paper's Figure
+/// 3.
 void list(const Options& options) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   std::array<int, kDensityGroups> total{};

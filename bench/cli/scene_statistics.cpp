@@ -59,10 +59,11 @@ cv::Mat gray_of(const Grid2d<Rgb8>& color) {
   return gray;
 }
 
-/// Moments of a scan of it by hand, evenly over its length, as the level's sensors see them.
+/// Measures moments of a hand-held scan of the scene, evenly spaced, as the level's sensors see
+/// them.
 MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const Options& options,
                             const Robot& robot, const SensorConfig& sensors) {
-  constexpr std::size_t kAround = 3;  // poses before and after a moment: what blurs it
+  constexpr std::size_t kAround = 3;  // poses before and after a moment, which determine its blur
   std::vector<std::string> warnings;
   Scene scene = load_scene(name, &warnings, options.frame.frame());
   light_from_cache(scene, options.threads, Cache(options.cache));
@@ -162,7 +163,7 @@ void run(Options options) {
   Progress progress("statistics");
   std::vector<MeasuredPlace> places;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    // Together they make up the frames asked for.
+    // Together they add up to the requested frames.
     const std::size_t frames =
         (i + 1) * options.frames / names.size() - i * options.frames / names.size();
     if (frames > 0) places.push_back(measure_scene(names[i], frames, options, robot, sensors));

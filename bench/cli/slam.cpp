@@ -48,7 +48,7 @@ struct Source {
   std::unique_ptr<Sequence> frames;
 };
 
-/// Settings for a source that brings its own camera and pictures' scale.
+/// Settings for a source with its own camera and image scale.
 Settings settings_beside(const Options& options, const Sequence& frames,
                          std::vector<std::string> notes) {
   Settings settings;
@@ -90,8 +90,9 @@ Source open_source(const Options& options) {
   return {std::move(settings), std::move(opened.sequence)};
 }
 
-/// What --settings may change of a map's run: how a lost camera is looked for. The rest has formed
-/// the map, and what is named of it gives way, which a note tells.
+/// Applies what --settings may change for a loaded map: the settings of relocalization. The others
+/// have shaped the map: the map's values are kept, and a note lists those that the file would
+/// change.
 void apply_settings(const Options& options, SlamConfig& of_map, std::vector<std::string>& notes) {
   const SlamConfig asked = load_settings(options.settings, of_map).slam;
   of_map.relocalize = asked.relocalize;
@@ -106,7 +107,7 @@ void apply_settings(const Options& options, SlamConfig& of_map, std::vector<std:
     notes.push_back(fmt::format("{}: the map's own settings count: {}", options.settings, list));
 }
 
-/// A new state, or the one of the map file.
+/// Returns a new state, or that of the map file.
 SlamState first_state(const Options& options, const std::shared_ptr<const Vocabulary>& vocabulary,
                       Settings& settings) {
   SlamState state;
@@ -117,7 +118,7 @@ SlamState first_state(const Options& options, const std::shared_ptr<const Vocabu
     if (state.camera != settings.camera)
       throw InputError(fmt::format("{}: was made with another camera", options.map));
     if (!options.settings.empty()) apply_settings(options, state.config, settings.notes);
-    if (!options.resume) {  // its own frames are another sequence's
+    if (!options.resume) {  // the map's frames are from another sequence
       rewind(state);
       state.tracked_frames.clear();
     }
@@ -151,7 +152,7 @@ void check(const Options& options) {
                                    options.source));
 }
 
-/// The first frame that the map's run was not fed yet.
+/// Returns the first frame that the map has not received yet.
 /// @throws InputError if none is left
 std::size_t first_frame(const Options& options, const SlamState& state, const Sequence& frames) {
   if (!options.resume) return 0;
@@ -170,7 +171,7 @@ std::size_t first_frame(const Options& options, const SlamState& state, const Se
   return first;
 }
 
-/// A map may take the place of a map, of nothing else.
+/// A map may replace another map, but no other file.
 void need_no_other_file(const fs::path& map) {
   std::error_code error;
   if (fs::exists(map, error) && fs::file_size(map, error) > 0 && !is_map_file(map))
@@ -178,11 +179,13 @@ void need_no_other_file(const fs::path& map) {
         fmt::format("--save-map {}: is a file, but no map: name another", map.string()));
 }
 
-/// The protocol on one sequence: that of the bench, or a camera's feed without held-out frames.
+/// Runs the protocol on one sequence: that of the bench, or a live camera feed without held-out
+/// frames.
 RunResult run_sequence(const Options& options, const World& world, SlamState& state,
                        std::size_t first, const StepObservers& observers,
                        const MappingObserver& watch) {
-  // As many as the original ORB-SLAM2 gives up; under the bench's protocol the feed goes back.
+  // The map size up to which the original ORB-SLAM2 resets; under the bench's protocol the feed
+  // rewinds.
   constexpr int kSmallMap = 5;
   RunSpec spec;
   spec.environment.sequence = options.source;
@@ -216,7 +219,7 @@ void run(Options options) {
   resolve(options.settings, Shipped::kSettings);
   const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
   Source source = open_source(options);
-  // Before the work: a slip costs no minutes.
+  // Before the work, so that a mistake costs no time.
   std::optional<Trajectory> named_truth;
   if (!options.truth.empty()) named_truth = read_tum(options.truth);
   const OutputFolder folder(options.out, "slam", {kSlamFiles.begin(), kSlamFiles.end()});

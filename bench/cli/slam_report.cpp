@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 double peak_memory_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts in kB
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux reports kB
 }
 
 constexpr auto kStages = static_cast<std::size_t>(Stage::kCount);
@@ -44,7 +44,7 @@ Json times_json(const SlamReport& report) {
   return times;
 }
 
-/// The answers to the frames that were held out; null where none was.
+/// Returns the answers to the held-out frames; null if there were none.
 const std::vector<QueryScore>* held_out_of(const RunResult& run) {
   if (run.points.empty() || run.points.front().held_out.empty()) return nullptr;
   return &run.points.front().held_out;
@@ -100,8 +100,9 @@ void write_slam_files(const std::filesystem::path& folder, const SlamReport& rep
                                                             keyframes_json(report.state.map),
                                                             format_settings(settings),
                                                             summary_json(report).dump(2) + "\n"};
-  // First all beside their places, so that a disk that fills leaves what an earlier run wrote. Then
-  // the summary goes first and comes last: a folder without one was not finished.
+  // First write all files to a temporary folder, so that a full disk leaves an earlier run's files
+  // intact. Then the old summary is removed first and the new one added last: a folder without one
+  // is incomplete.
   const TemporaryFolder fresh(folder);
   for (std::size_t i = 0; i < contents.size(); ++i)
     write_atomically(fresh.path() / kSlamFiles[i], contents[i]);

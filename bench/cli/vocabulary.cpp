@@ -23,12 +23,12 @@ namespace {
 
 struct Options {
   std::string file, list, out;
-  std::string frames, queries, settings;  ///< of info
+  std::string frames, queries, settings;  ///< of `info`
   VocabularyTraining training;
   VocabularyScoreConfig score;
 };
 
-/// Loads a vocabulary and says how long that took.
+/// Loads a vocabulary and prints how long that took.
 Vocabulary load_timed(const std::string& file) {
   const auto start = std::chrono::steady_clock::now();
   Vocabulary vocabulary = Vocabulary::load(file);
@@ -70,7 +70,7 @@ std::filesystem::path folder_of(const std::string& source) {
   return source.substr(kTum.size());
 }
 
-/// What the words are worth on pictures whose poses are known.
+/// Prints how well the words retrieve images with known poses.
 void print_score(const Vocabulary& vocabulary, const Options& options) {
   const RecordedCamera camera = load_recorded_camera(options.settings);
   const auto views = load_placed_views(folder_of(options.frames), camera, options.score);

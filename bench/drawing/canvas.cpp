@@ -42,7 +42,7 @@ Canvas::Canvas(int width_px, int height_px, Rgb8 background)
       large_(height_px * kZoom, width_px * kZoom, CV_8UC3, bgr(background)) {}
 
 void Canvas::fill(double x, double y, double width, double height, Rgb8 color) {
-  // Edges are rounded, not the size: neighboring cells of a grid leave no gap.
+  // Edges are rounded, not sizes, so that neighboring cells of a grid leave no gap.
   const auto edge = [](double v) { return static_cast<int>(std::lround(v * kZoom)); };
   const cv::Rect rect(cv::Point(edge(x), edge(y)), cv::Point(edge(x + width), edge(y + height)));
   const cv::Rect inside = rect & cv::Rect(0, 0, large_.cols, large_.rows);

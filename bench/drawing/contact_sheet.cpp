@@ -71,11 +71,11 @@ View shoot(std::string caption, const Renderer& renderer, const Camera& camera, 
           std::move(frame.classes)};
 }
 
-/// A view from a corner of a room and what it is worth.
+/// A view from a corner of a room, with its quality.
 struct CornerView {
   View view;
-  int objects = 0;   ///< that fill a hundredth of it or more, without walls, floor and ceiling
-  float near_m = 0;  ///< nine tenths are farther: next to nothing where something is in the way
+  int objects = 0;   ///< that fill at least 1/100 of it, except walls, floor and ceiling
+  float near_m = 0;  ///< 9/10 are farther: near 0 if something is in the way
 };
 
 CornerView shoot_corner(const Scene& scene, const Room& room, const Renderer& renderer,
@@ -104,7 +104,7 @@ CornerView shoot_corner(const Scene& scene, const Room& room, const Renderer& re
   return corner;
 }
 
-/// Above 0 where the outline, walked counter-clockwise, turns left: at corners that point outward.
+/// Above 0 if the outline, traversed counter-clockwise, turns left: at convex corners.
 double turn_at(const Room& room, std::size_t i) {
   const auto& p = room.polygon_m;
   const Eigen::Vector2d before = p[i] - p[(i + p.size() - 1) % p.size()];
@@ -112,8 +112,8 @@ double turn_at(const Room& room, std::size_t i) {
   return before.x() * after.y() - before.y() * after.x();
 }
 
-/// A place that can be seen from all corners of a room: the middle of a rectangle; where a corner
-/// is missing, of the part that both arms share.
+/// Returns a place that is visible from all corners of a room: the middle of a rectangle or, for an
+/// L shape, of the part that both arms share.
 Eigen::Vector2d heart(const Room& room) {
   const auto& p = room.polygon_m;
   Eigen::AlignedBox2d box;
@@ -129,7 +129,7 @@ Eigen::Vector2d heart(const Room& room) {
   return box.center();
 }
 
-/// A wide lens (75 degrees), as a person takes pictures of rooms.
+/// A wide lens (75 degrees), as used to photograph rooms.
 Camera wide_camera() {
   Camera camera;
   camera.fx_px = camera.fy_px =
@@ -177,7 +177,7 @@ std::vector<View> views_of(const Scene& scene, const Renderer& renderer) {
           shoot_corner(scene, room, renderer, camera,
                        look_at({eye.x(), eye.y(), kEye_m}, {middle.x(), middle.y(), 0.75})));
     }
-    // Those that show most of what is there; where furniture stands in a corner, from elsewhere.
+    // Those that show the most; if furniture blocks a corner, another one.
     constexpr float kFree_m = 0.7F;
     std::ranges::stable_sort(corners, std::greater<>(), [](const CornerView& corner) {
       return std::tuple(corner.near_m > kFree_m, corner.objects, corner.near_m);

@@ -11,15 +11,15 @@
 namespace mh {
 namespace {
 
-// Parts of Turbo, which runs from a nearly black blue to a dark red.
+// Range of Turbo, which runs from a nearly black blue to a dark red.
 constexpr double kFarthest = 0.1, kNearest = 0.95;
 
-constexpr std::uint8_t kNoReturn = 215;  // gray, which Turbo has none of; black is void's
+constexpr std::uint8_t kNoReturn = 215;  // gray, which is not in Turbo; black is void's
 
-// By class. Found by search (tests/bench/drawing/class_colors_test.cpp holds what it is for): of
-// any two classes that touch in pictures of the model house, of the four rooms or of the 201
-// generated ones, the colors are 10 or more apart (CIEDE2000) to people with usual sight,
-// protanopia, deuteranopia and tritanopia alike; any two classes are 20 apart in L*a*b* (1976).
+// By class. Found by search for the property that tests/bench/drawing/class_colors_test.cpp checks:
+// for any two classes that touch in images of the model house, the four rooms or the 201 generated
+// ones, the colors are at least 10 apart (CIEDE2000) for normal vision, protanopia, deuteranopia
+// and tritanopia; any two classes are 20 apart in L*a*b* (1976).
 constexpr std::array<Rgb8, 55> kClassColors = {{
     {0, 0, 0},       {174, 199, 232}, {140, 170, 120}, {181, 163, 255}, {203, 119, 61},
     {0, 0, 188},     {140, 83, 73},   {255, 147, 174}, {235, 69, 47},   {89, 70, 26},
@@ -34,7 +34,7 @@ constexpr std::array<Rgb8, 55> kClassColors = {{
     {192, 213, 129}, {95, 124, 56},   {162, 116, 3},   {244, 179, 179}, {49, 18, 83},
 }};
 
-/// Shares of the way from far (0) to near (1), as 8-bit BGR.
+/// Colors nearness from far (0) to near (1), as 8-bit BGR.
 cv::Mat colored(const cv::Mat& near_share) {
   cv::Mat gray, picture;
   near_share.convertTo(gray, CV_8U, 255 * (kNearest - kFarthest), 255 * kFarthest);

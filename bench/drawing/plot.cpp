@@ -18,7 +18,7 @@ constexpr Rgb8 kInk = {40, 43, 50}, kPale = {225, 228, 233}, kGray = {110, 115, 
 constexpr std::array<Rgb8, 5> kColors = {
     {{31, 119, 180}, {214, 39, 40}, {44, 160, 44}, {255, 127, 14}, {148, 103, 189}}};
 
-/// A range of round numbers that holds the values, and the step between its marks.
+/// A range of round numbers that contains the values, and the step between its ticks.
 struct Axis {
   double low = 0, high = 1, step = 1;
 
@@ -65,7 +65,7 @@ void draw_panel(Canvas& canvas, const Plot& plot, double x0, double y0) {
     canvas.text(fmt::format("{:g}", std::abs(v) < 1e-12 ? 0.0 : v),
                 at(across.low, v) + cv::Point2d(-6, 3), 7.5, kGray, Canvas::Align::kRight);
   }
-  // The legend keeps clear of where the first curve begins.
+  // The legend stays clear of the start of the first curve.
   const bool begins_high = !plot.series.empty() && !plot.series[0].points.empty() &&
                            up.share(plot.series[0].points[0].y) > 0.5;
   const double legend_x = begins_high ? (left + right) / 2 - 10 : left;

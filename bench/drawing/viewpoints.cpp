@@ -40,13 +40,13 @@ Vector2d ahead(double heading_rad) {
   return {std::cos(heading_rad), std::sin(heading_rad)};
 }
 
-/// What is worth a look: where it is and how large.
+/// Something worth viewing: its place and size.
 struct Target {
   Vector3d middle_m;
   double radius_m = 0;
 };
 
-/// The largest objects, and all that is not floor together.
+/// The largest objects, and everything that is not floor combined.
 std::vector<Target> targets_in(const Scene& level) {
   Eigen::AlignedBox3d all;
   for (std::size_t face = 0; face < level.triangles.size(); ++face)
@@ -66,7 +66,7 @@ std::vector<Target> targets_in(const Scene& level) {
   return targets;
 }
 
-/// Views in the floor's frame by somebody who stands on free floor.
+/// Views, in the floor's frame, of a person standing on free floor.
 std::vector<SE3> standing(const Scene& level) {
   Eigen::AlignedBox2d box;
   for (const Room& room : level.rooms)
@@ -84,7 +84,7 @@ std::vector<SE3> standing(const Scene& level) {
     const Grid2d<std::uint8_t> region = largest_region(grid, clearance_m);
     if (std::ranges::count(region, 1) * grid.resolution_m * grid.resolution_m < 0.25) continue;
     const auto look = [&](const Vector2d& from, const Vector3d& to) {
-      const double away_m = (to.head<2>() - from).norm();  // nobody stares at the ceiling
+      const double away_m = (to.head<2>() - from).norm();  // people do not stare at the ceiling
       const double z_m = std::clamp(to.z(), kEye_m - 0.7 * away_m, kEye_m + 0.2 * away_m);
       views.push_back(look_at({from.x(), from.y(), kEye_m}, {to.x(), to.y(), z_m}));
     };
@@ -104,7 +104,7 @@ std::vector<SE3> standing(const Scene& level) {
   return views;
 }
 
-/// Views from around the whole scene, a little from above.
+/// Views from around the whole scene, slightly from above.
 std::vector<SE3> walking_around(const Scene& level) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3f& p : level.positions_m) box.extend(p.cast<double>());
@@ -118,12 +118,12 @@ std::vector<SE3> walking_around(const Scene& level) {
   return views;
 }
 
-/// What a view shows, as keys that two views share where they show the same.
+/// What a view shows, as keys that two views share if they show the same.
 struct Seen {
   SE3 pose;
   std::set<InstanceId> objects;
-  std::set<std::array<int, 3>> surface, ground;  ///< cubes of half a meter
-  double share = 1;  ///< of the picture that is neither empty nor right before the lens
+  std::set<std::array<int, 3>> surface, ground;  ///< cubes of 0.5 m
+  double share = 1;  ///< of the image that is neither empty nor right in front of the lens
 };
 
 Seen look(const Scene& scene, const Renderer& renderer, const Camera& camera, const SE3& pose) {
@@ -136,7 +136,7 @@ Seen look(const Scene& scene, const Renderer& renderer, const Camera& camera, co
   for (int y = 0; y < camera.height_px; ++y)
     for (int x = 0; x < camera.width_px; ++x) {
       const float depth = frame.depth_m(x, y);
-      if (depth < kNear_m) continue;  // also what is empty
+      if (depth < kNear_m) continue;  // also skips empty pixels
       ++good;
       ++pixels[frame.instances(x, y)];
       if (x % 3 != 0 || y % 3 != 0) continue;
@@ -170,7 +170,7 @@ std::vector<SE3> viewpoints(const Scene& scene, const Renderer& renderer, const 
   for (const SE3& pose : candidates)
     views.push_back(look(scene, renderer, small, level.world_from_level() * pose));
 
-  constexpr double kObject = 10, kGround = 0.01;  // worth of one, in cubes of other surface
+  constexpr double kObject = 10, kGround = 0.01;  // value of one, in cubes of other surface
   std::vector<SE3> chosen;
   std::set<InstanceId> objects;
   std::set<std::array<int, 3>> surface, ground;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-/// How far along each pose lies, in the delta's unit (meters or seconds), from the first one.
+/// Progress of each pose from the first one, in the delta's unit (meters or seconds).
 std::vector<double> progress(const Trajectory& trajectory, DeltaUnit unit) {
   std::vector<double> along(trajectory.size(), 0.0);
   for (std::size_t i = 1; i < trajectory.size(); ++i)
@@ -107,7 +107,8 @@ std::vector<std::pair<std::size_t, std::size_t>> delta_pairs(const Trajectory& e
   const std::vector<double> along = progress(estimate, delta.unit);
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const auto miss = [&](std::size_t j) { return std::abs(along[j] - along[i] - delta.value); };
-    // The distance only grows: the nearest is the first one at or beyond the delta, or one before.
+    // The distance only grows: the nearest is the first one at or beyond the delta, or the one
+    // before.
     std::size_t end = i + 1;
     while (end + 1 < count && along[end] - along[i] < delta.value) ++end;
     while (end > i + 1 && miss(end - 1) <= miss(end)) --end;

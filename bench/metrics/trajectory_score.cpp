@@ -6,7 +6,7 @@
 namespace mh {
 namespace {
 
-/// A root mean square of no errors is unknown, not 0.
+/// The root mean square of no errors is unknown, not 0.
 std::optional<double> rmse(const ErrorStatistics& s) {
   return s.count > 0 ? std::optional(s.rmse) : std::nullopt;
 }
@@ -24,7 +24,7 @@ TrajectoryScore score_trajectory(const Trajectory& estimate, const Trajectory& t
   score.ate_rmse_deg = rmse(e.ape_rotation_deg);
   score.rpe_frame_rmse_m = rmse(e.rpe[0].translation_m);
   score.rpe_second_rmse_m = rmse(e.rpe[1].translation_m);
-  // One pose laid over itself has no error to tell of.
+  // One pose aligned with itself has no meaningful error.
   if (e.pairs > 1)
     score.ate_first_pose_m = rmse(ape_translation(truth, estimate, Alignment::kOrigin));
   return score;

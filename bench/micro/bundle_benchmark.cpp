@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our bundle adjustment against Ceres (DENSE_SCHUR, one thread, analytic Jacobians) on one problem:
-// 10 keyframes, 1500 points, 6000 observations with depth, Huber's loss, 5 iterations. Beside it
-// the pose of one frame.
+// 10 keyframes, 1500 points, 6000 observations with depth, Huber loss, 5 iterations. Also the pose
+// of one frame.
 #include <benchmark/benchmark.h>
 #include <ceres/ceres.h>
 
@@ -27,7 +27,7 @@ BundleConfig config() {
   return {.iterations = kIterations, .refine_iterations = 0, .relative_decrease = 1e-6};
 }
 
-/// A pose as (quaternion x y z w, translation), perturbed from the left. The cost functions give
+/// A pose as (quaternion x y z w, translation), perturbed from the left. The cost functions return
 /// their Jacobians in the tangent space, padded by a zero column, so that this one is [I; 0].
 class LeftPerturbation : public ceres::Manifold {
  public:

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a frame costs, and what the process holds, as the map grows.
-//   rooms  a small map and one ten times as large, made of features without pictures; both then see
-//          the same frames, first of known and then of new ground, frame by frame in turn.
-//   laps   a recorded sequence fed again and again, as a robot that goes on living in one house;
-//          features are extracted once and read from a file.
-// Processor time of this thread.
+// Time per frame and memory of the process as the map grows.
+//   rooms  a small map and one ten times as large, made of features without images; both then see
+//          the same frames, first of known and then of new ground, alternating frame by frame.
+//   laps   a recorded sequence fed repeatedly, as to a robot that stays in one house; features are
+//          extracted once and read from a file.
+// CPU time of this thread.
 #include <sys/resource.h>
 #include <unistd.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // physics_benchmark SCENE ROBOT [DRIVES]: random drives into furniture against the whole mesh of a
-// scene. Prints how much faster than real time the physics ran, the deepest penetration, the most
-// that was asked of the base outside contacts, and whether a second run gave the same bits.
+// scene. Prints how much faster than real time the physics ran, the deepest penetration, the base's
+// peak motion outside contacts, and whether a second run gave the same bits.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -29,7 +29,7 @@ constexpr double kStep_s = 1.0 / 240;
 struct Outcome {
   double simulated_s = 0, contact_s = 0, deepest_m = 0;
   int with_contact = 0;
-  double speed = 0, acceleration = 0, jerk = 0;  // of the base as Bullet moved it, contacts apart
+  double speed = 0, acceleration = 0, jerk = 0;  // of the base in Bullet, outside contacts
   std::vector<double> ends;                      // where each drive ended
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Agreement of the ray tracer and the rasterizer over random views of five scenes, beside the
-// limits that docs/rendering.md states. Usage: render_agreement [--portable] [views per scene]
+// Agreement of the ray tracer and the rasterizer over random views of five scenes, with the limits
+// stated in docs/rendering.md.
+// Usage: render_agreement [--portable] [views per scene]
 #include <algorithm>
 #include <cstdlib>
 #include <string_view>
@@ -18,8 +19,8 @@
 namespace mh {
 namespace {
 
-/// Free places at a camera's height, looking anywhere but straight up or down, and held askew, as
-/// upright edges in level pictures make whole columns of ties.
+/// Free places at a camera's height, looking anywhere except straight up or down, with roll, since
+/// vertical edges in level images make whole columns of ties.
 std::vector<SE3> random_views(const Scene& scene, std::uint64_t seed, int count) {
   std::vector<SE3> views;
   const RandomStream stream(seed);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ratios of rendering times at 640x480: medians over interleaved repeats of twelve views, beside
-// the limits that docs/rendering.md states. What runs on one thread is timed by that thread's
-// clock, whatever else the machine does. Two threads of ours and of OSMesa are timed by the clock
-// on the wall, which is what a user waits, and which is judged: quiet machines only (the load is
-// printed). The work of both, by their process's clock, is printed beside it.
+// Ratios of rendering times at 640x480: medians over interleaved repeats of twelve views, with the
+// limits stated in docs/rendering.md. Single-threaded work is timed by its thread's CPU clock,
+// independent of the machine's load. Our renderer and OSMesa on two threads are judged by wall
+// time, which is what a user waits: quiet machines only (the load is printed). The CPU time of all
+// their threads is also printed.
 // Usage: render_ratios [--portable] [repeats]
 #include <malloc.h>
 #include <time.h>
@@ -26,10 +26,10 @@
 namespace mh {
 namespace {
 
-/// What a picture cost, by three clocks.
+/// Cost of an image, by three clocks.
 struct Cost {
-  double thread_ms = 0;   // work of the thread that asked for it
-  double process_ms = 0;  // work of all threads
+  double thread_ms = 0;   // CPU time of the calling thread
+  double process_ms = 0;  // CPU time of all threads
   double wall_ms = 0;
 
   static Cost now() {
@@ -46,7 +46,7 @@ struct Cost {
   }
 };
 
-/// Rays of a whole picture and nothing else, in the renderer's order.
+/// Only the rays of a whole image, in the renderer's order.
 class RayTracer {
  public:
   RayTracer(const Scene& scene, bool portable) : bvh_(scene, 2, portable), packets_(64) {}
@@ -74,7 +74,7 @@ class RayTracer {
   std::vector<Packet> packets_;
 };
 
-/// What is timed, and how long it took each time.
+/// What is timed, and its time in each repeat.
 struct Contestant {
   std::string name;
   std::function<void(const SE3&)> run;
@@ -101,7 +101,7 @@ void race(std::vector<Contestant>& contestants, int repeats) {
         const Cost begin = Cost::now();
         contestant.run(benchmark_view(view));
         const Cost cost = Cost::now().since(begin);
-        if (repeat >= 0) contestant.costs.push_back(cost);  // the first round warms up
+        if (repeat >= 0) contestant.costs.push_back(cost);  // the first repeat is a warm-up
       }
   fmt::print("  {:<38} {:>10} {:>13} {:>8}\n", "medians, ms", "its thread", "all threads", "wall");
   for (const Contestant& c : contestants)
@@ -192,7 +192,7 @@ int run(bool portable, int repeats) {
 }  // namespace mh
 
 int main(int argc, char** argv) {
-  // What is timed is the rendering, not the system's handing out of memory.
+  // Times the rendering, not the system's memory allocation.
   mallopt(M_MMAP_THRESHOLD, 64 << 20);
   mallopt(M_TRIM_THRESHOLD, 512 << 20);
   bool portable = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loading of what people have: a ScanNet folder of 5 million triangles with labels, segments and
-// objects; and one of 330,000 triangles to its first picture.
+// Loading of typical user data: a ScanNet folder of 5 million triangles with labels, segments and
+// objects; and one of 330,000 triangles, up to its first image.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
@@ -47,7 +47,7 @@ Scene wavy_floor(std::uint32_t n) {
   return scene;
 }
 
-/// A ScanNet folder of about so many triangles; goes with the process.
+/// A ScanNet folder of about that many triangles; removed when the process ends.
 class ScanFolder {
  public:
   explicit ScanFolder(std::uint32_t squares)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each sensor effect costs per 640x480 frame, beside a plain render of the same view: the
+// Cost of each sensor effect per 640x480 frame, compared with a plain render of the same view: the
 // model house without baked light, seen from its living room by a camera that turns at 1 rad/s or
-// rests. usage: sensors_benchmark   (from the repository's folder)
+// rests.
+// usage: sensors_benchmark (from the repository's folder)
 #include <benchmark/benchmark.h>
 
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What writing a rendered sequence costs: each stage alone on the same threads, then all together,
-// by the wall and by the work of all threads; and what the process holds meanwhile.
+// Cost of writing a rendered sequence: each stage alone on the same threads, then all together, in
+// wall time and CPU time of all threads; and the process's memory.
 // Usage: sequence_benchmark SCENE MOTION ROBOT LEVEL OUT [frames]
 #include <stdlib.h>
 #include <time.h>
@@ -31,9 +31,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kThreads = 2;
-constexpr std::size_t kHeldFrames = 16;  // that are encoded and written again and again
+constexpr std::size_t kHeldFrames = 16;  // that are repeatedly encoded and written
 
-/// Frames per second, by the wall's clock, and per second of work of each thread.
+/// Frames per second of wall time, and per second of CPU time of each thread.
 struct Speed {
   double wall_hz, work_hz;
 };
@@ -99,7 +99,7 @@ int run(const std::vector<std::string>& given) {
       in_memory->add(k % kHeldFrames, frame);
     });
   });
-  std::vector<std::pair<fs::path, std::string>> files;  // of the frames held
+  std::vector<std::pair<fs::path, std::string>> files;  // of the frames in memory
   for (const auto& entry : fs::recursive_directory_iterator(memory))
     if (entry.is_regular_file())
       files.emplace_back(fs::relative(entry.path(), memory), read_file(entry.path()));

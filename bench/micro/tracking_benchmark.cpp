@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole system against cv::ORB::detectAndCompute with as many features on the frames of a
-// sequence in TUM's layout, interleaved frame by frame on one thread: what feature extraction,
-// tracking and everything cost as multiples of it. Processor time of this thread, so that other
-// work on the machine tells in no figure but through its caches.
+// sequence in TUM's layout, interleaved frame by frame on one thread: the cost of feature
+// extraction, of tracking and of everything, as multiples of it. CPU time of this thread, so that
+// other work on the machine affects the figures only through the caches.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ double thread_ms() {
   return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
 }
 
-/// Runs work and appends what it took.
+/// Runs work and appends its time.
 template <class Work>
 void time_into(std::vector<double>& times_ms, Work work) {
   const double start = thread_ms();
@@ -86,7 +86,7 @@ void run(const Options& options) {
     const RgbdFrame frame = read_frame(frames[i], camera);
     const cv::Mat color(frame.color.height(), frame.color.width(), CV_8UC3,
                         const_cast<Rgb8*>(frame.color.data()));
-    // Gray in advance: what cv::ORB would spend on it is not held against us.
+    // Converted to gray in advance, so that cv::ORB's time does not include it.
     cv::Mat gray;
     cv::cvtColor(color, gray, cv::COLOR_RGB2GRAY);
     std::vector<cv::KeyPoint> keypoints;
@@ -97,7 +97,7 @@ void run(const Options& options) {
               [&] { orb->detectAndCompute(gray, cv::noArray(), keypoints, descriptors); });
     time_into(times.extraction,
               [&] { static_cast<void>(extract(frame, state.camera, config.features)); });
-    // Tracking alone is localization in the map as it stands: step() does the same and then maps.
+    // Tracking alone is localization in the current map: step() does the same and then maps.
     if (!state.map.empty() && tracker.tracking())
       time_into(times.tracking,
                 [&] { static_cast<void>(localize(state, tracker, frame, stream)); });

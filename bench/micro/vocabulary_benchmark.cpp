@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The shipped vocabulary: time to load it, words of a frame of 1,000 features, candidates among 500
-// keyframes with and without the inverted index. Beside it a tree of 10^6 words (k = 10, L = 6, as
-// large as the public ORBvoc.txt) in DBoW2's text format and in our own.
-// Run from the repository's root, or name the vocabulary: MH_VOCABULARY=FILE.
+// keyframes with and without the inverted index. For comparison, a tree of 10^6 words (k = 10, L =
+// 6, as large as the public ORBvoc.txt) in DBoW2's text format and in our own. Run from the
+// repository's root, or name the vocabulary: MH_VOCABULARY=FILE.
 #include <cstdlib>
 #include <filesystem>
 #include <string>

@@ -11,12 +11,12 @@ namespace {
 
 enum StreamName : std::uint64_t { kNoise = 1, kSlam = 2 };
 
-/// Where the feed stands. Indices count frames of the sequence.
+/// State of the feed. Indices are frames of the sequence.
 struct Feed {
   std::size_t next = 0;
   bool in_trouble = false;
-  std::size_t to_pass = 0;  ///< while in trouble: the furthest frame that failed
-  int restarts_here = 0;    ///< in a row, without getting past to_pass
+  std::size_t to_pass = 0;  ///< after a failure: the furthest frame that failed
+  int restarts_here = 0;    ///< consecutive ones that did not get past to_pass
   bool tracking = false;
   bool mapped = false;  ///< something was tracked since the start or the last reset
 };
@@ -41,7 +41,7 @@ void note_tracked(Feed& feed, std::size_t index) {
   }
 }
 
-/// A frame was shown, and this is what was reported of it.
+/// Records the report on a frame that was shown.
 void note(MappingOutcome& outcome, std::size_t index, const RgbdFrame& frame,
           const SystemReport& report, const MappingObserver& observe) {
   outcome.calls.push_back({.index = index,

@@ -34,8 +34,8 @@ RgbdFrame usable_frame(const Sequence& sequence, std::size_t i, RandomStream noi
 }
 
 std::vector<bool> increasing_stamps(const Sequence& sequence) {
-  // Longest increasing subsequence: of each length so far, the frame with the least stamp that ends
-  // one, and before each frame the one that precedes it there.
+  // Longest increasing subsequence: for each length so far, the frame with the smallest stamp that
+  // ends one, and for each frame its predecessor there.
   constexpr std::size_t kNone = SIZE_MAX;
   std::vector<std::size_t> ends, before(sequence.size(), kNone);
   for (std::size_t i = 0; i < sequence.size(); ++i) {

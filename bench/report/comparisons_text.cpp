@@ -32,7 +32,7 @@ std::string comparison_line(const PairNames& names, const Comparison& c) {
                      corrected);
 }
 
-/// Of a comparison of success where the suite states a margin.
+/// The line of a comparison of success for a suite that states a margin.
 std::string margin_line(const Suite& suite, const PairNames& names, const Comparison& c) {
   if (!suite.non_inferiority_margin || c.pairs == 0 || !c.what.starts_with("success")) return "";
   const double margin = *suite.non_inferiority_margin;

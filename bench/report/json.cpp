@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json summary_json(const QuerySummary& summary) {
-  if (summary.queries == 0) return nullptr;  // nothing was asked
+  if (summary.queries == 0) return nullptr;  // no queries
   return figures_json(figures_of(summary));
 }
 

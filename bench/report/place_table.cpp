@@ -16,7 +16,7 @@
 namespace mh {
 namespace {
 
-/// Rows that differ in nothing but the system.
+/// Rows that differ only in the system.
 struct Block {
   const Suite& suite;
   std::span<const Row> all;  ///< of the whole table
@@ -29,7 +29,7 @@ std::string meters(const std::optional<double>& value) {
   return value ? fmt::format("{:.4f}", *value) : std::string("-");
 }
 
-/// Queries put to the system that was asked most.
+/// The number of queries of the system with the most.
 double most_queries(const Block& block, QuerySet set) {
   double most = 0;
   for (const Row* row : block.rows) most = std::max(most, summary(*row, set).queries);
@@ -40,7 +40,7 @@ std::string title(QuerySet set) {
   return set == QuerySet::kHeldOut ? "held-out frames (the paper's way)" : "second tour";
 }
 
-/// In the form of the paper's Table 2. Empty where nobody was asked anything, as in a suite of
+/// Table in the form of the paper's Table 2. Empty if there were no queries, as in a suite of
 /// outside trajectories.
 std::string paper_table(const Block& block) {
   const bool is_published = block.suite.published == Published::kTable2;
@@ -73,7 +73,7 @@ std::string paper_table(const Block& block) {
   return rule + table.text() + rule;
 }
 
-/// The headings of a score's figures, behind a title.
+/// The headings of a score's figures, after a title.
 template <class... Scores>
 std::vector<std::string> headings(std::string title) {
   std::vector<std::string> all{std::move(title)};
@@ -85,7 +85,7 @@ std::vector<std::string> headings(std::string title) {
   return all;
 }
 
-/// Its figures that have a heading; "-" where nothing is known.
+/// Adds its figures that have a heading; "-" if unknown.
 void add_cells(const std::vector<Figure>& figures, bool known, std::vector<std::string>& cells) {
   for (const Figure& figure : figures)
     if (!figure.metric.heading.empty()) cells.push_back(known ? shown(figure) : "-");
@@ -102,8 +102,8 @@ std::string query_details(const Block& block, QuerySet set) {
   return table.text();
 }
 
-/// Keyframes left after the steps of Algorithm 1, as counts and as shares of the map; "-" is what a
-/// program did not report.
+/// Keyframes left after the steps of Algorithm 1, as counts and as shares of the map; "-" if a
+/// program did not report them.
 std::string candidate_details(const Block& block, QuerySet set) {
   TextTable table({std::string(short_title(set)), "keyframes", "after eq. 3", "after eq. 4",
                    "after eq. 5", "after eq. 6", "one left", "label mass"});
@@ -158,7 +158,7 @@ std::string mapping_details(const Block& block) {
   return table.text();
 }
 
-/// What xi did, matcher by matcher.
+/// Effect of xi, by matcher.
 std::string penalties(const Block& block) {
   std::string text;
   for (const Row* row : block.rows) {

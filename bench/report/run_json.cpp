@@ -13,7 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Its inputs by name, without the files that they were read from: reproduction.json lists those.
+/// A place's inputs by name, without the files that they were read from: reproduction.json lists
+/// those.
 Json place_json(const PlaceFacts& place) {
   Json json = json_of(place);
   json["inputs"] = Json::object();
@@ -21,8 +22,8 @@ Json place_json(const PlaceFacts& place) {
   return json;
 }
 
-/// A query by its list of fields. Digests are chained for the whole run, counts of matches summed:
-/// they stand there.
+/// A query by its list of fields, except those that are reported for the whole run: digests,
+/// chained, and counts of matches, summed.
 Json query_json(const QueryScore& query) {
   Json json = Json::object();
   const auto add = [&](const char* name, const auto& value) {
@@ -47,7 +48,7 @@ Json digests_json(const RunResult& run) {
       {"images", hex(images)}, {"poses", hex(poses)}, {"trajectory", hex(digest(run.estimate))}};
 }
 
-/// What an outside program does not have.
+/// Settings that an outside program does not have.
 Json settings_json(const RunSpec& spec, Json settings) {
   return spec.system.takes_settings() ? std::move(settings) : Json();
 }

@@ -14,7 +14,7 @@
 namespace mh {
 namespace {
 
-/// What stands above all tables of tours that were cut.
+/// The warning above all tables of tours that were cut.
 std::string warning_of_cut(const Suite& suite, std::span<const RunResult> runs) {
   const auto cut = std::ranges::find_if(runs, [](const RunResult& run) { return run.place.cut; });
   if (cut == runs.end()) return "";
@@ -23,7 +23,7 @@ std::string warning_of_cut(const Suite& suite, std::span<const RunResult> runs) 
       counted(*suite.max_frames, "frame"));
 }
 
-/// What is to be known of recordings: their one noise, and frames that no system was shown.
+/// Notes on recordings: their single noise, and frames that were not shown to any system.
 std::string recordings_text(const Suite& suite, std::span<const RunResult> runs) {
   if (std::ranges::none_of(suite.environments, &Environment::is_recorded)) return "";
   std::string text =
@@ -38,7 +38,7 @@ std::string recordings_text(const Suite& suite, std::span<const RunResult> runs)
   return text;
 }
 
-/// Why runs are missing above.
+/// Why runs are missing from the table above.
 std::string failures_text(std::span<const FailedRun> failed) {
   if (failed.empty()) return "";
   std::string text = fmt::format("\nfailed, so that the figures above are without {}:\n",
@@ -47,7 +47,7 @@ std::string failures_text(std::span<const FailedRun> failed) {
   return text;
 }
 
-/// Which runs of the suite nobody has made yet.
+/// Which runs of the suite have not been made yet.
 std::string missing_text(std::span<const std::string> missing) {
   if (missing.empty()) return "";
   constexpr std::size_t kMost = 10;

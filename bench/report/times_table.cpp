@@ -14,7 +14,7 @@
 namespace mh {
 namespace {
 
-/// Least and greatest of some numbers.
+/// Minimum and maximum of some numbers.
 struct Range {
   double least = std::numeric_limits<double>::infinity(), most = -least;
   void add(double value) {
@@ -28,7 +28,7 @@ struct Range {
   }
 };
 
-/// Where the times come from: what other work did beside them shows in them.
+/// How the times were measured: they are affected by other work on the machine.
 std::string circumstances(std::span<const RunResult> runs) {
   std::set<std::string> hosts, sittings;
   bool unknown = false;
@@ -68,7 +68,7 @@ std::string times_table(const Suite& suite, std::span<const RunResult> runs) {
     if (suite.sweep.map == SweepMap::kFixed && row.parameters != 0) continue;  // the same calls
     if (already_shown(suite, row)) continue;
     const auto cell = [](const TimeSummary& t) {
-      if (t.p95_ms == 0) return std::string("-");  // no calls: its map was at hand
+      if (t.p95_ms == 0) return std::string("-");  // no calls: its map was cached
       return fmt::format("{:.1f} ({:.1f})", t.median_ms, t.p95_ms);
     };
     table.add({label(row), cell(row.track), cell(row.relocalize)});

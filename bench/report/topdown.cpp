@@ -20,14 +20,14 @@ constexpr int kWidth = 1200;
 constexpr double kMargin = 40, kHeader = 92, kFooter = 84;
 constexpr double kMaxPlanHeight = 1100;
 
-// Heights at which the house is cut: above tables and below door heads; through seats and beds.
+// Heights of the sections: above tables and below door heads; through seats and beds.
 constexpr double kWallCut_m = 1.2, kFurnitureCut_m = 0.4;
 
 constexpr Rgb8 kInk{35, 38, 45}, kFaint{110, 115, 125}, kRoomName{140, 150, 165}, kWall{55, 58, 66},
     kFurniture{178, 172, 160};
 constexpr Rgb8 kMapFree{236, 241, 246}, kMapOccupied{172, 190, 208};
-// The true path is a broad pale band and the estimated one a thin dark line, so that either shows
-// where they lie on each other.
+// The true path is a broad pale band and the estimated one a thin dark line, so that both show
+// where they overlap.
 constexpr Rgb8 kTruth{150, 205, 165}, kEstimate{196, 84, 10};
 constexpr double kTruthWidth = 5.5, kEstimateWidth = 1.3;
 constexpr Rgb8 kX{20, 70, 170}, kGood{165, 45, 165}, kBad{215, 25, 25}, kMissed{140, 140, 150};
@@ -47,8 +47,8 @@ struct Bounds {
   }
 };
 
-/// The rooms with their outer walls; where a mesh came without rooms, what can be near the path.
-/// What lies outside (gardens, backdrops) is cut off.
+/// The rooms with their outer walls or, for a mesh without rooms, the surroundings of the path.
+/// Everything outside (gardens, backdrops) is cut off.
 Bounds area_of_interest(const World& world) {
   constexpr double kWalls_m = 0.35, kSight_m = 5.0;
   Bounds bounds;
@@ -61,7 +61,7 @@ Bounds area_of_interest(const World& world) {
   return bounds;
 }
 
-/// From meters seen from above (x right, y up) to pixels.
+/// Maps meters, seen from above (x right, y up), to pixels.
 struct PlanView {
   Bounds bounds;
   double px_per_m = 1;
@@ -99,7 +99,7 @@ void draw_slice(Canvas& canvas, const PlanView& view, const std::vector<SliceSeg
       canvas.line(view(s.from_m), view(s.to_m), color, thickness);
 }
 
-/// What a name should not be written over.
+/// Marks that a room's name should not cover.
 std::vector<cv::Point2d> marks(const PlanView& view, const World& world, const RunResult& run,
                                QuerySet set, const std::vector<SliceSegment>& furniture) {
   std::vector<cv::Point2d> result;
@@ -112,8 +112,8 @@ std::vector<cv::Point2d> marks(const PlanView& view, const World& world, const R
   return result;
 }
 
-/// Each room's name as near to its middle as leaves it free of marks; in the middle where nothing
-/// does.
+/// Draws each room's name as close to its middle as possible without covering marks; in the middle
+/// if that is impossible.
 void draw_room_names(Canvas& canvas, const PlanView& view, const Scene& scene,
                      const std::vector<cv::Point2d>& marks) {
   constexpr double kCapital = 14, kClear = 8, kStep = 10;
@@ -144,7 +144,7 @@ void draw_room_names(Canvas& canvas, const PlanView& view, const Scene& scene,
   }
 }
 
-/// A path seen from above; a gap in time breaks the line.
+/// Draws a path seen from above; a gap in time breaks the line.
 void draw_path(Canvas& canvas, const PlanView& view, const Trajectory& path, const SE3& plan_from,
                Rgb8 color, double thickness) {
   constexpr Stamp kGap_ns = 250'000'000;
@@ -157,7 +157,7 @@ void draw_path(Canvas& canvas, const PlanView& view, const Trajectory& path, con
   }
 }
 
-/// The way from a point towards another as far as it lies on the plan.
+/// Returns the end, within the plan, of the line from one point to another.
 Eigen::Vector2d up_to_the_edge(const Bounds& bounds, const Eigen::Vector2d& from,
                                const Eigen::Vector2d& to) {
   double share = 1;
@@ -171,7 +171,8 @@ Eigen::Vector2d up_to_the_edge(const Bounds& bounds, const Eigen::Vector2d& from
 
 constexpr double kCross = 4.5, kRing = 6.5, kHeading = 15, kStroke = 1.8;
 
-/// A stroke from `inner` px beside a place on, the way that a camera (z forward) looks.
+/// Draws a stroke that starts `inner` px from a place, in the viewing direction of a camera (z
+/// forward).
 void draw_heading(Canvas& canvas, const cv::Point2d& at, const SE3& plan_from_camera, double inner,
                   Rgb8 color) {
   const Eigen::Vector2d forward = plan_from_camera.rotation().col(2).head<2>();
@@ -180,7 +181,7 @@ void draw_heading(Canvas& canvas, const cv::Point2d& at, const SE3& plan_from_ca
   canvas.line(at + inner * way, at + kHeading * way, color, kStroke);
 }
 
-/// An answer beyond the plan has no ring, but the line towards it.
+/// An answer off the plan gets no ring, only the line toward it.
 void draw_query(Canvas& canvas, const PlanView& view, const QueryScore& q,
                 const SE3& plan_from_estimate) {
   if (!q.true_world_from_camera) return;
@@ -201,8 +202,8 @@ void draw_query(Canvas& canvas, const PlanView& view, const QueryScore& q,
   canvas.cross(truth, kCross, color, kStroke);
 }
 
-/// Good answers first, failures over them: where many queries lie in one place, these are what the
-/// picture is looked at for.
+/// Good answers first, failures over them: where many queries are in one place, the failures are
+/// what matters.
 void draw_queries(Canvas& canvas, const PlanView& view, const std::vector<QueryScore>& queries,
                   const SE3& plan_from_estimate) {
   const auto rank = [](const QueryScore& q) { return !q.success ? 1 : q.false_positive ? 2 : 0; };
@@ -211,7 +212,7 @@ void draw_queries(Canvas& canvas, const PlanView& view, const std::vector<QueryS
       if (rank(q) == of) draw_query(canvas, view, q, plan_from_estimate);
 }
 
-/// The farthest that the estimated path is from the true one, m; nullopt where they share no stamp.
+/// Largest distance of the estimated path from the true one, m; nullopt if they share no stamp.
 std::optional<double> farthest_apart_m(const Trajectory& truth, const Trajectory& estimate,
                                        const SE3& plan_from_estimate) {
   std::map<Stamp, Eigen::Vector3d> true_place;
@@ -233,7 +234,7 @@ void draw_scale_bar(Canvas& canvas, const PlanView& view, double y) {
   canvas.text("1 m", {0.5 * (left + right), y - 9}, 10, kInk, Canvas::Align::kCenter);
 }
 
-/// Entries of the legend from left to right, each a symbol and a word.
+/// Draws the legend's entries from left to right, each a symbol and a word.
 class Legend {
  public:
   Legend(Canvas& canvas, double y) : canvas_(canvas), y_(y) {}
@@ -249,8 +250,8 @@ class Legend {
   double x_ = kMargin, y_;
 };
 
-/// @param apart  behind the estimated path: how far it is from the true one
-/// @param asked, mapped  whether there are queries and cells of a map to be told of
+/// @param apart  text after the estimated path: its distance from the true one
+/// @param asked, mapped  whether there are queries and map cells to list
 void draw_legend(Canvas& canvas, double y, const std::string& apart, bool asked, bool mapped) {
   const auto stroke = [&](Rgb8 color, double thickness) {
     return [&canvas, color, thickness](cv::Point2d at) {
@@ -289,7 +290,7 @@ void draw_legend(Canvas& canvas, double y, const std::string& apart, bool asked,
   second.entry("map: occupied", patch(kMapOccupied));
 }
 
-/// A line of text from margin to margin, smaller where it would go beyond.
+/// Draws a line of text between the margins, shrunk to fit.
 void draw_line_of_text(Canvas& canvas, const std::string& text, double y, double size, Rgb8 color,
                        bool bold) {
   const double room = (kWidth - 2 * kMargin) / Canvas::text_width(text, size, bold);

@@ -22,19 +22,19 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kMadeOf = "modelhouse";  ///< keyword of what a picture was made of
+constexpr const char* kMadeOf = "modelhouse";  ///< keyword of an image's key: what it was made from
 
 void write_marked(const fs::path& file, const cv::Mat& picture, const std::string& made_of) {
   write_atomically(file, with_text(encode_png(picture), kMadeOf, made_of));
 }
 
-constexpr const char* kRunKey = "run.key";  ///< of a run without pictures: what it was made of
+constexpr const char* kRunKey = "run.key";  ///< of a run without images: what it was made from
 
 std::string mark_of(const fs::path& picture) {
   return fs::is_regular_file(picture) ? text_in(read_file(picture), kMadeOf) : std::string();
 }
 
-/// What decides a contact sheet. Levels, which may lose other frames, share one.
+/// Everything that determines a contact sheet. Levels, which may drop different frames, share one.
 std::string identity_of_views(const World& world, const RunSpec& spec) {
   std::string text = fmt::format("{} {} {} ", code_of_run(), to_json(spec.environment.frame).dump(),
                                  spec.max_frames ? std::to_string(*spec.max_frames) : "all");
@@ -66,14 +66,14 @@ void write_run(const fs::path& folder, const World& world, const RunResult& run,
   write_tum(folder / "estimate.tum", run.estimate);
   run.volume->save_bt(folder / "map.bt");
   if (!world.simulated) {
-    write_atomically(folder / kRunKey, key);  // last: it tells that all are there
+    write_atomically(folder / kRunKey, key);  // last: it marks the files as complete
     return;
   }
   save_map_server(run.grid, folder / "map");
   if (world.second)
     write_picture(folder / "topdown_second_tour.png",
                   draw_topdown(world, run, QuerySet::kSecondTour));
-  // Last: it tells that all are there.
+  // Last: it marks the files as complete.
   write_marked(folder / "topdown.png", draw_topdown(world, run, QuerySet::kHeldOut), key);
 }
 

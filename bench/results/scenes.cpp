@@ -27,7 +27,7 @@ bool has_result(const Row* row) {
   return row != nullptr && !row->trials.empty();
 }
 
-/// @param scenes  at least one; those of which all runs failed are counted alone
+/// @param scenes  at least one; a scene whose runs all failed is only counted
 /// @param of      scenes of the category in the suite
 CategoryRow together(std::string category, std::vector<const Row*> scenes, std::size_t of) {
   const Row& any = *scenes.front();
@@ -57,7 +57,7 @@ std::vector<std::string> categories(const Suite& suite) {
   return names;
 }
 
-/// Rows of one system, one per environment; null where it has none.
+/// Rows of one system, one per environment; null if it has none.
 std::vector<const Row*> scenes_of(const Suite& suite, std::span<const Row> rows, std::size_t level,
                                   LabelMode labels, std::size_t parameters, std::size_t system) {
   std::vector<const Row*> scenes(suite.environments.size(), nullptr);

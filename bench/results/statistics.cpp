@@ -32,7 +32,7 @@ std::vector<std::size_t> draw_blocks(std::size_t n, std::size_t block, RandomStr
   return chosen;
 }
 
-constexpr std::size_t kFewestPairs = 4;  // of fewer, resampling says nothing
+constexpr std::size_t kFewestPairs = 4;  // with fewer, resampling is meaningless
 
 /// Difference, interval and detectable difference by a circular block bootstrap.
 Comparison resample(std::string what, std::span<const PairedDifference> pairs, std::size_t block,
@@ -70,7 +70,7 @@ Comparison resample(std::string what, std::span<const PairedDifference> pairs, s
   return c;
 }
 
-/// Of `independent` signs the least two-sided p is 2 of all patterns.
+/// With `independent` signs, the smallest two-sided p is 2 of all patterns.
 void note_least_p(Comparison& c, std::size_t independent) {
   if (std::ldexp(2.0, -static_cast<int>(independent)) > 0.05) c.detectable = INFINITY;
 }
@@ -101,7 +101,7 @@ Comparison compare_paired(std::string what, std::span<const PairedDifference> qu
   const auto block = std::max<std::size_t>(
       2, static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(queries.size())))));
   Comparison c = resample(std::move(what), queries, block, shares, seed, resamples);
-  std::vector<double> sums;  // of blocks in which anything is known
+  std::vector<double> sums;  // of blocks with any known difference
   for (std::size_t first = 0; first < queries.size(); first += block) {
     const auto part = queries.subspan(first, std::min(block, queries.size() - first));
     if (std::ranges::none_of(part, &PairedDifference::present)) continue;
@@ -121,7 +121,7 @@ double sign_flip(std::span<const double> sums, std::uint64_t seed) {
     total += sum;
     size += std::abs(sum);
   }
-  // Patterns that give the same mean must count, whatever order their sums are rounded in.
+  // Patterns with the same mean must count, regardless of rounding in their sums.
   const double limit = std::abs(total) - 1e-12 * size;
   const bool exact = sums.size() <= kMostExact;
   const std::uint64_t patterns = exact ? std::uint64_t{1} << sums.size() : kDraws;
@@ -161,7 +161,7 @@ double wilcoxon_signed_rank(std::span<const double> differences) {
   for (const double difference : differences)
     if (difference != 0) d.push_back(difference);
   std::sort(d.begin(), d.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  // Ranks doubled, so that middle ranks are whole.
+  // Ranks doubled, so that mid-ranks are integers.
   std::vector<std::size_t> ranks(d.size());
   for (std::size_t first = 0; first < d.size();) {
     std::size_t end = first;
@@ -173,7 +173,7 @@ double wilcoxon_signed_rank(std::span<const double> differences) {
   std::size_t positive = 0;
   for (std::size_t i = 0; i < d.size(); ++i) positive += d[i] > 0 ? ranks[i] : 0;
 
-  // probability[s]: that the ranks of positive sign sum to s when each sign is a fair coin.
+  // probability[s]: that the ranks of positive sign sum to s if each sign is a fair coin flip.
   std::vector<double> probability(all + 1, 0.0);
   probability[0] = 1.0;
   std::size_t reached = 0;

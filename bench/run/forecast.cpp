@@ -7,7 +7,7 @@
 namespace mh {
 namespace {
 
-/// What a run is like, the closest first.
+/// Kinds of similar runs, most similar first.
 std::array<std::string, 3> kinds_of(const RunSpec& run) {
   return {run.system.name + '\n' + run.environment.name, run.system.name, ""};
 }
@@ -30,7 +30,7 @@ std::optional<double> Forecast::of(const RunSpec& run) const {
 
 std::optional<double> Forecast::to_go_s(const std::vector<RunSpec>& waiting,
                                         const std::vector<RunAtWork>& at_work, int jobs) const {
-  constexpr double kEnough = 0.1;  // of a run's work, to tell the rest from
+  constexpr double kEnough = 0.1;  // of a run's work, to extrapolate the rest
   double all_s = 0, longest_s = 0;
   for (const RunSpec& run : waiting) {
     const auto wall_s = of(run);

@@ -33,7 +33,7 @@ constexpr auto kBeat = std::chrono::seconds(10);
 
 volatile std::sig_atomic_t g_signal = 0;
 
-/// Notes SIGINT and SIGTERM while it lives instead of dying of them.
+/// During its lifetime, records SIGINT and SIGTERM instead of terminating.
 class SignalWatch {
  public:
   SignalWatch() {
@@ -61,7 +61,7 @@ double available_mb() {
   double kb = 0;
   while (file >> word)
     if (word == "MemAvailable:" && file >> kb) return kb / 1024.0;
-  return 1e9;  // unknown: memory holds nobody back
+  return 1e9;  // unknown: memory limits nothing
 }
 
 struct Waiting {
@@ -72,7 +72,7 @@ struct Waiting {
 struct Running {
   Waiting what;
   std::unique_ptr<RunProcess> process;
-  std::string cut_off;  ///< why we killed it; empty: we did not
+  std::string cut_off;  ///< why we killed it; empty if we did not
 };
 
 class Pool {
@@ -102,7 +102,7 @@ class Pool {
   }
 
  private:
-  /// Ends every process and gives back what they had claimed.
+  /// Ends every process and releases their claims.
   void give_up() {
     for (Running& r : running_) r.process->kill();
     std::vector<std::string> keys;
@@ -160,7 +160,7 @@ class Pool {
     std::vector<pollfd> outputs;
     for (const Running& r : running_) outputs.push_back({r.process->output(), POLLIN, 0});
     ::poll(outputs.data(), outputs.size(), kPoll_ms);
-    // An output that has ended is readable all the time: do not spin on it.
+    // A closed output is always readable: do not spin on it.
     for (const pollfd& output : outputs)
       if ((output.revents & POLLHUP) != 0) ::poll(nullptr, 0, 5);
   }
@@ -251,8 +251,8 @@ class Pool {
   void tell() const {
     double sum = static_cast<double>(done_ + failed_);
     for (const Running& r : running_) sum += r.process->share();
-    // The whole is done when every run is settled, not when the last one says that it is at its
-    // end.
+    // The work is done when every run is settled, not when the last one reports that it is
+    // finished.
     const bool over = done_ + failed_ == all_;
     PoolProgress progress{.share = over ? 1.0 : std::min(0.99, sum / static_cast<double>(all_)),
                           .done = done_,
@@ -278,7 +278,7 @@ class Pool {
   Store& store_;
   const PoolOptions& options_;
   std::size_t all_, done_ = 0, failed_ = 0;
-  double need_mb_ = 0;  ///< of one run, as far as measured
+  double need_mb_ = 0;  ///< of one run, as measured so far
   Forecast forecast_;
   std::deque<Waiting> waiting_;
   std::vector<Running> running_;

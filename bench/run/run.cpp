@@ -37,7 +37,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether frames of an environment's recordings can be had, with labels where these are wanted.
+/// Checks that frames of an environment's recordings can be read, with labels if requested.
 void check_recordings(const Environment& e, LabelMode labels,
                       const std::function<void(std::string_view)>& say) {
   std::optional<Camera> camera;
@@ -61,8 +61,8 @@ void check_recordings(const Environment& e, LabelMode labels,
   }
 }
 
-/// Whether what the runs name can be worked with, each once: outside programs can be started,
-/// scenes read, tours driven. Generated scenes and motions are valid by construction.
+/// Checks all inputs that the runs name, each once: outside programs can be started, scenes read,
+/// tours driven. Generated scenes and motions are valid by construction.
 void check_places(const std::vector<Job>& jobs, InputReader& inputs,
                   const std::function<void(std::string_view)>& say) {
   std::set<std::string> programs;
@@ -128,14 +128,14 @@ fs::path real_executable(const fs::path& executable) {
   return error ? executable : real;
 }
 
-/// Files that a finished run had written and that nobody makes again.
+/// Warns of missing files of finished runs, which will not be rewritten.
 void say_what_is_gone(const Suite& suite, const BenchResults& results,
                       const BenchOptions& options) {
   std::size_t runs = 0;
   std::set<std::string> views;
   for (const RunResult& run : results.runs) {
     runs += fs::exists(options.out / run.spec.name / "estimate.tum") ? 0 : 1;
-    if (run.spec.environment.is_recorded()) continue;  // no picture is drawn of it
+    if (run.spec.environment.is_recorded()) continue;  // no image is drawn of it
     if (const std::string name = views_name(suite, run.spec); !fs::exists(options.out / name))
       views.insert(name);
   }
@@ -146,8 +146,8 @@ void say_what_is_gone(const Suite& suite, const BenchResults& results,
       counted(runs, "folder"), counted(views.size(), "sheet"), options.out.string()));
 }
 
-/// Where a scene was changed and changed back, the files that lie there are of the run in between:
-/// they go with its result, which is made anew, or from beside a failure.
+/// If a scene was changed and changed back, the existing files are from the run in between: they
+/// are removed, together with the result, which is rerun, or from next to a failure.
 void forget_what_is_not_shown(Store& store, const std::vector<Job>& jobs, const fs::path& out) {
   for (const Job& job : jobs) {
     const fs::path folder = out / job.spec.name;
@@ -160,7 +160,7 @@ void forget_what_is_not_shown(Store& store, const std::vector<Job>& jobs, const 
   }
 }
 
-/// Processes at work per processor, of the last minute; 0 where it is unknown.
+/// Load average of the last minute, per processor; 0 if unknown.
 double load_per_processor() {
   double load = 0;
   if (getloadavg(&load, 1) != 1) return 0;
@@ -168,7 +168,7 @@ double load_per_processor() {
 }
 
 /// @param wall_s  of this process so far, as cpu_s is of it
-/// @param world_s, products_s  processor time besides what `run` knows of
+/// @param world_s, products_s  CPU time in addition to what `run` recorded
 RunCost cost_of_this_process(const RunResult& run, double wall_s, double world_s, double products_s,
                              const RunOrder& order) {
   rusage usage{};
@@ -226,7 +226,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
     std::erase_if(mine, [&](const Job& job) { return before.status(job.key).has_value(); });
   }
   check_places(mine, *inputs, options.say);  // bad input leaves no file
-  inputs.reset();                            // it holds a scene
+  inputs.reset();                            // it keeps a scene in memory
 
   Store store(results);
   store.plan(suite, overrides, plan);
@@ -300,7 +300,7 @@ void carry_out(const RunOrder& order) {
   if (!order.figures_alone) {
     const ProcessorTimer timer(products_s);
     write_run(folder, world, run, order.key);
-    // One process makes the contact sheet; should two begin it, both write the same bytes.
+    // One process makes the contact sheet; if two start it, both write the same bytes.
     if (world.simulated) write_views(order.folder / order.views, world, spec);
   }
   const double wall_s =

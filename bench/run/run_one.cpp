@@ -24,7 +24,7 @@ namespace {
 
 enum StreamName : std::uint64_t { kMapping = 1, kHeldOut = 2, kSecondTour = 3 };
 
-/// Counts pieces of work and tells their share.
+/// Counts units of work and reports their share.
 class WorkDone {
  public:
   WorkDone(std::size_t all, const std::function<void(double)>& tell)
@@ -41,7 +41,7 @@ class WorkDone {
   const std::function<void(double)>& tell_;
 };
 
-/// Another sequence's frames, looked at on the way.
+/// Forwards another sequence's frames, so that they can be observed.
 class FramesOf : public Sequence {
  public:
   explicit FramesOf(const Sequence& inner) : inner_(inner) {}
@@ -57,7 +57,8 @@ class FramesOf : public Sequence {
   const Sequence& inner_;
 };
 
-/// As a run sees them: the processor time that making them takes is counted, tests may change them.
+/// The frames as a run sees them: the CPU time spent on making them is counted, and tests may
+/// change them.
 class WatchedFrames : public FramesOf {
  public:
   /// @param spent_s  grows by the time spent
@@ -96,14 +97,14 @@ class QueryRound {
              RunResult& run, RandomStream stream)
       : spec_(spec), by_(by), frames_(sequence, tamper, run.frames_s), run_(run), stream_(stream) {}
 
-  /// Puts each query under the points first .. end - 1; `scores[p]` takes the answers under point
-  /// p.
+  /// Makes each query under the points first .. end - 1; `scores[p]` receives the answers under
+  /// point p.
   void put(System& frozen, std::size_t first, std::size_t end,
            const std::vector<std::vector<QueryScore>*>& scores, WorkDone& work) const {
     for (const std::size_t index : test_frames(frames_.size(), spec_.protocol)) {
       const Trajectory* truth = run_.truth.empty() ? nullptr : frames_.truth();
       const QueryMoment moment = moment_of(frames_.stamp_ns(index), truth);
-      // Where the truth is known, a frame of which it is not would count as no answer could.
+      // If there is a truth, skip frames without one: no answer to them could be judged.
       if (truth != nullptr && !moment.true_world_from_camera) continue;
       const auto anchor = find_anchor(run_.estimate, run_.truth, moment, by_, spec_.protocol);
       const bool once = end - first == 1;  // nothing to share
@@ -133,8 +134,8 @@ class QueryRound {
   RandomStream stream_;
 };
 
-/// The end of the points from `first` on under which keyframes are described alike (equation 1), so
-/// that going from one to the next costs nothing.
+/// Returns the end of the points from `first` on that describe keyframes identically (equation 1),
+/// so that switching between them costs nothing.
 std::size_t end_of_alike(const std::vector<SemanticConfig>& points, std::size_t first) {
   std::size_t end = first + 1;
   while (end < points.size() && points[end].gamma == points[first].gamma &&
@@ -162,8 +163,8 @@ std::size_t pieces_of_work(const RunSpec& spec, const World& world) {
   return world.mapping->size() + spec.points.size() * queries;
 }
 
-/// The mapping frames as a folder, and what an outside program made of them.
-/// @param skipped  gets the frames that could not be written
+/// Writes the mapping frames as a folder and returns an outside program's trajectory for them.
+/// @param skipped  receives the frames that could not be written
 Trajectory run_recorded(const RunSpec& spec, const Sequence& mapping, RandomStream stream,
                         const std::filesystem::path& folder,
                         const std::function<void(std::string_view)>& status,
@@ -217,7 +218,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
 
   std::unique_ptr<System> inner =
       tools.system ? tools.system(spec, world) : make_system(spec, world, tools.folder);
-  if (inner == nullptr) {  // a program that answers with a trajectory: nothing to ask it
+  if (inner == nullptr) {  // a program that only returns a trajectory: no queries
     run.mapping.offered = offered_frames(mapping.size(), spec.protocol).size();
     run.estimate = run_recorded(spec, frames, stream.fork(kMapping), tools.folder, tools.status,
                                 run.mapping.skipped);
@@ -285,8 +286,8 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   }
 
   const ProcessorTimer timer(run.products_s);
-  // From just over the floor (noise of the depth at 4 m lies below) to the top of the head. Where
-  // the floor of a recording lies nobody tells.
+  // From just above the floor (depth noise at 4 m is below this) to the top of the head. The floor
+  // of a recording is unknown.
   if (run.volume && world.simulated) {
     const double floor_z_m = world.simulated->scene->floor.middle_m.z();
     run.grid = run.volume->project(floor_z_m + 0.10, floor_z_m + world.simulated->robot.height_m);

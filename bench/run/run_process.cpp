@@ -24,7 +24,7 @@ extern char** environ;
 namespace mh {
 namespace {
 
-/// The last line that says something, without the program's own name before it.
+/// The last nonblank line, without the leading program name.
 std::string last_line(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::string line, last;
@@ -53,7 +53,7 @@ RunProcess::RunProcess(const std::filesystem::path& executable,
   posix_spawn_file_actions_adddup2(&files, pipe_ends[1], STDOUT_FILENO);
   posix_spawn_file_actions_addopen(&files, STDERR_FILENO, log_.c_str(),
                                    O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  // A group of its own: Ctrl-C reaches this process alone, which then ends the others in order.
+  // Its own process group: Ctrl-C reaches only this process, which then ends the others in order.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);

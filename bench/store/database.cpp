@@ -29,7 +29,8 @@ std::unique_ptr<SQLite::Database> open(const std::string& name, int flags) {
   return database;
 }
 
-/// Two processes that open a new file at once refuse each other the change without waiting.
+/// Switches to WAL mode. Two processes that open a new file at once would make each other's switch
+/// fail without waiting.
 void enter_wal(SQLite::Database& db) {
   constexpr int kTries = 200;
   for (int tries = 1;; ++tries) {
@@ -44,8 +45,8 @@ void enter_wal(SQLite::Database& db) {
   }
 }
 
-/// Merging copies whole rows, so that a column more or less is an error, and one of another type
-/// would give other numbers. Other tables do no harm.
+/// Merging copies whole rows, so an extra or missing column is an error, and one of another type
+/// would change numbers. Other tables do no harm.
 void require_schema(SQLite::Database& db, const fs::path& file) {
   SQLite::Database fresh(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   fresh.exec(schema());
@@ -62,7 +63,7 @@ int version_of(SQLite::Database& db) {
   return db.execAndGet("PRAGMA user_version").getInt();
 }
 
-/// @throws InputError unless the file is of this program's schema.
+/// @throws InputError unless the file has this program's schema.
 void require_version(SQLite::Database& db, const fs::path& file) {
   const int version = version_of(db);
   if (version == kSchemaVersion) return;
@@ -77,7 +78,7 @@ void require_version(SQLite::Database& db, const fs::path& file) {
                         file.string(), version, kSchemaVersion));
 }
 
-/// SQLite's own look at its pages; rows are for require_whole_rows().
+/// SQLite's own check of its pages; require_whole_rows() checks rows.
 void require_whole_pages(SQLite::Database& db, const fs::path& file) {
   if (const std::string found = db.execAndGet("PRAGMA quick_check(1)").getString(); found != "ok")
     throw InputError(
@@ -85,7 +86,7 @@ void require_whole_pages(SQLite::Database& db, const fs::path& file) {
                     file.string(), found));
 }
 
-/// Whether SQLite may write the file and, beside it, its log.
+/// Whether SQLite may write the file and its log next to it.
 bool may_be_written(const fs::path& file) {
   const fs::path folder = fs::absolute(file).parent_path();
   return faccessat(AT_FDCWD, file.c_str(), W_OK, AT_EACCESS) == 0 &&
@@ -96,7 +97,7 @@ fs::path log_of(const fs::path& file) {
   return file.string() + "-wal";
 }
 
-/// The name under which SQLite opens a file that nobody writes, without a lock or a log.
+/// URI with which SQLite opens a file that nobody writes, without a lock or a log.
 std::string as_immutable(const fs::path& file) {
   std::string name = "file:";
   for (const char c : fs::absolute(file).string())
@@ -116,7 +117,7 @@ std::unique_ptr<SQLite::Database> open_to_write(const fs::path& file) {
   db.exec("PRAGMA synchronous = FULL");
   if (version_of(db) == 0) {
     SQLite::Transaction transaction = begin_writing(db);
-    if (version_of(db) == 0 &&  // no other process was quicker
+    if (version_of(db) == 0 &&  // no other process was faster
         db.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0) {
       db.exec(schema());
       db.exec(fmt::format("PRAGMA user_version = {}", kSchemaVersion));
@@ -136,7 +137,7 @@ UnchangedFile open_unchanged(const fs::path& file) {
     opened.name = fs::absolute(file).string();
   } else if (const auto left = fs::file_size(log_of(file), error); error || left == 0) {
     opened.name = as_immutable(file);
-  } else {  // what stands in the log has to be put into some file
+  } else {  // the log's content must be applied to some file
     opened.copy = std::make_unique<TemporaryFolder>(fs::temp_directory_path());
     const fs::path copy = opened.copy->path() / "results.sqlite";
     write_atomically(copy, read_file(file));

@@ -24,7 +24,7 @@ InputError made_otherwise(const fs::path& file, const std::string& run, const fs
 }  // namespace
 
 void Store::check_mergeable(const std::vector<fs::path>& files) {
-  std::map<std::string, std::pair<std::string, fs::path>> planned;  // of each run: key, first file
+  std::map<std::string, std::pair<std::string, fs::path>> planned;  // by run: key, first file
   std::optional<std::pair<Suite, fs::path>> first;
   for (const fs::path& file : files) {
     const Store store = open_to_read(file);
@@ -47,13 +47,13 @@ void Store::check_mergeable(const std::vector<fs::path>& files) {
     }
     if (suite.trials != first->first.trials)
       throw differs("was run with --trials", suite.trials, first->first.trials);
-    // A damaged run is found here, while its file can be named and nothing is written.
+    // A damaged run is found here, while its file can be named and nothing has been written.
     const std::map<std::string, std::string> key_of(keys.begin(), keys.end());
     for (const RunSpec& spec : expand(suite))
       if (const auto key = key_of.find(spec.name);
           key != key_of.end() && store.status(key->second) == RunStatus::kDone)
         store.load(key->second, spec);
-    // Every part plans the whole suite, whatever its own share.
+    // Every part plans the whole suite, regardless of its own share.
     if (keys.size() != planned.size())
       throw differs("number of runs:", keys.size(), planned.size());
     const auto margin = [](const Suite& s) { return s.non_inferiority_margin.value_or(0); };
@@ -77,7 +77,7 @@ std::size_t Store::merge(const fs::path& other) {
       if (clash.executeStep()) throw made_otherwise(other, clash.getColumn(0).getString(), file_);
       clash.reset();
       database_->exec("INSERT OR IGNORE INTO suite SELECT * FROM other.suite");
-      // What is finished here stays; a failure gives way to a result.
+      // Finished results here stay; a failure is replaced by a result.
       database_->exec(
           "CREATE TEMP TABLE wanted AS SELECT key FROM other.runs o WHERE NOT EXISTS "
           "(SELECT 1 FROM runs r WHERE r.key = o.key AND (r.status = 'done' OR o.status = "

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What of a run is no row of its own, as it stands in `runs.result`.
+/// The fields of a run without rows of their own, as stored in `runs.result`.
 template <Either<RunResult> R, class Visit>
 void result_fields(R& run, Visit& v) {
   v("place", run.place);
@@ -143,7 +143,7 @@ void load_times(SQLite::Database& db, const std::string& key, RunResult& run) {
   if (!s.executeStep()) return;
   run.wall_s = s.getColumn(0).getDouble();
   run.circumstances = {.host = s.getColumn(2).getString(),
-                       .sitting = s.getColumn(3).getString(),  // of null: empty
+                       .sitting = s.getColumn(3).getString(),  // null becomes empty
                        .jobs = s.getColumn(4).getInt(),
                        .load = s.getColumn(5).getDouble()};
   const Json calls = Json::parse(s.getColumn(1).getString(), nullptr, false);

@@ -22,12 +22,12 @@ void append(std::string& bytes, char tag, T value) {
 }
 
 void append(std::string& bytes, sqlite3_value* value) {
-  constexpr double kExact = 9e15;  // whole numbers up to here are exact
+  constexpr double kExact = 9e15;  // integers up to here are exact
   switch (sqlite3_value_type(value)) {
     case SQLITE_INTEGER:
       return append(bytes, 'n', static_cast<std::int64_t>(sqlite3_value_int64(value)));
     case SQLITE_FLOAT: {
-      // A column of whole numbers stores 12.0 as 12, one of reals 12 as 12.0.
+      // An integer column stores 12.0 as 12, a real one 12 as 12.0.
       const double number = sqlite3_value_double(value);
       if (std::abs(number) < kExact && number == std::floor(number))
         return append(bytes, 'n', static_cast<std::int64_t>(number));
@@ -56,8 +56,8 @@ void row_digest(sqlite3_context* context, int count, sqlite3_value** values) {
 }
 
 struct Columns {
-  std::string values;  ///< "'plan', position, name, key": what row_digest() is called with
-  std::string key;     ///< "position || ', ' || name": what names a row
+  std::string values;  ///< "'plan', position, name, key": the arguments of row_digest()
+  std::string key;     ///< "position || ', ' || name": the name of a row
 };
 
 Columns columns_of(SQLite::Database& db, const std::string& table) {

@@ -39,8 +39,8 @@ std::string host() {
   return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
 }
 
-/// When a process began, in clock ticks since the machine's start; 0 if there is none. With its
-/// number this names a process: numbers come round again.
+/// Start time of a process, in clock ticks since boot; 0 if there is none. Together with the
+/// process id this identifies a process, since ids are reused.
 std::int64_t start_of_process(std::int64_t process) {
   std::ifstream file(fmt::format("/proc/{}/stat", process));
   std::string text((std::istreambuf_iterator<char>(file)), {});
@@ -147,7 +147,7 @@ void Store::plan(const Suite& suite, const SuiteOverrides& overrides,
     s.bind(3, fs::absolute(suite.file).lexically_normal().string());
     s.bind(4, read_file(suite.file));
     SuiteOverrides stored = overrides;
-    stored.found = suite.found;  // read back where the recordings need not be
+    stored.found = suite.found;  // may be read on a machine without the recordings
     s.bind(5, to_json(stored).dump());
     s.exec();
     database_->exec("DELETE FROM plan");

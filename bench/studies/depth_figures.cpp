@@ -11,7 +11,7 @@ namespace {
 
 using namespace figure;
 
-/// A wall that cuts the axis at a distance and leans back by an angle.
+/// A wall that intersects the axis at a distance and leans back by an angle.
 RenderedFrame leaning(double distance_m, double angle_rad) {
   RenderedFrame frame = blank(0.0F);
   for (int y = 0; y < kCamera.height_px; ++y) {
@@ -23,7 +23,7 @@ RenderedFrame leaning(double distance_m, double angle_rad) {
   return frame;
 }
 
-/// Depth faults one at a time: everything off but what the caller switches on.
+/// Depth faults one at a time: everything off except what the caller switches on.
 SensorConfig depth_only() {
   SensorConfig config;
   config.color_noise_on = false;
@@ -31,7 +31,7 @@ SensorConfig depth_only() {
   return config;
 }
 
-/// Around the middle of the picture, where an angle is what it is said to be.
+/// Around the image center, where the angle is the nominal one.
 double axial_sigma(double distance_m, double angle_rad) {
   SensorConfig config = depth_only();
   config.depth_noise.axial = true;
@@ -43,10 +43,9 @@ double axial_sigma(double distance_m, double angle_rad) {
   return spread.sigma();
 }
 
-/// From how often the last pixel before the edge of a wall misses it: it strays by more than half a
-/// pixel with a probability of erfc(0.5 / sigma / sqrt 2) / 2. The wall is a fence around the
-/// middle of the picture, where an angle is what it is said to be; each angle has random numbers of
-/// its own.
+/// From how often the last pixel before a wall's edge misses the wall: it strays by more than half
+/// a pixel with probability erfc(0.5 / sigma / sqrt 2) / 2. The wall is a fence around the image
+/// center, where the angle is the nominal one; each angle has its own random numbers.
 double lateral_sigma(double angle_rad) {
   constexpr int kBoard = 8, kFirst = 256, kEnd = 384;  // px; a board, a gap, a board
   SensorConfig config = depth_only();
@@ -107,7 +106,7 @@ Plot step_over_distance() {
     SensorConfig config = depth_only();
     config.depth_noise.quantization = true;
     const RgbdFrame frame = sensed(leaning(z, 0.9), config);
-    // The two values that enclose the distance.
+    // The two values that bracket the distance.
     float below = 0.0F, above = 1e6F;
     for (const float depth : frame.depth_m) {
       if (depth < z) below = std::max(below, depth);

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 constexpr double kClearance_m = 0.3;
 
-/// Distance to the walls from inside, below 0 outside.
+/// Signed distance to the walls: positive inside, negative outside.
 double depth_inside(const Room& room, const Vector2d& p) {
   double nearest = 1e30;
   const auto& corners = room.polygon_m;
@@ -62,9 +62,9 @@ std::vector<SE3> scan_views(const Scene& scene, std::uint64_t seed, std::size_t 
     const Vector3d eye(x, y, scene.floor.middle_m.z() + dice.number(1.1, 1.6));
     const double yaw = dice.number(-std::numbers::pi, std::numbers::pi);
     const double pitch = dice.number(-30, 12) * kDegree;
-    // Four numbers that nothing needs: without them a seed would give other views.
+    // Four unused draws: without them, a seed would give different views.
     for (int i = 0; i < 4; ++i) dice.number(0, 1);
-    // Nobody scans a wall from a hand's breadth: a meter ahead there is still room.
+    // Nobody scans a wall from very close: there must be free space 1 m ahead.
     const Vector2d ahead = eye.head<2>() + Vector2d(std::cos(yaw), std::sin(yaw));
     if (depth_inside(room, eye.head<2>()) < kClearance_m || depth_inside(room, ahead) < 0 ||
         !is_free(scene, eye))

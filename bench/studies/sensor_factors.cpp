@@ -24,7 +24,8 @@ std::vector<Factor> color_factors() {
     return [=](SensorConfig& c) { c.color_noise_on = true, c.color_noise.sigma = sigma; };
   };
   const auto read = [](double share) {
-    // So large a well that its own noise, the shot noise, is small beside that of reading.
+    // So large a full well that its own noise, the shot noise, is small compared with the read
+    // noise.
     return [=](SensorConfig& c) { c.shot_noise_on = true, c.shot_noise = {1e6, 1e6 * share, 1.0}; };
   };
   const auto blur = [](double s) {

@@ -28,8 +28,8 @@ constexpr double kHeader = 70;
 constexpr std::size_t kMiddle = 30;  // of the path's frames
 constexpr Rgb8 kInk = {40, 43, 50}, kGray = {110, 115, 125};
 
-/// Where somebody at the height of a robot's camera sees most objects: from the rooms' middles, in
-/// eight directions.
+/// The view at the height of a robot's camera that shows the most objects: from the rooms' centers,
+/// in eight directions.
 SE3 busiest_view(const Scene& scene, const Renderer& renderer, const Camera& camera) {
   std::vector<Eigen::Vector3d> eyes;
   for (const Room& room : scene.rooms) {
@@ -73,8 +73,8 @@ Trajectory motion_through(const SE3& pose) {
   return path;
 }
 
-/// False colors for the distance, shaded as if lit from the left, so that its noise can be seen;
-/// black without return.
+/// False colors for the distance, shaded as if lit from the left, so that noise is visible; black
+/// for no return.
 cv::Mat depth_picture(const Grid2d<float>& depth_m, const Camera& camera) {
   const int w = depth_m.width(), h = depth_m.height();
   cv::Mat picture = depth_colors(depth_m, 0.5F, 6.0F);
@@ -90,8 +90,8 @@ cv::Mat depth_picture(const Grid2d<float>& depth_m, const Camera& camera) {
   return picture;
 }
 
-/// The color picture in gray with the depth's edges in red: they lie on the things' own where both
-/// are of the same moment.
+/// The color image in gray with the depth's edges in red: they coincide with the objects' edges if
+/// both are from the same moment.
 cv::Mat edges_over_color(const Grid2d<float>& depth_m, const Grid2d<Rgb8>& color) {
   constexpr double kJump = 0.08;  // share of the distance
   constexpr int kReach_px = 2;
@@ -111,7 +111,7 @@ cv::Mat edges_over_color(const Grid2d<float>& depth_m, const Grid2d<Rgb8>& color
   return picture;
 }
 
-/// Class colors over the gray picture; void is the picture itself.
+/// Class colors over the gray image; void shows the image itself.
 cv::Mat label_picture(const SemanticImage& labels, const Grid2d<Rgb8>& color) {
   cv::Mat picture = color_picture(color);
   for (int y = 0; y < picture.rows; ++y)
@@ -129,7 +129,7 @@ cv::Mat label_picture(const SemanticImage& labels, const Grid2d<Rgb8>& color) {
   return picture;
 }
 
-/// The rows of one sheet; `show` makes the picture of one setting.
+/// Draws the rows of one sheet; `show` makes the image of one setting.
 cv::Mat draw(const std::string& title, const std::vector<Factor>& factors,
              const std::function<cv::Mat(const SensorConfig&, const Look&)>& show) {
   const double row = kTileHeight + 2 * kCaption + kGap;
@@ -158,7 +158,7 @@ cv::Mat draw(const std::string& title, const std::vector<Factor>& factors,
   return canvas.finish();
 }
 
-/// Successive frames, one row for each strength of each factor; what is lost is marked.
+/// Draws successive frames, one row for each strength of each factor; lost frames are marked.
 cv::Mat draw_frames(const std::function<cv::Mat(std::size_t frame, const SensorConfig&)>& show,
                     RandomStream stream) {
   constexpr std::size_t kFrames = 10;
@@ -244,7 +244,7 @@ SensorSheets draw_sensor_sheets(const Scene& scene, std::shared_ptr<const Render
         const RenderedFrame seen = renderer->render(camera, path[i].world_from_camera);
         return color_picture(sense(seen, camera, c, stream.fork(i), 0).color);
       },
-      RandomStream(6));  // in ten frames this one loses some at either share
+      RandomStream(6));  // with this seed, some of the ten frames are lost at either share
 
   const RenderedFrame truth = renderer->render(camera, pose);
   std::vector<Factor> factors = label_factors();
@@ -252,7 +252,7 @@ SensorSheets draw_sensor_sheets(const Scene& scene, std::shared_ptr<const Render
       "Labels: class colors over the picture", factors, [&](const SensorConfig& c, const Look&) {
         return label_picture(sense_labels(truth, LabelMode::kExact, c, pose, stream), truth.color);
       });
-  // The detector's rows go below: exact boxes, one network and another.
+  // The detector's rows come below: exact boxes, one network and another.
   const Factor detectors = detector_factor();
   const cv::Mat more = draw("", {detectors}, [&](const SensorConfig& c, const Look&) {
     const LabelMode mode = c.labels.seed == kExactBoxes ? LabelMode::kBoxes : LabelMode::kDetector;

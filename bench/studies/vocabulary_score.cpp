@@ -33,14 +33,14 @@ AugmentedVector describe(const PlacedView& view, const Vocabulary& vocabulary, d
                           [&](WordId word) { return static_cast<double>(vocabulary.idf(word)); });
 }
 
-/// What one query gives: whether its first answer is true, and how its ranking fares.
+/// Result of one query: whether its first answer is true, and the quality of its ranking.
 struct Ranking {
   bool first_is_true = false;
   double average_precision = 0, chance = 0;
 };
 
-/// @param is_true  of each candidate, the most alike first.
-/// @returns nothing where none is true.
+/// @param is_true  of each candidate, most similar first.
+/// @returns nullopt if none is true.
 std::optional<Ranking> judge(const std::vector<bool>& is_true) {
   Ranking ranking;
   double hits = 0;

@@ -25,7 +25,7 @@ namespace {
 
 enum Stream : std::uint64_t { kRooms = 1, kViews, kNoise, kTree };
 
-/// The descriptors of some pictures, one list for each picture.
+/// The descriptors of some images, one list per image.
 using Images = std::vector<std::vector<Descriptor>>;
 
 void require(bool good, const char* field, double value) {
@@ -95,7 +95,7 @@ Images describe_file(const VocabularyTraining& config, const std::filesystem::pa
   return {describe_picture(std::move(picture), config)};
 }
 
-/// Jobs are done in any order, their results stand in theirs.
+/// Jobs run in any order; their results are in job order.
 template <class Job>
 Images collect(int count, int threads, const std::function<void(int, int)>& progress,
                const Job& job) {
@@ -109,7 +109,7 @@ Images collect(int count, int threads, const std::function<void(int, int)>& prog
       parts[index] = job(index);
       const std::scoped_lock lock(mutex);
       if (progress) progress(++done, count);
-    } catch (...) {  // must not leave a thread
+    } catch (...) {  // must not escape a thread
       faults[index] = std::current_exception();
     }
   });

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kFewJobs = 1, kManyJobs = 4;
 
-/// The stage at which one showing of a frame differs; empty if none does.
+/// The stage at which one presentation of a frame differs; empty if none does.
 template <class Shown>
 std::string stage_of_difference(const Shown& a, const Shown& b) {
   if (a.index != b.index) return "order";
@@ -110,7 +110,7 @@ ExecutionDigests digests(const Suite& suite, std::span<const RunResult> runs) {
 }
 
 Verification verify(const Suite& suite, const SuiteOverrides& overrides, BenchOptions options) {
-  // Both executions read the same files and would warn of the same.
+  // Both executions read the same files and would give the same warnings.
   std::set<std::string> told;
   options.say = [say = options.say, &told](std::string_view what) {
     if (!what.starts_with("warning: ") || told.emplace(what).second) say(what);
@@ -124,7 +124,7 @@ Verification verify(const Suite& suite, const SuiteOverrides& overrides, BenchOp
     options.jobs = jobs;
     options.progress = [&](PoolProgress progress) {
       progress.share = share_before + 0.5 * progress.share;
-      if (share_before == 0) progress.to_go_s.reset();  // the other half is yet to come
+      if (share_before == 0) progress.to_go_s.reset();  // the second half is still to come
       tell(progress);
     };
     BenchResults results;

@@ -33,7 +33,7 @@ PathFacts recorded_path(const Sequence& sequence) {
           kUnknown, kUnknown};
 }
 
-/// What is told alike of simulated places and of recordings.
+/// Facts that simulated places and recordings have in common.
 PlaceFacts common_facts(const World& world) {
   PlaceFacts f;
   if (world.vocabulary) {
@@ -103,7 +103,7 @@ std::shared_ptr<const Vocabulary> load_vocabulary(const RunSpec& spec, World& wo
   }));
 }
 
-/// The recordings of a run, with the inputs of everything but an outside program.
+/// Opens the recordings of a run, with the inputs of everything except an outside program.
 World open_recordings(const RunSpec& spec) {
   const Environment& e = spec.environment;
   World world;
@@ -121,7 +121,7 @@ World open_recordings(const RunSpec& spec) {
   return world;
 }
 
-/// With the inputs of everything but an outside program.
+/// Builds the world with the inputs of everything except an outside program.
 World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
             const BakeWatch& baked) {
   const Environment& environment = spec.environment;
