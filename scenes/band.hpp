@@ -8,9 +8,8 @@
 
 namespace mh {
 
-/// Hands out the part of every face that lies between two heights, as a convex polygon; faces that
-/// miss the band are left out, and so is the floor (faces of a class that is walked on, near z =
-/// 0).
+/// Visits the part of every face that is between two heights, as a convex polygon; faces outside
+/// the band are skipped, and so is the floor (faces of a walkable class near z = 0).
 /// @pre the scene's floor is z = 0 (LevelScene)
 /// @param polygon  three to five corners, m, world, in the face's order
 void for_each_face_in_band(

@@ -10,7 +10,7 @@ namespace mh {
 struct EndedTooSoon {};
 struct TookTooLong {};
 
-/// Writes all of these bytes; ends this process where nobody reads them any more.
+/// Writes all of these bytes; exits this process if nobody reads them any more.
 void write_to_parent(int descriptor, const char* data, std::size_t size);
 
 /// The child's end of the pipe to its parent.
@@ -25,7 +25,7 @@ class PipeWriter {
   std::string waiting_;
 };
 
-/// The parent's end. @throws EndedTooSoon, TookTooLong where what is asked for does not come.
+/// The parent's end. @throws EndedTooSoon, TookTooLong if the requested bytes do not arrive.
 class PipeReader {
  public:
   PipeReader(int descriptor, int wall_s);

@@ -8,9 +8,8 @@
 
 namespace mh {
 
-/// Draws one after the other. Name each draw in its own statement or braced list: the order in
-/// which the arguments of a call are evaluated is anybody's guess (a braced one goes from left to
-/// right).
+/// Sequential random draws. Give each draw its own statement or braced list: the evaluation order
+/// of function arguments is unspecified (braced lists go from left to right).
 class Dice {
  public:
   explicit Dice(RandomStream random) : random_(random) {}

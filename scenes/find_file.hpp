@@ -6,8 +6,8 @@
 
 namespace mh {
 
-/// A file or folder that is there, whatever the case of the letters of its name below the folders
-/// that are there as written; of several, the first in order.
+/// Finds an existing file or folder, ignoring letter case below the deepest folder that exists as
+/// written; of several matches, the first in order.
 std::optional<std::filesystem::path> find_any_case(const std::filesystem::path& path);
 
 }  // namespace mh

@@ -12,49 +12,48 @@
 
 namespace mh {
 
-/// Whether a class is walked on: floors, and what lies flat on them.
+/// Whether a class is walkable: floors, and what lies flat on them.
 bool is_walked_on(ClassId class_id);
 
-/// Faces of a class that is walked on count as floor up to this height above it, and down to
+/// Faces of a walkable class are part of the floor up to this height above it, and down to
 /// kDeepestFloor_m below: scanned floors sag and are rough.
 inline constexpr double kHighestFloor_m = 0.15, kDeepestFloor_m = 0.3;
 
-/// A floor, the box around its faces as a room, and where things stand.
+/// A floor, the bounding box of its faces as a room, and the extent of the things on it.
 struct FoundFloor {
   Floor floor;
   Room room;
-  Eigen::AlignedBox2d things_m;  ///< empty: nobody knows
+  Eigen::AlignedBox2d things_m;  ///< empty: unknown
 };
 
-/// Ends rooms that are boxes 2 m from where things stand: a ground that reaches to the horizon is
-/// floor, but nobody drives, scans or takes pictures far from all that there is to see.
+/// Clips rooms that are boxes to 2 m around the things in the scene: ground that extends to the
+/// horizon is floor, but nobody drives, scans or takes images far from everything there is to see.
 void end_rooms_near_things(std::vector<Room>& rooms, const Eigen::AlignedBox2d& things_m);
 
-/// Finds the floor of a scene that came without one: from faces of a class that is walked on, else
-/// the lowest large level surface with room above it to stand. Where there are two levels, the
-/// lower one that is at least a quarter as large as the larger. A plane is fitted to it that may
-/// slope by up to 2 degrees; steeper ones are taken as level. `rough_m` is five times its spread,
-/// 0.03 to 0.12 m.
-/// @param floor_z_m  where the user says it lies: a level plane there
-/// @param warnings   where to append what is doubtful; may be null
-/// @returns nullopt if there is nothing that one could stand on.
+/// Finds the floor of a scene that does not state one: from faces of a walkable class, otherwise
+/// the lowest large level surface with headroom to stand. Of two levels, the lower one is taken if
+/// it is at least a quarter as large as the larger. A plane is fitted that may slope by up to 2
+/// degrees; steeper fits are replaced by a level plane. `rough_m` is five times the spread, 0.03 to
+/// 0.12 m.
+/// @param floor_z_m  height stated by the user: a level plane there
+/// @param warnings   where to append anything doubtful; may be null
+/// @returns nullopt if there is nothing to stand on.
 std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> floor_z_m = {},
                                      std::vector<std::string>* warnings = nullptr);
 
-/// Whether a scene looks as if its file had y up: its floor is upright, or it has a large level
-/// surface at the bottom only when it is turned.
+/// Whether a scene looks as if its file had y up: its floor is vertical, or it has a large level
+/// surface at the bottom only when turned.
 bool looks_y_up(const Scene& scene);
 
-/// Turns a scene from y up to z up, as glTF is turned: (x, y, z) becomes (x, -z, y). `back` undoes
-/// it.
+/// Turns a scene from y up to z up, as for glTF: (x, y, z) becomes (x, -z, y). `back` reverses it.
 void turn_y_up(Scene& scene, bool back = false);
 
-/// The floor's own frame: z = 0 is the floor, x and y nearly the world's (a slope of 2 degrees
+/// The floor's own frame: z = 0 is the floor, x and y are nearly the world's (a slope of 2 degrees
 /// shifts them by 0.6 mm per meter).
 SE3 world_from_floor(const Floor& floor);
 
-/// A scene as it lies before those who move on its floor: the scene itself where its floor is
-/// z = 0, else a copy of its geometry (without looks) in the floor's frame.
+/// A scene in the frame of its floor: the scene itself if its floor is z = 0, otherwise a copy of
+/// its geometry (without appearance) in the floor's frame.
 class LevelScene {
  public:
   explicit LevelScene(const Scene& scene);

@@ -9,17 +9,18 @@
 
 namespace mh {
 
-/// Reads a Gazebo world or model (SDF), through libsdformat: what its visuals show, which are mesh
-/// files, boxes, capsules, cylinders, ellipsoids, planes and spheres, with their colors and
-/// textures (PBR's albedo maps, Ogre scripts). Each top-level model is an object; its class, and
-/// that of a mesh's parts where the model's own name tells none, comes from labels.yaml beside the
-/// world or from names (see LabelRules and load_mesh).
+/// Reads a Gazebo world or model (SDF), through libsdformat: the geometry of its visuals, which are
+/// mesh files, boxes, capsules, cylinders, ellipsoids, planes and spheres, with their colors and
+/// textures (PBR's albedo maps, Ogre scripts). Each top-level model is an object; its class comes
+/// from labels.yaml next to the world or from names (see LabelRules and load_mesh), and so does
+/// that of a mesh's parts if the model's own name implies none.
 ///
-/// URIs are seen from the file that names them (gazebo::Finder), never from the current folder.
-/// @param warnings  where to append what was left out or mended, once for each thing: models and
-/// meshes that are not there, other shapes, missing textures; may be null
-/// @throws InputError naming file and place: damaged SDF, poses that are none, includes that lead
-/// back to themselves, nothing to be seen.
+/// URIs are resolved relative to the file that contains them (gazebo::Finder), never to the current
+/// folder.
+/// @param warnings  where to append what was omitted or repaired, once per item: missing models and
+///                  meshes, other shapes, missing textures; may be null
+/// @throws InputError naming file and place: malformed SDF, invalid poses, recursive includes,
+/// nothing visible.
 Scene load_gazebo_world(const std::filesystem::path& file,
                         std::vector<std::string>* warnings = nullptr);
 

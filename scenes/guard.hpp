@@ -11,13 +11,13 @@
 
 namespace mh {
 
-/// Runs a reader that leans on foreign parsers in a child process under limits and takes the scene
-/// over from it. A crash, a hang or a hunger for memory of theirs becomes an error in one line.
-/// A reader within a reader runs in the child of the outer one. What the child reads is noted here
+/// Runs a reader that relies on third-party parsers in a child process under limits, and receives
+/// the scene from it. If a parser crashes, hangs or exhausts memory, the result is a one-line
+/// error. A nested reader runs in the child of the outer one. What the child reads is recorded here
 /// (ReadScope).
-/// @param file      the innermost such file stands in the message.
+/// @param file      the innermost such file is named in the message.
 /// @param warnings  where to append what `load` appended; may be null.
-/// @param load      reads the scene; it is given where to append warnings.
+/// @param load      reads the scene; its argument is where to append warnings.
 /// @throws InputError, MachineError as `load` does, and see in_child().
 Scene load_guarded(const std::filesystem::path& file, std::vector<std::string>* warnings,
                    const std::function<Scene(std::vector<std::string>*)>& load,

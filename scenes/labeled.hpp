@@ -8,24 +8,24 @@
 
 namespace mh {
 
-/// How much of a scene's surface has a class, and the names of what has none.
+/// How much of a scene's surface is labeled, and the names of what is not.
 struct LabeledSurface {
   struct Unlabeled {
-    std::string pattern;  ///< as a rule of labels.yaml names it (LabelRules)
+    std::string pattern;  ///< as a rule of labels.yaml would match it (LabelRules)
     double area_m2 = 0;
   };
   double area_m2 = 0, labeled_m2 = 0;
-  std::vector<Unlabeled> unlabeled;  ///< the largest first
+  std::vector<Unlabeled> unlabeled;  ///< largest first
 
   double share() const { return area_m2 > 0 ? labeled_m2 / area_m2 : 0.0; }
 };
 
-/// Sums the faces' areas. What has no class goes by its object's name, counting numbers apart, or
-/// by its material's where it is no object's.
+/// Sums the areas of faces. Unlabeled surface is listed by object name without its number,
+/// or by material name if it belongs to no object.
 LabeledSurface survey_labels(const Scene& scene);
 
-/// The text of a labels.yaml that names all that has no class, to be filled in; as it is, it loads
-/// and changes nothing.
+/// The text of a labels.yaml that lists everything unlabeled, to be filled in; unedited, it loads
+/// and has no effect.
 std::string suggested_labels(const LabeledSurface& surface);
 
 }  // namespace mh

@@ -10,15 +10,16 @@
 
 namespace mh {
 
-/// Loads a scene of any kind by the ending of its file: .yaml is a house (load_house) or, where it
-/// lists objects, a scene of mesh files (load_placed_scene); .ply .obj .glb .gltf .dae are meshes
-/// (load_mesh), .sdf .world are Gazebo's (load_gazebo_world). A folder is a ScanNet scene
-/// (load_scannet), "generated:CATEGORY:SEED" is made by code (generate_scene).
+/// Loads a scene of any kind, by file extension: .yaml is a house (load_house) or, where it lists
+/// objects, a scene of mesh files (load_placed_scene); .ply .obj .glb .gltf .dae are meshes
+/// (load_mesh), .sdf and .world are Gazebo worlds (load_gazebo_world). A folder is a ScanNet scene
+/// (load_scannet), "generated:CATEGORY:SEED" is generated (generate_scene).
 ///
-/// Files of others get a floor (find_floor), and a room where they have none: the box around it.
-/// @param warnings  where to append what could be mended; may be null.
-/// @param frame     what the user tells of the file's frame
-/// @throws InputError if the file is missing, damaged or of another ending, or `frame` turns a
+/// Files from other sources get a floor (find_floor), and, if they have no rooms, the box around it
+/// as a room.
+/// @param warnings  where to append what was repaired; may be null.
+/// @param frame     what the user states about the file's frame
+/// @throws InputError if the file is missing, damaged or of an unknown type, or `frame` turns a
 /// house.
 Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings = nullptr,
                  const SceneFrame& frame = {});

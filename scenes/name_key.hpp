@@ -6,7 +6,8 @@
 
 namespace mh {
 
-/// A stable number for a name (FNV-1a): what is drawn for one name stays when others come or go.
+/// A stable number for a name (FNV-1a): random draws for one name do not change when others are
+/// added or removed.
 constexpr std::uint64_t name_key(std::string_view name) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;

@@ -15,29 +15,29 @@
 
 namespace mh {
 
-/// A mesh file and its place.
+/// A mesh file and its pose.
 struct PlacedObject {
   std::string name;  ///< unique in its scene
   std::filesystem::path file;
   Eigen::Affine3d scene_from_object = Eigen::Affine3d::Identity();
-  std::optional<ClassId> class_id;  ///< of the whole file; nullopt = what the file itself tells
+  std::optional<ClassId> class_id;  ///< of the whole file; nullopt = as the file itself states
   std::optional<UpAxis> up;         ///< of the file
 };
 
-/// What a YAML file tells of mesh files, each to be put in its place:
+/// Content of a YAML file that lists mesh files and their poses:
 ///
 ///   name: living room
 ///   labels: {"*curtain*": curtain, Floor: floor}     # optional: see LabelRules
 ///   objects:
-///     - file: models/sofa.gltf        # beside the YAML file, or absolute
-///       name: sofa                    # optional, else the file's; unique
+///     - file: models/sofa.gltf        # relative to the YAML file, or absolute
+///       name: sofa                    # optional, default: the file's; unique
 ///       class: sofa                   # optional: the whole file is one object of this class
 ///       position_m: [0, -2.4, 0]      # optional
 ///       rpy_deg: [0, 0, 180]          # optional: about the fixed axes x, y, z, in this order
 ///       scale: 1                      # optional: one number, or three
-///       up: y                         # optional: which way is up in the file; else as below
-///   up: z                             # optional: in all files that tell nothing else
-///   floor_z_m: 0                      # optional: where the floor lies, else it is looked for
+///       up: y                         # optional: the file's up axis; default: as below
+///   up: z                             # optional: for all files that state none
+///   floor_z_m: 0                      # optional: height of the floor; default: detected
 struct PlacedScene {
   std::string name;
   LabelRules rules;
@@ -45,8 +45,8 @@ struct PlacedScene {
   std::vector<PlacedObject> objects;
 };
 
-/// @param folder  what files are named relative to
-/// @param name    of a scene that names none
+/// @param folder  that file names are relative to
+/// @param name    of a scene that states none
 /// @throws InputError "file:line: place: value".
 PlacedScene read_placed_scene(YamlReader yaml, const std::filesystem::path& folder,
                               const std::string& name);

@@ -16,70 +16,71 @@
 
 namespace mh {
 
-/// The least opacity, of 255, that can be seen: glTF's usual cut-off of 0.5.
+/// The lowest visible opacity, of 255: glTF's usual cutoff of 0.5.
 inline constexpr std::uint8_t kOpaqueFrom = 128;
 
-/// A surface's look. Texel (x, y) of the texture covers u in [x/w, (x+1)/w), v in [y/h, (y+1)/h);
-/// v grows downwards in the picture; the texture repeats.
+/// Appearance of a surface. Texel (x, y) of the texture covers u in [x/w, (x+1)/w), v in [y/h,
+/// (y+1)/h); v grows downward in the image; the texture repeats.
 struct Material {
   std::string name;
   Rgb8 base_color{255, 255, 255};  ///< sRGB; multiplies the texture and the vertex colors
   SharedGrid<Rgb8> texture;        ///< sRGB; empty = base_color alone
-  /// How opaque each texel is: what is below kOpaqueFrom is a hole. Empty = opaque; else as large
-  /// as the texture.
+  /// Opacity of each texel: below kOpaqueFrom it is a hole. Empty = opaque; otherwise of the
+  /// texture's size.
   SharedGrid<std::uint8_t> opacity{};
-  Eigen::Vector2f tile_m{1.0F, 1.0F};  ///< physical size of one repeat of the texture, where known
-  Eigen::Vector3f emission =
-      Eigen::Vector3f::Zero();  ///< linear radiance added to what is reflected
-  /// The share of light (linear RGB) that a thin pane lets through, as glass and curtains of gauze
-  /// do; zero = none. A pane tints what stands behind it and has no depth or label of its own.
+  Eigen::Vector2f tile_m{1.0F, 1.0F};  ///< physical size of one repeat of the texture, if known
+  Eigen::Vector3f emission = Eigen::Vector3f::Zero();  ///< linear radiance added to reflected light
+  /// Share of light (linear RGB) that a thin pane transmits, such as glass and gauze curtains; zero
+  /// = none. A pane tints what is behind it and has no depth or label of its own.
   Eigen::Vector3f transmission = Eigen::Vector3f::Zero();
   bool is_pane() const { return !transmission.isZero(0.0F); }
 };
 
-/// An object (or a wall, a floor): what one instance id stands for.
+/// An object (or a wall, a floor) with an instance id.
 struct Instance {
   InstanceId id = 0;
   ClassId class_id = kVoid;
   std::string name;  ///< unique in the scene, e.g. "kitchen/chair_2"
-  Eigen::Vector3f min_m = Eigen::Vector3f::Zero(), max_m = Eigen::Vector3f::Zero();  ///< world box
+  Eigen::Vector3f min_m = Eigen::Vector3f::Zero(),
+                  max_m = Eigen::Vector3f::Zero();  ///< box in the world frame
 };
 
 struct Light {
   enum class Kind { kSun, kSphere, kSky, kAmbient };
   Kind kind = Kind::kSphere;
   Eigen::Vector3f position_m = Eigen::Vector3f::Zero();  ///< sphere: center
-  Eigen::Vector3f direction = {0.0F, 0.0F, -1.0F};       ///< sun: the way its light travels, unit
+  Eigen::Vector3f direction = {0.0F, 0.0F, -1.0F};       ///< sun: direction in which its light
+                                                         ///< travels, unit
   float radius_m = 0.05F;                                ///< sphere: radius
   float angular_radius_rad = 0.00465F;                   ///< sun: half its apparent size
   /// Linear RGB. Sun: irradiance on a surface facing it; sky: radiance of rays that leave the
-  /// scene; sphere: radiant intensity (irradiance at 1 m); ambient: irradiance / pi that reaches
-  /// every surface, for want of anything better.
+  /// scene; sphere: radiant intensity (irradiance at 1 m); ambient: irradiance / pi on every
+  /// surface, as a substitute for indirect light.
   Eigen::Vector3f color = Eigen::Vector3f::Ones();
 };
 
 struct Room {
   std::string name;
   std::vector<Eigen::Vector2d> polygon_m;  ///< inner floor outline, counter-clockwise
-  bool is_box = false;  ///< no plan was there: the polygon is only the box around a floor
+  bool is_box = false;  ///< without a plan: the polygon is only the bounding box of a floor
   bool contains(const Eigen::Vector2d& place_m) const;
 };
 
-/// The plane that one stands and drives on. Houses that are made here have it at z = 0; for files
-/// it is found (scenes/floor.hpp).
+/// The plane to stand and drive on. Houses built here have it at z = 0; for other files it is
+/// detected (scenes/floor.hpp).
 struct Floor {
-  Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();  ///< a place on it
+  Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();  ///< a point on it
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();       ///< its normal
-  /// What reaches no higher above it is part of it: rugs, thresholds, the bumps of a scan.
+  /// Anything up to this height above it is part of it: rugs, thresholds, the bumps of a scan.
   double rough_m = 0.03;
-  std::optional<double> area_m2 = {};  ///< of its faces seen from above, each place once
+  std::optional<double> area_m2 = {};  ///< of its faces seen from above, overlaps counted once
 
   /// Whether the floor is the plane z = 0.
   bool is_level_zero() const { return middle_m.z() == 0.0 && up == Eigen::Vector3d::UnitZ(); }
 };
 
-/// What there is to see: one indexed triangle mesh with a material, a class and an instance per
-/// face. World frame z up, meters. Faces are seen and lit from both sides.
+/// The visible world: one indexed triangle mesh with a material, a class and an instance per face.
+/// World frame z up, meters. Faces are visible and lit from both sides.
 struct Scene {
   std::string name;
 
@@ -100,7 +101,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Instance> instances;  ///< ordered by id; ids are 1 .. n, gaps allowed
   std::vector<Light> lights;
-  std::vector<Room> rooms;  ///< empty for meshes that came without a plan
+  std::vector<Room> rooms;  ///< empty for meshes without a plan
   Floor floor;
 
   /// Of the rooms; without a plan, of the floor's faces.
@@ -110,7 +111,7 @@ struct Scene {
 /// Checks every index and size. @throws InputError naming what is inconsistent.
 void validate(const Scene& scene);
 
-/// Digest (xxh3-64) of everything that can be seen of the scene: the key of what is made from it.
+/// Digest (xxh3-64) of everything visible in the scene: the key of results derived from it.
 std::uint64_t digest(const Scene& scene);
 
 }  // namespace mh

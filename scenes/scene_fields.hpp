@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// How a scene becomes bytes and back. One list of fields per type serves both directions; its
-// brackets name every field, so that it does not compile once one is added that has no place here.
+// Serialization of a scene. One list of fields per type serves both directions; its structured
+// binding names every field, so a newly added field that is missing here does not compile.
 
 #include <algorithm>
 #include <concepts>
@@ -58,7 +58,7 @@ void fields(Archive& archive, T& scene) {
           materials, instances, lights, rooms, floor);
 }
 
-/// Types that are stored as they lie in memory; Eigen's vectors are not trivial, but plain numbers.
+/// Types that are stored as in memory; Eigen's vectors are not trivial, but plain numbers.
 template <class T>
 inline constexpr bool kPlain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>;
 template <class T, int N>
@@ -75,7 +75,7 @@ inline constexpr bool kIsGrid = false;
 template <class T>
 inline constexpr bool kIsGrid<Grid2d<T>> = true;
 
-/// Pictures that materials share are sent once, in the order in which they are first met.
+/// Shared images are sent once, in the order of first use.
 template <class T>
 inline constexpr bool kIsShared = false;
 template <class T>
@@ -83,7 +83,7 @@ inline constexpr bool kIsShared<SharedGrid<T>> = true;
 using KnownPictures =
     std::tuple<std::vector<SharedGrid<Rgb8>>, std::vector<SharedGrid<std::uint8_t>>>;
 
-/// Sends values through anything that has bytes(const void*, size).
+/// Writes values to anything that has bytes(const void*, size).
 template <class Out>
 class Sender {
  public:
@@ -124,7 +124,7 @@ class Sender {
   KnownPictures pictures_;
 };
 
-/// Takes them from anything that has bytes(void*, size), straight into their place.
+/// Reads them from anything that has bytes(void*, size), directly into their destination.
 template <class In>
 class Receiver {
  public:

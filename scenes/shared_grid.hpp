@@ -9,7 +9,7 @@
 
 namespace mh {
 
-/// A picture that nobody changes any more; copies share its memory.
+/// An immutable image; copies share its memory.
 template <class T>
 class SharedGrid {
  public:
@@ -33,7 +33,7 @@ class SharedGrid {
   auto begin() const { return grid().begin(); }
   auto end() const { return grid().end(); }
 
-  /// The same for pictures that share their memory; null for an empty one.
+  /// Equal for images that share their memory; null for an empty one.
   const void* identity() const { return grid_.get(); }
 
   friend bool operator==(const SharedGrid& a, const SharedGrid& b) {

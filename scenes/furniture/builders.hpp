@@ -3,7 +3,7 @@
 
 #include "scenes/furniture/furniture.hpp"
 
-/// One function per kind of object; furniture.cpp lists them under their names.
+/// One function per kind of object; furniture.cpp lists them by name.
 namespace mh::build {
 
 // seats.cpp
@@ -163,33 +163,33 @@ void vase(Piece& piece);
 
 namespace mh::build {
 
-// parts.cpp: usual materials and parts that several kinds share.
+// parts.cpp: common materials, and parts shared by several kinds.
 MaterialSpec oak(std::uint64_t seed = 15);
 MaterialSpec bare_steel();
 MaterialSpec black_rubber();
 MaterialSpec plain(std::string kind, Rgb8 tone, double variation = 0.3, std::uint64_t seed = 1);
-/// An upright rectangle that faces -y: what a door or a drawer covers.
+/// An upright rectangle that faces -y: the area that a door or a drawer covers.
 struct Front {
   float x0, x1, y, z0, z1;
 };
-/// Where books stand: on z, spines at y = front (facing -y), at most `height` tall and `depth`
-/// deep.
+/// Space for books: standing on z, spines at y = front (facing -y), at most `height` tall and
+/// `depth` deep.
 struct BookSpace {
   float x0, x1, front, z, height, depth;
 };
-/// A row of books; the current object is theirs.
+/// Adds a row of books to the current object.
 void books(Piece& piece, const BookSpace& space, std::uint64_t row);
-/// An ellipse (square = 1), or what is nearer to a rectangle (square < 1).
+/// An ellipse (square = 1), or a shape closer to a rectangle (square < 1).
 struct Oval {
   float radius_x_m, radius_y_m, square = 1.0F;
 };
-/// A round body of that section: profile of (share of the radii, height above center), listed
-/// upwards seen from outside.
+/// A round body with that cross section: profile of (share of the radii, height above center),
+/// listed upward, seen from outside.
 void oval(Piece& piece, MaterialId material, const Eigen::Vector3f& center, const Oval& section,
           std::span<const Eigen::Vector2f> profile, int sides = 28);
-/// What handles are made of: the role `metal`.
+/// The material of handles: the role `metal`.
 MaterialId grip_metal(Piece& piece);
-/// A bar handle from a to b standing off by `off` along -y.
+/// A bar handle from a to b, at a distance `off` along -y.
 void handle(Piece& piece, MaterialId material, const Eigen::Vector3f& a, const Eigen::Vector3f& b,
             float off = 0.03F);
 

@@ -14,9 +14,9 @@
 
 namespace mh {
 
-/// One piece of furniture while it is being built. Its frame: the middle of its footprint on the
-/// surface it stands on, x to its width, -y to its front, z up; what hangs on a wall has its back
-/// at y = depth / 2. Everything stays within size_m.
+/// One piece of furniture under construction. Its frame: origin in the middle of its footprint on
+/// the supporting surface, x along its width, -y to its front, z up; wall-mounted pieces have their
+/// back at y = depth / 2. Everything stays within size_m.
 class Piece {
  public:
   Piece(MeshBuilder& builder, std::string name, Eigen::Vector3f size,
@@ -32,7 +32,7 @@ class Piece {
   const Eigen::Vector3f size_m;  ///< width, depth, height
   const RandomStream random;     ///< of this piece alone
 
-  /// The material of a role ("wood", "fabric"): the user's if given, else `usual`. Pictures get
+  /// The material of a role ("wood", "fabric"): the user's if given, otherwise `usual`. Images get
   /// the size of `usual`.
   MaterialId material(const std::string& role, MaterialSpec usual,
                       const Eigen::Vector3f& emission = {0, 0, 0});
@@ -40,7 +40,7 @@ class Piece {
   MaterialId fixed(const MaterialSpec& spec, const Eigen::Vector3f& emission = {0, 0, 0}) {
     return mesh.material(spec, emission);
   }
-  /// Starts a part that is an object of its own ("bed" -> "bed/pillow_1"), until body().
+  /// Starts a part that is a separate object ("bed" -> "bed/pillow_1"), until body().
   void part(const std::string& suffix, std::string_view class_name);
   void body() { mesh.resume_instance(body_); }
 
@@ -52,15 +52,15 @@ class Piece {
 
 enum class Mount { kFloor, kWall, kCeiling, kOnPiece };
 
-/// A kind of furniture that a house file may name.
+/// A kind of furniture, as named in a house file.
 struct FurnitureKind {
   std::string_view name;
   std::string_view class_name;  ///< see slam/core/labels.hpp
   Mount mount;
   std::string_view roles;  ///< roles of materials that may be overridden, space-separated
-  Eigen::Vector3f size_m;  ///< usual size
+  Eigen::Vector3f size_m;  ///< default size
   void (*build)(Piece&);
-  /// Lamps: height of the light source as a share of the lamp's height; below 0: under it.
+  /// Lamps: height of the light source as a share of the lamp's height; negative: below the lamp.
   std::optional<float> bulb = std::nullopt;
 };
 

@@ -9,13 +9,13 @@
 
 namespace mh::gazebo {
 
-/// A light of a world as one of ours: what reflects it is about as bright as Gazebo shows it. A
-/// directional one is a sun; a point or a spot is a lamp that shines to all sides and fades with
-/// the square of the distance, as bright at 2 m as the file tells.
+/// Converts a light of a world: surfaces appear about as bright as in Gazebo. A directional light
+/// becomes a sun; a point or spot light becomes a lamp that shines in all directions and fades with
+/// the square of the distance, with the file's brightness at 2 m.
 Light light_of(const sdf::Light& light, const Eigen::Affine3d& world_from_light);
 
-/// The length (m) to which edges are split, so that light, which is kept at vertices, can vary over
-/// a floor of two triangles: 1 m, or more where that would be a million faces.
+/// Length (m) to which edges are split so that light, which is stored per vertex, can vary over a
+/// floor of two triangles: 1 m, or more if that would give over a million faces.
 float edge_for_light_m(const Scene& scene);
 
 }  // namespace mh::gazebo

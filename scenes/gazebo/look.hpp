@@ -14,8 +14,8 @@
 
 namespace mh::gazebo {
 
-/// Rewrites the materials of visuals so that they tell everything themselves: colors as `diffuse`
-/// and `emissive`, a texture as the albedo map of a `pbr`, whose path is absolute.
+/// Rewrites the materials of visuals to be self-contained: colors as `diffuse` and `emissive`, a
+/// texture as the albedo map of a `pbr` with an absolute path.
 class LookWriter {
  public:
   LookWriter(const Finder& finder, ToldOnce& told) : finder_(finder), told_(told) {}
@@ -28,7 +28,7 @@ class LookWriter {
  private:
   std::string texture_of_pbr(const tinyxml2::XMLElement& material,
                              const std::filesystem::path& file);
-  /// What a <script> means: its material, with the texture's path.
+  /// Resolves a <script> to its material, with the texture's path.
   std::optional<OgreMaterial> material_of(const tinyxml2::XMLElement& script,
                                           const std::filesystem::path& file);
   const std::vector<OgreMaterial>& materials_in(const std::filesystem::path& script);

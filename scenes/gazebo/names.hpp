@@ -6,15 +6,15 @@
 
 namespace mh::gazebo {
 
-/// The names taken in one scope of a document that libsdformat reads.
+/// The names in use in one scope of a document that libsdformat reads.
 class Names {
  public:
-  /// Takes a name that is free and passes: the given one, or nearly that.
+  /// Reserves a free, valid name: the given one, or one close to it.
   std::string take(const char* given);
 
  private:
-  /// With the number that the next copy of each may try: names of thousands of one name are not to
-  /// be tried one by one.
+  /// With the next number to try for a copy of each: thousands of copies of one name must not be
+  /// tried one by one.
   std::map<std::string, int> taken_;
 };
 

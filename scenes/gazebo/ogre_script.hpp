@@ -9,15 +9,15 @@
 
 namespace mh::gazebo {
 
-/// What a material of an Ogre script shows, of the little that is read.
+/// The subset of an Ogre script's material that is read.
 struct OgreMaterial {
   std::string name;
   std::optional<std::array<float, 4>> diffuse;  ///< RGBA
   std::string texture;                          ///< a file's name; empty if it has none
 };
 
-/// Reads the materials of an Ogre script: of each the first pass's `diffuse` and the first
-/// `texture`, else those of its parent (`material A : B`). All else is passed over.
+/// Reads the materials of an Ogre script: for each, the first pass's `diffuse` and the first
+/// `texture`, otherwise those of its parent (`material A : B`). Everything else is ignored.
 std::vector<OgreMaterial> parse_ogre_script(std::string_view script);
 
 /// The plain colors that Gazebo ships as "Gazebo/NAME"; nullopt for other names.

@@ -10,10 +10,10 @@
 
 namespace mh::gazebo {
 
-/// What is wrong with a shape's measures; nullopt if nothing. libsdformat lets any number pass.
+/// What is wrong with a shape's dimensions; nullopt if nothing. libsdformat accepts any number.
 std::optional<std::string> fault_of(const sdf::Geometry& geometry);
 
-/// A box, capsule, cylinder, ellipsoid, plane or sphere as one object, about its own origin;
+/// A box, capsule, cylinder, ellipsoid, plane or sphere as one object, centered on its own origin;
 /// nullopt for other kinds. A texture covers each side once.
 std::optional<Scene> shape_of(const sdf::Geometry& geometry, const Material& look);
 

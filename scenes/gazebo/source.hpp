@@ -10,15 +10,15 @@
 
 namespace mh::gazebo {
 
-/// A file's XML and what its parts are read with.
+/// A file's XML and the context for reading its parts.
 struct Source {
   std::filesystem::path file;
   tinyxml2::XMLDocument document;
   bool has_frames = false;         ///< before 1.7, a pose's frame meant nothing
-  std::set<std::string> referred;  ///< names that relative_to and attached_to name
+  std::set<std::string> referred;  ///< names used by relative_to and attached_to
 };
 
-/// @throws InputError naming file and line if it is no SDF
+/// @throws InputError naming file and line if it is not SDF
 std::unique_ptr<Source> parse_source(const std::filesystem::path& file, std::string text);
 
 }  // namespace mh::gazebo

@@ -9,12 +9,12 @@
 
 namespace mh::gazebo {
 
-/// Warnings, each once with the number of times that it was given.
+/// Collects warnings, each once with its number of occurrences.
 class ToldOnce {
  public:
   void tell(const std::string& what) { tell(what, what); }
 
-  /// @param thing  what the warning is about; of several warnings about it the first stands
+  /// @param thing  what the warning is about; of several warnings about it the first is kept
   void tell(const std::string& what, const std::string& thing) {
     const auto place = std::ranges::find(told_, thing, &Entry::thing);
     if (place != told_.end())
@@ -23,7 +23,7 @@ class ToldOnce {
       told_.push_back({thing, what, 1});
   }
 
-  /// In the order in which they were first given.
+  /// Appends them in the order in which they were first given.
   void hand_over(std::vector<std::string>* warnings) const {
     if (warnings == nullptr) return;
     for (const auto& [thing, what, times] : told_)

@@ -11,8 +11,8 @@ inline constexpr std::array<std::string_view, 12> kCategoryNames = {
     "bathroom", "bedroom", "bookstore",   "classroom", "conference_room", "copy_mail_room",
     "hallway",  "kitchen", "living_room", "lobby",     "office",          "misc"};
 
-/// The text of scenes/categories/NAME.yaml, which is part of the program: a reference to a
-/// generated scene needs no file.
+/// The text of scenes/categories/NAME.yaml, embedded in the program: a reference to a generated
+/// scene needs no file.
 std::string_view generator_data(std::string_view name);
 
 }  // namespace mh

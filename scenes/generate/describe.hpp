@@ -8,7 +8,7 @@
 
 namespace mh::generate {
 
-/// A furnished room as a house of one room.
+/// Converts a furnished room to a house of one room.
 HouseFile describe(const Draft& draft, const std::string& name);
 
 }  // namespace mh::generate

@@ -5,10 +5,10 @@
 
 namespace mh::generate {
 
-/// Adds what a rule asks for. @returns false if something that the room needs has no place
+/// Adds the pieces of a rule. @returns false if a piece that the room needs does not fit
 bool add_by_rule(Draft& draft, const ItemRule& rule);
 
-/// Draws among the grammar's extras until there are as many objects as wanted.
+/// Draws from the grammar's extras until the room has as many objects as wanted.
 void add_extras(Draft& draft);
 
 }  // namespace mh::generate

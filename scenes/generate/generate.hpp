@@ -18,30 +18,28 @@ struct GeneratedReference {
   std::uint64_t seed = 0;
 };
 
-/// What such a name begins with, in the place of a file's.
+/// Prefix of such a name, which is used in place of a file.
 inline constexpr std::string_view kGeneratedPrefix = "generated:";
-/// @throws InputError if it is none, or names no category
+/// @throws InputError if it is not such a name, or the category is unknown
 GeneratedReference parse_generated(std::string_view source);
 std::string to_string(const GeneratedReference& reference);
 
-/// An environment drawn from a category's grammar (scenes/categories/), as the plan of a house:
-/// what build_house makes a scene of. The same category and seed give the same text. Nothing
-/// overlaps, doors can be opened, and a robot 0.52 m wide gets from every place where it can stand
-/// to every other.
+/// An environment drawn from a category's grammar (scenes/categories/), as a house plan for
+/// build_house. The same category and seed give the same text. Nothing overlaps, doors can be
+/// opened, and a robot 0.52 m wide can get from every place where it fits to every other.
 struct GeneratedPlan {
   std::string name;  ///< "bathroom-3"
   std::string room;  ///< which of the category's rooms: "bathroom", "gym"
   HouseFile house;
   double floor_area_m2 = 0;
   int objects = 0;        ///< pieces, doors and windows
-  int fittings = 0;       ///< pieces that are not counted: switches, radiators, papers on walls
-  double free_share = 0;  ///< of the floor: where the robot can stand
+  int fittings = 0;       ///< pieces not counted as objects: switches, radiators, papers on walls
+  double free_share = 0;  ///< share of the floor where the robot can stand
   double objects_per_10_m2() const { return 10.0 * objects / floor_area_m2; }
   std::string yaml() const { return to_yaml(house); }  ///< see docs/formats.md, House
 };
 GeneratedPlan generate_plan(const GeneratedReference& reference);
-/// The plan's text, its mesh made as fine as it takes for kLeastTriangles: small rooms get finer
-/// light.
+/// The plan's text, with its mesh fine enough for kLeastTriangles: small rooms get finer light.
 std::string with_detail(const GeneratedPlan& plan);
 inline constexpr std::size_t kLeastTriangles = 120'000, kMostTriangles = 550'000;
 Scene generate_scene(const GeneratedReference& reference);

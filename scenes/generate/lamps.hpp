@@ -5,7 +5,8 @@
 
 namespace mh::generate {
 
-/// Lamps at the ceiling, in rows, and in the arms of an L-shaped room. @returns whether one hangs
+/// Hangs lamps from the ceiling, in rows, also in the arms of an L-shaped room. @returns whether
+/// there is any
 bool add_lamps(Draft& draft);
 
 Daylight draw_daylight(Dice& dice);

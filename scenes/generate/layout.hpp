@@ -17,19 +17,19 @@ using Footprint = std::array<Eigen::Vector2d, 4>;
 
 Footprint footprint_of(const Eigen::Vector2d& middle_m, double turn_deg, double width_m,
                        double depth_m);
-/// Into the frame of something that stands at `middle_m`, turned.
+/// Transforms a point from the frame of something at `middle_m`, rotated, to the room's frame.
 Eigen::Vector2d from_frame(const Eigen::Vector2d& middle_m, double turn_deg,
                            const Eigen::Vector2d& local_m);
 
-/// A stretch of wall with the room before it.
+/// A stretch of wall and the space in front of it.
 struct WallRun {
-  Side side = Side::kSouth;  ///< of the room, or of the part of it before this stretch
+  Side side = Side::kSouth;  ///< of the room, or of the part of it in front of this stretch
   double face_m = 0, from_m = 0, to_m = 0;
-  bool outer = true;  ///< a window may be in it
+  bool outer = true;  ///< may have a window
 
-  /// The middle of something of this depth, its back `gap_m` before the wall.
+  /// The center of something of this depth whose back is `gap_m` in front of the wall.
   Eigen::Vector2d place(double along_m, double depth_m, double gap_m) const;
-  double turn_deg() const;  ///< of a piece that stands with its back to it
+  double turn_deg() const;  ///< of a piece with its back to it
 };
 
 struct WallOpening {
@@ -48,24 +48,24 @@ struct LayoutItem {
   std::optional<std::size_t> on;                      ///< what carries it
   Eigen::Vector2d on_at_m = Eigen::Vector2d::Zero();  ///< in the carrier's frame
   double on_turn_deg = 0;
-  bool on_board = false;                         ///< stands in the carrier, not on its top
+  bool on_board = false;                         ///< inside the carrier, not on its top
   std::optional<std::size_t> under;              ///< what it is pushed under
   bool covers_window = false;                    ///< blinds
-  bool fitting = false;                          ///< is no object of its own
+  bool fitting = false;                          ///< not counted as an object
   std::map<std::string, std::string> materials;  ///< role -> name of a material
   std::optional<Eigen::Vector3d> glow;
 
   Footprint footprint() const { return footprint_of(at_m, turn_deg, size_m.x(), size_m.y()); }
 };
 
-/// A room while it is being furnished: what stands where, and that one can walk.
+/// A room being furnished: keeps track of what is where, and that one can walk.
 class Layout {
  public:
   static constexpr double kRobotRadius_m = 0.26;  ///< half of 0.52 m
-  static constexpr double kPlay_m = 0.03;         ///< that it has on each side of its ways
+  static constexpr double kPlay_m = 0.03;         ///< clearance on each side of its paths
   static constexpr double kCell_m = 0.02;
 
-  /// @param cut  the corner that an L-shaped room lacks
+  /// @param cut  the missing corner of an L-shaped room
   Layout(double width_m, double depth_m, double height_m, std::optional<FloorRect> cut);
 
   const FloorRect& rect() const { return rect_; }
@@ -77,20 +77,21 @@ class Layout {
   const std::vector<LayoutItem>& items() const { return items_; }
   const LayoutItem& item(std::size_t i) const { return items_[i]; }
 
-  /// Whether an opening fits into a stretch of wall, apart from the others.
+  /// Adds an opening if it fits into a stretch of wall, clear of the others. @returns whether it
+  /// does
   bool add_opening(const WallRun& wall, WallOpening opening);
-  /// Adds a piece if it stands in the room, overlaps nothing, leaves doors and windows, its own
-  /// front and those of others free, and all floor that the robot fits on stays one, also for one
-  /// that is wider by the play. @returns its index
+  /// Adds a piece if it is inside the room, overlaps nothing, leaves doors, windows, its own front
+  /// and those of others free, and keeps all floor on which the robot fits connected, also for a
+  /// robot wider by the clearance. @returns its index
   std::optional<std::size_t> add(const LayoutItem& item, double front_m);
-  /// The share of the floor where the robot's middle can be, with its play.
+  /// Share of the floor where the robot's center can be, including its clearance.
   double free_share() const;
-  /// Pieces, doors and windows, without fittings: what counts as an object.
+  /// Number of objects: pieces, doors and windows, without fittings.
   int object_count() const;
 
  private:
   bool inside(const Footprint& footprint) const;
-  /// Whether boxes may meet: something and what carries it, a chair and the table it is under.
+  /// Whether boxes may intersect: something and its carrier, a chair and the table it is under.
   bool belong_together(const LayoutItem& item, std::size_t i) const;
   bool apart(const LayoutItem& item) const;
   bool leaves_openings(const LayoutItem& item) const;
@@ -106,8 +107,9 @@ class Layout {
   std::vector<WallOpening> openings_;
   std::vector<LayoutItem> items_;
   std::vector<Footprint> swings_;  ///< of doors
-  std::vector<Footprint> fronts_;  ///< floor before pieces, where only their own chairs stand
-  Grid2d<float> room_m_;  ///< from a cell's middle to what is nearest, m, where that counts
+  std::vector<Footprint> fronts_;  ///< floor in front of pieces, where only their own chairs may be
+  Grid2d<float> room_m_;  ///< distance from a cell's center to the nearest obstacle, m, where it
+                          ///< matters
 };
 
 }  // namespace mh

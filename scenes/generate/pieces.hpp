@@ -18,15 +18,15 @@ struct Design {
 };
 
 Design make_design(Draft& draft, const ItemRule& rule);
-/// For the i-th piece of a rule: sets match, but no two pictures or cushions are alike.
+/// The design of the i-th piece of a rule: sets match, but no two images or cushions are alike.
 Design design_of_piece(Draft& draft, const Design& common, int i);
 
-/// A piece without place and name.
+/// Creates a piece without position and name.
 LayoutItem make_piece(Draft& draft, const Design& design);
-/// Names a piece and adds it where it stands. @returns its index, nullopt if it cannot stand there
+/// Names a piece and adds it at its position. @returns its index, nullopt if it does not fit
 std::optional<std::size_t> add(Draft& draft, LayoutItem piece, const Design& design);
 
-/// Whether there are as many objects as the density group asks for.
+/// Whether the room has as many objects as the density group requires.
 bool full(const Draft& draft);
 
 }  // namespace mh::generate

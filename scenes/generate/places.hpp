@@ -7,11 +7,11 @@
 
 namespace mh::generate {
 
-/// A piece that stands for itself, somewhere where its rule wants it; nullopt if there is no such
-/// place. Whether it can stand there is not asked yet.
+/// A free-standing piece at a position that its rule allows; nullopt if there is none. Whether it
+/// fits there is not checked yet.
 std::optional<LayoutItem> put_in_room(Draft& draft, const Design& design);
 
-/// The same for a piece that belongs to another: on, beside, before or above it.
+/// The same for a piece that belongs to another: on, next to, in front of or above it.
 std::optional<LayoutItem> put_at_owner(Draft& draft, const Design& design, std::size_t owner);
 
 }  // namespace mh::generate

@@ -5,10 +5,10 @@
 
 namespace mh::generate {
 
-/// An empty room of the grammar's size, of one that a density group asks for.
+/// An empty room of the grammar's size range, of a size suited to a density group.
 Draft draw_shape(const RoomGrammar& grammar, Dice dice, int group);
 
-/// @returns whether there is a door at all
+/// Adds doors. @returns whether there is at least one
 bool add_doors(Draft& draft);
 void add_windows(Draft& draft);
 

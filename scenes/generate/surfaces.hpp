@@ -8,10 +8,10 @@
 
 namespace mh::generate {
 
-/// What floor, walls, ceiling, frames and the garden outside are made of.
+/// Chooses the materials of floor, walls, ceiling, frames and the garden outside.
 void choose_surfaces(Draft& draft);
 
-/// Materials for all roles of a kind of furniture: role -> name.
+/// Chooses materials for all roles of a kind of furniture: role -> name.
 std::map<std::string, std::string> choose_materials(Draft& draft, const ItemRule& rule,
                                                     const FurnitureKind& kind);
 

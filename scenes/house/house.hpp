@@ -13,14 +13,14 @@ namespace mh {
 /// scene, bit for bit.
 /// @throws InputError "file:line: place: what" on an unknown key, kind, role or material, a wrong
 /// type, a size that is not positive, a room outside the house, rooms that overlap, a doorway that
-/// is in no wall or narrower than 0.6 m, a window in no outer wall, furniture that overlaps a wall
-/// or other furniture, or lies outside all rooms.
+/// is not in a wall or is narrower than 0.6 m, a window that is not in an outer wall, furniture
+/// that overlaps a wall or other furniture, or is outside all rooms.
 Scene load_house(const std::filesystem::path& yaml);
 
-/// The same from text; `name` stands for the file in messages.
+/// The same from text; `name` names the file in messages.
 Scene build_house(const std::string& yaml_text, const std::string& name);
 
-/// How many triangles build_house would make of it, without painting its materials.
+/// Counts the triangles that build_house would create, without painting materials.
 std::size_t count_triangles(const std::string& yaml_text, const std::string& name);
 
 }  // namespace mh

@@ -32,11 +32,11 @@ std::string_view side_name(Side side);
 constexpr bool runs_along_x(Side side) {
   return side == Side::kSouth || side == Side::kNorth;
 }
-/// 1 where the way from that wall into the room goes with x or y, -1 where it goes against it.
+/// 1 if the direction from that wall into the room is along +x or +y, -1 otherwise.
 constexpr double inward(Side side) {
   return side == Side::kSouth || side == Side::kWest ? 1.0 : -1.0;
 }
-/// The turn of a piece that stands with its back to that wall: its front (-y) faces the room.
+/// Rotation of a piece with its back to that wall: its front (-y) faces the room.
 constexpr double turn_before_wall_deg(Side side) {
   constexpr std::array kTurn = {180.0, 0.0, 90.0, -90.0};
   return kTurn[static_cast<std::size_t>(side)];
@@ -48,7 +48,7 @@ constexpr Side opposite(Side side) {
 
 /// Inner face of the wall on a side of a room, m: an x or a y.
 double wall_at(const FloorRect& rect, Side side);
-/// From where to where that wall goes, m.
+/// Start and end of that wall, m.
 std::pair<double, double> wall_span(const FloorRect& rect, Side side);
 
 struct RoomPlan {
@@ -56,12 +56,12 @@ struct RoomPlan {
   FloorRect rect;
   MaterialSpec floor, ceiling;
   std::array<MaterialSpec, 4> walls;  ///< indexed by Side
-  std::optional<FloorRect> cut;       ///< the corner that an L-shaped room lacks
+  std::optional<FloorRect> cut;       ///< the missing corner of an L-shaped room
 
   /// The floor's outline, counter-clockwise, m.
   std::vector<Eigen::Vector2d> outline_m() const;
 };
-/// The stretch of a room's wall: what a missing corner takes of it is none.
+/// Start and end of a room's wall, without the part that a missing corner removes.
 std::pair<double, double> wall_span(const RoomPlan& room, Side side);
 
 /// A hole in a wall: a doorway or a window.
@@ -73,7 +73,7 @@ struct OpeningPlan {
   double from_m = 0, to_m = 0;   ///< along the wall, world coordinate
   double low_m = 0, high_m = 0;  ///< above the floor
   int panes = 1;                 ///< windows
-  bool closed = false;           ///< doorways: with a door that is shut
+  bool closed = false;           ///< doorways: with a closed door
 };
 
 struct ItemPlan {
@@ -110,7 +110,7 @@ struct HousePlan {
   std::optional<Light> sun, sky;
 };
 
-/// How deep (m) two convex counter-clockwise quadrilaterals overlap; 0 or less: they do not.
+/// Overlap (m) of two convex counter-clockwise quadrilaterals; 0 or less: they do not overlap.
 double overlap_m(const std::array<Eigen::Vector2d, 4>& a, const std::array<Eigen::Vector2d, 4>& b);
 
 }  // namespace mh

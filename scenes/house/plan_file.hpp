@@ -17,13 +17,13 @@ class YamlReader;
 /// Reads and checks a description; see load_house. @throws InputError
 HousePlan read_house_plan(YamlReader yaml);
 
-/// A piece as its line in the file states it.
+/// A piece as stated on its line in the file.
 struct ItemEntry {
   std::string name, kind;
   std::string on;                                  ///< name of what carries it; empty: the floor
   Eigen::Vector2d at_m = Eigen::Vector2d::Zero();  ///< in the world, or in the carrier's frame
-  double turn_deg = 0;                             ///< the same
-  std::optional<double> z_m;                       ///< above the floor, or above the carrier's foot
+  double turn_deg = 0;                             ///< in the same frame
+  std::optional<double> z_m;                       ///< above the floor, or above the carrier's base
   std::string under;                               ///< name of what it is pushed under; empty: none
   Eigen::Vector3d size_m = Eigen::Vector3d::Ones();
   std::optional<Eigen::Vector3d> glow;           ///< lamps: linear RGB intensity at 1 m
@@ -36,7 +36,7 @@ struct RoomEntry {
   std::optional<FloorRect> cut;
   std::string floor, ceiling, walls;          ///< names of materials
   std::map<Side, std::string> special_walls;  ///< of another material than the rest
-  std::vector<ItemEntry> items;               ///< what carries others stands before them
+  std::vector<ItemEntry> items;               ///< carriers come before the pieces on them
 };
 
 struct GardenEntry {
@@ -48,8 +48,8 @@ struct SunEntry {
   Eigen::Vector3d direction, color;
 };
 
-/// A house as its file states it: materials and pieces by name, places as they are written. Numbers
-/// are written in whole millimeters and half degrees.
+/// A house as its file states it: materials and pieces by name, positions as written. Numbers are
+/// written in whole millimeters and half degrees.
 struct HouseFile {
   std::string comment;  ///< one line
   std::string name;
@@ -65,7 +65,7 @@ struct HouseFile {
   std::optional<double> detail;        ///< see HousePlan::detail
 };
 
-/// The text that read_house_plan reads; docs/formats.md says what the keys mean.
+/// Writes the text that read_house_plan reads; see docs/formats.md for the keys.
 std::string to_yaml(const HouseFile& house);
 
 }  // namespace mh

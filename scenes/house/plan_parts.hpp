@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of a house plan's file, each with its reader and its writer side by side. Of use to
-// plan_file.cpp alone.
+// The parts of a house plan's file, each with its reader and its writer side by side. Used only by
+// plan_file.cpp.
 #pragma once
 
 #include <map>
@@ -25,10 +25,10 @@ std::string materials_text(std::span<const MaterialSpec> materials);
 FloorRect read_rect(const YamlReader& yaml);
 std::string rect_text(const FloorRect& rect);
 Side side_by_name(const YamlReader& yaml);
-/// Adds a room, but for its items.
+/// Adds a room without its items.
 void read_room(YamlReader& yaml, const Materials& materials, HousePlan& house);
 std::size_t room_by_name(const YamlReader& yaml, const std::vector<RoomPlan>& rooms);
-/// With its items.
+/// The text of a room with its items.
 std::string room_text(const RoomEntry& room);
 
 // plan_openings.cpp
@@ -38,7 +38,7 @@ std::string doorways_text(const HouseFile& house);
 std::string windows_text(const HouseFile& house);
 
 // plan_items.cpp
-/// The pieces of a room, added to the house's.
+/// Reads the pieces of a room and adds them to the house's.
 void read_items(const YamlReader& yaml, const Materials& materials, std::size_t room,
                 HousePlan& house);
 std::string item_text(const ItemEntry& item);

@@ -6,8 +6,8 @@
 
 namespace mh {
 
-/// Builds what is not furniture: floors, walls with their holes, ceilings, skirting, door frames
-/// and doors, windows, the outer hull (so that no light leaks in), garden and lawn outside.
+/// Builds everything but furniture: floors, walls with their openings, ceilings, baseboards, door
+/// frames and doors, windows, the outer hull (so that no light leaks in), garden and lawn outside.
 void build_shell(const HousePlan& house, MeshBuilder& mesh);
 
 }  // namespace mh

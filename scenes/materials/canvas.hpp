@@ -11,15 +11,15 @@
 
 namespace mh {
 
-/// How a line of text is written.
+/// Style of a line of text.
 struct Letters {
   float height;          ///< of capitals
   float thickness;       ///< of strokes
-  bool upwards = false;  ///< turned by 90 degrees, as on the spine of a book
+  bool upwards = false;  ///< rotated by 90 degrees, as on the spine of a book
 };
 
-/// Draws antialiased shapes and letters into a picture; coordinates in texels, parts outside are
-/// cut off. Keeps a reference to the picture.
+/// Draws antialiased shapes and letters into an image; coordinates in texels, clipped at the
+/// border. Keeps a reference to the image.
 class Canvas {
  public:
   explicit Canvas(Grid2d<Rgb8>& picture) : picture_(picture) {}

@@ -6,34 +6,34 @@
 
 namespace mh {
 
-/// A periodic scalar field sampled at texels: the raw stuff of procedural textures.
+/// A periodic scalar field sampled at texels: the basis of procedural textures.
 using Field = Grid2d<float>;
 
 /// Value noise in [-1, 1]: random values on a cells_x by cells_y lattice (which wraps around),
-/// joined smoothly. K. Perlin's fade curve between the nodes.
+/// interpolated with K. Perlin's fade curve.
 Field value_noise(int width, int height, int cells_x, int cells_y, RandomStream random);
 
-/// Each octave doubles the lattice and scales its height by `gain`.
+/// Each octave doubles the lattice resolution and scales its amplitude by `gain`.
 struct Octaves {
   int cells_x, cells_y, count;
   float gain;
 };
-/// Fractal sum of value noise in about [-1, 1]. Octaves finer than two texels are left out.
+/// Fractal sum of value noise in about [-1, 1]. Octaves finer than two texels are omitted.
 Field fbm(int width, int height, const Octaves& octaves, RandomStream random);
 
 /// Independent normal noise at every texel, standard deviation 1.
 Field white_noise(int width, int height, RandomStream random);
 
-/// Bilinear value of a field that repeats, at texel coordinates.
+/// Bilinear sample of a repeating field, at texel coordinates.
 float sample(const Field& field, float x, float y);
 
-/// Distances, in lattice cells, to the nearest and second nearest of one random point per cell, and
-/// which point is the nearest (its lattice index). Wraps around.
+/// Distances, in lattice cells, to the nearest and second-nearest of one random point per cell, and
+/// which point is nearest (its lattice index). Wraps around.
 struct Voronoi {
   Field nearest, second;
   Grid2d<int> cell;
 };
-/// @param jitter 0 = points at cell centers, 1 = anywhere in their cells.
+/// @param jitter  0 = points at cell centers, 1 = anywhere in their cells.
 Voronoi voronoi(int width, int height, int cells_x, int cells_y, float jitter, RandomStream random);
 
 }  // namespace mh

@@ -6,15 +6,15 @@
 
 namespace mh {
 
-/// What a painter is asked for: a texture of width x height texels, each texel_m wide.
+/// Input of a painter: a texture of width x height texels, each texel_m wide.
 struct PaintJob {
   int width = 0, height = 0;
   float texel_m = 0.002F;
-  Tint tone;               ///< the surface's mean (or a picture's key) color
+  Tint tone;               ///< the surface's mean (or an image's key) color
   float variation = 0.5F;  ///< contrast of the pattern, 0 to 1
   RandomStream random;
 
-  /// Texels that a length covers, at least one.
+  /// Number of texels in a length, at least one.
   int texels(double length_m) const {
     return std::max(1, static_cast<int>(length_m / texel_m + 0.5));
   }
@@ -23,7 +23,7 @@ struct PaintJob {
 using Picture = Grid2d<Rgb8>;
 using Painter = Picture (*)(const PaintJob&);
 
-/// The picture whose texel (x, y) is tint_at(x, y).
+/// The image whose texel (x, y) is tint_at(x, y).
 template <class TintAt>
 Picture paint(const PaintJob& job, const TintAt& tint_at) {
   Picture picture(job.width, job.height);
@@ -44,7 +44,7 @@ Picture paint_ceiling(const PaintJob& job);
 Picture paint_tiles(const PaintJob& job);
 Picture paint_stone(const PaintJob& job);
 Picture paint_brushed_metal(const PaintJob& job);
-Picture paint_smooth(const PaintJob& job);  ///< ceramic, plastic, glass: almost blank
+Picture paint_smooth(const PaintJob& job);  ///< ceramic, plastic, glass: almost uniform
 
 // cloth.cpp
 Picture paint_fabric(const PaintJob& job);

@@ -6,9 +6,9 @@
 
 namespace mh {
 
-/// A Collada file as assimp can read it. Left out is what it refuses files for: blanks before a
-/// list of numbers, comments, holes of polygons (which are filled). All else stays as it is.
-/// @param z_is_up  whatever the file says of its up axis, as Gazebo takes it
+/// Rewrites a Collada file so that assimp can read it, without what assimp rejects: blanks before a
+/// list of numbers, comments, holes of polygons (which are filled). Everything else is unchanged.
+/// @param z_is_up  ignore the file's up axis, as Gazebo does
 std::string repaired_collada(std::string_view text, bool z_is_up = false);
 
 }  // namespace mh

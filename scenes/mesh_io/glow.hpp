@@ -8,10 +8,9 @@
 
 namespace mh {
 
-/// Gives each face the mean of what its part of an emissive texture lets glow. What emits is told
-/// by material, so a material that glows in parts becomes one for each brightness, of 32 steps.
-/// @param glow  for each material of the scene, the texture that its emission is multiplied with;
-///              empty = by one
+/// Gives each face the mean emission over its part of an emissive texture. Emission is a property
+/// of the material, so a partly glowing material is split by brightness, in 32 steps.
+/// @param glow  for each material of the scene, the texture that multiplies its emission; empty = 1
 void spread_glow(Scene& scene, const std::vector<SharedGrid<Rgb8>>& glow);
 
 }  // namespace mh

@@ -8,11 +8,11 @@
 
 namespace mh {
 
-/// A glTF file (text or binary) without what is not shown and what assimp stumbles over:
-/// animations, and skins, whose meshes stay as they were modeled. nullopt: it has none, or is no
-/// glTF, which assimp shall say.
-/// @throws InputError naming the file if a place in its buffers is beyond any buffer: assimp adds
-/// such numbers up until they are small again.
+/// A glTF file (text or binary) without invisible content that assimp cannot handle: animations,
+/// and skins, whose meshes stay in their modeled pose. nullopt: nothing to remove, or not glTF,
+/// which assimp will report.
+/// @throws InputError naming the file if an offset into its buffers is beyond every buffer:
+/// assimp's sums of such numbers overflow.
 std::optional<std::string> repaired_gltf(std::string_view bytes, const std::filesystem::path& file);
 
 }  // namespace mh

@@ -5,11 +5,11 @@
 
 namespace mh {
 
-/// Sets the box of every instance from the faces that are its own; zero where it has none.
+/// Computes the box of every instance from its faces; zero if it has none.
 void find_boxes(Scene& scene);
 
-/// For a mesh that came without a plan: the box of each floor is a room, so that those who ask
-/// where people stand (metering, previews, plans) find an answer. @pre boxes are set
+/// For a mesh without a plan: makes the box of each floor a room, for consumers that need places
+/// where people can stand (metering, previews, plans). @pre boxes are set
 void rooms_from_floors(Scene& scene);
 
 }  // namespace mh

@@ -13,8 +13,8 @@
 
 namespace mh {
 
-/// A side table that tells the class of things by their names: patterns as in a shell (* ? [a-z]),
-/// whatever the case of letters; the first that matches counts.
+/// A side table that maps names to classes: shell patterns (* ? [a-z]), ignoring letter case; the
+/// first match wins.
 struct LabelRules {
   struct Rule {
     std::string pattern;
@@ -22,14 +22,14 @@ struct LabelRules {
   };
   std::vector<Rule> rules;
 
-  /// The class of a thing that has these names; nullopt if no pattern matches any.
+  /// The class of a thing with these names; nullopt if no pattern matches.
   std::optional<ClassId> find(std::initializer_list<std::string_view> names) const;
 };
 
 /// Reads a mapping of pattern to class name. @throws InputError naming line and value.
 LabelRules read_label_rules(YamlReader yaml);
 
-/// The table beside a mesh: <stem>.labels.yaml, else labels.yaml; no rules if there is neither.
+/// The table next to a mesh: <stem>.labels.yaml, otherwise labels.yaml; no rules if neither exists.
 LabelRules find_label_rules(const std::filesystem::path& mesh);
 
 }  // namespace mh

@@ -14,14 +14,15 @@ namespace mh {
 
 struct MaterialsIn {
   std::vector<Material> materials;
-  std::vector<SharedGrid<Rgb8>> glow;  ///< of each, what its emission is multiplied with; or empty
+  std::vector<SharedGrid<Rgb8>> glow;  ///< for each, the texture that multiplies its emission; or
+                                       ///< empty
 };
 
 /// Converts the materials of a file that assimp has read, one to one.
-/// @param file              where textures are looked for (its folder) and what warnings name.
-/// @param linear_colors    whether the file's colors are linear (glTF) or sRGB.
-/// @param pictures          decodes the textures and keeps them
-/// @param warnings          one line for every texture that is missing; may be null.
+/// @param file           its folder is searched for textures; warnings name it.
+/// @param linear_colors  whether the file's colors are linear (glTF) or sRGB.
+/// @param pictures       decodes and caches the textures
+/// @param warnings       one line for every texture that is missing; may be null.
 MaterialsIn convert_materials(const aiScene& in, const std::filesystem::path& file,
                               bool linear_colors, PictureStore& pictures,
                               std::vector<std::string>* warnings);

@@ -13,57 +13,57 @@ namespace mh {
 
 class PictureStore;
 
-/// What a mesh file is read for.
+/// Context in which a mesh file is read.
 struct MeshUse {
-  PictureStore* pictures = nullptr;  ///< keeps the textures for other files of the same scene
-  bool in_gazebo = false;            ///< Collada's up axis means nothing: z is up
+  PictureStore* pictures = nullptr;  ///< caches textures for other files of the same scene
+  bool in_gazebo = false;            ///< ignores Collada's up axis: z is up
 };
 
-/// Reads a mesh file through assimp: PLY, glTF/GLB, OBJ, DAE (and what else assimp knows). The
-/// result is z-up: glTF and DAE, which are y-up, are turned; the others are taken as they are.
+/// Reads a mesh file through assimp: PLY, glTF/GLB, OBJ, DAE (and other formats that assimp reads).
+/// The result is z-up: glTF and DAE, which are y-up, are rotated; the others are left as they are.
 ///
-/// Textures may be embedded or lie beside the file. One that is missing or cannot be decoded is
+/// Textures may be embedded or next to the file. One that is missing or cannot be decoded is
 /// replaced by magenta and named in `warnings`. Texels that are not opaque are holes
-/// (Material::opacity); a material of which most is seen through is a pane
-/// (Material::transmission).
+/// (Material::opacity); a mostly transparent material is a pane (Material::transmission).
 ///
 /// Class and instance come from
 /// - the side file <stem>.labels.json of a PLY, as save_scannet_ply writes it;
 /// - node names `name#class=CLASS#instance=ID`, as save_glb writes them, or glTF node extras
 ///   `class` (a name or an id) and `instance`;
-/// - a side table <stem>.labels.yaml or labels.yaml beside the mesh, pattern -> class, for names of
-///   nodes, meshes and materials (LabelRules); a node whose pieces are of several classes is an
+/// - a side table <stem>.labels.yaml or labels.yaml next to the mesh, pattern -> class, for names
+///   of nodes, meshes and materials (LabelRules); a node whose pieces are of several classes is an
 ///   instance for each;
-/// - else from the node's name: "kitchen/night_stand_2" is a night stand; every node is an
-/// instance.
+/// - otherwise the node's name: "kitchen/night_stand_2" is a night stand; every node is an
+///   instance.
 ///
 /// Vertex colors of a file written by save_glb are its baked light and return to Scene::light;
-/// everybody else's are Scene::colors.
-/// @param warnings where to append one line per flaw that could be mended; may be null.
-/// @param rules     come before those of the side table
+/// those of other files are Scene::colors.
+/// @param warnings  where to append one line per repaired flaw; may be null.
+/// @param rules     take precedence over those of the side table
 /// @throws InputError for a missing file, no mesh, no faces, positions that are not finite, or
 /// labels that do not fit the mesh.
 Scene load_mesh(const std::filesystem::path& file, std::vector<std::string>* warnings = nullptr,
                 const LabelRules& rules = {}, const MeshUse& use = {});
 
-/// The same of a file whose way up is told.
+/// The same for a file whose up axis is given.
 Scene load_turned_mesh(const std::filesystem::path& file, std::optional<UpAxis> up,
                        std::vector<std::string>* warnings = nullptr, const LabelRules& rules = {},
                        const MeshUse& use = {});
 
 /// Writes a ScanNet-like mesh: binary little-endian PLY with x y z (float) and red green blue alpha
-/// (uchar, sRGB) per vertex, faces as `uchar int vertex_indices`. The color of a vertex is what
-/// can be seen there: texture x base color x vertex color x baked light, plus emission; where a
-/// vertex joins several materials, the first face counts.
+/// (uchar, sRGB) per vertex, faces as `uchar int vertex_indices`. The color of a vertex is its
+/// visible color: texture x base color x vertex color x baked light, plus emission; where a vertex
+/// joins several materials, the first face's.
 ///
-/// Beside it <stem>.labels.json: {"format": "modelhouse-labels", "version": 1, "name", "vertices":
-/// count, "faces": count, "instances": [[id, class name, name], ...], "runs": [[count, instance id,
-/// class name], ...] over the faces in file order, "rooms": [[name, [[x, y], ...]], ...]}.
+/// Next to it, <stem>.labels.json: {"format": "modelhouse-labels", "version": 1, "name",
+/// "vertices": count, "faces": count, "instances": [[id, class name, name], ...], "runs": [[count,
+/// instance id, class name], ...] over the faces in file order, "rooms": [[name, [[x, y], ...]],
+/// ...]}.
 /// @throws InputError if a file cannot be written.
 void save_scannet_ply(const Scene& scene, const std::filesystem::path& file,
                       float max_edge_m = 0.04F);
 
-/// Writes a binary glTF 2.0 with embedded PNG textures, y-up as glTF wants it, one node per
+/// Writes a binary glTF 2.0 with embedded PNG textures, y-up as glTF requires, one node per
 /// instance (and class) named `name#class=CLASS#instance=ID` with extras `class` and `instance`,
 /// and baked light times vertex color as linear vertex colors (they may exceed 1) of unlit
 /// materials. Lamps and tile sizes are not kept; rooms come back as the boxes of the floors.

@@ -10,32 +10,33 @@
 
 namespace mh {
 
-/// What the name of a mesh node tells about its faces.
+/// Labels encoded in the name of a mesh node.
 struct NodeLabel {
   std::string name;
   ClassId class_id = kVoid;
-  bool is_told = false;                ///< the class, by its name or number: nothing was guessed
-  std::optional<InstanceId> instance;  ///< only where the name says so
+  bool is_told = false;                ///< the class was given by name or number: nothing was
+                                       ///< guessed
+  std::optional<InstanceId> instance;  ///< only if the name states one
 };
 
 /// "kitchen/chair_2#class=chair#instance=17".
 std::string node_name(std::string_view name, ClassId class_id, InstanceId instance);
 
-/// Reads a name made by node_name, and guesses the class of any other (guess_class).
+/// Parses a name made by node_name; for any other, guesses the class (guess_class).
 NodeLabel parse_node_name(std::string_view node);
 
-/// The class that a name's last part tells ("kitchen/night_stand_2"), void if it tells none. Words
-/// are parted by what is no letter and by CamelCase; singular or plural, of NYU40, COCO or a list
-/// of synonyms (class_words.hpp). Of several nouns the last one counts, up to a "with", "of" or the
-/// like: "floor_01_walls" is a wall, "TableLamp" a lamp, "box_of_books" a box.
+/// Guesses the class from a name's last part ("kitchen/night_stand_2"); void if there is no match.
+/// Words are separated by non-letters and by CamelCase; singular or plural, from NYU40, COCO or a
+/// list of synonyms (class_words.hpp). Of several nouns the last one wins, up to a "with", "of" or
+/// the like: "floor_01_walls" is a wall, "TableLamp" a lamp, "box_of_books" a box.
 ClassId guess_class(std::string_view name);
 
-/// The class of a name that ends in its noun, as people annotate: "coffee cup" is a cup, "oven
+/// The class of a name that ends in its noun, as annotators write: "coffee cup" is a cup, "oven
 /// mitt" nothing.
 std::optional<ClassId> class_of_noun(std::string_view name);
 
-/// Whether a class is one of those that NYU40 lumps together as `lump`: otherstructure,
-/// otherfurniture or otherprop.
+/// Whether a class is one of those that NYU40 merges into `lump`: otherstructure, otherfurniture or
+/// otherprop.
 bool is_finer(ClassId class_id, ClassId lump);
 
 }  // namespace mh

@@ -11,17 +11,18 @@
 
 namespace mh {
 
-/// Gives assimp regular files alone, the mesh and what it names, and notes each (ReadScope).
+/// Gives assimp access to regular files only, the mesh and files it references, and records each
+/// (ReadScope).
 class NotedFiles : public Assimp::IOSystem {
  public:
   NotedFiles() = default;
-  /// @param repaired  what is read in the place of that file, which the caller has read
+  /// @param repaired  replaces the content of that file, which the caller has already read
   NotedFiles(std::filesystem::path file, std::string repaired)
       : file_(std::move(file)), repaired_(std::move(repaired)) {}
 
   bool Exists(const char* file) const override;
   char getOsSeparator() const override { return '/'; }
-  /// null if it cannot be read: assimp then tells, or goes without.
+  /// null if it cannot be read: assimp then reports it, or continues without.
   Assimp::IOStream* Open(const char* file, const char* mode) override;
   void Close(Assimp::IOStream* stream) override { delete stream; }
 

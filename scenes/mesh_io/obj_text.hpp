@@ -7,9 +7,9 @@
 
 namespace mh {
 
-/// An OBJ or its materials (MTL) as assimp can read them; nullopt: as they are. Coordinates may
-/// begin with their point (`v .5 -.5 0`); `aniso` and `anisor` of MTL's extension for physically
-/// based materials, which no picture of ours shows, are left out.
+/// Rewrites an OBJ or its materials (MTL) so that assimp can read them; nullopt: no change needed.
+/// Coordinates may start with the decimal point (`v .5 -.5 0`); `aniso` and `anisor` of MTL's
+/// extension for physically based materials, which we do not render, are removed.
 std::optional<std::string> repaired_obj(std::string_view text);
 
 }  // namespace mh

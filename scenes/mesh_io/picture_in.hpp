@@ -13,18 +13,18 @@
 
 namespace mh {
 
-/// A material's picture as a file holds it.
+/// A material's image as decoded from a file.
 struct PictureIn {
   SharedGrid<Rgb8> color{};
   SharedGrid<std::uint8_t> opacity{};   ///< empty if the file has none
-  std::string fault = "is no picture";  ///< why color is empty, where it is
+  std::string fault = "is no picture";  ///< why color is empty, if it is
 };
 
-/// The pictures of a scene's materials, each decoded once, however many files hold it and however
-/// many materials show it.
+/// The images of a scene's materials, each decoded once, however many files contain it and however
+/// many materials use it.
 class PictureStore {
  public:
-  /// The picture in these bytes.
+  /// Decodes the image in these bytes.
   PictureIn decode(std::string_view bytes);
   PictureIn read(const std::filesystem::path& file);
 

@@ -14,7 +14,7 @@
 
 namespace mh {
 
-/// What a ScanNet-like PLY holds. Vertices and faces keep the order of the file.
+/// Content of a ScanNet-like PLY. Vertices and faces keep the order of the file.
 struct PlyMesh {
   std::vector<Eigen::Vector3f> positions_m;
   std::vector<Rgb8> colors;           ///< sRGB, one per vertex; empty if the file has none
@@ -23,41 +23,42 @@ struct PlyMesh {
   std::vector<std::uint16_t> nyu40{};         ///< vertex property `NYU40` (3RScan)
   std::vector<std::uint32_t> objects{};       ///< vertex property `objectId` (3RScan)
   std::vector<std::uint32_t> face_objects{};  ///< face property `object_id` (Replica), per triangle
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< larger polygons become fans
-  std::size_t bytes_left = 0;  ///< behind the last element, blanks apart; a whole file has none
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< larger polygons are split into fans
+  std::size_t bytes_left = 0;  ///< after the last element, not counting blanks; 0 for an intact
+                               ///< file
 };
 
-/// What stands in face_objects for a face of no object.
+/// Value in face_objects for a face that belongs to no object.
 inline constexpr std::uint32_t kNoObject = 0xffffffffU;
 
-/// What to read of it.
+/// Which parts to read.
 struct PlyParts {
   bool geometry = true;  ///< positions, colors, triangles and their objects
   bool labels = true;
 };
 
-/// Whether parse_ply reads a PLY that begins with these bytes, or tells what is wrong with its
-/// header: texture coordinates and triangle strips are assimp's to read.
+/// Whether parse_ply reads a PLY that starts with these bytes, or reports what is wrong with its
+/// header: texture coordinates and triangle strips are left to assimp.
 bool is_plain_ply(std::string_view bytes);
 
 /// Reads a PLY, text or binary of either byte order. Little-endian ones are read in one pass over
-/// their bytes, some 15 times as fast as a general reader; the others are brought into that form
-/// first. Labels are kept, which assimp drops. Properties may have any type and order; unknown
-/// properties and elements are passed over.
-/// @param name  stands for the file in messages
-/// @throws InputError naming file, element and value: a header that is none, fewer bytes than it
-/// announces, positions that are not finite, faces of fewer than 3 corners or that name a vertex
-/// that is not there.
+/// their bytes, some 15 times as fast as a general reader; the others are converted to that form
+/// first. Labels, which assimp drops, are kept. Properties may have any type and order; unknown
+/// properties and elements are skipped.
+/// @param name  names the file in messages
+/// @throws InputError naming file, element and value: a malformed header, fewer bytes than
+/// announced, positions that are not finite, faces with fewer than 3 corners or with a vertex index
+/// out of range.
 PlyMesh parse_ply(std::string_view bytes, const std::string& name, const PlyParts& parts = {});
 PlyMesh read_ply(const std::filesystem::path& file, const PlyParts& parts = {});
 
-/// Appends a warning where bytes are left: the header may announce too little.
+/// Appends a warning if bytes are left over: the header may announce too little.
 void warn_of_bytes_left(const PlyMesh& mesh, const std::filesystem::path& file,
                         std::vector<std::string>* warnings);
 
-/// The bytes of a PLY as ScanNet's: x y z (float), red green blue alpha (uchar), `label` (ushort)
-/// where there are labels, faces as `uchar int vertex_indices`.
-/// @pre colors (and labels, if any) are as many as positions.
+/// The bytes of a PLY like ScanNet's: x y z (float), red green blue alpha (uchar), `label` (ushort)
+/// if there are labels, faces as `uchar int vertex_indices`.
+/// @pre there are as many colors (and labels, if any) as positions.
 std::string ply_bytes(const PlyMesh& mesh);
 
 }  // namespace mh

@@ -13,10 +13,10 @@ namespace mh::ply {
 
 enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 
-/// Bytes of a value.
+/// Size of a value, bytes.
 std::size_t size_of(Type type);
 
-/// A value as it lies in memory, however it is aligned.
+/// Loads a value from memory of any alignment.
 template <class T>
 T load(const char* at) {
   T value;
@@ -24,7 +24,7 @@ T load(const char* at) {
   return value;
 }
 
-/// Any scalar as a number that holds it exactly.
+/// Loads any scalar as a number that represents it exactly.
 double load_number(Type type, const char* at);
 
 struct Property {
@@ -55,12 +55,12 @@ struct Header {
   std::size_t size = 0;  ///< bytes up to and with the line end of end_header
 };
 
-/// What the bytes of a PLY announce. @param name  stands for the file in messages
+/// Parses the header of a PLY. @param name  names the file in messages
 /// @throws InputError naming the line.
 Header parse_header(std::string_view bytes, const std::string& name);
 
-/// A body of another encoding as it would be in binary, little-endian.
-/// @throws InputError naming element and record: what is cut short, no number, or too large for its
+/// Converts a body in another encoding to little-endian binary.
+/// @throws InputError naming element and record: truncated, not a number, or too large for its
 /// type.
 std::string as_little_endian(std::string_view body, const Header& header, const std::string& name);
 

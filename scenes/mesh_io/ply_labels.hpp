@@ -10,16 +10,16 @@
 
 namespace mh {
 
-/// Gives the faces of a scene the classes and objects that its PLY tells:
-/// - face property `object_id` (Replica): the object; classes by name from info_semantic.json
-///   beside the mesh, or in habitat/ beside it;
+/// Assigns classes and objects from a PLY to the faces of a scene:
+/// - face property `object_id` (Replica): the object; classes by name from info_semantic.json next
+///   to the mesh, or in habitat/ next to it;
 /// - vertex properties `objectId` and `NYU40` (3RScan), names from semseg.v2.json or semseg.json
-///   beside it;
+///   next to it;
 /// - vertex property `label`: NYU40 ids.
-/// A face takes what most of its vertices have, the first's where all differ. Ids that mean nothing
-/// are left out and warned about with a count.
-/// @param positions_m of the mesh are in the scene already
-/// @throws InputError naming a JSON file that is damaged.
+/// A face takes the value of most of its vertices, that of the first if all differ. Unknown ids are
+/// ignored, with a warning that counts them.
+/// @pre the scene already has the mesh's positions_m
+/// @throws InputError naming a damaged JSON file.
 void label_ply(Scene& scene, const PlyMesh& mesh, const std::filesystem::path& file,
                std::vector<std::string>* warnings);
 

@@ -11,11 +11,11 @@
 
 namespace mh {
 
-/// The same picture as 8-bit BGR.
+/// Converts an image to 8-bit BGR.
 cv::Mat color_picture(const Grid2d<Rgb8>& color);
 
-/// A grid of numbers of 8 or 16 bits as a gray picture in the same memory: for reading, and no
-/// longer than the grid is there.
+/// A view of a grid of 8- or 16-bit numbers as a gray image in the same memory: read-only, and
+/// valid as long as the grid.
 template <class Number>
 cv::Mat gray_picture(const Grid2d<Number>& grid) {
   static_assert(std::is_unsigned_v<Number> && sizeof(Number) <= 2);
@@ -23,13 +23,13 @@ cv::Mat gray_picture(const Grid2d<Number>& grid) {
           const_cast<Number*>(grid.data())};
 }
 
-/// Writes a picture, in the format that the file's ending tells, whole or not at all.
+/// Writes an image atomically, in the format given by the file's extension.
 /// @param settings  of the format, as cv::imencode takes them
 /// @throws InputError if it cannot be written.
 void write_picture(const std::filesystem::path& file, const cv::Mat& bgr,
                    const std::vector<int>& settings = {});
 
-/// Whether a PNG or JPEG file is there and as whole as picture_fault() can tell.
+/// Whether a PNG or JPEG file exists and is intact, as judged by picture_fault().
 bool is_whole_picture(const std::filesystem::path& file);
 
 }  // namespace mh

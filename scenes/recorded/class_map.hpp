@@ -9,7 +9,7 @@
 
 namespace mh {
 
-/// What the ids of somebody else's label images mean: the class of id i; void where it is not told.
+/// Meaning of the ids of foreign label images: the class of id i; void if not listed.
 using ClassMap = std::vector<ClassId>;
 
 /// Reads a class map: YAML of lines `id: class`, ids from 0 to 65535, or a ScanNet label table

@@ -11,18 +11,18 @@
 
 namespace mh {
 
-/// A folder in TUM's layout, seen by that camera.
-/// @param notes  gets what was left out, a line each; may be null
+/// Opens a folder in TUM's layout, recorded by that camera.
+/// @param notes  receives what was omitted, one line each; may be null
 /// @throws InputError naming file and line.
 std::unique_ptr<Sequence> open_tum_folder(const std::filesystem::path& folder,
                                           const RecordedCamera& camera,
                                           std::vector<std::string>* notes = nullptr);
 
-/// TUM's layout. The calibration is the one named, else camera.yaml, else camera_info.yaml in the
-/// folder.
+/// TUM's layout. The calibration is the specified one, otherwise camera.yaml or camera_info.yaml in
+/// the folder.
 extern const SequenceReader kTumReader;
 
-/// Frames that lie in memory.
+/// A sequence of frames in memory.
 std::unique_ptr<Sequence> frames_in_memory(const Camera& camera, std::vector<RgbdFrame> frames);
 
 }  // namespace mh

@@ -14,24 +14,25 @@
 
 namespace mh {
 
-/// How a recording is to be opened.
+/// How to open a recording.
 struct RecordingConfig {
-  std::filesystem::path calibration;  ///< a file; empty: what lies beside the frames, or in them
-  std::filesystem::path classes;      ///< class map of its labels; empty: they are our classes
-  bool labels = true;                 ///< false: frames come without
-  /// Reads a calibration file, for layouts that leave it to one. @throws InputError
+  std::filesystem::path calibration;  ///< a file; empty: the one next to the frames, or stored with
+                                      ///< them
+  std::filesystem::path classes;      ///< class map of its labels; empty: labels are our classes
+  bool labels = true;                 ///< false: ignore labels
+  /// Reads a calibration file, for layouts that keep one. @throws InputError
   std::function<RecordedCamera(const std::filesystem::path&)> read_camera = {};
 };
 
-/// A recording, opened.
+/// An opened recording.
 struct OpenedRecording {
   std::unique_ptr<Sequence> sequence;
-  bool has_labels = false;                   ///< it holds some, wanted or not
-  std::vector<std::filesystem::path> files;  ///< that frames are read from when they are asked for
+  bool has_labels = false;                   ///< it contains labels, whether used or not
+  std::vector<std::filesystem::path> files;  ///< files that frames are read from on demand
   std::vector<std::string> notes;            ///< what could not be used, one line each
 };
 
-/// A layout of recordings. To add one: a file with its SequenceReader, a line in the table of
+/// A recording layout. To add one: a file with its SequenceReader, a line in the table of
 /// open_sequence.cpp, docs/recordings.md, a test.
 struct SequenceReader {
   const char* name;   ///< before the colon: "tum"

@@ -18,42 +18,43 @@
 
 namespace mh {
 
-/// What a recorded sequence needs to be read.
+/// What is needed to read a recorded sequence.
 struct RecordedCamera {
   Camera camera;
-  double depth_per_meter = kDepthPerMeter;  ///< value of a depth pixel one meter away
+  double depth_per_meter = kDepthPerMeter;  ///< value of a depth pixel at one meter
   bool exchange_red_blue = false;           ///< the files' first channel is blue
 };
 
-/// One moment of a recording: color and depth pictures that belong together.
+/// A pair of color and depth images of a recording.
 struct RecordedFrame {
-  Stamp stamp_ns = 0;                           ///< of the color picture
-  std::filesystem::path color, depth, classes;  ///< classes: empty where the recording has none
+  Stamp stamp_ns = 0;                           ///< of the color image
+  std::filesystem::path color, depth, classes;  ///< classes: empty if the recording has none
 };
 
-/// Reads a folder in TUM's layout: rgb.txt and depth.txt, without them associations.txt, and
-/// label.txt where it is there. Each color picture gets the nearest depth picture within 0.02 s,
-/// as TUM's own association does, or the one beside which it is listed; one without is left out.
-/// @param notes  gets a line with the number of those left out; may be null
+/// Reads a folder in TUM's layout: rgb.txt and depth.txt, or if missing associations.txt, and
+/// label.txt if present. Each color image is paired with the nearest depth image within 0.02 s, as
+/// in TUM's own association, or with the one listed next to it; color images without one are
+/// omitted.
+/// @param notes  receives a line with the number of omitted ones; may be null
 /// @throws InputError naming file and line.
 std::vector<RecordedFrame> load_tum_folder(const std::filesystem::path& folder,
                                            std::vector<std::string>* notes = nullptr);
 
-/// Reads the pictures of one frame.
-/// @param classes  what the ids of its label picture mean; null: they are our classes, 8 bits
-/// @throws InputError naming the picture.
+/// Reads the images of one frame.
+/// @param classes  meaning of the ids in its label image; null: they are our classes, 8 bits
+/// @throws InputError naming the image.
 RgbdFrame read_frame(const RecordedFrame& frame, const RecordedCamera& camera,
                      const ClassMap* classes = nullptr);
 
 /// Writes sequences in TUM's layout: rgb/ and depth/ (16 bit, 5000 per meter), label/ (class ids, 8
-/// bit), their lists, associations.txt, camera.yaml and camera_info.yaml; with truth also instance/
-/// (16 bit), its list and groundtruth.txt. The lists appear with finish(), so that a folder without
-/// them was not finished.
+/// bit), their lists, associations.txt, camera.yaml and camera_info.yaml; with ground truth also
+/// instance/ (16 bit), its list and groundtruth.txt. finish() writes the lists, so that a folder
+/// without them is recognized as incomplete.
 class TumWriter : public SequenceWriter {
  public:
   TumWriter(std::filesystem::path folder, const Camera& camera,
             PngCompression png_compression = {});
-  /// What a system may see and nothing else. label.txt lists the frames that have labels.
+  /// Adds only what a system may see. label.txt lists the frames that have labels.
   void add(const RgbdFrame& frame);
   void add(std::size_t index, const ExactFrame& frame) override;
   bool resume(std::size_t index, Stamp stamp_ns, const SE3& world_from_camera) override;
@@ -68,8 +69,8 @@ class TumWriter : public SequenceWriter {
   std::filesystem::path folder_;
   Camera camera_;
   std::vector<int> png_;
-  std::mutex mutex_;                               ///< of what follows
-  std::map<std::string, std::set<Stamp>> listed_;  ///< by part: whose pictures are there
+  std::mutex mutex_;                               ///< guards the members below
+  std::map<std::string, std::set<Stamp>> listed_;  ///< by part: stamps whose images exist
   std::map<Stamp, SE3> truth_;
 };
 

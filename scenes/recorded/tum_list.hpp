@@ -9,15 +9,15 @@
 
 namespace mh {
 
-/// One line of rgb.txt, depth.txt, label.txt: a picture and its moment.
+/// One line of rgb.txt, depth.txt, label.txt: an image and its stamp.
 struct TumListEntry {
   Stamp stamp_ns = 0;
-  std::filesystem::path file;  ///< as the list names it
+  std::filesystem::path file;  ///< as written in the list
 };
 
-/// Parses "stamp file" lines, after so many words to skip; '#' begins a comment.
+/// Parses "stamp file" lines, after the given number of words to skip; '#' starts a comment.
 /// Entries keep the list's order; their stamps need not increase.
-/// @param name  stands for the list in messages
+/// @param name  names the list in messages
 /// @throws InputError naming list and line: no file, no stamp.
 std::vector<TumListEntry> parse_tum_list(const std::string& text, const std::string& name,
                                          int skip = 0);

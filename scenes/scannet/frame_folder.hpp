@@ -14,15 +14,14 @@
 
 namespace mh {
 
-/// The number that a picture's name tells: "17.png", "label-filt/000017.png"; nullopt if it is not
-/// one.
+/// The number in an image's name: "17.png", "label-filt/000017.png"; nullopt if it is not a number.
 std::optional<std::uint32_t> number_of_name(const std::filesystem::path& name);
 
-/// The files of a folder that are named by numbers, in the order of these.
+/// The files of a folder that are named by numbers, in numeric order.
 class NumberedFiles {
  public:
-  /// @param endings  which files count, e.g. ".png"
-  /// @throws InputError if there is no such folder.
+  /// @param endings  which files are included, e.g. ".png"
+  /// @throws InputError if the folder does not exist.
   NumberedFiles(const std::filesystem::path& folder,
                 std::initializer_list<std::string_view> endings);
 
@@ -36,8 +35,8 @@ class NumberedFiles {
 };
 
 /// Writes a recording as ScanNet's SensReader extracts it: color/N.jpg, depth/N.png (16 bit),
-/// pose/N.txt and intrinsic/. Stamps are lost. The intrinsics come last, so that a folder that was
-/// not finished cannot be read.
+/// pose/N.txt and intrinsic/. Stamps are lost. The intrinsics are written last, so that an
+/// incomplete folder cannot be read.
 /// @throws InputError if it cannot be written.
 void save_extracted(const std::filesystem::path& folder, const RecordingInfo& info,
                     std::size_t frames,

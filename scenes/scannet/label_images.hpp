@@ -13,32 +13,32 @@
 
 namespace mh {
 
-/// One picture of ids for each frame of a recording: ScanNet's label-filt (raw category ids) or
+/// One image of ids for each frame of a recording: ScanNet's label-filt (raw category ids) or
 /// instance-filt (objectId + 1). 8 or 16 bits.
 class LabelImages {
  public:
   virtual ~LabelImages() = default;
-  /// The folder or zip that they lie in.
+  /// The folder or zip that contains them.
   virtual const std::string& place() const = 0;
   /// Whether a frame has one.
   virtual bool contains(std::uint32_t number) const = 0;
-  /// The file that holds a frame's, read when it is asked for; empty where there is none, or where
-  /// all are in one file that was read.
+  /// The file with a frame's image, which is read on demand; empty if there is none, or if all are
+  /// in one file that was already read.
   virtual std::filesystem::path file(std::uint32_t) const { return {}; }
-  /// The picture of a frame; nullopt where there is none. @throws InputError if it is damaged.
+  /// The image of a frame; nullopt if there is none. @throws InputError if it is damaged.
   virtual std::optional<Grid2d<std::uint16_t>> read(std::uint32_t number) const = 0;
 };
 
-/// Opens them where they lie beside a recording: a folder `kind` ("label-filt", "instance-filt"),
-/// or a zip *_2d-KIND.zip. Null if there are none.
-/// @throws InputError if the zip is damaged, or names files outside of it.
+/// Opens those next to a recording: a folder `kind` ("label-filt", "instance-filt"), or a zip
+/// *_2d-KIND.zip. Null if there are none.
+/// @throws InputError if the zip is damaged, or has names that point outside of it.
 std::unique_ptr<LabelImages> find_label_images(const std::filesystem::path& folder,
                                                const std::string& kind);
-/// Opens a zip of them; `name` stands for the file in messages.
+/// Opens a zip of them; `name` names the file in messages.
 std::unique_ptr<LabelImages> open_label_zip(HeldBytes bytes, const std::string& name);
 
-/// Writes KIND/N.png, 16 bits, or 8 where no id is above 255 and the kind is instance-filt, as
-/// ScanNet has them: into a folder, or into a zip of that name.
+/// Writes KIND/N.png into a folder, or into a zip of that name: 16 bits, or 8 if no id exceeds 255
+/// and the kind is instance-filt, as in ScanNet.
 class LabelImageWriter {
  public:
   virtual ~LabelImageWriter() = default;

@@ -24,12 +24,12 @@ struct LabelTable {
   std::map<std::uint32_t, ClassId> class_of_id;                   ///< by raw category id
 };
 
-/// Reads a label table; which release it belongs to is told by its columns: `raw_category` and `id`
-/// (v2), or `category` and `index` (v1); without ids, rows count from 1. The class is that of
-/// `nyu40id`, of `nyu40class` where there is none; where that is otherfurniture or the like, a
-/// category that names one of our classes
-/// ("microwave") is that class. Our own tables have a column `modelhouse` beside, which names the
-/// class that NYU40 lumps into otherfurniture or otherprop. A row without any of them is void.
+/// Reads a label table; its columns identify the release: `raw_category` and `id` (v2), or
+/// `category` and `index` (v1); without ids, rows count from 1. The class is that of `nyu40id`, or
+/// if missing of `nyu40class`; if that is otherfurniture or the like, a category that names one of
+/// our classes ("microwave") gives that class. Our own tables have an additional column
+/// `modelhouse`, which names the class that NYU40 merges into otherfurniture or otherprop. A row
+/// without any of them is void.
 /// @throws InputError naming file and line.
 LabelTable parse_label_table(std::string_view text, const std::string& name);
 LabelTable load_label_table(const std::filesystem::path& file);

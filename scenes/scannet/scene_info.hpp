@@ -9,11 +9,11 @@
 
 namespace mh {
 
-/// What we use of sceneXXXX_YY.txt, whose lines are `key = value`.
+/// The parts of sceneXXXX_YY.txt that we use; its lines are `key = value`.
 struct ScannetInfo {
-  /// Turns the scan upright and along its walls; release v1 has none.
+  /// Aligns the scan with gravity and its walls; release v1 has none.
   std::optional<Eigen::Matrix4d> aligned_from_scan;
-  std::string scene_type;  ///< e.g. "Bedroom / Hotel"; empty where it is not told
+  std::string scene_type;  ///< e.g. "Bedroom / Hotel"; empty if not stated
 };
 
 /// @throws InputError naming file and line.

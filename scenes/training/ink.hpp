@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// What the painters of training patterns share; of no use elsewhere.
+// Shared by the painters of training patterns; not for use elsewhere.
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,7 @@ namespace mh::training {
 constexpr int kTexels = 512;
 using Sheet = Grid2d<Rgb8>;
 
-/// The colors and the randomness of one sheet.
+/// Colors and randomness of one sheet.
 struct Ink {
   RandomStream random;
   std::array<Tint, 5> palette;
@@ -26,7 +26,7 @@ struct Ink {
   explicit Ink(RandomStream stream) : random(stream) {
     const RandomStream colors = stream.fork(1000);
     for (std::uint64_t i = 0; i < palette.size(); ++i) {
-      // Light and dark take turns, so that neighbors in the palette can be told apart.
+      // Light and dark alternate, so that neighbors in the palette are distinguishable.
       const bool is_light = (i + colors.below(90, 2)) % 2 == 0;
       const double low = is_light ? 130.0 : 40.0, high = is_light ? 235.0 : 140.0;
       const auto base = static_cast<float>(colors.uniform(4 * i, low, high));
@@ -56,7 +56,7 @@ Sheet fill(const TintAt& tint_at) {
   return sheet;
 }
 
-/// Smooth noise in about [-1, 1], `cells` lumps across the sheet.
+/// Smooth noise in about [-1, 1], with `cells` blobs across the sheet.
 inline Field clouds(const Ink& ink, std::uint64_t name, int cells, int octaves = 5,
                     float gain = 0.55F) {
   return fbm(kTexels, kTexels, {cells, cells, octaves, gain}, ink.random.fork(name));
