@@ -30,7 +30,7 @@ class EachByName {
   std::string section_;
 };
 
-/// Calls use(value, range) for the setting of that name.
+/// Calls use(value, range) for the setting with that name.
 template <class Config, class Use>
 void at_setting(Config&& config, std::string_view name, Use use) {
   bool found = false;

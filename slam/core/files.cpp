@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// @returns 0, or errno of what failed
+/// @returns 0, or errno of the call that failed
 int write_all(const fs::path& file, std::string_view content) {
   const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) return errno;
@@ -59,9 +59,9 @@ FileObservation::Kind look_at(const fs::path& path) {
   return kind;
 }
 
-/// A new empty file in a folder: nobody else's has its name.
+/// Creates a new empty file in a folder under an unused name.
 /// @param name  of (process, number)
-/// @returns nullopt, and errno, if none can be made
+/// @returns nullopt, and sets errno, if it cannot be created
 template <class Name>
 std::optional<fs::path> new_file(const fs::path& folder, const Name& name) {
   for (int number = 0;; ++number) {
@@ -97,7 +97,7 @@ void make_output_folder(const fs::path& folder) {
 
 void write_atomically(const fs::path& file, const std::function<void(const fs::path&)>& write) {
   std::error_code error;
-  // A rename would put a file in the place of a device such as /dev/stdout.
+  // A rename would replace a device such as /dev/stdout with a file.
   if (fs::exists(file, error) && !fs::is_regular_file(file, error))
     throw InputError(fmt::format("{}: cannot be written: it is {}", file.string(),
                                  fs::is_directory(file, error) ? "a folder" : "no file"));

@@ -17,7 +17,7 @@
 namespace mh {
 namespace {
 
-/// Opened without waiting: a pipe that nobody writes to is refused, not waited for.
+/// Opens without blocking: a pipe without a writer is refused, not waited for.
 class FileDescriptor {
  public:
   explicit FileDescriptor(const std::filesystem::path& file)

@@ -7,7 +7,7 @@
 namespace mh {
 namespace {
 
-/// How many bytes the character at the beginning has; 0 if it is none, or none to be printed.
+/// Length in bytes of the first character; 0 if it is invalid or not printable.
 std::size_t character(std::string_view text) {
   const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = at(0);

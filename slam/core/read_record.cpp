@@ -20,7 +20,7 @@ void append_bytes(std::string& out, std::string_view text) {
   out += text;
 }
 
-/// Takes values from the front of bytes.
+/// Takes values from the front of a byte string.
 class Taker {
  public:
   explicit Taker(std::string_view bytes) : rest_(bytes) {}
@@ -55,7 +55,7 @@ std::uint64_t digest(const ReadRecord& record) {
   std::string bytes;
   for (const FileObservation& o : record.observations) {
     append_bytes(bytes, static_cast<std::uint64_t>(o.kind));
-    // A folder may be called by another name, or ".".
+    // A folder may be referred to by another name, or ".".
     append_bytes(bytes, o.kind == FileObservation::Kind::kFolder ? "" : o.path.filename().string());
     append_bytes(bytes, o.digest);
   }

@@ -37,7 +37,7 @@ Eigen::Matrix3d so3_exp(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation) {
-  // Through the quaternion: stable at both ends, angle 0 and angle pi.
+  // Via the quaternion: stable at both ends, angle 0 and angle pi.
   Eigen::Quaterniond q(rotation);
   if (q.w() < 0.0) q.coeffs() = -q.coeffs();
   const double sine = q.vec().norm();

@@ -18,7 +18,7 @@ std::string plain(std::string_view word) {
   return result;
 }
 
-/// Edits that make one word the other (optimal string alignment).
+/// Number of edits that turn one word into the other (optimal string alignment).
 std::size_t edits(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i)
@@ -39,7 +39,7 @@ std::size_t edits(std::string_view a, std::string_view b) {
 
 std::optional<std::string> nearest_word(std::string_view word,
                                         const std::vector<std::string>& valid) {
-  constexpr std::size_t kLongest = 64;  // of what somebody mistypes
+  constexpr std::size_t kLongest = 64;  // of a mistyped word
   const std::string meant = plain(word.substr(0, kLongest));
   std::size_t least = std::max<std::size_t>(1, meant.size() / 3) + 1;
   std::optional<std::string> nearest;
@@ -47,7 +47,7 @@ std::optional<std::string> nearest_word(std::string_view word,
     const std::string other = plain(candidate);
     const std::size_t longer = std::max(meant.size(), other.size());
     const std::size_t apart = edits(meant, other);
-    if (apart >= least || apart >= longer) continue;  // nothing in common is no likeness
+    if (apart >= least || apart >= longer) continue;  // nothing in common
     least = apart;
     nearest = candidate;
   }

@@ -22,13 +22,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Written once the lock is held: whoever reads it and gets the lock knows that nobody works there.
+// Written once the lock is held: whoever reads it and gets the lock knows that the folder is not in
+// use.
 constexpr std::string_view kMarkerText = "modelhouse works here; it removes this folder\n";
 
 OwnedFolder make_hidden(const fs::path& parent) {
   char host[256] = {};
   gethostname(host, sizeof host - 1);
-  // Another host's lock may not be seen from here.
+  // Another host's lock may not be visible here.
   const std::string ours = fmt::format(".work.{}.", host);
   make_output_folder(parent);
   std::error_code error;
@@ -57,8 +58,8 @@ std::optional<OwnedFolder> OwnedFolder::make(const fs::path& folder) {
   OwnedFolder made;
   made.path_ = folder;
   made.marker_ = open((folder / kMarker).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  // Where a disk knows no locks the marker stays empty: nobody ever takes the folder for a left
-  // one.
+  // On a disk without locks the marker stays empty, so that the folder is never mistaken for an
+  // abandoned one.
   const bool good =
       made.marker_ >= 0 && (flock(made.marker_, LOCK_EX | LOCK_NB) != 0 ||
                             write(made.marker_, kMarkerText.data(), kMarkerText.size()) > 0);

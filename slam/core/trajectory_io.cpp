@@ -31,7 +31,7 @@ std::vector<std::string> split(std::string_view line) {
   return words;
 }
 
-/// Where a line stands, for messages.
+/// Position of a line, for messages.
 struct Place {
   const std::string& file;
   int line;
@@ -43,7 +43,7 @@ struct Place {
 
 double parse_number(const std::string& word, const char* field, const Place& place) {
   double value = 0;
-  // from_chars knows no leading plus.
+  // from_chars does not accept a leading plus.
   const char* begin = word.data() + (word.front() == '+' ? 1 : 0);
   const char* end = word.data() + word.size();
   const auto [stop, error] = std::from_chars(begin, end, value);

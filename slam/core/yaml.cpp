@@ -13,14 +13,14 @@
 namespace mh {
 namespace {
 
-/// "file:line"; the file alone where the node has no place in it.
+/// "file:line"; only the file if the node has no position.
 std::string place_in(const std::string& file, const YAML::Node& node) {
   const int line = node.Mark().line + 1;
   return line > 0 ? fmt::format("{}:{}", file, line) : file;
 }
 
-/// Looks at every node once for each way that leads to it: keys that stand twice, and aliases that
-/// hold themselves or multiply, for which reading would have no end.
+/// Visits every node once for each path that leads to it, to find duplicate keys, and aliases that
+/// contain themselves or multiply, which would make reading endless.
 class Walk {
  public:
   explicit Walk(const std::string& file) : file_(file) {}
@@ -95,7 +95,7 @@ std::string replaced(const std::string& text,
   return result + text.substr(from);
 }
 
-/// In every word below a node, in place.
+/// Replaces in every word below a node, in place.
 void replace_words(YAML::Node node, const std::string& file,
                    const std::function<std::string(const std::string&)>& value_of) {
   if (node.IsScalar() && node.Scalar().find("${") != std::string::npos) {

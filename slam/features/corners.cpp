@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kCell_px = 36;
 
-// The area under search, cut into cells of about kCell_px.
+// The search area, divided into cells of about kCell_px.
 struct Cells {
   cv::Rect area;
   int columns, rows;
@@ -33,7 +33,7 @@ struct Cells {
   }
 };
 
-// From the order of rows and columns to that of `stronger`: a counting sort, which is stable.
+// Reorders from row-major order to that of `stronger`: a counting sort, which is stable.
 std::vector<Corner> strongest_first(const std::vector<Corner>& corners) {
   std::array<std::size_t, 257> start{};
   for (const Corner& c : corners) ++start[static_cast<std::size_t>(256 - c.strength)];
@@ -54,8 +54,8 @@ class SpacedPicker {
   }
 
   std::vector<Corner> pick(int spacing, std::size_t count) {
-    // Cells as large as the spacing hold one taken corner at most. A rim of empty cells saves
-    // asking for bounds; four more are read with the last but never looked at.
+    // Cells as large as the spacing contain at most one picked corner. A rim of empty cells avoids
+    // bounds checks; four more are loaded with the last but not compared.
     const int columns = width_ / spacing + 3;
     const int rows = height_ / spacing + 3;
     taken_.assign(static_cast<std::size_t>(columns) * rows + 4, kNone);
@@ -74,7 +74,7 @@ class SpacedPicker {
     return picked;
   }
 
-  // No spacing above this one can hold `count` corners.
+  // No larger spacing can yield `count` corners.
   int largest_spacing(std::size_t count) const {
     int spacing = 1;
     while (static_cast<std::size_t>((width_ / (spacing + 1) + 1)) * (height_ / (spacing + 1) + 1) >=
@@ -90,7 +90,7 @@ class SpacedPicker {
   };
   static constexpr Place kNone{-20000, -20000};  // farther from any corner than any spacing
 
-  // 1 + i / spacing for all coordinates i: a division for each of them, not for each corner.
+  // 1 + i / spacing for all coordinates i: one division per coordinate instead of per corner.
   std::vector<int> cells_of_coordinates(int spacing) const {
     std::vector<int> cells(static_cast<std::size_t>(std::max(width_, height_)));
     for (std::size_t i = 0, cell = 1, next = 0; i < cells.size(); ++i) {
@@ -104,8 +104,8 @@ class SpacedPicker {
     return cells;
   }
 
-  // Compares with the corners taken in three rows of three cells, a row (and one cell more) at
-  // once.
+  // Compares with the corners picked in three rows of three cells, a row (and one more cell) at a
+  // time.
   static bool is_free(Place c, const Place* cell, int columns, int spacing) {
     const __m128i here = _mm_set1_epi32(std::bit_cast<std::int32_t>(c));
     const __m128i limit = _mm_set1_epi16(static_cast<std::int16_t>(spacing));
@@ -148,7 +148,7 @@ std::vector<Corner> spread(const std::vector<Corner>& corners, int count) {
   if (wanted == 0) return {};
 
   SpacedPicker picker(corners);
-  int good = 1;  // at spacing 1 nothing is refused
+  int good = 1;  // at spacing 1 nothing is rejected
   int bad = picker.largest_spacing(wanted) + 1;
   while (bad - good > 1) {
     const int spacing = good + (bad - good) / 2;
@@ -164,7 +164,7 @@ std::vector<int> share_out(int total, double ratio, const std::vector<int>& avai
 
   std::vector<int> share(levels);
   int left = total;
-  for (std::size_t l = levels; l-- > 0;) {  // the finest level gets what rounding leaves
+  for (std::size_t l = levels; l-- > 0;) {  // the finest level gets the rounding remainder
     const int quota =
         l == 0
             ? left

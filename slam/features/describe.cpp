@@ -11,10 +11,10 @@ namespace mh {
 namespace {
 
 constexpr int kRadius_px = 15;
-constexpr int kRowLength = 32;  // 31 pixels and one that the mask leaves out: whole SIMD registers
+constexpr int kRowLength = 32;  // 31 pixels and a masked one: whole SIMD registers
 
-// 255 inside the disc, 0 outside; row v + radius, column u + radius. The outline is that of a
-// circle rounded to pixels, made symmetric about the diagonals.
+// 255 inside the disk, 0 outside; row v + radius, column u + radius. The outline is a circle
+// rounded to pixels, made symmetric about the diagonals.
 struct Disc {
   std::uint8_t mask[2 * kRadius_px + 1][kRowLength] = {};
 
@@ -34,7 +34,7 @@ struct Disc {
 };
 constexpr Disc kDisc;
 
-// The pattern as floats in the order of memory that the rotation runs through.
+// The pattern as floats, in the memory order in which the rotation reads it.
 struct Pattern {
   alignas(32) float x[512] = {};
   alignas(32) float y[512] = {};
@@ -51,8 +51,8 @@ struct Pattern {
 };
 constexpr Pattern kPattern;
 
-// Eight bytes of 0 or 1 to eight bits, the first byte lowest: the product moves byte i, at bit 8 i,
-// to bit 56 + i.
+// Packs eight bytes of 0 or 1 into eight bits, the first byte lowest: the product moves byte i, at
+// bit 8 i, to bit 56 + i.
 std::uint64_t pack(const std::uint8_t* bytes) {
   std::uint64_t x = 0;
   std::memcpy(&x, bytes, sizeof x);
@@ -101,7 +101,7 @@ Descriptor describe(const cv::Mat& blurred, int x, int y, float angle_rad) {
   for (int i = 0; i < 512; ++i) {
     const float u = std::nearbyint(kPattern.x[i] * cosine - kPattern.y[i] * sine);
     const float v = std::nearbyint(kPattern.x[i] * sine + kPattern.y[i] * cosine);
-    offset[i] = static_cast<int>(v * step + u);  // whole numbers below 2^24: exact
+    offset[i] = static_cast<int>(v * step + u);  // integers below 2^24: exact
   }
 
   const std::uint8_t* center = blurred.ptr<std::uint8_t>(y) + x;

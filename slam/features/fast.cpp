@@ -14,9 +14,9 @@ namespace mh {
 namespace {
 
 using Byte = std::uint8_t;
-constexpr int kChunk = 32;  // pixels judged side by side: one SIMD register
+constexpr int kChunk = 32;  // pixels processed in parallel: one SIMD register
 
-// As many bytes side by side. What follows is written once for a byte and for these.
+// A vector of bytes. The code below is written once for both a single byte and this vector.
 struct Bytes {
   __m256i v;
 };
@@ -54,8 +54,8 @@ Bytes excess(Bytes a, Bytes b) {
   return {_mm256_subs_epu8(a.v, b.v)};
 }
 
-// Calls work.operator()<T>(x) so that it covers [0, count): T = Bytes covers kChunk, the last of
-// them overlapping the one before; where there are fewer T = Byte covers one.
+// Calls work.operator()<T>(x) so that it covers [0, count): T = Bytes covers kChunk, the last chunk
+// overlapping the one before; if there are fewer, T = Byte covers one.
 template <class Work>
 void for_all(int count, Work work) {
   if (count < kChunk) {
@@ -117,8 +117,8 @@ T best_arc(const std::array<T, 16>& p) {
   return best;
 }
 
-// By how much the best arc around each of `count` pixels is brighter or darker than the pixel; 0 =
-// no such arc.
+// Contrast: how much the best arc around each of `count` pixels is brighter or darker than the
+// pixel; 0 = no such arc.
 void contrast_of_row(const Byte* center, std::ptrdiff_t step, int count, Byte* contrast) {
   std::array<const Byte*, 16> circle;
   for (std::size_t i = 0; i < 16; ++i) circle[i] = center + kCircle[i].y * step + kCircle[i].x;
@@ -130,15 +130,15 @@ void contrast_of_row(const Byte* center, std::ptrdiff_t step, int count, Byte* c
   });
 }
 
-// Three rows of contrast around a row under search.
+// Three rows of contrast around the row being searched.
 struct Rows {
   const Byte* above;
   const Byte* row;
   const Byte* below;
 };
 
-// Marks local maxima above the threshold among `count` pixels by something else than 0; rows have
-// one more pixel on either side.
+// Marks local maxima above the threshold among `count` pixels with nonzero values; rows have one
+// more pixel on either side.
 void mark_maxima(const Rows& contrast, int count, Byte threshold, Byte* marks) {
   for_all(count, [&]<class T>(int x) {
     const Byte *above = contrast.above + x, *row = contrast.row + x, *below = contrast.below + x;
@@ -152,8 +152,8 @@ void mark_maxima(const Rows& contrast, int count, Byte threshold, Byte* marks) {
   });
 }
 
-// Where the parabola through three values at -1, 0, 1 peaks; less than half a pixel, so that the
-// nearest pixel stays the same.
+// Position of the peak of the parabola through three values at -1, 0, 1; less than half a pixel, so
+// that the nearest pixel stays the same.
 float peak(int before, int at, int after) {
   const int curvature = before - 2 * at + after;
   if (curvature >= 0) return 0.0F;
@@ -161,7 +161,7 @@ float peak(int before, int at, int after) {
                     -0.49F, 0.49F);
 }
 
-// The parabola runs through sums across, weighted 1 2 1: they carry less noise than one line.
+// The parabola is fitted to sums across, weighted 1 2 1: they are less noisy than a single line.
 Corner corner_at(const Rows& c, std::size_t i, int x, int y) {
   const auto column = [&](std::size_t k) { return c.above[k] + 2 * c.row[k] + c.below[k]; };
   const auto line = [&](const Byte* r) { return r[i - 1] + 2 * r[i] + r[i + 1]; };

@@ -43,11 +43,11 @@ std::vector<std::vector<Corner>> corners_per_level(const std::vector<PyramidLeve
   return found;
 }
 
-/// Depth of the surface that a corner belongs to; 0 where nothing is known. The corner of a
-/// silhouette is the outline of what stands in front, and moves with it, while the pixel itself may
-/// show what lies behind: where the 3x3 pixels around it hold two surfaces, the nearer one counts.
+/// Depth of the surface that a corner belongs to; 0 if unknown. A corner on a silhouette belongs to
+/// the outline of the object in front, and moves with it, while the pixel itself may show the
+/// background: if the 3x3 pixels around it cover two surfaces, the nearer one is used.
 float depth_at(const Grid2d<float>& depth_m, int x, int y, double max_depth_m) {
-  constexpr float kSameSurface = 1.05F;  // farthest to nearest depth
+  constexpr float kSameSurface = 1.05F;  // ratio of farthest to nearest depth
   if (depth_m.empty()) return 0.0F;
   const auto known = [max_depth_m](float depth) {
     return depth > 0 && depth <= max_depth_m;  // NaN fails both comparisons
@@ -78,7 +78,8 @@ void append(const PyramidLevel& level, int octave, const Corner& corner, const R
             double max_depth_m, Features& features) {
   const cv::Point2d raw = level.to_full(
       {static_cast<double>(corner.x) + corner.dx, static_cast<double>(corner.y) + corner.dy});
-  const int x = cvRound(raw.x), y = cvRound(raw.y);  // inside: corners keep off the border
+  const int x = cvRound(raw.x), y = cvRound(raw.y);  // inside: corners keep a distance from the
+                                                     // border
 
   Keypoint keypoint;
   keypoint.u_px = static_cast<float>(raw.x);

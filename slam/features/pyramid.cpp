@@ -14,8 +14,8 @@ namespace {
 constexpr int kBlurRadius_px = 3;  // of the 7x7 kernel
 constexpr double kBlurSigma_px = 2.0;
 
-// An image that is a window of a larger one, whose margin mirrors its border. cv::GaussianBlur
-// filters windows and whole images by different arithmetic; cv::ORB blurs windows, so this does.
+// An image that is a window of a larger one, whose margin mirrors its border. cv::GaussianBlur uses
+// different arithmetic for windows and whole images; cv::ORB blurs windows, so this code does too.
 cv::Mat windowed(cv::Size size) {
   cv::Mat whole(size.height + 2 * kBlurRadius_px, size.width + 2 * kBlurRadius_px, CV_8U);
   return whole(cv::Rect(kBlurRadius_px, kBlurRadius_px, size.width, size.height));
@@ -28,7 +28,7 @@ void mirror_margin(cv::Mat& window) {
                      cv::BORDER_REFLECT_101 | cv::BORDER_ISOLATED);
 }
 
-// A view of the frame's colors; OpenCV's type has no const, nothing writes through it.
+// A view of the frame's colors; OpenCV's type is not const, but nothing writes through it.
 cv::Mat view(const Grid2d<Rgb8>& color) {
   static_assert(sizeof(Rgb8) == 3);
   return {color.height(), color.width(), CV_8UC3, const_cast<Rgb8*>(color.data())};

@@ -17,10 +17,10 @@ namespace mh {
 namespace {
 
 using Byte = std::uint8_t;
-constexpr int kOne = 256;         // of a weight
-constexpr int kGroup = 8;         // pixels side by side
-constexpr int kReach = 16;        // source pixels that a group is made from
-constexpr double kMaxStep = 1.8;  // so that a group's sources lie within its reach
+constexpr int kOne = 256;         // weight of 1
+constexpr int kGroup = 8;         // pixels processed in parallel
+constexpr int kReach = 16;        // source pixels that a group is computed from
+constexpr double kMaxStep = 1.8;  // so that a group's sources are within its reach
 
 // Pixel `at` of the source and the next one, weighted kOne - next and next.
 struct Tap {
@@ -28,7 +28,7 @@ struct Tap {
   int next;
 };
 
-// One per target pixel; beyond the source's centers its outermost pixel alone.
+// One per target pixel; beyond the source's centers only the outermost pixel.
 std::vector<Tap> taps(int source_size, int target_size) {
   const double step = 1.0 / (static_cast<double>(target_size) / source_size);
   std::vector<Tap> result;
@@ -48,7 +48,7 @@ std::vector<Tap> taps(int source_size, int target_size) {
 // How kGroup neighboring pixels of a target row come from kReach of the source row.
 struct Group {
   int source, target;              // first columns
-  std::array<Byte, kReach> pairs;  // which bytes stand side by side: pixel and next, eight times
+  std::array<Byte, kReach> pairs;  // which bytes to pair: pixel and next, eight times
   std::array<std::int16_t, kReach> weights;
 };
 
@@ -92,7 +92,7 @@ void resize_row(const Byte* from, const std::vector<Group>& columns, std::int32_
   }
 }
 
-// Between two such rows, rounded: (upper (256 - next) + lower next) / 65536.
+// Interpolates between two such rows, rounded: (upper (256 - next) + lower next) / 65536.
 void blend_rows(const std::int32_t* upper, const std::int32_t* lower, int next, int columns,
                 Byte* to) {
   const __m256i weight = _mm256_set1_epi32(next);
@@ -124,7 +124,7 @@ void resize_exactly(const cv::Mat& from, cv::Mat& to) {
   }
   const std::vector<Group> columns = groups(from.cols, to.cols);
   const std::vector<Tap> rows = taps(from.rows, to.rows);
-  // The two rows last made; most are used for two target rows.
+  // The two most recent rows; most are used for two target rows.
   struct Row {
     int y = -1;
     std::vector<std::int32_t> values;

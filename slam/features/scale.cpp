@@ -7,7 +7,7 @@
 namespace mh {
 namespace {
 
-// Asked for thousands of times per frame, always with one scale: what it gives is remembered.
+// Called thousands of times per frame, always with the same scale, so the powers are cached.
 struct Powers {
   static constexpr int kCount = 16;
   double scale = 0, log = 0;

@@ -25,7 +25,7 @@ cv::Vec<double, 5> coefficients_of(const Distortion& d) {
 void undistort(const Camera& camera, std::vector<Eigen::Vector2d>& points_px) {
   const cv::Mat points(static_cast<int>(points_px.size()), 1, CV_64FC2, points_px.data());
   const cv::Matx33d matrix = matrix_of(camera);
-  // Stops at 1/1000 px, far below what a corner is worth.
+  // Stops at 1/1000 px, far below the accuracy of a corner.
   const cv::TermCriteria stop(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 40, 1e-3);
   cv::undistortPoints(points, points, matrix, coefficients_of(camera.distortion), cv::noArray(),
                       matrix, stop);
@@ -51,7 +51,7 @@ void require_undistortable(const Camera& camera) {
                     coefficients_of(camera.distortion), back);
   for (std::size_t i = 0; i < pixels.size(); ++i)
     if (!(std::hypot(back[i].x - pixels[i].x(), back[i].y - pixels[i].y()) <
-          kAstray_px)) {  // not a number: astray as well
+          kAstray_px)) {  // NaN: diverged as well
       const Distortion& d = camera.distortion;
       throw InputError(fmt::format(
           "k1 {}, k2 {}, p1 {}, p2 {}, k3 {}: a distortion that cannot be undone at pixel "

@@ -13,10 +13,10 @@
 namespace mh {
 namespace {
 
-/// Covisible keyframes that share this many landmarks hold each other's relative pose well.
+/// Covisible keyframes that share this many landmarks constrain each other's relative pose well.
 constexpr int kStrongEdge = 100;
 
-/// Tells the keyframes that may be the newest one's other end of a loop.
+/// Identifies the keyframes that may be the other end of a loop at the newest one.
 class Unrelated {
  public:
   Unrelated(const Map& map, KeyframeId newest, const LoopConfig& config)
@@ -44,7 +44,8 @@ std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest,
   };
   const AugmentedVector query = view(newest);
 
-  // No candidate may be much less alike than the neighbors that are known to see the same.
+  // No candidate may be much less similar than the neighbors, which are known to see the same
+  // place.
   double least = 1.0;
   for (const Keyframe::Neighbor& n : map.at(newest).covisible)
     if (n.shared >= kStrongEdge) least = std::min(least, l1_similarity(query, view(n.id)));
@@ -56,7 +57,7 @@ std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest,
       old.push_back(s.keyframe);
       shared[s.keyframe.value] = s.shared_words + s.shared_labels;
     }
-  // A keyframe is asked for once per neighborhood that it belongs to.
+  // Cached, since a keyframe is requested once per neighborhood that it belongs to.
   std::vector<double> known(map.keyframes().size(), -1.0);
   const auto similarity = [&](KeyframeId k) {
     double& s = known[k.value];
@@ -74,8 +75,9 @@ std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest,
   return result;
 }
 
-/// The way between a keyframe and the newest, along the keyframes in the order of their making;
-/// from the newest's strong neighbor that is nearest on it, since that is as well placed.
+/// The path between a keyframe and the newest, along the keyframes in order of creation; starts at
+/// the newest keyframe's strong neighbor that is nearest along the path, since that one is equally
+/// well localized.
 double way_between_m(const Map& map, KeyframeId old, KeyframeId newest, const LoopConfig& config) {
   std::vector<double> way_m(map.keyframes().size(), 0.0);
   std::optional<Eigen::Vector3d> before;
@@ -94,7 +96,7 @@ double way_between_m(const Map& map, KeyframeId old, KeyframeId newest, const Lo
   return least_m;
 }
 
-/// Whether so much drift can have gathered between the ends.
+/// Whether this much drift can have accumulated between the ends.
 bool plausible(const Map& map, KeyframeId old, KeyframeId newest, const SE3& camera_from_world,
                const LoopConfig& config) {
   const SE3& now = map.at(newest).camera_from_world;
@@ -106,13 +108,14 @@ bool plausible(const Map& map, KeyframeId old, KeyframeId newest, const SE3& cam
 }
 
 struct Graph {
-  std::vector<KeyframeId> keyframes;  // of each pose; the first is the map's first standing one
+  std::vector<KeyframeId> keyframes;  // of each pose; the first is the map's first live one
   std::vector<SE3> poses;
   std::vector<PoseGraphEdge> edges;
 };
 
-/// The essential graph: each keyframe with its best earlier neighbor, with those that share much,
-/// and the loop. An edge weighs the landmarks that hold it: drift arises where there are few.
+/// The essential graph: each keyframe with its best earlier neighbor, with those that share many
+/// landmarks, and the loop. An edge is weighted by the landmarks that support it: drift arises
+/// where there are few.
 Graph essential_graph(const Map& map, const Loop& loop) {
   Graph graph;
   std::vector<std::uint32_t> index(map.keyframes().size(), UINT32_MAX);
@@ -148,7 +151,7 @@ Graph essential_graph(const Map& map, const Loop& loop) {
   return graph;
 }
 
-/// Bends the map so that the loop's ends meet.
+/// Deforms the map so that the loop's ends meet.
 void spread_drift(Map& map, const Loop& loop) {
   const Graph graph = essential_graph(map, loop);
   const std::vector<SE3> poses = optimize_pose_graph(graph.poses, graph.edges);
@@ -161,7 +164,7 @@ void spread_drift(Map& map, const Loop& loop) {
   for (std::size_t i = 0; i < poses.size(); ++i) map.set_pose(graph.keyframes[i], poses[i]);
 }
 
-/// Old landmarks take over what the newest keyframe sees of them.
+/// Old landmarks take over the newest keyframe's observations of them.
 void join_landmarks(Map& map, const Loop& loop) {
   for (std::uint32_t i = 0; i < loop.landmarks.size(); ++i) {
     const LandmarkId old = loop.landmarks[i];
@@ -211,8 +214,8 @@ void close_loop(Map& map, const Loop& loop, const SlamContext& context) {
   map.update_covisibility(loop.old_keyframe);
   fuse_with_neighbors(map, loop.keyframe, context);
   map.update_covisibility(loop.keyframe);
-  // The whole map: with what the loop hardly moved held in place, the house came out a third to a
-  // half further from the truth.
+  // Unless the drift is negligible, adjusts the whole map: with the parts that the loop hardly
+  // moved held fixed, errors against ground truth in the house were larger by a third to a half.
   if (negligible)
     adjust_neighborhood(map, loop.keyframe, context);
   else

@@ -32,7 +32,7 @@ void check_members(const Reader& reader, const std::vector<WeightedMember>& memb
                    "the order of labels or words");
 }
 
-/// Poses beyond this (m) are no poses of a camera, and too far for integer cells.
+/// Positions beyond this (m) are not plausible for a camera, and too far for integer cells.
 constexpr double kFarthest_m = 1e6;
 
 void check_features(const Reader& reader, const Keyframe& keyframe, int levels, std::size_t words) {
@@ -50,8 +50,7 @@ void check_features(const Reader& reader, const Keyframe& keyframe, int levels, 
                  "the order of words");
 }
 
-/// Ids within range, chains of parents that end: what Map takes for granted when it checks the
-/// rest.
+/// Checks ids for range and that chains of parents end: preconditions of Map's own checks.
 void check_references(const Reader& reader, const std::vector<Keyframe>& keyframes,
                       const std::vector<Landmark>& landmarks, int levels, std::size_t words) {
   const auto keyframe_stands = [&](KeyframeId id) {

@@ -14,8 +14,7 @@
 namespace mh {
 namespace {
 
-/// Index of the descriptor with the least median Hamming distance to the others; the first of
-/// equals.
+/// Index of the descriptor with the least median Hamming distance to the others; ties to the first.
 std::size_t most_central(const std::vector<const Descriptor*>& descriptors) {
   const std::size_t n = descriptors.size();
   if (n <= 2) return 0;
@@ -26,7 +25,7 @@ std::size_t most_central(const std::vector<const Descriptor*>& descriptors) {
   int best_median = INT32_MAX;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) distances[j] = hamming(*descriptors[i], *descriptors[j]);
-    // Sorting tells the median; counting tells, faster, whether it is below the best.
+    // Sorting gives the median; counting is a faster test for whether it is below the best.
     const auto below = std::count_if(distances.begin(), distances.end(),
                                      [&](int distance) { return distance < best_median; });
     if (static_cast<std::size_t>(below) <= median) continue;
@@ -140,7 +139,7 @@ void Map::erase(KeyframeId keyframe) {
   Keyframe& k = mutable_at(keyframe);
   if (k.erased || keyframe_count_ == 1) return;
   KeyframeId parent = k.covisible.empty() ? KeyframeId{} : k.covisible.front().id;
-  if (!parent.valid())  // seen by nobody else: hang it on the nearest standing keyframe in time
+  if (!parent.valid())  // seen by no other: attach it to the nearest live keyframe in time
     for (const Keyframe& other : keyframes_)
       if (!other.erased && other.id != keyframe && (!parent.valid() || other.id < keyframe))
         parent = other.id;
@@ -153,7 +152,7 @@ void Map::erase(KeyframeId keyframe) {
   k.erased = true;
   inverted_index_.erase(keyframe, k.words.vector);
   position_index_.remove(keyframe, k.camera_from_world.inverse().translation());
-  k.features = {};  // nobody will ask again: a long run must not grow
+  k.features = {};  // not needed any more: a long run must not grow
   k.grid = {};
   k.words = {};
   k.landmarks = {};
@@ -191,7 +190,7 @@ void Map::refresh(LandmarkId id, const FeatureConfig& config) {
   l.mean_direction = direction.norm() > 1e-9 ? Eigen::Vector3d(direction.normalized())
                                              : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
 
-  // A corner seen at octave o from distance d is seen at octave 0 from scale^o times as far away
+  // A corner seen at octave o from distance d is visible at octave 0 from scale^o times as far away
   // (max), and at the coarsest octave from that over scale^(levels - 1) (min).
   const Observation& reference = l.observations.front();
   const Keyframe& k = at(reference.keyframe);

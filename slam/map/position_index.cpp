@@ -9,7 +9,7 @@ namespace mh {
 
 PositionIndex::Cell PositionIndex::cell_of(const Eigen::Vector3d& position_in_world) {
   Cell cell{};
-  // Bounded, so that a pose gone wild still has a cell.
+  // Clamped, so that a diverged pose still has a cell.
   for (int axis = 0; axis < 3; ++axis)
     cell[static_cast<std::size_t>(axis)] =
         static_cast<int>(std::clamp(std::floor(position_in_world[axis] / kCell_m), -1e9, 1e9));
@@ -32,8 +32,8 @@ std::vector<KeyframeId> PositionIndex::near(const Eigen::Vector3d& center_in_wor
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius_m);
   const Cell low = cell_of(center_in_world - reach), high = cell_of(center_in_world + reach);
   std::vector<KeyframeId> found;
-  // Cells are ordered by x, then y, then z. Past the end of one range the next one begins at what
-  // stands there, so that a wide ball visits occupied cells only.
+  // Cells are ordered by x, then y, then z. Past the end of one range, the next one starts at the
+  // next occupied cell, so that a wide ball visits occupied cells only.
   for (auto at = cells_.lower_bound(low); at != cells_.end();) {
     Cell next = at->first;
     if (next[0] > high[0]) break;

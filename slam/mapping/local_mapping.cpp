@@ -22,7 +22,7 @@ constexpr std::size_t kFixedKeyframes = 20;
 constexpr double kFoundShare = 0.25;  // of the frames in which a young landmark was expected
 constexpr double kMinParallaxCosine = 0.9998;  // about 1.1 degrees between the two rays
 constexpr double kChi2Line = 3.84;             // 95 % of chi-square, 1 degree of freedom
-constexpr double kChi2Point = 5.991;           // and 2
+constexpr double kChi2Point = 5.991;           // 95 % of chi-square, 2 degrees of freedom
 
 std::vector<KeyframeId> best_neighbors(const Map& map, KeyframeId id, std::size_t count) {
   std::vector<KeyframeId> result;
@@ -37,7 +37,7 @@ Eigen::Vector3d bearing(const Keypoint& k, const Camera& camera) {
   return camera.unproject(k.u_px, k.v_px, 1.0);
 }
 
-/// Squared distance (px^2) of keypoint b from the line that keypoint a's ray draws in b's image.
+/// Squared distance (px^2) of keypoint b from the epipolar line of keypoint a in b's image.
 double epipolar_distance2(const Keypoint& a, const Keypoint& b, const Eigen::Matrix3d& essential,
                           const Camera& camera) {
   // Line in normalized coordinates; focal lengths differ little, so one scale serves both axes.
@@ -57,7 +57,7 @@ bool reprojects(const Eigen::Vector3d& point_in_world, const Keyframe& keyframe,
   return error.squaredNorm() <= kChi2Point * sigma * sigma;
 }
 
-/// The point where two rays pass each other closest, midway (world frame).
+/// The midpoint of the shortest segment between two rays (world frame).
 std::optional<Eigen::Vector3d> midpoint(const SE3& world_from_a, const SE3& world_from_b,
                                         const Eigen::Vector3d& ray_a,
                                         const Eigen::Vector3d& ray_b) {
@@ -73,8 +73,8 @@ std::optional<Eigen::Vector3d> midpoint(const SE3& world_from_a, const SE3& worl
   return 0.5 * (world_from_a.translation() + sa * da + world_from_b.translation() + sb * db);
 }
 
-/// The point that two matched features see: by parallax where there is enough, else by whichever
-/// depth is at hand; none if it does not reproject into both.
+/// The point that two matched features see: by parallax if there is enough, otherwise by whichever
+/// depth is available; none if it does not reproject into both.
 std::optional<Eigen::Vector3d> triangulate(const Keyframe& a, const Keypoint& ka, const Keyframe& b,
                                            const Keypoint& kb, const SlamContext& context) {
   const SE3 world_from_a = a.camera_from_world.inverse();
@@ -134,7 +134,7 @@ void add_landmarks_from_depth(Map& map, KeyframeId keyframe, const SlamContext& 
 }
 
 void cull_young_landmarks(Map& map, KeyframeId newest) {
-  // Landmark ids grow with their first keyframe: the young ones are at the end.
+  // Landmark ids increase with their first keyframe: the young ones are at the end.
   for (auto n = static_cast<std::uint32_t>(map.landmarks().size()); n > 0; --n) {
     const Landmark& l = map.at(LandmarkId{n - 1});
     if (l.erased) continue;
@@ -151,7 +151,8 @@ void triangulate_with_neighbors(Map& map, KeyframeId keyframe, const SlamContext
     const Keyframe& a = map.at(keyframe);
     const Keyframe& b = map.at(other);
     const SE3 b_from_a = b.camera_from_world * a.camera_from_world.inverse();
-    if (b_from_a.translation().norm() < context.camera.baseline_m) continue;  // depth knows better
+    if (b_from_a.translation().norm() < context.camera.baseline_m)
+      continue;  // depth is more accurate
     const Eigen::Matrix3d essential = hat(b_from_a.translation()) * b_from_a.rotation();
 
     const auto unmapped = [](const Keyframe& k) {
@@ -185,8 +186,8 @@ void triangulate_with_neighbors(Map& map, KeyframeId keyframe, const SlamContext
 
 namespace {
 
-/// Looks for landmarks in a keyframe: where the feature found has a landmark already, the one with
-/// more observations takes over the other's.
+/// Searches for landmarks in a keyframe: if the matched feature already has a landmark, the one
+/// with more observations absorbs the other.
 void fuse_into(Map& map, KeyframeId keyframe, const std::vector<LandmarkId>& landmarks,
                const SlamContext& context) {
   constexpr float kRadius_px = 3.0F;
@@ -254,7 +255,7 @@ void fuse_with_neighbors(Map& map, KeyframeId keyframe, const SlamContext& conte
 
 namespace {
 
-/// The other keyframes that see the landmarks of these, those that see most of them first.
+/// The other keyframes that see the landmarks of these, ordered by how many of them they see.
 std::vector<KeyframeId> observing_keyframes(const Map& map,
                                             const std::vector<KeyframeId>& keyframes) {
   std::vector<std::int32_t> sees(map.keyframes().size(), 0);
@@ -269,7 +270,7 @@ std::vector<KeyframeId> observing_keyframes(const Map& map,
   return result;
 }
 
-/// Adjusts the free keyframes and all landmarks they see; the fixed ones hold the frame of
+/// Adjusts the free keyframes and all landmarks that they see; the fixed ones define the frame of
 /// reference: without any, nothing moves.
 void adjust_keyframes(Map& map, const std::vector<KeyframeId>& free,
                       const std::vector<KeyframeId>& fixed, const SlamContext& context) {
@@ -319,7 +320,8 @@ void adjust_keyframes(Map& map, const std::vector<KeyframeId>& free,
 }  // namespace
 
 void adjust_neighborhood(Map& map, KeyframeId keyframe, const SlamContext& context) {
-  // Free: the keyframe and its best neighbors, but never the first keyframe, which is the origin.
+  // Free: the keyframe and its best neighbors, but never the first keyframe, which defines the
+  // origin.
   std::vector<KeyframeId> free;
   if (keyframe.value != 0) free.push_back(keyframe);
   for (const KeyframeId id : best_neighbors(map, keyframe, kAdjustedNeighbors))
@@ -338,7 +340,7 @@ void adjust_all(Map& map, const SlamContext& context) {
 
 void cull_redundant_keyframes(Map& map, KeyframeId newest, const SlamContext& context) {
   for (const KeyframeId id : best_neighbors(map, newest, map.keyframes().size())) {
-    // The first is the origin; the latest few are what tracking stands on.
+    // The first is the origin; tracking depends on the latest few.
     if (id.value == 0 || newest.value - id.value < 3) continue;
     const Keyframe& k = map.at(id);
     int total = 0, redundant = 0;

@@ -6,7 +6,7 @@
 namespace mh {
 namespace {
 
-/// Equation 2 once more: the matchers keep no distances.
+/// Recomputes equation 2, since the matchers do not store distances.
 void set_distance(MatchedPair& pair, LabeledDescriptor p, LabeledDescriptor q,
                   const SemanticConfig& config) {
   MatcherCounts counts;

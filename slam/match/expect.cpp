@@ -8,9 +8,9 @@
 
 namespace mh {
 namespace {
-// Beyond 60 degrees between the mean viewing direction and this one, a patch looks like another.
+// Beyond 60 degrees between the mean viewing direction and this one, a patch looks different.
 constexpr double kMinViewCosine = 0.5;
-// Octaves are predicted from a distance known to some percent: allow that much beyond the range.
+// Octaves are predicted from distances known to a few percent: allow this much beyond the range.
 constexpr double kDistanceSlack = 1.2;
 }  // namespace
 

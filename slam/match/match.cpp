@@ -10,7 +10,7 @@ namespace mh {
 namespace {
 
 /// Rotations between matched keypoints, in bins of 12 degrees: true matches share one rotation, so
-/// only the three fullest bins are kept (and of these, those with at least a tenth of the fullest).
+/// only the three fullest bins are kept (and only if they have at least a tenth of the fullest).
 class RotationHistogram {
  public:
   void add(float from_rad, float to_rad) { ++count_[bin(from_rad, to_rad)]; }

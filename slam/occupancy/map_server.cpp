@@ -13,7 +13,7 @@
 namespace mh {
 namespace {
 
-// Gray levels that map_server itself writes; with p = (255 - gray) / 255 they fall on the right
+// Gray levels that map_server itself writes; with p = (255 - gray) / 255 they are on the correct
 // sides of both thresholds below.
 constexpr std::uint8_t kFreeGray = 254, kOccupiedGray = 0, kUnknownGray = 205;
 constexpr double kOccupiedThreshold = 0.65, kFreeThreshold = 0.196;
@@ -22,7 +22,7 @@ std::uint8_t gray(std::int8_t cell) {
   return cell == kUnknownCell ? kUnknownGray : cell == kFreeCell ? kFreeGray : kOccupiedGray;
 }
 
-/// Reads the header of a binary PGM and returns its picture, upper row first.
+/// Reads a binary PGM, upper row first.
 Grid2d<std::uint8_t> read_pgm(const std::filesystem::path& file) {
   const std::string content = read_file(file);
   std::istringstream in(content);

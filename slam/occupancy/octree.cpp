@@ -21,9 +21,9 @@ octomap::point3d point(const Eigen::Vector3d& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
 }
 
-/// Goes through the nodes of a binary tree as OctoMap would, which follows them to any depth.
+/// Traverses the nodes of a binary tree as OctoMap would, which accepts any depth.
 void check_depth(std::istream& in, unsigned deepest, const std::string& name) {
-  std::vector<int> children_left{1};  // by level, those that have children themselves
+  std::vector<int> children_left{1};  // by level: the number that have children themselves
   while (!children_left.empty()) {
     if (children_left.back()-- == 0) {
       children_left.pop_back();
@@ -32,7 +32,7 @@ void check_depth(std::istream& in, unsigned deepest, const std::string& name) {
     if (children_left.size() > deepest)
       throw InputError(fmt::format("{}: its tree is deeper than {} levels", name, deepest));
     unsigned char bytes[2];
-    if (!in.read(reinterpret_cast<char*>(bytes), sizeof bytes)) return;       // is cut short
+    if (!in.read(reinterpret_cast<char*>(bytes), sizeof bytes)) return;       // is truncated
     const unsigned pairs = bytes[0] | static_cast<unsigned>(bytes[1]) << 8U;  // 11: has children
     children_left.push_back(std::popcount(pairs & pairs >> 1U & 0x5555U));
   }
@@ -59,10 +59,10 @@ Block block_of(const octomap::OcTree& tree, const octomap::OcTree::leaf_iterator
   return block;
 }
 
-/// What one image tells of the voxels around the camera: free, or occupied, which counts more.
+/// What one image shows of the voxels around the camera: free, or occupied, which takes precedence.
 class SeenVoxels {
  public:
-  /// @param reach  voxels from the middle that may be told of, along each axis
+  /// @param reach  voxels from the center that may be recorded, along each axis
   explicit SeenVoxels(int reach)
       : reach_(reach),
         side_(2 * static_cast<std::size_t>(reach) + 1),
@@ -117,7 +117,7 @@ struct OccupancyMapper::Impl {
   explicit Impl(const OccupancyConfig& c)
       : config(c), tree(c.resolution_m), seen(voxels_within(c)) {}
 
-  /// As tree.updateNode() does in the end, with one way down the tree in the place of two.
+  /// Same final result as tree.updateNode(), with one descent of the tree instead of two.
   void update(const octomap::OcTreeKey& key, bool occupied) {
     octomap::OcTreeNode* const leaf = pruned ? nullptr : tree.search(key);
     if (leaf != nullptr)
@@ -144,13 +144,13 @@ OccupancyMapper& OccupancyMapper::operator=(OccupancyMapper&&) noexcept = defaul
 
 void OccupancyMapper::insert(const Grid2d<float>& depth_m, const Camera& camera,
                              const SE3& world_from_camera) {
-  // What insertPointCloud() of OctoMap does with `discretize` (rays end in the middle of voxels,
-  // one for each) and `lazy_eval` (inner nodes are left as they are: whatever is asked of the tree,
-  // its leaves answer), without its sets of keys, which took most of the time.
+  // Equivalent to OctoMap's insertPointCloud() with `discretize` (rays end at voxel centers, one
+  // for each) and `lazy_eval` (inner nodes are not updated: all queries are answered by leaves),
+  // without its sets of keys, which took most of the time.
   octomap::OcTree& tree = impl_->tree;
   const octomap::point3d eye = point(world_from_camera.translation());
   octomap::OcTreeKey key;
-  if (!tree.coordToKeyChecked(eye, key)) return;  // outside of what an octree can hold
+  if (!tree.coordToKeyChecked(eye, key)) return;  // outside the range of an octree
   impl_->seen.begin(key);
 
   octomap::KeySet ends;
@@ -205,11 +205,11 @@ std::size_t OccupancyMapper::leaf_count() const {
   return impl_->tree.getNumLeafNodes();
 }
 
-// The file's header is written and read here, and only the data by OctoMap, which would talk to
-// stderr at each file.
+// The file's header is written and read here, and only the data by OctoMap, which would print to
+// stderr for each file.
 void OccupancyMapper::write_bt(std::ostream& out) const {
   octomap::OcTree tree(impl_->tree);
-  tree.toMaxLikelihood();  // as the format does, so that equal neighbors can be joined first
+  tree.toMaxLikelihood();  // as the format does, so that equal neighbors can be merged first
   tree.prune();
   out << kMagic << "\n"
       << fmt::format("id {}\nsize {}\nres {}\ndata\n", tree.getTreeType(), tree.size(),

@@ -17,8 +17,8 @@ using Matrix63d = Eigen::Matrix<double, 6, 3>;
 
 /// A cost at rounding level: (1e-9 sigma)^2 per observation.
 constexpr double kPerfectChi2 = 1e-18;
-/// Marquardt's damping, relative to the diagonal. The least value still bounds the inverse of a
-/// point without parallax.
+/// Marquardt damping, relative to the diagonal. The minimum still bounds the inverse of a point
+/// without parallax.
 constexpr double kInitialDamping = 1e-4;
 constexpr double kLeastDamping = 1e-8;
 constexpr double kGreatestDamping = 1e12;
@@ -28,12 +28,12 @@ struct State {
   std::vector<Eigen::Vector3d> points_in_world;
 };
 
-/// The reduced camera system and what is needed to find the points from its solution. Everything
+/// The reduced camera system and what is needed to recover the points from its solution. Everything
 /// is allocated once, before the first iteration.
 struct Workspace {
-  std::vector<std::uint32_t> first_observation;  ///< of each point; one more entry at the end
-  std::vector<std::uint8_t> active;              ///< observations that count in this phase
-  std::vector<std::uint8_t> adjusted;            ///< points that are moved
+  std::vector<std::uint32_t> first_observation;  ///< of each point, plus the end
+  std::vector<std::uint8_t> active;              ///< observations active in this phase
+  std::vector<std::uint8_t> adjusted;            ///< points that are optimized
 
   std::vector<Matrix63d> pose_point;           ///< per observation: W = J_pose^T J_point
   std::vector<std::uint8_t> coupled;           ///< per observation: W is in use
@@ -60,7 +60,7 @@ double chi2_of(const BundleObservation& o, const State& state, const Camera& cam
   return reprojection_residual(p, measurement(o), camera).squaredNorm();
 }
 
-/// Pairs of free poses that see a point together; none where the system keeps all blocks anyway.
+/// Pairs of free poses that see a point together; empty if the system is dense anyway.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> couplings(
     const BundleProblem& problem, const std::vector<std::uint32_t>& first_observation) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
@@ -102,8 +102,8 @@ Workspace make_workspace(const BundleProblem& problem) {
   return w;
 }
 
-/// Holds every point that its active observations do not determine (fewer than two, and no
-/// depth), and lets go of those observations: marginalized, they would say nothing about a pose.
+/// Fixes every point that its active observations do not determine (fewer than two, and no depth),
+/// and drops those observations: marginalized, they would contribute nothing to a pose.
 void choose_points(const BundleProblem& problem, Workspace& w) {
   for (std::size_t point = 0; point < problem.points_in_world.size(); ++point) {
     const std::uint32_t begin = w.first_observation[point];
@@ -119,7 +119,7 @@ void choose_points(const BundleProblem& problem, Workspace& w) {
   }
 }
 
-/// One of the two phases of adjust(): with Huber's rho, or without.
+/// One of the two phases of adjust(): with Huber's rho, or without it.
 struct Phase {
   const BundleProblem& problem;
   const Camera& camera;
@@ -140,7 +140,7 @@ double cost_of(const Phase& phase, const Workspace& w, const State& state) {
   return cost;
 }
 
-/// Adds one point's observations to the pose blocks and to its gradient; fills W for each.
+/// Adds one point's observations to the pose blocks and to their gradient; fills W for each.
 /// @returns the point's own block.
 Eigen::Matrix3d linearize_point(const Phase& phase, Workspace& w, const State& state,
                                 std::uint32_t point) {
@@ -182,7 +182,7 @@ Eigen::Matrix3d linearize_point(const Phase& phase, Workspace& w, const State& s
   return point_information;
 }
 
-/// Takes one point out of the system: reduced -= W V^-1 W^T, right side += W V^-1 g.
+/// Eliminates one point from the system: reduced -= W V^-1 W^T, right side += W V^-1 g.
 void eliminate_point(const BundleProblem& problem, Workspace& w, std::uint32_t point) {
   const Eigen::Matrix3d& inverse = w.point_inverse[point];
   const std::uint32_t end = w.first_observation[point + 1];
@@ -197,14 +197,14 @@ void eliminate_point(const BundleProblem& problem, Workspace& w, std::uint32_t p
       const std::uint32_t pose_b = problem.observations[b].pose;
       if (pose_a >= pose_b)
         w.reduced.at(pose_a, pose_b).noalias() -= weighted * w.pose_point[b].transpose();
-      // The mirrored block; both where one pose sees the point twice.
+      // The mirrored block; both if one pose sees the point twice.
       if (pose_a < pose_b || (pose_a == pose_b && a != b))
         w.reduced.at(pose_b, pose_a).noalias() -= w.pose_point[b] * weighted.transpose();
     }
   }
 }
 
-/// Linearizes at the state and reduces the system to the poses.
+/// Linearizes at the state and builds the system reduced to the poses.
 void build_reduced_system(const Phase& phase, Workspace& w, const State& state, double damping) {
   const BundleProblem& problem = phase.problem;
   w.reduced.set_zero();
@@ -214,11 +214,11 @@ void build_reduced_system(const Phase& phase, Workspace& w, const State& state, 
     if (!w.adjusted[point]) continue;
     Eigen::Matrix3d information = linearize_point(phase, w, state, point);
     const double trace = information.trace();
-    if (!(trace > 0)) {  // every observation has slipped behind its camera
+    if (!(trace > 0)) {  // every observation is now behind its camera
       w.point_inverse[point].setZero();
       continue;
     }
-    // The floor keeps the inverse finite where an axis of the world gets no information at all.
+    // The floor keeps the inverse finite if a direction in space gets no information at all.
     information.diagonal() *= 1.0 + damping;
     information.diagonal().array() += kLeastDamping * trace;
     w.point_inverse[point] = information.inverse();
@@ -228,13 +228,13 @@ void build_reduced_system(const Phase& phase, Workspace& w, const State& state, 
     const Vector6d diagonal = w.pose_diagonal.segment<6>(6 * static_cast<Eigen::Index>(pose));
     PoseSystem::Block& own = w.reduced.at(pose, pose);
     own.diagonal() += damping * diagonal;
-    // A pose that nothing speaks about stays where it is.
+    // A pose without information stays fixed.
     for (Eigen::Index k = 0; k < 6; ++k)
       if (!(diagonal[k] > 0)) own(k, k) = 1.0;
   }
 }
 
-/// Solves for the poses, substitutes back for the points. @returns false if the system is not
+/// Solves for the poses, then back-substitutes the points. @returns false if the system is not
 /// positive definite.
 bool take_step(const BundleProblem& problem, Workspace& w, const State& from, State& to) {
   w.pose_step = w.right_side;
@@ -256,7 +256,8 @@ bool take_step(const BundleProblem& problem, Workspace& w, const State& from, St
   return true;
 }
 
-/// One phase of Levenberg-Marquardt over the active observations. @returns trial steps made.
+/// One phase of Levenberg-Marquardt over the active observations. @returns the number of trial
+/// steps.
 int minimize(const Phase& phase, Workspace& w, State& state, State& trial, int iterations) {
   choose_points(phase.problem, w);
   double cost = cost_of(phase, w, state);

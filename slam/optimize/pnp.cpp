@@ -12,14 +12,14 @@ namespace {
 
 using Triple = std::array<std::size_t, 3>;
 
-/// Three different indices below count, drawn for one iteration.
+/// Draws three different indices below count for one iteration.
 Triple draw_triple(RandomStream stream, int iteration, std::size_t count) {
   const auto base = static_cast<std::uint64_t>(iteration) * 3;
   Triple triple{};
   triple[0] = stream.below(base, count);
   triple[1] = stream.below(base + 1, count - 1);
   if (triple[1] >= triple[0]) ++triple[1];
-  // The third skips both, the smaller first.
+  // The third skips both others, the smaller first.
   triple[2] = stream.below(base + 2, count - 2);
   const auto [low, high] = std::minmax(triple[0], triple[1]);
   if (triple[2] >= low) ++triple[2];
@@ -27,7 +27,7 @@ Triple draw_triple(RandomStream stream, int iteration, std::size_t count) {
   return triple;
 }
 
-/// True where the triangle is so thin, in space or in the image, that P3P has no stable answer:
+/// True if the triangle is so thin, in space or in the image, that P3P has no stable solution:
 /// height below a thousandth of its base, or an area of less than one square pixel.
 bool is_degenerate(std::span<const PoseObservation> observations, const Triple& triple) {
   const PoseObservation& a = observations[triple[0]];
@@ -42,7 +42,7 @@ bool is_degenerate(std::span<const PoseObservation> observations, const Triple& 
   return !(std::abs(area2_px) > 2.0);
 }
 
-/// Up to four poses that map three points onto their pixels; none where the solver finds none.
+/// Up to four poses that map three points onto their pixels; empty if the solver finds none.
 std::vector<SE3> solve_p3p(std::span<const PoseObservation> observations, const Triple& triple,
                            const Camera& camera) {
   cv::Mat points(3, 3, CV_64F);
@@ -61,7 +61,7 @@ std::vector<SE3> solve_p3p(std::span<const PoseObservation> observations, const 
     cv::solveP3P(points, pixels, intrinsics, cv::noArray(), rotations, translations,
                  cv::SOLVEPNP_AP3P);
   } catch (const cv::Exception&) {
-    return {};  // one unlucky triple is no reason to give up the query
+    return {};  // one unlucky triple is no reason to abort the query
   }
   std::vector<SE3> poses;
   for (std::size_t i = 0; i < rotations.size(); ++i) {
@@ -73,8 +73,8 @@ std::vector<SE3> solve_p3p(std::span<const PoseObservation> observations, const 
   return poses;
 }
 
-/// Iterations after which a triple without outliers was drawn with the given confidence (Fischler
-/// and Bolles 1981), capped at max_iterations.
+/// Number of iterations after which a triple without outliers was drawn with the given confidence
+/// (Fischler and Bolles 1981), capped at max_iterations.
 int iterations_needed(int inliers, std::size_t count, const RansacConfig& config) {
   const double share = static_cast<double>(inliers) / static_cast<double>(count);
   const double miss = 1.0 - share * share * share;
@@ -98,7 +98,7 @@ struct Consensus {
   int count = 0;
 };
 
-/// The pose of a random triple on which most observations agree; the first one among equals.
+/// The pose of a random triple with which most observations agree; ties to the first.
 Consensus best_consensus(std::span<const PoseObservation> observations, const Camera& camera,
                          const RansacConfig& config, const PoseConfig& gates, RandomStream stream) {
   Consensus best;
@@ -131,8 +131,8 @@ std::optional<PoseEstimate> solve_pnp_ransac(std::span<const PoseObservation> ob
   Consensus best = best_consensus(observations, camera, config, gates, stream);
   if (best.count < 4) return std::nullopt;
 
-  // A pose from three noisy points misses inliers that the refined one explains: twice refined on
-  // its own consensus, then judged over all.
+  // A pose from three noisy points misses inliers that the refined one explains: refine twice on
+  // its own consensus, then classify all.
   PoseConfig refine = gates;
   refine.min_inliers = 4;
   for (int pass = 0; pass < 2; ++pass) {

@@ -11,12 +11,13 @@
 namespace mh {
 namespace {
 
-/// A step that lowers the cost by less than this share moves the pose by far less than the noise.
+/// A step that lowers the cost by a smaller share than this moves the pose by far less than the
+/// noise.
 constexpr double kRelativeDecrease = 1e-6;
 /// A cost at rounding level: (1e-9 sigma)^2 per observation.
 constexpr double kPerfectChi2 = 1e-18;
 /// Below this ratio of pivots the pose is undetermined: a regular view gives about 1e-5, a rank
-/// deficiency what rounding leaves of zero, about 1e-16.
+/// deficiency only rounding errors, about 1e-16.
 constexpr double kSingularPivotRatio = 1e-12;
 
 struct NormalEquations {
@@ -74,12 +75,12 @@ bool is_singular(const Matrix6d& hessian) {
          !(pivots.minCoeff() > kSingularPivotRatio * pivots.maxCoeff());
 }
 
-/// Levenberg-Marquardt over a fixed inlier set. @returns the normal equations' matrix, nothing when
-/// the pose is undetermined.
+/// Levenberg-Marquardt over a fixed inlier set. @returns the matrix of the normal equations, or
+/// nothing if the pose is undetermined.
 std::optional<Matrix6d> minimize(std::span<const PoseObservation> observations,
                                  std::span<const std::uint8_t> inlier, const Camera& camera,
                                  const PoseConfig& config, bool robust, SE3& camera_from_world) {
-  // Nearly Gauss-Newton; the damping acts once a step has failed.
+  // Nearly Gauss-Newton; the damping matters only after a step has failed.
   double damping = 1e-9;
   NormalEquations at_pose =
       linearize(observations, inlier, camera_from_world, camera, config, robust);
@@ -90,8 +91,8 @@ std::optional<Matrix6d> minimize(std::span<const PoseObservation> observations,
     const Vector6d step = -damped.ldlt().solve(at_pose.gradient);
     if (!step.allFinite()) return std::nullopt;
     const SE3 trial = SE3::exp(step) * camera_from_world;
-    // To first order the step lowers the cost by -gradient . step: where that is next to nothing,
-    // take it and save the look at its result.
+    // To first order the step lowers the cost by -gradient . step: if that is negligible, take it
+    // without evaluating its result.
     if (-at_pose.gradient.dot(step) <= kRelativeDecrease * at_pose.cost) {
       camera_from_world = trial;
       break;
@@ -132,7 +133,7 @@ int find_inliers(std::span<const PoseObservation> observations, const SE3& camer
 std::optional<PoseEstimate> estimate_pose(std::span<const PoseObservation> observations,
                                           const SE3& camera_from_world_guess, const Camera& camera,
                                           const PoseConfig& config) {
-  // Three points are the least that fix a pose, whatever the caller is content with.
+  // Three points are the minimum that determines a pose, even if the caller would accept fewer.
   const int needed = std::max(config.min_inliers, 3);
   if (static_cast<int>(observations.size()) < needed) return std::nullopt;
 

@@ -25,8 +25,8 @@ struct EdgeResidual {
         T(inverse_sigma_m);
     const Eigen::Quaternion<T> difference =
         measured_rotation.template cast<T>().conjugate() * (a_from_world * rotation_b);
-    // Twice the vector part is the rotation vector to first order; its sign follows w, so that q
-    // and -q agree.
+    // Twice the vector part is the rotation vector to first order; its sign follows that of w, so
+    // that q and -q agree.
     const T sign = difference.w() < T(0) ? T(-1) : T(1);
     r.template tail<3>() = difference.vec() * (T(2) * sign * T(inverse_sigma_rad));
     return true;

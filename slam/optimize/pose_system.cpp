@@ -104,8 +104,8 @@ bool PoseSystem::iterate(Eigen::VectorXd& x) const {
   Eigen::VectorXd direction = z;
   double energy = residual.dot(z);
   const double enough = kTolerance * kTolerance * energy;
-  // Exact after as many steps as unknowns; what needs a tenth of them is hopelessly conditioned,
-  // and the step found so far still goes downhill.
+  // Exact after as many steps as unknowns; a system that needs a tenth of them is hopelessly
+  // conditioned, and the step found so far is still a descent direction.
   const int limit = 100 + static_cast<int>(poses_) / 2;
   for (int i = 0; i < limit && energy > enough; ++i) {
     const Eigen::VectorXd image = times(direction);

@@ -17,8 +17,8 @@ struct Edge {
   int shared = 0;
 };
 
-/// All pairs that share enough today. (Keyframe::covisible is of when it was last taken, which is
-/// soon enough for mapping.)
+/// All pairs that currently share enough landmarks. (Keyframe::covisible dates from its last
+/// update, which is recent enough for mapping.)
 std::vector<Edge> covisibility(const Map& map) {
   std::vector<Edge> edges;
   std::vector<int> shared(map.keyframes().size());

@@ -30,7 +30,7 @@ StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& 
 }
 
 struct LocalizeMemo::Content {
-  /// What came of the winner: its pose in the local map, and the counts of getting it.
+  /// Result for the winner: its pose in the local map, and the match counts on the way there.
   struct Refined {
     std::optional<SE3> camera_from_world;
     int inliers = 0;

@@ -9,15 +9,15 @@
 namespace mh {
 namespace {
 
-/// Landmarks that a frame must hold to be tracked: fewer where it shows little.
+/// Number of landmarks that a frame must match to be tracked: fewer if it shows few keypoints.
 int inliers_needed(const Features& features, const TrackConfig& config) {
   const int share = static_cast<int>(features.size()) / 6;
   return std::min(config.min_inliers, std::max(config.min_inliers_sparse, share));
 }
 
-/// Where a frame is by the last one that was tracked: by the motion model or the reference
-/// keyframe, whichever holds in the local map first. One that comes after lost frames needs as much
-/// as relocalization asks for.
+/// Localizes a frame from the last tracked one: by the motion model or the reference keyframe,
+/// whichever is confirmed in the local map first. A frame that comes after lost frames needs as
+/// many inliers as relocalization.
 std::optional<Located> follow(const SlamState& state, const Tracker& tracker, PreparedFrame& frame,
                               const SlamContext& context, const StepObservers& observers) {
   if (!tracker.last) return std::nullopt;
@@ -32,7 +32,7 @@ std::optional<Located> follow(const SlamState& state, const Tracker& tracker, Pr
   };
   const int min_inliers = tracker.coasting ? state.config.relocalize.min_inliers
                                            : inliers_needed(frame.features, state.config.track);
-  // Where the motion is not known yet, appearance needs no guess.
+  // If the motion is not known yet, appearance needs no guess.
   const bool moving = tracker.velocity_per_s.has_value();
   for (const bool use_motion : {moving, !moving}) {
     std::optional<TrackedPose> tracked;

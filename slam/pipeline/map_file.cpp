@@ -81,12 +81,12 @@ void check(const Reader& reader, const Tracker& tracker, const Map& map) {
   reader.require(tracker.reference.value < map.keyframes().size(), "the reference keyframe");
 }
 
-/// Version and digest of the vocabulary stand before the checksum is known to hold, so that an
-/// older program can still say what it was given.
+/// Version and vocabulary digest are read before the checksum is known to match, so that an older
+/// program can still report what kind of file it received.
 constexpr std::string_view kMagic{"MHMAP\n\0\0", 8};
 constexpr std::size_t kHeaderSize = kMagic.size() + 4 + 8 + 8;
 
-/// The content of a map file whose frame is whole.
+/// The content of a map file, after its header and checksum are checked.
 std::string_view checked_content(std::string_view bytes, const std::string& name,
                                  std::uint64_t vocabulary_digest) {
   const std::string_view start = bytes.substr(0, kMagic.size());
@@ -105,7 +105,8 @@ std::string_view checked_content(std::string_view bytes, const std::string& name
   if (version != kMapFileVersion)
     throw InputError(fmt::format("{}: is a map of version {}, but this program reads {}", name,
                                  version, kMapFileVersion));
-  const std::uint64_t all = bytes.size() - kHeaderSize;  // no sum of what the file says: it may lie
+  const std::uint64_t all = bytes.size() - kHeaderSize;  // no sum with sizes from the file: they
+                                                         // may be wrong
   if (all < sizeof stored || size != all - sizeof stored)
     cut_short(size > (UINT64_MAX >> 1) ? size : kHeaderSize + size + sizeof stored);
   const std::string_view before = bytes.substr(0, bytes.size() - sizeof stored);

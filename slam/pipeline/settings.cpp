@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kMost = 1e6;
 
-/// The intrinsics, by whatever names a dialect gives them.
+/// Reads the distortion, whatever names a dialect gives its coefficients.
 void read_distortion(YamlReader& yaml, const std::string& prefix, Camera& camera) {
   camera.distortion = {.k1 = yaml.number_or(prefix + "k1", 0, -kMost, kMost),
                        .k2 = yaml.number_or(prefix + "k2", 0, -kMost, kMost),
@@ -77,7 +77,7 @@ Settings read_own(YamlReader yaml, Settings settings) {
   return settings;
 }
 
-/// What is read of ORB-SLAM2's files; the rest is for its window, or of other sensors.
+/// Keys of ORB-SLAM2's files that are read; the rest are for its viewer, or for other sensors.
 constexpr auto kOrbSlamKeys = std::to_array<std::string_view>({"Camera.fx",
                                                                "Camera.fy",
                                                                "Camera.cx",
@@ -100,8 +100,8 @@ constexpr auto kOrbSlamKeys = std::to_array<std::string_view>({"Camera.fx",
                                                                "ORBextractor.iniThFAST",
                                                                "ORBextractor.minThFAST"});
 
-/// What such files hold beside them: a kind of camera, of which ours is the one, and what is for
-/// other sensors.
+/// Other keys of such files: the camera type, of which ours is the only one, and keys for other
+/// sensors.
 constexpr auto kOrbSlamOthers = std::to_array<std::string_view>(
     {"Camera.type", "Camera.bFishEye", "Tbc", "Tlr", "loopClosing", "thFarPoints"});
 
@@ -109,8 +109,8 @@ bool is_one_of(const auto& keys, std::string_view key) {
   return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
-/// A key of the sections that are read, or of none, must be known: a slip of the pen would leave
-/// the camera without its distortion. Other sections are somebody else's.
+/// Keys outside of sections and in sections that are read must be known: a typo would silently drop
+/// the camera's distortion. Other sections belong to other programs.
 void refuse_unknown_keys(YamlReader& yaml) {
   for (const auto& [key, node] : yaml.entries()) {
     if (key == "Camera.type" && node.as_string() != "PinHole")
@@ -126,8 +126,8 @@ void refuse_unknown_keys(YamlReader& yaml) {
   }
 }
 
-/// "Somebody.Else, Viewer.*": keys that nobody reads, those of the viewer as one.
-/// Where a window stands (Viewer.*) is nothing that a user would miss.
+/// "Somebody.Else, Viewer.*": keys that nothing reads, those of the viewer as one.
+/// Nobody would miss the position of a window (Viewer.*).
 std::string unread_keys(YamlReader& yaml) {
   std::vector<std::string> unread;
   for (const auto& [key, node] : yaml.entries())
@@ -149,7 +149,7 @@ Settings read_orb_slam(YamlReader yaml, Settings settings) {
   read_distortion(yaml, "Camera.", c);
   const auto k1 = yaml.find("Camera.k1");
   check_camera(c, k1 ? *k1 : yaml);
-  // Zeros stand for the original's own defaults.
+  // Zero means the original's own default.
   const double rate_hz = yaml.number_or("Camera.fps", 0, 0, kMost);
   if (rate_hz != 0) c.rate_hz = rate_hz;
   c.baseline_m = yaml.number_or("Camera.bf", c.baseline_m * c.fx_px, 1e-6, kMost) / c.fx_px;
@@ -170,7 +170,7 @@ Settings read_orb_slam(YamlReader yaml, Settings settings) {
       static_cast<int>(yaml.integer_or("ORBextractor.iniThFAST", f.fast_threshold, 1, 255));
   f.fast_threshold_low =
       static_cast<int>(yaml.integer_or("ORBextractor.minThFAST", f.fast_threshold_low, 1, 255));
-  // Close is what lies within so many baselines.
+  // Close points are those within this many baselines.
   if (const auto close = yaml.find("ThDepth"))
     settings.slam.keyframe.close_depth_m =
         std::clamp(close->as_double(1e-3, kMost) * c.baseline_m, 0.1, 1000.0);
@@ -181,7 +181,7 @@ Settings read_orb_slam(YamlReader yaml, Settings settings) {
   return settings;
 }
 
-/// A calibration as ROS' camera_calibration writes it; lens distortion as plumb_bob.
+/// A calibration as written by ROS' camera_calibration; lens distortion as plumb_bob.
 Settings read_camera_info(YamlReader yaml, Settings settings) {
   settings.has_camera = true;
   Camera& c = settings.camera;
@@ -212,15 +212,15 @@ Settings read_camera_info(YamlReader yaml, Settings settings) {
     c.distortion = {.k1 = d[0], .k2 = d[1], .p1 = d[2], .p2 = d[3], .k3 = d[4]};
     check_camera(c, list);
   }
-  // Of use to stereo rigs and to people.
+  // Used by stereo rigs and people.
   for (const char* key : {"camera_name", "rectification_matrix", "projection_matrix"})
     yaml.find(key);
   yaml.finish();
   return settings;
 }
 
-/// OpenCV's own dialect as YAML, line by line: "key:value" becomes "key: value", and a line at the
-/// margin that stands there a second time, word for word, is left out.
+/// Converts OpenCV's YAML dialect, line by line: "key:value" becomes "key: value", and a top-level
+/// line that repeats an earlier one word for word is dropped.
 std::string without_dialect(const std::string& text) {
   std::string result;
   std::set<std::string> seen;
@@ -268,8 +268,9 @@ SlamConfig read_slam_config(YamlReader& yaml, SlamConfig config) {
 }
 
 Settings parse_settings(std::string text, const std::string& name, const SlamConfig& base) {
-  // OpenCV's own dialect begins with "%YAML:1.0", which is no YAML; its line stays, so that line
-  // numbers hold. ORB-SLAM2's TUM1.yaml has "key:value" without the blank, TUM3.yaml a key twice.
+  // OpenCV's dialect starts with "%YAML:1.0", which is not valid YAML; its line is kept, so that
+  // line numbers stay correct. ORB-SLAM2's TUM1.yaml has "key:value" without the blank, TUM3.yaml a
+  // key twice.
   if (text.starts_with("%YAML:")) {
     text[0] = '#';
     text = without_dialect(text);

@@ -13,9 +13,9 @@
 namespace mh {
 namespace {
 
-constexpr int kMinInitialPoints = 100;  // with depth, for a frame to become the origin
+constexpr int kMinInitialPoints = 100;  // with depth, for a frame to define the origin
 
-/// The first frame with enough depth becomes the world's origin.
+/// The first frame with enough depth defines the world origin.
 StepReport initialize(SlamState& state, PreparedFrame frame, const StepObservers& observers,
                       StepReport report) {
   const int with_depth = points_with_depth(frame.features);
@@ -32,7 +32,7 @@ StepReport initialize(SlamState& state, PreparedFrame frame, const StepObservers
   return report;
 }
 
-/// Landmarks that are seldom found where they are expected go when they are young.
+/// Counts where landmarks were expected and found: young ones that are seldom found are culled.
 void count_sightings(Map& map, const Located& located) {
   for (const LandmarkId id : located.expected) map.count_visible(id);
   for (const LandmarkId id : located.tracked.landmarks)

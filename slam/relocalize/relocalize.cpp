@@ -50,8 +50,8 @@ class CandidateTrial {
     if (!pnp) return attempt;
     adopt(*pnp, feature_of, attempt);
 
-    // Few inliers after PnP usually mean few word matches, not a wrong pose: look again where the
-    // pose says, first widely, then narrowly around the better pose.
+    // Few inliers after PnP usually mean few word matches, not a wrong pose: search again around
+    // the pose, first widely, then narrowly around the refined pose.
     attempt.stage = RelocalizationStage::kInliers;
     refine(attempt);
     for (const auto& [radius_px, max_distance] :
@@ -150,7 +150,7 @@ std::vector<KeyframeId> neighborhood(const Map& map, KeyframeId k,
 
 CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedVector& query,
                                                 const SemanticConfig& config) {
-  // Keyframes that share nothing fail equation 3: they need not be asked.
+  // Keyframes that share nothing fail equation 3 and can be skipped.
   const std::vector<InvertedIndex::Score> scores = map.sharing(query);
   const Overlap what = query.labels.empty() ? Overlap::kWords : config.overlap;
   std::vector<KeyframeId> keyframes;

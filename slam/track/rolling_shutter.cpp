@@ -15,7 +15,7 @@ void straighten(std::span<Keypoint> keypoints, const Camera& camera, const Vecto
     const Eigen::Vector3d seen =
         camera.unproject(keypoint.u_px, keypoint.v_px, has_depth ? keypoint.depth_m : 1.0);
     const Eigen::Vector3d point = SE3::exp(-after_s * (has_depth ? velocity_per_s : turn)) * seen;
-    if (point.z() < kNearest_m) continue;  // a velocity that cannot be
+    if (point.z() < kNearest_m) continue;  // an implausible velocity
     const Eigen::Vector2d pixel = camera.project(point);
     keypoint.u_px = static_cast<float>(pixel.x());
     keypoint.v_px = static_cast<float>(pixel.y());

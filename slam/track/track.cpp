@@ -28,7 +28,7 @@ ProjectionTarget target_of(const Eigen::Vector3d& point_in_camera, const Keypoin
           .angle_rad = from.angle_rad};
 }
 
-/// What the last frame knows of the world: a landmark, or what depth says of another keypoint.
+/// A point that the last frame knows: a landmark, or the point behind another keypoint with depth.
 struct LastPoint {
   Eigen::Vector3d position_in_world;
   LandmarkId landmark;    // invalid = none
@@ -96,7 +96,8 @@ std::optional<TrackedPose> optimize_matches(const Query& query,
     if (landmarks[point.feature].valid()) continue;
     observations.push_back(observe(point.position_in_world, query.features.keypoints[point.feature],
                                    camera, features));
-    observations.back().sigma_px *= std::numbers::sqrt2;  // its point is no surer than the corner
+    observations.back().sigma_px *= std::numbers::sqrt2;  // its point is no more certain than the
+                                                          // corner
   }
   const auto estimate = estimate_pose(observations, guess, camera, context.config.pose);
   if (!estimate) return std::nullopt;
@@ -126,8 +127,8 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
   const ProjectionGate gate{
       .max_distance = static_cast<float>(context.config.match.max_distance_loose),
       .check_angle = true};
-  // A guess that is far off finds little, or what does not fit together: search again in twice the
-  // radius, then in four times.
+  // A guess that is far off finds little, or inconsistent matches: search again with twice the
+  // radius, then with four times.
   std::vector<std::int32_t> found;
   std::vector<std::size_t> point_of;
   std::optional<PoseEstimate> estimate;
@@ -210,7 +211,7 @@ LocalMap local_map(const TrackedPose& tracked, const SlamContext& context) {
   for (const auto& [id, count] : voted)
     if (local.keyframes.size() < limit / 2) take(id);
 
-  // Near and alike, nearest first.
+  // Nearby keyframes with a similar view, nearest first.
   const SE3 world_from_camera = tracked.camera_from_world.inverse();
   const double least_cosine = std::cos(context.config.track.near_angle_rad);
   std::vector<std::pair<double, KeyframeId>> near;
@@ -296,8 +297,8 @@ bool needs_keyframe(const TrackedPose& tracked, const Features& features, Keyfra
     if (depth <= 0 || depth > config.close_depth_m) continue;
     ++(tracked.landmarks[i].valid() ? close_tracked : close_new);
   }
-  // Bundle adjustment knows nothing of the motion: as a keyframe, an unsure one would slip away.
-  // But where more is new than known, the next frame would find too little to hold by.
+  // Bundle adjustment does not use the motion model: as a keyframe, a frame of uncertain pose would
+  // drift. But if more points are new than known, the next frame would have too little to track.
   if (tracked.unsure && close_new <= close_tracked) return false;
   const bool thin = close_tracked < config.min_close_tracked && close_new > config.min_close_new;
   const bool drifted =

@@ -13,16 +13,16 @@
 namespace mh {
 namespace {
 
-// ORB-SLAM's own reader accepts no more.
+// ORB-SLAM's own reader has the same limits.
 constexpr std::uint32_t kMaxBranching = 20, kMaxDepth = 10;
-constexpr std::uint32_t kMaxScoring = 5, kMaxWeighting = 3;  // DBoW2 knows so many
+constexpr std::uint32_t kMaxScoring = 5, kMaxWeighting = 3;  // number of kinds that DBoW2 defines
 
-/// Takes numbers from the lines of a text, one line at a time.
+/// Parses numbers from the lines of a text, one line at a time.
 class LineReader {
  public:
   LineReader(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
 
-  /// Goes to the next line. @returns false at the end; blank lines at the end are passed over.
+  /// Advances to the next line. @returns false at the end; blank lines at the end are skipped.
   bool next_line() {
     if (rest_.find_first_not_of(" \t\r\n") == std::string_view::npos) return false;
     const std::size_t end = std::min(rest_.find('\n'), rest_.size());
@@ -69,7 +69,7 @@ class LineReader {
     while (!line_.empty() && (line_.front() == ' ' || line_.front() == '\t'))
       line_.remove_prefix(1);
   }
-  /// The word at the front, as much of it as a message should show.
+  /// The next word, truncated to what a message should show.
   std::string_view word() const {
     return line_.substr(0, std::min<std::size_t>(line_.find_first_of(" \t"), 20));
   }
@@ -79,7 +79,7 @@ class LineReader {
   std::size_t number_ = 0;
 };
 
-/// Nodes as they stand in the file; 0 is the root.
+/// Nodes in the order of the file; 0 is the root.
 struct Nodes {
   std::vector<std::uint32_t> parent = {0};
   std::vector<Descriptor> center = {Descriptor{}};
@@ -127,7 +127,7 @@ void read_node(LineReader& reader, const VocabularyTree& tree, Nodes& nodes) {
   ++nodes.children[p];
 }
 
-/// All nodes, breadth first; brothers in the order of the file.
+/// All nodes, breadth first; siblings in the order of the file.
 std::vector<std::uint32_t> breadth_first(const Nodes& nodes) {
   std::vector<std::uint32_t> first_child(nodes.count() + 1, 0), children(nodes.count() - 1);
   for (std::uint32_t i = 0; i < nodes.count(); ++i)
@@ -158,7 +158,7 @@ VocabularyTree read_dbow2_text(std::string_view text, const std::string& name) {
   reader.end_line();
 
   Nodes nodes;
-  nodes.reserve(text.size() / 100);  // a line has some 130 bytes
+  nodes.reserve(text.size() / 100);  // a line has about 130 bytes
   while (reader.next_line()) read_node(reader, tree, nodes);
   if (nodes.count() < 2) throw reader.fault("holds no node");
 

@@ -54,7 +54,7 @@ std::size_t checksum_offset(const Header& h) {
          std::size_t{h.words} * sizeof(float);
 }
 
-// @throws InputError unless the bytes are a whole vocabulary file of this version.
+// @throws InputError unless the bytes are a complete vocabulary file of this version.
 Header checked_header(std::string_view bytes, const std::string& name) {
   const std::string_view start = bytes.substr(0, kMagic.size());
   if (start.empty() || start != kMagic.substr(0, start.size()))
@@ -129,7 +129,7 @@ Vocabulary::Vocabulary(HeldBytes bytes, const std::string& name) : bytes_(std::m
       links[i] = next_word++;
       continue;
     }
-    // Children after their parent: no cycles, whatever the file says.
+    // Children come after their parent: no cycles, even in a malformed file.
     if (next_child <= i || next_child + child_counts_[i] > links.size())
       throw inconsistent("children beyond the last node");
     links[i] = static_cast<std::uint32_t>(next_child);

@@ -44,7 +44,7 @@ void InvertedIndex::erase(KeyframeId keyframe, const AugmentedVector& vector) {
 
 std::vector<InvertedIndex::Score> InvertedIndex::query(const AugmentedVector& vector) const {
   std::vector<Score> scores(end_);
-  // Members in the order in which l1_similarity() adds them: sums of doubles depend on it.
+  // Members in the order in which l1_similarity() adds them: floating-point sums depend on it.
   const auto collect = [&](const Postings& postings, const std::vector<WeightedMember>& members,
                            int Score::*shared) {
     for (const WeightedMember& member : members) {

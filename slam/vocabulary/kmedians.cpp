@@ -8,7 +8,7 @@
 namespace mh {
 namespace {
 
-// Counts set bits per position and votes.
+// Bitwise majority vote: counts set bits per position.
 class Majority {
  public:
   void add(const Descriptor& d) {
@@ -30,7 +30,7 @@ class Majority {
   std::uint32_t count_ = 0;
 };
 
-// Up to `limit` different descriptors among the members, in order of first occurrence.
+// Up to `limit` distinct descriptors among the members, in order of first occurrence.
 std::vector<Descriptor> distinct(std::span<const Descriptor> descriptors,
                                  std::span<const std::uint32_t> members, std::size_t limit) {
   std::vector<Descriptor> found;
@@ -54,7 +54,7 @@ std::vector<Descriptor> draw_seeds(std::span<const Descriptor> descriptors,
       squared[i] = std::min(squared[i], d * d);
       sum += squared[i];
     }
-    if (sum == 0) break;  // every descriptor is a seed already
+    if (sum == 0) break;  // every descriptor is already a seed
     std::uint64_t draw = random.below(seeds.size(), sum);
     std::size_t i = 0;
     while (draw >= squared[i]) draw -= squared[i++];
@@ -85,7 +85,7 @@ void recenter(std::span<const Descriptor> descriptors, std::span<const std::uint
     if (majority[c].count() > 0) clusters.centers[c] = majority[c].vote();
 }
 
-// Removing centers that nobody is nearest to changes nobody's nearest center.
+// Removes centers that are nearest to no member, which changes no assignment.
 void drop_empty(Clusters& clusters) {
   std::vector<std::uint32_t> new_index(clusters.centers.size(), UINT32_MAX);
   std::vector<char> used(clusters.centers.size(), 0);
@@ -116,7 +116,7 @@ Clusters cluster(std::span<const Descriptor> descriptors, std::span<const std::u
   clusters.centers = draw_seeds(descriptors, members, k, random);
   for (int i = 0; i < max_iterations && assign(descriptors, members, clusters); ++i)
     recenter(descriptors, members, clusters);
-  assign(descriptors, members, clusters);  // to the centers as they are in the end
+  assign(descriptors, members, clusters);  // to the final centers
   drop_empty(clusters);
   return clusters;
 }
