@@ -18,8 +18,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kStray_m = 0.05;        // the robot keeps to its way by this and better
-constexpr double kLeastStray_m = 0.015;  // in a narrow place it must
+constexpr double kStray_m = 0.05;        // the robot stays within this distance of its path
+constexpr double kLeastStray_m = 0.015;  // the limit in narrow places
 constexpr double kSmallestFloor_m2 = 0.1;
 
 bool keeps_clear(const FloorGrid& grid, std::span<const Vector2d> corners, double clearance_m) {
@@ -29,8 +29,8 @@ bool keeps_clear(const FloorGrid& grid, std::span<const Vector2d> corners, doubl
   return true;
 }
 
-/// The same way with places of passage beside each corner, so that its bow is at most `cut_m` long
-/// on either side (RoundedPath cuts a corner by half a leg at most).
+/// Returns the path with extra points near each corner, so that its arc is at most `cut_m` long on
+/// either side (RoundedPath cuts a corner by at most half a leg).
 std::vector<Vector2d> narrowed(const std::vector<Vector2d>& way, double cut_m) {
   std::vector<Vector2d> result{way.front()};
   for (std::size_t i = 1; i < way.size(); ++i) {
@@ -43,13 +43,14 @@ std::vector<Vector2d> narrowed(const std::vector<Vector2d>& way, double cut_m) {
   return result;
 }
 
-/// A way that the robot can drive with its corners rounded; as much room to spare as there is.
+/// Returns a path that the robot can drive with its corners rounded, with as much clearance as
+/// possible.
 std::optional<std::vector<Vector2d>> drivable_way(const FloorGrid& grid, const Vector2d& from_m,
                                                   const Vector2d& to_m, double radius_m) {
   for (const double stray_m : {kStray_m, kLeastStray_m}) {
     const auto way = plan_way(grid, from_m, to_m, radius_m + stray_m);
     if (!way) continue;
-    // The ends may stand nearer to something than a way should lead: they are the tour's own.
+    // The ends may be nearer to obstacles than a path should be: they are the tour's own.
     for (const double cut_m : {1.0, 0.2, 0.1}) {
       const auto rounded = cut_m >= 1.0 ? *way : narrowed(*way, cut_m);
       if (way->size() < 3 || keeps_clear(grid, rounded, radius_m)) return rounded;
@@ -79,7 +80,7 @@ Tour automatic_tour(const Scene& scene, const Robot& robot, const AutomaticTourC
     for (std::size_t i = 1; i < order.size(); ++i)
       tour.waypoints.push_back({.position_m = places[order[i]]});
     if (order.size() > 1) tour.waypoints.push_back({.position_m = tour.start_m});
-    // Driven on past the start, what was seen first is seen again.
+    // Continues past the start, so that what was seen first is seen again.
     tour.waypoints.push_back(
         {.position_m = tour.start_m, .heading_rad = tour.start_heading_rad, .pause_s = 0.5});
     return planned(scene, robot, tour);

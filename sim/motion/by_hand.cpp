@@ -64,7 +64,7 @@ void validate(const HandheldConfig& config) {
 
 DrivenPath scan_by_hand(const Scene& scene, const Camera& camera, const HandheldConfig& config) {
   validate(config);
-  const RandomStream stream = RandomStream(config.seed).fork(0x68616e64);  // of this motion alone
+  const RandomStream stream = RandomStream(config.seed).fork(0x68616e64);  // for this motion alone
   const Ground ground = ground_of(scene, config.height_m);
   const std::size_t frames = config.frames.value_or(frames_for(ground.area_m2, camera.rate_hz));
 
@@ -88,7 +88,8 @@ DrivenPath scan_by_hand(const Scene& scene, const Camera& camera, const Handheld
   double stride_rad = 0;  // two steps are one stride
   for (std::size_t i = 0; i < frames; ++i) {
     const double t_s = static_cast<double>(i) / camera.rate_hz;
-    // 0.7 strides a second at 0.7 m/s, and as the root of the speed (Grieve and Gear, 1966).
+    // 0.7 strides/s at 0.7 m/s, proportional to the square root of the speed (Grieve and Gear,
+    // 1966).
     stride_rad += 2 * M_PI * 0.7 * std::sqrt(speed[i] / 0.7) / camera.rate_hz;
     const double share = config.gait * speed[i] / 0.7;
     const Vector2d ahead = feet_m[std::min(i + 1, frames - 1)] - feet_m[i == 0 ? 0 : i - 1];

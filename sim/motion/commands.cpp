@@ -29,7 +29,7 @@ Vector2d turned(const Vector2d& v, double angle_rad) {
           std::sin(angle_rad) * v.x() + std::cos(angle_rad) * v.y()};
 }
 
-/// The external-collision reflex: how fast the base may go on in a direction.
+/// The external-collision reflex: how fast the base may keep moving in a direction.
 class Reflex {
  public:
   Reflex(const Scene& scene, const Robot& robot)
@@ -38,7 +38,7 @@ class Reflex {
         radius_m_(robot.footprint_radius_m),
         zone_(robot.equipment->reflex),
         brake_m_per_s2_(kBraking * robot.limits.max_acceleration_m_per_s2),
-        // From where the fastest robot has to slow down.
+        // The distance at which the fastest robot has to slow down.
         reach_m_(radius_m_ + zone_.aside_m + zone_.ahead_m + soft_m() +
                  robot.limits.max_velocity_m_per_s * robot.limits.max_velocity_m_per_s /
                      (2 * brake_m_per_s2_)) {}
@@ -59,21 +59,22 @@ class Reflex {
     for (const auto& [p, size_m] : others)
       free_m = std::min(free_m, way_to_disc_m(ahead_and_aside(p), size_m));
     const double left_m = std::max(0.0, free_m - zone_.ahead_m);
-    // Braking at a constant rate would end in a jerk: the last of it fades away.
+    // Braking at a constant rate would end in a jerk: its end is faded out.
     if (left_m < soft_m()) return kFade_per_s * left_m;
     return std::sqrt(2 * brake_m_per_s2_ * (left_m - 0.5 * soft_m()));
   }
 
  private:
-  // Less than the base can do: the jerk limit delays the braking.
+  // Less than the base is capable of: the jerk limit delays braking.
   static constexpr double kBraking = 0.5;
   static constexpr double kFade_per_s = 2.0;
   static constexpr double kNever_m = std::numeric_limits<double>::infinity();
 
-  /// On the last of the way speed is kFade_per_s of what is left; here both rules brake alike.
+  /// On the last stretch, speed is kFade_per_s times the remaining distance; here both rules brake
+  /// equally.
   double soft_m() const { return brake_m_per_s2_ / (kFade_per_s * kFade_per_s); }
 
-  /// How far the base can go until the point is level with its shell.
+  /// How far the base can move until its shell reaches the point.
   double way_to_point_m(const Vector2d& p, double radius_m) const {
     return p.x() - std::sqrt(std::max(0.0, radius_m * radius_m - p.y() * p.y()));
   }
@@ -84,8 +85,8 @@ class Reflex {
     return way_to_point_m(middle, reach_m);
   }
 
-  /// The same for the edge from a to b: of what lies ahead of the base's middle and not too far
-  /// aside. All are meters ahead and to the left of the base's middle.
+  /// The same for the part of the edge from a to b that is ahead of the base's center and not too
+  /// far to the side. All are meters ahead and to the left of the base's center.
   double way_to_edge_m(const Vector2d& a, const Vector2d& b) const {
     const Vector2d d = b - a;
     double from = 0, to = 1;
@@ -104,7 +105,7 @@ class Reflex {
     };
     double nearest_m = std::min(way_m(from), way_m(to));
     if (d.y() == 0) return nearest_m;
-    // Where the edge leaves the shell's width, and where it lies along the shell.
+    // Where the edge leaves the shell's width, and where it is tangent to the shell.
     const double slant = d.x() / d.y();
     for (const double aside_m :
          {-radius_m_, radius_m_, -radius_m_ * slant / std::sqrt(1 + slant * slant)})
@@ -119,7 +120,7 @@ class Reflex {
   double reach_m_;
 };
 
-/// A joint on its way to where it should be.
+/// A joint moving toward its target.
 struct HeadJoint {
   const Joint* joint = nullptr;
   double now_rad = 0, goal_rad = 0;

@@ -18,15 +18,15 @@ namespace mh {
 namespace {
 
 constexpr double kStepRate_hz = 240.0;  // physics steps per second, at least
-// What single precision adds up to is drawn back gently; what pushed the base aside, firmly.
+// Drift from single precision is corrected gently; a push, firmly.
 constexpr double kDriftGain_per_s = 0.2, kPushGain_per_s = 2.0;
 constexpr double kDrift_m = 0.005;
-constexpr double kStuck_m = 0.15;  // this far behind the plan, something is in the way
+constexpr double kStuck_m = 0.15;  // if this far behind the plan, something is in the way
 constexpr double kArrived_m = 0.01, kTurned_rad = 0.005;
 constexpr double kAtRest_m_per_s = 0.01;
-constexpr double kPatience_s = 3.0;  // for the last centimeter of an arrival
+constexpr double kPatience_s = 3.0;  // for the last 1 cm of an arrival
 
-/// A robot on its tour: steps the physics, keeps the record.
+/// A robot on its tour: steps the physics and records the motion.
 class Driver {
  public:
   Driver(const Scene& scene, const Robot& robot, const Tour& tour,
@@ -71,7 +71,7 @@ class Driver {
                     state_.position_m.y(), against(scene_, last_touched_), goal_m.x(), goal_m.y()));
   }
 
-  /// Drives a stretch and waits until its end is reached, which is returned.
+  /// Drives a stretch, waits until its end is reached, and returns that goal.
   Goal follow(const Stretch& stretch) {
     const auto goal = [&](std::size_t i) {
       return Goal{stretch.position_m[i], stretch.heading_rad[i]};
@@ -95,8 +95,8 @@ class Driver {
     return end;
   }
 
-  /// One step of the physics with the reference's velocity, and on top what leads back to where the
-  /// reference is.
+  /// One physics step with the reference's velocity plus a correction toward the reference's
+  /// position.
   void step(const Goal& reference, const BaseCommand& velocity) {
     const Eigen::Vector2d error_m = reference.position_m - state_.position_m;
     const double pushed_m = std::max(0.0, error_m.norm() - kDrift_m);
@@ -150,8 +150,8 @@ class Driver {
   int steps_per_frame_;
   PlanarWorld world_;
   BaseState state_;
-  double heading_rad_;      // as state_.heading_rad, but counting whole rounds
-  JerkLimiter correction_;  // velocity on top of the reference's
+  double heading_rad_;      // as state_.heading_rad, but including full turns
+  JerkLimiter correction_;  // velocity added to the reference's
   PeakMeter meter_;
   long steps_ = 0;
   InstanceId last_touched_ = 0;

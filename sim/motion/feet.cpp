@@ -16,17 +16,18 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Room that a person takes, narrower where a place has none.
+// Space that a person takes, less in narrow places.
 constexpr std::array kBody_m = {0.26, 0.20, 0.15, 0.11};
 constexpr double kSmallestFloor_m2 = 0.25;
-constexpr double kEyeBand_m = 0.12;  // what stands this near the camera's height ends its view
+constexpr double kEyeBand_m = 0.12;  // what is this near the camera's height blocks its view
 
-/// The way of the feet: a closed round through places all over the floor, walked again and again.
+/// The path of the feet: a closed round trip through places all over the floor, walked repeatedly.
 class Way {
  public:
-  /// @param enough_m  the round need not be longer than this
+  /// @param enough_m  the round trip need not be longer than this
   Way(const Ground& ground, double enough_m, std::uint64_t seed) {
-    // Places as far apart as can be come first, so that a shorter way takes fewer of them.
+    // Places that are as far apart as possible come first, so that a shorter path uses fewer of
+    // them.
     const std::vector<Vector2d> places = spread_places(ground.floor, ground.region, 0.7, 24, seed);
     const auto lengths_m = lengths_between(ground.floor, places, ground.clearance_m);
     std::size_t count = places.size();
@@ -39,7 +40,7 @@ class Way {
   Vector2d at(double s_m) const {
     if (s_m_.back() <= 0) return corners_.front();
     const double around_m = std::fmod(s_m, 2 * s_m_.back());
-    // Round and back again the other way, so that everything is passed in both directions.
+    // Around and back in the opposite direction, so that everything is passed in both directions.
     const double here_m = around_m <= s_m_.back() ? around_m : 2 * s_m_.back() - around_m;
     const auto after = std::upper_bound(s_m_.begin() + 1, s_m_.end() - 1, here_m);
     const auto i = static_cast<std::size_t>(after - s_m_.begin());
@@ -63,7 +64,7 @@ class Way {
   std::vector<double> s_m_;
 };
 
-/// How fast the feet go in each frame: bouts of walking, pauses between them.
+/// Speed of the feet in each frame: bouts of walking with pauses in between.
 std::vector<double> walking_speed(const HandheldConfig& config, std::size_t frames, double rate_hz,
                                   RandomStream stream) {
   std::vector<double> speed;

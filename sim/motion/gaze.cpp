@@ -15,21 +15,21 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kDeg = M_PI / 180.0;
-constexpr double kAhead_s = 1.5;  // one looks from where one will be when the turn is done
-constexpr double kFastTurn_rad = 60 * kDeg;  // who looks round fast looks elsewhere
+constexpr double kAhead_s = 1.5;  // gaze targets are chosen for the position at the end of the turn
+constexpr double kFastTurn_rad = 60 * kDeg;  // a fast turn goes to a distant direction
 
-/// A view that ends nearer than this shows little, by the square of what is left.
+/// A view that ends nearer than this shows little: weight by the square of the distance.
 double room_before(double d_m) {
   return std::min(1.0, d_m * d_m / (1.5 * 1.5));
 }
 
-/// How well something can be scanned from that far: guides for scanning rooms by hand say 1.5 to
-/// 3 m (CubiCasa, "Best scanning practices").
+/// How well something can be scanned from that distance: guides for scanning rooms by hand
+/// recommend 1.5 to 3 m (CubiCasa, "Best scanning practices").
 double from_here(double d_m) {
   return room_before(d_m) * std::clamp((6.0 - d_m) / 3.0, 0.15, 1.0);
 }
 
-/// Chooses where to look next as somebody does who scans a room: at furniture rather than at bare
+/// Chooses where to look next as a person scanning a room does: at furniture rather than at bare
 /// walls, from a good distance, at what was seen least, sweeping over things on the way there.
 class Gaze {
  public:
@@ -47,9 +47,9 @@ class Gaze {
   }
 
   struct Target {
-    double yaw_rad, pitch_rad;  ///< counted on over whole rounds; pitch positive downwards
+    double yaw_rad, pitch_rad;  ///< unwrapped over full turns; pitch positive downward
   };
-  /// @param least_rad  turns by this at least
+  /// @param least_rad  smallest turn
   Target next(const Vector2d& from_m, double yaw_rad, double least_rad = 0) {
     std::array<std::vector<Sight>, kRays> rays;
     std::array<double, kRays> worth_of_ray{};
@@ -61,7 +61,7 @@ class Gaze {
     for (int i = 0; i < kRays; ++i)
       for (int k = -half_view_rays_; k <= half_view_rays_; ++k)
         worth_of_view[index(i)] += worth_of_ray[index(i + k)];
-    // Beside the best there is: however much was seen, one looks at the rest.
+    // Relative to the best available: however much was seen, the person looks at the rest.
     const double most = std::max(1e-9, std::ranges::max(worth_of_view));
 
     double best_worth = -1e9;
@@ -89,9 +89,9 @@ class Gaze {
   static constexpr int kRays = 48;
   static constexpr double kRayStep_rad = 2 * M_PI / kRays;
   static constexpr double kTurnCost = 0.1;   // per radian
-  static constexpr double kBareWorth = 0.3;  // of a wall beside furniture
+  static constexpr double kBareWorth = 0.3;  // of a wall relative to furniture
   static constexpr double kFarthest_m = 8.0;
-  using Bin = std::pair<long, long>;  ///< a square of 0.3 m of what is seen
+  using Bin = std::pair<long, long>;  ///< a 0.3 m square of the seen area
   struct Look {
     double top_m = 0;
     bool bare = false;
@@ -112,7 +112,7 @@ class Gaze {
   }
   Look look_of(InstanceId id) const { return id < looks_.size() ? looks_[id] : Look{}; }
 
-  /// What stands in a direction, up to what ends the view at eye level, which comes last.
+  /// Returns what is in a direction, up to what blocks the view at eye level, which comes last.
   std::vector<Sight> sights(const Vector2d& from_m, double yaw_rad) const {
     const FloorGrid &low = ground_.floor, &eyes = ground_.eyes;
     const Vector2d step = eyes.resolution_m * Vector2d(std::cos(yaw_rad), std::sin(yaw_rad));
@@ -139,13 +139,13 @@ class Gaze {
     return (look_of(sight.id).bare || sight.id == 0 ? kBareWorth : 1.0) * from_here(sight.d_m) /
            (1.0 + (seen == seen_.end() ? 0 : seen->second));
   }
-  /// Nothing if the view ends at once, whatever stands below.
+  /// 0 if the view ends at once, regardless of what is below.
   double worth(const std::vector<Sight>& ray) const {
     double sum = 0;
     for (const Sight& sight : ray) sum += worth(sight);
     return std::min(1.0, sum) * room_before(ray.back().d_m);
   }
-  /// Down at the thing most worth it near the middle of the view.
+  /// Pitches down at the most valuable thing near the center of the view.
   double pitch_to(const std::array<std::vector<Sight>, kRays>& rays, int middle) {
     const Sight* best = &rays[index(middle)].back();
     double best_worth = 0;
@@ -171,7 +171,7 @@ class Gaze {
   std::map<Bin, int> seen_;
 };
 
-/// Share of a minimum-jerk movement that is done (Flash and Hogan, J. Neurosci. 5, 1985); its speed
+/// Completed share of a minimum-jerk movement (Flash and Hogan, J. Neurosci. 5, 1985); its speed
 /// peaks at 15/8 of the mean.
 double minimum_jerk(double t) {
   return t * t * t * (10 + t * (6 * t - 15));
@@ -213,7 +213,7 @@ Looks looks_along(const Scene& scene, const std::vector<Vector2d>& feet_m, const
   }
   looks.yaw_rad.resize(feet_m.size());
   looks.pitch_rad.resize(feet_m.size());
-  // A turn begins and ends softly also where the next one follows at once.
+  // A turn starts and ends smoothly even if the next one follows at once.
   looks.yaw_rad = smoothed(looks.yaw_rad, 0.06 * camera.rate_hz);
   looks.pitch_rad = smoothed(looks.pitch_rad, 0.06 * camera.rate_hz);
   return looks;

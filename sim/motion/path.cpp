@@ -67,12 +67,12 @@ PathPoint RoundedPath::at(double s_m) const {
 }
 
 SpeedProfile::SpeedProfile(const RoundedPath& path, const SpeedLimits& limits) {
-  constexpr double kSpacing_m = 0.01;  // well below the shortest bow
+  constexpr double kSpacing_m = 0.01;  // well below the shortest arc
   const auto intervals = static_cast<std::size_t>(std::ceil(path.length_m() / kSpacing_m)) + 1;
   spacing_m_ = path.length_m() / static_cast<double>(intervals);
   squared_.assign(intervals + 1, 0.0);  // at rest at the end
   for (std::size_t i = intervals; i-- > 0;) {
-    // Both ends of an interval mind a bow that begins or ends within it.
+    // Both ends of an interval respect an arc that starts or ends within it.
     double curvature = 0;
     for (const double beside : {-1.0, 0.0, 1.0})
       curvature = std::max(

@@ -13,13 +13,13 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kSharpTurn_rad = 2.1;  // beyond 120 degrees a corner is a stop, not a bow
-constexpr double kLookAhead_m = 0.7;    // a traveler faces this far ahead
-constexpr double kFaceFirst_rad = 0.8;  // more than this off the way: turn before driving
+constexpr double kSharpTurn_rad = 2.1;  // beyond 120 degrees a corner is a stop, not an arc
+constexpr double kLookAhead_m = 0.7;    // on the way, the robot faces this far ahead
+constexpr double kFaceFirst_rad = 0.8;  // if more than this off the path: turn before driving
 constexpr double kHeadingGain_per_s = 3.0;
-constexpr double kNoWay_m = 0.01, kNoTurn_rad = 0.005;  // less than these is not worth a move
-// Of the limits: the rest is left to what keeps the base on its reference, and to the physics'
-// single precision.
+constexpr double kNoWay_m = 0.01, kNoTurn_rad = 0.005;  // smaller moves are skipped
+// Of the limits: the rest is left to the controller that keeps the base on its reference, and to
+// the physics' single precision.
 constexpr double kVelocityShare = 0.999, kAccelerationShare = 0.99, kJerkShare = 0.95;
 
 double wrapped(double angle_rad) {
@@ -47,10 +47,10 @@ class Samples {
         std::clamp(i, 0L, static_cast<long>(values_.size()) - 1))];
   }
 
-  /// Steps of the shortest moving average that keeps to the jerk.
+  /// Steps of the shortest moving average within the jerk limit.
   long window(double jerk, double step_s) const {
     const long n = static_cast<long>(values_.size());
-    std::vector<T> acceleration;  // none beyond the ends
+    std::vector<T> acceleration;  // 0 beyond the ends
     for (long i = 0; i < n; ++i)
       acceleration.push_back(((*this)[i + 1] - (*this)[i] - ((*this)[i] - (*this)[i - 1])) /
                              (step_s * step_s));
@@ -69,7 +69,7 @@ class Samples {
     return steps;
   }
 
-  /// `count` means of `steps` samples each, the first one of what was `delay` steps ago.
+  /// `count` means of `steps` samples each, delayed by `delay` steps.
   std::vector<T> averaged(long steps, long delay, long count) const {
     std::vector<T> result;
     for (long k = 0; k < count; ++k) {
@@ -84,8 +84,8 @@ class Samples {
   const std::vector<T>& values_;
 };
 
-/// The turn rate that brings a heading error to zero without overshoot: proportional near the
-/// goal, and farther off the rate from which 80 % of the allowed deceleration just suffices.
+/// The turn rate that brings a heading error to zero without overshoot: proportional near the goal;
+/// farther away, the rate from which 80 % of the allowed deceleration just suffices.
 double turn_rate(double error_rad, const BaseLimits& limits) {
   const double brake = 0.8 * limits.max_turn_acceleration_rad_per_s2, k = kHeadingGain_per_s;
   const double near_rad = brake / (k * k), size = std::abs(error_rad);
@@ -93,7 +93,7 @@ double turn_rate(double error_rad, const BaseLimits& limits) {
   return std::copysign(std::min(rate, limits.max_turn_rad_per_s), error_rad);
 }
 
-/// The robot stops at the end, to turn, to pause, and where the way turns back on itself.
+/// The robot stops at the end, to turn, to pause, and where the path reverses.
 bool stops_at(const Tour& tour, std::size_t i) {
   const Waypoint& here = tour.waypoints[i];
   if (i + 1 == tour.waypoints.size() || here.turn_rad != 0 || here.pause_s > 0) return true;
@@ -104,7 +104,7 @@ bool stops_at(const Tour& tour, std::size_t i) {
   return std::abs(wrapped(heading_of(out) - heading_of(in))) > kSharpTurn_rad;
 }
 
-/// Goes through a tour and notes how a base without inertia, limited in velocity and acceleration,
+/// Simulates a tour and records how a base without inertia, limited in velocity and acceleration,
 /// would move.
 class Planner {
  public:
@@ -131,7 +131,7 @@ class Planner {
   }
 
  private:
-  /// Through waypoints [first, last]; stops at the last, acts there.
+  /// Drives through waypoints [first, last]; stops at the last and turns or pauses there.
   void run(std::size_t first, std::size_t last) {
     const Waypoint& stop = tour_.waypoints[last];
     std::vector<Vector2d> corners{first == 0 ? tour_.start_m
@@ -148,7 +148,7 @@ class Planner {
 
   void begin(std::size_t waypoint) {
     stretches_.emplace_back();
-    // At rest long enough for its differences not to reach into the stretch before.
+    // At rest long enough that its differences do not reach into the previous stretch.
     for (int i = 0; i < 3; ++i) note(waypoint);
   }
   void note(std::size_t waypoint) {
@@ -159,12 +159,12 @@ class Planner {
   }
 
   void follow(const RoundedPath& path, std::size_t first) {
-    // Speeding up along the path and turning with it share one acceleration: 0.7^2 + 0.7^2 < 1.
+    // Tangential and centripetal acceleration share one limit: 0.7^2 + 0.7^2 < 1.
     const double share = 0.7 * limits_.max_acceleration_m_per_s2;
     const SpeedProfile profile(path, {limits_.max_velocity_m_per_s, share, share});
     const Waypoint& towards = tour_.waypoints[first];
     if (!towards.heading_rad && !towards.look_at_m) {
-      // Who means to face the way of travel does not set off sideways.
+      // A robot that should face the direction of travel does not start sideways.
       const double error_rad = heading_error(towards, path, 0, heading_rad_, 0);
       if (std::abs(error_rad) > kFaceFirst_rad) turn(error_rad, first);
     }
@@ -195,8 +195,8 @@ class Planner {
     while (turn_rad_per_s != 0) turn_on(0);
   }
 
-  /// How far the heading is from where it should be on the leg to a waypoint.
-  /// @param along share of the leg that has been driven
+  /// Heading error on the leg to a waypoint.
+  /// @param along driven share of the leg
   double heading_error(const Waypoint& to, const RoundedPath& path, double s_m,
                        double leg_heading_rad, double along) const {
     if (to.heading_rad) {
@@ -208,7 +208,7 @@ class Planner {
     return wrapped(heading_of(goal - position_m_) - heading_rad_);
   }
 
-  /// In place: up to the turn rate and down again at the acceleration.
+  /// Turns in place: accelerates up to the turn rate and back down.
   void turn(double angle_rad, std::size_t waypoint) {
     const double size = std::abs(angle_rad), start_rad = heading_rad_;
     if (size <= kNoTurn_rad) return;

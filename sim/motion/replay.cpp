@@ -34,8 +34,8 @@ Trajectory at_rate(const Trajectory& recorded, double rate_hz) {
   }
 }
 
-/// The recording's frame, moved so that its first camera stands at x, y and all is turned by `turn`
-/// about the vertical through it.
+/// Moves the recording's frame so that its first camera is at x, y and everything is rotated by
+/// `turn` about the vertical axis through it.
 SE3 placing(const Vector3d& first_m, const Vector3d& at) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(at.z(), Vector3d::UnitZ()).toRotationMatrix();
   const Vector3d pivot(first_m.x(), first_m.y(), 0);
@@ -68,7 +68,7 @@ DrivenPath replay(const Scene& scene, const Camera& camera, const Trajectory& re
     low_m = std::min(low_m, pose.world_from_camera.translation().z());
     high_m = std::max(high_m, pose.world_from_camera.translation().z());
   }
-  // What the camera could touch is what reaches into the heights that it passes through.
+  // The camera can only touch what extends into the heights that it passes through.
   const FloorGrid grid =
       make_floor_grid(scene, {.bottom_m = low_m - config.room_m, .top_m = high_m + config.room_m});
   const Vector3d first_m = path.front().world_from_camera.translation();

@@ -16,9 +16,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kGravity_m_per_s2 = 9.81;
-constexpr int kConeRings = 3;  // rays in a sonar's cone: 1 + 6 + 12 + 18
-constexpr double kBumperReach_rad =
-    1.06;  // a bumper covers a little more than a third of the shell
+constexpr int kConeRings = 3;              // rays in a sonar's cone: 1 + 6 + 12 + 18
+constexpr double kBumperReach_rad = 1.06;  // a bumper covers slightly more than 1/3 of the shell
 
 std::vector<float> scan(const PlanarWorld& world, const LaserScanner& laser,
                         const SE3& world_from_base) {
@@ -56,7 +55,7 @@ float ping(const PlanarWorld& world, const Sonar& sonar, const SE3& world_from_b
   return static_cast<float>(nearest_m);
 }
 
-/// Fills in what the IMU feels, from the second difference of its place.
+/// Fills in the IMU's readings, from the second difference of its position.
 void feel(std::vector<RobotReading>& moments, const Trajectory& base, const SE3& base_from_imu) {
   const auto n = base.size();
   const auto world_from_imu = [&](std::size_t i) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-/// @param before_m where the robot stands before this waypoint
+/// @param before_m where the robot is before this waypoint
 Waypoint read_waypoint(YamlReader yaml, const Eigen::Vector2d& before_m) {
   Waypoint waypoint;
   waypoint.line = yaml.line();

@@ -19,7 +19,7 @@ using Eigen::Vector2f;
 struct FaceEdge {
   std::array<float, 4> ends;  // ax, ay, bx, by
   std::uint32_t face = 0;
-  bool left = false, right = false;  // where the face lies, seen from above; neither: upright
+  bool left = false, right = false;  // side of the face, seen from above; neither: vertical
 };
 
 /// Twice the signed area seen from above, m2.

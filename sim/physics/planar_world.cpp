@@ -33,7 +33,7 @@ struct PlanarWorld::Impl {
   double radius_m, height_m;
   double step_s;
   std::unique_ptr<Obstacles> seen, felt;
-  std::unique_ptr<btRigidBody> house;  // of what is felt; none if there is nothing to hit
+  std::unique_ptr<btRigidBody> house;  // of felt_obstacles; null if there is nothing to hit
   btSphereShape robot_shape;           // see felt_obstacles
   std::unique_ptr<btRigidBody> robot;
   struct Mover {
@@ -61,7 +61,7 @@ struct PlanarWorld::Impl {
                             static_cast<float>(0.5 * model.height_m))),
         robot_shape(static_cast<btScalar>(model.footprint_radius_m)) {
     world.setGravity(btVector3(0, 0, 0));
-    // An overlap is undone without a push that would outlast it.
+    // An overlap is resolved without a push that would outlast it.
     world.getSolverInfo().m_splitImpulsePenetrationThreshold = 0;
     dispatcher.registerCollisionCreateFunc(SPHERE_SHAPE_PROXYTYPE, TRIANGLE_MESH_SHAPE_PROXYTYPE,
                                            &outline_contacts);
@@ -94,21 +94,21 @@ struct PlanarWorld::Impl {
         btQuaternion(btVector3(0, 0, 1), static_cast<btScalar>(heading_rad)),
         btVector3(static_cast<btScalar>(start_m.x()), static_cast<btScalar>(start_m.y()),
                   static_cast<btScalar>(0.5 * model.height_m)));
-    // Without friction and bounce a wall takes away speed and never adds any.
+    // Without friction and restitution, a wall removes speed and never adds any.
     info.m_friction = 0;
     info.m_restitution = 0;
     robot = std::make_unique<btRigidBody>(info);
     robot->setLinearFactor(btVector3(1, 1, 0));
     robot->setAngularFactor(btVector3(0, 0, 1));
     robot->setActivationState(DISABLE_DEACTIVATION);
-    // What turns about an upright axis only knows no gyroscopic torque; to work out that it is zero
-    // costs some of the precision of the turn rate.
+    // A body that turns only about a vertical axis has no gyroscopic torque; computing that it is
+    // zero costs precision of the turn rate.
     robot->setFlags(0);
     world.addRigidBody(robot.get());
   }
 
-  /// What crosses the robot's axis, if anything: a mesh is hollow, so that a robot that stands in
-  /// the middle of a bed touches none of its faces.
+  /// Returns what crosses the robot's axis, if anything: a mesh is hollow, so a robot in the middle
+  /// of a bed touches none of its faces.
   std::optional<InstanceId> instance_on_axis() const {
     struct Hit : btCollisionWorld::ClosestRayResultCallback {
       using ClosestRayResultCallback::ClosestRayResultCallback;
@@ -143,7 +143,8 @@ struct PlanarWorld::Impl {
                                  static_cast<btScalar>(0.5 * obstacle.height_m)));
   }
 
-  /// Puts moving obstacles where they are after the next step, with the speed of getting there.
+  /// Moves the moving obstacles to their positions after the next step, with the corresponding
+  /// velocity.
   void move_movers() {
     for (Mover& mover : movers) {
       const btTransform from = pose_of(mover.obstacle, static_cast<double>(steps) * step_s);
@@ -164,7 +165,7 @@ struct PlanarWorld::Impl {
       const bool robot_is_first = manifold->getBody0() == robot.get();
       for (int k = 0; k < manifold->getNumContacts(); ++k) {
         const btManifoldPoint& point = manifold->getContactPoint(k);
-        // Distances are those before the step; what pushed in it has been reached.
+        // Distances are from before the step; what pushed during it has been reached.
         const double now_m = point.getAppliedImpulse() > 0
                                  ? std::min<double>(point.getDistance(), 0)
                                  : point.getDistance();

@@ -25,7 +25,7 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-// Goes up whenever the same scene and config come out in other light.
+// Incremented whenever the same scene and config result in different light.
 constexpr std::uint64_t kBakeVersion = 2;
 constexpr int kLanes = 16;
 constexpr int kVerticesPerJob = 1024;
@@ -33,13 +33,14 @@ constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // No real surface reflects more, and interreflections must fade.
 constexpr float kMaxAlbedo = 0.95F;
-// A vertex whose rays meet more backs than this share is inside something.
+// A vertex is inside something if more than this share of its rays hit back faces.
 constexpr float kInsideShare = 0.5F;
 // A side with less than this share of the scene's mean light, and of the other side's, is dark:
 // inside a closed box that is turned inside out.
 constexpr float kDarkShare = 0.02F;
-/// Evenly spread points of the unit disc (Vogel's sunflower), turned by a random angle and shifted
-/// by a random share of a step: the same low-discrepancy pattern at each vertex, no two alike.
+/// Evenly spread points of the unit disc (Vogel's sunflower), rotated by a random angle and shifted
+/// by a random share of a step: the same low-discrepancy pattern at each vertex, but no two
+/// identical.
 class DiscPattern {
  public:
   explicit DiscPattern(int count) {
@@ -72,7 +73,7 @@ Turn random_turn(const RandomStream& stream, std::uint64_t index) {
           static_cast<float>(stream.uniform(2 * index + 1))};
 }
 
-/// Two unit vectors that make a right-handed frame with the unit vector n.
+/// Computes two unit vectors that form a right-handed frame with the unit vector n.
 void make_frame(const Vector3f& n, Vector3f& a, Vector3f& b) {
   a = (std::abs(n.x()) > 0.7F ? Vector3f::UnitY() : Vector3f::UnitX()).cross(n).normalized();
   b = n.cross(a);
@@ -121,7 +122,7 @@ class Baker {
     Colors direct(count), indirect(count, Vector3f::Zero());
     std::vector<char> inside(count, 0);
     for_each_vertex([&](std::size_t v) { direct[v] = direct_light(v, 1.0F); });
-    // Round 0 gathers sky and glow alone; each round after it adds one interreflection.
+    // Round 0 gathers only sky and emission; each later round adds one interreflection.
     for (int round = 0; round <= config_.bounces; ++round) {
       leaving_ = round == 0 ? Colors(count, Vector3f::Zero()) : light_leaving(direct, indirect);
       Colors next(count);
@@ -166,7 +167,8 @@ class Baker {
     });
   }
 
-  /// Rounds over all vertices: lamps and suns, each bounce, and the backs of what stayed dark.
+  /// Reports progress over all rounds: lamps and suns, each bounce, and the back sides of what
+  /// stayed dark.
   void note_job(int jobs_of_round) const {
     if (!watch_) return;
     const std::lock_guard lock(watching_);
@@ -246,8 +248,8 @@ class Baker {
                          });
   }
 
-  /// Mean of what `aim` returns for each point of the shadow pattern, 0 where something opaque is
-  /// in the way or the source is behind the surface.
+  /// Mean of what `aim` returns for each point of the shadow pattern, 0 if something opaque is in
+  /// the way or the source is behind the surface.
   template <class Aim>
   float shadowed_mean(std::size_t v, float side, const Turn& turn, const Aim& aim) const {
     float sum = 0.0F;
@@ -273,11 +275,11 @@ class Baker {
     return sum / static_cast<float>(shadow_.size());
   }
 
-  /// Cosine-weighted mean of the radiance that arrives on one side of a vertex from sky, glowing
+  /// Cosine-weighted mean of the radiance that arrives on one side of a vertex from sky, luminous
   /// faces and faces that reflect `leaving_`: irradiance / pi.
   Gathered gather(std::size_t v, float side, int round) const {
     const Vector3f normal = side * points_.normal(v);
-    // What earlier rounds miss is averaged over many faces by the last one.
+    // The last round averages out the noise of earlier ones over many faces.
     const DiscPattern& pattern = round < config_.bounces ? rough_ : hemisphere_;
     Vector3f a, b;
     make_frame(normal, a, b);
@@ -321,7 +323,7 @@ class Baker {
     return albedo_[material].cwiseProduct(light) + glow_[face];
   }
 
-  /// Per vertex: light x vertex color; the material's share comes with the face.
+  /// Per vertex: light x vertex color; the material's factor is applied with the face.
   Colors light_leaving(const Colors& direct, const Colors& indirect) const {
     Colors leaving(direct.size());
     for (std::size_t v = 0; v < leaving.size(); ++v) {
@@ -345,7 +347,7 @@ class Baker {
   Colors albedo_;  // by material
   Colors glow_;    // by face
   Vector3f sky_ = Vector3f::Zero(), ambient_ = Vector3f::Zero();
-  Colors leaving_;  // by vertex, of the round before
+  Colors leaving_;  // by vertex, of the previous round
 };
 
 }  // namespace

@@ -8,14 +8,15 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Light is averaged only between vertices whose normals differ by less than 25 deg, and the less
-// the further they differ beyond this share, the size of the noise: contact shadows stay.
+// Light is averaged only between vertices whose normals differ by less than 25 deg, and with less
+// weight the more their light differs beyond this share, the size of the noise: contact shadows
+// stay.
 constexpr float kSameSurface = 0.9F;
 constexpr float kNoise = 0.1F;
 
-/// Gives unknown vertices the mean of their known neighbors, ring by ring from the rim inwards.
+/// Gives unknown vertices the mean of their known neighbors, ring by ring from the border inward.
 void fill(std::vector<char>& known, const BakeSurface& surface, Colors& direct, Colors& indirect) {
-  constexpr int kRings = 16;  // furniture is rarely wider than so many cells
+  constexpr int kRings = 16;  // furniture is rarely wider than this many cells
   for (int ring = 0; ring < kRings; ++ring) {
     std::vector<std::size_t> filled;
     for (std::size_t v = 0; v < known.size(); ++v) {

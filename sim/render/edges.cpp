@@ -10,14 +10,14 @@
 namespace mh {
 namespace {
 
-// A pixel lies on an edge where its inverse depth departs by this share from the mean of its two
-// neighbors'. A plane departs by nothing, the corner of a box at 2 m by 1e-3: edges within an
-// object count where its depth jumps, not where its surface bends.
+// A pixel is on an edge if its inverse depth deviates by this share from the mean of its two
+// neighbors'. A plane deviates by 0, the corner of a box at 2 m by 1e-3: within an object, depth
+// jumps are edges, but bends of its surface are not.
 constexpr float kEdgeBend = 5e-3F;
 
 /// Whether an edge runs through each of eight pixels, as bits.
 unsigned edge_bits(const float* z, const InstanceId* id, std::ptrdiff_t width) {
-  // Inverse depths a, b, c are in line where 2/b = 1/a + 1/c.
+  // Depths a, b, c are on a plane if 2/b = 1/a + 1/c.
   const Float8 middle = load8(z);
   const auto bent = [&](const float* before, const float* after) -> Int8 {
     const Float8 a = load8(before), c = load8(after);
@@ -46,7 +46,8 @@ void find_edges(const RenderedFrame& frame, int y0, std::vector<Pixel>& edges) {
   for (int x0 = 1; x0 < w - 1; x0 += kEdgeBlock)
     for (int y = std::max(1, y0); y < y1; ++y)
       for (int x = x0; x < std::min(w - 1, x0 + kEdgeBlock); x += 8) {
-        // The last eight of a row would read beyond its end: they are moved back, bits with them.
+        // The last eight of a row would read past its end: they are shifted back, together with
+        // their bits.
         const int from = std::max(1, std::min(x, w - 1 - 8));
         unsigned bits =
             edge_bits(&frame.depth_m(from, y), &frame.instances(from, y), w) >> (x - from);

@@ -20,25 +20,27 @@
 namespace mh {
 namespace {
 
-// Packets are traced a tile at a time and then shaded: the hierarchy and the shading do not push
-// each other out of the caches, and the rays are long in memory when the tracer loads them.
+// Packets are traced a tile at a time and then shaded, so that the BVH and the shading data do not
+// evict each other from the caches, and the rays have long been in memory when the tracer loads
+// them.
 constexpr float kDepth16PerM = 5000.0F;
 
-// Where an edge pixel is sampled beside its center: a third of it each, in columns and rows.
+// Where an edge pixel is sampled in addition to its center: offset by 1/3 of a pixel in columns and
+// rows.
 constexpr std::array<Offset, 2> kEdgeOffsets = {
     {{1.0F / 3.0F, -1.0F / 3.0F}, {-1.0F / 3.0F, 1.0F / 3.0F}}};
 constexpr std::size_t kEdgeSamples = kEdgeOffsets.size();
 constexpr std::array<Offset, 4> kQuarters = {
     {{-0.25F, -0.25F}, {0.25F, -0.25F}, {-0.25F, 0.25F}, {0.25F, 0.25F}}};
 
-/// What a packet's lanes show, and the picture that it goes to.
+/// What a packet's lanes show, and the image that it goes to.
 template <class T>
 struct Output {
   const T* lanes;
   Grid2d<T>& grid;
 };
 
-/// What a thread works with.
+/// Working memory of a thread.
 struct Scratch {
   explicit Scratch(const View& view) : packets(Tile::kPackets), seen(Tile::kPackets) {
     for (Packet& packet : packets) packet.start(view);
@@ -56,7 +58,7 @@ struct EdgeScratch {
   FlushDenormals flush;
 };
 
-/// The panes of a scene, where it has any.
+/// The panes of a scene, if it has any.
 class Glass {
  public:
   Glass(const Scene& scene, const RenderConfig& config)
@@ -65,7 +67,7 @@ class Glass {
       transmission_.push_back(scene.materials[material].transmission);
   }
 
-  /// Takes from the light of a packet's lanes what the panes between camera and surface hold back.
+  /// Dims the light of a packet's lanes by the panes between camera and surface.
   void dim(const Packet& packet, Radiance& light) const {
     RTCRayHit16 rays = packet.rays;
     alignas(64) std::array<int, kLanes> valid;
@@ -147,7 +149,7 @@ class EmbreeRenderer final : public Renderer {
     return frame;
   }
 
-  /// What reaches the camera of what a packet's lanes show.
+  /// The light that reaches the camera from what a packet's lanes show.
   Radiance light_of(const Packet& packet, const Seen& seen) const {
     Radiance light = shading_.shade(packet, seen);
     if (glass_) glass_->dim(packet, light);
@@ -192,7 +194,7 @@ class EmbreeRenderer final : public Renderer {
     std::vector<Packet>& packets = scratch.packets;
     std::vector<Seen>& seen = scratch.seen;
     for_each([&](std::size_t k, int x) { packets[k].aim(view, x, y0, offset); });
-    // The records that a packet asks for arrive while the next one is traced.
+    // The records that a packet prefetches arrive while the next one is traced.
     for_each([&](std::size_t k, int) {
       bvh_.intersect16(all.data(), packets[k].rays, true);
       shading_.find_records(packets[k], seen[k]);
@@ -201,7 +203,7 @@ class EmbreeRenderer final : public Renderer {
     for_each([&](std::size_t k, int) { shading_.find_texels(seen[k]); });
   }
 
-  /// Puts a packet's lanes where they belong; those outside of the picture nowhere.
+  /// Writes a packet's lanes to their places; those outside the image are skipped.
   template <class... T>
   static void copy(int x0, int y0, int width, int height, Output<T>... outputs) {
     const auto copy_rows = [&](auto rows, auto columns) {
@@ -211,7 +213,7 @@ class EmbreeRenderer final : public Renderer {
       }
     };
     if (width - x0 >= kSide && height - y0 >= kSide) {
-      constexpr std::integral_constant<int, kSide> kWhole;  // of a fixed size: single moves
+      constexpr std::integral_constant<int, kSide> kWhole;  // a fixed size compiles to single moves
       copy_rows(kWhole, kWhole);
     } else {
       copy_rows(std::min(kSide, height - y0), std::min(kSide, width - x0));

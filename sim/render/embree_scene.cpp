@@ -24,7 +24,7 @@ void check(RTCDevice device, const char* what) {
         fmt::format("Embree failed to {} (error {})", what, static_cast<int>(error)));
 }
 
-/// Rays go on through holes.
+/// Lets rays continue through holes.
 void pass_holes(const RTCFilterFunctionNArguments* hits) {
   const auto& cut_outs = *static_cast<const CutOuts*>(hits->geometryUserPtr);
   for (unsigned i = 0; i < hits->N; ++i)

@@ -36,10 +36,10 @@ constexpr float kElevationRad = 0.6F;
 
 struct Bounds {
   Eigen::AlignedBox3f box;
-  const Room* room = nullptr;  // null: the whole box
+  const Room* room = nullptr;  // null: the whole bounding box
 };
 
-/// Where viewpoints are looked for: the rooms, or without a plan all of the scene.
+/// Where viewpoints are sampled: in the rooms or, without a plan, in the whole scene.
 std::vector<Bounds> places(const Scene& scene) {
   std::vector<Bounds> places;
   for (const Room& room : scene.rooms) {
@@ -55,7 +55,7 @@ std::vector<Bounds> places(const Scene& scene) {
   return {all};
 }
 
-/// Luminance of what leaves a face at a hit.
+/// Luminance of the light that leaves a face at a hit.
 class Meter {
  public:
   explicit Meter(const Scene& scene) : scene_(scene) {
@@ -86,8 +86,8 @@ class Meter {
   std::vector<Vector3f> albedo_;
 };
 
-/// Appends what sixteen rays from a point see; nothing if the point is inside something, as most
-/// rays then meet backs of faces.
+/// Appends what sixteen rays from a point see; nothing if the point is inside something, since most
+/// rays then hit back faces.
 void look_around(const EmbreeScene& bvh, const Meter& meter, const Vector3f& eye,
                  const RandomStream& stream, std::vector<float>& seen) {
   alignas(64) RTCRayHit16 packet;

@@ -28,7 +28,7 @@ struct Surface {
   Vector3f emission = Vector3f::Zero();  // linear x exposure
 };
 
-/// Each picture once, however many materials show it: where it is, by identity.
+/// Adds each texture once, however many materials use it; returns positions by identity.
 std::map<const void*, std::uint32_t> add_textures(const Scene& scene, TextureTable& textures) {
   std::map<const void*, std::uint32_t> place_of;  // never iterated
   std::vector<const Grid2d<Rgb8>*> pictures;
@@ -40,7 +40,7 @@ std::map<const void*, std::uint32_t> add_textures(const Scene& scene, TextureTab
   return place_of;
 }
 
-/// One per material, at least one. Without texture coordinates the textures are left out: their
+/// One per material, at least one. Without texture coordinates, textures are left out, and their
 /// mean colors go into the faces' records.
 std::vector<Surface> make_surfaces(const Scene& scene, float exposure, TextureTable& textures) {
   std::map<const void*, std::uint32_t> place_of;

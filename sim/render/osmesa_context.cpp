@@ -10,7 +10,8 @@
 
 #include <fmt/format.h>
 
-// osmesa.h wants <GL/gl.h>, which declares anew what <GL/glcorearb.h> has; its few types do.
+// osmesa.h needs <GL/gl.h>, which redeclares what is in <GL/glcorearb.h>; declare its few types
+// here.
 extern "C" {
 using OSMesaContext = struct osmesa_context*;
 }
@@ -23,7 +24,7 @@ namespace {
 // Constants of <GL/osmesa.h>.
 constexpr int kRgba = 0x1908, kFormat = 0x22, kDepthBits = 0x30, kProfile = 0x33,
               kCoreProfile = 0x34, kMajorVersion = 0x36, kMinorVersion = 0x37;
-constexpr int kSize = 16;  // pixels of the context's own picture, which nobody sees
+constexpr int kSize = 16;  // pixels of the context's own image, which is never shown
 
 }  // namespace
 
@@ -56,7 +57,7 @@ struct OffscreenContext::Library {
     context = create(wanted.data(), nullptr);
     if (context == nullptr) throw MachineError("OSMesa cannot do OpenGL 4.5");
   }
-  // The library itself stays: the compiler's threads in it outlive their contexts.
+  // The library itself stays loaded: its compiler threads outlive their contexts.
   ~Library() { destroy(context); }
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;

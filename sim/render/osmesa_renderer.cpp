@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Nearer surfaces are cut away; a ray tracer sees them.
+// Nearer surfaces are clipped; a ray tracer sees them.
 constexpr float kNearM = 1e-3F;
 
 class OsmesaRenderer final : public Renderer {
@@ -62,7 +62,7 @@ class OsmesaRenderer final : public Renderer {
   }
 
  private:
-  /// Behind a pane what is brighter than white need not be white.
+  /// Light brighter than white may not be white behind a pane.
   float white() const { return has_panes_ ? std::numeric_limits<float>::max() : 1.0F; }
 
   void check(const char* what) const {
@@ -106,7 +106,7 @@ class OsmesaRenderer final : public Renderer {
     gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
   }
 
-  /// Renderbuffers of the picture's size: linear color, labels, depth, depth test.
+  /// Renderbuffers of the image's size: linear color, labels, depth, depth test.
   void prepare_targets(int width, int height) const {
     if (targets_.empty()) {
       targets_.resize(4);
@@ -136,7 +136,7 @@ class OsmesaRenderer final : public Renderer {
     Eigen::Matrix4f clip_from_camera = Eigen::Matrix4f::Zero();
     clip_from_camera(0, 0) = static_cast<float>(2.0 * camera.fx_px / w);
     clip_from_camera(1, 1) = static_cast<float>(2.0 * camera.fy_px / h);
-    // OpenGL's pixel centers lie at half-integers, ours at integers.
+    // OpenGL's pixel centers are at half-integers, ours at integers.
     clip_from_camera(0, 2) = static_cast<float>(2.0 * (camera.cx_px + 0.5) / w - 1.0);
     clip_from_camera(1, 2) = static_cast<float>(2.0 * (camera.cy_px + 0.5) / h - 1.0);
     clip_from_camera(2, 3) = kNearM;
@@ -167,7 +167,7 @@ class OsmesaRenderer final : public Renderer {
                      reinterpret_cast<const void*>(bytes));
   }
 
-  /// Panes take their share of the light behind them, in whatever order; nothing else changes.
+  /// Panes dim the light behind them, in any order; nothing else changes.
   void draw_panes() const {
     gl_.Enablei(GL_BLEND, 0);
     gl_.BlendFunc(GL_ZERO, GL_SRC_COLOR);
@@ -207,7 +207,7 @@ class OsmesaRenderer final : public Renderer {
 
   OffscreenContext context_;
   const Gl& gl_;
-  float exposure_;  // of pictures, see RenderedFrame
+  float exposure_;  // of images, see RenderedFrame
   GLuint program_ = 0;
   std::vector<Batch> batches_;
   bool has_panes_ = false;

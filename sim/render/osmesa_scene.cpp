@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Faces by material, else in their order.
+/// Sorts faces by material, otherwise keeping their order.
 std::vector<std::uint32_t> sort_faces(const Scene& scene) {
   std::vector<std::uint32_t> order(scene.triangles.size());
   std::iota(order.begin(), order.end(), 0U);

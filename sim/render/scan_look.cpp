@@ -22,11 +22,11 @@ struct Voxel {
   float distance_m = 0;  ///< mean signed distance along the ray, positive before the surface
   std::uint16_t views = 0;
   InstanceId instance = 0;
-  std::uint8_t votes = 0;  ///< of that instance over others (Boyer and Moore's majority)
+  std::uint8_t votes = 0;  ///< of that instance over others (Boyer-Moore majority vote)
   std::array<float, 3> color{};
 };
 
-/// What the views see lies in this box, meters.
+/// Bounding box of what the views see, meters.
 struct Bounds {
   Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity());
   Vector3d high = -low;
@@ -50,7 +50,7 @@ class Volume {
 
   void add(const RenderedFrame& frame, const Camera& camera, const SE3& world_from_camera,
            RandomStream random) {
-    // Smooth errors of the depth, another for each view.
+    // Smooth depth errors, different for each view.
     const Field bumps = fbm(camera.width_px, camera.height_px, {6, 5, 3, 0.6F}, random);
     for (int y = 0; y < camera.height_px; ++y)
       for (int x = 0; x < camera.width_px; ++x) {
@@ -161,7 +161,7 @@ class Volume {
                 const std::vector<InstanceId>& owner, Scene& out) const {
     const Voxel &a = voxels_[index(at)], &b = voxels_[index(at + Vector3i::Unit(axis))];
     if (!known(a) || !known(b) || (a.distance_m < 0) == (b.distance_m < 0)) return;
-    // Far behind a surface the sign turns again where another view's band ends: no surface.
+    // Far behind a surface the sign flips again at the end of another view's band: not a surface.
     if (std::abs(a.distance_m - b.distance_m) > 2.5 * config_.voxel_m) return;
     const Vector3i u = Vector3i::Unit((axis + 1) % 3), v = Vector3i::Unit((axis + 2) % 3);
     std::array<std::uint32_t, 4> q{};
@@ -185,7 +185,7 @@ class Volume {
   std::vector<Voxel> voxels_;
 };
 
-/// Boxes of the objects as scanned; those that nobody saw are left out.
+/// Computes the boxes of the objects as scanned; those that no view saw are left out.
 void measure(const Scene& source, Scene& out) {
   for (Instance instance : source.instances) {
     instance.min_m.setConstant(std::numeric_limits<float>::infinity());
@@ -217,7 +217,7 @@ Scene scan_look(const Scene& scene, const Renderer& renderer, const Camera& came
         if (frame.depth_m(x, y) > 0)
           use(pose * camera.unproject(x, y, static_cast<double>(frame.depth_m(x, y))));
   };
-  // Nothing is scanned beyond the scene's rooms: what windows show is not.
+  // Nothing is scanned outside the scene's rooms, such as what windows show.
   Bounds rooms, seen;
   for (const Room& room : scene.rooms)
     for (const Eigen::Vector2d& p : room.polygon_m) {

@@ -49,8 +49,8 @@ void Shading::find_places(const Packet& packet, float pixel_area, Seen& seen) co
     const auto [du2, dv2, texels, texture] = load_fields(size);
     const auto [u, v, du1, dv1] = load_fields(place);
     const Float8 along1 = load8(hit.u + i), along2 = load8(hit.v + i);
-    // A pixel cuts depth^2 / (fx fy) out of the plane z = depth; a face of unit normal n shows
-    // 1 / |n . d| of that behind it, d having camera z = 1; and Ng = n x twice its area.
+    // A pixel covers depth^2 / (fx fy) of the plane z = depth; on a face of unit normal n, it
+    // covers 1 / |n . d| times that, with d having camera z = 1; and Ng = n x twice its area.
     const Float8 facing = load8(hit.Ng_x + i) * load8(ray.dir_x + i) +
                           load8(hit.Ng_y + i) * load8(ray.dir_y + i) +
                           load8(hit.Ng_z + i) * load8(ray.dir_z + i);

@@ -12,11 +12,12 @@ namespace {
 
 using Picture = Grid2d<Eigen::Vector3f>;
 
-/// What makes a texel of a row of half the length: an odd length gives each a share of three.
+/// Weights of the texels that form one of a row of half the length: with an odd length, three
+/// contribute to each.
 struct Halved {
   explicit Halved(int length) : before(length), after(std::max(1, length / 2)) {}
 
-  /// Calls add(place, share) for each texel that place `at` of the shorter row takes part of.
+  /// Calls add(place, share) for each texel that contributes to place `at` of the shorter row.
   template <class Add>
   void each(int at, const Add& add) const {
     const double step = static_cast<double>(before) / after;
@@ -30,7 +31,7 @@ struct Halved {
   int before, after;
 };
 
-/// Half the size by area averages, of a picture that `texel(x, y)` tells.
+/// Halves the size by area averages, of an image given by `texel(x, y)`.
 template <class Texel>
 Picture halve(int width, int height, const Texel& texel) {
   const Halved across(width), down(height);
@@ -48,7 +49,7 @@ Picture halve(int width, int height, const Texel& texel) {
   return out;
 }
 
-/// Every level below a picture's own, the finest first.
+/// Visits every level below an image's own, finest first.
 template <class Visit>
 void for_each_coarser_level(const Grid2d<Rgb8>& picture, const Visit& visit) {
   if (picture.size() <= 1) return;
@@ -76,7 +77,7 @@ void append_wrapped(std::vector<std::uint16_t>& texels, int width, int height, c
     }
 }
 
-/// Texels that a picture takes with all its levels.
+/// Texels that an image takes with all its levels.
 std::size_t texels_of(const Grid2d<Rgb8>& picture) {
   std::size_t sum = 0;
   int width = picture.width(), height = picture.height();
@@ -136,7 +137,7 @@ std::uint32_t TextureTable::add(const Grid2d<Rgb8>& picture) {
 }
 
 TextureTable::Place TextureTable::place(Float8 first, Float8 u, Float8 v, Float8 texels) const {
-  // Read as an integer, a float is its logarithm to base 2, near enough.
+  // A float's bits, read as an integer, approximate its base-2 logarithm.
   const Float8 logarithm = to_float((Int8)texels) * 0x1.0p-23F - 127.0F;
   const Float8 level = clamp8(0.5F * logarithm, 0.0F, kMipLevels - 1);
   const Int8 whole = to_int(level);
@@ -174,7 +175,7 @@ void TextureTable::look_up(const Place& place, Lookup& lookup) const {
                   y - to_float(y0)};
   };
   const Corner fine = corner(levels[0]), coarse = corner(levels[1]);
-  // Cut towards zero, so that four shares of one never sum to more than it.
+  // Truncated toward zero, so that four shares of one never sum to more than one.
   const auto share = [](Float8 part) { return to_int(part * kOne); };
   const auto two = [](Int8 low, Int8 high) { return low | high << 16; };
   const auto store = [](std::array<std::uint64_t, 8>& to, Int8 low, Int8 high) {

@@ -27,7 +27,7 @@ double length_m(const Pedestrian& pedestrian) {
   return sum;
 }
 
-/// How far along the line the pedestrian is (m), and whether he is on his way back.
+/// The pedestrian's position along the line (m), and whether on the way back.
 std::pair<double, bool> progress(const Pedestrian& pedestrian, Stamp stamp_ns) {
   const double on_his_way_s =
       std::max(0.0, 1e-9 * static_cast<double>(stamp_ns) - pedestrian.start_s);
@@ -36,7 +36,7 @@ std::pair<double, bool> progress(const Pedestrian& pedestrian, Stamp stamp_ns) {
   return s <= length ? std::pair{s, false} : std::pair{2 * length - s, true};
 }
 
-/// Light that reaches a person in a room: more from above than from below.
+/// Lights a person as in a room: more from above than from below.
 void light_from_above(Scene& scene, const Vector3f& light) {
   std::vector<Vector3f> normal(scene.positions_m.size(), Vector3f::Zero());
   for (const auto& [a, b, c] : scene.triangles) {
@@ -137,7 +137,7 @@ Scene build_pedestrian(const Vector3f& light) {
       {.name = "pullover", .kind = "knit", .tone = {150, 74, 60}, .variation = 0.7, .seed = 902});
   const MaterialId skin = mesh.material(
       {.name = "skin", .kind = "leather", .tone = {204, 160, 132}, .variation = 0.2, .seed = 903});
-  // Broad from side to side, less so from front to back.
+  // Wide from side to side, narrower from front to back.
   Eigen::Isometry3f flat = Eigen::Isometry3f::Identity();
   flat.linear() = Vector3f(0.65F, 1.0F, 1.0F).asDiagonal();
   mesh.push(flat);
@@ -171,7 +171,7 @@ PedestrianScene::PedestrianScene(const Scene& scene, std::shared_ptr<const Rende
                                  float exposure, Pedestrian pedestrian)
     : scene_(std::move(renderer)), pedestrian_(std::move(pedestrian)) {
   assert(scene_ != nullptr);
-  // Smoothed edges would mix the void around him into his outline.
+  // Smoothed edges would blend the surrounding void into the outline.
   body_ = make_embree_renderer(build_pedestrian(mean_light(scene)),
                                {.exposure = exposure, .antialiasing = Antialiasing::kNone});
   instance_ = pedestrian_instance(scene);
