@@ -10,7 +10,9 @@
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/cli/set_option.hpp"
+#include "bench/protocol/config.hpp"
 #include "bench/run/run.hpp"
+#include "slam/core/settings_io.hpp"
 
 namespace mh::cli {
 namespace {
@@ -38,6 +40,14 @@ std::optional<std::filesystem::path> cache_folder(const Options& options) {
   if (!options.cache.empty()) return std::filesystem::absolute(options.cache);
   const std::filesystem::path usual = Cache::default_folder();
   return usual.empty() ? std::nullopt : std::optional(usual);
+}
+
+void print_settings() {
+  SettingsWriter writer(true);
+  writer.section("protocol");
+  const ProtocolConfig config;
+  fields(config, writer);
+  fmt::print("{}", writer.text());
 }
 
 /// Results of a quick look must not replace the suite's own.
@@ -111,6 +121,13 @@ void add_bench(CLI::App& app) {
   command->add_option("--memory-limit", options->memory_limit_mb, "MB for one run; 0 = none")
       ->check(number_between(0.0, 1e9));
   command->add_flag("--json", options->json, "Prints results.json instead of the table");
+  command->add_flag_callback(
+      "--print-settings",
+      [] {
+        print_settings();
+        throw CLI::Success();
+      },
+      "Prints a suite's section `protocol`: every setting with its default, meaning and range");
   command->footer(
       "Examples:\n  modelhouse bench model_house --jobs 2\n"
       "  modelhouse bench my_suite.yaml --scene house.glb --frames 600");

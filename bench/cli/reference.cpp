@@ -1,16 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/drawing/false_colors.hpp"
+#include "bench/protocol/config.hpp"
 #include "robots/model/robot_keys.hpp"
 #include "scenes/furniture/furniture.hpp"
 #include "scenes/materials/materials.hpp"
+#include "sim/sensors/config.hpp"
+#include "slam/config/slam.hpp"
 #include "slam/core/labels.hpp"
+#include "slam/core/settings_io.hpp"
 
 namespace mh::cli {
 namespace {
@@ -97,21 +107,108 @@ std::string robot() {
   return text;
 }
 
+/// A table for each section of settings, from the lists of their fields.
+class SettingsTables {
+ public:
+  void section(const char* name) {
+    text_ +=
+        fmt::format("\n## {}\n\n| key | default | range | meaning |\n|---|---|---|---|\n", name);
+  }
+  template <class T>
+  void operator()(const char* key, const T& value, const SettingRange& range, const char* meaning) {
+    text_ += fmt::format("| `{}` | {} | {} | {} |\n", key,
+                         range.required ? "must be given" : SettingsWriter::word_of(value),
+                         values<T>(range), meaning);
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  template <class T>
+  static std::string values(const SettingRange& range) {
+    if constexpr (std::is_same_v<T, bool>) {
+      return "true, false";
+    } else if constexpr (std::is_enum_v<T>) {
+      std::vector<std::string_view> words;
+      for (const auto& [word, value] : setting_words(T{})) words.push_back(word);
+      return fmt::format("{}", fmt::join(words, ", "));
+    } else {
+      return interval(range) + (std::is_integral_v<T> ? ", whole" : "");
+    }
+  }
+
+  std::string text_;
+};
+
+/// Sets `enabled` of every section, as it is where a level has the section.
+struct SwitchOn {
+  void section(const char*) const {}
+  template <class T>
+  void operator()(std::string_view key, T& value, const SettingRange&, const char*) const {
+    if constexpr (std::is_same_v<T, bool>) value = value || key == "enabled";
+  }
+};
+
+std::string slam_settings() {
+  const SlamConfig config;
+  SettingsTables tables;
+  for_each_setting(config, tables);
+  return heading("Settings of SLAM", "slam") +
+         "Sections of a settings file and of `slam` in a suite ([slam.md](../slam.md#settings)).\n"
+         "`modelhouse slam --print-settings` prints such a file.\n" +
+         tables.text();
+}
+
+std::string sensors() {
+  SensorConfig config;
+  for_each_setting(config, SwitchOn{});
+  SettingsTables tables;
+  for_each_setting(std::as_const(config), tables);
+  return heading("Keys of a sensor level", "sensors") +
+         "`depth_noise` and `color_noise` must stand in every level, the other sections are off\n"
+         "unless they are there; defaults are those of a section that is there. What each fault "
+         "is\n"
+         "and where its numbers come from: [sensors.md](../sensors.md). `modelhouse sensors\n"
+         "--print-settings [--level LEVEL]` prints a level with every key.\n" +
+         tables.text();
+}
+
+std::string protocol() {
+  SettingsTables tables;
+  tables.section("protocol");
+  const ProtocolConfig config;
+  fields(config, tables);
+  return heading("Settings of the protocol", "protocol") +
+         "The section `protocol` of a suite; what the words mean: [protocol.md](../protocol.md).\n"
+         "`modelhouse bench --print-settings` prints it.\n" +
+         tables.text();
+}
+
+struct Page {
+  const char* name;
+  std::string (*text)();
+};
+constexpr std::array<Page, 7> kPages{{{"furniture", furniture},
+                                      {"materials", materials},
+                                      {"classes", class_table},
+                                      {"robot", robot},
+                                      {"slam", slam_settings},
+                                      {"sensors", sensors},
+                                      {"protocol", protocol}}};
+
 }  // namespace
 
 void add_reference(CLI::App& app) {
   auto what = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand(
-      "reference", "Lists kinds of furniture, materials, classes or robot keys.");
-  command->add_option("what", *what, "Which list")
-      ->required()
-      ->check(one_of_words({"furniture", "materials", "classes", "robot"}));
+      "reference",
+      "Lists kinds of furniture, materials or classes, or the keys of a kind of file.");
+  std::vector<std::string> names;
+  for (const Page& page : kPages) names.emplace_back(page.name);
+  command->add_option("what", *what, "Which list")->required()->check(one_of_words(names));
   command->footer("Example:\n  modelhouse reference furniture");
   command->callback([what] {
-    fmt::print("{}", *what == "furniture"   ? furniture()
-                     : *what == "materials" ? materials()
-                     : *what == "classes"   ? class_table()
-                                            : robot());
+    for (const Page& page : kPages)
+      if (*what == page.name) fmt::print("{}", page.text());
   });
 }
 

@@ -159,8 +159,7 @@ void run(Options options) {
       noted(inputs, "robot", options.robot, [&] { return load_robot(options.robot); });
   const MountedCamera* const mounted = find_camera(options, robot);
   check_motion(motion);
-  SensorConfig sensors;
-  sensors.depth_noise_on = sensors.color_noise_on = false;
+  SensorConfig sensors = exact_sensors();
   if (!options.level.empty()) sensors = load_sensor_config(options.level);
   std::optional<Pedestrian> pedestrian;
   if (!options.pedestrian.empty()) pedestrian = load_pedestrian(options.pedestrian);

@@ -12,6 +12,7 @@
 #include "bench/studies/figures.hpp"
 #include "bench/studies/sheets.hpp"
 #include "scenes/pictures/write_picture.hpp"
+#include "sim/sensors/config.hpp"
 #include "sim/world/lit_scene.hpp"
 
 namespace mh::cli {
@@ -20,8 +21,17 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string scene, out;
+  std::string scene, out, level;
 };
+
+void print_settings(Options options) {
+  SensorConfig config;
+  if (!options.level.empty()) {
+    resolve(options.level, Shipped::kLevel);
+    config = load_sensor_config(options.level);
+  }
+  fmt::print("{}", format_sensor_config(config, true));
+}
 
 void plot(const Options& options) {
   const OutputFolder folder(options.out, "sensors plot", {"figures.png"});
@@ -64,7 +74,18 @@ void add_sensors(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("sensors", "Shows what the sensor models do.");
   command->require_subcommand(1);
-  command->footer("Example:\n  modelhouse sensors plot --out out/sensors");
+  command->add_option("--level", options->level,
+                      "For --print-settings: level (YAML), or the name of a shipped one");
+  command->add_flag_callback(
+      "--print-settings",
+      [options] {
+        print_settings(*options);
+        throw CLI::Success();
+      },
+      "Prints every key of a sensor level with its value, meaning and range");
+  command->footer(
+      "Examples:\n  modelhouse sensors plot --out out/sensors\n"
+      "  modelhouse sensors --print-settings --level handheld");
 
   CLI::App* p = command->add_subcommand(
       "plot", "Plots the figure of each model's source beside what is measured of the model.");

@@ -34,16 +34,10 @@ Trajectory turning(double rad_per_s) {
   return path;
 }
 
-SensorConfig nothing() {
-  SensorConfig config;
-  config.depth_noise_on = config.color_noise_on = false;
-  return config;
-}
-
 void expose(benchmark::State& state, double rad_per_s, bool blur, bool rolling) {
-  SensorConfig config = nothing();
-  config.shutter.motion_blur_on = blur;
-  config.shutter.rolling_shutter_on = rolling;
+  SensorConfig config = exact_sensors();
+  config.motion_blur.enabled = blur;
+  config.rolling_shutter.enabled = rolling;
   const Shutter shutter(renderer(), Camera{}, turning(rad_per_s), config);
   for (auto _ : state) benchmark::DoNotOptimize(shutter.expose(kFrame));
 }
@@ -57,36 +51,36 @@ BENCHMARK_CAPTURE(expose, both_1_rad_per_s, 1.0, true, true)->Unit(benchmark::kM
 
 template <class Set>
 void sensing(benchmark::State& state, Set set) {
-  SensorConfig config = nothing();
+  SensorConfig config = exact_sensors();
   set(config);
   const RenderedFrame seen =
-      Shutter(renderer(), Camera{}, turning(1.0), nothing()).expose(kFrame).seen;
+      Shutter(renderer(), Camera{}, turning(1.0), exact_sensors()).expose(kFrame).seen;
   std::uint64_t seed = 0;
   for (auto _ : state)
     benchmark::DoNotOptimize(sense(seen, Camera{}, config, RandomStream(++seed), 0));
 }
 BENCHMARK_CAPTURE(sensing, nothing, [](SensorConfig&) {})->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(sensing, depth_noise, [](SensorConfig& c) {
-  c.depth_noise_on = true;
+  c.depth_noise.enabled = true;
 })->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(sensing, depth_noise_with_shadow, [](SensorConfig& c) {
-  c.depth_noise_on = c.depth_noise.projector_shadow = true;
+  c.depth_noise.enabled = c.depth_noise.projector_shadow = true;
 })->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(sensing, gray_noise, [](SensorConfig& c) {
-  c.color_noise_on = true;
+  c.color_noise.enabled = true;
 })->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(sensing, shot_noise, [](SensorConfig& c) {
-  c.shot_noise_on = true;
+  c.shot_noise.enabled = true;
 })->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(sensing, shot_noise_and_vignetting, [](SensorConfig& c) {
-  c.shot_noise_on = c.vignetting_on = true;
+  c.shot_noise.enabled = c.vignetting.enabled = true;
 })->Unit(benchmark::kMillisecond);
 
 void labels(benchmark::State& state, LabelMode mode, const LabelNoiseConfig& noise) {
-  SensorConfig config = nothing();
+  SensorConfig config = exact_sensors();
   config.labels.noise = noise;
   const RenderedFrame seen =
-      Shutter(renderer(), Camera{}, turning(1.0), nothing()).expose(kFrame).seen;
+      Shutter(renderer(), Camera{}, turning(1.0), exact_sensors()).expose(kFrame).seen;
   std::uint64_t seed = 0;
   for (auto _ : state)
     benchmark::DoNotOptimize(sense_labels(seen, mode, config, SE3(), RandomStream(++seed)));
@@ -94,7 +88,7 @@ void labels(benchmark::State& state, LabelMode mode, const LabelNoiseConfig& noi
 BENCHMARK_CAPTURE(labels, exact, LabelMode::kExact, {})->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(labels, boxes, LabelMode::kBoxes, {})->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(labels, detector, LabelMode::kDetector, {})->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(labels, exact_with_all_noise, LabelMode::kExact, {0.1, 0.1, 0.1, 3})
+BENCHMARK_CAPTURE(labels, exact_with_all_noise, LabelMode::kExact, {true, 0.1, 0.1, 0.1, 3})
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -26,7 +26,7 @@ RenderedFrame leaning(double distance_m, double angle_rad) {
 /// Depth faults one at a time: everything off except what the caller switches on.
 SensorConfig depth_only() {
   SensorConfig config;
-  config.color_noise_on = false;
+  config.color_noise.enabled = false;
   config.depth_noise = no_depth_noise();
   return config;
 }

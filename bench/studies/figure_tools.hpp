@@ -46,12 +46,6 @@ inline RenderedFrame blank(float depth_m, std::uint8_t gray = 128) {
   return {{w, h, {gray, gray, gray}}, {w, h, depth_m}, {w, h}, {w, h}};
 }
 
-inline SensorConfig clean() {
-  SensorConfig config;
-  config.depth_noise_on = config.color_noise_on = false;
-  return config;
-}
-
 inline RgbdFrame sensed(const RenderedFrame& truth, const SensorConfig& config, double gain = 1.0) {
   return sense(truth, kCamera, config, RandomStream(1), 0, gain);
 }

@@ -89,7 +89,7 @@ Plot labels_over_dial() {
     double wrong = 0, all = 0;
     for (std::uint64_t seed = 0; seed < 20; ++seed, all += count) {
       LabelConfig config{.seed = seed};
-      config.noise.confusion = dial;
+      config.noise = {.enabled = true, .confusion = dial};
       const SemanticImage seen =
           label_image(frame, LabelMode::kExact, config, SE3(), RandomStream(seed));
       for (int top = 12; top + 32 < kCamera.height_px; top += 44)

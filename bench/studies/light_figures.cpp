@@ -50,10 +50,9 @@ Grid2d<Rgb8> passing_the_edge(double speed_m_per_s, const SensorConfig& config, 
 
 /// The width of the smeared edge, from the variance of its slope; the edge's subpixel position is
 /// averaged out (see tests/sim/sensors/shutter_test.cpp).
-double smear_px(double speed_m_per_s, double exposure_s) {
-  SensorConfig config = clean();
-  config.shutter.motion_blur_on = true;
-  config.shutter.exposure_s = exposure_s;
+double smear_px(double speed_m_per_s, double exposure_ms) {
+  SensorConfig config = exact_sensors();
+  config.motion_blur = {.enabled = true, .exposure_ms = exposure_ms};
   constexpr int kPlaces = 8;
   double squared = 0.0;
   for (int k = 0; k < kPlaces; ++k) {
@@ -78,15 +77,15 @@ Plot blur_over_speed() {
         curve("f v t / z, t = " + std::to_string(static_cast<int>(exposure_ms)) + " ms", 0, 2,
               [=](double v) { return kCamera.fx_px * v * exposure_s / Edge::kDepthM; }));
     plot.series.push_back(measured("measured", {0, 0.35, 0.55, 1, 1.5, 2},
-                                   [=](double v) { return smear_px(v, exposure_s); }));
+                                   [=](double v) { return smear_px(v, exposure_ms); }));
   }
   return plot;
 }
 
 Plot slant_over_speed() {
   const auto slant = [](double v) {
-    SensorConfig config = clean();
-    config.shutter.rolling_shutter_on = true;
+    SensorConfig config = exact_sensors();
+    config.rolling_shutter.enabled = true;
     const Grid2d<Rgb8> color = passing_the_edge(v, config, 0.0);
     const auto edge = [&](int y) {
       double light = 0.0;
@@ -111,8 +110,8 @@ Plot noise_over_light() {
       return 20.0 * std::log10(electrons / std::sqrt(electrons + 1.6 * 1.6));
     };
     const auto seen = [=](double light) {
-      SensorConfig config = clean();
-      config.shot_noise_on = true;
+      SensorConfig config = exact_sensors();
+      config.shot_noise.enabled = true;
       config.shot_noise.gain = gain;
       const std::uint8_t gray = linear_to_srgb(static_cast<float>(light));
       Spread spread;
@@ -128,8 +127,8 @@ Plot noise_over_light() {
 
 Plot fall_off_over_angle() {
   const auto share = [](double a) {
-    SensorConfig config = clean();
-    config.vignetting_on = true;
+    SensorConfig config = exact_sensors();
+    config.vignetting.enabled = true;
     const auto x = static_cast<int>(
         std::lround(kCamera.cx_px + kCamera.fx_px * std::tan(a * kDegree) / std::numbers::sqrt2));
     const auto y = static_cast<int>(
@@ -156,8 +155,8 @@ class Lamp : public Renderer {
 };
 
 Plot gain_over_time() {
-  SensorConfig config = clean();
-  config.auto_exposure_on = true;
+  SensorConfig config = exact_sensors();
+  config.auto_exposure.enabled = true;
   constexpr int kFrames = 75, kBright = 15;
   Trajectory path;
   for (int i = 0; i < kFrames; ++i)

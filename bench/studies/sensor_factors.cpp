@@ -10,55 +10,54 @@ const Set kOff = [](SensorConfig&) {};
 }  // namespace
 
 SensorConfig everything_off() {
-  SensorConfig config;
-  config.depth_noise_on = config.color_noise_on = false;
+  SensorConfig config = exact_sensors();
   config.depth_noise = no_depth_noise();
+  config.depth_noise.enabled = false;
   return config;
 }
 
 std::vector<Factor> color_factors() {
   const auto shot = [](double gain) {
-    return [=](SensorConfig& c) { c.shot_noise_on = true, c.shot_noise.gain = gain; };
+    return [=](SensorConfig& c) { c.shot_noise.enabled = true, c.shot_noise.gain = gain; };
   };
   const auto gaussian = [](double sigma) {
-    return [=](SensorConfig& c) { c.color_noise_on = true, c.color_noise.sigma = sigma; };
+    return [=](SensorConfig& c) { c.color_noise.enabled = true, c.color_noise.sigma = sigma; };
   };
   const auto read = [](double share) {
     // So large a full well that its own noise, the shot noise, is small compared with the read
     // noise.
-    return [=](SensorConfig& c) { c.shot_noise_on = true, c.shot_noise = {1e6, 1e6 * share, 1.0}; };
+    return [=](SensorConfig& c) { c.shot_noise = {true, 1e6, 1e6 * share, 1.0}; };
   };
-  const auto blur = [](double s) {
-    return [=](SensorConfig& c) { c.shutter.motion_blur_on = true, c.shutter.exposure_s = s; };
-  };
-  const auto soft = [](double px) { return [=](SensorConfig& c) { c.lens_blur_px = px; }; };
+  const auto blur = [](double ms) { return [=](SensorConfig& c) { c.motion_blur = {true, ms}; }; };
+  const auto soft = [](double px) { return [=](SensorConfig& c) { c.lens_blur = {true, px}; }; };
   const auto processed = [](double contrast, double sharpening) {
     return [=](SensorConfig& c) {
-      c.lens_blur_px = 1.0, c.processing = {contrast, sharpening, 0.7};
+      c.lens_blur = {true, 1.0}, c.processing = {true, contrast, sharpening, 0.7};
     };
   };
-  const auto rolling = [](double s) {
-    return [=](SensorConfig& c) { c.shutter.rolling_shutter_on = true, c.shutter.readout_s = s; };
+  const auto rolling = [](double ms) {
+    return [=](SensorConfig& c) { c.rolling_shutter = {true, ms}; };
   };
   const auto vignetting = [](double strength) {
-    return [=](SensorConfig& c) { c.vignetting_on = true, c.vignetting.strength = strength; };
+    return [=](SensorConfig& c) { c.vignetting = {true, strength}; };
   };
   const auto lens = [](double k1) {
     return [=](SensorConfig& c) {
-      c.lens_distortion_on = true, c.lens_distortion = {k1, 0.0692, -0.00241, -0.00112, 0.0};
+      c.lens_distortion = {true, {k1, 0.0692, -0.00241, -0.00112, 0.0}};
     };
   };
   const auto lag = [](double target) {
-    return [=](SensorConfig& c) { c.auto_exposure_on = true, c.auto_exposure.target = target; };
+    return
+        [=](SensorConfig& c) { c.auto_exposure.enabled = true, c.auto_exposure.target = target; };
   };
   return {
-      {"motion blur", {"off", "20 ms", "66 ms"}, {kOff, blur(0.020), blur(0.066)}, 320},
+      {"motion blur", {"off", "20 ms", "66 ms"}, {kOff, blur(20), blur(66)}, 320},
       {"lens blur", {"off", "0.7 px", "2 px"}, {kOff, soft(0.7), soft(2.0)}, 200},
       {"processing, of a lens blur of 1 px",
        {"off", "contrast 0.5, sharpening 2", "contrast 1, sharpening 5"},
        {processed(0, 0), processed(0.5, 2), processed(1, 5)},
        200},
-      {"rolling shutter", {"off", "26 ms", "100 ms"}, {kOff, rolling(0.0261), rolling(0.1)}},
+      {"rolling shutter", {"off", "26 ms", "100 ms"}, {kOff, rolling(26.1), rolling(100)}},
       {"color noise (Gaussian)",
        {"off", "0.7 %", "5 %"},
        {kOff, gaussian(0.007), gaussian(0.05)},
@@ -81,7 +80,7 @@ std::vector<Factor> color_factors() {
 std::vector<Factor> depth_factors() {
   const auto noise = [](void (*set)(DepthNoiseConfig&)) {
     return [=](SensorConfig& c) {
-      c.depth_noise_on = true;
+      c.depth_noise.enabled = true;
       set(c.depth_noise);
     };
   };
@@ -102,7 +101,9 @@ std::vector<Factor> depth_factors() {
     d.projector_shadow = true;
   });
   const Look over_color{.over_color = true};
-  const auto offset = [](double s) { return [=](SensorConfig& c) { c.depth_offset_s = s; }; };
+  const auto offset = [](double ms) {
+    return [=](SensorConfig& c) { c.depth_offset = {true, ms}; };
+  };
   return {
       {"axial noise",
        {"off", "on", "on, in a room three times as large"},
@@ -132,7 +133,7 @@ std::vector<Factor> depth_factors() {
       {"range", {"off", "0.4 to 8 m", "0.8 to 3.5 m"}, {kOff, range, short_range}},
       {"later than the color: edges of the depth over the color",
        {"off", "20 ms", "100 ms"},
-       {kOff, offset(0.020), offset(0.100)},
+       {kOff, offset(20), offset(100)},
        640,
        {over_color, over_color, over_color}},
       {"together", {"off", "without shadow", "Xtion"}, {kOff, most, all}},
@@ -141,7 +142,7 @@ std::vector<Factor> depth_factors() {
 
 std::vector<Factor> label_factors() {
   const auto noise = [](auto member, auto value) {
-    return [=](SensorConfig& c) { c.labels.noise.*member = value; };
+    return [=](SensorConfig& c) { c.labels.noise.enabled = true, c.labels.noise.*member = value; };
   };
   using N = LabelNoiseConfig;
   return {
@@ -161,9 +162,11 @@ std::vector<Factor> label_factors() {
 }
 
 std::vector<Factor> frame_factors() {
-  const auto blank = [](double share) { return [=](SensorConfig& c) { c.blank_share = share; }; };
+  const auto blank = [](double share) {
+    return [=](SensorConfig& c) { c.blank_frames = {true, share}; };
+  };
   const auto dropped = [](double share) {
-    return [=](SensorConfig& c) { c.dropped_share = share; };
+    return [=](SensorConfig& c) { c.dropped_frames = {true, share}; };
   };
   return {
       {"blank frames", {"off", "15 %", "50 %"}, {kOff, blank(0.15), blank(0.5)}},

@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "robots/model/robot_fields.hpp"
+#include "slam/core/settings_io.hpp"
 #include "slam/core/yaml.hpp"
 
 namespace mh {
@@ -17,19 +19,21 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-BaseLimits read_limits(YamlReader yaml) {
-  BaseLimits limits;
-  limits.max_velocity_m_per_s = yaml.number("max_velocity_m_per_s", 0.01, 5.0);
-  limits.max_acceleration_m_per_s2 = yaml.number("max_acceleration_m_per_s2", 0.01, 20.0);
-  limits.max_turn_rad_per_s = yaml.number("max_turn_rad_per_s", 0.01, 10.0);
-  limits.max_turn_acceleration_rad_per_s2 =
-      yaml.number("max_turn_acceleration_rad_per_s2", 0.01, 50.0);
-  if (const auto jerk = yaml.find("max_jerk_m_per_s3"))
-    limits.max_jerk_m_per_s3 = jerk->as_double(0.01, 1000.0);
-  if (const auto jerk = yaml.find("max_turn_jerk_rad_per_s3"))
-    limits.max_turn_jerk_rad_per_s3 = jerk->as_double(0.01, 1000.0);
-  yaml.finish();
-  return limits;
+/// The fields of a list (robot_fields.hpp) from the mapping that holds them.
+template <class Fields>
+Fields read_fields(YamlReader& mapping) {
+  Fields read;
+  MappingReader reader(mapping);
+  fields(read, reader);
+  return read;
+}
+
+/// A mapping that holds nothing else.
+template <class Fields>
+Fields read_all(YamlReader mapping) {
+  const auto read = read_fields<Fields>(mapping);
+  mapping.finish();
+  return read;
 }
 
 /// The focal length (px) that spreads `fov_deg` over `size_px` pixels.
@@ -38,15 +42,16 @@ double focal_px(double fov_deg, int size_px) {
 }
 
 Camera read_lens(YamlReader& yaml) {
+  const auto lens = read_fields<LensFields>(yaml);
   Camera camera;
-  camera.width_px = static_cast<int>(yaml.integer("width_px", 16, 8192));
-  camera.height_px = static_cast<int>(yaml.integer("height_px", 16, 8192));
-  camera.fx_px = focal_px(yaml.number("horizontal_fov_deg", 1.0, 170.0), camera.width_px);
-  camera.fy_px = focal_px(yaml.number("vertical_fov_deg", 1.0, 170.0), camera.height_px);
+  camera.width_px = lens.width_px;
+  camera.height_px = lens.height_px;
+  camera.fx_px = focal_px(lens.horizontal_fov_deg, camera.width_px);
+  camera.fy_px = focal_px(lens.vertical_fov_deg, camera.height_px);
   camera.cx_px = 0.5 * (camera.width_px - 1);  // pixel centers at integers
   camera.cy_px = 0.5 * (camera.height_px - 1);
-  camera.rate_hz = yaml.number("rate_hz", 0.1, 240.0);
-  camera.baseline_m = yaml.number("baseline_m", 1e-3, 1.0);
+  camera.rate_hz = lens.rate_hz;
+  camera.baseline_m = lens.baseline_m;
   return camera;
 }
 
@@ -68,8 +73,9 @@ SE3 read_mount(YamlReader& yaml) {
 /// A lens as calibrated: focal lengths, principal point, plumb-bob distortion.
 Camera read_calibrated(YamlReader& yaml) {
   Camera camera;
-  camera.width_px = static_cast<int>(yaml.integer("width_px", 16, 8192));
-  camera.height_px = static_cast<int>(yaml.integer("height_px", 16, 8192));
+  MappingReader reader(yaml);
+  size_fields(camera, reader);
+  rate_fields(camera, reader);
   const std::vector<double> k = yaml.at("fx_fy_cx_cy_px").as_numbers(4);
   camera.fx_px = k[0];
   camera.fy_px = k[1];
@@ -77,7 +83,6 @@ Camera read_calibrated(YamlReader& yaml) {
   camera.cy_px = k[3];
   const std::vector<double> d = yaml.at("k1_k2_p1_p2_k3").as_numbers(5);
   camera.distortion = {d[0], d[1], d[2], d[3], d[4]};
-  camera.rate_hz = yaml.number("rate_hz", 0.1, 240.0);
   try {
     validate(camera);
   } catch (const InputError& e) {
@@ -118,15 +123,8 @@ class EquipmentReader {
       e.sonars.push_back(read_sonar(name, sonar));
     const YamlReader imu = yaml_.at("imu_link");
     e.base_from_imu = base_from(imu, imu.as_string());
-    YamlReader odometry = yaml_.at("odometry");
-    e.odometry = {.scale = odometry.number("scale", -0.5, 0.5),
-                  .scale_spread = odometry.number("scale_spread", 0.0, 0.2),
-                  .slip_per_sqrt_m = odometry.number("slip_per_sqrt_m", 0.0, 0.5)};
-    odometry.finish();
-    YamlReader reflex = yaml_.at("collision_reflex");
-    e.reflex = {.ahead_m = reflex.number("ahead_m", 0.0, 3.0),
-                .aside_m = reflex.number("aside_m", 0.0, 3.0)};
-    reflex.finish();
+    e.odometry = read_all<OdometryErrors>(yaml_.at("odometry"));
+    e.reflex = read_all<CollisionReflex>(yaml_.at("collision_reflex"));
     yaml_.finish();
     e.tree = std::move(tree_);
     return e;
@@ -155,7 +153,8 @@ class EquipmentReader {
 
   OmniWheels read_wheels(YamlReader yaml) const {
     OmniWheels wheels;
-    wheels.radius_m = yaml.number("radius_m", 0.005, 1.0);
+    MappingReader reader(yaml);
+    wheel_fields(wheels, reader);
     const YamlReader joints = yaml.at("joints");
     const std::vector<YamlReader> names = joints.items();
     if (names.size() != wheels.wheels.size())
@@ -180,21 +179,22 @@ class EquipmentReader {
     return wheels;
   }
   LaserScanner read_laser(const std::string& name, YamlReader& yaml) const {
-    LaserScanner laser{
-        .name = name,
-        .base_from_laser = read_link(yaml),
-        .rays = static_cast<int>(yaml.integer("rays", 2, 10000)),
-        .field_of_view_rad = yaml.number("field_of_view_deg", 0.1, 360) * kRadPerDeg};
+    const auto fan = read_fields<FanFields>(yaml);
+    LaserScanner laser{.name = name,
+                       .base_from_laser = read_link(yaml),
+                       .rays = fan.rays,
+                       .field_of_view_rad = fan.field_of_view_deg * kRadPerDeg};
     read_range(yaml, laser.min_range_m, laser.max_range_m);
     yaml.finish();
     return laser;
   }
   Sonar read_sonar(const std::string& name, YamlReader& yaml) const {
+    const auto cone = read_fields<ConeFields>(yaml);
     Sonar sonar{.name = name,
                 .base_from_sonar = read_link(yaml),
-                .field_of_view_rad = yaml.number("field_of_view_deg", 1, 170) * kRadPerDeg};
+                .field_of_view_rad = cone.field_of_view_deg * kRadPerDeg};
     read_range(yaml, sonar.min_range_m, sonar.max_range_m);
-    sonar.resolution_m = yaml.number("resolution_m", 0, 1);
+    sonar.resolution_m = cone.resolution_m;
     yaml.finish();
     return sonar;
   }
@@ -219,10 +219,9 @@ Robot load_robot(const std::filesystem::path& file) {
   robot.name = yaml.string("name");
 
   YamlReader base = yaml.at("base");
-  robot.mass_kg = base.number("mass_kg", 0.1, 1000.0);
-  robot.footprint_radius_m = base.number("footprint_radius_m", 0.02, 2.0);
-  robot.height_m = base.number("height_m", 0.05, 3.0);
-  robot.limits = read_limits(base.at("limits"));
+  MappingReader body(base);
+  body_fields(robot, body);
+  robot.limits = read_all<BaseLimits>(base.at("limits"));
   base.finish();
 
   YamlReader camera = yaml.at("camera");

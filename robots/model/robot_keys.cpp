@@ -1,86 +1,104 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robots/model/robot_keys.hpp"
 
-#include <array>
+#include <utility>
+
+#include "robots/model/robot_fields.hpp"
+#include "slam/core/settings_io.hpp"
 
 namespace mh {
 namespace {
 
-constexpr std::array kKeys = {
-    RobotKey{"", "name", "word", "how results call it"},
-    RobotKey{"", "base", "mapping", "the body that drives"},
-    RobotKey{"", "camera", "mapping", "the RGB-D camera"},
-    RobotKey{"", "equipment", "mapping", "what hangs on the links of a URDF: other sensors", false},
+/// Lists keys: numbers as a visitor of their fields, the rest by hand.
+class KeyLister {
+ public:
+  void mapping(const char* name) { mapping_ = name; }
+  void add(const char* key, const char* value, const char* meaning, bool required = true) {
+    keys_.push_back({mapping_, key, value, meaning, required});
+  }
+  template <class T>
+  void operator()(const char* key, const T&, const SettingRange& range, const char* meaning) {
+    keys_.push_back({mapping_, key, interval(range), meaning, range.required});
+  }
+  std::vector<RobotKey> take() { return std::move(keys_); }
 
-    RobotKey{"base", "mass_kg", "[0.1, 1000]", "of the whole robot"},
-    RobotKey{"base", "footprint_radius_m", "[0.02, 2]", "a disc that holds it, seen from above"},
-    RobotKey{"base", "height_m", "[0.05, 3]", "what it must pass under"},
-    RobotKey{"base", "limits", "mapping", "how fast it drives and turns"},
-
-    RobotKey{"base.limits", "max_velocity_m_per_s", "[0.01, 5]", "in any direction"},
-    RobotKey{"base.limits", "max_acceleration_m_per_s2", "[0.01, 20]", ""},
-    RobotKey{"base.limits", "max_turn_rad_per_s", "[0.01, 10]", ""},
-    RobotKey{"base.limits", "max_turn_acceleration_rad_per_s2", "[0.01, 50]", ""},
-    RobotKey{"base.limits", "max_jerk_m_per_s3", "[0.01, 1000]", "without: not limited", false},
-    RobotKey{"base.limits", "max_turn_jerk_rad_per_s3", "[0.01, 1000]", "without: not limited",
-             false},
-
-    RobotKey{"camera", "width_px", "[16, 8192]", "of color and depth"},
-    RobotKey{"camera", "height_px", "[16, 8192]", ""},
-    RobotKey{"camera", "horizontal_fov_deg", "[1, 170]", "from edge to edge of the image"},
-    RobotKey{"camera", "vertical_fov_deg", "[1, 170]", ""},
-    RobotKey{"camera", "rate_hz", "[0.1, 240]", "frames per second"},
-    RobotKey{"camera", "baseline_m", "[0.001, 1]", "from projector to infrared camera"},
-    RobotKey{"camera", "position_m", "3 numbers", "of the camera's body in the base's frame"},
-    RobotKey{"camera", "roll_pitch_yaw_deg", "3 numbers",
-             "of the camera's body (x forward, z up) about fixed axes, as in URDF"},
-
-    RobotKey{"equipment", "urdf", "file", "relative to the robot's file"},
-    RobotKey{"equipment", "wheels", "mapping", "three omnidirectional wheels"},
-    RobotKey{"equipment", "head", "mapping", "joints that move the camera"},
-    RobotKey{"equipment", "depth_camera_link", "link", "optical frame of the RGB-D camera"},
-    RobotKey{"equipment", "cameras", "mapping", "further color cameras by name"},
-    RobotKey{"equipment", "bumpers", "list of links", "where the shell is felt"},
-    RobotKey{"equipment", "lasers", "mapping", "laser scanners by name"},
-    RobotKey{"equipment", "sonars", "mapping", "sonars by name"},
-    RobotKey{"equipment", "imu_link", "link", "where the IMU sits"},
-    RobotKey{"equipment", "odometry", "mapping", "how wheel odometry errs"},
-    RobotKey{"equipment", "collision_reflex", "mapping", "where the robot stops by itself"},
-
-    RobotKey{"equipment.wheels", "joints", "3 joints", "of the URDF, which limits their velocity"},
-    RobotKey{"equipment.wheels", "radius_m", "[0.005, 1]", ""},
-    RobotKey{"equipment.head", "yaw", "joint", ""},
-    RobotKey{"equipment.head", "pitch", "joint", ""},
-
-    RobotKey{"equipment.cameras.NAME", "link", "link", "optical frame"},
-    RobotKey{"equipment.cameras.NAME", "width_px", "[16, 8192]", ""},
-    RobotKey{"equipment.cameras.NAME", "height_px", "[16, 8192]", ""},
-    RobotKey{"equipment.cameras.NAME", "fx_fy_cx_cy_px", "4 numbers", "as calibrated"},
-    RobotKey{"equipment.cameras.NAME", "k1_k2_p1_p2_k3", "5 numbers", "plumb-bob distortion"},
-    RobotKey{"equipment.cameras.NAME", "rate_hz", "[0.1, 240]", "frames per second"},
-
-    RobotKey{"equipment.lasers.NAME", "link", "link", "rays leave along x, turned about z"},
-    RobotKey{"equipment.lasers.NAME", "rays", "[2, 10000]", ""},
-    RobotKey{"equipment.lasers.NAME", "field_of_view_deg", "[0.1, 360]", "from first to last ray"},
-    RobotKey{"equipment.lasers.NAME", "range_m", "2 numbers", "nearest and farthest reading"},
-
-    RobotKey{"equipment.sonars.NAME", "link", "link", "looks along x"},
-    RobotKey{"equipment.sonars.NAME", "field_of_view_deg", "[1, 170]", "of the cone"},
-    RobotKey{"equipment.sonars.NAME", "range_m", "2 numbers", "nearest and farthest reading"},
-    RobotKey{"equipment.sonars.NAME", "resolution_m", "[0, 1]", "step of a reading"},
-
-    RobotKey{"equipment.odometry", "scale", "[-0.5, 0.5]", "of all wheels: 0.01 = 1 % too long"},
-    RobotKey{"equipment.odometry", "scale_spread", "[0, 0.2]", "of each wheel's, drawn by seed"},
-    RobotKey{"equipment.odometry", "slip_per_sqrt_m", "[0, 0.5]",
-             "m of error after 1 m of rim, growing with its root"},
-    RobotKey{"equipment.collision_reflex", "ahead_m", "[0, 3]", "from the shell, along its way"},
-    RobotKey{"equipment.collision_reflex", "aside_m", "[0, 3]", "to either side of its way"},
+ private:
+  std::string mapping_;
+  std::vector<RobotKey> keys_;
 };
 
 }  // namespace
 
-std::span<const RobotKey> robot_keys() {
-  return kKeys;
+std::vector<RobotKey> robot_keys() {
+  const Robot robot;
+  const Camera camera;
+  const OmniWheels wheels;
+  const LensFields lens;
+  const FanFields fan;
+  const ConeFields cone;
+  const OdometryErrors odometry;
+  const CollisionReflex reflex;
+  KeyLister list;
+  list.mapping("");
+  list.add("name", "word", "how results call it");
+  list.add("base", "mapping", "the body that drives");
+  list.add("camera", "mapping", "the RGB-D camera");
+  list.add("equipment", "mapping", "what hangs on the links of a URDF: other sensors", false);
+
+  list.mapping("base");
+  body_fields(robot, list);
+  list.add("limits", "mapping", "how fast it drives and turns");
+  list.mapping("base.limits");
+  fields(robot.limits, list);
+
+  list.mapping("camera");
+  fields(lens, list);
+  list.add("position_m", "3 numbers", "of the camera's body in the base's frame");
+  list.add("roll_pitch_yaw_deg", "3 numbers",
+           "of the camera's body (x forward, z up) about fixed axes, as in URDF");
+
+  list.mapping("equipment");
+  list.add("urdf", "file", "relative to the robot's file");
+  list.add("wheels", "mapping", "three omnidirectional wheels");
+  list.add("head", "mapping", "joints that move the camera");
+  list.add("depth_camera_link", "link", "optical frame of the RGB-D camera");
+  list.add("cameras", "mapping", "further color cameras by name");
+  list.add("bumpers", "list of links", "where the shell is felt");
+  list.add("lasers", "mapping", "laser scanners by name");
+  list.add("sonars", "mapping", "sonars by name");
+  list.add("imu_link", "link", "where the IMU sits");
+  list.add("odometry", "mapping", "how wheel odometry errs");
+  list.add("collision_reflex", "mapping", "where the robot stops by itself");
+
+  list.mapping("equipment.wheels");
+  list.add("joints", "3 joints", "of the URDF, which limits their velocity");
+  wheel_fields(wheels, list);
+  list.mapping("equipment.head");
+  list.add("yaw", "joint", "");
+  list.add("pitch", "joint", "");
+
+  list.mapping("equipment.cameras.NAME");
+  list.add("link", "link", "optical frame");
+  size_fields(camera, list);
+  list.add("fx_fy_cx_cy_px", "4 numbers", "as calibrated");
+  list.add("k1_k2_p1_p2_k3", "5 numbers", "plumb-bob distortion");
+  rate_fields(camera, list);
+
+  list.mapping("equipment.lasers.NAME");
+  list.add("link", "link", "rays leave along x, turned about z");
+  fields(fan, list);
+  list.add("range_m", "2 numbers", "nearest and farthest reading");
+
+  list.mapping("equipment.sonars.NAME");
+  list.add("link", "link", "looks along x");
+  fields(cone, list);
+  list.add("range_m", "2 numbers", "nearest and farthest reading");
+
+  list.mapping("equipment.odometry");
+  fields(odometry, list);
+  list.mapping("equipment.collision_reflex");
+  fields(reflex, list);
+  return list.take();
 }
 
 }  // namespace mh

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <span>
-#include <string_view>
+#include <string>
+#include <vector>
 
 namespace mh {
 
-/// A key of a robot's file, as load_robot() reads it; tests hold the two equal.
+/// A key of a robot's file, as load_robot() reads it. Numbers are those of robot_fields.hpp; of the
+/// rest tests hold list and loader equal.
 struct RobotKey {
-  std::string_view mapping;  ///< where it stands: "base.limits"; NAME stands for any name
-  std::string_view key;
-  std::string_view value;  ///< "[0.1, 1000]" of a number, else what it is in words
-  std::string_view meaning;
+  std::string mapping;  ///< where it stands: "base.limits"; NAME stands for any name
+  std::string key;
+  std::string value;  ///< "[0.1, 1000]" of a number, else what it is in words
+  std::string meaning;
   bool required = true;
 };
 
 /// Every key, in the order of the file.
-std::span<const RobotKey> robot_keys();
+std::vector<RobotKey> robot_keys();
 
 }  // namespace mh

@@ -26,7 +26,7 @@ std::array<Signal, 256> signal_table(const SensorConfig& config) {
   for (std::size_t v = 0; v < table.size(); ++v) {
     const double light = srgb_to_linear(static_cast<std::uint8_t>(v));
     const double read = config.shot_noise.read_noise_e / well_e;
-    const double sigma = config.shot_noise_on ? std::sqrt(light / well_e + read * read) : 0.0;
+    const double sigma = config.shot_noise.enabled ? std::sqrt(light / well_e + read * read) : 0.0;
     table[v] = {static_cast<float>(light), static_cast<float>(sigma)};
   }
   return table;
@@ -52,7 +52,7 @@ void expose(Grid2d<Rgb8>& color, const Camera& camera, const SensorConfig& confi
   std::vector<float> share(static_cast<std::size_t>(color.width()), 1.0F);
   std::uint64_t pixel = 0;
   for (int y = 0; y < color.height(); ++y) {
-    if (config.vignetting_on) fall_off(camera, config.vignetting.strength, y, share);
+    if (config.vignetting.enabled) fall_off(camera, config.vignetting.strength, y, share);
     const float* lit = share.data();
     for (Rgb8& c : color.row(y)) {
       const std::uint64_t bits = stream.bits(pixel++);
@@ -97,10 +97,10 @@ double analogue_gain(const ShotNoiseConfig& config, float exposure) {
 
 void develop(Grid2d<Rgb8>& color, const Camera& camera, const SensorConfig& config, double gain,
              RandomStream stream) {
-  if (config.shot_noise_on || config.vignetting_on || gain != 1.0)
+  if (config.shot_noise.enabled || config.vignetting.enabled || gain != 1.0)
     expose(color, camera, config, gain, stream.fork(kShot));
-  if (config.color_noise_on) add_gray_noise(color, config.color_noise.sigma, stream);
-  process(color, config.processing);
+  if (config.color_noise.enabled) add_gray_noise(color, config.color_noise.sigma, stream);
+  if (config.processing.enabled) process(color, config.processing);
 }
 
 }  // namespace mh

@@ -98,7 +98,7 @@ SemanticImage label_image(const RenderedFrame& truth, LabelMode mode, const Labe
                           const SE3& world_from_camera, RandomStream stream) {
   if (mode == LabelMode::kNone) return {};
   SemanticImage image;
-  const LabelNoiseConfig& noise = config.noise;
+  const LabelNoiseConfig noise = config.noise.enabled ? config.noise : LabelNoiseConfig{};
   if (mode == LabelMode::kDetector) {
     image = detector_image(truth, detect(truth, config, world_from_camera, stream));
   } else if (noise.confusion == 0.0 && noise.swap == 0.0 && noise.dropout == 0.0) {

@@ -6,6 +6,7 @@
 
 #include "sim/render/renderer.hpp"
 #include "slam/core/random.hpp"
+#include "slam/core/setting.hpp"
 
 namespace mh {
 
@@ -49,17 +50,46 @@ struct DetectorConfig {
   /// Each side of a box strays by this share of the box's width or height, standard deviation: so
   /// that of boxes with an IoU above 0.5 those above 0.75 are 34.4 / 57.9 [A].
   double box_sigma = 0.087;
+  friend bool operator==(const DetectorConfig&, const DetectorConfig&) = default;
 };
+
+template <Either<DetectorConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [recall_small, recall_medium, recall_large, confusion, false_alarms, box_sigma] = c;
+  v("recall_small", recall_small, setting::kShare, "of objects below 32 x 32 px");
+  v("recall_medium", recall_medium, setting::kShare, "of objects between");
+  v("recall_large", recall_large, setting::kShare, "of objects from 96 x 96 px on");
+  v("confusion", confusion, setting::kShare, "of an object's detections with the wrong class");
+  v("false_alarms", false_alarms, {0, 8}, "expected detections of nothing per image");
+  v("box_sigma", box_sigma, setting::kShare,
+    "of a box's width or height by which its sides stray, standard deviation");
+}
 
 /// Faults of one's choice on top of any kind of labels, for dose-response studies: 0 is none.
 struct LabelNoiseConfig {
+  bool enabled = false;
   double confusion = 0.0;  ///< share of instances that carry a wrong class
   double swap = 0.0;       ///< share of instances that begin an exchange of classes with their
                            ///< nearest neighbor in the picture
   double dropout = 0.0;    ///< share of instances that carry no label (no box, in those modes)
   int erosion_px = 0;      ///< pixels within so many px of a border between labels become void
+  /// Whether labels stay as they are.
+  bool none() const {
+    return !enabled || (confusion == 0 && swap == 0 && dropout == 0 && erosion_px == 0);
+  }
   friend bool operator==(const LabelNoiseConfig&, const LabelNoiseConfig&) = default;
 };
+
+template <Either<LabelNoiseConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, confusion, swap, dropout, erosion_px] = c;
+  v("enabled", enabled, setting::kSwitch, "the four faults below; what follows them holds anyway");
+  v("confusion", confusion, setting::kShare, "of instances that carry a wrong class");
+  v("swap", swap, setting::kShare,
+    "of instances that exchange classes with their nearest neighbor");
+  v("dropout", dropout, setting::kShare, "of instances that carry no label");
+  v("erosion_px", erosion_px, {0, 1000}, "pixels so near to a border between labels become void");
+}
 
 /// Labels' faults depend on what is looked at and from where, as a network's do: each is decided by
 /// a standard normal number that is the sum of a part that an instance keeps for ever, a part that
@@ -72,7 +102,22 @@ struct LabelConfig {
   double persistent_share = 0.4;  ///< of the variance, 0 to 1
   double frame_share = 0.1;       ///< likewise; the two sum to at most 1, the rest is the view's
   std::uint64_t seed = 0;         ///< another seed is another network
+  friend bool operator==(const LabelConfig&, const LabelConfig&) = default;
 };
+
+template <Either<LabelConfig> C, class Visit>
+void for_each_setting(C& config, Visit& v) {
+  auto& [noise, detector, persistent_share, frame_share, seed] = config;
+  v.section("label_noise");
+  fields(noise, v);
+  v("persistent_share", persistent_share, setting::kShare,
+    "of the variance of faults: what an instance keeps for ever");
+  v("frame_share", frame_share, setting::kShare,
+    "of it: new in each frame; with persistent_share at most 1, the view's is the rest");
+  v("seed", seed, setting::kSeed, "another seed is another network");
+  v.section("detector");
+  fields(detector, v);
+}
 
 /// Labels without faults; kDetector gives those of kBoxes. kNone: an empty image. Of boxes, smaller
 /// ones lie over larger ones, higher instance ids over lower where equal.

@@ -12,7 +12,8 @@ namespace {
 enum StreamName : std::uint64_t { kDepth = 1, kColor = 2, kLabels = 3, kBlank = 4 };
 
 bool is_blank(const SensorConfig& config, RandomStream stream) {
-  return config.blank_share > 0.0 && stream.fork(kBlank).uniform(0) < config.blank_share;
+  return config.blank_frames.lost() > 0.0 &&
+         stream.fork(kBlank).uniform(0) < config.blank_frames.lost();
 }
 
 }  // namespace
@@ -26,7 +27,7 @@ RgbdFrame sense(const RenderedFrame& truth, const Camera& camera, const SensorCo
             .depth_m = Grid2d<float>(camera.width_px, camera.height_px),
             .semantics = {}};
   RgbdFrame frame{stamp_ns, truth.color, {}, {}};
-  frame.depth_m = config.depth_noise_on
+  frame.depth_m = config.depth_noise.enabled
                       ? noisy_depth(truth.depth_m, camera, config.depth_noise, stream.fork(kDepth))
                       : truth.depth_m;
   SensorConfig set = config;

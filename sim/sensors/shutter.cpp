@@ -44,11 +44,11 @@ double farthest_motion_px(const Camera& camera, const Grid2d<float>& depth_m, co
 class Rows {
  public:
   /// @param pictures  over all of the time in which any row collects
-  Rows(const ShutterConfig& config, int height, int pictures)
+  Rows(const SensorConfig& config, int height, int pictures)
       : height_(height),
         pictures_(pictures),
-        readout_s_(config.rolling_shutter_on ? config.readout_s : 0.0),
-        exposure_s_(config.motion_blur_on ? config.exposure_s : 0.0),
+        readout_s_(config.rolling_shutter.readout_s()),
+        exposure_s_(config.motion_blur.exposure_s()),
         step_s_((readout_s_ + exposure_s_) / pictures) {
     // A row that is exposed for less than a step blends the two pictures nearest in time.
     if (exposure_s_ < step_s_) exposure_s_ = step_s_ = readout_s_ / (pictures - 1);
@@ -58,9 +58,8 @@ class Rows {
     }
   }
 
-  static double duration_s(const ShutterConfig& config) {
-    return (config.rolling_shutter_on ? config.readout_s : 0.0) +
-           (config.motion_blur_on ? config.exposure_s : 0.0);
+  static double duration_s(const SensorConfig& config) {
+    return config.rolling_shutter.readout_s() + config.motion_blur.exposure_s();
   }
   /// The middle of picture k's share of the time, s after the stamp.
   double time_s(int k) const { return (k + 0.5 - 0.5 * pictures_) * step_s_; }
@@ -138,7 +137,7 @@ std::vector<std::size_t> arriving(std::size_t frames, const SensorConfig& config
                                   RandomStream stream) {
   std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < frames; ++i)
-    if (stream.fork(kDropped).uniform(i) >= config.dropped_share) indices.push_back(i);
+    if (stream.fork(kDropped).uniform(i) >= config.dropped_frames.lost()) indices.push_back(i);
   if (indices.empty() && frames > 0) indices.push_back(0);
   return indices;
 }
@@ -151,7 +150,7 @@ Trajectory arriving_frames(const Trajectory& path, const SensorConfig& config,
 }
 
 Camera with_lens(Camera camera, const SensorConfig& config) {
-  if (config.lens_distortion_on) camera.distortion = config.lens_distortion;
+  if (config.lens_distortion.enabled) camera.distortion = config.lens_distortion.lens;
   return camera;
 }
 
@@ -162,7 +161,7 @@ Shutter::Shutter(SceneAt scene, const Camera& camera, Trajectory path, const Sen
       path_(std::move(path)),
       config_(config) {
   assert(scene_ && !path_.empty());
-  if (config_.auto_exposure_on) gains_ = exposure_gains();
+  if (config_.auto_exposure.enabled) gains_ = exposure_gains();
 }
 
 Shutter::Shutter(std::shared_ptr<const Renderer> renderer, const Camera& camera, Trajectory path,
@@ -174,10 +173,10 @@ Shutter::Exposed Shutter::expose(std::size_t i, LabelMode labels) const {
   assert(i < path_.size());
   RenderedFrame picture = render(lens_.pinhole(), i, 0.0);
   blur(picture, i, labels);
-  if (config_.depth_offset_s != 0.0)
-    picture.depth_m = render(lens_.pinhole(), i, config_.depth_offset_s).depth_m;
+  if (const double offset_s = config_.depth_offset.offset_s(); offset_s != 0.0)
+    picture.depth_m = render(lens_.pinhole(), i, offset_s).depth_m;
   picture = lens_.bend(std::move(picture));
-  blur_by_lens(picture.color, config_.lens_blur_px);
+  if (config_.lens_blur.enabled) blur_by_lens(picture.color, config_.lens_blur.sigma_px);
   return {std::move(picture), gains_.empty() ? 1.0 : gains_[i]};
 }
 
@@ -187,19 +186,19 @@ RenderedFrame Shutter::render(const Camera& pinhole, std::size_t i, double after
 }
 
 void Shutter::blur(RenderedFrame& picture, std::size_t i, LabelMode labels) const {
-  const ShutterConfig& config = config_.shutter;
-  const double duration_s = Rows::duration_s(config);
+  const MotionSampling& sampling = config_.motion_sampling;
+  const double duration_s = Rows::duration_s(config_);
   if (duration_s <= 0.0) return;
   const Camera& camera = lens_.pinhole();
   const double motion_px =
       farthest_motion_px(camera, picture.depth_m, path_[i].world_from_camera,
                          pose_at(path_, i, -0.5 * duration_s), pose_at(path_, i, 0.5 * duration_s));
-  if (motion_px <= config.sharp_px) return;
+  if (motion_px <= sampling.sharp_px) return;
   // An odd number of them has the picture that is there already in its middle.
-  const int wanted = static_cast<int>(std::ceil(motion_px / config.step_px)) | 1;
-  const int pictures = std::clamp(wanted, 3, std::max(3, config.max_pictures | 1));
+  const int wanted = static_cast<int>(std::ceil(motion_px / sampling.step_px)) | 1;
+  const int pictures = std::clamp(wanted, 3, std::max(3, sampling.max_pictures | 1));
 
-  const Rows rows(config, camera.height_px, pictures);
+  const Rows rows(config_, camera.height_px, pictures);
   LightSum sum(picture.color);
   for (int k = 0; k < pictures; ++k) {
     int first = 0, last = camera.height_px;

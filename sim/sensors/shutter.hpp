@@ -38,7 +38,7 @@ class Shutter {
   struct Exposed {
     /// Depth is that of the stamp plus its offset, all rows at once. Classes and instances of a row
     /// are those of the middle of its exposure, from the picture of the motion that is nearest in
-    /// time, at most half of ShutterConfig::step_px away; for kAnnotated they are the stamp's.
+    /// time, at most half of MotionSampling::step_px away; for kAnnotated they are the stamp's.
     RenderedFrame seen;
     double gain = 1.0;  ///< of the exposure control, not yet applied
   };

@@ -36,8 +36,7 @@ class SceneSequence : public Sequence {
 }  // namespace
 
 std::unique_ptr<Sequence> open_scene(const SceneDrive& source, std::vector<std::string>* notes) {
-  SensorConfig sensors;
-  sensors.depth_noise_on = sensors.color_noise_on = false;
+  SensorConfig sensors = exact_sensors();
   if (!source.level.empty()) sensors = load_sensor_config(source.level);
   const Robot robot = load_robot(source.robot);
   const Scene scene = load_lit_scene(source.scene, 2, notes, source.frame);

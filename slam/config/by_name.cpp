@@ -75,7 +75,7 @@ double setting_value(const SlamConfig& config, std::string_view name) {
 
 void read_setting(SlamConfig& config, std::string_view name, const YamlReader& value) {
   at_setting(config, name, [&](auto& setting, const SettingRange& range) {
-    SettingsReader::read(value, setting, range);
+    MappingReader::read(value, setting, range);
   });
 }
 

@@ -11,17 +11,26 @@
 
 namespace mh {
 
-/// The values that a setting may take: [min, max], or [min, max) if open. Ignored for words and
-/// switches.
+/// The values that a setting may take: [min, max], without max if open, without min if above.
+/// Ignored for words and switches.
 struct SettingRange {
   double min = 0, max = 1;
-  bool open = false;
+  bool open = false, above = false;
+  bool required = false;  ///< an error if its section lacks it
 };
 
 namespace setting {
 inline constexpr double kMany = 1e6;
 inline constexpr SettingRange kShare{0, 1}, kOpenShare{0, 1, true}, kCount{1, kMany},
-    kLength_m{0, 1000}, kSwitch{0, 1};
+    kLength_m{0, 1000}, kSwitch{0, 1}, kSeed{0, 9e18};
+
+constexpr SettingRange above(double bound, double max) {
+  return {.min = bound, .max = max, .above = true};
+}
+constexpr SettingRange required(SettingRange range) {
+  range.required = true;
+  return range;
+}
 }  // namespace setting
 
 }  // namespace mh

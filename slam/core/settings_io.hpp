@@ -16,42 +16,39 @@
 
 namespace mh {
 
-// Visitors of settings' field lists. A setting is an int, a double, a bool or an enumeration E,
-// whose Names setting_words(E) returns.
+// Visitors of settings' field lists. A setting is an int, a double, a bool, an enumeration E, whose
+// Names setting_words(E) returns, or an optional of one of these.
 
 /// "[0, 1)"
 inline std::string interval(const SettingRange& range) {
-  return fmt::format("[{}, {}{}", range.min, range.max, range.open ? ")" : "]");
+  return fmt::format("{}{}, {}{}", range.above ? "(" : "[", range.min, range.max,
+                     range.open ? ")" : "]");
 }
 
 inline bool allows(const SettingRange& range, double value) {
   return std::isfinite(value) && value >= range.min && value <= range.max &&
-         !(range.open && value == range.max);
+         !(range.open && value == range.max) && !(range.above && value == range.min);
 }
 
-/// Reads sections of a YAML mapping; absent keys keep their values. Call finish() at the end.
-class SettingsReader {
+/// Reads fields from one YAML mapping; absent keys keep their values unless they are required.
+class MappingReader {
  public:
-  explicit SettingsReader(YamlReader& yaml) : yaml_(yaml) {}
-
-  void section(const char* name) {
-    finish();
-    section_ = yaml_.find(name);
-  }
-  /// @throws InputError at a key of the last section that is not one of its fields.
-  void finish() const {
-    if (section_) section_->finish();
-  }
+  explicit MappingReader(YamlReader& mapping) : mapping_(mapping) {}
 
   template <class T>
   void operator()(const char* key, T& value, const SettingRange& range, const char*) {
-    if (const auto node = section_ ? section_->find(key) : std::nullopt) read(*node, value, range);
+    if (range.required)
+      read(mapping_.at(key), value, range);
+    else if (const auto node = mapping_.find(key))
+      read(*node, value, range);
   }
 
   /// Reads one value. @throws InputError at its place.
   template <class T>
   static void read(const YamlReader& node, T& value, const SettingRange& range) {
-    if constexpr (std::is_same_v<T, bool>) {
+    if constexpr (kIsOptional<T>) {
+      read(node, value.emplace(), range);
+    } else if constexpr (std::is_same_v<T, bool>) {
       value = node.as_bool();
     } else if constexpr (std::is_enum_v<T>) {
       value = one_of(node, setting_words(T{}));
@@ -64,6 +61,31 @@ class SettingsReader {
         node.fail(fmt::format("{} is outside {}", node.as_string(), interval(range)));
       value = number;
     }
+  }
+
+ private:
+  YamlReader& mapping_;
+};
+
+/// Reads sections of a YAML mapping; absent keys keep their values. Call finish() at the end.
+class SettingsReader {
+ public:
+  explicit SettingsReader(YamlReader& yaml) : yaml_(yaml) {}
+
+  void section(const char* name) {
+    finish();
+    section_ = yaml_.find(name);
+  }
+  /// The last section; nullopt if the file lacks it.
+  const std::optional<YamlReader>& place() const { return section_; }
+  /// @throws InputError at a key of the last section that is not one of its fields.
+  void finish() const {
+    if (section_) section_->finish();
+  }
+
+  template <class T>
+  void operator()(const char* key, T& value, const SettingRange& range, const char* note) {
+    if (section_) MappingReader{*section_}(key, value, range, note);
   }
 
  private:

@@ -19,8 +19,12 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/protocol/config.hpp"
+#include "sim/sensors/config.hpp"
+#include "slam/core/settings_io.hpp"
 #include "source_dir.hpp"
 
+namespace mh {
 namespace {
 
 namespace fs = std::filesystem;
@@ -244,13 +248,34 @@ TEST_F(CommandLine, BashCompletesCommandsOptionsAndNames) {
 }
 
 TEST_F(CommandLine, ReferencePagesAreWhatTheCodeSays) {
-  for (const char* what : {"furniture", "materials", "classes", "robot"}) {
+  for (const char* what :
+       {"furniture", "materials", "classes", "robot", "slam", "sensors", "protocol"}) {
     ASSERT_EQ(run(std::string("reference ") + what), 0);
-    EXPECT_GT(std::count(out_.begin(), out_.end(), '\n'), 20) << what;
+    EXPECT_GT(std::count(out_.begin(), out_.end(), '\n'), 15) << what;
     EXPECT_EQ(out_,
               content(fs::path(MH_SOURCE_DIR) / "docs/reference" / (what + std::string(".md"))))
         << "make it anew: modelhouse reference " << what << " > docs/reference/" << what << ".md";
   }
+}
+
+TEST_F(CommandLine, PrintedSettingsAreReadBackEqual) {
+  ASSERT_EQ(run("sensors --print-settings"), 0);
+  EXPECT_EQ(parse_sensor_config(out_, "printed"), SensorConfig{});
+  EXPECT_NE(out_.find("  offset_ms: 0"), std::string::npos) << out_;
+  ASSERT_EQ(run("sensors --print-settings --level handheld"), 0);
+  EXPECT_EQ(parse_sensor_config(out_, "printed"),
+            load_sensor_config(fs::path(MH_SOURCE_DIR) / "sim/sensors/levels/handheld.yaml"));
+  expect_refused("sensors --level handheld", "subcommand");
+
+  ASSERT_EQ(run("bench --print-settings"), 0);
+  YamlReader suite = YamlReader::parse(out_, "printed");
+  ProtocolConfig config{.test_interval = 7, .reset = DropReset::kMap, .max_effort = 2};
+  SettingsReader reader(suite);
+  reader.section("protocol");
+  fields(config, reader);
+  reader.finish();
+  suite.finish();
+  EXPECT_EQ(config, ProtocolConfig{});
 }
 
 TEST_F(CommandLine, NumbersAreFiniteAndSeedsDoNotWrap) {
@@ -745,3 +770,4 @@ TEST_F(CommandLine, CheckRefusesABaselineThatIsNotOfItsSuite) {
 }
 
 }  // namespace
+}  // namespace mh

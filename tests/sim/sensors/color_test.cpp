@@ -19,7 +19,7 @@ RenderedFrame gray_frame(std::uint8_t gray, const Camera& camera = {}) {
 
 SensorConfig nothing() {
   SensorConfig config;
-  config.depth_noise_on = config.color_noise_on = false;
+  config.depth_noise.enabled = config.color_noise.enabled = false;
   return config;
 }
 
@@ -40,7 +40,7 @@ TEST(ShotNoise, SignalToNoiseIsThatOfTheElectrons) {
   for (const double gain : {1.0, 8.0})
     for (const int gray : {60, 118, 188}) {
       SensorConfig config = nothing();
-      config.shot_noise_on = true;
+      config.shot_noise.enabled = true;
       config.shot_noise.gain = gain;
       const RenderedFrame truth = gray_frame(static_cast<std::uint8_t>(gray));
       const Moments seen = light_of(sense(truth, {}, config, RandomStream(1), 0).color);
@@ -61,7 +61,7 @@ TEST(ShotNoise, SignalToNoiseIsThatOfTheElectrons) {
 
 TEST(ShotNoise, DarkerScenesTakeMoreGain) {
   SensorConfig config = nothing();
-  config.shot_noise_on = true;
+  config.shot_noise.enabled = true;
   config.shot_noise.gain = 2.0;
   RenderedFrame truth = gray_frame(118);
   const auto taken = [&](float exposure) {
@@ -72,7 +72,7 @@ TEST(ShotNoise, DarkerScenesTakeMoreGain) {
   config.shot_noise.gain_at_exposure = 0.5;
   const auto at_gain = [&](double gain) {
     SensorConfig plain = config;
-    plain.shot_noise = {.gain = gain};
+    plain.shot_noise = {.enabled = true, .gain = gain};
     return sense(truth, {}, plain, RandomStream(1), 0).color;
   };
   EXPECT_EQ(taken(0.5F), at_gain(2.0));
@@ -83,7 +83,7 @@ TEST(ShotNoise, DarkerScenesTakeMoreGain) {
 
 TEST(Vignetting, FallsOffWithTheFourthPowerOfTheCosine) {
   SensorConfig config = nothing();
-  config.vignetting_on = true;
+  config.vignetting.enabled = true;
   const Camera camera;
   const RgbdFrame frame = sense(gray_frame(200), camera, config, RandomStream(1), 0);
   const double light = srgb_to_linear(200);
@@ -261,9 +261,9 @@ TEST(Processing, ComesAfterTheNoise) {
     return sense(truth, {}, config, RandomStream(3), 0).color;
   };
   SensorConfig config = nothing();
-  config.shot_noise_on = true;
+  config.shot_noise.enabled = true;
   Grid2d<Rgb8> noisy = sensed(config);
-  config.processing = {.contrast = 0.5, .sharpening = 1.0};
+  config.processing = {.enabled = true, .contrast = 0.5, .sharpening = 1.0};
   const Grid2d<Rgb8> sharp = sensed(config);
   EXPECT_NE(sharp, noisy);
   process(noisy, config.processing);
@@ -274,7 +274,7 @@ TEST(BlankFrames, ComeAtTheirRateWithoutDepthColorAndLabels) {
   Camera small;
   small.width_px = 32, small.height_px = 24, small.cx_px = 15.5, small.cy_px = 11.5;
   SensorConfig config = nothing();
-  config.blank_share = 0.25;
+  config.blank_frames = {.enabled = true, .share = 0.25};
   const RenderedFrame truth = gray_frame(120, small);
   int blank = 0;
   for (std::uint64_t i = 0; i < 4000; ++i) {

@@ -79,9 +79,9 @@ TEST(LabelNoise, DialsAreSharesOfInstances) {
     int confused = 0, dropped = 0, trials = 0;
     for (std::uint64_t seed = 0; seed < 30; ++seed) {
       LabelConfig config{.seed = seed};
-      config.noise.confusion = share;
+      config.noise = {.enabled = true, .confusion = share};
       confused += 108 - count(labels(truth, LabelMode::kExact, config), kChair);
-      config.noise = {.dropout = share};
+      config.noise = {.enabled = true, .dropout = share};
       dropped += count(labels(truth, LabelMode::kExact, config), kVoid);
       EXPECT_EQ(count(labels(truth, LabelMode::kBoxes, config), kBackground),
                 count(labels(truth, LabelMode::kExact, config), kVoid));
@@ -97,7 +97,7 @@ TEST(LabelNoise, DialsAreSharesOfInstances) {
 TEST(LabelNoise, AnInstanceIsConfusedAsAWholeAndAlwaysWithTheSameClass) {
   const RenderedFrame truth = chairs();
   LabelConfig config{.persistent_share = 0.0, .frame_share = 1.0};
-  config.noise.confusion = 1.0;
+  config.noise = {.enabled = true, .confusion = 1.0};
   const SemanticImage a = labels(truth, LabelMode::kExact, config, view_at(0), 1);
   EXPECT_EQ(count(a, kChair), 0);
   EXPECT_EQ(a, labels(truth, LabelMode::kExact, config, view_at(7), 2));
@@ -109,7 +109,7 @@ TEST(LabelNoise, AnInstanceIsConfusedAsAWholeAndAlwaysWithTheSameClass) {
 TEST(LabelNoise, FaultsStayWithTheViewAndFadeWithDistance) {
   const RenderedFrame truth = chairs();
   LabelConfig config{.persistent_share = 0.0, .frame_share = 0.0};
-  config.noise.dropout = 0.5;
+  config.noise = {.enabled = true, .dropout = 0.5};
   const SemanticImage here = labels(truth, LabelMode::kExact, config, view_at(0.2), 1);
   EXPECT_EQ(here, labels(truth, LabelMode::kExact, config, view_at(0.2), 2));
   const auto differing = [&](const SE3& view) {
@@ -151,7 +151,7 @@ TEST(LabelNoise, SwappedNeighborsExchangeTheirClasses) {
   paint(truth, 70, 10, 50, 50, kTable, 2);  // nearest to both others
   paint(truth, 200, 10, 50, 50, kBed, 3);
   LabelConfig config;
-  config.noise.swap = 1.0;
+  config.noise = {.enabled = true, .swap = 1.0};
   const SemanticImage image = labels(truth, LabelMode::kExact, config);
   EXPECT_EQ(image.at(30, 30).most_probable(), kTable);
   EXPECT_EQ(image.at(90, 30).most_probable(), kChair);
@@ -164,7 +164,7 @@ TEST(LabelNoise, ErosionMakesVoidWhatIsNearABorder) {
   paint(truth, 100, 80, 60, 40, kTable, 2);
   for (const int radius : {1, 3, 8}) {
     LabelConfig config;
-    config.noise.erosion_px = radius;
+    config.noise = {.enabled = true, .erosion_px = radius};
     const SemanticImage image = labels(truth, LabelMode::kExact, config);
     const auto inside = [](int x, int y, int margin) {
       return x >= 100 - margin && x < 160 + margin && y >= 80 - margin && y < 120 + margin;

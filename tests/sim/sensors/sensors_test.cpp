@@ -48,7 +48,7 @@ double incidence_rad(int x, int y, double angle_rad) {
 
 SensorConfig no_noise() {
   SensorConfig config;
-  config.color_noise_on = false;
+  config.color_noise.enabled = false;
   config.depth_noise = no_depth_noise();
   return config;
 }
@@ -68,7 +68,7 @@ TEST(DepthNoise, AllOffIsTheTruth) {
   const RenderedFrame truth = leaning_plane(2.0, 0.5);
   EXPECT_EQ(sensed(truth, no_noise()).depth_m, truth.depth_m);
   SensorConfig off;
-  off.depth_noise_on = off.color_noise_on = false;
+  off.depth_noise.enabled = off.color_noise.enabled = false;
   EXPECT_EQ(sensed(truth, off).depth_m, truth.depth_m);
   EXPECT_EQ(sensed(truth, off).color, truth.color);
   EXPECT_EQ(sensed(truth, off).stamp_ns, 5);
@@ -227,7 +227,7 @@ TEST(DepthNoise, NothingIsSeenOutOfRange) {
 
 TEST(ColorNoise, IsGaussianWithTheStatedSigmaAndIndependentChannels) {
   SensorConfig config = no_noise();
-  config.color_noise_on = true;
+  config.color_noise.enabled = true;
   const RgbdFrame frame = sensed(blank_frame(2.0F), config);
   Moments r, g, b, rg;
   int beyond_two = 0;
@@ -247,7 +247,7 @@ TEST(ColorNoise, IsGaussianWithTheStatedSigmaAndIndependentChannels) {
 
 TEST(ColorNoise, StopsAtBlackAndWhite) {
   SensorConfig config = no_noise();
-  config.color_noise_on = true;
+  config.color_noise.enabled = true;
   config.color_noise.sigma = 0.1;
   const RgbdFrame frame = sensed(blank_frame(2.0F, {0, 255, 128}), config);
   int black = 0, white = 0;
@@ -269,7 +269,7 @@ TEST(Sense, SameKeySameBitsOtherKeyOtherNoise) {
   EXPECT_NE(a.color, c.color);
   // Depth noise does not touch the color's stream.
   SensorConfig color_only;
-  color_only.depth_noise_on = false;
+  color_only.depth_noise.enabled = false;
   EXPECT_EQ(sensed(truth, color_only).color, a.color);
 }
 
@@ -348,30 +348,83 @@ TEST(SensorLevels, AreFrozen) {
 
 TEST(SensorLevels, SayWhatTheirNamesSay) {
   const SensorConfig ideal = load_sensor_config(level("ideal"));
-  EXPECT_FALSE(ideal.depth_noise_on || ideal.color_noise_on || ideal.shot_noise_on ||
-               ideal.shutter.motion_blur_on || ideal.shutter.rolling_shutter_on ||
-               ideal.auto_exposure_on || ideal.vignetting_on || ideal.lens_distortion_on);
-  EXPECT_EQ(ideal.processing.contrast + ideal.processing.sharpening + ideal.lens_blur_px +
-                ideal.depth_offset_s + ideal.blank_share + ideal.dropped_share,
-            0.0);
+  EXPECT_FALSE(ideal.depth_noise.enabled || ideal.color_noise.enabled || ideal.shot_noise.enabled ||
+               ideal.motion_blur.enabled || ideal.rolling_shutter.enabled ||
+               ideal.auto_exposure.enabled || ideal.vignetting.enabled ||
+               ideal.lens_distortion.enabled || ideal.processing.enabled ||
+               ideal.lens_blur.enabled || ideal.depth_offset.enabled ||
+               ideal.blank_frames.enabled || ideal.dropped_frames.enabled);
+  EXPECT_EQ(ideal, exact_sensors());
 
   const SensorConfig pepper = load_sensor_config(level("pepper"));
   const DepthNoiseConfig& d = pepper.depth_noise;
-  EXPECT_TRUE(pepper.depth_noise_on && d.axial && d.lateral && d.quantization && d.grazing_holes &&
-              d.projector_shadow);
+  EXPECT_TRUE(pepper.depth_noise.enabled && d.axial && d.lateral && d.quantization &&
+              d.grazing_holes && d.projector_shadow);
   EXPECT_EQ(d.min_range_m, 0.4);
   EXPECT_EQ(d.max_range_m, 8.0);
-  EXPECT_TRUE(pepper.shot_noise_on && !pepper.color_noise_on);
+  EXPECT_TRUE(pepper.shot_noise.enabled && !pepper.color_noise.enabled);
   EXPECT_EQ(pepper.shot_noise.well_e, 3981.0);
-  EXPECT_FALSE(pepper.shutter.motion_blur_on || pepper.shutter.rolling_shutter_on);
+  EXPECT_FALSE(pepper.motion_blur.enabled || pepper.rolling_shutter.enabled);
 
   const SensorConfig handheld = load_sensor_config(level("handheld"));
-  EXPECT_TRUE(handheld.depth_noise_on && handheld.shot_noise_on && handheld.auto_exposure_on &&
-              handheld.shutter.motion_blur_on && handheld.shutter.rolling_shutter_on);
+  EXPECT_TRUE(handheld.depth_noise.enabled && handheld.shot_noise.enabled &&
+              handheld.auto_exposure.enabled && handheld.motion_blur.enabled &&
+              handheld.rolling_shutter.enabled);
   EXPECT_GT(handheld.shot_noise.gain_at_exposure, 0);
   EXPECT_EQ(pepper.shot_noise.gain_at_exposure, 0);
   EXPECT_TRUE(handheld.processing.contrast > 0 && handheld.processing.sharpening > 0);
   EXPECT_EQ(pepper.processing.contrast + pepper.processing.sharpening, 0.0);
+}
+
+/// What format_sensor_config() writes is read back equal.
+void expect_round_trip(const SensorConfig& config) {
+  for (const bool notes : {false, true})
+    EXPECT_EQ(parse_sensor_config(format_sensor_config(config, notes), "level"), config);
+}
+
+TEST(SensorLevels, WhatIsPrintedIsReadBackEqual) {
+  for (const char* name : {"ideal", "pepper", "handheld"}) {
+    const SensorConfig config = load_sensor_config(level(name));
+    expect_round_trip(config);
+    EXPECT_EQ(config == SensorConfig{}, false) << name;
+  }
+  expect_round_trip({});
+}
+
+/// Gives each field a value of its own that its range allows.
+struct OtherValues {
+  void section(const char*) {}
+  void operator()(const char*, bool& value, const SettingRange&, const char*) { value = !value; }
+  template <class T>
+  void operator()(const char*, T& value, const SettingRange& range, const char*) {
+    value = static_cast<T>(range.min + (range.max - range.min) / ++divisor);
+  }
+  int divisor = 2;
+};
+
+TEST(SensorLevels, EveryFieldIsWrittenAndReadBackEqual) {
+  SensorConfig config;
+  for_each_setting(config, OtherValues{});
+  config.depth_noise.min_range_m = 0.1 * config.depth_noise.max_range_m;
+  expect_round_trip(config);
+}
+
+TEST(SensorLevels, ASectionThatIsThereIsOnUnlessItSaysOtherwise) {
+  const std::string needed = "depth_noise: {}\ncolor_noise: {}\n";
+  const SensorConfig absent = parse_sensor_config(needed, "level");
+  EXPECT_EQ(absent, SensorConfig{});
+  EXPECT_FALSE(absent.vignetting.enabled);
+  EXPECT_TRUE(parse_sensor_config(needed + "vignetting: {}\n", "level").vignetting.enabled);
+  const SensorConfig off =
+      parse_sensor_config(needed +
+                              "motion_blur: {enabled: false, exposure_ms: 5}\n"
+                              "label_noise: {enabled: false, dropout: 1, seed: 3}\n"
+                              "blank_frames: {enabled: false, share: 1}\n",
+                          "level");
+  EXPECT_EQ(off.motion_blur.exposure_s(), 0);
+  EXPECT_EQ(off.blank_frames.lost(), 0);
+  EXPECT_TRUE(off.labels.noise.none());
+  EXPECT_EQ(off.labels.seed, 3U);  // the detector's, too
 }
 
 /// A number of a level: where it stands, what it may be, where it goes.
@@ -401,27 +454,31 @@ std::vector<LevelNumber> level_numbers() {
       {"auto_exposure", "max_gain", 1, 1000, false, "",
        [](const C& c) { return c.auto_exposure.max_gain; }},
       {"vignetting", "strength", 0, 1, false, "", [](const C& c) { return c.vignetting.strength; }},
-      {"lens_blur", "sigma_px", 0, 20, false, "", [](const C& c) { return c.lens_blur_px; }},
+      {"lens_blur", "sigma_px", 0, 20, false, "", [](const C& c) { return c.lens_blur.sigma_px; }},
       {"processing", "contrast", 0, 1, false, "", [](const C& c) { return c.processing.contrast; }},
       {"processing", "sharpening", 0, 20, false, "",
        [](const C& c) { return c.processing.sharpening; }},
       {"processing", "sharpening_px", 0, 20, true, "",
        [](const C& c) { return c.processing.sharpening_px; }},
-      {"lens_distortion", "k1", -2, 2, false, "", [](const C& c) { return c.lens_distortion.k1; }},
-      {"lens_distortion", "k2", -2, 2, false, "", [](const C& c) { return c.lens_distortion.k2; }},
+      {"lens_distortion", "k1", -2, 2, false, "",
+       [](const C& c) { return c.lens_distortion.lens.k1; }},
+      {"lens_distortion", "k2", -2, 2, false, "",
+       [](const C& c) { return c.lens_distortion.lens.k2; }},
       {"lens_distortion", "p1", -0.2, 0.2, false, "",
-       [](const C& c) { return c.lens_distortion.p1; }},
+       [](const C& c) { return c.lens_distortion.lens.p1; }},
       {"lens_distortion", "p2", -0.2, 0.2, false, "",
-       [](const C& c) { return c.lens_distortion.p2; }},
-      {"lens_distortion", "k3", -2, 2, false, "", [](const C& c) { return c.lens_distortion.k3; }},
+       [](const C& c) { return c.lens_distortion.lens.p2; }},
+      {"lens_distortion", "k3", -2, 2, false, "",
+       [](const C& c) { return c.lens_distortion.lens.k3; }},
       {"motion_blur", "exposure_ms", 0, 1000, true, "",
-       [](const C& c) { return c.shutter.exposure_s; }, 1e-3},
+       [](const C& c) { return c.motion_blur.exposure_s(); }, 1e-3},
       {"rolling_shutter", "readout_ms", 0, 1000, true, "",
-       [](const C& c) { return c.shutter.readout_s; }, 1e-3},
+       [](const C& c) { return c.rolling_shutter.readout_s(); }, 1e-3},
       {"depth_offset", "offset_ms", -1000, 1000, false, "",
-       [](const C& c) { return c.depth_offset_s; }, 1e-3},
-      {"blank_frames", "share", 0, 1, false, "", [](const C& c) { return c.blank_share; }},
-      {"dropped_frames", "share", 0, 1, false, "", [](const C& c) { return c.dropped_share; }},
+       [](const C& c) { return c.depth_offset.offset_s(); }, 1e-3},
+      {"blank_frames", "share", 0, 1, false, "", [](const C& c) { return c.blank_frames.lost(); }},
+      {"dropped_frames", "share", 0, 1, false, "",
+       [](const C& c) { return c.dropped_frames.lost(); }},
       {"label_noise", "confusion", 0, 1, false, "",
        [](const C& c) { return c.labels.noise.confusion; }},
       {"label_noise", "swap", 0, 1, false, "", [](const C& c) { return c.labels.noise.swap; }},
@@ -501,7 +558,7 @@ TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {
     EXPECT_NE(told.find(named), std::string::npos) << told;
   };
   third_line("motion_blur: {exposure_s: 0.02}", "exposure_s");
-  third_line("motion_blur: {exposure_ms: 0}", "exposure_ms: 0 is not above 0");
+  third_line("motion_blur: {exposure_ms: 0}", "exposure_ms: 0 is outside (0, 1000]");
   third_line("motion_blur: {exposure_ms: 2000}", "2000");
   third_line("rolling_shutter: {readout_ms: -1}", "-1");
   third_line("shot_noise: {well_e: 0}", "well_e");
@@ -523,6 +580,8 @@ TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {
   third_line("label_noise: {persistent_share: 0.8, frame_share: 0.4}", "frame_share");
   third_line("detector: {recall: 1}", "recall");
   third_line("fog: {enabled: true}", "fog");
+  third_line("lens_blurr: {sigma_px: 1}", "lens_blur'");
+  third_line("lens_blur: {sigma: 1}", "is 'sigma' meant");
   EXPECT_EQ(message(both + "motion_blur: {enabled: false, exposure_ms: 5}\nvignetting: {}\n"),
             "accepted");
   std::filesystem::remove(file);

@@ -58,11 +58,10 @@ Trajectory sliding(double speed_m_per_s, int frames = 5, double from_m = 0.0) {
 
 SensorConfig blurring(double exposure_s) {
   SensorConfig config;
-  config.shutter.motion_blur_on = true;
-  config.shutter.exposure_s = exposure_s;
-  config.shutter.step_px = 0.25;
-  config.shutter.sharp_px = 0.0;
-  config.shutter.max_pictures = 301;
+  config.motion_blur = {.enabled = true, .exposure_ms = 1e3 * exposure_s};
+  config.motion_sampling.step_px = 0.25;
+  config.motion_sampling.sharp_px = 0.0;
+  config.motion_sampling.max_pictures = 301;
   return config;
 }
 
@@ -116,7 +115,7 @@ TEST(MotionBlur, IsTheMeanInLinearLight) {
 TEST(MotionBlur, ACameraAtRestSeesTheExactPictureAndRendersItOnce) {
   const auto scene = std::make_shared<Edge>();
   SensorConfig config = blurring(0.033);
-  config.shutter.rolling_shutter_on = true;
+  config.rolling_shutter.enabled = true;
   const Shutter shutter(scene, small_camera(), sliding(0.0), config);
   const RenderedFrame seen = shutter.expose(2).seen;
   EXPECT_EQ(scene->rows, 120);
@@ -135,10 +134,9 @@ TEST(MotionBlur, AloneLeavesDepthClassesAndInstancesAtTheStamp) {
 
 TEST(RollingShutter, SlantsAnUprightEdgeBySpeedTimesReadout) {
   SensorConfig config;
-  config.shutter.rolling_shutter_on = true;
-  config.shutter.readout_s = 0.030;
-  config.shutter.step_px = 0.25;
-  config.shutter.max_pictures = 301;
+  config.rolling_shutter = {.enabled = true, .readout_ms = 30};
+  config.motion_sampling.step_px = 0.25;
+  config.motion_sampling.max_pictures = 301;
   const auto scene = std::make_shared<Edge>();
   for (const double speed : {-1.5, 0.8, 1.5}) {
     const Shutter shutter(scene, small_camera(), sliding(speed), config);
@@ -166,8 +164,8 @@ class PannedEdge : public testing::Test {
       const Eigen::AngleAxisd turn(2.0 * (i - 2) / 30.0, Eigen::Vector3d::UnitY());
       path_.push_back({i * Stamp{33'333'333}, SE3(turn.toRotationMatrix(), {0, 0, 0})});
     }
-    config_.shutter.motion_blur_on = config_.shutter.rolling_shutter_on = true;
-    config_.shutter.exposure_s = 0.010;
+    config_.rolling_shutter.enabled = true;
+    config_.motion_blur = {.enabled = true, .exposure_ms = 10};
   }
   RenderedFrame seen(LabelMode labels) const {
     return Shutter(renderer_, Camera{}, path_, config_).expose(2, labels).seen;
@@ -219,8 +217,8 @@ TEST_F(PannedEdge, LabelsTouchNeitherColorNorDepth) {
 TEST(RollingShutter, AloneCostsAboutOnePictureMore) {
   const auto scene = std::make_shared<Edge>();
   SensorConfig config;
-  config.shutter.rolling_shutter_on = true;
-  config.shutter.step_px = 0.5;
+  config.rolling_shutter.enabled = true;
+  config.motion_sampling.step_px = 0.5;
   const Shutter shutter(scene, small_camera(), sliding(2.0), config);
   shutter.expose(2);
   EXPECT_LE(scene->rows, 120 * 4);  // the exact one, and each row of the others about twice
@@ -233,8 +231,8 @@ TEST(RollingShutter, ARealRendererDrawsEveryStrip) {
   test::add_box(scene, {-3, -3, -3}, {3, 3, 3}, true, 1, 1);
   const std::shared_ptr<const Renderer> renderer = make_embree_renderer(scene);
   SensorConfig config = blurring(0.02);
-  config.shutter.rolling_shutter_on = true;
-  config.shutter.step_px = 1.5;
+  config.rolling_shutter.enabled = true;
+  config.motion_sampling.step_px = 1.5;
   const Shutter shutter(renderer, small_camera(), sliding(2.0), config);
   const RenderedFrame seen = shutter.expose(2).seen;
   for (const float depth_m : seen.depth_m) ASSERT_GT(depth_m, 0.0F);
@@ -242,7 +240,7 @@ TEST(RollingShutter, ARealRendererDrawsEveryStrip) {
 
 TEST(Shutter, IsAPureFunctionOfTheFrame) {
   SensorConfig config = blurring(0.02);
-  config.auto_exposure_on = true;
+  config.auto_exposure.enabled = true;
   const Shutter shutter(std::make_shared<Edge>(), small_camera(), sliding(1.0, 9), config);
   const auto first = shutter.expose(5);
   shutter.expose(1);
@@ -274,7 +272,7 @@ TEST(DepthOffset, DepthIsThatOfAnotherMomentAndColorIsNot) {
     path[i].world_from_camera =
         SE3(Eigen::Matrix3d::Identity(), {0, 0.3 * static_cast<double>(i), 0});
   SensorConfig config;
-  config.depth_offset_s = 0.010;
+  config.depth_offset = {.enabled = true, .offset_ms = 10};
   const RenderedFrame seen =
       Shutter(std::make_shared<Edge>(), small_camera(), path, config).expose(1).seen;
   EXPECT_NEAR(seen.depth_m(5, 5), kDepthM + 0.3 + 0.3 * 0.3, 1e-4);
@@ -293,7 +291,7 @@ class Lamp : public Renderer {
 
 TEST(AutoExposure, TheGainNearsItsGoalExponentially) {
   SensorConfig config;
-  config.auto_exposure_on = true;
+  config.auto_exposure.enabled = true;
   config.auto_exposure.target = 0.15;
   config.auto_exposure.time_constant_s = 0.2;
   const Trajectory path = sliding(1.0, 40);  // frame 2 stands at x = 0, or a hair beside it
@@ -311,7 +309,7 @@ TEST(AutoExposure, TheGainNearsItsGoalExponentially) {
 
 TEST(AutoExposure, StaysWithinItsLimits) {
   SensorConfig config;
-  config.auto_exposure_on = true;
+  config.auto_exposure.enabled = true;
   config.auto_exposure.target = 0.9;
   config.auto_exposure.max_gain = 2.0;
   const Shutter shutter(std::make_shared<Lamp>(), small_camera(), sliding(0.0), config);
@@ -322,13 +320,13 @@ TEST(DroppedFrames, GoMissingAtTheirRateAndTheSameOnesEachTime) {
   const Trajectory path = sliding(0.0, 4000);
   SensorConfig config;
   EXPECT_EQ(arriving_frames(path, config, RandomStream(1)).size(), 4000U);
-  config.dropped_share = 0.2;
+  config.dropped_frames = {.enabled = true, .share = 0.2};
   const Trajectory arrived = arriving_frames(path, config, RandomStream(1));
   EXPECT_NEAR(static_cast<double>(arrived.size()), 3200.0, 4.0 * std::sqrt(4000 * 0.16));
   for (std::size_t i = 1; i < arrived.size(); ++i)
     ASSERT_LT(arrived[i - 1].stamp_ns, arrived[i].stamp_ns);
   EXPECT_EQ(arriving_frames(path, config, RandomStream(1)).size(), arrived.size());
-  config.dropped_share = 1.0;
+  config.dropped_frames = {.enabled = true, .share = 1.0};
   EXPECT_EQ(arriving_frames(path, config, RandomStream(1)).size(), 1U);  // never nothing at all
 }
 

@@ -44,7 +44,7 @@ class RenderSequence : public testing::Test {
     camera_.fx_px = camera_.fy_px = 50;
     camera_.cx_px = 31.5;
     camera_.cy_px = 23.5;
-    sensors_.depth_noise_on = false;
+    sensors_.depth_noise.enabled = false;
     const Robot robot = test::pepper();
     Trajectory path;
     for (int i = 0; i < 12; ++i) {
@@ -118,7 +118,7 @@ TEST_F(RenderSequence, MakesAnewWhatWasCutOff) {
 
 TEST_F(RenderSequence, DroppedFramesAreLeftOutAndTheOthersAreTheSame) {
   const auto whole = rendered("tum", "whole", {});
-  sensors_.dropped_share = 0.4;
+  sensors_.dropped_frames = {.enabled = true, .share = 0.4};
   const auto part = rendered("tum", "part", {});
   EXPECT_LT(result_.frames, 12U);
   EXPECT_GT(result_.frames, 2U);
@@ -136,14 +136,14 @@ TEST_F(RenderSequence, LabelsAreThoseThatArrive) {
   EXPECT_EQ(labels({}), truth.classes);
   EXPECT_EQ(labels({.labels = LabelMode::kBoxes}),
             class_image(label_image(truth, LabelMode::kBoxes)));
-  sensors_.labels.noise.dropout = 1.0;  // no instance is labeled
+  sensors_.labels.noise = {.enabled = true, .dropout = 1.0};  // no instance is labeled
   const Grid2d<ClassId> without = labels({});
   for (int y = 0; y < camera_.height_px; ++y)
     for (int x = 0; x < camera_.width_px; ++x)
       if (truth.instances(x, y) != 0) {
         ASSERT_EQ(without(x, y), kVoid);
       }
-  sensors_.blank_share = 1.0;
+  sensors_.blank_frames = {.enabled = true, .share = 1.0};
   const ExactFrame blank = exact_frame(*shutter_, sensors_, {}, 3);
   EXPECT_EQ(blank.classes, Grid2d<ClassId>(camera_.width_px, camera_.height_px, kVoid));
   EXPECT_EQ(blank.instances, truth.instances);

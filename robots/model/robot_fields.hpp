@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "robots/model/robot.hpp"
+#include "slam/core/camera.hpp"
+#include "slam/core/setting.hpp"
+
+// The numbers of a robot's file as lists of fields (slam/core/setting.hpp), from which the file is
+// read and its keys are documented. What is structure (links and joints of a URDF, poses, lists and
+// things by name) has readers of its own in robot.cpp.
+
+namespace mh {
+
+namespace setting {
+inline constexpr SettingRange kImageSize_px = required({16, 8192}), kRate_hz = required({0.1, 240});
+}  // namespace setting
+
+/// Of `base`.
+template <Either<Robot> R, class Visit>
+void body_fields(R& robot, Visit& v) {
+  v("mass_kg", robot.mass_kg, setting::required({0.1, 1000}), "of the whole robot");
+  v("footprint_radius_m", robot.footprint_radius_m, setting::required({0.02, 2}),
+    "a disc that holds it, seen from above");
+  v("height_m", robot.height_m, setting::required({0.05, 3}), "what it must pass under");
+}
+
+template <Either<BaseLimits> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [max_velocity_m_per_s, max_acceleration_m_per_s2, max_turn_rad_per_s,
+         max_turn_acceleration_rad_per_s2, max_jerk_m_per_s3, max_turn_jerk_rad_per_s3] = c;
+  v("max_velocity_m_per_s", max_velocity_m_per_s, setting::required({0.01, 5}), "in any direction");
+  v("max_acceleration_m_per_s2", max_acceleration_m_per_s2, setting::required({0.01, 20}), "");
+  v("max_turn_rad_per_s", max_turn_rad_per_s, setting::required({0.01, 10}), "");
+  v("max_turn_acceleration_rad_per_s2", max_turn_acceleration_rad_per_s2,
+    setting::required({0.01, 50}), "");
+  v("max_jerk_m_per_s3", max_jerk_m_per_s3, {0.01, 1000}, "without: not limited");
+  v("max_turn_jerk_rad_per_s3", max_turn_jerk_rad_per_s3, {0.01, 1000}, "without: not limited");
+}
+
+/// The RGB-D camera as data sheets describe it.
+struct LensFields {
+  int width_px = 0, height_px = 0;
+  double horizontal_fov_deg = 0, vertical_fov_deg = 0, rate_hz = 0, baseline_m = 0;
+};
+
+template <Either<LensFields> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [width_px, height_px, horizontal_fov_deg, vertical_fov_deg, rate_hz, baseline_m] = c;
+  v("width_px", width_px, setting::kImageSize_px, "of color and depth");
+  v("height_px", height_px, setting::kImageSize_px, "");
+  v("horizontal_fov_deg", horizontal_fov_deg, setting::required({1, 170}),
+    "from edge to edge of the image");
+  v("vertical_fov_deg", vertical_fov_deg, setting::required({1, 170}), "");
+  v("rate_hz", rate_hz, setting::kRate_hz, "frames per second");
+  v("baseline_m", baseline_m, setting::required({1e-3, 1}), "from projector to infrared camera");
+}
+
+/// Of a calibrated camera.
+template <Either<Camera> C, class Visit>
+void size_fields(C& camera, Visit& v) {
+  v("width_px", camera.width_px, setting::kImageSize_px, "");
+  v("height_px", camera.height_px, setting::kImageSize_px, "");
+}
+template <Either<Camera> C, class Visit>
+void rate_fields(C& camera, Visit& v) {
+  v("rate_hz", camera.rate_hz, setting::kRate_hz, "frames per second");
+}
+
+/// Of `wheels`, beside their joints.
+template <Either<OmniWheels> C, class Visit>
+void wheel_fields(C& wheels, Visit& v) {
+  v("radius_m", wheels.radius_m, setting::required({0.005, 1}), "");
+}
+
+/// Of a laser scanner, beside its link and range.
+struct FanFields {
+  int rays = 0;
+  double field_of_view_deg = 0;
+};
+
+template <Either<FanFields> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [rays, field_of_view_deg] = c;
+  v("rays", rays, setting::required({2, 10000}), "");
+  v("field_of_view_deg", field_of_view_deg, setting::required({0.1, 360}),
+    "from first to last ray");
+}
+
+/// Of a sonar, likewise.
+struct ConeFields {
+  double field_of_view_deg = 0, resolution_m = 0;
+};
+
+template <Either<ConeFields> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [field_of_view_deg, resolution_m] = c;
+  v("field_of_view_deg", field_of_view_deg, setting::required({1, 170}), "of the cone");
+  v("resolution_m", resolution_m, setting::required({0, 1}), "step of a reading");
+}
+
+template <Either<OdometryErrors> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [scale, scale_spread, slip_per_sqrt_m] = c;
+  v("scale", scale, setting::required({-0.5, 0.5}), "of all wheels: 0.01 = 1 % too long");
+  v("scale_spread", scale_spread, setting::required({0, 0.2}), "of each wheel's, drawn by seed");
+  v("slip_per_sqrt_m", slip_per_sqrt_m, setting::required({0, 0.5}),
+    "m of error after 1 m of rim, growing with its root");
+}
+
+template <Either<CollisionReflex> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [ahead_m, aside_m] = c;
+  v("ahead_m", ahead_m, setting::required({0, 3}), "from the shell, along its way");
+  v("aside_m", aside_m, setting::required({0, 3}), "to either side of its way");
+}
+
+}  // namespace mh

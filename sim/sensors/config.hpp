@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "sim/sensors/labels.hpp"
+#include "slam/core/camera.hpp"
+#include "slam/core/setting.hpp"
+
+// What a sensor level (sim/sensors/levels) may say: a struct for each section of the file and
+// beside it the list of its fields. Each fault can be switched on and off alone.
+
+namespace mh {
+
+inline constexpr double kSecondsPerMs = 1e-3;
+
+/// Xtion/Kinect v1 depth. Axial and lateral noise: Nguyen, Izadi and Lovell, "Modeling Kinect
+/// sensor noise for improved 3D reconstruction and tracking", 3DIMPVT 2012; disparity
+/// quantization and the shadow of the projector, which stands camera.baseline_m to the right of the
+/// camera: Khoshelham and Elberink, "Accuracy and resolution of Kinect depth data", Sensors 2012;
+/// range: ASUS Xtion data sheet.
+struct DepthNoiseConfig {
+  bool enabled = true;            ///< off: the exact depth at any range
+  bool axial = true;              ///< sigma_z(z, incidence)
+  bool lateral = true;            ///< ragged edges: the lookup strays by sigma_L(incidence), px
+  bool quantization = true;       ///< 1/8 px disparity steps
+  bool grazing_holes = true;      ///< no return beyond kMaxIncidenceRad
+  bool projector_shadow = false;  ///< no return where the projector does not shine
+  double min_range_m = 0.4;
+  double max_range_m = 8.0;  ///< above min_range_m
+  friend bool operator==(const DepthNoiseConfig&, const DepthNoiseConfig&) = default;
+};
+
+template <Either<DepthNoiseConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, axial, lateral, quantization, grazing_holes, projector_shadow, min_range_m,
+         max_range_m] = c;
+  v("enabled", enabled, setting::kSwitch, "off: the exact depth at any range");
+  v("axial", axial, setting::kSwitch, "noise along the ray");
+  v("lateral", lateral, setting::kSwitch, "noise across the ray: ragged edges");
+  v("quantization", quantization, setting::kSwitch, "steps of 1/8 px of disparity");
+  v("grazing_holes", grazing_holes, setting::kSwitch, "no return beyond 80 degrees of incidence");
+  v("projector_shadow", projector_shadow, setting::kSwitch,
+    "no return where the projector does not shine");
+  v("min_range_m", min_range_m, {0, setting::kMany}, "nearer surfaces give no return");
+  v("max_range_m", max_range_m, {0, setting::kMany}, "nor do farther ones; above min_range_m");
+}
+
+/// Every fault of the depth off, and any range: for switching on one fault alone.
+inline DepthNoiseConfig no_depth_noise() {
+  return {.axial = false,
+          .lateral = false,
+          .quantization = false,
+          .grazing_holes = false,
+          .projector_shadow = false,
+          .min_range_m = 0.0,
+          .max_range_m = setting::kMany};
+}
+
+struct ColorNoiseConfig {
+  bool enabled = true;
+  double sigma = 0.007;  ///< Pepper's Gazebo model (pepper_robot)
+  friend bool operator==(const ColorNoiseConfig&, const ColorNoiseConfig&) = default;
+};
+
+template <Either<ColorNoiseConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, sigma] = c;
+  v("enabled", enabled, setting::kSwitch, "Gaussian noise in gray levels");
+  v("sigma", sigma, setting::kShare, "standard deviation, share of full scale");
+}
+
+/// Light is counted in electrons: shot noise of variance L * well, read noise, both divided by the
+/// well of a white pixel. Defaults: OV5640 as Aldebaran's documentation of Pepper's 2D camera gives
+/// it: signal to noise at most 36 dB, so a well of 10^3.6 = 3981 electrons; dynamic range 68 dB, so
+/// 3981 / 10^3.4 = 1.6 electrons of read noise. Model: Healey and Kondepudy, PAMI 1994.
+struct ShotNoiseConfig {
+  bool enabled = false;
+  double well_e = 3981.0;
+  double read_noise_e = 1.6;
+  double gain = 1.0;  ///< analogue: a white pixel holds well_e / gain electrons
+  /// The exposure (RenderedFrame) that takes this gain; others take theirs in proportion: dark
+  /// rooms are noisier. 0: all take this one.
+  double gain_at_exposure = 0.0;
+  friend bool operator==(const ShotNoiseConfig&, const ShotNoiseConfig&) = default;
+};
+
+template <Either<ShotNoiseConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, well_e, read_noise_e, gain, gain_at_exposure] = c;
+  v("enabled", enabled, setting::kSwitch, "shot and read noise in linear light");
+  v("well_e", well_e, setting::above(0, 1e7), "electrons of a white pixel at gain 1");
+  v("read_noise_e", read_noise_e, {0, 1e6}, "electrons, standard deviation");
+  v("gain", gain, {1, 1000}, "a white pixel holds well_e / gain electrons");
+  v("gain_at_exposure", gain_at_exposure, {0, 1e6},
+    "the exposure that takes this gain, others in proportion; 0: all take it");
+}
+
+/// Gain that follows the mean luminance with a lag, as the average-based control of OmniVision's
+/// sensors does (OV5647 data sheet, section 4.5): the logarithm of the gain nears that of
+/// target / mean exponentially.
+struct AutoExposureConfig {
+  bool enabled = false;
+  double target = 0.18;
+  double time_constant_s = 0.5;  ///< of the lag; 0 = none
+  double max_gain = 4.0;         ///< beside the renderer's exposure; the least is its inverse
+  friend bool operator==(const AutoExposureConfig&, const AutoExposureConfig&) = default;
+};
+
+template <Either<AutoExposureConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, target, time_constant_s, max_gain] = c;
+  v("enabled", enabled, setting::kSwitch, "gain that follows the mean luminance with a lag");
+  v("target", target, setting::above(0, 1), "mean linear luminance, share of full light");
+  v("time_constant_s", time_constant_s, {0, 60}, "of the lag; 0: none");
+  v("max_gain", max_gain, {1, 1000}, "the least is its inverse");
+}
+
+/// A share of the natural falloff cos^4 of the angle from the axis (what a lens shading correction
+/// leaves of it).
+struct VignettingConfig {
+  bool enabled = false;
+  double strength = 1.0;
+  friend bool operator==(const VignettingConfig&, const VignettingConfig&) = default;
+};
+
+template <Either<VignettingConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, strength] = c;
+  v("enabled", enabled, setting::kSwitch, "light falls off towards the corners");
+  v("strength", strength, setting::kShare, "share of cos^4 of the angle from the axis");
+}
+
+/// A Gaussian point spread in linear light.
+struct LensBlurConfig {
+  bool enabled = false;
+  double sigma_px = 0.0;
+  friend bool operator==(const LensBlurConfig&, const LensBlurConfig&) = default;
+};
+
+template <Either<LensBlurConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, sigma_px] = c;
+  v("enabled", enabled, setting::kSwitch, "a lens that is not quite sharp");
+  v("sigma_px", sigma_px, setting::required({0, 20}),
+    "standard deviation of its Gaussian point spread");
+}
+
+/// What the camera does with its sensor's picture: see processing.hpp.
+struct ProcessingConfig {
+  bool enabled = false;
+  double contrast = 0.0;
+  double sharpening = 0.0;
+  double sharpening_px = 1.0;
+  friend bool operator==(const ProcessingConfig&, const ProcessingConfig&) = default;
+};
+
+template <Either<ProcessingConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, contrast, sharpening, sharpening_px] = c;
+  v("enabled", enabled, setting::kSwitch, "what the camera does with its sensor's picture");
+  v("contrast", contrast, setting::kShare, "of an S-shaped tone curve; 0: none beyond sRGB");
+  v("sharpening", sharpening, {0, 20}, "unsharp masking of the luma; 0: none");
+  v("sharpening_px", sharpening_px, setting::above(0, 20),
+    "standard deviation of the blur that is compared with");
+}
+
+struct LensDistortionConfig {
+  bool enabled = false;  ///< off: the camera's own, as it comes
+  Distortion lens;
+  friend bool operator==(const LensDistortionConfig&, const LensDistortionConfig&) = default;
+};
+
+template <Either<LensDistortionConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, lens] = c;
+  auto& [k1, k2, p1, p2, k3] = lens;
+  v("enabled", enabled, setting::kSwitch, "Brown-Conrady, as OpenCV; off: the camera's own");
+  v("k1", k1, {-2, 2}, "radial");
+  v("k2", k2, {-2, 2}, "radial");
+  v("p1", p1, {-0.2, 0.2}, "tangential");
+  v("p2", p2, {-0.2, 0.2}, "tangential");
+  v("k3", k3, {-2, 2}, "radial");
+}
+
+// When light is collected, from the true motion. Row y of h is exposed for exposure_s() around
+// stamp + ((y + 1/2) / h - 1/2) readout_s(): the stamp is the middle of the picture's exposure.
+
+struct MotionBlurConfig {
+  bool enabled = false;
+  double exposure_ms = 20.0;
+  double exposure_s() const { return enabled ? kSecondsPerMs * exposure_ms : 0.0; }
+  friend bool operator==(const MotionBlurConfig&, const MotionBlurConfig&) = default;
+};
+
+template <Either<MotionBlurConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, exposure_ms] = c;
+  v("enabled", enabled, setting::kSwitch, "integral over the true motion");
+  v("exposure_ms", exposure_ms, setting::above(0, 1000), "for which each row collects light");
+}
+
+struct RollingShutterConfig {
+  bool enabled = false;
+  /// Default: the Kinect's color camera, Ringaby and Forssen, "Scan rectification for structured
+  /// light range sensors with rolling shutters", ICCV 2011.
+  double readout_ms = 26.1;
+  double readout_s() const { return enabled ? kSecondsPerMs * readout_ms : 0.0; }
+  friend bool operator==(const RollingShutterConfig&, const RollingShutterConfig&) = default;
+};
+
+template <Either<RollingShutterConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, readout_ms] = c;
+  v("enabled", enabled, setting::kSwitch, "rows are read out one after another");
+  v("readout_ms", readout_ms, setting::above(0, 1000), "from the first row to the last");
+}
+
+struct DepthOffsetConfig {
+  bool enabled = false;
+  double offset_ms = 0.0;
+  double offset_s() const { return enabled ? kSecondsPerMs * offset_ms : 0.0; }
+  friend bool operator==(const DepthOffsetConfig&, const DepthOffsetConfig&) = default;
+};
+
+template <Either<DepthOffsetConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, offset_ms] = c;
+  v("enabled", enabled, setting::kSwitch, "depth and color of different moments");
+  v("offset_ms", offset_ms, setting::required({-1000, 1000}),
+    "the depth is that of so much later than the stamp");
+}
+
+/// Of the frames, the share that is blank (black, without depth and labels) or never arrives.
+struct LostFramesConfig {
+  bool enabled = false;
+  double share = 0.0;
+  double lost() const { return enabled ? share : 0.0; }
+  friend bool operator==(const LostFramesConfig&, const LostFramesConfig&) = default;
+};
+
+template <Either<LostFramesConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, share] = c;
+  v("enabled", enabled, setting::kSwitch, "whether frames are lost");
+  v("share", share, setting::required(setting::kShare),
+    "of frames that arrive black (blank) or not at all (dropped)");
+}
+
+/// How finely motion within a frame is sampled: the picture is the mean of pictures along the
+/// motion, in linear light. It is a matter of the simulation's accuracy, no fault of a sensor:
+/// levels do not set it.
+struct MotionSampling {
+  double step_px =
+      1.5;  ///< between two pictures nothing moves farther, as long as they are at most
+  int max_pictures = 33;  ///< so many
+  double sharp_px = 0.5;  ///< less motion within a frame is not worth a second picture
+  friend bool operator==(const MotionSampling&, const MotionSampling&) = default;
+};
+
+struct SensorConfig {
+  DepthNoiseConfig depth_noise;
+  ColorNoiseConfig color_noise;
+  ShotNoiseConfig shot_noise;
+  AutoExposureConfig auto_exposure;
+  VignettingConfig vignetting;
+  LensBlurConfig lens_blur;
+  ProcessingConfig processing;
+  LensDistortionConfig lens_distortion;
+  MotionBlurConfig motion_blur;
+  RollingShutterConfig rolling_shutter;
+  DepthOffsetConfig depth_offset;
+  LostFramesConfig blank_frames;    ///< arrive black, without depth and labels
+  LostFramesConfig dropped_frames;  ///< never arrive
+  LabelConfig labels;
+  MotionSampling motion_sampling;
+  friend bool operator==(const SensorConfig&, const SensorConfig&) = default;
+};
+
+/// Calls visit.section(name) before each section of a level and visit(name, value, range, note) for
+/// each field.
+template <Either<SensorConfig> C, class Visit>
+void for_each_setting(C& config, Visit&& visit) {
+  [[maybe_unused]] auto& [depth_noise, color_noise, shot_noise, auto_exposure, vignetting,
+                          lens_blur, processing, lens_distortion, motion_blur, rolling_shutter,
+                          depth_offset, blank_frames, dropped_frames, labels, motion_sampling] =
+      config;
+  const auto part = [&](const char* name, auto& c) {
+    visit.section(name);
+    fields(c, visit);
+  };
+  part("depth_noise", depth_noise);
+  part("color_noise", color_noise);
+  part("shot_noise", shot_noise);
+  part("auto_exposure", auto_exposure);
+  part("vignetting", vignetting);
+  part("lens_blur", lens_blur);
+  part("processing", processing);
+  part("lens_distortion", lens_distortion);
+  part("motion_blur", motion_blur);
+  part("rolling_shutter", rolling_shutter);
+  part("depth_offset", depth_offset);
+  part("blank_frames", blank_frames);
+  part("dropped_frames", dropped_frames);
+  for_each_setting(labels, visit);
+}
+
+/// No noise at all: what is there where no level is given.
+SensorConfig exact_sensors();
+
+/// Reads a level (YAML, see sim/sensors/levels): depth_noise and color_noise must be there; a
+/// section that is there is on unless it says `enabled: false`. @throws InputError naming file,
+/// line, field, value.
+SensorConfig load_sensor_config(const std::filesystem::path& file);
+/// The same of text; `name` stands for the file in messages.
+SensorConfig parse_sensor_config(const std::string& text, const std::string& name);
+
+/// A level that load_sensor_config() takes back bit for bit; with notes each line says what it
+/// means and which values it may take.
+std::string format_sensor_config(const SensorConfig& config, bool notes = false);
+
+}  // namespace mh
