@@ -74,15 +74,16 @@ void add_sensors(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("sensors", "Shows what the sensor models do.");
   command->require_subcommand(1);
-  command->add_option("--level", options->level,
-                      "For --print-settings: level (YAML), or the name of a shipped one");
-  command->add_flag_callback(
+  CLI::Option* level =
+      command->add_option("--level", options->level,
+                          "For --print-settings: level (YAML), or the name of a shipped one");
+  level->needs(command->add_flag_callback(
       "--print-settings",
       [options] {
         print_settings(*options);
         throw CLI::Success();
       },
-      "Prints every key of a sensor level with its value, meaning and range");
+      "Prints every key of a sensor level with its value, meaning and range"));
   command->footer(
       "Examples:\n  modelhouse sensors plot --out out/sensors\n"
       "  modelhouse sensors --print-settings --level handheld");

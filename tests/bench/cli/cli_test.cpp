@@ -265,7 +265,7 @@ TEST_F(CommandLine, PrintedSettingsAreReadBackEqual) {
   ASSERT_EQ(run("sensors --print-settings --level handheld"), 0);
   EXPECT_EQ(parse_sensor_config(out_, "printed"),
             load_sensor_config(fs::path(MH_SOURCE_DIR) / "sim/sensors/levels/handheld.yaml"));
-  expect_refused("sensors --level handheld", "subcommand");
+  expect_refused("sensors --level handheld plot --out x", "--level");
 
   ASSERT_EQ(run("bench --print-settings"), 0);
   YamlReader suite = YamlReader::parse(out_, "printed");
