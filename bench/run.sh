@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# The main job: installs what is missing, builds `modelhouse` and scores semantic against plain
-# SLAM in the model house.
+# The main job: installs missing packages, builds `modelhouse` and compares semantic with plain SLAM
+# in the model house.
 set -euo pipefail
 # shellcheck source=cmake/setup.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/../cmake/setup.sh"
@@ -43,7 +43,7 @@ while (( $# )); do
   esac
   shift
 done
-# Found out before twenty minutes of work rather than after.
+# Checked before twenty minutes of work rather than after.
 [[ -f $suite ]] || fail "no such suite: $suite"
 out=${out:-$root/out/$(basename -- "$suite" .yaml)}
 
@@ -54,7 +54,7 @@ cd "$root"
 status=0
 build/release/modelhouse bench "$suite" --jobs "$jobs" --out "$out" "${trials[@]}" "${extra[@]}" ||
   status=$?
-# After a failure those that lie there are of an earlier run.
+# After a failure, the existing images are from an earlier run.
 if (( status == 0 )); then
   echo
   echo "Pictures:"

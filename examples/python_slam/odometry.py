@@ -85,7 +85,7 @@ def main():
             if before is not None:
                 motion = estimate_motion(before, now, k, distortion)
                 if motion is None:
-                    continue  # lost: this frame is left out, the next is tried against the last found
+                    continue  # lost: skip this frame; match the next against the last tracked one
                 world_from_camera = world_from_camera @ np.linalg.inv(motion)
             before = now
             pose = [*world_from_camera[:3, 3], *quaternion(world_from_camera[:3, :3])]
