@@ -99,7 +99,7 @@ std::string export_json(const Store& store) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (std::size_t r = 1; r < rows.size(); ++r) {
       nlohmann::ordered_json object;
-      for (std::size_t c = 0; c + 1 < rows[r].size(); ++c)  // the digest stands last
+      for (std::size_t c = 0; c + 1 < rows[r].size(); ++c)  // the digest is last
         object[std::get<std::string>(rows[0][c])] = to_json(rows[r][c]);
       list.push_back(std::move(object));
     }
@@ -134,7 +134,7 @@ std::string export_latex(const Store& store) {
     const SystemSpec& system = suite.systems[row.system];
     const SlamConfig seen = settings_of(system, points[row.parameters]);
     const auto same = [&](const SlamConfig& point) { return settings_of(system, point) == seen; };
-    // What a system does not look at makes no rows of their own.
+    // Parameters that a system ignores get no rows of their own.
     if (std::any_of(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(row.parameters),
                     same))
       continue;

@@ -12,8 +12,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A path relative to the suite's folder, however the suite itself was named; what another
-/// folder's suite takes of what is shipped, relative to that.
+/// A path relative to the suite's folder, however the suite itself was named; for shipped files
+/// that a suite elsewhere uses, relative to the shipped folder.
 std::string from_suite(const Suite& suite, const std::filesystem::path& file) {
   const auto here = std::filesystem::current_path();
   const auto folder = (here / suite.file).parent_path().lexically_normal();

@@ -32,7 +32,7 @@ struct Shades {
 };
 constexpr Shades kGood = {{236, 243, 251}, {8, 69, 148}}, kBad = {{253, 243, 231}, {166, 54, 3}};
 
-/// What one panel shows of a point.
+/// The measure that a panel shows for each point.
 struct PanelMeasure {
   std::string title;
   Shades shades;
@@ -55,7 +55,7 @@ std::vector<PanelMeasure> panel_measures() {
        }}};
 }
 
-/// The values of a panel, the least and the greatest of them.
+/// The values of a panel, with their minimum and maximum.
 struct Values {
   std::vector<std::optional<double>> of;
   double least = 0, most = 0;
@@ -81,7 +81,7 @@ std::map<double, std::string> distinct(const SweepResult& result, std::string_vi
   return values;
 }
 
-/// Where a panel stands, with room for the numbers on its axes.
+/// The place of a panel, with space for the numbers on its axes.
 struct Box {
   double left, right, top, bottom;
   explicit Box(cv::Point2d corner)
@@ -103,14 +103,14 @@ void draw_names(Canvas& canvas, const Box& box, const std::string& title, std::s
 struct Panel {
   cv::Point2d corner;
   const SweepResult& result;
-  std::string across, up;  ///< the settings along the axes; up is empty where one alone is varied
+  std::string across, up;  ///< the settings along the axes; up is empty if only one is varied
   std::string title;
   const PanelMeasure& measure;
   const Values& values;
-  std::optional<std::size_t> framed;  ///< the point that is pointed out
+  std::optional<std::size_t> framed;  ///< the highlighted point
 };
 
-/// A cell per point.
+/// Draws a cell per point.
 void draw_grid(Canvas& canvas, const Panel& panel) {
   const auto& [corner, result, across, up, title, measure, values, framed] = panel;
   const Box box(corner);
@@ -153,7 +153,7 @@ void draw_grid(Canvas& canvas, const Panel& panel) {
     canvas.line(from, to, kFrame, 2);
 }
 
-/// A dot per point over two of its settings.
+/// Draws a dot per point over two of its settings.
 void draw_dots(Canvas& canvas, const Panel& panel) {
   const auto& [corner, result, across, up, title, measure, values, framed] = panel;
   const Box box(corner);
@@ -162,7 +162,7 @@ void draw_dots(Canvas& canvas, const Panel& panel) {
     const double low = list.begin()->first, range = list.rbegin()->first - low;
     return range > 0 ? (value - low) / range : 0.5;
   };
-  constexpr double kInset = 10;  // no dot is cut by the border
+  constexpr double kInset = 10;  // so that the border cuts no dot
   const auto at = [&](const SlamConfig& point) {
     return cv::Point2d(
         box.left + kInset +

@@ -15,7 +15,7 @@
 namespace mh {
 namespace {
 
-/// Over a row's trials, field by field the median of a score.
+/// The median of a score over a row's trials, field by field.
 template <class GetScore>
 auto median_score(const std::vector<Trial>& trials, GetScore get) {
   std::vector<decltype(get(trials.front()))> scores;
@@ -27,7 +27,7 @@ QuerySummary median_summary(const std::vector<Trial>& trials, QuerySet set) {
   return median_score(trials, [&](const Trial& t) { return summarize(queries(*t.point, set)); });
 }
 
-/// Fills in what follows from the trials.
+/// Fills in everything that is computed from the trials.
 Row fill_in(Row row) {
   row.trajectory = median_score(row.trials, [](const Trial& t) { return t.run->trajectory; });
   row.mapping = median_score(row.trials, [](const Trial& t) { return count(t.run->mapping); });
@@ -49,7 +49,7 @@ Row fill_in(Row row) {
   return row;
 }
 
-/// Per query, the median over trials of a value; absent where no trial has one.
+/// Per query, the median of a value over trials; absent if no trial has one.
 template <class Get>
 std::vector<PairedDifference> per_query(const Row& row, QuerySet set, Get get) {
   std::map<std::size_t, std::vector<double>> values;
@@ -102,7 +102,7 @@ std::vector<Comparison> compare_rows(const Row& first, const Row& second, std::u
   return comparisons;
 }
 
-/// Whether a run is of the row's environment, level, system and labels.
+/// Whether a run has the row's environment, level, system and labels.
 bool belongs(const RunSpec& spec, const Suite& suite, const Row& row) {
   const SystemSpec& system = suite.systems[row.system];
   return spec.environment.name == suite.environments[row.environment].name &&
@@ -110,7 +110,7 @@ bool belongs(const RunSpec& spec, const Suite& suite, const Row& row) {
          (!system.sees_labels() || spec.labels == row.labels);
 }
 
-/// Which pass over a run's queries had these settings.
+/// Index of the pass over a run's queries that had these settings.
 std::optional<std::size_t> find_point(const RunSpec& spec, const SlamConfig& settings) {
   SlamConfig at_point = spec.slam;
   at_point.semantics = settings.semantics;
@@ -124,7 +124,7 @@ std::optional<std::size_t> find_point(const RunSpec& spec, const SlamConfig& set
 
 namespace {
 
-/// Mean of a number over the queries of which the system tells it; absent where it tells none.
+/// Mean of a number over the queries for which the system reports it; absent if it reports none.
 template <class Get>
 std::optional<double> mean_told(std::span<const QueryScore> queries, Get get) {
   double sum = 0, count = 0;
@@ -266,7 +266,7 @@ std::array<std::optional<double>, 2> ate_over_common_frames(const Row& first, co
   for (const Trial& trial : first.trials) {
     const auto other = std::ranges::find_if(
         second.trials, [&](const Trial& t) { return t.run->spec.trial == trial.run->spec.trial; });
-    if (other == second.trials.end()) continue;  // that one failed
+    if (other == second.trials.end()) continue;  // that trial failed
     const Trajectory& truth = trial.run->truth;
     const Trajectory& x = trial.run->estimate;
     const Trajectory& y = other->run->estimate;

@@ -9,8 +9,8 @@
 
 namespace mh {
 
-/// What one system answered over the points of a sweep, at one level with one kind of labels, all
-/// environments together.
+/// One system's answers over the points of a sweep, at one level with one kind of labels, all
+/// environments combined.
 struct SweepResult {
   std::size_t level = 0, system = 0;
   LabelMode labels = LabelMode::kNone;
@@ -18,21 +18,22 @@ struct SweepResult {
   std::vector<CategoryRow> answers;      ///< as points
 };
 
-/// One per level, labels and system that sees more than one point of the sweep; in this order.
+/// Returns one result per level, labels and system that uses more than one point of the sweep, in
+/// this order.
 std::vector<SweepResult> sweep_results(const Suite& suite, std::span<const Row> rows);
 
-/// The point with the largest share of correct answers, beside the point of the suite's own
-/// settings (the first one, where the sweep does not come by them). Of equals the suite's own is
-/// best, then the first. Chosen among many by the same queries, it flatters; the interval does not
-/// correct for that, so a point is taken over from tuning scenes alone.
+/// The point with the largest share of correct answers, compared with the point of the suite's own
+/// settings (the first one, if the sweep does not include them). Ties go to the suite's own, then
+/// to the first. It is selected and scored on the same queries, so its result is optimistic; the
+/// interval does not correct for that, so a point should be adopted from tuning scenes only.
 struct BestPoint {
   std::size_t point = 0, reference = 0;
-  std::size_t equals = 1;  ///< points with as many correct answers, itself among them
-  /// Of one environment by blocks of queries, of more by scenes.
+  std::size_t equals = 1;  ///< points with as many correct answers, including itself
+  /// For one environment by blocks of queries, for several by scenes.
   Comparison to_reference;
 };
 
-/// nullopt where these queries were not put.
+/// nullopt if these queries were not made.
 std::optional<BestPoint> best_point(const Suite& suite, std::span<const Row> rows,
                                     const SweepResult& result, QuerySet set);
 
