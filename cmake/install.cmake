@@ -33,7 +33,8 @@ install(FILES ${made}/completion.fish RENAME modelhouse.fish
 # Used as #include <modelhouse/semantics/augmented_vector.hpp>.
 install(DIRECTORY slam/semantics/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/modelhouse/semantics
         FILES_MATCHING PATTERN "*.hpp")
-install(TARGETS mh_semantics EXPORT ModelhouseTargets)
+install(FILES include/modelhouse/system.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/modelhouse)
+install(TARGETS mh_semantics mh_system_header EXPORT ModelhouseTargets)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Modelhouse)
 install(EXPORT ModelhouseTargets NAMESPACE Modelhouse:: DESTINATION ${package_dir})

@@ -108,7 +108,7 @@ nlohmann::ordered_json gate_settings(const Suite& suite) {
   nlohmann::ordered_json settings = {{"slam", to_json(suite.slam)}};
   if (!suite.vocabulary.empty()) settings["vocabulary"] = hex(digest_file(suite.vocabulary));
   for (const SystemSpec& system : suite.systems)
-    if (system.is_program())
+    if (system.is_outside())
       for (const ProgramFile& file : files_of(system.outside))
         settings[system.name][file.word] = hex(digest_file(file.file));
   return settings;

@@ -51,7 +51,7 @@ InputDigest input_of(std::string name, const fs::path& source, const ReadRecord&
 
 std::vector<InputDigest> inputs_of_program(const RunSpec& spec) {
   std::vector<InputDigest> inputs;
-  if (!spec.system.is_program()) return inputs;
+  if (!spec.system.is_outside()) return inputs;
   for (const ProgramFile& file : files_of(spec.system.outside)) {
     const std::uint64_t content = digest_file(file.file);
     inputs.push_back({fmt::format("{}: {}", spec.system.name, file.word), content, {}});

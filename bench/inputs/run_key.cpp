@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 /// All that determines a result, by content instead of by names and paths.
 nlohmann::ordered_json determining(const RunSpec& spec, std::span<const InputDigest> inputs) {
   nlohmann::ordered_json json = to_json(spec);
-  if (spec.system.is_program()) json["system"]["outside"].erase("folder");
+  if (spec.system.is_outside()) json["system"]["outside"].erase("folder");
   for (const char* named : {"name", "environment", "level", "vocabulary"}) json.erase(named);
   for (const InputDigest& input : inputs) json["inputs"][input.name] = hex(input.digest);
   if (spec.environment.frame != SceneFrame{}) json["scene_frame"] = to_json(spec.environment.frame);
@@ -73,7 +73,7 @@ std::string stored_spec(const RunSpec& spec) {
   shorten("pedestrian", spec.environment.pedestrian);
   json["level"] = level_name(spec.level);
   json["vocabulary"] = name_of(spec.vocabulary);
-  if (spec.system.is_program()) json["system"]["outside"].erase("folder");
+  if (spec.system.is_outside()) json["system"]["outside"].erase("folder");
   return json.dump();
 }
 

@@ -241,6 +241,15 @@ fs::path place_of(const OutsideProgram& program, const std::string& text) {
 }  // namespace
 
 void require_program(const OutsideProgram& program) {
+  if (program.mode == OutsideMode::kLibrary) {
+    if (const char* reason = why_unreadable(program.folder / program.library); reason != nullptr)
+      throw InputError(
+          fmt::format("{}outside library '{}': '{}' cannot be loaded: {}; has it been "
+                      "built?",
+                      program.place.empty() ? "" : program.place + ": ", program.name,
+                      program.library, reason));
+    return;
+  }
   const std::vector<Word> words = words_of(program);
   const auto first = std::ranges::find_if(words, &Word::program);
   if (first == words.end() || !first->token.text) return;
@@ -291,6 +300,8 @@ std::vector<ProgramFile> files_of(const OutsideProgram& program) {
     if (const auto end = text.find('='); end != std::string::npos)
       add_part(word.token.raw.substr(word.token.raw.find('=') + 1), text.substr(end + 1));
   }
+  for (const std::string& file : {program.library, program.settings})
+    if (!file.empty()) add(file, program.folder / file);
   for (const std::string& input : program.inputs) add(input, program.folder / input);
   return files;
 }

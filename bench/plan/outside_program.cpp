@@ -79,9 +79,14 @@ std::string shell_quoted(std::string_view value) {
 }
 
 void validate(const OutsideProgram& program) {
+  const bool loaded = program.mode == OutsideMode::kLibrary;
   const auto fail = [&](const std::string& what) {
-    throw InputError(fmt::format("{}: command: {}", program.name, what));
+    throw InputError(fmt::format("{}: {}: {}", program.name, loaded ? "library" : "command", what));
   };
+  if (loaded) {
+    if (program.library.empty()) fail("is empty");
+    return;
+  }
   if (program.command.find_first_not_of(" \t\n") == std::string::npos) fail("is empty");
   const bool dataset = program.mode == OutsideMode::kTrajectory;
   const std::span<const std::string_view> known =

@@ -87,7 +87,7 @@ Json optional_json(const std::optional<T>& value) {
 Json to_json(const SystemSpec& system) {
   const OutsideProgram& p = system.outside;
   Json json = {{"kind", name(system.kind)}, {"name", system.name}};
-  if (system.is_program())
+  if (system.is_outside())
     json["outside"] = {{"command", p.command},
                        {"mode", name(p.mode)},
                        {"folder", p.folder.string()},
@@ -95,7 +95,9 @@ Json to_json(const SystemSpec& system) {
                        {"answer_limit_s", p.answer_limit_s},
                        {"memory_limit_mb", p.memory_limit_mb},
                        {"disk_limit_mb", p.disk_limit_mb},
-                       {"inputs", p.inputs}};
+                       {"inputs", p.inputs},
+                       {"library", p.library},
+                       {"settings", p.settings}};
   return json;
 }
 
@@ -104,18 +106,21 @@ SystemSpec system_from_json(const Json& json) {
                                                     SystemKind::kOutside}),
                     .name = json.at("name"),
                     .outside = {}};
-  if (system.is_program()) {
+  if (system.is_outside()) {
     const Json& p = json.at("outside");
     system.outside = {
         .name = system.name,
         .command = p.at("command"),
-        .mode = named(p.at("mode"), {OutsideMode::kTrajectory, OutsideMode::kConversation}),
+        .mode = named(p.at("mode"), {OutsideMode::kTrajectory, OutsideMode::kConversation,
+                                     OutsideMode::kLibrary}),
         .folder = p.at("folder").get<std::string>(),
         .run_limit_s = p.at("run_limit_s"),
         .answer_limit_s = p.at("answer_limit_s"),
         .memory_limit_mb = p.at("memory_limit_mb"),
         .disk_limit_mb = p.at("disk_limit_mb"),
-        .inputs = p.at("inputs").get<std::vector<std::string>>()};
+        .inputs = p.at("inputs").get<std::vector<std::string>>(),
+        .library = p.at("library"),
+        .settings = p.at("settings")};
   }
   return system;
 }

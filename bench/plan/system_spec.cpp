@@ -15,13 +15,36 @@ constexpr Names<OutsideMode, 2> kModes{
     {{"trajectory", OutsideMode::kTrajectory}, {"conversation", OutsideMode::kConversation}}};
 constexpr double kLongest_s = 1e7;
 
+void read_command(YamlReader& node, OutsideProgram& program) {
+  program.command = node.string("command");
+  program.mode = one_of(node.at("protocol"), kModes);
+  program.run_limit_s = node.number_or("run_limit_s", program.run_limit_s, 0.01, kLongest_s);
+  program.answer_limit_s =
+      node.number_or("answer_limit_s", program.answer_limit_s, 0.01, kLongest_s);
+  program.memory_limit_mb = node.number_or("memory_limit_mb", program.memory_limit_mb, 0.0, 1e9);
+  program.disk_limit_mb = node.number_or("disk_limit_mb", program.disk_limit_mb, 0.0, 1e9);
+}
+
+void read_library(YamlReader& node, OutsideProgram& program, const SuitePaths& paths) {
+  program.mode = OutsideMode::kLibrary;
+  program.library = node.string("library");
+  for (const char* key :
+       {"command", "protocol", "run_limit_s", "answer_limit_s", "memory_limit_mb", "disk_limit_mb"})
+    if (const auto other = node.find(key))
+      other->fail("is of a command: a library runs in the bench's own process");
+  if (const auto settings = node.find("settings")) {
+    named_file(*settings, paths);
+    program.settings = settings->as_string();
+  }
+}
+
 }  // namespace
 
 std::string_view name(SystemKind kind) {
   return kind == SystemKind::kOutside ? "outside" : name_of(kind, kOurs);
 }
 std::string_view name(OutsideMode mode) {
-  return name_of(mode, kModes);
+  return mode == OutsideMode::kLibrary ? "library" : name_of(mode, kModes);
 }
 
 SystemSpec read_system(YamlReader node, const SuitePaths& paths) {
@@ -39,14 +62,13 @@ SystemSpec read_system(YamlReader node, const SuitePaths& paths) {
   OutsideProgram& program = spec.outside;
   program.name = spec.name;
   program.folder = paths.folder.empty() ? "." : paths.folder;
-  program.command = node.string("command");
-  program.place = fmt::format("{}:{}", node.file(), node.at("command").line());
-  program.mode = one_of(node.at("protocol"), kModes);
-  program.run_limit_s = node.number_or("run_limit_s", program.run_limit_s, 0.01, kLongest_s);
-  program.answer_limit_s =
-      node.number_or("answer_limit_s", program.answer_limit_s, 0.01, kLongest_s);
-  program.memory_limit_mb = node.number_or("memory_limit_mb", program.memory_limit_mb, 0.0, 1e9);
-  program.disk_limit_mb = node.number_or("disk_limit_mb", program.disk_limit_mb, 0.0, 1e9);
+  const bool is_library = node.find("library").has_value();
+  const char* key = is_library ? "library" : "command";
+  program.place = fmt::format("{}:{}", node.file(), node.at(key).line());
+  if (is_library)
+    read_library(node, program, paths);
+  else
+    read_command(node, program);
   if (const auto inputs = node.find("inputs"))
     for (const YamlReader& input : inputs->items()) {
       named_file(input, paths);
@@ -56,7 +78,7 @@ SystemSpec read_system(YamlReader node, const SuitePaths& paths) {
   try {
     validate(program);
   } catch (const InputError& error) {
-    node.at("command").fail(error.what());
+    node.at(key).fail(error.what());
   }
   return spec;
 }

@@ -54,11 +54,17 @@ Json environment_json(const Suite& suite, const Environment& e) {
 }
 
 Json system_json(const SystemSpec& system) {
-  if (!system.is_program()) return system.name;
+  if (!system.is_outside()) return system.name;
+  const OutsideProgram& p = system.outside;
+  if (p.mode == OutsideMode::kLibrary)
+    return {{"name", system.name},
+            {"library", p.library},
+            {"settings", p.settings},
+            {"inputs", p.inputs}};
   return {{"name", system.name},
-          {"command", system.outside.command},
-          {"protocol", name(system.outside.mode)},
-          {"inputs", system.outside.inputs}};
+          {"command", p.command},
+          {"protocol", name(p.mode)},
+          {"inputs", p.inputs}};
 }
 
 Json sweep_json(const Sweep& sweep) {

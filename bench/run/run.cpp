@@ -75,7 +75,7 @@ void check_places(const std::vector<Job>& jobs, InputReader& inputs,
   std::map<std::pair<fs::path, SceneFrame>, Uses> uses_of;  // of each scene
   for (const Job& job : jobs) {
     const RunSpec& spec = job.spec;
-    if (spec.system.is_program() && programs.insert(spec.system.name).second)
+    if (spec.system.is_outside() && programs.insert(spec.system.name).second)
       require_program(spec.system.outside);
     const Environment& e = spec.environment;
     if (e.is_recorded()) {
@@ -204,7 +204,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
 
   std::set<std::string> warned;
   for (const RunSpec& spec : specs)
-    if (spec.system.is_program() && warned.insert(spec.system.name).second)
+    if (spec.system.is_outside() && warned.insert(spec.system.name).second)
       if (const std::string warning = unseen_program(spec.system.outside); !warning.empty())
         options.say(warning);
 

@@ -12,6 +12,7 @@
 #include "bench/run/occupancy.hpp"
 #include "bench/systems/conversation.hpp"
 #include "bench/systems/finished_map.hpp"
+#include "bench/systems/library.hpp"
 #include "bench/systems/ours.hpp"
 #include "bench/systems/program_folder.hpp"
 #include "bench/systems/recorded_run.hpp"
@@ -190,8 +191,11 @@ Trajectory run_recorded(const RunSpec& spec, const Sequence& mapping, RandomStre
 
 std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
                                     const std::filesystem::path& folder) {
-  if (spec.system.is_program()) {
+  if (spec.system.is_outside()) {
     if (spec.system.outside.mode == OutsideMode::kTrajectory) return nullptr;
+    if (spec.system.outside.mode == OutsideMode::kLibrary)
+      return make_library_system(spec.system.outside, world.mapping->camera(), spec.seed,
+                                 folder / "outside.log");
     return make_conversation_system(spec.system.outside, world.mapping->camera(), spec.seed,
                                     folder / "outside.log");
   }
@@ -249,7 +253,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
       take_trajectory();
       integrate();
     };
-    if (!tools.maps.folder().empty() && tools.occupancy && !spec.system.is_program()) {
+    if (!tools.maps.folder().empty() && tools.occupancy && !spec.system.is_outside()) {
       bool mapped = false;
       const std::string kept = tools.maps.get("map", map_key(spec, world.inputs), [&] {
         map_now();

@@ -19,8 +19,8 @@ struct RunTamper {
   std::function<void(std::size_t call, SystemReport&)> report;  ///< of track calls
 };
 
-/// The system of a run: our own SLAM with the run's settings, or an outside program in
-/// conversation; null for one that runs on a recorded folder instead.
+/// The system of a run: our own SLAM with the run's settings, or an outside one in
+/// conversation or in a library; null for one that runs on a recorded folder instead.
 /// @param folder  for the log of an outside program
 /// @throws InputError if settings are out of range; OutsideError if the program does not start.
 std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,

@@ -5,9 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cassert>
-#include <cmath>
-#include <map>
+#include <array>
+#include <cctype>
 #include <mutex>
 #include <set>
 #include <utility>
@@ -15,9 +14,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/protocol/query.hpp"
 #include "bench/systems/child_process.hpp"
 #include "bench/systems/outside_error.hpp"
+#include "bench/systems/outside_system.hpp"
 #include "scenes/recorded/frame_files.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/trajectory_io.hpp"
@@ -119,27 +118,24 @@ class Conversation {
     return answer;
   }
 
-  /// Asks about a frame: what every answer to one may hold, as a report. A pose makes it
-  /// `with_pose`, no pose kLost.
+  /// Asks about a frame: what every answer to one may hold.
   SystemReport ask_about(const std::string& what, const RgbdFrame& frame, RandomStream stream,
-                         TrackStatus with_pose, Json fields = Json::object()) {
+                         Json fields) {
     const FrameFiles files = show(frame, scratch_.path);
     fields["stamp"] = format_stamp(frame.stamp_ns);
     fields["color"] = files.color.string();
     fields["depth"] = files.depth.string();
     if (!files.labels.empty()) fields["labels"] = files.labels.string();
-    fields["seed"] = stream.bits(0) >> 33;  // fits an int everywhere
+    fields["seed"] = told_seed(stream);
     const Json answer =
         ask(what, fields,
             {"pose", "keypoints", "inliers", "keyframe", "map_reset", "stage", "candidates"});
     SystemReport report;
     report.world_from_camera = pose(answer);
-    report.status = report.world_from_camera ? with_pose : TrackStatus::kLost;
     report.keypoints = count(answer, "keypoints");
     report.inliers = count(answer, "inliers");
     report.keyframe_added = flag(answer, "keyframe");
     report.map_reset = flag(answer, "map_reset");
-    if (report.map_reset && what != "track") fail("gave up a map that must not change any more");
     report.relocalization = stage(answer);
     report.candidates = candidates(answer);
     return report;
@@ -193,22 +189,16 @@ class Conversation {
     const auto it = answer.find("pose");
     if (it == answer.end()) fail("gave neither a pose nor \"pose\": null");
     if (it->is_null()) return std::nullopt;
-    double v[7];
-    if (!it->is_array() || it->size() != 7)
+    std::array<double, 7> v{};
+    if (!it->is_array() || it->size() != v.size())
       fail(fmt::format("gave a pose of {}: expected [x, y, z, qx, qy, qz, qw]",
                        shortened(it->dump())));
-    for (std::size_t k = 0; k < 7; ++k) {
+    for (std::size_t k = 0; k < v.size(); ++k) {
       if (!(*it)[k].is_number())
         fail(fmt::format("gave a pose that is not of numbers: {}", shortened(it->dump())));
       v[k] = (*it)[k];
-      if (k < 3 && !(std::abs(v[k]) <= kFarthest_m))
-        fail(fmt::format("gave a pose more than {:g} m away: {}", kFarthest_m,
-                         shortened(it->dump())));
     }
-    const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
-    if (std::abs(rotation.norm() - 1.0) > 0.1)
-      fail(fmt::format("gave a pose whose quaternion has norm {:g}", rotation.norm()));
-    return SE3(rotation, Eigen::Vector3d(v[0], v[1], v[2]));
+    return told_pose(v, [this](const std::string& what) { fail(what); });
   }
 
   bool flag(const Json& answer, const char* key) {
@@ -233,9 +223,6 @@ class Conversation {
                           ? value_of(it->get<std::string>(), words(RelocalizationStage{}))
                           : std::nullopt;
     if (!told) fail(fmt::format("gave an unknown stage {}", shortened(it->dump())));
-    if (!answer["pose"].is_null() && told != RelocalizationStage::kNone &&
-        told != RelocalizationStage::kVerified)
-      fail(fmt::format("gave a pose and the stage \"{}\", which is one of failure", name(*told)));
     return told;
   }
 
@@ -246,22 +233,12 @@ class Conversation {
     for (const auto& [key, value] : it->items())
       if (!std::set<std::string>{"keyframes", "c1", "c2", "c3", "final"}.contains(key))
         fail(fmt::format("gave an unknown key 'candidates.{}'", shortened(key)));
-    const Candidates told{.keyframes = count(*it, "keyframes"),
-                          .c1 = count(*it, "c1"),
-                          .c2 = count(*it, "c2"),
-                          .c3 = count(*it, "c3"),
-                          .final = count(*it, "final"),
-                          .label_mass = {}};
-    std::optional<int> left;
-    for (const std::optional<int>& number :
-         {told.keyframes, told.c1, told.c2, told.c3, told.final}) {
-      if (!number) continue;
-      if (left && *number > *left)
-        fail(fmt::format("gave candidates of {}: a step cannot leave more than the one before it",
-                         shortened(it->dump())));
-      left = number;
-    }
-    return told;
+    return {.keyframes = count(*it, "keyframes"),
+            .c1 = count(*it, "c1"),
+            .c2 = count(*it, "c2"),
+            .c3 = count(*it, "c3"),
+            .final = count(*it, "final"),
+            .label_mass = {}};
   }
 
   const ScratchFolder scratch_;
@@ -272,103 +249,48 @@ class Conversation {
   ChildProcess child_;
 };
 
-class ConversationSystem : public System {
+class ConversationSystem : public OutsideSystem {
  public:
   ConversationSystem(const OutsideProgram& program, const Camera& camera, std::uint64_t seed,
                      const fs::path& log)
       : talk_(std::make_unique<Conversation>(program, camera, seed, log)) {}
 
-  SystemReport track(const RgbdFrame& frame, RandomStream stream) override {
-    assert(!frozen_);
-    shown_.insert(frame.stamp_ns);
-    const SystemReport report = talk_->ask_about("track", frame, stream, TrackStatus::kTracked);
-    if (report.map_reset) poses_.clear();
-    if (report.world_from_camera)
-      poses_[frame.stamp_ns] = *report.world_from_camera;
-    else
-      poses_.erase(frame.stamp_ns);  // the last attempt counts
-    return report;
-  }
   void rewind() override { talk_->ask("rewind", Json::object(), {}); }
-  void reset() override {
-    talk_->ask("reset", Json::object(), {});
-    poses_.clear();
-    shown_.clear();
-  }
-  void freeze() override {
-    const Json answer = talk_->ask("freeze", Json::object(), {"trajectory"});
-    frozen_ = true;
-    if (const auto it = answer.find("trajectory"); it != answer.end()) take_trajectory(*it);
-  }
   void finish() override { talk_->finish(); }
-  Trajectory trajectory() const override {
-    Trajectory trajectory;
-    for (const auto& [stamp_ns, pose] : poses_) trajectory.push_back({stamp_ns, pose});
-    return trajectory;
-  }
-  std::unique_ptr<RelocalizationSession> open_session() const override;
-
-  SystemReport relocalize(std::uint64_t session, const RgbdFrame& frame,
-                          RandomStream stream) const {
-    assert(session == sessions_);  // an older one would have to be remembered by the program
-    return talk_->ask_about(is_blank(frame) ? "blank" : "relocalize", frame, stream,
-                            TrackStatus::kRelocalized, {{"session", session}});
-  }
 
  private:
-  /// Replaces the poses given so far by those of the finished map.
-  void take_trajectory(const Json& lines) {
+  SystemReport ask(Question what, std::uint64_t session, const RgbdFrame& frame,
+                   RandomStream stream) const override {
+    if (what == Question::kTrack) return talk_->ask_about("track", frame, stream, Json::object());
+    return talk_->ask_about(what == Question::kBlank ? "blank" : "relocalize", frame, stream,
+                            {{"session", session}});
+  }
+  void forget() override { talk_->ask("reset", Json::object(), {}); }
+  std::optional<Trajectory> end_mapping() override {
+    const Json answer = talk_->ask("freeze", Json::object(), {"trajectory"});
+    const auto it = answer.find("trajectory");
+    if (it == answer.end()) return std::nullopt;
+    return trajectory_of(*it);
+  }
+  [[noreturn]] void fail(const std::string& what) const override { talk_->fail(what); }
+
+  Trajectory trajectory_of(const Json& lines) const {
     std::string text;
-    if (!lines.is_array()) talk_->fail("gave a trajectory that is no list of lines");
+    if (!lines.is_array()) fail("gave a trajectory that is no list of lines");
     for (const Json& line : lines) {
-      if (!line.is_string()) talk_->fail("gave a trajectory that is no list of lines");
+      if (!line.is_string()) fail("gave a trajectory that is no list of lines");
       text += line.get<std::string>() + "\n";
     }
-    std::map<Stamp, SE3> poses;
-    if (!lines.empty()) {
-      Trajectory trajectory;
-      try {
-        trajectory = parse_tum(text, "trajectory");
-      } catch (const InputError& error) {
-        talk_->fail(fmt::format("gave a bad trajectory: {}", error.what()));
-      }
-      for (const TimedPose& pose : trajectory) {
-        if (is_too_far(pose))
-          talk_->fail(fmt::format("gave a pose more than {:g} m away in its trajectory, at {}",
-                                  kFarthest_m, format_stamp(pose.stamp_ns)));
-        if (!shown_.contains(pose.stamp_ns))
-          talk_->fail(fmt::format("gave a pose at {} in its trajectory, a frame that it never saw",
-                                  format_stamp(pose.stamp_ns)));
-        poses[pose.stamp_ns] = pose.world_from_camera;
-      }
+    if (lines.empty()) return {};
+    try {
+      return parse_tum(text, "trajectory");
+    } catch (const InputError& error) {
+      fail(fmt::format("gave a bad trajectory: {}", error.what()));
     }
-    poses_ = std::move(poses);
   }
 
   std::unique_ptr<Conversation> talk_;
-  std::map<Stamp, SE3> poses_;
-  std::set<Stamp> shown_;
-  bool frozen_ = false;
-  mutable std::uint64_t sessions_ = 0;
 };
-
-class ConversationSession : public RelocalizationSession {
- public:
-  ConversationSession(const ConversationSystem& system, std::uint64_t number)
-      : system_(system), number_(number) {}
-  SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
-    return system_.relocalize(number_, frame, stream);
-  }
-
- private:
-  const ConversationSystem& system_;  // outlives its sessions
-  const std::uint64_t number_;
-};
-
-std::unique_ptr<RelocalizationSession> ConversationSystem::open_session() const {
-  assert(frozen_);
-  return std::make_unique<ConversationSession>(*this, ++sessions_);
-}
 
 }  // namespace
 

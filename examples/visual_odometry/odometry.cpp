@@ -56,13 +56,17 @@ Camera read_settings(const std::string& file) {
   return camera;
 }
 
-std::string pose_numbers(const cv::Affine3d& pose, char separator) {
+std::array<double, 7> pose_values(const cv::Affine3d& pose) {
   const cv::Vec3d t = pose.translation();
   const cv::Quatd q = cv::Quatd::createFromRotMat(pose.rotation());
+  return {t[0], t[1], t[2], q.x, q.y, q.z, q.w};
+}
+
+std::string pose_numbers(const cv::Affine3d& pose, char separator) {
   std::string text;
-  for (const double value : {t[0], t[1], t[2], q.x, q.y, q.z, q.w}) {
+  for (const double value : pose_values(pose)) {
     char number[32];
-    std::snprintf(number, sizeof number, "%.9f", value);
+    std::snprintf(number, sizeof number, "%.17g", value);
     if (!text.empty()) text += separator;
     text += number;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,7 +23,9 @@ struct Camera {
 /// Reads Camera.fx, ... from a settings file. @throws cv::Exception if it cannot be read.
 Camera read_settings(const std::string& file);
 
-/// "x y z qx qy qz qw" with another separator.
+/// x, y, z, qx, qy, qz, qw.
+std::array<double, 7> pose_values(const cv::Affine3d& pose);
+/// The same as text, with all digits that a double has.
 std::string pose_numbers(const cv::Affine3d& pose, char separator);
 
 /// What a picture offers: keypoints with depth, as points in its camera's frame.

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/plan/runs.hpp"
+#include "bench/provenance/digest.hpp"
 #include "bench/results/summary.hpp"
 #include "bench/run/run_one.hpp"
 #include "source_dir.hpp"
@@ -17,6 +18,15 @@ namespace mh {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// What a system answered, to the bit.
+void expect_same(const RunResult& a, const RunResult& b) {
+  EXPECT_EQ(digest(a.estimate), digest(b.estimate));
+  const std::vector<QueryScore>&x = a.points.front().held_out, &y = b.points.front().held_out;
+  ASSERT_EQ(x.size(), y.size());
+  for (std::size_t i = 0; i < x.size(); ++i)
+    EXPECT_EQ(x[i].answer.pose_digest, y[i].answer.pose_digest) << i;
+}
 
 class TumFr1RpySuite : public testing::Test {
  protected:
@@ -64,14 +74,14 @@ TEST_F(TumFr1RpySuite, AllFramesAreMappedAsWellAsBySlam) {
   fmt::print("plain, all 200 frames: ATE {:.4f} m\n", *result.trajectory.ate_rmse_m);
 }
 
-TEST_F(TumFr1RpySuite, HeldOutFramesAreFoundAndAProgramStandsBesideInBothWays) {
-  const Suite all =
-      suite("[plain, {name: vo, protocol: trajectory, command: 'exec " VO_RUN_DATASET
-            " {dataset} {associations} {settings} {trajectory}'}, "
-            "{name: vo_asked, protocol: conversation, command: 'exec " VO_CONVERSE "'}]");
+TEST_F(TumFr1RpySuite, HeldOutFramesAreFoundAndAnotherSystemStandsBesideInAllThreeWays) {
+  const Suite all = suite("[plain, {name: vo, protocol: trajectory, command: 'exec " VO_RUN_DATASET
+                          " {dataset} {associations} {settings} {trajectory}'}, "
+                          "{name: vo_asked, protocol: conversation, command: 'exec " VO_CONVERSE
+                          "'}, {name: vo_called, library: '" VO_LIBRARY "'}]");
   std::vector<RunResult> runs;
   for (const RunSpec& spec : expand(all)) runs.push_back(run(spec));
-  ASSERT_EQ(runs.size(), 3U);
+  ASSERT_EQ(runs.size(), 4U);
   for (const RunResult& run : runs) {
     const QuerySummary s = summarize(run.points.front().held_out);
     fmt::print(
@@ -88,6 +98,7 @@ TEST_F(TumFr1RpySuite, HeldOutFramesAreFoundAndAProgramStandsBesideInBothWays) {
   EXPECT_LT(ours.distance_mean_m.value(), 0.05);
   EXPECT_EQ(summarize(runs[1].points.front().held_out).queries, 0) << "a trajectory is not asked";
   EXPECT_EQ(summarize(runs[2].points.front().held_out).queries, 6);
+  expect_same(runs[3], runs[2]);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "bench/protocol/score.hpp"
 #include "bench/provenance/digest.hpp"
 #include "bench/systems/conversation.hpp"
+#include "bench/systems/library.hpp"
 #include "bench/systems/recorded_run.hpp"
 #include "scenes/recorded/frame_files.hpp"
 #include "scenes/training/training.hpp"
@@ -69,6 +70,10 @@ class OutsideOdometry : public testing::Test {
     return make_conversation_system(
         {.name = "vo", .command = "exec " VO_CONVERSE, .mode = OutsideMode::kConversation},
         camera(), 0, folder_ / "log");
+  }
+  std::unique_ptr<System> load() const {
+    return make_library_system({.name = "vo", .mode = OutsideMode::kLibrary, .library = VO_LIBRARY},
+                               camera(), 0, folder_ / "log");
   }
   static std::unique_ptr<System> mapped(std::unique_ptr<System> system) {
     map_sequence(*system, frames(), {}, RandomStream(1));
@@ -157,6 +162,31 @@ TEST_F(OutsideOdometry, AnswersDependOnNoOtherQuery) {
   const auto forwards = ask({29, 59, 89});
   EXPECT_EQ(forwards, ask({89, 29, 59}));
   EXPECT_NE(forwards.at(29), forwards.at(59));
+}
+
+TEST_F(OutsideOdometry, ALibraryAnswersWithTheBitsOfTheConversation) {
+  const auto asked = converse(), called = load();
+  const MappingOutcome a = map_sequence(*asked, frames(), {}, RandomStream(1));
+  const MappingOutcome b = map_sequence(*called, frames(), {}, RandomStream(1));
+  ASSERT_EQ(a.calls.size(), 87U);
+  for (std::size_t i = 0; i < a.calls.size(); ++i) {
+    EXPECT_EQ(a.calls[i].pose_digest, b.calls[i].pose_digest) << i;
+    EXPECT_EQ(a.calls[i].matching_digest, b.calls[i].matching_digest) << i;
+    EXPECT_EQ(a.calls[i].keyframe_added, b.calls[i].keyframe_added) << i;
+  }
+  asked->freeze();
+  called->freeze();
+  EXPECT_EQ(digest(asked->trajectory()), digest(called->trajectory()));
+  for (const std::size_t index : test_frames(kCount, {})) {
+    const QueryAnswer x = query(*asked, index, frames(), {}, RandomStream(2)),
+                      y = query(*called, index, frames(), {}, RandomStream(2));
+    EXPECT_TRUE(x.world_from_camera);
+    EXPECT_EQ(x.pose_digest, y.pose_digest) << index;
+    EXPECT_EQ(x.matching_digest, y.matching_digest) << index;
+    EXPECT_EQ(x.candidates, y.candidates) << index;
+  }
+  asked->finish();
+  called->finish();
 }
 
 TEST_F(OutsideOdometry, RewindKeepsTheMapAndResetForgetsIt) {

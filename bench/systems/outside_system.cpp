@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/systems/outside_system.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bench/protocol/query.hpp"
+#include "bench/systems/outside_error.hpp"
+#include "slam/core/trajectory_io.hpp"
+
+namespace mh {
+
+SE3 told_pose(const std::array<double, 7>& v, const Refuse& refuse) {
+  const std::string text = fmt::format("[{}]", fmt::join(v, ", "));
+  if (!std::ranges::all_of(v, [](double x) { return std::isfinite(x); }))
+    refuse(fmt::format("gave a pose of {}: a number is not finite", text));
+  for (std::size_t k = 0; k < 3; ++k)
+    if (std::abs(v[k]) > kFarthest_m)
+      refuse(fmt::format("gave a pose more than {:g} m away: {}", kFarthest_m, text));
+  const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
+  if (std::abs(rotation.norm() - 1.0) > 0.1)
+    refuse(fmt::format("gave a pose whose quaternion has norm {:g}", rotation.norm()));
+  return SE3(rotation, Eigen::Vector3d(v[0], v[1], v[2]));
+}
+
+void check_told(const SystemReport& report, const Refuse& refuse) {
+  const auto stage = report.relocalization;
+  if (stage && report.world_from_camera && stage != RelocalizationStage::kNone &&
+      stage != RelocalizationStage::kVerified)
+    refuse(fmt::format("gave a pose and the stage \"{}\", which is one of failure", name(*stage)));
+  const Candidates& c = report.candidates;
+  std::optional<int> left;
+  for (const std::optional<int>& number : {c.keyframes, c.c1, c.c2, c.c3, c.final}) {
+    if (!number) continue;
+    if (left && *number > *left)
+      refuse(fmt::format(
+          "gave candidates of {} after {}: a step cannot leave more than the one before it",
+          *number, *left));
+    left = number;
+  }
+}
+
+class OutsideSession : public RelocalizationSession {
+ public:
+  OutsideSession(const OutsideSystem& system, std::uint64_t number)
+      : system_(system), number_(number) {}
+  SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
+    assert(number_ == system_.sessions_);  // an older one would have to be remembered over there
+    using enum OutsideSystem::Question;
+    return system_.told(is_blank(frame) ? kBlank : kRelocalize, number_, frame, stream,
+                        TrackStatus::kRelocalized);
+  }
+
+ private:
+  const OutsideSystem& system_;  // outlives its sessions
+  const std::uint64_t number_;
+};
+
+SystemReport OutsideSystem::told(Question what, std::uint64_t session, const RgbdFrame& frame,
+                                 RandomStream stream, TrackStatus with_pose) const {
+  SystemReport report = ask(what, session, frame, stream);
+  check_told(report, [this](const std::string& fault) { fail(fault); });
+  if (report.map_reset && frozen_) fail("gave up a map that must not change any more");
+  report.status = report.world_from_camera ? with_pose : TrackStatus::kLost;
+  return report;
+}
+
+SystemReport OutsideSystem::track(const RgbdFrame& frame, RandomStream stream) {
+  assert(!frozen_);
+  shown_.insert(frame.stamp_ns);
+  const SystemReport report = told(Question::kTrack, 0, frame, stream, TrackStatus::kTracked);
+  if (report.map_reset) poses_.clear();
+  if (report.world_from_camera)
+    poses_[frame.stamp_ns] = *report.world_from_camera;
+  else
+    poses_.erase(frame.stamp_ns);  // the last attempt counts
+  return report;
+}
+
+void OutsideSystem::reset() {
+  forget();
+  poses_.clear();
+  shown_.clear();
+}
+
+void OutsideSystem::freeze() {
+  const std::optional<Trajectory> finished = end_mapping();
+  frozen_ = true;
+  if (finished) take(*finished);
+}
+
+void OutsideSystem::take(const Trajectory& finished) {
+  std::map<Stamp, SE3> poses;
+  for (const TimedPose& pose : finished) {
+    const std::string at = format_stamp(pose.stamp_ns);
+    if (is_too_far(pose))
+      fail(fmt::format("gave a pose more than {:g} m away in its trajectory, at {}", kFarthest_m,
+                       at));
+    if (!shown_.contains(pose.stamp_ns))
+      fail(fmt::format("gave a pose at {} in its trajectory, a frame that it never saw", at));
+    if (!poses.emplace(pose.stamp_ns, pose.world_from_camera).second)
+      fail(fmt::format("gave two poses at {} in its trajectory", at));
+  }
+  poses_ = std::move(poses);
+}
+
+Trajectory OutsideSystem::trajectory() const {
+  Trajectory trajectory;
+  for (const auto& [stamp_ns, pose] : poses_) trajectory.push_back({stamp_ns, pose});
+  return trajectory;
+}
+
+std::unique_ptr<RelocalizationSession> OutsideSystem::open_session() const {
+  assert(frozen_);
+  begin_session(++sessions_);
+  return std::make_unique<OutsideSession>(*this, sessions_);
+}
+
+}  // namespace mh

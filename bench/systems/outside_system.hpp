@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "bench/protocol/system.hpp"
+
+namespace mh {
+
+/// Told what is wrong with an answer; throws an OutsideError.
+using Refuse = std::function<void(const std::string& what)>;
+
+/// [x, y, z, qx, qy, qz, qw] as a transform. Refuses a coordinate beyond kFarthest_m, what is not
+/// finite and a quaternion that is far from unit length.
+SE3 told_pose(const std::array<double, 7>& values, const Refuse& refuse);
+
+/// Refuses counts of candidates that grow on the way, and a stage of failure beside a pose.
+void check_told(const SystemReport& report, const Refuse& refuse);
+
+/// Of a frame's stream an outside system gets 31 bits as its seed, which fit an int everywhere.
+inline int told_seed(RandomStream stream) {
+  return static_cast<int>(stream.bits(0) >> 33);
+}
+
+/// Somebody else's system that is asked frame by frame. The poses that it tells are kept here. It
+/// stands before one map, so the session opened last is the only one that may be fed.
+class OutsideSystem : public System {
+ public:
+  SystemReport track(const RgbdFrame& frame, RandomStream stream) final;
+  void reset() final;
+  void freeze() final;
+  Trajectory trajectory() const final;
+  std::unique_ptr<RelocalizationSession> open_session() const final;
+
+ protected:
+  enum class Question { kTrack, kBlank, kRelocalize };
+  /// What it tells of a frame, but for the status. @param session  0 with kTrack
+  virtual SystemReport ask(Question what, std::uint64_t session, const RgbdFrame& frame,
+                           RandomStream stream) const = 0;
+  virtual void forget() = 0;  ///< everything, the map too
+  /// Ends the mapping. @returns the poses of the finished map, where it tells them
+  virtual std::optional<Trajectory> end_mapping() = 0;
+  virtual void begin_session(std::uint64_t) const {}
+  [[noreturn]] virtual void fail(const std::string& what) const = 0;
+
+ private:
+  friend class OutsideSession;
+  SystemReport told(Question what, std::uint64_t session, const RgbdFrame& frame,
+                    RandomStream stream, TrackStatus with_pose) const;
+  void take(const Trajectory& finished);
+
+  std::map<Stamp, SE3> poses_;
+  std::set<Stamp> shown_;
+  bool frozen_ = false;
+  mutable std::uint64_t sessions_ = 0;
+};
+
+}  // namespace mh

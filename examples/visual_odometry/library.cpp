@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// In the bench's process: a shared library with one function (docs/outside_systems.md).
+#include <modelhouse/system.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <utility>
+
+#include <opencv2/imgproc.hpp>
+
+#include "odometry.hpp"
+
+namespace {
+
+struct Library {
+  mh_system system;
+  example::VisualOdometry odometry;
+  char* message;
+};
+
+/// No exception may leave the library: what it says becomes the message.
+template <class Work>
+int guarded(void* self, Work&& work) {
+  auto& library = *static_cast<Library*>(self);
+  try {
+    work(library.odometry);
+    return 0;
+  } catch (const std::exception& error) {
+    std::snprintf(library.message, MH_MESSAGE_SIZE, "%s", error.what());
+    return 1;
+  }
+}
+
+cv::Mat bgr_of(const mh_frame& frame) {
+  const cv::Mat rgb(frame.height_px, frame.width_px, CV_8UC3, const_cast<uint8_t*>(frame.color));
+  cv::Mat bgr;
+  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+  return bgr;
+}
+
+cv::Mat depth_of(const mh_frame& frame) {
+  return {frame.height_px, frame.width_px, CV_16UC1, const_cast<uint16_t*>(frame.depth)};
+}
+
+void tell(const example::Found& found, mh_answer& answer) {
+  if (found.world_from_camera) {
+    answer.has_pose = 1;
+    const auto values = example::pose_values(*found.world_from_camera);
+    std::copy(values.begin(), values.end(), answer.pose.values);
+  }
+  answer.inliers = found.inliers;
+  answer.keyframe_added = found.keyframe_added;
+  if (found.candidates == 0) return;
+  answer.keyframes = found.keyframes;
+  answer.final = found.candidates;
+}
+
+int track(void* self, const mh_frame* frame, mh_answer* answer) {
+  return guarded(self, [&](example::VisualOdometry& odometry) {
+    tell(odometry.track(bgr_of(*frame), depth_of(*frame)), *answer);
+  });
+}
+int relocalize(void* self, const mh_frame* frame, mh_answer* answer) {
+  return guarded(self, [&](const example::VisualOdometry& odometry) {
+    tell(odometry.relocalize(bgr_of(*frame), depth_of(*frame)), *answer);
+  });
+}
+int rewind(void* self) {
+  return guarded(self, [](example::VisualOdometry& odometry) { odometry.lose(); });
+}
+int reset(void* self) {
+  return guarded(self, [](example::VisualOdometry& odometry) { odometry.forget_map(); });
+}
+int freeze(void*) {
+  return 0;  // relocalize() only reads the keyframes: they stay as they are
+}
+void destroy(void* self) {
+  delete static_cast<Library*>(self);
+}
+
+}  // namespace
+
+mh_system* mh_make_system(const mh_setup* setup) try {
+  const mh_camera& c = setup->camera;
+  example::Camera camera;
+  camera.matrix = {c.fx_px, 0, c.cx_px, 0, c.fy_px, c.cy_px, 0, 0, 1};
+  camera.distortion = {c.k1, c.k2, c.p1, c.p2, c.k3};
+  camera.depth_per_meter = c.depth_per_meter;
+  auto* library = new Library{{}, example::VisualOdometry(std::move(camera)), setup->message};
+  library->system = {.version = MH_SYSTEM_VERSION,
+                     .self = library,
+                     .track = track,
+                     .rewind = rewind,
+                     .reset = reset,
+                     .freeze = freeze,
+                     .trajectory = nullptr,   // the answers are all that it knows
+                     .begin_query = nullptr,  // relocalize() starts from nothing:
+                     .blank = nullptr,        // there is nothing to forget or to lose
+                     .relocalize = relocalize,
+                     .destroy = destroy};
+  return &library->system;
+} catch (const std::exception& error) {
+  std::snprintf(setup->message, MH_MESSAGE_SIZE, "%s", error.what());
+  return nullptr;
+}

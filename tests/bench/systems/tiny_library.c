@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A system in C99 that stands still: the least that a library must do. Its settings file holds the
+ * words of what it is to do wrong; a word that is not known does nothing. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <modelhouse/system.h>
+
+#ifndef TINY_VERSION
+#define TINY_VERSION MH_SYSTEM_VERSION
+#endif
+#ifndef TINY_MAKE
+#define TINY_MAKE mh_make_system
+MH_EXPORT
+#endif
+mh_system* TINY_MAKE(const mh_setup* setup);
+
+typedef struct tiny {
+  mh_system system;
+  char* message;
+  char words[256];
+  int64_t stamps_ns[16];
+  int32_t seen, queries;
+} tiny;
+
+static int told(const tiny* t, const char* word) {
+  return strstr(t->words, word) != NULL;
+}
+
+static int stand_still(tiny* t, mh_answer* answer) {
+  if (told(t, "lost")) return 0;
+  answer->map_reset = told(t, "anew");
+  answer->has_pose = 1;
+  answer->pose.values[0] = told(t, "nan") ? NAN : told(t, "far") ? -1e7 : t->seen;
+  answer->pose.values[6] = told(t, "norm") ? 2 : 1;
+  return 0;
+}
+
+static int track(void* self, const mh_frame* frame, mh_answer* answer) {
+  tiny* t = self;
+  if (told(t, "crash")) abort();
+  if (told(t, "exit")) exit(0);
+  if (told(t, "print")) puts("0.5\n~nonsense");
+  if (told(t, "error")) {
+    snprintf(t->message, MH_MESSAGE_SIZE, "no memory\nleft");
+    return 7;
+  }
+  if (told(t, "speechless")) return 7;
+  t->stamps_ns[t->seen++ % 16] = frame->stamp_ns;
+  answer->keypoints = frame->color[0] + 1000 * frame->depth[0];
+  answer->inliers = told(t, "count") ? -2 : frame->labels != NULL ? frame->labels[0] : MH_UNKNOWN;
+  answer->keyframe_added = t->seen == 1;
+  return stand_still(t, answer);
+}
+
+static int rewind_feed(void* self) {
+  (void)self;
+  return 0;
+}
+
+static int reset(void* self) {
+  ((tiny*)self)->seen = 0;
+  return 0;
+}
+
+static int freeze(void* self) {
+  (void)self;
+  return 0;
+}
+
+static int trajectory(void* self, mh_add_pose add, void* to) {
+  tiny* t = self;
+  mh_pose pose = {{4, 0, 0, 0, 0, 0, 1}};
+  int32_t i;
+  for (i = 0; i < t->seen; ++i) add(to, t->stamps_ns[i], &pose);
+  if (told(t, "twice")) add(to, t->stamps_ns[0], &pose);
+  if (told(t, "unseen")) add(to, 99, &pose);
+  return 0;
+}
+
+static int begin_query(void* self) {
+  ++((tiny*)self)->queries;
+  return 0;
+}
+
+static int relocalize(void* self, const mh_frame* frame, mh_answer* answer) {
+  tiny* t = self;
+  (void)frame;
+  answer->stage = told(t, "stage") ? MH_STAGE_PNP : MH_STAGE_VERIFIED;
+  answer->keyframes = 1;
+  answer->final = told(t, "candidates") ? 2 : 1;
+  answer->inliers = t->queries;
+  return stand_still(t, answer);
+}
+
+static void destroy(void* self) {
+  if (told(self, "print")) puts("goodbye");
+  free(self);
+}
+
+mh_system* TINY_MAKE(const mh_setup* setup) {
+  tiny* t = calloc(1, sizeof(tiny));
+  FILE* settings = setup->settings != NULL ? fopen(setup->settings, "r") : NULL;
+  if (settings != NULL) {
+    if (fgets(t->words, sizeof(t->words), settings) == NULL) t->words[0] = '\0';
+    fclose(settings);
+  }
+  if (told(t, "null")) {
+    snprintf(setup->message, MH_MESSAGE_SIZE, "no vocabulary for %d classes", setup->class_count);
+    free(t);
+    return NULL;
+  }
+  t->message = setup->message;
+  t->system.version = TINY_VERSION;
+  t->system.self = t;
+  t->system.track = track;
+  t->system.rewind = rewind_feed;
+  t->system.reset = reset;
+  t->system.freeze = freeze;
+  if (told(t, "trajectory")) t->system.trajectory = trajectory;
+  t->system.begin_query = begin_query;
+  if (!told(t, "empty")) t->system.relocalize = relocalize;
+  t->system.destroy = destroy;
+  return &t->system;
+}
