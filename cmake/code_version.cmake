@@ -31,7 +31,7 @@ digest_of(RUN slam/*.cpp slam/*.hpp scenes/*.cpp scenes/*.hpp scenes/categories/
           bench/plan/find_program.* bench/plan/outside_program.* bench/provenance/digest.*
           bench/provenance/input_digest.hpp bench/provenance/place_facts.hpp
           bench/results/call_times.* bench/results/run_result.hpp
-          bench/run/occupancy.* bench/run/run_one.*
+          bench/run/occupancy.* bench/run/run_one.* include/modelhouse/*.h
           CMakeLists.txt)
 
 # Where git is not installed: what .git says, a worktree's included. Changes in files go unseen.

@@ -66,3 +66,14 @@ run(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${work}/build -G Ninja --log-level=WARN
     -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF)
 run(${CMAKE_COMMAND} --build ${work}/build)
 run(${work}/build/consumer)
+
+# The installed program runs the stranger's system.
+file(READ ${data}/examples/visual_odometry/suite.yaml suite)
+string(REGEX REPLACE "systems:.*labels:" "systems: [{name: standing, library: ${work}/build/libstanding.so}]\nlabels:" suite "${suite}")
+file(WRITE ${data}/examples/visual_odometry/standing.yaml "${suite}")
+run(${program} bench ${data}/examples/visual_odometry/standing.yaml --frames 40 --out standing
+    --cache ${BUILD_DIR}/cache_of_tests WORKING_DIRECTORY ${elsewhere})
+file(STRINGS ${elsewhere}/standing/table.txt table)
+if(NOT table MATCHES "standing")
+  message(FATAL_ERROR "no row of the stranger's system: ${table}")
+endif()

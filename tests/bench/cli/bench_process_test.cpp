@@ -446,6 +446,39 @@ TEST(BenchProcess, ACrashIsAFailureAndStaysOne) {
   EXPECT_NE(content(marks), once);
 }
 
+TEST(BenchProcess, ACrashOfALibraryIsAFailureOfItsRunAlone) {
+  const fs::path library = test_folder() / "libtiny.so";
+  fs::copy_file(TINY_LIBRARY, library);
+  std::string systems = "[";
+  for (const char* word : {"crash", "exit", "nan", "print"}) {
+    std::ofstream(test_folder() / word) << word;
+    systems += std::string("{name: ") + word + ", library: libtiny.so, settings: " + word + "}, ";
+  }
+  const fs::path suite = write_suite("libraries", systems + "plain]");
+  EXPECT_EQ(run(bench(suite, "libraries")), 3);
+  const std::string told = errors();
+  for (const char* line :
+       {"crash-exact-pepper-0: failed: ended by signal 6 (Aborted)\n",
+        "exit-exact-pepper-0: failed: ended without a result\n",
+        "nan-boxes-pepper-0: failed: outside library 'nan' (libtiny.so) gave a pose of [nan, 0, 0, "
+        "0, 0, 0, 1]: a number is not finite, in track\n"})
+    EXPECT_NE(told.find(line), std::string::npos) << line << told;
+  EXPECT_EQ(told.find("nonsense"), std::string::npos) << told;
+  EXPECT_EQ(runs_in(test_folder() / "libraries"), 9);
+  // What it prints is neither told nor taken for the bench's own words.
+  const std::string said =
+      content(test_folder() / "libraries" / "print-exact-pepper-0" / "outside.log");
+  EXPECT_TRUE(said.starts_with("0.5\n~nonsense\n0.5\n")) << said;
+  EXPECT_TRUE(said.ends_with("goodbye\n")) << said;
+
+  // Built anew, its runs are made anew.
+  EXPECT_EQ(run(bench(suite, "libraries")), 3);
+  EXPECT_NE(errors().find("9 runs, 0 of them to do"), std::string::npos) << errors();
+  std::ofstream(library, std::ios::app) << "x";
+  EXPECT_EQ(run(bench(suite, "libraries")), 3);
+  EXPECT_NE(errors().find("9 runs, 8 of them to do"), std::string::npos) << errors();
+}
+
 TEST(BenchProcess, LimitsEndARun) {
   EXPECT_EQ(run(bench(write_suite("slow", "[plain]"), "slow", "--time-limit 0.05")), 3);
   EXPECT_NE(errors().find("took longer than the limit of 0.05 s"), std::string::npos) << errors();

@@ -150,9 +150,16 @@ TEST_F(RunKey, ChangesWithEveryFieldOfARunButItsNames) {
   EXPECT_EQ(free_places(ours_, run_key_of), kNames);
 }
 
-TEST_F(RunKey, ChangesWithEveryFieldOfAnOutsideProgramButItsFolder) {
+TEST_F(RunKey, ChangesWithEveryFieldOfAnOutsideSystemButItsFolder) {
   std::set<std::string> free = kNames;
   free.insert("/system/outside/folder");
+  EXPECT_EQ(free_places(theirs_, run_key_of), free);
+  theirs_.system.outside = {.name = "vo",
+                            .mode = OutsideMode::kLibrary,
+                            .folder = folder_,
+                            .inputs = {file("weights").string()},
+                            .library = file("libvo.so").string(),
+                            .settings = file("vo.yaml").string()};
   EXPECT_EQ(free_places(theirs_, run_key_of), free);
 }
 

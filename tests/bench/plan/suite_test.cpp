@@ -481,6 +481,66 @@ TEST_F(SuiteFile, AnOutsideProgramsRunIsNamedByWhatItsFilesHold) {
   }
 }
 
+TEST_F(SuiteFile, NamesALibraryAndItsRunIsNamedByWhatItsFilesHold) {
+  const auto put = [&](const char* name, const char* text) {
+    std::ofstream(folder_ / name) << text;
+  };
+  for (const char* name : {"libvo.so", "vo.yaml", "weights"}) put(name, "1");
+  const auto suite = [&](const std::string& system) {
+    std::ofstream(folder_ / "suite.yaml")
+        << "environments:\n- {category: house, scene: house.yaml, mapping_tour: tour.yaml}\n"
+           "robot: robot.yaml\nlevels: [pepper.yaml]\nlabels: [exact]\nsystems:\n- {name: vo, "
+        << system << "}\n";
+    return load_suite(folder_ / "suite.yaml");
+  };
+  const Suite read = suite("library: libvo.so, settings: vo.yaml, inputs: [weights]");
+  const SystemSpec& vo = read.systems.front();
+  EXPECT_EQ(vo.outside.mode, OutsideMode::kLibrary);
+  EXPECT_TRUE(vo.is_outside());
+  EXPECT_FALSE(vo.takes_settings());
+  EXPECT_NO_THROW(require_program(vo.outside));
+  EXPECT_EQ(unseen_program(vo.outside), "");
+  const RunSpec run = expand(read).front();
+  EXPECT_EQ(run.name, "vo-exact-pepper-0");
+  EXPECT_EQ(to_json(run_spec_from_json(to_json(run))), to_json(run));
+  const auto key = [&] { return run_key(run, inputs_of_program(run)); };
+  std::string names;
+  for (const InputDigest& input : inputs_of_program(run)) names += input.name + " ";
+  EXPECT_EQ(names, "vo: libvo.so vo: vo.yaml vo: weights ");
+  const std::string before = key();
+  for (const char* name : {"libvo.so", "vo.yaml", "weights"}) {
+    put(name, "2");
+    EXPECT_NE(key(), before) << name;
+    put(name, "1");
+  }
+  EXPECT_EQ(key(), before);
+
+  const auto refused = [&](const std::string& system) {
+    try {
+      require_program(suite(system).systems.front().outside);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  const auto expect_refused = [&](const std::string& system, const std::string& part) {
+    const std::string what = refused(system);
+    EXPECT_NE(what.find("suite.yaml:7: "), std::string::npos) << what;
+    EXPECT_NE(what.find(part), std::string::npos) << what;
+  };
+  expect_refused("library: libgone.so",
+                 "outside library 'vo': 'libgone.so' cannot be loaded: no "
+                 "such file; has it been built?");
+  expect_refused("library: libvo.so, command: slam",
+                 "systems[0].command: is of a command: a library runs in the bench's own process");
+  expect_refused("library: libvo.so, protocol: conversation",
+                 "systems[0].protocol: is of a command");
+  expect_refused("library: libvo.so, settings: gone.yaml",
+                 "gone.yaml' cannot be read: no such file");
+  expect_refused("library: ''", "library: is empty");
+  expect_refused("command: slam, protocol: library", "'library' is none of");
+}
+
 TEST(FilesOf, TheFirstWordIsLookedForOnThePath) {
   const auto files = files_of({.name = "vo", .command = "sh -c true"});
   ASSERT_EQ(files.size(), 1u);
