@@ -35,7 +35,7 @@ struct Row {
   std::vector<Trial> trials;   ///< those that are done
   std::size_t failed = 0;      ///< its failed runs
   TrajectoryScore trajectory;  ///< medians over the trials that have the score
-  MappingCounts mapping;       ///< likewise
+  MappingCounts mapping;       ///< medians over the trials
   QuerySummary held_out, second_tour;
   std::optional<MatchCounts> matches;  ///< summed over trials, mapping and queries, where reported
   TimeSummary track, relocalize;

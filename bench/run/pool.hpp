@@ -53,12 +53,12 @@ struct PoolOptions {
 /// are in the store, done or failed. Runs that another process has claimed are left to it and
 /// waited for.
 ///
-/// - A further process starts only while the memory that the running ones still need (by what was
-///   measured of finished ones) and its own are available; one always runs.
-/// - A run that ends by itself in any way but well is a failure and stays one. One that was killed
-///   from outside (SIGKILL, SIGTERM: the kernel out of memory, an impatient scheduler) is tried
-///   once more, alone. One that met a full disk ends all work and is no failure: the same command
-///   goes on once there is room.
+/// - Another process starts only if there is enough memory for it and for what the running ones
+///   still need (as measured on finished ones); one always runs.
+/// - A run that ends by itself without success is a failure and stays one. One that was killed from
+///   outside (SIGKILL, SIGTERM: the kernel out of memory, an impatient scheduler) is tried once
+///   more, alone. One that hits a full disk ends all work and is not a failure: the same command
+///   resumes once there is space.
 /// @throws Interrupted on Ctrl-C or SIGTERM; DiskFullError.
 void work_off(Store& store, std::vector<Job> jobs, const PoolOptions& options);
 

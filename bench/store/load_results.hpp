@@ -13,7 +13,7 @@ namespace mh {
 /// A store's results for a suite.
 struct BenchResults {
   std::vector<RunResult> runs;       ///< finished ones, in the order of expand(suite)
-  std::vector<FailedRun> failed;     ///< likewise
+  std::vector<FailedRun> failed;     ///< failed ones, in the same order
   std::vector<std::string> missing;  ///< names of those that are neither: of other shards
 };
 

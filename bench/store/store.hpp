@@ -29,7 +29,7 @@ struct RunCost {
   // Of cpu_s:
   double slam_s = 0;      ///< inside the system under test, if it works in our process
   double frames_s = 0;    ///< making its frames: scene, light and drives included
-  double products_s = 0;  ///< occupancy map, pictures and files of the run
+  double products_s = 0;  ///< occupancy map, images and files of the run
   double max_rss_mb = 0;
   Circumstances circumstances = {};  ///< without the host, which the store knows
 };
