@@ -18,28 +18,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class TumFolder : public Sequence {
+class ListedSequence : public Sequence {
  public:
-  TumFolder(const fs::path& folder, const RecordedCamera& camera, std::vector<std::string>* notes)
-      : camera_(camera), frames_(load_tum_folder(folder, notes)) {
-    const auto truth = folder / "groundtruth.txt";
-    if (is_file(truth)) truth_ = read_tum(truth);
-  }
-  std::vector<RecordedFrame>& frames() { return frames_; }
-  void set_classes(ClassMap classes) { classes_ = std::move(classes); }
-  const Camera& camera() const override { return camera_.camera; }
-  std::size_t size() const override { return frames_.size(); }
-  Stamp stamp_ns(std::size_t index) const override { return frames_[index].stamp_ns; }
+  explicit ListedSequence(ListedFrames listed) : listed_(std::move(listed)) {}
+  const Camera& camera() const override { return listed_.camera.camera; }
+  std::size_t size() const override { return listed_.frames.size(); }
+  Stamp stamp_ns(std::size_t index) const override { return listed_.frames[index].stamp_ns; }
   RgbdFrame frame(std::size_t index, RandomStream) const override {
-    return read_frame(frames_[index], camera_, classes_ ? &*classes_ : nullptr);
+    return read_frame(listed_.frames[index], listed_.camera,
+                      listed_.classes ? &*listed_.classes : nullptr);
   }
-  const Trajectory* truth() const override { return truth_ ? &*truth_ : nullptr; }
+  const Trajectory* truth() const override { return listed_.truth ? &*listed_.truth : nullptr; }
 
  private:
-  RecordedCamera camera_;
-  std::vector<RecordedFrame> frames_;
-  std::optional<ClassMap> classes_;
-  std::optional<Trajectory> truth_;
+  ListedFrames listed_;
 };
 
 class FramesInMemory : public Sequence {
@@ -56,6 +48,14 @@ class FramesInMemory : public Sequence {
   Camera camera_;
   std::vector<RgbdFrame> frames_;
 };
+
+ListedFrames list_tum_folder(const fs::path& folder, const RecordedCamera& camera,
+                             std::vector<std::string>* notes) {
+  ListedFrames listed{camera, load_tum_folder(folder, notes), {}, {}};
+  const fs::path truth = folder / "groundtruth.txt";
+  if (is_file(truth)) listed.truth = read_tum(truth);
+  return listed;
+}
 
 bool is_tum_folder(const fs::path& folder) {
   return is_file(folder / "rgb.txt") || is_file(folder / "associations.txt");
@@ -77,28 +77,33 @@ OpenedRecording open_tum(const fs::path& folder, const RecordingConfig& config) 
   if (!is_tum_folder(folder))
     throw InputError(
         fmt::format("{}: holds neither rgb.txt nor associations.txt", folder.string()));
-  OpenedRecording opened;
-  auto sequence = std::make_unique<TumFolder>(
-      folder, config.read_camera(calibration_of(folder, config)), &opened.notes);
-  if (!config.classes.empty()) sequence->set_classes(load_class_map(config.classes));
-  for (RecordedFrame& frame : sequence->frames()) {
-    for (const fs::path* file : {&frame.color, &frame.depth, &frame.classes})
-      if (!file->empty()) opened.files.push_back(*file);
-    opened.has_labels = opened.has_labels || !frame.classes.empty();
-    if (!config.labels) frame.classes.clear();
-  }
-  opened.sequence = std::move(sequence);
-  return opened;
+  std::vector<std::string> notes;
+  ListedFrames listed =
+      list_tum_folder(folder, config.read_camera(calibration_of(folder, config)), &notes);
+  if (!config.classes.empty()) listed.classes = load_class_map(config.classes);
+  return open_listed(std::move(listed), config.labels, std::move(notes));
 }
 
 }  // namespace
 
 const SequenceReader kTumReader{"tum", "FOLDER", is_tum_folder, open_tum, nullptr};
 
+OpenedRecording open_listed(ListedFrames listed, bool labels, std::vector<std::string> notes) {
+  OpenedRecording opened{.notes = std::move(notes)};
+  for (RecordedFrame& frame : listed.frames) {
+    for (const fs::path* file : {&frame.color, &frame.depth, &frame.classes})
+      if (!file->empty()) opened.files.push_back(*file);
+    opened.has_labels = opened.has_labels || !frame.classes.empty();
+    if (!labels) frame.classes.clear();
+  }
+  opened.sequence = std::make_unique<ListedSequence>(std::move(listed));
+  return opened;
+}
+
 std::unique_ptr<Sequence> open_tum_folder(const std::filesystem::path& folder,
                                           const RecordedCamera& camera,
                                           std::vector<std::string>* notes) {
-  return std::make_unique<TumFolder>(folder, camera, notes);
+  return std::make_unique<ListedSequence>(list_tum_folder(folder, camera, notes));
 }
 
 std::unique_ptr<Sequence> frames_in_memory(const Camera& camera, std::vector<RgbdFrame> frames) {

@@ -3,13 +3,28 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "scenes/recorded/class_map.hpp"
 #include "scenes/recorded/open_sequence.hpp"
 #include "scenes/recorded/tum_folder.hpp"
 #include "slam/core/sequence.hpp"
 
 namespace mh {
+
+/// A recording whose frames are image files, read when they are requested.
+struct ListedFrames {
+  RecordedCamera camera;
+  std::vector<RecordedFrame> frames;
+  std::optional<ClassMap> classes;  ///< of its label images; absent: they are our classes
+  std::optional<Trajectory> truth;
+};
+
+/// @param labels  false: frames come without
+OpenedRecording open_listed(ListedFrames listed, bool labels = true,
+                            std::vector<std::string> notes = {});
 
 /// Opens a folder in TUM's layout, recorded by that camera.
 /// @param notes  receives what was omitted, one line each; may be null
