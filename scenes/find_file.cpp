@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Matches a name in any case, as a shell's pattern.
+/// A shell pattern that matches a name in any letter case.
 std::string any_case(const std::string& name) {
   std::string pattern;
   for (const char c : name) {

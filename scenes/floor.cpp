@@ -23,18 +23,19 @@ using Eigen::Vector3f;
 constexpr double kCell_m = 0.05;
 constexpr double kMostCells = 1000;  // either way
 constexpr float kLevel = 0.7F;       // cosine of a face's slope: scans are rough, see below
-constexpr float kUpright = 0.05F;    // fewer: an upright face has no place seen from above
-constexpr float kHeadroom_m = 1.0F;  // less above a surface: nobody stands on it
-constexpr float kLayer_m = 0.1F;     // surfaces nearer than this are one
+constexpr float kUpright = 0.05F;    // below: a vertical face covers no area seen from above
+constexpr float kHeadroom_m = 1.0F;  // with less above a surface, nobody can stand on it
+constexpr float kLayer_m = 0.1F;     // surfaces closer than this are one
 constexpr double kBin_m = 0.05;      // of the histogram of heights
 constexpr double kLeast_m2 = 1.0;    // of a floor
 constexpr double kLarge = 0.25;      // of the largest level surface
-constexpr double kMostBelow = 0.25;  // of the scene's surface: a seat is no floor
+constexpr double kMostBelow = 0.25;  // of the scene's surface: a seat is not a floor
 constexpr double kSteepest_rad = 2.0 * std::numbers::pi / 180;
-constexpr double kLevelFloor_rad = 0.1 * std::numbers::pi / 180;  // less is a scan's error
+constexpr double kLevelFloor_rad = 0.1 * std::numbers::pi / 180;  // less is measurement error of a
+                                                                  // scan
 constexpr double kLevelFloor_m = 1e-3;
 
-/// What is met above one place.
+/// A surface crossed above one position.
 struct Sample {
   std::uint32_t cell = 0;
   float z_m = 0;
@@ -75,7 +76,7 @@ class Columns {
             static_cast<double>(sample.z_m)};
   }
   double cell_m2() const { return cell_m_ * cell_m_; }
-  /// How much of the ground these samples cover, each place once.
+  /// Area of the ground that these samples cover, overlaps counted once.
   double area_m2(const std::vector<Sample>& some) const {
     std::size_t cells = 0;
     for (std::size_t i = 0; i < some.size(); ++i)
@@ -94,20 +95,20 @@ class Columns {
             .is_box = true};
   }
 
-  /// Those of a class that is walked on; of two with less than headroom between them the upper one:
-  /// a house's floor and not the ground below it.
+  /// Samples of walkable classes; of two with less than headroom between them, the upper one: a
+  /// house's floor and not the ground below it.
   std::vector<Sample> labeled() const {
     std::vector<Sample> some;
     std::ranges::copy_if(samples, std::back_inserter(some), &Sample::labeled);
     return with_headroom(some);
   }
-  /// Those that one could stand on, with nothing for a while above.
+  /// Samples that one could stand on, with headroom above.
   std::vector<Sample> standable() const {
     std::vector<Sample> some = with_headroom(samples);
     std::erase_if(some, [&](const Sample& sample) { return !among_things(point(sample)); });
     return some;
   }
-  /// Whether it lies where things stand: a plane that reaches to the horizon has most of its area
+  /// Whether a point is where things are: a plane that extends to the horizon has most of its area
   /// elsewhere.
   bool among_things(const Vector3d& p) const {
     return things_.contains(p.head<2>().cast<float>().eval());
@@ -115,7 +116,7 @@ class Columns {
 
   Eigen::AlignedBox2d things_m() const { return things_.cast<double>(); }
 
-  std::vector<Sample> samples;  ///< by cell, then upwards
+  std::vector<Sample> samples;  ///< by cell, then upward
 
  private:
   static std::vector<Sample> with_headroom(const std::vector<Sample>& all) {
@@ -127,7 +128,7 @@ class Columns {
     return some;
   }
 
-  /// Where things stand, and that together with what is labeled as floor.
+  /// The extent of the things, and the same including what is labeled as floor.
   static std::pair<Eigen::AlignedBox2f, Eigen::AlignedBox2f> extents(const Scene& scene) {
     Eigen::AlignedBox2f things, labeled, all;
     for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
@@ -144,7 +145,7 @@ class Columns {
     return {things, things.merged(labeled)};
   }
 
-  /// Samples a face at the middles of cells; a middle on an edge belongs to one face alone.
+  /// Samples a face at cell centers; a center on an edge belongs to one face only.
   void add(const Scene& scene, std::size_t face) {
     const Vector3f n = normal_of(scene, face);
     const float norm = n.norm();
@@ -153,7 +154,7 @@ class Columns {
     std::array<double, 3> z;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vector3d at = corner(scene, face, k).cast<double>();
-      p[k] = (at.head<2>() - low_) / cell_m_ - Vector2d(0.5, 0.5);  // in cells' middles
+      p[k] = (at.head<2>() - low_) / cell_m_ - Vector2d(0.5, 0.5);  // in cell centers
       z[k] = at.z();
     }
     if (n.z() < 0) std::swap(p[1], p[2]), std::swap(z[1], z[2]);
@@ -189,7 +190,7 @@ class Columns {
   int width_ = 0, height_ = 0;
 };
 
-/// The height of the lowest surface that is large; nullopt if none is.
+/// Height of the lowest large surface; nullopt if there is none.
 std::optional<double> lowest_large(const std::vector<Sample>& some, double cell_m2) {
   if (some.empty()) return std::nullopt;
   const auto [low, high] = std::ranges::minmax(some, {}, &Sample::z_m);
@@ -199,7 +200,7 @@ std::optional<double> lowest_large(const std::vector<Sample>& some, double cell_
   };
   std::vector<std::size_t> count(bin(high.z_m) + 2, 0);
   for (const Sample& sample : some) ++count[bin(sample.z_m)];
-  // Three bins: a floor is no surface of one height.
+  // Three bins: a floor is not at exactly one height.
   std::vector<std::size_t> window(count.size(), 0);
   for (std::size_t i = 1; i + 1 < count.size(); ++i)
     window[i] = count[i - 1] + count[i] + count[i + 1];
@@ -207,7 +208,7 @@ std::optional<double> lowest_large(const std::vector<Sample>& some, double cell_
   const double enough = std::max(kLeast_m2 / cell_m2, kLarge * most);
   for (std::size_t i = 0; i < window.size(); ++i) {
     if (static_cast<double>(window[i]) < enough) continue;
-    while (i + 1 < window.size() && window[i + 1] > window[i]) ++i;  // its middle
+    while (i + 1 < window.size() && window[i + 1] > window[i]) ++i;  // its center
     std::vector<float> heights;
     for (const Sample& sample : some)
       if (bin(sample.z_m) + 1 >= i && bin(sample.z_m) <= i + 1) heights.push_back(sample.z_m);
@@ -233,7 +234,7 @@ struct Plane {
   }
 };
 
-/// Least squares over the points within reach of the plane; its height is the median then.
+/// Least-squares fit to the points near the plane; the height is then the median.
 Plane refitted(const std::vector<Vector3d>& points, const Plane& plane, double reach_m,
                bool may_slope) {
   std::vector<Vector3d> near;
@@ -260,8 +261,8 @@ Plane refitted(const std::vector<Vector3d>& points, const Plane& plane, double r
   return result;
 }
 
-/// Whether more of the scene lies below the plane than may lie below a floor: a table's top and a
-/// sofa's seat are none.
+/// Whether too much of the scene is below the plane for a floor: this excludes table tops and
+/// seats.
 bool too_much_below(const Scene& scene, const Plane& plane, const Columns& columns) {
   double below = 0, above = 0, all = 0;
   for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
@@ -280,8 +281,8 @@ bool too_much_below(const Scene& scene, const Plane& plane, const Columns& colum
   return below > kMostBelow * all || below > above;
 }
 
-/// Five standard deviations of the corners of its faces: of a scan's many thousand none then stands
-/// out by noise.
+/// Five standard deviations of the corners of its faces: enough that none of a scan's many
+/// thousands exceeds it by noise.
 double roughness_m(const Scene& scene, const Plane& plane) {
   std::vector<double> away;
   for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
@@ -340,7 +341,7 @@ std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> f
   std::ranges::copy_if(some, std::back_inserter(inner), [&](const Sample& sample) {
     return (labeled || sample.level) && columns.among_things(columns.point(sample));
   });
-  if (columns.area_m2(inner) < kLeast_m2) inner = some;  // things stand elsewhere
+  if (columns.area_m2(inner) < kLeast_m2) inner = some;  // the things are elsewhere
   const std::optional<double> z_m = floor_z_m ? floor_z_m : lowest_large(inner, columns.cell_m2());
   if (!z_m) return std::nullopt;
 
@@ -374,7 +375,8 @@ bool looks_y_up(const Scene& scene) {
     floor_aside += static_cast<double>(n.y());
   }
   if (0.5 * std::max(floor_up, floor_aside) >= kLeast_m2) return floor_aside > 2 * floor_up;
-  // A room is lower than it is wide, and most of what is level in it is floor, ceiling and tables.
+  // A room is lower than it is wide, and most of its horizontal surface is floor, ceiling and
+  // tables.
   const Vector3f size = box.isEmpty() ? Vector3f::Zero().eval() : Vector3f(box.sizes());
   return size.z() > 3.2F && size.y() > 1.8F && size.y() < 0.9F * std::min(size.x(), size.z()) &&
          level_area(scene, 1) > level_area(scene, 2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What follows from a floor once it is found: its frame, and where rooms on it end.
+// Derived from a detected floor: its frame, and the clipping of rooms on it.
 #include <algorithm>
 
 #include <Eigen/Dense>

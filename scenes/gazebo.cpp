@@ -51,7 +51,7 @@ class WorldReader {
 
   Scene read(std::vector<std::string>* warnings) {
     require_readable(file_);
-    // What it has to say comes as errors; it would also print it.
+    // Its messages arrive as errors; it would also print them.
     sdf::Console::Instance()->SetQuiet(true);
     const gazebo::Expanded expanded = gazebo::expand(file_, told_);
     scene_.name = file_.stem().string();
@@ -71,7 +71,7 @@ class WorldReader {
     meshes_.clear();
     if (!scene_.lights.empty()) {
       const float edge_m = gazebo::edge_for_light_m(scene_);
-      constexpr std::size_t kEnoughFaces = 1'000'000;  // a road of 100 km is split lengthwise
+      constexpr std::size_t kEnoughFaces = 1'000'000;  // a road of 100 km is split along its length
       scene_ = subdivide(std::move(scene_), edge_m, kEnoughFaces);
     }
     finish_parts(scene_);
@@ -79,9 +79,9 @@ class WorldReader {
   }
 
  private:
-  /// An element that libsdformat refuses takes its document with it: the others are read without
+  /// If libsdformat rejects an element, it rejects the whole document: then read the others without
   /// it.
-  /// @returns whether nothing was refused
+  /// @returns whether nothing was rejected
   bool add_piece(const std::string& scene, std::span<const std::string> elements) {
     sdf::ParserConfig config;
     config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
@@ -110,7 +110,7 @@ class WorldReader {
     ambient_ = {ambient.R(), ambient.G(), ambient.B()};
   }
 
-  /// A pose that refers to something that is not there counts from its parent.
+  /// A pose that refers to something missing is relative to its parent.
   template <class Thing>
   Eigen::Affine3d pose_of(const Thing& thing, const std::string& what) {
     ignition::math::Pose3d pose;
@@ -125,12 +125,12 @@ class WorldReader {
         gazebo::light_of(light, world_from_parent * pose_of(light, "light " + light.Name())));
   }
 
-  /// A top-level model; those inside it belong to it.
+  /// Adds a top-level model; nested models belong to it.
   void add_model(const sdf::Model& model, const Eigen::Affine3d& world_from_parent) {
     Scene parts;
     parts.name = model.Name();
     add_links(model, model.Name(), world_from_parent, parts);
-    if (parts.triangles.empty()) return;  // lights and ground truths have no looks
+    if (parts.triangles.empty()) return;  // lights and ground truths have no geometry
     std::optional<ClassId> class_id = rules_.find({model.Name()});
     if (!class_id && guess_class(model.Name()) != kVoid) class_id = guess_class(model.Name());
     const bool known = std::ranges::any_of(parts.class_of, [](ClassId c) { return c != kVoid; });
@@ -186,7 +186,7 @@ class WorldReader {
     append_part(parts, std::move(shown), world_from_visual, name);
   }
 
-  /// Worlds show one mesh many times. One that cannot be read is left out.
+  /// Cached, since worlds show one mesh many times. An unreadable mesh is omitted.
   const Scene* mesh_of(const fs::path& file) {
     const auto [place, is_new] = meshes_.try_emplace(file);
     if (is_new) {
@@ -197,14 +197,15 @@ class WorldReader {
         for (const std::string& warning : warnings) told_.tell(warning);
       } catch (const InputError& error) {
         const std::string what = error.what();
-        const bool is_named = what.find(file.string()) != what.npos;  // a scene knows no file
+        const bool is_named =
+            what.find(file.string()) != what.npos;  // a Scene does not know its file
         told_.tell(fmt::format("{}{}: left out", is_named ? "" : file.string() + ": ", what));
       }
     }
     return place->second ? &*place->second : nullptr;
   }
 
-  /// The object of a mesh that a visual names, moved to the middle where it says so.
+  /// The submesh that a visual names, moved to the center if the visual says so.
   Scene submesh_of(const Scene& mesh, const sdf::Mesh& wanted) {
     const auto found = std::ranges::find_if(mesh.instances, [&](const Instance& instance) {
       return lower(instance.name) == lower(wanted.Submesh());
@@ -230,8 +231,8 @@ class WorldReader {
     return part;
   }
 
-  /// A texture of the visual's own takes the place of the mesh's materials; a mere color is that
-  /// of what has no texture.
+  /// A texture of the visual itself replaces the mesh's materials; a mere color applies to what has
+  /// no texture.
   static void dress(Scene& mesh, const Material& look) {
     for (Material& material : mesh.materials)
       if (!look.texture.empty() || material.texture.empty()) {
@@ -255,7 +256,7 @@ class WorldReader {
         if (const auto* metal = pbr->Workflow(sdf::PbrWorkflowType::METAL))
           put_texture(metal->AlbedoMap(), look);
     }
-    // As for materials of meshes: alpha 0 is more often a mistake than something invisible.
+    // As for mesh materials: alpha 0 is more often a mistake than an invisible object.
     if (opacity > 0.0F && opacity <= 0.5F) {
       const Eigen::Vector3f tint =
           Eigen::Vector3f(look.base_color.r, look.base_color.g, look.base_color.b) / 255.0F;
@@ -286,7 +287,7 @@ class WorldReader {
 }  // namespace
 
 Scene load_gazebo_world(const fs::path& file, std::vector<std::string>* warnings) {
-  // libsdformat takes 3 s for each megabyte of small models.
+  // libsdformat takes 3 s per megabyte of small models.
   constexpr GuardLimits kLimits{.processor_s_per_mb = 5.0};
   return load_guarded(
       file, warnings, [&](std::vector<std::string>* told) { return WorldReader(file).read(told); },

@@ -18,7 +18,7 @@ Scene load_guarded(const std::filesystem::path& file, std::vector<std::string>* 
   }
   std::vector<std::string> told;
   Scene scene;
-  std::string read;  // what the child read: its scopes are not ours
+  std::string read;  // what the child read: its scopes are not shared with this process
   const auto work = [&]() -> std::function<void(PipeWriter&)> {
     const ReadScope scope;
     scene = load(&told);

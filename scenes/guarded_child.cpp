@@ -35,12 +35,13 @@ namespace mh {
 namespace {
 
 #ifdef __SANITIZE_ADDRESS__
-constexpr bool kSanitized = true;  // shadow memory knows no limit, and what it reports must be seen
+constexpr bool kSanitized = true;  // shadow memory cannot be limited, and sanitizer reports must be
+                                   // visible
 #else
 constexpr bool kSanitized = false;
 #endif
 #ifdef __SANITIZE_THREAD__
-constexpr bool kMayFork = false;  // it allows a child no threads
+constexpr bool kMayFork = false;  // it does not allow threads in a child
 #else
 constexpr bool kMayFork = true;
 #endif
@@ -48,10 +49,10 @@ constexpr bool kMayFork = true;
 /// The first byte that a child sends.
 enum class Word : char { kDone = 'D', kInput = 'I', kMachine = 'M', kOther = 'E', kMemory = 'N' };
 
-/// What a child leaves where its parent finds it, whatever becomes of the child.
+/// What a child leaves in shared memory for its parent, even if it crashes.
 struct Note {
-  char file[4000];           ///< that is being read, ended by a zero
-  std::int64_t processor_s;  ///< that it may take by now
+  char file[4000];           ///< the file being read, zero-terminated
+  std::int64_t processor_s;  ///< current processor limit
   std::uint64_t memory_bytes;
 };
 
@@ -106,7 +107,7 @@ void limit(__rlimit_resource resource, std::uint64_t value) {
   setrlimit(resource, &limits);
 }
 
-/// What this process has mapped, bytes.
+/// Address space of this process, bytes.
 std::uint64_t mapped_bytes() {
   unsigned long long pages = 0;
   if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
@@ -116,7 +117,7 @@ std::uint64_t mapped_bytes() {
   return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-/// Foreign readers print; what they have to say comes as an error.
+/// Third-party readers print messages; they are reported as errors instead.
 void silence() {
   const int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
   if (nowhere < 0) return;
@@ -124,7 +125,7 @@ void silence() {
   dup2(nowhere, STDERR_FILENO);
 }
 
-/// Comes every second of processor time from the first limit on.
+/// Called every second of processor time, starting at the first limit.
 void on_processor_limit(int) {
   const GuardLimits& limits = g_watch.limits;
   (*g_watch.note)->processor_s =
@@ -137,7 +138,7 @@ void on_processor_limit(int) {
   kill(getpid(), SIGXCPU);
 }
 
-/// Gives what has been read since its share of memory; then operator new tries again.
+/// Raises the memory limit by the share of what has been read since; then operator new tries again.
 void on_memory_limit() {
   const std::uint64_t granted = (*g_watch.note)->memory_bytes;
   const std::uint64_t allowed =
@@ -148,7 +149,7 @@ void on_memory_limit() {
 }
 
 void obey(const GuardLimits& limits) {
-  // The parent decides when it is interrupted; if it dies, so does the child.
+  // The parent decides what happens on an interrupt; if it dies, so does the child.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
@@ -198,7 +199,7 @@ void* run_child(void* argument) {
   return nullptr;
 }
 
-/// Runs on a thread, since only a new one can be given a larger stack.
+/// Runs on a thread, since only a new thread can have a larger stack.
 void run_on_own_stack(ChildWork child, std::size_t stack_bytes) {
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
@@ -210,7 +211,7 @@ void run_on_own_stack(ChildWork child, std::size_t stack_bytes) {
     run_child(&child);
 }
 
-/// The child as its parent sees it; goes with it.
+/// The child as seen by its parent; killed by the destructor.
 class Child {
  public:
   Child(pid_t pid, int pipe) : pid_(pid), pipe_(pipe) {}
@@ -224,7 +225,7 @@ class Child {
   Child& operator=(const Child&) = delete;
 
   int pipe() const { return pipe_; }
-  /// @returns its status as waitpid tells it; nullopt if somebody else has taken it
+  /// @returns its status from waitpid; nullopt if something else has already collected it
   std::optional<int> wait() {
     int status = 0;
     pid_t got = 0;
@@ -288,7 +289,7 @@ void in_child(const std::filesystem::path& file, const GuardLimits& limits,
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
     throw MachineError(fmt::format("{}: no pipe: {}", file.string(), std::strerror(errno)));
-  fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);  // fewer turns; refused, it works as well
+  fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);  // fewer switches; works as well if refused
   const pid_t parent = getpid();
   const pid_t pid = fork();
   if (pid == 0) {
@@ -298,7 +299,7 @@ void in_child(const std::filesystem::path& file, const GuardLimits& limits,
     g_watch = {limits, &note, ends[1], g_bytes_read, mapped_bytes() + limits.stack_bytes};
     obey(limits);
     run_on_own_stack({work, note, ends[1]}, limits.stack_bytes);
-    _exit(0);  // nothing of the parent's is flushed or cleared up twice
+    _exit(0);  // skips flushing and cleaning up the parent's state twice
   }
   const int forked = errno;
   close(ends[1]);

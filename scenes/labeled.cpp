@@ -33,7 +33,7 @@ LabeledSurface survey_labels(const Scene& scene) {
   for (const Instance& instance : scene.instances) name_of[instance.id] = &instance.name;
   LabeledSurface surface;
   std::map<std::string, double> area_of;
-  std::map<const std::string*, std::string> patterns;  // looked up, never walked
+  std::map<const std::string*, std::string> patterns;  // looked up, never iterated over
   for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
     const auto& [a, b, c] = scene.triangles[face];
     const Eigen::Vector3d p = scene.positions_m[a].cast<double>();

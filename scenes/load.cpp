@@ -25,7 +25,7 @@ namespace mh {
 
 namespace {
 
-/// A house has its floor at z = 0, however it is looked at.
+/// A house has its floor at z = 0, whatever `frame` states.
 Scene built(Scene house, const std::filesystem::path& file, const SceneFrame& frame) {
   if (frame.up == UpAxis::kY)
     throw InputError(fmt::format("{}: up: y: a house is built with z up", file.string()));
@@ -33,13 +33,13 @@ Scene built(Scene house, const std::filesystem::path& file, const SceneFrame& fr
   return house;
 }
 
-/// What a file of others lacks: a floor, and a room where there is none.
+/// Adds what other sources' files lack: a floor, and a room if there is none.
 Scene settled(Scene scene, const SceneFrame& frame, std::vector<std::string>* warnings) {
   if (const auto found = find_floor(scene, frame.floor_z_m, warnings)) {
     scene.floor = found->floor;
     if (scene.rooms.empty() && *scene.floor.area_m2 > 0) scene.rooms.push_back(found->room);
     end_rooms_near_things(scene.rooms, found->things_m);
-  } else if (!scene.positions_m.empty()) {  // nowhere to stand: things lie on what is lowest
+  } else if (!scene.positions_m.empty()) {  // nowhere to stand: things rest on the lowest point
     const auto z = [](const Eigen::Vector3f& p) { return p.z(); };
     scene.floor.middle_m.z() = static_cast<double>(std::ranges::min(scene.positions_m, {}, z).z());
     scene.floor.area_m2 = 0;
@@ -56,7 +56,7 @@ void make_legible(std::string& text) {
   if (!is_legible(text)) text = legible(std::move(text));
 }
 
-/// Names are printed and written into JSON, whatever somebody's file holds.
+/// Names from files are printed and written into JSON, so they must be legible.
 void make_legible(Scene& scene) {
   make_legible(scene.name);
   for (Instance& instance : scene.instances) make_legible(instance.name);
@@ -94,7 +94,8 @@ Scene load(const std::filesystem::path& file, std::vector<std::string>* warnings
 
 Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings,
                  const SceneFrame& frame) {
-  std::vector<std::string> unheard;  // the same is looked at whether or not anybody listens
+  std::vector<std::string> unheard;  // the same files are read whether or not anybody receives the
+                                     // warnings
   if (warnings == nullptr) warnings = &unheard;
   try {
     Scene scene = load(file, warnings, frame);
@@ -104,7 +105,7 @@ Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* wa
   } catch (const InputError& error) {
     const std::string_view what = error.what();
     if (!what.starts_with("scene ")) throw;
-    throw InputError(fmt::format("{}: {}", file.string(), what));  // a scene knows no file
+    throw InputError(fmt::format("{}: {}", file.string(), what));  // a Scene does not know its file
   }
 }
 

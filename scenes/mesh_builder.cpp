@@ -94,7 +94,7 @@ std::uint32_t MeshBuilder::vertex(MaterialId material, const Vector3f& local, co
 void MeshBuilder::triangle(MaterialId material, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   const Vector3f &pa = scene_.positions_m[a], &pb = scene_.positions_m[b],
                  &pc = scene_.positions_m[c];
-  // At the poles of round shapes two corners fall together; leaving such a face out opens nothing.
+  // At the poles of round shapes two corners coincide; omitting such a face leaves no gap.
   if ((pb - pa).cross(pc - pa).norm() < 1e-9F) return;
   scene_.triangles.push_back({a, b, c});
   scene_.material_of.push_back(material);

@@ -21,12 +21,11 @@ void MeshBuilder::box(MaterialId material, const Vector3f& min_m, const Vector3f
                       const BoxStyle& style) {
   const Vector3f size = max_m - min_m;
   assert(size.minCoeff() > 0.0F);
-  // Thin bars are left sharp: their bevel would be far below a pixel and cost four times the
-  // points.
+  // Thin bars stay sharp: their bevel would be far below a pixel and cost four times the vertices.
   const float bevel = size.minCoeff() < kThinnestBevelled ? 0.0F : style.bevel_m;
   int grain = style.grain_axis;
   if (grain < 0) size.maxCoeff(&grain);
-  // Every box is cut from another place of the stuff.
+  // Every box is cut from a different part of the material.
   const RandomStream random = RandomStream(scene_.instances.size()).fork(shape_count_++);
   const Vector2f offset(static_cast<float>(random.uniform(0)),
                         static_cast<float>(random.uniform(1)));
@@ -151,7 +150,7 @@ void MeshBuilder::panel(MaterialId material, const Plane& plane, std::span<const
   for (std::size_t j = 0; j < nv; ++j)
     for (std::size_t i = 0; i < nu; ++i)
       if (used[j * nu + i])
-        // v grows downwards in the picture, upwards on the wall: turn it round.
+        // v grows downward in the image, upward on the wall: flip it.
         id[j * nu + i] =
             vertex(material, plane.origin + u_breaks[i] * plane.u_axis + v_breaks[j] * plane.v_axis,
                    {u_breaks[i], -v_breaks[j]});

@@ -30,7 +30,7 @@ std::pair<Vector3f, Vector3f> across(const Vector3f& way) {
   return {first, way.cross(first)};
 }
 
-/// Projects a welded soft shape to the plane without a seam: no face that occurs is edge-on.
+/// Projects a welded soft shape to a plane without a seam: no face that occurs is edge-on.
 Vector2f soft_uv(const Vector3f& p) {
   return {p.x() + 0.6F * p.z(), p.y() + 0.6F * p.z()};
 }
@@ -120,7 +120,7 @@ void MeshBuilder::tube(MaterialId material, std::span<const Vector3f> points,
     const Vector3f& before = points[j > 0 ? j - 1 : 0];
     const Vector3f& after = points[j + 1 < n ? j + 1 : n - 1];
     const Vector3f along = (after - before).normalized();
-    x = (x - along * along.dot(x)).normalized();  // carried along: the tube does not twist
+    x = (x - along * along.dot(x)).normalized();  // parallel transport: the tube does not twist
     const Vector3f y = along.cross(x);
     if (j > 0) way += (points[j] - points[j - 1]).norm();
     for (int k = 0; k <= sides; ++k) {
@@ -208,7 +208,7 @@ void MeshBuilder::leaf(MaterialId material, const Vector3f& root, const Vector3f
   for (int j = 0; j <= kStations; ++j) {
     const float t = static_cast<float>(j) / kStations;
     const Vector3f spine = root + length_m * (t * way - droop * t * t * Vector3f::UnitZ());
-    // Widest at 40 % of the length; a small width at the ends keeps the faces sound.
+    // Widest at 40 % of the length; a small width at the ends avoids degenerate faces.
     const float half =
         0.5F * width_m * std::max(0.04F, std::pow(std::sin(kTau / 2 * std::pow(t, 0.76F)), 0.8F));
     for (int i = -1; i <= 1; ++i) {

@@ -44,7 +44,7 @@ std::optional<PictureSize> jpeg_size(std::string_view bytes) {
   return std::nullopt;
 }
 
-/// Whether a JPEG's data go on to its end mark; within them a 0xff never stands before 0xd9.
+/// Whether a JPEG's data continue to its end marker; within them 0xff never precedes 0xd9.
 bool jpeg_is_whole(std::string_view bytes) {
   std::size_t at = 2;
   while (at + 2 <= bytes.size()) {
@@ -68,7 +68,7 @@ bool jpeg_is_whole(std::string_view bytes) {
   return false;
 }
 
-/// Walks a PNG's chunks to IEND and checks their sums.
+/// Checks a PNG's chunks up to IEND, with their checksums.
 const char* png_fault(std::string_view bytes) {
   for (std::size_t at = 8; at + 12 <= bytes.size();) {
     const std::size_t length = big_endian(bytes, at, 4);
@@ -84,7 +84,7 @@ const char* png_fault(std::string_view bytes) {
 
 /// Bytes of a decoded pixel, if the bytes are a JPEG or PNG.
 std::uint64_t bytes_per_pixel(std::string_view bytes) {
-  constexpr std::size_t kBits = 24, kColorType = 25;  // where a PNG tells them
+  constexpr std::size_t kBits = 24, kColorType = 25;  // offsets in a PNG
   if (bytes.starts_with("\xff\xd8") || bytes.size() <= kColorType) return 3;
   const int type = bytes[kColorType];  // 0 gray, 2 color, 3 palette; + 4 with opacity
   return (type == 0 ? 1U : type >= 4 ? 4U : 3U) * (bytes[kBits] == 16 ? 2U : 1U);
@@ -130,7 +130,7 @@ std::string without_remarks(std::string_view bytes) {
     const std::size_t length =
         std::min<std::size_t>(big_endian(bytes, at, 4), bytes.size() - at - kFrame);
     const std::string_view type = bytes.substr(at + 4, 4);
-    // A capital first letter: a picture is none without it; tRNS is its opacity.
+    // A capital first letter: a critical chunk; tRNS is its opacity.
     if ((type[0] >= 'A' && type[0] <= 'Z') || type == "tRNS")
       kept += bytes.substr(at, kFrame + length);
     at += kFrame + length;
@@ -139,7 +139,8 @@ std::string without_remarks(std::string_view bytes) {
 }
 
 bool claims_too_much(std::string_view bytes) {
-  // A picture of one color: deflate grows by 1032, a JPEG's blocks of 256 pixels take a few bytes.
+  // Limits for an image of one color: deflate expands by at most 1032, a JPEG's blocks of 256
+  // pixels take a few bytes.
   constexpr std::uint64_t kMostPixels = 1U << 28, kMostPixelsPerByte = 2048, kMostBytes = 1U << 30;
   const auto size = announced_size(bytes);
   if (!size) return false;

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::size_t kMostIds = std::numeric_limits<std::uint16_t>::max();
 
-/// Appends a per-vertex array; where only one side has it, the other is filled with `neutral`.
+/// Appends a per-vertex array; if only one side has it, the other is filled with `neutral`.
 template <class T>
 void append_values(std::vector<T>& whole, std::size_t before, const std::vector<T>& part,
                    std::size_t count, const T& neutral) {
@@ -61,8 +61,7 @@ PlacedScene read(const fs::path& yaml) {
   return read_placed_scene(YamlReader::load(yaml), yaml.parent_path(), yaml.stem().string());
 }
 
-/// A mesh, or a ScanNet scene with its labels. Where the file says of nothing what it is, the
-/// object's name may.
+/// A mesh, or a ScanNet scene with its labels. If the file labels nothing, the object's name may.
 Scene load_object(const PlacedObject& object, const PlacedScene& placed, std::optional<UpAxis> up,
                   std::vector<std::string>* warnings, PictureStore* pictures) {
   if (is_scannet_scene(object.file)) {

@@ -15,7 +15,7 @@
 namespace mh {
 namespace {
 
-/// Beyond, single precision holds no meter, and ray tracers give up.
+/// Beyond this, single precision cannot resolve a meter, and ray tracers fail.
 constexpr float kFarthest_m = 1e7F;
 
 double polygon_area_m2(const std::vector<Eigen::Vector2d>& polygon_m) {
@@ -28,7 +28,7 @@ double polygon_area_m2(const std::vector<Eigen::Vector2d>& polygon_m) {
   return 0.5 * doubled;
 }
 
-/// Throws "scene NAME: what" for the first thing that is wrong.
+/// Throws "scene NAME: what" for the first inconsistency.
 class Checker {
  public:
   explicit Checker(const Scene& scene) : scene_(scene) {}
@@ -125,8 +125,8 @@ class Checker {
   const Scene& scene_;
 };
 
-/// Chains XXH3 over values and arrays; sizes are hashed too, so that nothing can slide from one
-/// array into the next.
+/// Chains XXH3 over values and arrays; sizes are hashed too, so that equal bytes split differently
+/// between arrays give different digests.
 class Digest {
  public:
   template <class T>

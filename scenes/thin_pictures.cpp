@@ -16,7 +16,7 @@ namespace {
 constexpr double kCoarsest_m = 0.0012;
 constexpr int kMostHalvings = 6;
 
-/// The surface that shows a picture, by how often the picture might be halved there.
+/// The surface that shows an image, by how often the image could be halved there.
 using AreaByHalvings = std::array<double, kMostHalvings + 1>;
 
 std::map<const void*, AreaByHalvings> measure(const Scene& scene) {
@@ -32,7 +32,7 @@ std::map<const void*, AreaByHalvings> measure(const Scene& scene) {
                           step2 = (uv[c] - uv[a]).cast<double>();
     const double texels = 0.5 * std::abs(step1.x() * step2.y() - step2.x() * step1.y()) *
                           static_cast<double>(picture.size());
-    constexpr double kFew = 4.0;  // a face that takes its color from one place
+    constexpr double kFew = 4.0;  // a face that takes its color from a single point
     if (texels < kFew || area_m2 <= 0.0) continue;
     const double halvings = std::floor(std::log2(kCoarsest_m / std::sqrt(area_m2 / texels)));
     const auto [place, is_new] = areas.try_emplace(picture.identity(), AreaByHalvings{});

@@ -85,7 +85,7 @@ void bathtub(Piece& p) {
   const MaterialId white = p.material("body", porcelain()), metal = p.fixed(chrome());
   MeshBuilder& m = p.mesh;
   const float lip = 0.07F;
-  // An apron in front and at the ends, a rim, and the inside as one rounded hollow.
+  // An apron in front and at the ends, a rim, and the inside as one rounded basin.
   m.box(white, {-w / 2, -d / 2, 0}, {w / 2, -d / 2 + 0.03F, h - 0.03F}, {.bevel_m = 0.006F});
   m.box(white, {-w / 2, d / 2 - 0.03F, 0}, {w / 2, d / 2, h - 0.03F});
   m.box(white, {-w / 2, -d / 2 + 0.031F, 0}, {-w / 2 + 0.03F, d / 2 - 0.031F, h - 0.03F});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cases behind doors and drawers.
+// Cases with doors and drawers.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -39,7 +39,7 @@ void drawer_front(Piece& p, MaterialId wood, MaterialId metal, const Front& fron
   handle(p, metal, {x - reach, y - 0.018F, z}, {x + reach, y - 0.018F, z});
 }
 
-/// Plinth and closed case behind door and drawer fronts; returns the plane of the fronts' backs.
+/// Base and closed case behind door and drawer fronts; returns the plane of the fronts' backs.
 float closed_case(Piece& p, MaterialId wood, float plinth, float top) {
   const float x = p.size_m.x() / 2, y = p.size_m.y() / 2, h = p.size_m.z();
   const float front = -y + 0.055F;  // fronts and handles stay inside the footprint

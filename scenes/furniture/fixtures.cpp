@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is fixed to walls: pipes, sockets, rails, signs, splash-backs.
+// Things fixed to walls: pipes, sockets, rails, signs, splash-backs.
 #include <algorithm>
 #include <array>
 #include <cmath>

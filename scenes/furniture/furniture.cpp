@@ -12,7 +12,7 @@ namespace {
 
 using enum Mount;
 
-// Roles must name every material that the builder asks for with Piece::material.
+// The roles must list every material that the builder requests through Piece::material.
 const auto kKinds = std::to_array<FurnitureKind>({
     {"armchair", "chair", kFloor, "fabric wood", {0.76F, 0.80F, 0.82F}, build::armchair},
     {"bag", "bag", kOnPiece, "body", {0.36F, 0.16F, 0.38F}, build::bag},

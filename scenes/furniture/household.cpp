@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands in workshops, garages, laundries and closets.
+// Things in workshops, garages, laundries and closets.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -87,7 +87,7 @@ void tool_board(Piece& p) {
       } else if (what == 1) {  // screwdriver
         m.cylinder(metal, {x, y, top - long_m}, {x, y, top - 0.1F}, {0.004F, 0.004F}, 6);
         m.cylinder(grip, {x, y, top - 0.11F}, {x, y, top}, {0.013F, 0.016F}, 10);
-      } else if (what == 2) {  // spanner
+      } else if (what == 2) {  // wrench
         m.box(metal, {x - 0.01F, y - 0.003F, top - long_m}, {x + 0.01F, y + 0.003F, top},
               {.bevel_m = 0.0F});
         for (const float z : {top - long_m, top - 0.02F})

@@ -10,8 +10,9 @@ using Eigen::Vector3f;
 
 namespace {
 
-/// A cloth shade, open above and below, lit from inside. What glows is nearly black beside its own
-/// light: the lamp's source is so close that anything paler would reflect more than the sun does.
+/// A cloth shade, open above and below, lit from inside. The glowing material is nearly black apart
+/// from its own emission: the light source is so close that anything paler would reflect more light
+/// than sunlit surfaces do.
 void shade(Piece& p, float z0, float z1, float r0, float r1) {
   const MaterialId cloth =
       p.material("shade", plain("fabric", {40, 34, 26}, 0.4, 91), {0.74F, 0.60F, 0.40F});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands in game and music rooms.
+// Things in game and music rooms.
 #include <array>
 #include <cmath>
 

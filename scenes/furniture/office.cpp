@@ -21,7 +21,7 @@ MaterialSpec pale_metal() {
   return plain("brushed_metal", {178, 180, 182}, 0.3, 142);
 }
 
-/// Sheets of print lying on each other, a little askew.
+/// A stack of printed sheets, slightly askew.
 void paper_pile(Piece& p, const Vector3f& corner, const Vector2f& size, float tall,
                 std::uint64_t key) {
   MaterialSpec print = plain("paper", {236, 234, 228}, 0.5, 600 + p.random.fork(key).below(0, 900));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Usual materials and parts that several kinds of furniture share.
+// Common materials, and parts shared by several kinds of furniture.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands in shops, schools, lobbies and corridors.
+// Furniture of shops, schools, lobbies and corridors.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -155,7 +155,7 @@ void bench(Piece& p) {
 void pillow(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId fabric = p.material("fabric", plain("knit", {196, 152, 62}, 0.6, 33));
-  // Leaning back against what stands behind it.
+  // Leaning back against whatever is behind it.
   p.mesh.push(translation(0, 0, h / 2) * turn(Vector3f::UnitX(), 1.57079633F - 0.24F));
   p.mesh.cushion(fabric, {0, 0, 0}, {w, h - 0.02F, 0.45F * d}, 0.22F * d, 0.16F * d, 0.05F);
   p.mesh.pop();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cases that are open to the front.
+// Cases with open fronts.
 #include <algorithm>
 #include <array>
 
@@ -92,7 +92,7 @@ void open_shelf(Piece& p) {
     const float e = top ? 0.0F : 0.004F;
     m.box(wood, {-w / 2 + e, -d / 2 + e, z}, {w / 2 - e, d / 2 - e, z + 0.02F}, {.grain_axis = 0});
     if (top) break;
-    // Things on the boards: baskets, jars, stacks of bowls, in an order of their own.
+    // Things on the boards: baskets, jars, stacks of bowls, in random order.
     float x = -w / 2 + 0.05F;
     for (int k = 0; x < w / 2 - 0.12F; ++k) {
       const RandomStream r = p.random.fork(static_cast<std::uint64_t>(100 * i + k));

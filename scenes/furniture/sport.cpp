@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands in gyms, and bicycles.
+// Gym equipment and bicycles.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,7 +18,7 @@ void treadmill(Piece& p) {
                    gray = p.material("body", plain("plastic", {120, 122, 126}, 0.2, 195)),
                    metal = p.fixed(bare_steel());
   MeshBuilder& m = p.mesh;
-  // One steps on from the front (-y); the console stands at the back, which is to a wall.
+  // The user steps on from the front (-y); the console is at the back, which faces a wall.
   m.box(gray, {-w / 2, -d / 2, 0.03F}, {-w / 2 + 0.10F, d / 2 - 0.25F, 0.17F}, {.bevel_m = 0.015F});
   m.box(gray, {w / 2 - 0.10F, -d / 2, 0.03F}, {w / 2, d / 2 - 0.25F, 0.17F}, {.bevel_m = 0.015F});
   m.box(black, {-w / 2 + 0.101F, -d / 2 + 0.03F, 0.06F}, {w / 2 - 0.101F, d / 2 - 0.25F, 0.155F},

@@ -16,7 +16,7 @@ MaterialSpec black_plastic() {
   return plain("plastic", {26, 26, 28}, 0.2, 2);
 }
 
-/// A frame of four mitre-less bars around a picture at the front of the piece's back wall.
+/// A frame of four bars without miters around an image at the front of the piece's back wall.
 void framed(Piece& p, MaterialId frame, MaterialId image, float bar, float image_inset) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   MeshBuilder& m = p.mesh;
@@ -111,7 +111,7 @@ void photo_frame(Piece& p) {
 
 void mirror(Piece& p) {
   const float w = p.size_m.x(), h = p.size_m.z(), bar = 0.035F;
-  // A renderer without reflections shows a mirror as a plain silvery pane.
+  // The renderer has no reflections, so a mirror is a plain silvery pane.
   const MaterialId pane = p.material("glass", plain("glass", {178, 190, 196}, 0.15, 124));
   p.mesh.max_edge_m = 0.08F;
   framed(p, p.material("frame", oak()), pane, bar, 0.008F);
@@ -124,7 +124,7 @@ void light_switch(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId body = p.material("body", plain("plastic", {234, 234, 230}, 0.1, 126));
   p.mesh.box(body, {-w / 2, -d / 2 + 0.005F, 0}, {w / 2, d / 2, h}, {.bevel_m = 0.002F});
-  // The rocker stands out at its top.
+  // The rocker protrudes at its top.
   p.mesh.box(body, {-0.36F * w, -d / 2 + 0.002F, 0.14F * h},
              {0.36F * w, -d / 2 + 0.0049F, 0.5F * h}, {.bevel_m = 0.0F});
   p.mesh.box(body, {-0.36F * w, -d / 2, 0.51F * h}, {0.36F * w, -d / 2 + 0.0049F, 0.86F * h},
@@ -134,7 +134,7 @@ void light_switch(Piece& p) {
                     {0.003F, 0.003F}, 8);
 }
 
-/// What people tape to walls and doors of cupboards: lists, calendars, photographs, drawings.
+/// What people tape to walls and cupboard doors: lists, calendars, photographs, drawings.
 void wall_papers(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const int columns = std::max(1, static_cast<int>(std::lround(w / 0.27F))),

@@ -30,7 +30,7 @@ namespace {
 
 constexpr std::size_t kMostIncludes = 10000;
 constexpr std::size_t kMostVisuals = 20'000;  // of a model: libsdformat takes 0.1 MB for each
-constexpr std::size_t kDeepest = 64;          // includes or models within each other
+constexpr std::size_t kDeepest = 64;          // nested includes or models
 
 constexpr const char* kSun =
     "<sdf version='1.9'><light type='directional' name='sun'><pose>0 0 10 0 0 0</pose>"
@@ -92,7 +92,7 @@ class Expander {
       else
         elements.push_back(text_of_all(element));
     }
-    // libsdformat takes 4 MB for each model, and a tenth of a second for each document.
+    // libsdformat takes 4 MB for each model, and 0.1 s for each document.
     const std::size_t at_once = std::clamp<std::size_t>(elements.size() / 16, 16, 128);
     for (std::size_t i = 0; i < elements.size(); ++i) {
       if (expanded.pieces.empty() || (!refers && i % at_once == 0)) expanded.pieces.emplace_back();
@@ -132,7 +132,7 @@ class Expander {
     for (const XMLElement& part : children(parent)) add_part(part, source, out, names);
   }
 
-  /// What stands in a world, a model or a file.
+  /// Adds an element of a world, a model or a file.
   void add_part(const XMLElement& part, const Source& source, XMLElement& out, Names& names) {
     const std::string_view kind = part.Name();
     if (kind == "include")
@@ -233,7 +233,7 @@ class Expander {
     if (pose != nullptr) add_pose(*pose, source, *copy);
     Names inner;
     add_parts(model, source, *copy, inner);
-    // libsdformat wants at least one link, or models.
+    // libsdformat requires at least one link, or models.
     if (copy->FirstChildElement("link") == nullptr && copy->FirstChildElement("model") == nullptr)
       copy->InsertNewChildElement("link")->SetAttribute("name", "empty");
     --depth_;
@@ -317,7 +317,7 @@ class Expander {
     if (const XMLElement* pose = frame.FirstChildElement("pose")) add_pose(*pose, source, *copy);
   }
 
-  /// Joints do not show, but poses may be told relative to one.
+  /// Joints are invisible, but poses may be relative to one.
   void add_joint(const XMLElement& joint, const Source& source, XMLElement& out, Names& names) {
     const char* name = joint.Attribute("name");
     if (!source.has_frames || name == nullptr || !source.referred.contains(name)) return;
@@ -329,7 +329,7 @@ class Expander {
     if (const XMLElement* pose = joint.FirstChildElement("pose")) add_pose(*pose, source, *copy);
   }
 
-  /// The light that reaches everything.
+  /// Keeps the ambient light.
   void add_scene(const XMLElement& scene, XMLElement& out) {
     const std::string ambient = text_of(scene.FirstChildElement("ambient"));
     if (ambient.empty() || out.FirstChildElement("scene") != nullptr) return;

@@ -54,8 +54,8 @@ fs::path folder_of(const fs::path& file) {
   return fs::absolute(file).lexically_normal().parent_path();
 }
 
-/// Of a model that Gazebo has loaded before: HOST/OWNER/models/NAME/VERSION, in small letters; the
-/// newest. `named` is HOST/1.0/OWNER/models/NAME[/VERSION][/files/...].
+/// The newest version of a model that Gazebo has downloaded before: HOST/OWNER/models/NAME/VERSION,
+/// in lower case. `named` is HOST/1.0/OWNER/models/NAME[/VERSION][/files/...].
 std::optional<fs::path> find_in_fuel_cache(const std::string& named) {
   std::vector<std::string> parts;
   std::istringstream list(named);
@@ -104,7 +104,7 @@ std::optional<fs::path> Finder::find(const std::string& uri, const fs::path& fil
                     std::back_inserter(places));
   if (auto found = find_in(places, named)) return found;
   if (scheme != "package") return std::nullopt;
-  // package://NAME/a/b: NAME is wherever somebody put it, and may not be a folder's name.
+  // package://NAME/a/b: package NAME can be anywhere, and its folder may have another name.
   for (fs::path rest = named; rest.has_parent_path();) {
     rest = rest.lexically_relative(*rest.begin());
     if (auto found = find_in(places, rest)) return found;

@@ -6,7 +6,7 @@
 namespace mh::gazebo {
 namespace {
 
-/// A name that libsdformat lets pass.
+/// A name that libsdformat accepts.
 std::string sound_name(const char* given) {
   std::string name = given == nullptr ? "" : given;
   for (std::size_t at; (at = name.find("::")) != name.npos; name[at] = '_') name.erase(at, 1);

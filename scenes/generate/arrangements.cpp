@@ -34,7 +34,7 @@ int add_rows(Draft& draft, const Design& d) {
   Dice& dice = draft.dice;
   const FloorRect& r = draft.layout.rect();
   double turn = 90.0 * dice.whole(0, 3);
-  for (const LayoutItem& item : draft.layout.items())  // towards what is written on
+  for (const LayoutItem& item : draft.layout.items())  // toward the surface that is written on
     if (item.kind->class_name == "whiteboard") turn = item.turn_deg;
   const bool swapped = std::abs(std::sin(turn * kDegree)) > 0.5;
   const double wide = swapped ? r.y1 - r.y0 : r.x1 - r.x0;

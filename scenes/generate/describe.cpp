@@ -78,7 +78,7 @@ OpeningPlan describe_opening(const WallOpening& opening) {
 
 void describe_daylight(const Daylight& daylight, HouseFile& house) {
   house.garden.glow = daylight.dusk ? 0.012 : 0.03;
-  // At dusk the sun is down and the sky gives less, but windows are not black.
+  // At dusk the sun is down and the sky is dimmer, but windows are not black.
   const double s = daylight.dusk ? 0.2 : 1.0;
   const double turn_rad = daylight.sun_turn_deg * kDegree;
   if (!daylight.dusk)

@@ -8,7 +8,7 @@
 namespace mh::generate {
 namespace {
 
-/// Adds a piece that stands for itself, with its parts. @returns whether there was a place for it
+/// Adds a free-standing piece with its parts. @returns whether there was space for it
 bool add_one(Draft& draft, const Design& design) {
   for (int t = 0; t < kTries; ++t)
     if (const auto item = put_in_room(draft, design))

@@ -22,8 +22,8 @@ namespace {
 
 using namespace generate;
 
-constexpr int kDrafts = 400;         // rooms drawn until one holds all that it needs
-constexpr double kLeastFree = 0.07;  // of the floor: where the robot can stand
+constexpr int kDrafts = 400;         // rooms drawn until one has everything that it needs
+constexpr double kLeastFree = 0.07;  // share of the floor where the robot can stand
 
 int draw_wanted_objects(Dice& dice, int group, double area_m2) {
   constexpr std::array<DrawRange, kDensityGroups> kPer10_m2 = {
@@ -32,7 +32,7 @@ int draw_wanted_objects(Dice& dice, int group, double area_m2) {
   return std::max(3, static_cast<int>(ratio * area_m2 / 10.0));
 }
 
-/// From an empty room to a furnished one. @returns whether all that it needs found a place
+/// Furnishes an empty room. @returns whether everything that it needs fits
 bool furnish(Draft& draft) {
   const RoomGrammar& grammar = draft.grammar;
   if (!add_doors(draft)) return false;
@@ -122,7 +122,7 @@ std::string with_detail(const GeneratedPlan& plan) {
     const double wanted = std::clamp(count, static_cast<double>(kLeastTriangles),
                                      static_cast<double>(kMostTriangles));
     if (wanted == count) break;
-    // Round shapes do not grow with it: aim a little beyond.
+    // Round shapes do not scale with detail: aim slightly higher.
     fine.detail = std::clamp(*fine.detail * std::pow(wanted / count, 0.65), 0.5, 6.0);
   }
   return to_yaml(fine);

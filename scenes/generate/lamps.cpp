@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// What an L-shaped room has beside its missing corner.
+/// One of the two parts of an L-shaped room next to its missing corner.
 struct Arm {
   Vector2d middle_m, end_m;
 };
@@ -24,7 +24,7 @@ std::array<Arm, 2> arms(const FloorRect& room, const FloorRect& cut) {
            {{0.5 * (cut.x0 + cut.x1), y}, {cut.x0 > room.x0 ? room.x1 : room.x0, y}}}};
 }
 
-/// From beside the missing corner, if there is one, to the middle of that arm.
+/// Moves a position next to the missing corner, if there is one, to the center of that arm.
 Vector2d beside_cut(const Layout& layout, const Vector2d& at_m) {
   if (!layout.cut()) return at_m;
   const FloorRect& cut = *layout.cut();
@@ -35,7 +35,7 @@ Vector2d beside_cut(const Layout& layout, const Vector2d& at_m) {
   return {at_m.x(), arms(layout.rect(), cut)[1].middle_m.y()};
 }
 
-/// Whether a lamp shines on it round no corner.
+/// Whether a lamp illuminates a position directly, not around a corner.
 bool is_lit(const Layout& layout, const Vector2d& at_m) {
   constexpr double kFar_m = 4.0;
   constexpr int kSteps = 50;

@@ -11,10 +11,11 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kDoorSwing_m = 0.95;    // floor that a door sweeps, and where one enters
+constexpr double kDoorSwing_m = 0.95;    // floor that a door sweeps, which is also where one enters
 constexpr double kRobotHeight_m = 1.25;  // what hangs higher is in nobody's way
 constexpr double kFlat_m = 0.03;         // rugs
-constexpr double kApart_m = 0.004;       // neighbors: rounding must not make them overlap
+constexpr double kApart_m = 0.004;       // gap between neighbors: rounding must not make them
+                                         // overlap
 
 Footprint rectangle(const FloorRect& r) {
   return {{{r.x0, r.y0}, {r.x1, r.y0}, {r.x1, r.y1}, {r.x0, r.y1}}};
@@ -123,7 +124,7 @@ bool Layout::inside(const Footprint& footprint) const {
 bool Layout::belong_together(const LayoutItem& item, std::size_t i) const {
   const LayoutItem& other = items_[i];
   if (item.under == i) return true;
-  // A chair's back is beside the table that it is pushed under, not beneath what is on it.
+  // A chair's back is next to the table that it is pushed under, not beneath what is on it.
   if (item.under && other.on == item.under) return true;
   if (item.on && other.under == item.on) return true;
   for (std::optional<std::size_t> below = item.on; below; below = items_[*below].on)
@@ -135,7 +136,7 @@ bool Layout::apart(const LayoutItem& item) const {
   const auto is_rug = [](const LayoutItem& i) { return i.kind->name == "rug"; };
   for (std::size_t i = 0; i < items_.size(); ++i) {
     const LayoutItem& other = items_[i];
-    // Of two rugs neither lies on the other; everything else may stand on them.
+    // Two rugs must not overlap; everything else may stand on them.
     if (belong_together(item, i) || is_rug(item) != is_rug(other)) continue;
     const double low = std::max(item.z_m, other.z_m);
     const double high = std::min(item.z_m + item.size_m.z(), other.z_m + other.size_m.z());
@@ -151,7 +152,7 @@ bool Layout::leaves_openings(const LayoutItem& item) const {
   for (const WallOpening& o : openings_) {
     if (item.z_m >= o.high_m || top <= o.low_m + 0.05) continue;
     const WallRun& wall = walls_[static_cast<std::size_t>(o.side)];
-    const double depth = 0.35;  // before a window nothing tall stands
+    const double depth = 0.35;  // nothing tall stands in front of a window
     const Footprint before = footprint_of(wall.place(0.5 * (o.from_m + o.to_m), depth, 0),
                                           wall.turn_deg(), o.to_m - o.from_m, depth);
     if (overlap_m(footprint, before) > 0) return false;
@@ -164,7 +165,7 @@ bool Layout::in_the_way(const LayoutItem& item) const {
 }
 
 void Layout::narrow(Grid2d<float>& room, const Footprint& footprint) const {
-  constexpr double kReach_m = kRobotRadius_m + kPlay_m;  // what is farther hinders nobody
+  constexpr double kReach_m = kRobotRadius_m + kPlay_m;  // farther obstacles are irrelevant
   double x0 = 1e30, y0 = 1e30, x1 = -1e30, y1 = -1e30;
   for (const Vector2d& p : footprint) {
     x0 = std::min(x0, p.x()), x1 = std::max(x1, p.x());
@@ -175,7 +176,7 @@ void Layout::narrow(Grid2d<float>& room, const Footprint& footprint) const {
        y <= std::min(room.height() - 1, cell(y1 + kReach_m)); ++y)
     for (int x = std::max(0, cell(x0 - kReach_m));
          x <= std::min(room.width() - 1, cell(x1 + kReach_m)); ++x)
-      if (room(x, y) > 0.9 * kRobotRadius_m)  // what is less stays too little
+      if (room(x, y) > 0.9 * kRobotRadius_m)  // smaller values stay too small
         room(x, y) =
             std::min(room(x, y), static_cast<float>(distance_m(cell_center(x, y), footprint)));
 }
@@ -231,8 +232,9 @@ std::optional<std::size_t> Layout::add(const LayoutItem& item, double front_m) {
     if (hinders) {
       Grid2d<float> after = room_m_;
       narrow(after, footprint);
-      // Nowhere may it fit where it cannot come, and where it comes it has its play. Plans are in
-      // whole millimeters: whoever counts what fits exactly, or does not, finds the same.
+      // No floor may be large enough for the robot yet unreachable, and wherever the robot gets, it
+      // has its clearance. Plans are in whole millimeters: exact fits and near misses are decided
+      // the same way by every check.
       constexpr double kTie_m = 0.0002;
       for (const double radius : {kRobotRadius_m, kRobotRadius_m + kPlay_m})
         for (const double tie : {-kTie_m, kTie_m})

@@ -22,9 +22,9 @@ Stuff draw_stuff(const std::string& palette, Dice& dice) {
   return {&entry, shifted, draw(dice, entry.variation), {}};
 }
 
-/// A material of some stuff, under a name that says which palette it is from.
+/// Creates a material, named after the palette that it is from.
 std::string make_material_of(Draft& draft, const std::string& palette, const Stuff& stuff) {
-  // Two pieces of one stuff differ a little in shade, and in their grain.
+  // Two pieces of the same material differ slightly in shade, and in their grain.
   const double shade = draft.dice.number(-0.035, 0.035) * (stuff.made.empty() ? 0.0 : 1.0);
   const auto level = [&](std::uint8_t v) {
     return static_cast<std::uint8_t>(
@@ -39,7 +39,7 @@ std::string make_material_of(Draft& draft, const std::string& palette, const Stu
   return draft.materials.back().name;
 }
 
-/// Mostly of the stuff that the rest of the room is made of.
+/// Usually the same material as the rest of the room.
 std::string choose_material(Draft& draft, const std::string& palette) {
   constexpr std::size_t kPiecesOfOneStuff = 3;
   Dice& dice = draft.dice;

@@ -10,7 +10,7 @@
 namespace mh {
 namespace {
 
-constexpr double kNarrowestDoorway = 0.6;  // a 0.52 m wide robot needs a little play
+constexpr double kNarrowestDoorway = 0.6;  // a 0.52 m wide robot needs some clearance
 
 std::pair<double, double> read_span(const YamlReader& yaml) {
   const std::vector<double> n = yaml.as_numbers(2);
@@ -18,7 +18,7 @@ std::pair<double, double> read_span(const YamlReader& yaml) {
   return {n[0], n[1]};
 }
 
-/// The side of room a on which room b lies across one wall.
+/// The side of room a on which room b is adjacent across one wall.
 std::optional<Side> side_between(const HousePlan& house, const RoomPlan& a, const RoomPlan& b) {
   for (const Side side : kSides) {
     const double gap = std::abs(wall_at(a.rect, side) - wall_at(b.rect, opposite(side)));

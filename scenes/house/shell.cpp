@@ -11,12 +11,12 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kWallStep = 0.075F;  // shadows of furniture fall on walls and floors
+constexpr float kWallStep = 0.075F;  // for the shadows of furniture on walls and floors
 constexpr float kCeilingStep = 0.12F;
 constexpr float kHullStep = 0.8F;
 constexpr float kJamb = 0.03F;     // thickness of the lining of a doorway or window
 constexpr float kCasing = 0.065F;  // visible width of the boards around it
-constexpr float kProud = 0.012F;   // how far they stand out of the wall
+constexpr float kProud = 0.012F;   // how far they protrude from the wall
 constexpr float kSkirting = 0.07F;
 
 ClassId class_id(std::string_view name) {
@@ -25,8 +25,8 @@ ClassId class_id(std::string_view name) {
   return *id;
 }
 
-/// A wall as a frame: `along` runs as the world coordinate of the wall does, `in` points into the
-/// room, `face` is the wall's inner face.
+/// Frame of a wall: `along` is the world coordinate along the wall, `in` points into the room,
+/// `face` is the wall's inner face.
 struct WallFrame {
   Side side;
   float face;
@@ -66,7 +66,7 @@ void wall_sheet(MeshBuilder& mesh, MaterialId material, const WallFrame& wall,
   const auto& [from, to, low, high] = sheet.extent;
   const std::vector<Hole>& holes = sheet.holes;
   const float step = sheet.step_m / mesh.detail;
-  // u runs to the right of who looks at the wall.
+  // u runs to the right as seen by someone facing the wall.
   const bool forward = ((wall.side == Side::kNorth || wall.side == Side::kWest) == sheet.inwards);
   const float sign = forward ? 1.0F : -1.0F;
   std::vector<float> u_stops, v_stops;
@@ -92,7 +92,7 @@ Hole hole_of(const OpeningPlan& opening) {
           static_cast<float>(opening.low_m), static_cast<float>(opening.high_m)};
 }
 
-/// Whether a doorway pierces the wall on that side of a room.
+/// Whether a doorway goes through the wall on that side of a room.
 bool pierces(const HousePlan& house, const OpeningPlan& opening, std::size_t room, Side side) {
   if (opening.room == room) return opening.side == side;
   if (opening.other != room) return false;
@@ -175,7 +175,7 @@ void build_room(const HousePlan& house, std::size_t index, MaterialId trim, Mesh
   }
 }
 
-/// Boards that line a hole through the wall, and those around it on the faces at these depths.
+/// Boards that line a hole through the wall, and the casing around it on the faces at these depths.
 struct Lining {
   float back;  ///< how far it reaches behind the wall's face
   bool below;
@@ -242,7 +242,7 @@ void build_doorway(const HousePlan& house, const OpeningPlan& door, MaterialId w
   if (door.other) casings.emplace_back(thick - 0.002F, thick + kProud);
   const float back = door.other ? thick + kProud - 0.001F : thick - 0.005F;
   build_lining(mesh, wood, wall, hole, {back, false, casings});
-  // Threshold: a flat board that covers the joint of the two floors.
+  // Threshold: a flat board that covers the joint between the two floors.
   board(mesh, wood, wall.at(hole.from - 0.002F, -0.012F, -0.02F),
         wall.at(hole.to + 0.002F, back, 0.005F));
   if (door.closed) build_door_leaf(mesh, wood, wall, hole);
@@ -301,15 +301,16 @@ void build_hull_layer(const HousePlan& house, MaterialId material, float inset, 
                 .inwards = !outwards,
                 .step_m = kHullStep});
   }
-  if (!outwards) return;  // floors and ceilings have nothing standing at their far side
+  if (!outwards) return;  // floors and ceilings have nothing standing on their far side
   mesh.begin_instance("house/roof", class_id("ceiling"));
   mesh.panel(material, {{0, 0, top}, Vector3f::UnitX(), Vector3f::UnitY()}, xs, ys);
   mesh.begin_instance("house/slab", class_id("otherstructure"));
   mesh.panel(material, {{0, 0, bottom}, Vector3f::UnitY(), Vector3f::UnitX()}, ys, xs);
 }
 
-/// Behind every joint of the rooms lies something closed and dark. One layer would not do: light
-/// is kept per vertex for both sides, so the sun outside would make its inside shine.
+/// Closes off the space behind every joint of the rooms with something dark. One layer is not
+/// enough: light is stored per vertex for both sides, so sunlight outside would make its inside
+/// glow.
 void build_hull(const HousePlan& house, MeshBuilder& mesh) {
   const MaterialId render = mesh.material({.name = "outer_render",
                                            .kind = "plaster",
@@ -322,9 +323,9 @@ void build_hull(const HousePlan& house, MeshBuilder& mesh) {
   build_hull_layer(house, black, 0.01F, false, mesh);
 }
 
-/// A glowing picture of a garden stands beyond each side that has windows, a lawn before it. Each
-/// side has its own, as wide as the side: no window shows what another does. They are nothing that
-/// a map of the house should hold: class void, no object.
+/// A glowing image of a garden is placed beyond each side that has windows, with a lawn in front.
+/// Each side has its own image, as wide as the side, so that no window repeats another's view. They
+/// do not belong in a map of the house: class void, no object.
 void build_garden(const HousePlan& house, const GardenPlan& garden, MeshBuilder& mesh) {
   const auto d = static_cast<float>(garden.distance_m), h = static_cast<float>(garden.height_m);
   const auto glow = static_cast<float>(garden.glow);
@@ -332,8 +333,8 @@ void build_garden(const HousePlan& house, const GardenPlan& garden, MeshBuilder&
   const auto x0 = static_cast<float>(e.x0) - d, x1 = static_cast<float>(e.x1) + d;
   const auto y0 = static_cast<float>(e.y0) - d, y1 = static_cast<float>(e.y1) + d;
   constexpr float kGround = -0.35F;
-  // A camera set for rooms sees the outside too bright: all are darkened. Those that the sun does
-  // not shine on may glow.
+  // With exposure set for indoors the outside would be too bright, so all images are darkened.
+  // Those not lit by the sun may glow.
   const auto picture = [&](Side side, float width_m, bool sunlit) {
     MaterialSpec spec = garden.material;
     spec.name = fmt::format("{}_{}", spec.name, side_name(side));

@@ -38,7 +38,7 @@ Picture paint_fabric(const PaintJob& job) {
 }
 
 Picture paint_knit(const PaintJob& job) {
-  // Stockinette: columns of V-shaped stitches, each leg leaning towards the middle of its column.
+  // Stockinette: columns of V-shaped stitches, each leg leaning toward the center of its column.
   const int columns = std::max(2, job.width / 10), rows = std::max(2, job.height / 8);
   const Field yarn = fbm(job.width, job.height, {columns, rows, 3, 0.7F}, job.random.fork(0));
   const Field broad = fbm(job.width, job.height, {7, 7, 3, 0.5F}, job.random.fork(1));

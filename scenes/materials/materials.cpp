@@ -14,7 +14,7 @@
 namespace mh {
 namespace {
 
-constexpr float kWhole = 0.0F;  // marks a picture: the tile is MaterialSpec::size_m
+constexpr float kWhole = 0.0F;  // marks an image: the tile is MaterialSpec::size_m
 
 struct Kind {
   std::string_view name;
@@ -86,7 +86,7 @@ Material make_material(const MaterialSpec& spec) {
   material.name = spec.name.empty() ? spec.kind : spec.name;
   material.tile_m =
       is_picture(spec.kind) ? spec.size_m : Eigen::Vector2f(kind.tile_u_m, kind.tile_v_m);
-  // Long pictures get coarser texels rather than cut ones.
+  // Long images get coarser texels instead of being cropped.
   const float texel_m = std::max(kind.texel_m, material.tile_m.maxCoeff() / kMaxTexels);
   const auto texels = [&](float length_m) {
     return std::max(8, static_cast<int>(std::lround(length_m / texel_m)));

@@ -86,7 +86,7 @@ Field fbm(int width, int height, const Octaves& octaves, RandomStream random) {
 }
 
 Field white_noise(int width, int height, RandomStream random) {
-  // A sum of four uniforms from one draw: near enough to a normal for a texture, and cheap.
+  // A sum of four uniforms from one draw: close enough to a normal for a texture, and cheap.
   constexpr float kScale = 1.0F / 37837.0F;  // 1 / (65536 * sqrt(4 / 12))
   Field field(width, height);
   std::uint64_t index = 0;

@@ -25,7 +25,7 @@ Picture paint_painting(const PaintJob& job) {
   const Field canvas_grain = white_noise(w, h, job.random.fork(5));
   const float horizon = static_cast<float>(job.random.fork(6).uniform(0, 0.38, 0.52));
   const Tint warm(238, 196, 128);
-  // Every dab takes its color from a place nearby, as a brush does.
+  // Every dab takes its color from a point nearby, as a brush does.
   const auto scenery = [&](float x, float y) {
     const float v = y / static_cast<float>(h);
     const int column = std::clamp(static_cast<int>(x), 0, w - 1);
@@ -49,7 +49,7 @@ Picture paint_painting(const PaintJob& job) {
   Canvas canvas(picture);
   const RandomStream trees = job.random.fork(7);
   const auto height = static_cast<float>(h);
-  for (std::uint64_t i = 0; i < 26; ++i) {  // trees, the farther the smaller
+  for (std::uint64_t i = 0; i < 26; ++i) {  // trees, smaller with distance
     const auto depth = static_cast<float>(trees.uniform(8 * i));
     const float x = static_cast<float>(trees.uniform(8 * i + 1)) * static_cast<float>(w);
     const float y = (horizon + 0.08F + 0.45F * depth) * height;
@@ -69,7 +69,7 @@ Picture paint_painting(const PaintJob& job) {
 
 Picture paint_garden(const PaintJob& job) {
   const int w = job.width, h = job.height;
-  const int widths = std::max(1, w / (2 * h));  // a wide picture shows more, not wider things
+  const int widths = std::max(1, w / (2 * h));  // a wide image shows more, not wider things
   const Field clouds = fbm(w, h, {3 * widths, 5, 5, 0.55F}, job.random.fork(0));
   const Field crowns = fbm(w, h, {5 * widths, 5, 6, 0.6F}, job.random.fork(1));
   const Field leaves = fbm(w, h, {w / 7, h / 7, 3, 0.8F}, job.random.fork(2));

@@ -40,7 +40,7 @@ Picture paint_tiles(const PaintJob& job) {
     const auto id = static_cast<std::uint64_t>(j * count_x + i);
     const auto shade = static_cast<float>(job.random.fork(2).uniform(id, -1.0, 1.0));
     const float rim = edge == 1 ? (x - left == 1 || y - top == 1 ? 0.05F : -0.05F) : 0.0F;
-    // Each tile shows another stretch of the cloud.
+    // Each tile shows a different part of the noise.
     const int shift = static_cast<int>(job.random.fork(3).below(id, job.width));
     const float c = cloud((x + shift) % job.width, y);
     return job.tone * (1.0F + rim + job.variation * (0.09F * shade + 0.10F * c));

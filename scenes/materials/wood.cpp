@@ -68,7 +68,7 @@ Tint wood_tint(const PaintJob& job, float darkness, float shade = 0.0F) {
   return {job.tone.r * (1.0F - 0.8F * d), job.tone.g * (1.0F - d), job.tone.b * (1.0F - 1.12F * d)};
 }
 
-/// One plank or block: where in the sheet of wood it was cut, and how it differs from the mean.
+/// One plank or block: where it was cut from the sheet of wood, and how it differs from the mean.
 struct Plank {
   int offset_x = 0, offset_y = 0;
   float shade = 0.0F;
@@ -118,8 +118,8 @@ Picture paint_wood_boards(const PaintJob& job) {
 }
 
 Picture paint_parquet(const PaintJob& job) {
-  // Herringbone: on a lattice of block widths, k = (i - j) mod 2n tells where a cell lies in its
-  // horizontal (k < n) or vertical block of n cells.
+  // Herringbone: on a lattice of block widths, k = (i - j) mod 2n gives the position of a cell in
+  // its horizontal (k < n) or vertical block of n cells.
   constexpr int kLength = 5;
   const Field wood = wood_darkness(job);
   const int cells =
@@ -139,7 +139,7 @@ Picture paint_parquet(const PaintJob& job) {
     const float edge = joint(std::min(in_x, in_y));
     const float dark =
         flat ? plank_darkness(wood, plank, in_x, in_y) : plank_darkness(wood, plank, in_y, in_x);
-    // Blocks laid the other way catch the light differently.
+    // Blocks laid in the other direction reflect light differently.
     return wood_tint(job, dark, plank.shade + edge + (flat ? 0.03F : -0.03F));
   });
 }

@@ -6,7 +6,8 @@
 namespace mh {
 namespace {
 
-/// How long the comment, hole or tag of a polygon with holes is that begins here; 0 for all else.
+/// Length of the comment, hole or tag of a polygon with holes that starts here; 0 for anything
+/// else.
 std::size_t size_of_unread(std::string_view text) {
   const auto up_to = [&](std::string_view end) {
     const std::size_t found = text.find(end);
@@ -38,7 +39,7 @@ std::string repaired_collada(std::string_view text, bool z_is_up) {
     if (rest.starts_with("<image ") || rest.starts_with("<image>"))
       in_nameless_image = rest[size - 2] != '/';
     if (rest.starts_with("<init_from") || rest.starts_with("<data")) in_nameless_image = false;
-    if (rest.starts_with("</image>") && in_nameless_image)  // assimp refuses the whole file
+    if (rest.starts_with("</image>") && in_nameless_image)  // assimp would reject the whole file
       repaired += "<init_from>that it does not name</init_from>";
     repaired += rest.substr(0, size);
     at = tag + size;

@@ -27,7 +27,7 @@ std::string gltf_json(const std::filesystem::path& file) {
   return bytes.substr(20, size);
 }
 
-/// Goes through a file as assimp does.
+/// Traverses a file in assimp's order.
 class MaterialOrder {
  public:
   explicit MaterialOrder(const Json& gltf) : gltf_(gltf) {
@@ -35,7 +35,7 @@ class MaterialOrder {
     for (const Json& node : gltf.at("scenes").at(scene).value("nodes", Json::array()))
       visit_node(node.get<std::size_t>());
   }
-  /// Indices of the file.
+  /// Material indices as in the file.
   const std::vector<std::size_t>& materials() const { return materials_; }
 
  private:
@@ -76,7 +76,7 @@ std::vector<float> emissive_strengths(const std::filesystem::path& file) {
     for (const std::size_t material : order.materials())
       strengths.push_back(strength_of(gltf.at("materials").at(material)));
   } catch (const Json::exception&) {
-    return {};  // assimp, which has read it, has told what is wrong with it
+    return {};  // assimp, which has already read it, reports what is wrong with it
   }
   return strengths;
 }

@@ -16,7 +16,7 @@ namespace {
 using Share = std::array<std::uint8_t, 3>;  // of the emission, in steps of 1 / kSteps
 constexpr float kSteps = 31.0F;
 
-/// The mean over a face, of places about a texel apart, at most 32 along an edge.
+/// The mean over a face, of samples about a texel apart, at most 32 along an edge.
 Share share_of(const Scene& scene, std::size_t face, const Grid2d<Rgb8>& texture) {
   const auto& corners = scene.triangles[face];
   const Eigen::Vector2f first = scene.uvs[corners[0]];
@@ -30,7 +30,7 @@ Share share_of(const Scene& scene, std::size_t face, const Grid2d<Rgb8>& texture
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   for (int i = 0; i < count; ++i)
     for (int j = 0; i + j < count; ++j) {
-      // Middles of the small triangles that stand on the first edge.
+      // Centers of the small triangles that stand on the first edge.
       const float a = (static_cast<float>(i) + 1.0F / 3.0F) / static_cast<float>(count);
       const float b = (static_cast<float>(j) + 1.0F / 3.0F) / static_cast<float>(count);
       sum += sample_texture(texture, first + a * step1 + b * step2);

@@ -45,7 +45,7 @@ void require_places(const Json& gltf, const std::filesystem::path& file) {
   }
 }
 
-/// @returns whether there was anything
+/// @returns whether there was anything to drop
 bool drop_movement(Json& gltf) {
   bool any = gltf.erase("animations") + gltf.erase("skins") > 0;
   if (const auto nodes = gltf.find("nodes"); nodes != gltf.end() && nodes->is_array())

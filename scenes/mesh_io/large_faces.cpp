@@ -16,7 +16,7 @@ bool is_large(const aiFace& face) {
   return face.mNumIndices > kMostCorners;
 }
 
-/// Takes a face over into one that is empty; assimp's own assignment copies.
+/// Moves a face into an empty one; assimp's own assignment copies.
 void move_face(aiFace& from, aiFace& to) {
   std::swap(from.mNumIndices, to.mNumIndices);
   std::swap(from.mIndices, to.mIndices);
@@ -42,7 +42,7 @@ void cut(aiMesh& mesh) {
   delete[] mesh.mFaces;
   mesh.mFaces = faces;
   mesh.mNumFaces = static_cast<unsigned>(count);
-  // assimp asserts that there are polygons where it is told so.
+  // assimp asserts that there are polygons if the flag says so.
   const auto is_polygon = [](const aiFace& face) { return face.mNumIndices > 3; };
   mesh.mPrimitiveTypes |= aiPrimitiveType_TRIANGLE;
   if (std::ranges::none_of(std::span(faces, count), is_polygon))

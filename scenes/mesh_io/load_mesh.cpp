@@ -40,7 +40,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What is particular to a file format.
+/// Properties of a file format.
 struct Format {
   bool ply = false, gltf = false, obj = false, dae = false, y_up = false;
 };
@@ -56,7 +56,7 @@ Format format_of(const fs::path& file) {
           .y_up = gltf || ending == ".dae"};
 }
 
-/// A number in a glTF node's extras; nullopt if there is none that a To holds.
+/// A number in a glTF node's extras; nullopt if there is none that To can represent.
 template <class To>
 std::optional<To> extra_number(const aiMetadata& extras, const char* key) {
   double number = 0;
@@ -68,7 +68,7 @@ std::optional<To> extra_number(const aiMetadata& extras, const char* key) {
   return std::nullopt;
 }
 
-/// The class that a glTF node's extras name, by name or by number.
+/// The class in a glTF node's extras, by name or by number.
 std::optional<ClassId> extra_class(const aiMetadata& extras) {
   aiString name;
   if (extras.Get("class", name)) return class_by_name(name.C_Str());
@@ -88,9 +88,9 @@ NodeLabel label_of(const aiNode& node) {
   return label;
 }
 
-/// What the names around a node tell that its own does not: of the mesh, then of the nodes above,
-/// the nearest first, but for "floor", which is what stories are called. The uppermost is named by
-/// the file's writer or the file.
+/// Guesses the class from names around a node if its own gives none: the mesh's, then those of the
+/// nodes above, the nearest first, except "floor", which is used for stories. The top node is
+/// skipped: it is named after the exporter or the file.
 ClassId guess_around(const aiNode& node, const aiMesh& mesh) {
   ClassId found = guess_class(mesh.mName.C_Str());
   for (const aiNode* above = node.mParent; found == kVoid && above != nullptr && above->mParent;
@@ -99,7 +99,7 @@ ClassId guess_around(const aiNode& node, const aiMesh& mesh) {
   return found;
 }
 
-/// Walks the nodes of a file and gathers their meshes into one scene.
+/// Traverses the nodes of a file and collects their meshes into one scene.
 class Gatherer {
  public:
   Gatherer(const aiScene& in, const fs::path& file, const Format& format, const LabelRules& rules,
@@ -114,7 +114,7 @@ class Gatherer {
     survey(*in_.mRootNode);
     reserve_ids(*in_.mRootNode);
     visit(*in_.mRootNode, aiMatrix4x4());
-    // Per-vertex arrays are all or nothing: parts that lack them were filled with neutral values.
+    // Per-vertex arrays are all or nothing: parts without them were filled with neutral values.
     if (!any_uvs_) scene_.uvs.clear();
     if (!any_colors_) scene_.colors.clear();
     if (!any_light_) scene_.light.clear();
@@ -129,7 +129,7 @@ class Gatherer {
     for (unsigned i = 0; i < node.mNumChildren; ++i) survey(*node.mChildren[i]);
   }
 
-  /// Ids that the file names are kept; the others take what is free.
+  /// Reserves the ids that the file states; the other objects get free ones.
   void reserve_ids(const aiNode& node) {
     if (const auto id = label_of(node).instance) reserved_.insert(*id);
     for (unsigned i = 0; i < node.mNumChildren; ++i) reserve_ids(*node.mChildren[i]);
@@ -137,7 +137,7 @@ class Gatherer {
 
   void visit(const aiNode& node, const aiMatrix4x4& world_from_parent) {
     const aiMatrix4x4 world_from_node = world_from_parent * node.mTransformation;
-    // A node is an object; where rules tell its pieces apart, each class of them is one.
+    // A node is an object; if rules label its pieces differently, each class is a separate one.
     std::map<ClassId, InstanceId> instance_of;
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
       const aiMesh& mesh = *in_.mMeshes[node.mMeshes[i]];
@@ -180,7 +180,7 @@ class Gatherer {
   std::string unique_name(const std::string& wanted) {
     const std::string base = wanted.empty() ? "object" : wanted;
     std::string name = base;
-    // Counted on from the last copy: files of thousands of nodes of one name are seen.
+    // Continues from the last copy: some files have thousands of nodes with one name.
     for (int& copies = copies_of_.try_emplace(base, 1).first->second; !names_.insert(name).second;)
       name = fmt::format("{}_{}", base, ++copies);
     return name;
@@ -192,7 +192,7 @@ class Gatherer {
     for (unsigned i = 0; i < mesh.mNumVertices; ++i) add_vertex(mesh, i, world_from_node);
     for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
       const aiFace& face = mesh.mFaces[i];
-      if (face.mNumIndices != 3) continue;  // points and lines cannot be seen
+      if (face.mNumIndices != 3) continue;  // points and lines are invisible
       std::array<std::uint32_t, 3> triangle;
       for (int corner = 0; corner < 3; ++corner) {
         if (face.mIndices[corner] >= mesh.mNumVertices)
@@ -256,12 +256,12 @@ class Gatherer {
 const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Format& format,
                     const MeshUse& use, std::vector<std::string>* warnings) {
   require_readable(file);
-  if (format.obj) without_mark(map_file(file).view, file);  // throws of UTF-16
+  if (format.obj) without_mark(map_file(file).view, file);  // throws on UTF-16
   std::optional<std::string> repaired;
   if (format.gltf) repaired = repaired_gltf(map_file(file).view, file);
-  // The importer's from now on.
+  // The importer takes ownership.
   importer.SetIOHandler(repaired ? new NotedFiles(file, std::move(*repaired)) : new NotedFiles);
-  // No step that reorders vertices or faces: labels beside a PLY count on their order.
+  // No step that reorders vertices or faces: labels next to a PLY depend on their order.
   const unsigned steps =
       format.ply ? unsigned{aiProcess_Triangulate} : aiProcess_Triangulate | aiProcess_GlobalScale;
   const aiScene* in = nullptr;
@@ -281,8 +281,8 @@ const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Form
   return *in;
 }
 
-/// assimp looks for an OBJ's materials in the file that mtllib names, then in one named as the OBJ,
-/// and goes without in silence.
+/// assimp looks for an OBJ's materials in the file that mtllib names, then in one named like the
+/// OBJ, and silently continues without them.
 void warn_of_missing_materials(const fs::path& file, std::vector<std::string>* warnings) {
   if (warnings == nullptr || is_there(fs::path(file).replace_extension(".mtl"))) return;
   const HeldBytes held = map_file(file);
@@ -301,7 +301,7 @@ void warn_of_missing_materials(const fs::path& file, std::vector<std::string>* w
   }
 }
 
-/// assimp gives a mesh without a material a gray one; vertex colors should show as they are.
+/// assimp assigns a gray material to a mesh without one; vertex colors should show unchanged.
 void whiten_default_material(const Format& format, Scene& scene) {
   if (scene.colors.empty() && scene.light.empty()) return;
   for (Material& material : scene.materials)
@@ -309,7 +309,7 @@ void whiten_default_material(const Format& format, Scene& scene) {
       material.base_color = {255, 255, 255};
 }
 
-/// A PLY as a scene that knows the objects that the PLY tells.
+/// A PLY as a scene with the objects that the PLY states.
 Scene scene_of(PlyMesh mesh, const fs::path& file, std::vector<std::string>* warnings) {
   Scene scene;
   scene.name = file.stem().string();
@@ -325,7 +325,7 @@ Scene scene_of(PlyMesh mesh, const fs::path& file, std::vector<std::string>* war
   return scene;
 }
 
-/// What all kinds of files need in the end.
+/// Final steps common to all kinds of files.
 Scene finished(Scene scene, const fs::path& file) {
   if (scene.triangles.empty())
     throw InputError(fmt::format("{}: has no faces to be seen", file.string()));

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr Rgb8 kMissing{255, 0, 255};  // seen at once, and in no real room
+constexpr Rgb8 kMissing{255, 0, 255};  // conspicuous, and absent from real rooms
 
 PictureIn convert_embedded(const aiTexture& texture, PictureStore& pictures) {
   if (texture.mHeight == 0)
@@ -35,8 +35,8 @@ PictureIn convert_embedded(const aiTexture& texture, PictureStore& pictures) {
   return {.color = std::move(color), .opacity = std::move(opacity)};
 }
 
-/// Where a picture lies that a file beside `folder` names: there, or, as Gazebo looks for it, by
-/// its name alone in the places where models have their textures.
+/// Path of an image that a file in `folder` names: there, or, as in Gazebo, by its bare name in the
+/// places where models keep their textures.
 fs::path place_of_picture(const fs::path& named, const fs::path& folder) {
   if (is_file(folder / named)) return folder / named;
   for (const fs::path& place :
@@ -64,14 +64,14 @@ Rgb8 convert_color(const aiColor4D& c, bool linear) {
   return {level(c.r), level(c.g), level(c.b)};
 }
 
-/// Whether a material's alpha counts: glTF says so, other formats mean it where they have one.
+/// Whether a material's alpha is used: glTF states it, other formats imply it by having one.
 bool has_holes(const aiMaterial& record) {
   aiString mode;
   return record.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != aiReturn_SUCCESS ||
          std::string_view(mode.C_Str()) != "OPAQUE";
 }
 
-/// A mask of its own (OBJ's map_d) as opacity, in the size of the texture that it belongs to.
+/// A separate mask (OBJ's map_d) as opacity, resized to its texture.
 Grid2d<std::uint8_t> opacity_of_mask(const PictureIn& mask, const Grid2d<Rgb8>& texture) {
   if (mask.color.empty() || texture.empty()) return {};
   Grid2d<std::uint8_t> opacity(texture.width(), texture.height());
@@ -86,9 +86,9 @@ Grid2d<std::uint8_t> opacity_of_mask(const PictureIn& mask, const Grid2d<Rgb8>& 
   return opacity;
 }
 
-/// What a material lets through (linear RGB): glTF's KHR_materials_transmission, or an alpha of the
-/// whole material below kOpaqueFrom, in glTF where it says BLEND. Alpha 0 is more often a mistake
-/// than something invisible.
+/// Transmission of a material (linear RGB): glTF's KHR_materials_transmission, or an alpha of the
+/// whole material below kOpaqueFrom, in glTF only with BLEND. Alpha 0 is more often a mistake than
+/// an invisible object.
 Eigen::Vector3f transmission_of(const aiMaterial& record, const aiColor4D& base) {
   const Eigen::Vector3f tint(base.r, base.g, base.b);
   float share = 0.0F;
@@ -104,7 +104,7 @@ Eigen::Vector3f transmission_of(const aiMaterial& record, const aiColor4D& base)
   return (Eigen::Vector3f::Constant(1.0F - opacity) + opacity * tint).cwiseMin(1.0F);
 }
 
-/// A file that is read, and what its materials share.
+/// A file being read, and what its materials share.
 struct Source {
   const aiScene& scene;
   const fs::path& file;

@@ -25,11 +25,12 @@ std::optional<InstanceId> parse_id(std::string_view text) {
   return id;
 }
 
-constexpr std::size_t kLongest = 3;  // words of a class's name
+constexpr std::size_t kLongest = 3;  // words in a class name
 constexpr std::string_view kAbout[] = {"with", "of", "on", "for", "in", "under", "without", "and"};
 
-/// The words of a name in lower case: letters between others, and at a change of case (TVCabinet
-/// is "tv cabinet"). What is left of FloorB_01's counting ("b") is no word.
+/// The words of a name in lower case: letters between other characters, and split at a change of
+/// case (TVCabinet is "tv cabinet"). The "b" left over from a counter such as FloorB_01 is not a
+/// word.
 std::vector<std::string> words_of(std::string_view name) {
   std::vector<std::string> words;
   const auto is = [&](std::size_t i, int (*kind)(int)) {
@@ -47,7 +48,7 @@ std::vector<std::string> words_of(std::string_view name) {
   return words;
 }
 
-/// Whether words say what a name says, their blanks apart.
+/// Whether words spell a name, ignoring its blanks.
 bool says(std::string_view name, std::span<const std::string> words) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (i > 0 && name.starts_with(' ')) name.remove_prefix(1);
@@ -74,7 +75,7 @@ std::vector<std::string> singulars(const std::string& word) {
   return forms;
 }
 
-/// The class that these words together name, in the singular or plural; nullopt if none.
+/// The class that these words name together, in the singular or plural; nullopt if none.
 std::optional<ClassId> class_of_words(std::span<const std::string> run) {
   std::vector<std::string> words(run.begin(), run.end());
   for (const std::string& last : singulars(run.back())) {
@@ -114,14 +115,14 @@ ClassId guess_class(std::string_view name) {
   const std::vector<std::string> words = words_of(name.substr(name.rfind('/') + 1));
   ClassId head = kVoid;
   for (std::size_t i = 0; i < words.size();) {
-    // What follows "with" or "of" tells about the thing before it.
+    // What follows "with" or "of" describes the thing before it.
     if (head != kVoid && std::ranges::find(kAbout, words[i]) != std::end(kAbout)) return head;
     std::size_t used = 1;
     for (std::size_t count = std::min(kLongest, words.size() - i); count > 0; --count) {
       const std::span run(words.data() + i, count);
       const std::optional<ClassId> found = class_of_words(run);
       if (!found) continue;
-      if (*found != kVoid) head = *found;  // the last noun says what it is: a table lamp is a lamp
+      if (*found != kVoid) head = *found;  // the last noun decides: a table lamp is a lamp
       used = count;
       break;
     }

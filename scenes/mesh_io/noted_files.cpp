@@ -37,7 +37,7 @@ Assimp::IOStream* NotedFiles::Open(const char* file, const char*) {
   try {
     HeldBytes bytes = repaired_ && file_ == file ? hold(*repaired_) : map_file(file);
     const std::string_view name = file;
-    const bool stumbles = name.ends_with(".obj") || name.ends_with(".mtl");  // over such a mark
+    const bool stumbles = name.ends_with(".obj") || name.ends_with(".mtl");  // on such a mark
     std::string_view part = stumbles ? without_mark(bytes.view, file) : bytes.view;
     if (auto repaired = stumbles ? repaired_obj(part) : std::nullopt) {
       bytes = hold(std::move(*repaired));

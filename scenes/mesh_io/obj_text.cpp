@@ -11,7 +11,7 @@ bool is_blank(char c) {
   return c == ' ' || c == '\t';
 }
 
-/// Puts a zero before each number that begins with its point.
+/// Puts a zero before each number that starts with the decimal point.
 void append_coordinates(std::string_view line, std::string& to) {
   for (std::size_t i = 0; i < line.size(); ++i) {
     const bool is_signed = i >= 2 && (line[i - 1] == '-' || line[i - 1] == '+');

@@ -15,7 +15,7 @@
 namespace mh {
 namespace {
 
-/// One channel as a picture of its own.
+/// One channel as a separate image.
 Grid2d<std::uint8_t> channel_of(const cv::Mat& picture, int channel) {
   Grid2d<std::uint8_t> values(picture.cols, picture.rows);
   cv::Mat out(picture.rows, picture.cols, CV_8UC1, values.data());

@@ -63,7 +63,7 @@ class BodyParser {
     throw InputError(fmt::format("{}: {}", name_, what));
   }
 
-  /// Claims the records of an element without lists. @returns where they begin
+  /// Takes the records of an element without lists. @returns where they start
   const char* claim(const Element& element) {
     const std::size_t left = body_.size() - at_;
     if (element.stride > 0 && element.count > left / element.stride)
@@ -131,7 +131,7 @@ class BodyParser {
       if (channel.type == Type::kUint8) return load<std::uint8_t>(at);
       double value = load_number(channel.type, at);
       if (channel.type == Type::kFloat || channel.type == Type::kDouble) value *= 255.0;
-      if (!(value > 0.0)) return std::uint8_t{0};  // also what is no number
+      if (!(value > 0.0)) return std::uint8_t{0};  // NaN as well
       return static_cast<std::uint8_t>(std::min(value, 255.0) + 0.5);
     };
     mesh_.colors.resize(vertices_);
@@ -205,7 +205,7 @@ class BodyParser {
                        element.name));
   }
 
-  /// The items of a list, which are `bytes` long together; at_ is then behind them.
+  /// The items of a list, with a total size of `bytes`; at_ is then past them.
   struct List {
     const char* items;
     std::size_t count;
@@ -235,7 +235,7 @@ class BodyParser {
       }
       const List list = read_list(element, property, face);
       if (&property != indices) continue;
-      // Nothing to be seen; and where a count is damaged, all that follows is read askew.
+      // Not visible; and if a count is damaged, everything after it is misread.
       if (list.count < 3)
         fail(fmt::format("face {} has {} corners: 3 are needed", face, list.count));
       const auto corner = [&](std::size_t k) {
@@ -250,7 +250,7 @@ class BodyParser {
     if (object) mesh_.face_objects.resize(mesh_.triangles.size(), *object);
   }
 
-  /// Negative ids stand for no object.
+  /// Negative ids mean no object.
   std::uint32_t object_of(double value, const Property& property, std::uint64_t face) const {
     return value < 0 ? kNoObject : id_of<std::uint32_t>(value, property, "face", face);
   }
@@ -289,7 +289,7 @@ bool is_plain_ply(std::string_view bytes) {
       for (const char* uv : {"s", "u", "texture_u", "texcoord"})
         if (element.find(uv) != nullptr) return false;
     }
-  } catch (const InputError&) {  // parse_ply tells it
+  } catch (const InputError&) {  // parse_ply reports it
   }
   return true;
 }

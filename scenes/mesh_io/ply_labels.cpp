@@ -19,12 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 constexpr std::uint16_t kLastNyu40 = 40;
-constexpr std::uint32_t kLastObject = 65534;  // its instance is the last of 16 bits
+constexpr std::uint32_t kLastObject = 65534;  // its instance is the largest 16-bit id
 
-/// What a file beside the mesh calls its objects.
+/// Object names from a file next to the mesh.
 using Names = std::map<std::uint32_t, std::string>;
 
-/// Reads {list: [{id: 3, name: "chair"}, ...]}; empty where none of the files is there.
+/// Reads {list: [{id: 3, name: "chair"}, ...]}; empty if none of the files exists.
 Names read_names(std::initializer_list<fs::path> files, const char* list, const char* id,
                  const char* name) {
   Names names;
@@ -94,7 +94,7 @@ class Labeler {
     if (warnings_ != nullptr) warnings_->push_back(fmt::format("{}: {}", file_.string(), what));
   }
 
-  /// What most of three values are; the first where all differ.
+  /// The majority of three values; the first if all differ.
   template <class T>
   static T most(const std::array<T, 3>& values) {
     return values[1] == values[2] && values[0] != values[1] ? values[1] : values[0];
@@ -106,14 +106,14 @@ class Labeler {
     return kVoid;
   }
 
-  /// The class of a name; looked up once.
+  /// The class of a name; cached.
   ClassId class_named(const std::string& name) {
     const auto [place, is_new] = class_of_name_.try_emplace(name, kVoid);
     if (is_new) place->second = guess_class(name);
     return place->second;
   }
 
-  /// A class that NYU40 lumps together with others is kept by its name.
+  /// Keeps a class that NYU40 merges with others, by its name.
   void refine(ClassId& id, const std::string& name) {
     const ClassId named = class_named(name);
     if (id == kVoid || is_finer(class_of_noun(name).value_or(kVoid), id)) id = named;

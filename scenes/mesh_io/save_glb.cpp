@@ -53,7 +53,7 @@ Json list_of(const Eigen::Vector3f& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-/// The texture as a PNG, with the material's opacity as its fourth channel where there is one.
+/// The texture as a PNG, with the material's opacity, if any, as its fourth channel.
 std::vector<unsigned char> png_of(const Material& material) {
   const Grid2d<Rgb8>& texture = material.texture;
   const cv::Mat rgb(texture.height(), texture.width(), CV_8UC3, const_cast<Rgb8*>(texture.data()));
@@ -71,7 +71,7 @@ std::vector<unsigned char> png_of(const Material& material) {
   return png;
 }
 
-/// Gathers the JSON and the binary chunk of one file.
+/// Collects the JSON and the binary chunk of one file.
 class GlbBuilder {
  public:
   explicit GlbBuilder(const Scene& scene)
@@ -117,7 +117,7 @@ class GlbBuilder {
   }
 
   void add_material(const Material& material) {
-    // A pane's own color is what it lets through.
+    // A pane's color is its transmission.
     const Eigen::Vector3f base =
         material.is_pane() ? material.transmission : linear_from_srgb(material.base_color);
     Json surface = {{"baseColorFactor", {base.x(), base.y(), base.z(), 1.0F}},
@@ -128,7 +128,7 @@ class GlbBuilder {
                    {"pbrMetallicRoughness", std::move(surface)},
                    {"doubleSided", true}};
     const float strength = material.emission.maxCoeff();
-    // What glows by itself is no unlit material to glTF.
+    // In glTF an emissive material cannot be unlit.
     if (!(strength > 0.0F)) record["extensions"]["KHR_materials_unlit"] = Json::object();
     if (material.is_pane()) {
       record["extensions"].erase("KHR_materials_unlit");
@@ -188,7 +188,7 @@ class GlbBuilder {
     json_["scenes"] = Json::array({{{"name", scene_.name}, {"nodes", std::move(children)}}});
   }
 
-  /// The faces with vertices of their own, in the order in which the faces first use them.
+  /// The faces with their own vertices, in the order in which the faces first use them.
   Json make_primitive(const std::vector<std::size_t>& faces, std::uint16_t material) {
     ++primitive_;
     std::vector<std::uint32_t> vertices, indices;

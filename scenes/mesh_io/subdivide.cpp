@@ -54,7 +54,7 @@ void split(EdgeSplitter& edges, Triangle t, std::vector<Triangle>& pieces) {
     pieces.push_back(t);
     return;
   }
-  // Turned so that edge 0 is split and, with two long edges, edge 2 is the short one.
+  // Rotated so that edge 0 is split and, with two long edges, edge 2 is the short one.
   while (!long_edge[0] || (count == 2 && long_edge[2])) {
     std::ranges::rotate(t, t.begin() + 1);
     std::ranges::rotate(long_edge, long_edge.begin() + 1);

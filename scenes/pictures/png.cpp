@@ -29,8 +29,8 @@ void append_chunk(std::string& out, std::string_view name, std::string_view data
   append_be32(out, libdeflate_crc32(0, out.data() + begin, out.size() - begin));
 }
 
-/// All rows in the file's order (RGB, and of 16 bits the upper byte first), each behind the number
-/// of its filter: 2, less the row above, for 8 bits, and 0, none, for 16.
+/// All rows in the file's order (RGB, and for 16 bits the upper byte first), each after its filter
+/// number: 2 (difference to the row above) for 8 bits, 0 (none) for 16.
 std::vector<std::uint8_t> filtered(const cv::Mat& picture) {
   cv::Mat rgb;
   if (picture.type() == CV_8UC3) cv::cvtColor(picture, rgb, cv::COLOR_BGR2RGB);
@@ -60,8 +60,8 @@ struct FreeCompressor {
   }
 };
 
-/// One per thread and level, made when it is first wanted: making it costs as much as packing a
-/// small picture does.
+/// One per thread and level, created on first use: creating it costs as much as compressing a small
+/// image.
 libdeflate_compressor* compressor_of(int level) {
   thread_local std::array<std::unique_ptr<libdeflate_compressor, FreeCompressor>, 10> compressors;
   auto& compressor = compressors.at(static_cast<std::size_t>(level));
@@ -70,7 +70,7 @@ libdeflate_compressor* compressor_of(int level) {
   return compressor.get();
 }
 
-/// Appends a chunk of packed bytes.
+/// Appends a chunk of compressed bytes.
 void append_packed(std::string& file, const std::vector<std::uint8_t>& bytes, int level) {
   libdeflate_compressor* compressor = compressor_of(level);
   const std::size_t most = libdeflate_zlib_compress_bound(compressor, bytes.size());
@@ -93,7 +93,8 @@ std::string encode_png(const cv::Mat& picture, int level) {
   append_be32(header, static_cast<std::size_t>(picture.rows));
   header += static_cast<char>(picture.depth() == CV_16U ? 16 : 8);  // bits
   header += static_cast<char>(picture.channels() == 3 ? 2 : 0);     // color or gray
-  header += std::string(3, '\0');  // the one way to pack, the one set of filters, not interlaced
+  header += std::string(3, '\0');  // the only compression method, the only set of filters, not
+                                   // interlaced
   std::string file = "\x89PNG\r\n\x1A\n";
   append_chunk(file, "IHDR", header);
   append_packed(file, filtered(picture), level);

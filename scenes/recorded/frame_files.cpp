@@ -49,7 +49,7 @@ FrameFiles show(const RgbdFrame& frame, const fs::path& folder) {
   std::vector<std::uint8_t> depth(2 * frame.depth_m.size());
   for (std::size_t i = 0; i < frame.depth_m.size(); ++i) {
     const std::uint16_t units = depth_units(frame.depth_m.data()[i]);
-    depth[2 * i] = static_cast<std::uint8_t>(units >> 8);  // the format's own order
+    depth[2 * i] = static_cast<std::uint8_t>(units >> 8);  // big-endian, as the format requires
     depth[2 * i + 1] = static_cast<std::uint8_t>(units & 0xff);
   }
   write_pnm(files.depth, {"P5", width, height, 65535}, depth.data(), depth.size());

@@ -61,7 +61,7 @@ bool is_tum_folder(const fs::path& folder) {
   return is_file(folder / "rgb.txt") || is_file(folder / "associations.txt");
 }
 
-/// @throws InputError if no calibration is named and none lies in the folder.
+/// @throws InputError if no calibration is specified and none is in the folder.
 fs::path calibration_of(const fs::path& folder, const RecordingConfig& config) {
   if (!config.calibration.empty()) return config.calibration;
   for (const char* name : {"camera.yaml", "camera_info.yaml"})

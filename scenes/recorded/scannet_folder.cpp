@@ -36,7 +36,7 @@ Camera camera_of(const RecordedLens& lens) {
   return camera;
 }
 
-/// Where the color camera sees what the depth camera's pixels see.
+/// Maps pixels of the depth camera to pixels of the color camera.
 class ColorPixels {
  public:
   explicit ColorPixels(const RecordingInfo& info)
@@ -44,8 +44,8 @@ class ColorPixels {
         color_from_depth_(info.color.device_from_camera.inverse() * info.depth.device_from_camera),
         parallax_(color_from_depth_.translation().norm() > 1e-6) {}
 
-  /// Column and row in the color picture, one of each per pixel of the depth picture. Where the
-  /// cameras stand apart, a pixel without depth counts as far away.
+  /// Column and row in the color image, one of each per pixel of the depth image. If the cameras
+  /// are apart, a pixel without depth is treated as far away.
   void find(const Grid2d<std::uint16_t>& depth, cv::Mat& columns, cv::Mat& rows) const {
     columns.create(depth.height(), depth.width(), CV_32FC1);
     rows.create(depth.height(), depth.width(), CV_32FC1);
@@ -173,7 +173,7 @@ class ScannetSequence : public Sequence {
     }
     cv::Mat smaller;
     cv::resize(full, smaller, out.size(), 0, 0, cv::INTER_AREA);
-    // Pixel centers lie at integers: they move by half a pixel when pixels grow.
+    // Pixel centers are at integers: they shift by half a pixel when pixels grow.
     const double sx = static_cast<double>(camera_.width_px) / picture.width();
     const double sy = static_cast<double>(camera_.height_px) / picture.height();
     const cv::Mat x = (columns + 0.5) * sx - 0.5, y = (rows + 0.5) * sy - 0.5;
@@ -181,7 +181,7 @@ class ScannetSequence : public Sequence {
     return result;
   }
 
-  /// Label images have the color picture's pixels; some tools store them with the depth's.
+  /// Label images have the color image's resolution; some tools store them in the depth image's.
   Grid2d<std::uint8_t> classes_at(const Grid2d<std::uint16_t>& ids, std::uint32_t number,
                                   const cv::Mat& columns, const cv::Mat& rows) const {
     const RecordedLens& lens = recording_->info().color;
@@ -270,7 +270,7 @@ const SequenceReader kScannetReader{"scannet", "FOLDER, scannet:FILE.sens", is_s
 
 void write_scannet_recording(const fs::path& folder, const Camera& camera, std::size_t frames,
                              const std::function<ExactFrame(std::size_t index)>& frame_at) {
-  const TemporaryFolder work(folder);  // whole files alone get their names
+  const TemporaryFolder work(folder);  // only complete files get their final names
   const fs::path full = fs::absolute(folder).lexically_normal();
   const std::string name = (full.has_filename() ? full : full.parent_path()).filename().string();
   const std::array names = {name + "_2d-label-filt.zip", name + "_2d-instance-filt.zip",

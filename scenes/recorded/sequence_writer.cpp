@@ -77,7 +77,7 @@ class ScanNetWriter : public SequenceWriter {
     write_atomically(folder_ / "intrinsic" / "extrinsic_color.txt", identity);
     write_atomically(folder_ / "intrinsic" / "extrinsic_depth.txt", identity);
     write_atomically(folder_ / kLabelTableV2, label_table_text());
-    // Named as the info file of an extracted .sens, which readers look into.
+    // Named like the info file of an extracted .sens, which readers expect.
     write_atomically(
         folder_ / "_info.txt",
         fmt::format("m_versionNumber = 4\nm_sensorName = Modelhouse\nm_colorWidth = {0}\n"

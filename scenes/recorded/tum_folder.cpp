@@ -23,18 +23,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Stamp kMaxApart_ns = 20'000'000;  // as TUM's associate.py
+constexpr Stamp kMaxApart_ns = 20'000'000;  // as in TUM's associate.py
 
 using Listed = TumListEntry;
 
-/// Reads a list whose files lie beside it.
+/// Reads a list whose files are next to it.
 std::vector<Listed> read_list(const fs::path& list, int skip = 0) {
   std::vector<Listed> entries = parse_tum_list(read_text(list), list.string(), skip);
   for (Listed& entry : entries) entry.file = list.parent_path() / entry.file;
   return entries;
 }
 
-/// Entries by their stamps, to be looked up by a moment.
+/// Entries by stamp, for lookup by time.
 class ByStamp {
  public:
   explicit ByStamp(const std::vector<Listed>& entries) {
@@ -42,7 +42,7 @@ class ByStamp {
     std::ranges::stable_sort(sorted_, {}, &stamp_of);
   }
 
-  /// The entry nearest to a moment, the first of the list among equals; null if none is near.
+  /// The entry nearest in time, ties to the first in the list; null if none is near.
   const Listed* nearest(Stamp stamp_ns) const {
     const Listed* best = nullptr;
     const auto offer = [&](auto place) {  // the first of its stamp
@@ -64,7 +64,7 @@ class ByStamp {
   std::vector<const Listed*> sorted_;
 };
 
-/// A frame's picture. What it announces is looked at before anything is decoded.
+/// Reads a frame's image. Its declared format is checked before anything is decoded.
 cv::Mat read_frame_picture(const fs::path& file, std::initializer_list<int> types,
                            const Camera& camera) {
   const std::string bytes = read_file(file);

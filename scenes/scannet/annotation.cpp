@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
 
-/// Gathers the numbers of the array under the key segIndices of the outermost object, without
+/// Collects the numbers of the array under the key segIndices of the outermost object, without
 /// building a tree of millions of values.
 class SegmentsHandler : public nlohmann::json_sax<Json> {
  public:

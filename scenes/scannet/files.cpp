@@ -33,7 +33,7 @@ std::vector<std::string> ids_in(const fs::path& folder) {
   return ids;
 }
 
-/// The folder with its own name at the end: not "." and without a slash.
+/// The folder with its own name as the last component: not "." and without a trailing slash.
 fs::path named(const fs::path& folder) {
   std::error_code error;
   fs::path full = fs::absolute(folder, error).lexically_normal();

@@ -48,7 +48,7 @@ class LabelFolder : public LabelImages {
   std::string place_;
 };
 
-/// Whether an entry would land outside of the folder that a zip is unpacked into.
+/// Whether an entry would be extracted outside of the target folder.
 bool points_outside(const std::string& entry) {
   const fs::path path = fs::path(entry).lexically_normal();
   return entry.empty() || path.is_absolute() || entry.find('\\') != entry.npos ||
@@ -58,7 +58,7 @@ bool points_outside(const std::string& entry) {
 class LabelZip : public LabelImages {
  public:
   LabelZip(HeldBytes bytes, const std::string& name) : held_(std::move(bytes)), name_(name) {
-    // libzip takes nothing at all for a zip without entries.
+    // libzip rejects a zip without any bytes.
     if (held_.view.empty()) throw InputError(fmt::format("{}: is empty: no zip", name_));
     zip_error_t error;
     zip_error_init(&error);
@@ -116,14 +116,15 @@ class LabelZip : public LabelImages {
     zip_stat_t info;
     if (zip_stat_index(archive_.get(), index, 0, &info) != 0 || (info.valid & ZIP_STAT_SIZE) == 0)
       fail("its size cannot be read");
-    // Deflate grows by 1032 at most; a picture that claims more is none.
+    // Deflate expands by at most 1032; an image that claims more is invalid.
     if (info.size > kLargestEntry || info.size / 1032 > held_.view.size())
       fail(fmt::format("claims {} bytes", info.size));
     const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(
         zip_fopen_index(archive_.get(), index, 0), zip_fclose);
     if (!file) fail(zip_strerror(archive_.get()));
     std::string bytes(static_cast<std::size_t>(info.size), '\0');
-    // One byte more than announced tells that there is more, and makes libzip check the sum.
+    // Asking for one byte more than announced reveals whether there is more, and makes libzip
+    // verify the checksum.
     char more = 0;
     if (zip_fread(file.get(), bytes.data(), bytes.size()) !=
             static_cast<zip_int64_t>(bytes.size()) ||
@@ -197,10 +198,12 @@ class ZipWriter : public LabelImageWriter {
         zip_source_free(source);
         fail();
       }
-      // PNG is compressed already. A fixed time keeps equal content equal, byte for byte.
+      // PNG is already compressed. A fixed time keeps files of equal content identical, byte for
+      // byte.
       const auto index = static_cast<zip_uint64_t>(entry);
       zip_set_file_compression(archive, index, ZIP_CM_STORE, 0);
-      zip_file_set_dostime(archive, index, 0, 0x21, 0);  // 1980-01-01, the first that a zip knows
+      zip_file_set_dostime(archive, index, 0, 0x21, 0);  // 1980-01-01, the earliest that zip can
+                                                         // represent
     }
     if (zip_close(archive) != 0) fail();
   }

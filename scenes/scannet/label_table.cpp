@@ -51,7 +51,7 @@ class TableParser {
     for (std::size_t i = 1; i < lines.size(); ++i) {
       if (lines[i].empty()) continue;
       const auto cells = cells_of(lines[i]);
-      // What follows the classes may be left out; where the file ends in the row, it was cut.
+      // Columns after the classes may be missing; but a file that ends within the row is truncated.
       const bool ends_file = i + 1 == lines.size() && !text.ends_with('\n');
       const std::size_t needed = ends_file ? columns_ : needed_;
       if (cells.size() < needed)
@@ -99,7 +99,7 @@ class TableParser {
         id_ == kNone ? std::optional(rows_) : number(cell(id_), line, "raw category id");
     if (!id) fail(line, "the raw category id is missing");
     ClassId class_id = class_of(cell(own_), cell(nyu40_id_), cell(nyu40_class_), line);
-    // What people typed may name a class that NYU40 lumps together with others.
+    // A category typed by annotators may name a class that NYU40 merges with others.
     if (const auto named = class_of_noun(category); named && is_finer(*named, class_id))
       class_id = *named;
     table_.class_of_category.emplace(category, class_id);
@@ -133,7 +133,7 @@ class TableParser {
   static constexpr std::size_t kNone = ~std::size_t{0};
   LabelTable table_;
   std::uint32_t rows_ = 0;
-  std::size_t columns_ = 0, needed_ = 0;  ///< of the header; up to the first that tells a class
+  std::size_t columns_ = 0, needed_ = 0;  ///< of the header; up to the first that gives a class
   std::size_t category_ = kNone, id_ = kNone, nyu40_id_ = kNone, nyu40_class_ = kNone, own_ = kNone;
 };
 
@@ -148,7 +148,7 @@ LabelTable load_label_table(const std::filesystem::path& file) {
 }
 
 std::string label_table_text() {
-  // ScanNet's columns in ScanNet's order; what we do not know of them is empty.
+  // ScanNet's columns in ScanNet's order; unknown ones are empty.
   std::string text =
       "id\traw_category\tcategory\tcount\tnyu40id\teigen13id\tnyuClass\tnyu40class\teigen13class\t"
       "ModelNet40\tModelNet10\tShapeNetCore55\tsynsetoffset\twnsynsetid\twnsynsetkey\tmpcat40\t"

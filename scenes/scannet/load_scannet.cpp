@@ -26,9 +26,9 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr std::uint16_t kLastNyu40 = 40;
-constexpr std::uint32_t kLastObject = 65534;  // its instance is the last of 16 bits
+constexpr std::uint32_t kLastObject = 65534;  // its instance is the largest 16-bit id
 
-/// What is known of the vertices; empty where nothing is.
+/// Known labels of the vertices; empty if there are none.
 struct VertexLabels {
   std::vector<ClassId> classes;
   std::vector<InstanceId> instances;
@@ -36,7 +36,7 @@ struct VertexLabels {
 
 struct Object {
   InstanceId instance = 0;
-  std::optional<ClassId> class_id;  ///< nullopt where nobody knows its category
+  std::optional<ClassId> class_id;  ///< nullopt for an unknown category
 };
 
 /// Which object a segment belongs to, and whether any vertex has it.
@@ -44,7 +44,8 @@ struct Claim {
   std::size_t object = 0;
   bool in_mesh = false;
 };
-using Claims = std::unordered_map<std::uint32_t, Claim>;  // by segment; looked up, never walked
+using Claims = std::unordered_map<std::uint32_t, Claim>;  // by segment; looked up, never iterated
+                                                          // over
 
 class Loader {
  public:
@@ -89,7 +90,7 @@ class Loader {
       p = (rotation * p.cast<double>() + shift_m).cast<float>();
   }
 
-  /// The label of every vertex: of the labels file, else of the mesh itself.
+  /// Reads the label of every vertex: from the labels file, otherwise from the mesh itself.
   void read_labels(std::vector<std::uint16_t> of_mesh) {
     labels_file_ = files_.mesh;
     labels_ = std::move(of_mesh);
@@ -104,8 +105,8 @@ class Loader {
                                    labels_.size(), scene_.positions_m.size()));
   }
 
-  /// Where the tables of both releases lie side by side, a missing alignment tells that the scene
-  /// is of v1.
+  /// If the tables of both releases are present, a missing alignment indicates that the scene is
+  /// from v1.
   void choose_table() {
     const std::vector<fs::path> tables = find_label_tables(files_.mesh.parent_path());
     greatest_label_ = labels_.empty() ? 0 : *std::ranges::max_element(labels_);
@@ -171,7 +172,7 @@ class Loader {
     return classes;
   }
 
-  /// The class of a category; nullopt if nobody knows it.
+  /// The class of a category; nullopt if unknown.
   std::optional<ClassId> class_of(const std::string& category) const {
     if (!table_) return class_by_name(category);
     const auto found = table_->class_of_category.find(category);
@@ -179,7 +180,7 @@ class Loader {
     return found->second;
   }
 
-  /// @returns whose each segment is, as places in objects_
+  /// @returns the owner of each segment, as indices into objects_
   Claims enter_objects(const std::vector<SegmentGroup>& groups) {
     Claims claims;
     std::set<std::string> unknown;
@@ -217,7 +218,7 @@ class Loader {
     return claims;
   }
 
-  /// Gives the vertices of every object's segments its instance and class.
+  /// Assigns every object's instance and class to the vertices of its segments.
   void label_objects(Claims claims, const std::vector<SegmentGroup>& groups,
                      const std::vector<std::uint32_t>& segments, VertexLabels& vertices) const {
     const bool labeled = !vertices.classes.empty();
@@ -250,7 +251,7 @@ class Loader {
                       files_.aggregation.string(), absent.size(), claims.size(), *absent.begin()));
   }
 
-  /// Names that people typed may repeat where a file of ours was changed by hand.
+  /// Names may repeat if a file of ours was edited by hand.
   void make_names_unique() {
     std::set<std::string> names;
     for (Instance& instance : scene_.instances)
@@ -291,7 +292,7 @@ class Loader {
     }
   }
 
-  /// The first of three that has the value of most; nullopt if all differ.
+  /// The first of three that has the majority value; nullopt if all differ.
   template <class T>
   static std::optional<int> majority(const std::array<T, 3>& values) {
     if (values[0] == values[1] || values[0] == values[2]) return 0;

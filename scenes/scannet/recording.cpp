@@ -68,7 +68,7 @@ class ExtractedFolder : public Recording {
 
   const RecordingInfo& info() const override { return info_; }
   std::size_t size() const override { return numbers_.size(); }
-  /// Extracted folders have no stamps: ScanNet's sensor made 30 pictures a second.
+  /// Extracted folders have no stamps: ScanNet's sensor recorded 30 images per second.
   Stamp stamp_ns(std::size_t index) const override {
     return static_cast<Stamp>(numbers_[index]) * 1'000'000'000 / 30;
   }
@@ -87,7 +87,7 @@ class ExtractedFolder : public Recording {
     const fs::path depth_file = depth_.file(numbers_[index]);
     auto color = decode_color(read_whole(color_file));
     const std::string depth_bytes = read_whole(depth_file);
-    constexpr std::size_t kBits = 24;  // where a PNG tells them
+    constexpr std::size_t kBits = 24;  // offset in a PNG
     if (depth_bytes.size() > kBits && depth_bytes[kBits] == 8)
       throw InputError(fmt::format("{}: has 8 bits, depth needs 16", depth_file.string()));
     auto depth = decode_gray16(depth_bytes);
@@ -199,7 +199,8 @@ RecordedLens lens_of(const Eigen::Matrix4d& intrinsics, const Eigen::Matrix4d& e
 }
 
 bool is_rotation(const Eigen::Matrix3d& matrix) {
-  // Written with six decimals or as floats, so far from a rotation that the quaternion matters not.
+  // Written with six decimals or as floats, and so close to a rotation that the error of the
+  // quaternion is negligible.
   constexpr double kTolerance = 1e-2;
   const Eigen::Matrix3d square = matrix * matrix.transpose();
   return square.isIdentity(kTolerance) && matrix.determinant() > 0;

@@ -28,8 +28,8 @@ struct Owner {
   friend auto operator<=>(const Owner&, const Owner&) = default;
 };
 
-/// Gives each vertex to one owner: where faces of several meet, the later ones get copies.
-/// @returns the owner of every vertex; nobody's vertices count as void
+/// Gives each vertex one owner: where faces of several meet, the later ones get copies.
+/// @returns the owner of every vertex; unused vertices are void
 std::vector<Owner> part_owners(Scene& scene) {
   const std::size_t before = scene.positions_m.size();
   std::vector<Owner> owner(before);
@@ -65,7 +65,7 @@ std::vector<Owner> part_owners(Scene& scene) {
   return owner;
 }
 
-/// The segment of every vertex: pieces of surface that hang together, named by their first vertex.
+/// The segment of every vertex: connected components of the surface, named by their first vertex.
 /// @pre every face's vertices have one owner
 std::vector<std::uint32_t> connected_segments(const Scene& scene) {
   std::vector<std::uint32_t> parent(scene.positions_m.size());
@@ -108,7 +108,7 @@ PlyMesh label_mesh(PlyMesh mesh, const std::vector<Owner>& owner) {
   return mesh;
 }
 
-/// A scene is not a scan: it counts no frames, and the camera is the one that we use by default.
+/// A scene is not a scan: it has no frames, and the camera is our default.
 std::string info_text() {
   const Camera camera;
   std::string text = "axisAlignment = 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n";
@@ -157,7 +157,7 @@ void save_scannet(const Scene& scene, const fs::path& folder, float max_edge_m) 
   write_atomically(files.aggregation, aggregation_text(groups_of(parted, owner, segments), id));
   write_atomically(files.info, info_text());
   write_atomically(folder / kLabelTableV2, label_table_text());
-  // Last, so that a folder that was not finished is not taken for a scene.
+  // Last, so that an incomplete folder is not mistaken for a scene.
   write_atomically(files.mesh, content);
 }
 

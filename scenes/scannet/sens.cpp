@@ -28,7 +28,8 @@ static_assert(std::endian::native == std::endian::little, "values are read as th
 constexpr std::uint32_t kVersion = 4;
 constexpr std::uint64_t kLongestName = 4096;
 constexpr std::uint32_t kLongestSide_px = 16384;
-constexpr std::uint64_t kDeflateLimit = 1032;  // no deflate stream grows by more (zlib's manual)
+constexpr std::uint64_t kDeflateLimit = 1032;  // the maximum expansion of a deflate stream (zlib's
+                                               // manual)
 enum ColorKind : std::int32_t { kRawColor = 0, kPng = 1, kJpeg = 2 };
 enum DepthKind : std::int32_t { kRawDepth = 0, kZlib = 1 };
 
@@ -163,7 +164,7 @@ class SensFile : public Recording {
     return record;
   }
 
-  /// Some recordings have no stamps, or equal ones: then frames count at 30 Hz.
+  /// Some recordings have no stamps, or equal ones: then 30 Hz is assumed.
   void mend_stamps() {
     const auto back = std::ranges::adjacent_find(
         frames_, [](Stamp a, Stamp b) { return a >= b; }, &FrameRecord::stamp_ns);
@@ -176,8 +177,8 @@ class SensFile : public Recording {
       frames_[i].stamp_ns = static_cast<Stamp>(i) * 1'000'000'000 / 30;
   }
 
-  /// Behind the frames come inertial measurements, which are not used: five vectors of doubles and
-  /// a stamp each. Other bytes are a sign that the header counts too few frames.
+  /// The frames are followed by inertial measurements, which are not used: five vectors of doubles
+  /// and a stamp each. Other bytes indicate that the header counts too few frames.
   void note_bytes_left(Cursor& cursor) {
     constexpr std::size_t kMeasurement = 5 * 3 * sizeof(double) + sizeof(std::uint64_t);
     const std::size_t left = cursor.left();
@@ -222,7 +223,7 @@ class SensFile : public Recording {
     return std::move(*picture);
   }
 
-  /// A picture for so many raw bytes.
+  /// Decodes raw bytes to an image of that size.
   template <class Pixel>
   Grid2d<Pixel> empty_picture(const RecordedLens& lens, std::size_t bytes, std::size_t index,
                               const char* which) const {

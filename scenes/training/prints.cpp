@@ -129,7 +129,7 @@ Sheet halftone(const Ink& ink) {
   const Field cloud = clouds(ink, 1, ink.whole(1, 2, 6), 4);
   const float cell = static_cast<float>(kTexels) / static_cast<float>(dots);
   return fill([&](int x, int y) {
-    // Rows are shifted by half a cell in turn, as on a printing screen.
+    // Alternate rows are shifted by half a cell, as in a halftone screen.
     const int row = static_cast<int>(static_cast<float>(y) / cell);
     const float shift = row % 2 == 0 ? 0.0F : 0.5F;
     const float u = static_cast<float>(x) / cell + shift, v = static_cast<float>(y) / cell;
@@ -149,7 +149,7 @@ Sheet scales(const Ink& ink) {
   return fill([&](int x, int y) {
     const float u = static_cast<float>(x * columns) / kTexels;
     const float v = static_cast<float>(y * rows) / kTexels;
-    // The topmost scale that covers this texel hangs from the lowest row it can.
+    // The topmost scale that covers this texel belongs to the lowest possible row.
     for (int row = static_cast<int>(v) + 1; row >= static_cast<int>(v) - 1; --row) {
       const float shift = 0.5F * static_cast<float>((row + 2) % 2);
       const float column = std::floor(u - shift);
@@ -211,7 +211,7 @@ Sheet wire_mesh(const Ink& ink) {
   const float thick = ink.uniform(1, 0.1, 0.3);
   const Field behind = clouds(ink, 1, 7, 5);
   return fill([&](int x, int y) {
-    // Wires run along both diagonals; which lies on top alternates at the crossings.
+    // Wires run along both diagonals; which one is on top alternates at the crossings.
     const float a = static_cast<float>((x + y) * wires) / (2 * kTexels);
     const float b = static_cast<float>((x - y + kTexels) * wires) / (2 * kTexels);
     const float da = std::abs(a - std::round(a)), db = std::abs(b - std::round(b));

@@ -54,7 +54,7 @@ class RoomMaker {
       const auto family =
           families[static_cast<std::size_t>(dice_.whole(0, static_cast<int>(families.size()) - 1))];
       Material material = make_training_pattern(family, dice_.bits());
-      // Another scale makes another pattern of it.
+      // A different scale makes a different pattern.
       material.tile_m *= dice_.uniform(0.7, 1.6);
       material.name += fmt::format("_{}", i);
       scene_.materials.push_back(std::move(material));
@@ -159,7 +159,7 @@ class RoomMaker {
     box(any_material(), center, size, turned(long_wall ? 0.0F : kPi / 2));
   }
 
-  /// Where something of this radius can stand near the walls, leaving the middle free.
+  /// A place near the walls for something of this radius, leaving the center free.
   Vector2f place(float radius) {
     const float margin = radius + 0.05F;
     const float along_x = dice_.uniform(margin, width_ - margin);
