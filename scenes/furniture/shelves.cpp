@@ -248,7 +248,7 @@ void book_stack(Piece& p) {
                {x - 0.004F, y - 0.001F, z + thick - 0.004F}, {.bevel_m = 0.0F});
     p.mesh.box(cover, {-x, -y, z + thick - 0.004F}, {x, y, z + thick - 0.001F}, {.bevel_m = 0.0F});
     p.mesh.box(cover, {-x, y - 0.003F, z + 0.003F}, {x, y, z + thick - 0.004F}, {.bevel_m = 0.0F});
-    if (i == n - 1)  // the cover's picture, its top towards +x
+    if (i == n - 1)  // the cover's image, its top toward +x
       p.mesh.picture(p.fixed(cover_spec), {x, y, z + thick - 0.0005F}, {0, -2 * y, 0},
                      {-2 * x, 0, 0});
     p.mesh.pop();

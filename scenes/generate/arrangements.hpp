@@ -13,7 +13,7 @@ int add_rows(Draft& draft, const Design& design);
 int add_aisles(Draft& draft, const Design& design);
 /// Curtains at both sides of each window; pieces as wide as a window (radiators, blinds) once.
 void add_at_windows(Draft& draft, const Design& common);
-/// On the wall beside each door, on either side.
+/// On the wall next to each door, on either side.
 void add_at_doors(Draft& draft, const Design& design);
 /// Along walls wherever they are free: items that run around a room, in pieces between the
 /// furniture.

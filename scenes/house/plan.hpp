@@ -104,7 +104,7 @@ struct HousePlan {
   double detail = 1.0;  ///< see MeshBuilder::detail
   std::vector<RoomPlan> rooms;
   std::vector<OpeningPlan> doorways, windows;
-  std::vector<ItemPlan> items;  ///< what carries others stands before them
+  std::vector<ItemPlan> items;  ///< carriers come before the pieces on them
   MaterialSpec trim, window_frame;
   std::optional<GardenPlan> garden;
   std::optional<Light> sun, sky;

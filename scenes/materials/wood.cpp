@@ -85,7 +85,7 @@ float plank_darkness(const Field& wood, const Plank& plank, int along, int acros
   return wood((along + plank.offset_x) % wood.width(), (across + plank.offset_y) % wood.height());
 }
 
-/// Darkening near the joints: the gap itself and the rounded edge beside it.
+/// Darkening near the joints: the gap itself and the rounded edge next to it.
 float joint(int distance_texels) {
   return distance_texels == 0 ? 0.55F : distance_texels == 1 ? 0.16F : 0.0F;
 }

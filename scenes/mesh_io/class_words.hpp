@@ -5,16 +5,16 @@
 
 namespace mh {
 
-/// What people who name things in files call them: words, all lower case and singular, each with
-/// the class that it means. Where NYU40's own table of raw categories has the word, the class is
-/// that table's, unless COCO has a class of its own for it; void is what means no thing. A word of
-/// two parts is found however it is written: night stand, nightstand, NightStand, night_stand.
+/// Words used in files to name things, all lower case and singular, each with its class. For words
+/// in NYU40's table of raw categories, the class is the table's, unless COCO has a separate class
+/// for it; void means not an object. A word of two parts matches in any spelling: night stand,
+/// nightstand, NightStand, night_stand.
 struct ClassWord {
   std::string_view words, class_name;
 };
 
 inline constexpr ClassWord kClassWords[] = {
-    // What a place is made of.
+    // Parts of a room.
     {"ground", "floor"},
     {"flooring", "floor"},
     {"parquet", "floor"},
@@ -79,7 +79,7 @@ inline constexpr ClassWord kClassWords[] = {
     {"kitchen island", "counter"},
     {"nurses station", "counter"},
     {"reception", "counter"},
-    // What things are kept in.
+    // Storage.
     {"cupboard", "cabinet"},
     {"wardrobe", "cabinet"},
     {"closet", "cabinet"},
@@ -106,7 +106,7 @@ inline constexpr ClassWord kClassWords[] = {
     {"rucksack", "bag"},
     {"briefcase", "bag"},
     {"backpack", "bag"},
-    // Walls' and windows' own.
+    // On walls and windows.
     {"painting", "picture"},
     {"portrait", "picture"},
     {"poster", "picture"},
@@ -249,7 +249,7 @@ inline constexpr ClassWord kClassWords[] = {
     {"logo", "otherprop"},
     {"pallet", "otherprop"},
     {"pallet jack", "otherfurniture"},
-    // Rooms and drawings are no things.
+    // Rooms and drawings are not objects.
     {"bed room", "void"},
     {"bath room", "void"},
     {"floor plan", "void"},

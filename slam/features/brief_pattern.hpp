@@ -15,7 +15,7 @@ struct BriefPair {
 /// The 256 comparisons that ORB's authors learned for high variance and low correlation (Rublee et
 /// al., ICCV 2011, section 4.3). The numbers are OpenCV's `bit_pattern_31_`
 /// (modules/features2d/src/orb.cpp, Apache-2.0 license, copyright Willow Garage 2009), so that
-/// descriptors agree with cv::ORB's bit for bit. No point lies farther than 18.4 px from the
+/// descriptors agree with cv::ORB's bit for bit. No point is farther than 18.4 px from the
 /// center.
 // clang-format off
 inline constexpr std::array<BriefPair, 256> kBriefPattern = {{

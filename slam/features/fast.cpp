@@ -191,7 +191,7 @@ std::vector<Corner> fast_corners(const cv::Mat& image, int edge_px, int threshol
   if (width <= 0 || height <= 0) return {};
 
   // Contrast of three rows at a time, each with one pixel beyond the area on either side. Row y
-  // lies in buffer y % 3.
+  // is in buffer y % 3.
   const auto length = static_cast<std::size_t>(width + 2);
   std::array<std::vector<Byte>, 3> contrast;
   for (std::vector<Byte>& row : contrast) row.resize(length);

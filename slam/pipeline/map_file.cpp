@@ -4,9 +4,9 @@
 //   u32      version
 //   u64      digest of the vocabulary
 //   u64      size of the content
-//   content  settings (YAML), camera, keyframes, landmarks, tracking's and loop closing's memory,
-//            tracked frames; lists begin with their length (u64), see slam/map/archive.hpp
-//   u64      xxh3-64 of all bytes before
+//   content  settings (YAML), camera, keyframes, landmarks, state of tracking and loop closing,
+//            tracked frames; lists start with their length (u64), see slam/map/archive.hpp
+//   u64      xxh3-64 of all preceding bytes
 #include "slam/pipeline/map_file.hpp"
 
 #include <fstream>

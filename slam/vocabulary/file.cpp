@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vocabulary's file, little-endian, read where it lies:
+// The vocabulary file, little-endian, used in place without copying:
 //   8 bytes   magic "MHVOCAB\n"
 //   u32 x 6   version, branching, depth, number of nodes N, number of words W, training images
 //   u64       training descriptors
@@ -7,7 +7,7 @@
 //   32 x N    centers of the nodes, breadth first (the root's is zero)
 //   f32 x W   inverse document frequencies; word w is the w-th node without children
 //   u8  x N   number of children of each node; children follow in the order of their parents
-//   u64       xxh3-64 of all bytes before
+//   u64       xxh3-64 of all preceding bytes
 #include <bit>
 #include <cmath>
 #include <cstring>
