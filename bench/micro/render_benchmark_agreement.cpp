@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Agreement of the ray tracer and the rasterizer over random views of five scenes, with the limits
-// stated in docs/rendering.md.
+// stated in docs/measurements/rendering.md.
 // Usage: render_agreement [--portable] [views per scene]
 #include <algorithm>
 #include <cstdlib>

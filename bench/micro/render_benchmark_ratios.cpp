@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ratios of rendering times at 640x480: medians over interleaved repeats of twelve views, with the
-// limits stated in docs/rendering.md. Single-threaded work is timed by its thread's CPU clock,
-// independent of the machine's load. Our renderer and OSMesa on two threads are judged by wall
-// time, which is what a user waits: quiet machines only (the load is printed). The CPU time of all
-// their threads is also printed.
-// Usage: render_ratios [--portable] [repeats]
+// limits stated in docs/measurements/rendering.md. Single-threaded work is timed by its thread's
+// CPU clock, independent of the machine's load. Our renderer and OSMesa on two threads are judged
+// by wall time, which is what a user waits: quiet machines only (the load is printed). The CPU time
+// of all their threads is also printed. Usage: render_ratios [--portable] [repeats]
 #include <malloc.h>
 #include <time.h>
 

@@ -16,7 +16,7 @@
 namespace mh {
 
 /// Compression of PNG files, 0 (none) to 9; default: 1. For costs and savings see
-/// docs/rendering.md.
+/// docs/measurements/rendering.md.
 using PngCompression = std::optional<int>;
 /// As write_picture takes it.
 std::vector<int> png_settings(PngCompression compression);
