@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "scenes/recorded/frame_sequence.hpp"
+#include "scenes/recorded/icl_nuim.hpp"
 #include "scenes/recorded/scannet_folder.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -17,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kReaders = {&kTumReader, &kScannetReader};
+// Before TUM's, whose list it has as well.
+constexpr std::array kReaders = {&kIclNuimReader, &kTumReader, &kScannetReader};
 
 /// Puts a file's content into the scopes that are open; one that is gone is noted as that.
 void note_content(const fs::path& file) {

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/recorded/icl_nuim.hpp"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "scenes/recorded/frame_sequence.hpp"
+#include "scenes/recorded/tum_list.hpp"
+#include "slam/core/counted.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/text_file.hpp"
+#include "slam/core/trajectory_io.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kRate_hz = 30;  // of the rendered camera, as published
+
+Stamp stamp_of_number(Stamp number_ns) {
+  return static_cast<Stamp>(std::llround(static_cast<double>(number_ns) / kRate_hz));
+}
+
+/// The published calibration. Its fy is -480 in the world of the poses; the images of this layout
+/// are stored top row first, which makes it positive.
+Camera published_camera() {
+  Camera camera;
+  camera.width_px = 640;
+  camera.height_px = 480;
+  camera.fx_px = 481.20;
+  camera.fy_px = 480.00;
+  camera.cx_px = 319.50;
+  camera.cy_px = 239.50;
+  camera.rate_hz = kRate_hz;
+  return camera;
+}
+
+/// The same pose after a reflection that turns y around, in the world and in the camera.
+SE3 reflected(const SE3& pose) {
+  const Eigen::DiagonalMatrix<double, 3> turn_y(1, -1, 1);
+  return {Eigen::Matrix3d(turn_y * pose.rotation() * turn_y), turn_y * pose.translation()};
+}
+
+/// The files of true poses, NAME.gt.freiburg; empty if the folder holds none.
+std::vector<fs::path> truth_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().string().ends_with(".gt.freiburg")) files.push_back(entry.path());
+  return files;
+}
+
+Trajectory read_truth(const fs::path& file) {
+  Trajectory truth = read_tum(file);
+  for (TimedPose& pose : truth)
+    pose = {stamp_of_number(pose.stamp_ns), reflected(pose.world_from_camera)};
+  return truth;
+}
+
+std::vector<RecordedFrame> read_frames(const fs::path& folder) {
+  const fs::path list = folder / "associations.txt";
+  const std::string text = read_text(list);
+  const auto depth = parse_tum_list(text, list.string());
+  const auto color = parse_tum_list(text, list.string(), 2);
+  if (color.empty()) throw InputError(fmt::format("{}: lists no image", list.string()));
+  std::vector<RecordedFrame> frames;
+  for (std::size_t i = 0; i < color.size(); ++i)
+    frames.push_back({stamp_of_number(color[i].stamp_ns), folder / color[i].file,
+                      folder / depth[i].file, fs::path()});
+  return frames;
+}
+
+bool is_icl_nuim(const fs::path& folder) {
+  return is_file(folder / "associations.txt") && !truth_files(folder).empty();
+}
+
+OpenedRecording open_icl_nuim(const fs::path& folder, const RecordingConfig& config) {
+  if (!is_folder(folder)) throw InputError(fmt::format("{}: is not a folder", folder.string()));
+  const std::vector<fs::path> truth = truth_files(folder);
+  if (truth.size() != 1)
+    throw InputError(fmt::format("{}: holds {}, one is needed", folder.string(),
+                                 counted(truth.size(), ".gt.freiburg file")));
+  ListedFrames listed{.camera = {.camera = published_camera()},
+                      .frames = read_frames(folder),
+                      .classes = {},
+                      .truth = read_truth(truth.front())};
+  if (!config.calibration.empty()) listed.camera = config.read_camera(config.calibration);
+  return open_listed(std::move(listed));
+}
+
+}  // namespace
+
+const SequenceReader kIclNuimReader{"icl_nuim", "FOLDER", is_icl_nuim, open_icl_nuim, nullptr};
+
+}  // namespace mh
