@@ -57,7 +57,7 @@ build/release/modelhouse bench "$suite" --jobs "$jobs" --out "$out" "${trials[@]
 # After a failure, the existing images are from an earlier run.
 if (( status == 0 )); then
   echo
-  echo "Pictures:"
+  echo "Images:"
   find "$out" -name '*.png' | LC_ALL=C sort | sed 's/^/  /'
 fi
 exit "$status"

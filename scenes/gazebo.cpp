@@ -13,10 +13,10 @@
 #include "scenes/gazebo/lights.hpp"
 #include "scenes/gazebo/shapes.hpp"
 #include "scenes/guard.hpp"
+#include "scenes/mesh_io/image_in.hpp"
 #include "scenes/mesh_io/label_rules.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/mesh_io/node_name.hpp"
-#include "scenes/mesh_io/picture_in.hpp"
 #include "scenes/mesh_io/subdivide.hpp"
 #include "scenes/placed_objects.hpp"
 #include "slam/core/error.hpp"
@@ -53,21 +53,21 @@ class WorldReader {
     require_readable(file_);
     // Its messages arrive as errors; it would also print them.
     sdf::Console::Instance()->SetQuiet(true);
-    const gazebo::Expanded expanded = gazebo::expand(file_, told_);
+    const gazebo::Expanded expanded = gazebo::expand(file_, collected_);
     scene_.name = file_.stem().string();
     const std::string scene = add_piece(expanded.scene, {}) ? expanded.scene : "";
     for (const std::vector<std::string>& piece : expanded.pieces) add_piece(scene, piece);
     if (!scene_.lights.empty())
       scene_.lights.push_back({.kind = Light::Kind::kAmbient, .color = ambient_});
     if (visuals_ < expanded.visuals)
-      told_.tell(fmt::format("{}: {} of {} visuals could not be read", file_.string(),
-                             expanded.visuals - visuals_, expanded.visuals));
-    std::vector<std::string> told;
-    told_.hand_over(&told);
+      collected_.add(fmt::format("{}: {} of {} visuals could not be read", file_.string(),
+                                 expanded.visuals - visuals_, expanded.visuals));
+    std::vector<std::string> collected;
+    collected_.append_to(&collected);
     if (scene_.triangles.empty())
       throw InputError(fmt::format("{}: has nothing to be seen{}", file_.string(),
-                                   told.empty() ? "" : ": " + told.front()));
-    if (warnings != nullptr) warnings->insert(warnings->end(), told.begin(), told.end());
+                                   collected.empty() ? "" : ": " + collected.front()));
+    if (warnings != nullptr) warnings->insert(warnings->end(), collected.begin(), collected.end());
     meshes_.clear();
     if (!scene_.lights.empty()) {
       const float edge_m = gazebo::edge_for_light_m(scene_);
@@ -95,7 +95,7 @@ class WorldReader {
       return false;
     }
     for (const sdf::Error& error : errors)
-      told_.tell(fmt::format("{}: {}", file_.string(), error.Message()));
+      collected_.add(fmt::format("{}: {}", file_.string(), error.Message()));
     if (world != nullptr) add_world(*world);
     return world != nullptr;
   }
@@ -116,7 +116,7 @@ class WorldReader {
     ignition::math::Pose3d pose;
     const sdf::Errors errors = thing.SemanticPose().Resolve(pose);
     if (errors.empty()) return affine_of(pose);
-    told_.tell(fmt::format("{}: {}: {}", file_.string(), what, errors.front().Message()));
+    collected_.add(fmt::format("{}: {}: {}", file_.string(), what, errors.front().Message()));
     return affine_of(thing.RawPose());
   }
 
@@ -166,11 +166,11 @@ class WorldReader {
     if (geometry.Type() == sdf::GeometryType::MESH) {
       add_mesh(visual, world_from_visual, name, parts);
     } else if (const auto fault = gazebo::fault_of(geometry)) {
-      told_.tell(fmt::format("{}: {}: {}: left out", file_.string(), what, *fault));
+      collected_.add(fmt::format("{}: {}: {}: left out", file_.string(), what, *fault));
     } else if (const auto shape = gazebo::shape_of(geometry, look_of(visual))) {
       append_part(parts, *shape, world_from_visual, name, kVoid);
     } else {
-      told_.tell(fmt::format("{}: {}: its kind of shape is not shown", file_.string(), what));
+      collected_.add(fmt::format("{}: {}: its kind of shape is not shown", file_.string(), what));
     }
   }
 
@@ -192,14 +192,13 @@ class WorldReader {
     if (is_new) {
       try {
         std::vector<std::string> warnings;
-        place->second =
-            load_mesh(file, &warnings, rules_, {.pictures = &pictures_, .in_gazebo = true});
-        for (const std::string& warning : warnings) told_.tell(warning);
+        place->second = load_mesh(file, &warnings, rules_, {.images = &images_, .in_gazebo = true});
+        for (const std::string& warning : warnings) collected_.add(warning);
       } catch (const InputError& error) {
         const std::string what = error.what();
         const bool is_named =
             what.find(file.string()) != what.npos;  // a Scene does not know its file
-        told_.tell(fmt::format("{}{}: left out", is_named ? "" : file.string() + ": ", what));
+        collected_.add(fmt::format("{}{}: left out", is_named ? "" : file.string() + ": ", what));
       }
     }
     return place->second ? &*place->second : nullptr;
@@ -211,7 +210,7 @@ class WorldReader {
       return lower(instance.name) == lower(wanted.Submesh());
     });
     if (found == mesh.instances.end()) {
-      told_.tell(
+      collected_.add(
           fmt::format("{}: has no submesh {}: all of it is shown", wanted.Uri(), wanted.Submesh()));
       return mesh;
     }
@@ -266,19 +265,19 @@ class WorldReader {
   }
 
   void put_texture(const fs::path& file, Material& look) {
-    const PictureIn picture = pictures_.read(file);
-    if (picture.color.empty())
-      told_.tell(fmt::format("{}: texture {} {}", file_.string(), file.string(), picture.fault));
-    look.texture = picture.color;
-    look.opacity = picture.opacity;
+    const ImageIn image = images_.read(file);
+    if (image.color.empty())
+      collected_.add(fmt::format("{}: texture {} {}", file_.string(), file.string(), image.fault));
+    look.texture = image.color;
+    look.opacity = image.opacity;
   }
 
   fs::path file_;
-  gazebo::ToldOnce told_;
+  gazebo::UniqueWarnings collected_;
   LabelRules rules_;
   Scene scene_;
   Eigen::Vector3f ambient_ = Eigen::Vector3f::Zero();
-  PictureStore pictures_;
+  ImageStore images_;
   std::map<fs::path, std::optional<Scene>> meshes_;
   std::size_t visuals_ = 0;
   int parts_ = 0;
@@ -290,7 +289,8 @@ Scene load_gazebo_world(const fs::path& file, std::vector<std::string>* warnings
   // libsdformat takes 3 s per megabyte of small models.
   constexpr GuardLimits kLimits{.processor_s_per_mb = 5.0};
   return load_guarded(
-      file, warnings, [&](std::vector<std::string>* told) { return WorldReader(file).read(told); },
+      file, warnings,
+      [&](std::vector<std::string>* collected) { return WorldReader(file).read(collected); },
       kLimits);
 }
 

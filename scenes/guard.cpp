@@ -16,19 +16,19 @@ Scene load_guarded(const std::filesystem::path& file, std::vector<std::string>* 
     const ReadingInChild reading(file);
     return load(warnings);
   }
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   Scene scene;
   std::string read;  // what the child read: its scopes are not shared with this process
   const auto work = [&]() -> std::function<void(PipeWriter&)> {
     const ReadScope scope;
-    scene = load(&told);
+    scene = load(&reported);
     read = encode(scope.record());
-    return [&](PipeWriter& out) { scene_fields::Sender{out}(told, scene, read); };
+    return [&](PipeWriter& out) { scene_fields::Sender{out}(reported, scene, read); };
   };
-  const auto receive = [&](PipeReader& in) { scene_fields::Receiver{in}(told, scene, read); };
+  const auto receive = [&](PipeReader& in) { scene_fields::Receiver{in}(reported, scene, read); };
   in_child(file, limits, work, receive);
   ReadScope::report(decode_read_record(read));
-  if (warnings != nullptr) std::ranges::move(told, std::back_inserter(*warnings));
+  if (warnings != nullptr) std::ranges::move(reported, std::back_inserter(*warnings));
   return scene;
 }
 

@@ -94,7 +94,7 @@ struct Watch {
 };
 Watch g_watch;
 
-void tell_of_memory() {
+void report_memory_limit() {
   const char word = static_cast<char>(Word::kMemory);
   write_to_parent(g_watch.pipe, &word, 1);
   _exit(0);
@@ -143,7 +143,7 @@ void on_memory_limit() {
   const std::uint64_t granted = (*g_watch.note)->memory_bytes;
   const std::uint64_t allowed =
       g_watch.limits.memory_bytes + g_watch.limits.memory_per_byte * g_watch.read_bytes();
-  if (allowed <= granted) tell_of_memory();
+  if (allowed <= granted) report_memory_limit();
   (*g_watch.note)->memory_bytes = allowed;
   limit(RLIMIT_AS, g_watch.mapped_before + allowed);
 }
@@ -189,7 +189,7 @@ void* run_child(void* argument) {
   } catch (const MachineError& error) {
     say(out, Word::kMachine, error.what());
   } catch (const std::bad_alloc&) {
-    tell_of_memory();
+    report_memory_limit();
   } catch (const std::exception& error) {
     say(out, Word::kOther, error.what());
   } catch (...) {

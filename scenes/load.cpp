@@ -77,10 +77,10 @@ Scene load(const std::filesystem::path& file, std::vector<std::string>* warnings
     return settled(load_turned_mesh(file, frame.up, warnings), frame, warnings);
   if (ending == ".yaml" || ending == ".yml") {
     if (!is_placed_scene(file)) return built(load_house(file), file, frame);
-    SceneFrame told = placed_frame(file);
-    if (frame.up) told.up = frame.up;
-    if (frame.floor_z_m) told.floor_z_m = frame.floor_z_m;
-    return settled(load_placed_scene(file, warnings, told.up), told, warnings);
+    SceneFrame reported = placed_frame(file);
+    if (frame.up) reported.up = frame.up;
+    if (frame.floor_z_m) reported.floor_z_m = frame.floor_z_m;
+    return settled(load_placed_scene(file, warnings, reported.up), reported, warnings);
   }
   if (ending == ".sdf" || ending == ".world")
     return settled(turned(load_gazebo_world(file, warnings), frame), frame, warnings);

@@ -71,9 +71,9 @@ class MeshBuilder {
   /// A flat parallelogram, seen from the side where u runs right and v runs down; texture
   /// coordinates go from uv0 at `corner` (upper left) to uv0 + uv_size, in meters on the image;
   /// without uv_size, the parallelogram's own size, so that images appear once.
-  void picture(MaterialId material, const Eigen::Vector3f& corner, const Eigen::Vector3f& right,
-               const Eigen::Vector3f& down, const Eigen::Vector2f& uv0 = {0, 0},
-               std::optional<Eigen::Vector2f> uv_size = std::nullopt);
+  void image(MaterialId material, const Eigen::Vector3f& corner, const Eigen::Vector3f& right,
+             const Eigen::Vector3f& down, const Eigen::Vector2f& uv0 = {0, 0},
+             std::optional<Eigen::Vector2f> uv_size = std::nullopt);
   /// A flat rectangular grid with given breaks along two directions and an optional mask of cells
   /// to omit (holes for doors and windows).
   void panel(MaterialId material, const Plane& plane, std::span<const float> u_breaks,

@@ -113,9 +113,9 @@ void MeshBuilder::beam(MaterialId material, const Vector3f& a, const Vector3f& b
   pop();
 }
 
-void MeshBuilder::picture(MaterialId material, const Vector3f& corner, const Vector3f& right,
-                          const Vector3f& down, const Vector2f& uv0,
-                          std::optional<Vector2f> uv_size) {
+void MeshBuilder::image(MaterialId material, const Vector3f& corner, const Vector3f& right,
+                        const Vector3f& down, const Vector2f& uv0,
+                        std::optional<Vector2f> uv_size) {
   const Vector2f uv = uv_size.value_or(Vector2f(right.norm(), down.norm()));
   const int nu = cells(right.norm()), nv = cells(down.norm());
   Grid grid;

@@ -8,14 +8,14 @@
 
 #include "scenes/floor.hpp"
 #include "scenes/guard.hpp"
+#include "scenes/mesh_io/image_in.hpp"
 #include "scenes/mesh_io/instances_in.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/mesh_io/node_name.hpp"
-#include "scenes/mesh_io/picture_in.hpp"
 #include "scenes/placed_scene_file.hpp"
 #include "scenes/scannet/files.hpp"
 #include "scenes/scannet/scannet.hpp"
-#include "scenes/thin_pictures.hpp"
+#include "scenes/thin_images.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/yaml.hpp"
 
@@ -63,14 +63,14 @@ PlacedScene read(const fs::path& yaml) {
 
 /// A mesh, or a ScanNet scene with its labels. If the file labels nothing, the object's name may.
 Scene load_object(const PlacedObject& object, const PlacedScene& placed, std::optional<UpAxis> up,
-                  std::vector<std::string>* warnings, PictureStore* pictures) {
+                  std::vector<std::string>* warnings, ImageStore* images) {
   if (is_scannet_scene(object.file)) {
     Scene scan = load_scannet(object.file, warnings);
     if ((object.up ? object.up : up) == UpAxis::kY) turn_y_up(scan);
     return scan;
   }
   Scene part = load_turned_mesh(object.file, object.up ? object.up : up, warnings, placed.rules,
-                                {.pictures = pictures});
+                                {.images = images});
   const auto is_void = [](ClassId id) { return id == kVoid; };
   if (std::ranges::all_of(part.class_of, is_void)) {
     const ClassId named = placed.rules.find({object.name}).value_or(guess_class(object.name));
@@ -111,7 +111,7 @@ void append_part(Scene& scene, Scene part, const Eigen::Affine3d& scene_from_par
 void finish_parts(Scene& scene) {
   if (scene.triangles.empty())
     throw InputError(fmt::format("scene {}: has nothing to be seen", scene.name));
-  thin_pictures(scene);
+  thin_images(scene);
   find_boxes(scene);
   rooms_from_floors(scene);
   validate(scene);
@@ -128,13 +128,13 @@ bool is_placed_scene(const fs::path& yaml) {
 Scene load_placed_scene(const fs::path& yaml, std::vector<std::string>* warnings,
                         std::optional<UpAxis> up) {
   const PlacedScene placed = read(yaml);
-  return load_guarded(yaml, warnings, [&](std::vector<std::string>* told) {
+  return load_guarded(yaml, warnings, [&](std::vector<std::string>* reported) {
     Scene scene;
     scene.name = placed.name;
-    PictureStore pictures;
+    ImageStore images;
     for (const PlacedObject& object : placed.objects)
-      append_part(scene, load_object(object, placed, up, told, &pictures), object.scene_from_object,
-                  object.name, object.class_id);
+      append_part(scene, load_object(object, placed, up, reported, &images),
+                  object.scene_from_object, object.name, object.class_id);
     finish_parts(scene);
     return scene;
   });

@@ -26,7 +26,7 @@ PlacedObject read_object(YamlReader yaml, const fs::path& folder) {
     plan.class_id = class_by_name(class_name->as_string());
     if (!plan.class_id)
       class_name->fail(
-          fmt::format("'{}' is no class{}", class_name->as_string(),
+          fmt::format("'{}' is not a class{}", class_name->as_string(),
                       hint(class_name->as_string(), words_of(classes(), &ClassInfo::name),
                            "modelhouse reference classes lists all")));
   }

@@ -80,7 +80,7 @@ template <class T>
 inline constexpr bool kIsShared = false;
 template <class T>
 inline constexpr bool kIsShared<SharedGrid<T>> = true;
-using KnownPictures =
+using KnownImages =
     std::tuple<std::vector<SharedGrid<Rgb8>>, std::vector<SharedGrid<std::uint8_t>>>;
 
 /// Writes values to anything that has bytes(const void*, size).
@@ -100,7 +100,7 @@ class Sender {
     if constexpr (kPlain<T>) {
       out_.bytes(&value, sizeof value);
     } else if constexpr (kIsShared<T>) {
-      auto& known = std::get<std::vector<T>>(pictures_);
+      auto& known = std::get<std::vector<T>>(images_);
       const auto place = std::ranges::find(known, value.identity(), &T::identity);
       put(static_cast<std::uint64_t>(place - known.begin()));
       if (place != known.end()) return;
@@ -121,7 +121,7 @@ class Sender {
   }
 
   Out& out_;
-  KnownPictures pictures_;
+  KnownImages images_;
 };
 
 /// Reads them from anything that has bytes(void*, size), directly into their destination.
@@ -141,7 +141,7 @@ class Receiver {
     if constexpr (kPlain<T>) {
       in_.bytes(&value, sizeof value);
     } else if constexpr (kIsShared<T>) {
-      auto& known = std::get<std::vector<T>>(pictures_);
+      auto& known = std::get<std::vector<T>>(images_);
       std::uint64_t place = 0;
       get(place);
       if (place >= known.size()) {
@@ -170,7 +170,7 @@ class Receiver {
   }
 
   In& in_;
-  KnownPictures pictures_;
+  KnownImages images_;
 };
 
 }  // namespace mh::scene_fields

@@ -136,7 +136,7 @@ fs::path Cache::own_folder() const {
     if (rename(fresh.c_str(), own.c_str()) != 0) fs::remove_all(fresh, error);
   }
   if (!is_own_folder(own) || !is_own_file(own / kMarker) || read_file(own / kMarker) != kMarkerText)
-    throw InputError(fmt::format("{}: is no cache of modelhouse's ({} is not in it): left alone",
+    throw InputError(fmt::format("{}: is not a modelhouse cache ({} is not in it): left alone",
                                  own.string(), kMarker));
   return own;
 }

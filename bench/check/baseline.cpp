@@ -90,7 +90,7 @@ Baseline load_baseline(const std::filesystem::path& file) {
   const Json json = Json::parse(read_text(file), nullptr, false);
   if (!json.is_object() || !json.contains("format") || !json["format"].is_string())
     throw InputError(
-        fmt::format("{}: is no baseline: it should be JSON as `modelhouse check "
+        fmt::format("{}: is not a baseline: it should be JSON as `modelhouse check "
                     "--update` writes it",
                     file.string()));
   const auto format = json["format"].get<std::string>();

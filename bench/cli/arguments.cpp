@@ -40,7 +40,7 @@ CLI::Validator number_between(double least, double greatest) {
       [=](std::string& text) {
         double value = 0;
         if (!parse(text, value) || !std::isfinite(value))
-          return fmt::format("'{}' is no finite number", text);
+          return fmt::format("'{}' is not a finite number", text);
         if (value < least || value > greatest)
           return fmt::format("Value {} not in range {}", text, range);
         return std::string();
@@ -53,7 +53,7 @@ CLI::Validator seed_number() {
       [](std::string& text) {
         std::uint64_t value = 0;
         return parse(text, value) ? std::string()
-                                  : fmt::format("'{}' is no whole number from 0 to 2^64 - 1", text);
+                                  : fmt::format("'{}' is not an integer from 0 to 2^64 - 1", text);
       },
       "", "seed");
 }
@@ -63,7 +63,7 @@ CLI::Validator one_of_words(std::vector<std::string> words) {
   return CLI::Validator(
       [words = std::move(words)](std::string& text) {
         if (std::ranges::find(words, text) != words.end()) return std::string();
-        return fmt::format("'{}' is none of {}{}", text, fmt::join(words, ", "),
+        return fmt::format("'{}' is not one of {}{}", text, fmt::join(words, ", "),
                            did_you_mean(text, words));
       },
       std::move(described), "word");
@@ -75,7 +75,7 @@ void resolve(std::string& word, Shipped what) {
 
 namespace {
 
-void need_other_file(const fs::path& file, const fs::path& input) {
+void require_other_file(const fs::path& file, const fs::path& input) {
   std::error_code error;
   if (fs::equivalent(file, input, error) && !error)
     throw InputError(
@@ -84,17 +84,17 @@ void need_other_file(const fs::path& file, const fs::path& input) {
 
 }  // namespace
 
-void need_not_read(const fs::path& file, const ReadRecord& record) {
+void require_not_read(const fs::path& file, const ReadRecord& record) {
   for (const FileObservation& seen : record.observations)
-    if (seen.kind == FileObservation::Kind::kRead) need_other_file(file, seen.path);
+    if (seen.kind == FileObservation::Kind::kRead) require_other_file(file, seen.path);
 }
 
-void need_writable(const fs::path& file, const std::vector<fs::path>& read) {
+void require_writable(const fs::path& file, const std::vector<fs::path>& read) {
   std::error_code error;
   if (fs::exists(file, error) && !fs::is_regular_file(file, error))
     throw InputError(fmt::format("{}: cannot be written: it is {}", file.string(),
                                  fs::is_directory(file, error) ? "a folder" : "no file"));
-  for (const fs::path& input : read) need_other_file(file, input);
+  for (const fs::path& input : read) require_other_file(file, input);
   make_output_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
 }
 
@@ -110,7 +110,7 @@ std::string mark_in(const fs::path& folder) {
   std::string mark = read_file(file);
   if (!mark.starts_with(kMarkHead))
     throw InputError(
-        fmt::format("{}: is no file of modelhouse's: name another folder", file.string()));
+        fmt::format("{}: was not written by modelhouse: name another folder", file.string()));
   return mark;
 }
 

@@ -30,13 +30,13 @@ void resolve(std::string& word, Shipped what);
 /// Checks before any work is done that a file can be written there; creates its folder.
 /// @param read  what the command reads; none of it may be overwritten
 /// @throws InputError naming file or folder; DiskFullError.
-void need_writable(const std::filesystem::path& file,
-                   const std::vector<std::filesystem::path>& read = {});
+void require_writable(const std::filesystem::path& file,
+                      const std::vector<std::filesystem::path>& read = {});
 
 /// Checks, before anything is written, that the output file is not one that was read; for a scene,
 /// that means every file it was loaded from.
 /// @throws InputError naming the file.
-void need_not_read(const std::filesystem::path& file, const ReadRecord& record);
+void require_not_read(const std::filesystem::path& file, const ReadRecord& record);
 
 /// A command's output folder, created before any work is done, so that an unwritable one fails at
 /// once. If the command is refused before it wrote anything, no empty folder is left behind. A file

@@ -113,8 +113,8 @@ void add_bench(CLI::App& app) {
   command->add_option("--shard", options->shard,
                       "i/n: takes run i, i + n, ... alone; `merge` puts them together");
   command->add_option("--cache", options->cache,
-                      "Folder for what is dear to make (default: $XDG_CACHE_HOME/modelhouse)");
-  command->add_flag("--no-cache", options->no_cache, "Makes everything anew, keeps nothing");
+                      "Cache folder for expensive results (default: $XDG_CACHE_HOME/modelhouse)");
+  command->add_flag("--no-cache", options->no_cache, "Rebuilds everything, caches nothing");
   command->add_flag("--retry-failed", options->retry_failed, "Tries failed runs again");
   command->add_option("--time-limit", options->time_limit_s, "Seconds for one run; 0 = none")
       ->check(number_between(0.0, 1e9));

@@ -75,7 +75,7 @@ Baseline measure(const Suite& suite, const Options& of) {
                              .shard = {},
                              .cache = {},
                              .retry_failed = true,
-                             .figures_alone = true,
+                             .metrics_only = true,
                              .say = [&](std::string_view stage) { progress.say(stage); },
                              .progress = [&](const PoolProgress& p) { show(progress, p); }};
   SuiteOverrides overrides;
@@ -103,7 +103,7 @@ Baseline measure(const Suite& suite, const Options& of) {
           .runs = figures(results.runs)};
 }
 
-void tell(const Options& options, const GateResult& result, const std::string& suite) {
+void report(const Options& options, const GateResult& result, const std::string& suite) {
   if (!options.junit.empty()) write_atomically(options.junit, gate_junit(result, suite));
   if (options.json)
     fmt::print("{}\n", gate_json(result, suite).dump(2));
@@ -126,7 +126,7 @@ void update(const Options& options, const Suite& suite, const Baseline& now) {
   if (fs::exists(file)) {
     try {
       const Baseline before = load_baseline(file);
-      tell(options, compare(before.runs, now.runs, suite.gate, false), suite.name);
+      report(options, compare(before.runs, now.runs, suite.gate, false), suite.name);
     } catch (const InputError& error) {
       fmt::print("cannot be compared with the baseline before: {}\n", error.what());
     }
@@ -144,8 +144,9 @@ void run(Options options) {
   if (suite.gate.tolerances.empty() && suite.gate.of_scenario.empty())
     throw InputError(
         fmt::format("{}: check: tolerances: missing: nothing would be judged", options.suite));
-  if (!options.junit.empty()) need_writable(options.junit, {options.suite, baseline_file(options)});
-  if (options.update) need_writable(baseline_file(options), {options.suite});
+  if (!options.junit.empty())
+    require_writable(options.junit, {options.suite, baseline_file(options)});
+  if (options.update) require_writable(baseline_file(options), {options.suite});
   if (options.update) return update(options, suite, measure(suite, options));
 
   const fs::path file = baseline_file(options);
@@ -156,7 +157,7 @@ void run(Options options) {
   check_suite(baseline, file, suite.name, gate_suite_digest(suite));
   const Baseline now = measure(suite, options);
   const GateResult result = judge(suite, baseline, now);
-  tell(options, result, suite.name);
+  report(options, result, suite.name);
   if (!result.passed()) throw CheckFailed();
 }
 

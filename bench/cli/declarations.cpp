@@ -114,7 +114,7 @@ void add_declarations(CLI::App& app) {
 std::string explain(const CLI::ParseError& error, const CLI::App& app) {
   const CLI::App& at = reached(app);
   const std::string path = path_of(at);
-  const std::string see = fmt::format(" ({} --help tells more)", path);
+  const std::string see = fmt::format(" ({} --help)", path);
   std::vector<CommandDeclaration> own;
   collect(at, "", own);
   const std::vector<std::string> left = app.remaining(true);
@@ -128,7 +128,7 @@ std::string explain(const CLI::ParseError& error, const CLI::App& app) {
     return fmt::format("{} takes no {}{}{}", path, name, did_you_mean(name, names), see);
   }
   if (!left.empty() && !own.front().commands.empty())
-    return fmt::format("'{}' is no command of {}{}", left.front(), path,
+    return fmt::format("'{}' is not a command of {}{}", left.front(), path,
                        hint(left.front(), own.front().commands));
   if (!left.empty())
     return fmt::format("{}: '{}' is one word more than it takes{}", path, left.front(), see);

@@ -39,7 +39,7 @@ const std::map<std::string, Alignment> kAlignments = {{"se3", Alignment::kSe3},
 /// "30f", "0.2m", "1s". @throws InputError naming the text.
 RpeDelta parse_delta(const std::string& text, bool all_pairs) {
   const auto fail = [&] {
-    throw InputError(fmt::format("--delta: '{}' is no distance such as 30f, 0.2m or 1s", text));
+    throw InputError(fmt::format("--delta: '{}' is not a distance such as 30f, 0.2m or 1s", text));
   };
   RpeDelta delta{.all_pairs = all_pairs};
   std::size_t end = 0;

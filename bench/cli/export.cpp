@@ -18,8 +18,8 @@ struct Options {
 
 void run(const Options& options) {
   if (!options.out.empty())
-    need_writable(options.out,
-                  {options.store, std::filesystem::path(options.store) / "results.sqlite"});
+    require_writable(options.out,
+                     {options.store, std::filesystem::path(options.store) / "results.sqlite"});
   const Store store = Store::open_to_read(options.store);
   load_results(store, store.planned_suite());  // so that a damaged row is not exported
   const std::string text = options.format == "csv"    ? export_csv(store)

@@ -37,7 +37,7 @@ std::vector<std::string> names_written(const std::filesystem::path& out, const S
     names.push_back(fmt::format("views-{}.png", e.name));
   for (const RunSpec& spec : expand(suite)) {
     names.push_back(spec.name);
-    // As in sweep_picture_name(): the run's name without its trial.
+    // As in sweep_image_name(): the run's name without its trial.
     names.push_back(fmt::format("sweep-{}.png", spec.name.substr(0, spec.name.rfind('-'))));
   }
   return names;
@@ -54,11 +54,12 @@ void throw_failures(const std::vector<FailedRun>& failed, const std::string& why
   if (failed.empty()) return;
   std::string others;
   if (failed.size() > 1) others = fmt::format(" and {} more", failed.size() - 1);
-  const std::string told = fmt::format("{}{} failed; {}", failed.front().spec.name, others, why);
+  const std::string reported =
+      fmt::format("{}{} failed; {}", failed.front().spec.name, others, why);
   if (std::all_of(failed.begin(), failed.end(),
                   [](const FailedRun& f) { return f.error.starts_with(kBadInputMark); }))
-    throw InputError(told);
-  throw MachineError(told + advice);
+    throw InputError(reported);
+  throw MachineError(reported + advice);
 }
 
 }  // namespace mh::cli

@@ -95,8 +95,8 @@ int run(int argc, char** argv) {
     return kCheckFailed;
   } catch (const mh::Interrupted& interrupted) {
     fmt::print(stderr, "modelhouse: interrupted; {}\n",
-               interrupted.goes_on ? "what is finished is kept, the same command goes on with it"
-                                   : "nothing is kept, the same command begins anew");
+               interrupted.goes_on ? "finished results are kept; the same command resumes"
+                                   : "nothing is kept; the same command starts over");
     return kInterrupted;
   } catch (const mh::InputChanged& error) {
     return fail(mh::kInputChangedCode, error.what());

@@ -38,7 +38,7 @@ struct MotionOption {
     if (is_bare_name(kind) && !shipped_or_there(word)) {
       std::vector<std::string> valid = kinds;
       for (const std::string& name : shipped_names(Shipped::kTour)) valid.push_back(name);
-      throw InputError(fmt::format("'{}' is no motion{}", word, hint(kind, valid)));
+      throw InputError(fmt::format("'{}' is not a motion{}", word, hint(kind, valid)));
     }
     return find_shipped(word, Shipped::kTour).string();
   }

@@ -63,11 +63,11 @@ std::string furniture() {
 std::string materials() {
   std::string text = heading("Kinds of materials", "materials");
   text +=
-      "What `kind` of a material may be ([formats.md](../formats.md)). A picture fills its "
+      "What `kind` of a material may be ([formats.md](../formats.md)). An image fills its "
       "surface\n"
       "once; everything else repeats without a seam.\n\n| kind | fills its surface |\n|---|---|\n";
   for (const std::string_view kind : material_kinds())
-    text += fmt::format("| `{}` | {} |\n", kind, is_picture(kind) ? "once" : "by repeating");
+    text += fmt::format("| `{}` | {} |\n", kind, is_image(kind) ? "once" : "by repeating");
   return text;
 }
 
@@ -78,7 +78,7 @@ std::string class_table() {
       "detector\n"
       "looked and found nothing), and classes of COCO that NYU40 lumps together. Colors are those "
       "of\n"
-      "pictures of labels.\n\n| id | class | in NYU40 files | in COCO's 80 | color "
+      "images of labels.\n\n| id | class | in NYU40 files | in COCO's 80 | color "
       "|\n|---|---|---|---|---|\n";
   for (const ClassInfo& info : classes()) {
     const Rgb8 color = class_color(info.id);

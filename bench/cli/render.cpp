@@ -191,7 +191,7 @@ void run(Options options) {
   if (fs::exists(out / "render.json")) {
     if (read_file(out / "render.json") != settings)
       throw InputError(fmt::format(
-          "{}: holds a sequence already, made otherwise (its render.json tells how); name another "
+          "{}: already contains a sequence with other settings (see its render.json); name another "
           "folder",
           out.string()));
     options.sequence.resume = true;
@@ -204,7 +204,7 @@ void run(Options options) {
           ? Shutter([pedestrian_scene](Stamp stamp) { return pedestrian_scene->at(stamp); }, camera,
                     path, sensors)
           : Shutter(renderer, camera, path, sensors);
-  const Camera camera_told = recorded_camera(shutter.camera(), options.sequence);
+  const Camera reported_camera = recorded_camera(shutter.camera(), options.sequence);
   if (options.format == "scannet") {  // one file for all: frames in order, one by one
     const std::vector<std::size_t> wanted = moments(shutter, sensors, options.sequence);
     using Clock = std::chrono::steady_clock;
@@ -213,7 +213,7 @@ void run(Options options) {
     };
     const Clock::time_point start = Clock::now();
     RenderedSequence done{.frames = wanted.size()};
-    write_scannet_recording(out, camera_told, wanted.size(), [&](std::size_t k) {
+    write_scannet_recording(out, reported_camera, wanted.size(), [&](std::size_t k) {
       progress.share(static_cast<double>(k) / static_cast<double>(wanted.size()));
       const Clock::time_point begun = Clock::now();
       ExactFrame frame = exact_frame(shutter, sensors, options.sequence, wanted[k]);
@@ -227,7 +227,7 @@ void run(Options options) {
     return;
   }
   const auto writer =
-      make_sequence_writer(options.format, out, camera_told, options.png_compression);
+      make_sequence_writer(options.format, out, reported_camera, options.png_compression);
   const RenderedSequence done = render_sequence(shutter, sensors, *writer, options.sequence,
                                                 [&](double share) { progress.share(share); });
   progress.end();

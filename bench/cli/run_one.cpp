@@ -13,52 +13,52 @@ namespace mh::cli {
 namespace {
 
 struct Options {
-  std::string description, store, folder, cache, maps, views, key, sitting;
+  std::string description, store, folder, cache, maps, views, key, session_start;
   int jobs = 1;
   int parent = 0;
-  bool figures_alone = false;
+  bool metrics_only = false;
 };
 
 void run(const Options& options) {
   if (options.parent != 0) die_with(options.parent);
   int last = -1;
-  std::chrono::steady_clock::time_point told;
+  std::chrono::steady_clock::time_point reported;
   std::string last_stage;
-  carry_out({.description = options.description,
-             .store = options.store,
-             .folder = options.folder,
-             .cache = options.cache,
-             .maps = options.maps,
-             .key = options.key,
-             .views = options.views,
-             .sitting = options.sitting,
-             .jobs = options.jobs,
-             .figures_alone = options.figures_alone,
-             .say =
-                 [](std::string_view stage) {
-                   fmt::print("{}\n", stage);
-                   std::fflush(stdout);
-                 },
-             .progress =
-                 [&](double share) {
-                   const int step = static_cast<int>(200 * share);
-                   if (step == last) return;
-                   last = step;
-                   fmt::print("{:.4f}\n", share);
-                   std::fflush(stdout);
-                 },
-             .status =
-                 [&](std::string_view status) {
-                   // Frames pass faster than anyone can read; a new stage is reported at once.
-                   constexpr auto kBetween = std::chrono::milliseconds(500);
-                   const auto now = std::chrono::steady_clock::now();
-                   const std::string begins(status.substr(0, status.find(' ')));
-                   if (begins == last_stage && now - told < kBetween) return;
-                   told = now;
-                   last_stage = begins;
-                   fmt::print("{}{}\n", kStatusMark, status);
-                   std::fflush(stdout);
-                 }});
+  execute_run({.description = options.description,
+               .store = options.store,
+               .folder = options.folder,
+               .cache = options.cache,
+               .maps = options.maps,
+               .key = options.key,
+               .views = options.views,
+               .session_start = options.session_start,
+               .jobs = options.jobs,
+               .metrics_only = options.metrics_only,
+               .say =
+                   [](std::string_view stage) {
+                     fmt::print("{}\n", stage);
+                     std::fflush(stdout);
+                   },
+               .progress =
+                   [&](double share) {
+                     const int step = static_cast<int>(200 * share);
+                     if (step == last) return;
+                     last = step;
+                     fmt::print("{:.4f}\n", share);
+                     std::fflush(stdout);
+                   },
+               .status =
+                   [&](std::string_view status) {
+                     // Frames pass faster than anyone can read; a new stage is reported at once.
+                     constexpr auto kBetween = std::chrono::milliseconds(500);
+                     const auto now = std::chrono::steady_clock::now();
+                     const std::string begins(status.substr(0, status.find(' ')));
+                     if (begins == last_stage && now - reported < kBetween) return;
+                     reported = now;
+                     last_stage = begins;
+                     fmt::print("{}{}\n", kStatusMark, status);
+                     std::fflush(stdout);
+                   }});
 }
 
 }  // namespace
@@ -75,9 +75,9 @@ void add_run_one(CLI::App& app) {
   command->add_option("--cache", options->cache);
   command->add_option("--maps", options->maps);
   command->add_option("--views", options->views)->required();
-  command->add_option("--sitting", options->sitting);
+  command->add_option("--session-start", options->session_start);
   command->add_option("--jobs", options->jobs);
-  command->add_flag("--figures-alone", options->figures_alone);
+  command->add_flag("--metrics-only", options->metrics_only);
   command->add_option("--parent", options->parent);
   command->callback([options] { run(*options); });
 }

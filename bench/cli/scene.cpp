@@ -21,11 +21,11 @@
 #include "scenes/generate/generate.hpp"
 #include "scenes/generate/grammar.hpp"
 #include "scenes/house/house.hpp"
+#include "scenes/images/write_image.hpp"
 #include "scenes/labeled.hpp"
 #include "scenes/load.hpp"
 #include "scenes/mesh_io/labels_file.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
-#include "scenes/pictures/write_picture.hpp"
 #include "scenes/scannet/scannet.hpp"
 #include "sim/render/scan_look.hpp"
 #include "sim/world/lit_scene.hpp"
@@ -138,7 +138,7 @@ std::pair<std::string, std::vector<View>> see(const std::string& name, const Opt
                                               const BakeWatch& baked) {
   const ReadScope reading;
   Scene scene = load(find_scene(name).string(), options.frame);
-  need_not_read(options.out, reading.record());
+  require_not_read(options.out, reading.record());
   light_scene(scene, kThreads, baked);
   const auto renderer = make_scene_renderer(scene);
   return {scene.name, views_of(scene, *renderer)};
@@ -147,7 +147,7 @@ std::pair<std::string, std::vector<View>> see(const std::string& name, const Opt
 void preview(const Options& options) {
   if (fs::path(options.out).extension() != ".png" || fs::is_directory(options.out))
     throw InputError(fmt::format("{}: must name a file that ends in .png", options.out));
-  need_writable(options.out, {options.scenes.begin(), options.scenes.end()});
+  require_writable(options.out, {options.scenes.begin(), options.scenes.end()});
   std::vector<std::string> names = options.scenes;
   for (const Category& category : categories())
     for (int i = 0; i < options.each; ++i)
@@ -163,7 +163,7 @@ void preview(const Options& options) {
         name, options, [&](double share) { progress.share((before + 0.9 * share) / all, name); });
     if (names.size() == 1) {
       keep_of_each_room(views, options.per_room);
-      write_picture(options.out, draw_contact_sheet(title, views));
+      write_image(options.out, draw_contact_sheet(title, views));
       progress.share(1);
       return;
     }
@@ -172,23 +172,23 @@ void preview(const Options& options) {
   }
   progress.share(1);
   constexpr int kColumns = 4;
-  write_picture(options.out, draw_gallery(gallery, kColumns, !options.no_captions));
+  write_image(options.out, draw_gallery(gallery, kColumns, !options.no_captions));
 }
 
 /// Also covers the labels that are written next to a PLY: they must not replace any other file.
-void need_mesh_writable(const fs::path& out, const std::vector<fs::path>& read) {
-  need_writable(out, read);
+void require_mesh_writable(const fs::path& out, const std::vector<fs::path>& read) {
+  require_writable(out, read);
   const fs::path labels = labels_path(out);
   if (out.extension() == ".ply" && fs::exists(labels) && !is_labels_file(labels))
     throw InputError(fmt::format(
         "{}: is there already, and would be overwritten: name another --out", labels.string()));
 }
 
-void need_ending(const Options& options, const std::vector<std::string>& endings) {
+void require_ending(const Options& options, const std::vector<std::string>& endings) {
   const std::string ending = fs::path(options.out).extension().string();
   if (std::ranges::find(endings, ending) == endings.end())
     throw InputError(fmt::format("{}: must end in {}", options.out, fmt::join(endings, " or ")));
-  need_mesh_writable(options.out, {});
+  require_mesh_writable(options.out, {});
 }
 
 /// Returns the scene as scanned by a person who walks through it with a depth camera.
@@ -227,11 +227,11 @@ void convert(Options options) {
   if (!folder && ending != "." + format)
     throw InputError(fmt::format("{}: must end in .{}", options.out, format));
   if (!folder) {
-    need_mesh_writable(options.out, {options.scene});
+    require_mesh_writable(options.out, {options.scene});
     const ReadScope reading;
     Scene scene = load(options.scene, options.frame);
-    need_not_read(options.out, reading.record());
-    if (format == "ply") need_not_read(labels_path(options.out), reading.record());
+    require_not_read(options.out, reading.record());
+    if (format == "ply") require_not_read(labels_path(options.out), reading.record());
     write_mesh(std::move(scene), options.out);
     return;
   }
@@ -240,7 +240,7 @@ void convert(Options options) {
   const ReadScope reading;
   Scene scene = load(options.scene, options.frame);
   for (const std::string& written : names)
-    need_not_read(fs::path(options.out) / written, reading.record());
+    require_not_read(fs::path(options.out) / written, reading.record());
   light(scene);
   save_scannet(scene, options.out);
 }
@@ -260,9 +260,9 @@ void make(const Options& options) {
   if (options.scan_look && options.out.empty())
     throw InputError("--scan-look writes a mesh: name its file by --out FILE.glb or FILE.ply");
   if (options.scan_look)
-    need_ending(options, {".glb", ".ply"});
+    require_ending(options, {".glb", ".ply"});
   else if (!options.out.empty())
-    need_ending(options, {".yaml", ".glb", ".ply"});
+    require_ending(options, {".yaml", ".glb", ".ply"});
   const GeneratedPlan plan = generate_plan(reference);
   if (options.json)
     fmt::print("{}\n", facts_json(reference, plan).dump(2));
@@ -366,8 +366,8 @@ void add_scene(CLI::App& app) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   p->add_flag("--no-captions", options->no_captions,
-              "Of several scenes: pictures alone, without their names below");
-  p->add_option("--out", options->out, "Picture to write (PNG)")->required();
+              "Of several scenes: images alone, without their names below");
+  p->add_option("--out", options->out, "Image to write (PNG)")->required();
   p->footer(
       "Example:\n  modelhouse scene preview model_house --out house.png\n"
       "  modelhouse scene preview --each 2 --out categories.png");

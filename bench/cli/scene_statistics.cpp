@@ -15,8 +15,8 @@
 #include "bench/world/cached_light.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/generate/grammar.hpp"
+#include "scenes/image_file.hpp"
 #include "scenes/load.hpp"
-#include "scenes/picture_file.hpp"
 #include "scenes/recorded/tum_folder.hpp"
 #include "sim/world/lit_scene.hpp"
 #include "sim/world/sequence.hpp"
@@ -85,7 +85,7 @@ MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const O
 MeasuredPlace measure_recording(const fs::path& folder) {
   MeasuredPlace place{.name = folder.string(), .frames = {}};
   for (const RecordedFrame& frame : load_tum_folder(folder)) {
-    place.frames.push_back(measure_image(read_picture(frame.color, PictureForm::kGray)));
+    place.frames.push_back(measure_image(read_image(frame.color, ImageForm::kGray)));
   }
   return place;
 }
@@ -198,7 +198,7 @@ void add_scene_statistics(CLI::App& scene) {
   options->frame.add_to(*command);
   command->add_option("--jobs", options->threads, "Threads that bake light; changes no figure")
       ->check(CLI::Range(1, 1024));
-  command->add_option("--cache", options->cache, "Folder that keeps baked light; none: bakes anew");
+  command->add_option("--cache", options->cache, "Cache folder for baked light; none: bakes again");
   command->add_flag("--json", options->json, "Prints JSON, with the median of each scene");
   command->footer("Example:\n  modelhouse scene statistics --per-category 3 --frames 540");
   command->callback([options] { run(*options); });

@@ -11,7 +11,7 @@
 #include "bench/cli/progress.hpp"
 #include "bench/studies/figures.hpp"
 #include "bench/studies/sheets.hpp"
-#include "scenes/pictures/write_picture.hpp"
+#include "scenes/images/write_image.hpp"
 #include "sim/sensors/config.hpp"
 #include "sim/world/lit_scene.hpp"
 
@@ -46,7 +46,7 @@ void plot(const Options& options) {
   }
   progress.share(1);
   progress.end();
-  write_picture(file, draw_plots("Sensor models: published (lines) and measured (dots)", plots));
+  write_image(file, draw_plots("Sensor models: published (lines) and measured (dots)", plots));
   fmt::print("{}\n", file.string());
 }
 
@@ -59,11 +59,11 @@ void sheet(Options options) {
       load_lit_scene(options.scene, 2, nullptr, {}, [&](double share) { light.share(share); });
   light.end();
   const SensorSheets sheets = draw_sensor_sheets(scene, make_scene_renderer(scene));
-  for (const auto& [name, picture] :
+  for (const auto& [name, image] :
        {std::pair("color.png", sheets.color), std::pair("depth.png", sheets.depth),
         std::pair("frames.png", sheets.frames), std::pair("labels.png", sheets.labels)}) {
     const fs::path file = fs::path(options.out) / name;
-    write_picture(file, picture);
+    write_image(file, image);
     fmt::print("{}\n", file.string());
   }
 }

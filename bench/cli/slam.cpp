@@ -138,7 +138,7 @@ void check(const Options& options) {
   if (options.resume && options.map.empty())
     throw InputError("--resume needs a map: name one by --map");
   if (options.resume && options.protocol)
-    throw InputError("--protocol and --resume: held-out frames are asked for by a whole run");
+    throw InputError("--protocol and --resume: held-out frames need a whole run");
   if (options.source.starts_with(kScene)) {
     if (!options.classes.empty())
       throw InputError("--classes is for recordings, but the source is a scene");
@@ -172,11 +172,11 @@ std::size_t first_frame(const Options& options, const SlamState& state, const Se
 }
 
 /// A map may replace another map, but no other file.
-void need_no_other_file(const fs::path& map) {
+void require_no_other_file(const fs::path& map) {
   std::error_code error;
   if (fs::exists(map, error) && fs::file_size(map, error) > 0 && !is_map_file(map))
     throw InputError(
-        fmt::format("--save-map {}: is a file, but no map: name another", map.string()));
+        fmt::format("--save-map {}: is not a map file: choose another name", map.string()));
 }
 
 /// Runs the protocol on one sequence: that of the bench, or a live camera feed without held-out
@@ -225,16 +225,16 @@ void run(Options options) {
   const OutputFolder folder(options.out, "slam", {kSlamFiles.begin(), kSlamFiles.end()});
   for (const char* name : kSlamFiles) {
     const fs::path file = fs::path(options.out) / name;
-    need_writable(file);
+    require_writable(file);
     if (!options.save_map.empty() &&
         fs::absolute(file).lexically_normal() == fs::absolute(options.save_map).lexically_normal())
       throw InputError(
           fmt::format("--save-map {}: will hold a result of its own", options.save_map));
   }
   if (!options.save_map.empty()) {
-    need_writable(options.save_map,
-                  {options.vocabulary, options.settings, options.truth, options.source});
-    need_no_other_file(options.save_map);
+    require_writable(options.save_map,
+                     {options.vocabulary, options.settings, options.truth, options.source});
+    require_no_other_file(options.save_map);
   }
   SlamState state = first_state(options, vocabulary, source.settings);
   const std::size_t first = first_frame(options, state, *source.frames);
@@ -316,7 +316,7 @@ void add_slam(CLI::App& app) {
       ->excludes(localize);
   command
       ->add_flag("--protocol", options->protocol,
-                 "As a suite runs it: frames are held out and asked for when the map is done, and "
+                 "As a suite runs it: frames are held out and queried after mapping, and "
                  "the feed goes back where tracking is lost")
       ->excludes(localize);
   command->add_option("--save-map", options->save_map, "Map file to write")->excludes(localize);

@@ -121,11 +121,11 @@ void print_slam_report(const SlamReport& report) {
              counted(run.mapping.offered, "frame"), 100 * report.completeness(), report.lost(),
              skipped.count, log.relocalized);
   if (log.map_resets > 0)
-    fmt::print("started anew {}: tracking was lost while the map was small\n",
+    fmt::print("map reset {}: tracking was lost while the map was small\n",
                counted(log.map_resets, "time"));
   if (const auto* held_out = held_out_of(run)) {
     const QuerySummary answers = summarize(*held_out);
-    fmt::print("{}, {}; held out and asked for: {}, {:.1f} % answered",
+    fmt::print("{}, {}; held-out queries: {}, {:.1f} % answered",
                counted(run.mapping.restarts, "restart"),
                counted(run.mapping.dropped.size(), "frame") + " dropped",
                counted(held_out->size(), "frame"), 100 * answers.success);

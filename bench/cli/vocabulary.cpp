@@ -40,8 +40,8 @@ Vocabulary load_timed(const std::string& file) {
 
 void train(Options& options) {
   const std::filesystem::path out = options.out;
-  need_writable(out, {options.list});
-  if (!options.list.empty()) options.training.pictures = load_picture_list(options.list);
+  require_writable(out, {options.list});
+  if (!options.list.empty()) options.training.images = load_image_list(options.list);
   Progress progress("vocabulary");
   const Vocabulary vocabulary = train_vocabulary(options.training, [&](int done, int total) {
     progress.share(static_cast<double>(done) / total);
@@ -53,7 +53,7 @@ void train(Options& options) {
 }
 
 void convert(const Options& options) {
-  need_writable(options.out, {options.file});
+  require_writable(options.out, {options.file});
   const Vocabulary vocabulary = load_timed(options.file);
   vocabulary.save(options.out);
   load_timed(options.out);
@@ -103,7 +103,7 @@ void info(Options options) {
              vocabulary.branching(), vocabulary.depth());
   fmt::print("  idf     {:.3f} to {:.3f}, mean {:.3f}, median {:.3f}\n", idf.front(), idf.back(),
              mean, idf[idf.size() / 2]);
-  fmt::print("  from    pictures: {}, descriptors: {}\n", or_unknown(vocabulary.training_images()),
+  fmt::print("  from    images: {}, descriptors: {}\n", or_unknown(vocabulary.training_images()),
              or_unknown(vocabulary.training_descriptors()));
   fmt::print("  content digest  {}\n", hex(vocabulary.digest()));
   if (!options.frames.empty()) print_score(vocabulary, options);
@@ -118,13 +118,13 @@ void add_vocabulary(CLI::App& app) {
   command->footer("Example:\n  modelhouse vocabulary info vocabulary");
 
   CLI::App* t = command->add_subcommand(
-      "train", "Trains on rendered rooms and materials that no evaluation uses, or on pictures.");
+      "train", "Trains on rendered rooms and materials that no evaluation uses, or on images.");
   VocabularyTraining& training = options->training;
   t->add_option("--out", options->out, "Vocabulary file to write")->required();
   t->add_option("--rooms", training.rooms, "Training rooms")->check(CLI::Range(1, 100000));
-  t->add_option("--views", training.views, "Pictures per room")->check(CLI::Range(1, 100000));
+  t->add_option("--views", training.views, "Images per room")->check(CLI::Range(1, 100000));
   t->add_option("--images", options->list,
-                "List of picture files, one per line, to train on instead of rooms");
+                "List of image files, one per line, to train on instead of rooms");
   t->add_option("--branching", training.tree.branching, "Children per node")
       ->check(CLI::Range(2, 255));
   t->add_option("--depth", training.tree.depth, "Levels below the root")->check(CLI::Range(1, 10));

@@ -89,11 +89,11 @@ void Canvas::text(const std::string& text, cv::Point2d at, double size, Rgb8 col
       kFont, font_scale(size), bgr(color), font_stroke(size, bold), cv::LINE_AA);
 }
 
-void Canvas::picture(const cv::Mat& bgr_picture, double x, double y, double width, double height) {
+void Canvas::image(const cv::Mat& bgr_image, double x, double y, double width, double height) {
   const cv::Rect rect(static_cast<int>(x * kZoom), static_cast<int>(y * kZoom),
                       static_cast<int>(width * kZoom), static_cast<int>(height * kZoom));
   cv::Mat scaled;
-  cv::resize(bgr_picture, scaled, rect.size(), 0, 0, cv::INTER_AREA);
+  cv::resize(bgr_image, scaled, rect.size(), 0, 0, cv::INTER_AREA);
   scaled.copyTo(large_(rect));
 }
 

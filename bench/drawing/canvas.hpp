@@ -29,7 +29,7 @@ class Canvas {
             Align align = Align::kLeft, bool bold = false);
   static double text_width(const std::string& text, double size, bool bold = false);
   /// Draws an image (8-bit BGR) into a rectangle.
-  void picture(const cv::Mat& bgr, double x, double y, double width, double height);
+  void image(const cv::Mat& bgr, double x, double y, double width, double height);
 
   cv::Mat finish() const;  ///< 8-bit BGR at its final size
 

@@ -16,7 +16,7 @@
 #include "bench/drawing/canvas.hpp"
 #include "bench/drawing/false_colors.hpp"
 #include "bench/drawing/viewpoints.hpp"
-#include "scenes/pictures/write_picture.hpp"
+#include "scenes/images/write_image.hpp"
 
 namespace mh {
 namespace {
@@ -26,11 +26,11 @@ constexpr double kTileWidth = 400;
 constexpr float kNear_m = 0.4F, kFar_m = 8.0F;  // range of the false colors
 constexpr double kEye_m = 1.45;                 // of a person who sits or a child who stands
 
-cv::Mat class_picture(const Grid2d<ClassId>& labels) {
+cv::Mat class_image(const Grid2d<ClassId>& labels) {
   Grid2d<Rgb8> colors(labels.width(), labels.height());
   for (int y = 0; y < labels.height(); ++y)
     for (int x = 0; x < labels.width(); ++x) colors(x, y) = class_color(labels(x, y));
-  return color_picture(colors);
+  return color_image(colors);
 }
 
 std::vector<ClassId> classes_seen(const std::vector<View>& views) {
@@ -44,7 +44,7 @@ std::vector<ClassId> classes_seen(const std::vector<View>& views) {
 }
 
 void draw_depth_scale(Canvas& canvas, double x, double y, double width) {
-  canvas.picture(depth_scale(), x, y, width, 14);
+  canvas.image(depth_scale(), x, y, width, 14);
   canvas.text(fmt::format("{} m", kNear_m), {x, y + 32}, 9);
   canvas.text(fmt::format("{} m and more", kFar_m), {x + width, y + 32}, 9, {40, 40, 40},
               Canvas::Align::kRight);
@@ -209,10 +209,10 @@ cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& vi
 
   double y = kHeader;
   for (const View& view : views) {
-    canvas.picture(color_picture(view.color), column(0), y, kTileWidth, tile_height);
-    canvas.picture(depth_colors(view.depth_m, kNear_m, kFar_m), column(1), y, kTileWidth,
-                   tile_height);
-    canvas.picture(class_picture(view.classes), column(2), y, kTileWidth, tile_height);
+    canvas.image(color_image(view.color), column(0), y, kTileWidth, tile_height);
+    canvas.image(depth_colors(view.depth_m, kNear_m, kFar_m), column(1), y, kTileWidth,
+                 tile_height);
+    canvas.image(class_image(view.classes), column(2), y, kTileWidth, tile_height);
     canvas.text(view.caption, {column(0), y + tile_height + 14}, 8.5, {110, 115, 125});
     y += tile_height + kCaption;
   }
@@ -234,7 +234,7 @@ cv::Mat draw_gallery(const std::vector<View>& views, int columns, bool captions)
         kMargin + static_cast<double>(i % static_cast<std::size_t>(columns)) * (kTileWidth + kGap);
     const double y = kMargin + static_cast<double>(i / static_cast<std::size_t>(columns)) *
                                    (tile_height + below);
-    canvas.picture(color_picture(views[i].color), x, y, kTileWidth, tile_height);
+    canvas.image(color_image(views[i].color), x, y, kTileWidth, tile_height);
     if (captions) canvas.text(views[i].caption, {x, y + tile_height + 14}, 9.5, {60, 64, 72});
   }
   return canvas.finish();

@@ -36,10 +36,10 @@ constexpr std::array<Rgb8, 55> kClassColors = {{
 
 /// Colors nearness from far (0) to near (1), as 8-bit BGR.
 cv::Mat colored(const cv::Mat& near_share) {
-  cv::Mat gray, picture;
+  cv::Mat gray, image;
   near_share.convertTo(gray, CV_8U, 255 * (kNearest - kFarthest), 255 * kFarthest);
-  cv::applyColorMap(gray, picture, cv::COLORMAP_TURBO);
-  return picture;
+  cv::applyColorMap(gray, image, cv::COLORMAP_TURBO);
+  return image;
 }
 
 /// CIE L*a*b* (1976) of an sRGB color under D65.
@@ -63,11 +63,11 @@ cv::Mat depth_colors(const Grid2d<float>& depth_m, float near_m, float far_m) {
   for (int y = 0; y < depth_m.height(); ++y)
     for (int x = 0; x < depth_m.width(); ++x)
       share.at<float>(y, x) = std::clamp((far_m - depth_m(x, y)) / (far_m - near_m), 0.0F, 1.0F);
-  cv::Mat picture = colored(share);
+  cv::Mat image = colored(share);
   for (int y = 0; y < depth_m.height(); ++y)
     for (int x = 0; x < depth_m.width(); ++x)
-      if (depth_m(x, y) <= 0) picture.at<cv::Vec3b>(y, x) = {kNoReturn, kNoReturn, kNoReturn};
-  return picture;
+      if (depth_m(x, y) <= 0) image.at<cv::Vec3b>(y, x) = {kNoReturn, kNoReturn, kNoReturn};
+  return image;
 }
 
 cv::Mat depth_scale() {

@@ -10,7 +10,7 @@
 
 namespace mh {
 
-/// What settings tell of the camera and of its pictures.
+/// What settings tell of the camera and of its images.
 RecordedCamera recorded_camera(const Settings& settings);
 
 /// Reads a calibration for open_sequence(): the camera of a settings file.

@@ -97,7 +97,7 @@ std::vector<std::pair<std::size_t, std::size_t>> delta_pairs(const Trajectory& e
   const std::size_t count = estimate.size();
   if (delta.unit == DeltaUnit::kFrames) {
     if (delta.value != std::floor(delta.value))
-      throw InputError(fmt::format("RPE: delta: {:g} frames is no whole number", delta.value));
+      throw InputError(fmt::format("RPE: delta: {:g} frames is not an integer", delta.value));
     if (delta.value >= static_cast<double>(count)) return pairs;
     const auto step = static_cast<std::size_t>(delta.value);
     for (std::size_t i = 0; i + step < count; i += delta.all_pairs ? 1 : step)

@@ -133,7 +133,7 @@ int run(bool portable, int repeats) {
     return make_embree_renderer(
         scene, {.threads = threads, .antialiasing = antialiasing, .portable = portable});
   };
-  const auto picture = [&](std::string name, const std::shared_ptr<const Renderer>& renderer) {
+  const auto image = [&](std::string name, const std::shared_ptr<const Renderer>& renderer) {
     return Contestant{std::move(name),
                       [&camera, renderer](const SE3& pose) { renderer->render(camera, pose); }};
   };
@@ -141,20 +141,20 @@ int run(bool portable, int repeats) {
   std::vector<Contestant> contestants = {
       {"trace only", [&](const SE3& pose) { tracer.trace(camera, pose, false); }},
       {"trace only, one ray at a time", [&](const SE3& pose) { tracer.trace(camera, pose, true); }},
-      picture("vertex colors", make(without_textures(room), 1, Antialiasing::kNone)),
-      picture("textured", make(room, 1, Antialiasing::kNone)),
-      picture("textured, edges smoothed", make(room, 1, Antialiasing::kEdges)),
-      picture("textured, 2 x 2 supersampled", make(room, 1, Antialiasing::kSupersample)),
-      picture("vertex colors, 2 threads", make(without_textures(room), 2, Antialiasing::kNone)),
-      picture("textured, 2 threads", make(room, 2, Antialiasing::kNone)),
-      picture("ten times the triangles, textured",
-              make(BenchmarkRoom::tenfold(), 1, Antialiasing::kNone)),
+      image("vertex colors", make(without_textures(room), 1, Antialiasing::kNone)),
+      image("textured", make(room, 1, Antialiasing::kNone)),
+      image("textured, edges smoothed", make(room, 1, Antialiasing::kEdges)),
+      image("textured, 2 x 2 supersampled", make(room, 1, Antialiasing::kSupersample)),
+      image("vertex colors, 2 threads", make(without_textures(room), 2, Antialiasing::kNone)),
+      image("textured, 2 threads", make(room, 2, Antialiasing::kNone)),
+      image("ten times the triangles, textured",
+            make(BenchmarkRoom::tenfold(), 1, Antialiasing::kNone)),
   };
   bool osmesa = true;
   try {
     contestants.push_back(
-        picture("OSMesa, vertex colors", make_osmesa_renderer(without_textures(room))));
-    contestants.push_back(picture("OSMesa, textured", make_osmesa_renderer(room)));
+        image("OSMesa, vertex colors", make_osmesa_renderer(without_textures(room))));
+    contestants.push_back(image("OSMesa, textured", make_osmesa_renderer(room)));
   } catch (const MachineError& error) {
     fmt::print("{}\n", error.what());
     osmesa = false;

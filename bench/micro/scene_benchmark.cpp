@@ -85,9 +85,9 @@ void load_to_first_pixel(benchmark::State& state) {
   for (auto _ : state) {
     const Scene scene = load_scene(kFolder.path());
     triangles = scene.triangles.size();
-    const auto picture =
+    const auto image =
         make_embree_renderer(scene)->render(one_pixel, SE3(looking_down, {2.0, 2.0, 1.5}));
-    if (picture.depth_m(0, 0) == 0.0F) state.SkipWithError("nothing to be seen");
+    if (image.depth_m(0, 0) == 0.0F) state.SkipWithError("nothing to be seen");
   }
   state.counters["triangles"] = static_cast<double>(triangles);
 }

@@ -116,12 +116,12 @@ int run(const std::vector<std::string>& given) {
   fs::remove_all(out);
 
   const auto writer = make_sequence_writer("tum", out, robot.camera);
-  std::vector<std::string> memory_told;
+  std::vector<std::string> memory_lines;
   std::size_t done = 0;
   const Speed whole = measure("all of it", frames, [&] {
     render_sequence(shutter, sensors, *writer, options, [&](double) {
       if (++done == frames / 10 || done == frames / 2 || done == frames)
-        memory_told.push_back(fmt::format("{:.0f} MB after {} frames", resident_mb(), done));
+        memory_lines.push_back(fmt::format("{:.0f} MB after {} frames", resident_mb(), done));
     });
   });
   const auto slowest = [&](double Speed::*clock) {
@@ -129,7 +129,7 @@ int run(const std::vector<std::string>& given) {
   };
   fmt::print("all of it : the slowest stage alone  {:.2f} by the wall, {:.2f} by work\n",
              whole.wall_hz / slowest(&Speed::wall_hz), whole.work_hz / slowest(&Speed::work_hz));
-  for (const std::string& line : memory_told) fmt::print("{}\n", line);
+  for (const std::string& line : memory_lines) fmt::print("{}\n", line);
   return 0;
 }
 

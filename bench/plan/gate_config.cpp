@@ -25,7 +25,7 @@ Tolerances read_tolerances(YamlReader node) {
   Tolerances tolerances;
   for (const auto& [measure, value] : node.entries()) {
     if (find_measure(measure) == nullptr)
-      value.fail(fmt::format("'{}' is no measure; see docs/ci.md", measure));
+      value.fail(fmt::format("'{}' is not a measure; see docs/ci.md", measure));
     tolerances[measure] = read_tolerance(value);
   }
   return tolerances;

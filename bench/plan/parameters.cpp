@@ -19,7 +19,7 @@ constexpr std::size_t kMaxPoints = 10000;
 /// @throws InputError at the value's place unless the name is that of a setting that can be varied.
 void check_varied(const std::string& name, const YamlReader& place, SweepMap map) {
   if (!is_setting(name))
-    place.fail("is no setting of SLAM" + hint(name, setting_names(), "`slam --print-settings`"));
+    place.fail("is not a setting of SLAM" + hint(name, setting_names(), "`slam --print-settings`"));
   if (map == SweepMap::kFixed && !name.starts_with("semantics."))
     place.fail("decides the map, too: it needs `map: rebuilt`");
 }
@@ -65,7 +65,7 @@ void read_sobol(YamlReader node, const SlamConfig& base, Sweep& sweep) {
     read_setting(low, name, ends[0]);
     read_setting(high, name, ends[1]);
     bounds.emplace_back(setting_value(low, name), setting_value(high, name));
-    if (!is_number(name)) range.fail("is no number: list its values instead, without `sobol`");
+    if (!is_number(name)) range.fail("is not a number: list its values instead, without `sobol`");
     if (bounds.back().first >= bounds.back().second)
       range.fail(fmt::format("{} is not below {}", bounds.back().first, bounds.back().second));
     sweep.varied.push_back(name);

@@ -33,7 +33,7 @@ struct Sweep {
 /// @throws InputError naming file, line, field and value.
 Sweep read_sweep(YamlReader node, const SlamConfig& base);
 
-/// How tables and pictures call a setting: the paper's symbols by themselves ("gamma"), others by
+/// How tables and images call a setting: the paper's symbols by themselves ("gamma"), others by
 /// their full names.
 std::string_view shown_name(std::string_view setting);
 

@@ -18,7 +18,7 @@ template <class T>
 T named(const Json& word, std::initializer_list<T> values) {
   for (const T value : values)
     if (name(value) == word.get<std::string>()) return value;
-  throw InputError(fmt::format("'{}' is no known word", word.get<std::string>()));
+  throw InputError(fmt::format("'{}' is not a known word", word.get<std::string>()));
 }
 
 /// Writes settings into an object, or into one of its own per section.
@@ -49,7 +49,7 @@ class ReadSettings {
     if constexpr (std::is_enum_v<T>) {
       const std::string word = from_->at(key);
       const auto named = value_of(word, setting_words(T{}));
-      if (!named) throw InputError(fmt::format("'{}' is no known word", word));
+      if (!named) throw InputError(fmt::format("'{}' is not a known word", word));
       value = *named;
     } else {
       value = from_->at(key).template get<T>();

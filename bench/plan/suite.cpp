@@ -35,7 +35,7 @@ std::size_t system_named(const YamlReader& node, const std::vector<SystemSpec>& 
   const auto found = std::ranges::find(systems, name, &SystemSpec::name);
   if (found == systems.end()) {
     const auto known = words_of(systems, [](const SystemSpec& s) { return s.name; });
-    node.fail(fmt::format("'{}' is none of the suite's systems{}", name, hint(name, known)));
+    node.fail(fmt::format("'{}' is not one of the suite's systems{}", name, hint(name, known)));
   }
   return static_cast<std::size_t>(found - systems.begin());
 }

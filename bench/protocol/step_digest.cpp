@@ -6,7 +6,7 @@
 namespace mh {
 namespace {
 
-constexpr int kUntold = -1;  ///< no count
+constexpr int kNotReported = -1;  ///< no count
 
 template <class T>
 std::uint64_t digest_value(const T& value, std::uint64_t seed) {
@@ -17,9 +17,9 @@ std::uint64_t digest_value(const T& value, std::uint64_t seed) {
 
 std::uint64_t digest_of_matching(const SystemReport& report) {
   const int numbers[] = {
-      static_cast<int>(report.status), report.keypoints.value_or(kUntold),
-      report.inliers.value_or(kUntold), report.keyframe_added ? 1 : 0,
-      report.relocalization ? static_cast<int>(*report.relocalization) : kUntold};
+      static_cast<int>(report.status), report.keypoints.value_or(kNotReported),
+      report.inliers.value_or(kNotReported), report.keyframe_added ? 1 : 0,
+      report.relocalization ? static_cast<int>(*report.relocalization) : kNotReported};
   std::uint64_t d = digest_value(numbers, 0);
   for (const MatcherCounts& counts : report.matches.value_or(MatchCounts{})) {
     const std::int64_t c[] = {counts.compared, counts.penalized, counts.rejected_by_xi,
@@ -28,10 +28,10 @@ std::uint64_t digest_of_matching(const SystemReport& report) {
   }
   if (report.candidates != Candidates{}) {
     const Candidates& c = report.candidates;
-    const int counts[] = {c.keyframes.value_or(kUntold), c.c1.value_or(kUntold),
-                          c.c2.value_or(kUntold), c.c3.value_or(kUntold),
-                          c.final.value_or(kUntold)};
-    d = digest_value(c.label_mass.value_or(kUntold), digest_value(counts, d));
+    const int counts[] = {c.keyframes.value_or(kNotReported), c.c1.value_or(kNotReported),
+                          c.c2.value_or(kNotReported), c.c3.value_or(kNotReported),
+                          c.final.value_or(kNotReported)};
+    d = digest_value(c.label_mass.value_or(kNotReported), digest_value(counts, d));
   }
   return d;
 }

@@ -23,8 +23,8 @@ RgbdFrame usable_frame(const Sequence& sequence, std::size_t i, RandomStream noi
     }
   }();
   const Camera& camera = sequence.camera();
-  const auto fits = [&](const auto& picture) {
-    return picture.width() == camera.width_px && picture.height() == camera.height_px;
+  const auto fits = [&](const auto& image) {
+    return image.width() == camera.width_px && image.height() == camera.height_px;
   };
   if (!fits(frame.color) || !fits(frame.depth_m))
     throw UnusableFrame(fmt::format("frame {}: is {} x {}, the camera has {} x {}", i,

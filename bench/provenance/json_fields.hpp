@@ -94,7 +94,7 @@ void read_json(const nlohmann::ordered_json& json, T&& value) {
   } else if constexpr (std::is_enum_v<Value>) {
     const auto word = json.get<std::string>();
     const auto known = value_of(word, words(Value{}));
-    if (!known) throw InputError(fmt::format("'{}' is no known word", word));
+    if (!known) throw InputError(fmt::format("'{}' is not a known word", word));
     value = *known;
   } else if constexpr (kIsDigest<Value>) {
     value.value = std::strtoull(json.get<std::string>().c_str(), nullptr, 16);

@@ -27,7 +27,7 @@ std::string comparison_line(const PairNames& names, const Comparison& c) {
           ? fmt::format("undecided; smallest detectable difference {:.4f}", c.detectable)
           : std::string("undecided; too few pairs");
   const std::string corrected =
-      c.in_family ? fmt::format("(Holm {:.4f})  {}", c.p_holm, word) : "(beside the family)";
+      c.in_family ? fmt::format("(Holm {:.4f})  {}", c.p_holm, word) : "(outside the family)";
   return fmt::format("  {:<62}{:+.4f} {}  p = {:.4f} {}\n", c.what, c.difference, interval(c), c.p,
                      corrected);
 }

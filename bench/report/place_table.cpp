@@ -54,11 +54,11 @@ std::string paper_table(const Block& block) {
     for (const Row* row : block.rows) {
       const QuerySummary& s = summary(*row, set);
       const bool saturated = !block.system(row).sees_labels() && s.success > kSaturated;
-      const std::string lacking = incomplete(block.suite, *row);
+      const std::string missing = incomplete(block.suite, *row);
       table.add(
           {"  " + block.system(row).name,
            s.queries > 0 ? fmt::format("{:.2f}", 100 * s.success) : "-", meters(s.distance_mean_m)},
-          !lacking.empty() ? lacking
+          !missing.empty() ? missing
           : saturated      ? "saturated"
                            : "");
     }

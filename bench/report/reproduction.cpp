@@ -62,7 +62,7 @@ Json times_json(std::span<const RunResult> runs) {
     list.push_back({{"name", run.spec.name},
                     {"wall_s", run.wall_s},
                     {"host", run.circumstances.host},
-                    {"sitting", run.circumstances.sitting},
+                    {"session_start", run.circumstances.session_start},
                     {"jobs", run.circumstances.jobs},
                     {"load_per_processor", run.circumstances.load},
                     {"track_ms", calls(run.times.track_ms)},

@@ -28,8 +28,8 @@ std::string block_text(const Suite& suite, std::span<const CategoryRow> rows,
     for (const QuerySet set : kQuerySets)
       if (was_asked(all, set)) std::ranges::move(query_cells(row, set), std::back_inserter(cells));
     const bool saturated = !system.sees_labels() && row.held_out.success > kSaturated;
-    const std::string lacking = incomplete(row);
-    table.add(std::move(cells), !lacking.empty() ? lacking : saturated ? "saturated" : "");
+    const std::string missing = incomplete(row);
+    table.add(std::move(cells), !missing.empty() ? missing : saturated ? "saturated" : "");
   }
   return table.text();
 }

@@ -215,7 +215,7 @@ std::string caption(const SweepResult& result, QuerySet set, const std::vector<s
 
 }  // namespace
 
-std::string sweep_picture_name(const Suite& suite, const SweepResult& result) {
+std::string sweep_image_name(const Suite& suite, const SweepResult& result) {
   return fmt::format("sweep-{}-{}-{}.png", suite.systems[result.system].name, name(result.labels),
                      level_name(suite.levels[result.level]));
 }

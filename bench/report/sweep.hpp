@@ -18,6 +18,6 @@ namespace mh {
 cv::Mat draw_sweep(const Suite& suite, std::span<const Row> rows, const SweepResult& result);
 
 /// "sweep-semantic-exact-pepper.png"
-std::string sweep_picture_name(const Suite& suite, const SweepResult& result);
+std::string sweep_image_name(const Suite& suite, const SweepResult& result);
 
 }  // namespace mh

@@ -30,26 +30,26 @@ struct Range {
 
 /// How the times were measured: they are affected by other work on the machine.
 std::string circumstances(std::span<const RunResult> runs) {
-  std::set<std::string> hosts, sittings;
+  std::set<std::string> hosts, sessions;
   bool unknown = false;
   Range jobs, load;
   for (const RunResult& run : runs) {
     const Circumstances& c = run.circumstances;
     hosts.insert(c.host);
-    unknown = unknown || c.sitting.empty();
-    if (c.sitting.empty()) continue;
-    sittings.insert(c.host + " " + c.sitting);
+    unknown = unknown || c.session_start.empty();
+    if (c.session_start.empty()) continue;
+    sessions.insert(c.host + " " + c.session_start);
     jobs.add(c.jobs);
     load.add(c.load);
   }
   std::string text = fmt::format("  measured on {}", fmt::join(hosts, ", "));
-  if (!sittings.empty())
+  if (!sessions.empty())
     text += fmt::format(" in {}, {} side by side, load per processor {}",
-                        counted(sittings.size(), "sitting"),
+                        counted(sessions.size(), "session_start"),
                         jobs.text(0) + (jobs.most == 1 ? " job" : " jobs"), load.text(1));
   if (unknown)
-    text += sittings.empty() ? ", it is not known when" : ", others it is not known when";
-  if (hosts.size() > 1 || sittings.size() > 1 || unknown) text += ": rows need not compare";
+    text += sessions.empty() ? ", it is not known when" : ", others it is not known when";
+  if (hosts.size() > 1 || sessions.size() > 1 || unknown) text += ": rows need not compare";
   return text + "\n";
 }
 

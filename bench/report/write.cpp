@@ -12,8 +12,8 @@
 #include "bench/report/sweep.hpp"
 #include "bench/report/table.hpp"
 #include "bench/report/topdown.hpp"
-#include "scenes/pictures/png.hpp"
-#include "scenes/pictures/write_picture.hpp"
+#include "scenes/images/png.hpp"
+#include "scenes/images/write_image.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/trajectory_io.hpp"
 
@@ -24,14 +24,14 @@ namespace {
 
 constexpr const char* kMadeOf = "modelhouse";  ///< keyword of an image's key: what it was made from
 
-void write_marked(const fs::path& file, const cv::Mat& picture, const std::string& made_of) {
-  write_atomically(file, with_text(encode_png(picture), kMadeOf, made_of));
+void write_marked(const fs::path& file, const cv::Mat& image, const std::string& made_of) {
+  write_atomically(file, with_text(encode_png(image), kMadeOf, made_of));
 }
 
 constexpr const char* kRunKey = "run.key";  ///< of a run without images: what it was made from
 
-std::string mark_of(const fs::path& picture) {
-  return fs::is_regular_file(picture) ? text_in(read_file(picture), kMadeOf) : std::string();
+std::string mark_of(const fs::path& image) {
+  return fs::is_regular_file(image) ? text_in(read_file(image), kMadeOf) : std::string();
 }
 
 /// Everything that determines a contact sheet. Levels, which may drop different frames, share one.
@@ -71,8 +71,8 @@ void write_run(const fs::path& folder, const World& world, const RunResult& run,
   }
   save_map_server(run.grid, folder / "map");
   if (world.second)
-    write_picture(folder / "topdown_second_tour.png",
-                  draw_topdown(world, run, QuerySet::kSecondTour));
+    write_image(folder / "topdown_second_tour.png",
+                draw_topdown(world, run, QuerySet::kSecondTour));
   // Last: it marks the files as complete.
   write_marked(folder / "topdown.png", draw_topdown(world, run, QuerySet::kHeldOut), key);
 }
@@ -98,7 +98,7 @@ std::string write_results(const fs::path& folder, const Suite& suite,
   if (parameter_points(suite).size() > 1) {
     const std::vector<Row> rows = make_rows(suite, runs);
     for (const SweepResult& result : sweep_results(suite, rows))
-      write_picture(folder / sweep_picture_name(suite, result), draw_sweep(suite, rows, result));
+      write_image(folder / sweep_image_name(suite, result), draw_sweep(suite, rows, result));
   }
   write_atomically(folder / "table.txt", table);
   write_atomically(folder / "results.json",

@@ -26,9 +26,9 @@ struct PointResult {
 /// When and where a run's times were measured: times of different sessions are not comparable.
 struct Circumstances {
   std::string host;
-  std::string sitting;  ///< when the command that made the run started, UTC; empty: unknown
-  int jobs = 0;         ///< runs that it executed in parallel
-  double load = 0;      ///< load average of the last minute, per processor
+  std::string session_start;  ///< when the command that made the run started, UTC; empty: unknown
+  int jobs = 0;               ///< runs that it executed in parallel
+  double load = 0;            ///< load average of the last minute, per processor
 };
 
 /// Everything that one run produced.

@@ -126,7 +126,7 @@ namespace {
 
 /// Mean of a number over the queries for which the system reports it; absent if it reports none.
 template <class Get>
-std::optional<double> mean_told(std::span<const QueryScore> queries, Get get) {
+std::optional<double> mean_reported(std::span<const QueryScore> queries, Get get) {
   double sum = 0, count = 0;
   for (const QueryScore& q : queries)
     if (const std::optional<double> value = get(q.answer.candidates)) {
@@ -162,11 +162,11 @@ QuerySummary summarize(std::span<const QueryScore> queries) {
                                      {&QuerySummary::c2, &Candidates::c2},
                                      {&QuerySummary::c3, &Candidates::c3},
                                      {&QuerySummary::final, &Candidates::final}})
-    s.*field = mean_told(queries, [count = count](const Candidates& c) { return c.*count; });
-  s.single_candidate = mean_told(queries, [](const Candidates& c) {
+    s.*field = mean_reported(queries, [count = count](const Candidates& c) { return c.*count; });
+  s.single_candidate = mean_reported(queries, [](const Candidates& c) {
     return c.final ? std::optional<double>(*c.final == 1) : std::nullopt;
   });
-  s.label_mass = mean_told(queries, [](const Candidates& c) { return c.label_mass; });
+  s.label_mass = mean_reported(queries, [](const Candidates& c) { return c.label_mass; });
   if (distances.empty()) return s;
   s.distance_mean_m = mean(distances);
   s.aligned_distance_mean_m = mean(aligned);

@@ -80,13 +80,13 @@ class Pool {
   Pool(Store& store, std::vector<Job> jobs, const PoolOptions& options)
       : store_(store), options_(options), all_(jobs.size()) {
     for (Job& job : jobs) waiting_.push_back({std::move(job), false});
-    need_mb_ = store.largest_rss_mb();
+    require_mb_ = store.largest_rss_mb();
   }
 
   void work() {
     const SignalWatch watch;
     auto next_beat = Clock::now() + kBeat;
-    tell();
+    report();
     while (!waiting_.empty() || !running_.empty()) {
       if (g_signal != 0) {
         give_up();
@@ -111,14 +111,15 @@ class Pool {
     for (const std::string& key : keys) store_.release(key);
   }
 
-  double need_mb() const { return need_mb_ > 0 ? need_mb_ : kFirstGuess_mb; }
+  double require_mb() const { return require_mb_ > 0 ? require_mb_ : kFirstGuess_mb; }
 
   bool another_fits() const {
     if (running_.empty()) return true;
     if (running_.size() >= static_cast<std::size_t>(options_.jobs)) return false;
     double promised_mb = 0;
-    for (const Running& r : running_) promised_mb += std::max(0.0, need_mb() - r.process->rss_mb());
-    return available_mb() - promised_mb > need_mb();
+    for (const Running& r : running_)
+      promised_mb += std::max(0.0, require_mb() - r.process->rss_mb());
+    return available_mb() - promised_mb > require_mb();
   }
 
   void start_what_fits() {
@@ -184,7 +185,7 @@ class Pool {
       running_.erase(running_.begin() + static_cast<std::ptrdiff_t>(i));
       settle(std::move(ended), *end);
     }
-    if (news) tell();
+    if (news) report();
   }
 
   void keep_within_limits(Running& r) const {
@@ -199,7 +200,7 @@ class Pool {
 
   void settle(Running ended, const ProcessEnd& end) {
     const Job& job = ended.what.job;
-    need_mb_ = std::max(need_mb_, end.cost.max_rss_mb);
+    require_mb_ = std::max(require_mb_, end.cost.max_rss_mb);
     if (end.good && store_.status(job.key) == RunStatus::kDone) {
       std::filesystem::remove(work_file(job, ".json"));
       std::filesystem::remove(work_file(job, ".log"));
@@ -245,10 +246,10 @@ class Pool {
 
   void note_end(bool good) {
     ++(good ? done_ : failed_);
-    tell();
+    report();
   }
 
-  void tell() const {
+  void report() const {
     double sum = static_cast<double>(done_ + failed_);
     for (const Running& r : running_) sum += r.process->share();
     // The work is done when every run is settled, not when the last one reports that it is
@@ -278,7 +279,7 @@ class Pool {
   Store& store_;
   const PoolOptions& options_;
   std::size_t all_, done_ = 0, failed_ = 0;
-  double need_mb_ = 0;  ///< of one run, as measured so far
+  double require_mb_ = 0;  ///< of one run, as measured so far
   Forecast forecast_;
   std::deque<Waiting> waiting_;
   std::vector<Running> running_;
@@ -286,7 +287,7 @@ class Pool {
 
 }  // namespace
 
-void work_off(Store& store, std::vector<Job> jobs, const PoolOptions& options) {
+void run_pending(Store& store, std::vector<Job> jobs, const PoolOptions& options) {
   Pool(store, std::move(jobs), options).work();
 }
 

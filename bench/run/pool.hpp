@@ -60,6 +60,6 @@ struct PoolOptions {
 ///   more, alone. One that hits a full disk ends all work and is not a failure: the same command
 ///   resumes once there is space.
 /// @throws Interrupted on Ctrl-C or SIGTERM; DiskFullError.
-void work_off(Store& store, std::vector<Job> jobs, const PoolOptions& options);
+void run_pending(Store& store, std::vector<Job> jobs, const PoolOptions& options);
 
 }  // namespace mh

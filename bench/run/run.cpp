@@ -55,7 +55,7 @@ void check_recordings(const Environment& e, LabelMode labels,
     camera = opened.sequence->camera();
     if (opened.sequence->truth() == nullptr)
       say(
-          fmt::format("warning: {}: nobody tells where its camera was: answers are successes, and "
+          fmt::format("warning: {}: has no ground truth: answers are successes, and "
                       "nothing is said of correct ones, of distances and of the trajectory",
                       sequence));
   }
@@ -63,8 +63,8 @@ void check_recordings(const Environment& e, LabelMode labels,
 
 /// Checks all inputs that the runs name, each once: outside programs can be started, scenes read,
 /// tours driven. Generated scenes and motions are valid by construction.
-void check_places(const std::vector<Job>& jobs, InputReader& inputs,
-                  const std::function<void(std::string_view)>& say) {
+void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
+                     const std::function<void(std::string_view)>& say) {
   std::set<std::string> programs;
   std::set<std::pair<std::string, bool>> checked;  // recordings, and whether with labels
   struct Uses {
@@ -129,8 +129,8 @@ fs::path real_executable(const fs::path& executable) {
 }
 
 /// Warns of missing files of finished runs, which will not be rewritten.
-void say_what_is_gone(const Suite& suite, const BenchResults& results,
-                      const BenchOptions& options) {
+void warn_missing_outputs(const Suite& suite, const BenchResults& results,
+                          const BenchOptions& options) {
   std::size_t runs = 0;
   std::set<std::string> views;
   for (const RunResult& run : results.runs) {
@@ -141,14 +141,14 @@ void say_what_is_gone(const Suite& suite, const BenchResults& results,
   }
   if (runs == 0 && views.empty()) return;
   options.say(fmt::format(
-      "warning: {} of finished runs and {} of pictures are gone from {}; their results are kept, "
-      "another --out makes all of it anew",
+      "warning: {} of finished runs and {} of images are missing from {}; their results are kept, "
+      "use another --out to rebuild them",
       counted(runs, "folder"), counted(views.size(), "sheet"), options.out.string()));
 }
 
 /// If a scene was changed and changed back, the existing files are from the run in between: they
 /// are removed, together with the result, which is rerun, or from next to a failure.
-void forget_what_is_not_shown(Store& store, const std::vector<Job>& jobs, const fs::path& out) {
+void forget_outdated_runs(Store& store, const std::vector<Job>& jobs, const fs::path& out) {
   for (const Job& job : jobs) {
     const fs::path folder = out / job.spec.name;
     const auto status = store.status(job.key);
@@ -170,18 +170,19 @@ double load_per_processor() {
 /// @param wall_s  of this process so far, as cpu_s is of it
 /// @param world_s, products_s  CPU time in addition to what `run` recorded
 RunCost cost_of_this_process(const RunResult& run, double wall_s, double world_s, double products_s,
-                             const RunOrder& order) {
+                             const SingleRunOptions& order) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return {
-      .wall_s = wall_s,
-      .cpu_s = processor_time_s(),
-      .slam_s = run.times.processor_s,
-      .frames_s = world_s + run.frames_s,
-      .products_s = products_s + run.products_s,
-      .max_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0,
-      .circumstances = {
-          .host = {}, .sitting = order.sitting, .jobs = order.jobs, .load = load_per_processor()}};
+  return {.wall_s = wall_s,
+          .cpu_s = processor_time_s(),
+          .slam_s = run.times.processor_s,
+          .frames_s = world_s + run.frames_s,
+          .products_s = products_s + run.products_s,
+          .max_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0,
+          .circumstances = {.host = {},
+                            .session_start = order.session_start,
+                            .jobs = order.jobs,
+                            .load = load_per_processor()}};
 }
 
 }  // namespace
@@ -222,11 +223,11 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
     before.check();
     if (options.retry_failed)
       for (const Job& job : mine) before.forget_failure(job.key);
-    if (!options.figures_alone) forget_what_is_not_shown(before, mine, options.out);
+    if (!options.metrics_only) forget_outdated_runs(before, mine, options.out);
     std::erase_if(mine, [&](const Job& job) { return before.status(job.key).has_value(); });
   }
-  check_places(mine, *inputs, options.say);  // bad input leaves no file
-  inputs.reset();                            // it keeps a scene in memory
+  validate_inputs(mine, *inputs, options.say);  // bad input leaves no file
+  inputs.reset();                               // it keeps a scene in memory
 
   Store store(results);
   store.plan(suite, overrides, plan);
@@ -239,7 +240,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
       if (const std::string why = Cache(cache).why_unwritable(); !why.empty())
         options.say(fmt::format(
             "warning: the cache keeps nothing, light is baked anew in each run: {}", why));
-    const std::string sitting = utc_now();
+    const std::string session_start = utc_now();
     PoolOptions pool;
     pool.jobs = options.jobs;
     pool.time_limit_s = options.time_limit_s;
@@ -247,30 +248,30 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
     pool.executable = real_executable(options.executable);
     pool.work_folder = work.path();
     pool.arguments = [&](const Job& job, const fs::path& description) {
-      std::vector<std::string> arguments{"run-one",   description.string(),
-                                         "--store",   store.file().string(),
-                                         "--key",     job.key,
-                                         "--folder",  options.out.string(),
-                                         "--cache",   cache.string(),
-                                         "--views",   views_name(suite, job.spec),
-                                         "--jobs",    std::to_string(options.jobs),
-                                         "--sitting", sitting,
-                                         "--parent",  std::to_string(getpid())};
+      std::vector<std::string> arguments{"run-one",         description.string(),
+                                         "--store",         store.file().string(),
+                                         "--key",           job.key,
+                                         "--folder",        options.out.string(),
+                                         "--cache",         cache.string(),
+                                         "--views",         views_name(suite, job.spec),
+                                         "--jobs",          std::to_string(options.jobs),
+                                         "--session-start", session_start,
+                                         "--parent",        std::to_string(getpid())};
       if (options.cache) arguments.insert(arguments.end(), {"--maps", cache.string()});
-      if (options.figures_alone) arguments.emplace_back("--figures-alone");
+      if (options.metrics_only) arguments.emplace_back("--metrics-only");
       return arguments;
     };
     pool.say = options.say;
     pool.progress = options.progress;
-    work_off(store, std::move(mine), pool);
+    run_pending(store, std::move(mine), pool);
   }
   store.check();
   BenchResults made = load_results(store, suite);
-  if (!options.figures_alone) say_what_is_gone(suite, made, options);
+  if (!options.metrics_only) warn_missing_outputs(suite, made, options);
   return made;
 }
 
-void carry_out(const RunOrder& order) {
+void execute_run(const SingleRunOptions& order) {
   const auto start = std::chrono::steady_clock::now();
   const auto json = nlohmann::ordered_json::parse(read_file(order.description), nullptr, false);
   const RunSpec spec = run_spec_from_json(json);
@@ -288,16 +289,16 @@ void carry_out(const RunOrder& order) {
         spec.name));
   const fs::path folder = order.folder / spec.name;
   make_output_folder(folder);
-  if (!order.figures_alone) remove_run(folder);
+  if (!order.metrics_only) remove_run(folder);
   const RunResult run = run_one(spec, world,
                                 {.folder = folder,
                                  .progress = order.progress,
                                  .status = order.status,
                                  .system = {},
                                  .tamper = {},
-                                 .occupancy = !order.figures_alone,
+                                 .occupancy = !order.metrics_only,
                                  .maps = Cache(order.maps)});
-  if (!order.figures_alone) {
+  if (!order.metrics_only) {
     const ProcessorTimer timer(products_s);
     write_run(folder, world, run, order.key);
     // One process makes the contact sheet; if two start it, both write the same bytes.

@@ -35,7 +35,7 @@ struct BenchOptions {
   double memory_limit_mb = 0;   ///< of one run; 0 = none
   bool retry_failed = false;
   /// Metrics only: no occupancy map, no images and no files of runs.
-  bool figures_alone = false;
+  bool metrics_only = false;
   std::filesystem::path executable = "/proc/self/exe";  ///< has the subcommand `run-one`
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(const PoolProgress&)> progress = [](const PoolProgress&) {};
@@ -53,20 +53,20 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
 
 /// One run in this process, start to end, as a process of the pool does it: builds its world,
 /// executes it, writes its files into folder / its name, and puts it into the store.
-struct RunOrder {
+struct SingleRunOptions {
   std::filesystem::path description;  ///< JSON of the RunSpec
   std::filesystem::path store, folder;
   std::filesystem::path cache;  ///< for baked light; empty: keeps nothing
   std::filesystem::path maps;   ///< for finished maps; empty: keeps nothing
   std::string key;
-  std::string views;           ///< file name of the environment's contact sheet
-  std::string sitting;         ///< start of the command that issued this order
-  int jobs = 1;                ///< parallel runs; threads for baking light
-  bool figures_alone = false;  ///< as BenchOptions
+  std::string views;          ///< file name of the environment's contact sheet
+  std::string session_start;  ///< start of the command that issued this order
+  int jobs = 1;               ///< parallel runs; threads for baking light
+  bool metrics_only = false;  ///< as BenchOptions
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(double)> progress = [](double) {};
   std::function<void(std::string_view)> status = [](std::string_view) {};  ///< as RunTools
 };
-void carry_out(const RunOrder& order);
+void execute_run(const SingleRunOptions& order);
 
 }  // namespace mh

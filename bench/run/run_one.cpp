@@ -28,18 +28,18 @@ enum StreamName : std::uint64_t { kMapping = 1, kHeldOut = 2, kSecondTour = 3 };
 /// Counts units of work and reports their share.
 class WorkDone {
  public:
-  WorkDone(std::size_t all, const std::function<void(double)>& tell)
-      : all_(std::max<std::size_t>(1, all)), tell_(tell) {}
+  WorkDone(std::size_t all, const std::function<void(double)>& report)
+      : all_(std::max<std::size_t>(1, all)), report_(report) {}
   void reached(std::size_t position) {
     if (position <= furthest_) return;
     furthest_ = position;
-    tell_(static_cast<double>(furthest_) / static_cast<double>(all_));
+    report_(static_cast<double>(furthest_) / static_cast<double>(all_));
   }
   void one_more() { reached(furthest_ + 1); }
 
  private:
   std::size_t all_, furthest_ = 0;
-  const std::function<void(double)>& tell_;
+  const std::function<void(double)>& report_;
 };
 
 /// Forwards another sequence's frames, so that they can be observed.

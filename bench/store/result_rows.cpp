@@ -137,13 +137,13 @@ void load_queries(SQLite::Database& db, const std::string& key, RunResult& run) 
 }
 
 void load_times(SQLite::Database& db, const std::string& key, RunResult& run) {
-  SQLite::Statement s(db,
-                      "SELECT wall_s, calls, host, sitting, jobs, load FROM times WHERE key = ?");
+  SQLite::Statement s(
+      db, "SELECT wall_s, calls, host, session_start, jobs, load FROM times WHERE key = ?");
   s.bind(1, key);
   if (!s.executeStep()) return;
   run.wall_s = s.getColumn(0).getDouble();
   run.circumstances = {.host = s.getColumn(2).getString(),
-                       .sitting = s.getColumn(3).getString(),  // null becomes empty
+                       .session_start = s.getColumn(3).getString(),  // null becomes empty
                        .jobs = s.getColumn(4).getInt(),
                        .load = s.getColumn(5).getDouble()};
   const Json calls = Json::parse(s.getColumn(1).getString(), nullptr, false);

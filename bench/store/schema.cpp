@@ -42,7 +42,7 @@ CREATE TABLE queries (
 CREATE TABLE times (
   key TEXT PRIMARY KEY, wall_s REAL, cpu_s REAL, slam_s REAL, frames_s REAL, max_rss_mb REAL,
   host TEXT, finished TEXT, fingerprint TEXT, calls TEXT,
-  products_s REAL, sitting TEXT, jobs INTEGER, load REAL, digest INTEGER) WITHOUT ROWID;
+  products_s REAL, session_start TEXT, jobs INTEGER, load REAL, digest INTEGER) WITHOUT ROWID;
 CREATE TABLE claims (
   key TEXT PRIMARY KEY, host TEXT NOT NULL, process INTEGER NOT NULL, started INTEGER NOT NULL,
   beat INTEGER NOT NULL) WITHOUT ROWID;

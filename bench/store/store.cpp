@@ -66,8 +66,8 @@ void put_cost(SQLite::Database& db, const std::string& key, const RunCost& cost,
   s.bind(9, fingerprint_json().dump());
   s.bind(10, calls);
   s.bind(11, cost.products_s);
-  if (const Circumstances& c = cost.circumstances; !c.sitting.empty()) {
-    s.bind(12, c.sitting);
+  if (const Circumstances& c = cost.circumstances; !c.session_start.empty()) {
+    s.bind(12, c.session_start);
     s.bind(13, c.jobs);
     s.bind(14, c.load);
   }

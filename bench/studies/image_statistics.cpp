@@ -98,10 +98,10 @@ double percentile(std::vector<double> values, double share) {
   return a + (at - static_cast<double>(low)) * (*std::min_element(middle + 1, values.end()) - a);
 }
 
-ImageStatistics measure_image(const cv::Mat& picture) {
-  cv::Mat gray = picture;
+ImageStatistics measure_image(const cv::Mat& image) {
+  cv::Mat gray = image;
   if (gray.cols != kWidth || gray.rows != kHeight)
-    cv::resize(picture, gray, {kWidth, kHeight}, 0, 0, cv::INTER_AREA);
+    cv::resize(image, gray, {kWidth, kHeight}, 0, 0, cv::INTER_AREA);
   cv::Mat smooth, across, down, gradient, laplacian;
   gray.convertTo(smooth, CV_32F);
   cv::Sobel(smooth, across, CV_32F, 1, 0, 3, 1.0 / 8);

@@ -17,7 +17,7 @@
 #include "bench/drawing/contact_sheet.hpp"
 #include "bench/drawing/false_colors.hpp"
 #include "bench/studies/sensor_factors.hpp"
-#include "scenes/pictures/write_picture.hpp"
+#include "scenes/images/write_image.hpp"
 #include "sim/sensors/shutter.hpp"
 
 namespace mh {
@@ -75,19 +75,19 @@ Trajectory motion_through(const SE3& pose) {
 
 /// False colors for the distance, shaded as if lit from the left, so that noise is visible; black
 /// for no return.
-cv::Mat depth_picture(const Grid2d<float>& depth_m, const Camera& camera) {
+cv::Mat depth_image(const Grid2d<float>& depth_m, const Camera& camera) {
   const int w = depth_m.width(), h = depth_m.height();
-  cv::Mat picture = depth_colors(depth_m, 0.5F, 6.0F);
+  cv::Mat image = depth_colors(depth_m, 0.5F, 6.0F);
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       const float z = depth_m(x, y), next = depth_m(std::min(x + 2, w - 1), y);
-      cv::Vec3b& pixel = picture.at<cv::Vec3b>(y, x);
+      cv::Vec3b& pixel = image.at<cv::Vec3b>(y, x);
       if (z <= 0.0F) continue;
       const double slope = next > 0.0F ? (next - z) * camera.fx_px / (2.0 * z) : 0.0;
       const double shade = 0.72 + 0.28 * slope / std::sqrt(1.0 + slope * slope);
       for (int c = 0; c < 3; ++c) pixel[c] = static_cast<std::uint8_t>(pixel[c] * shade);
     }
-  return picture;
+  return image;
 }
 
 /// The color image in gray with the depth's edges in red: they coincide with the objects' edges if
@@ -95,28 +95,28 @@ cv::Mat depth_picture(const Grid2d<float>& depth_m, const Camera& camera) {
 cv::Mat edges_over_color(const Grid2d<float>& depth_m, const Grid2d<Rgb8>& color) {
   constexpr double kJump = 0.08;  // share of the distance
   constexpr int kReach_px = 2;
-  cv::Mat picture = color_picture(color);
+  cv::Mat image = color_image(color);
   const auto jumps = [&](float a, float b) {
     return std::abs(a - b) > kJump * std::min(a, b) && a > 0 && b > 0;
   };
-  for (int y = 0; y < picture.rows; ++y)
-    for (int x = 0; x < picture.cols; ++x) {
-      cv::Vec3b& pixel = picture.at<cv::Vec3b>(y, x);
+  for (int y = 0; y < image.rows; ++y)
+    for (int x = 0; x < image.cols; ++x) {
+      cv::Vec3b& pixel = image.at<cv::Vec3b>(y, x);
       const auto gray = static_cast<std::uint8_t>((pixel[0] + pixel[1] + pixel[2]) / 3);
       const float z = depth_m(x, y);
-      const bool edge = jumps(z, depth_m(std::min(x + kReach_px, picture.cols - 1), y)) ||
-                        jumps(z, depth_m(x, std::min(y + kReach_px, picture.rows - 1)));
+      const bool edge = jumps(z, depth_m(std::min(x + kReach_px, image.cols - 1), y)) ||
+                        jumps(z, depth_m(x, std::min(y + kReach_px, image.rows - 1)));
       pixel = edge ? cv::Vec3b(30, 30, 235) : cv::Vec3b(gray, gray, gray);
     }
-  return picture;
+  return image;
 }
 
 /// Class colors over the gray image; void shows the image itself.
-cv::Mat label_picture(const SemanticImage& labels, const Grid2d<Rgb8>& color) {
-  cv::Mat picture = color_picture(color);
-  for (int y = 0; y < picture.rows; ++y)
-    for (int x = 0; x < picture.cols; ++x) {
-      cv::Vec3b& pixel = picture.at<cv::Vec3b>(y, x);
+cv::Mat label_image(const SemanticImage& labels, const Grid2d<Rgb8>& color) {
+  cv::Mat image = color_image(color);
+  for (int y = 0; y < image.rows; ++y)
+    for (int x = 0; x < image.cols; ++x) {
+      cv::Vec3b& pixel = image.at<cv::Vec3b>(y, x);
       const double gray = (pixel[0] + pixel[1] + pixel[2]) / 3.0;
       const ClassDistribution& seen = labels.at(x, y);
       const Rgb8 shown = class_color(seen.most_probable());
@@ -126,7 +126,7 @@ cv::Mat label_picture(const SemanticImage& labels, const Grid2d<Rgb8>& color) {
         pixel[c] = static_cast<std::uint8_t>(part * bgr[static_cast<std::size_t>(c)] +
                                              (1.0 - part) * gray);
     }
-  return picture;
+  return image;
 }
 
 /// Draws the rows of one sheet; `show` makes the image of one setting.
@@ -150,7 +150,7 @@ cv::Mat draw(const std::string& title, const std::vector<Factor>& factors,
       cv::Mat part;
       cv::resize(whole({(whole.cols - w) / 2, (whole.rows - h) / 2, w, h}), part, {800, 600}, 0, 0,
                  cv::INTER_NEAREST);
-      canvas.picture(part, x, y + kCaption, kTileWidth, kTileHeight);
+      canvas.image(part, x, y + kCaption, kTileWidth, kTileHeight);
       canvas.text(factor.captions[k], {x, y + kCaption + kTileHeight + 14}, 8.5, kGray);
     }
     y += row;
@@ -180,15 +180,15 @@ cv::Mat draw_frames(const std::function<cv::Mat(std::size_t frame, const SensorC
       const std::vector<std::size_t> come = arriving(kFrames, config, stream);
       for (std::size_t i = 0; i < kFrames; ++i) {
         const double x = kMargin + static_cast<double>(i) * kStep;
-        const cv::Mat picture = show(kMiddle - kFrames / 2 + i, config);
+        const cv::Mat image = show(kMiddle - kFrames / 2 + i, config);
         const bool arrives = std::ranges::find(come, i) != come.end();
         if (arrives) {
-          canvas.picture(picture, x, y, kWidth, kHeight);
+          canvas.image(image, x, y, kWidth, kHeight);
         } else {
           canvas.fill(x, y, kWidth, kHeight, kEmpty);
           canvas.cross({x + kWidth / 2, y + kHeight / 2}, 12, kLost, 3);
         }
-        if (!arrives || cv::countNonZero(picture.reshape(1)) == 0)
+        if (!arrives || cv::countNonZero(image.reshape(1)) == 0)
           canvas.fill(x, y + kHeight - 5, kWidth, 5, kLost);
       }
       canvas.text(factor.captions[k], {kMargin, y + kHeight + 14}, 8.5, kGray);
@@ -232,31 +232,31 @@ SensorSheets draw_sensor_sheets(const Scene& scene, std::shared_ptr<const Render
   SensorSheets sheets;
   sheets.color = draw(
       "Color: forward at 0.4 m/s while turning at 1 rad/s", color_factors(),
-      [&](const SensorConfig& c, const Look& look) { return color_picture(frame(c, look).color); });
+      [&](const SensorConfig& c, const Look& look) { return color_image(frame(c, look).color); });
   sheets.depth = draw("Depth: near red, far blue, black without return", depth_factors(),
                       [&](const SensorConfig& c, const Look& look) {
                         const RgbdFrame seen = frame(c, look);
                         return look.over_color ? edges_over_color(seen.depth_m, seen.color)
-                                               : depth_picture(seen.depth_m, camera);
+                                               : depth_image(seen.depth_m, camera);
                       });
   sheets.frames = draw_frames(
       [&](std::size_t i, const SensorConfig& c) {
         const RenderedFrame seen = renderer->render(camera, path[i].world_from_camera);
-        return color_picture(sense(seen, camera, c, stream.fork(i), 0).color);
+        return color_image(sense(seen, camera, c, stream.fork(i), 0).color);
       },
       RandomStream(6));  // with this seed, some of the ten frames are lost at either share
 
   const RenderedFrame truth = renderer->render(camera, pose);
   std::vector<Factor> factors = label_factors();
-  sheets.labels = draw(
-      "Labels: class colors over the picture", factors, [&](const SensorConfig& c, const Look&) {
-        return label_picture(sense_labels(truth, LabelMode::kExact, c, pose, stream), truth.color);
+  sheets.labels =
+      draw("Labels: class colors over the image", factors, [&](const SensorConfig& c, const Look&) {
+        return label_image(sense_labels(truth, LabelMode::kExact, c, pose, stream), truth.color);
       });
   // The detector's rows come below: exact boxes, one network and another.
   const Factor detectors = detector_factor();
   const cv::Mat more = draw("", {detectors}, [&](const SensorConfig& c, const Look&) {
     const LabelMode mode = c.labels.seed == kExactBoxes ? LabelMode::kBoxes : LabelMode::kDetector;
-    return label_picture(sense_labels(truth, mode, c, pose, stream), truth.color);
+    return label_image(sense_labels(truth, mode, c, pose, stream), truth.color);
   });
   cv::vconcat(sheets.labels,
               more(cv::Range(static_cast<int>(kHeader) - 20, more.rows), cv::Range::all()),

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
 
-#include "scenes/picture_file.hpp"
+#include "scenes/image_file.hpp"
 #include "scenes/training/training.hpp"
 #include "sim/render/bake.hpp"
 #include "sim/render/parallel.hpp"
@@ -41,25 +41,25 @@ void validate(const VocabularyTraining& config) {
   require(config.noise >= 0 && config.noise < 1, "noise", config.noise);
 }
 
-std::vector<Descriptor> describe_picture(Grid2d<Rgb8> picture, const VocabularyTraining& config) {
+std::vector<Descriptor> describe_image(Grid2d<Rgb8> image, const VocabularyTraining& config) {
   Camera camera = config.camera;
-  camera.width_px = picture.width();
-  camera.height_px = picture.height();
+  camera.width_px = image.width();
+  camera.height_px = image.height();
   RgbdFrame frame;
-  frame.color = std::move(picture);
+  frame.color = std::move(image);
   return extract(frame, camera, config.features).descriptors;
 }
 
 /// Gaussian noise, the same on all channels of a pixel: features are found in gray.
-void add_noise(Grid2d<Rgb8>& picture, double sigma, RandomStream random) {
+void add_noise(Grid2d<Rgb8>& image, double sigma, RandomStream random) {
   std::uint64_t pixel = 0;
-  for (int y = 0; y < picture.height(); ++y)
-    for (int x = 0; x < picture.width(); ++x) {
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) {
       const double noise = 255.0 * sigma * random.normal(pixel++);
       const auto noisy = [&](std::uint8_t level) {
         return static_cast<std::uint8_t>(std::clamp(std::floor(level + noise + 0.5), 0.0, 255.0));
       };
-      Rgb8& c = picture(x, y);
+      Rgb8& c = image(x, y);
       c = {noisy(c.r), noisy(c.g), noisy(c.b)};
     }
 }
@@ -77,22 +77,22 @@ Images describe_room(const VocabularyTraining& config, std::uint64_t room) {
   Images images;
   for (const SE3& world_from_camera :
        training_views(scene, random.fork(kViews).bits(room), config.views)) {
-    Grid2d<Rgb8> picture = renderer->render(config.camera, world_from_camera).color;
-    add_noise(picture, config.noise, noise.fork(images.size()));
-    images.push_back(describe_picture(std::move(picture), config));
+    Grid2d<Rgb8> image = renderer->render(config.camera, world_from_camera).color;
+    add_noise(image, config.noise, noise.fork(images.size()));
+    images.push_back(describe_image(std::move(image), config));
   }
   return images;
 }
 
 Images describe_file(const VocabularyTraining& config, const std::filesystem::path& file) {
-  const cv::Mat bgr = read_picture(file, PictureForm::kColor);
-  Grid2d<Rgb8> picture(bgr.cols, bgr.rows);
+  const cv::Mat bgr = read_image(file, ImageForm::kColor);
+  Grid2d<Rgb8> image(bgr.cols, bgr.rows);
   for (int y = 0; y < bgr.rows; ++y)
     for (int x = 0; x < bgr.cols; ++x) {
       const auto& pixel = bgr.at<cv::Vec3b>(y, x);
-      picture(x, y) = {pixel[2], pixel[1], pixel[0]};
+      image(x, y) = {pixel[2], pixel[1], pixel[0]};
     }
-  return {describe_picture(std::move(picture), config)};
+  return {describe_image(std::move(image), config)};
 }
 
 /// Jobs run in any order; their results are in job order.
@@ -122,32 +122,32 @@ Images collect(int count, int threads, const std::function<void(int, int)>& prog
 
 }  // namespace
 
-std::vector<std::filesystem::path> load_picture_list(const std::filesystem::path& list) {
+std::vector<std::filesystem::path> load_image_list(const std::filesystem::path& list) {
   std::istringstream text(read_text(list));
-  std::vector<std::filesystem::path> pictures;
+  std::vector<std::filesystem::path> images;
   std::string line;
   for (int number = 1; std::getline(text, line); ++number) {
     line.resize(std::min(line.find('#'), line.size()));
     const std::size_t first = line.find_first_not_of(" \t\r");
     if (first == std::string::npos) continue;
     const std::string name = line.substr(first, line.find_last_not_of(" \t\r") + 1 - first);
-    pictures.push_back(list.parent_path() / name);
-    if (!std::filesystem::is_regular_file(pictures.back()))
-      throw InputError(fmt::format("{}:{}: no such picture: {}", list.string(), number, name));
+    images.push_back(list.parent_path() / name);
+    if (!std::filesystem::is_regular_file(images.back()))
+      throw InputError(fmt::format("{}:{}: no such image: {}", list.string(), number, name));
   }
-  if (pictures.empty()) throw InputError(fmt::format("{}: names no picture", list.string()));
-  return pictures;
+  if (images.empty()) throw InputError(fmt::format("{}: names no image", list.string()));
+  return images;
 }
 
 Vocabulary train_vocabulary(const VocabularyTraining& config,
                             const std::function<void(int done, int total)>& progress) {
   validate(config);
   const Images images =
-      config.pictures.empty()
+      config.images.empty()
           ? collect(config.rooms, config.threads, progress,
                     [&](std::size_t room) { return describe_room(config, room); })
-          : collect(static_cast<int>(config.pictures.size()), config.threads, progress,
-                    [&](std::size_t i) { return describe_file(config, config.pictures[i]); });
+          : collect(static_cast<int>(config.images.size()), config.threads, progress,
+                    [&](std::size_t i) { return describe_file(config, config.images[i]); });
   Vocabulary::TrainConfig tree = config.tree;
   tree.seed = RandomStream(config.seed).fork(kTree).key();
   return Vocabulary::train(images, tree);

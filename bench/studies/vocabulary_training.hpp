@@ -23,7 +23,7 @@ struct VocabularyTraining {
   /// Standard deviation of the image noise, relative to full scale: words should describe what a
   /// real camera sees.
   double noise = 0.007;
-  std::vector<std::filesystem::path> pictures;  ///< if not empty, used instead of rooms
+  std::vector<std::filesystem::path> images;  ///< if not empty, used instead of rooms
   int threads = 2;  ///< rooms or images in parallel; never changes the result
   Camera camera;    ///< size and field of view of the rooms' images
   FeatureConfig features;
@@ -32,7 +32,7 @@ struct VocabularyTraining {
 
 /// Reads a list of images: a path per line, relative to the list's folder; '#' begins a comment.
 /// @throws InputError naming list and line of a missing image; the list if it is empty.
-std::vector<std::filesystem::path> load_picture_list(const std::filesystem::path& list);
+std::vector<std::filesystem::path> load_image_list(const std::filesystem::path& list);
 
 /// Renders views of training rooms, or reads images, extracts features and trains. Deterministic.
 /// @param progress  if given, called after each room or image, one call at a time, with the number

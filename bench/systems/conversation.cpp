@@ -176,7 +176,7 @@ class Conversation {
       const bool nan = small.starts_with("{") && (small.find("nan") != std::string::npos ||
                                                   small.find("inf") != std::string::npos);
       fail(fmt::format("wrote {}: '{}'",
-                       nan ? "a number that is not finite" : "what is no line of JSON",
+                       nan ? "a number that is not finite" : "what is not a line of JSON",
                        shortened(line)));
     }
     if (!answer.is_object()) fail(fmt::format("wrote no JSON object: '{}'", shortened(line)));
@@ -219,11 +219,11 @@ class Conversation {
   std::optional<RelocalizationStage> stage(const Json& answer) {
     const auto it = answer.find("stage");
     if (it == answer.end()) return std::nullopt;
-    const auto told = it->is_string()
-                          ? value_of(it->get<std::string>(), words(RelocalizationStage{}))
-                          : std::nullopt;
-    if (!told) fail(fmt::format("gave an unknown stage {}", shortened(it->dump())));
-    return told;
+    const auto reported = it->is_string()
+                              ? value_of(it->get<std::string>(), words(RelocalizationStage{}))
+                              : std::nullopt;
+    if (!reported) fail(fmt::format("gave an unknown stage {}", shortened(it->dump())));
+    return reported;
   }
 
   Candidates candidates(const Json& answer) {
@@ -276,9 +276,9 @@ class ConversationSystem : public OutsideSystem {
 
   Trajectory trajectory_of(const Json& lines) const {
     std::string text;
-    if (!lines.is_array()) fail("gave a trajectory that is no list of lines");
+    if (!lines.is_array()) fail("gave a trajectory that is not a list of lines");
     for (const Json& line : lines) {
-      if (!line.is_string()) fail("gave a trajectory that is no list of lines");
+      if (!line.is_string()) fail("gave a trajectory that is not a list of lines");
       text += line.get<std::string>() + "\n";
     }
     if (lines.empty()) return {};

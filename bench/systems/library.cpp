@@ -92,31 +92,31 @@ class Setup {
     for (const ClassInfo& info : mh::classes()) classes_.emplace_back(info.name);
     for (const std::string& one : classes_) class_names_.push_back(one.c_str());
     const Distortion& d = camera.distortion;
-    told_ = {.version = MH_SYSTEM_VERSION,
-             .camera = {.width_px = camera.width_px,
-                        .height_px = camera.height_px,
-                        .fx_px = camera.fx_px,
-                        .fy_px = camera.fy_px,
-                        .cx_px = camera.cx_px,
-                        .cy_px = camera.cy_px,
-                        .k1 = d.k1,
-                        .k2 = d.k2,
-                        .p1 = d.p1,
-                        .p2 = d.p2,
-                        .k3 = d.k3,
-                        .rate_hz = camera.rate_hz,
-                        .baseline_m = camera.baseline_m,
-                        .depth_per_meter = kDepthPerMeter},
-             .seed = seed,
-             .settings = settings_.empty() ? nullptr : settings_.c_str(),
-             .class_count = static_cast<std::int32_t>(class_names_.size()),
-             .classes = class_names_.data(),
-             .message = message_.data()};
+    reported_ = {.version = MH_SYSTEM_VERSION,
+                 .camera = {.width_px = camera.width_px,
+                            .height_px = camera.height_px,
+                            .fx_px = camera.fx_px,
+                            .fy_px = camera.fy_px,
+                            .cx_px = camera.cx_px,
+                            .cy_px = camera.cy_px,
+                            .k1 = d.k1,
+                            .k2 = d.k2,
+                            .p1 = d.p1,
+                            .p2 = d.p2,
+                            .k3 = d.k3,
+                            .rate_hz = camera.rate_hz,
+                            .baseline_m = camera.baseline_m,
+                            .depth_per_meter = kDepthPerMeter},
+                 .seed = seed,
+                 .settings = settings_.empty() ? nullptr : settings_.c_str(),
+                 .class_count = static_cast<std::int32_t>(class_names_.size()),
+                 .classes = class_names_.data(),
+                 .message = message_.data()};
   }
   Setup(const Setup&) = delete;
   Setup& operator=(const Setup&) = delete;
 
-  const mh_setup* told() const { return &told_; }
+  const mh_setup* reported() const { return &reported_; }
   void clear_message() { message_.fill('\0'); }
   /// ": what the library wrote", or nothing.
   std::string message() const {
@@ -129,7 +129,7 @@ class Setup {
   std::vector<std::string> classes_;
   std::vector<const char*> class_names_;
   std::array<char, MH_MESSAGE_SIZE> message_{};
-  mh_setup told_{};
+  mh_setup reported_{};
 };
 
 class LibrarySystem : public OutsideSystem {
@@ -150,7 +150,7 @@ class LibrarySystem : public OutsideSystem {
     constexpr const char* kMake = "mh_make_system";
     const auto make = reinterpret_cast<decltype(&mh_make_system)>(dlsym(loaded, kMake));
     if (make == nullptr) fail(fmt::format("has no function {}: is it extern \"C\"?", kMake));
-    visit(kMake, [&] { system_ = make(setup_.told()); });
+    visit(kMake, [&] { system_ = make(setup_.reported()); });
     if (system_ == nullptr) fail(fmt::format("made no system{}", setup_.message()));
     if (system_->version != MH_SYSTEM_VERSION)
       fail(fmt::format("was built with version {} of modelhouse/system.h, the bench has version {}",
@@ -209,10 +209,10 @@ class LibrarySystem : public OutsideSystem {
   SystemReport report_of(const mh_answer& answer) const {
     SystemReport report;
     if (answer.has_pose != 0) report.world_from_camera = pose_of(answer.pose);
-    const auto count = [&](const char* what, std::int32_t told) -> std::optional<int> {
-      if (told == MH_UNKNOWN) return std::nullopt;
-      if (told < 0) fail(fmt::format("gave {} of {}: expected a count", what, told));
-      return told;
+    const auto count = [&](const char* what, std::int32_t reported) -> std::optional<int> {
+      if (reported == MH_UNKNOWN) return std::nullopt;
+      if (reported < 0) fail(fmt::format("gave {} of {}: expected a count", what, reported));
+      return reported;
     };
     report.keypoints = count("keypoints", answer.keypoints);
     report.inliers = count("inliers", answer.inliers);
@@ -242,13 +242,13 @@ class LibrarySystem : public OutsideSystem {
   std::optional<Trajectory> end_mapping() override {
     call("freeze", [&] { return system_->freeze(system_->self); });
     if (system_->trajectory == nullptr) return std::nullopt;
-    std::vector<std::pair<Stamp, mh_pose>> told;
+    std::vector<std::pair<Stamp, mh_pose>> reported;
     const mh_add_pose add = [](void* to, std::int64_t stamp_ns, const mh_pose* pose) {
-      static_cast<decltype(told)*>(to)->emplace_back(stamp_ns, *pose);
+      static_cast<decltype(reported)*>(to)->emplace_back(stamp_ns, *pose);
     };
-    call("trajectory", [&] { return system_->trajectory(system_->self, add, &told); });
+    call("trajectory", [&] { return system_->trajectory(system_->self, add, &reported); });
     Trajectory trajectory;
-    for (const auto& [stamp_ns, pose] : told) trajectory.push_back({stamp_ns, pose_of(pose)});
+    for (const auto& [stamp_ns, pose] : reported) trajectory.push_back({stamp_ns, pose_of(pose)});
     return trajectory;
   }
   void begin_session(std::uint64_t) const override {

@@ -52,8 +52,8 @@ class OutsideSession : public RelocalizationSession {
   SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
     assert(number_ == system_.sessions_);  // an older one would have to be remembered over there
     using enum OutsideSystem::Question;
-    return system_.told(is_blank(frame) ? kBlank : kRelocalize, number_, frame, stream,
-                        TrackStatus::kRelocalized);
+    return system_.reported(is_blank(frame) ? kBlank : kRelocalize, number_, frame, stream,
+                            TrackStatus::kRelocalized);
   }
 
  private:
@@ -61,8 +61,8 @@ class OutsideSession : public RelocalizationSession {
   const std::uint64_t number_;
 };
 
-SystemReport OutsideSystem::told(Question what, std::uint64_t session, const RgbdFrame& frame,
-                                 RandomStream stream, TrackStatus with_pose) const {
+SystemReport OutsideSystem::reported(Question what, std::uint64_t session, const RgbdFrame& frame,
+                                     RandomStream stream, TrackStatus with_pose) const {
   SystemReport report = ask(what, session, frame, stream);
   check_told(report, [this](const std::string& fault) { fail(fault); });
   if (report.map_reset && frozen_) fail("gave up a map that must not change any more");
@@ -73,7 +73,7 @@ SystemReport OutsideSystem::told(Question what, std::uint64_t session, const Rgb
 SystemReport OutsideSystem::track(const RgbdFrame& frame, RandomStream stream) {
   assert(!frozen_);
   shown_.insert(frame.stamp_ns);
-  const SystemReport report = told(Question::kTrack, 0, frame, stream, TrackStatus::kTracked);
+  const SystemReport report = reported(Question::kTrack, 0, frame, stream, TrackStatus::kTracked);
   if (report.map_reset) poses_.clear();
   if (report.world_from_camera)
     poses_[frame.stamp_ns] = *report.world_from_camera;

@@ -52,8 +52,8 @@ class OutsideSystem : public System {
 
  private:
   friend class OutsideSession;
-  SystemReport told(Question what, std::uint64_t session, const RgbdFrame& frame,
-                    RandomStream stream, TrackStatus with_pose) const;
+  SystemReport reported(Question what, std::uint64_t session, const RgbdFrame& frame,
+                        RandomStream stream, TrackStatus with_pose) const;
   void take(const Trajectory& finished);
 
   std::map<Stamp, SE3> poses_;

@@ -15,7 +15,7 @@ namespace mh {
 /// Stamps of a program's poses may be off by this much (programs print them with few digits).
 inline constexpr Stamp kStampTolerance_ns = 1'000'000;
 
-/// A folder in TUM's layout for an outside program: pictures, lists, labels where the frames have
+/// A folder in TUM's layout for an outside program: images, lists, labels where the frames have
 /// some, calibration. The truth is not in it. @returns the stamps, in order.
 /// @param frame  delivers frame i of the list; nullopt leaves it out
 std::vector<Stamp> write_dataset(const std::filesystem::path& folder, const Camera& camera,

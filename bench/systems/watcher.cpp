@@ -129,16 +129,16 @@ class Watch {
       if (poll(wait, 3, -1) < 0 && errno != EINTR) break;
       if (wait[0].revents != 0) break;
       if (wait[2].revents != 0) copy_what_was_said();
-      if (too_much_) tell(WatchedEnd::kTooMuchSaid, 0);
+      if (too_much_) report(WatchedEnd::kTooMuchSaid, 0);
       if (wait[1].revents == 0) continue;
       signalfd_siginfo info;
       while (read(signals_, &info, sizeof info) > 0) {
       }
       reap();
-      if (!ended_ || told_) continue;
+      if (!ended_ || reported_) continue;
       end_all();
       copy_what_was_said();
-      tell(too_much_ ? WatchedEnd::kTooMuchSaid : WatchedEnd::kEnded, status_);
+      report(too_much_ ? WatchedEnd::kTooMuchSaid : WatchedEnd::kEnded, status_);
     }
     char byte = 0;
     const bool abandoned = read(life_, &byte, 1) <= 0;
@@ -150,7 +150,7 @@ class Watch {
 
  private:
   [[noreturn]] void give_up(int error) {
-    tell(WatchedEnd::kNotStarted, error);
+    report(WatchedEnd::kNotStarted, error);
     _exit(1);
   }
 
@@ -165,10 +165,10 @@ class Watch {
   }
 
   /// Once.
-  void tell(WatchedEnd::Kind kind, int value) {
+  void report(WatchedEnd::Kind kind, int value) {
     const WatchedEnd end{kind, value};
-    if (!told_ && write(news_, &end, sizeof end) < 0) return;  // nobody listens
-    told_ = true;
+    if (!reported_ && write(news_, &end, sizeof end) < 0) return;  // nobody listens
+    reported_ = true;
   }
 
   /// Whether any is left.
@@ -221,7 +221,7 @@ class Watch {
   pid_t child_ = -1;
   int status_ = 0;
   std::uint64_t written_ = 0;
-  bool ended_ = false, told_ = false, too_much_ = false, said_ended_ = false;
+  bool ended_ = false, reported_ = false, too_much_ = false, said_ended_ = false;
 };
 
 }  // namespace

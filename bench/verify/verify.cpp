@@ -111,11 +111,11 @@ ExecutionDigests digests(const Suite& suite, std::span<const RunResult> runs) {
 
 Verification verify(const Suite& suite, const SuiteOverrides& overrides, BenchOptions options) {
   // Both executions read the same files and would give the same warnings.
-  std::set<std::string> told;
-  options.say = [say = options.say, &told](std::string_view what) {
-    if (!what.starts_with("warning: ") || told.emplace(what).second) say(what);
+  std::set<std::string> reported;
+  options.say = [say = options.say, &reported](std::string_view what) {
+    if (!what.starts_with("warning: ") || reported.emplace(what).second) say(what);
   };
-  const auto tell = std::exchange(options.progress, [](const PoolProgress&) {});
+  const auto report = std::exchange(options.progress, [](const PoolProgress&) {});
   const auto execute = [&](int jobs, double share_before) {
     options.say(fmt::format("executing with {}", counted(jobs, "job")));
     const TemporaryFolder folder(std::filesystem::temp_directory_path());
@@ -125,7 +125,7 @@ Verification verify(const Suite& suite, const SuiteOverrides& overrides, BenchOp
     options.progress = [&](PoolProgress progress) {
       progress.share = share_before + 0.5 * progress.share;
       if (share_before == 0) progress.to_go_s.reset();  // the second half is still to come
-      tell(progress);
+      report(progress);
     };
     BenchResults results;
     try {

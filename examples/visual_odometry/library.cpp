@@ -43,7 +43,7 @@ cv::Mat depth_of(const mh_frame& frame) {
   return {frame.height_px, frame.width_px, CV_16UC1, const_cast<uint16_t*>(frame.depth)};
 }
 
-void tell(const example::Found& found, mh_answer& answer) {
+void report(const example::Found& found, mh_answer& answer) {
   if (found.world_from_camera) {
     answer.has_pose = 1;
     const auto values = example::pose_values(*found.world_from_camera);
@@ -58,12 +58,12 @@ void tell(const example::Found& found, mh_answer& answer) {
 
 int track(void* self, const mh_frame* frame, mh_answer* answer) {
   return guarded(self, [&](example::VisualOdometry& odometry) {
-    tell(odometry.track(bgr_of(*frame), depth_of(*frame)), *answer);
+    report(odometry.track(bgr_of(*frame), depth_of(*frame)), *answer);
   });
 }
 int relocalize(void* self, const mh_frame* frame, mh_answer* answer) {
   return guarded(self, [&](const example::VisualOdometry& odometry) {
-    tell(odometry.relocalize(bgr_of(*frame), depth_of(*frame)), *answer);
+    report(odometry.relocalize(bgr_of(*frame), depth_of(*frame)), *answer);
   });
 }
 int rewind(void* self) {

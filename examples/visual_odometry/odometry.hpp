@@ -28,7 +28,7 @@ std::array<double, 7> pose_values(const cv::Affine3d& pose);
 /// The same as text, with all digits that a double has.
 std::string pose_numbers(const cv::Affine3d& pose, char separator);
 
-/// What a picture offers: keypoints with depth, as points in its camera's frame.
+/// What an image offers: keypoints with depth, as points in its camera's frame.
 struct View {
   std::vector<cv::Point2f> pixels;
   std::vector<cv::Point3f> points_in_camera;

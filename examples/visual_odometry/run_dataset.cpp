@@ -28,7 +28,7 @@ int main(int argc, char** argv) try {
     const cv::Mat color = cv::imread(dataset + "/" + color_file);
     const cv::Mat depth = cv::imread(dataset + "/" + depth_file, cv::IMREAD_UNCHANGED);
     if (color.empty() || depth.type() != CV_16UC1) {
-      std::cerr << color_file << " or " << depth_file << " is no picture of its kind\n";
+      std::cerr << color_file << " or " << depth_file << " is not an image of its kind\n";
       return 2;
     }
     const example::Found found = odometry.track(color, depth);

@@ -29,7 +29,7 @@ extern "C" {
 /** Characters of mh_setup.message, the zero at its end among them. */
 #define MH_MESSAGE_SIZE 256
 
-/** A count that is not told. */
+/** A count that is not reported. */
 #define MH_UNKNOWN (-1)
 
 /** A pinhole camera. The centers of pixels lie at integers. */
@@ -53,7 +53,7 @@ typedef struct mh_setup {
   char* message;              /**< MH_MESSAGE_SIZE characters for why a function fails */
 } mh_setup;
 
-/** A frame, registered: a pixel of all pictures sees the same point. Rows follow each other from
+/** A frame, registered: a pixel of all images sees the same point. Rows follow each other from
  * the top without a gap. It is the bench's and valid until the function returns. */
 typedef struct mh_frame {
   int64_t stamp_ns;

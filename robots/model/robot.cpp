@@ -202,7 +202,7 @@ class EquipmentReader {
     const YamlReader range = yaml.at("range_m");
     const std::vector<double> values = range.as_numbers(2);
     if (!(values[0] >= 0 && values[0] < values[1]))
-      range.fail(fmt::format("[{}, {}] is no range", values[0], values[1]));
+      range.fail(fmt::format("[{}, {}] is not a range", values[0], values[1]));
     min_m = values[0];
     max_m = values[1];
   }

@@ -47,7 +47,7 @@ std::pair<urdf::ModelInterfaceSharedPtr, std::string> try_urdf(const std::string
   } catch (const std::exception& e) {
     return {nullptr, e.what()};
   }
-  return {nullptr, messages.first().empty() ? "is no URDF" : messages.first()};
+  return {nullptr, messages.first().empty() ? "is not URDF" : messages.first()};
 }
 
 /// Where in a file links and joints stand, which urdfdom does not tell, and whether they hang
@@ -58,7 +58,7 @@ class Places {
     tinyxml2::XMLDocument document;
     if (document.Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS)
       throw InputError(
-          fmt::format("{}:{}: is no XML", file_, std::max(1, document.ErrorLineNum())));
+          fmt::format("{}:{}: is not XML", file_, std::max(1, document.ErrorLineNum())));
     const tinyxml2::XMLElement* robot = document.FirstChildElement("robot");
     if (robot == nullptr) return;
     for (auto* material = robot->FirstChildElement("material"); material != nullptr;

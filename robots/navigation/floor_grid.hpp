@@ -12,7 +12,7 @@ namespace mh {
 
 struct FloorGridConfig {
   double resolution_m = 0.04;  ///< side of a cell, 0.005 to 1
-  // What is wholly above or below is no obstacle.
+  // What is wholly above or below is not an obstacle.
   /// None: above the floor's roughness (rugs, thresholds), as in PlanarWorld.
   std::optional<double> bottom_m = {};
   double top_m = 1.21;  ///< the robot's height

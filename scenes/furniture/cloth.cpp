@@ -40,7 +40,7 @@ void rug(Piece& p) {
   const MaterialId top = p.material("top", usual);
   const MaterialId edge = p.fixed(plain("fabric", {120, 100, 84}, 0.4, 45));
   p.mesh.max_edge_m = 0.08F;
-  p.mesh.picture(top, {-w / 2, d / 2, h}, {w, 0, 0}, {0, -d, 0});
+  p.mesh.image(top, {-w / 2, d / 2, h}, {w, 0, 0}, {0, -d, 0});
   p.mesh.max_edge_m = 0.12F;
   for (const float s : {-1.0F, 1.0F}) {  // a bound edge closes the sides
     p.mesh.box(edge, {-w / 2, s * (d / 2) - (s > 0 ? 0.012F : 0.0F), 0.0F},

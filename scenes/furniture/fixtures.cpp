@@ -190,8 +190,8 @@ void fuse_box(Piece& p) {
   }
   MaterialSpec label = plain("paper", {238, 234, 220}, 0.6, 169 + p.random.below(90, 900));
   label.size_m = {0.6F * wide, 0.36F * h};
-  m.picture(p.fixed(label), {-0.3F * wide, y - 0.0125F, 0.54F * h}, {0.6F * wide, 0, 0},
-            {0, 0, -0.36F * h});
+  m.image(p.fixed(label), {-0.3F * wide, y - 0.0125F, 0.54F * h}, {0.6F * wide, 0, 0},
+          {0, 0, -0.36F * h});
   m.cylinder(metal, {0.42F * wide, y - 0.011F, 0.3F * h}, {0.42F * wide, y - 0.018F, 0.3F * h},
              {0.014F, 0.014F}, 14);
 }
@@ -251,7 +251,7 @@ void calendar(Piece& p) {
   MaterialSpec view = plain("painting", {120, 130, 140}, 0.8, 174 + p.random.below(0, 5000));
   view.size_m = {0.92F * w, 0.46F * h};
   const float y = -d / 2 + 0.0015F;
-  m.picture(p.fixed(view), {-0.46F * w, y, 0.97F * h}, {0.92F * w, 0, 0}, {0, 0, -0.46F * h});
+  m.image(p.fixed(view), {-0.46F * w, y, 0.97F * h}, {0.92F * w, 0, 0}, {0, 0, -0.46F * h});
   const auto mark = [&](MaterialId material, float x, float z, float wide, float tall) {
     m.box(material, {x, y - 0.0004F, z}, {x + wide, y + 0.0004F, z + tall}, {.bevel_m = 0.0F});
   };

@@ -58,7 +58,7 @@ void refrigerator(Piece& p) {
     MaterialSpec paper = plain("paper", i == 1 ? Rgb8{238, 226, 150} : Rgb8{232, 230, 224}, 0.6,
                                400 + static_cast<unsigned>(i));
     paper.size_m = {0.11F, 0.14F};
-    m.picture(p.fixed(paper), {nx, face - 0.0025F, nz}, {0.11F, 0, 0}, {0, 0, -0.14F});
+    m.image(p.fixed(paper), {nx, face - 0.0025F, nz}, {0.11F, 0, 0}, {0, 0, -0.14F});
     m.cylinder(p.fixed(plain("plastic", i == 0 ? Rgb8{190, 50, 44} : Rgb8{50, 100, 170}, 0.1)),
                {nx + 0.055F, face - 0.0025F, nz - 0.015F},
                {nx + 0.055F, face - 0.010F, nz - 0.015F}, {0.010F, 0.010F}, 10);

@@ -118,8 +118,8 @@ void piano(Piece& p) {
   }
   MaterialSpec sheet = plain("paper", {236, 234, 226}, 0.7, 216);
   sheet.size_m = {0.42F, 0.28F};
-  m.picture(p.fixed(sheet), {-0.21F, d / 2 - deep - 0.012F, keys + 0.46F}, {0.42F, 0, 0},
-            {0, 0.006F, -0.28F});
+  m.image(p.fixed(sheet), {-0.21F, d / 2 - deep - 0.012F, keys + 0.46F}, {0.42F, 0, 0},
+          {0, 0.006F, -0.28F});
 }
 
 void stool(Piece& p) {

@@ -29,8 +29,8 @@ void paper_pile(Piece& p, const Vector3f& corner, const Vector2f& size, float ta
   const MaterialId top = p.fixed(print),
                    side = p.fixed(plain("plaster", {226, 224, 218}, 0.3, 143));
   p.mesh.box(side, corner, corner + Vector3f(size.x(), size.y(), tall), {.bevel_m = 0.0F});
-  p.mesh.picture(top, corner + Vector3f(0, size.y(), tall + 0.0007F), {size.x(), 0, 0},
-                 {0, -size.y(), 0});
+  p.mesh.image(top, corner + Vector3f(0, size.y(), tall + 0.0007F), {size.x(), 0, 0},
+               {0, -size.y(), 0});
 }
 
 }  // namespace
@@ -79,8 +79,8 @@ void monitor(Piece& p) {
                                : p.material("screen", plain("glass", {22, 24, 28}, 0.2, 146));
   MeshBuilder& m = p.mesh;
   m.box(black, {-w / 2, -0.02F, z0}, {w / 2, 0.02F, h}, {.bevel_m = 0.004F});
-  m.picture(screen, {-w / 2 + bar, -0.0215F, h - bar}, {w - 2 * bar, 0, 0},
-            {0, 0, -(h - z0 - 2 * bar)});
+  m.image(screen, {-w / 2 + bar, -0.0215F, h - bar}, {w - 2 * bar, 0, 0},
+          {0, 0, -(h - z0 - 2 * bar)});
   m.beam(black, {0, 0.03F, 0.012F}, {0, 0.03F, z0 + 0.15F}, 0.05F, 0.018F);
   m.box(black, {-0.24F * w, -0.45F * d, 0}, {0.24F * w, 0.45F * d, 0.014F}, {.bevel_m = 0.005F});
 }
@@ -114,7 +114,7 @@ void filing_cabinet(Piece& p) {
     const float z0 = 0.025F + each * static_cast<float>(i), z1 = z0 + each - 0.008F;
     m.box(body, {-w / 2 + 0.008F, y - 0.016F, z0}, {w / 2 - 0.008F, y - 0.001F, z1});
     handle(p, grip, {-0.06F, y - 0.016F, z1 - 0.09F}, {0.06F, y - 0.016F, z1 - 0.09F}, 0.022F);
-    m.picture(p.fixed(label), {-0.035F, y - 0.0168F, z1 - 0.03F}, {0.07F, 0, 0}, {0, 0, -0.03F});
+    m.image(p.fixed(label), {-0.035F, y - 0.0168F, z1 - 0.03F}, {0.07F, 0, 0}, {0, 0, -0.03F});
   }
 }
 
@@ -127,8 +127,7 @@ void whiteboard(Piece& p) {
   MeshBuilder& m = p.mesh;
   const float y = -d / 2 + 0.045F;
   m.box(frame, {-w / 2, y, 0}, {w / 2, d / 2, h}, {.bevel_m = 0.0F});
-  m.picture(face, {-w / 2 + 0.02F, y - 0.0015F, h - 0.02F}, {w - 0.04F, 0, 0},
-            {0, 0, -(h - 0.04F)});
+  m.image(face, {-w / 2 + 0.02F, y - 0.0015F, h - 0.02F}, {w - 0.04F, 0, 0}, {0, 0, -(h - 0.04F)});
   for (const float s : {-1.0F, 1.0F}) {
     m.box(frame, {s > 0 ? w / 2 - 0.02F : -w / 2, y - 0.006F, 0},
           {s > 0 ? w / 2 : -w / 2 + 0.02F, y - 0.0002F, h});
@@ -167,7 +166,7 @@ void notice_board(Piece& p) {
                                700 + r.below(6, 4000));
     print.size_m = {nw, nh};
     const float y = -d / 2 + 0.0015F - 0.0004F * static_cast<float>(i % 4);
-    m.picture(p.fixed(print), {x, y, z}, {nw, 0, 0}, {0, 0, -nh});
+    m.image(p.fixed(print), {x, y, z}, {nw, 0, 0}, {0, 0, -nh});
     m.cylinder(p.fixed(plain("plastic", {190, 50, 44}, 0.1)), {x + nw / 2, y, z - 0.012F},
                {x + nw / 2, -d / 2 + 0.0F, z - 0.012F}, {0.005F, 0.006F}, 8);
   }
@@ -206,8 +205,8 @@ void copier(Piece& p) {
   m.push(translation(0.5F * (x0 + x1) + 0.04F, y - 0.03F, 0.83F * h) *
          turn(Vector3f::UnitX(), -0.7F));
   m.box(gray, {-0.15F, -0.09F, -0.02F}, {0.15F, 0.09F, 0}, {.bevel_m = 0.006F});
-  m.picture(p.fixed(panel, {0.12F, 0.14F, 0.16F}), {-0.13F, 0.06F, 0.0008F}, {0.20F, 0, 0},
-            {0, -0.12F, 0});
+  m.image(p.fixed(panel, {0.12F, 0.14F, 0.16F}), {-0.13F, 0.06F, 0.0008F}, {0.20F, 0, 0},
+          {0, -0.12F, 0});
   m.pop();
   m.push(translation(x1, 0.05F, 0.45F * h) * turn(Vector3f::UnitY(), -0.5F));
   m.box(pale, {0, -0.16F, 0}, {0.17F, 0.16F, 0.012F});
@@ -263,8 +262,8 @@ void mailboxes(Piece& p) {
       m.box(wood, {x + t / 2 + 0.0005F, -d / 2 + 0.003F, z},
             {x + cw - t / 2 - 0.0005F, d / 2 - 0.0125F, z + t}, {.bevel_m = 0.0F, .grain_axis = 0});
       if (j == rows) continue;
-      m.picture(p.fixed(label), {x + 0.5F * cw - 0.045F, -d / 2 + 0.0022F, z + t + 0.002F},
-                {0.09F, 0, 0}, {0, 0, -0.016F});
+      m.image(p.fixed(label), {x + 0.5F * cw - 0.045F, -d / 2 + 0.0022F, z + t + 0.002F},
+              {0.09F, 0, 0}, {0, 0, -0.016F});
       const RandomStream r = p.random.fork(static_cast<std::uint64_t>(100 * j + i));
       if (r.uniform(0) < 0.62)
         paper_pile(

@@ -75,10 +75,10 @@ void books(Piece& p, const BookSpace& space, std::uint64_t row) {
     // Two boards and a spine round a block of pages, in one box; pages show on top.
     m.box(cover, {x, y, z}, {x + thick - 0.001F, y + deep, z + tall}, {.bevel_m = 0.0F});
     const float u = static_cast<float>(book.uniform(5, 0.0, 0.5 - thick));
-    m.picture(spines, {x + 0.0005F, y - 0.0008F, z + tall - 0.001F}, {thick - 0.002F, 0, 0},
-              {0, 0, -tall + 0.002F}, {u, 0.075F}, Eigen::Vector2f{thick, 0.17F});
-    m.picture(pages, {x + 0.002F, y + deep - 0.001F, z + tall + 0.0006F}, {thick - 0.005F, 0, 0},
-              {0, -deep + 0.006F, 0});
+    m.image(spines, {x + 0.0005F, y - 0.0008F, z + tall - 0.001F}, {thick - 0.002F, 0, 0},
+            {0, 0, -tall + 0.002F}, {u, 0.075F}, Eigen::Vector2f{thick, 0.17F});
+    m.image(pages, {x + 0.002F, y + deep - 0.001F, z + tall + 0.0006F}, {thick - 0.005F, 0, 0},
+            {0, -deep + 0.006F, 0});
     x += thick;
     if (book.uniform(6) < 0.06) x += static_cast<float>(book.uniform(7, 0.02, 0.10));  // a gap
   }

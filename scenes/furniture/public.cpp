@@ -112,7 +112,7 @@ void magazine_rack(Piece& p) {
       m.push(translation(x, -d / 2 + 0.03F, z + 0.016F) * turn(Vector3f::UnitX(), -0.30F));
       m.box(p.fixed(plain("plaster", {224, 220, 210}, 0.2, 9)), {-mw / 2, 0.0008F, 0},
             {mw / 2, 0.006F, mh}, {.bevel_m = 0.0F});
-      m.picture(p.fixed(cover), {-mw / 2, 0, mh}, {mw, 0, 0}, {0, 0, -mh});
+      m.image(p.fixed(cover), {-mw / 2, 0, mh}, {mw, 0, 0}, {0, 0, -mh});
       m.pop();
     }
     p.body();
@@ -198,8 +198,8 @@ void wall_screen(Piece& p) {
   p.mesh.box(black, {-w / 2, -d / 2, 0}, {w / 2, -d / 2 + 0.04F, h}, {.bevel_m = 0.004F});
   p.mesh.box(black, {-0.2F * w, -d / 2 + 0.041F, 0.3F * h}, {0.2F * w, d / 2, 0.7F * h},
              {.bevel_m = 0.0F});
-  p.mesh.picture(screen, {-w / 2 + 0.015F, -d / 2 - 0.0005F + 0.0F, h - 0.015F}, {w - 0.03F, 0, 0},
-                 {0, 0, -(h - 0.03F)});
+  p.mesh.image(screen, {-w / 2 + 0.015F, -d / 2 - 0.0005F + 0.0F, h - 0.015F}, {w - 0.03F, 0, 0},
+               {0, 0, -(h - 0.03F)});
 }
 
 void lockers(Piece& p) {
@@ -253,7 +253,7 @@ void fire_extinguisher(Piece& p) {
                                          {1.1F * r, y - 0.3F * r, 0.35F * h},
                                          {1.05F * r, y - 0.3F * r, 0.25F * h}}};
   m.tube(black, hose, 0.010F, 8);
-  m.picture(p.fixed(label), {-0.045F, y - r - 0.001F, 0.56F * h}, {0.09F, 0, 0}, {0, 0, -0.12F});
+  m.image(p.fixed(label), {-0.045F, y - r - 0.001F, 0.56F * h}, {0.09F, 0, 0}, {0, 0, -0.12F});
   m.box(black, {-0.03F, y + 0.9F * r, 0.5F * h}, {0.03F, d / 2, 0.6F * h});
 }
 
@@ -294,8 +294,8 @@ void storage_shelf(Piece& p) {
         if (r.uniform(6) < 0.6) {
           MaterialSpec label = plain("paper", {236, 234, 228}, 0.6, 4000 + r.below(7, 900));
           label.size_m = {0.10F, 0.07F};
-          m.picture(p.fixed(label), {x + 0.5F * bw - 0.05F, y0 - 0.0008F, zz + 0.6F * bh},
-                    {0.10F, 0, 0}, {0, 0, -0.07F});
+          m.image(p.fixed(label), {x + 0.5F * bw - 0.05F, y0 - 0.0008F, zz + 0.6F * bh},
+                  {0.10F, 0, 0}, {0, 0, -0.07F});
         }
       } else {
         const MaterialId crate = p.fixed(plain("plastic", crates[r.below(5, 4)], 0.2, 183));

@@ -249,8 +249,8 @@ void book_stack(Piece& p) {
     p.mesh.box(cover, {-x, -y, z + thick - 0.004F}, {x, y, z + thick - 0.001F}, {.bevel_m = 0.0F});
     p.mesh.box(cover, {-x, y - 0.003F, z + 0.003F}, {x, y, z + thick - 0.004F}, {.bevel_m = 0.0F});
     if (i == n - 1)  // the cover's image, its top toward +x
-      p.mesh.picture(p.fixed(cover_spec), {x, y, z + thick - 0.0005F}, {0, -2 * y, 0},
-                     {-2 * x, 0, 0});
+      p.mesh.image(p.fixed(cover_spec), {x, y, z + thick - 0.0005F}, {0, -2 * y, 0},
+                   {-2 * x, 0, 0});
     p.mesh.pop();
   }
 }

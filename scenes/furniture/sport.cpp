@@ -36,8 +36,8 @@ void treadmill(Piece& p) {
   m.box(black, {-w / 2 + 0.03F, -0.03F, 0}, {w / 2 - 0.03F, 0.03F, 0.16F}, {.bevel_m = 0.012F});
   MaterialSpec screen = plain("screen", {70, 110, 130}, 0.7, 196);
   screen.size_m = {0.26F, 0.10F};
-  m.picture(p.fixed(screen, {0.08F, 0.09F, 0.10F}), {-0.13F, -0.0315F, 0.13F}, {0.26F, 0, 0},
-            {0, 0, -0.10F});
+  m.image(p.fixed(screen, {0.08F, 0.09F, 0.10F}), {-0.13F, -0.0315F, 0.13F}, {0.26F, 0, 0},
+          {0, 0, -0.10F});
   m.pop();
 }
 

@@ -26,7 +26,7 @@ void framed(Piece& p, MaterialId frame, MaterialId image, float bar, float image
   m.box(frame, {-w / 2 + bar, -d / 2, 0}, {w / 2 - bar, d / 2, bar}, along);
   m.box(frame, {-w / 2 + bar, -d / 2, h - bar}, {w / 2 - bar, d / 2, h}, along);
   const float y = -d / 2 + image_inset, e = bar - 0.001F;
-  m.picture(image, {-w / 2 + e, y, h - e}, {w - 2 * e, 0, 0}, {0, 0, -(h - 2 * e)});
+  m.image(image, {-w / 2 + e, y, h - e}, {w - 2 * e, 0, 0}, {0, 0, -(h - 2 * e)});
 }
 
 }  // namespace
@@ -42,8 +42,8 @@ void television(Piece& p) {
   MeshBuilder& m = p.mesh;
   m.box(black, {-w / 2, -0.015F, z0}, {w / 2, 0.02F, h}, {.bevel_m = 0.004F});
   m.box(body, {-0.36F * w, 0.0205F, z0 + 0.08F}, {0.36F * w, 0.05F, h - 0.14F}, {.bevel_m = 0.01F});
-  m.picture(screen, {-w / 2 + bar, -0.0165F, h - bar}, {w - 2 * bar, 0, 0},
-            {0, 0, -(h - z0 - 2 * bar)});
+  m.image(screen, {-w / 2 + bar, -0.0165F, h - bar}, {w - 2 * bar, 0, 0},
+          {0, 0, -(h - z0 - 2 * bar)});
   for (const float s : {-1.0F, 1.0F}) {  // two splayed feet
     m.beam(body, {s * 0.32F * w, 0, z0 + 0.01F}, {s * 0.34F * w, -d / 2 + 0.012F, 0.008F}, 0.02F,
            0.014F);
@@ -75,9 +75,9 @@ void laptop(Piece& p) {
   m.box(shell, {-w / 2, 0, 0}, {w / 2, 0.007F, 0.97F * tall}, {.bevel_m = 0.002F});
   MaterialSpec usual = plain("screen", {90, 120, 160}, 0.8, 123);
   usual.size_m = {w - 0.02F, 0.97F * tall - 0.025F};
-  m.picture(p.material("screen", usual, {0.10F, 0.12F, 0.14F}),
-            {-w / 2 + 0.01F, -0.001F, 0.97F * tall - 0.01F}, {w - 0.02F, 0, 0},
-            {0, 0, -(0.97F * tall - 0.025F)});
+  m.image(p.material("screen", usual, {0.10F, 0.12F, 0.14F}),
+          {-w / 2 + 0.01F, -0.001F, 0.97F * tall - 0.01F}, {w - 0.02F, 0, 0},
+          {0, 0, -(0.97F * tall - 0.025F)});
   m.pop();
 }
 
@@ -103,8 +103,7 @@ void photo_frame(Piece& p) {
   m.box(frame, {-w / 2 + bar, -0.006F, 0}, {w / 2 - bar, 0.006F, bar});
   m.box(frame, {-w / 2 + bar, -0.006F, top - bar}, {w / 2 - bar, 0.006F, top});
   m.box(frame, {-w / 2 + bar, 0.0F, bar}, {w / 2 - bar, 0.005F, top - bar}, {.bevel_m = 0.0F});
-  m.picture(image, {-w / 2 + bar, -0.001F, top - bar}, {w - 2 * bar, 0, 0},
-            {0, 0, -(top - 2 * bar)});
+  m.image(image, {-w / 2 + bar, -0.001F, top - bar}, {w - 2 * bar, 0, 0}, {0, 0, -(top - 2 * bar)});
   m.pop();
   m.beam(frame, {0, d / 2 - 0.012F, 0.002F}, {0, -d / 2 + 0.055F, 0.6F * h}, 0.03F, 0.005F);
 }
@@ -163,7 +162,7 @@ void wall_papers(Piece& p) {
       print.size_m = {sw, sh};
       m.box(p.fixed(plain("plaster", {236, 234, 228}, 0.1, 128)), {x, d / 2 - 0.001F, z},
             {x + sw, d / 2, z + sh}, {.bevel_m = 0.0F});
-      m.picture(p.fixed(print), {x, d / 2 - 0.0016F, z + sh}, {sw, 0, 0}, {0, 0, -sh});
+      m.image(p.fixed(print), {x, d / 2 - 0.0016F, z + sh}, {sw, 0, 0}, {0, 0, -sh});
       m.box(tape, {x + 0.4F * sw, d / 2 - 0.0022F, z + sh - 0.014F},
             {x + 0.4F * sw + std::min(0.05F, 0.2F * sw), d / 2 - 0.0017F, z + sh + 0.006F},
             {.bevel_m = 0.0F});

@@ -51,8 +51,8 @@ std::string text_of(const XMLElement* element) {
 
 class Expander {
  public:
-  Expander(const fs::path& world, ToldOnce& told)
-      : world_(world), told_(told), finder_(world), looks_(finder_, told) {}
+  Expander(const fs::path& world, UniqueWarnings& collected)
+      : world_(world), collected_(collected), finder_(world), looks_(finder_, collected) {}
 
   Expanded run() {
     XMLElement* root = out_.NewElement("sdf");
@@ -150,7 +150,7 @@ class Expander {
     else if (kind == "scene")
       add_scene(part, out);
     else if (kind == "actor" || kind == "population" || kind == "road")
-      told_.tell(fmt::format("{}: {}: is not shown", source.file.string(), kind));
+      collected_.add(fmt::format("{}: {}: is not shown", source.file.string(), kind));
   }
 
   void add_include(const XMLElement& include, const Source& source, XMLElement& out, Names& names) {
@@ -165,12 +165,13 @@ class Expander {
     else if (const char* built_in = built_in_model(uri))
       add_models(*parse_source(source.file, built_in), include, out, names);
     else
-      told_.tell(fmt::format("{}:{}: include {}: {}: left out", source.file.string(),
-                             include.FirstChildElement("uri")->GetLineNum(), uri,
-                             found ? fmt::format("the folder {} holds no model", found->string())
-                             : uri.starts_with("http") ? "is not in Fuel's cache"
-                                                       : "there is no such model"),
-                 "include " + uri);
+      collected_.add(
+          fmt::format("{}:{}: include {}: {}: left out", source.file.string(),
+                      include.FirstChildElement("uri")->GetLineNum(), uri,
+                      found ? fmt::format("the folder {} holds no model", found->string())
+                      : uri.starts_with("http") ? "is not in Fuel's cache"
+                                                : "there is no such model"),
+          "include " + uri);
   }
 
   /// model://sun and model://ground_plane, also by Fuel's names.
@@ -216,11 +217,11 @@ class Expander {
     if (++depth_ > kDeepest) fail(source, model, fmt::format("models nested {} deep", kDeepest));
     if (depth_ == 1) visuals_before_ = visuals_;
     XMLElement* copy = out.InsertNewChildElement("model");
-    const std::string told_name =
+    const std::string given_name =
         include == nullptr ? "" : text_of(include->FirstChildElement("name"));
     copy->SetAttribute(
         "name",
-        names.take(told_name.empty() ? model.Attribute("name") : told_name.c_str()).c_str());
+        names.take(given_name.empty() ? model.Attribute("name") : given_name.c_str()).c_str());
     const XMLElement* pose = model.FirstChildElement("pose");
     const std::string placed =
         include == nullptr ? "" : text_of(include->FirstChildElement("placement_frame"));
@@ -267,8 +268,8 @@ class Expander {
     const bool is_mesh = std::strcmp(shape->Name(), "mesh") == 0;
     const auto mesh = is_mesh ? finder_.find(uri, source.file) : std::nullopt;
     if (is_mesh && !mesh) {
-      told_.tell(fmt::format("{}: mesh {}: there is no such file: left out", what, uri),
-                 source.file.string() + uri);
+      collected_.add(fmt::format("{}: mesh {}: there is no such file: left out", what, uri),
+                     source.file.string() + uri);
       return;
     }
     XMLElement* copy = out.InsertNewChildElement("visual");
@@ -345,7 +346,7 @@ class Expander {
     for (; numbers >> word; ++count) {
       char* end = nullptr;
       if (!std::isfinite(std::strtod(word.c_str(), &end)) || *end != '\0')
-        fail(source, pose, fmt::format("pose: '{}' is no pose", text));
+        fail(source, pose, fmt::format("pose: '{}' is not a pose", text));
     }
     if (count == 0) return;
     XMLElement* copy = out.InsertNewChildElement("pose");
@@ -359,7 +360,7 @@ class Expander {
   }
 
   fs::path world_;
-  ToldOnce& told_;
+  UniqueWarnings& collected_;
   Finder finder_;
   LookWriter looks_;
   XMLDocument out_;
@@ -370,8 +371,8 @@ class Expander {
 
 }  // namespace
 
-Expanded expand(const fs::path& world, ToldOnce& told) {
-  return Expander(world, told).run();
+Expanded expand(const fs::path& world, UniqueWarnings& collected) {
+  return Expander(world, collected).run();
 }
 
 std::string document_of(const std::string& scene, std::span<const std::string> elements) {

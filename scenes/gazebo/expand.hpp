@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/gazebo/told_once.hpp"
+#include "scenes/gazebo/unique_warnings.hpp"
 
 namespace mh::gazebo {
 
@@ -26,7 +26,7 @@ struct Expanded {
   std::vector<std::vector<std::string>> pieces;  ///< elements of the world, mainly its models
   std::size_t visuals = 0;
 };
-Expanded expand(const std::filesystem::path& world, ToldOnce& told);
+Expanded expand(const std::filesystem::path& world, UniqueWarnings& collected);
 
 /// An SDF document of a world with these elements.
 std::string document_of(const std::string& scene, std::span<const std::string> elements);

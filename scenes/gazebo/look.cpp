@@ -68,7 +68,7 @@ std::string LookWriter::texture_of_pbr(const XMLElement& material, const fs::pat
     if (const auto found = finder_.find(uri, file)) return found->string();
     if (const auto found = finder_.find("file://materials/textures/" + uri, file))
       return found->string();
-    told_.tell(fmt::format("{}: albedo map {}: there is no such file", file.string(), uri));
+    collected_.add(fmt::format("{}: albedo map {}: there is no such file", file.string(), uri));
   }
   return {};
 }
@@ -93,7 +93,7 @@ std::optional<OgreMaterial> LookWriter::material_of(const XMLElement& script,
   }
   if (!found) found = stock_material(name);
   if (!found) {
-    told_.tell(fmt::format("{}: material {}: no script has it", file.string(), name));
+    collected_.add(fmt::format("{}: material {}: no script has it", file.string(), name));
     return std::nullopt;
   }
   if (found->texture.empty()) return found;
@@ -104,7 +104,8 @@ std::optional<OgreMaterial> LookWriter::material_of(const XMLElement& script,
       if (const auto there = find_any_case(place); there && found->texture.empty())
         found->texture = there->lexically_normal().string();
   if (found->texture.empty())
-    told_.tell(fmt::format("{}: material {}: texture {} is missing", file.string(), name, texture));
+    collected_.add(
+        fmt::format("{}: material {}: texture {} is missing", file.string(), name, texture));
   return found;
 }
 
@@ -114,7 +115,7 @@ const std::vector<OgreMaterial>& LookWriter::materials_in(const fs::path& script
   try {
     place->second = parse_ogre_script(read_file(script));
   } catch (const InputError& error) {
-    told_.tell(error.what());
+    collected_.add(error.what());
   }
   return place->second;
 }

@@ -10,7 +10,7 @@
 
 #include "scenes/gazebo/find.hpp"
 #include "scenes/gazebo/ogre_script.hpp"
-#include "scenes/gazebo/told_once.hpp"
+#include "scenes/gazebo/unique_warnings.hpp"
 
 namespace mh::gazebo {
 
@@ -18,7 +18,8 @@ namespace mh::gazebo {
 /// texture as the albedo map of a `pbr` with an absolute path.
 class LookWriter {
  public:
-  LookWriter(const Finder& finder, ToldOnce& told) : finder_(finder), told_(told) {}
+  LookWriter(const Finder& finder, UniqueWarnings& collected)
+      : finder_(finder), collected_(collected) {}
 
   /// @param material  as `file` has it
   /// @param out       an empty `material`
@@ -34,7 +35,7 @@ class LookWriter {
   const std::vector<OgreMaterial>& materials_in(const std::filesystem::path& script);
 
   const Finder& finder_;
-  ToldOnce& told_;
+  UniqueWarnings& collected_;
   std::map<std::filesystem::path, std::vector<OgreMaterial>> scripts_;
 };
 

@@ -42,13 +42,13 @@ std::unique_ptr<Source> parse_source(const fs::path& file, std::string text) {
   Source& source = *made;
   source.file = file;
   if (source.document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-    throw InputError(fmt::format("{}:{}: is no SDF that can be read: {}", file.string(),
+    throw InputError(fmt::format("{}:{}: is not SDF that can be read: {}", file.string(),
                                  std::max(source.document.ErrorLineNum(), 1),
                                  source.document.ErrorName()));
   const XMLElement* root = source.document.RootElement();
   if (root == nullptr ||
       (std::strcmp(root->Name(), "sdf") != 0 && std::strcmp(root->Name(), "gazebo") != 0))
-    throw InputError(fmt::format("{}: is no SDF: its root is no <sdf>", file.string()));
+    throw InputError(fmt::format("{}: is not SDF: its root is no <sdf>", file.string()));
   const char* version = root->Attribute("version");
   int major = 1, minor = 0;
   std::sscanf(version == nullptr ? "1.9" : version, "%d.%d", &major, &minor);

@@ -20,7 +20,7 @@ DrawRange as_range(const YamlReader& yaml, double min, double max) {
   }
   const std::vector<double> n = yaml.as_numbers(2);
   if (n[0] > n[1] || n[0] < min || n[1] > max)
-    yaml.fail(fmt::format("[{}, {}] is no range within [{}, {}]", n[0], n[1], min, max));
+    yaml.fail(fmt::format("[{}, {}] is not a range within [{}, {}]", n[0], n[1], min, max));
   return {n[0], n[1]};
 }
 
@@ -47,7 +47,7 @@ PaletteEntry read_entry(YamlReader yaml) {
   for (const YamlReader& tone : yaml.at("tones").items()) {
     const std::vector<double> n = tone.as_numbers(3);
     if (std::ranges::any_of(n, [](double v) { return v < 0 || v > 255; }))
-      tone.fail("is no color: three numbers from 0 to 255");
+      tone.fail("is not a color: three numbers from 0 to 255");
     entry.tones.push_back({static_cast<std::uint8_t>(n[0]), static_cast<std::uint8_t>(n[1]),
                            static_cast<std::uint8_t>(n[2])});
   }
@@ -171,7 +171,7 @@ RoomGrammar read_room(YamlReader yaml) {
   const YamlReader lamp = yaml.at("lamp");
   room.lamp = lamp.as_string();
   const FurnitureKind* const kind = find_furniture(room.lamp);
-  if (kind == nullptr || !kind->bulb) lamp.fail(fmt::format("'{}' is no lamp", room.lamp));
+  if (kind == nullptr || !kind->bulb) lamp.fail(fmt::format("'{}' is not a lamp", room.lamp));
   room.area_per_lamp_m2 = yaml.number_or("area_per_lamp_m2", room.area_per_lamp_m2, 0.5, 100.0);
   room.lamp_power = range_or(yaml, "lamp_power", room.lamp_power, 0.0, 100.0);
   room.warmth = range_or(yaml, "warmth", room.warmth, 0.0, 1.0);
@@ -218,7 +218,7 @@ const Category& category_by_name(std::string_view name) {
   const auto found = std::ranges::find(all, name, &Category::name);
   if (found != all.end()) return *found;
   throw InputError(
-      fmt::format("'{}' is no category{}", name, hint(name, words_of(kCategoryNames))));
+      fmt::format("'{}' is not a category{}", name, hint(name, words_of(kCategoryNames))));
 }
 
 }  // namespace mh

@@ -16,13 +16,13 @@ FloorRect read_cut(YamlReader yaml, const FloorRect& rect) {
   const bool south = name.starts_with("south_"), west = name.ends_with("_west");
   if (name != fmt::format("{}_{}", south ? "south" : "north", west ? "west" : "east"))
     corner.fail(
-        fmt::format("'{}' is no corner; corners are south_west, south_east, north_west, "
+        fmt::format("'{}' is not a corner; corners are south_west, south_east, north_west, "
                     "north_east",
                     name));
   const std::vector<double> n = size.as_numbers(2);
   if (n[0] <= 0 || n[1] <= 0 || n[0] > rect.x1 - rect.x0 - kLeft ||
       n[1] > rect.y1 - rect.y0 - kLeft)
-    size.fail(fmt::format("[{}, {}] is no part of the room that leaves {} m beside it", n[0], n[1],
+    size.fail(fmt::format("[{}, {}] is not part of the room that leaves {} m beside it", n[0], n[1],
                           kLeft));
   yaml.finish();
   return {west ? rect.x0 : rect.x1 - n[0], south ? rect.y0 : rect.y1 - n[1],
@@ -51,7 +51,7 @@ Side side_by_name(const YamlReader& yaml) {
   const std::string name = yaml.as_string();
   for (const Side side : kSides)
     if (side_name(side) == name) return side;
-  yaml.fail(fmt::format("'{}' is no side; sides are south, north, west, east", name));
+  yaml.fail(fmt::format("'{}' is not a side; sides are south, north, west, east", name));
 }
 
 FloorRect read_rect(const YamlReader& yaml) {

@@ -335,7 +335,7 @@ void build_garden(const HousePlan& house, const GardenPlan& garden, MeshBuilder&
   constexpr float kGround = -0.35F;
   // With exposure set for indoors the outside would be too bright, so all images are darkened.
   // Those not lit by the sun may glow.
-  const auto picture = [&](Side side, float width_m, bool sunlit) {
+  const auto image = [&](Side side, float width_m, bool sunlit) {
     MaterialSpec spec = garden.material;
     spec.name = fmt::format("{}_{}", spec.name, side_name(side));
     spec.seed += static_cast<std::uint64_t>(side);
@@ -362,7 +362,7 @@ void build_garden(const HousePlan& house, const GardenPlan& garden, MeshBuilder&
     const float from = wall.along_x() ? x0 : y0, to = wall.along_x() ? x1 : y1;
     const Vector3f normal = axis.cross(Vector3f::UnitZ());
     const bool lit = house.sun && house.sun->direction.dot(normal) < 0.0F;
-    mesh.panel(picture(side, to - from, lit), {origin, axis, Vector3f::UnitZ()},
+    mesh.panel(image(side, to - from, lit), {origin, axis, Vector3f::UnitZ()},
                breaks(forward ? from : -to, forward ? to : -from, 1.0F),
                breaks(kGround - h, 0.0F, 1.0F));
   }

@@ -15,8 +15,8 @@ constexpr float kUnit = 1 << kShift;
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr float kCapitalHeight = 21.0F;  // of that font at scale 1, in texels
 
-cv::Mat view(Grid2d<Rgb8>& picture) {
-  return {picture.height(), picture.width(), CV_8UC3, picture.data()};
+cv::Mat view(Grid2d<Rgb8>& image) {
+  return {image.height(), image.width(), CV_8UC3, image.data()};
 }
 
 cv::Point point(float x, float y) {
@@ -35,7 +35,7 @@ int stroke(float thickness) {
 }  // namespace
 
 void Canvas::rectangle(float x, float y, float width, float height, Tint tint) {
-  cv::Mat image = view(picture_);
+  cv::Mat image = view(image_);
   const cv::Rect rect(static_cast<int>(std::lround(x)), static_cast<int>(std::lround(y)),
                       std::max(1, static_cast<int>(std::lround(width))),
                       std::max(1, static_cast<int>(std::lround(height))));
@@ -51,20 +51,20 @@ void Canvas::frame(float x, float y, float width, float height, float thickness,
 }
 
 void Canvas::line(float x0, float y0, float x1, float y1, float thickness, Tint tint) {
-  cv::Mat image = view(picture_);
+  cv::Mat image = view(image_);
   cv::line(image, point(x0, y0), point(x1, y1), scalar(tint), stroke(thickness), cv::LINE_AA,
            kShift);
 }
 
 void Canvas::ellipse(float x, float y, float radius_x, float radius_y, float angle_rad, Tint tint) {
-  cv::Mat image = view(picture_);
+  cv::Mat image = view(image_);
   const cv::Point radii = point(std::max(radius_x, 0.5F), std::max(radius_y, 0.5F));
   cv::ellipse(image, point(x, y), cv::Size(radii.x, radii.y), angle_rad * 180.0 / std::numbers::pi,
               0.0, 360.0, scalar(tint), cv::FILLED, cv::LINE_AA, kShift);
 }
 
 void Canvas::polygon(const std::vector<Eigen::Vector2f>& corners, Tint tint) {
-  cv::Mat image = view(picture_);
+  cv::Mat image = view(image_);
   std::vector<cv::Point> points;
   for (const Eigen::Vector2f& c : corners) points.push_back(point(c.x(), c.y()));
   cv::fillPoly(image, std::vector{points}, scalar(tint), cv::LINE_AA, kShift);
@@ -73,7 +73,7 @@ void Canvas::polygon(const std::vector<Eigen::Vector2f>& corners, Tint tint) {
 float Canvas::text(std::string_view words, const Eigen::Vector2f& at, const Letters& letters,
                    Tint tint) {
   const auto& [height, thickness, upwards] = letters;
-  cv::Mat image = view(picture_);
+  cv::Mat image = view(image_);
   const std::string copy(words);
   const double scale = height / kCapitalHeight;
   const float width = text_width(words, height);

@@ -22,7 +22,7 @@ struct Letters {
 /// border. Keeps a reference to the image.
 class Canvas {
  public:
-  explicit Canvas(Grid2d<Rgb8>& picture) : picture_(picture) {}
+  explicit Canvas(Grid2d<Rgb8>& image) : image_(image) {}
 
   void rectangle(float x, float y, float width, float height, Tint tint);
   void frame(float x, float y, float width, float height, float thickness, Tint tint);
@@ -34,7 +34,7 @@ class Canvas {
   static float text_width(std::string_view words, float height);
 
  private:
-  Grid2d<Rgb8>& picture_;
+  Grid2d<Rgb8>& image_;
 };
 
 }  // namespace mh

@@ -24,7 +24,7 @@ int round_to(int value, int unit) {
 
 }  // namespace
 
-Picture paint_fabric(const PaintJob& job) {
+Image paint_fabric(const PaintJob& job) {
   const int w = job.width, h = job.height;
   const Field warp = fbm(w, h, {round_to(w, 4) / 4, 4, 2, 0.5F}, job.random.fork(0));
   const Field weft = fbm(w, h, {4, round_to(h, 4) / 4, 2, 0.5F}, job.random.fork(1));
@@ -37,7 +37,7 @@ Picture paint_fabric(const PaintJob& job) {
   });
 }
 
-Picture paint_knit(const PaintJob& job) {
+Image paint_knit(const PaintJob& job) {
   // Stockinette: columns of V-shaped stitches, each leg leaning toward the center of its column.
   const int columns = std::max(2, job.width / 10), rows = std::max(2, job.height / 8);
   const Field yarn = fbm(job.width, job.height, {columns, rows, 3, 0.7F}, job.random.fork(0));
@@ -57,7 +57,7 @@ Picture paint_knit(const PaintJob& job) {
   });
 }
 
-Picture paint_leather(const PaintJob& job) {
+Image paint_leather(const PaintJob& job) {
   const int cells = std::max(4, job.width / job.texels(0.009));
   const Voronoi grain = voronoi(job.width, job.height, cells, cells, 1.0F, job.random.fork(0));
   const Field folds = fbm(job.width, job.height, {4, 4, 5, 0.6F}, job.random.fork(1));
@@ -69,7 +69,7 @@ Picture paint_leather(const PaintJob& job) {
   });
 }
 
-Picture paint_carpet(const PaintJob& job) {
+Image paint_carpet(const PaintJob& job) {
   const int cells = std::max(4, job.width / job.texels(0.008));
   const Voronoi tufts = voronoi(job.width, job.height, cells, cells, 0.8F, job.random.fork(0));
   const Field broad = fbm(job.width, job.height, {3, 3, 5, 0.6F}, job.random.fork(1));
@@ -84,7 +84,7 @@ Picture paint_carpet(const PaintJob& job) {
   });
 }
 
-Picture paint_curtain(const PaintJob& job) {
+Image paint_curtain(const PaintJob& job) {
   // Bands of stripes along v, a small leaf motif between them, and a fine weave over all.
   constexpr int kBands = 4;
   const int w = job.width, h = job.height;
@@ -110,7 +110,7 @@ Picture paint_curtain(const PaintJob& job) {
   });
 }
 
-Picture paint_rug(const PaintJob& job) {
+Image paint_rug(const PaintJob& job) {
   const Tint dark = blend(job.tone, Tint(20, 22, 45), 0.72F);
   const Tint cream(226, 208, 170);
   const Tint accent = blend(Tint(job.tone.b, job.tone.r * 0.6F, job.tone.g), cream, 0.25F);

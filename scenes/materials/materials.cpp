@@ -18,7 +18,7 @@ constexpr float kWhole = 0.0F;  // marks an image: the tile is MaterialSpec::siz
 
 struct Kind {
   std::string_view name;
-  float tile_u_m, tile_v_m;  ///< size of one repeat, kWhole for pictures
+  float tile_u_m, tile_v_m;  ///< size of one repeat, kWhole for images
   float texel_m;
   Painter paint;
 };
@@ -85,7 +85,7 @@ Material make_material(const MaterialSpec& spec) {
   Material material;
   material.name = spec.name.empty() ? spec.kind : spec.name;
   material.tile_m =
-      is_picture(spec.kind) ? spec.size_m : Eigen::Vector2f(kind.tile_u_m, kind.tile_v_m);
+      is_image(spec.kind) ? spec.size_m : Eigen::Vector2f(kind.tile_u_m, kind.tile_v_m);
   // Long images get coarser texels instead of being cropped.
   const float texel_m = std::max(kind.texel_m, material.tile_m.maxCoeff() / kMaxTexels);
   const auto texels = [&](float length_m) {
@@ -105,7 +105,7 @@ std::span<const std::string_view> material_kinds() {
   return kNames;
 }
 
-bool is_picture(std::string_view kind) {
+bool is_image(std::string_view kind) {
   return find_kind(kind).tile_u_m == kWhole;
 }
 

@@ -19,7 +19,7 @@ struct MaterialSpec {
   Rgb8 tone{180, 140, 100};            ///< sRGB, the surface's mean color (images: their key color)
   double variation = 0.5;              ///< contrast of the pattern, 0 (faint) to 1 (strong)
   std::uint64_t seed = 0;              ///< another seed gives another sample of the same material
-  Eigen::Vector2f size_m{1.0F, 1.0F};  ///< size of the whole image if is_picture(kind)
+  Eigen::Vector2f size_m{1.0F, 1.0F};  ///< size of the whole image if is_image(kind)
 };
 
 /// @throws InputError if the kind is unknown, or a number out of range.
@@ -36,6 +36,6 @@ Material make_material(const MaterialSpec& spec);
 std::span<const std::string_view> material_kinds();
 
 /// Whether a kind fills spec.size_m once instead of repeating. @throws InputError if unknown.
-bool is_picture(std::string_view kind);
+bool is_image(std::string_view kind);
 
 }  // namespace mh

@@ -20,51 +20,51 @@ struct PaintJob {
   }
 };
 
-using Picture = Grid2d<Rgb8>;
-using Painter = Picture (*)(const PaintJob&);
+using Image = Grid2d<Rgb8>;
+using Painter = Image (*)(const PaintJob&);
 
 /// The image whose texel (x, y) is tint_at(x, y).
 template <class TintAt>
-Picture paint(const PaintJob& job, const TintAt& tint_at) {
-  Picture picture(job.width, job.height);
+Image paint(const PaintJob& job, const TintAt& tint_at) {
+  Image image(job.width, job.height);
   for (int y = 0; y < job.height; ++y)
-    for (int x = 0; x < job.width; ++x) picture(x, y) = to_rgb8(tint_at(x, y));
-  return picture;
+    for (int x = 0; x < job.width; ++x) image(x, y) = to_rgb8(tint_at(x, y));
+  return image;
 }
 
 // wood.cpp: grain along u.
-Picture paint_wood_grain(const PaintJob& job);
-Picture paint_wood_boards(const PaintJob& job);
-Picture paint_parquet(const PaintJob& job);
-Picture paint_bark(const PaintJob& job);
+Image paint_wood_grain(const PaintJob& job);
+Image paint_wood_boards(const PaintJob& job);
+Image paint_parquet(const PaintJob& job);
+Image paint_bark(const PaintJob& job);
 
 // walls.cpp
-Picture paint_plaster(const PaintJob& job);
-Picture paint_ceiling(const PaintJob& job);
-Picture paint_tiles(const PaintJob& job);
-Picture paint_stone(const PaintJob& job);
-Picture paint_brushed_metal(const PaintJob& job);
-Picture paint_smooth(const PaintJob& job);  ///< ceramic, plastic, glass: almost uniform
+Image paint_plaster(const PaintJob& job);
+Image paint_ceiling(const PaintJob& job);
+Image paint_tiles(const PaintJob& job);
+Image paint_stone(const PaintJob& job);
+Image paint_brushed_metal(const PaintJob& job);
+Image paint_smooth(const PaintJob& job);  ///< ceramic, plastic, glass: almost uniform
 
 // cloth.cpp
-Picture paint_fabric(const PaintJob& job);
-Picture paint_knit(const PaintJob& job);
-Picture paint_leather(const PaintJob& job);
-Picture paint_carpet(const PaintJob& job);
-Picture paint_curtain(const PaintJob& job);
-Picture paint_rug(const PaintJob& job);
+Image paint_fabric(const PaintJob& job);
+Image paint_knit(const PaintJob& job);
+Image paint_leather(const PaintJob& job);
+Image paint_carpet(const PaintJob& job);
+Image paint_curtain(const PaintJob& job);
+Image paint_rug(const PaintJob& job);
 
 // print.cpp
-Picture paint_book_spines(const PaintJob& job);
-Picture paint_book_cover(const PaintJob& job);
-Picture paint_poster(const PaintJob& job);
-Picture paint_paper(const PaintJob& job);
-Picture paint_screen(const PaintJob& job);
-Picture paint_whiteboard(const PaintJob& job);
+Image paint_book_spines(const PaintJob& job);
+Image paint_book_cover(const PaintJob& job);
+Image paint_poster(const PaintJob& job);
+Image paint_paper(const PaintJob& job);
+Image paint_screen(const PaintJob& job);
+Image paint_whiteboard(const PaintJob& job);
 
 // views.cpp
-Picture paint_painting(const PaintJob& job);
-Picture paint_garden(const PaintJob& job);
-Picture paint_leaf(const PaintJob& job);
+Image paint_painting(const PaintJob& job);
+Image paint_garden(const PaintJob& job);
+Image paint_leaf(const PaintJob& job);
 
 }  // namespace mh

@@ -73,14 +73,14 @@ Tint cloth_for(const PaintJob& job, Dice& dice) {
   return random_tint(dice, 0.2F, 0.68F, 0.22F, 0.78F);
 }
 
-/// Grain over a whole picture, so that flat prints are not mathematically flat.
-void add_grain(Picture& picture, const PaintJob& job, float strength) {
-  const Field grain = white_noise(picture.width(), picture.height(), job.random.fork(99));
-  const Field broad = fbm(picture.width(), picture.height(), {2, 2, 3, 0.5F}, job.random.fork(98));
-  for (int y = 0; y < picture.height(); ++y)
-    for (int x = 0; x < picture.width(); ++x)
-      picture(x, y) = to_rgb8(Tint(picture(x, y)) *
-                              (1.0F + strength * (0.012F * grain(x, y) + 0.05F * broad(x, y))));
+/// Grain over a whole image, so that flat prints are not mathematically flat.
+void add_grain(Image& image, const PaintJob& job, float strength) {
+  const Field grain = white_noise(image.width(), image.height(), job.random.fork(99));
+  const Field broad = fbm(image.width(), image.height(), {2, 2, 3, 0.5F}, job.random.fork(98));
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x)
+      image(x, y) = to_rgb8(Tint(image(x, y)) *
+                            (1.0F + strength * (0.012F * grain(x, y) + 0.05F * broad(x, y))));
 }
 
 struct PrintBox {
@@ -142,9 +142,9 @@ void slash(Canvas& canvas, Dice& dice, const Eigen::Vector2f& at, float reach, f
 }
 
 /// One book seen from its back, standing at x and `width` wide; its top edge at y.
-void spine(Picture& picture, const PaintJob& job, Dice& dice, int x, int y, int width) {
-  const int height = picture.height() - y;
-  Picture book(width, height);
+void spine(Image& image, const PaintJob& job, Dice& dice, int x, int y, int width) {
+  const int height = image.height() - y;
+  Image book(width, height);
   const Tint cloth = cloth_for(job, dice);
   const Tint ink = ink_for(cloth, dice);
   const auto w = static_cast<float>(width), h = static_cast<float>(height);
@@ -176,14 +176,14 @@ void spine(Picture& picture, const PaintJob& job, Dice& dice, int x, int y, int 
       const float t = 2.0F * (static_cast<float>(i) + 0.5F) / w - 1.0F;
       const float top = j < 2 ? 0.8F : 1.0F;
       const float shade = i == 0 || i == width - 1 ? 0.35F : 1.04F - 0.35F * t * t * t * t;
-      picture(x + i, y + j) = to_rgb8(Tint(book(i, j)) * (shade * top));
+      image(x + i, y + j) = to_rgb8(Tint(book(i, j)) * (shade * top));
     }
 }
 
 }  // namespace
 
-Picture paint_book_spines(const PaintJob& job) {
-  Picture picture(job.width, job.height, to_rgb8(Tint(26, 22, 20)));
+Image paint_book_spines(const PaintJob& job) {
+  Image image(job.width, job.height, to_rgb8(Tint(26, 22, 20)));
   Dice dice(job.random);
   int x = 0;
   while (x < job.width) {
@@ -194,18 +194,18 @@ Picture paint_book_spines(const PaintJob& job) {
     for (int i = 0; i < copies && x < job.width; ++i) {
       const int thick = std::min(std::max(width, 4), job.width - x);
       const int top = static_cast<int>((1.0F - size) * static_cast<float>(job.height));
-      spine(picture, job, dice, x, top, thick);
+      spine(image, job, dice, x, top, thick);
       x += thick;
     }
   }
-  add_grain(picture, job, 1.0F);
-  return picture;
+  add_grain(image, job, 1.0F);
+  return image;
 }
 
-Picture paint_book_cover(const PaintJob& job) {
-  Picture picture(job.width, job.height, to_rgb8(job.tone));
+Image paint_book_cover(const PaintJob& job) {
+  Image image(job.width, job.height, to_rgb8(job.tone));
   Dice dice(job.random);
-  Canvas canvas(picture);
+  Canvas canvas(image);
   const auto w = static_cast<float>(job.width), h = static_cast<float>(job.height);
   const Tint ink = ink_for(job.tone, dice);
   const Tint second = hsv(dice.uniform(), 0.6F, 0.75F);
@@ -215,19 +215,19 @@ Picture paint_book_cover(const PaintJob& job) {
   canvas.text(dice.words(1), {0.12F * w, 0.17F * h + 1.6F * letter}, {letter, 0.16F * letter}, ink);
   emblem(canvas, dice, {0.5F * w, 0.58F * h}, 0.26F * std::min(w, h), second, ink);
   canvas.text(dice.words(2), {0.12F * w, 0.91F * h}, {0.45F * letter, 1.0F}, ink);
-  add_grain(picture, job, 1.0F);
-  return picture;
+  add_grain(image, job, 1.0F);
+  return image;
 }
 
-Picture paint_poster(const PaintJob& job) {
+Image paint_poster(const PaintJob& job) {
   Dice dice(job.random);
   const Tint second = random_tint(dice, 0.4F, 0.8F, 0.5F, 0.95F);
   const Tint third = random_tint(dice, 0.7F, 0.7F, 0.2F, 0.6F);
   const Tint below = blend(job.tone, second, 0.35F);
-  Picture picture = paint(job, [&](int, int y) {
+  Image image = paint(job, [&](int, int y) {
     return blend(job.tone, below, static_cast<float>(y) / static_cast<float>(job.height));
   });
-  Canvas canvas(picture);
+  Canvas canvas(image);
   const auto w = static_cast<float>(job.width), h = static_cast<float>(job.height);
   const float small = std::min(w, h);
   for (int i = 0; i < 22; ++i) {
@@ -261,14 +261,14 @@ Picture paint_poster(const PaintJob& job) {
   small_print(canvas, dice, {0.08F * w, 0.81F * h, 0.5F * w, 0.15F * h}, std::max(4.0F, 0.012F * h),
               Tint(40, 38, 44));
   emblem(canvas, dice, {0.82F * w, 0.89F * h}, 0.07F * small, third, second);
-  add_grain(picture, job, 0.7F);
-  return picture;
+  add_grain(image, job, 0.7F);
+  return image;
 }
 
-Picture paint_paper(const PaintJob& job) {
-  Picture picture(job.width, job.height, to_rgb8(job.tone));
+Image paint_paper(const PaintJob& job) {
+  Image image(job.width, job.height, to_rgb8(job.tone));
   Dice dice(job.random);
-  Canvas canvas(picture);
+  Canvas canvas(image);
   const auto w = static_cast<float>(job.width), h = static_cast<float>(job.height);
   const Tint ink = blend(Tint(35, 34, 40), job.tone, 0.15F);
   const float letter = std::max(4.0F, 0.014F * h);
@@ -281,17 +281,17 @@ Picture paint_paper(const PaintJob& job) {
   small_print(canvas, dice, {0.5F * w, split * h, 0.4F * w, 0.2F * h}, letter, ink);
   small_print(canvas, dice, {0.1F * w, (split + 0.24F) * h, 0.8F * w, (0.68F - split) * h}, letter,
               ink);
-  add_grain(picture, job, 0.6F);
-  return picture;
+  add_grain(image, job, 0.6F);
+  return image;
 }
 
-Picture paint_screen(const PaintJob& job) {
+Image paint_screen(const PaintJob& job) {
   // Even seeds of the dice: a desktop with windows; odd ones: a broadcast with a ticker.
   Dice dice(job.random);
   const auto w = static_cast<float>(job.width), h = static_cast<float>(job.height);
   const Tint sky = hsv(dice.uniform(0.5F, 0.7F), 0.5F, 0.85F);
   const Field hills = fbm(job.width, 8, {3, 1, 6, 0.5F}, job.random.fork(1));
-  Picture picture = paint(job, [&](int x, int y) {
+  Image image = paint(job, [&](int x, int y) {
     const float v = static_cast<float>(y) / h;
     Tint tint = blend(sky, Tint(250, 225, 190), v * 1.2F);
     for (int ridge = 0; ridge < 3; ++ridge) {
@@ -301,7 +301,7 @@ Picture paint_screen(const PaintJob& job) {
     }
     return tint;
   });
-  Canvas canvas(picture);
+  Canvas canvas(image);
   const float letter = std::max(4.0F, 0.022F * h);
   if (dice.below(2) == 0) {
     canvas.rectangle(0, 0.94F * h, w, 0.06F * h, Tint(32, 34, 40));
@@ -329,15 +329,15 @@ Picture paint_screen(const PaintJob& job) {
     canvas.text(dice.words(1).substr(0, 3), {0.875F * w, 0.1F * h}, {1.5F * letter, 2.0F},
                 Tint(250, 250, 250));
   }
-  return picture;
+  return image;
 }
 
-Picture paint_whiteboard(const PaintJob& job) {
+Image paint_whiteboard(const PaintJob& job) {
   const Field broad = fbm(job.width, job.height, {3, 2, 3, 0.5F}, job.random.fork(0));
-  Picture picture = paint(job, [&](int x, int y) {
+  Image image = paint(job, [&](int x, int y) {
     return job.tone * (1.0F + 0.012F * broad(x, y));  // not wiped quite clean
   });
-  Canvas canvas(picture);
+  Canvas canvas(image);
   const RandomStream random = job.random.fork(1);
   constexpr std::array<Tint, 3> kPens = {Tint{40, 60, 150}, Tint{30, 30, 34}, Tint{176, 40, 40}};
   const auto w = static_cast<float>(job.width), h = static_cast<float>(job.height);
@@ -371,7 +371,7 @@ Picture paint_whiteboard(const PaintJob& job) {
       }
     }
   }
-  return picture;
+  return image;
 }
 
 }  // namespace mh

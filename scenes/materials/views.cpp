@@ -15,7 +15,7 @@ Tint sky_tint(float height, float cloud) {
 
 }  // namespace
 
-Picture paint_painting(const PaintJob& job) {
+Image paint_painting(const PaintJob& job) {
   const int w = job.width, h = job.height;
   const Field stroke_x = fbm(w, h, {7, 7, 3, 0.6F}, job.random.fork(0));
   const Field stroke_y = fbm(w, h, {7, 7, 3, 0.6F}, job.random.fork(1));
@@ -41,12 +41,12 @@ Picture paint_painting(const PaintJob& job) {
     }
     return tint;
   };
-  Picture picture = paint(job, [&](int x, int y) {
+  Image image = paint(job, [&](int x, int y) {
     const float sx = static_cast<float>(x) + 14.0F * stroke_x(x, y) + 5.0F * dabs(x, y);
     const float sy = static_cast<float>(y) + 8.0F * stroke_y(x, y) + 7.0F * dabs(x, y);
     return scenery(sx, sy) * (1.0F + 0.22F * dabs(x, y) + 0.012F * canvas_grain(x, y));
   });
-  Canvas canvas(picture);
+  Canvas canvas(image);
   const RandomStream trees = job.random.fork(7);
   const auto height = static_cast<float>(h);
   for (std::uint64_t i = 0; i < 26; ++i) {  // trees, smaller with distance
@@ -64,10 +64,10 @@ Picture paint_painting(const PaintJob& job) {
                      dark * (1.0F + 0.25F * static_cast<float>(k) * 0.4F));
     }
   }
-  return picture;
+  return image;
 }
 
-Picture paint_garden(const PaintJob& job) {
+Image paint_garden(const PaintJob& job) {
   const int w = job.width, h = job.height;
   const int widths = std::max(1, w / (2 * h));  // a wide image shows more, not wider things
   const Field clouds = fbm(w, h, {3 * widths, 5, 5, 0.55F}, job.random.fork(0));
@@ -78,7 +78,7 @@ Picture paint_garden(const PaintJob& job) {
   const Voronoi hedge =
       voronoi(w, h, std::max(3, w / 6), std::max(3, h / 6), 1.0F, job.random.fork(5));
   const Tint green = blend(Tint(70, 108, 52), job.tone, 0.25F);
-  Picture picture = paint(job, [&](int x, int y) {
+  Image image = paint(job, [&](int x, int y) {
     const float v = static_cast<float>(y) / static_cast<float>(h);
     const float far = 0.36F + 0.22F * tops(x, 0), near = 0.50F + 0.03F * tops(x, 8);
     if (v > 0.70F + 0.008F * leaves(x, 3)) {  // lawn, mown in bands
@@ -96,7 +96,7 @@ Picture paint_garden(const PaintJob& job) {
     }
     return sky_tint(1.0F - 1.6F * v, clouds(x, y) + 0.05F);
   });
-  Canvas canvas(picture);
+  Canvas canvas(image);
   const auto height = static_cast<float>(h);
   for (int tree = 0; tree < widths; ++tree) {
     const RandomStream random = job.random.fork(6).fork(static_cast<std::uint64_t>(tree));
@@ -116,10 +116,10 @@ Picture paint_garden(const PaintJob& job) {
                      0.010F * height, turn, green * shade);
     }
   }
-  return picture;
+  return image;
 }
 
-Picture paint_leaf(const PaintJob& job) {
+Image paint_leaf(const PaintJob& job) {
   // One leaf: its midrib along u in the middle of v, side veins leaving it at an angle.
   const Field mottle = fbm(job.width, job.height, {4, 4, 5, 0.6F}, job.random.fork(0));
   const Field cells =

@@ -5,7 +5,7 @@
 
 namespace mh {
 
-Picture paint_plaster(const PaintJob& job) {
+Image paint_plaster(const PaintJob& job) {
   const Field broad = fbm(job.width, job.height, {3, 3, 4, 0.5F}, job.random.fork(0));
   const Field roller =
       fbm(job.width, job.height, {job.width / 4, job.height / 3, 2, 0.7F}, job.random.fork(1));
@@ -14,7 +14,7 @@ Picture paint_plaster(const PaintJob& job) {
   });
 }
 
-Picture paint_ceiling(const PaintJob& job) {
+Image paint_ceiling(const PaintJob& job) {
   const Field broad = fbm(job.width, job.height, {2, 2, 3, 0.5F}, job.random.fork(0));
   const Field grain = white_noise(job.width, job.height, job.random.fork(1));
   return paint(job, [&](int x, int y) {
@@ -22,7 +22,7 @@ Picture paint_ceiling(const PaintJob& job) {
   });
 }
 
-Picture paint_tiles(const PaintJob& job) {
+Image paint_tiles(const PaintJob& job) {
   const int count_x = std::max(1, job.width / job.texels(0.2));
   const int count_y = std::max(1, job.height / job.texels(0.2));
   const Field cloud = fbm(job.width, job.height, {14, 14, 4, 0.55F}, job.random.fork(0));
@@ -47,7 +47,7 @@ Picture paint_tiles(const PaintJob& job) {
   });
 }
 
-Picture paint_stone(const PaintJob& job) {
+Image paint_stone(const PaintJob& job) {
   const int cells = std::max(4, job.width / job.texels(0.007));
   const Voronoi grains = voronoi(job.width, job.height, cells, cells, 1.0F, job.random.fork(0));
   const Field broad = fbm(job.width, job.height, {6, 6, 4, 0.6F}, job.random.fork(1));
@@ -61,7 +61,7 @@ Picture paint_stone(const PaintJob& job) {
   });
 }
 
-Picture paint_brushed_metal(const PaintJob& job) {
+Image paint_brushed_metal(const PaintJob& job) {
   const Field lines = fbm(job.width, job.height, {3, job.height / 4, 2, 0.9F}, job.random.fork(0));
   const Field broad = fbm(job.width, job.height, {2, 3, 2, 0.5F}, job.random.fork(1));
   return paint(job, [&](int x, int y) {
@@ -69,7 +69,7 @@ Picture paint_brushed_metal(const PaintJob& job) {
   });
 }
 
-Picture paint_smooth(const PaintJob& job) {
+Image paint_smooth(const PaintJob& job) {
   const Field broad = fbm(job.width, job.height, {2, 2, 2, 0.5F}, job.random.fork(0));
   const Field grain = white_noise(job.width, job.height, job.random.fork(1));
   return paint(job, [&](int x, int y) {

@@ -92,12 +92,12 @@ float joint(int distance_texels) {
 
 }  // namespace
 
-Picture paint_wood_grain(const PaintJob& job) {
+Image paint_wood_grain(const PaintJob& job) {
   const Field wood = wood_darkness(job);
   return paint(job, [&](int x, int y) { return wood_tint(job, wood(x, y)); });
 }
 
-Picture paint_wood_boards(const PaintJob& job) {
+Image paint_wood_boards(const PaintJob& job) {
   const Field wood = wood_darkness(job);
   const int rows = std::max(1, job.height / job.texels(0.12));
   const int boards = 2;  // per row: one board is half a repeat long
@@ -117,7 +117,7 @@ Picture paint_wood_boards(const PaintJob& job) {
   });
 }
 
-Picture paint_parquet(const PaintJob& job) {
+Image paint_parquet(const PaintJob& job) {
   // Herringbone: on a lattice of block widths, k = (i - j) mod 2n gives the position of a cell in
   // its horizontal (k < n) or vertical block of n cells.
   constexpr int kLength = 5;
@@ -144,7 +144,7 @@ Picture paint_parquet(const PaintJob& job) {
   });
 }
 
-Picture paint_bark(const PaintJob& job) {
+Image paint_bark(const PaintJob& job) {
   const Voronoi plates = voronoi(job.width, job.height, std::max(3, job.width / job.texels(0.03)),
                                  std::max(3, job.height / job.texels(0.1)), 0.9F, job.random);
   const Field rough = fbm(job.width, job.height, {24, 10, 5, 0.7F}, job.random.fork(1));

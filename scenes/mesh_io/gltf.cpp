@@ -39,7 +39,7 @@ void require_places(const Json& gltf, const std::filesystem::path& file) {
         const auto value = item.is_object() ? item.find(key) : item.end();
         if (value == item.end() || !value->is_number()) continue;
         if (value->is_number_unsigned() && value->get<std::uint64_t>() < kMost) continue;
-        throw InputError(fmt::format("{}: {}[{}].{}: {} is no whole number from 0 to 2^40",
+        throw InputError(fmt::format("{}: {}[{}].{}: {} is not an integer from 0 to 2^40",
                                      file.string(), list, i, key, value->dump()));
       }
   }

@@ -24,7 +24,7 @@ LabelRules read_label_rules(YamlReader yaml) {
     const std::string name = value.as_string();
     const auto class_id = class_by_name(name);
     if (!class_id)
-      value.fail(fmt::format("'{}' is no class{}", name,
+      value.fail(fmt::format("'{}' is not a class{}", name,
                              hint(name, words_of(classes(), &ClassInfo::name),
                                   "modelhouse reference classes lists all")));
     rules.rules.push_back({pattern, *class_id});

@@ -82,7 +82,7 @@ NodeLabel label_of(const aiNode& node) {
   if (node.mMetaData == nullptr) return label;
   if (const auto id = extra_class(*node.mMetaData)) {
     label.class_id = *id;
-    label.is_told = true;
+    label.is_explicit = true;
   }
   if (const auto id = extra_number<InstanceId>(*node.mMetaData, "instance")) label.instance = *id;
   return label;
@@ -142,9 +142,9 @@ class Gatherer {
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
       const aiMesh& mesh = *in_.mMeshes[node.mMeshes[i]];
       NodeLabel label = label_of(node);
-      if (!label.is_told && label.class_id == kVoid) label.class_id = guess_around(node, mesh);
-      if (const auto told = rules_.find({label.name, mesh.mName.C_Str(), material_name(mesh)}))
-        label.class_id = *told;
+      if (!label.is_explicit && label.class_id == kVoid) label.class_id = guess_around(node, mesh);
+      if (const auto reported = rules_.find({label.name, mesh.mName.C_Str(), material_name(mesh)}))
+        label.class_id = *reported;
       const auto [place, is_new] = instance_of.try_emplace(label.class_id, InstanceId{0});
       if (is_new) place->second = enter_instance(label);
       add(mesh, world_from_node, label.class_id, place->second);
@@ -276,7 +276,7 @@ const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Form
     in = importer.ApplyPostProcessing(steps);
   }
   if (in == nullptr || in->mRootNode == nullptr)
-    throw InputError(fmt::format("{}: is no mesh that can be read: {}", file.string(),
+    throw InputError(fmt::format("{}: is not a mesh that can be read: {}", file.string(),
                                  importer.GetErrorString()));
   return *in;
 }
@@ -344,9 +344,9 @@ Scene load_foreign(const fs::path& file, const Format& format, const LabelRules&
   if (format.obj) warn_of_missing_materials(file, warnings);
   Scene scene;
   scene.name = file.stem().string();
-  PictureStore own_pictures;
+  ImageStore own_images;
   MaterialsIn materials = convert_materials(
-      in, file, format.gltf, use.pictures == nullptr ? own_pictures : *use.pictures, warnings);
+      in, file, format.gltf, use.images == nullptr ? own_images : *use.images, warnings);
   scene.materials = std::move(materials.materials);
   LabelRules all_rules = rules;
   const LabelRules beside = find_label_rules(file);
@@ -372,8 +372,8 @@ Scene load_mesh(const fs::path& file, std::vector<std::string>* warnings, const 
       return finished(scene_of(std::move(mesh), file, warnings), file);
     }
   }
-  return load_guarded(file, warnings, [&](std::vector<std::string>* told) {
-    return load_foreign(file, format, rules, use, told);
+  return load_guarded(file, warnings, [&](std::vector<std::string>* reported) {
+    return load_foreign(file, format, rules, use, reported);
   });
 }
 

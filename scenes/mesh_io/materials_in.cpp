@@ -21,9 +21,9 @@ namespace {
 
 constexpr Rgb8 kMissing{255, 0, 255};  // conspicuous, and absent from real rooms
 
-PictureIn convert_embedded(const aiTexture& texture, PictureStore& pictures) {
+ImageIn convert_embedded(const aiTexture& texture, ImageStore& images) {
   if (texture.mHeight == 0)
-    return pictures.decode({reinterpret_cast<const char*>(texture.pcData), texture.mWidth});
+    return images.decode({reinterpret_cast<const char*>(texture.pcData), texture.mWidth});
   const int width = static_cast<int>(texture.mWidth), height = static_cast<int>(texture.mHeight);
   Grid2d<Rgb8> color(width, height);
   Grid2d<std::uint8_t> opacity(width, height);
@@ -37,7 +37,7 @@ PictureIn convert_embedded(const aiTexture& texture, PictureStore& pictures) {
 
 /// Path of an image that a file in `folder` names: there, or, as in Gazebo, by its bare name in the
 /// places where models keep their textures.
-fs::path place_of_picture(const fs::path& named, const fs::path& folder) {
+fs::path place_of_image(const fs::path& named, const fs::path& folder) {
   if (is_file(folder / named)) return folder / named;
   for (const fs::path& place :
        {named, fs::path(named.filename()), "../materials/textures" / named.filename(),
@@ -46,14 +46,14 @@ fs::path place_of_picture(const fs::path& named, const fs::path& folder) {
   return folder / named;
 }
 
-PictureIn find_texture(const aiScene& in, const std::string& name, const fs::path& folder,
-                       PictureStore& pictures) {
+ImageIn find_texture(const aiScene& in, const std::string& name, const fs::path& folder,
+                     ImageStore& images) {
   if (const aiTexture* embedded = in.GetEmbeddedTexture(name.c_str()))
-    return convert_embedded(*embedded, pictures);
+    return convert_embedded(*embedded, images);
   std::string portable = name;
   std::ranges::replace(portable, '\\', '/');
   if (portable.starts_with("file://")) portable.erase(0, std::strlen("file://"));
-  return pictures.read(place_of_picture(portable, folder));
+  return images.read(place_of_image(portable, folder));
 }
 
 Rgb8 convert_color(const aiColor4D& c, bool linear) {
@@ -72,7 +72,7 @@ bool has_holes(const aiMaterial& record) {
 }
 
 /// A separate mask (OBJ's map_d) as opacity, resized to its texture.
-Grid2d<std::uint8_t> opacity_of_mask(const PictureIn& mask, const Grid2d<Rgb8>& texture) {
+Grid2d<std::uint8_t> opacity_of_mask(const ImageIn& mask, const Grid2d<Rgb8>& texture) {
   if (mask.color.empty() || texture.empty()) return {};
   Grid2d<std::uint8_t> opacity(texture.width(), texture.height());
   for (int y = 0; y < opacity.height(); ++y)
@@ -109,7 +109,7 @@ struct Source {
   const aiScene& scene;
   const fs::path& file;
   bool linear;  ///< its colors
-  PictureStore& pictures;
+  ImageStore& images;
   std::vector<std::string>* warnings;
 };
 
@@ -126,11 +126,11 @@ Material convert(const Source& in, const aiMaterial& record, SharedGrid<Rgb8>& g
                          std::max(0.0F, emission.b)};
   material.transmission = transmission_of(record, base);
   const auto find = [&](const aiString& name) {
-    PictureIn picture = find_texture(in.scene, name.C_Str(), in.file.parent_path(), in.pictures);
-    if (picture.color.empty() && in.warnings)
+    ImageIn image = find_texture(in.scene, name.C_Str(), in.file.parent_path(), in.images);
+    if (image.color.empty() && in.warnings)
       in.warnings->push_back(fmt::format("{}: material {}: texture {} {}", in.file.string(),
-                                         material.name, name.C_Str(), picture.fault));
-    return picture;
+                                         material.name, name.C_Str(), image.fault));
+    return image;
   };
   aiString texture;
   if (!material.emission.isZero() &&
@@ -141,14 +141,14 @@ Material convert(const Source& in, const aiMaterial& record, SharedGrid<Rgb8>& g
   if (record.GetTexture(aiTextureType_BASE_COLOR, 0, &texture) != aiReturn_SUCCESS &&
       record.GetTexture(aiTextureType_DIFFUSE, 0, &texture) != aiReturn_SUCCESS)
     return material;
-  const PictureIn picture = find(texture);
-  if (picture.color.empty()) material.base_color = kMissing;
-  material.texture = picture.color;
+  const ImageIn image = find(texture);
+  if (image.color.empty()) material.base_color = kMissing;
+  material.texture = image.color;
   aiString mask;
   if (record.GetTexture(aiTextureType_OPACITY, 0, &mask) == aiReturn_SUCCESS && mask != texture)
     material.opacity = opacity_of_mask(find(mask), material.texture);
   else if (has_holes(record))
-    material.opacity = picture.opacity;
+    material.opacity = image.opacity;
   const auto opaque = [](std::uint8_t level) { return level >= kOpaqueFrom; };
   if (std::ranges::all_of(material.opacity, opaque)) material.opacity = {};
   return material;
@@ -157,8 +157,8 @@ Material convert(const Source& in, const aiMaterial& record, SharedGrid<Rgb8>& g
 }  // namespace
 
 MaterialsIn convert_materials(const aiScene& in, const fs::path& file, bool linear_colors,
-                              PictureStore& pictures, std::vector<std::string>* warnings) {
-  const Source source{in, file, linear_colors, pictures, warnings};
+                              ImageStore& images, std::vector<std::string>* warnings) {
+  const Source source{in, file, linear_colors, images, warnings};
   MaterialsIn out;
   out.glow.resize(in.mNumMaterials);
   std::vector<Material>& materials = out.materials;

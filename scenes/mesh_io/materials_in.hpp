@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/mesh_io/picture_in.hpp"
+#include "scenes/mesh_io/image_in.hpp"
 #include "scenes/scene.hpp"
 
 struct aiScene;
@@ -21,10 +21,10 @@ struct MaterialsIn {
 /// Converts the materials of a file that assimp has read, one to one.
 /// @param file           its folder is searched for textures; warnings name it.
 /// @param linear_colors  whether the file's colors are linear (glTF) or sRGB.
-/// @param pictures       decodes and caches the textures
+/// @param images       decodes and caches the textures
 /// @param warnings       one line for every texture that is missing; may be null.
 MaterialsIn convert_materials(const aiScene& in, const std::filesystem::path& file,
-                              bool linear_colors, PictureStore& pictures,
+                              bool linear_colors, ImageStore& images,
                               std::vector<std::string>* warnings);
 
 }  // namespace mh

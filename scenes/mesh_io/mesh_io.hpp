@@ -11,12 +11,12 @@
 
 namespace mh {
 
-class PictureStore;
+class ImageStore;
 
 /// Context in which a mesh file is read.
 struct MeshUse {
-  PictureStore* pictures = nullptr;  ///< caches textures for other files of the same scene
-  bool in_gazebo = false;            ///< ignores Collada's up axis: z is up
+  ImageStore* images = nullptr;  ///< caches textures for other files of the same scene
+  bool in_gazebo = false;        ///< ignores Collada's up axis: z is up
 };
 
 /// Reads a mesh file through assimp: PLY, glTF/GLB, OBJ, DAE (and other formats that assimp reads).

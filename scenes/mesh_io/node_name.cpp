@@ -107,7 +107,7 @@ NodeLabel parse_node_name(std::string_view node) {
   const auto class_name = node.substr(class_begin, instance_at - class_begin);
   return {.name = std::string(node.substr(0, class_at)),
           .class_id = class_by_name(class_name).value_or(kVoid),
-          .is_told = true,
+          .is_explicit = true,
           .instance = parse_id(node.substr(instance_at + kInstanceKey.size()))};
 }
 

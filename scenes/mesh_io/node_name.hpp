@@ -14,7 +14,7 @@ namespace mh {
 struct NodeLabel {
   std::string name;
   ClassId class_id = kVoid;
-  bool is_told = false;                ///< the class was given by name or number: nothing was
+  bool is_explicit = false;            ///< the class was given by name or number: nothing was
                                        ///< guessed
   std::optional<InstanceId> instance;  ///< only if the name states one
 };

@@ -67,7 +67,7 @@ class BodyParser {
   const char* claim(const Element& element) {
     const std::size_t left = body_.size() - at_;
     if (element.stride > 0 && element.count > left / element.stride)
-      fail(fmt::format("is cut short: {} records of element '{}' need {} bytes each, {} are left",
+      fail(fmt::format("is truncated: {} records of element '{}' need {} bytes each, {} are left",
                        element.count, element.name, element.stride, left));
     const char* begin = body_.data() + at_;
     at_ += static_cast<std::size_t>(element.count) * element.stride;
@@ -199,9 +199,9 @@ class BodyParser {
     fail(fmt::format("face {} names vertex {} of {}", face, vertex, vertices_));
   }
 
-  void need_bytes(std::size_t size, const Element& element, std::uint64_t record) const {
+  void require_bytes(std::size_t size, const Element& element, std::uint64_t record) const {
     if (body_.size() - at_ < size)
-      fail(fmt::format("is cut short in record {} of {} of element '{}'", record, element.count,
+      fail(fmt::format("is truncated in record {} of {} of element '{}'", record, element.count,
                        element.name));
   }
 
@@ -211,7 +211,7 @@ class BodyParser {
     std::size_t count;
   };
   List read_list(const Element& element, const Property& list, std::uint64_t record) {
-    need_bytes(size_of(*list.count_type), element, record);
+    require_bytes(size_of(*list.count_type), element, record);
     const double count = load_number(*list.count_type, body_.data() + at_);
     at_ += size_of(*list.count_type);
     const std::size_t left = (body_.size() - at_) / size_of(list.type);
@@ -227,7 +227,7 @@ class BodyParser {
     std::optional<std::uint32_t> object;
     for (const Property& property : element.properties) {
       if (!property.count_type) {
-        need_bytes(size_of(property.type), element, face);
+        require_bytes(size_of(property.type), element, face);
         if (parts_.labels && property.name == "object_id")
           object = object_of(load_number(property.type, body_.data() + at_), property, face);
         at_ += size_of(property.type);
@@ -266,7 +266,7 @@ class BodyParser {
           read_list(element, property, record);
           continue;
         }
-        need_bytes(size_of(property.type), element, record);
+        require_bytes(size_of(property.type), element, record);
         at_ += size_of(property.type);
       }
   }

@@ -27,7 +27,7 @@ class Transcoder {
       for (const Property& property : element.properties)
         least += is_text_ ? 1 : size_of(property.count_type.value_or(property.type));
       if (least > 0 && element.count > (body_.size() - at_ + 1) / least)
-        fail(element, 0, "is cut short");
+        fail(element, 0, "is truncated");
       if (least == 0) continue;
       for (std::uint64_t record = 0; record < element.count; ++record)
         for (const Property& property : element.properties) copy(element, record, property);
@@ -59,7 +59,7 @@ class Transcoder {
       append_text(element, record, type);
     } else {
       const std::size_t size = size_of(type);
-      if (body_.size() - at_ < size) fail(element, record, "is cut short");
+      if (body_.size() - at_ < size) fail(element, record, "is truncated");
       out_.append(body_.substr(at_, size));
       std::reverse(out_.begin() + static_cast<std::ptrdiff_t>(begin), out_.end());
       at_ += size;
@@ -69,7 +69,7 @@ class Transcoder {
 
   void append_text(const Element& element, std::uint64_t record, Type type) {
     const std::size_t begin = body_.find_first_not_of(" \t\r\n", at_);
-    if (begin == body_.npos) fail(element, record, "is cut short");
+    if (begin == body_.npos) fail(element, record, "is truncated");
     const std::size_t end = std::min(body_.find_first_of(" \t\r\n", begin), body_.size());
     std::string_view word = body_.substr(begin, end - begin);
     at_ = end;
@@ -77,7 +77,7 @@ class Transcoder {
     double number = 0;
     const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), number);
     if (error == std::errc::invalid_argument || stop != word.data() + word.size())
-      fail(element, record, fmt::format("'{}' is no number", word.substr(0, 40)));
+      fail(element, record, fmt::format("'{}' is not a number", word.substr(0, 40)));
     const auto append = [&]<class T>(T) {
       if constexpr (std::is_integral_v<T>)
         if (!(number >= static_cast<double>(std::numeric_limits<T>::min()) &&

@@ -43,7 +43,7 @@ class HeaderParser {
 
   Header parse() {
     if (!bytes_.starts_with("ply\n") && !bytes_.starts_with("ply\r\n"))
-      throw InputError(fmt::format("{}:1: is no PLY: the first line must be 'ply'", name_));
+      throw InputError(fmt::format("{}:1: is not a PLY: the first line must be 'ply'", name_));
     next_line();
     for (;;) {
       const auto words = words_of(next_line());
@@ -56,7 +56,7 @@ class HeaderParser {
       else if (words[0] == "property")
         add_property(words);
       else
-        fail(fmt::format("'{}' is no line of a PLY header", words[0].substr(0, 40)));
+        fail(fmt::format("'{}' is not a line of a PLY header", words[0].substr(0, 40)));
     }
     if (!header_.encoding) fail("the header names no format");
     header_.size = at_;
@@ -74,7 +74,7 @@ class HeaderParser {
       if (word == "binary_little_endian") return Encoding::kLittleEndian;
       if (word == "binary_big_endian") return Encoding::kBigEndian;
     }
-    fail(fmt::format("'{} {}' is no format", word.substr(0, 40), version.substr(0, 40)));
+    fail(fmt::format("'{} {}' is not a format", word.substr(0, 40), version.substr(0, 40)));
   }
 
   std::string_view next_line() {
@@ -91,13 +91,13 @@ class HeaderParser {
     const char* end = words[2].data() + words[2].size();
     const auto [stop, error] = std::from_chars(words[2].data(), end, element.count);
     if (error != std::errc() || stop != end)
-      fail(fmt::format("'{}' is no number of elements", words[2].substr(0, 40)));
+      fail(fmt::format("'{}' is not a number of elements", words[2].substr(0, 40)));
     header_.elements.push_back(std::move(element));
   }
 
   Type type_of(std::string_view word) const {
     const auto type = type_by_name(word);
-    if (!type) fail(fmt::format("'{}' is no type", word.substr(0, 40)));
+    if (!type) fail(fmt::format("'{}' is not a type", word.substr(0, 40)));
     return *type;
   }
 

@@ -86,7 +86,7 @@ class Labeler {
       if (id > 0) shifted[id - 1] = name;
     enter_objects(shifted);
     if (unknown_ > 0)
-      warn(fmt::format("{} faces carry a label that is no NYU40 id: not used", unknown_));
+      warn(fmt::format("{} faces carry a label that is not an NYU40 id: not used", unknown_));
   }
 
  private:

@@ -33,10 +33,10 @@ ClassMap load_class_map(const std::filesystem::path& file) {
     std::uint32_t id = 0;
     const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), id);
     if (error != std::errc() || end != key.data() + key.size() || id > kGreatest)
-      node.fail(fmt::format("'{}' is no id from 0 to {}", key, kGreatest));
+      node.fail(fmt::format("'{}' is not an id from 0 to {}", key, kGreatest));
     const std::string word = node.as_string();
     const auto class_id = word == "void" ? std::optional(kVoid) : class_by_name(word);
-    if (!class_id) node.fail(fmt::format("'{}' is no class", word));
+    if (!class_id) node.fail(fmt::format("'{}' is not a class", word));
     set(map, id, *class_id);
   }
   return map;

@@ -69,7 +69,7 @@ std::string settings_text(const Camera& camera) {
       "Camera.fx: {:#}\nCamera.fy: {:#}\nCamera.cx: {:#}\nCamera.cy: {:#}\n"
       "Camera.k1: {:#}\nCamera.k2: {:#}\nCamera.p1: {:#}\nCamera.p2: {:#}\nCamera.k3: {:#}\n"
       "Camera.width: {}\nCamera.height: {}\nCamera.fps: {:#}\nCamera.bf: {:#}\n"
-      "# Pictures are RGB; OpenCV's imread hands them over as BGR.\nCamera.RGB: 0\n"
+      "# Images are RGB; OpenCV's imread hands them over as BGR.\nCamera.RGB: 0\n"
       "DepthMapFactor: {:#}\nThDepth: 40.0\n"
       "ORBextractor.nFeatures: 1000\nORBextractor.scaleFactor: 1.2\nORBextractor.nLevels: 8\n"
       "ORBextractor.iniThFAST: 20\nORBextractor.minThFAST: 7\n"

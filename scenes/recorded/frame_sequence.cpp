@@ -73,7 +73,7 @@ fs::path calibration_of(const fs::path& folder, const RecordingConfig& config) {
 }
 
 OpenedRecording open_tum(const fs::path& folder, const RecordingConfig& config) {
-  if (!is_folder(folder)) throw InputError(fmt::format("{}: is no folder", folder.string()));
+  if (!is_folder(folder)) throw InputError(fmt::format("{}: is not a folder", folder.string()));
   if (!is_tum_folder(folder))
     throw InputError(
         fmt::format("{}: holds neither rgb.txt nor associations.txt", folder.string()));

@@ -58,7 +58,7 @@ const SequenceReader& reader_of(const std::string& source) {
   for (const SequenceReader* reader : kReaders)
     if (layout.empty() ? reader->recognizes(path) : layout == reader->name) return *reader;
   if (!is_there(path))
-    throw InputError(fmt::format("'{}' is no folder, nor {}", source, sequence_forms()));
+    throw InputError(fmt::format("'{}' is not a folder, nor {}", source, sequence_forms()));
   throw InputError(fmt::format("{}: {}; name its layout: {}", path.string(),
                                is_folder(path)
                                    ? "holds neither rgb.txt nor associations.txt nor anything else "
@@ -73,7 +73,7 @@ OpenedRecording open_sequence(const std::string& source, const RecordingConfig& 
   OpenedRecording opened;
   std::uint64_t all = 0;
   {
-    const ReadScope scope(ReadScope::Outer::kIsNotTold);
+    const ReadScope scope(ReadScope::Outer::kIgnores);
     opened = reader_of(source).open(path, config);
     std::ranges::for_each(opened.files, note_content);
     all = digest(scope.record());

@@ -63,7 +63,7 @@ std::string join_sequence(const std::string& layout, const std::filesystem::path
 const SequenceReader& reader_of(const std::string& source);
 
 /// Opens a recording, "LAYOUT:PATH" or a path whose layout is recognized. A ReadScope that is open
-/// notes one observation: the digest of everything that the recording is made of, each picture
+/// notes one observation: the digest of everything that the recording is made of, each image
 /// included, which reads all of it.
 /// @throws InputError naming file and place.
 OpenedRecording open_sequence(const std::string& source, const RecordingConfig& config);

@@ -161,21 +161,20 @@ class ScannetSequence : public Sequence {
                       labels_->place(), missing, size(), first));
   }
 
-  Grid2d<Rgb8> color_at(const Grid2d<Rgb8>& picture, const cv::Mat& columns,
+  Grid2d<Rgb8> color_at(const Grid2d<Rgb8>& image, const cv::Mat& columns,
                         const cv::Mat& rows) const {
-    const cv::Mat full(picture.height(), picture.width(), CV_8UC3,
-                       const_cast<Rgb8*>(picture.data()));
+    const cv::Mat full(image.height(), image.width(), CV_8UC3, const_cast<Rgb8*>(image.data()));
     Grid2d<Rgb8> result(camera_.width_px, camera_.height_px);
     cv::Mat out(camera_.height_px, camera_.width_px, CV_8UC3, result.data());
-    if (picture.width() <= camera_.width_px) {
+    if (image.width() <= camera_.width_px) {
       cv::remap(full, out, columns, rows, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
       return result;
     }
     cv::Mat smaller;
     cv::resize(full, smaller, out.size(), 0, 0, cv::INTER_AREA);
     // Pixel centers are at integers: they shift by half a pixel when pixels grow.
-    const double sx = static_cast<double>(camera_.width_px) / picture.width();
-    const double sy = static_cast<double>(camera_.height_px) / picture.height();
+    const double sx = static_cast<double>(camera_.width_px) / image.width();
+    const double sy = static_cast<double>(camera_.height_px) / image.height();
     const cv::Mat x = (columns + 0.5) * sx - 0.5, y = (rows + 0.5) * sy - 0.5;
     cv::remap(smaller, out, x, y, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
     return result;
@@ -188,7 +187,7 @@ class ScannetSequence : public Sequence {
     const bool as_color = ids.width() == lens.width_px && ids.height() == lens.height_px;
     const bool as_depth = ids.width() == camera_.width_px && ids.height() == camera_.height_px;
     if (!as_color && !as_depth)
-      throw InputError(fmt::format("{}: {}.png: is {} x {}, the color pictures are {} x {}",
+      throw InputError(fmt::format("{}: {}.png: is {} x {}, the color images are {} x {}",
                                    labels_->place(), number, ids.width(), ids.height(),
                                    lens.width_px, lens.height_px));
     Grid2d<std::uint8_t> result(camera_.width_px, camera_.height_px, kVoid);

@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "scenes/picture_file.hpp"
-#include "scenes/pictures/write_picture.hpp"
+#include "scenes/image_file.hpp"
+#include "scenes/images/write_image.hpp"
 #include "scenes/recorded/scannet_folder.hpp"
 #include "scenes/recorded/tum_folder.hpp"
 #include "scenes/scannet/files.hpp"
@@ -47,11 +47,11 @@ class ScanNetWriter : public SequenceWriter {
     const Grid2d<float>& depth_m = frame.seen.depth_m;
     cv::Mat depth(depth_m.height(), depth_m.width(), CV_16UC1);
     std::transform(depth_m.begin(), depth_m.end(), depth.ptr<std::uint16_t>(), millimeters);
-    write_picture(folder_ / "depth" / (name + ".png"), depth, png_);
+    write_image(folder_ / "depth" / (name + ".png"), depth, png_);
     cv::Mat labels;  // of 16 bits in this layout
-    gray_picture(frame.classes).convertTo(labels, CV_16U);
-    write_picture(folder_ / "label-filt" / (name + ".png"), labels, png_);
-    write_picture(folder_ / "instance-filt" / (name + ".png"), gray_picture(frame.instances), png_);
+    gray_image(frame.classes).convertTo(labels, CV_16U);
+    write_image(folder_ / "label-filt" / (name + ".png"), labels, png_);
+    write_image(folder_ / "instance-filt" / (name + ".png"), gray_image(frame.instances), png_);
     write_atomically(folder_ / "pose" / (name + ".txt"), rows(matrix_of(frame.world_from_camera)));
     count(index);
   }
@@ -59,10 +59,10 @@ class ScanNetWriter : public SequenceWriter {
   bool resume(std::size_t index, Stamp, const SE3& world_from_camera) override {
     const std::string name = std::to_string(index);
     const fs::path pose = folder_ / "pose" / (name + ".txt");
-    const std::array pictures = {
+    const std::array images = {
         folder_ / "color" / (name + ".jpg"), folder_ / "depth" / (name + ".png"),
         folder_ / "label-filt" / (name + ".png"), folder_ / "instance-filt" / (name + ".png")};
-    if (!std::ranges::all_of(pictures, is_whole_picture) || !fs::exists(pose) ||
+    if (!std::ranges::all_of(images, is_whole_image) || !fs::exists(pose) ||
         read_file(pose) != rows(matrix_of(world_from_camera)))
       return false;
     count(index);

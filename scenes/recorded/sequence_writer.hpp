@@ -18,7 +18,7 @@ namespace mh {
 /// Compression of PNG files, 0 (none) to 9; default: 1. For costs and savings see
 /// docs/measurements/rendering.md.
 using PngCompression = std::optional<int>;
-/// As write_picture takes it.
+/// As write_image takes it.
 std::vector<int> png_settings(PngCompression compression);
 
 /// A frame to record, with ground truth.

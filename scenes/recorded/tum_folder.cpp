@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
 
-#include "scenes/picture_file.hpp"
-#include "scenes/pictures/write_picture.hpp"
+#include "scenes/image_file.hpp"
+#include "scenes/images/write_image.hpp"
 #include "scenes/recorded/tum_list.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -65,8 +65,8 @@ class ByStamp {
 };
 
 /// Reads a frame's image. Its declared format is checked before anything is decoded.
-cv::Mat read_frame_picture(const fs::path& file, std::initializer_list<int> types,
-                           const Camera& camera) {
+cv::Mat read_frame_image(const fs::path& file, std::initializer_list<int> types,
+                         const Camera& camera) {
   const std::string bytes = read_file(file);
   const auto check_size = [&](std::int64_t width, std::int64_t height) {
     if (width != camera.width_px || height != camera.height_px)
@@ -74,16 +74,16 @@ cv::Mat read_frame_picture(const fs::path& file, std::initializer_list<int> type
                                    height, camera.width_px, camera.height_px));
   };
   if (const auto size = announced_size(bytes)) check_size(size->width, size->height);
-  cv::Mat picture;
+  cv::Mat image;
   try {
-    picture = decode_picture(bytes);
+    image = decode_image(bytes);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", file.string(), error.what()));
   }
-  if (std::ranges::find(types, picture.type()) == types.end())
+  if (std::ranges::find(types, image.type()) == types.end())
     throw InputError(fmt::format("{}: has the wrong number of bits or channels", file.string()));
-  check_size(picture.cols, picture.rows);
-  return picture;
+  check_size(image.cols, image.rows);
+  return image;
 }
 
 SemanticImage one_hot(const cv::Mat& ids, const fs::path& file, const ClassMap* map) {
@@ -112,7 +112,7 @@ std::vector<RecordedFrame> load_tum_folder(const fs::path& folder,
   const bool associated = !is_there(folder / "rgb.txt") && is_there(both);
   const fs::path list = associated ? both : folder / "rgb.txt";
   const std::vector<Listed> color = read_list(list);
-  if (color.empty()) throw InputError(fmt::format("{}: lists no picture", list.string()));
+  if (color.empty()) throw InputError(fmt::format("{}: lists no image", list.string()));
   const std::vector<Listed> depth =
       associated ? read_list(both, 2) : read_list(folder / "depth.txt");
   std::vector<Listed> labels;
@@ -127,10 +127,10 @@ std::vector<RecordedFrame> load_tum_folder(const fs::path& folder,
   }
   if (frames.empty())
     throw InputError(
-        fmt::format("{}: no color picture has a depth picture within 0.02 s", folder.string()));
+        fmt::format("{}: no color image has a depth image within 0.02 s", folder.string()));
   if (notes != nullptr && frames.size() < color.size())
     notes->push_back(
-        fmt::format("{}: {} of {} color pictures have no depth picture within 0.02 s "
+        fmt::format("{}: {} of {} color images have no depth image within 0.02 s "
                     "and are left out",
                     folder.string(), color.size() - frames.size(), color.size()));
   return frames;
@@ -138,8 +138,8 @@ std::vector<RecordedFrame> load_tum_folder(const fs::path& folder,
 
 RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera,
                      const ClassMap* classes) {
-  const cv::Mat color = read_frame_picture(recorded.color, {CV_8UC3}, camera.camera);
-  const cv::Mat depth = read_frame_picture(recorded.depth, {CV_16UC1}, camera.camera);
+  const cv::Mat color = read_frame_image(recorded.color, {CV_8UC3}, camera.camera);
+  const cv::Mat depth = read_frame_image(recorded.depth, {CV_16UC1}, camera.camera);
   RgbdFrame frame;
   frame.stamp_ns = recorded.stamp_ns;
   frame.color = Grid2d<Rgb8>(color.cols, color.rows);
@@ -155,7 +155,7 @@ RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera
   if (recorded.classes.empty()) return frame;
   const std::initializer_list<int> ours = {CV_8UC1}, foreign = {CV_8UC1, CV_16UC1};
   frame.semantics = one_hot(
-      read_frame_picture(recorded.classes, classes == nullptr ? ours : foreign, camera.camera),
+      read_frame_image(recorded.classes, classes == nullptr ? ours : foreign, camera.camera),
       recorded.classes, classes);
   return frame;
 }
@@ -172,35 +172,35 @@ fs::path TumWriter::file_of(const char* part, Stamp stamp_ns) const {
   return folder_ / part / (format_stamp(stamp_ns) + ".png");
 }
 
-void TumWriter::write(const char* part, Stamp stamp_ns, const cv::Mat& picture) {
-  write_picture(file_of(part, stamp_ns), picture, png_);
+void TumWriter::write(const char* part, Stamp stamp_ns, const cv::Mat& image) {
+  write_image(file_of(part, stamp_ns), image, png_);
   const std::scoped_lock lock(mutex_);
   listed_[part].insert(stamp_ns);
 }
 
-void TumWriter::add_pictures(const RgbdFrame& frame) {
+void TumWriter::add_images(const RgbdFrame& frame) {
   cv::Mat depth(frame.depth_m.height(), frame.depth_m.width(), CV_16UC1);
   std::transform(frame.depth_m.begin(), frame.depth_m.end(), depth.ptr<std::uint16_t>(),
                  depth_units);
-  write("rgb", frame.stamp_ns, color_picture(frame.color));
+  write("rgb", frame.stamp_ns, color_image(frame.color));
   write("depth", frame.stamp_ns, depth);
 }
 
 void TumWriter::add_labels(Stamp stamp_ns, const Grid2d<ClassId>& classes) {
-  write("label", stamp_ns, gray_picture(classes));
+  write("label", stamp_ns, gray_image(classes));
 }
 
 void TumWriter::add(const RgbdFrame& frame) {
-  add_pictures(frame);
+  add_images(frame);
   if (!frame.semantics.index.empty()) add_labels(frame.stamp_ns, class_image(frame.semantics));
 }
 
 void TumWriter::add(std::size_t, const ExactFrame& frame) {
   const Stamp stamp_ns = frame.seen.stamp_ns;
   fs::create_directories(folder_ / "instance");
-  add_pictures(frame.seen);
+  add_images(frame.seen);
   add_labels(stamp_ns, frame.classes);
-  write("instance", stamp_ns, gray_picture(frame.instances));
+  write("instance", stamp_ns, gray_image(frame.instances));
   const std::scoped_lock lock(mutex_);
   truth_[stamp_ns] = frame.world_from_camera;
 }
@@ -208,7 +208,7 @@ void TumWriter::add(std::size_t, const ExactFrame& frame) {
 bool TumWriter::resume(std::size_t, Stamp stamp_ns, const SE3& world_from_camera) {
   constexpr std::array kParts = {"rgb", "depth", "label", "instance"};
   if (!std::ranges::all_of(
-          kParts, [&](const char* part) { return is_whole_picture(file_of(part, stamp_ns)); }))
+          kParts, [&](const char* part) { return is_whole_image(file_of(part, stamp_ns)); }))
     return false;
   const std::scoped_lock lock(mutex_);
   for (const char* part : kParts) listed_[part].insert(stamp_ns);

@@ -62,8 +62,8 @@ class TumWriter : public SequenceWriter {
 
  private:
   std::filesystem::path file_of(const char* part, Stamp stamp_ns) const;
-  void write(const char* part, Stamp stamp_ns, const cv::Mat& picture);
-  void add_pictures(const RgbdFrame& frame);
+  void write(const char* part, Stamp stamp_ns, const cv::Mat& image);
+  void add_images(const RgbdFrame& frame);
   void add_labels(Stamp stamp_ns, const Grid2d<ClassId>& classes);
 
   std::filesystem::path folder_;

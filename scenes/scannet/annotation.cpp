@@ -73,7 +73,7 @@ class SegmentsHandler : public nlohmann::json_sax<Json> {
     throw InputError(fmt::format("{}: {}", name_, what));
   }
   bool other() const {
-    if (inside_) fail(fmt::format("segIndices[{}] is no whole number", segments.size()));
+    if (inside_) fail(fmt::format("segIndices[{}] is not an integer", segments.size()));
     return true;
   }
 
@@ -84,8 +84,8 @@ class SegmentsHandler : public nlohmann::json_sax<Json> {
 
 std::uint32_t read_id(const Json& value, const char* what) {
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() > kMost)
-    throw InputError(
-        fmt::format("{}: {} is no id", what, value.is_number() ? value.dump() : value.type_name()));
+    throw InputError(fmt::format("{}: {} is not an id", what,
+                                 value.is_number() ? value.dump() : value.type_name()));
   return value.get<std::uint32_t>();
 }
 

@@ -65,7 +65,7 @@ ScannetFiles find_scannet_files(const fs::path& path) {
   const std::vector<std::string> ids = ids_in(path);
   if (ids.empty())
     throw InputError(
-        fmt::format("{}: holds no *{}: it is no ScanNet scene", path.string(), kMeshEnding));
+        fmt::format("{}: holds no *{}: it is not a ScanNet scene", path.string(), kMeshEnding));
   const std::string own = named(path).filename().string();
   if (ids.size() == 1) return {path, ids[0]};
   if (std::ranges::find(ids, own) != ids.end()) return {path, own};

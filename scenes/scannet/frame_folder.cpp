@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "scenes/picture_file.hpp"
+#include "scenes/image_file.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -36,7 +36,7 @@ std::optional<std::uint32_t> number_of_name(const fs::path& name) {
 
 NumberedFiles::NumberedFiles(const fs::path& folder,
                              std::initializer_list<std::string_view> endings) {
-  if (!is_folder(folder)) throw InputError(fmt::format("{}: is no folder", folder.string()));
+  if (!is_folder(folder)) throw InputError(fmt::format("{}: is not a folder", folder.string()));
   for (const std::string_view ending : endings)
     for (const std::string& name : list_folder(folder, fmt::format("*{}", ending))) {
       const auto number = number_of_name(name);

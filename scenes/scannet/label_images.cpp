@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "scenes/picture_file.hpp"
+#include "scenes/image_file.hpp"
 #include "scenes/scannet/frame_folder.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
@@ -21,11 +21,10 @@ namespace fs = std::filesystem;
 constexpr zip_uint64_t kLargestEntry = 1U << 28;
 
 Grid2d<std::uint16_t> decode(std::string_view bytes, const std::string& name) {
-  if (const char* fault = picture_fault(bytes))
-    throw InputError(fmt::format("{}: {}", name, fault));
-  auto picture = decode_gray16(bytes);
-  if (!picture) throw InputError(fmt::format("{}: is no picture of one channel", name));
-  return std::move(*picture);
+  if (const char* fault = image_fault(bytes)) throw InputError(fmt::format("{}: {}", name, fault));
+  auto image = decode_gray16(bytes);
+  if (!image) throw InputError(fmt::format("{}: is not an image of one channel", name));
+  return std::move(*image);
 }
 
 class LabelFolder : public LabelImages {
@@ -69,7 +68,7 @@ class LabelZip : public LabelImages {
       const std::string why = zip_error_strerror(&error);
       zip_error_fini(&error);
       if (source) zip_source_free(source);
-      throw InputError(fmt::format("{}: is no zip that can be read: {}", name_, why));
+      throw InputError(fmt::format("{}: is not a zip that can be read: {}", name_, why));
     }
     zip_error_fini(&error);
     archive_.reset(opened);
@@ -169,7 +168,7 @@ class ZipWriter : public LabelImageWriter {
  public:
   ZipWriter(const fs::path& file, const std::string& kind) : file_(file), kind_(kind) {}
   void add(std::uint32_t number, const Grid2d<std::uint16_t>& ids) override {
-    pictures_[number] = encode(ids, kind_);
+    images_[number] = encode(ids, kind_);
   }
   void finish() override {
     write_atomically(file_, [&](const fs::path& temporary) { write(temporary); });
@@ -190,7 +189,7 @@ class ZipWriter : public LabelImageWriter {
       if (system != 0) throw_unwritable(file_, system);
       throw InputError(fmt::format("{}: cannot be written: {}", file_.string(), why));
     };
-    for (const auto& [number, png] : pictures_) {
+    for (const auto& [number, png] : images_) {
       zip_source_t* source = zip_source_buffer(archive, png.data(), png.size(), 0);
       const std::string name = fmt::format("{}/{}.png", kind_, number);
       const zip_int64_t entry = zip_file_add(archive, name.c_str(), source, ZIP_FL_ENC_UTF_8);
@@ -210,7 +209,7 @@ class ZipWriter : public LabelImageWriter {
 
   fs::path file_;
   std::string kind_;
-  std::map<std::uint32_t, std::string> pictures_;
+  std::map<std::uint32_t, std::string> images_;
 };
 
 }  // namespace

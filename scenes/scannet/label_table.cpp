@@ -55,7 +55,7 @@ class TableParser {
       const bool ends_file = i + 1 == lines.size() && !text.ends_with('\n');
       const std::size_t needed = ends_file ? columns_ : needed_;
       if (cells.size() < needed)
-        fail(i + 1, fmt::format("is cut short: the row has {} cells, the header has {}",
+        fail(i + 1, fmt::format("is truncated: the row has {} cells, the header has {}",
                                 cells.size(), columns_));
       read_row(cells, i + 1);
     }
@@ -120,10 +120,10 @@ class TableParser {
   ClassId class_of(std::string_view own, std::string_view nyu40_id, std::string_view nyu40_class,
                    std::size_t line) const {
     const auto id = number(nyu40_id, line, "NYU40 id");
-    if (id && *id > kLastNyu40) fail(line, fmt::format("{} is no NYU40 id", *id));
+    if (id && *id > kLastNyu40) fail(line, fmt::format("{} is not an NYU40 id", *id));
     if (!own.empty()) {
       const auto found = class_by_name(own);
-      if (!found) fail(line, fmt::format("'{}' is no class", own.substr(0, 40)));
+      if (!found) fail(line, fmt::format("'{}' is not a class", own.substr(0, 40)));
       return *found;
     }
     if (id) return static_cast<ClassId>(*id);

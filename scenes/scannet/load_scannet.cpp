@@ -142,10 +142,10 @@ class Loader {
     raw_ids_ = (greatest_label_ > kLastNyu40 && !aligned_) ||
                (table_ && table_->release == ScannetRelease::kV1);
     if (raw_ids_ && !table_)
-      throw InputError(
-          fmt::format("{}: holds label {}, which is no NYU40 id but one of a label table: neither "
-                      "{} nor {} lies beside the scene or above it",
-                      labels_file_.string(), greatest_label_, kLabelTableV1, kLabelTableV2));
+      throw InputError(fmt::format(
+          "{}: holds label {}, which is not an NYU40 id but one of a label table: neither "
+          "{} nor {} lies beside the scene or above it",
+          labels_file_.string(), greatest_label_, kLabelTableV1, kLabelTableV2));
     // Few values, many vertices.
     std::vector<ClassId> class_of(std::size_t{greatest_label_} + 1, kVoid);
     std::vector<bool> unknown(class_of.size(), false);
@@ -262,10 +262,10 @@ class Loader {
                       const std::set<std::string>& categories) const {
     constexpr std::size_t kTold = 5;
     std::string names;
-    std::size_t told = 0;
+    std::size_t reported = 0;
     for (const std::string& category : categories) {
-      if (told++ == kTold) break;
-      names += fmt::format("{}'{}'", told > 1 ? ", " : "", category);
+      if (reported++ == kTold) break;
+      names += fmt::format("{}'{}'", reported > 1 ? ", " : "", category);
     }
     if (categories.size() > kTold) names += ", ...";
     warn(fmt::format("{}: {} of {} objects are of {} categories that {} lacks ({}): unlabeled",

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "scenes/picture_file.hpp"
+#include "scenes/image_file.hpp"
 #include "scenes/scannet/frame_folder.hpp"
 #include "scenes/scannet/sens.hpp"
 #include "slam/core/error.hpp"
@@ -52,7 +52,7 @@ class ExtractedFolder : public Recording {
     for (const std::uint32_t number : color_.numbers())
       if (depth_.contains(number)) numbers_.push_back(number);
     if (numbers_.empty())
-      throw InputError(fmt::format("{}: no picture of color/ has one of the same number in depth/",
+      throw InputError(fmt::format("{}: no image of color/ has one of the same number in depth/",
                                    folder.string()));
     info_.sensor = "extracted";
     info_.color = read_lens("color", announced(color_));
@@ -92,8 +92,9 @@ class ExtractedFolder : public Recording {
       throw InputError(fmt::format("{}: has 8 bits, depth needs 16", depth_file.string()));
     auto depth = decode_gray16(depth_bytes);
     if (!color)
-      throw InputError(fmt::format("{}: is no picture of 3 x 8 bits", color_file.string()));
-    if (!depth) throw InputError(fmt::format("{}: is no picture of 16 bits", depth_file.string()));
+      throw InputError(fmt::format("{}: is not an image of 3 x 8 bits", color_file.string()));
+    if (!depth)
+      throw InputError(fmt::format("{}: is not an image of 16 bits", depth_file.string()));
     check_size(*color, info_.color, color_file);
     check_size(*depth, info_.depth, depth_file);
     return {stamp_ns(index), std::move(*color), std::move(*depth), poses_[index]};
@@ -102,22 +103,22 @@ class ExtractedFolder : public Recording {
  private:
   static std::string read_whole(const fs::path& file) {
     std::string bytes = read_file(file);
-    if (const char* fault = picture_fault(bytes))
+    if (const char* fault = image_fault(bytes))
       throw InputError(fmt::format("{}: {}", file.string(), fault));
     return bytes;
   }
 
-  PictureSize announced(const NumberedFiles& files) const {
+  ImageSize announced(const NumberedFiles& files) const {
     const fs::path file = files.file(numbers_.front());
     const auto size = announced_size(read_file(file));
     constexpr std::uint32_t kLongestSide_px = 16384;
     if (!size || size->width == 0 || size->height == 0 || size->width > kLongestSide_px ||
         size->height > kLongestSide_px)
-      throw InputError(fmt::format("{}: is no JPEG or PNG picture", file.string()));
+      throw InputError(fmt::format("{}: is not a JPEG or PNG image", file.string()));
     return *size;
   }
 
-  RecordedLens read_lens(const std::string& which, const PictureSize& size) const {
+  RecordedLens read_lens(const std::string& which, const ImageSize& size) const {
     const fs::path intrinsics = folder_ / "intrinsic" / ("intrinsic_" + which + ".txt");
     const fs::path extrinsics = folder_ / "intrinsic" / ("extrinsic_" + which + ".txt");
     return lens_of(read_matrix(intrinsics),
@@ -132,7 +133,7 @@ class ExtractedFolder : public Recording {
     const auto first = std::ranges::find_if(numbers, lonely);
     if (first != numbers.end())
       notes_.push_back(
-          fmt::format("{}: {} of {} pictures have no partner in {}/ and are left out (the "
+          fmt::format("{}: {} of {} images have no partner in {}/ and are left out (the "
                       "first is {})",
                       (folder_ / which).string(), std::ranges::count_if(numbers, lonely),
                       numbers.size(), &files == &color_ ? "depth" : "color", *first));
@@ -150,12 +151,11 @@ class ExtractedFolder : public Recording {
   }
 
   template <class Pixel>
-  static void check_size(const Grid2d<Pixel>& picture, const RecordedLens& lens,
+  static void check_size(const Grid2d<Pixel>& image, const RecordedLens& lens,
                          const fs::path& file) {
-    if (picture.width() != lens.width_px || picture.height() != lens.height_px)
-      throw InputError(fmt::format("{}: is {} x {}, the first picture is {} x {}", file.string(),
-                                   picture.width(), picture.height(), lens.width_px,
-                                   lens.height_px));
+    if (image.width() != lens.width_px || image.height() != lens.height_px)
+      throw InputError(fmt::format("{}: is {} x {}, the first image is {} x {}", file.string(),
+                                   image.width(), image.height(), lens.width_px, lens.height_px));
   }
 
   fs::path folder_;
@@ -185,7 +185,7 @@ RecordedLens lens_of(const Eigen::Matrix4d& intrinsics, const Eigen::Matrix4d& e
                     lens.cy_px >= 0 && lens.cx_px <= width_px - 1 && lens.cy_px <= height_px - 1;
   if (!good)
     throw InputError(
-        fmt::format("{}: fx {} fy {} cx {} cy {} are no intrinsics of a picture of {} x {}", what,
+        fmt::format("{}: fx {} fy {} cx {} cy {} are no intrinsics of an image of {} x {}", what,
                     lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, width_px, height_px));
   for (const auto& [row, column] : {std::pair{0, 1}, {1, 0}, {2, 0}, {2, 1}})
     if (std::abs(intrinsics(row, column)) > 1e-6)
@@ -210,7 +210,7 @@ std::optional<SE3> pose_of(const Eigen::Matrix4d& matrix, const std::string& wha
   if (!matrix.allFinite()) return std::nullopt;
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
   if (!is_rotation(rotation))
-    throw InputError(fmt::format("{}: the upper left 3 x 3 of a pose is no rotation", what));
+    throw InputError(fmt::format("{}: the upper left 3 x 3 of a pose is not a rotation", what));
   if (!(matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).isZero(1e-6))
     throw InputError(fmt::format("{}: the last row of a pose is not 0 0 0 1", what));
   constexpr double kFarthest_m = 1e6;
@@ -243,7 +243,7 @@ std::unique_ptr<Recording> open_recording(const fs::path& path) {
   const std::vector<fs::path> files = sens_files(path);
   if (files.empty())
     throw InputError(
-        fmt::format("{}: holds neither color/ nor a .sens file: it is no ScanNet "
+        fmt::format("{}: holds neither color/ nor a .sens file: it is not a ScanNet "
                     "recording",
                     path.string()));
   if (files.size() > 1)

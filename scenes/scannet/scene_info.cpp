@@ -28,7 +28,7 @@ Eigen::Matrix4d read_matrix(const std::string& text) {
   if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
     throw InputError("the last row must be 0 0 0 1");
   if (!is_rotation(matrix.topLeftCorner<3, 3>()))
-    throw InputError("the upper left 3 x 3 is no rotation: it squeezes, stretches or mirrors");
+    throw InputError("the upper left 3 x 3 is not a rotation: it squeezes, stretches or mirrors");
   return matrix;
 }
 

@@ -14,7 +14,7 @@
 
 #include <fmt/format.h>
 
-#include "scenes/picture_file.hpp"
+#include "scenes/image_file.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
@@ -43,7 +43,7 @@ class Cursor {
   }
   void need(std::uint64_t size, const std::string& what) const {
     if (size > bytes_.size() - at_)
-      fail(fmt::format("is cut short: {} needs {} bytes, {} are left", what, size,
+      fail(fmt::format("is truncated: {} needs {} bytes, {} are left", what, size,
                        bytes_.size() - at_));
   }
   std::size_t left() const { return bytes_.size() - at_; }
@@ -120,11 +120,12 @@ class SensFile : public Recording {
     const Eigen::Matrix4d depth_extrinsics = cursor.take_matrix("the depth extrinsics");
     color_kind_ = cursor.take<std::int32_t>("the color compression");
     if (color_kind_ != kRawColor && color_kind_ != kPng && color_kind_ != kJpeg)
-      cursor.fail(fmt::format("color compression {} is none of 0 raw, 1 png, 2 jpeg", color_kind_));
+      cursor.fail(
+          fmt::format("color compression {} is not one of 0 raw, 1 png, 2 jpeg", color_kind_));
     depth_kind_ = cursor.take<std::int32_t>("the depth compression");
     if (depth_kind_ != kRawDepth && depth_kind_ != kZlib)
-      cursor.fail(fmt::format("depth compression {} is none of 0 raw, 1 zlib", depth_kind_));
-    const PictureSize color = take_size(cursor, "color"), depth = take_size(cursor, "depth");
+      cursor.fail(fmt::format("depth compression {} is not one of 0 raw, 1 zlib", depth_kind_));
+    const ImageSize color = take_size(cursor, "color"), depth = take_size(cursor, "depth");
     info_.depth_per_meter = cursor.take<float>("the depth shift");
     if (!(info_.depth_per_meter > 0) || info_.depth_per_meter > 1e6)
       cursor.fail(fmt::format("a depth shift of {}", info_.depth_per_meter));
@@ -135,13 +136,13 @@ class SensFile : public Recording {
     return cursor.take<std::uint64_t>("the number of frames");
   }
 
-  static PictureSize take_size(Cursor& cursor, const char* which) {
-    PictureSize size;
+  static ImageSize take_size(Cursor& cursor, const char* which) {
+    ImageSize size;
     size.width = cursor.take<std::uint32_t>("the width");
     size.height = cursor.take<std::uint32_t>("the height");
     if (size.width == 0 || size.height == 0 || size.width > kLongestSide_px ||
         size.height > kLongestSide_px)
-      cursor.fail(fmt::format("{} pictures of {} x {}: sides must be 1 to {} pixels", which,
+      cursor.fail(fmt::format("{} images of {} x {}: sides must be 1 to {} pixels", which,
                               size.width, size.height, kLongestSide_px));
     return size;
   }
@@ -157,10 +158,10 @@ class SensFile : public Recording {
       cursor.fail(fmt::format("{}: a stamp of {} us", frame, stamp_us));
     record.stamp_ns = static_cast<Stamp>(stamp_us * 1000);
     cursor.take<std::uint64_t>("the depth stamp");
-    const auto color_size = cursor.take<std::uint64_t>("the size of the color picture");
-    const auto depth_size = cursor.take<std::uint64_t>("the size of the depth picture");
-    record.color = cursor.take_bytes(color_size, frame + "'s color picture");
-    record.depth = cursor.take_bytes(depth_size, frame + "'s depth picture");
+    const auto color_size = cursor.take<std::uint64_t>("the size of the color image");
+    const auto depth_size = cursor.take<std::uint64_t>("the size of the depth image");
+    record.color = cursor.take_bytes(color_size, frame + "'s color image");
+    record.depth = cursor.take_bytes(depth_size, frame + "'s depth image");
     return record;
   }
 
@@ -200,37 +201,37 @@ class SensFile : public Recording {
   Grid2d<Rgb8> color_of(const FrameRecord& record, std::size_t index) const {
     const RecordedLens& lens = info_.color;
     const auto fail_size = [&](std::uint64_t width, std::uint64_t height) {
-      fail(index, fmt::format("the color picture is {} x {}, the header says {} x {}", width,
-                              height, lens.width_px, lens.height_px));
+      fail(index, fmt::format("the color image is {} x {}, the header says {} x {}", width, height,
+                              lens.width_px, lens.height_px));
     };
     if (color_kind_ == kRawColor) {
-      Grid2d<Rgb8> picture = empty_picture<Rgb8>(lens, record.color.size(), index, "color");
-      std::memcpy(static_cast<void*>(picture.data()), record.color.data(), record.color.size());
-      return picture;
+      Grid2d<Rgb8> image = empty_image<Rgb8>(lens, record.color.size(), index, "color");
+      std::memcpy(static_cast<void*>(image.data()), record.color.data(), record.color.size());
+      return image;
     }
     const auto size = announced_size(record.color);
-    if (!size) fail(index, "the color picture is neither JPEG nor PNG");
+    if (!size) fail(index, "the color image is neither JPEG nor PNG");
     if (size->width != static_cast<std::uint32_t>(lens.width_px) ||
         size->height != static_cast<std::uint32_t>(lens.height_px))
       fail_size(size->width, size->height);
-    if (const char* fault = picture_fault(record.color))
-      fail(index, fmt::format("the color picture {}", fault));
-    auto picture = decode_color(record.color);
-    if (!picture) fail(index, "the color picture is none of 3 x 8 bits, or damaged");
-    if (picture->width() != lens.width_px || picture->height() != lens.height_px)
-      fail_size(static_cast<std::uint64_t>(picture->width()),
-                static_cast<std::uint64_t>(picture->height()));
-    return std::move(*picture);
+    if (const char* fault = image_fault(record.color))
+      fail(index, fmt::format("the color image {}", fault));
+    auto image = decode_color(record.color);
+    if (!image) fail(index, "the color image is not one of 3 x 8 bits, or damaged");
+    if (image->width() != lens.width_px || image->height() != lens.height_px)
+      fail_size(static_cast<std::uint64_t>(image->width()),
+                static_cast<std::uint64_t>(image->height()));
+    return std::move(*image);
   }
 
   /// Decodes raw bytes to an image of that size.
   template <class Pixel>
-  Grid2d<Pixel> empty_picture(const RecordedLens& lens, std::size_t bytes, std::size_t index,
-                              const char* which) const {
+  Grid2d<Pixel> empty_image(const RecordedLens& lens, std::size_t bytes, std::size_t index,
+                            const char* which) const {
     const std::uint64_t wanted = sizeof(Pixel) * static_cast<std::uint64_t>(lens.width_px) *
                                  static_cast<std::uint64_t>(lens.height_px);
     if (bytes != wanted)
-      fail(index, fmt::format("the {} picture has {} bytes, {} x {} pixels have {}", which, bytes,
+      fail(index, fmt::format("the {} image has {} bytes, {} x {} pixels have {}", which, bytes,
                               lens.width_px, lens.height_px, wanted));
     return {lens.width_px, lens.height_px};
   }
@@ -238,26 +239,26 @@ class SensFile : public Recording {
   Grid2d<std::uint16_t> depth_of(const FrameRecord& record, std::size_t index) const {
     const RecordedLens& lens = info_.depth;
     if (depth_kind_ == kRawDepth) {
-      auto picture = empty_picture<std::uint16_t>(lens, record.depth.size(), index, "depth");
-      std::memcpy(picture.data(), record.depth.data(), record.depth.size());
-      return picture;
+      auto image = empty_image<std::uint16_t>(lens, record.depth.size(), index, "depth");
+      std::memcpy(image.data(), record.depth.data(), record.depth.size());
+      return image;
     }
     const std::uint64_t bytes =
         2 * static_cast<std::uint64_t>(lens.width_px) * static_cast<std::uint64_t>(lens.height_px);
     const auto wrong = [&](const char* why) {
-      fail(index, fmt::format("the depth picture does not decompress to {} x {} pixels: {}",
+      fail(index, fmt::format("the depth image does not decompress to {} x {} pixels: {}",
                               lens.width_px, lens.height_px, why));
     };
     if (bytes / kDeflateLimit > record.depth.size()) wrong("there are too few bytes");
-    Grid2d<std::uint16_t> picture(lens.width_px, lens.height_px);
+    Grid2d<std::uint16_t> image(lens.width_px, lens.height_px);
     uLongf size = bytes;
-    const int result = uncompress(reinterpret_cast<Bytef*>(picture.data()), &size,
+    const int result = uncompress(reinterpret_cast<Bytef*>(image.data()), &size,
                                   reinterpret_cast<const Bytef*>(record.depth.data()),
                                   static_cast<uLong>(record.depth.size()));
-    if (result == Z_BUF_ERROR) wrong("it has more, or is cut short");
+    if (result == Z_BUF_ERROR) wrong("it has more, or is truncated");
     if (result != Z_OK) wrong("it is damaged");
     if (size != bytes) wrong("it has fewer");
-    return picture;
+    return image;
   }
 
   HeldBytes held_;
@@ -303,8 +304,8 @@ std::string compressed(const Grid2d<std::uint16_t>& depth) {
   return bytes;
 }
 
-bool fits(const auto& picture, const RecordedLens& lens) {
-  return picture.width() == lens.width_px && picture.height() == lens.height_px;
+bool fits(const auto& image, const RecordedLens& lens) {
+  return image.width() == lens.width_px && image.height() == lens.height_px;
 }
 
 }  // namespace

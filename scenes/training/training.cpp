@@ -193,7 +193,7 @@ class RoomMaker {
 
   void cylinder(std::uint16_t material, const Vector3f& base, float radius, float height) {
     const auto rim = [&](float s, float r, float z) -> Vector3f {
-      const float turn = -2.0F * kPi * s;  // pictures read left to right from outside
+      const float turn = -2.0F * kPi * s;  // images read left to right from outside
       return base + Vector3f(r * std::cos(turn), -r * std::sin(turn), z);
     };
     sheet(

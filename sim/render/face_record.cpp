@@ -31,12 +31,12 @@ struct Surface {
 /// Adds each texture once, however many materials use it; returns positions by identity.
 std::map<const void*, std::uint32_t> add_textures(const Scene& scene, TextureTable& textures) {
   std::map<const void*, std::uint32_t> place_of;  // never iterated
-  std::vector<const Grid2d<Rgb8>*> pictures;
+  std::vector<const Grid2d<Rgb8>*> images;
   for (const Material& material : scene.materials)
     if (!material.texture.empty() && place_of.try_emplace(material.texture.identity()).second)
-      pictures.push_back(&material.texture.grid());
-  textures.reserve(pictures);
-  for (const Grid2d<Rgb8>* picture : pictures) place_of.at(picture) = textures.add(*picture);
+      images.push_back(&material.texture.grid());
+  textures.reserve(images);
+  for (const Grid2d<Rgb8>* image : images) place_of.at(image) = textures.add(*image);
   return place_of;
 }
 

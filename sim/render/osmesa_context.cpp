@@ -35,7 +35,7 @@ struct OffscreenContext::Library {
   void (*(*get_function)(const char*))() = nullptr;
   void* handle = nullptr;
   OSMesaContext context = nullptr;
-  std::array<std::uint32_t, kSize * kSize> picture{};
+  std::array<std::uint32_t, kSize * kSize> image{};
 
   Library() {
     handle = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
@@ -76,8 +76,7 @@ OffscreenContext::~OffscreenContext() = default;
 OffscreenContext::Current::Current(const OffscreenContext& context) : context_(context) {
   Library& library = *context_.library_;
   constexpr unsigned kUnsignedByte = 0x1401;
-  if (library.make_current(library.context, library.picture.data(), kUnsignedByte, kSize, kSize) ==
-      0)
+  if (library.make_current(library.context, library.image.data(), kUnsignedByte, kSize, kSize) == 0)
     throw MachineError("OSMesa cannot make its context current");
 }
 

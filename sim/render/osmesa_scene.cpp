@@ -26,12 +26,12 @@ std::vector<std::uint32_t> sort_faces(const Scene& scene) {
   return order;
 }
 
-GLuint load_texture(const Gl& gl, const Grid2d<Rgb8>& picture) {
+GLuint load_texture(const Gl& gl, const Grid2d<Rgb8>& image) {
   GLuint texture = 0;
   gl.GenTextures(1, &texture);
   gl.ActiveTexture(GL_TEXTURE0);
   gl.BindTexture(GL_TEXTURE_2D, texture);
-  const auto levels = mip_pyramid(picture);
+  const auto levels = mip_pyramid(image);
   for (std::size_t l = 0; l < levels.size(); ++l) {
     std::vector<std::uint16_t> texels;
     for (const Vector3f& c : levels[l])

@@ -33,7 +33,7 @@ inline constexpr const char* kFragmentShader = R"(
 in vec2 texture_place;
 in vec3 vertex_gain;
 in vec3 from_origin;
-uniform sampler2D picture;
+uniform sampler2D image;
 uniform samplerBuffer normals;   // per face: normal x twice its area, texels of twice its area
 uniform usamplerBuffer labels;   // per face: class, instance
 uniform int first_face;
@@ -64,7 +64,7 @@ void main() {
     float facing = abs(dot(normal.xyz, from_origin / depth));
     float texels = depth * depth * pixel_area * normal.w / facing;
     float level = 0.5 * (float(floatBitsToInt(texels)) * exp2(-23.0) - 127.0);
-    light *= textureLod(picture, texture_place, clamp(level, 0.0, 15.0)).rgb;
+    light *= textureLod(image, texture_place, clamp(level, 0.0, 15.0)).rgb;
   }
   color = vec4(clamp(light + emission, 0.0, white), 1.0);
   label = texelFetch(labels, face).xy;

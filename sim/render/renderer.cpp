@@ -11,7 +11,7 @@ std::unique_ptr<Renderer> make_renderer(std::string_view name, const Scene& scen
                                         const RenderConfig& config) {
   if (name == "embree") return make_embree_renderer(scene, config);
   if (name == "osmesa") return make_osmesa_renderer(scene, config);
-  throw InputError(fmt::format("renderer '{}' is none of embree, osmesa", name));
+  throw InputError(fmt::format("renderer '{}' is not one of embree, osmesa", name));
 }
 
 }  // namespace mh

@@ -10,7 +10,7 @@
 namespace mh {
 namespace {
 
-using Picture = Grid2d<Eigen::Vector3f>;
+using Image = Grid2d<Eigen::Vector3f>;
 
 /// Weights of the texels that form one of a row of half the length: with an odd length, three
 /// contribute to each.
@@ -33,9 +33,9 @@ struct Halved {
 
 /// Halves the size by area averages, of an image given by `texel(x, y)`.
 template <class Texel>
-Picture halve(int width, int height, const Texel& texel) {
+Image halve(int width, int height, const Texel& texel) {
   const Halved across(width), down(height);
-  Picture out(across.after, down.after, Eigen::Vector3f::Zero());
+  Image out(across.after, down.after, Eigen::Vector3f::Zero());
   std::vector<Eigen::Vector3f> row(static_cast<std::size_t>(across.after));
   for (int y = 0; y < down.after; ++y)
     down.each(y, [&](int from_y, float share_y) {
@@ -51,10 +51,10 @@ Picture halve(int width, int height, const Texel& texel) {
 
 /// Visits every level below an image's own, finest first.
 template <class Visit>
-void for_each_coarser_level(const Grid2d<Rgb8>& picture, const Visit& visit) {
-  if (picture.size() <= 1) return;
-  Picture level = halve(picture.width(), picture.height(),
-                        [&](int x, int y) { return srgb_to_linear(picture(x, y)); });
+void for_each_coarser_level(const Grid2d<Rgb8>& image, const Visit& visit) {
+  if (image.size() <= 1) return;
+  Image level = halve(image.width(), image.height(),
+                      [&](int x, int y) { return srgb_to_linear(image(x, y)); });
   for (int count = 2;; ++count) {
     visit(level);
     if (level.size() <= 1 || count == kMipLevels) return;
@@ -78,9 +78,9 @@ void append_wrapped(std::vector<std::uint16_t>& texels, int width, int height, c
 }
 
 /// Texels that an image takes with all its levels.
-std::size_t texels_of(const Grid2d<Rgb8>& picture) {
+std::size_t texels_of(const Grid2d<Rgb8>& image) {
   std::size_t sum = 0;
-  int width = picture.width(), height = picture.height();
+  int width = image.width(), height = image.height();
   for (int level = 0; level < kMipLevels; ++level) {
     sum += (static_cast<std::size_t>(width) + 1) * (static_cast<std::size_t>(height) + 1);
     if (width == 1 && height == 1) break;
@@ -91,42 +91,42 @@ std::size_t texels_of(const Grid2d<Rgb8>& picture) {
 
 }  // namespace
 
-Eigen::Vector3f mean_linear(const Grid2d<Rgb8>& picture) {
-  if (picture.empty()) return Eigen::Vector3f::Ones();
+Eigen::Vector3f mean_linear(const Grid2d<Rgb8>& image) {
+  if (image.empty()) return Eigen::Vector3f::Ones();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Rgb8& texel : picture) sum += srgb_to_linear(texel).cast<double>();
-  return (sum / static_cast<double>(picture.size())).cast<float>();
+  for (const Rgb8& texel : image) sum += srgb_to_linear(texel).cast<double>();
+  return (sum / static_cast<double>(image.size())).cast<float>();
 }
 
-std::vector<Grid2d<Eigen::Vector3f>> mip_pyramid(const Grid2d<Rgb8>& picture) {
-  std::vector<Picture> levels;
-  if (picture.empty()) return levels;
-  levels.emplace_back(picture.width(), picture.height(), Eigen::Vector3f::Zero());
-  for (int y = 0; y < picture.height(); ++y)
-    for (int x = 0; x < picture.width(); ++x) levels[0](x, y) = srgb_to_linear(picture(x, y));
-  for_each_coarser_level(picture, [&](const Picture& level) { levels.push_back(level); });
+std::vector<Grid2d<Eigen::Vector3f>> mip_pyramid(const Grid2d<Rgb8>& image) {
+  std::vector<Image> levels;
+  if (image.empty()) return levels;
+  levels.emplace_back(image.width(), image.height(), Eigen::Vector3f::Zero());
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) levels[0](x, y) = srgb_to_linear(image(x, y));
+  for_each_coarser_level(image, [&](const Image& level) { levels.push_back(level); });
   return levels;
 }
 
-void TextureTable::reserve(std::span<const Grid2d<Rgb8>* const> pictures) {
+void TextureTable::reserve(std::span<const Grid2d<Rgb8>* const> images) {
   std::size_t texels = texels_.size() / 3;
-  for (const Grid2d<Rgb8>* picture : pictures) texels += texels_of(*picture);
+  for (const Grid2d<Rgb8>* image : images) texels += texels_of(*image);
   if (texels > std::numeric_limits<std::int32_t>::max())
     throw InputError("the scene's textures are too large: more than 2^31 texels");
   texels_.reserve(3 * texels + kBehind);
 }
 
-std::uint32_t TextureTable::add(const Grid2d<Rgb8>& picture) {
+std::uint32_t TextureTable::add(const Grid2d<Rgb8>& image) {
   const auto first = static_cast<std::uint32_t>(levels_.size());
   const auto begin_level = [&](int width, int height) {
     levels_.push_back({static_cast<float>(width), static_cast<float>(height),
                        static_cast<std::int32_t>(texels_.size() / 3), width + 1});
   };
   if (!texels_.empty()) texels_.resize(texels_.size() - kBehind);
-  begin_level(picture.width(), picture.height());
-  append_wrapped(texels_, picture.width(), picture.height(),
-                 [&](int x, int y) { return srgb_to_linear(picture(x, y)); });
-  for_each_coarser_level(picture, [&](const Picture& level) {
+  begin_level(image.width(), image.height());
+  append_wrapped(texels_, image.width(), image.height(),
+                 [&](int x, int y) { return srgb_to_linear(image(x, y)); });
+  for_each_coarser_level(image, [&](const Image& level) {
     begin_level(level.width(), level.height());
     append_wrapped(texels_, level.width(), level.height(),
                    [&](int x, int y) -> const Eigen::Vector3f& { return level(x, y); });

@@ -15,12 +15,12 @@
 namespace mh {
 
 /// Mean color of an image in linear light; white if it is empty.
-Eigen::Vector3f mean_linear(const Grid2d<Rgb8>& picture);
+Eigen::Vector3f mean_linear(const Grid2d<Rgb8>& image);
 
 /// The same image at full size, 1/2, 1/4, ... down to one texel (at most kMipLevels levels),
 /// averaged over areas in linear light.
 inline constexpr int kMipLevels = 16;
-std::vector<Grid2d<Eigen::Vector3f>> mip_pyramid(const Grid2d<Rgb8>& picture);
+std::vector<Grid2d<Eigen::Vector3f>> mip_pyramid(const Grid2d<Rgb8>& image);
 
 /// The textures of a scene with their mip pyramids, filtered in linear light. They repeat. Texel
 /// centers are at half-integers, (u, v) = (0, 0) is the outer corner of the first texel.
@@ -39,9 +39,9 @@ class TextureTable {
   /// Reserves memory for images about to be added, so that the table never takes more than they
   /// need.
   /// @throws InputError if there are more texels than it can count.
-  void reserve(std::span<const Grid2d<Rgb8>* const> pictures);
+  void reserve(std::span<const Grid2d<Rgb8>* const> images);
   /// @returns the position of the image's level 0 in the table.
-  std::uint32_t add(const Grid2d<Rgb8>& picture);
+  std::uint32_t add(const Grid2d<Rgb8>& image);
 
   /// What eight lanes are to read.
   struct Lookup {

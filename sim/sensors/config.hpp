@@ -148,7 +148,7 @@ void fields(C& c, Visit& v) {
     "standard deviation of its Gaussian point spread");
 }
 
-/// What the camera does with its sensor's picture: see processing.hpp.
+/// What the camera does with its sensor's image: see processing.hpp.
 struct ProcessingConfig {
   bool enabled = false;
   double contrast = 0.0;
@@ -160,7 +160,7 @@ struct ProcessingConfig {
 template <Either<ProcessingConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, contrast, sharpening, sharpening_px] = c;
-  v("enabled", enabled, setting::kSwitch, "what the camera does with its sensor's picture");
+  v("enabled", enabled, setting::kSwitch, "what the camera does with its sensor's image");
   v("contrast", contrast, setting::kShare, "of an S-shaped tone curve; 0: none beyond sRGB");
   v("sharpening", sharpening, {0, 20}, "unsharp masking of the luma; 0: none");
   v("sharpening_px", sharpening_px, setting::above(0, 20),
@@ -186,7 +186,7 @@ void fields(C& c, Visit& v) {
 }
 
 // When light is collected, from the true motion. Row y of h is exposed for exposure_s() around
-// stamp + ((y + 1/2) / h - 1/2) readout_s(): the stamp is the middle of the picture's exposure.
+// stamp + ((y + 1/2) / h - 1/2) readout_s(): the stamp is the middle of the image's exposure.
 
 struct MotionBlurConfig {
   bool enabled = false;
@@ -249,14 +249,13 @@ void fields(C& c, Visit& v) {
     "of frames that arrive black (blank) or not at all (dropped)");
 }
 
-/// How finely motion within a frame is sampled: the picture is the mean of pictures along the
+/// How finely motion within a frame is sampled: the image is the mean of images along the
 /// motion, in linear light. It is a matter of the simulation's accuracy, no fault of a sensor:
 /// levels do not set it.
 struct MotionSampling {
-  double step_px =
-      1.5;  ///< between two pictures nothing moves farther, as long as they are at most
-  int max_pictures = 33;  ///< so many
-  double sharp_px = 0.5;  ///< less motion within a frame is not worth a second picture
+  double step_px = 1.5;   ///< between two images nothing moves farther, as long as they are at most
+  int max_images = 33;    ///< so many
+  double sharp_px = 0.5;  ///< less motion within a frame is not worth a second image
   friend bool operator==(const MotionSampling&, const MotionSampling&) = default;
 };
 

@@ -97,7 +97,7 @@ Grid2d<Surface> find_surfaces(const Grid2d<float>& depth_m, const Camera& camera
   return surfaces;
 }
 
-/// Reads a picture row by row; the passes over a row are separate, so that those without table
+/// Reads an image row by row; the passes over a row are separate, so that those without table
 /// lookups run in vector registers.
 class DepthSensor {
  public:
@@ -173,7 +173,7 @@ class DepthSensor {
   }
 
   /// What the projector sees of a row, nearest first: a pixel with disparity d lies at column x - d
-  /// of its picture. Pixels that lie behind another's are in its shadow.
+  /// of its image. Pixels that lie behind another's are in its shadow.
   void cast_shadow(int y, std::span<float> depth) {
     constexpr float kNothing = 0.0F;
     constexpr float kStep = 1.0F;  // px of disparity; a smooth surface does not shade itself
@@ -183,7 +183,7 @@ class DepthSensor {
     const auto column = [&](int x) {
       return static_cast<float>(x) - focal_base * row[x].inverse_depth;
     };
-    // Columns left of the picture matter too: the projector's picture begins at 1 - w.
+    // Columns left of the image matter too: the projector's image begins at 1 - w.
     nearest_.assign(2 * static_cast<std::size_t>(w), kNothing);
     const auto cell = [&](int u) { return &nearest_[static_cast<std::size_t>(u + w)]; };
     for (int x = 0; x < w; ++x) {

@@ -22,7 +22,7 @@ enum Purpose : std::uint64_t {
   kFalsePlace = 20
 };
 
-// False alarms come from so many independent sources, each at most once in a picture.
+// False alarms come from so many independent sources, each at most once in an image.
 constexpr std::uint64_t kAlarms = 8;
 // Any class with boxes, to draw another from; people are the class seen most on COCO.
 constexpr ClassId kPerson = 31;
@@ -34,7 +34,7 @@ double recall(const VisibleObject& object, const DetectorConfig& config) {
   return object.pixels < kLargePixels ? config.recall_medium : config.recall_large;
 }
 
-/// A box with its sides astray, within the picture and at least one pixel large.
+/// A box with its sides astray, within the image and at least one pixel large.
 Detection place(const VisibleObject& object, const DetectorConfig& config, const FaultDraws& draws,
                 const RenderedFrame& truth) {
   const auto side = [&](Purpose purpose, int at, int size, int limit) {

@@ -44,8 +44,8 @@ struct DetectorConfig {
   /// Share of an object's detections with the wrong class: 31 % of the 30 % that are false [B, C],
   /// over all detections of objects.
   double confusion = 0.097;
-  /// Expected detections of nothing per picture: 14 % of the 30 % that are false, beside the 4.3
-  /// right ones per picture of 36,781 / 5,000 objects at a recall of 0.58 [A, B, C].
+  /// Expected detections of nothing per image: 14 % of the 30 % that are false, beside the 4.3
+  /// right ones per image of 36,781 / 5,000 objects at a recall of 0.58 [A, B, C].
   double false_alarms = 0.26;
   /// Each side of a box strays by this share of the box's width or height, standard deviation: so
   /// that of boxes with an IoU above 0.5 those above 0.75 are 34.4 / 57.9 [A].
@@ -70,7 +70,7 @@ struct LabelNoiseConfig {
   bool enabled = false;
   double confusion = 0.0;  ///< share of instances that carry a wrong class
   double swap = 0.0;       ///< share of instances that begin an exchange of classes with their
-                           ///< nearest neighbor in the picture
+                           ///< nearest neighbor in the image
   double dropout = 0.0;    ///< share of instances that carry no label (no box, in those modes)
   int erosion_px = 0;      ///< pixels within so many px of a border between labels become void
   /// Whether labels stay as they are.

@@ -30,7 +30,7 @@ Vector2d distort(const Distortion& d, const Vector2d& p, Matrix2d* jacobian = nu
           y * radial + d.p1 * (r2 + 2.0 * y * y) + 2.0 * d.p2 * x * y};
 }
 
-// More than this beside the picture is not rendered for its sake: the lens is beyond its model.
+// More than this beside the image is not rendered for its sake: the lens is beyond its model.
 constexpr double kMostMargin = 0.5;
 
 }  // namespace
@@ -81,27 +81,27 @@ Lens::Lens(const Camera& camera)
   }
 }
 
-RenderedFrame Lens::bend(RenderedFrame picture) const {
-  if (source_.empty()) return picture;
+RenderedFrame Lens::bend(RenderedFrame image) const {
+  if (source_.empty()) return image;
   RenderedFrame bent{{width_, height_}, {width_, height_}, {width_, height_}, {width_, height_}};
-  bent.exposure = picture.exposure;
+  bent.exposure = image.exposure;
   const auto last_x = static_cast<float>(pinhole_.width_px - 1);
   const auto last_y = static_cast<float>(pinhole_.height_px - 1);
   for (std::size_t i = 0; i < source_.size(); ++i) {
     const auto [x, y] = source_[i];
     if (!(x >= 0.0F && y >= 0.0F && x <= last_x && y <= last_y)) continue;
     const int near_x = static_cast<int>(x + 0.5F), near_y = static_cast<int>(y + 0.5F);
-    bent.depth_m.data()[i] = picture.depth_m(near_x, near_y);
-    bent.classes.data()[i] = picture.classes(near_x, near_y);
-    bent.instances.data()[i] = picture.instances(near_x, near_y);
+    bent.depth_m.data()[i] = image.depth_m(near_x, near_y);
+    bent.classes.data()[i] = image.classes(near_x, near_y);
+    bent.instances.data()[i] = image.instances(near_x, near_y);
     const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
     const int x1 = std::min(x0 + 1, pinhole_.width_px - 1);
     const int y1 = std::min(y0 + 1, pinhole_.height_px - 1);
     const float s = x - static_cast<float>(x0), t = y - static_cast<float>(y0);
-    const Eigen::Vector3f light = (1.0F - t) * ((1.0F - s) * srgb_to_linear(picture.color(x0, y0)) +
-                                                s * srgb_to_linear(picture.color(x1, y0))) +
-                                  t * ((1.0F - s) * srgb_to_linear(picture.color(x0, y1)) +
-                                       s * srgb_to_linear(picture.color(x1, y1)));
+    const Eigen::Vector3f light = (1.0F - t) * ((1.0F - s) * srgb_to_linear(image.color(x0, y0)) +
+                                                s * srgb_to_linear(image.color(x1, y0))) +
+                                  t * ((1.0F - s) * srgb_to_linear(image.color(x0, y1)) +
+                                       s * srgb_to_linear(image.color(x1, y1)));
     bent.color.data()[i] = {linear_to_srgb(light.x()), linear_to_srgb(light.y()),
                             linear_to_srgb(light.z())};
   }

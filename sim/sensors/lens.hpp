@@ -7,19 +7,19 @@
 
 namespace mh {
 
-/// Bends pinhole pictures as a camera's lens does (Brown-Conrady). Color is blended in linear
+/// Bends pinhole images as a camera's lens does (Brown-Conrady). Color is blended in linear
 /// light; depth, class and instance are those of the nearest pixel.
 class Lens {
  public:
   explicit Lens(const Camera& camera);
-  /// The pinhole camera whose pictures it needs: wide enough for what the lens draws in.
+  /// The pinhole camera whose images it needs: wide enough for what the lens draws in.
   const Camera& pinhole() const { return pinhole_; }
-  /// The picture behind the lens; the same where there is no distortion.
-  RenderedFrame bend(RenderedFrame picture) const;
+  /// The image behind the lens; the same where there is no distortion.
+  RenderedFrame bend(RenderedFrame image) const;
 
  private:
   struct Source {
-    float x, y;  // in the pinhole picture, px
+    float x, y;  // in the pinhole image, px
   };
   int width_, height_;
   Camera pinhole_;

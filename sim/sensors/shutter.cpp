@@ -17,7 +17,7 @@ double seconds_between(const TimedPose& a, const TimedPose& b) {
   return static_cast<double>(b.stamp_ns - a.stamp_ns) * 1e-9;
 }
 
-/// How far (px) what stands in the picture moves between two poses at most, judged by a grid of
+/// How far (px) what stands in the image moves between two poses at most, judged by a grid of
 /// its pixels.
 double farthest_motion_px(const Camera& camera, const Grid2d<float>& depth_m, const SE3& seen_from,
                           const SE3& first, const SE3& last) {
@@ -43,51 +43,51 @@ double farthest_motion_px(const Camera& camera, const Grid2d<float>& depth_m, co
 /// The times within a frame at which rows collect light.
 class Rows {
  public:
-  /// @param pictures  over all of the time in which any row collects
-  Rows(const SensorConfig& config, int height, int pictures)
+  /// @param images  over all of the time in which any row collects
+  Rows(const SensorConfig& config, int height, int images)
       : height_(height),
-        pictures_(pictures),
+        images_(images),
         readout_s_(config.rolling_shutter.readout_s()),
         exposure_s_(config.motion_blur.exposure_s()),
-        step_s_((readout_s_ + exposure_s_) / pictures) {
-    // A row that is exposed for less than a step blends the two pictures nearest in time.
-    if (exposure_s_ < step_s_) exposure_s_ = step_s_ = readout_s_ / (pictures - 1);
+        step_s_((readout_s_ + exposure_s_) / images) {
+    // A row that is exposed for less than a step blends the two images nearest in time.
+    if (exposure_s_ < step_s_) exposure_s_ = step_s_ = readout_s_ / (images - 1);
     for (int y = 0; y < height_; ++y) {
       collected_s_.push_back(0.0);
-      for (int k = 0; k < pictures_; ++k) collected_s_.back() += overlap_s(k, y);
+      for (int k = 0; k < images_; ++k) collected_s_.back() += overlap_s(k, y);
     }
   }
 
   static double duration_s(const SensorConfig& config) {
     return config.rolling_shutter.readout_s() + config.motion_blur.exposure_s();
   }
-  /// The middle of picture k's share of the time, s after the stamp.
-  double time_s(int k) const { return (k + 0.5 - 0.5 * pictures_) * step_s_; }
-  /// For how long row y collects while picture k stands for what is there.
+  /// The middle of image k's share of the time, s after the stamp.
+  double time_s(int k) const { return (k + 0.5 - 0.5 * images_) * step_s_; }
+  /// For how long row y collects while image k stands for what is there.
   double overlap_s(int k, int y) const {
     const double middle = ((y + 0.5) / height_ - 0.5) * readout_s_;
     const double begin = std::max(middle - 0.5 * exposure_s_, time_s(k) - 0.5 * step_s_);
     const double end = std::min(middle + 0.5 * exposure_s_, time_s(k) + 0.5 * step_s_);
     return std::max(0.0, end - begin);
   }
-  /// The picture that stands for the middle of row y's exposure.
-  int middle_picture(int y) const {
+  /// The image that stands for the middle of row y's exposure.
+  int middle_image(int y) const {
     const double middle_s = ((y + 0.5) / height_ - 0.5) * readout_s_;
-    return std::clamp(static_cast<int>(std::floor(middle_s / step_s_ + 0.5 * pictures_)), 0,
-                      pictures_ - 1);
+    return std::clamp(static_cast<int>(std::floor(middle_s / step_s_ + 0.5 * images_)), 0,
+                      images_ - 1);
   }
-  /// What share of row y's light picture k stands for.
+  /// What share of row y's light image k stands for.
   double weight(int k, int y) const {
     return overlap_s(k, y) / collected_s_[static_cast<std::size_t>(y)];
   }
 
  private:
-  int height_, pictures_;
+  int height_, images_;
   double readout_s_, exposure_s_, step_s_;
   std::vector<double> collected_s_;  // by row
 };
 
-/// Sums pictures of rows in linear light.
+/// Sums images of rows in linear light.
 class LightSum {
  public:
   explicit LightSum(const Grid2d<Rgb8>& like)
@@ -171,13 +171,13 @@ Shutter::Shutter(std::shared_ptr<const Renderer> renderer, const Camera& camera,
 
 Shutter::Exposed Shutter::expose(std::size_t i, LabelMode labels) const {
   assert(i < path_.size());
-  RenderedFrame picture = render(lens_.pinhole(), i, 0.0);
-  blur(picture, i, labels);
+  RenderedFrame image = render(lens_.pinhole(), i, 0.0);
+  blur(image, i, labels);
   if (const double offset_s = config_.depth_offset.offset_s(); offset_s != 0.0)
-    picture.depth_m = render(lens_.pinhole(), i, offset_s).depth_m;
-  picture = lens_.bend(std::move(picture));
-  if (config_.lens_blur.enabled) blur_by_lens(picture.color, config_.lens_blur.sigma_px);
-  return {std::move(picture), gains_.empty() ? 1.0 : gains_[i]};
+    image.depth_m = render(lens_.pinhole(), i, offset_s).depth_m;
+  image = lens_.bend(std::move(image));
+  if (config_.lens_blur.enabled) blur_by_lens(image.color, config_.lens_blur.sigma_px);
+  return {std::move(image), gains_.empty() ? 1.0 : gains_[i]};
 }
 
 RenderedFrame Shutter::render(const Camera& pinhole, std::size_t i, double after_s) const {
@@ -185,41 +185,41 @@ RenderedFrame Shutter::render(const Camera& pinhole, std::size_t i, double after
   return scene_(stamp_ns)->render(pinhole, pose_at(path_, i, after_s));
 }
 
-void Shutter::blur(RenderedFrame& picture, std::size_t i, LabelMode labels) const {
+void Shutter::blur(RenderedFrame& image, std::size_t i, LabelMode labels) const {
   const MotionSampling& sampling = config_.motion_sampling;
   const double duration_s = Rows::duration_s(config_);
   if (duration_s <= 0.0) return;
   const Camera& camera = lens_.pinhole();
   const double motion_px =
-      farthest_motion_px(camera, picture.depth_m, path_[i].world_from_camera,
+      farthest_motion_px(camera, image.depth_m, path_[i].world_from_camera,
                          pose_at(path_, i, -0.5 * duration_s), pose_at(path_, i, 0.5 * duration_s));
   if (motion_px <= sampling.sharp_px) return;
-  // An odd number of them has the picture that is there already in its middle.
+  // An odd number of them has the image that is there already in its middle.
   const int wanted = static_cast<int>(std::ceil(motion_px / sampling.step_px)) | 1;
-  const int pictures = std::clamp(wanted, 3, std::max(3, sampling.max_pictures | 1));
+  const int images = std::clamp(wanted, 3, std::max(3, sampling.max_images | 1));
 
-  const Rows rows(config_, camera.height_px, pictures);
-  LightSum sum(picture.color);
-  for (int k = 0; k < pictures; ++k) {
+  const Rows rows(config_, camera.height_px, images);
+  LightSum sum(image.color);
+  for (int k = 0; k < images; ++k) {
     int first = 0, last = camera.height_px;
     while (first < last && rows.overlap_s(k, first) <= 0.0) ++first;
     while (last > first && rows.overlap_s(k, last - 1) <= 0.0) --last;
     if (first == last) continue;
-    const bool middle = k == pictures / 2;
+    const bool middle = k == images / 2;
     Camera strip = camera;
     strip.height_px = last - first;
     strip.cy_px -= first;
     RenderedFrame part;
     if (!middle) part = render(strip, i, rows.time_s(k));
     for (int y = first; y < last; ++y) {
-      sum.add_row(y, middle ? picture.color.row(y) : std::as_const(part.color).row(y - first),
+      sum.add_row(y, middle ? image.color.row(y) : std::as_const(part.color).row(y - first),
                   static_cast<float>(rows.weight(k, y)));
-      if (middle || labels == LabelMode::kAnnotated || rows.middle_picture(y) != k) continue;
-      std::ranges::copy(part.classes.row(y - first), picture.classes.row(y).begin());
-      std::ranges::copy(part.instances.row(y - first), picture.instances.row(y).begin());
+      if (middle || labels == LabelMode::kAnnotated || rows.middle_image(y) != k) continue;
+      std::ranges::copy(part.classes.row(y - first), image.classes.row(y).begin());
+      std::ranges::copy(part.instances.row(y - first), image.instances.row(y).begin());
     }
   }
-  sum.write(picture.color);
+  sum.write(image.color);
 }
 
 std::vector<double> Shutter::exposure_gains() const {

@@ -22,11 +22,11 @@ std::vector<std::size_t> arriving(std::size_t frames, const SensorConfig& config
 /// The frames of a path that arrive.
 Trajectory arriving_frames(const Trajectory& path, const SensorConfig& config, RandomStream stream);
 
-/// Takes the pictures along a path: what falls on the sensors during each frame, before their
+/// Takes the images along a path: what falls on the sensors during each frame, before their
 /// noise. Frame i is a pure function of i. Safe to use from several threads.
 class Shutter {
  public:
-  /// A scene in which something moves: its picture at a moment.
+  /// A scene in which something moves: its image at a moment.
   using SceneAt = std::function<std::shared_ptr<const Renderer>(Stamp)>;
 
   /// @param renderer  of the scene; shared, one serves every path
@@ -37,7 +37,7 @@ class Shutter {
 
   struct Exposed {
     /// Depth is that of the stamp plus its offset, all rows at once. Classes and instances of a row
-    /// are those of the middle of its exposure, from the picture of the motion that is nearest in
+    /// are those of the middle of its exposure, from the image of the motion that is nearest in
     /// time, at most half of MotionSampling::step_px away; for kAnnotated they are the stamp's.
     RenderedFrame seen;
     double gain = 1.0;  ///< of the exposure control, not yet applied
@@ -50,7 +50,7 @@ class Shutter {
 
  private:
   RenderedFrame render(const Camera& pinhole, std::size_t i, double after_s) const;
-  void blur(RenderedFrame& picture, std::size_t i, LabelMode labels) const;
+  void blur(RenderedFrame& image, std::size_t i, LabelMode labels) const;
   std::vector<double> exposure_gains() const;
 
   SceneAt scene_;

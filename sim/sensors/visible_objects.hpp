@@ -9,7 +9,7 @@
 
 namespace mh {
 
-/// What of an instance is in the picture. The box includes all its bounds.
+/// What of an instance is in the image. The box includes all its bounds.
 struct VisibleObject {
   int left = 0, top = 0, right = 0, bottom = 0;
   ClassId class_id = kVoid;
@@ -28,7 +28,7 @@ struct VisibleObject {
   std::int64_t area() const { return static_cast<std::int64_t>(width()) * height(); }
 };
 
-/// Every instance in the picture with a class, by ascending id.
+/// Every instance in the image with a class, by ascending id.
 std::vector<VisibleObject> visible_objects(const RenderedFrame& truth);
 
 /// A class that boxes are drawn for.

@@ -57,15 +57,15 @@ Vector3f mean_light(const Scene& scene) {
   return (sum / static_cast<double>(scene.light.size())).cast<float>();
 }
 
-void merge(RenderedFrame& picture, const RenderedFrame& pedestrian, InstanceId instance) {
-  for (std::size_t i = 0; i < picture.depth_m.size(); ++i) {
+void merge(RenderedFrame& image, const RenderedFrame& pedestrian, InstanceId instance) {
+  for (std::size_t i = 0; i < image.depth_m.size(); ++i) {
     const float near = pedestrian.depth_m.data()[i];
-    float& depth = picture.depth_m.data()[i];
+    float& depth = image.depth_m.data()[i];
     if (near <= 0 || (depth > 0 && depth <= near)) continue;
     depth = near;
-    picture.color.data()[i] = pedestrian.color.data()[i];
-    picture.classes.data()[i] = pedestrian.classes.data()[i];
-    picture.instances.data()[i] = instance;
+    image.color.data()[i] = pedestrian.color.data()[i];
+    image.classes.data()[i] = pedestrian.classes.data()[i];
+    image.instances.data()[i] = instance;
   }
 }
 
@@ -79,9 +79,9 @@ class Moment : public Renderer {
         body_from_world_(world_from_pedestrian.inverse()) {}
 
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
-    RenderedFrame picture = scene_.render(camera, world_from_camera);
-    merge(picture, body_.render(camera, body_from_world_ * world_from_camera), instance_);
-    return picture;
+    RenderedFrame image = scene_.render(camera, world_from_camera);
+    merge(image, body_.render(camera, body_from_world_ * world_from_camera), instance_);
+    return image;
   }
 
  private:

@@ -36,7 +36,7 @@ std::uint64_t number(const std::string& motion, std::string_view text, const cha
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size())
-    throw InputError(fmt::format("motion '{}': {} '{}' is not a whole number", motion, what, text));
+    throw InputError(fmt::format("motion '{}': {} '{}' is not an integer", motion, what, text));
   return value;
 }
 

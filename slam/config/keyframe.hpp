@@ -21,7 +21,7 @@ void fields(C& c, Visit& v) {
   auto& [max_interval, min_tracked_share, min_close_tracked, min_close_new, close_depth_m,
          redundant_share] = c;
   v("max_interval", max_interval, setting::kCount,
-    "frames after which a keyframe is wanted in any case");
+    "frames after which untracked close points alone call for a keyframe");
   v("min_tracked_share", min_tracked_share, setting::kShare,
     "of the reference keyframe's landmarks");
   v("min_close_tracked", min_close_tracked, {0, setting::kMany},

@@ -40,8 +40,9 @@ void fields(C& c, Visit& v) {
   v("loosely_shared", loosely_shared, setting::kCount, "landmarks: the two ends share fewer");
   v("min_similarity_share", min_similarity_share, setting::kShare,
     "of the least alike strong neighbor's");
-  v("agreeing", agreeing, setting::kCount, "keyframes that must tell of the same drift,");
-  v("patience", patience, setting::kCount, "each at most so many keyframes after the one before");
+  v("agreeing", agreeing, setting::kCount, "keyframes that must agree on the same drift,");
+  v("patience", patience, setting::kCount,
+    "each at most this many keyframes after the previous one");
   v("same_drift_m", same_drift_m, setting::kLength_m, "what counts as the same");
   v("same_drift_rad", same_drift_rad, setting::kAngle_rad, "");
   v("max_drift_m", max_drift_m, setting::kLength_m,

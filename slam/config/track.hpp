@@ -42,10 +42,11 @@ void fields(C& c, Visit& v) {
   v("near_distance_m", near_distance_m, setting::kLength_m, "keyframes this near and");
   v("near_angle_rad", near_angle_rad, setting::kAngle_rad, "facing this alike join the local map");
   v("sure_position_m", sure_position_m, setting::kLength_m,
-    "a pose less sure than this by its picture or");
+    "a pose less sure than this by its image or");
   v("sure_angle_rad", sure_angle_rad, setting::kAngle_rad,
     "than this is weighed against the motion");
-  v("coast_s", coast_s, {0, 10}, "so long a lost camera is looked for near its last place");
+  v("coast_s", coast_s, {0, 10},
+    "how long a lost camera is searched for along its predicted motion");
   v("readout_s", readout_s, {0, 1}, "of a rolling shutter, first row to last; 0: all at once");
 }
 

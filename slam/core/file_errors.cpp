@@ -32,7 +32,7 @@ const char* why_unreadable(const fs::path& file) {
     case fs::file_type::none:
       return error == std::errc::permission_denied ? "no permission" : "the system refuses";
     default:
-      return "it is no file";
+      return "it is not a file";
   }
 }
 

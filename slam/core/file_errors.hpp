@@ -18,7 +18,7 @@ struct DiskFullError : MachineError {
 /// @throws DiskFullError if that is the cause, otherwise InputError; both name the file.
 [[noreturn]] void throw_unwritable(const std::filesystem::path& file, int error);
 
-/// Why a file cannot be read: "no such file", "it is a folder", "it is no file" (a pipe or a
+/// Why a file cannot be read: "no such file", "it is a folder", "it is not a file" (a pipe or a
 /// device, which could block a reader forever), "no permission"; null if it looks readable.
 const char* why_unreadable(const std::filesystem::path& file);
 

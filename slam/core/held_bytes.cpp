@@ -62,7 +62,7 @@ HeldBytes map_file(const std::filesystem::path& file, MapPages pages) {
   if (descriptor.value() < 0 || fstat(descriptor.value(), &status) != 0)
     throw refusal(reason_of(errno));
   if (S_ISDIR(status.st_mode)) throw refusal("it is a folder");
-  if (!S_ISREG(status.st_mode)) throw refusal("it is no file");
+  if (!S_ISREG(status.st_mode)) throw refusal("it is not a file");
   const auto size = static_cast<std::size_t>(status.st_size);
   if (pages == MapPages::kAtOnce) require_readable_at_once(file, size);
   if (size == 0) {  // nothing to map

@@ -24,7 +24,7 @@ To whole_number(const Json& value) {
   else if (value.is_number_float())
     number = narrowed<To>(value.template get<double>());
   if (!number)
-    throw InputError(fmt::format("{} is no whole number from {} to {}",
+    throw InputError(fmt::format("{} is not an integer from {} to {}",
                                  value.is_number() ? value.dump() : value.type_name(),
                                  std::numeric_limits<To>::min(), std::numeric_limits<To>::max()));
   return *number;

@@ -18,8 +18,8 @@ T one_of(const YamlReader& node, const Names<T, N>& names) {
   const std::string word = node.as_string();
   if (const auto value = value_of(word, names)) return *value;
   const auto known = words_of(names, [](const auto& n) { return n.first; });
-  node.fail(
-      fmt::format("'{}' is none of {}{}", word, fmt::join(known, ", "), did_you_mean(word, known)));
+  node.fail(fmt::format("'{}' is not one of {}{}", word, fmt::join(known, ", "),
+                        did_you_mean(word, known)));
 }
 
 }  // namespace mh

@@ -36,7 +36,7 @@ class Taker {
 
  private:
   std::string_view take(std::uint64_t size) {
-    if (size > rest_.size()) throw InputError("record of what was read: is cut short");
+    if (size > rest_.size()) throw InputError("record of what was read: is truncated");
     const std::string_view taken = rest_.substr(0, size);
     rest_.remove_prefix(size);
     return taken;
@@ -86,7 +86,7 @@ ReadRecord decode_read_record(std::string_view bytes) {
 
 thread_local ReadScope* ReadScope::innermost_ = nullptr;
 
-ReadScope::ReadScope(Outer outer) : outer_(innermost_), tells_outer_(outer == Outer::kIsTold) {
+ReadScope::ReadScope(Outer outer) : outer_(innermost_), tells_outer_(outer == Outer::kRecords) {
   innermost_ = this;
 }
 

@@ -49,8 +49,8 @@ ReadRecord decode_read_record(std::string_view bytes);
 class ReadScope {
  public:
   /// Whether the enclosing scope also records what this one does.
-  enum class Outer { kIsTold, kIsNotTold };
-  explicit ReadScope(Outer outer = Outer::kIsTold);
+  enum class Outer { kRecords, kIgnores };
+  explicit ReadScope(Outer outer = Outer::kRecords);
   ~ReadScope();
   ReadScope(const ReadScope&) = delete;
   ReadScope& operator=(const ReadScope&) = delete;

@@ -48,7 +48,7 @@ double parse_number(const std::string& word, const char* field, const Place& pla
   const char* end = word.data() + word.size();
   const auto [stop, error] = std::from_chars(begin, end, value);
   if (error != std::errc() || stop != end)
-    place.fail(fmt::format("{}: '{}' is no number", field, word));
+    place.fail(fmt::format("{}: '{}' is not a number", field, word));
   if (!std::isfinite(value)) place.fail(fmt::format("{}: '{}' is not finite", field, word));
   return value;
 }
@@ -189,7 +189,7 @@ Trajectory parse_kitti(const std::string& text, const std::string& name, Stamp p
     const Eigen::Matrix3d rotation = matrix.leftCols<3>();
     const double off = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm();
     if (!(off < 1e-3) || rotation.determinant() < 0)
-      place.fail("matrix: its left 3x3 part is no rotation");
+      place.fail("matrix: its left 3x3 part is not a rotation");
     const auto index = static_cast<Stamp>(trajectory.size());
     trajectory.push_back({index * period_ns, SE3(rotation, matrix.col(3)).normalized()});
   });

@@ -75,7 +75,7 @@ YamlReader YamlReader::parse(const std::string& text, const std::string& name) {
     Walk(name).visit(node);
     return {node, name, ""};
   } catch (const YAML::Exception& e) {
-    throw InputError(fmt::format("{}:{}: is no valid YAML: {}", name, e.mark.line + 1, e.msg));
+    throw InputError(fmt::format("{}:{}: is not valid YAML: {}", name, e.mark.line + 1, e.msg));
   }
 }
 
@@ -218,7 +218,7 @@ std::int64_t YamlReader::as_int(std::int64_t min, std::int64_t max) const {
   try {
     value = node_->as<std::int64_t>();
   } catch (const YAML::Exception&) {
-    fail(fmt::format("'{}' is not a whole number", node_->Scalar()));
+    fail(fmt::format("'{}' is not an integer", node_->Scalar()));
   }
   if (value < min || value > max) fail(fmt::format("{} is outside [{}, {}]", value, min, max));
   return value;

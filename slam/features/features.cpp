@@ -19,7 +19,7 @@ namespace {
 template <class T>
 void require_size(const Grid2d<T>& grid, const Camera& camera, const char* name) {
   if (grid.width() == camera.width_px && grid.height() == camera.height_px) return;
-  throw InputError(fmt::format("frame: {} is {}x{}, but the camera's pictures are {}x{}", name,
+  throw InputError(fmt::format("frame: {} is {}x{}, but the camera's images are {}x{}", name,
                                grid.width(), grid.height(), camera.width_px, camera.height_px));
 }
 

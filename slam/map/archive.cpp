@@ -20,7 +20,7 @@ void Reader::bytes(void* data, std::size_t size) {
 }
 
 void Reader::fail(std::string_view what) const {
-  throw InputError(fmt::format("{}: is no consistent map: {}", name_, what));
+  throw InputError(fmt::format("{}: is not a consistent map: {}", name_, what));
 }
 
 namespace {

@@ -154,7 +154,7 @@ void fields(A& a, T& pose) {
     const Eigen::Matrix3d off = rotation * rotation.transpose() - Eigen::Matrix3d::Identity();
     // Far above the error that products of rotations accumulate, far below anything that is not a
     // rotation.
-    a.require(off.norm() < 1e-3 && rotation.determinant() > 0, "a rotation is none");
+    a.require(off.norm() < 1e-3 && rotation.determinant() > 0, "not a rotation");
     pose = SE3(rotation, translation);
   }
 }

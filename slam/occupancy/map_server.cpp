@@ -36,15 +36,15 @@ Grid2d<std::uint8_t> read_pgm(const std::filesystem::path& file) {
   const auto [width, height, brightest] = numbers;
   if (!in || magic != "P5" || width < 0 || height < 0 || width > 65536 || height > 65536 ||
       brightest != 255)
-    throw InputError(fmt::format("{}: is no binary 8-bit PGM picture", file.string()));
+    throw InputError(fmt::format("{}: is not a binary 8-bit PGM image", file.string()));
   in.get();
   const std::string_view pixels = std::string_view(content).substr(
       std::min(content.size(), static_cast<std::size_t>(in.tellg())));
   if (pixels.size() < static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
-    throw InputError(fmt::format("{}: is cut short", file.string()));
-  Grid2d<std::uint8_t> picture(width, height);
-  std::memcpy(picture.data(), pixels.data(), picture.size());
-  return picture;
+    throw InputError(fmt::format("{}: is truncated", file.string()));
+  Grid2d<std::uint8_t> image(width, height);
+  std::memcpy(image.data(), pixels.data(), image.size());
+  return image;
 }
 
 }  // namespace
@@ -54,10 +54,10 @@ void save_map_server(const OccupancyGrid& grid, const std::filesystem::path& ste
   pgm += ".pgm";
   yaml += ".yaml";
   const int width = grid.cells.width(), height = grid.cells.height();
-  std::string picture = fmt::format("P5\n{} {}\n255\n", width, height);
+  std::string image = fmt::format("P5\n{} {}\n255\n", width, height);
   for (int y = height - 1; y >= 0; --y)
-    for (int x = 0; x < width; ++x) picture.push_back(static_cast<char>(gray(grid.cells(x, y))));
-  write_atomically(pgm, picture);
+    for (int x = 0; x < width; ++x) image.push_back(static_cast<char>(gray(grid.cells(x, y))));
+  write_atomically(pgm, image);
   write_atomically(yaml, fmt::format("image: {}\nmode: trinary\nresolution: {}\n"
                                      "origin: [{}, {}, 0]\nnegate: 0\noccupied_thresh: {}\n"
                                      "free_thresh: {}\n",
@@ -67,7 +67,7 @@ void save_map_server(const OccupancyGrid& grid, const std::filesystem::path& ste
 
 OccupancyGrid load_map_server(const std::filesystem::path& yaml_file) {
   YamlReader yaml = YamlReader::load(yaml_file);
-  const std::filesystem::path image = yaml.string("image");
+  const std::filesystem::path file = yaml.string("image");
   if (const std::string mode = yaml.string("mode", "trinary"); mode != "trinary")
     yaml.at("mode").fail("'" + mode + "' is not supported, only trinary is");
   OccupancyGrid grid;
@@ -80,12 +80,12 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file) {
   const double free = yaml.number("free_thresh", 0, 1);
   yaml.finish();
 
-  const Grid2d<std::uint8_t> picture =
-      read_pgm(image.is_absolute() ? image : yaml_file.parent_path() / image);
-  grid.cells = Grid2d<std::int8_t>(picture.width(), picture.height());
-  for (int y = 0; y < picture.height(); ++y)
-    for (int x = 0; x < picture.width(); ++x) {
-      const double level = picture(x, picture.height() - 1 - y) / 255.0;
+  const Grid2d<std::uint8_t> image =
+      read_pgm(file.is_absolute() ? file : yaml_file.parent_path() / file);
+  grid.cells = Grid2d<std::int8_t>(image.width(), image.height());
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) {
+      const double level = image(x, image.height() - 1 - y) / 255.0;
       const double p = negate ? level : 1.0 - level;
       grid.cells(x, y) = p > occupied ? kOccupiedCell : p < free ? kFreeCell : kUnknownCell;
     }

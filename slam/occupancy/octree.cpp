@@ -66,20 +66,20 @@ class SeenVoxels {
   explicit SeenVoxels(int reach)
       : reach_(reach),
         side_(2 * static_cast<std::size_t>(reach) + 1),
-        told_(side_ * side_ * side_) {}
+        reported_(side_ * side_ * side_) {}
 
   void begin(const octomap::OcTreeKey& middle) {
-    for (const Voxel& voxel : voxels_) told_[voxel.place] = kNothing;
+    for (const Voxel& voxel : voxels_) reported_[voxel.place] = kNothing;
     voxels_.clear();
     middle_ = middle;
   }
-  void tell_free(const octomap::OcTreeKey& key) { tell(key, kFreeVoxel); }
-  void tell_occupied(const octomap::OcTreeKey& key) { tell(key, kOccupiedVoxel); }
+  void tell_free(const octomap::OcTreeKey& key) { report(key, kFreeVoxel); }
+  void tell_occupied(const octomap::OcTreeKey& key) { report(key, kOccupiedVoxel); }
 
   /// Calls f(key, occupied) once for each voxel.
   template <class F>
   void for_each(F f) const {
-    for (const Voxel& voxel : voxels_) f(voxel.key, told_[voxel.place] == kOccupiedVoxel);
+    for (const Voxel& voxel : voxels_) f(voxel.key, reported_[voxel.place] == kOccupiedVoxel);
   }
 
  private:
@@ -89,21 +89,21 @@ class SeenVoxels {
     std::size_t place;
   };
 
-  void tell(const octomap::OcTreeKey& key, Told told) {
+  void report(const octomap::OcTreeKey& key, Told reported) {
     std::size_t place = 0;
     for (int axis = 2; axis >= 0; --axis) {
       const int from_low = int{key[axis]} - int{middle_[axis]} + reach_;
       assert(from_low >= 0 && from_low <= 2 * reach_);
       place = place * side_ + static_cast<std::size_t>(from_low);
     }
-    if (told_[place] == kNothing) voxels_.push_back({key, place});
-    told_[place] = std::max(told_[place], told);
+    if (reported_[place] == kNothing) voxels_.push_back({key, place});
+    reported_[place] = std::max(reported_[place], reported);
   }
 
   int reach_;
   std::size_t side_;
   octomap::OcTreeKey middle_;
-  std::vector<Told> told_;  // of a cube around the camera
+  std::vector<Told> reported_;  // of a cube around the camera
   std::vector<Voxel> voxels_;
 };
 
@@ -242,7 +242,7 @@ OccupancyMapper OccupancyMapper::read_bt(std::istream& in, const std::string& na
   }
   in.get();  // the end of the line "data"
   if (!in || !has_magic || type != "OcTree" || !(config.resolution_m > 0))
-    throw InputError(fmt::format("{}: is no binary OctoMap file of an OcTree", name));
+    throw InputError(fmt::format("{}: is not a binary OctoMap file of an OcTree", name));
   OccupancyMapper mapper(config);
   if (size > 0) {
     const std::istream::pos_type begin = in.tellg();
@@ -253,7 +253,7 @@ OccupancyMapper OccupancyMapper::read_bt(std::istream& in, const std::string& na
   }
   mapper.impl_->pruned = true;
   if (!in || mapper.impl_->tree.size() != size)
-    throw InputError(fmt::format("{}: is cut short", name));
+    throw InputError(fmt::format("{}: is truncated", name));
   return mapper;
 }
 

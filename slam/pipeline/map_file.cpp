@@ -91,10 +91,10 @@ std::string_view checked_content(std::string_view bytes, const std::string& name
                                  std::uint64_t vocabulary_digest) {
   const std::string_view start = bytes.substr(0, kMagic.size());
   if (start.empty() || start != kMagic.substr(0, start.size()))
-    throw InputError(fmt::format("{}: is no map of Modelhouse's", name));
+    throw InputError(fmt::format("{}: is not a map of Modelhouse's", name));
   const auto cut_short = [&](std::uint64_t needed) {
     throw InputError(fmt::format("{}: is {}: has {} bytes, needs {}", name,
-                                 bytes.size() < needed ? "cut short" : "too long", bytes.size(),
+                                 bytes.size() < needed ? "truncated" : "too long", bytes.size(),
                                  needed));
   };
   if (bytes.size() < kHeaderSize) cut_short(kHeaderSize);

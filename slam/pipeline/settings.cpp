@@ -66,11 +66,11 @@ void read_camera(YamlReader& yaml, Settings& settings) {
 
 Settings read_own(YamlReader yaml, Settings settings) {
   read_camera(yaml, settings);
-  if (auto pictures = yaml.find("pictures")) {
+  if (auto images = yaml.find("images")) {
     settings.depth_per_meter =
-        pictures->number_or("depth_per_meter", settings.depth_per_meter, 1e-3, 1e9);
-    settings.exchange_red_blue = pictures->boolean("exchange_red_blue", false);
-    pictures->finish();
+        images->number_or("depth_per_meter", settings.depth_per_meter, 1e-3, 1e9);
+    settings.exchange_red_blue = images->boolean("exchange_red_blue", false);
+    images->finish();
   }
   settings.slam = read_slam_config(yaml, settings.slam);
   yaml.finish();
@@ -115,13 +115,14 @@ void refuse_unknown_keys(YamlReader& yaml) {
   for (const auto& [key, node] : yaml.entries()) {
     if (key == "Camera.type" && node.as_string() != "PinHole")
       node.fail(fmt::format("'{}' is not PinHole", node.as_string()));
-    if (key == "Camera.bFishEye" && node.as_string() != "0") node.fail("a fish-eye is not known");
+    if (key == "Camera.bFishEye" && node.as_string() != "0")
+      node.fail("fisheye cameras are not supported");
     if (is_one_of(kOrbSlamKeys, key) || is_one_of(kOrbSlamOthers, key)) continue;
     std::string section = key.substr(0, key.find('.'));
     std::transform(section.begin(), section.end(), section.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (section == "camera" || section == "orbextractor" || key.find('.') == std::string::npos)
-      node.fail(fmt::format("is no key of ORB-SLAM2's settings (known: {})",
+      node.fail(fmt::format("is not a key of ORB-SLAM2's settings (known: {})",
                             fmt::join(kOrbSlamKeys, ", ")));
   }
 }
@@ -196,7 +197,7 @@ Settings read_camera_info(YamlReader yaml, Settings settings) {
   const YamlReader data = numbers(yaml.at("camera_matrix"));
   const std::vector<double> k = data.as_numbers(9);
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
-    data.fail("is no matrix [fx, 0, cx, 0, fy, cy, 0, 0, 1]");
+    data.fail("is not a matrix [fx, 0, cx, 0, fy, cy, 0, 0, 1]");
   c.fx_px = k[0];
   c.fy_px = k[4];
   c.cx_px = k[2];
@@ -247,7 +248,7 @@ std::string format_settings(const Settings& settings) {
              "camera:\n  width_px: {}\n  height_px: {}\n  fx_px: {}\n  fy_px: {}\n  cx_px: {}\n"
              "  cy_px: {}\n  distortion: {{k1: {}, k2: {}, p1: {}, p2: {}, k3: {}}}\n"
              "  rate_hz: {}\n  baseline_m: {}\n  disparity_sigma_px: {}\n"
-             "pictures:\n  depth_per_meter: {}\n  exchange_red_blue: {}\n",
+             "images:\n  depth_per_meter: {}\n  exchange_red_blue: {}\n",
              c.width_px, c.height_px, c.fx_px, c.fy_px, c.cx_px, c.cy_px, d.k1, d.k2, d.p1, d.p2,
              d.k3, c.rate_hz, c.baseline_m, c.disparity_sigma_px, settings.depth_per_meter,
              settings.exchange_red_blue) +

@@ -23,7 +23,7 @@ struct Settings {
   std::vector<std::string> notes;  ///< what was ignored or needs mentioning, one line each
 };
 
-/// Reads our own settings (sections camera, pictures and those of SlamConfig, all optional; a
+/// Reads our own settings (sections camera, images and those of SlamConfig, all optional; a
 /// camera needs its focal lengths and center), a settings file of ORB-SLAM2 (`Camera.fx: ...`), or
 /// a ROS camera_info (`camera_matrix: ...`); the format is recognized by its keys.
 /// @param base  SLAM's parameters where the file does not set them

@@ -42,7 +42,7 @@ class LineReader {
     const auto result = std::from_chars(line_.data(), end, value);
     const bool ends_here = result.ptr == end || *result.ptr == ' ' || *result.ptr == '\t';
     if (result.ec != std::errc() || !ends_here)
-      throw fault(fmt::format("{}: '{}' is no number of this kind", what, word()));
+      throw fault(fmt::format("{}: '{}' is not a number of this kind", what, word()));
     line_.remove_prefix(static_cast<std::size_t>(result.ptr - line_.data()));
     return value;
   }
@@ -164,7 +164,7 @@ VocabularyTree read_dbow2_text(std::string_view text, const std::string& name) {
 
   for (const std::uint32_t node : breadth_first(nodes)) {
     if (nodes.is_leaf[node] == 0 && nodes.children[node] == 0)
-      throw reader.fault(node + 1, "is no leaf and has no child in the whole file");
+      throw reader.fault(node + 1, "is not a leaf and has no child in the whole file");
     tree.centers.push_back(nodes.center[node]);
     tree.child_counts.push_back(nodes.children[node]);
     if (nodes.is_leaf[node] != 0) tree.idf.push_back(nodes.weight[node]);

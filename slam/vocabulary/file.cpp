@@ -63,7 +63,7 @@ Header checked_header(std::string_view bytes, const std::string& name) {
   constexpr std::size_t kVersionEnd = kMagic.size() + sizeof(std::uint32_t);
   const auto cut_short = [&](std::size_t needed) {
     return InputError(
-        fmt::format("{}: is cut short: has {} bytes, needs {}", name, bytes.size(), needed));
+        fmt::format("{}: is truncated: has {} bytes, needs {}", name, bytes.size(), needed));
   };
   if (bytes.size() < kVersionEnd) throw cut_short(kHeaderSize);
   const auto version = value_at<std::uint32_t>(bytes, kMagic.size());
@@ -108,7 +108,7 @@ std::string encode(const VocabularyTree& tree) {
 Vocabulary::Vocabulary(HeldBytes bytes, const std::string& name) : bytes_(std::move(bytes)) {
   const Header header = checked_header(bytes_.view, name);
   const auto inconsistent = [&](const char* what) {
-    return InputError(fmt::format("{}: is no consistent tree: {}", name, what));
+    return InputError(fmt::format("{}: is not a consistent tree: {}", name, what));
   };
   const char* const content = bytes_.view.data();
   const std::size_t idf = kHeaderSize + std::size_t{header.nodes} * sizeof(Descriptor);

@@ -68,7 +68,7 @@ first_failure() {
       echo "$test: $failed"
       return
     elif (( status == 124 )); then
-      late=${late:-"**timed out**: $test"}  # slow is no proof: another one may catch it
+      late=${late:-"**timed out**: $test"}  # slow is not a proof: another one may catch it
     elif (( status != 0 )); then
       echo "$test: crashed"
       return

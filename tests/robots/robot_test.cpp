@@ -109,10 +109,10 @@ std::string verdict(const YAML::Node& edited) {
 }
 
 TEST(RobotKeys, AreThoseThatTheLoaderKnows) {
-  std::map<std::string, std::set<std::string>> told;
+  std::map<std::string, std::set<std::string>> reported;
   for (const RobotKey& key : robot_keys())
-    ASSERT_TRUE(told[std::string(key.mapping)].insert(std::string(key.key)).second) << key.key;
-  for (const auto& [mapping, keys] : told) {
+    ASSERT_TRUE(reported[std::string(key.mapping)].insert(std::string(key.key)).second) << key.key;
+  for (const auto& [mapping, keys] : reported) {
     YAML::Node robot = YAML::LoadFile(kPepper);
     node_at(robot, mapping)["zzz"] = 1;
     EXPECT_NE(verdict(robot).find(fmt::format("(known here: {})", fmt::join(keys, ", "))),

@@ -116,9 +116,9 @@ TEST(LoadUrdf, RefusesWhatIsNoRobot) {
   };
   EXPECT_EQ(sphere("0.1"), "no error");
   expect_in("urdf_test.urdf:2: link 'a': the radius of its sphere is -0.1 m", sphere("-0.1"));
-  expect_in("urdf_test.urdf:1: is no XML", refusal_of("this is no XML"));
-  expect_in("urdf_test.urdf:2: is no XML", refusal_of("<robot name=\"r\">\n<link></robot>"));
-  expect_in("urdf_test.urdf:1: is no XML", refusal_of(""));
+  expect_in("urdf_test.urdf:1: is not XML", refusal_of("this is not XML"));
+  expect_in("urdf_test.urdf:2: is not XML", refusal_of("<robot name=\"r\">\n<link></robot>"));
+  expect_in("urdf_test.urdf:1: is not XML", refusal_of(""));
   expect_in("urdf_test.urdf: ", refusal_of("<house/>"));
   expect_in("urdf_test.urdf: ", refusal_of("<robot name=\"r\"/>"));
   EXPECT_THROW(load_urdf("/no/such.urdf"), InputError);

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """draw.py ROOMS [FILE PAGE]: the targets and their links as SVG, on standard output.
 
-With FILE: compares instead, and fails where that holds another picture or where PAGE leaves a target
+With FILE: compares instead, and fails where that holds another image or where PAGE leaves a target
 out. ROOMS is as for rooms.py.
 A link that follows from others is left out. A target stands above all that it links, in the column
 of its folder.

@@ -182,9 +182,9 @@ TEST_F(LoadedFloor, FileWithYUpIsToldAndTheOptionTurnsIt) {
     write_obj(room, folder_ / "room.obj", true);
     std::vector<std::string> warnings;
     load_scene(folder_ / "room.obj", &warnings);
-    const auto told = std::ranges::find_if(
+    const auto reported = std::ranges::find_if(
         warnings, [](const std::string& w) { return w.find("try up: y (--up y)") != w.npos; });
-    EXPECT_NE(told, warnings.end()) << floor_name;
+    EXPECT_NE(reported, warnings.end()) << floor_name;
     warnings.clear();
     const Scene turned = load_scene(folder_ / "room.obj", &warnings, {.up = UpAxis::kY});
     EXPECT_TRUE(warnings.empty()) << warnings[0];

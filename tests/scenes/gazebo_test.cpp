@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gazebo worlds as people release them: with faults that do not matter to a picture.
+// Gazebo worlds as people release them: with faults that do not matter to an image.
 #include "scenes/gazebo.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 #include "scenes/gazebo/ogre_script.hpp"
-#include "scenes/picture_file.hpp"
+#include "scenes/image_file.hpp"
 #include "tests/scenes/temporary_folder.hpp"
 
 namespace mh {
@@ -43,7 +43,7 @@ class GazeboWorld : public TemporaryFolder {
           "<?xml version='1.0'?><model><name>m</name><sdf version='1.6'>model.sdf</sdf></model>");
     write(folder + "/model.sdf", "<?xml version='1.0'?><sdf version='1.6'>" + inside + "</sdf>");
   }
-  /// One side of a quarter square meter with a picture on it.
+  /// One side of a quarter square meter with an image on it.
   void write_textured_mesh(const std::string& folder, const std::string& texture) const {
     write(folder + "/m.obj",
           "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\n"
@@ -56,7 +56,7 @@ class GazeboWorld : public TemporaryFolder {
     return *found;
   }
   Scene load(const fs::path& world) { return load_gazebo_world(world, &warnings_); }
-  bool told(std::initializer_list<const char*> parts) const {
+  bool collected(std::initializer_list<const char*> parts) const {
     return std::ranges::any_of(
         warnings_, [&](const std::string& w) { return static_cast<bool>(names(w, parts)); });
   }
@@ -65,11 +65,11 @@ class GazeboWorld : public TemporaryFolder {
 };
 
 /// Two by one texels, red and green.
-std::string picture() {
+std::string image() {
   return std::string("P6\n2 1\n255\n") + std::string("\xff\x00\x00\x00\xff\x00", 6);
 }
 
-TEST_F(GazeboWorld, LoadsWithWarningsWhatDoesNotMatterToAPicture) {
+TEST_F(GazeboWorld, LoadsWithWarningsWhatDoesNotMatterToAImage) {
   const std::string bad_mass =
       "<inertial><mass>-1</mass><inertia><ixx>0</ixx><iyy>-1</iyy><izz>0</izz></inertia></"
       "inertial>";
@@ -90,11 +90,11 @@ TEST_F(GazeboWorld, LoadsWithWarningsWhatDoesNotMatterToAPicture) {
   const Scene scene = load(world);
   EXPECT_EQ(scene.instances.size(), 3U);
   EXPECT_NO_THROW(instance(scene, "box_2"));
-  EXPECT_TRUE(told({"w.world", "model://gone/a.dae", "no such file", "(2 times)"}));
-  EXPECT_TRUE(told({"w.world:2", "model://absent", "no such model", "left out (2 times)"}));
-  EXPECT_TRUE(told({"fuel.gazebosim.org", "Fuel's cache"}));
-  EXPECT_TRUE(told({"a box of 1 x 1 x 0", "above 0", "left out"}));
-  EXPECT_TRUE(told({"visual h", "kind of shape is not shown"}));
+  EXPECT_TRUE(collected({"w.world", "model://gone/a.dae", "no such file", "(2 times)"}));
+  EXPECT_TRUE(collected({"w.world:2", "model://absent", "no such model", "left out (2 times)"}));
+  EXPECT_TRUE(collected({"fuel.gazebosim.org", "Fuel's cache"}));
+  EXPECT_TRUE(collected({"a box of 1 x 1 x 0", "above 0", "left out"}));
+  EXPECT_TRUE(collected({"visual h", "kind of shape is not shown"}));
 }
 
 TEST_F(GazeboWorld, DeclarationMayStandBelowAComment) {
@@ -119,8 +119,8 @@ TEST_F(GazeboWorld, AnElementThatIsRefusedTakesNoOtherWithIt) {
                                "</visual>"));
   const Scene scene = load(write_world(inside));
   EXPECT_EQ(scene.instances.size(), 5U);
-  EXPECT_TRUE(told({"w.world", "diffuse"}));
-  EXPECT_TRUE(told({"w.world", "ambient"}));
+  EXPECT_TRUE(collected({"w.world", "diffuse"}));
+  EXPECT_TRUE(collected({"w.world", "ambient"}));
 }
 
 TEST_F(GazeboWorld, ThousandsOfOneNameAreNamedAtOnce) {
@@ -212,7 +212,7 @@ TEST_F(GazeboWorld, FilesAreFoundWhateverTheCaseOfTheirLetters) {
                                       "model://big_box/meshes/m.OBJ</uri></mesh></geometry>"
                                       "</visual></link>"));
   write_textured_mesh("Models/Big_Box/Meshes", "textures/Paint.PPM");
-  write("Models/Big_Box/materials/Textures/paint.ppm", picture());
+  write("Models/Big_Box/materials/Textures/paint.ppm", image());
   const Scene scene = load(write_world("<include><uri>model://big_box</uri></include>"));
   EXPECT_TRUE(warnings_.empty()) << warnings_[0];
   ASSERT_EQ(scene.triangles.size(), 1U);
@@ -243,7 +243,7 @@ TEST_F(GazeboWorld, OgreScriptsAndAlbedoMapsDressShapesAndMeshes) {
   write("models/wall/materials/scripts/wall.material",
         "// a comment\nmaterial Base\n{ technique { pass { diffuse 0.5 0.5 0.5 1\n"
         "texture_unit\n{\ntexture wall.ppm\n} } } }\nmaterial Brick/Wall : Base { }\n");
-  write("models/wall/materials/textures/wall.ppm", picture());
+  write("models/wall/materials/textures/wall.ppm", image());
   const std::string script =
       "<material><script><uri>model://wall/materials/scripts</uri>"
       "<uri>model://wall/materials/textures</uri><name>Brick/Wall</name></script></material>";
@@ -258,10 +258,10 @@ TEST_F(GazeboWorld, OgreScriptsAndAlbedoMapsDressShapesAndMeshes) {
   ASSERT_EQ(scene.materials.size(), 3U);
   EXPECT_EQ(scene.materials[0].texture(1, 0), (Rgb8{0, 255, 0}));
   EXPECT_EQ(scene.materials[0].base_color, (Rgb8{128, 128, 128}));
-  // One picture, decoded once.
+  // One image, decoded once.
   EXPECT_EQ(scene.materials[0].texture.identity(), scene.materials[1].texture.identity());
   EXPECT_EQ(scene.materials[2].base_color, (Rgb8{255, 0, 0}));
-  // Each side of the box shows the picture once.
+  // Each side of the box shows the image once.
   const auto [least, most] =
       std::ranges::minmax(scene.uvs, {}, [](const auto& uv) { return uv.x(); });
   EXPECT_EQ(least.x(), 0);
@@ -269,7 +269,7 @@ TEST_F(GazeboWorld, OgreScriptsAndAlbedoMapsDressShapesAndMeshes) {
   load(write_world(model("a", link(box(1,
                                        "<material><script><uri>x</uri><name>No/Such</name>"
                                        "</script></material>")))));
-  EXPECT_TRUE(told({"material No/Such"}));
+  EXPECT_TRUE(collected({"material No/Such"}));
 }
 
 TEST(OgreScript, ReadsFirstDiffuseAndTextureAndInheritsThem) {
@@ -316,7 +316,7 @@ TEST_F(GazeboWorld, LightsOfWorldsAndLinksAreTaken) {
 
 TEST_F(GazeboWorld, WhatCannotBeMeantIsRefusedInOneLine) {
   EXPECT_TRUE(names(error_of([&] { load(write_world("\n" + model("m", link(box(1)), "1 2 x"))); }),
-                    {"w.world:3", "'1 2 x' is no pose"}));
+                    {"w.world:3", "'1 2 x' is not a pose"}));
   std::string deep = link(box(1));
   for (int i = 0; i < 80; ++i) deep = model("m", deep);
   EXPECT_TRUE(names(error_of([&] { load(write_world(deep)); }), {"w.world", "nested"}));

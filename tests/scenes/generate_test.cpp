@@ -154,21 +154,21 @@ TEST(Generate, LampsLightBothArmsOfLShapedRooms) {
   EXPECT_GE(rooms, 20);
 }
 
-TEST(Generate, PicturesOfOneRuleDiffer) {
+TEST(Generate, ImagesOfOneRuleDiffer) {
   const GeneratedPlan plan = generate_plan({"hallway", 0});
   const HousePlan house = read_house_plan(YamlReader::parse(plan.yaml(), plan.name));
   std::set<double> widths;
   std::set<std::uint64_t> images;
-  std::size_t pictures = 0;
+  std::size_t images = 0;
   for (const ItemPlan& item : house.items) {
     if (item.kind->name != "picture") continue;
-    ++pictures;
+    ++images;
     widths.insert(item.size_m.x());
     images.insert(item.materials.at("image").seed);
   }
-  EXPECT_GE(pictures, 3U);
-  EXPECT_EQ(widths.size(), pictures);
-  EXPECT_EQ(images.size(), pictures);
+  EXPECT_GE(images, 3U);
+  EXPECT_EQ(widths.size(), images);
+  EXPECT_EQ(images.size(), images);
 }
 
 // Where the robot's middle can be, found from the triangles alone: cells from whose middle nothing
@@ -322,7 +322,7 @@ std::string error_of(const std::string& reference) {
 }
 
 TEST(Generate, RefusesUnknownNames) {
-  EXPECT_NE(error_of("generated:cellar:2").find("'cellar' is no category; there are: bathroom"),
+  EXPECT_NE(error_of("generated:cellar:2").find("'cellar' is not a category; there are: bathroom"),
             std::string::npos);
   for (const char* bad : {"generated:bathroom", "generated:bathroom:", "generated:bathroom:x",
                           "generated:bathroom:-1", "generated::2"})
@@ -340,8 +340,9 @@ TEST(Generate, ACutCornerMustBeOneAndLeaveAWay) {
     }
     return "";
   };
-  EXPECT_NE(error("corner: north, size_m: [1, 1]").find("'north' is no corner"), std::string::npos);
-  EXPECT_NE(error("corner: north_west, size_m: [99, 1]").find("[99, 1] is no part of the room"),
+  EXPECT_NE(error("corner: north, size_m: [1, 1]").find("'north' is not a corner"),
+            std::string::npos);
+  EXPECT_NE(error("corner: north_west, size_m: [99, 1]").find("[99, 1] is not part of the room"),
             std::string::npos);
 }
 

@@ -84,10 +84,10 @@ TEST_F(Guard, WhatTheChildReadIsNotedHere) {
 TEST_F(Guard, EveryFieldOfASceneComesBack) {
   const pid_t here = getpid();
   Warnings warnings{"before"};
-  const Scene scene = load_guarded("x.glb", &warnings, [&](Warnings* told) {
+  const Scene scene = load_guarded("x.glb", &warnings, [&](Warnings* reported) {
     EXPECT_NE(getpid(), here);
-    told->push_back(getpid() == here ? "not in a child" : "first");
-    told->emplace_back(100'000, 'w');
+    reported->push_back(getpid() == here ? "not in a child" : "first");
+    reported->emplace_back(100'000, 'w');
     return full_scene();
   });
   EXPECT_EQ(warnings, (Warnings{"before", "first", std::string(100'000, 'w')}));
@@ -128,13 +128,13 @@ TEST_F(Guard, ACrashIsOneLineWithTheFileAndTheCause) {
 }
 
 TEST_F(Guard, TheInnermostFileIsNamed) {
-  const auto within = [](Warnings* told) {
-    load_guarded("inner/good.obj", told, [](Warnings*) { return Scene(); });
-    return load_guarded("inner/bad.obj", told, [](Warnings*) -> Scene { std::abort(); });
+  const auto within = [](Warnings* reported) {
+    load_guarded("inner/good.obj", reported, [](Warnings*) { return Scene(); });
+    return load_guarded("inner/bad.obj", reported, [](Warnings*) -> Scene { std::abort(); });
   };
   EXPECT_TRUE(names(error_of_load(within), {"inner/bad.obj: ", "crashed"}));
-  const auto after = [](Warnings* told) -> Scene {
-    load_guarded("inner/good.obj", told, [](Warnings*) { return Scene(); });
+  const auto after = [](Warnings* reported) -> Scene {
+    load_guarded("inner/good.obj", reported, [](Warnings*) { return Scene(); });
     std::abort();
   };
   EXPECT_TRUE(names(error_of_load(after), {"a/b.dae: ", "crashed"}));

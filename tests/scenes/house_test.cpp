@@ -432,7 +432,7 @@ TEST(MeshBuilder, ShapesAreClosedAndFaceOutwards) {
 TEST(MeshBuilder, TexturesKeepTheirPhysicalSize) {
   MeshBuilder mesh;
   const MaterialId wood = mesh.material({.name = "", .kind = "wood_grain"});
-  mesh.picture(wood, {0, 0, 1}, {1.5F, 0, 0}, {0, 0, -1});
+  mesh.image(wood, {0, 0, 1}, {1.5F, 0, 0}, {0, 0, -1});
   const Scene scene = mesh.finish();
   const Eigen::Vector2f tile = scene.materials[wood].tile_m;
   EXPECT_NEAR(scene.uvs.back().x(), 1.5F / tile.x(), 1e-5);

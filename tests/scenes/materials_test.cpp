@@ -46,13 +46,13 @@ TEST(MakeMaterial, TexelsAreSquareAndOneToFourMillimeters) {
   }
 }
 
-TEST(MakeMaterial, PicturesCoverTheirSizeOnce) {
+TEST(MakeMaterial, ImagesCoverTheirSizeOnce) {
   for (const std::string_view kind : material_kinds()) {
     const Material m = make_material(spec_of(kind));
-    EXPECT_EQ(is_picture(kind), m.tile_m == Eigen::Vector2f(0.5F, 0.4F)) << kind;
+    EXPECT_EQ(is_image(kind), m.tile_m == Eigen::Vector2f(0.5F, 0.4F)) << kind;
   }
-  EXPECT_TRUE(is_picture("poster"));
-  EXPECT_FALSE(is_picture("wood_boards"));
+  EXPECT_TRUE(is_image("poster"));
+  EXPECT_FALSE(is_image("wood_boards"));
 }
 
 /// Mean absolute step between two columns (or rows, for the transposed access).
@@ -73,7 +73,7 @@ void expect_no_seam(int size, int count, const At& at, std::string_view kind) {
 
 TEST(MakeMaterial, RepeatingKindsHaveNoSeam) {
   for (const std::string_view kind : material_kinds()) {
-    if (is_picture(kind)) continue;
+    if (is_image(kind)) continue;
     const Grid2d<Rgb8> t = make_material(spec_of(kind)).texture;
     expect_no_seam(
         t.width(), t.height(), [&](int x, int y) { return t(x, y); }, kind);
@@ -84,7 +84,7 @@ TEST(MakeMaterial, RepeatingKindsHaveNoSeam) {
 
 TEST(MakeMaterial, RepeatingKindsKeepTheirToneOnAverage) {
   for (const std::string_view kind : material_kinds()) {
-    if (is_picture(kind) || kind == "curtain_fabric" || kind == "bark") continue;  // two tones
+    if (is_image(kind) || kind == "curtain_fabric" || kind == "bark") continue;  // two tones
     const MaterialSpec spec = spec_of(kind);
     double r = 0, g = 0, b = 0;
     const Grid2d<Rgb8> t = make_material(spec).texture;
@@ -133,7 +133,7 @@ TEST(MakeMaterial, RefusesBadSpecs) {
   EXPECT_THROW(make_material({.name = "x", .kind = "tiles", .variation = 1.5}), InputError);
   EXPECT_THROW(make_material({.name = "x", .kind = "poster", .size_m = {0, 1}}), InputError);
   EXPECT_THROW(make_material({.name = "x", .kind = "poster", .size_m = {1, NAN}}), InputError);
-  EXPECT_THROW(is_picture(""), InputError);
+  EXPECT_THROW(is_image(""), InputError);
   EXPECT_EQ(make_material({.name = "", .kind = "glass"}).name, "glass");
 }
 

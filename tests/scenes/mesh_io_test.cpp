@@ -13,13 +13,13 @@
 #include <numbers>
 #include <set>
 
+#include "scenes/image_file.hpp"
 #include "scenes/labeled.hpp"
 #include "scenes/load.hpp"
 #include "scenes/materials/materials.hpp"
 #include "scenes/mesh_io/class_words.hpp"
 #include "scenes/mesh_io/node_name.hpp"
 #include "scenes/mesh_io/subdivide.hpp"
-#include "scenes/picture_file.hpp"
 #include "scenes/srgb.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -264,9 +264,9 @@ TEST_F(MeshIo, TwoGltfMaterialsOfOneNameGlowEachAsItSays) {
   EXPECT_EQ(reds, (std::vector<float>{8.0F, 3.0F, 0.5F}));
 }
 
-TEST_F(MeshIo, ATextureThatIsNoPictureIsNamedAndMagenta) {
+TEST_F(MeshIo, ATextureThatIsNoImageIsNamedAndMagenta) {
   write("room.mtl", "newmtl text\nmap_Kd text.png\nnewmtl huge\nmap_Kd huge.png\n");
-  write("text.png", "this is no picture");
+  write("text.png", "this is not an image");
   // A PNG's first bytes that announce 30,000 x 30,000 pixels, and nothing behind them.
   write("huge.png",
         std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x75\x30\0\0\x75\x30\x08\x02", 26));
@@ -291,7 +291,7 @@ TEST_F(MeshIo, ACutTextureAndAMissingMtllibAreNamed) {
   load_mesh(write("room.obj", "mtllib room.mtl\n" + mesh), &warnings);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // libpng would have its say
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_NE(warnings[0].find("cut.png is cut short"), std::string::npos);
+  EXPECT_NE(warnings[0].find("cut.png is truncated"), std::string::npos);
   warnings.clear();
   load_mesh(write("other.obj", "# mtllib no.mtl\nmtllib gone away.mtl \r\n" + mesh), &warnings);
   ASSERT_EQ(warnings.size(), 1U);
@@ -406,7 +406,7 @@ TEST_F(MeshIo, ObjTextureBesideItAndAMissingOneIsNamedAndMagenta) {
   const auto& gone = *std::ranges::find(scene.materials, "gone", &Material::name);
   EXPECT_TRUE(gone.texture.empty());
   EXPECT_EQ(gone.base_color, (Rgb8{255, 0, 255}));
-  // v counts downwards here: OBJ's (0, 0) is the lower left of the picture.
+  // v counts downwards here: OBJ's (0, 0) is the lower left of the image.
   for (std::size_t v = 0; v < scene.positions_m.size(); ++v)
     EXPECT_FLOAT_EQ(scene.uvs[v].y(), 1.0F - scene.positions_m[v].y());
   EXPECT_EQ(scene.class_of[0], *class_by_name("chair"));
@@ -433,9 +433,10 @@ TEST_F(MeshIo, DaeIsTurnedZUpAndScaledToMeters) {
 
 TEST_F(MeshIo, BadFilesGiveOneErrorThatNamesThem) {
   EXPECT_NE(error_of(folder_ / "none.ply").find("no such file"), std::string::npos);
-  const auto text = write("text.ply", "this is no mesh\n");
+  const auto text = write("text.ply", "this is not a mesh\n");
   EXPECT_NE(error_of(text).find("text.ply"), std::string::npos);
-  EXPECT_NE(error_of(write("text.glb", "this is no mesh\n")).find("text.glb"), std::string::npos);
+  EXPECT_NE(error_of(write("text.glb", "this is not a mesh\n")).find("text.glb"),
+            std::string::npos);
   const std::string header =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
       "z\nelement face ";

@@ -6,12 +6,12 @@
 #include <array>
 #include <cstdint>
 
+#include "scenes/image_file.hpp"
 #include "scenes/load.hpp"
 #include "scenes/mesh_io/collada.hpp"
 #include "scenes/mesh_io/gltf.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/mesh_io/obj_text.hpp"
-#include "scenes/picture_file.hpp"
 #include "tests/scenes/temporary_folder.hpp"
 
 namespace mh {
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 class MeshRepair : public TemporaryFolder {
  protected:
-  /// A square of two triangles; the lower one shows the picture's left half, the upper its right.
+  /// A square of two triangles; the lower one shows the image's left half, the upper its right.
   fs::path write_square(const std::string& name, const std::string& look) const {
     write(name + ".mtl", "newmtl look\n" + look);
     return write(name + ".obj",
@@ -172,24 +172,24 @@ TEST_F(MeshRepair, ColladaMayHaveCommentsAndPolygonsWithHoles) {
             1U);
 }
 
-TEST_F(MeshRepair, FilesOfOneSceneShareOnePictureInMemory) {
+TEST_F(MeshRepair, FilesOfOneSceneShareOneImageInMemory) {
   const std::string texture = ppm(2, 1, std::string("\x10\x20\x30\x40\x50\x60", 6));
   write("paint.ppm", texture);
-  write("copy.ppm", texture);  // another file, the same picture
+  write("copy.ppm", texture);  // another file, the same image
   write_square("a", "map_Kd paint.ppm\n");
   write_square("b", "map_Kd copy.ppm\n");
   const Scene scene = load_scene(write("room.yaml",
                                        "objects:\n  - {file: a.obj}\n  - {file: b.obj}\n"
                                        "  - {file: a.obj, name: c}\n"));
-  std::vector<const void*> pictures;
+  std::vector<const void*> images;
   for (const std::uint16_t material : scene.material_of)
-    pictures.push_back(scene.materials[material].texture.identity());
-  ASSERT_EQ(pictures.size(), 6U);
-  EXPECT_NE(pictures[0], nullptr);
-  EXPECT_EQ(std::ranges::count(pictures, pictures[0]), 6);
+    images.push_back(scene.materials[material].texture.identity());
+  ASSERT_EQ(images.size(), 6U);
+  EXPECT_NE(images[0], nullptr);
+  EXPECT_EQ(std::ranges::count(images, images[0]), 6);
 }
 
-TEST_F(MeshRepair, PicturesFinerThanAnybodySeesAreShrunk) {
+TEST_F(MeshRepair, ImagesFinerThanAnybodySeesAreShrunk) {
   // 1024 texels: on a meter they stay, on 4 cm (0.04 mm each) they are halved until 0.6 mm.
   std::string texels;
   for (int i = 0; i < 1024 * 4; ++i) texels += std::string(3, i % 2 == 0 ? '\0' : '\xff');
@@ -252,7 +252,7 @@ TEST_F(MeshRepair, APlyOfAScanWithoutTexturesKeepsItsFaces) {
   EXPECT_EQ(same.colors, scan.colors);
 }
 
-TEST(PictureFile, WhatAPngSaysBesideThePictureIsNotHeard) {
+TEST(ImageFile, WhatAPngSaysBesideTheImageIsNotHeard) {
   const std::string png = encode_png(Grid2d<std::uint8_t>(3, 2, 77));
   const std::string damaged_profile("\0\0\0\x05iCCPx\0\0zz\x6b\x4f\x36\x1c", 17);
   constexpr std::size_t kBehindHeader = 8 + 25;

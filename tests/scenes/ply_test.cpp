@@ -149,11 +149,11 @@ TEST(Ply, NamesTheVertexThatIsNotFinite) {
 TEST(Ply, CountsThatOverflowAreRefusedBeforeAnythingIsAllocated) {
   const std::string huge = "18446744073709551615";
   EXPECT_TRUE(names(error_of_ply(header("element vertex " + huge + "\n" + kPoint)), {"32 bits"}));
-  EXPECT_TRUE(names(error_of_ply(header("element vertex 4294967295\n" + kPoint)), {"cut short"}));
+  EXPECT_TRUE(names(error_of_ply(header("element vertex 4294967295\n" + kPoint)), {"truncated"}));
   EXPECT_TRUE(names(error_of_ply(header("element vertex 99999999999999999999\n" + kPoint)),
                     {"mesh.ply:3", "number of elements"}));
   const std::string faces = "element vertex 3\n" + kPoint + "element face ";
-  EXPECT_TRUE(names(error_of_ply(header(faces + huge + "\n" + kList) + points(3)), {"cut short"}));
+  EXPECT_TRUE(names(error_of_ply(header(faces + huge + "\n" + kList) + points(3)), {"truncated"}));
   EXPECT_TRUE(names(error_of_ply(header(faces + "1\nproperty list uint int vertex_indices\n") +
                                  points(3) + raw(std::uint32_t{0xffffffff}) + points(1)),
                     {"list of 4294967295 items"}));
@@ -213,13 +213,13 @@ TEST(Ply, CutAnywhereIsToldInEveryEncoding) {
     EXPECT_FALSE(error_of_ply(text.substr(0, size)).empty()) << size;
   std::string wrong = text;
   wrong.replace(wrong.find("5e-1"), 4, "half");
-  EXPECT_TRUE(names(error_of_ply(wrong), {"'half' is no number", "record 3 of 4", "vertex"}));
+  EXPECT_TRUE(names(error_of_ply(wrong), {"'half' is not a number", "record 3 of 4", "vertex"}));
   wrong = text;
   wrong.replace(wrong.find("1163"), 4, "99999");
   EXPECT_TRUE(names(error_of_ply(wrong), {"99999", "range"}));
   EXPECT_TRUE(names(error_of_ply("ply\nformat ascii 1.0\nelement vertex 999999999\n" + kPoint +
                                  "end_header\n0 0 0\n"),
-                    {"cut short"}));
+                    {"truncated"}));
 }
 
 class LabeledPly : public TemporaryFolder {};

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/pictures/png.hpp"
+#include "scenes/images/png.hpp"
 
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
 #include "slam/core/random.hpp"
 
-#include "scenes/picture_file.hpp"
+#include "scenes/image_file.hpp"
 
 namespace mh {
 namespace {
 
 /// Half noise, half one value: literals and runs.
-cv::Mat some_picture(int width, int height, int type) {
-  cv::Mat picture(height, width, type);
+cv::Mat some_image(int width, int height, int type) {
+  cv::Mat image(height, width, type);
   const RandomStream stream(5);
-  const std::size_t row_bytes = static_cast<std::size_t>(width) * picture.elemSize();
+  const std::size_t row_bytes = static_cast<std::size_t>(width) * image.elemSize();
   for (int y = 0; y < height; ++y)
     for (std::size_t i = 0; i < row_bytes; ++i)
-      picture.ptr(y)[i] = static_cast<unsigned char>(
+      image.ptr(y)[i] = static_cast<unsigned char>(
           y < height / 2 ? stream.below(static_cast<std::uint64_t>(y) * row_bytes + i, 256) : 7);
-  return picture;
+  return image;
 }
 
 class Png : public testing::TestWithParam<int> {};
@@ -28,34 +28,34 @@ class Png : public testing::TestWithParam<int> {};
 TEST_P(Png, OpenCvReadsWhatIsWritten) {
   for (const cv::Size size : {cv::Size(1, 1), cv::Size(3, 2), cv::Size(637, 31)})
     for (const int level : {0, 1, 6, 9}) {
-      const cv::Mat picture = some_picture(size.width, size.height, GetParam());
-      const std::string file = encode_png(picture, level);
+      const cv::Mat image = some_image(size.width, size.height, GetParam());
+      const std::string file = encode_png(image, level);
       const std::vector<char> bytes(file.begin(), file.end());
       const cv::Mat read = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-      ASSERT_EQ(read.type(), picture.type());
-      ASSERT_EQ(read.size(), picture.size());
-      EXPECT_EQ(cv::norm(read, picture, cv::NORM_INF), 0.0) << size << " level " << level;
-      EXPECT_EQ(file, encode_png(picture, level));
+      ASSERT_EQ(read.type(), image.type());
+      ASSERT_EQ(read.size(), image.size());
+      EXPECT_EQ(cv::norm(read, image, cv::NORM_INF), 0.0) << size << " level " << level;
+      EXPECT_EQ(file, encode_png(image, level));
     }
 }
 
-TEST_P(Png, PicturesThatAreNoWholePieceOfMemory) {
-  const cv::Mat whole = some_picture(40, 30, GetParam()), part = whole(cv::Rect(3, 4, 21, 11));
+TEST_P(Png, ImagesThatAreNoWholePieceOfMemory) {
+  const cv::Mat whole = some_image(40, 30, GetParam()), part = whole(cv::Rect(3, 4, 21, 11));
   EXPECT_EQ(encode_png(part), encode_png(part.clone()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Types, Png, testing::Values(CV_8UC1, CV_8UC3, CV_16UC1));
 
-TEST(PngText, IsFoundAgainAndLeavesThePictureAsItWas) {
-  const cv::Mat picture = some_picture(40, 30, CV_8UC3);
-  const std::string plain = encode_png(picture), marked = with_text(plain, "made of", "a b");
+TEST(PngText, IsFoundAgainAndLeavesTheImageAsItWas) {
+  const cv::Mat image = some_image(40, 30, CV_8UC3);
+  const std::string plain = encode_png(image), marked = with_text(plain, "made of", "a b");
   EXPECT_EQ(text_in(marked, "made of"), "a b");
   EXPECT_EQ(text_in(marked, "made"), "");
   EXPECT_EQ(text_in(plain, "made of"), "");
-  EXPECT_EQ(text_in("no picture", "made of"), "");
-  EXPECT_EQ(picture_fault(marked), nullptr);
+  EXPECT_EQ(text_in("no image", "made of"), "");
+  EXPECT_EQ(image_fault(marked), nullptr);
   const std::vector<char> bytes(marked.begin(), marked.end());
-  EXPECT_EQ(cv::norm(cv::imdecode(bytes, cv::IMREAD_UNCHANGED), picture, cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(cv::imdecode(bytes, cv::IMREAD_UNCHANGED), image, cv::NORM_INF), 0.0);
   for (std::size_t size = 0; size < marked.size(); ++size)
     text_in(std::string_view(marked).substr(0, size), "made of");  // no harm in a cut file
 }

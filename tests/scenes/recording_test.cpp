@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-#include "scenes/picture_file.hpp"
+#include "scenes/image_file.hpp"
 #include "scenes/scannet/frame_folder.hpp"
 #include "scenes/scannet/label_images.hpp"
 #include "scenes/scannet/sens.hpp"
@@ -106,7 +106,7 @@ TEST_F(SensFile, AnyTruncationIsAnErrorThatNamesTheFile) {
   EXPECT_EQ(error(whole), "");
   const std::size_t frames_end = whole.size() - 8;  // then come inertial measurements, unread
   for (std::size_t size = 0; size < frames_end; size += 13)
-    EXPECT_TRUE(names(error(whole.substr(0, size)), {"a.sens", "cut short"})) << size;
+    EXPECT_TRUE(names(error(whole.substr(0, size)), {"a.sens", "truncated"})) << size;
 }
 
 TEST_F(SensFile, SaysWhichFieldIsWrong) {
@@ -117,19 +117,19 @@ TEST_F(SensFile, SaysWhichFieldIsWrong) {
   EXPECT_TRUE(names(error(with(whole, kKinds + 4, std::int32_t{2})), {"depth compression 2"}));
   EXPECT_TRUE(names(error(with(whole, kSizes, std::uint32_t{100000})), {"100000 x 8"}));
   EXPECT_TRUE(names(error(with(whole, kMatrices, 0.0F)), {"color camera", "fx 0"}));
-  EXPECT_TRUE(names(error(with(whole, kCount, std::uint64_t{1} << 62)), {"frame 3", "cut short"}));
+  EXPECT_TRUE(names(error(with(whole, kCount, std::uint64_t{1} << 62)), {"frame 3", "truncated"}));
   EXPECT_TRUE(names(error(with(whole, kDepthSize, std::uint64_t{1} << 62)),
-                    {"frame 0's depth picture", "cut short"}));
+                    {"frame 0's depth image", "truncated"}));
   EXPECT_TRUE(names(error(with(whole, kFrame, 2.0F)), {"frame 0", "no rotation"}));
 }
 
-TEST_F(SensFile, PicturesThatAreNotWhatTheHeaderSaysAreRefused) {
+TEST_F(SensFile, ImagesThatAreNotWhatTheHeaderSaysAreRefused) {
   const std::string whole = bytes();
   EXPECT_TRUE(names(error(with(whole, kSizes, std::uint32_t{18})),
                     {"frame 0", "16 x 8", "header says 18 x 8"}));
   EXPECT_TRUE(names(error(with(whole, kSizes + 8, std::uint32_t{9})), {"depth", "9 x 6"}));
   EXPECT_TRUE(names(error(with(whole, kSizes + 8, std::uint32_t{7})), {"depth", "7 x 6"}));
-  // A header that claims half a gigabyte for each picture: refused by the bytes that are there.
+  // A header that claims half a gigabyte for each image: refused by the bytes that are there.
   EXPECT_TRUE(names(
       error(with(with(whole, kSizes + 8, std::uint32_t{16384}), kSizes + 12, std::uint32_t{16384})),
       {"16384 x 16384", "too few bytes"}));
@@ -144,39 +144,39 @@ TEST_F(SensFile, PicturesThatAreNotWhatTheHeaderSaysAreRefused) {
   EXPECT_TRUE(names(error(damaged), {"frame 0", "decompress"}));
 }
 
-TEST_F(SensFile, ACutColorPictureIsAnErrorNotHalfAPicture) {
+TEST_F(SensFile, ACutColorImageIsAnErrorNotHalfAImage) {
   const std::string whole = bytes();
   const std::size_t jpeg = kDepthSize + 8;
   std::uint64_t size = 0;
   std::memcpy(&size, whole.data() + kDepthSize - 8, sizeof size);
-  const std::size_t picture = static_cast<std::size_t>(size);
-  for (const std::size_t kept : {picture - 1, picture - 2, picture - 20}) {
+  const std::size_t image = static_cast<std::size_t>(size);
+  for (const std::size_t kept : {image - 1, image - 2, image - 20}) {
     std::string cut = with(whole, kDepthSize - 8, std::uint64_t{kept});
-    cut.erase(jpeg + kept, picture - kept);
-    EXPECT_TRUE(names(error(cut), {"a.sens", "frame 0", "color picture is cut short"})) << kept;
+    cut.erase(jpeg + kept, image - kept);
+    EXPECT_TRUE(names(error(cut), {"a.sens", "frame 0", "color image is truncated"})) << kept;
   }
   EXPECT_TRUE(names(error(with(whole, kCount, std::uint64_t{0})), {"a.sens", "no frame"}));
 }
 
-TEST(PictureFault, TellsWhatADecoderWouldHideOrPrint) {
+TEST(ImageFault, TellsWhatADecoderWouldHideOrPrint) {
   const std::string jpeg = encode_jpeg(moment(0).color, 90), png = encode_png(moment(0).depth);
-  EXPECT_EQ(picture_fault(jpeg), nullptr);
-  EXPECT_EQ(picture_fault(png), nullptr);
-  EXPECT_EQ(picture_fault(jpeg + "behind it"), nullptr);
-  EXPECT_EQ(picture_fault("P5 some other format"), nullptr);
+  EXPECT_EQ(image_fault(jpeg), nullptr);
+  EXPECT_EQ(image_fault(png), nullptr);
+  EXPECT_EQ(image_fault(jpeg + "behind it"), nullptr);
+  EXPECT_EQ(image_fault("P5 some other format"), nullptr);
   for (std::size_t size = 2; size < jpeg.size(); size += 3)
-    EXPECT_STREQ(picture_fault(jpeg.substr(0, size)), "is cut short") << size;
+    EXPECT_STREQ(image_fault(jpeg.substr(0, size)), "is truncated") << size;
   for (std::size_t size = 8; size < png.size(); size += 3)
-    EXPECT_STREQ(picture_fault(png.substr(0, size)), "is cut short") << size;
+    EXPECT_STREQ(image_fault(png.substr(0, size)), "is truncated") << size;
   std::string damaged = png;
   damaged[50] ^= 1;
-  EXPECT_TRUE(names(picture_fault(damaged), {"sum"}));
+  EXPECT_TRUE(names(image_fault(damaged), {"sum"}));
   EXPECT_FALSE(decode_gray16(damaged));
-  // The end mark of a thumbnail within the head does not end the picture.
+  // The end mark of a thumbnail within the head does not end the image.
   const std::string thumbnail = std::string("\xff\xe1\0\6\xff\xd8\xff\xd9", 8);
   const std::string with_thumbnail = jpeg.substr(0, 2) + thumbnail + jpeg.substr(2);
-  EXPECT_EQ(picture_fault(with_thumbnail), nullptr);
-  EXPECT_STREQ(picture_fault(with_thumbnail.substr(0, jpeg.size() - 20)), "is cut short");
+  EXPECT_EQ(image_fault(with_thumbnail), nullptr);
+  EXPECT_STREQ(image_fault(with_thumbnail.substr(0, jpeg.size() - 20)), "is truncated");
 }
 
 TEST_F(SensFile, AJpegThatClaimsAnotherSizeIsNotDecoded) {
@@ -244,7 +244,7 @@ TEST_F(Extracted, TakesPartOfTheFramesAndPaddedNames) {
   EXPECT_FALSE(recording->world_from_device(0));
   EXPECT_TRUE(recording->world_from_device(1));
   ASSERT_EQ(recording->notes().size(), 2U);
-  EXPECT_TRUE(names(recording->notes()[0], {"color: 1 of 3 pictures", "depth/", "first is 0"}));
+  EXPECT_TRUE(names(recording->notes()[0], {"color: 1 of 3 images", "depth/", "first is 0"}));
   EXPECT_TRUE(names(recording->notes()[1], {"1 of 2 frames", "pose/"}));
 }
 
@@ -277,14 +277,14 @@ TEST_F(Extracted, NamesTheFileThatIsWrong) {
   for (const char* file : {"color/1.jpg", "depth/1.png"}) {
     const std::string whole = read_file(folder_ / file);
     write(file, whole.substr(0, whole.size() - 15));
-    EXPECT_TRUE(names(error(), {file, "is cut short"}));
+    EXPECT_TRUE(names(error(), {file, "is truncated"}));
     write(file, whole);
   }
   const std::string depth = read_file(folder_ / "depth/1.png");
   write("depth/1.png", encode_png(Grid2d<std::uint8_t>(8, 6)));
   EXPECT_TRUE(names(error(), {"depth/1.png", "8 bits"}));
   write("depth/1.png", depth);
-  write("color/1.jpg", "no picture");
+  write("color/1.jpg", "no image");
   EXPECT_TRUE(names(error(), {"color/1.jpg"}));
   fs::remove(folder_ / "intrinsic/intrinsic_depth.txt");
   EXPECT_TRUE(names(error(), {"intrinsic_depth.txt"}));
@@ -293,9 +293,9 @@ TEST_F(Extracted, NamesTheFileThatIsWrong) {
 class LabelImagesOf : public TemporaryFolder {
  protected:
   static Grid2d<std::uint16_t> ids(std::uint16_t first) {
-    Grid2d<std::uint16_t> picture(5, 4, first);
-    picture(2, 1) = 3;
-    return picture;
+    Grid2d<std::uint16_t> image(5, 4, first);
+    image(2, 1) = 3;
+    return image;
   }
 };
 

@@ -346,7 +346,7 @@ TEST(ScannetLabelTable, ReadsItsOwnRowsBack) {
 }
 
 /// Lit and textured pieces that share vertices: two chairs, a plant (which NYU40 lacks) and a
-/// floor that is no object; one face of the second chair is marked as a pillow.
+/// floor that is not an object; one face of the second chair is marked as a pillow.
 Scene textured_scene() {
   Scene scene;
   scene.name = "pieces";

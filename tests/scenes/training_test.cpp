@@ -74,7 +74,7 @@ TEST(TrainingViews, StandFreeAndUprightInsideTheRoom) {
       const Eigen::Matrix3d axes = world_from_camera.rotation();
       EXPECT_NEAR(axes.determinant(), 1.0, 1e-12);
       EXPECT_NEAR((axes.transpose() * axes - Eigen::Matrix3d::Identity()).norm(), 0.0, 1e-12);
-      EXPECT_LT(axes(2, 1), -0.85) << "the picture's down must point down";
+      EXPECT_LT(axes(2, 1), -0.85) << "the image's down must point down";
       EXPECT_LT(std::abs(axes(2, 2)), 0.5) << "looks about level";
       for (const Instance& instance : room.instances) {
         const Eigen::Vector3f p = at.cast<float>();

@@ -275,7 +275,7 @@ TEST(BenchProcess, ACheckThatIsInterruptedGoesOn) {
     return 0;
   };
   EXPECT_EQ(interrupted(SIGINT), 130);
-  EXPECT_NE(errors().find("the same command goes on with it"), std::string::npos) << errors();
+  EXPECT_NE(errors().find("the same command resumes"), std::string::npos) << errors();
   const int finished = runs_in(fs::directory_iterator(place)->path());
   EXPECT_GE(finished, 1);
   ASSERT_LT(finished, 6);
@@ -337,14 +337,14 @@ TEST(BenchProcess, AFolderThatWasDeletedIsToldOf) {
   fs::remove_all(test_folder() / "deleted" / "plain-pepper-0");
   fs::remove(test_folder() / "deleted" / "views.png");
   EXPECT_EQ(run(bench(suite, "deleted")), 0) << errors();
-  EXPECT_NE(errors().find("warning: 1 folder of finished runs and 1 sheet of pictures are gone"),
+  EXPECT_NE(errors().find("warning: 1 folder of finished runs and 1 sheet of images are missing"),
             std::string::npos)
       << errors();
 }
 
 // What a scene names counts as the scene itself: its results are made anew, in this folder and in
-// others that share its cache, and no picture of the old one stays.
-TEST(BenchProcess, AReplacedMeshMakesResultsMapsAndPicturesAnew) {
+// others that share its cache, and no image of the old one stays.
+TEST(BenchProcess, AReplacedMeshMakesResultsMapsAndImagesAnew) {
   const fs::path folder = test_folder() / "replaced_mesh";
   fs::create_directories(folder);
   for (const char* room : {"room", "room_evening"})
@@ -362,9 +362,9 @@ TEST(BenchProcess, AReplacedMeshMakesResultsMapsAndPicturesAnew) {
     EXPECT_EQ(run(bench_with_kept_maps(suite, out)), 0) << errors();
     EXPECT_NE(errors().find("2 runs, " + to_do + " of them to do"), std::string::npos) << errors();
     std::string all = tables(out);
-    for (const char* picture : {"views.png", "semantic-exact-pepper-0/topdown.png"}) {
-      EXPECT_TRUE(fs::exists(test_folder() / out / picture)) << picture;
-      all += content(test_folder() / out / picture);
+    for (const char* image : {"views.png", "semantic-exact-pepper-0/topdown.png"}) {
+      EXPECT_TRUE(fs::exists(test_folder() / out / image)) << image;
+      all += content(test_folder() / out / image);
     }
     return all;
   };
@@ -377,7 +377,7 @@ TEST(BenchProcess, AReplacedMeshMakesResultsMapsAndPicturesAnew) {
   EXPECT_EQ(made_in("replaced_elsewhere", "2"), after) << "a map of the old scene answered";
   fs::remove_all(test_folder() / "cache" / "map");
   EXPECT_EQ(made_in("replaced_without_maps", "2"), after);
-  put("room");  // its results are there, its pictures are not
+  put("room");  // its results are there, its images are not
   EXPECT_EQ(made_in("replaced", "2"), before);
   EXPECT_EQ(made_in("replaced", "0"), before);
   EXPECT_EQ(content(test_folder() / "replaced/semantic-exact-pepper-0/notes.txt"), "mine");
@@ -421,13 +421,14 @@ TEST(BenchProcess, ACrashIsAFailureAndStaysOne) {
       write_suite("crash", "[plain, {name: crasher, protocol: conversation, command: 'echo x >>" +
                                marks.string() + "; kill -SEGV $$'}]");
   EXPECT_EQ(run(bench(suite, "crash")), 3);
-  const std::string told = errors();
+  const std::string reported = errors();
   const std::string why = "was killed by signal 11";
-  EXPECT_NE(told.find("crasher-exact-pepper-0 and 1 more failed; why: see "), std::string::npos)
-      << told;
+  EXPECT_NE(reported.find("crasher-exact-pepper-0 and 1 more failed; why: see "), std::string::npos)
+      << reported;
   std::size_t times = 0;
-  for (auto at = told.find(why); at != std::string::npos; at = told.find(why, at + 1)) ++times;
-  EXPECT_EQ(times, 2u) << "once for each of the two runs: " << told;
+  for (auto at = reported.find(why); at != std::string::npos; at = reported.find(why, at + 1))
+    ++times;
+  EXPECT_EQ(times, 2u) << "once for each of the two runs: " << reported;
   const std::string once = content(marks);
   EXPECT_EQ(run(bench(suite, "crash")), 3);
   EXPECT_EQ(content(marks), once) << "a failed run was repeated";
@@ -456,14 +457,14 @@ TEST(BenchProcess, ACrashOfALibraryIsAFailureOfItsRunAlone) {
   }
   const fs::path suite = write_suite("libraries", systems + "plain]");
   EXPECT_EQ(run(bench(suite, "libraries")), 3);
-  const std::string told = errors();
+  const std::string reported = errors();
   for (const char* line :
        {"crash-exact-pepper-0: failed: ended by signal 6 (Aborted)\n",
         "exit-exact-pepper-0: failed: ended without a result\n",
         "nan-boxes-pepper-0: failed: outside library 'nan' (libtiny.so) gave a pose of [nan, 0, 0, "
         "0, 0, 0, 1]: a number is not finite, in track\n"})
-    EXPECT_NE(told.find(line), std::string::npos) << line << told;
-  EXPECT_EQ(told.find("nonsense"), std::string::npos) << told;
+    EXPECT_NE(reported.find(line), std::string::npos) << line << reported;
+  EXPECT_EQ(reported.find("nonsense"), std::string::npos) << reported;
   EXPECT_EQ(runs_in(test_folder() / "libraries"), 9);
   // What it prints is neither told nor taken for the bench's own words.
   const std::string said =
@@ -599,7 +600,7 @@ TEST(BenchProcess, MergingAPartTwiceIsHarmless) {
   EXPECT_EQ(tables("twice"), undisturbed());
 }
 
-TEST(BenchProcess, APictureThatFoundNoRoomIsCopiedByTheNextMerge) {
+TEST(BenchProcess, AnImageThatFoundNoRoomIsCopiedByTheNextMerge) {
   undisturbed();
   const fs::path part = test_folder() / "big_part", out = test_folder() / "limited";
   fs::copy(test_folder() / "plain_run", part, fs::copy_options::recursive);

@@ -113,7 +113,7 @@ TEST_F(CommandLine, EveryCommandHasHelpWithAnExample) {
 }
 
 TEST_F(CommandLine, BadUsageIsRefused) {
-  expect_refused("dance", "'dance' is no command of modelhouse");
+  expect_refused("dance", "'dance' is not a command of modelhouse");
   expect_refused("bench", "suite");
   expect_refused("bench x.yaml --jobs 0", "--jobs");
 }
@@ -129,25 +129,26 @@ TEST_F(CommandLine, WithoutArgumentsItPrintsTheHelp) {
 }
 
 TEST_F(CommandLine, ASlipIsToldWhatItMayHaveMeant) {
-  for (const auto& [line, told] : std::initializer_list<std::pair<const char*, const char*>>{
+  for (const auto& [line, reported] : std::initializer_list<std::pair<const char*, const char*>>{
            {"benhc model_house", "did you mean 'bench'? There are: bench, merge"},
-           {"scene inof x", "'inof' is no command of modelhouse scene; did you mean 'info'?"},
+           {"scene inof x", "'inof' is not a command of modelhouse scene; did you mean 'info'?"},
            {"bench model_house --jbos 2",
             "modelhouse bench takes no --jbos; did you mean '--jobs'?"},
            {"drive model_house --robto pepper", "takes no --robto; did you mean '--robot'?"},
            {"bench model_hose", "did you mean 'model_house'? There are: ci"},
-           {"export x --format cvs", "'cvs' is none of csv, json, latex; did you mean 'csv'?"},
+           {"export x --format cvs", "'cvs' is not one of csv, json, latex; did you mean 'csv'?"},
            {"evaluate a b --align se2", "did you mean 'se3'?"},
            {"drive model_hose auto",
             "no scene of that name is shipped; did you mean 'model_house'?"},
            {"drive model_house auto --robot peper", "did you mean 'pepper'?"},
-           {"drive model_house handhled:0", "'handhled:0' is no motion; did you mean 'handheld'?"},
+           {"drive model_house handhled:0",
+            "'handhled:0' is not a motion; did you mean 'handheld'?"},
            {"render model_house auto --level handhold --out o", "did you mean 'handheld'?"},
            {"slam x --vocabulary vocabluary --out o", "did you mean 'vocabulary'?"},
-           {"scene make bathrom", "'bathrom' is no category; did you mean 'bathroom'?"},
+           {"scene make bathrom", "'bathrom' is not a category; did you mean 'bathroom'?"},
            {"reference furnitrue", "did you mean 'furniture'?"},
-           {"completion tcsh", "'tcsh' is none of bash, zsh, fish"}}) {
-    expect_refused(line, told);
+           {"completion tcsh", "'tcsh' is not one of bash, zsh, fish"}}) {
+    expect_refused(line, reported);
     EXPECT_EQ(out_, "") << line;
   }
   std::string house = content(house_);
@@ -155,7 +156,7 @@ TEST_F(CommandLine, ASlipIsToldWhatItMayHaveMeant) {
   expect_refused("scene info " + write("house.yaml", house).string(),
                  "unknown kind of furniture 'soaf'; did you mean 'sofa'?");
   expect_refused("bench " + suite_with("systems", "[semantik]").string(),
-                 "'semantik' is none of semantic, plain; did you mean 'semantic'?");
+                 "'semantik' is not one of semantic, plain; did you mean 'semantic'?");
 }
 
 TEST_F(CommandLine, DefaultsStandInTheHelp) {
@@ -281,7 +282,7 @@ TEST_F(CommandLine, PrintedSettingsAreReadBackEqual) {
 TEST_F(CommandLine, NumbersAreFiniteAndSeedsDoNotWrap) {
   for (const char* value : {"nan", "inf", "-inf", "1e999", "1.5x"})
     expect_refused(std::string("slam x --vocabulary v --out o --xi=") + value,
-                   std::string("--xi: '") + value + "' is no finite number");
+                   std::string("--xi: '") + value + "' is not a finite number");
   expect_refused("slam x --vocabulary v --out o --xi 0.5", "--xi");
   expect_refused("evaluate a b --max-difference nan", "--max-difference");
   expect_refused("evaluate a b --rate nan", "--rate");
@@ -292,7 +293,7 @@ TEST_F(CommandLine, NumbersAreFiniteAndSeedsDoNotWrap) {
                               "slam x --vocabulary v --out o", "vocabulary train --out o"})
     for (const char* seed : {"-1", "18446744073709551616"})
       expect_refused(std::string(command) + " --seed " + seed,
-                     std::string("'") + seed + "' is no whole number from 0 to 2^64 - 1");
+                     std::string("'") + seed + "' is not an integer from 0 to 2^64 - 1");
 }
 
 TEST_F(CommandLine, LostOutputIsTold) {
@@ -351,10 +352,10 @@ TEST_F(CommandLine, BadSuites) {
     expect_refused(
         "bench " + suite_with(key, value).string() + " --out " + (folder_ / "out").string(), part);
   };
-  refused("trials", "many", "trials: 'many' is not a whole number");
+  refused("trials", "many", "trials: 'many' is not an integer");
   refused("seed", "0\nspeed: 3", "unknown key 'speed'");
   refused("levels", "[]", "levels: is empty");
-  refused("name", "[unclosed", "is no valid YAML");
+  refused("name", "[unclosed", "is not valid YAML");
   refused("slam", "{semantics: {alpha: 1.2}}\nx:", "slam.semantics.alpha: 1.2");
   EXPECT_EQ(files_left(), 0u);
 }
@@ -379,7 +380,7 @@ TEST_F(CommandLine, AVocabularyInText) {
   EXPECT_NE(out_.find("1 word, ready in"), std::string::npos) << out_;
   EXPECT_EQ(run("vocabulary info " + own), 0) << err_;
   EXPECT_NE(out_.find("mean 1.250"), std::string::npos) << out_;
-  EXPECT_NE(out_.find("pictures: not known"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("images: not known"), std::string::npos) << out_;
   const std::string bad = write("bad.txt", "10 6 0 0\n" + node + " 1.25 3\n").string();
   expect_refused("vocabulary info " + bad, "bad.txt:2: line goes on where it should end: '3'");
   expect_refused("vocabulary info " + text + " --frames here --settings s.yaml", "s.yaml");
@@ -399,7 +400,7 @@ TEST_F(CommandLine, AnOutputFolderThatCannotBeWrittenIsFoundBeforeTheWork) {
   EXPECT_EQ(content(file), "x");
 }
 
-TEST_F(CommandLine, PicturesAndSequencesGoWhereTheyCanBeRead) {
+TEST_F(CommandLine, ImagesAndSequencesGoWhereTheyCanBeRead) {
   expect_refused("scene preview " + house_ + " --out " + folder_.string(), folder_.string());
   expect_refused("scene make bathroom --scan-look", "--out");
   const std::string render = "render " + house_ + " t.yaml --robot " + robot_ + " --out ";
@@ -509,7 +510,7 @@ TEST_F(CommandLine, NobodysFilesAreOverwritten) {
                      robot_ + " --out " + f + "converted",
                  "is there already");
   write("converted/.modelhouse", "mine");
-  expect_refused(again, "is no file of modelhouse's");
+  expect_refused(again, "was not written by modelhouse");
 }
 
 TEST_F(CommandLine, ASceneBecomesAScannetFolderAndIsReadBack) {
@@ -580,23 +581,23 @@ TEST_F(CommandLine, StatisticsOfScenesShareTheFramesAndPrintWhatTheyMeasured) {
   }
 }
 
-TEST_F(CommandLine, SheetsOfSensorsAreFourPicturesWhoseNamesArePrinted) {
+TEST_F(CommandLine, SheetsOfSensorsAreFourImagesWhoseNamesArePrinted) {
   const fs::path mesh = write("m.obj",
                               "v 0 0 0\nv 9 0 0\nv 9 5 0\nv 0 5 0\nv 0 0 2\nv 9 0 2\n"
                               "o floor\nf 1 2 3 4\no wall\nf 1 2 6 5\n");
   const fs::path out = folder_ / "sheets";
   ASSERT_EQ(run("sensors sheet " + mesh.string() + " --out " + out.string()), 0) << err_;
   std::string names;
-  std::vector<std::string> pictures;
+  std::vector<std::string> images;
   for (const char* name : {"color.png", "depth.png", "frames.png", "labels.png"}) {
     names += (out / name).string() + "\n";
-    pictures.push_back(content(out / name));
-    EXPECT_EQ(pictures.back().substr(1, 3), "PNG") << name;
-    EXPECT_GT(pictures.back().size(), 10000u) << name;
+    images.push_back(content(out / name));
+    EXPECT_EQ(images.back().substr(1, 3), "PNG") << name;
+    EXPECT_GT(images.back().size(), 10000u) << name;
   }
   EXPECT_EQ(out_, names);
-  std::sort(pictures.begin(), pictures.end());
-  EXPECT_EQ(std::unique(pictures.begin(), pictures.end()), pictures.end()) << "each its own";
+  std::sort(images.begin(), images.end());
+  EXPECT_EQ(std::unique(images.begin(), images.end()), images.end()) << "each its own";
 }
 
 TEST_F(CommandLine, ATourThatCannotBeDriven) {
@@ -641,7 +642,7 @@ TEST_F(CommandLine, APersonInTheWayStopsADriveAndIsSeenBySensors) {
 
 TEST_F(CommandLine, ATourFasterThanTheRobotIsTold) {
   const fs::path mesh = write("m.obj", "v 0 0 0\nv 9 0 0\nv 9 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n");
-  for (const auto& [speed, told] : {std::pair("3", true), std::pair("0.3", false)}) {
+  for (const auto& [speed, reported] : {std::pair("3", true), std::pair("0.3", false)}) {
     const fs::path tour = write("t.yaml", std::string("name: t\nspeed_m_per_s: ") + speed +
                                               "\nstart: {position: [1, 2], heading_deg: 0}\n"
                                               "waypoints: [{to: [3, 2]}]\n");
@@ -649,7 +650,7 @@ TEST_F(CommandLine, ATourFasterThanTheRobotIsTold) {
         << err_;
     EXPECT_EQ(err_.find("t.yaml: speed_m_per_s 3 is more than robot 'pepper' does: 0.55") !=
                   std::string::npos,
-              told)
+              reported)
         << err_;
   }
 }
@@ -758,7 +759,7 @@ TEST_F(CommandLine, CheckRefusesABaselineThatIsNotOfItsSuite) {
       "check " + std::string(MH_SOURCE_DIR) + "/bench/suites/ci.yaml --baseline ";
   expect_refused(check + (folder_ / "none.json").string(), "none.json: ");
   EXPECT_NE(err_.find("--update makes one"), std::string::npos) << err_;
-  expect_refused(check + write("damaged.json", "{").string(), "is no baseline");
+  expect_refused(check + write("damaged.json", "{").string(), "is not a baseline");
   expect_refused(check + write("newer.json", R"({"format": "modelhouse-baseline-9"})").string(),
                  "modelhouse-baseline-9");
   const std::string head = R"({"format": "modelhouse-baseline-1", "suite_digest": "0", )"

@@ -32,7 +32,7 @@ template <class T>
 std::string raw(const T& value) {
   return {reinterpret_cast<const char*>(&value), sizeof value};
 }
-/// A PNG whose header announces such pictures, with these bytes as its data before compression.
+/// A PNG whose header announces such images, with these bytes as its data before compression.
 std::string png(std::uint32_t width, std::uint32_t height, int bits, int color_type,
                 const std::string& rows);
 /// The header of a PLY of three vertices and one face.

@@ -70,12 +70,12 @@ Outcome Trial::run() const {
   std::string command = "XDG_CACHE_HOME={}/cache exec " MH_EXECUTABLE " " + case_.arguments;
   for (std::size_t at = 0; (at = command.find("{}", at)) != command.npos;)
     command.replace(at, 2, folder_.string());
-  const std::string told = (folder_ / "stderr").string();
+  const std::string reported = (folder_ / "stderr").string();
   const pid_t child = fork();
   if (child == 0) {
     alarm(kMostWall_s);
     const int nothing = open("/dev/null", O_RDWR);
-    const int err = open(told.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    const int err = open(reported.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     dup2(nothing, 0);
     dup2(nothing, 1);
     dup2(err, 2);
@@ -86,7 +86,7 @@ Outcome Trial::run() const {
   rusage used{};
   wait4(child, &status, 0, &used);
   std::ostringstream said;
-  said << std::ifstream(told).rdbuf();
+  said << std::ifstream(reported).rdbuf();
   const auto seconds = [](const timeval& t) {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   };

@@ -54,7 +54,7 @@ void add_tum(std::vector<HostileCase>& cases) {
       tum("tum_frame_is_a_bmp_of_4e9_pixels", {{"rgb/2.png", bmp}}, "nothing could be mapped"));
   cases.push_back(tum("tum_frame_is_empty", {{"depth/2.png", ""}}, "nothing could be mapped"));
   cases.push_back(tum("tum_frame_is_a_pipe", {{"rgb/4.png|", ""}, {"rgb.txt", "1.0 rgb/4.png\n"}},
-                      "4.png: cannot be read: it is no file"));
+                      "4.png: cannot be read: it is not a file"));
   cases.push_back(tum("tum_list_in_utf16",
                       {{"rgb.txt", std::string("\xff\xfe"
                                                "1\0 \0",
@@ -98,7 +98,7 @@ void add_tum(std::vector<HostileCase>& cases) {
                        "0",
                        4),
            "UTF-16");
-  evaluate("trajectory_with_a_word", "0 0 0 zero 0 0 0 1\n", "'zero' is no number");
+  evaluate("trajectory_with_a_word", "0 0 0 zero 0 0 0 1\n", "'zero' is not a number");
 }
 
 void add_scannet(std::vector<HostileCase>& cases) {
@@ -114,8 +114,8 @@ void add_scannet(std::vector<HostileCase>& cases) {
     return fmt::format("{{\"segGroups\":[{{\"objectId\":{},\"segments\":[0],\"label\":\"x\"}}]}}",
                        id);
   };
-  scan("scannet_object_4294967296", object("4294967296"), "4294967296 is no id");
-  scan("scannet_object_5_9", object("5.9"), "5.9 is no id");
+  scan("scannet_object_4294967296", object("4294967296"), "4294967296 is not an id");
+  scan("scannet_object_5_9", object("5.9"), "5.9 is not an id");
   scan("scannet_object_65535", object("65535"), "more than 65534");
   scan("scannet_aggregation_nested", repeated("[", 1 << 20), "aggregation.json: ");
   scan("scannet_segments_nested", object("0"), "segs.json: ",
@@ -142,11 +142,11 @@ void add_scannet(std::vector<HostileCase>& cases) {
                      "slam scannet:{}/a.sens" + kSlam,
                      says});
   };
-  sens("sens_of_2e62_frames", 4, 64, std::uint64_t{1} << 62, 10, "cut short");
+  sens("sens_of_2e62_frames", 4, 64, std::uint64_t{1} << 62, 10, "truncated");
   sens("sens_of_4e9_columns", 4, 0xffffffff, 1, 10, "sides must be");
-  sens("sens_of_a_picture_of_2e63_bytes", 4, 64, 1, std::uint64_t{1} << 63, "cut short");
+  sens("sens_of_a_image_of_2e63_bytes", 4, 64, 1, std::uint64_t{1} << 63, "truncated");
   sens("sens_of_a_name_of_2e63_bytes", std::uint64_t{1} << 63, 64, 1, 10, "a sensor's name");
-  sens("sens_of_zeros_for_pictures", 4, 64, 1, 10, "neither JPEG nor PNG");
+  sens("sens_of_zeros_for_images", 4, 64, 1, 10, "neither JPEG nor PNG");
 }
 
 void add_vocabularies(std::vector<HostileCase>& cases) {
@@ -154,7 +154,7 @@ void add_vocabularies(std::vector<HostileCase>& cases) {
     cases.push_back({"vocabulary_" + name, {{"v", text}}, "vocabulary info {}/v", says});
   };
   const std::string ours = content("assets/vocabulary.mhvoc");
-  info("cut", ours.substr(0, 1000), "cut short");
+  info("cut", ours.substr(0, 1000), "truncated");
   std::string counts = ours.substr(0, 64);
   counts.replace(16, 48, std::string(48, '\xff'));
   info("of_2e32_words", counts, "v: ");

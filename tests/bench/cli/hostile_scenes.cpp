@@ -35,7 +35,7 @@ void add_ply(std::vector<HostileCase>& cases) {
   cases.push_back(scene("ply_ascii_cut", "a.ply", ascii + "0 0 0\n1 0 0\n0 1", "a.ply: "));
   cases.push_back(
       passing(scene("ply_ascii_cut_in_face", "a.ply", ascii + "0 0 0\n1 0 0\n0 1 0\n3 0", "")));
-  cases.push_back(scene("ply_big_endian_cut", "a.ply", big + points.substr(0, 16), "cut short"));
+  cases.push_back(scene("ply_big_endian_cut", "a.ply", big + points.substr(0, 16), "truncated"));
   cases.push_back(scene("ply_big_endian_list_without_end", "a.ply",
                         big + points + '\xff' + std::string(12, '\0'), "a.ply: "));
   cases.push_back(
@@ -44,7 +44,7 @@ void add_ply(std::vector<HostileCase>& cases) {
                         ply_header("ascii", "4000000000") + "0 0 0\n", "a.ply: "));
   cases.push_back(scene("ply_of_2e64_faces", "a.ply",
                         ply_header("binary_little_endian", "3", "18446744073709551615") + points,
-                        "cut short"));
+                        "truncated"));
   cases.push_back(scene("ply_of_100_gigabytes", "a.ply+", triangle_ply(),
                         "it has 107.4 GB, 4.3 GB is the most"));
   cases.back().arguments.pop_back();
@@ -215,7 +215,7 @@ std::vector<HostileCase> hostile_worlds() {
           world("<model name=\"m\"><link name=\"l\"><visual name=\"v\"><geometry><box><size>1 1 1"
                 "</size></box></geometry><material><script><uri>m.material</uri><name>X</name>"
                 "</script></material></visual></link></model>"),
-          "m.material: cannot be read: it is no file", {{"m.material|", ""}})),
+          "m.material: cannot be read: it is not a file", {{"m.material|", ""}})),
       scene("sdf_of_20001_boxes", "a.world",
             world("<model name=\"m\"><link name=\"l\">" +
                   repeated("<visual><geometry><box/></geometry></visual>", 20'001) +

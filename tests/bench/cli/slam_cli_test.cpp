@@ -202,7 +202,7 @@ TEST_F(SlamCommand, AMapAnswersByTheFactorsThatAreGiven) {
 
 TEST_F(SlamCommand, RefusesWhatItCannotUse) {
   const std::string out = " --out " + path("no");
-  expect_refused(path("nowhere") + out, "is no folder, nor tum:FOLDER");
+  expect_refused(path("nowhere") + out, "is not a folder, nor tum:FOLDER");
   fs::create_directories(folder_ / "empty");
   expect_refused(path("empty") + out, "holds neither rgb.txt nor associations.txt");
   expect_refused(path("room") + out + " --localize", "--localize needs a map");
@@ -212,7 +212,7 @@ TEST_F(SlamCommand, RefusesWhatItCannotUse) {
                  "--robot pepper.yaml: is for scene:FILE");
   EXPECT_NE(run(path("room") + out + " --plain --gamma 2"), 0) << "the one undoes the other";
   std::ofstream(folder_ / "cut.mhmap") << "MHMAP\n";
-  expect_refused(path("room") + out + " --map " + path("cut.mhmap"), "cut short");
+  expect_refused(path("room") + out + " --map " + path("cut.mhmap"), "truncated");
   std::ofstream(folder_ / "bare.yaml") << "track: {min_inliers: 30}\n";
   expect_refused(path("room") + out + " --settings " + path("bare.yaml"), "'camera' is missing");
 }
@@ -270,7 +270,7 @@ TEST_F(SlamCommand, RunsTheProtocolOfTheBench) {
   ASSERT_EQ(run(path("room") + " --seed 3 --protocol --out " + path("held")), 0) << err_;
   EXPECT_EQ(read_file(folder_ / "held/estimate.tum"), by_bench("as_paper", "{}"));
   EXPECT_NE(out_.find("49 of 49 frames tracked (100.0 %)"), std::string::npos) << out_;
-  EXPECT_NE(out_.find("0 restarts, 0 frames dropped; held out and asked for: 1 frame, 100.0 % "
+  EXPECT_NE(out_.find("0 restarts, 0 frames dropped; held-out queries: 1 frame, 100.0 % "
                       "answered, 100.0 % correct, 0.0 % false"),
             std::string::npos)
       << out_;

@@ -12,7 +12,7 @@
 
 namespace mh {
 
-/// What makes a dichromat's picture of linear RGB: the matrices of severity 1 in Machado, Oliveira
+/// What makes a dichromat's image of linear RGB: the matrices of severity 1 in Machado, Oliveira
 /// and Fernandes, A Physiologically-based Model for Simulation of Color Vision Deficiency, IEEE
 /// TVCG 15(6), 2009. The first is everybody else.
 inline std::array<Eigen::Matrix3d, 4> color_visions() {

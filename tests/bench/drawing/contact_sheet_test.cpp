@@ -37,7 +37,7 @@ TEST(LookAt, PutsTheTargetInTheMiddleAndStandsUpright) {
     const SE3 pose = look_at(eye, target);
     const Eigen::Vector3d seen = pose.inverse() * target;
     EXPECT_LT((seen - Eigen::Vector3d(0, 0, (target - eye).norm())).norm(), 1e-12);
-    EXPECT_NEAR(pose.rotation()(2, 0), 0, 1e-12) << "the picture's rows are level";
+    EXPECT_NEAR(pose.rotation()(2, 0), 0, 1e-12) << "the image's rows are level";
     EXPECT_LT(pose.rotation()(2, 1), 0) << "and run down";
     EXPECT_NEAR(pose.rotation().determinant(), 1, 1e-12);
   }
@@ -99,7 +99,7 @@ TEST(ViewsOf, LooksFromTheCornersOverThePlaceThatAllOfThemSee) {
 // Beside each other in this order: color, depth, labels; below them the class by its color.
 TEST(ContactSheet, ShowsColorDepthAndLabelsFromLeftToRight) {
   const View view{"one", {80, 60, kPaint}, {80, 60, 2.0F}, {80, 60, *class_by_name("chair")}};
-  const cv::Mat picture = draw_contact_sheet("title", {view, view});
+  const cv::Mat image = draw_contact_sheet("title", {view, view});
   const Rgb8 chair = class_color(*class_by_name("chair"));
   const auto box_of = [&](const cv::Mat& part, Rgb8 c) {
     cv::Mat mask;
@@ -109,16 +109,16 @@ TEST(ContactSheet, ShowsColorDepthAndLabelsFromLeftToRight) {
     cv::findNonZero(mask, found);
     return found.empty() ? cv::Rect() : cv::Rect(cv::boundingRect(found));
   };
-  const cv::Rect color = box_of(picture, kPaint);
+  const cv::Rect color = box_of(image, kPaint);
   ASSERT_GT(color.area(), 0);
-  const cv::Mat rows = picture.rowRange(color.y, color.y + color.height);
+  const cv::Mat rows = image.rowRange(color.y, color.y + color.height);
   const cv::Rect labels = box_of(rows, chair);
   EXPECT_NEAR(labels.width, color.width, 2);
   EXPECT_NEAR(labels.height, color.height, 2);
   EXPECT_GT(labels.x, color.x + 2 * color.width) << "the depth lies between";
   EXPECT_LT(labels.x, color.x + 2.2 * color.width);
-  EXPECT_LE(labels.x + labels.width, picture.cols - color.x + 2) << "margins are alike";
-  const cv::Mat below = picture.rowRange(color.y + color.height + 30, picture.rows);
+  EXPECT_LE(labels.x + labels.width, image.cols - color.x + 2) << "margins are alike";
+  const cv::Mat below = image.rowRange(color.y + color.height + 30, image.rows);
   EXPECT_GT(box_of(below, chair).area(), 50) << "the legend";
 }
 

@@ -32,9 +32,9 @@ TEST(ColorDistance, IsThatOfCieLab) {
 TEST(DepthColors, WhatDidNotReturnIsLikeNothingThatDidAndNotVoid) {
   Grid2d<float> depth_m(101, 1);
   for (int x = 0; x < 101; ++x) depth_m(x, 0) = 0.1F * static_cast<float>(x);
-  const cv::Mat picture = depth_colors(depth_m, 0.4F, 8.0F);
+  const cv::Mat image = depth_colors(depth_m, 0.4F, 8.0F);
   const auto at = [&](int x) {
-    const cv::Vec3b bgr = picture.at<cv::Vec3b>(0, x);
+    const cv::Vec3b bgr = image.at<cv::Vec3b>(0, x);
     return Rgb8{bgr[2], bgr[1], bgr[0]};
   };
   for (int x = 1; x < 101; ++x) EXPECT_GT(color_distance(at(x), at(0)), 40) << depth_m(x, 0);

@@ -10,11 +10,11 @@
 namespace mh {
 namespace {
 
-/// Middles of the dots of the first color, by row and column, in each panel of a picture; the
+/// Middles of the dots of the first color, by row and column, in each panel of an image; the
 /// legend's stand among them.
-std::vector<cv::Point2d> dots_in(const cv::Mat& picture) {
+std::vector<cv::Point2d> dots_in(const cv::Mat& image) {
   cv::Mat is_dot, components, statistics, middles;
-  cv::inRange(picture, cv::Scalar(160, 99, 11), cv::Scalar(200, 139, 51), is_dot);  // BGR
+  cv::inRange(image, cv::Scalar(160, 99, 11), cv::Scalar(200, 139, 51), is_dot);  // BGR
   const int count = cv::connectedComponentsWithStats(is_dot, components, statistics, middles);
   std::vector<cv::Point2d> dots;
   for (int k = 1; k < count; ++k)
@@ -36,8 +36,8 @@ Plot square_of_dots() {
 
 // The corners of the data are those of the axes, for 0, 10 and 20 are round numbers.
 TEST(DrawPlots, DotsStandWhereTheirNumbersSay) {
-  const cv::Mat picture = draw_plots("", {square_of_dots()});
-  const std::vector<cv::Point2d> dots = dots_in(picture);
+  const cv::Mat image = draw_plots("", {square_of_dots()});
+  const std::vector<cv::Point2d> dots = dots_in(image);
   ASSERT_EQ(dots.size(), 6u) << "five and the legend's";
   const double bottom = 344, top = 108, left = 82, right = 450;
   const cv::Point2d low_left = nearest(dots, {left, bottom}),

@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "bench/inputs/run_key.hpp"
+#include "scenes/image_file.hpp"
 #include "scenes/load.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
-#include "scenes/picture_file.hpp"
 #include "slam/core/files.hpp"
 #include "source_dir.hpp"
 #include "tests/scenes/temporary_folder.hpp"
@@ -28,7 +28,7 @@ void put(const fs::path& file, const std::string& content) {
   write_atomically(file, content);
 }
 
-std::string picture(std::uint8_t shade) {
+std::string image(std::uint8_t shade) {
   Grid2d<Rgb8> colors(16, 16);
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 16; ++x)
@@ -41,8 +41,8 @@ std::string picture(std::uint8_t shade) {
 void put_obj(const fs::path& folder) {
   put(folder / "look.mtl",
       "newmtl Wood\nKd 0.9 0.8 0.7\nmap_Kd wood.jpg\nmap_d mask.jpg\nnewmtl Floor\nKd 0 0 1\n");
-  put(folder / "wood.jpg", picture(40));
-  put(folder / "mask.jpg", picture(90));
+  put(folder / "wood.jpg", image(40));
+  put(folder / "mask.jpg", image(90));
   put(folder / "a.obj",
       "mtllib look.mtl\nv 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nvt 0 0\nvt 1 0\nvt 0 1\n"
       "o table_02\nusemtl Wood\nf 1/1 2/2 4/3\nusemtl Floor\nf 1/1 2/2 3/3\n");
@@ -51,7 +51,7 @@ void put_obj(const fs::path& folder) {
 void put_gltf(const fs::path& folder) {
   const float numbers[] = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 1};  // 3 positions, 3 uvs
   put(folder / "b.bin", {reinterpret_cast<const char*>(numbers), sizeof numbers});
-  put(folder / "wall.jpg", picture(120));
+  put(folder / "wall.jpg", image(120));
   put(folder / "b.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
     "nodes":[{"mesh":0,"name":"wall_1"}],
     "meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"material":0}]}],
@@ -72,7 +72,7 @@ void put_glb(const fs::path& folder) {
 }
 
 void put_dae(const fs::path& folder) {
-  put(folder / "cloth.jpg", picture(200));
+  put(folder / "cloth.jpg", image(200));
   put(folder / "d.dae", R"(<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><unit meter="1"/><up_axis>Z_UP</up_axis></asset>
@@ -288,7 +288,7 @@ TEST_P(SceneKeys, EveryByteThatWasReadIsInThem) {
   const std::set<std::string> read = observed(before->record, FileObservation::Kind::kRead);
   for (const std::string& file : GetParam().read) EXPECT_TRUE(read.contains(file)) << file;
   constexpr std::size_t kFlips = 12;
-  std::size_t told = 0;
+  std::size_t reported = 0;
   for (const std::string& file : read) {
     const std::string content = read_file(folder_ / file);
     const std::size_t step = std::max<std::size_t>(1, content.size() / kFlips);
@@ -301,13 +301,13 @@ TEST_P(SceneKeys, EveryByteThatWasReadIsInThem) {
       put(folder_ / file, others[i]);
       const auto after = load(scene());
       if (!after) continue;
-      ++told;
+      ++reported;
       EXPECT_NE(after->run_key, before->run_key) << file << " change " << i;
       EXPECT_NE(after->map_key, before->map_key) << file << " change " << i;
     }
     put(folder_ / file, content);
   }
-  EXPECT_GT(told, 0U);
+  EXPECT_GT(reported, 0U);
   EXPECT_EQ(load(scene())->run_key, before->run_key);
 }
 

@@ -207,17 +207,17 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"slam: {semantics: {gamma: much}}\n",
                 "slam.semantics.gamma: 'much' is not a number"},
         BadLine{"slam: {semantics: {overlap: both}}\n",
-                "'both' is none of labels, augmented, words"},
+                "'both' is not one of labels, augmented, words"},
         BadLine{"slam: {semantics: {delta: 1}}\n", "unknown key 'slam.semantics.delta'"},
         BadLine{"slam: 3\n", "must be a mapping"},
-        BadLine{"compare: [[semantic, plian]]\n", "'plian' is none of the suite's systems"},
+        BadLine{"compare: [[semantic, plian]]\n", "'plian' is not one of the suite's systems"},
         BadLine{"compare: [[semantic]]\n", "must be two systems"},
         BadLine{"compare: [[plain, plain]]\n", "compares a system with itself"},
         BadLine{"compare: [[semantic, plain], [semantic, plain]]\n", "stands twice"},
         BadLine{"parameters: {map: fixed}\n", "varies nothing"},
         BadLine{"parameters: {semantics.alpha: [0.5]}\n", "key 'map' is missing"},
         BadLine{"parameters: {map: new, semantics.alpha: [0.5]}\n",
-                "'new' is none of fixed, rebuilt"},
+                "'new' is not one of fixed, rebuilt"},
         BadLine{"parameters: {map: fixed, semantics.alpha: [0.5, 1.2]}\n",
                 "parameters.semantics.alpha[1]: 1.2 is outside [0, 1)"},
         BadLine{"parameters: {map: fixed, semantics.xi: [0.5]}\n",
@@ -227,13 +227,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"parameters: {map: fixed, semantics.gamma: [1, 1]}\n", "'1' stands twice"},
         BadLine{"parameters: {map: fixed, semantics.gamma: []}\n", "is empty"},
         BadLine{"parameters: {map: fixed, delta: [1]}\n",
-                "parameters.delta: is no setting of SLAM"},
+                "parameters.delta: is not a setting of SLAM"},
         BadLine{"parameters: {map: fixed, semantics.gama: [1]}\n", "semantics.gamma"},
         BadLine{"parameters: {map: fixed, features.count: [500]}\n", "needs `map: rebuilt`"},
         BadLine{"parameters: {map: rebuilt, features.count: [5]}\n", "5 is outside [10, 20000]"},
         BadLine{"parameters: {map: rebuilt, sobol: {points: 2, ranges: {loop.enabled: [false, "
                 "true]}}}\n",
-                "is no number"},
+                "is not a number"},
         BadLine{"parameters: {map: fixed, sobol: {points: 4, ranges: {semantics.xi: [2, 1]}}}\n",
                 "2 is not below 1"},
         BadLine{
@@ -242,9 +242,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"parameters: {map: fixed, sobol: {points: 4, ranges: {}}}\n", "names no setting"},
         BadLine{"non_inferiority_margin: 2\n", "2 is outside [0, 1]"},
         BadLine{"protocol: {test_interval: 1}\n", "would hold out every frame"},
-        BadLine{"protocol: {reset: all}\n", "'all' is none of counter, map"},
+        BadLine{"protocol: {reset: all}\n", "'all' is not one of counter, map"},
         BadLine{"trials: 0\n", "trials: 0 is outside"},
-        BadLine{"trials: 1.5\n", "trials: '1.5' is not a whole number"},
+        BadLine{"trials: 1.5\n", "trials: '1.5' is not an integer"},
         BadLine{"name: a/b\n", "'a/b' cannot name a folder"},
         BadLine{"seed: -1\n", "seed: -1 is outside"}));
 
@@ -575,11 +575,11 @@ TEST_F(SuiteFile, TheProgramsOfACommandAreSeenAsTheShellReadsThem) {
         "`echo ./prog.sh`", "./pro?.sh", "$MH_NOT_SET/prog.sh", "cd `dirname x` && ./prog.sh"})
     EXPECT_EQ(seen(command), "warned") << command;
   EXPECT_EQ(seen("cd sub && echo ready"), "") << "the shell's own words alone";
-  OutsideProgram told{.name = "vo", .command = "cd sub && ./prog.sh", .folder = folder_};
-  told.inputs = {"sub/prog.sh"};
-  EXPECT_EQ(unseen_program(told), "");
-  ASSERT_EQ(files_of(told).size(), 1u);
-  EXPECT_EQ(files_of(told)[0].file, folder_ / "sub/prog.sh");
+  OutsideProgram reported{.name = "vo", .command = "cd sub && ./prog.sh", .folder = folder_};
+  reported.inputs = {"sub/prog.sh"};
+  EXPECT_EQ(unseen_program(reported), "");
+  ASSERT_EQ(files_of(reported).size(), 1u);
+  EXPECT_EQ(files_of(reported)[0].file, folder_ / "sub/prog.sh");
   const std::string home = std::getenv("HOME") == nullptr ? "/" : std::getenv("HOME");
   setenv("HOME", folder_.c_str(), 1);
   EXPECT_EQ(seen("~/prog.sh"), "prog.sh;");

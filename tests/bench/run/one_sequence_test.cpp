@@ -169,22 +169,22 @@ TEST_F(Folder, FromFileAndFromMemoryGiveTheSameBits) {
 TEST_F(Folder, AFrameThatCannotBeReadOrIsOfAnotherSizeIsSkippedAndCounted) {
   write(30);
   const auto sequence = open_tum_folder(folder_, recorded_camera(settings()));
-  const auto pictures = load_tum_folder(folder_);
-  std::ofstream(pictures[10].color) << "no picture";
-  fs::remove(pictures[12].depth);
-  // A picture of a quarter of the size in place of another.
+  const auto images = load_tum_folder(folder_);
+  std::ofstream(images[10].color) << "no image";
+  fs::remove(images[12].depth);
+  // An image of a quarter of the size in place of another.
   Camera small = BoxRoom::camera();
   small.width_px /= 2;
   small.height_px /= 2;
   small.cx_px /= 2;
   small.cy_px /= 2;
   TumWriter other(folder_ / "small", small);
-  other.add({pictures[14].stamp_ns,
+  other.add({images[14].stamp_ns,
              Grid2d<Rgb8>(small.width_px, small.height_px),
              Grid2d<float>(small.width_px, small.height_px, 1.0F),
              {}});
   other.finish();
-  fs::copy_file(load_tum_folder(folder_ / "small")[0].color, pictures[14].color,
+  fs::copy_file(load_tum_folder(folder_ / "small")[0].color, images[14].color,
                 fs::copy_options::overwrite_existing);
 
   SlamState state = start();
@@ -201,7 +201,7 @@ TEST_F(Folder, AFrameThatCannotBeReadOrIsOfAnotherSizeIsSkippedAndCounted) {
   EXPECT_NE(result.csv.find("skipped"), std::string::npos);
 }
 
-TEST_F(Folder, ACameraThatDoesNotFitThePicturesIsAnErrorAtOnce) {
+TEST_F(Folder, ACameraThatDoesNotFitTheImagesIsAnErrorAtOnce) {
   write(30);
   Settings wrong = settings();
   wrong.camera.width_px = 640;

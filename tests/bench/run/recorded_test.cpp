@@ -220,9 +220,9 @@ TEST_F(Recorded, ATruthOfOtherMomentsIsAskedBetweenThem) {
 TEST_F(Recorded, FramesThatCannotBeUsedAreSkippedAndCounted) {
   record(room(), "tum", 0, 70);
   const std::vector<RecordedFrame> files = load_tum_folder(room());
-  write(files[10].color, "no picture");
+  write(files[10].color, "no image");
   fs::remove(files[12].depth);
-  write(files[29].color, "no picture");  // a test frame
+  write(files[29].color, "no image");  // a test frame
   // The second half of another size; then a stamp that repeats and one that goes back.
   Camera small = BoxRoom::camera();
   small.width_px /= 2;
@@ -263,7 +263,7 @@ TEST_F(Recorded, FramesThatCannotBeUsedAreSkippedAndCounted) {
 
 TEST_F(Recorded, ARecordingOfWhichNothingCanBeReadIsOneError) {
   record(room(), "tum", 0, 15);
-  for (const RecordedFrame& frame : load_tum_folder(room())) write(frame.depth, "no picture");
+  for (const RecordedFrame& frame : load_tum_folder(room())) write(frame.depth, "no image");
   try {
     run();
     FAIL() << "mapped";
@@ -313,7 +313,7 @@ TEST_F(Recorded, WhatCannotBeRunIsToldBeforeAnythingIsWritten) {
   settings.replace(settings.find("nFeatures: 1000"), 15, "nFeatures: 1700");
   write(folder_ / "settings.yaml", settings);
   suite.environments[0].settings = folder_ / "settings.yaml";
-  for (const RecordedFrame& frame : load_tum_folder(room())) write(frame.color, "no picture");
+  for (const RecordedFrame& frame : load_tum_folder(room())) write(frame.color, "no image");
   expect_told("rgb");
   EXPECT_TRUE(std::ranges::any_of(said, [](const std::string& line) {
     return line.find("its settings of SLAM do not count in a suite") != std::string::npos;
@@ -355,7 +355,7 @@ TEST_F(Recorded, ACutRecordingSaysSo) {
 // ----------------------------------------------------------------------------------------
 
 /// Each file below a folder with one byte changed, in turn: the key is another, or nothing can be
-/// read any more. What is no part of the recording changes nothing.
+/// read any more. What is not part of the recording changes nothing.
 void expect_all_count(const fs::path& folder, const std::function<std::string()>& key,
                       const std::function<bool(const fs::path&)>& counts) {
   const std::string before = key();
@@ -393,7 +393,7 @@ TEST_F(Recorded, TheKeyOfARunHoldsEveryByteOfATumFolder) {
       });
   // What a run is built of is what its key was made of.
   EXPECT_EQ(run_key(spec_, world().inputs), key());
-  // Where it lies is no part of it.
+  // Where it lies is not part of it.
   const std::string before = key();
   fs::create_directories(folder_ / "elsewhere");
   fs::rename(room(), folder_ / "elsewhere" / "room");

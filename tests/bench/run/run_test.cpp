@@ -32,7 +32,7 @@
 namespace mh {
 namespace {
 
-/// Pictures that are a function of the camera's place.
+/// Images that are a function of the camera's place.
 class FakeRenderer : public Renderer {
  public:
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
@@ -450,9 +450,9 @@ TEST(Sweep, TheBestPointIsComparedWithTheSuitesOwnSettings) {
   EXPECT_NE(table.find("held_out: 100.00% at each of 4 points"), std::string::npos) << table;
   runs[0].points[0].held_out = runs[0].points[2].held_out;
   EXPECT_NE(results_table(place.suite, runs).find("; 2 points are equal\n"), std::string::npos);
-  const cv::Mat picture = draw_sweep(place.suite, rows, results[0]);
-  EXPECT_GT(picture.cols, 1000);
-  EXPECT_EQ(sweep_picture_name(place.suite, results[0]), "sweep-semantic-exact-fake.png");
+  const cv::Mat image = draw_sweep(place.suite, rows, results[0]);
+  EXPECT_GT(image.cols, 1000);
+  EXPECT_EQ(sweep_image_name(place.suite, results[0]), "sweep-semantic-exact-fake.png");
 }
 
 TEST(Results, WhatWasNotAskedIsADashNotZeroPercent) {
@@ -587,20 +587,20 @@ TEST(Topdown, FailuresLieOnTopHeadingsShowAndThePathsCanBeTold) {
     asked = {first, second};
     return draw_topdown(place.world, run, QuerySet::kSecondTour);
   };
-  const cv::Mat picture = drawn(answered, failed);
-  const auto plan = picture.rowRange(80, picture.rows - 130);
+  const cv::Mat image = drawn(answered, failed);
+  const auto plan = image.rowRange(80, image.rows - 130);
   const auto pixels_of = [&](const cv::Mat& of, cv::Scalar bgr) {
     cv::Mat mask;
     cv::inRange(of, bgr, bgr, mask);
     return cv::countNonZero(mask);
   };
-  EXPECT_EQ(cv::norm(picture, drawn(failed, answered)), 0) << "the order of queries decides";
+  EXPECT_EQ(cv::norm(image, drawn(failed, answered)), 0) << "the order of queries decides";
   EXPECT_GT(pixels_of(plan, {150, 140, 140}), 10) << "the failure is hidden";
   QueryScore turned = failed;
   turned.true_world_from_camera =
       SE3(Eigen::AngleAxisd(1, Eigen::Vector3d::UnitZ()).toRotationMatrix() * level,
           here.translation());
-  EXPECT_GT(cv::norm(picture, drawn(answered, turned)), 0) << "no heading";
+  EXPECT_GT(cv::norm(image, drawn(answered, turned)), 0) << "no heading";
   run.estimate = place.world.simulated->mapping.camera;  // a path that is just right
   run.frames.dock_from_estimate = SE3();
   const cv::Mat both = drawn(answered, failed);
@@ -637,7 +637,7 @@ TEST(Topdown, FurnitureIsCutAt40CmAndWallsAt120CmAboveTheFloor) {
 }
 
 // What the legend says of the two paths is the farthest in the plane, whichever way; height does
-// not count. Its first line stands 84 to 54 px above the picture's lower edge.
+// not count. Its first line stands 84 to 54 px above the image's lower edge.
 TEST(Topdown, TheLegendTellsHowFarThePathsAreApart) {
   Place place;
   RunResult run = place.run()[0];
@@ -649,8 +649,8 @@ TEST(Topdown, TheLegendTellsHowFarThePathsAreApart) {
       pose.world_from_camera =
           SE3(pose.world_from_camera.rotation(), pose.world_from_camera.translation() + off);
     }
-    const cv::Mat picture = draw_topdown(place.world, run, QuerySet::kSecondTour);
-    return picture.rowRange(picture.rows - 84, picture.rows - 54).clone();
+    const cv::Mat image = draw_topdown(place.world, run, QuerySet::kSecondTour);
+    return image.rowRange(image.rows - 84, image.rows - 54).clone();
   };
   const auto of = [&](double x, double y, double z) {
     const Eigen::Vector3d off(x, y, z);
@@ -802,17 +802,18 @@ TEST(TimesTable, SaysInWhichSittingsItWasMeasuredAndShowsThePlainSystemOnce) {
   const Place place;
   std::vector<RunResult> runs = place.run();
   for (RunResult& run : runs)
-    run.circumstances = {.host = "a", .sitting = "2026-01-01T00:00:00Z", .jobs = 2, .load = 0.5};
+    run.circumstances = {
+        .host = "a", .session_start = "2026-01-01T00:00:00Z", .jobs = 2, .load = 0.5};
   const std::string one = times_table(place.suite, runs);
-  EXPECT_NE(one.find("measured on a in 1 sitting, 2 jobs side by side, load per processor 0.5\n"),
+  EXPECT_NE(one.find("measured on a in 1 session, 2 jobs side by side, load per processor 0.5\n"),
             std::string::npos)
       << one;
   EXPECT_EQ(one.find("plain"), one.rfind("plain")) << one;
 
   runs.back().circumstances = {
-      .host = "b", .sitting = "2026-01-01T00:00:00Z", .jobs = 1, .load = 2};
+      .host = "b", .session_start = "2026-01-01T00:00:00Z", .jobs = 1, .load = 2};
   const std::string two = times_table(place.suite, runs);
-  EXPECT_NE(two.find("measured on a, b in 2 sittings, 1 to 2 jobs side by side, load per processor "
+  EXPECT_NE(two.find("measured on a, b in 2 sessions, 1 to 2 jobs side by side, load per processor "
                      "0.5 to 2.0: rows need not compare\n"),
             std::string::npos)
       << two;

@@ -333,7 +333,7 @@ TEST_F(StoreFile, ARunThatMetAFullDiskIsNoFailure) {
   options.executable = program;
   options.work_folder = folder_;
   options.arguments = [](const Job&, const fs::path&) { return std::vector<std::string>(); };
-  EXPECT_THROW(work_off(store, {{some_run("a").spec, "k"}}, options), DiskFullError);
+  EXPECT_THROW(run_pending(store, {{some_run("a").spec, "k"}}, options), DiskFullError);
   EXPECT_EQ(store.status("k"), std::nullopt);
   EXPECT_TRUE(store.claim("k")) << "its claim was kept";
 }
@@ -350,7 +350,7 @@ TEST_F(StoreFile, BadInputFoundLateIsToldAsSuchAndStagesAreSaid) {
   options.work_folder = folder_;
   options.arguments = [](const Job&, const fs::path&) { return std::vector<std::string>(); };
   options.say = [&](std::string_view line) { said.emplace_back(line); };
-  work_off(store, {{some_run("a").spec, "k"}}, options);
+  run_pending(store, {{some_run("a").spec, "k"}}, options);
   EXPECT_EQ(store.error("k"), std::string(kBadInputMark) + "x.ply: no floor");
   EXPECT_EQ(said, (std::vector<std::string>{"a: baking the light of a room",
                                             "a: failed: bad input: x.ply: no floor"}));
@@ -381,12 +381,12 @@ TEST_F(StoreFile, TheWorkDoneIsTheRunsThatAreSettled) {
       seen.push_back(now);
     to_go = p.to_go_s.has_value();
   };
-  work_off(store,
-           {{some_run("a").spec, "done"},
-            {some_run("b").spec, "failed"},
-            {some_run("c").spec, "well"},
-            {some_run("d").spec, "badly"}},
-           options);
+  run_pending(store,
+              {{some_run("a").spec, "done"},
+               {some_run("b").spec, "failed"},
+               {some_run("c").spec, "well"},
+               {some_run("d").spec, "badly"}},
+              options);
   EXPECT_EQ(seen, (std::vector<Counts>{
                       {0, 0, 0.0}, {1, 0, 0.25}, {1, 1, 0.5}, {2, 1, 0.75}, {2, 2, 1.0}}));
   EXPECT_FALSE(to_go) << "nothing is left to be waited for";
@@ -484,7 +484,7 @@ TEST_F(StoreFile, AFailureStaysUntilItIsForgotten) {
   EXPECT_FALSE(store.status("k"));
   store.put("k", some_run("a"), {});
   store.forget_failure("k");
-  EXPECT_EQ(store.status("k"), RunStatus::kDone) << "a result is no failure";
+  EXPECT_EQ(store.status("k"), RunStatus::kDone) << "a result is not a failure";
 }
 
 TEST_F(StoreFile, MergingTakesOverWhatIsMissingOnce) {
@@ -622,9 +622,9 @@ TEST_F(StoreFile, WhatAnOutsideProgramDoesNotTellIsNull) {
   EXPECT_FALSE(store.load("kx", run.spec).mapping.calls[0].inliers);
   const QueryScore back = store.load("kx", run.spec).points[0].held_out[0];
   EXPECT_EQ(back.answer.candidates, query.answer.candidates);
-  const auto told = results_json(suite(), std::vector{store.load("kx", run.spec)})["runs"][0];
-  EXPECT_TRUE(told["points"][0]["settings"].is_null());
-  EXPECT_TRUE(told["mapping"]["matchers"].is_null());
+  const auto reported = results_json(suite(), std::vector{store.load("kx", run.spec)})["runs"][0];
+  EXPECT_TRUE(reported["points"][0]["settings"].is_null());
+  EXPECT_TRUE(reported["mapping"]["matchers"].is_null());
 }
 
 TEST_F(StoreFile, ADamagedResultIsNamedWithItsFile) {

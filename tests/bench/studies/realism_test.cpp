@@ -22,7 +22,7 @@ TEST(Percentile, InterpolatesBetweenNeighbors) {
   EXPECT_TRUE(std::isnan(percentile({}, 0.5)));
 }
 
-TEST(MeasureImage, OfABlankPictureIsBlank) {
+TEST(MeasureImage, OfABlankImageIsBlank) {
   const ImageStatistics s = measure_image(cv::Mat(480, 640, CV_8UC1, cv::Scalar(90)));
   EXPECT_EQ(s[kFast20], 0);
   EXPECT_EQ(s[kOrb], 0);
@@ -65,9 +65,9 @@ TEST(MeasureImage, OfNoiseWithAPowerLawHasItsSlope) {
       spectrum.at<cv::Vec2f>(y, x) = {static_cast<float>(a * std::cos(p)),
                                       static_cast<float>(a * std::sin(p))};
     }
-  cv::Mat picture, gray;
-  cv::idft(spectrum, picture, cv::DFT_REAL_OUTPUT | cv::DFT_SCALE);
-  cv::normalize(picture, gray, 0, 255, cv::NORM_MINMAX, CV_8U);
+  cv::Mat image, gray;
+  cv::idft(spectrum, image, cv::DFT_REAL_OUTPUT | cv::DFT_SCALE);
+  cv::normalize(image, gray, 0, 255, cv::NORM_MINMAX, CV_8U);
   EXPECT_NEAR(measure_image(gray)[kSlope], -3.0, 0.1);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `modelhouse sensors plot`: each line is a published formula, each row of dots was measured on the
-// model. The one must lie on the other, or the picture shows what the model does not do.
+// model. The one must lie on the other, or the image shows what the model does not do.
 #include "bench/studies/figures.hpp"
 
 #include <algorithm>

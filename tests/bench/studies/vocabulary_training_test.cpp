@@ -57,32 +57,32 @@ TEST(TrainVocabulary, RefusesNonsense) {
   }
 }
 
-class PictureList : public testing::Test {
+class ImageList : public testing::Test {
  protected:
-  PictureList() : folder_(fs::path(testing::TempDir()) / "picture_list") {
+  ImageList() : folder_(fs::path(testing::TempDir()) / "image_list") {
     fs::remove_all(folder_);
-    make_output_folder(folder_ / "pictures");
+    make_output_folder(folder_ / "images");
     for (int i = 0; i < 3; ++i) {
-      cv::Mat picture(240, 320, CV_8UC3);
-      for (int y = 0; y < picture.rows; ++y)
-        for (int x = 0; x < picture.cols; ++x) {
+      cv::Mat image(240, 320, CV_8UC3);
+      for (int y = 0; y < image.rows; ++y)
+        for (int x = 0; x < image.cols; ++x) {
           const auto block = static_cast<std::uint64_t>(y / 8 * 40 + x / 8);
           const auto gray = static_cast<std::uint8_t>(RandomStream(i).below(block, 256));
-          picture.at<cv::Vec3b>(y, x) = {gray, gray, gray};
+          image.at<cv::Vec3b>(y, x) = {gray, gray, gray};
         }
-      cv::imwrite((folder_ / "pictures" / fmt::format("{}.png", i)).string(), picture);
+      cv::imwrite((folder_ / "images" / fmt::format("{}.png", i)).string(), image);
     }
   }
-  ~PictureList() override { fs::remove_all(folder_); }
+  ~ImageList() override { fs::remove_all(folder_); }
 
   std::vector<fs::path> listed(const std::string& text) const {
     write_atomically(folder_ / "list.txt", text);
-    return load_picture_list(folder_ / "list.txt");
+    return load_image_list(folder_ / "list.txt");
   }
   std::string fault_of(const std::string& text) const {
     try {
       VocabularyTraining config = small();
-      config.pictures = listed(text);
+      config.images = listed(text);
       train_vocabulary(config);
     } catch (const InputError& error) {
       return error.what();
@@ -93,38 +93,37 @@ class PictureList : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(PictureList, IsTrainedOnAtAnyThreadCount) {
+TEST_F(ImageList, IsTrainedOnAtAnyThreadCount) {
   VocabularyTraining config = small();
-  config.pictures = listed("# three\npictures/0.png\n\n  pictures/1.png  # one\r\npictures/2.png");
-  ASSERT_EQ(config.pictures.size(), 3U);
+  config.images = listed("# three\nimages/0.png\n\n  images/1.png  # one\r\nimages/2.png");
+  ASSERT_EQ(config.images.size(), 3U);
   config.threads = 1;
   const Vocabulary one = train_vocabulary(config);
   EXPECT_EQ(one.training_images(), 3U);
   EXPECT_GT(one.training_descriptors(), 500U);
   config.threads = 3;
   EXPECT_EQ(train_vocabulary(config).digest(), one.digest());
-  std::swap(config.pictures[0], config.pictures[2]);
+  std::swap(config.images[0], config.images[2]);
   EXPECT_NE(train_vocabulary(config).digest(), one.digest());  // the order is part of the input
 }
 
-TEST_F(PictureList, FaultsAreNamed) {
+TEST_F(ImageList, FaultsAreNamed) {
   const std::string list = (folder_ / "list.txt").string();
-  EXPECT_EQ(fault_of("pictures/0.png\npictures/9.png\n"),
-            list + ":2: no such picture: pictures/9.png");
-  EXPECT_EQ(fault_of("# nothing\n"), list + ": names no picture");
-  write_atomically(folder_ / "text.png", "no picture");
+  EXPECT_EQ(fault_of("images/0.png\nimages/9.png\n"), list + ":2: no such image: images/9.png");
+  EXPECT_EQ(fault_of("# nothing\n"), list + ": names no image");
+  write_atomically(folder_ / "text.png", "no image");
   EXPECT_EQ(fault_of("text.png"),
-            (folder_ / "text.png").string() + ": is no picture, or a damaged one");
+            (folder_ / "text.png").string() + ": is not an image, or a damaged one");
 }
 
 // A plane 2 m before the camera, seen from two places.
-TEST(Overlap, IsTheShareThatTheOtherPictureShows) {
+TEST(Overlap, IsTheShareThatTheOtherImageShows) {
   const Camera camera;
   PlacedView a;
   a.depth_m = Grid2d<float>(80, 60, 2.0F);
   PlacedView b = a;
   EXPECT_DOUBLE_EQ(overlap(a, b, camera), 1.0);
-  // Half a picture to the side: 320 px at 2 m.
+  // Half an image to the side: 320 px at 2 m.
   b.world_from_camera = SE3(Eigen::Matrix3d::Identity(), {320 * 2.0 / camera.fx_px, 0, 0});
   EXPECT_NEAR(overlap(a, b, camera), 0.5, 0.02);
   b.world_from_camera = SE3(Eigen::Matrix3d::Identity(), {0, 0, 5});  // behind it
@@ -176,7 +175,7 @@ TEST(ScoreVocabulary, FindsViewsOfOnePlaceByTheirWords) {
 }
 
 // The file that comes with the project is whole, and its words are used evenly enough to tell
-// pictures apart: few occur in more than half of them (weight below ln 2).
+// images apart: few occur in more than half of them (weight below ln 2).
 TEST(Assets, VocabularyHoldsWordsThatTell) {
   const Vocabulary vocabulary = Vocabulary::load(MH_SOURCE_DIR "/assets/vocabulary.mhvoc");
   EXPECT_GT(vocabulary.size(), 95000U);

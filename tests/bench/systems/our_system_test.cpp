@@ -24,7 +24,7 @@ RgbdFrame frame(std::size_t i) {
 
 SlamConfig settings() {
   SlamConfig config;
-  config.features.count = 500;  // the pictures are a quarter of the usual size
+  config.features.count = 500;  // the images are a quarter of the usual size
   return config;
 }
 

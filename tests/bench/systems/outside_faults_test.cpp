@@ -176,10 +176,10 @@ TEST_F(OutsideFaults, AFailureReadsTheSameInAnyFolder) {
   EXPECT_HOLDS(dataset, "(echo cannot open {trajectory} in");
   EXPECT_HOLDS(dataset, "it last wrote: cannot open trajectory.txt in .");
   EXPECT_EQ(trajectory_error(writes("what is this\\n")).find(folder_.string()), std::string::npos);
-  // Pictures lie in a folder whose name is drawn by chance.
-  const std::string picture =
+  // Images lie in a folder whose name is drawn by chance.
+  const std::string image =
       track_error(says(R"(echo "$line" | sed 's/.*"color":"//; s/".*//' >&2; exit 1)"));
-  EXPECT_HOLDS(picture, "it last wrote: color.ppm");
+  EXPECT_HOLDS(image, "it last wrote: color.ppm");
 }
 
 TEST_F(OutsideFaults, ATrajectoryThatIsNone) {
@@ -379,8 +379,9 @@ TEST_F(OutsideFaults, AConversationIsGivenTimeToEndWell) {
 
 TEST_F(OutsideFaults, ConversationsThatDoNotBegin) {
   EXPECT_HOLDS(hello_error("exit 4"), "exited with code 4");
-  EXPECT_HOLDS(hello_error("echo Welcome to my SLAM; sleep 60"),
-               "wrote what is no line of JSON: 'Welcome to my SLAM', answering hello (request 1)");
+  EXPECT_HOLDS(
+      hello_error("echo Welcome to my SLAM; sleep 60"),
+      "wrote what is not a line of JSON: 'Welcome to my SLAM', answering hello (request 1)");
   EXPECT_HOLDS(hello_error(R"(echo '{"id":1}'; sleep 60)"), "does not speak protocol 1");
   EXPECT_HOLDS(hello_error(R"(echo '{"id":1,"protocol":2}'; sleep 60)"),
                "does not speak protocol 1");
@@ -405,7 +406,7 @@ TEST_F(OutsideFaults, AnswersThatAreNone) {
   const auto answers = [&](const std::string& json) {
     return track_error(says("echo '" + json + "'; sleep 60"));
   };
-  EXPECT_HOLDS(answers("garbage"), "wrote what is no line of JSON: 'garbage'");
+  EXPECT_HOLDS(answers("garbage"), "wrote what is not a line of JSON: 'garbage'");
   EXPECT_HOLDS(answers(R"({"id":2,"pose":[NaN,0,0,0,0,0,1]})"), "a number that is not finite");
   EXPECT_HOLDS(answers(R"({"id":2,"pose":[1e999,0,0,0,0,0,1]})"), "a number that is too large");
   EXPECT_HOLDS(answers(R"({"id":2,"pose":[null,0,0,0,0,0,1]})"), "pose that is not of numbers");
@@ -483,7 +484,7 @@ TEST_F(OutsideFaults, CommandsAreCheckedBeforeTheyRun) {
   EXPECT_HOLDS(refused(OutsideMode::kTrajectory, " "), "theirs: command: is empty");
   EXPECT_HOLDS(refused(OutsideMode::kTrajectory, "slam {dataset}"), "{trajectory} is missing");
   EXPECT_HOLDS(refused(OutsideMode::kTrajectory, "slam {datset} {trajectory}"),
-               "'{datset}' is none of {dataset}");
+               "'{datset}' is not one of {dataset}");
   EXPECT_HOLDS(refused(OutsideMode::kConversation, "slam {dataset}"), "'{dataset}' is none of");
   EXPECT_EQ(refused(OutsideMode::kTrajectory, "a={b,c}; slam ${HOME} {trajectory}"), "no error");
   EXPECT_EQ(refused(OutsideMode::kConversation, "slam {settings} {seed}"), "no error");

@@ -44,7 +44,7 @@ RunResult some_run() {
   return run;
 }
 
-std::string told(const std::function<void(RunResult&)>& change) {
+std::string reported(const std::function<void(RunResult&)>& change) {
   RunResult changed = some_run();
   change(changed);
   const auto difference = first_difference(some_run(), changed);
@@ -52,29 +52,29 @@ std::string told(const std::function<void(RunResult&)>& change) {
 }
 
 TEST(FirstDifference, NamesWhateverDiffers) {
-  EXPECT_EQ(told([](RunResult&) {}), "none");
-  EXPECT_EQ(told([](RunResult& r) { r.place.scene_digest = 1; }), "run: world: scene differs");
-  EXPECT_EQ(told([](RunResult& r) { r.place.path_digest = 1; }), "run: world: path differs");
+  EXPECT_EQ(reported([](RunResult&) {}), "none");
+  EXPECT_EQ(reported([](RunResult& r) { r.place.scene_digest = 1; }), "run: world: scene differs");
+  EXPECT_EQ(reported([](RunResult& r) { r.place.path_digest = 1; }), "run: world: path differs");
   const auto call = [](auto field, auto value) {
-    return told([=](RunResult& r) { r.mapping.calls[1].*field = value; });
+    return reported([=](RunResult& r) { r.mapping.calls[1].*field = value; });
   };
   const std::string at = "run: mapping: frame 4 (after 2 restarts): ";
   EXPECT_EQ(call(&MappedFrame::index, 5u), at + "order differs");
   EXPECT_EQ(call(&MappedFrame::image_digest, 1u), at + "image differs");
   EXPECT_EQ(call(&MappedFrame::matching_digest, 1u), at + "matching differs");
   EXPECT_EQ(call(&MappedFrame::pose_digest, 1u), at + "pose differs");
-  EXPECT_EQ(told([](RunResult& r) { r.mapping.calls.pop_back(); }),
+  EXPECT_EQ(reported([](RunResult& r) { r.mapping.calls.pop_back(); }),
             "run: mapping: frame 1: order differs");
-  EXPECT_EQ(told([](RunResult& r) {
+  EXPECT_EQ(reported([](RunResult& r) {
               r.estimate[1].world_from_camera = SE3(Eigen::Matrix3d::Identity(), {0, 0, 1e-300});
             }),
             "run: result: frame 4: map differs");
-  EXPECT_EQ(told([](RunResult& r) { r.map_digest = 1; }), "run: result: frame 0: map differs");
+  EXPECT_EQ(reported([](RunResult& r) { r.map_digest = 1; }), "run: result: frame 0: map differs");
 }
 
 TEST(FirstDifference, NamesWhateverDiffersInAQuery) {
   const auto query = [](std::size_t point, auto set, auto field, auto value) {
-    return told([=](RunResult& r) { (r.points[point].*set)[1].answer.*field = value; });
+    return reported([=](RunResult& r) { (r.points[point].*set)[1].answer.*field = value; });
   };
   for (const std::size_t point : {0u, 1u})
     for (const auto& [set, of] : {std::pair(&PointResult::held_out, "run: held_out: frame 59: "),
@@ -85,7 +85,7 @@ TEST(FirstDifference, NamesWhateverDiffersInAQuery) {
       EXPECT_EQ(query(point, set, &QueryAnswer::matching_digest, 1u), at + "matching differs");
       EXPECT_EQ(query(point, set, &QueryAnswer::pose_digest, 1u), at + "pose differs");
     }
-  EXPECT_EQ(told([](RunResult& r) { r.points[1].held_out.pop_back(); }),
+  EXPECT_EQ(reported([](RunResult& r) { r.points[1].held_out.pop_back(); }),
             "run: held_out: frame 0: order differs");
 }
 
@@ -98,8 +98,8 @@ TEST(FirstDifference, IsTheFirstInTheOrderInWhichThingsHappen) {
     r.mapping.calls[1].image_digest = r.mapping.calls[1].matching_digest = 1;
     r.mapping.calls[1].pose_digest = 1;
   };
-  EXPECT_EQ(told(later), "run: mapping: frame 4 (after 2 restarts): image differs");
-  EXPECT_EQ(told([&](RunResult& r) {
+  EXPECT_EQ(reported(later), "run: mapping: frame 4 (after 2 restarts): image differs");
+  EXPECT_EQ(reported([&](RunResult& r) {
               later(r);
               r.mapping.calls[0].pose_digest = 1;
             }),
@@ -248,7 +248,7 @@ TEST(Verify, ExecutesAllRunsTwiceWithOneJobAndWithFourAndComparesThem) {
   std::vector<double> shares;
   bool told_time = false;
   BenchOptions options;
-  options.figures_alone = true;
+  options.metrics_only = true;
   options.say = [&](std::string_view line) {
     if (line.starts_with("executing ") || line.ends_with(" to do")) said.emplace_back(line);
   };

@@ -118,7 +118,7 @@ TEST_F(ScannetFolder, SaysWhichFileIsWrongAndWhichLabelsAreMissing) {
   EXPECT_TRUE(names(notes[0], {"2 of 2 frames", "frame 0"}));
 }
 
-TEST_F(ScannetFolder, BothLayoutsHoldTheSamePictures) {
+TEST_F(ScannetFolder, BothLayoutsHoldTheSameImages) {
   write_scannet_recording(folder_ / "s", camera_, 1, [&](std::size_t i) { return frame(i); });
   const ExactFrame f = frame(0);
   const auto writer = make_sequence_writer("scannet-frames", folder_ / "f", camera_);

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/inputs/recorded_camera.hpp"
-#include "scenes/picture_file.hpp"
+#include "scenes/image_file.hpp"
 #include "scenes/recorded/tum_folder.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/random.hpp"
@@ -90,7 +90,7 @@ TEST_F(TumFolder, NamesWhatIsWrong) {
   const auto frames = load_tum_folder(folder_, &notes);
   ASSERT_EQ(frames.size(), 1u);  // nothing was seen near 0.9 s
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("1 of 2 color pictures have no depth picture"), std::string::npos);
+  EXPECT_NE(notes[0].find("1 of 2 color images have no depth image"), std::string::npos);
   const auto refused = [&](const std::string& part) {
     try {
       read_frame(frames[0], {camera_, 5000});
@@ -100,11 +100,11 @@ TEST_F(TumFolder, NamesWhatIsWrong) {
     }
   };
   refused("a.png: cannot be read: no such file");
-  std::ofstream(folder_ / "a.png") << "no picture";
-  refused("a.png: is no picture, or a damaged one");
+  std::ofstream(folder_ / "a.png") << "no image";
+  refused("a.png: is not an image, or a damaged one");
   const std::string whole = encode_png(Grid2d<std::uint8_t>(8, 6));
   std::ofstream(folder_ / "a.png", std::ios::binary) << whole.substr(0, whole.size() - 12);
-  refused("a.png: is cut short");
+  refused("a.png: is truncated");
   std::string huge = whole;  // its header announces 100000 x 100000 pixels
   huge.replace(16, 8, std::string("\0\1\x86\xa0\0\1\x86\xa0", 8));
   std::ofstream(folder_ / "a.png", std::ios::binary) << huge;
@@ -114,7 +114,7 @@ TEST_F(TumFolder, NamesWhatIsWrong) {
     load_tum_folder(folder_);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("rgb.txt: lists no picture"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("rgb.txt: lists no image"), std::string::npos);
   }
 }
 

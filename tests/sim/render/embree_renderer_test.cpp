@@ -20,14 +20,14 @@ using test::plain_scene;
 const SE3 kIdentity;
 
 /// Colors that vary smoothly from texel to texel, so that every bilinear weight matters.
-Grid2d<Rgb8> smooth_picture(int width, int height) {
-  Grid2d<Rgb8> picture(width, height);
+Grid2d<Rgb8> smooth_image(int width, int height) {
+  Grid2d<Rgb8> image(width, height);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
-      picture(x, y) = {static_cast<std::uint8_t>(40 + (x * 37 + y * 11) % 180),
-                       static_cast<std::uint8_t>(30 + (x * 17 + y * 53) % 200),
-                       static_cast<std::uint8_t>(20 + (x * 71 + y * 29) % 220)};
-  return picture;
+      image(x, y) = {static_cast<std::uint8_t>(40 + (x * 37 + y * 11) % 180),
+                     static_cast<std::uint8_t>(30 + (x * 17 + y * 53) % 200),
+                     static_cast<std::uint8_t>(20 + (x * 71 + y * 29) % 220)};
+  return image;
 }
 
 TEST(Encode, IsTheTableForEveryEntry) {
@@ -74,9 +74,9 @@ TEST(EmbreeRenderer, SmoothEdgesMixLightAndLeaveTheRestAlone) {
     }
 }
 
-TEST(EmbreeRenderer, APictureOfAnySizeIsACutOfALargerOne) {
+TEST(EmbreeRenderer, AnImageOfAnySizeIsACutOfALargerOne) {
   Scene scene = plain_scene();
-  scene.materials[0].texture = smooth_picture(64, 64);
+  scene.materials[0].texture = smooth_image(64, 64);
   add_quad(scene, {-1, -1, 2}, {4, 0, 1}, {0, 2, 0}, 3, 2, 0, 5);
   const auto renderer = make_embree_renderer(scene, {.antialiasing = Antialiasing::kNone});
   Camera camera;
@@ -145,7 +145,7 @@ TEST(EmbreeRenderer, Depth16BeyondItsRangeIsNoReturn) {
 
 TEST(EmbreeRenderer, SupersamplingIsTheMeanOfFourFinerPixels) {
   Scene scene = plain_scene();
-  scene.materials[0].texture = smooth_picture(64, 64);
+  scene.materials[0].texture = smooth_image(64, 64);
   add_quad(scene, {-1, -1, 2}, {2, 0, 0.5F}, {0, 2, 0}, 1, 1);
   add_quad(scene, {-0.3F, -0.3F, 1.5F}, {0.5F, 0.1F, 0}, {0, 0.4F, 0}, 2, 2);
   const Camera camera{.width_px = 100,
@@ -177,9 +177,9 @@ TEST(EmbreeRenderer, SupersamplingIsTheMeanOfFourFinerPixels) {
   EXPECT_NE(mean.color, centers.color);
 }
 
-TEST(EmbreeRenderer, ThreadsAndPicturesNotMultiplesOfATileChangeNoBit) {
+TEST(EmbreeRenderer, ThreadsAndImagesNotMultiplesOfATileChangeNoBit) {
   Scene scene = plain_scene();
-  scene.materials[0].texture = smooth_picture(33, 17);
+  scene.materials[0].texture = smooth_image(33, 17);
   for (InstanceId i = 1; i <= 40; ++i)
     add_quad(scene, {-2.0F + 0.1F * i, -1, 1.0F + 0.05F * i}, {0.5F, 0.1F, 0.2F}, {0, 1.5F, 0.3F},
              static_cast<ClassId>(i), i);
@@ -198,7 +198,7 @@ TEST(EmbreeRenderer, ThreadsAndPicturesNotMultiplesOfATileChangeNoBit) {
   EXPECT_EQ(one.instances, two.instances);
   EXPECT_NE(one.instances(166, 125), 0);
 
-  // The same rays in a wider picture: the left part agrees bit for bit.
+  // The same rays in a wider image: the left part agrees bit for bit.
   Camera wider = camera;
   wider.width_px = 400;
   const RenderedFrame wide = make_embree_renderer(scene)->render(wider, kIdentity);

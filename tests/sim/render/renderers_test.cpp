@@ -44,23 +44,23 @@ Scene plane_at_two_meters() {
 }
 
 /// Colors that vary smoothly from texel to texel, so that every bilinear weight matters.
-Grid2d<Rgb8> smooth_picture(int width, int height) {
-  Grid2d<Rgb8> picture(width, height);
+Grid2d<Rgb8> smooth_image(int width, int height) {
+  Grid2d<Rgb8> image(width, height);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
-      picture(x, y) = {static_cast<std::uint8_t>(40 + (x * 37 + y * 11) % 180),
-                       static_cast<std::uint8_t>(30 + (x * 17 + y * 53) % 200),
-                       static_cast<std::uint8_t>(20 + (x * 71 + y * 29) % 220)};
-  return picture;
+      image(x, y) = {static_cast<std::uint8_t>(40 + (x * 37 + y * 11) % 180),
+                     static_cast<std::uint8_t>(30 + (x * 17 + y * 53) % 200),
+                     static_cast<std::uint8_t>(20 + (x * 71 + y * 29) % 220)};
+  return image;
 }
 
-/// Bilinear interpolation in linear light of a repeating picture, texel centers at half-integers.
-Vector3f bilinear_truth(const Grid2d<Rgb8>& picture, double u, double v) {
-  const double x = u * picture.width() - 0.5, y = v * picture.height() - 0.5;
+/// Bilinear interpolation in linear light of a repeating image, texel centers at half-integers.
+Vector3f bilinear_truth(const Grid2d<Rgb8>& image, double u, double v) {
+  const double x = u * image.width() - 0.5, y = v * image.height() - 0.5;
   const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
   const auto texel = [&](int i, int j) {
-    const int w = picture.width(), h = picture.height();
-    return srgb_to_linear(picture(((i % w) + w) % w, ((j % h) + h) % h));
+    const int w = image.width(), h = image.height();
+    return srgb_to_linear(image(((i % w) + w) % w, ((j % h) + h) % h));
   };
   const auto fx = static_cast<float>(x - x0), fy = static_cast<float>(y - y0);
   return (1 - fy) * ((1 - fx) * texel(x0, y0) + fx * texel(x0 + 1, y0)) +
@@ -285,7 +285,7 @@ TEST_P(BothRenderers, LabelsAreThoseOfTheNearestFaceSeenFromEitherSide) {
 
 TEST_P(BothRenderers, MagnifiedTextureIsBilinearInLinearLight) {
   Scene scene = plain_scene({200, 220, 240});
-  scene.materials[0].texture = smooth_picture(7, 5);
+  scene.materials[0].texture = smooth_image(7, 5);
   // u = x / 1.28 m + 0.5 and so on: 7 texels over 640 px at 2 m and f = 1000.
   add_quad(scene, {-0.64F, -0.48F, 2}, {1.28F, 0, 0}, {0, 0.96F, 0}, 1, 1);
   for (auto& uv : scene.uvs) uv = {uv.x() * 2.0F - 1.0F, uv.y() + 3.0F};  // repeats, negative too

@@ -129,15 +129,15 @@ TEST(Lens, EveryPixelShowsWhatItsRayMeets) {
   const Lens lens(camera);
   const Camera& wide = lens.pinhole();
   EXPECT_GT(wide.width_px, camera.width_px);  // a barrel draws in what lies outside
-  // A picture that tells where its rays went.
-  RenderedFrame picture = gray_frame(0, wide);
+  // An image that tells where its rays went.
+  RenderedFrame image = gray_frame(0, wide);
   for (int y = 0; y < wide.height_px; ++y)
     for (int x = 0; x < wide.width_px; ++x) {
-      picture.depth_m(x, y) = static_cast<float>(3.0 + wide.unproject(x, y, 1.0).x());
-      picture.color(x, y).g = static_cast<std::uint8_t>(128 + 90 * wide.unproject(x, y, 1.0).y());
+      image.depth_m(x, y) = static_cast<float>(3.0 + wide.unproject(x, y, 1.0).x());
+      image.color(x, y).g = static_cast<std::uint8_t>(128 + 90 * wide.unproject(x, y, 1.0).y());
     }
-  picture.exposure = 0.7F;
-  const RenderedFrame bent = lens.bend(picture);
+  image.exposure = 0.7F;
+  const RenderedFrame bent = lens.bend(image);
   EXPECT_EQ(bent.exposure, 0.7F);
   ASSERT_EQ(bent.color.width(), camera.width_px);
   for (int y = 0; y < 480; y += 7)
@@ -151,8 +151,8 @@ TEST(Lens, EveryPixelShowsWhatItsRayMeets) {
 TEST(Lens, WithoutDistortionNothingChanges) {
   const Lens lens{Camera{}};
   EXPECT_EQ(lens.pinhole(), Camera{});
-  const RenderedFrame picture = gray_frame(77);
-  EXPECT_EQ(lens.bend(picture).color, picture.color);
+  const RenderedFrame image = gray_frame(77);
+  EXPECT_EQ(lens.bend(image).color, image.color);
 }
 
 TEST(LensBlur, SpreadsAPointByItsSigmaAndLosesNoLight) {
@@ -174,7 +174,7 @@ TEST(LensBlur, SpreadsAPointByItsSigmaAndLosesNoLight) {
   }
 }
 
-TEST(LensBlur, AnEvenPictureStaysAndZeroIsNothing) {
+TEST(LensBlur, AnEvenImageStaysAndZeroIsNothing) {
   Grid2d<Rgb8> even(20, 20, {90, 140, 200});
   blur_by_lens(even, 1.5);
   EXPECT_EQ(even, Grid2d<Rgb8>(20, 20, {90, 140, 200}));
@@ -228,7 +228,7 @@ TEST(Processing, AStepOvershootsAsMuchOnBothSidesAndOnlyNearIt) {
   EXPECT_EQ(color(20, 24), (Rgb8{140, 150, 160}));
 }
 
-TEST(Processing, AnEvenPictureStaysAndNoneIsNothing) {
+TEST(Processing, AnEvenImageStaysAndNoneIsNothing) {
   Grid2d<Rgb8> even(20, 20, {90, 140, 255});
   process(even, {.sharpening = 3.0, .sharpening_px = 0.7});
   EXPECT_EQ(even, Grid2d<Rgb8>(20, 20, {90, 140, 255}));

@@ -136,7 +136,7 @@ TEST(Detector, ConfusionAndFalseAlarmsComeAtTheirRates) {
   const int chairs_in_view = count(truth);
   // The one thing in view that false alarms may be drawn around.
   paint(truth, 590, 430, 40, kCabinet, 500);
-  double confused = 0, all = 0, alarms = 0, pictures = 0;
+  double confused = 0, all = 0, alarms = 0, images = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     for (const Detection& box : detections(truth, config, seed)) {
       if (box.instance == 500) {
@@ -147,12 +147,12 @@ TEST(Detector, ConfusionAndFalseAlarmsComeAtTheirRates) {
       confused += box.classes.most_probable() != kChair;
       EXPECT_GE(classes()[box.classes.most_probable()].coco80, 0);
     }
-    pictures += 1;
+    images += 1;
   }
   EXPECT_EQ(all, 400.0 * chairs_in_view);
   EXPECT_NEAR(confused / all, published.confusion, 4 * std::sqrt(0.1 * 0.9 / all));
-  EXPECT_NEAR(alarms / pictures, published.false_alarms,
-              4 * std::sqrt(published.false_alarms / pictures));
+  EXPECT_NEAR(alarms / images, published.false_alarms,
+              4 * std::sqrt(published.false_alarms / images));
 }
 
 TEST(Detector, TheSameViewGivesTheSameAnswerButForWhatIsDrawnAfresh) {

@@ -553,9 +553,9 @@ TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {
   // Each section by its own fault: what must be named, and in which line.
   const std::string both = "depth_noise: {}\n" + color;
   const auto third_line = [&](const std::string& text, const std::string& named) {
-    const std::string told = message(both + text + "\n");
-    EXPECT_NE(told.find(":3:"), std::string::npos) << told;
-    EXPECT_NE(told.find(named), std::string::npos) << told;
+    const std::string reported = message(both + text + "\n");
+    EXPECT_NE(reported.find(":3:"), std::string::npos) << reported;
+    EXPECT_NE(reported.find(named), std::string::npos) << reported;
   };
   third_line("motion_blur: {exposure_s: 0.02}", "exposure_s");
   third_line("motion_blur: {exposure_ms: 0}", "exposure_ms: 0 is outside (0, 1000]");

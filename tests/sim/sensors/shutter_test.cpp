@@ -61,7 +61,7 @@ SensorConfig blurring(double exposure_s) {
   config.motion_blur = {.enabled = true, .exposure_ms = 1e3 * exposure_s};
   config.motion_sampling.step_px = 0.25;
   config.motion_sampling.sharp_px = 0.0;
-  config.motion_sampling.max_pictures = 301;
+  config.motion_sampling.max_images = 301;
   return config;
 }
 
@@ -112,7 +112,7 @@ TEST(MotionBlur, IsTheMeanInLinearLight) {
   EXPECT_NEAR((color(79, 60).r + color(80, 60).r) / 2.0, 188, 6);
 }
 
-TEST(MotionBlur, ACameraAtRestSeesTheExactPictureAndRendersItOnce) {
+TEST(MotionBlur, ACameraAtRestSeesTheExactImageAndRendersItOnce) {
   const auto scene = std::make_shared<Edge>();
   SensorConfig config = blurring(0.033);
   config.rolling_shutter.enabled = true;
@@ -136,7 +136,7 @@ TEST(RollingShutter, SlantsAnUprightEdgeBySpeedTimesReadout) {
   SensorConfig config;
   config.rolling_shutter = {.enabled = true, .readout_ms = 30};
   config.motion_sampling.step_px = 0.25;
-  config.motion_sampling.max_pictures = 301;
+  config.motion_sampling.max_images = 301;
   const auto scene = std::make_shared<Edge>();
   for (const double speed : {-1.5, 0.8, 1.5}) {
     const Shutter shutter(scene, small_camera(), sliding(speed), config);
@@ -214,7 +214,7 @@ TEST_F(PannedEdge, LabelsTouchNeitherColorNorDepth) {
   EXPECT_NE(exact.classes, annotated.classes);
 }
 
-TEST(RollingShutter, AloneCostsAboutOnePictureMore) {
+TEST(RollingShutter, AloneCostsAboutOneImageMore) {
   const auto scene = std::make_shared<Edge>();
   SensorConfig config;
   config.rolling_shutter.enabled = true;

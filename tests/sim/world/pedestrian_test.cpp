@@ -161,7 +161,7 @@ TEST_F(PedestrianSceneTest, ASequenceShowsHimWhereHeIsAtEachStamp) {
     return frame.semantics.at(159, 119).most_probable() == *class_by_name("person") &&
            std::abs(frame.depth_m(159, 119) - 2.8F) < 0.1F;
   };
-  EXPECT_FALSE(person(0, pedestrian_scene));  // 2 m aside, out of the picture
+  EXPECT_FALSE(person(0, pedestrian_scene));  // 2 m aside, out of the image
   EXPECT_TRUE(person(1, pedestrian_scene));
   EXPECT_FALSE(person(1, nullptr));
 }

@@ -105,7 +105,7 @@ TEST_F(RenderSequence, MakesAnewWhatWasCutOff) {
     const std::string name = layout;
     const auto whole = rendered(layout, name.c_str(), {});
     std::size_t k = 0;
-    for (const auto& [file, bytes] : whole) {  // every fifth picture, by another cut each
+    for (const auto& [file, bytes] : whole) {  // every fifth image, by another cut each
       const std::string ending = fs::path(file).extension();
       if ((ending != ".png" && ending != ".jpg") || k++ % 5 != 0) continue;
       fs::resize_file(folder_ / name / file, bytes.size() * (k % 3) / 3);

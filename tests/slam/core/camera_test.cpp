@@ -53,7 +53,7 @@ TEST(Camera, EachNumberHasItsRangeAndIsNamedOutsideIt) {
          {std::nextafter(0.0, -1.0), std::nextafter(last, 1e9), kNan, kInfinity, -kInfinity})
       EXPECT_TRUE(with(member, bad).starts_with(std::string("camera: ") + name + " = ")) << bad;
   }
-  // A picture of one pixel.
+  // An image of one pixel.
   Camera one;
   one.width_px = one.height_px = 1;
   one.cx_px = one.cy_px = 0;

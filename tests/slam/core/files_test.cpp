@@ -118,7 +118,7 @@ TEST(ReadFile, SaysWhetherItIsMissingOrAFolder) {
   const fs::path pipe = fs::path(testing::TempDir()) / "a_pipe";
   fs::remove(pipe);
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_EQ(error_of(pipe), pipe.string() + ": cannot be read: it is no file");
+  EXPECT_EQ(error_of(pipe), pipe.string() + ": cannot be read: it is not a file");
   EXPECT_THROW(map_file(pipe), InputError);
 }
 

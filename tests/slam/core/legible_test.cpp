@@ -26,7 +26,7 @@ TEST(Legible, WhatATerminalObeysIsAQuestionMark) {
 
 TEST(Legible, WhatIsNoUtf8IsAQuestionMarkForEachByte) {
   EXPECT_EQ(legible("\xff\xfe\x80x"), "???x");
-  EXPECT_EQ(legible("\xc3"), "?");                      // cut short
+  EXPECT_EQ(legible("\xc3"), "?");                      // truncated
   EXPECT_EQ(legible("\xc0\xaf\xe0\x80\xaf"), "?????");  // longer than need be
   EXPECT_EQ(legible("\xed\xa0\x80"), "???");            // half a pair of UTF-16
   EXPECT_EQ(legible("\xf4\x90\x80\x80"), "????");       // beyond Unicode

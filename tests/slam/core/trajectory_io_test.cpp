@@ -101,9 +101,9 @@ TEST(Tum, EveryErrorNamesFileLineAndValue) {
             "f.txt:2: pose: 9 values, expected 8 (stamp tx ty tz qx qy qz qw)");
   EXPECT_EQ(tum_error(good + "2 0 nan 0 0 0 0 1\n"), "f.txt:2: ty: 'nan' is not finite");
   EXPECT_EQ(tum_error("1 0 0 inf 0 0 0 1\n"), "f.txt:1: tz: 'inf' is not finite");
-  EXPECT_EQ(tum_error("1 0 0 0 x 0 0 1\n"), "f.txt:1: qx: 'x' is no number");
-  EXPECT_EQ(tum_error("1 0 0 0 0 0 0 1m\n"), "f.txt:1: qw: '1m' is no number");
-  EXPECT_EQ(tum_error("1 0 0 + 0 0 0 1\n"), "f.txt:1: tz: '+' is no number");
+  EXPECT_EQ(tum_error("1 0 0 0 x 0 0 1\n"), "f.txt:1: qx: 'x' is not a number");
+  EXPECT_EQ(tum_error("1 0 0 0 0 0 0 1m\n"), "f.txt:1: qw: '1m' is not a number");
+  EXPECT_EQ(tum_error("1 0 0 + 0 0 0 1\n"), "f.txt:1: tz: '+' is not a number");
   EXPECT_EQ(tum_error("1 0 0 0 0 0 0 0\n"), "f.txt:1: quaternion: norm 0, expected 1");
   EXPECT_EQ(tum_error("1 0 0 0 0 0 0 2\n"), "f.txt:1: quaternion: norm 2, expected 1");
   EXPECT_EQ(tum_error(good + good), "f.txt:2: stamp: 1 does not come after 1.000000000");
@@ -138,9 +138,9 @@ TEST(Kitti, EveryErrorNamesFileLineAndValue) {
   EXPECT_EQ(kitti_error("1 0 0 0 0 1 0 0 0 0 1 0\n1 2\n"),
             "k.txt:2: pose: 2 values, expected 12 (3x4 matrix by rows)");
   EXPECT_EQ(kitti_error("1 0 0 0 0 1 0 0 0 0 -1 0\n"),
-            "k.txt:1: matrix: its left 3x3 part is no rotation");
+            "k.txt:1: matrix: its left 3x3 part is not a rotation");
   EXPECT_EQ(kitti_error("2 0 0 0 0 1 0 0 0 0 1 0\n"),
-            "k.txt:1: matrix: its left 3x3 part is no rotation");
+            "k.txt:1: matrix: its left 3x3 part is not a rotation");
   EXPECT_EQ(kitti_error("1 0 0 0 0 1 0 0 0 0 1 nan\n"), "k.txt:1: matrix: 'nan' is not finite");
   EXPECT_EQ(kitti_error(""), "k.txt: contains no poses");
 }

@@ -69,7 +69,7 @@ TEST(YamlReader, AliasesMayNotHoldThemselvesNorMultiply) {
 TEST(YamlReader, MissingFileAndBrokenYaml) {
   EXPECT_EQ(error_of([] { YamlReader::load("/nowhere/f.yaml"); }),
             "/nowhere/f.yaml: cannot be read: no such file");
-  EXPECT_NE(error_of([] { YamlReader::parse("a: [1, 2\n", "f.yaml"); }).find("is no valid YAML"),
+  EXPECT_NE(error_of([] { YamlReader::parse("a: [1, 2\n", "f.yaml"); }).find("is not valid YAML"),
             std::string::npos);
 }
 

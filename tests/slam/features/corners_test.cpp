@@ -55,7 +55,7 @@ TEST(Spread, KeepsTheStrongestAndWideSpacing) {
   const std::vector<Corner> corners = random_corners(3000, 640, 480, 2);
   const std::vector<Corner> picked = spread(corners, 200);
   EXPECT_EQ(picked.front(), corners.front());
-  // 200 squares of side 39 px tile the picture; greedy picking reaches a good half of that, and
+  // 200 squares of side 39 px tile the image; greedy picking reaches a good half of that, and
   // half of what is possible is taken.
   EXPECT_GE(closest_pair(picked), 10);
 }

@@ -24,7 +24,7 @@ TEST(FeatureGrid, VisitsExactlyWhatLiesInTheCellsThatASquareTouches) {
   const RandomStream draw(5);
   std::vector<Keypoint> keypoints;
   for (std::uint64_t i = 0; i < 400; ++i) {
-    // Undistorted ones may lie beyond the picture; some lie on the cells' borders.
+    // Undistorted ones may lie beyond the image; some lie on the cells' borders.
     Keypoint k;
     k.u_px = static_cast<float>(draw.uniform(2 * i, -20, 120));
     k.v_px = static_cast<float>(draw.uniform(2 * i + 1, -20, 90));

@@ -209,8 +209,8 @@ TEST(MapServer, RoundTripKeepsCellsAndPlace) {
   EXPECT_EQ(back.origin_m, grid.origin_m);
   EXPECT_EQ(back.resolution_m, grid.resolution_m);
   // The origin is the lower left pixel: the first of the last row.
-  const std::string picture = read_file(stem + ".pgm");
-  EXPECT_EQ(picture,
+  const std::string image = read_file(stem + ".pgm");
+  EXPECT_EQ(image,
             std::string("P5\n3 2\n255\n") + "\xCD\xCD\xFE" + std::string(1, '\0') + "\xCD\xCD");
 }
 

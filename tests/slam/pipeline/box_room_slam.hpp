@@ -31,7 +31,7 @@ inline std::shared_ptr<const Vocabulary> vocabulary() {
 
 inline SlamConfig box_room_settings(const SemanticConfig& semantics = {}) {
   SlamConfig config;
-  config.features.count = 500;  // the pictures are a quarter of the usual size
+  config.features.count = 500;  // the images are a quarter of the usual size
   config.semantics = semantics;
   return config;
 }

@@ -15,7 +15,7 @@
 namespace mh::testing_support {
 
 /// Rooms in an endless row along x, joined by doors, whose walls carry points with descriptors of
-/// their own: what a camera sees of them is made as features, without a picture, so that maps of
+/// their own: what a camera sees of them is made as features, without an image, so that maps of
 /// any size are cheap. Points hide behind walls, come and go, and are seen at the octave that their
 /// distance asks for, out of place by as much as a corner, with some bits of the descriptor
 /// flipped.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps that grow: laws about long runs, over features made without pictures.
+// Maps that grow: laws about long runs, over features made without images.
 #include <gtest/gtest.h>
 
 #include "slam/pipeline/slam.hpp"

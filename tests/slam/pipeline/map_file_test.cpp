@@ -252,7 +252,7 @@ TEST(MapFile, WhatPointsNowhereIsRefusedByItsName) {
   };
   ASSERT_EQ(said([](Parts&) {}), "");
   const auto refuses = [&](const std::string& what, const std::function<void(Parts&)>& lie) {
-    EXPECT_EQ(said(lie), "room.mhmap: is no consistent map: " + what);
+    EXPECT_EQ(said(lie), "room.mhmap: is not a consistent map: " + what);
   };
   const auto no_class = static_cast<ClassId>(classes().size());
   const auto keyframes = static_cast<std::uint32_t>(midway().map.keyframes().size());
@@ -323,7 +323,7 @@ TEST(MapFile, WhatPointsNowhereIsRefusedByItsName) {
   EXPECT_NE(said([](Parts& p) { p.seen->observations.pop_back(); }), "");
   EXPECT_NE(said([](Parts& p) { p.standing->covisible.pop_back(); }), "");
   EXPECT_EQ(complaint(framed(Layout(midway()).bytes() + "x")),
-            "room.mhmap: is no consistent map: it goes on after its end");
+            "room.mhmap: is not a consistent map: it goes on after its end");
 }
 
 TEST(MapFile, LiesAsAnotherReaderWouldExpect) {
@@ -382,8 +382,8 @@ TEST(MapFile, DigestsTellEveryPartOfAMapApart) {
 }
 
 TEST(MapFile, SaysWhatIsWrong) {
-  EXPECT_EQ(complaint("P5 a picture"), "room.mhmap: is no map of Modelhouse's");
-  EXPECT_EQ(complaint(""), "room.mhmap: is no map of Modelhouse's");
+  EXPECT_EQ(complaint("P5 an image"), "room.mhmap: is not a map of Modelhouse's");
+  EXPECT_EQ(complaint(""), "room.mhmap: is not a map of Modelhouse's");
   std::string other = midway_bytes();
   other[8] = 9;
   EXPECT_EQ(complaint(other), "room.mhmap: is a map of version 9, but this program reads 5");
@@ -403,7 +403,7 @@ TEST(MapFile, EveryCutIsNoticed) {
     // Half of them near the front, where the header is.
     const std::size_t length = draws.below(i, i % 2 ? 200 : midway_bytes().size());
     const std::string said = complaint(midway_bytes().substr(0, length));
-    EXPECT_TRUE(said.find("cut short") != std::string::npos ||
+    EXPECT_TRUE(said.find("truncated") != std::string::npos ||
                 (length == 0 && said.find("no map") != std::string::npos))
         << length << ": " << said;
   }

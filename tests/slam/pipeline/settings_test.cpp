@@ -57,7 +57,7 @@ TEST(Settings, WhatIsWrittenReadsBackBitForBit) {
 
 TEST(Settings, TellsTheCameraAndLeavesTheRestAsItIs) {
   const Settings s = parse_settings(std::string(kCamera) +
-                                        "pictures: {depth_per_meter: 1000, exchange_red_blue: "
+                                        "images: {depth_per_meter: 1000, exchange_red_blue: "
                                         "true}\nsemantics: {gamma: 2.5}\n",
                                     "s.yaml");
   EXPECT_EQ(s.camera.width_px, 320);
@@ -215,7 +215,7 @@ TEST(Settings, OrbSlamsFilesAreCheckedToo) {
                                   {"Camera.fps", "camera.fps"}}) {
     bad = kTum1;
     bad.replace(bad.find(key), std::string(key).size(), slip);
-    EXPECT_NE(complaint(bad).find(std::string(slip) + ": is no key of ORB-SLAM2's settings"),
+    EXPECT_NE(complaint(bad).find(std::string(slip) + ": is not a key of ORB-SLAM2's settings"),
               std::string::npos)
         << complaint(bad);
   }
@@ -256,7 +256,7 @@ TEST(Settings, RosCalibrationsAreReadStrictly) {
             std::string::npos);
   bad = good;
   bad.replace(bad.find("525, 0, 320"), 11, "525, 9, 320");
-  EXPECT_NE(complaint(bad).find("s.yaml:7: camera_matrix.data: is no matrix [fx, 0, cx"),
+  EXPECT_NE(complaint(bad).find("s.yaml:7: camera_matrix.data: is not a matrix [fx, 0, cx"),
             std::string::npos)
       << complaint(bad);
 }
@@ -266,7 +266,7 @@ TEST(Settings, ADistortionThatCannotBeUndoneIsRefused) {
     return std::string("camera: {fx_px: 525, fy_px: 525, cx_px: 319.5, cy_px: 239.5,\n  ") +
            "distortion: " + distortion + "}\n";
   };
-  // So strong that the corners have no ray: the picture ends at 0.703 of the focal length.
+  // So strong that the corners have no ray: the image ends at 0.703 of the focal length.
   EXPECT_EQ(
       complaint(with("{k1: -0.3}")),
       "s.yaml:2: camera.distortion: k1 -0.3, k2 0, p1 0, p2 0, k3 0: a distortion that cannot "

@@ -310,7 +310,7 @@ Features columns(int i, float first_px, float last_px) {
   return some;
 }
 
-/// The camera turns to the left, by some 45 px in each step of six frames. First the picture shows
+/// The camera turns to the left, by some 45 px in each step of six frames. First the image shows
 /// what leaves it on the right, then what has come in on the left.
 struct BareCorner {
   SlamState state;
@@ -357,7 +357,7 @@ TEST(Step, MotionAlonePlacesNoFrameThatItIsUnsureOfOrThatShowsNothing) {
   EXPECT_EQ(BareCorner(5, 20).statuses.back(), TrackStatus::kLost) << "too little to go on by";
 }
 
-TEST(Step, WhereAPictureLeavesThePoseUnsureTheMotionHasItsSay) {
+TEST(Step, WhereAnImageLeavesThePoseUnsureTheMotionHasItsSay) {
   const auto worst_error_m = [](bool weighed) {
     SlamConfig config = settings({});
     config.track.sure_position_m = weighed ? 0.003 : 1000;

@@ -12,7 +12,7 @@
 namespace mh {
 namespace {
 
-/// One keyframe at the origin that sees points behind the whole picture, 2 to 4 m away, and the
+/// One keyframe at the origin that sees points behind the whole image, 2 to 4 m away, and the
 /// same view again with corners out of place by half a pixel and disparity as far as the camera's
 /// noise model says. The camera has not moved.
 struct View {

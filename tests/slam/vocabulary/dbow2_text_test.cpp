@@ -152,7 +152,7 @@ TEST(Dbow2Text, FaultsAreToldWithTheirLine) {
   EXPECT_EQ(fault_of("10 11 0 0\n" + leaf), "t.txt:1: L: 11 is not from 1 to 10");
   EXPECT_EQ(fault_of("10 6 7 0\n" + leaf), "t.txt:1: scoring: 7 is not from 0 to 5");
   EXPECT_EQ(fault_of("10 6 0 4\n" + leaf), "t.txt:1: weighting: 4 is not from 0 to 3");
-  EXPECT_EQ(fault_of("ten 6 0 0\n" + leaf), "t.txt:1: k: 'ten' is no number of this kind");
+  EXPECT_EQ(fault_of("ten 6 0 0\n" + leaf), "t.txt:1: k: 'ten' is not a number of this kind");
 
   const std::string head = "2 2 0 0\n" + leaf;
   EXPECT_EQ(fault_of(head + "3 1" + d + "32 0.5\n"),
@@ -165,12 +165,12 @@ TEST(Dbow2Text, FaultsAreToldWithTheirLine) {
   EXPECT_EQ(fault_of(head + leaf + leaf), "t.txt:4: node 0 has more than the 2 children of line 1");
   EXPECT_EQ(fault_of("2 1 0 0\n" + inner + "1 1" + d + "32 0.5\n"),
             "t.txt:3: deeper than the 1 levels of line 1");
-  EXPECT_EQ(fault_of(head + inner), "t.txt:3: is no leaf and has no child in the whole file");
+  EXPECT_EQ(fault_of(head + inner), "t.txt:3: is not a leaf and has no child in the whole file");
   EXPECT_EQ(fault_of(head + "0 2" + d + "32 0.5\n"), "t.txt:3: is-leaf: 2 is not from 0 to 1");
   EXPECT_EQ(fault_of(head + "0 1" + d + "256 0.5\n"),
             "t.txt:3: a byte of the descriptor: 256 is not from 0 to 255");
   EXPECT_EQ(fault_of(head + "0 1" + d + "3.5 0.5\n"),
-            "t.txt:3: a byte of the descriptor: '3.5' is no number of this kind");
+            "t.txt:3: a byte of the descriptor: '3.5' is not a number of this kind");
   EXPECT_EQ(fault_of(head + "0 1" + d + "\n"),
             "t.txt:3: line ends where a byte of the descriptor should stand");
   EXPECT_EQ(fault_of(head + "0 1" + d + "32\n"),

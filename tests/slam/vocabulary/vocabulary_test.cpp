@@ -248,7 +248,7 @@ TEST_F(VocabularyFile, CutShortAnywhere) {
   for (std::size_t size = 1; size < bytes_.size(); size += size < 40 ? 1 : 97) {
     rewrite(bytes_.substr(0, size));
     EXPECT_THAT(message_of_loading(),
-                HasSubstr("cut short: has " + std::to_string(size) + " bytes, needs"));
+                HasSubstr("truncated: has " + std::to_string(size) + " bytes, needs"));
   }
   rewrite(bytes_.substr(0, bytes_.size() - 1));
   EXPECT_THAT(message_of_loading(), HasSubstr("needs " + std::to_string(bytes_.size())));

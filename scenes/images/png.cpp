@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/pictures/png.hpp"
+#include "scenes/images/png.hpp"
 
 #include <libdeflate.h>
 
@@ -31,17 +31,17 @@ void append_chunk(std::string& out, std::string_view name, std::string_view data
 
 /// All rows in the file's order (RGB, and for 16 bits the upper byte first), each after its filter
 /// number: 2 (difference to the row above) for 8 bits, 0 (none) for 16.
-std::vector<std::uint8_t> filtered(const cv::Mat& picture) {
+std::vector<std::uint8_t> filtered(const cv::Mat& image) {
   cv::Mat rgb;
-  if (picture.type() == CV_8UC3) cv::cvtColor(picture, rgb, cv::COLOR_BGR2RGB);
-  const cv::Mat& pixels = rgb.empty() ? picture : rgb;
-  const std::size_t width = static_cast<std::size_t>(picture.cols) * picture.elemSize();
-  std::vector<std::uint8_t> out((width + 1) * static_cast<std::size_t>(picture.rows));
+  if (image.type() == CV_8UC3) cv::cvtColor(image, rgb, cv::COLOR_BGR2RGB);
+  const cv::Mat& pixels = rgb.empty() ? image : rgb;
+  const std::size_t width = static_cast<std::size_t>(image.cols) * image.elemSize();
+  std::vector<std::uint8_t> out((width + 1) * static_cast<std::size_t>(image.rows));
   std::uint8_t* to = out.data();
-  for (int y = 0; y < picture.rows; ++y) {
+  for (int y = 0; y < image.rows; ++y) {
     const std::uint8_t* row = pixels.ptr(y);
     const std::uint8_t* above = y > 0 ? pixels.ptr(y - 1) : nullptr;
-    const bool bytes = picture.depth() == CV_8U;
+    const bool bytes = image.depth() == CV_8U;
     *to++ = bytes ? 2 : 0;
     if (!bytes)
       for (std::size_t i = 0; i < width; i += 2) to[i] = row[i + 1], to[i + 1] = row[i];
@@ -86,18 +86,18 @@ bool is_png_type(int opencv_type) {
   return opencv_type == CV_8UC1 || opencv_type == CV_8UC3 || opencv_type == CV_16UC1;
 }
 
-std::string encode_png(const cv::Mat& picture, int level) {
-  assert(is_png_type(picture.type()) && !picture.empty() && level >= 0 && level <= 9);
+std::string encode_png(const cv::Mat& image, int level) {
+  assert(is_png_type(image.type()) && !image.empty() && level >= 0 && level <= 9);
   std::string header;
-  append_be32(header, static_cast<std::size_t>(picture.cols));
-  append_be32(header, static_cast<std::size_t>(picture.rows));
-  header += static_cast<char>(picture.depth() == CV_16U ? 16 : 8);  // bits
-  header += static_cast<char>(picture.channels() == 3 ? 2 : 0);     // color or gray
+  append_be32(header, static_cast<std::size_t>(image.cols));
+  append_be32(header, static_cast<std::size_t>(image.rows));
+  header += static_cast<char>(image.depth() == CV_16U ? 16 : 8);  // bits
+  header += static_cast<char>(image.channels() == 3 ? 2 : 0);     // color or gray
   header += std::string(3, '\0');  // the only compression method, the only set of filters, not
                                    // interlaced
   std::string file = "\x89PNG\r\n\x1A\n";
   append_chunk(file, "IHDR", header);
-  append_packed(file, filtered(picture), level);
+  append_packed(file, filtered(image), level);
   append_chunk(file, "IEND", {});
   return file;
 }

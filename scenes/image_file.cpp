@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/picture_file.hpp"
+#include "scenes/image_file.hpp"
 
 #include <zlib.h>
 
@@ -26,7 +26,7 @@ std::uint32_t big_endian(std::string_view bytes, std::size_t at, int count) {
 }
 
 /// Walks a JPEG's segments to its frame header (ITU-T T.81, annex B).
-std::optional<PictureSize> jpeg_size(std::string_view bytes) {
+std::optional<ImageSize> jpeg_size(std::string_view bytes) {
   std::size_t at = 2;
   while (at + 4 <= bytes.size() && bytes[at] == '\xff') {
     const auto marker = static_cast<unsigned char>(bytes[at + 1]);
@@ -37,8 +37,8 @@ std::optional<PictureSize> jpeg_size(std::string_view bytes) {
     const bool frame =
         marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
     if (frame && at + 9 <= bytes.size())
-      return PictureSize{big_endian(bytes, at + 7, 2), big_endian(bytes, at + 5, 2)};
-    if (marker == 0xd9 || marker == 0xda) break;  // end of picture, start of data
+      return ImageSize{big_endian(bytes, at + 7, 2), big_endian(bytes, at + 5, 2)};
+    if (marker == 0xd9 || marker == 0xda) break;  // end of image, start of data
     at += 2 + big_endian(bytes, at + 2, 2);
   }
   return std::nullopt;
@@ -79,7 +79,7 @@ const char* png_fault(std::string_view bytes) {
     if (bytes.substr(at + 4, 4) == "IEND") return nullptr;
     at += 12 + length;
   }
-  return "is cut short";
+  return "is truncated";
 }
 
 /// Bytes of a decoded pixel, if the bytes are a JPEG or PNG.
@@ -90,34 +90,34 @@ std::uint64_t bytes_per_pixel(std::string_view bytes) {
   return (type == 0 ? 1U : type >= 4 ? 4U : 3U) * (bytes[kBits] == 16 ? 2U : 1U);
 }
 
-/// Empty if the bytes hold no JPEG or PNG, or one that decode_picture() refuses.
+/// Empty if the bytes hold no JPEG or PNG, or one that decode_image() refuses.
 cv::Mat decode(std::string_view bytes) {
   if (!announced_size(bytes)) return {};
   try {
-    return decode_picture(bytes);
+    return decode_image(bytes);
   } catch (const InputError&) {
     return {};
   }
 }
 
-std::string encode(const char* ending, const cv::Mat& picture, const std::vector<int>& options) {
+std::string encode(const char* ending, const cv::Mat& image, const std::vector<int>& options) {
   std::vector<unsigned char> bytes;
-  cv::imencode(ending, picture, bytes, options);
+  cv::imencode(ending, image, bytes, options);
   return {bytes.begin(), bytes.end()};
 }
 
 }  // namespace
 
-std::optional<PictureSize> announced_size(std::string_view bytes) {
+std::optional<ImageSize> announced_size(std::string_view bytes) {
   if (bytes.size() > std::numeric_limits<int>::max()) return std::nullopt;
   if (bytes.starts_with("\xff\xd8")) return jpeg_size(bytes);
   if (bytes.starts_with("\x89PNG\r\n\x1a\n") && bytes.size() >= 24)
-    return PictureSize{big_endian(bytes, 16, 4), big_endian(bytes, 20, 4)};
+    return ImageSize{big_endian(bytes, 16, 4), big_endian(bytes, 20, 4)};
   return std::nullopt;
 }
 
-const char* picture_fault(std::string_view bytes) {
-  if (bytes.starts_with("\xff\xd8")) return jpeg_is_whole(bytes) ? nullptr : "is cut short";
+const char* image_fault(std::string_view bytes) {
+  if (bytes.starts_with("\xff\xd8")) return jpeg_is_whole(bytes) ? nullptr : "is truncated";
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return png_fault(bytes);
   return nullptr;
 }
@@ -149,11 +149,11 @@ bool claims_too_much(std::string_view bytes) {
          pixels * bytes_per_pixel(bytes) > kMostBytes;
 }
 
-cv::Mat decode_picture(std::string_view bytes, PictureForm form) {
-  const int flags = form == PictureForm::kStored  ? cv::IMREAD_UNCHANGED
-                    : form == PictureForm::kColor ? cv::IMREAD_COLOR
-                                                  : cv::IMREAD_GRAYSCALE;
-  if (const char* fault = picture_fault(bytes)) throw InputError(fault);
+cv::Mat decode_image(std::string_view bytes, ImageForm form) {
+  const int flags = form == ImageForm::kStored  ? cv::IMREAD_UNCHANGED
+                    : form == ImageForm::kColor ? cv::IMREAD_COLOR
+                                                : cv::IMREAD_GRAYSCALE;
+  if (const char* fault = image_fault(bytes)) throw InputError(fault);
   if (claims_too_much(bytes)) {
     const auto size = announced_size(bytes);
     throw InputError(
@@ -162,19 +162,19 @@ cv::Mat decode_picture(std::string_view bytes, PictureForm form) {
   }
   const std::string quiet = without_remarks(bytes);
   const auto count = narrowed<int>(quiet.size());
-  cv::Mat picture;
+  cv::Mat image;
   if (count && *count > 0) try {
       const cv::Mat view(1, *count, CV_8UC1, const_cast<char*>(quiet.data()));
-      picture = cv::imdecode(view, flags);
+      image = cv::imdecode(view, flags);
     } catch (const cv::Exception&) {  // beyond OpenCV's own limits
     }
-  if (picture.empty()) throw InputError("is no picture, or a damaged one");
-  return picture;
+  if (image.empty()) throw InputError("is not an image, or a damaged one");
+  return image;
 }
 
-cv::Mat read_picture(const std::filesystem::path& file, PictureForm form) {
+cv::Mat read_image(const std::filesystem::path& file, ImageForm form) {
   try {
-    return decode_picture(read_file(file), form);
+    return decode_image(read_file(file), form);
   } catch (const InputError& error) {
     const std::string_view what = error.what();
     if (what.starts_with(file.string())) throw;
@@ -185,37 +185,37 @@ cv::Mat read_picture(const std::filesystem::path& file, PictureForm form) {
 std::optional<Grid2d<Rgb8>> decode_color(std::string_view bytes) {
   const cv::Mat bgr = decode(bytes);
   if (bgr.empty() || bgr.type() != CV_8UC3) return std::nullopt;
-  Grid2d<Rgb8> picture(bgr.cols, bgr.rows);
-  cv::Mat rgb(bgr.rows, bgr.cols, CV_8UC3, picture.data());
+  Grid2d<Rgb8> image(bgr.cols, bgr.rows);
+  cv::Mat rgb(bgr.rows, bgr.cols, CV_8UC3, image.data());
   cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
-  return picture;
+  return image;
 }
 
 std::optional<Grid2d<std::uint16_t>> decode_gray16(std::string_view bytes) {
   const cv::Mat gray = decode(bytes);
   if (gray.empty() || (gray.type() != CV_8UC1 && gray.type() != CV_16UC1)) return std::nullopt;
-  Grid2d<std::uint16_t> picture(gray.cols, gray.rows);
-  cv::Mat out(gray.rows, gray.cols, CV_16UC1, picture.data());
+  Grid2d<std::uint16_t> image(gray.cols, gray.rows);
+  cv::Mat out(gray.rows, gray.cols, CV_16UC1, image.data());
   gray.convertTo(out, CV_16U);
-  return picture;
+  return image;
 }
 
-std::string encode_jpeg(const Grid2d<Rgb8>& picture, int quality) {
-  const cv::Mat rgb(picture.height(), picture.width(), CV_8UC3, const_cast<Rgb8*>(picture.data()));
+std::string encode_jpeg(const Grid2d<Rgb8>& image, int quality) {
+  const cv::Mat rgb(image.height(), image.width(), CV_8UC3, const_cast<Rgb8*>(image.data()));
   cv::Mat bgr;
   cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
   return encode(".jpg", bgr, {cv::IMWRITE_JPEG_QUALITY, quality});
 }
 
-std::string encode_png(const Grid2d<std::uint16_t>& picture) {
-  const cv::Mat gray(picture.height(), picture.width(), CV_16UC1,
-                     const_cast<std::uint16_t*>(picture.data()));
+std::string encode_png(const Grid2d<std::uint16_t>& image) {
+  const cv::Mat gray(image.height(), image.width(), CV_16UC1,
+                     const_cast<std::uint16_t*>(image.data()));
   return encode(".png", gray, {cv::IMWRITE_PNG_COMPRESSION, 3});
 }
 
-std::string encode_png(const Grid2d<std::uint8_t>& picture) {
-  const cv::Mat gray(picture.height(), picture.width(), CV_8UC1,
-                     const_cast<std::uint8_t*>(picture.data()));
+std::string encode_png(const Grid2d<std::uint8_t>& image) {
+  const cv::Mat gray(image.height(), image.width(), CV_8UC1,
+                     const_cast<std::uint8_t*>(image.data()));
   return encode(".png", gray, {cv::IMWRITE_PNG_COMPRESSION, 3});
 }
 

@@ -14,23 +14,23 @@
 namespace mh {
 
 /// A material's image as decoded from a file.
-struct PictureIn {
+struct ImageIn {
   SharedGrid<Rgb8> color{};
-  SharedGrid<std::uint8_t> opacity{};   ///< empty if the file has none
-  std::string fault = "is no picture";  ///< why color is empty, if it is
+  SharedGrid<std::uint8_t> opacity{};     ///< empty if the file has none
+  std::string fault = "is not an image";  ///< why color is empty, if it is
 };
 
 /// The images of a scene's materials, each decoded once, however many files contain it and however
 /// many materials use it.
-class PictureStore {
+class ImageStore {
  public:
   /// Decodes the image in these bytes.
-  PictureIn decode(std::string_view bytes);
-  PictureIn read(const std::filesystem::path& file);
+  ImageIn decode(std::string_view bytes);
+  ImageIn read(const std::filesystem::path& file);
 
  private:
   using Digest = std::pair<std::uint64_t, std::uint64_t>;
-  std::map<Digest, PictureIn> decoded_;  // by the bytes' xxh3-128
+  std::map<Digest, ImageIn> decoded_;  // by the bytes' xxh3-128
 };
 
 }  // namespace mh

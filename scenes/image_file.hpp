@@ -16,18 +16,18 @@ class Mat;
 
 namespace mh {
 
-struct PictureSize {
+struct ImageSize {
   std::uint32_t width = 0, height = 0;
 };
 
 /// The size that a JPEG or PNG header declares, without decoding it; nullopt if the bytes are
 /// neither.
-std::optional<PictureSize> announced_size(std::string_view bytes);
+std::optional<ImageSize> announced_size(std::string_view bytes);
 
-/// What is wrong with a JPEG or PNG as a file, found without decoding it: "is cut short", or a
+/// What is wrong with a JPEG or PNG as a file, found without decoding it: "is truncated", or a
 /// PNG's wrong checksum; nullptr if nothing, or if the bytes are neither. Decoders would return an
 /// image whose end is gray, and at most report it on stderr.
-const char* picture_fault(std::string_view bytes);
+const char* image_fault(std::string_view bytes);
 
 /// Whether the header declares more pixels than so few bytes can encode, or than anybody needs:
 /// such files are refused before anything is allocated for them.
@@ -39,15 +39,15 @@ std::string without_remarks(std::string_view bytes);
 
 /// Pixel format to decode to: channels (in OpenCV's order) and depth as stored, three of 8 bits, or
 /// one of 8 bits.
-enum class PictureForm { kStored, kColor, kGray };
+enum class ImageForm { kStored, kColor, kGray };
 
 /// Decodes an image of any kind that OpenCV reads; all image decoding in the program goes through
 /// this function.
 /// @throws InputError stating what is wrong with it, to be appended to a file's name: damaged,
 /// truncated, or declaring more than such a file can contain.
-cv::Mat decode_picture(std::string_view bytes, PictureForm form = PictureForm::kStored);
+cv::Mat decode_image(std::string_view bytes, ImageForm form = ImageForm::kStored);
 /// Reads an image file. @throws InputError naming the file.
-cv::Mat read_picture(const std::filesystem::path& file, PictureForm form = PictureForm::kStored);
+cv::Mat read_image(const std::filesystem::path& file, ImageForm form = ImageForm::kStored);
 
 /// Decodes an image of three 8-bit channels; nullopt if the bytes are not such an image.
 std::optional<Grid2d<Rgb8>> decode_color(std::string_view bytes);
@@ -55,8 +55,8 @@ std::optional<Grid2d<Rgb8>> decode_color(std::string_view bytes);
 std::optional<Grid2d<std::uint16_t>> decode_gray16(std::string_view bytes);
 
 /// @param quality  of the JPEG, 1 to 100
-std::string encode_jpeg(const Grid2d<Rgb8>& picture, int quality);
-std::string encode_png(const Grid2d<std::uint16_t>& picture);
-std::string encode_png(const Grid2d<std::uint8_t>& picture);
+std::string encode_jpeg(const Grid2d<Rgb8>& image, int quality);
+std::string encode_png(const Grid2d<std::uint16_t>& image);
+std::string encode_png(const Grid2d<std::uint8_t>& image);
 
 }  // namespace mh

@@ -12,12 +12,12 @@
 namespace mh {
 
 /// Converts an image to 8-bit BGR.
-cv::Mat color_picture(const Grid2d<Rgb8>& color);
+cv::Mat color_image(const Grid2d<Rgb8>& color);
 
 /// A view of a grid of 8- or 16-bit numbers as a gray image in the same memory: read-only, and
 /// valid as long as the grid.
 template <class Number>
-cv::Mat gray_picture(const Grid2d<Number>& grid) {
+cv::Mat gray_image(const Grid2d<Number>& grid) {
   static_assert(std::is_unsigned_v<Number> && sizeof(Number) <= 2);
   return {grid.height(), grid.width(), sizeof(Number) == 1 ? CV_8UC1 : CV_16UC1,
           const_cast<Number*>(grid.data())};
@@ -26,10 +26,10 @@ cv::Mat gray_picture(const Grid2d<Number>& grid) {
 /// Writes an image atomically, in the format given by the file's extension.
 /// @param settings  of the format, as cv::imencode takes them
 /// @throws InputError if it cannot be written.
-void write_picture(const std::filesystem::path& file, const cv::Mat& bgr,
-                   const std::vector<int>& settings = {});
+void write_image(const std::filesystem::path& file, const cv::Mat& bgr,
+                 const std::vector<int>& settings = {});
 
-/// Whether a PNG or JPEG file exists and is intact, as judged by picture_fault().
-bool is_whole_picture(const std::filesystem::path& file);
+/// Whether a PNG or JPEG file exists and is intact, as judged by image_fault().
+bool is_whole_image(const std::filesystem::path& file);
 
 }  // namespace mh

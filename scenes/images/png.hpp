@@ -14,9 +14,9 @@ bool is_png_type(int opencv_type);
 /// Encodes an image as PNG. Rows of 8 bits are stored as differences to the row above, those of 16
 /// bits unfiltered: both are the fastest choice and nearly the smallest for camera images, depth
 /// and labels. Compared with OpenCV's writer in docs/measurements/rendering.md.
-/// @param picture  of a type that is_png_type() supports, not empty
+/// @param image  of a type that is_png_type() supports, not empty
 /// @param level    0 (uncompressed) to 9 (slowest); the same pixels and level give the same bytes
-std::string encode_png(const cv::Mat& picture, int level = 1);
+std::string encode_png(const cv::Mat& image, int level = 1);
 
 /// The same file with an embedded text (chunk tEXt), which viewers ignore.
 /// @param png      as encode_png() makes it

@@ -10,23 +10,23 @@
 namespace mh::gazebo {
 
 /// Collects warnings, each once with its number of occurrences.
-class ToldOnce {
+class UniqueWarnings {
  public:
-  void tell(const std::string& what) { tell(what, what); }
+  void add(const std::string& what) { add(what, what); }
 
   /// @param thing  what the warning is about; of several warnings about it the first is kept
-  void tell(const std::string& what, const std::string& thing) {
-    const auto place = std::ranges::find(told_, thing, &Entry::thing);
-    if (place != told_.end())
+  void add(const std::string& what, const std::string& thing) {
+    const auto place = std::ranges::find(collected_, thing, &Entry::thing);
+    if (place != collected_.end())
       ++place->times;
     else
-      told_.push_back({thing, what, 1});
+      collected_.push_back({thing, what, 1});
   }
 
   /// Appends them in the order in which they were first given.
-  void hand_over(std::vector<std::string>* warnings) const {
+  void append_to(std::vector<std::string>* warnings) const {
     if (warnings == nullptr) return;
-    for (const auto& [thing, what, times] : told_)
+    for (const auto& [thing, what, times] : collected_)
       warnings->push_back(times == 1 ? what : fmt::format("{} ({} times)", what, times));
   }
 
@@ -35,7 +35,7 @@ class ToldOnce {
     std::string thing, what;
     int times;
   };
-  std::vector<Entry> told_;
+  std::vector<Entry> collected_;
 };
 
 }  // namespace mh::gazebo

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/mesh_io/picture_in.hpp"
+#include "scenes/mesh_io/image_in.hpp"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "scenes/picture_file.hpp"
+#include "scenes/image_file.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/held_bytes.hpp"
@@ -16,17 +16,17 @@ namespace mh {
 namespace {
 
 /// One channel as a separate image.
-Grid2d<std::uint8_t> channel_of(const cv::Mat& picture, int channel) {
-  Grid2d<std::uint8_t> values(picture.cols, picture.rows);
-  cv::Mat out(picture.rows, picture.cols, CV_8UC1, values.data());
-  cv::extractChannel(picture, out, channel);
+Grid2d<std::uint8_t> channel_of(const cv::Mat& image, int channel) {
+  Grid2d<std::uint8_t> values(image.cols, image.rows);
+  cv::Mat out(image.rows, image.cols, CV_8UC1, values.data());
+  cv::extractChannel(image, out, channel);
   return values;
 }
 
-PictureIn decoded(std::string_view bytes) {
+ImageIn decoded(std::string_view bytes) {
   cv::Mat stored;
   try {
-    stored = decode_picture(bytes);
+    stored = decode_image(bytes);
   } catch (const InputError& error) {
     return {.fault = error.what()};
   }
@@ -34,7 +34,7 @@ PictureIn decoded(std::string_view bytes) {
   if (stored.depth() != CV_8U) return {};
   Grid2d<Rgb8> color(stored.cols, stored.rows, Unfilled{});
   cv::Mat rgb(stored.rows, stored.cols, CV_8UC3, color.data());
-  PictureIn picture;
+  ImageIn image;
   switch (stored.channels()) {
     case 1:
       cv::cvtColor(stored, rgb, cv::COLOR_GRAY2RGB);
@@ -44,25 +44,25 @@ PictureIn decoded(std::string_view bytes) {
       break;
     case 4:
       cv::cvtColor(stored, rgb, cv::COLOR_BGRA2RGB);
-      picture.opacity = channel_of(stored, 3);
+      image.opacity = channel_of(stored, 3);
       break;
     default:
       return {};
   }
-  picture.color = std::move(color);
-  return picture;
+  image.color = std::move(color);
+  return image;
 }
 
 }  // namespace
 
-PictureIn PictureStore::decode(std::string_view bytes) {
+ImageIn ImageStore::decode(std::string_view bytes) {
   const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
   const auto [place, is_new] = decoded_.try_emplace({hash.high64, hash.low64});
   if (is_new) place->second = decoded(bytes);
   return place->second;
 }
 
-PictureIn PictureStore::read(const std::filesystem::path& file) {
+ImageIn ImageStore::read(const std::filesystem::path& file) {
   if (!is_file(file)) return {.fault = "is missing"};
   return decode(map_file(file).view);
 }
