@@ -89,7 +89,8 @@ OpenedRecording open_tum(const fs::path& folder, const RecordingConfig& config) 
 const SequenceReader kTumReader{"tum", "FOLDER", is_tum_folder, open_tum, nullptr};
 
 OpenedRecording open_listed(ListedFrames listed, bool labels, std::vector<std::string> notes) {
-  OpenedRecording opened{.notes = std::move(notes)};
+  OpenedRecording opened;
+  opened.notes = std::move(notes);
   for (RecordedFrame& frame : listed.frames) {
     for (const fs::path* file : {&frame.color, &frame.depth, &frame.classes})
       if (!file->empty()) opened.files.push_back(*file);

@@ -154,21 +154,21 @@ TEST(Generate, LampsLightBothArmsOfLShapedRooms) {
   EXPECT_GE(rooms, 20);
 }
 
-TEST(Generate, ImagesOfOneRuleDiffer) {
+TEST(Generate, PicturesOfOneRuleDiffer) {
   const GeneratedPlan plan = generate_plan({"hallway", 0});
   const HousePlan house = read_house_plan(YamlReader::parse(plan.yaml(), plan.name));
   std::set<double> widths;
   std::set<std::uint64_t> images;
-  std::size_t images = 0;
+  std::size_t pictures = 0;
   for (const ItemPlan& item : house.items) {
     if (item.kind->name != "picture") continue;
-    ++images;
+    ++pictures;
     widths.insert(item.size_m.x());
     images.insert(item.materials.at("image").seed);
   }
-  EXPECT_GE(images, 3U);
-  EXPECT_EQ(widths.size(), images);
-  EXPECT_EQ(images.size(), images);
+  EXPECT_GE(pictures, 3U);
+  EXPECT_EQ(widths.size(), pictures);
+  EXPECT_EQ(images.size(), pictures);
 }
 
 // Where the robot's middle can be, found from the triangles alone: cells from whose middle nothing
