@@ -12,8 +12,7 @@ namespace {
 enum StreamName : std::uint64_t { kDepth = 1, kColor = 2, kLabels = 3, kBlank = 4 };
 
 bool is_blank(const SensorConfig& config, RandomStream stream) {
-  return config.blank_frames.lost() > 0.0 &&
-         stream.fork(kBlank).uniform(0) < config.blank_frames.lost();
+  return stream.fork(kBlank).uniform(0) < config.blank_frames.lost();
 }
 
 }  // namespace

@@ -218,9 +218,16 @@ TEST_F(RunKey, ChangesWithTheContentOfEachFileAndNotWithItsPlace) {
   const fs::path moved = folder_ / "moved";
   fs::create_directories(moved);
   RunSpec elsewhere = ours_;
-  elsewhere.level = moved / "pepper.yaml";
-  fs::copy(ours_.level, elsewhere.level);
-  EXPECT_EQ(run_key_of(elsewhere), run_key_of(ours_));
+  Environment& e = elsewhere.environment;
+  for (fs::path* source :
+       {&elsewhere.level, &elsewhere.vocabulary, &e.scene, &e.robot, &e.mapping_tour,
+        &*e.query_tour, &*e.query_scene, &*e.kidnapped_tour, &*e.sensors, &*e.pedestrian}) {
+    const fs::path to = moved / source->filename();
+    fs::copy(*source, to);
+    *source = to;
+    EXPECT_EQ(run_key_of(elsewhere), run_key_of(ours_)) << to;
+    EXPECT_EQ(stored_spec(elsewhere), stored_spec(ours_)) << to;
+  }
 }
 
 TEST_F(RunKey, ChangesWithTheCodeAndTheBuildAndNotWithTheCommit) {

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "bench/metrics/trajectory_score.hpp"
 #include "bench/report/json.hpp"
@@ -453,6 +454,40 @@ TEST(Sweep, TheBestPointIsComparedWithTheSuitesOwnSettings) {
   const cv::Mat image = draw_sweep(place.suite, rows, results[0]);
   EXPECT_GT(image.cols, 1000);
   EXPECT_EQ(sweep_image_name(place.suite, results[0]), "sweep-semantic-exact-fake.png");
+}
+
+/// Areas of this color in a picture, specks left out.
+int areas_of(const cv::Mat& picture, const cv::Scalar& bgr) {
+  cv::Mat is_it, components, statistics, middles;
+  cv::inRange(picture, bgr, bgr, is_it);
+  const int count = cv::connectedComponentsWithStats(is_it, components, statistics, middles);
+  int areas = 0;
+  for (int k = 1; k < count; ++k) areas += statistics.at<int>(k, cv::CC_STAT_AREA) > 10'000 ? 1 : 0;
+  return areas;
+}
+
+TEST(Sweep, OfMoreThanTwoSettingsEachPairHasAPanel) {
+  Place place;
+  place.suite.labels = {LabelMode::kExact};
+  place.suite.systems.resize(1);
+  place.suite.compare.clear();
+  place.suite.sweep.varied = {"semantics.gamma", "semantics.alpha", "semantics.xi",
+                              "semantics.beta"};
+  for (const double share : {0.5, 0.6, 0.7}) {
+    SlamConfig point = place.suite.slam;
+    point.semantics.gamma = point.semantics.xi = share;
+    point.semantics.alpha = point.semantics.beta = share;
+    place.suite.sweep.points.push_back(point);
+  }
+  const std::vector<RunResult> runs = place.run();
+  const cv::Scalar ground(249, 247, 246);  // BGR
+  for (const auto& [settings, pairs] : {std::pair(std::size_t{4}, 6), {3, 3}, {2, 1}}) {
+    place.suite.sweep.varied.resize(settings);
+    const std::vector<Row> rows = make_rows(place.suite, runs);
+    const cv::Mat picture = draw_sweep(place.suite, rows, sweep_results(place.suite, rows).front());
+    const int sets = 2;  // held out, second tour
+    EXPECT_EQ(areas_of(picture, ground), sets * pairs) << settings;
+  }
 }
 
 TEST(Results, WhatWasNotAskedIsADashNotZeroPercent) {

@@ -53,8 +53,8 @@ TEST(MeasureImage, CountsCornersOfSquaresAndBlankCells) {
   EXPECT_LT(s[kBlank], 1.0);
 }
 
-TEST(MeasureImage, OfNoiseWithAPowerLawHasItsSlope) {
-  // Power falls with frequency^-3: amplitude with its 1.5th power, random phases.
+/// Noise whose power falls with frequency^-3: amplitude with its 1.5th power, random phases.
+cv::Mat power_law_noise() {
   const RandomStream random(3);
   cv::Mat spectrum(480, 640, CV_32FC2);
   for (int y = 0; y < 480; ++y)
@@ -68,7 +68,23 @@ TEST(MeasureImage, OfNoiseWithAPowerLawHasItsSlope) {
   cv::Mat image, gray;
   cv::idft(spectrum, image, cv::DFT_REAL_OUTPUT | cv::DFT_SCALE);
   cv::normalize(image, gray, 0, 255, cv::NORM_MINMAX, CV_8U);
-  EXPECT_NEAR(measure_image(gray)[kSlope], -3.0, 0.1);
+  return gray;
+}
+
+TEST(MeasureImage, OfNoiseWithAPowerLawHasItsSlope) {
+  EXPECT_NEAR(measure_image(power_law_noise())[kSlope], -3.0, 0.1);
+}
+
+TEST(MeasureImage, TheSpectrumIsThatOfTheMiddleSquare) {
+  cv::Mat gray = power_law_noise();
+  const double slope = measure_image(gray)[kSlope];
+  const auto paint = [&](int x, int width) {
+    gray(cv::Rect(x, 0, width, 480)).setTo(0);
+    return measure_image(gray)[kSlope];
+  };
+  EXPECT_EQ(paint(0, 80), slope);
+  EXPECT_EQ(paint(560, 80), slope);
+  EXPECT_NE(paint(80, 80), slope);
 }
 
 TEST(MeasureImage, ScalesToVgaFirst) {

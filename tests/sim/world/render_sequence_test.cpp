@@ -100,6 +100,16 @@ TEST_F(RenderSequence, GoesOnWhereItWasStopped) {
   EXPECT_EQ(gone_on, whole);
 }
 
+TEST_F(RenderSequence, TimesItsStagesWhereItWritesFrames) {
+  rendered("tum", "whole", {.threads = 1});
+  EXPECT_GT(result_.render_s, 0);
+  EXPECT_GT(result_.encode_s, 0);
+  rendered("tum", "whole", {.threads = 1, .resume = true});
+  EXPECT_EQ(result_.frames, 0U);
+  EXPECT_EQ(result_.render_s, 0);
+  EXPECT_EQ(result_.encode_s, 0);
+}
+
 TEST_F(RenderSequence, MakesAnewWhatWasCutOff) {
   for (const char* layout : {"tum", "scannet-frames"}) {
     const std::string name = layout;
