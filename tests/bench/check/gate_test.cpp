@@ -156,6 +156,10 @@ TEST(GateReport, NamesWhatMovedByHowMuchAndWhere) {
             std::string::npos)
       << report;
   EXPECT_NE(report.find("ci: FAILED: 1 of 2 measures worse, 0 better"), std::string::npos);
+  const auto group = report.find("\ncorridor, plain-pepper\n  ");
+  EXPECT_NE(group, std::string::npos) << report;
+  EXPECT_EQ(report.find("\ncorridor, plain-pepper\n", group + 1), std::string::npos)
+      << "once over all its measures" << report;
   EXPECT_FALSE(gate_json(result, "ci")["passed"].get<bool>());
 }
 

@@ -120,6 +120,16 @@ TEST(ContactSheet, ShowsColorDepthAndLabelsFromLeftToRight) {
   EXPECT_LE(labels.x + labels.width, image.cols - color.x + 2) << "margins are alike";
   const cv::Mat below = image.rowRange(color.y + color.height + 30, image.rows);
   EXPECT_GT(box_of(below, chair).area(), 50) << "the legend";
+  const auto end_of_scale = [&](int column) {
+    const cv::Vec3b bgr = depth_scale().at<cv::Vec3b>(0, column);
+    return box_of(below, {bgr[2], bgr[1], bgr[0]});
+  };
+  const cv::Rect near = end_of_scale(0), far = end_of_scale(255);
+  ASSERT_GT(near.area(), 0);
+  ASSERT_GT(far.area(), 0);
+  EXPECT_LT(near.x + color.width - 10, far.x + far.width) << "the scale is as wide as the depth";
+  EXPECT_GT(near.x, color.x + color.width);
+  EXPECT_LT(far.x + far.width, labels.x);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+#include "slam/core/error.hpp"
 #include "slam/core/temporary_folder.hpp"
 
 namespace mh {
@@ -40,6 +41,17 @@ TEST(RunProcess, OneThatSaysNothingHoldsNobodyUp) {
   EXPECT_EQ(process.share(), 0.5);
   EXPECT_EQ(process.status(), "frame 3");
   EXPECT_EQ(process.take_stages(), std::vector<std::string>{"baking"});
+}
+
+TEST(RunProcess, AProgramThatIsNotThereIsNamedWithTheReason) {
+  const TemporaryFolder folder(std::filesystem::temp_directory_path());
+  const std::string none = folder.path() / "none";
+  try {
+    const RunProcess process(none, {}, folder.path() / "log");
+    ADD_FAILURE() << "it was started";
+  } catch (const MachineError& e) {
+    EXPECT_EQ(e.what(), none + ": cannot be started: No such file or directory");
+  }
 }
 
 TEST(RunProcess, TellsHowItEndedAndItsLastWords) {

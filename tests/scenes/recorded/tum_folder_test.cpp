@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -72,6 +73,17 @@ TEST_F(TumFolder, ReadsBackWhatItWrote) {
   EXPECT_EQ(read.semantics.at(0, 0).most_probable(), 5);
   EXPECT_EQ(read.semantics.at(2, 1).most_probable(), kVoid);
   EXPECT_EQ(read_tum(folder_ / "groundtruth.txt").size(), 2u);
+}
+
+TEST_F(TumFolder, RedAndBlueAreExchangedWhereTheCameraSaysSo) {
+  TumWriter writer(folder_, camera_);
+  writer.add(0, exact(0, SE3()));
+  writer.finish();
+  RecordedCamera camera{camera_, 5000};
+  camera.exchange_red_blue = true;
+  Grid2d<Rgb8> exchanged = frame(0).color;
+  for (Rgb8& color : exchanged) std::swap(color.r, color.b);
+  EXPECT_EQ(read_frame(load_tum_folder(folder_).front(), camera).color, exchanged);
 }
 
 TEST_F(TumFolder, NamesWhatIsWrong) {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/map/map.hpp"
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "slam/core/random.hpp"
@@ -149,6 +153,34 @@ TEST(Map, LabelComesWithTheRepresentativeDescriptor) {
   map.refresh(id, FeatureConfig{});
   EXPECT_EQ(map.at(id).label, 11);
   EXPECT_EQ(map.at(id).descriptor, map.at(KeyframeId{1}).features.descriptors[0]);
+}
+
+TEST(Map, TheRepresentativeDescriptorHasTheLeastMedianDistanceToTheOthers) {
+  const RandomStream random(5);
+  for (std::uint32_t n = 3; n <= 40; ++n) {
+    Map map;
+    std::vector<Descriptor> all(n);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      for (std::uint64_t word = 0; word < 4; ++word)
+        all[i][word] = random.fork(n).bits(4 * i + word);
+      Keyframe k = keyframe_with(1);
+      k.features.descriptors[0] = all[i];
+      map.add(k);
+    }
+    const LandmarkId id = map.add_landmark({0, 0, 2}, KeyframeId{0}, 0);
+    for (std::uint32_t i = 1; i < n; ++i) map.add_observation(id, KeyframeId{i}, 0);
+    map.refresh(id, FeatureConfig{});
+    std::vector<std::pair<int, std::uint32_t>> medians;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      std::vector<int> others;
+      for (std::uint32_t j = 0; j < n; ++j)
+        if (j != i) others.push_back(hamming(all[i], all[j]));
+      std::sort(others.begin(), others.end());
+      medians.emplace_back(others[others.size() / 2], i);
+    }
+    const auto [median, first] = *std::min_element(medians.begin(), medians.end());
+    EXPECT_EQ(map.at(id).descriptor, all[first]) << n << " descriptors, least median " << median;
+  }
 }
 
 TEST(Map, DigestSeesAMovedPoseAndALandmark) {
