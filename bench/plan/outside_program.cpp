@@ -96,7 +96,7 @@ void validate(const OutsideProgram& program) {
     if (std::find(known.begin(), known.end(), word) == known.end()) {
       std::string list;
       for (const std::string_view name : known) list += fmt::format(" {{{}}}", name);
-      fail(fmt::format("'{{{}}}' is none of{}", word, list));
+      fail(fmt::format("'{{{}}}' is not one of{}", word, list));
     }
     writes_trajectory |= word == "trajectory";
     return std::string();

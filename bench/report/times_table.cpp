@@ -45,7 +45,7 @@ std::string circumstances(std::span<const RunResult> runs) {
   std::string text = fmt::format("  measured on {}", fmt::join(hosts, ", "));
   if (!sessions.empty())
     text += fmt::format(" in {}, {} side by side, load per processor {}",
-                        counted(sessions.size(), "session_start"),
+                        counted(sessions.size(), "session"),
                         jobs.text(0) + (jobs.most == 1 ? " job" : " jobs"), load.text(1));
   if (unknown)
     text += sessions.empty() ? ", it is not known when" : ", others it is not known when";

@@ -46,13 +46,9 @@ SE3 reflected(const SE3& pose) {
   return {Eigen::Matrix3d(turn_y * pose.rotation() * turn_y), turn_y * pose.translation()};
 }
 
-/// The files of true poses, NAME.gt.freiburg; empty if the folder holds none.
-std::vector<fs::path> truth_files(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.path().string().ends_with(".gt.freiburg")) files.push_back(entry.path());
-  return files;
+/// The files of true poses, NAME.gt.freiburg; empty if the folder contains none.
+std::vector<std::string> truth_files(const fs::path& folder) {
+  return list_folder(folder, "*.gt.freiburg");
 }
 
 Trajectory read_truth(const fs::path& file) {
@@ -81,14 +77,14 @@ bool is_icl_nuim(const fs::path& folder) {
 
 OpenedRecording open_icl_nuim(const fs::path& folder, const RecordingConfig& config) {
   if (!is_folder(folder)) throw InputError(fmt::format("{}: is not a folder", folder.string()));
-  const std::vector<fs::path> truth = truth_files(folder);
+  const std::vector<std::string> truth = truth_files(folder);
   if (truth.size() != 1)
     throw InputError(fmt::format("{}: holds {}, one is needed", folder.string(),
                                  counted(truth.size(), ".gt.freiburg file")));
   ListedFrames listed{.camera = {.camera = published_camera()},
                       .frames = read_frames(folder),
                       .classes = {},
-                      .truth = read_truth(truth.front())};
+                      .truth = read_truth(folder / truth.front())};
   if (!config.calibration.empty()) listed.camera = config.read_camera(config.calibration);
   return open_listed(std::move(listed));
 }

@@ -34,8 +34,8 @@ Eigen::Matrix4d read_matrix(const fs::path& file) {
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || end != word.data() + word.size())
-      throw InputError(
-          fmt::format("{}: number {}: '{}' is none", file.string(), i + 1, word.substr(0, 40)));
+      throw InputError(fmt::format("{}: number {}: '{}' is not a number", file.string(), i + 1,
+                                   word.substr(0, 40)));
     matrix(i / 4, i % 4) = value;
   }
   if (words >> word) throw InputError(fmt::format("{}: holds more than 16 numbers", file.string()));

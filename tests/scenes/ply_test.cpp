@@ -163,7 +163,7 @@ TEST(Ply, CountsThatOverflowAreRefusedBeforeAnythingIsAllocated) {
 }
 
 TEST(Ply, SaysWhatIsWrongWithAHeader) {
-  EXPECT_TRUE(names(error_of_ply("hello\n"), {"mesh.ply:1", "no PLY"}));
+  EXPECT_TRUE(names(error_of_ply("hello\n"), {"mesh.ply:1", "not a PLY"}));
   EXPECT_TRUE(names(error_of_ply("ply\nformat ascii 2.0\nend_header\n"), {":2", "'ascii 2.0'"}));
   EXPECT_TRUE(names(error_of_ply("ply\nend_header\n"), {":2", "no format"}));
   EXPECT_TRUE(names(error_of_ply(header("property float x\n")), {"mesh.ply:3", "first element"}));
@@ -285,7 +285,7 @@ TEST_F(LabeledPly, LabelsAloneAreNyu40) {
   write("mesh.ply", ply_bytes(mesh));
   EXPECT_EQ(load_mesh(folder_ / "mesh.ply", &warnings).class_of, (std::vector<ClassId>{0, 0}));
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_TRUE(names(warnings[0], {"mesh.ply", "2 faces", "no NYU40 id"}));
+  EXPECT_TRUE(names(warnings[0], {"mesh.ply", "2 faces", "not an NYU40 id"}));
 }
 
 }  // namespace

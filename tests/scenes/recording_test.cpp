@@ -120,7 +120,7 @@ TEST_F(SensFile, SaysWhichFieldIsWrong) {
   EXPECT_TRUE(names(error(with(whole, kCount, std::uint64_t{1} << 62)), {"frame 3", "truncated"}));
   EXPECT_TRUE(names(error(with(whole, kDepthSize, std::uint64_t{1} << 62)),
                     {"frame 0's depth image", "truncated"}));
-  EXPECT_TRUE(names(error(with(whole, kFrame, 2.0F)), {"frame 0", "no rotation"}));
+  EXPECT_TRUE(names(error(with(whole, kFrame, 2.0F)), {"frame 0", "not a rotation"}));
 }
 
 TEST_F(SensFile, ImagesThatAreNotWhatTheHeaderSaysAreRefused) {
@@ -349,7 +349,7 @@ TEST_F(LabelImagesOf, ZipsThatPointOutsideAreDamagedOrClaimTooMuchAreRefused) {
   for (std::size_t at; (at = outside.find("../bel-filt/0.pn")) != outside.npos;)
     outside.replace(at, 16, "/etc/passwd/0.pn");
   EXPECT_TRUE(names(error(outside), {"/etc/passwd", "outside"}));
-  EXPECT_TRUE(names(error(whole.substr(0, whole.size() / 2)), {"l.zip", "no zip"}));
+  EXPECT_TRUE(names(error(whole.substr(0, whole.size() / 2)), {"l.zip", "not a zip"}));
   EXPECT_TRUE(names(error("no zip"), {"l.zip"}));
   EXPECT_TRUE(names(error(""), {"l.zip", "empty"}));
   std::string claims = whole;  // the size in the central directory, 24 bytes behind its mark

@@ -287,7 +287,7 @@ TEST_F(Scannet, DamagedFilesAreNamedWithTheirPlace) {
   for (const char* matrix : {"0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 1", "2 0 0 0 0 2 0 0 0 0 2 0 0 0 0 1",
                              "1 0 0 0 0 1 0 0 0 0 -1 0 0 0 0 1"}) {
     write("s/s.txt", std::string("axisAlignment = ") + matrix + "\n");
-    EXPECT_TRUE(names(error(), {"s.txt:1", "axisAlignment", "no rotation"})) << matrix;
+    EXPECT_TRUE(names(error(), {"s.txt:1", "axisAlignment", "not a rotation"})) << matrix;
   }
   write("s/s.txt", "a = b\naxisAlignment = 1 0 0\n");
   EXPECT_TRUE(names(error(), {"s.txt:2", "axisAlignment", "number 4"}));

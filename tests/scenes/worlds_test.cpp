@@ -164,7 +164,7 @@ TEST_F(Worlds, BadWorldsAreNamedWithTheirPlace) {
     const auto world = write("w.sdf", "<?xml version='1.0'?>\n<sdf version='1.7'>" + inside);
     return error_of([&] { load_gazebo_world(world); });
   };
-  EXPECT_TRUE(names(error("<world name='w'>"), {"w.sdf:", "no SDF"}));
+  EXPECT_TRUE(names(error("<world name='w'>"), {"w.sdf:", "not SDF"}));
   EXPECT_TRUE(names(error("<world name='w'>\n<include><uri>model://gone</uri></include>"
                           "</world></sdf>"),
                     {"w.sdf:3", "model://gone"}));

@@ -532,7 +532,7 @@ TEST_F(CommandLine, ASceneBecomesAScannetFolderAndIsReadBack) {
   const std::string slam = " --vocabulary " + std::string(MH_SOURCE_DIR) +
                            "/assets/vocabulary.mhvoc --out " + (folder_ / "out").string();
   expect_refused("slam scannet:" + (folder_ / "nowhere").string() + slam, "nowhere");
-  expect_refused("slam scannet:" + out + slam, "no ScanNet recording");
+  expect_refused("slam scannet:" + out + slam, "not a ScanNet recording");
   expect_refused("slam scannet:" + write("a.sens", "text").string() + slam, "a.sens");
 }
 

@@ -63,7 +63,7 @@ void add_ply(std::vector<HostileCase>& cases) {
   };
   for (const char* id : {"65541", "5.9", "-1", "1e30", "null", "[5]"})
     cases.push_back(scene(fmt::format("labels_of_instance_case_{}", cases.size()), "a.ply",
-                          triangle_ply(), "no whole number from 0 to 65535", labels(id)));
+                          triangle_ply(), "not an integer from 0 to 65535", labels(id)));
   cases.push_back(scene("labels_nested", "a.ply", triangle_ply(),
                         "a.labels.json: ", {{"a.labels.json", repeated("[", 1 << 20)}}));
   cases.push_back(scene("label_rules_nested", "a.obj", kPoints + "f 1 2 3\n",

@@ -202,7 +202,7 @@ TEST_F(SlamCommand, AMapAnswersByTheFactorsThatAreGiven) {
 
 TEST_F(SlamCommand, RefusesWhatItCannotUse) {
   const std::string out = " --out " + path("no");
-  expect_refused(path("nowhere") + out, "is not a folder, nor tum:FOLDER");
+  expect_refused(path("nowhere") + out, "is not a folder, nor icl_nuim:FOLDER, tum:FOLDER");
   fs::create_directories(folder_ / "empty");
   expect_refused(path("empty") + out, "holds neither rgb.txt nor associations.txt");
   expect_refused(path("room") + out + " --localize", "--localize needs a map");

@@ -120,7 +120,7 @@ TEST_F(RecordedSuite, WhatIsOfScenesIsRefusedWithItsReason) {
             "no environment is one");
   expect_in(error("- {category: desk, sequence: 'tum:nowhere'}"), "is not there");
   expect_in(error("- {category: desk, sequence: scans}"),
-            "name its layout: tum:FOLDER, scannet:FOLDER");
+            "name its layout: icl_nuim:FOLDER, tum:FOLDER, scannet:FOLDER");
   expect_in(error(kDesk, "[recorded]", "", {.scene = folder_ / "house.yaml"}), "is a recording");
 }
 

@@ -538,7 +538,7 @@ TEST_F(SuiteFile, NamesALibraryAndItsRunIsNamedByWhatItsFilesHold) {
   expect_refused("library: libvo.so, settings: gone.yaml",
                  "gone.yaml' cannot be read: no such file");
   expect_refused("library: ''", "library: is empty");
-  expect_refused("command: slam, protocol: library", "'library' is none of");
+  expect_refused("command: slam, protocol: library", "'library' is not one of");
 }
 
 TEST(FilesOf, TheFirstWordIsLookedForOnThePath) {

@@ -451,7 +451,7 @@ TEST_F(OutsideFaults, AFinalTrajectoryHoldsShownFramesOnly) {
   EXPECT_HOLDS(freeze_error(R"(["0.000000007 nan 0 0 0 0 0 1"])"), "trajectory:1: tx: 'nan'");
   EXPECT_HOLDS(freeze_error(R"(["0.000000007 4e30 0 0 0 0 0 1"])"),
                "a pose more than 1e+06 m away in its trajectory, at 0.000000007");
-  EXPECT_HOLDS(freeze_error("7"), "no list of lines");
+  EXPECT_HOLDS(freeze_error("7"), "not a list of lines");
 }
 
 TEST_F(OutsideFaults, PosesInAMapThatWasGivenUpAreVoid) {
@@ -485,7 +485,7 @@ TEST_F(OutsideFaults, CommandsAreCheckedBeforeTheyRun) {
   EXPECT_HOLDS(refused(OutsideMode::kTrajectory, "slam {dataset}"), "{trajectory} is missing");
   EXPECT_HOLDS(refused(OutsideMode::kTrajectory, "slam {datset} {trajectory}"),
                "'{datset}' is not one of {dataset}");
-  EXPECT_HOLDS(refused(OutsideMode::kConversation, "slam {dataset}"), "'{dataset}' is none of");
+  EXPECT_HOLDS(refused(OutsideMode::kConversation, "slam {dataset}"), "'{dataset}' is not one of");
   EXPECT_EQ(refused(OutsideMode::kTrajectory, "a={b,c}; slam ${HOME} {trajectory}"), "no error");
   EXPECT_EQ(refused(OutsideMode::kConversation, "slam {settings} {seed}"), "no error");
   for (const char* quoted : {"'{dataset}'", "\"{dataset}\"", "\"--data={dataset}\"",

@@ -404,7 +404,7 @@ TEST(MapFile, EveryCutIsNoticed) {
     const std::size_t length = draws.below(i, i % 2 ? 200 : midway_bytes().size());
     const std::string said = complaint(midway_bytes().substr(0, length));
     EXPECT_TRUE(said.find("truncated") != std::string::npos ||
-                (length == 0 && said.find("no map") != std::string::npos))
+                (length == 0 && said.find("not a map") != std::string::npos))
         << length << ": " << said;
   }
 }

@@ -93,7 +93,7 @@ TEST(Settings, NamesFileLinePlaceAndValue) {
             std::string::npos);
   EXPECT_NE(complaint(std::string(kCamera) + "semantics: {alpha: 1}").find("[0, 1)"),
             std::string::npos);
-  EXPECT_NE(complaint(std::string(kCamera) + "semantics: {overlap: all}").find("'all' is none"),
+  EXPECT_NE(complaint(std::string(kCamera) + "semantics: {overlap: all}").find("'all' is not one"),
             std::string::npos);
   EXPECT_NE(complaint("camera: {fx_px: 500}").find("'fy_px' is missing"), std::string::npos);
   EXPECT_NE(complaint("").find("the file holds nothing"), std::string::npos);
@@ -121,7 +121,7 @@ TEST(Settings, EveryRangeOfTheDocsEndsWhereItSays) {
     const double present = setting_value(SlamConfig{}, section + "." + key);
     const bool whole = part[6].matched;
     EXPECT_EQ(whole,
-              complaint(section + ": {" + key + ": 1.5}").find("whole number") != std::string::npos)
+              complaint(section + ": {" + key + ": 1.5}").find("integer") != std::string::npos)
         << line;
     EXPECT_TRUE(present >= low && present <= high) << line;
     const auto refused = [&](double value) {

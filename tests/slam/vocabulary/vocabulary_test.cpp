@@ -276,11 +276,11 @@ TEST_F(VocabularyFile, SignedNonsenseIsRefusedToo) {
   std::string more_children = bytes_;
   more_children[child_counts] = 100;
   rewrite(signed_again(more_children));
-  EXPECT_THAT(message_of_loading(), HasSubstr("no consistent tree"));
+  EXPECT_THAT(message_of_loading(), HasSubstr("not a consistent tree"));
   std::string fewer_children = bytes_;
   fewer_children[child_counts] = 0;
   rewrite(signed_again(fewer_children));
-  EXPECT_THAT(message_of_loading(), HasSubstr("no consistent tree"));
+  EXPECT_THAT(message_of_loading(), HasSubstr("not a consistent tree"));
   std::string negative = bytes_;
   negative[child_counts - 1] = static_cast<char>(0xff);  // of the last weight
   rewrite(signed_again(negative));
