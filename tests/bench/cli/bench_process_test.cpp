@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
 
 #include "source_dir.hpp"
@@ -186,6 +187,26 @@ TEST(BenchProcess, AFinishedRunIsNotRepeated) {
   EXPECT_EQ(run(bench(write_suite(), "plain_run")), 0);
   EXPECT_NE(errors().find("3 runs, 0 of them to do"), std::string::npos) << errors();
   EXPECT_EQ(tables("plain_run"), undisturbed());
+}
+
+// What a run's parts took: none is negative, and together they are most of what it took, not more.
+TEST(BenchProcess, ThePartsOfARunsTimeAddUp) {
+  undisturbed();
+  const SQLite::Database db((test_folder() / "plain_run" / "results.sqlite").string());
+  SQLite::Statement times(db, "SELECT cpu_s, slam_s, frames_s, products_s FROM times");
+  int runs = 0;
+  for (; times.executeStep(); ++runs) {
+    double sum_s = 0;
+    for (int part = 1; part < 4; ++part) {
+      const double part_s = times.getColumn(part).getDouble();
+      EXPECT_GE(part_s, 0) << times.getColumnName(part);
+      sum_s += part_s;
+    }
+    const double cpu_s = times.getColumn(0).getDouble();
+    EXPECT_LE(sum_s, cpu_s);
+    EXPECT_GE(sum_s, 0.75 * cpu_s);
+  }
+  EXPECT_EQ(runs, 3);
 }
 
 TEST(BenchProcess, KilledAtRandomMomentsItGoesOnAndLosesNothing) {
