@@ -9,20 +9,20 @@
 
 namespace mh {
 
-/// What "resets" means after a frame was dropped (section 3.1 of the paper leaves it open).
+/// /// What is reset after a frame was dropped (section 3.1 of the paper leaves it open).
 enum class DropReset {
-  kCounter,  ///< the count of failed restarts starts again, the map stays
-  kMap,      ///< the system forgets its map too
+  kCounter,  ///< the count of failed restarts is cleared, the map is kept
+  kMap,      ///< the system discards its map, too
 };
 
 constexpr std::array<std::pair<std::string_view, DropReset>, 2> setting_words(DropReset) {
   return {{{"counter", DropReset::kCounter}, {"map", DropReset::kMap}}};
 }
 
-/// What the feed does when tracking was lost.
+/// /// What the feed does when tracking is lost.
 enum class OnFailure {
-  kRewind,    ///< it goes back (section 3.1 of the paper)
-  kContinue,  ///< it goes on with the next frame, as a camera does
+  kRewind,    ///< rewinds (section 3.1 of the paper)
+  kContinue,  ///< continues with the next frame, as a camera does
 };
 
 constexpr std::array<std::pair<std::string_view, OnFailure>, 2> setting_words(OnFailure) {
@@ -31,10 +31,10 @@ constexpr std::array<std::pair<std::string_view, OnFailure>, 2> setting_words(On
 
 /// What a query's answer is compared with.
 enum class QueryTruth {
-  kLocal,  ///< the nearest mapped frame's estimate, carried on by the true motion to the query
-  /// Between the estimates of the mapped frames before and after, by time (section 3.2 of the
-  /// paper: "based on the camera poses with neighboring frames"). Needs no truth at all, but takes
-  /// the estimates' own errors for it. Where there are no two near neighbors: kLocal.
+  kLocal,  ///< the nearest mapped frame's estimate, propagated to the query by the true motion
+  /// Interpolated by time between the estimates of the mapped frames before and after (section 3.2
+  /// of the paper: "based on the camera poses with neighboring frames"). Needs no ground truth, but
+  /// inherits the errors of the estimates. Without two near neighbors: kLocal.
   kInterpolated,
 };
 
@@ -42,15 +42,15 @@ constexpr std::array<std::pair<std::string_view, QueryTruth>, 2> setting_words(Q
   return {{{"local", QueryTruth::kLocal}, {"interpolated", QueryTruth::kInterpolated}}};
 }
 
-/// The paper's sections 3.1 and 3.2, each number settable.
+/// The settings of the paper's sections 3.1 and 3.2.
 struct ProtocolConfig {
   int test_interval = 30;  ///< 0: no frame is held out
   OnFailure on_failure = OnFailure::kRewind;
   int rewind_frames = 50;
   int restarts_per_frame = 5;
   DropReset reset = DropReset::kCounter;
-  /// A system that never finds its way back would otherwise cost restarts_per_frame + 1 rewinds for
-  /// each frame dropped.
+  /// A system that never recovers would otherwise cost restarts_per_frame + 1 rewinds for each
+  /// dropped frame.
   double max_effort = 6.0;
   int query_attempts = 5;
   int max_blank_frames = 30;
@@ -60,7 +60,7 @@ struct ProtocolConfig {
   friend bool operator==(const ProtocolConfig&, const ProtocolConfig&) = default;
 };
 
-/// The feed of a camera: every frame once, none held out.
+/// A camera's feed: every frame once, none held out.
 inline ProtocolConfig live_feed() {
   ProtocolConfig config;
   config.test_interval = 0;

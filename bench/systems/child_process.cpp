@@ -23,11 +23,11 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kLongestLine = std::size_t{64} << 20;  // a trajectory has some 1e5 bytes
-constexpr auto kLook = std::chrono::milliseconds(500);       // between two looks at its limits
+constexpr std::size_t kLongestLine = std::size_t{64} << 20;  // a trajectory is about 1e5 bytes
+constexpr auto kLook = std::chrono::milliseconds(500);       // between two checks of its limits
 constexpr double kMegabyte = 1024.0 * 1024.0;
 constexpr double kLogLimit_mb = 64;  // docs/outside_systems.md
-constexpr int kMoment_ms = 2000;     // for a program that closed its pipe to end
+constexpr int kMoment_ms = 2000;     // grace for a program that closed its pipe
 
 Clock::time_point after(double seconds) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(
@@ -39,7 +39,7 @@ void close_if_open(int& fd) {
   fd = -1;
 }
 
-/// What lies in the files below a folder, MB; what goes meanwhile does not count.
+/// Total size of the files below a folder, MB; files removed meanwhile are not counted.
 double size_mb(const fs::path& folder) {
   double bytes = 0;
   std::error_code error;
@@ -50,7 +50,7 @@ double size_mb(const fs::path& folder) {
   return bytes / kMegabyte;
 }
 
-/// A text without the names of folders before their files, so that it is the same for any of them.
+/// Removes the folders' names from file paths in a text, so that it does not depend on them.
 std::string without_folders(std::string text, const std::vector<fs::path>& folders) {
   for (const fs::path& folder : folders) {
     if (folder.empty()) continue;
@@ -74,7 +74,7 @@ std::string last_line(const fs::path& file, const std::vector<fs::path>& folders
   std::string line, last;
   while (std::getline(in, line))
     if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
-  if (last.starts_with("modelhouse: ")) return {};  // the watcher's note of what is told anyway
+  if (last.starts_with("modelhouse: ")) return {};  // the watcher's note; reported separately
   last = without_folders(last, folders);
   constexpr std::size_t kMost = 200;
   if (last.size() > kMost) last = last.substr(0, kMost) + "...";
@@ -95,7 +95,8 @@ ChildProcess::ChildProcess(const OutsideProgram& program, std::string command, T
   if (log_file < 0) machine(log_.string());
   int in[2] = {-1, -1}, out[2] = {-1, -1};  // ours, the child's
   if (talk == Talk::kOverPipes) {
-    // A socket, not a pipe: writing to a program that is gone must give an error, not SIGPIPE.
+    // A socket, not a pipe: writing to a program that has exited must return an error, not raise
+    // SIGPIPE.
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, in) != 0) machine("no socket");
     if (pipe2(out, O_CLOEXEC) != 0) machine("no pipe");
   } else {
@@ -143,7 +144,7 @@ void ChildProcess::check_limits(std::string_view doing) {
     if (const double mb = size_mb(folder_) - size_before_mb_; mb > program_.disk_limit_mb)
       fail(fmt::format("wrote {:.0f} MB into its folder during {}, its limit is {:g} MB", mb, doing,
                        program_.disk_limit_mb));
-  // Looking takes a small share of the time, however many files there are.
+  // Checking takes a small share of the time, however many files there are.
   next_look_ = Clock::now() + std::max<Clock::duration>(kLook, 20 * (Clock::now() - start));
 }
 
@@ -160,7 +161,7 @@ std::string ChildProcess::ending(int wait_ms) {
     case WatchedEnd::kEnded:
       break;
   }
-  // A shell says so of a command of its own.
+  // A shell reports the signal that ended its own command this way.
   if ((WIFSIGNALED(end->value) && WTERMSIG(end->value) == SIGXFSZ) ||
       WEXITSTATUS(end->value) == 128 + SIGXFSZ)
     return fmt::format("wrote a file of more than {:g} MB, its limit", program_.disk_limit_mb);
@@ -178,7 +179,7 @@ void ChildProcess::send(std::string_view line, std::string_view doing) {
   std::string text(line);
   text += '\n';
   for (std::size_t sent = 0; sent < text.size();) {
-    // A program answers before it is asked again, so that the socket's buffer never fills.
+    // A program answers before the next request is sent, so the socket's buffer never fills.
     const ssize_t n =
         ::send(to_child_, text.data() + sent, text.size() - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
     if (n >= 0)

@@ -30,7 +30,7 @@ using Json = nlohmann::ordered_json;
 constexpr int kProtocol = 1;
 constexpr double kFarewell_s = 5;  // docs/outside_systems.md
 
-/// A folder of its own in memory where there is such a place, removed in the end.
+/// A scratch folder, in memory if possible, removed at the end.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -61,7 +61,7 @@ std::string shortened(std::string_view line) {
   return line.size() > kMost ? text + "..." : text;
 }
 
-/// The exchange of lines: numbers requests, checks answers.
+/// The exchange of lines: numbers requests and checks answers.
 class Conversation {
  public:
   Conversation(const OutsideProgram& program, const Camera& camera, std::uint64_t seed,
@@ -96,8 +96,8 @@ class Conversation {
       fail(fmt::format("does not speak protocol {}", kProtocol));
   }
 
-  /// Sends a request and returns its answer, which has this request's number and no other keys
-  /// than `known`.
+  /// Sends a request and returns its answer. The answer must have this request's number and no keys
+  /// other than `known`.
   Json ask(const std::string& what, const Json& fields, const std::set<std::string>& known) {
     const std::lock_guard lock(mutex_);
     doing_ = fmt::format("{} (request {})", what, ++number_);
@@ -118,7 +118,7 @@ class Conversation {
     return answer;
   }
 
-  /// Asks about a frame: what every answer to one may hold.
+  /// Sends a request about a frame and parses the fields that any such answer may contain.
   SystemReport ask_about(const std::string& what, const RgbdFrame& frame, RandomStream stream,
                          Json fields) {
     const FrameFiles files = show(frame, scratch_.path);
@@ -157,7 +157,7 @@ class Conversation {
 
   Json parse(const std::string& line) {
     Json answer;
-    std::vector<std::set<std::string>> keys;  // of the objects that are open, innermost last
+    std::vector<std::set<std::string>> keys;  // of the open objects, innermost last
     std::string doubled;
     const auto note_keys = [&](int, Json::parse_event_t event, const Json& parsed) {
       if (event == Json::parse_event_t::object_start) keys.emplace_back();

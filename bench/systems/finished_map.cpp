@@ -8,7 +8,7 @@
 namespace mh {
 namespace archive {
 
-/// A record by its list of fields, without their names.
+/// Serializes a record through its list of fields, without their names.
 template <class A, class T>
 requires Either<T, MappingOutcome> || Either<T, MappedFrame> || Either<T, LoopClosure> ||
     Either<T, SkippedFrames> || Either<T, MatcherCounts>

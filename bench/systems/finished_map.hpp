@@ -9,18 +9,18 @@
 
 namespace mh {
 
-/// What mapping leaves behind: all that the queries and the results need of it.
+/// What mapping leaves behind: everything that the queries and the results need from it.
 struct FinishedMap {
   std::string system;  ///< System::save()
   MappingOutcome outcome;
   std::shared_ptr<const OccupancyMapper> volume;  ///< as RunResult::volume
 };
 
-/// As bytes and back. Of the volume each voxel's state stays (free, occupied, unknown), not its
-/// probability.
+/// Converts to bytes and back. Of the volume, each voxel's state (free, occupied, unknown) is kept,
+/// not its probability.
 std::string encode(const FinishedMap& map);
-/// @param name  stands for the file in messages.
-/// @throws InputError where the bytes are no finished map.
+/// @param name  the file's name in messages
+/// @throws InputError if the bytes are not a finished map.
 FinishedMap decode_finished_map(const std::string& bytes, const std::string& name);
 
 }  // namespace mh

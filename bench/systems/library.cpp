@@ -32,7 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// An open file for what is printed.
+/// An open file that receives what is printed.
 class Log {
  public:
   explicit Log(const fs::path& file)
@@ -49,9 +49,9 @@ class Log {
   int descriptor_;
 };
 
-/// A stay in the library. What it prints goes to the log: our own output is read by the bench. Our
-/// floating-point mode holds again afterwards: code made with -ffast-math sets another when it is
-/// loaded, and frames would come out with other bits.
+/// Scope of a call into the library. What the library prints goes to the log: our own output is
+/// read by the bench. Our floating-point mode is restored afterwards: code built with -ffast-math
+/// changes it when loaded, and frames would come out with different bits.
 class Visit {
  public:
   explicit Visit(const Log& log) {
@@ -83,7 +83,7 @@ class Visit {
   std::fenv_t floating_point_{};
 };
 
-/// What the library is made from, with all that it points to.
+/// The mh_setup that the library is created from, with everything that it points to.
 class Setup {
  public:
   Setup(const OutsideProgram& program, const Camera& camera, std::uint64_t seed) {
@@ -118,7 +118,7 @@ class Setup {
 
   const mh_setup* reported() const { return &reported_; }
   void clear_message() { message_.fill('\0'); }
-  /// ": what the library wrote", or nothing.
+  /// Returns ": what the library wrote", or an empty string.
   std::string message() const {
     const std::string text(message_.data(), strnlen(message_.data(), message_.size()));
     return text.empty() ? text : ": " + legible(text);
@@ -143,7 +143,7 @@ class LibrarySystem : public OutsideSystem {
     void* loaded = nullptr;
     visit("loading", [&] { loaded = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL); });
     if (loaded == nullptr) {
-      std::string reason = dlerror();  // names the file first, by a path that differs elsewhere
+      std::string reason = dlerror();  // starts with the file's path, which differs by machine
       if (reason.starts_with(file.string() + ": ")) reason.erase(0, file.string().size() + 2);
       fail(fmt::format("cannot be loaded: {}", legible(reason)));
     }
@@ -167,7 +167,7 @@ class LibrarySystem : public OutsideSystem {
     try {
       finish();
     } catch (const OutsideError&) {
-      // The run has failed of something else, or is over.
+      // The run has failed for another reason, or is over.
     }
   }
 
@@ -256,7 +256,7 @@ class LibrarySystem : public OutsideSystem {
       call("begin_query", [&] { return system_->begin_query(system_->self); });
   }
 
-  /// Runs code of the library.
+  /// Runs a function of the library.
   template <class Function>
   void visit(std::string_view doing, const Function& function) const {
     doing_ = doing;
@@ -275,7 +275,7 @@ class LibrarySystem : public OutsideSystem {
     }
     fail(escaped);
   }
-  /// The same with a function that returns a status.
+  /// The same for a function that returns a status.
   template <class Function>
   void call(std::string_view doing, const Function& function) const {
     int status = 0;
@@ -284,7 +284,7 @@ class LibrarySystem : public OutsideSystem {
   }
 
   [[noreturn]] void fail(const std::string& what) const override {
-    system_ = nullptr;  // who knows what state it is in
+    system_ = nullptr;  // its state is unknown
     throw OutsideError(fmt::format("outside library '{}' ({}) {}, in {}", program_.name,
                                    program_.library, what, doing_));
   }
@@ -292,7 +292,7 @@ class LibrarySystem : public OutsideSystem {
   const OutsideProgram program_;
   const Log log_;
   mutable Setup setup_;
-  mutable mh_system* system_ = nullptr;  ///< null once it has failed or ended
+  mutable mh_system* system_ = nullptr;  ///< null after it failed or ended
   mutable std::string doing_ = "loading";
 };
 

@@ -10,12 +10,12 @@
 
 namespace mh {
 
-/// A system in a shared library of somebody's (include/modelhouse/system.h), loaded into this
-/// process, where a crash of it is a crash of ours: a suite gives each run a process of its own.
-/// A library is loaded once and stays loaded; each system is made anew.
+/// A system in an outside shared library (include/modelhouse/system.h), loaded into this process,
+/// so its crash is ours: a suite gives each run its own process. A library is loaded once and stays
+/// loaded; each system is created from scratch.
 /// @param log   file for what the library prints
 /// @throws OutsideError, here and in every call, if the library cannot be loaded, has another
-///         version or reports an error, or if it answers with anything but what was asked.
+///         version, reports an error or returns an invalid answer.
 std::unique_ptr<System> make_library_system(const OutsideProgram& program, const Camera& camera,
                                             std::uint64_t seed, const std::filesystem::path& log);
 

@@ -36,12 +36,12 @@ class OurSession : public RelocalizationSession {
   }
 
  private:
-  const SlamState& frozen_;  // like the observers outlived by the system that opened the session
+  const SlamState& frozen_;  // the system that opened the session outlives it, like the observers
   const StepObservers& observers_;
   Tracker tracker_;
 };
 
-/// Of one query: what is known of each attempt, by its stream and by the settings that matter.
+/// Results of the attempts of one query, by stream and by the settings that affect them.
 class OurMemo : public QueryMemo {
  public:
   LocalizeMemo& of(RandomStream stream, const SemanticConfig& settings) {
@@ -52,13 +52,13 @@ class OurMemo : public QueryMemo {
   std::map<std::tuple<std::uint64_t, double, bool>, LocalizeMemo> known_;
 };
 
-/// A session that uses a memo as long as it is lost.
+/// A session that uses a memo while it is lost.
 class RememberingSession : public RelocalizationSession {
  public:
   RememberingSession(const SlamState& frozen, OurMemo& memo) : frozen_(frozen), memo_(memo) {}
 
   SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
-    if (found_) {  // a frame after that in which it was found: hardly ever asked for
+    if (found_) {  // a frame after the one in which it was found: rare
       localize(frozen_, tracker_, found_->first, found_->second);
       found_.reset();
     }
@@ -118,7 +118,7 @@ class OurSystem : public System {
   }
 
  private:
-  /// Another map in the place of this one, if the frame can begin it.
+  /// Starts a new map in place of this one, if the frame can initialize it.
   std::optional<SystemReport> begin_anew(const RgbdFrame& frame, RandomStream stream) {
     SlamState anew = make_slam(state_.camera, state_.config, state_.vocabulary);
     const StepReport first = step(anew, frame, stream, options_.observers);
@@ -132,7 +132,7 @@ class OurSystem : public System {
   std::unique_ptr<SlamState> own_;
   SlamState& state_;
   OurSystemOptions options_;
-  bool found_ = false;  ///< in this map, a frame was tracked
+  bool found_ = false;  ///< a frame was tracked in this map
   bool frozen_ = false;
 };
 

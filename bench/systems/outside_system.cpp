@@ -50,7 +50,7 @@ class OutsideSession : public RelocalizationSession {
   OutsideSession(const OutsideSystem& system, std::uint64_t number)
       : system_(system), number_(number) {}
   SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
-    assert(number_ == system_.sessions_);  // an older one would have to be remembered over there
+    assert(number_ == system_.sessions_);  // the program keeps no older session
     using enum OutsideSystem::Question;
     return system_.reported(is_blank(frame) ? kBlank : kRelocalize, number_, frame, stream,
                             TrackStatus::kRelocalized);

@@ -14,23 +14,24 @@
 
 namespace mh {
 
-/// Told what is wrong with an answer; throws an OutsideError.
+/// Receives what is wrong with an answer; throws an OutsideError.
 using Refuse = std::function<void(const std::string& what)>;
 
-/// [x, y, z, qx, qy, qz, qw] as a transform. Refuses a coordinate beyond kFarthest_m, what is not
-/// finite and a quaternion that is far from unit length.
+/// Converts [x, y, z, qx, qy, qz, qw] to a transform. Refuses coordinates beyond kFarthest_m,
+/// non-finite values and a quaternion far from unit length.
 SE3 told_pose(const std::array<double, 7>& values, const Refuse& refuse);
 
-/// Refuses counts of candidates that grow on the way, and a stage of failure beside a pose.
+/// Refuses candidate counts that grow from step to step, and a failure stage together with a pose.
 void check_told(const SystemReport& report, const Refuse& refuse);
 
-/// Of a frame's stream an outside system gets 31 bits as its seed, which fit an int everywhere.
+/// The seed that an outside system receives: 31 bits of a frame's stream, which fit an int
+/// everywhere.
 inline int told_seed(RandomStream stream) {
   return static_cast<int>(stream.bits(0) >> 33);
 }
 
-/// Somebody else's system that is asked frame by frame. The poses that it tells are kept here. It
-/// stands before one map, so the session opened last is the only one that may be fed.
+/// An outside system that is queried frame by frame. The poses that it reports are kept here. It
+/// has a single map, so only the session opened last may be fed.
 class OutsideSystem : public System {
  public:
   SystemReport track(const RgbdFrame& frame, RandomStream stream) final;
@@ -41,11 +42,11 @@ class OutsideSystem : public System {
 
  protected:
   enum class Question { kTrack, kBlank, kRelocalize };
-  /// What it tells of a frame, but for the status. @param session  0 with kTrack
+  /// Its answer to a frame, except for the status. @param session  0 with kTrack
   virtual SystemReport ask(Question what, std::uint64_t session, const RgbdFrame& frame,
                            RandomStream stream) const = 0;
-  virtual void forget() = 0;  ///< everything, the map too
-  /// Ends the mapping. @returns the poses of the finished map, where it tells them
+  virtual void forget() = 0;  ///< everything, including the map
+  /// Ends the mapping. @returns the poses of the finished map, if it reports them
   virtual std::optional<Trajectory> end_mapping() = 0;
   virtual void begin_session(std::uint64_t) const {}
   [[noreturn]] virtual void fail(const std::string& what) const = 0;

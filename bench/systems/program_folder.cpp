@@ -33,8 +33,8 @@ bool is_true_folder(const fs::path& path) {
   return fs::symlink_status(path, error).type() == fs::file_type::directory;
 }
 
-/// A line per file, "SIZE TIME NAME", and per folder, "NAME/". Names with a line's end are left out
-/// and therefore never removed.
+/// Lists each file as "SIZE TIME NAME" and each folder as "NAME/", one per line. Names that contain
+/// a newline are left out and therefore never removed.
 std::string list_of(const fs::path& folder) {
   std::string list;
   std::error_code error;
@@ -50,7 +50,7 @@ std::string list_of(const fs::path& folder) {
   return list;
 }
 
-/// Whether a name leads into the folder, through no link.
+/// Whether a name is inside the folder, not through a link.
 bool leads_within(const fs::path& folder, const fs::path& name) {
   if (name.empty() || name.is_absolute()) return false;
   fs::path way = folder;
@@ -62,7 +62,7 @@ bool leads_within(const fs::path& folder, const fs::path& name) {
   return name.filename() != ".." && is_true_folder(folder);
 }
 
-/// Removes what the folder's list names and nobody changed, and folders that are empty then.
+/// Removes unchanged files that the folder's list names, then folders that are empty.
 void remove_listed(const fs::path& folder) {
   const fs::path file = folder / ProgramFolder::kList;
   std::error_code error;
@@ -83,7 +83,7 @@ void remove_listed(const fs::path& folder) {
     const fs::path listed = folder / line.substr(name + 1);
     if (state_of(listed) == line.substr(0, name)) fs::remove(listed, error);
   }
-  for (const fs::path& inner : folders) ::rmdir(inner.c_str());  // not where something is left
+  for (const fs::path& inner : folders) ::rmdir(inner.c_str());  // fails if not empty
   ::rmdir(folder.c_str());
 }
 
@@ -103,7 +103,7 @@ ProgramFolder::~ProgramFolder() {
   try {
     move_to_run();
   } catch (const std::exception&) {
-    // The run failed already, and its reason is the one to tell.
+    // The run already failed; that reason is the one to report.
   }
 }
 

@@ -7,18 +7,19 @@
 
 namespace mh {
 
-/// The folder that an outside program is told of: for its dataset and for what it writes. It is new
-/// for each run and lies in none that holds results, so that the program meets neither the truth
-/// nor what an earlier run left. In the end it is moved into the run's folder, as `outside`.
+/// The folder given to an outside program, for its dataset and its output. It is new for each run
+/// and not inside a folder with results, so the program sees neither the ground truth nor the
+/// remains of an earlier run. At the end it is moved into the run's folder, as `outside`.
 ///
-/// What an earlier run had left there goes first: the files that it held when it was moved, as far
-/// as nobody has changed them. Where something else lies there, that stays, and the new one becomes
+/// Before that, the remains of an earlier run are removed there: the files it contained when it was
+/// moved, unless they changed since. If anything else is there, it stays, and the new folder
+/// becomes `outside.2`, and so on.
 /// `outside.2`, and so on.
 class ProgramFolder {
  public:
-  /// @param run  exists; the program is never told of it
+  /// @param run  exists; the program never learns its path
   explicit ProgramFolder(const std::filesystem::path& run);
-  /// Moves it as well, if it can.
+  /// Moves it, too, if possible.
   ~ProgramFolder();
   ProgramFolder(const ProgramFolder&) = delete;
   ProgramFolder& operator=(const ProgramFolder&) = delete;

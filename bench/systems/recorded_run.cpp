@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The frame that a stamp means; nullopt if there is none within the tolerance.
+/// Returns the frame that a stamp refers to; nullopt if none is within the tolerance.
 std::optional<Stamp> frame_of(Stamp stamp_ns, std::span<const Stamp> frames) {
   const auto next = std::lower_bound(frames.begin(), frames.end(), stamp_ns - kStampTolerance_ns);
   std::optional<Stamp> best;
@@ -30,7 +30,7 @@ std::optional<Stamp> frame_of(Stamp stamp_ns, std::span<const Stamp> frames) {
   return best;
 }
 
-/// A file without poses is an answer too: completeness 0.
+/// A file without poses is a valid answer: completeness 0.
 bool tracked_nothing(const fs::path& trajectory) {
   std::istringstream lines(read_text(trajectory));
   for (std::string line; std::getline(lines, line);)
@@ -38,7 +38,7 @@ bool tracked_nothing(const fs::path& trajectory) {
   return true;
 }
 
-/// The poses with the stamps of the frames that they belong to.
+/// Replaces the stamps of the poses by those of the frames that they belong to.
 Trajectory with_frame_stamps(Trajectory trajectory, std::span<const Stamp> frames,
                              ChildProcess& child) {
   std::size_t strange = 0;

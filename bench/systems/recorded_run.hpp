@@ -12,25 +12,25 @@
 
 namespace mh {
 
-/// Stamps of a program's poses may be off by this much (programs print them with few digits).
+/// Tolerance for the stamps of a program's poses (programs print them with few digits).
 inline constexpr Stamp kStampTolerance_ns = 1'000'000;
 
-/// A folder in TUM's layout for an outside program: images, lists, labels where the frames have
-/// some, calibration. The truth is not in it. @returns the stamps, in order.
-/// @param frame  delivers frame i of the list; nullopt leaves it out
+/// Writes a folder in TUM's layout for an outside program: images, lists, labels of the frames that
+/// have them, calibration. It does not contain the ground truth. @returns the stamps, in order.
+/// @param frame  delivers frame i of the list; nullopt omits it
 std::vector<Stamp> write_dataset(const std::filesystem::path& folder, const Camera& camera,
                                  std::size_t count,
                                  const std::function<std::optional<RgbdFrame>(std::size_t)>& frame);
 
 /// Runs an outside program in trajectory mode, under its limits.
-/// @param folder  holds write_dataset()'s folder as `dataset` and nothing else; the program is to
-///                write its trajectory.txt there
+/// @param folder  contains write_dataset()'s folder as `dataset` and nothing else; the program
+///                writes its trajectory.txt there
 /// @param stamps  of the dataset's frames, increasing
-/// @param log     file for what the program says; beyond the folder
+/// @param log     file for what the program prints; outside the folder
 /// @returns the program's trajectory with the frames' own stamps
 /// @throws InputError if validate(program) does; OutsideError if the program fails, or its
-///         trajectory is missing, malformed, holds a number that is not finite, a pose beyond
-///         kFarthest_m, a stamp of no frame or two poses for one.
+///         trajectory is missing, malformed, or contains a non-finite number, a pose beyond
+///         kFarthest_m, a stamp that matches no frame or two poses for one frame.
 Trajectory run_on_dataset(const OutsideProgram& program, const std::filesystem::path& folder,
                           std::span<const Stamp> stamps, std::uint64_t seed,
                           const std::filesystem::path& log);

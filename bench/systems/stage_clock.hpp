@@ -10,18 +10,18 @@
 
 namespace mh {
 
-/// A stopwatch for the stages of steps: listens from outside, so that no algorithm has a clock. A
-/// stage within another counts for itself alone.
+/// A stopwatch for the stages of steps: an outside observer, so that no algorithm has a clock. The
+/// time of a nested stage is not counted in the outer one.
 class StageClock {
  public:
   using Times = std::array<double, static_cast<std::size_t>(Stage::kCount)>;  ///< ms by stage
 
   void operator()(Stage stage, StageEvent event);
-  /// Ends a frame: its times are kept, the next begins at zero.
+  /// Ends a frame: stores its times; the next frame starts at zero.
   void end_frame();
 
   const std::vector<Times>& frames() const { return frames_; }
-  /// Times of a stage over the frames in which it took place, ms.
+  /// Times of a stage over the frames in which it ran, ms.
   std::vector<double> times_ms(Stage stage) const;
 
  private:

@@ -8,8 +8,8 @@
 
 namespace mh {
 
-/// A system whose answers to track() pass through a hand that may change them: what the tests of
-/// `verify` need to seed a difference. `call` counts track calls from 0.
+/// A system whose answers to track() pass through a function that may change them: the tests of
+/// `verify` seed differences with it. `call` counts track calls from 0.
 std::unique_ptr<System> make_tampered(std::unique_ptr<System> inner,
                                       std::function<void(std::size_t call, SystemReport&)> hand);
 

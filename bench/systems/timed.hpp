@@ -10,10 +10,10 @@
 
 namespace mh {
 
-/// Processor time of this process so far, all its threads.
+/// Processor time of this process so far, s, over all its threads.
 double processor_time_s();
 
-/// Adds the processor time of its life to a sum.
+/// Adds the processor time of its lifetime to a sum.
 class ProcessorTimer {
  public:
   explicit ProcessorTimer(double& sum_s) : sum_s_(sum_s), start_s_(processor_time_s()) {}
@@ -26,7 +26,7 @@ class ProcessorTimer {
   double start_s_;
 };
 
-/// A system whose calls are timed on the way; what it answers is untouched.
+/// A system whose calls are timed; its answers pass through unchanged.
 class TimedSystem : public System {
  public:
   explicit TimedSystem(std::unique_ptr<System> inner);
@@ -52,7 +52,7 @@ class TimedSystem : public System {
   std::unique_ptr<System> inner_;
   mutable double processor_s_ = 0;
   std::vector<double> track_ms_;
-  mutable std::mutex mutex_;  // sessions of one system may run side by side
+  mutable std::mutex mutex_;  // sessions of one system may run concurrently
   mutable std::vector<double> relocalize_ms_, blank_ms_;
   mutable double relocalize_processor_s_ = 0;
 };

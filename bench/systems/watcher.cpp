@@ -28,10 +28,10 @@
 namespace mh {
 namespace {
 
-// ---- in the forked processes: system calls alone, since other threads of the bench may hold locks
+// ---- in the forked processes: only system calls, since other threads of the bench may hold locks
 
-/// The fourth field of /proc/PID/stat and the 24th: parent and resident pages. The second, a name
-/// in brackets, may hold blanks and brackets.
+/// Fields 4 and 24 of /proc/PID/stat: parent and resident pages. Field 2, a name in parentheses,
+/// may contain blanks and parentheses.
 struct ProcessFacts {
   pid_t parent = -1;
   long resident_pages = 0;
@@ -60,7 +60,7 @@ std::optional<ProcessFacts> facts_of(const char* process) {
   return facts;
 }
 
-/// Calls work(name, number) for each process there is.
+/// Calls work(name, number) for each process.
 template <class Work>
 void for_each_process(const Work& work) {
   const int proc = open("/proc", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -78,7 +78,7 @@ void for_each_process(const Work& work) {
 
 [[noreturn]] void become(const WatchedCommand& c, int said, pid_t watcher) {
   setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // a watcher that is killed leaves no command
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // a killed watcher leaves no command behind
   if (getppid() != watcher) _exit(126);
   sigset_t none;
   sigemptyset(&none);
@@ -164,14 +164,14 @@ class Watch {
     close_range(next, ~0U, 0);
   }
 
-  /// Once.
+  /// Reports once.
   void report(WatchedEnd::Kind kind, int value) {
     const WatchedEnd end{kind, value};
-    if (!reported_ && write(news_, &end, sizeof end) < 0) return;  // nobody listens
+    if (!reported_ && write(news_, &end, sizeof end) < 0) return;  // no reader is left
     reported_ = true;
   }
 
-  /// Whether any is left.
+  /// Reaps what has ended; returns whether any process is left.
   bool reap() {
     int status = 0;
     pid_t process = 0;
@@ -183,9 +183,9 @@ class Watch {
     return process == 0;
   }
 
-  /// What is killed leaves its children to this process, which kills them in turn.
+  /// Children of a killed process are reparented to this process, which kills them in turn.
   void end_all() {
-    constexpr int kMost = 2000;  // of 1 ms and more; somebody else's processes cannot be killed
+    constexpr int kMost = 2000;  // of 1 ms and more; other users' processes cannot be killed
     const pid_t self = getpid();
     if (!ended_) kill(-child_, SIGKILL);
     for (int tries = 0; tries < kMost && reap(); ++tries) {
@@ -226,11 +226,11 @@ class Watch {
 
 }  // namespace
 
-// ---- in the process that asked ---------------------------------------------------------------
+// ---- in the parent process --------------------------------------------------------------------
 
 Watcher::Watcher(const WatchedCommand& command) {
   int life[2] = {-1, -1}, news[2] = {-1, -1};
-  // A socket: word to a watcher that was killed must give an error, not SIGPIPE.
+  // A socket: writing to a watcher that was killed must return an error, not raise SIGPIPE.
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, life) == 0 && pipe2(news, O_CLOEXEC) == 0)
     process_ = fork();
   if (process_ == 0) {

@@ -8,7 +8,8 @@
 
 namespace mh {
 
-/// A command to be started under a watcher; all of it outlives the call that starts it alone.
+/// A command to run under a watcher; everything it points to must outlive only the call that starts
+/// it.
 struct WatchedCommand {
   const char* folder = nullptr;   ///< where it runs
   const char* command = nullptr;  ///< for /bin/sh
@@ -16,7 +17,7 @@ struct WatchedCommand {
   int out = -1;                   ///< its standard output; -1: the log
   int log = -1;                   ///< file for its standard error
   std::uint64_t log_limit_bytes = 0;
-  std::uint64_t file_limit_bytes = 0;  ///< of each file that it writes; 0: none
+  std::uint64_t file_limit_bytes = 0;  ///< per file that it writes; 0: unlimited
   const char* scratch = "";            ///< removed if this process ends before the watcher
 };
 
@@ -24,39 +25,40 @@ struct WatchedCommand {
 struct WatchedEnd {
   enum Kind : int {
     kNotStarted,   ///< value: errno
-    kEnded,        ///< value: its wait status; all that it had started is gone, too
-    kTooMuchSaid,  ///< its log reached its limit: it was killed
+    kEnded,        ///< value: its wait status; all its descendants are gone, too
+    kTooMuchSaid,  ///< its log reached the limit, so it was killed
     kUnknown,      ///< its watcher was killed
   };
   Kind kind = kUnknown;
   int value = 0;
 };
 
-/// A process that stands between this one and a command: the command's parent, and that of whatever
-/// it leaves behind (PR_SET_CHILD_SUBREAPER), in whatever session or process group. It ends all of
-/// them when the command has ended, when this object goes, or when this process does, however that
-/// came about. Only processes that another one started (a daemon on request), or that this user may
-/// not kill, escape; and should the watcher itself be killed, all but the command's own.
+/// A process between this one and a command: the parent of the command and of whatever the command
+/// leaves behind (PR_SET_CHILD_SUBREAPER), in whatever session or process group. It kills all of
+/// them when the command has ended, when this object is destroyed, or when this process ends, for
+/// whatever reason. Only processes that another process started (a daemon on request), or that this
+/// user may not kill, escape; if the watcher itself is killed, all but the command's own process
+/// escape.
 class Watcher {
  public:
-  /// @throws MachineError if no process could be started
+  /// @throws MachineError if the process cannot be started
   explicit Watcher(const WatchedCommand& command);
   ~Watcher();
   Watcher(const Watcher&) = delete;
   Watcher& operator=(const Watcher&) = delete;
 
-  /// Ends the command and all that it started; they are gone when this returns.
+  /// Kills the command and all its descendants; they are gone when this returns.
   void end_all();
-  /// The end, once it was told; waits so long for it at most.
+  /// Returns how the command ended, once that is reported; waits for at most `wait_ms`.
   std::optional<WatchedEnd> end(int wait_ms);
-  /// Becomes readable with the end.
+  /// Becomes readable when the command ends.
   int news() const { return news_; }
-  /// Resident memory of the command and all that it started, MB.
+  /// Resident memory of the command and all its descendants, MB.
   double resident_mb() const;
 
  private:
   pid_t process_ = -1;
-  int life_ = -1;  ///< closed by the end of this process at the latest
+  int life_ = -1;  ///< closed at the latest when this process ends
   int news_ = -1;
   std::optional<WatchedEnd> end_;
 };

@@ -6,13 +6,13 @@
  *   systems:
  *   - {name: mine, library: build/libmine.so, settings: mine.yaml}
  *
- * Calls come one at a time, all from one thread. What answers depend on must be over when a call
- * returns. The same calls must give the same answers: randomness comes from the seeds alone, and no
- * answer may depend on a clock.
+ * Calls come one at a time, all from one thread. Work that answers depend on must be finished when
+ * a call returns. The same calls must give the same answers: randomness comes only from the seeds,
+ * and no answer may depend on a clock.
  *
- * A function that returns a status returns 0 if it did its work. Otherwise it has failed the run:
- * it writes one line to mh_setup.message, and nothing of the system is called any more, destroy()
- * neither. No C++ exception may leave a function.
+ * A function that returns a status returns 0 on success. Any other value fails the run: the
+ * function writes one line to mh_setup.message, and no function of the system is called again, not
+ * even destroy(). No C++ exception may leave a function.
  */
 #ifndef MODELHOUSE_SYSTEM_H
 #define MODELHOUSE_SYSTEM_H
@@ -23,45 +23,45 @@
 extern "C" {
 #endif
 
-/** Of all that stands here. Another number is another layout, and is refused. */
+/** Version of this interface. A different number means a different layout and is refused. */
 #define MH_SYSTEM_VERSION 1
 
-/** Characters of mh_setup.message, the zero at its end among them. */
+/** Size of mh_setup.message in characters, including the terminating zero. */
 #define MH_MESSAGE_SIZE 256
 
 /** A count that is not reported. */
 #define MH_UNKNOWN (-1)
 
-/** A pinhole camera. The centers of pixels lie at integers. */
+/** A pinhole camera. Pixel centers are at integers. */
 typedef struct mh_camera {
   int32_t width_px, height_px;
   double fx_px, fy_px, cx_px, cy_px;
-  double k1, k2, p1, p2, k3; /**< distortion as OpenCV has it */
+  double k1, k2, p1, p2, k3; /**< distortion as in OpenCV */
   double rate_hz;            /**< frames per second */
   double baseline_m;         /**< between the camera and the depth sensor's projector */
   double depth_per_meter;    /**< value of a depth pixel at 1 m */
 } mh_camera;
 
-/** What a system is made from. Pointers stay valid until it is destroyed. */
+/** What a system is created from. Pointers stay valid until the system is destroyed. */
 typedef struct mh_setup {
   uint32_t version; /**< MH_SYSTEM_VERSION of the bench */
   mh_camera camera;
   uint64_t seed;        /**< of the trial */
   const char* settings; /**< absolute path of the suite's `settings`; NULL if there is none */
   int32_t class_count;
-  const char* const* classes; /**< name of each class id; 0 is void: unknown */
-  char* message;              /**< MH_MESSAGE_SIZE characters for why a function fails */
+  const char* const* classes; /**< name of each class id; 0 is void (unknown) */
+  char* message;              /**< MH_MESSAGE_SIZE characters: why a function failed */
 } mh_setup;
 
-/** A frame, registered: a pixel of all images sees the same point. Rows follow each other from
- * the top without a gap. It is the bench's and valid until the function returns. */
+/** A registered frame: the same pixel of all images sees the same point. Rows are stored from top
+ * to bottom without gaps. The bench owns it; it is valid until the function returns. */
 typedef struct mh_frame {
   int64_t stamp_ns;
   int32_t width_px, height_px;
   const uint8_t* color;  /**< red, green, blue: 3 per pixel */
   const uint16_t* depth; /**< along the optical axis, see depth_per_meter; 0 = no return */
   const uint8_t* labels; /**< class id per pixel; NULL where the run has no labels */
-  int32_t seed;          /**< of all random draws of this call, >= 0; another in each attempt */
+  int32_t seed;          /**< for all random draws of this call, >= 0; differs in each attempt */
 } mh_frame;
 
 /** x y z qx qy qz qw of the camera in the system's own world (world_from_camera): meters and a unit
@@ -71,61 +71,61 @@ typedef struct mh_pose {
   double values[7];
 } mh_pose;
 
-/** How far a relocalization came. */
+/** How far a relocalization got. */
 typedef enum mh_stage {
   MH_STAGE_UNKNOWN = 0,
-  MH_STAGE_NO_CANDIDATE = 1, /**< no keyframe looked alike */
+  MH_STAGE_NO_CANDIDATE = 1, /**< no keyframe looked similar */
   MH_STAGE_MATCHES = 2,      /**< too few matches */
   MH_STAGE_PNP = 3,          /**< no pose */
   MH_STAGE_INLIERS = 4,      /**< a pose with too few inliers */
-  MH_STAGE_VERIFIED = 5      /**< found; the only one beside a pose */
+  MH_STAGE_VERIFIED = 5      /**< found; the only stage with a pose */
 } mh_stage;
 
-/** What a system tells of a frame. The bench hands it over as "lost, nothing known": write what you
- * know. */
+/** What a system reports about a frame. The bench initializes it to "lost, nothing known": fill in
+ * what you know. */
 typedef struct mh_answer {
   int32_t has_pose; /**< 0: the system is lost */
   mh_pose pose;
-  int32_t keypoints, inliers; /**< or MH_UNKNOWN, as all counts here */
-  int32_t keyframe_added;     /**< not 0: the frame became a keyframe; its depth builds the map of
-                                   what is occupied */
-  int32_t map_reset;          /**< not 0: the system gave its map up by itself and began another
-                                   with this frame; its poses before are void */
+  int32_t keypoints, inliers; /**< or MH_UNKNOWN, like all counts here */
+  int32_t keyframe_added;     /**< not 0: the frame became a keyframe; its depth is added to the
+                                   occupancy map */
+  int32_t map_reset;          /**< not 0: the system discarded its map and started another with
+                                   this frame; its earlier poses are void */
   int32_t stage;              /**< an mh_stage */
-  /** Of relocalization: keyframes in the map, and how many are left after its steps. */
+  /** Relocalization: keyframes in the map, and how many remain after each step. */
   int32_t keyframes, c1, c2, c3, final;
 } mh_answer;
 
 /** Takes one pose of the finished map. */
 typedef void (*mh_add_pose)(void* to, int64_t stamp_ns, const mh_pose* pose);
 
-/** A system: functions and what they work on, which is handed to each. Where a function may be
- * NULL, it says so. */
+/** A system: functions, and the object that each receives as `self`. A function may be NULL only
+ * where stated. */
 typedef struct mh_system {
   uint32_t version; /**< MH_SYSTEM_VERSION of the library */
   void* self;
 
   /** Processes the next frame, mapping included. */
   int (*track)(void* self, const mh_frame* frame, mh_answer* answer);
-  /** The feed goes back in time: count tracking as lost, keep the map. */
+  /** The feed goes back in time: treat tracking as lost, keep the map. */
   int (*rewind)(void* self);
-  /** Forgets everything, the map too. */
+  /** Forgets everything, including the map. */
   int (*reset)(void* self);
-  /** Mapping is over: the map must not change any more. Queries follow, nothing of the above. */
+  /** Mapping is over: the map must not change any more. Queries follow, none of the calls above. */
   int (*freeze)(void* self);
-  /** Called once after freeze(): hands each tracked frame once to `add`, as the finished map knows
-   * it, in any order. NULL: the last answer to each frame counts. */
+  /** Called once after freeze(): passes each tracked frame once to `add`, with its pose in the
+   * finished map, in any order. NULL: the last answer to each frame counts. */
   int (*trajectory)(void* self, mh_add_pose add, void* to);
 
-  /** A query begins, which must not know of the one before it: tracking is lost, the map is the
-   * frozen one. NULL: nothing of a query is kept. */
+  /** Begins a query, which must not depend on the one before it: tracking is lost, the map is the
+   * frozen one. NULL: the system keeps no state of a query. */
   int (*begin_query)(void* self);
-  /** A black frame without depth: the camera is covered. NULL: it is lost at once. */
+  /** A black frame without depth: the camera is covered. NULL: tracking is lost at once. */
   int (*blank)(void* self, const mh_frame* frame, mh_answer* answer);
   /** Finds a frame in the frozen map. */
   int (*relocalize)(void* self, const mh_frame* frame, mh_answer* answer);
 
-  /** Ends it: the last call. The mh_system itself may be freed, too. */
+  /** Destroys the system: the last call. The mh_system itself may be freed, too. */
   void (*destroy)(void* self);
 } mh_system;
 
@@ -135,7 +135,7 @@ typedef struct mh_system {
 #define MH_EXPORT
 #endif
 
-/** Makes a system with an empty map; NULL if that cannot be done, see mh_setup.message. */
+/** Creates a system with an empty map; NULL on failure, see mh_setup.message. */
 MH_EXPORT mh_system* mh_make_system(const mh_setup* setup);
 
 #ifdef __cplusplus
