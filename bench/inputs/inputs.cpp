@@ -23,7 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Seen from the folder of what names it, so that it is the same wherever that lies.
+/// A file's path relative to the folder of what names it, so that it does not depend on where that
+/// is.
 std::string name_from(const fs::path& source, const fs::path& file) {
   if (is_generated(source)) return file.filename().string();
   std::error_code error;
@@ -62,7 +63,7 @@ std::vector<InputDigest> inputs_of_program(const RunSpec& spec) {
 std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
   std::vector<InputDigest> inputs;
   if (e.is_recorded()) {
-    // What it holds depends on the files beside it, too.
+    // Its content depends on the files next to it, too.
     const std::string kind = fmt::format("recording {} {}", e.settings.value_or("").string(),
                                          e.classes.value_or("").string());
     const auto add = [&](const char* name, const std::string& sequence) {
@@ -80,11 +81,11 @@ std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
     if (source) inputs.push_back(read(name, kind, *source, load));
   };
   const auto load_place = [&](const fs::path& file) {
-    if (is_generated(file)) {  // of nothing but its name, and dear to make
+    if (is_generated(file)) {  // depends only on its name; expensive to create
       parse_generated(file.string());
       return;
     }
-    scene_.reset();  // to be noted, it has to be read
+    scene_.reset();  // only what is read is noted
     scene(file, e.frame);
   };
   const auto read_motion = [](const fs::path& motion) { check_motion(motion); };
@@ -118,8 +119,8 @@ std::vector<InputDigest> InputReader::inputs_of(const RunSpec& spec) {
 std::shared_ptr<const Scene> InputReader::scene(const fs::path& file, const SceneFrame& frame) {
   if (scene_ == nullptr || scene_source_ != std::pair(file, frame)) {
     say_(fmt::format("reading {}", file.string()));
-    scene_.reset();                     // before the next: two may be more than there is memory for
-    std::vector<std::string> warnings;  // told here alone: the runs load it again
+    scene_.reset();                     // freed before the next: two may not fit in memory
+    std::vector<std::string> warnings;  // reported only here: the runs load it again
     scene_ = std::make_shared<const Scene>(load_scene(file, &warnings, frame));
     scene_source_ = {file, frame};
     for (const std::string& warning : warnings) warn(warning);

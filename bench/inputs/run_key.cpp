@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// All that determines a result, by content instead of by names and paths.
+/// Returns everything that determines a result, by content rather than by names and paths.
 nlohmann::ordered_json determining(const RunSpec& spec, std::span<const InputDigest> inputs) {
   nlohmann::ordered_json json = to_json(spec);
   if (spec.system.is_outside()) json["system"]["outside"].erase("folder");
@@ -33,7 +33,7 @@ std::string run_key(const RunSpec& spec, std::span<const InputDigest> inputs) {
 std::string map_key(const RunSpec& spec, std::span<const InputDigest> inputs) {
   nlohmann::ordered_json json = determining(spec, inputs);
   json.erase("points");
-  json.erase("trial");  // the seed tells
+  json.erase("trial");  // implied by the seed
   json["system"].erase("name");
   for (const char* of_queries : {"query_tour", "query_scene", "queries"})
     json["inputs"].erase(of_queries);

@@ -8,10 +8,10 @@
 
 namespace mh {
 
-/// Whether boxes can be drawn in a scene, by a detector or exactly: that needs objects.
-/// @returns a warning where it has some, but none of a class that a detector knows (COCO's); else
-/// ""
-/// @throws InputError where it has no objects, so that all would be background.
+/// Checks whether boxes can be drawn in a scene, by a detector or exactly: that needs objects.
+/// @returns a warning if it has objects, but none of a class that a detector knows (COCO's);
+/// otherwise ""
+/// @throws InputError if it has no objects, so that everything would be background.
 std::string check_labels(const Scene& scene, LabelMode labels);
 
 }  // namespace mh

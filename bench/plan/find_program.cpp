@@ -23,13 +23,13 @@ namespace fs = std::filesystem;
 /// A word or an operator of a command.
 struct Token {
   char op = 0;                      ///< ; & | < > ( ) or newline; 0 = a word
-  std::string raw;                  ///< as it stands there
-  std::optional<std::string> text;  ///< what the shell makes of it; absent: not understood
+  std::string raw;                  ///< as written
+  std::optional<std::string> text;  ///< after the shell's expansion; absent: not understood
 };
 
-/// Cuts a command as /bin/sh does. A word is understood if it is made of letters, quotes,
-/// backslashes, a leading ~ and variables of the environment: what is substituted, matched by a
-/// pattern, put in a placeholder's place or assigned by the command itself is not.
+/// Splits a command as /bin/sh does. A word is understood if it consists of letters, quotes,
+/// backslashes, a leading ~ and environment variables; not if it contains substitutions, patterns,
+/// placeholders or variables that the command itself assigns.
 class Scanner {
  public:
   Scanner(const std::string& command, const fs::path& folder)
@@ -43,7 +43,7 @@ class Scanner {
         ++at_;
       } else if (std::string_view(";&|<>()\n").find(c) != std::string_view::npos) {
         end_word();
-        // The second sign of >&, >| and <& belongs to the first.
+        // The second character of >&, >| and <& belongs to the first.
         const bool second = (c == '&' || c == '|') && at_ > 0 &&
                             (command_[at_ - 1] == '>' || command_[at_ - 1] == '<');
         if (!second) tokens_.push_back({.op = c, .raw = std::string(1, c), .text = {}});
@@ -76,7 +76,7 @@ class Scanner {
   void add(std::string_view more) {
     if (text_) *text_ += more;
   }
-  /// Goes on behind the next `end`; what lies before is not understood.
+  /// Skips past the next `end`; what comes before it is not understood.
   void skip_past(char end) {
     text_.reset();
     at_ = std::min(command_.find(end, at_), command_.size() - 1) + 1;
@@ -137,7 +137,7 @@ class Scanner {
     ++at_;
   }
 
-  /// Behind a dollar sign.
+  /// Parses what follows a dollar sign.
   void take_dollar(bool quoted) {
     const bool braced = at_ < command_.size() && command_[at_] == '{';
     if (at_ < command_.size() && command_[at_] == '(') {
@@ -157,7 +157,7 @@ class Scanner {
     if (braced && (at_ == command_.size() || command_[at_] != '}')) return skip_past('}');
     if (braced) ++at_;
     const std::optional<std::string> value = value_of(name);
-    // Without quotes the shell cuts a value at blanks and matches patterns in it.
+    // Without quotes the shell splits a value at blanks and expands patterns in it.
     if (!value || (!quoted && value->find_first_of(" \t\n*?[") != std::string::npos))
       text_.reset();
     else
@@ -180,8 +180,8 @@ class Scanner {
   std::vector<Token> tokens_;
 };
 
-/// What the shell says that it starts by a word without a slash: a path from PATH, the name of one
-/// of its own words, or nothing.
+/// What the shell starts for a word without a slash: a path from PATH, the name of a builtin or
+/// keyword, or nothing.
 std::string what_the_shell_starts(const std::string& word) {
   const std::string question = expand_command("command -v {word} 2>/dev/null", {{"word", word}});
   std::string answer;
@@ -193,14 +193,14 @@ std::string what_the_shell_starts(const std::string& word) {
   return answer;
 }
 
-/// A word of a command by its part in it.
+/// A word of a command and its role in it.
 struct Word {
   Token token;
   bool program = false;    ///< the shell looks it up: the first of a simple command
-  bool elsewhere = false;  ///< it stands behind a `cd`: who knows from which folder it is read
+  bool elsewhere = false;  ///< it follows a `cd`, so its folder is unknown
 };
 
-/// The words that name what is run or read, without those that are written to by > or tee.
+/// The words that name what is run or read, except those that > or tee writes to.
 std::vector<Word> words_of(const OutsideProgram& program) {
   std::vector<Word> words;
   bool begins = true, written = false, elsewhere = false, tee = false;
@@ -233,7 +233,7 @@ std::vector<Word> words_of(const OutsideProgram& program) {
   return words;
 }
 
-/// Where a word lies that names a file.
+/// The path that a word refers to.
 fs::path place_of(const OutsideProgram& program, const std::string& text) {
   return program.folder / text;  // absolute where `text` is
 }
@@ -278,7 +278,7 @@ std::vector<ProgramFile> files_of(const OutsideProgram& program) {
     const bool known =
         std::ranges::any_of(files, [&](const ProgramFile& f) { return f.word == word; });
     if (!known && fs::is_regular_file(file, error) &&
-        access(file.c_str(), R_OK) == 0)  // a program may be one that may only be executed
+        access(file.c_str(), R_OK) == 0)  // a program may be executable but not readable
       files.push_back({word, file});
   };
   bool found_program = false;
@@ -288,7 +288,7 @@ std::vector<ProgramFile> files_of(const OutsideProgram& program) {
     if (word.program && text.find('/') == std::string::npos) {
       if (found_program) continue;
       const fs::path file = what_the_shell_starts(text);
-      found_program = file.is_absolute();  // else one of the shell's own words
+      found_program = file.is_absolute();  // else a shell builtin or keyword
       if (found_program) add(word.token.raw, file);
       continue;
     }
@@ -314,7 +314,7 @@ std::string unseen_program(const OutsideProgram& program) {
     const auto& text = word.token.text;
     if (text && text->find('/') == std::string::npos &&
         !fs::path(what_the_shell_starts(*text)).is_absolute())
-      continue;  // one of the shell's own words
+      continue;  // a shell builtin or keyword
     if (std::ranges::any_of(seen, [&](const ProgramFile& f) { return f.word == word.token.raw; }))
       return {};
     return fmt::format(

@@ -10,24 +10,24 @@
 
 namespace mh {
 
-/// How far a measure may get worse: the greater of the two. Both 0: not at all.
+/// How far a measure may get worse: the greater of the two limits. Both 0: not at all.
 struct Tolerance {
   double absolute = 0;  ///< in the measure's unit
   double relative = 0;  ///< of the baseline's median
   double of(double baseline_median) const;
 };
 
-/// By measure; a measure without a tolerance is reported nowhere and judged never.
+/// By measure; a measure without a tolerance is neither reported nor judged.
 using Tolerances = std::map<std::string, Tolerance, std::less<>>;
 
 struct GateConfig {
   Tolerances tolerances;
-  std::map<std::string, Tolerances, std::less<>> of_scenario;  ///< in the place of those above
+  std::map<std::string, Tolerances, std::less<>> of_scenario;  ///< override those above
 };
 
 /// Reads the section `check` of a suite: `tolerances: {MEASURE: NUMBER | {absolute, relative}}`
 /// and `scenarios: {ENVIRONMENT: {MEASURE: ...}}`.
-/// @param environments  names that `scenarios` may hold
+/// @param environments  names that `scenarios` may contain
 /// @throws InputError naming file, line, field and value.
 GateConfig read_gate(YamlReader node, const std::vector<std::string>& environments);
 

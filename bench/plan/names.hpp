@@ -27,7 +27,7 @@ void add_once(std::vector<T>& list, T value, const YamlReader& node) {
   list.push_back(std::move(value));
 }
 
-/// @throws InputError at this place unless a folder can have the name.
+/// @throws InputError at this place unless the name is valid as a folder name.
 inline void check_folder_name(const YamlReader& node, const std::string& name) {
   if (name.empty() || name.find('/') != std::string::npos || name[0] == '.')
     node.fail(fmt::format("'{}' cannot name a folder", name));

@@ -19,8 +19,8 @@ constexpr std::string_view kOfDataset[] = {"dataset", "associations", "settings"
                                            "labels",  "trajectory",   "seed"};
 constexpr std::string_view kOfConversation[] = {"settings", "seed"};
 
-/// Copies text and puts what `replace` says in the place of each {word}. A brace after a dollar
-/// sign is the shell's own.
+/// Copies text, replacing each {word} by what `replace` returns. A brace after a dollar sign
+/// belongs to the shell.
 std::string replace_placeholders(std::string_view text,
                                  const std::function<std::string(std::string_view)>& replace) {
   std::string result;
@@ -42,9 +42,9 @@ std::string replace_placeholders(std::string_view text,
   return result;
 }
 
-/// The first placeholder within single quotes, or within double ones without a blank beside it, as
-/// it stands there: the quotes of its value would end the first kind and be letters in the second.
-/// A command for another shell ("sh -c") has blanks and may hold some. Empty if there is none.
+/// The first placeholder within single quotes, or within double quotes without a blank next to it,
+/// as written: the quotes of its value would end the former and be literal in the latter. A command
+/// for another shell ("sh -c") has blanks and may contain some. Empty if there is none.
 std::string quoted_placeholder(const std::string& command) {
   for (std::size_t at = command.find_first_of("'\"\\"); at < command.size();
        at = command.find_first_of("'\"\\", at)) {

@@ -9,39 +9,39 @@
 
 namespace mh {
 
-/// How the bench works with a system that is not ours.
+/// How the bench communicates with an outside system.
 enum class OutsideMode {
-  kTrajectory,    ///< is given a recorded folder, writes a trajectory
-  kConversation,  ///< is shown frame after frame over standard input and output
-  kLibrary,       ///< is loaded and called
+  kTrajectory,    ///< receives a recorded folder, writes a trajectory
+  kConversation,  ///< receives frame after frame over standard input and output
+  kLibrary,       ///< is loaded into this process and called
 };
 
 /// A SLAM system that a suite names by its command line or its shared library
 /// (docs/outside_systems.md).
 struct OutsideProgram {
   std::string name = {};     ///< in tables and messages
-  std::string command = {};  ///< for /bin/sh, with placeholders such as {dataset}; of no library
+  std::string command = {};  ///< for /bin/sh, with placeholders ({dataset}); empty for a library
   OutsideMode mode = OutsideMode::kTrajectory;
   std::filesystem::path folder = ".";  ///< the suite's: where the command runs
   double run_limit_s = 3600;           ///< wall time of a whole run in trajectory mode, > 0
   double answer_limit_s = 60;          ///< wall time of one answer in a conversation, > 0
-  double memory_limit_mb = 0;          ///< resident, the program and all that it started; 0 = none
+  double memory_limit_mb = 0;          ///< resident, the program and its descendants; 0 = none
   double disk_limit_mb = 4096;  ///< each file that it writes, and its folder's growth; 0 = none
-  /// Files that it reads besides those that the command names, relative to its folder.
+  /// Files that it reads in addition to those that the command names, relative to its folder.
   std::vector<std::string> inputs = {};
   std::string library = {};   ///< in mode kLibrary the file to load, relative to the folder
-  std::string settings = {};  ///< its settings file, likewise; empty: none
-  std::string place = {};     ///< "suite.yaml:12", for messages; empty: not of a file
+  std::string settings = {};  ///< its settings file, relative to the folder; empty: none
+  std::string place = {};     ///< "suite.yaml:12", for messages; empty: not from a file
 };
 
 /// Refuses an empty command or library, limits out of range, an unknown placeholder and a
-/// trajectory command without {trajectory}. Known are {dataset} {associations} {settings} {labels}
-/// {trajectory} {seed} in trajectory mode, {settings} {seed} in a conversation; `${NAME}` is left
-/// to the shell.
+/// trajectory command without {trajectory}. Known placeholders: {dataset} {associations} {settings}
+/// {labels} {trajectory} {seed} in trajectory mode, {settings} {seed} in conversation mode;
+/// `${NAME}` is left to the shell.
 /// @throws InputError naming the value.
 void validate(const OutsideProgram& program);
 
-/// One word for the shell, whatever is in it.
+/// Quotes any value as a single word for the shell.
 std::string shell_quoted(std::string_view value);
 
 /// The command with its placeholders replaced by values quoted for the shell.

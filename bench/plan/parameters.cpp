@@ -24,7 +24,7 @@ void check_varied(const std::string& name, const YamlReader& place, SweepMap map
     place.fail("decides the map, too: it needs `map: rebuilt`");
 }
 
-/// Every combination of the listed values, the last setting varying fastest.
+/// Reads every combination of the listed values, the last setting varying fastest.
 void read_grid(YamlReader& node, const SlamConfig& base, Sweep& sweep) {
   sweep.points = {base};
   for (const auto& [name, list] : node.entries()) {
@@ -38,7 +38,7 @@ void read_grid(YamlReader& node, const SlamConfig& base, Sweep& sweep) {
       read_setting(value, name, item);
       add_once(seen, setting_text(value, name), item);
     }
-    // Before they are made: two long lists would ask for all memory.
+    // Checked before allocation: two long lists would use all memory.
     const std::size_t count = sweep.points.size() * items.size();
     if (count > kMaxPoints)
       list.fail(fmt::format("makes {}, at most {} can be", counted(count, "point"), kMaxPoints));
@@ -116,7 +116,7 @@ Sweep read_sweep(YamlReader node, const SlamConfig& base) {
 
 std::array<double, kSobolDimensions> sobol_point(std::uint32_t index, std::uint64_t seed) {
   constexpr int kBits = 32;
-  // Primitive polynomials by degree s, inner coefficients a, and initial direction numbers m.
+  // Primitive polynomials of degree s, inner coefficients a, and initial direction numbers m.
   struct Dimension {
     int s;
     std::uint32_t a;

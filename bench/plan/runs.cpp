@@ -22,7 +22,7 @@ std::vector<SharedSlamConfig> parameter_points(const Suite& suite) {
 
 namespace {
 
-/// The points of the suite that differ for a system, in order.
+/// The points of the suite that are distinct for a system, in order.
 std::vector<SlamConfig> points_of(const SystemSpec& system, const Suite& suite) {
   std::vector<SlamConfig> points;
   for (const SlamConfig& point : parameter_points(suite)) {
@@ -32,7 +32,7 @@ std::vector<SlamConfig> points_of(const SystemSpec& system, const Suite& suite) 
   return points;
 }
 
-/// What a system maps with, and the points that it answers with on that map.
+/// The settings a system maps with, and the points of its queries on that map.
 struct Study {
   SlamConfig mapping;
   std::vector<SemanticConfig> points;

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using Files = std::map<std::string, fs::path>;
 
-/// Files below `folder` with the ending, by name; `nested`: one folder deeper.
+/// Lists files below `folder` with the extension, by name; `nested`: one folder deeper.
 void collect(const fs::path& folder, std::string_view ending, Files& files) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error))

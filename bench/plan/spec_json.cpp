@@ -21,7 +21,7 @@ T named(const Json& word, std::initializer_list<T> values) {
   throw InputError(fmt::format("'{}' is not a known word", word.get<std::string>()));
 }
 
-/// Writes settings into an object, or into one of its own per section.
+/// Writes settings into an object, or into a nested object per section.
 class WriteSettings {
  public:
   explicit WriteSettings(Json& into) : all_(into), into_(&into) {}
@@ -39,7 +39,7 @@ class WriteSettings {
   Json* into_;
 };
 
-/// The other way.
+/// The inverse: reads them back.
 class ReadSettings {
  public:
   explicit ReadSettings(const Json& from) : all_(from), from_(&from) {}
@@ -61,7 +61,7 @@ class ReadSettings {
   const Json* from_;
 };
 
-/// The fields of one section, without its name.
+/// Writes the fields of one section, without its name.
 template <class Config>
 Json section_json(const Config& config) {
   Json json;
@@ -70,7 +70,7 @@ Json section_json(const Config& config) {
   return json;
 }
 
-/// The other way.
+/// The inverse: reads them back.
 template <class Config>
 Config section_from(const Json& json) {
   Config config;

@@ -11,12 +11,12 @@ nlohmann::ordered_json to_json(const SemanticConfig& settings);
 /// All settings of SLAM, section by section.
 nlohmann::ordered_json to_json(const SlamConfig& settings);
 nlohmann::ordered_json to_json(const ProtocolConfig& protocol);
-/// Only what is told: nothing told is {}.
+/// Only the fields that are set: none set gives {}.
 nlohmann::ordered_json to_json(const SceneFrame& frame);
-/// Everything about a run, its paths as they are: what a process of its own is given.
+/// Everything about a run, with paths unchanged: the input of a separate process.
 nlohmann::ordered_json to_json(const RunSpec& spec);
 
-/// The other way. @throws InputError if it was not made by to_json.
+/// The inverse. @throws InputError if the JSON was not created by to_json.
 SceneFrame scene_frame_from_json(const nlohmann::ordered_json& json);
 RunSpec run_spec_from_json(const nlohmann::ordered_json& json);
 

@@ -40,7 +40,7 @@ std::size_t system_named(const YamlReader& node, const std::vector<SystemSpec>& 
   return static_cast<std::size_t>(found - systems.begin());
 }
 
-/// Pairs of different systems, each once; semantic and plain where nothing is said.
+/// Reads pairs of different systems, each once; default: semantic and plain.
 std::vector<SystemPair> read_compare(YamlReader& yaml, const std::vector<SystemSpec>& systems) {
   std::vector<SystemPair> pairs;
   const auto node = yaml.find("compare");
@@ -74,7 +74,7 @@ Environment& only_environment(Suite& suite, const char* option) {
   return suite.environments.front();
 }
 
-/// Levels of scenes, and the one of recordings where there are some.
+/// Reads the levels of scenes; adds the one of recordings if there are any.
 std::vector<fs::path> read_levels(YamlReader& yaml, const SuitePaths& paths, const Suite& suite) {
   const auto is_recorded = [](const Environment& e) { return e.is_recorded(); };
   std::vector<fs::path> levels;
@@ -93,7 +93,8 @@ std::vector<fs::path> read_levels(YamlReader& yaml, const SuitePaths& paths, con
   return levels;
 }
 
-/// Kinds of labels, each of some use, and at least one for each environment.
+/// Reads the kinds of labels: each must fit some environment, and each environment needs at least
+/// one.
 std::vector<LabelMode> read_labels(const YamlReader& list, const Suite& suite) {
   std::vector<LabelMode> all;
   for (const YamlReader& node : items_of(list)) {

@@ -23,7 +23,7 @@ std::string_view name(LabelMode labels);
 /// "exact labels", "labels from boxes", "no labels"
 std::string with_labels(LabelMode labels);
 
-/// A table of the paper that a suite is made after.
+/// A table of the paper that a suite reproduces.
 enum class Published { kTable2 };
 
 /// Two systems of a suite, by index.
@@ -37,8 +37,8 @@ struct Suite {
   std::string name;
   std::filesystem::path file;
   std::vector<Environment> environments;
-  std::filesystem::path vocabulary;  ///< empty where none of the systems needs it
-  /// Sensor settings, named by their files; kRecordedLevel stands last where there are recordings.
+  std::filesystem::path vocabulary;  ///< empty if no system needs it
+  /// Sensor settings, named by their files; kRecordedLevel comes last if there are recordings.
   std::vector<std::filesystem::path> levels;
   std::vector<SystemSpec> systems;
   std::vector<LabelMode> labels;
@@ -47,30 +47,30 @@ struct Suite {
   SharedSlamConfig slam;
   Sweep sweep;
   ProtocolConfig protocol;
-  /// Which systems are set against which: first minus second. A suite that says nothing compares
-  /// `semantic` with `plain`, where it has both.
+  /// Which systems are compared: first minus second. Default: `semantic` with `plain`, if the suite
+  /// has both.
   std::vector<SystemPair> compare;
-  /// The first of a pair counts as not inferior where the interval of its success minus the
-  /// second's stays above -margin. Stated in the suite, before anything is measured.
+  /// The first of a pair is not inferior if the interval of its success minus the second's stays
+  /// above -margin. Stated in the suite, before any measurement.
   std::optional<double> non_inferiority_margin;
-  std::optional<Published> published;      ///< whose figures stand beside those measured
+  std::optional<Published> published;      ///< whose figures are shown next to the measured ones
   GateConfig gate;                         ///< what `modelhouse check` tolerates
-  std::optional<std::size_t> max_frames;   ///< cuts the tours: for a quick look
+  std::optional<std::size_t> max_frames;   ///< truncates the tours: for a quick look
   bool scene_replaced = false;             ///< by SuiteOverrides::scene
   std::map<std::string, std::string> set;  ///< as SuiteOverrides
-  FoundRecordings found;                   ///< what its patterns of recordings found
-  std::vector<std::string> notes;          ///< what of it was left out, one line each
+  FoundRecordings found;                   ///< what its recording patterns found
+  std::vector<std::string> notes;          ///< what was left out, one line each
 };
 
-/// What the command line may put in the place of a suite's own settings.
+/// What the command line may override in a suite.
 struct SuiteOverrides {
   std::optional<std::filesystem::path> scene = {};
-  SceneFrame frame = {};  ///< of that scene, else of the suite's only one
+  SceneFrame frame = {};  ///< of that scene, otherwise of the suite's only scene
   std::optional<int> trials = {};
   std::optional<std::size_t> max_frames = {};
-  /// What `${name}` in the suite's words stands for.
+  /// Values that replace `${name}` in the suite's text.
   std::map<std::string, std::string> set = {};
-  /// Of a suite that is read from its results: patterns are not looked for again.
+  /// For a suite that is read from its results: patterns are not searched for again.
   FoundRecordings found = {};
 };
 
@@ -78,18 +78,18 @@ struct SuiteOverrides {
 /// @throws InputError naming file, line, field and value.
 Suite load_suite(const std::filesystem::path& file, const SuiteOverrides& overrides = {});
 
-/// The same from the text of a suite whose file need not be there any more, nor, if so asked, the
-/// files that it names.
+/// Parses the text of a suite whose file need not exist any more, nor, on request, the files that
+/// it names.
 Suite parse_suite(const std::string& content, const std::filesystem::path& file,
                   const SuiteOverrides& overrides = {}, bool files_must_exist = true);
 
-/// The level of recordings, which have noise of their own; no file has its name.
+/// The level of recordings, which contain their own noise; no file has this name.
 inline constexpr const char* kRecordedLevel = "recorded";
 
-/// Whether runs of an environment may have these labels: a recording's are recorded, a scene's
-/// drawn. All may have none.
+/// Whether runs of an environment may have these labels: recorded ones for a recording, drawn ones
+/// for a scene. Any may have none.
 bool fits(const Environment& environment, LabelMode labels);
-/// Whether runs of an environment are made at this level: a recording's at kRecordedLevel alone.
+/// Whether runs of an environment are made at this level: a recording's only at kRecordedLevel.
 bool fits(const Environment& environment, const std::filesystem::path& level);
 
 std::string level_name(const std::filesystem::path& level);

@@ -14,29 +14,29 @@ namespace mh {
 enum class SystemKind { kSemantic, kPlain, kOutside };
 std::string_view name(SystemKind kind);
 
-/// How an outside system is spoken to: trajectory, conversation (the words of a suite) or library.
+/// The mode of an outside system: trajectory, conversation (as written in suites) or library.
 std::string_view name(OutsideMode mode);
 
 /// A system under test, as a suite names it.
 struct SystemSpec {
   SystemKind kind = SystemKind::kSemantic;
   std::string name = "semantic";
-  OutsideProgram outside;  ///< of an outside system alone
+  OutsideProgram outside;  ///< only for an outside system
 
-  // What it can do; nobody else asks for its kind.
+  // Its capabilities; no other code checks its kind.
   bool is_outside() const { return kind == SystemKind::kOutside; }
   bool sees_labels() const { return kind != SystemKind::kPlain; }
-  /// Has the settings of SlamConfig. It needs a vocabulary, and tells candidates, matches and how
-  /// far a relocalization came; an outside system brings and tells what it likes.
+  /// Has the settings of SlamConfig. It needs a vocabulary, and reports candidates, matches and how
+  /// far a relocalization got; for an outside system all of that is optional.
   bool takes_settings() const { return !is_outside(); }
-  /// Labels enter its matching: equation 2.
+  /// Labels affect its matching: equation 2.
   bool weighs_labels() const { return takes_settings() && sees_labels(); }
 };
 
-/// `semantic`, `plain`, or a mapping {name, command, protocol: trajectory |
-/// conversation} with `run_limit_s`, `answer_limit_s`, `memory_limit_mb`, `disk_limit_mb` where the
-/// defaults do not do, and `inputs`, a list of files. The command runs in the suite's folder. Or a
-/// mapping {name, library} with `settings`, a file, and `inputs`.
+/// Reads `semantic`, `plain`, or a mapping {name, command, protocol: trajectory | conversation}
+/// with `run_limit_s`, `answer_limit_s`, `memory_limit_mb`, `disk_limit_mb` to override defaults,
+/// and `inputs`, a list of files. The command runs in the suite's folder. Or a mapping {name,
+/// library} with `settings`, a file, and `inputs`.
 /// @throws InputError naming file, line, field and value; an input that must exist and does not.
 SystemSpec read_system(YamlReader node, const SuitePaths& paths);
 

@@ -9,7 +9,7 @@
 
 namespace mh {
 
-/// /// What is reset after a frame was dropped (section 3.1 of the paper leaves it open).
+/// What is reset after a frame was dropped (section 3.1 of the paper leaves it open).
 enum class DropReset {
   kCounter,  ///< the count of failed restarts is cleared, the map is kept
   kMap,      ///< the system discards its map, too
@@ -19,7 +19,7 @@ constexpr std::array<std::pair<std::string_view, DropReset>, 2> setting_words(Dr
   return {{{"counter", DropReset::kCounter}, {"map", DropReset::kMap}}};
 }
 
-/// /// What the feed does when tracking is lost.
+/// What the feed does when tracking is lost.
 enum class OnFailure {
   kRewind,    ///< rewinds (section 3.1 of the paper)
   kContinue,  ///< continues with the next frame, as a camera does

@@ -7,8 +7,8 @@ namespace mh {
 
 struct SlamConfig;
 
-/// All settings of SLAM as a value that is cheap to copy and does not change. A header that holds
-/// one does not depend on every setting: include slam/config/slam.hpp where they are read.
+/// All settings of SLAM as an immutable value that is cheap to copy. A header that contains one
+/// does not depend on every setting: include slam/config/slam.hpp where they are read.
 class SharedSlamConfig {
  public:
   SharedSlamConfig();                                      ///< the defaults
