@@ -32,8 +32,7 @@ struct Environment {
   /// A recording ("tum:FOLDER", scenes/recorded/open_sequence.hpp) in place of all of the above
   /// except name and category; empty: a scene.
   std::string sequence = {};
-  std::optional<std::string> queries =
-      {};  ///< recording in its frame of reference: the second tour
+  std::optional<std::string> queries = {};  ///< recording in the same world: the second tour
   std::optional<std::filesystem::path> settings = {};  ///< calibration of both
   std::optional<std::filesystem::path> classes = {};   ///< class map for the labels of both
   bool is_recorded() const { return !sequence.empty(); }

@@ -15,7 +15,7 @@ namespace {
 
 enum StreamName : std::uint64_t { kShot = 1 };
 
-/// Linear light of an 8-bit value, and the standard deviation of its noise.
+/// Linear light of an 8-bit value and the standard deviation of its noise.
 struct Signal {
   float light, sigma;
 };
@@ -32,7 +32,7 @@ std::array<Signal, 256> signal_table(const SensorConfig& config) {
   return table;
 }
 
-/// What share of the light reaches each pixel of row y.
+/// Computes the fraction of the light that reaches each pixel of row y.
 void fall_off(const Camera& camera, double strength, int y, std::vector<float>& share) {
   const auto b = static_cast<float>((y - camera.cy_px) / camera.fy_px);
   const auto s = static_cast<float>(strength);
@@ -56,7 +56,7 @@ void expose(Grid2d<Rgb8>& color, const Camera& camera, const SensorConfig& confi
     const float* lit = share.data();
     for (Rgb8& c : color.row(y)) {
       const std::uint64_t bits = stream.bits(pixel++);
-      // Less light through the lens has less noise: sigma goes with the root of the share.
+      // Less light through the lens has less noise: sigma is proportional to the root of the share.
       const float factor = scale * *lit, noise_factor = scale * std::sqrt(*lit);
       ++lit;
       const auto read = [&](std::uint8_t value, int k) {
@@ -72,7 +72,7 @@ void expose(Grid2d<Rgb8>& color, const Camera& camera, const SensorConfig& confi
 }
 
 void add_gray_noise(Grid2d<Rgb8>& color, double sigma, RandomStream stream) {
-  // Gray levels in 1/256: one table entry per equally probable normal number.
+  // In 1/256 gray level: one table entry per equally probable normal number.
   std::array<int, 1 << kNormalBits> noise;
   std::transform(normal_table().begin(), normal_table().end(), noise.begin(), [&](float normal) {
     return static_cast<int>(std::lrint(256.0 * 255.0 * sigma * normal));

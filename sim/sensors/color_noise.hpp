@@ -5,9 +5,9 @@
 
 namespace mh {
 
-/// Turns light into the 8-bit image of a sensor: exposure gain, vignetting, shot and read noise
-/// in linear light, then Gaussian noise in gray levels, then what its
-/// processing makes of it (see SensorConfig).
+/// Turns light into a sensor's 8-bit image: exposure gain, vignetting, shot and read noise in
+/// linear light, then Gaussian noise in gray levels, then the camera's processing (see
+/// SensorConfig).
 void develop(Grid2d<Rgb8>& color, const Camera& camera, const SensorConfig& config, double gain,
              RandomStream stream);
 

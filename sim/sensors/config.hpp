@@ -9,25 +9,25 @@
 #include "slam/core/camera.hpp"
 #include "slam/core/setting.hpp"
 
-// What a sensor level (sim/sensors/levels) may say: a struct for each section of the file and
-// beside it the list of its fields. Each fault can be switched on and off alone.
+// The settings of a sensor level (sim/sensors/levels): a struct for each section of the file,
+// followed by the list of its fields. Each fault can be switched on and off separately.
 
 namespace mh {
 
 inline constexpr double kSecondsPerMs = 1e-3;
 
 /// Xtion/Kinect v1 depth. Axial and lateral noise: Nguyen, Izadi and Lovell, "Modeling Kinect
-/// sensor noise for improved 3D reconstruction and tracking", 3DIMPVT 2012; disparity
-/// quantization and the shadow of the projector, which stands camera.baseline_m to the right of the
-/// camera: Khoshelham and Elberink, "Accuracy and resolution of Kinect depth data", Sensors 2012;
-/// range: ASUS Xtion data sheet.
+/// sensor noise for improved 3D reconstruction and tracking", 3DIMPVT 2012; disparity quantization
+/// and the shadow of the projector, camera.baseline_m to the right of the camera: Khoshelham and
+/// Elberink, "Accuracy and resolution of Kinect depth data", Sensors 2012; range: ASUS Xtion data
+/// sheet.
 struct DepthNoiseConfig {
   bool enabled = true;            ///< off: the exact depth at any range
   bool axial = true;              ///< sigma_z(z, incidence)
-  bool lateral = true;            ///< ragged edges: the lookup strays by sigma_L(incidence), px
+  bool lateral = true;            ///< ragged edges: lookups are displaced by sigma_L(incidence), px
   bool quantization = true;       ///< 1/8 px disparity steps
   bool grazing_holes = true;      ///< no return beyond kMaxIncidenceRad
-  bool projector_shadow = false;  ///< no return where the projector does not shine
+  bool projector_shadow = false;  ///< no return where the projector's light is blocked
   double min_range_m = 0.4;
   double max_range_m = 8.0;  ///< above min_range_m
   friend bool operator==(const DepthNoiseConfig&, const DepthNoiseConfig&) = default;
@@ -48,7 +48,7 @@ void fields(C& c, Visit& v) {
   v("max_range_m", max_range_m, {0, setting::kMany}, "nor do farther ones; above min_range_m");
 }
 
-/// Every fault of the depth off, and any range: for switching on one fault alone.
+/// All depth faults off, and any range: for switching on a single fault.
 inline DepthNoiseConfig no_depth_noise() {
   return {.axial = false,
           .lateral = false,
@@ -72,17 +72,18 @@ void fields(C& c, Visit& v) {
   v("sigma", sigma, setting::kShare, "standard deviation, share of full scale");
 }
 
-/// Light is counted in electrons: shot noise of variance L * well, read noise, both divided by the
-/// well of a white pixel. Defaults: OV5640 as Aldebaran's documentation of Pepper's 2D camera gives
-/// it: signal to noise at most 36 dB, so a well of 10^3.6 = 3981 electrons; dynamic range 68 dB, so
-/// 3981 / 10^3.4 = 1.6 electrons of read noise. Model: Healey and Kondepudy, PAMI 1994.
+/// Light is counted in electrons: shot noise of variance L * well, and read noise, both divided by
+/// the well of a white pixel. Defaults: OV5640, with the figures of Aldebaran's documentation of
+/// Pepper's 2D camera: signal to noise at most 36 dB, so a well of 10^3.6 = 3981 electrons; dynamic
+/// range 68 dB, so 3981 / 10^3.4 = 1.6 electrons of read noise. Model: Healey and Kondepudy, PAMI
+/// 1994.
 struct ShotNoiseConfig {
   bool enabled = false;
   double well_e = 3981.0;
   double read_noise_e = 1.6;
-  double gain = 1.0;  ///< analogue: a white pixel holds well_e / gain electrons
-  /// The exposure (RenderedFrame) that takes this gain; others take theirs in proportion: dark
-  /// rooms are noisier. 0: all take this one.
+  double gain = 1.0;  ///< analog: a white pixel holds well_e / gain electrons
+  /// The exposure (RenderedFrame) at which this gain applies; for other exposures it scales in
+  /// proportion: dark rooms are noisier. 0: this gain at every exposure.
   double gain_at_exposure = 0.0;
   friend bool operator==(const ShotNoiseConfig&, const ShotNoiseConfig&) = default;
 };
@@ -98,14 +99,14 @@ void fields(C& c, Visit& v) {
     "the exposure that takes this gain, others in proportion; 0: all take it");
 }
 
-/// Gain that follows the mean luminance with a lag, as the average-based control of OmniVision's
-/// sensors does (OV5647 data sheet, section 4.5): the logarithm of the gain nears that of
-/// target / mean exponentially.
+/// Gain that follows the mean luminance with a lag, like the average-based control of OmniVision's
+/// sensors (OV5647 data sheet, section 4.5): the logarithm of the gain approaches that of target /
+/// mean exponentially.
 struct AutoExposureConfig {
   bool enabled = false;
   double target = 0.18;
   double time_constant_s = 0.5;  ///< of the lag; 0 = none
-  double max_gain = 4.0;         ///< beside the renderer's exposure; the least is its inverse
+  double max_gain = 4.0;         ///< on top of the renderer's exposure; the minimum is 1 / this
   friend bool operator==(const AutoExposureConfig&, const AutoExposureConfig&) = default;
 };
 
@@ -118,8 +119,8 @@ void fields(C& c, Visit& v) {
   v("max_gain", max_gain, {1, 1000}, "the least is its inverse");
 }
 
-/// A share of the natural falloff cos^4 of the angle from the axis (what a lens shading correction
-/// leaves of it).
+/// A fraction of the natural falloff, cos^4 of the angle from the axis (the rest is removed by a
+/// lens shading correction).
 struct VignettingConfig {
   bool enabled = false;
   double strength = 1.0;
@@ -148,7 +149,7 @@ void fields(C& c, Visit& v) {
     "standard deviation of its Gaussian point spread");
 }
 
-/// What the camera does with its sensor's image: see processing.hpp.
+/// The camera's processing of its sensor's image: see processing.hpp.
 struct ProcessingConfig {
   bool enabled = false;
   double contrast = 0.0;
@@ -168,7 +169,7 @@ void fields(C& c, Visit& v) {
 }
 
 struct LensDistortionConfig {
-  bool enabled = false;  ///< off: the camera's own, as it comes
+  bool enabled = false;  ///< off: the camera's own
   Distortion lens;
   friend bool operator==(const LensDistortionConfig&, const LensDistortionConfig&) = default;
 };
@@ -185,7 +186,7 @@ void fields(C& c, Visit& v) {
   v("k3", k3, {-2, 2}, "radial");
 }
 
-// When light is collected, from the true motion. Row y of h is exposed for exposure_s() around
+// Timing of the exposure, along the true motion. Row y of h is exposed for exposure_s() around
 // stamp + ((y + 1/2) / h - 1/2) readout_s(): the stamp is the middle of the image's exposure.
 
 struct MotionBlurConfig {
@@ -233,7 +234,7 @@ void fields(C& c, Visit& v) {
     "the depth is that of so much later than the stamp");
 }
 
-/// Of the frames, the share that is blank (black, without depth and labels) or never arrives.
+/// The fraction of frames that are blank (black, without depth and labels) or never arrive.
 struct LostFramesConfig {
   bool enabled = false;
   double share = 0.0;
@@ -249,13 +250,13 @@ void fields(C& c, Visit& v) {
     "of frames that arrive black (blank) or not at all (dropped)");
 }
 
-/// How finely motion within a frame is sampled: the image is the mean of images along the
-/// motion, in linear light. It is a matter of the simulation's accuracy, no fault of a sensor:
+/// How finely motion within a frame is sampled: the image is the mean, in linear light, of images
+/// along the motion. This sets the accuracy of the simulation and is not a fault of a sensor:
 /// levels do not set it.
 struct MotionSampling {
-  double step_px = 1.5;   ///< between two images nothing moves farther, as long as they are at most
-  int max_images = 33;    ///< so many
-  double sharp_px = 0.5;  ///< less motion within a frame is not worth a second image
+  double step_px = 1.5;   ///< maximum motion between two images, unless limited by
+  int max_images = 33;    ///< the maximum number of images
+  double sharp_px = 0.5;  ///< with less motion within a frame, one image is enough
   friend bool operator==(const MotionSampling&, const MotionSampling&) = default;
 };
 
@@ -306,18 +307,18 @@ void for_each_setting(C& config, Visit&& visit) {
   for_each_setting(labels, visit);
 }
 
-/// No noise at all: what is there where no level is given.
+/// No noise at all: the default if no level is specified.
 SensorConfig exact_sensors();
 
-/// Reads a level (YAML, see sim/sensors/levels): depth_noise and color_noise must be there; a
-/// section that is there is on unless it says `enabled: false`. @throws InputError naming file,
-/// line, field, value.
+/// Reads a level (YAML, see sim/sensors/levels): depth_noise and color_noise are required; a
+/// section that is present is on unless it contains `enabled: false`. @throws InputError naming
+/// file, line, field, value.
 SensorConfig load_sensor_config(const std::filesystem::path& file);
-/// The same of text; `name` stands for the file in messages.
+/// Parses a level from text; `name` names the file in messages.
 SensorConfig parse_sensor_config(const std::string& text, const std::string& name);
 
-/// A level that load_sensor_config() takes back bit for bit; with notes each line says what it
-/// means and which values it may take.
+/// Formats a level that load_sensor_config() reads back bit for bit; with notes, each line states
+/// its meaning and valid values.
 std::string format_sensor_config(const SensorConfig& config, bool notes = false);
 
 }  // namespace mh

@@ -21,7 +21,7 @@ constexpr double kAxialAngular = 0.0001;
 constexpr double kLateralFloor = 0.8, kLateralAngular = 0.035;
 constexpr double kSteepRad = std::numbers::pi / 3.0;  // their angular term starts here
 
-/// theta^2 / (pi/2 - theta)^2 where the angular term counts, else 0.
+/// theta^2 / (pi/2 - theta)^2 where the angular term applies, else 0.
 double angular_term(double incidence_rad) {
   const double theta = std::min(incidence_rad, kMaxIncidenceRad);
   if (theta <= kSteepRad) return 0.0;
@@ -29,7 +29,7 @@ double angular_term(double incidence_rad) {
   return ratio * ratio;
 }
 
-/// What depends on the incidence alone, by its cosine.
+/// Tables of what depends only on the incidence, by its cosine.
 class IncidenceTable {
  public:
   IncidenceTable() {
@@ -51,14 +51,14 @@ class IncidenceTable {
   std::array<float, kSteps + 1> lateral_px_, angular_;
 };
 
-/// The surface behind a pixel as a plane: over pixels, the inverse depth of a plane is affine.
+/// The surface seen at a pixel as a plane: over pixels, the inverse depth of a plane is affine.
 struct Surface {
   float inverse_depth = 0;         // 1/m; 0 = nothing there
   float slope_x = 0, slope_y = 0;  // 1/m per px
   float cosine = 0;                // of the incidence
 };
 
-/// The smaller of the two one-sided differences: it does not reach across an object's edge.
+/// The smaller of the two one-sided differences: it does not cross an object's edge.
 float gentler(float before, float here, float after) {
   const float forward = after - here, backward = here - before;
   return std::abs(forward) < std::abs(backward) ? forward : backward;
@@ -76,7 +76,7 @@ Grid2d<Surface> find_surfaces(const Grid2d<float>& depth_m, const Camera& camera
   Grid2d<Surface> surfaces(w, h);
   for (int y = 0; y < h; ++y) {
     const float* here = inverse.row(y).data();
-    // In the outer columns and rows the difference that exists stands for both.
+    // In the outermost columns and rows the only available difference serves as both.
     const float* above = y > 0 ? here - w : here;
     const float* below = y + 1 < h ? here + w : here;
     const bool border = y == 0 || y + 1 == h;
@@ -84,7 +84,7 @@ Grid2d<Surface> find_surfaces(const Grid2d<float>& depth_m, const Camera& camera
     Surface* out = surfaces.row(y).data();
     const auto fit = [&](int x, float slope_x) {
       const float slope_y = border ? below[x] - above[x] : gentler(above[x], here[x], below[x]);
-      // The plane n . X = 1 through the point X = z d, d = (a, b, 1), so that n . d = 1/z.
+      // The plane n . X = 1 through X = z d, d = (a, b, 1), so that n . d = 1/z.
       const float a = (static_cast<float>(x) - cx) / fx;
       const float nx = slope_x * fx, ny = slope_y * fy, nz = here[x] - nx * a - ny * b;
       const float squares = (nx * nx + ny * ny + nz * nz) * (a * a + b * b + 1.0F);
@@ -97,8 +97,8 @@ Grid2d<Surface> find_surfaces(const Grid2d<float>& depth_m, const Camera& camera
   return surfaces;
 }
 
-/// Reads an image row by row; the passes over a row are separate, so that those without table
-/// lookups run in vector registers.
+/// Processes an image row by row; the passes over a row are separate, so that those without table
+/// lookups are vectorized.
 class DepthSensor {
  public:
   DepthSensor(const Grid2d<float>& depth_m, const Camera& camera, const DepthNoiseConfig& config,
@@ -125,11 +125,11 @@ class DepthSensor {
  private:
   struct Draw {
     float normal;   // for the axial noise
-    float cosine;   // of the incidence on what is seen
+    float cosine;   // of the incidence on the surface seen
     float angular;  // see IncidenceTable
   };
 
-  /// Draws a row's random numbers and finds what each pixel sees.
+  /// Draws a row's random numbers and finds the surface that each pixel sees.
   void look(int y, std::span<float> depth) {
     const int w = depth_m_.width(), h = depth_m_.height();
     const auto first = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(w);
@@ -154,13 +154,13 @@ class DepthSensor {
 
   static int round(float value) { return _mm_cvt_ss2si(_mm_set_ss(value)); }
 
-  /// Depth of a surface some pixels aside of where it was seen. Following its plane keeps the
-  /// lateral noise to the edges: on a slope it would double what the axial noise already is.
+  /// Depth of a surface some pixels away from where it was seen. Following its plane limits the
+  /// lateral noise to the edges: on a slope it would duplicate the axial noise.
   static float depth_of(const Surface& seen, int dx, int dy) {
     const float w = seen.inverse_depth;
     const float moved =
         w + seen.slope_x * static_cast<float>(dx) + seen.slope_y * static_cast<float>(dy);
-    // A thin thing has no plane to follow.
+    // A thin object has no plane to follow.
     const float limited = std::min(std::max(moved, 0.8F * w), 1.25F * w);
     const float z = 1.0F / limited;
     return w > 0.0F ? z : 0.0F;
@@ -172,8 +172,8 @@ class DepthSensor {
       depth[x] = row_[x].cosine < least ? 0.0F : depth[x];
   }
 
-  /// What the projector sees of a row, nearest first: a pixel with disparity d lies at column x - d
-  /// of its image. Pixels that lie behind another's are in its shadow.
+  /// What the projector sees of a row, nearest first: a pixel with disparity d is at column x - d
+  /// of the projector's image. Pixels behind another are in its shadow.
   void cast_shadow(int y, std::span<float> depth) {
     constexpr float kNothing = 0.0F;
     constexpr float kStep = 1.0F;  // px of disparity; a smooth surface does not shade itself

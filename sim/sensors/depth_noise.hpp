@@ -5,7 +5,7 @@
 
 namespace mh {
 
-/// A structured-light sensor's reading of an exact depth image (m, 0 = nothing there).
+/// Simulates a structured-light sensor's reading of an exact depth image (m, 0 = no surface).
 Grid2d<float> noisy_depth(const Grid2d<float>& depth_m, const Camera& camera,
                           const DepthNoiseConfig& config, RandomStream stream);
 

@@ -22,11 +22,11 @@ enum Purpose : std::uint64_t {
   kFalsePlace = 20
 };
 
-// False alarms come from so many independent sources, each at most once in an image.
+// False alarms come from this many independent sources, each at most once per image.
 constexpr std::uint64_t kAlarms = 8;
-// Any class with boxes, to draw another from; people are the class seen most on COCO.
+// Any class with boxes, to draw a different one from; person is the most frequent class in COCO.
 constexpr ClassId kPerson = 31;
-// A palette has room for 255 entries, two of them taken.
+// A palette has room for 255 entries; two are taken.
 constexpr std::size_t kMostDetections = 253;
 
 double recall(const VisibleObject& object, const DetectorConfig& config) {
@@ -34,7 +34,7 @@ double recall(const VisibleObject& object, const DetectorConfig& config) {
   return object.pixels < kLargePixels ? config.recall_medium : config.recall_large;
 }
 
-/// A box with its sides astray, within the image and at least one pixel large.
+/// A box with displaced sides, within the image and at least one pixel large.
 Detection place(const VisibleObject& object, const DetectorConfig& config, const FaultDraws& draws,
                 const RenderedFrame& truth) {
   const auto side = [&](Purpose purpose, int at, int size, int limit) {
@@ -51,7 +51,7 @@ Detection place(const VisibleObject& object, const DetectorConfig& config, const
   return box;
 }
 
-/// The class that a box is taken for with a probability of at least a half, and the runner-up.
+/// The class assigned to a box with a probability of at least one half, and the runner-up.
 ClassDistribution two_classes(ClassId first, ClassId second, double sure) {
   const auto p = static_cast<float>(0.5 + 0.5 * sure);
   ClassDistribution classes{{{first, p}, {second, 1.0F - p}}};
@@ -59,8 +59,8 @@ ClassDistribution two_classes(ClassId first, ClassId second, double sure) {
   return classes;
 }
 
-/// A box around something that has no class of the detector's, as most false alarms on background
-/// are: the instance that ranks first for this source among those in view.
+/// A box around something of a class that the detector does not have, like most false alarms on
+/// background: the instance in view that ranks first for this source.
 const VisibleObject* false_place(const std::vector<VisibleObject>& objects, std::uint64_t source,
                                  const FaultDraws& draws) {
   const VisibleObject* best = nullptr;

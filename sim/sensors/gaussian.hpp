@@ -5,8 +5,9 @@
 
 namespace mh {
 
-/// Weights of the pixels 0, 1, 2, ... aside of a Gaussian; the whole kernel sums to one.
-/// @param sigma_px  above 0; the kernel ends 3.5 of them aside
+/// Weights of a Gaussian at 0, 1, 2, ... pixels from its center; the whole two-sided kernel sums to
+/// one.
+/// @param sigma_px  above 0; the kernel ends at 3.5 sigma
 std::vector<float> gaussian_kernel(double sigma_px);
 
 }  // namespace mh

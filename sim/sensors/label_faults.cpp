@@ -43,7 +43,7 @@ void swap_neighbors(std::vector<VisibleObject>& objects, double share, const Fau
 /// are not all the same.
 void mark_line(const std::uint8_t* value, std::uint8_t* uneven, int count, std::ptrdiff_t stride,
                int radius) {
-  int last_change = -radius - 1;  // the last position that differs from the one before
+  int last_change = -radius - 1;  // the last position that differs from its predecessor
   for (int i = 0; i < count; ++i) {
     if (i > 0 && value[i * stride] != value[(i - 1) * stride]) last_change = i;
     if (i - last_change < radius) uneven[i * stride] = 1;
@@ -102,12 +102,12 @@ std::vector<VisibleObject> with_faults(std::vector<VisibleObject> objects,
 void erode(Grid2d<std::uint8_t>& index, int radius_px) {
   assert(radius_px >= 0);
   if (radius_px == 0) return;
-  // A square window is even where its rows are even and equal to one another.
+  // A square window is even if its rows are even and equal to each other.
   const int w = index.width(), h = index.height();
   Grid2d<std::uint8_t> uneven(w, h);
   for (int y = 0; y < h; ++y) mark_line(&index(0, y), &uneven(0, y), w, 1, radius_px);
   Grid2d<std::uint8_t> rows = index;
-  constexpr std::uint8_t kUneven = 255;  // no palette is so long
+  constexpr std::uint8_t kUneven = 255;  // larger than any palette
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (uneven.data()[i]) rows.data()[i] = kUneven;
   for (int x = 0; x < w; ++x) mark_line(&rows(x, 0), &uneven(x, 0), h, w, radius_px);

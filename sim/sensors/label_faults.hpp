@@ -9,15 +9,15 @@
 
 namespace mh {
 
-/// The numbers that decide an instance's faults in one frame (see LabelConfig).
+/// The random numbers that decide an instance's faults in one frame (see LabelConfig).
 class FaultDraws {
  public:
   FaultDraws(const LabelConfig& config, const SE3& world_from_camera, RandomStream frame);
-  /// Standard normal; `purpose` keeps decisions apart from one another.
+  /// Standard normal; `purpose` makes decisions independent.
   double normal(std::uint64_t purpose, std::uint64_t thing) const;
   /// Uniform in [0, 1], from the same numbers.
   double uniform(std::uint64_t purpose, std::uint64_t thing) const;
-  /// Bits that a thing keeps for ever.
+  /// Bits that are constant for a thing.
   std::uint64_t persistent_bits(std::uint64_t purpose, std::uint64_t thing) const;
 
  private:
@@ -26,15 +26,15 @@ class FaultDraws {
   double persistent_, of_view_, of_frame_;  // factors; their squares sum to 1
 };
 
-/// The class for which an instance is taken when it is taken for another: of the same kind (one
-/// with boxes for one with boxes), ever the same for the same instance.
+/// The wrong class of an instance whose class is confused: of the same kind (with boxes if the true
+/// one has boxes), always the same for the same instance.
 ClassId wrong_class(ClassId truth, std::uint64_t bits);
 
-/// Gives objects the classes that the dials make of them and leaves out those that lose theirs.
+/// Applies class confusion to objects and removes those whose labels drop out, as configured.
 std::vector<VisibleObject> with_faults(std::vector<VisibleObject> objects,
                                        const LabelNoiseConfig& config, const FaultDraws& draws);
 
-/// Makes void (index 0) what lies within `radius_px` (in rows and columns) of another index.
+/// Sets pixels to void (index 0) within `radius_px` (in rows and columns) of a different index.
 void erode(Grid2d<std::uint8_t>& index, int radius_px);
 
 }  // namespace mh

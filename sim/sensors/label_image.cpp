@@ -10,7 +10,7 @@
 namespace mh {
 namespace {
 
-/// Palette entry c is the certain class c; void is the empty distribution.
+/// Palette entry c is class c with certainty; void is the empty distribution.
 std::vector<ClassDistribution> one_hot_palette() {
   std::vector<ClassDistribution> palette;
   for (const ClassInfo& info : classes()) palette.push_back(ClassDistribution::one_hot(info.id));
@@ -34,7 +34,7 @@ SemanticImage boxes_image(const RenderedFrame& truth, std::vector<VisibleObject>
   return image;
 }
 
-/// Each pixel's class, or that which its instance is given; instances that are given none are void.
+/// Each pixel's class, or the class assigned to its instance; instances without one are void.
 SemanticImage exact_image(const RenderedFrame& truth, const std::vector<VisibleObject>& before,
                           const std::vector<VisibleObject>& after) {
   SemanticImage image{truth.classes, one_hot_palette()};

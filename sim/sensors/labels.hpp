@@ -10,24 +10,25 @@
 
 namespace mh {
 
-/// How labels come to the frame. kExact: one-hot class per pixel, of what the color image shows
-/// there: where its rows are read out one after another, so are the labels (Shutter). kAnnotated:
-/// the same of one instant, the stamp, as if a labeled mesh were drawn at the frame's pose (so
-/// ScanNet's are made). kBoxes: the bounding box of the visible pixels of each instance of a COCO
-/// class is filled with its class, all else is background. kDetector: as a network would draw those
-/// boxes, see DetectorConfig. kNone: none. kRecorded: those that a recording brings; nothing that
+/// The origin of a frame's labels. kExact: one-hot class per pixel, matching the color image: with
+/// a rolling shutter, labels are read out row by row, too (Shutter). kAnnotated: the same at a
+/// single instant, the stamp, as if a labeled mesh were rendered at the frame's pose (ScanNet's
+/// labels are made this way). kBoxes: the bounding box of the visible pixels of each instance of a
+/// COCO class is filled with its class; everything else is background. kDetector: those boxes as a
+/// network would draw them, see DetectorConfig. kNone: none. kRecorded: the labels of a recording;
+/// no simulated frame has them.
 /// is simulated has them.
 enum class LabelMode { kNone, kExact, kAnnotated, kBoxes, kDetector, kRecorded };
 
-/// Each pixel has the class of what is seen there, not a box's.
+/// Whether each pixel has the class of the surface seen there, not that of a box.
 inline bool is_per_pixel(LabelMode mode) {
   return mode == LabelMode::kExact || mode == LabelMode::kAnnotated;
 }
 
-/// A detector needs to see this much of an object before its box counts.
+/// A detector finds an object only if it shows at least this many pixels.
 inline constexpr int kMinBoxPixels = 100;
 
-/// COCO's classes of size (Lin et al., ECCV 2014): by visible pixels.
+/// COCO's size classes (Lin et al., ECCV 2014): by visible pixels.
 inline constexpr int kMediumPixels = 32 * 32, kLargePixels = 96 * 96;
 
 /// A YOLOv3-like detector. Sources: [A] Redmon and Farhadi, "YOLOv3: an incremental improvement",
@@ -37,18 +38,18 @@ inline constexpr int kMediumPixels = 32 * 32, kLargePixels = 96 * 96;
 /// 0.70. [C] Redmon et al., "You only look once", CVPR 2016, figure 4: of a YOLO's false detections
 /// 55 % are badly placed, 31 % of the wrong class, 14 % on background.
 struct DetectorConfig {
-  // Recall at IoU 0.5 by size: [A] AP by size times AP50 / AP. AP50 stands for the recall where the
-  // detector works; that of all its guesses is higher (0.41, 0.75, 0.97 by the AR of
+  // Recall at IoU 0.5 by size: [A] AP by size times AP50 / AP. AP50 approximates the recall at the
+  // operating point; that of all guesses is higher (0.41, 0.75, 0.97 by the AR of
   // ultralytics/yolov3 issue 9).
   double recall_small = 0.321, recall_medium = 0.621, recall_large = 0.735;
   /// Share of an object's detections with the wrong class: 31 % of the 30 % that are false [B, C],
-  /// over all detections of objects.
+  /// relative to all detections of objects.
   double confusion = 0.097;
-  /// Expected detections of nothing per image: 14 % of the 30 % that are false, beside the 4.3
+  /// Expected detections of nothing per image: 14 % of the 30 % that are false, relative to the 4.3
   /// right ones per image of 36,781 / 5,000 objects at a recall of 0.58 [A, B, C].
   double false_alarms = 0.26;
-  /// Each side of a box strays by this share of the box's width or height, standard deviation: so
-  /// that of boxes with an IoU above 0.5 those above 0.75 are 34.4 / 57.9 [A].
+  /// Standard deviation of the error of each side of a box, as a share of the box's width or
+  /// height: chosen so that of boxes with an IoU above 0.5, 34.4 / 57.9 have one above 0.75 [A].
   double box_sigma = 0.087;
   friend bool operator==(const DetectorConfig&, const DetectorConfig&) = default;
 };
@@ -65,7 +66,7 @@ void fields(C& c, Visit& v) {
     "of a box's width or height by which its sides stray, standard deviation");
 }
 
-/// Faults of one's choice on top of any kind of labels, for dose-response studies: 0 is none.
+/// Configurable faults on top of any kind of labels, for dose-response studies: 0 is none.
 struct LabelNoiseConfig {
   bool enabled = false;
   double confusion = 0.0;  ///< share of instances that carry a wrong class
@@ -73,7 +74,7 @@ struct LabelNoiseConfig {
                            ///< nearest neighbor in the image
   double dropout = 0.0;    ///< share of instances that carry no label (no box, in those modes)
   int erosion_px = 0;      ///< pixels within so many px of a border between labels become void
-  /// Whether labels stay as they are.
+  /// Whether labels are left unchanged.
   bool none() const {
     return !enabled || (confusion == 0 && swap == 0 && dropout == 0 && erosion_px == 0);
   }
@@ -91,16 +92,16 @@ void fields(C& c, Visit& v) {
   v("erosion_px", erosion_px, {0, 1000}, "pixels so near to a border between labels become void");
 }
 
-/// Labels' faults depend on what is looked at and from where, as a network's do: each is decided by
-/// a standard normal number that is the sum of a part that an instance keeps for ever, a part that
-/// changes smoothly with the view (over some 1 m and 30 degrees; equal for equal views, whenever
-/// they are seen) and a part drawn afresh in each frame. Nothing published gives their shares: they
-/// are a choice.
+/// Label faults depend on what is seen and from where, as a network's do: each is decided by a
+/// standard normal number that is the sum of a part that is constant for an instance, a part that
+/// changes smoothly with the view (over about 1 m and 30 degrees; equal for equal views, whenever
+/// they occur) and a part drawn again in each frame. No published data give their shares: they are
+/// a choice.
 struct LabelConfig {
   LabelNoiseConfig noise = {};
   DetectorConfig detector = {};
   double persistent_share = 0.4;  ///< of the variance, 0 to 1
-  double frame_share = 0.1;       ///< likewise; the two sum to at most 1, the rest is the view's
+  double frame_share = 0.1;       ///< as above; the two sum to at most 1, the rest is the view's
   std::uint64_t seed = 0;         ///< another seed is another network
   friend bool operator==(const LabelConfig&, const LabelConfig&) = default;
 };
@@ -119,13 +120,13 @@ void for_each_setting(C& config, Visit& v) {
   fields(detector, v);
 }
 
-/// Labels without faults; kDetector gives those of kBoxes. kNone: an empty image. Of boxes, smaller
-/// ones lie over larger ones, higher instance ids over lower where equal.
+/// Labels without faults; kDetector gives those of kBoxes. kNone: an empty image. Smaller boxes
+/// cover larger ones; of equal ones, higher instance ids cover lower ones.
 SemanticImage label_image(const RenderedFrame& truth, LabelMode mode);
 
 /// The same with the faults of `config`.
-/// @param world_from_camera  the view that errors are tied to
-/// @param stream             of this frame, for what is drawn afresh
+/// @param world_from_camera  the view that faults depend on
+/// @param stream             of this frame, for what is drawn in each frame
 SemanticImage label_image(const RenderedFrame& truth, LabelMode mode, const LabelConfig& config,
                           const SE3& world_from_camera, RandomStream stream);
 
@@ -133,10 +134,10 @@ SemanticImage label_image(const RenderedFrame& truth, LabelMode mode, const Labe
 struct Detection {
   int left = 0, top = 0, right = 0, bottom = 0;
   ClassDistribution classes;
-  InstanceId instance = 0;  ///< what it was drawn around; never told to SLAM
+  InstanceId instance = 0;  ///< what it was drawn around; never passed to SLAM
 };
 
-/// What a detector with these faults finds, in the order of painting.
+/// Detections of a detector with these faults, in painting order.
 std::vector<Detection> detect(const RenderedFrame& truth, const LabelConfig& config,
                               const SE3& world_from_camera, RandomStream stream);
 

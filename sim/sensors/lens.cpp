@@ -15,7 +15,7 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-/// Brown-Conrady at unit depth, and its Jacobian.
+/// Brown-Conrady distortion at unit depth, and its Jacobian.
 Vector2d distort(const Distortion& d, const Vector2d& p, Matrix2d* jacobian = nullptr) {
   const double x = p.x(), y = p.y(), r2 = x * x + y * y;
   const double radial = 1.0 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3));
@@ -30,7 +30,7 @@ Vector2d distort(const Distortion& d, const Vector2d& p, Matrix2d* jacobian = nu
           y * radial + d.p1 * (r2 + 2.0 * y * y) + 2.0 * d.p2 * x * y};
 }
 
-// More than this beside the image is not rendered for its sake: the lens is beyond its model.
+// A wider margin than this is not rendered: the lens is outside the range of its model.
 constexpr double kMostMargin = 0.5;
 
 }  // namespace

@@ -12,13 +12,13 @@
 namespace mh {
 namespace {
 
-using LightRow = std::vector<float>;  // a row, three channels beside one another
+using LightRow = std::vector<float>;  // a row, three channels side by side
 
 void add(LightRow& sum, const LightRow& row, float weight) {
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * row[i];
 }
 
-/// One row in linear light, blurred along itself.
+/// One row in linear light, blurred horizontally.
 LightRow blurred_row(std::span<const Rgb8> row, const std::vector<float>& kernel) {
   const std::size_t radius = kernel.size() - 1, n = row.size();
   LightRow padded;

@@ -6,9 +6,9 @@
 
 namespace mh {
 
-/// Standard normal numbers at the price of a table lookup: 4096 equally probable values, the
-/// quantiles of the middles of 4096 steps, scaled to a variance of exactly one. Symmetric, and
-/// within 3.5 sigma, which no test of a sensor's noise would miss.
+/// Standard normal numbers at the cost of a table lookup: 4096 equally probable values, the
+/// quantiles at the middles of 4096 steps, scaled to a variance of exactly one. Symmetric, and
+/// within 3.5 sigma; no test of a sensor's noise would detect the difference.
 inline constexpr int kNormalBits = 12;
 inline constexpr std::uint64_t kNormalMask = (1U << kNormalBits) - 1;
 

@@ -13,7 +13,7 @@ namespace mh {
 namespace {
 
 using Row = std::vector<float>;
-using Curve = std::array<float, 256>;  // gray levels of gray levels
+using Curve = std::array<float, 256>;  // output gray level by input gray level
 
 Curve tone_curve(double contrast) {
   Curve curve{};
@@ -25,7 +25,7 @@ Curve tone_curve(double contrast) {
   return curve;
 }
 
-/// Beyond its ends a row goes on with its last value.
+/// Blurs a row; beyond its ends it is extended by its last value.
 Row blurred(const Row& row, const std::vector<float>& kernel) {
   const int last = static_cast<int>(row.size()) - 1, radius = static_cast<int>(kernel.size()) - 1;
   Row sum(row.size(), 0.0F);
@@ -45,7 +45,7 @@ void process(Grid2d<Rgb8>& color, const ProcessingConfig& config) {
   const Curve curve = tone_curve(config.contrast);
   const std::vector<float> kernel = gaussian_kernel(config.sharpening_px);
   const int last = color.height() - 1, radius = static_cast<int>(kernel.size()) - 1;
-  std::vector<Row> luma, across;  // and the same blurred along its rows
+  std::vector<Row> luma, across;  // and the same blurred horizontally
   for (int y = 0; y <= last; ++y) {
     Row row;
     for (const Rgb8 c : std::as_const(color).row(y))

@@ -8,7 +8,7 @@
 namespace mh {
 namespace {
 
-/// A section that is there is on unless it says otherwise.
+/// A section that is present is on unless it says otherwise.
 class LevelReader : public SettingsReader {
  public:
   using SettingsReader::SettingsReader;
@@ -20,7 +20,7 @@ class LevelReader : public SettingsReader {
   }
 };
 
-/// What no range of one field says. @throws InputError at the section.
+/// Checks constraints between fields. @throws InputError at the section.
 void check_together(YamlReader& level, const SensorConfig& config) {
   if (config.depth_noise.max_range_m <= config.depth_noise.min_range_m)
     level.at("depth_noise").fail("max_range_m must be above min_range_m");
@@ -38,7 +38,7 @@ SensorConfig exact_sensors() {
 
 SensorConfig parse_sensor_config(const std::string& text, const std::string& name) {
   YamlReader level = YamlReader::parse(text, name);
-  // So that nobody gets noise, or none, by what is not written.
+  // Required, so that an omission decides neither for nor against noise.
   for (const char* section : {"depth_noise", "color_noise"}) level.at(section);
   SensorConfig config;
   LevelReader reader(level);

@@ -17,12 +17,11 @@ double seconds_between(const TimedPose& a, const TimedPose& b) {
   return static_cast<double>(b.stamp_ns - a.stamp_ns) * 1e-9;
 }
 
-/// How far (px) what stands in the image moves between two poses at most, judged by a grid of
-/// its pixels.
+/// The maximum motion (px) of the image content between two poses, evaluated on a grid of pixels.
 double farthest_motion_px(const Camera& camera, const Grid2d<float>& depth_m, const SE3& seen_from,
                           const SE3& first, const SE3& last) {
   constexpr int kGrid = 9;
-  constexpr double kNothingM = 10.0;  // what is not there moves as if it were so far
+  constexpr double kNothingM = 10.0;  // where nothing is seen, motion is computed at this depth
   constexpr double kNearestM = 0.05;
   const SE3 first_from_seen = first.inverse() * seen_from,
             last_from_seen = last.inverse() * seen_from;
@@ -40,17 +39,17 @@ double farthest_motion_px(const Camera& camera, const Grid2d<float>& depth_m, co
   return farthest;
 }
 
-/// The times within a frame at which rows collect light.
+/// The times within a frame at which rows are exposed.
 class Rows {
  public:
-  /// @param images  over all of the time in which any row collects
+  /// @param images  over the whole time in which any row is exposed
   Rows(const SensorConfig& config, int height, int images)
       : height_(height),
         images_(images),
         readout_s_(config.rolling_shutter.readout_s()),
         exposure_s_(config.motion_blur.exposure_s()),
         step_s_((readout_s_ + exposure_s_) / images) {
-    // A row that is exposed for less than a step blends the two images nearest in time.
+    // A row exposed for less than a step blends the two images nearest in time.
     if (exposure_s_ < step_s_) exposure_s_ = step_s_ = readout_s_ / (images - 1);
     for (int y = 0; y < height_; ++y) {
       collected_s_.push_back(0.0);
@@ -63,20 +62,20 @@ class Rows {
   }
   /// The middle of image k's share of the time, s after the stamp.
   double time_s(int k) const { return (k + 0.5 - 0.5 * images_) * step_s_; }
-  /// For how long row y collects while image k stands for what is there.
+  /// How long row y is exposed during image k's share of the time.
   double overlap_s(int k, int y) const {
     const double middle = ((y + 0.5) / height_ - 0.5) * readout_s_;
     const double begin = std::max(middle - 0.5 * exposure_s_, time_s(k) - 0.5 * step_s_);
     const double end = std::min(middle + 0.5 * exposure_s_, time_s(k) + 0.5 * step_s_);
     return std::max(0.0, end - begin);
   }
-  /// The image that stands for the middle of row y's exposure.
+  /// The image that represents the middle of row y's exposure.
   int middle_image(int y) const {
     const double middle_s = ((y + 0.5) / height_ - 0.5) * readout_s_;
     return std::clamp(static_cast<int>(std::floor(middle_s / step_s_ + 0.5 * images_)), 0,
                       images_ - 1);
   }
-  /// What share of row y's light image k stands for.
+  /// The fraction of row y's light that image k contributes.
   double weight(int k, int y) const {
     return overlap_s(k, y) / collected_s_[static_cast<std::size_t>(y)];
   }
@@ -87,7 +86,7 @@ class Rows {
   std::vector<double> collected_s_;  // by row
 };
 
-/// Sums images of rows in linear light.
+/// Sums the rows of images in linear light.
 class LightSum {
  public:
   explicit LightSum(const Grid2d<Rgb8>& like)
@@ -194,7 +193,7 @@ void Shutter::blur(RenderedFrame& image, std::size_t i, LabelMode labels) const 
       farthest_motion_px(camera, image.depth_m, path_[i].world_from_camera,
                          pose_at(path_, i, -0.5 * duration_s), pose_at(path_, i, 0.5 * duration_s));
   if (motion_px <= sampling.sharp_px) return;
-  // An odd number of them has the image that is there already in its middle.
+  // With an odd number, the existing image is the middle one.
   const int wanted = static_cast<int>(std::ceil(motion_px / sampling.step_px)) | 1;
   const int images = std::clamp(wanted, 3, std::max(3, sampling.max_images | 1));
 
@@ -240,7 +239,7 @@ std::vector<double> Shutter::exposure_gains() const {
     for (const Rgb8& c : render(meter, i, 0.0).color)
       mean += luminance(srgb_to_linear(c)) / (kWidth * kHeight);
     const double wanted = std::clamp(std::log(config.target / std::max(mean, 1e-6)), -limit, limit);
-    // The first frame finds the control at rest.
+    // At the first frame the control has settled.
     const double share =
         i == 0 || config.time_constant_s <= 0.0
             ? 1.0

@@ -12,21 +12,21 @@
 
 namespace mh {
 
-/// Where the camera was a moment after (or before) a stamp of its path: between two poses it moves
-/// by a constant twist; before the first and after the last it rests.
+/// The camera's pose some time after (or before) a stamp of its path: between two poses it moves
+/// with a constant twist; before the first and after the last it is at rest.
 SE3 pose_at(const Trajectory& path, std::size_t i, double after_s);
 
-/// Which of so many frames arrive, at least the first. Draws are keyed by the frame's index.
+/// Indices of the frames that arrive, at least the first. Draws are keyed by the frame's index.
 std::vector<std::size_t> arriving(std::size_t frames, const SensorConfig& config,
                                   RandomStream stream);
 /// The frames of a path that arrive.
 Trajectory arriving_frames(const Trajectory& path, const SensorConfig& config, RandomStream stream);
 
-/// Takes the images along a path: what falls on the sensors during each frame, before their
+/// Captures images along a path: the light and depth at the sensors during each frame, before
 /// noise. Frame i is a pure function of i. Safe to use from several threads.
 class Shutter {
  public:
-  /// A scene in which something moves: its image at a moment.
+  /// A scene in which something moves: its renderer at a given time.
   using SceneAt = std::function<std::shared_ptr<const Renderer>(Stamp)>;
 
   /// @param renderer  of the scene; shared, one serves every path
@@ -37,15 +37,15 @@ class Shutter {
 
   struct Exposed {
     /// Depth is that of the stamp plus its offset, all rows at once. Classes and instances of a row
-    /// are those of the middle of its exposure, from the image of the motion that is nearest in
-    /// time, at most half of MotionSampling::step_px away; for kAnnotated they are the stamp's.
+    /// are those of the middle of its exposure, from the motion's image nearest in time, at most
+    /// half of MotionSampling::step_px away; for kAnnotated they are those of the stamp.
     RenderedFrame seen;
     double gain = 1.0;  ///< of the exposure control, not yet applied
   };
   Exposed expose(std::size_t i, LabelMode labels = LabelMode::kExact) const;
 
   const Trajectory& path() const { return path_; }
-  /// The camera as SLAM should know it: with the lens that the level puts before it.
+  /// The camera as SLAM should know it: with the lens that the level specifies.
   const Camera& camera() const { return camera_; }
 
  private:
@@ -61,7 +61,7 @@ class Shutter {
   std::vector<double> gains_;  // by frame; empty without exposure control
 };
 
-/// The camera with the distortion that a level puts before it.
+/// The camera with the distortion that a level specifies.
 Camera with_lens(Camera camera, const SensorConfig& config);
 
 }  // namespace mh

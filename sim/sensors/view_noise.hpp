@@ -10,8 +10,8 @@
 namespace mh {
 
 /// Standard normal numbers over views: smooth in the camera's position (m) and viewing direction,
-/// independent beyond about 1 m or 30 degrees, the same again for the same view. Value noise:
-/// normal numbers at the corners of a lattice in the six coordinates, blended and brought back to a
+/// independent beyond about 1 m or 30 degrees, identical for identical views. Value noise: normal
+/// numbers at the corners of a lattice in the six coordinates, interpolated and rescaled to a
 /// variance of one.
 class ViewNoise {
  public:

@@ -9,7 +9,7 @@
 
 namespace mh {
 
-/// What of an instance is in the image. The box includes all its bounds.
+/// The visible part of an instance in an image. The box includes all its bounds.
 struct VisibleObject {
   int left = 0, top = 0, right = 0, bottom = 0;
   ClassId class_id = kVoid;
@@ -28,15 +28,15 @@ struct VisibleObject {
   std::int64_t area() const { return static_cast<std::int64_t>(width()) * height(); }
 };
 
-/// Every instance in the image with a class, by ascending id.
+/// Returns every instance in the image with a class, by ascending id.
 std::vector<VisibleObject> visible_objects(const RenderedFrame& truth);
 
-/// A class that boxes are drawn for.
+/// Whether boxes are drawn for a class.
 inline bool is_coco(ClassId class_id) {
   return classes()[class_id].coco80 >= 0;
 }
 
-/// Larger first, so that smaller boxes are painted over them; then by instance.
+/// Sorts larger ones first, so that smaller boxes are painted over them; then by instance.
 void sort_for_painting(std::vector<VisibleObject>& objects);
 
 }  // namespace mh
