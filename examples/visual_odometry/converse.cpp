@@ -14,7 +14,7 @@
 
 namespace {
 
-/// The conversation's own way out. What libraries print to standard output goes to the log.
+/// Opens the conversation's output. What libraries print to standard output goes to the log.
 FILE* open_answers() {
   FILE* answers = fdopen(dup(STDOUT_FILENO), "w");
   dup2(STDERR_FILENO, STDOUT_FILENO);
@@ -61,9 +61,9 @@ int main() try {
     } else if (what == "reset") {
       odometry->forget_map();
     } else if (what == "freeze") {
-      // The map is a list of keyframes that relocalize() only reads: it stays as it is.
+      // The map is a list of keyframes that relocalize() only reads: it stays unchanged.
     } else if (what == "blank") {
-      answer = R"(,"pose":null)";  // relocalize() starts from nothing: there is nothing to lose
+      answer = R"(,"pose":null)";  // relocalize() keeps no state: nothing to lose
     } else if (what == "relocalize") {
       answer = about(odometry->relocalize(color, depth));
     } else {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// In the bench's process: a shared library with one function (docs/outside_systems.md).
+// In the process of the bench: a shared library with one function (docs/outside_systems.md).
 #include <modelhouse/system.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ struct Library {
   char* message;
 };
 
-/// No exception may leave the library: what it says becomes the message.
+/// No exception may leave the library: its text becomes the message.
 template <class Work>
 int guarded(void* self, Work&& work) {
   auto& library = *static_cast<Library*>(self);
@@ -73,7 +73,7 @@ int reset(void* self) {
   return guarded(self, [](example::VisualOdometry& odometry) { odometry.forget_map(); });
 }
 int freeze(void*) {
-  return 0;  // relocalize() only reads the keyframes: they stay as they are
+  return 0;  // relocalize() only reads the keyframes: they stay unchanged
 }
 void destroy(void* self) {
   delete static_cast<Library*>(self);
@@ -94,9 +94,9 @@ mh_system* mh_make_system(const mh_setup* setup) try {
                      .rewind = rewind,
                      .reset = reset,
                      .freeze = freeze,
-                     .trajectory = nullptr,   // the answers are all that it knows
-                     .begin_query = nullptr,  // relocalize() starts from nothing:
-                     .blank = nullptr,        // there is nothing to forget or to lose
+                     .trajectory = nullptr,   // the answers are all there is
+                     .begin_query = nullptr,  // relocalize() keeps no state:
+                     .blank = nullptr,        // nothing to forget or to lose
                      .relocalize = relocalize,
                      .destroy = destroy};
   return &library->system;

@@ -12,11 +12,11 @@
 namespace example {
 namespace {
 
-constexpr int kMinFirst = 80;        // points with depth, for a frame to become the origin
-constexpr int kMinTracked = 20;      // inliers to believe a pose beside the last keyframe
-constexpr int kMinRelocalized = 30;  // and one found from nothing
+constexpr int kMinFirst = 80;        // points with depth for a frame to become the origin
+constexpr int kMinTracked = 20;      // inliers to accept a pose tracked from a keyframe
+constexpr int kMinRelocalized = 30;  // and one found by relocalization
 constexpr int kCandidates = 5;       // keyframes tried in relocalization
-constexpr int kVoters = 200;         // descriptors that choose them
+constexpr int kVoters = 200;         // descriptors used to choose them
 constexpr float kRatio = 0.75F;
 constexpr double kReprojection_px = 2.5;
 // A new keyframe after this much motion, or with fewer inliers.
@@ -139,7 +139,7 @@ Found VisualOdometry::find(const View& view) const {
   best.keyframes = static_cast<int>(keyframes_.size());
   if (view.descriptors.rows < kMinRelocalized) return best;
   const cv::Mat voters = view.descriptors.rowRange(0, std::min(kVoters, view.descriptors.rows));
-  std::vector<std::pair<int, std::size_t>> votes;  // (minus the matches, keyframe)
+  std::vector<std::pair<int, std::size_t>> votes;  // (negative number of matches, keyframe)
   for (std::size_t k = 0; k < keyframes_.size(); ++k)
     votes.emplace_back(-static_cast<int>(match(voters, keyframes_[k].view.descriptors).size()), k);
   std::sort(votes.begin(), votes.end());
@@ -180,7 +180,7 @@ Found VisualOdometry::track(const cv::Mat& bgr, const cv::Mat& depth) {
     return cv::norm(motion.translation()) > kKeyframeDistance_m ||
            cv::norm(motion.rvec()) > kKeyframeAngle_rad;
   };
-  // Where the pose came from relocalization, some keyframe near it may serve as well.
+  // If the pose came from relocalization, another keyframe may be near.
   const bool new_ground = std::all_of(keyframes_.begin(), keyframes_.end(), moved);
   if (new_ground || found.inliers < kKeyframeInliers) {
     found.keyframe_added = true;

@@ -10,8 +10,9 @@
 #include <opencv2/core/affine.hpp>
 #include <opencv2/features2d.hpp>
 
-/// A small RGB-D visual odometry: each frame is matched to a keyframe (ORB, ratio test) and placed
-/// by PnP. No bundle adjustment, no loops: an example of somebody's own system, not a rival.
+/// A small RGB-D visual odometry: each frame is matched to a keyframe (ORB, ratio test) and
+/// localized by PnP. No bundle adjustment, no loop closing: an example of a user's own system, not
+/// a competitor.
 namespace example {
 
 struct Camera {
@@ -28,7 +29,7 @@ std::array<double, 7> pose_values(const cv::Affine3d& pose);
 /// The same as text, with all digits that a double has.
 std::string pose_numbers(const cv::Affine3d& pose, char separator);
 
-/// What an image offers: keypoints with depth, as points in its camera's frame.
+/// The features of an image: keypoints with depth, as points in its camera's frame.
 struct View {
   std::vector<cv::Point2f> pixels;
   std::vector<cv::Point3f> points_in_camera;
@@ -44,7 +45,7 @@ struct Found {
   std::optional<cv::Affine3d> world_from_camera;
   int inliers = 0;
   int keyframes = 0;   ///< in the map
-  int candidates = 0;  ///< keyframes that a pose was sought against
+  int candidates = 0;  ///< keyframes that a pose was estimated against
   bool keyframe_added = false;
 };
 
@@ -52,12 +53,12 @@ class VisualOdometry {
  public:
   explicit VisualOdometry(Camera camera);
 
-  /// Places the next frame and extends the map. The first frame is the origin.
+  /// Localizes the next frame and extends the map. The first frame is the origin.
   Found track(const cv::Mat& bgr, const cv::Mat& depth);
-  /// Finds a frame in the map from nothing. Changes nothing, so that the answer depends on the map
-  /// and the frame alone.
+  /// Localizes a frame in the map without a prior pose. Changes nothing, so that the answer depends
+  /// only on the map and the frame.
   Found relocalize(const cv::Mat& bgr, const cv::Mat& depth) const;
-  /// Tracking counts as lost; the map stays.
+  /// Tracking is treated as lost; the map stays.
   void lose() { reference_.reset(); }
   void forget_map();
 

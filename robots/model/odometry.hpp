@@ -8,12 +8,12 @@
 
 namespace mh {
 
-/// What the wheels make of a drive. Between two poses each rim turns as far as the true motion (a
-/// constant twist) asks for; what is read is that way times (1 + scale) and the wheel's own (1 +
-/// scale_spread * normal), with slip: a normal error of variance slip_per_sqrt_m^2 times the way.
-/// The poses are composed from what is read. So the drift of a straight drive of length L is scale
-/// * L along it on average, and its random part grows with the root of L, as in Martinelli,
-/// "The odometry error of a mobile robot with a synchronous drive system", ICRA 2002.
+/// Simulates wheel odometry. Between two poses each rim turns as far as the true motion (a constant
+/// twist) requires; the reading is that distance times (1 + scale) and the wheel's own (1 +
+/// scale_spread * normal), plus slip: a normal error of variance slip_per_sqrt_m^2 times the
+/// distance. The poses are integrated from the readings. So the drift of a straight drive of length
+/// L is scale * L along it on average, and its random part grows with the root of L, as in
+/// Martinelli, "The odometry error of a mobile robot with a synchronous drive system", ICRA 2002.
 /// @param base  world_from_base
 /// @returns odom_from_base at the same stamps, the first one as it is in `base`
 Trajectory wheel_odometry(const Trajectory& base, const OmniWheels& wheels,

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-/// The fields of a list (robot_fields.hpp) from the mapping that holds them.
+/// Reads the fields of a list (robot_fields.hpp) from the mapping that contains them.
 template <class Fields>
 Fields read_fields(YamlReader& mapping) {
   Fields read;
@@ -28,7 +28,7 @@ Fields read_fields(YamlReader& mapping) {
   return read;
 }
 
-/// A mapping that holds nothing else.
+/// Reads a mapping that contains nothing else.
 template <class Fields>
 Fields read_all(YamlReader mapping) {
   const auto read = read_fields<Fields>(mapping);
@@ -55,8 +55,8 @@ Camera read_lens(YamlReader& yaml) {
   return camera;
 }
 
-/// Where the camera's body sits (x forward, z up; fixed-axis roll, pitch, yaw as in URDF), turned
-/// into its optical frame (z forward, x right).
+/// Reads where the camera's body is (x forward, z up; fixed-axis roll, pitch, yaw as in URDF) and
+/// converts it to the optical frame (z forward, x right).
 SE3 read_mount(YamlReader& yaml) {
   const std::vector<double> xyz = yaml.at("position_m").as_numbers(3);
   const std::vector<double> rpy = yaml.at("roll_pitch_yaw_deg").as_numbers(3);
@@ -70,7 +70,7 @@ SE3 read_mount(YamlReader& yaml) {
   return {base_from_body * body_from_optical, {xyz[0], xyz[1], xyz[2]}};
 }
 
-/// A lens as calibrated: focal lengths, principal point, plumb-bob distortion.
+/// Reads a calibrated lens: focal lengths, principal point, plumb-bob distortion.
 Camera read_calibrated(YamlReader& yaml) {
   Camera camera;
   MappingReader reader(yaml);
@@ -91,7 +91,7 @@ Camera read_calibrated(YamlReader& yaml) {
   return camera;
 }
 
-/// Reads what hangs on the links of a URDF.
+/// Reads what is mounted on the links of a URDF.
 class EquipmentReader {
  public:
   EquipmentReader(YamlReader yaml, const std::filesystem::path& robot_file)

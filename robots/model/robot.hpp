@@ -22,7 +22,7 @@ struct BaseLimits {
   double max_acceleration_m_per_s2 = 0.3;
   double max_turn_rad_per_s = 1.0;
   double max_turn_acceleration_rad_per_s2 = 0.75;
-  // None: not limited.
+  // Unset: not limited.
   std::optional<double> max_jerk_m_per_s3 = {}, max_turn_jerk_rad_per_s3 = {};
 };
 
@@ -30,7 +30,7 @@ struct BaseLimits {
 struct OmniWheels {
   struct Wheel {
     std::string joint;
-    Eigen::Vector2d place_m = Eigen::Vector2d::Zero();  ///< where it stands, base frame
+    Eigen::Vector2d place_m = Eigen::Vector2d::Zero();  ///< its position, base frame
     double axle_rad = 0;                                ///< direction of its axle from base x
   };
   std::array<Wheel, 3> wheels;
@@ -38,7 +38,7 @@ struct OmniWheels {
   double max_rim_m_per_s = 0.44;  ///< the joints' velocity limit times the radius
 };
 
-/// How wheel odometry errs. See odometry.hpp.
+/// Errors of wheel odometry. See odometry.hpp.
 struct OdometryErrors {
   double scale = 0.0;            ///< of all wheels' radius: 0.01 = 1 % too long
   double scale_spread = 0.0;     ///< of each wheel's, a normal draw per seed
@@ -54,7 +54,7 @@ struct LaserScanner {
   double min_range_m = 0.1, max_range_m = 3.0;
 };
 
-/// A cone; the nearest thing in it counts.
+/// A cone; measures the nearest object in it.
 struct Sonar {
   std::string name;
   SE3 base_from_sonar;  ///< it looks along x
@@ -63,11 +63,11 @@ struct Sonar {
   double resolution_m = 0.03;
 };
 
-/// Where the external-collision reflex stops the robot: nearer than that it drives no farther that
-/// way.
+/// Where the external-collision reflex stops the robot: if an obstacle is closer, it drives no
+/// farther in that direction.
 struct CollisionReflex {
-  double ahead_m = 0.40;  ///< from the shell, along the way it goes
-  double aside_m = 0.10;  ///< to either side of that way
+  double ahead_m = 0.40;  ///< from the shell, in the direction of travel
+  double aside_m = 0.10;  ///< to either side of that path
 };
 
 struct MountedCamera {
@@ -75,14 +75,14 @@ struct MountedCamera {
   Camera camera = {};
 };
 
-/// What a robot has beside a base and a camera, of a robot with a URDF.
+/// Equipment other than base and camera, for a robot with a URDF.
 struct Equipment {
   KinematicTree tree;
   OmniWheels wheels;
   std::string head_yaw, head_pitch;  ///< names of joints
   std::string depth_camera_link;     ///< which the camera of Robot is mounted on
   std::vector<MountedCamera> cameras;
-  std::vector<std::string> bumpers;  ///< links, where the shell touches first
+  std::vector<std::string> bumpers;  ///< links where the shell makes contact first
   std::vector<LaserScanner> lasers;
   std::vector<Sonar> sonars;
   SE3 base_from_imu;
@@ -99,7 +99,7 @@ struct Robot {
   BaseLimits limits;
   Camera camera;                               ///< the RGB-D camera
   SE3 base_from_camera;                        ///< optical frame: x right, y down, z forward
-  std::shared_ptr<const Equipment> equipment;  ///< null where the file names no URDF
+  std::shared_ptr<const Equipment> equipment;  ///< null if the file names no URDF
 };
 
 /// Reads robots/<name>/<name>.yaml. @throws InputError naming file, line, field and value.

@@ -6,8 +6,8 @@
 #include "slam/core/setting.hpp"
 
 // The numbers of a robot's file as lists of fields (slam/core/setting.hpp), from which the file is
-// read and its keys are documented. What is structure (links and joints of a URDF, poses, lists and
-// things by name) has readers of its own in robot.cpp.
+// read and its keys are documented. Structure (links and joints of a URDF, poses, lists and
+// references by name) has its own readers in robot.cpp.
 
 namespace mh {
 
@@ -66,13 +66,13 @@ void rate_fields(C& camera, Visit& v) {
   v("rate_hz", camera.rate_hz, setting::kRate_hz, "frames per second");
 }
 
-/// Of `wheels`, beside their joints.
+/// Of `wheels`, without their joints.
 template <Either<OmniWheels> C, class Visit>
 void wheel_fields(C& wheels, Visit& v) {
   v("radius_m", wheels.radius_m, setting::required({0.005, 1}), "");
 }
 
-/// Of a laser scanner, beside its link and range.
+/// Of a laser scanner, without its link and range.
 struct FanFields {
   int rays = 0;
   double field_of_view_deg = 0;
@@ -86,7 +86,7 @@ void fields(C& c, Visit& v) {
     "from first to last ray");
 }
 
-/// Of a sonar, likewise.
+/// Of a sonar, without its link and range.
 struct ConeFields {
   double field_of_view_deg = 0, resolution_m = 0;
 };

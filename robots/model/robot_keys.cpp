@@ -9,7 +9,7 @@
 namespace mh {
 namespace {
 
-/// Lists keys: numbers as a visitor of their fields, the rest by hand.
+/// Lists keys: numbers as a visitor of their fields, the rest explicitly.
 class KeyLister {
  public:
   void mapping(const char* name) { mapping_ = name; }

@@ -6,12 +6,12 @@
 
 namespace mh {
 
-/// A key of a robot's file, as load_robot() reads it. Numbers are those of robot_fields.hpp; of the
-/// rest tests hold list and loader equal.
+/// A key of a robot's file, as load_robot() reads it. Numbers are those of robot_fields.hpp; for
+/// the rest, tests check that this list agrees with the loader.
 struct RobotKey {
-  std::string mapping;  ///< where it stands: "base.limits"; NAME stands for any name
+  std::string mapping;  ///< where it is: "base.limits"; NAME means any name
   std::string key;
-  std::string value;  ///< "[0.1, 1000]" of a number, else what it is in words
+  std::string value;  ///< "[0.1, 1000]" for a number, else a description
   std::string meaning;
   bool required = true;
 };

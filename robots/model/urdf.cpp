@@ -22,7 +22,7 @@
 namespace mh {
 namespace {
 
-/// Keeps what urdfdom would print.
+/// Captures what urdfdom would print.
 class Messages : public console_bridge::OutputHandler {
  public:
   Messages() { console_bridge::useOutputHandler(this); }
@@ -36,9 +36,9 @@ class Messages : public console_bridge::OutputHandler {
   std::string first_;
 };
 
-/// Parses a URDF. @returns the model, or what is wrong with it
+/// Parses a URDF. @returns the model, or an error message
 std::pair<urdf::ModelInterfaceSharedPtr, std::string> try_urdf(const std::string& text) {
-  static std::mutex one_at_a_time;  // urdfdom's messages go to one place for the whole process
+  static std::mutex one_at_a_time;  // urdfdom has one message handler per process
   const std::scoped_lock lock(one_at_a_time);
   Messages messages;
   try {
@@ -50,8 +50,8 @@ std::pair<urdf::ModelInterfaceSharedPtr, std::string> try_urdf(const std::string
   return {nullptr, messages.first().empty() ? "is not URDF" : messages.first()};
 }
 
-/// Where in a file links and joints stand, which urdfdom does not tell, and whether they hang
-/// together. What lacks a name is left to urdfdom.
+/// Locations of links and joints in a file, which urdfdom does not report, and a check that they
+/// are connected. Unnamed elements are left to urdfdom.
 class Places {
  public:
   Places(const std::string& text, const std::filesystem::path& file) : file_(file.string()) {
@@ -82,9 +82,9 @@ class Places {
   [[noreturn]] void fail_at_joint(const std::string& name, const std::string& what) const {
     fail("joint", name, line_of_joint_, what);
   }
-  /// Throws what urdfdom says, with the first link or joint that it says it of.
+  /// Throws urdfdom's message, with the first link or joint that it applies to.
   [[noreturn]] void fail_somewhere(const std::string& what) const {
-    // Each is parsed with all materials: with very many of both it is not worth the time.
+    // Each is parsed with all materials: with very many of both that takes too long.
     constexpr std::size_t kMostBytes = 50'000'000;
     if (materials_.size() * (links_.size() + joints_.size()) > kMostBytes)
       throw InputError(fmt::format("{}: {}", file_, what));
@@ -159,12 +159,12 @@ class Places {
 
   std::string file_;
   std::map<std::string, int> line_of_link_, line_of_joint_;
-  // Each as a URDF of its own would hold it.
+  // The text of each as in a URDF of its own.
   std::string materials_;
   std::vector<std::pair<std::string, std::string>> links_, joints_;  // name, text
   std::map<std::string, Way> way_up_;                                // by child
   std::vector<std::string> hanging_;  // children, in the file's order
-  std::set<std::string> leads_up_;    // those of which check_way_up() knows it
+  std::set<std::string> leads_up_;    // those that check_way_up() has verified
 };
 
 SE3 to_se3(const urdf::Pose& pose) {
@@ -173,7 +173,7 @@ SE3 to_se3(const urdf::Pose& pose) {
           {pose.position.x, pose.position.y, pose.position.z}};
 }
 
-/// What a shape says of its size that no body has; "" if nothing.
+/// Describes a size that no shape can have; "" if the size is valid.
 std::string wrong_size(const urdf::GeometrySharedPtr& shape) {
   if (!shape) return "";
   std::vector<std::pair<const char*, double>> sizes;
@@ -207,7 +207,7 @@ Link read_link(const urdf::Link& from, const Places& places) {
   Eigen::Matrix3d inertia;
   inertia << body.ixx, body.ixy, body.ixz, body.ixy, body.iyy, body.iyz, body.ixz, body.iyz,
       body.izz;
-  // Principal moments of a body are not negative and none exceeds the sum of the other two.
+  // Principal moments of a body are not negative, and none exceeds the sum of the other two.
   const Eigen::Vector3d moments =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia).eigenvalues();
   if (!(moments[0] >= 0) || moments[2] > (moments[0] + moments[1]) * (1 + 1e-6))
@@ -258,8 +258,8 @@ Joint read_joint(const urdf::Joint& from, const Places& places) {
   return joint;
 }
 
-/// Joints in an order in which each one's parent link is known before it: that of going through
-/// them again and again, taking each whose parent is known. They are a tree (Places).
+/// Sorts joints so that each one's parent link precedes it: the order of repeated passes, each
+/// taking every joint whose parent is known. They form a tree (Places).
 std::vector<Joint> from_root(std::vector<Joint> joints, const std::string& root) {
   std::multimap<std::string_view, std::size_t> below;  // by parent
   for (std::size_t i = 0; i < joints.size(); ++i) below.emplace(joints[i].parent, i);

@@ -21,7 +21,7 @@ struct Link {
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Zero();  ///< about it, the link's axes
 };
 
-/// How a link moves against its parent.
+/// How a link moves relative to its parent.
 struct Joint {
   enum class Kind { kFixed, kTurning, kSliding };
   std::string name, parent, child;
@@ -39,16 +39,17 @@ struct KinematicTree {
   std::vector<Joint> joints = {};  ///< parents before children
 
   double mass_kg() const;
-  /// @throws InputError if there is none of that name.
+  /// @throws InputError if there is no joint of that name.
   const Joint& joint(std::string_view name) const;
-  /// Where a link is, the joints at these positions, those left out at 0. Positions beyond a
-  /// joint's limits are taken as they come. @throws InputError if there is no such link or joint.
+  /// Returns the pose of a link with the joints at these positions, omitted ones at 0. Positions
+  /// beyond a joint's limits are used unchanged. @throws InputError if there is no such link or
+  /// joint.
   SE3 root_from(std::string_view link, const std::map<std::string, double>& positions = {}) const;
 };
 
-/// Reads a URDF by urdfdom. @throws InputError naming file and link or joint: no XML or no URDF, a
-/// joint to a link that is missing, a link with two parents, joints in a circle, a mass that is
-/// negative, an inertia that no body has, limits the wrong way round.
+/// Reads a URDF with urdfdom. @throws InputError naming file and link or joint: not XML or not a
+/// URDF, a joint to a missing link, a link with two parents, a cycle of joints, a negative mass, an
+/// inertia that no body has, reversed limits.
 KinematicTree load_urdf(const std::filesystem::path& file);
 
 }  // namespace mh

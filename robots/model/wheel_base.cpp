@@ -15,7 +15,7 @@ Eigen::Matrix3d rims_from_twist(const OmniWheels& wheels) {
   Eigen::Matrix3d rows;
   for (int i = 0; i < 3; ++i) {
     const OmniWheels::Wheel& wheel = wheels.wheels[static_cast<std::size_t>(i)];
-    // At right angles to the axle; the place of a turning base moves by turn x place.
+    // Perpendicular to the axle; as the base turns, the wheel's place moves by turn x place.
     const Eigen::Vector2d drive(-std::sin(wheel.axle_rad), std::cos(wheel.axle_rad));
     rows.row(i) << drive.x(), drive.y(),
         wheel.place_m.x() * drive.y() - wheel.place_m.y() * drive.x();
@@ -23,8 +23,8 @@ Eigen::Matrix3d rims_from_twist(const OmniWheels& wheels) {
   return rows;
 }
 
-/// The largest acceleration towards a goal `distance` away (in velocity) from which falling by
-/// jerk * step in each step ends just at the goal: with n steps, distance = jerk step^2 n (n +
+/// The largest acceleration towards a goal `distance` away (in velocity) such that reducing it by
+/// jerk * step in each step ends exactly at the goal: with n steps, distance = jerk step^2 n (n +
 /// 1)/2.
 double braking_acceleration(double distance, double jerk, double step_s) {
   const double unit = jerk * step_s * step_s;
@@ -63,7 +63,7 @@ JerkLimiter::Velocity JerkLimiter::step(const Velocity& command) {
       limited(command.m_per_s, command.m_per_s.norm(), limits_.max_velocity_m_per_s);
   double turn_goal =
       std::clamp(command.turn_rad_per_s, -limits_.max_turn_rad_per_s, limits_.max_turn_rad_per_s);
-  constexpr double kRimShare = 0.98;  // of the rims' limit, so that a command can be reached
+  constexpr double kRimShare = 0.98;  // of the rims' limit, so that a command is reachable
   const double asked = goal.norm() + reach_m_ * std::abs(turn_goal);
   if (asked > kRimShare * most_m_per_s_) {
     goal *= kRimShare * most_m_per_s_ / asked;
@@ -89,10 +89,10 @@ JerkLimiter::Velocity JerkLimiter::step(const Velocity& command) {
       turn_acceleration_rad_per_s2_ +
       std::clamp(turn_wanted - turn_acceleration_rad_per_s2_, -turn_unit, turn_unit);
 
-  // Turning the acceleration aside takes time in which the speed goes on growing: only what can
-  // still be ended within the limits by shedding the acceleration straight is begun. Otherwise it
-  // is shed now, which the step before has made sure is in time.
-  const auto gained = [this](double acceleration, double j) {  // while it is shed
+  // Turning the acceleration aside takes time in which the speed keeps growing: it starts only if
+  // reducing the acceleration directly would still end within the limits. Otherwise it is reduced
+  // now; the previous step made sure that there is enough time for that.
+  const auto gained = [this](double acceleration, double j) {  // while it is reduced
     return std::max(
         0.0, 0.5 * acceleration * (acceleration / j - step_s_) + 0.125 * j * step_s_ * step_s_);
   };

@@ -12,19 +12,19 @@ namespace mh {
 /// Velocity of a base in its own frame: x ahead, y to the left, turn counter-clockwise.
 using Twist2d = Eigen::Vector3d;  ///< m/s, m/s, rad/s
 
-/// How fast each wheel's rim must go (m/s) for the base to move so. A wheel drives along the floor
-/// at right angles to its axle and rolls freely along it.
+/// The rim speed of each wheel (m/s) for a motion of the base. A wheel drives along the floor at
+/// right angles to its axle and rolls freely along it.
 Eigen::Vector3d rim_speeds_m_per_s(const OmniWheels& wheels, const Twist2d& twist);
-/// The motion that wheels at these rim speeds make; the inverse of the above.
+/// The motion that results from these rim speeds; the inverse of the above.
 Twist2d twist_of_rims(const OmniWheels& wheels, const Eigen::Vector3d& rims_m_per_s);
-/// Follows a velocity command within limits of velocity, acceleration and jerk, the base's motion
-/// over the floor (world frame) and its turning each on its own. Each step changes the acceleration
-/// by at most jerk * step, towards the largest one from which it can still be brought to zero as
-/// the command is reached.
+/// Follows a velocity command within limits of velocity, acceleration and jerk, with the base's
+/// motion over the floor (world frame) and its rotation treated independently. Each step changes
+/// the acceleration by at most jerk * step, towards the largest one that can still be reduced to
+/// zero by the time the command is reached.
 ///
-/// With wheels, no rim goes faster than it can: speed + reach * turn rate stays within the rims'
-/// limit, where reach is that of the wheel farthest out. That asks a little more than need be (a
-/// rim sees a part of the speed only), and holds while base and turning follow at their own pace.
+/// With wheels, no rim exceeds its limit: speed + reach * turn rate stays within the rims' limit,
+/// where reach is that of the outermost wheel. This is slightly conservative (a rim sees only a
+/// part of the speed), and is valid while base and rotation follow independently.
 class JerkLimiter {
  public:
   JerkLimiter(const BaseLimits& limits, double step_s, const OmniWheels* wheels = nullptr);
@@ -35,7 +35,7 @@ class JerkLimiter {
     double turn_rad_per_s = 0;
   };
   Velocity step(const Velocity& command);
-  /// Something else changed the velocity: goes on from there, without acceleration.
+  /// Something else changed the velocity: continues from there, without acceleration.
   void stopped_at(const Velocity& velocity);
 
  private:

@@ -21,7 +21,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3f;
 
-constexpr double kFloorReach_m = 0.1;  // floor this near counts as floor: closes gaps of twice it
+constexpr double kFloorReach_m = 0.1;  // floor is extended this far: closes gaps of twice it
 constexpr double kLevel = 0.85;        // cosine of the slope up to which a face is floor
 constexpr int kMostCells = 4096;
 
@@ -68,8 +68,8 @@ Bounds floor_bounds(const Scene& scene) {
   return {floor.low.cwiseMax(rooms.low), floor.high.cwiseMin(rooms.high)};
 }
 
-/// Calls visit(x, y) for every cell that a convex polygon, seen from above, touches. Tests the
-/// axes that could separate the two: the cell's own and the normals of the polygon's sides.
+/// Calls visit(x, y) for every cell that a convex polygon, seen from above, touches: a
+/// separating-axis test with the cell's axes and the normals of the polygon's sides.
 template <class Visit>
 void for_each_cell(const FloorGrid& grid, std::span<const Vector3f> polygon, Visit visit) {
   std::vector<Vector2d> p;  // in cells: cell (x, y) covers [x - 1/2, x + 1/2]
@@ -139,7 +139,8 @@ void transform_line(std::vector<double>& f) {
   f = std::move(result);
 }
 
-/// Distance (cells) of every cell's middle to that of the nearest marked one; infinite if none is.
+/// Distance (cells) from each cell's center to that of the nearest marked one; infinite if there is
+/// none.
 Grid2d<float> distances(const Grid2d<std::uint8_t>& marked) {
   const int w = marked.width(), h = marked.height();
   constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -190,7 +191,7 @@ FloorGrid make_floor_grid(const Scene& scene, const FloorGridConfig& config) {
   FloorGrid grid;
   grid.resolution_m = config.resolution_m;
   const Bounds bounds = floor_bounds(scene);
-  const double margin_m = 2 * config.resolution_m;  // the end of the floor lies within the grid
+  const double margin_m = 2 * config.resolution_m;  // the edge of the floor is inside the grid
   grid.origin_m = bounds.low.array() - margin_m;
   const Vector2d cells = (bounds.high - bounds.low) / config.resolution_m;
   if (cells.maxCoeff() > kMostCells)
@@ -223,8 +224,8 @@ FloorGrid make_floor_grid(const Scene& scene, const FloorGridConfig& config) {
                             grid.occupant(x, y) = scene.instance_of[face];
                           });
                         });
-  // A cell is blocked where anything touches it, so the obstacle may reach half a diagonal nearer
-  // than its middle.
+  // A cell is blocked where anything touches it, so the obstacle may be up to half a diagonal
+  // closer than the cell's center.
   const Grid2d<float> away = distances(blocked);
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x)

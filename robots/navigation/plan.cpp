@@ -19,12 +19,12 @@ using Eigen::Vector2d;
 using Cell = FloorGrid::Cell;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr double kNarrowPrice = 2.0;  // a meter as near as allowed counts for three
+constexpr double kNarrowPrice = 2.0;  // a meter at the minimum clearance costs three
 
-/// Shortest ways from one cell, each step weighed by `price`; ends early at `goal`.
+/// Shortest paths from one cell, each step weighted by `price`; stops early at `goal`.
 struct Search {
   Grid2d<float> cost;
-  Grid2d<std::int32_t> before;  ///< index of the cell one came from, -1 = none
+  Grid2d<std::int32_t> before;  ///< index of the predecessor cell, -1 = none
 
   template <class Price, class Guess>
   Search(const FloorGrid& grid, Cell start, std::optional<Cell> goal, double clearance_m,
@@ -60,8 +60,8 @@ struct Search {
   }
 };
 
-/// The nearest cell, within a cell and a half, from which one can set off: a place may stand on the
-/// border of the cells that are free.
+/// The nearest free cell within a cell and a half, to start from: a place may be on the border of
+/// the free cells.
 std::optional<Cell> free_cell(const FloorGrid& grid, const Vector2d& place_m, double clearance_m) {
   const auto cell = grid.cell_of(place_m);
   if (!cell) return std::nullopt;
@@ -84,7 +84,7 @@ double narrow_price(double room_m, double clearance_m) {
   return 1 + kNarrowPrice * std::clamp(2 - room_m / clearance_m, 0.0, 1.0);
 }
 
-/// Leaves out corners while the straight line keeps as much room as the way that it replaces (or
+/// Removes corners while the straight line keeps as much clearance as the path that it replaces (or
 /// twice what is needed).
 std::vector<Vector2d> straightened(const FloorGrid& grid, const std::vector<Vector2d>& way,
                                    double clearance_m) {
