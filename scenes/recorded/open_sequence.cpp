@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 // Before TUM's, whose list it has as well.
 constexpr std::array kReaders = {&kIclNuimReader, &kTumReader, &kScannetReader};
 
-/// Puts a file's content into the scopes that are open; one that is gone is noted as that.
+/// Notes a file's content in the open scopes; a missing file is noted as missing.
 void note_content(const fs::path& file) {
   try {
     read_file(file);

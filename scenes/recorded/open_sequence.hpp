@@ -36,29 +36,29 @@ struct OpenedRecording {
 /// open_sequence.cpp, docs/recordings.md, a test.
 struct SequenceReader {
   const char* name;   ///< before the colon: "tum"
-  const char* place;  ///< what is named behind it: "FOLDER"
+  const char* place;  ///< what follows it: "FOLDER"
   /// Whether a path that names no layout looks like one of these. Throws nothing.
   bool (*recognizes)(const std::filesystem::path&);
   /// @throws InputError naming file and place.
   OpenedRecording (*open)(const std::filesystem::path&, const RecordingConfig&);
-  /// The kind of place as the data set calls it ("Bedroom / Hotel"), "" where it tells none; null
-  /// for layouts that never tell.
+  /// The data set's name for the kind of place ("Bedroom / Hotel"), "" if it has none; null for
+  /// layouts that never have one.
   std::string (*scene_type)(const std::filesystem::path&);
 };
 
-/// Every layout, in the order in which a path is held against them.
+/// Every layout, in the order in which they are tried on a path.
 std::span<const SequenceReader* const> sequence_readers();
 
 /// "tum:FOLDER or scannet:FOLDER": what a user may name.
 std::string sequence_forms();
 
-/// A recording by its name parted: the layout ("" where none is named) and the path.
+/// Splits a recording's name into the layout ("" if none is named) and the path.
 /// "C:house" names no layout: it is a path.
 std::pair<std::string, std::filesystem::path> split_sequence(const std::string& source);
-/// The same name with another path.
+/// The inverse: joins a layout and a path to a name.
 std::string join_sequence(const std::string& layout, const std::filesystem::path& path);
 
-/// The layout of a recording: by its name, else by what lies there.
+/// The layout of a recording: by its name, otherwise by the files at its path.
 /// @throws InputError if it is neither named nor recognized.
 const SequenceReader& reader_of(const std::string& source);
 

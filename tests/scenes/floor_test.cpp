@@ -126,7 +126,7 @@ TEST(FindFloor, RoomEndsNearWhatStandsOnAGroundToTheHorizon) {
       .name = "away", .polygon_m = {{20, 20}, {30, 20}, {30, 30}, {20, 30}}, .is_box = true};
   std::vector<Room> rooms = {found->room, plan, away};
   end_rooms_near_things(rooms, found->things_m);
-  ASSERT_EQ(rooms.size(), 2U);  // what a plan tells stays as it is
+  ASSERT_EQ(rooms.size(), 2U);  // rooms from a plan stay unchanged
   EXPECT_LT((box(rooms[0]).min() - Eigen::Vector2d(-5, -4.5)).norm(), 1e-6);
   EXPECT_LT((box(rooms[0]).max() - Eigen::Vector2d(5, 4.5)).norm(), 1e-6);
   EXPECT_GT(box(rooms[1]).sizes().minCoeff(), 99.0);

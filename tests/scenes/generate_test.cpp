@@ -218,7 +218,7 @@ TEST_P(GeneratedScene, IsWholeAndCanBeWalked) {
   EXPECT_LE(scene.triangles.size(), 600'000U);
   EXPECT_NEAR(scene.floor_area_m2(), plan.floor_area_m2, 1e-6);
 
-  // Boxes, exactly: reading the plan refuses overlaps of more than 1 cm, here there are none.
+  // Exact boxes: reading the plan refuses overlaps of more than 1 cm; here there is no overlap.
   const HousePlan house = read_house_plan(YamlReader::parse(text, plan.name));
   EXPECT_EQ(static_cast<int>(house.items.size() + house.doorways.size() + house.windows.size()),
             plan.objects + plan.fittings);

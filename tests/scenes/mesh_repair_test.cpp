@@ -224,7 +224,7 @@ TEST_F(MeshRepair, EmissionIsMultipliedByItsTexture) {
   };
   EXPECT_TRUE(emission(0).isZero()) << emission(0).transpose();
   EXPECT_LT((emission(1) - Eigen::Vector3f(1, 1, 0.5F)).norm(), 0.06F) << emission(1).transpose();
-  // Without a texture all of it glows; with one that is not there nothing does, and it is told.
+  // Without a texture all of it glows; with a missing texture nothing does, and that is reported.
   const Scene plain = load_mesh(write_square("plain", "Ke 2 2 1\n"));
   for (const std::uint16_t material : plain.material_of)
     EXPECT_EQ(plain.materials[material].emission, Eigen::Vector3f(2, 2, 1));

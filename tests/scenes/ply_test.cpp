@@ -171,7 +171,7 @@ TEST(Ply, SaysWhatIsWrongWithAHeader) {
   EXPECT_TRUE(names(error_of_ply(header("element vertex 0\nproperty float x\n")), {"'y'"}));
   EXPECT_TRUE(names(error_of_ply(header("element vertex 0\n" + kPoint)), {"'face'"}));
   EXPECT_TRUE(names(error_of_ply(header("element face 0\n" + kList)), {"before the vertices"}));
-  EXPECT_TRUE(is_plain_ply("ply\nformat ascii 1.0\n"));  // cut: parse_ply tells it
+  EXPECT_TRUE(is_plain_ply("ply\nformat ascii 1.0\n"));  // truncated: parse_ply reports it
   EXPECT_FALSE(is_plain_ply(header("element vertex 0\nproperty float s\n")));
 }
 

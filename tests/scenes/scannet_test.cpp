@@ -87,7 +87,7 @@ class Scannet : public TemporaryFolder {
   }
 };
 
-/// What both releases tell of the strip, two faces a square.
+/// What both releases specify about the strip, two faces per square.
 void expect_strip(const Scene& scene) {
   // Square 1 lies between wall (columns 0, 1) and chair: its first face has two corners on the
   // wall, its second two on the chair. Square 3: chair and the unknown object. Square 4: unknown
@@ -232,7 +232,7 @@ TEST_F(Scannet, CountsSegmentsOfSeveralObjectsAndSegmentsThatNoVertexHas) {
 
 TEST_F(Scannet, LabelsBeyondNyu40InAnAlignedSceneGiveWayToTheObjects) {
   write_v2();
-  write("scannet-labels.combined.tsv", kTableV1);  // an alignment tells that the scene is of v2
+  write("scannet-labels.combined.tsv", kTableV1);  // an alignment shows that the scene is of v2
   write_scene({1, 1, 50, 50, 0, 40, 50}, "axisAlignment = 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n");
   std::vector<std::string> warnings;
   const Scene scene = load_scannet(folder_ / "s", &warnings);

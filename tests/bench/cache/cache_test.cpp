@@ -159,7 +159,7 @@ TEST_F(CacheFolder, AFolderOfItsNameThatIsSomebodyElsesIsLeftAlone) {
   EXPECT_EQ(get(Cache(folder_, 1), "aa1"), "light");
   EXPECT_EQ(files_below(folder_).size(), 1u);
   EXPECT_EQ(read_file(own() / "diary.txt"), "dear diary");
-  // A link to a whole cache elsewhere is none either.
+  // A link to a whole cache elsewhere is not a cache either.
   const fs::path elsewhere = folder_.string() + "_elsewhere";
   get(Cache(elsewhere), "aa1");
   fs::remove_all(own());

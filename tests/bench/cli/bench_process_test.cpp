@@ -310,7 +310,7 @@ TEST(BenchProcess, ACheckThatIsInterruptedGoesOn) {
   EXPECT_NE(errors().find("6 runs, 6 of them to do"), std::string::npos) << errors();
   EXPECT_EQ(content(fs::path(suite).replace_extension(".baseline.json")), baseline);
 
-  // Killed outright it goes on as well.
+  // After SIGKILL it resumes, too.
   EXPECT_EQ(interrupted(SIGKILL), -SIGKILL);
   EXPECT_EQ(run(check), 0) << errors();
   EXPECT_EQ(errors().find("6 runs, 6 of them to do"), std::string::npos) << errors();
@@ -363,8 +363,8 @@ TEST(BenchProcess, AFolderThatWasDeletedIsToldOf) {
       << errors();
 }
 
-// What a scene names counts as the scene itself: its results are made anew, in this folder and in
-// others that share its cache, and no image of the old one stays.
+// Files that a scene names are part of the scene: its results are computed again, in this folder
+// and in others that share its cache, and no image of the old scene stays.
 TEST(BenchProcess, AReplacedMeshMakesResultsMapsAndImagesAnew) {
   const fs::path folder = test_folder() / "replaced_mesh";
   fs::create_directories(folder);
@@ -487,13 +487,13 @@ TEST(BenchProcess, ACrashOfALibraryIsAFailureOfItsRunAlone) {
     EXPECT_NE(reported.find(line), std::string::npos) << line << reported;
   EXPECT_EQ(reported.find("nonsense"), std::string::npos) << reported;
   EXPECT_EQ(runs_in(test_folder() / "libraries"), 9);
-  // What it prints is neither told nor taken for the bench's own words.
+  // What it prints is neither shown nor mistaken for the bench's own output.
   const std::string said =
       content(test_folder() / "libraries" / "print-exact-pepper-0" / "outside.log");
   EXPECT_TRUE(said.starts_with("0.5\n~nonsense\n0.5\n")) << said;
   EXPECT_TRUE(said.ends_with("goodbye\n")) << said;
 
-  // Built anew, its runs are made anew.
+  // After a rebuild of the library, its runs are repeated.
   EXPECT_EQ(run(bench(suite, "libraries")), 3);
   EXPECT_NE(errors().find("9 runs, 0 of them to do"), std::string::npos) << errors();
   std::ofstream(library, std::ios::app) << "x";

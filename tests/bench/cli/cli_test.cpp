@@ -505,7 +505,8 @@ TEST_F(CommandLine, NobodysFilesAreOverwritten) {
   write("converted/notes.txt", "mine");
   ASSERT_EQ(run(again), 0) << err_;
   EXPECT_EQ(content(folder_ / "converted/notes.txt"), "mine");
-  // The mark of another command does not count, nor does a file of its name that is none.
+  // The marker of another command does not count, nor does a file of that name that is not a
+  // marker.
   expect_refused("render " + m + " --motion handheld:0 --frames 1 --format scannet --robot " +
                      robot_ + " --out " + f + "converted",
                  "is there already");

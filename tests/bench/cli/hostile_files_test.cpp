@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 // Of the build that users have; sanitizers take several times as much.
 constexpr double kMostProcessor_s = 10.0, kMostMemory_gb = 5.0;
-constexpr int kMostWall_s = 120;  // other work may go on
+constexpr int kMostWall_s = 120;  // other work may be running
 
 struct Outcome {
   int code = -1;  ///< of its exit; -1 if a signal ended it

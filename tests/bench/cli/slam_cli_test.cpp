@@ -136,7 +136,7 @@ TEST_F(SlamCommand, PicksUpAMapToGoOnOrToLocalize) {
   EXPECT_NE(err_.find("whole.mhmap"), std::string::npos) << err_;
   EXPECT_NE(run(again + path("whole.mhmap") + " --resume --localize"), 0);
 
-  // The map's settings count: what was asked for otherwise is told.
+  // The map's settings apply: differing requested ones are reported.
   std::string other = format_settings(load_settings(folder_ / "room/camera.yaml"));
   other.replace(other.find("count: 1000"), 11, "count: 1500");
   write_atomically(folder_ / "other.yaml", other);
@@ -180,8 +180,8 @@ TEST_F(SlamCommand, AMapIsSearchedByTheSettingsOfRelocalizationThatAreGiven) {
 }
 
 TEST_F(SlamCommand, AMapAnswersByTheFactorsThatAreGiven) {
-  // Candidates are chosen by labels alone, of which a map that was made with gamma 0 has none: they
-  // are weighed anew.
+  // Candidates are chosen by labels only, and a map made with gamma 0 has none: they are weighted
+  // again.
   std::string settings = format_settings(load_settings(folder_ / "room/camera.yaml"));
   settings.replace(settings.find("overlap: augmented"), 18, "overlap: labels");
   write_atomically(folder_ / "labels.yaml", settings);

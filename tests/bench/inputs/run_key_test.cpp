@@ -264,7 +264,8 @@ bool is_digested(const std::string& file, const std::set<std::string>& patterns)
 
 // Code of the bench that a digested source includes decides results as well.
 TEST(CodeVersion, HoldsWhatItsSourcesInclude) {
-  // How a run is told of, named, cached and counted: the key's own fields, or no result at all.
+  // How a run is reported, named, cached and counted: the key's own fields, or no effect on
+  // results.
   const std::set<std::string> other = {
       "bench/cache/cache.hpp",    "bench/plan/environment.hpp",
       "bench/plan/runs.hpp",      "bench/provenance/fingerprint.hpp",

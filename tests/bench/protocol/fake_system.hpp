@@ -103,7 +103,7 @@ inline std::unique_ptr<RelocalizationSession> FakeSystem::open_session() const {
   return std::make_unique<FakeSession>(*this);
 }
 
-/// Frames of 2 x 2 pixels whose stamp is their index; color tells the noise stream.
+/// Frames of 2 x 2 pixels whose stamp is their index; color encodes the noise stream.
 inline RgbdFrame fake_frame(std::size_t index, RandomStream noise) {
   RgbdFrame frame;
   frame.stamp_ns = static_cast<Stamp>(index);

@@ -75,7 +75,7 @@ TEST(Query, CandidatesAreThoseOfTheFirstAttemptAndPairsAreSummed) {
   EXPECT_EQ(answer.candidates.final, 11);
   ASSERT_TRUE(answer.matches);
   EXPECT_EQ((*answer.matches)[2].compared, 1 + 2 + 3);
-  // Where the first tells none, none are known.
+  // If the first reports none, none are known.
   system.on_report = [](int attempt, SystemReport& report) {
     if (attempt == 1) report.candidates = {};
   };
@@ -323,7 +323,7 @@ TEST(Score, TellsCorrectFromWrong) {
 
 TEST(InterpolatedPose, OfTheTruthIsNotThatOfAFrameWhosePoseIsInvalid) {
   constexpr Stamp kMs = 1'000'000;
-  // 100 Hz as a tracking system tells it, then 30 Hz without the frame at 133 ms.
+  // 100 Hz as from a tracking system, then 30 Hz without the frame at 133 ms.
   const Trajectory truth = {{0, at(0, 0, 0)},
                             {10 * kMs, at(1, 0, 0)},
                             {100 * kMs, at(2, 0, 0)},

@@ -22,7 +22,7 @@ struct MadeUpAnswers {
   RelocalizationStage unanswered = RelocalizationStage::kNone;
 };
 
-/// All that a run is to tell; no two numbers are equal.
+/// All figures of a run; no two numbers are equal.
 struct MadeUpFigures {
   double completeness = 0, ate_m = 0, ate_deg = 0, first_pose_m = 0, rpe_frame_m = 0,
          rpe_second_m = 0;

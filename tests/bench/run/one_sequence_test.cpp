@@ -119,7 +119,7 @@ SlamRun run(SlamState& state, std::vector<RgbdFrame> offered, const Feed& feed =
   return run_slam(state, *frames_in_memory(BoxRoom::camera(), std::move(offered)), feed);
 }
 
-/// A map as one begins with it that goes on with another sequence.
+/// Prepares a map for continuing with another sequence.
 void begin_another_sequence(SlamState& state) {
   rewind(state);
   state.tracked_frames.clear();
@@ -410,7 +410,8 @@ TEST_F(TumFr1Rpy, IsTrackedWholeAndMoreAccuratelyThanByOrbSlam2) {
   EXPECT_EQ(score.pairs, 200U);
 }
 
-// Each query is lost and on its own. Where it is, SLAM tells that goes on from the map.
+// Each query starts lost and is independent. The expected pose is from SLAM that continues from the
+// map.
 TEST_F(TumFr1Rpy, LostFramesAreFoundInAMapOfEarlierOnes) {
   const RandomStream stream(0);
   for (std::size_t i = 0; i < 100; ++i)

@@ -187,7 +187,7 @@ TEST_F(Recorded, WithoutATruthAnswersAreSuccessesAndNothingElseIsSaid) {
   EXPECT_EQ(summarize(run().points.front().held_out).correct, 1.0);
 }
 
-// A tracking system tells the truth at its own rate; what is stored is what was told.
+// A tracking system reports the ground truth at its own rate; it is stored as reported.
 TEST_F(Recorded, ATruthOfOtherMomentsIsAskedBetweenThem) {
   record(room(), "tum", 0, 60);
   Trajectory truth;

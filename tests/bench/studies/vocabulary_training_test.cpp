@@ -174,8 +174,8 @@ TEST(ScoreVocabulary, FindsViewsOfOnePlaceByTheirWords) {
   EXPECT_LT(score_vocabulary(vocabulary, views, {}, camera, {}).precision, 0.5);
 }
 
-// The file that comes with the project is whole, and its words are used evenly enough to tell
-// images apart: few occur in more than half of them (weight below ln 2).
+// The file that ships with the project is complete, and its words are used evenly enough to
+// distinguish images: few occur in more than half of them (weight below ln 2).
 TEST(Assets, VocabularyHoldsWordsThatTell) {
   const Vocabulary vocabulary = Vocabulary::load(MH_SOURCE_DIR "/assets/vocabulary.mhvoc");
   EXPECT_GT(vocabulary.size(), 95000U);

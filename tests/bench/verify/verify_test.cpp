@@ -294,7 +294,7 @@ TEST(Verify, ARunThatFailedIsNoVerification) {
 }  // namespace
 }  // namespace mh
 
-// The bench starts its own executable anew for each run; here that is this one.
+// The bench starts its own executable for each run; here that is this one.
 int main(int argc, char** argv) {
   if (argc > 2 && std::string_view(argv[1]) == "run-one")
     return mh::play_a_run({argv, argv + argc});

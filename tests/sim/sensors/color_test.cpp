@@ -78,7 +78,7 @@ TEST(ShotNoise, DarkerScenesTakeMoreGain) {
   EXPECT_EQ(taken(0.5F), at_gain(2.0));
   EXPECT_EQ(taken(1.5F), at_gain(6.0));
   EXPECT_EQ(taken(0.01F), at_gain(1.0));
-  EXPECT_EQ(taken(0.0F), at_gain(2.0));  // nothing tells how dark it is
+  EXPECT_EQ(taken(0.0F), at_gain(2.0));  // unknown exposure
 }
 
 TEST(Vignetting, FallsOffWithTheFourthPowerOfTheCosine) {
@@ -129,7 +129,7 @@ TEST(Lens, EveryPixelShowsWhatItsRayMeets) {
   const Lens lens(camera);
   const Camera& wide = lens.pinhole();
   EXPECT_GT(wide.width_px, camera.width_px);  // a barrel draws in what lies outside
-  // An image that tells where its rays went.
+  // An image that encodes where its rays went.
   RenderedFrame image = gray_frame(0, wide);
   for (int y = 0; y < wide.height_px; ++y)
     for (int x = 0; x < wide.width_px; ++x) {

@@ -23,7 +23,7 @@ Camera small_camera() {
 }
 
 /// A wall at a depth of 2 m, white where world x < 0 and black beyond, smooth over one pixel. The
-/// depth tells the camera's world y. Counts the rows that it renders.
+/// depth encodes the camera's world y. Counts the rows that it renders.
 class Edge : public Renderer {
  public:
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {

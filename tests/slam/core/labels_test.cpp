@@ -81,7 +81,7 @@ TEST(Classes, AreInOrderEachWithANameAndAColorOfItsOwn) {
     EXPECT_EQ(class_by_name(info.name), info.id);
     EXPECT_TRUE(names.insert(info.name).second) << info.name;
     EXPECT_TRUE(colors.emplace(info.r, info.g, info.b).second) << info.name;
-    // What NYU40 lacks is other furniture or another prop there; void and background are none.
+    // Classes that NYU40 lacks map to otherfurniture or otherprop; void and background to neither.
     if (i > kNyu40.size()) {
       EXPECT_EQ(info.nyu40 == 39 || info.nyu40 == 40, i != kBackground) << info.name;
     }

@@ -15,7 +15,7 @@ namespace {
 
 template <class To, class From>
 void expect_limits_of() {
-  // What From cannot tell apart from a limit is the limit's neighbor for it, too.
+  // A value that From cannot distinguish from a limit is treated as the limit's neighbor, too.
   EXPECT_EQ(narrowed<To>(From{0}), To{0});
   EXPECT_EQ(narrowed<To>(From{100}), To{100});
   if constexpr (std::numeric_limits<From>::digits > std::numeric_limits<To>::digits) {

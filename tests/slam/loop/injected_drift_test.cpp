@@ -15,8 +15,8 @@ namespace {
 using testing_support::BoxRoom;
 using testing_support::kTurnFrames;
 
-/// Bends what is mapped so far as drift would: nothing at the first keyframe, all of it at the
-/// newest, evenly between. Tracking goes on from the bent end.
+/// Bends the map as drift would: nothing at the first keyframe, all of it at the newest, evenly in
+/// between. Tracking continues from the bent end.
 void inject_drift(SlamState& state, const Vector6d& drift) {
   const double last = static_cast<double>(state.map.keyframes().size() - 1);
   const auto bend = [&](KeyframeId k) { return SE3::exp(drift * (k.value / last)); };
@@ -96,7 +96,7 @@ TEST(Loop, IsRefusedWhereItTellsOfMoreDriftThanCanBe) {
 
 /// Cameras in a row, 0.2 m apart and all looking along z, each with 20 landmarks that the next one
 /// sees too. The row has grown too long: where the map has the last one, it has gone `drift_m` too
-/// far, evenly. It sees the first one's landmarks and tells so: a loop.
+/// far, evenly. It sees the first one's landmarks and reports them: a loop.
 struct StretchedRow {
   static constexpr std::uint32_t kKeyframes = 6, kShared = 20, kLast = kKeyframes - 1;
   static constexpr double kStep_m = 0.2;

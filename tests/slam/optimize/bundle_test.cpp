@@ -205,7 +205,7 @@ TEST(Adjust, TheSecondPhaseForgetsTheOutliersThatTheFirstHasBorne) {
   const BundleResult result =
       adjust(bundle.problem, kCamera, {.iterations = 20, .refine_iterations = 10});
   EXPECT_LT(result.final_cost, 1e-6) << "the sum over the inliers";
-  // Trial steps of both phases are told.
+  // Trial steps of both phases are reported.
   const auto steps = [&](int refine_iterations) {
     return adjust(bundle.problem, kCamera,
                   {.iterations = 1, .refine_iterations = refine_iterations, .relative_decrease = 0})

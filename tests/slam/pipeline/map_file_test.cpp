@@ -319,7 +319,7 @@ TEST(MapFile, WhatPointsNowhereIsRefusedByItsName) {
   refuses("the reference keyframe", [=](Parts& p) { p.state.tracker.reference.value = keyframes; });
   refuses("a tracked frame's keyframe",
           [=](Parts& p) { p.state.tracked_frames.begin()->second.reference.value = keyframes; });
-  // Who sees what is told on both sides.
+  // Both sides store which keyframe sees which landmark.
   EXPECT_NE(said([](Parts& p) { p.seen->observations.pop_back(); }), "");
   EXPECT_NE(said([](Parts& p) { p.standing->covisible.pop_back(); }), "");
   EXPECT_EQ(complaint(framed(Layout(midway()).bytes() + "x")),

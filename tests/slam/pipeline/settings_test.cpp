@@ -189,7 +189,7 @@ TEST(Settings, TakesOrbSlamsFilesAsTheyAre) {
   EXPECT_EQ(s.notes[1], "TUM1.yaml: passed over: Somebody.Else");
 }
 
-// What a file does not tell is what the program has.
+// What a file does not specify is the program's default.
 TEST(Settings, OfAnOrbSlamFileWithoutARowThatRowIsTheDefault) {
   const Settings s =
       parse_settings("Camera.fx: 250\nCamera.fy: 251\nCamera.cx: 319\nCamera.cy: 239\n", "s.yaml");

@@ -173,7 +173,7 @@ TEST_F(DepthGate, PosesAreEstimatedByTheSettingsOfSectionPose) {
   EXPECT_FALSE(find(made, many).camera_from_world);
 }
 
-// A smaller copy of what the map holds looks the same from nearer by: depth alone tells.
+// A smaller copy of the mapped objects looks the same from closer: only depth distinguishes them.
 TEST_F(DepthGate, ACopyOfAnotherSizeIsRefused) {
   for (const double copy : {0.8, 0.9, 1.1, 1.25})
     for (std::uint64_t seed = 0; seed < kScenes; ++seed) {

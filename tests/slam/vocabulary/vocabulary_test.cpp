@@ -113,7 +113,7 @@ TEST(Train, ManyCopiesOfOneDescriptorAreOneWord) {
   const std::vector<std::vector<Descriptor>> images(3, std::vector<Descriptor>(50, d));
   const Vocabulary v = Vocabulary::train(images, {});
   EXPECT_EQ(v.size(), 1U);
-  EXPECT_EQ(v.idf(0), 0.0F);  // in every image: tells nothing
+  EXPECT_EQ(v.idf(0), 0.0F);  // in every image: carries no information
 }
 
 TEST(Train, EveryWordOccursAndWeighsItsInverseDocumentFrequency) {
