@@ -67,7 +67,7 @@ std::vector<Target> targets_in(const Scene& level) {
 }
 
 /// Views, in the floor's frame, of a person standing on free floor.
-std::vector<SE3> standing(const Scene& level) {
+std::vector<SE3> standing_views(const Scene& level) {
   Eigen::AlignedBox2d box;
   for (const Room& room : level.rooms)
     for (const Vector2d& corner : room.polygon_m) box.extend(corner);
@@ -157,7 +157,7 @@ Seen look(const Scene& scene, const Renderer& renderer, const Camera& camera, co
 std::vector<SE3> viewpoints(const Scene& scene, const Renderer& renderer, const Camera& camera,
                             std::size_t most) {
   const LevelScene level(scene);
-  std::vector<SE3> candidates = standing(*level);
+  std::vector<SE3> candidates = standing_views(*level);
   if (candidates.empty()) candidates = walking_around(*level);
   constexpr double kSmall = 0.2;
   Camera small = camera;

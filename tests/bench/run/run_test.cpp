@@ -456,10 +456,10 @@ TEST(Sweep, TheBestPointIsComparedWithTheSuitesOwnSettings) {
   EXPECT_EQ(sweep_image_name(place.suite, results[0]), "sweep-semantic-exact-fake.png");
 }
 
-/// Areas of this color in a picture, specks left out.
-int areas_of(const cv::Mat& picture, const cv::Scalar& bgr) {
+/// Number of areas of this color in an image, not counting specks.
+int areas_of(const cv::Mat& image, const cv::Scalar& bgr) {
   cv::Mat is_it, components, statistics, middles;
-  cv::inRange(picture, bgr, bgr, is_it);
+  cv::inRange(image, bgr, bgr, is_it);
   const int count = cv::connectedComponentsWithStats(is_it, components, statistics, middles);
   int areas = 0;
   for (int k = 1; k < count; ++k) areas += statistics.at<int>(k, cv::CC_STAT_AREA) > 10'000 ? 1 : 0;
@@ -484,9 +484,9 @@ TEST(Sweep, OfMoreThanTwoSettingsEachPairHasAPanel) {
   for (const auto& [settings, pairs] : {std::pair(std::size_t{4}, 6), {3, 3}, {2, 1}}) {
     place.suite.sweep.varied.resize(settings);
     const std::vector<Row> rows = make_rows(place.suite, runs);
-    const cv::Mat picture = draw_sweep(place.suite, rows, sweep_results(place.suite, rows).front());
+    const cv::Mat image = draw_sweep(place.suite, rows, sweep_results(place.suite, rows).front());
     const int sets = 2;  // held out, second tour
-    EXPECT_EQ(areas_of(picture, ground), sets * pairs) << settings;
+    EXPECT_EQ(areas_of(image, ground), sets * pairs) << settings;
   }
 }
 
