@@ -64,10 +64,13 @@ std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
   std::vector<InputDigest> inputs;
   if (e.is_recorded()) {
     // Its content depends on the files next to it, too.
-    const std::string kind = fmt::format("recording {} {}", e.settings.value_or("").string(),
-                                         e.classes.value_or("").string());
+    const std::string beside =
+        fmt::format("{} {}", e.settings.value_or("").string(), e.classes.value_or("").string());
     const auto add = [&](const char* name, const std::string& sequence) {
-      inputs.push_back(read(name, kind, split_sequence(sequence).second, [&](const fs::path& file) {
+      // One folder may be read as several layouts.
+      const auto [layout, path] = split_sequence(sequence);
+      const std::string kind = fmt::format("{} recording {}", layout, beside);
+      inputs.push_back(read(name, kind, path, [&](const fs::path& file) {
         say_(fmt::format("reading {}", file.string()));
         for (const std::string& note : open_recorded(e, sequence).notes) warn(note);
       }));

@@ -56,6 +56,7 @@ class Visit {
  public:
   explicit Visit(const Log& log) {
     flush();
+    folder_ = open(".", O_PATH | O_CLOEXEC);
     std::fegetenv(&floating_point_);
     for (std::size_t k = 0; k < kOurs.size(); ++k) {
       ours_[k] = fcntl(kOurs[k], F_DUPFD_CLOEXEC, 0);
@@ -65,6 +66,9 @@ class Visit {
   ~Visit() {
     flush();
     std::fesetenv(&floating_point_);
+    // Relative paths must lead where they led before.
+    if (fchdir(folder_) != 0) std::abort();
+    close(folder_);
     for (std::size_t k = 0; k < kOurs.size(); ++k) {
       dup2(ours_[k], kOurs[k]);
       close(ours_[k]);
@@ -81,6 +85,7 @@ class Visit {
   }
   std::array<int, kOurs.size()> ours_{};
   std::fenv_t floating_point_{};
+  int folder_ = -1;
 };
 
 /// The mh_setup that the library is created from, with everything that it points to.

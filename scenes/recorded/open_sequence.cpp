@@ -69,16 +69,18 @@ const SequenceReader& reader_of(const std::string& source) {
 
 OpenedRecording open_sequence(const std::string& source, const RecordingConfig& config) {
   const fs::path path = split_sequence(source).second;
-  if (!ReadScope::is_open()) return reader_of(source).open(path, config);
+  const SequenceReader& reader = reader_of(source);
+  if (!ReadScope::is_open()) return reader.open(path, config);
   OpenedRecording opened;
   std::uint64_t all = 0;
   {
     const ReadScope scope(ReadScope::Outer::kIgnores);
-    opened = reader_of(source).open(path, config);
+    opened = reader.open(path, config);
     std::ranges::for_each(opened.files, note_content);
     all = digest(scope.record());
   }
-  ReadScope::report({FileObservation::Kind::kRead, path / "recording", all});
+  ReadScope::report(
+      {FileObservation::Kind::kRead, path / fmt::format("{} recording", reader.name), all});
   return opened;
 }
 

@@ -401,6 +401,22 @@ TEST_F(Recorded, TheKeyOfARunHoldsEveryByteOfATumFolder) {
   EXPECT_EQ(key(), before);
 }
 
+// A folder that is of two layouts is two recordings, whichever is looked at first.
+TEST_F(Recorded, OneFolderReadAsTwoLayoutsIsTwoRecordings) {
+  record(room(), "tum", 0, 2);
+  std::ofstream(room() / "x.gt.freiburg") << "0 0 0 0 0 0 0 1\n";
+  InputReader reader;
+  const auto key_as = [&](const std::string& layout) {
+    spec_.environment.sequence = layout + room().string();
+    return run_key(spec_, reader.inputs_of(spec_));
+  };
+  const std::string as_tum = key_as("tum:"), as_icl = key_as("icl_nuim:");
+  EXPECT_NE(as_tum, as_icl);
+  reader = InputReader();
+  EXPECT_EQ(key_as("icl_nuim:"), as_icl);
+  EXPECT_EQ(key_as("tum:"), as_tum);
+}
+
 TEST_F(Recorded, TheKeyOfARunHoldsEveryByteOfAScanNetRecording) {
   record(room(), "scannet-frames", 0, 2);
   spec_.environment.sequence = "scannet:" + room().string();

@@ -218,6 +218,13 @@ TEST_F(LibrarySystems, PrintToTheLogAndNotToTheBench) {
   EXPECT_EQ(read_file(folder_ / "log"), "0.5\n~nonsense\ngoodbye\n");
 }
 
+TEST_F(LibrarySystems, LeaveTheWorkingFolderAsItWas) {
+  const auto before = std::filesystem::current_path();
+  const auto system = tiny("wander");
+  system->track(fake_frame(7, RandomStream(1)), RandomStream(2));
+  EXPECT_EQ(std::filesystem::current_path(), before);
+}
+
 TEST_F(LibrarySystems, LeaveTheFloatingPointModeAsItWas) {
   load_error("tiny_throwing");
   const volatile double least = std::numeric_limits<double>::min();

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <modelhouse/system.h>
 
@@ -42,6 +43,7 @@ static int track(void* self, const mh_frame* frame, mh_answer* answer) {
   tiny* t = self;
   if (told(t, "crash")) abort();
   if (told(t, "exit")) exit(0);
+  if (told(t, "wander") && chdir("/") != 0) return 1;
   if (told(t, "print")) puts("0.5\n~nonsense");
   if (told(t, "error")) {
     snprintf(t->message, MH_MESSAGE_SIZE, "no memory\nleft");
