@@ -75,6 +75,18 @@ std::optional<fs::path> new_file(const fs::path& folder, const Name& name) {
   }
 }
 
+/// The file that a name stands for: a symbolic link is followed, also one whose target is not there
+/// yet.
+fs::path followed(fs::path file) {
+  constexpr int kMostLinks = 40;  // as Linux follows
+  std::error_code error;
+  for (int links = 0; links < kMostLinks && fs::is_symlink(file, error); ++links) {
+    const fs::path target = fs::read_symlink(file, error);
+    file = target.is_absolute() ? target : file.parent_path() / target;
+  }
+  return file;
+}
+
 }  // namespace
 
 void make_output_folder(const fs::path& folder) {
@@ -95,7 +107,9 @@ void make_output_folder(const fs::path& folder) {
   throw InputError(fmt::format("{}: cannot be written to", folder.string()));
 }
 
-void write_atomically(const fs::path& file, const std::function<void(const fs::path&)>& write) {
+void write_atomically(const fs::path& name, const std::function<void(const fs::path&)>& write) {
+  // A rename onto a symbolic link would put a file in the place of the user's link.
+  const fs::path file = followed(name);
   std::error_code error;
   // A rename would replace a device such as /dev/stdout with a file.
   if (fs::exists(file, error) && !fs::is_regular_file(file, error))

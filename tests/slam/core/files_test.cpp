@@ -104,6 +104,19 @@ TEST(WriteAtomically, PutsNoFileInThePlaceOfAnythingElse) {
   EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
+TEST(WriteAtomically, WritesThroughASymbolicLink) {
+  const fs::path folder = fs::path(testing::TempDir()) / "write_through_link";
+  fs::remove_all(folder);
+  make_output_folder(folder / "disk");
+  fs::create_symlink("disk/map", folder / "link");  // relative, to a file that is not there yet
+  for (const char* content : {"first", "second"}) {
+    write_atomically(folder / "link", content);
+    EXPECT_TRUE(fs::is_symlink(folder / "link"));
+    EXPECT_EQ(read_file(folder / "disk/map"), content);
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "disk"), {}), 1);
+}
+
 TEST(ReadFile, SaysWhetherItIsMissingOrAFolder) {
   const auto error_of = [](const fs::path& file) -> std::string {
     try {
