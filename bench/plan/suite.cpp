@@ -186,7 +186,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   Environments environments = read_environments(yaml.at("environments"), paths, robot);
   suite.environments = std::move(environments.list);
   suite.found = std::move(environments.found);
-  suite.notes = std::move(environments.notes);
+  suite.left_out = std::move(environments.notes);
   suite.set = overrides.set;
   suite.levels = read_levels(yaml, paths, suite);
   std::set<std::string> names;

@@ -59,7 +59,7 @@ struct Suite {
   bool scene_replaced = false;             ///< by SuiteOverrides::scene
   std::map<std::string, std::string> set;  ///< as SuiteOverrides
   FoundRecordings found;                   ///< what its recording patterns found
-  std::vector<std::string> notes;          ///< what was left out, one line each
+  std::vector<std::string> left_out;       ///< recordings that patterns found, one line each
 };
 
 /// What the command line may override in a suite.

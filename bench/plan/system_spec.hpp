@@ -28,7 +28,11 @@ struct SystemSpec {
   bool sees_labels() const { return kind != SystemKind::kPlain; }
   /// Has the settings of SlamConfig. It needs a vocabulary, and reports candidates, matches and how
   /// far a relocalization got; for an outside system all of that is optional.
-  bool takes_settings() const { return !is_outside(); }
+  bool takes_settings() const {
+    return kind == SystemKind::kSemantic || kind == SystemKind::kPlain;
+  }
+  /// Its finished map is kept for later runs: it implements System::save() and restore().
+  bool saves_map() const { return takes_settings(); }
   /// Labels affect its matching: equation 2.
   bool weighs_labels() const { return takes_settings() && sees_labels(); }
 };

@@ -201,7 +201,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
                        const BenchOptions& options) {
   const std::vector<RunSpec> specs = expand(suite);
   check_names(suite, specs);
-  for (const std::string& note : suite.notes) options.say(note);
+  for (const std::string& line : suite.left_out) options.say(line);
 
   std::set<std::string> warned;
   for (const RunSpec& spec : specs)

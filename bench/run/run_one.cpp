@@ -253,7 +253,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
       take_trajectory();
       integrate();
     };
-    if (!tools.maps.folder().empty() && tools.occupancy && !spec.system.is_outside()) {
+    if (!tools.maps.folder().empty() && tools.occupancy && spec.system.saves_map()) {
       bool mapped = false;
       const std::string kept = tools.maps.get("map", map_key(spec, world.inputs), [&] {
         map_now();

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cassert>
 
-#include "sim/sensors/color_noise.hpp"
 #include "sim/sensors/depth_noise.hpp"
+#include "sim/sensors/develop.hpp"
 #include "sim/sensors/sensors.hpp"
 
 namespace mh {
@@ -30,7 +30,7 @@ RgbdFrame sense(const RenderedFrame& truth, const Camera& camera, const SensorCo
                       ? noisy_depth(truth.depth_m, camera, config.depth_noise, stream.fork(kDepth))
                       : truth.depth_m;
   SensorConfig set = config;
-  set.shot_noise.gain = analogue_gain(config.shot_noise, truth.exposure);
+  set.shot_noise.gain = analog_gain(config.shot_noise, truth.exposure);
   develop(frame.color, camera, set, gain, stream.fork(kColor));
   return frame;
 }

@@ -27,7 +27,7 @@ double lateral_sigma_px(double incidence_rad);
 
 /// The gain for an image of this exposure: never below 1, since a camera then shortens the exposure
 /// time instead. Unknown exposure (0): the configured gain.
-double analogue_gain(const ShotNoiseConfig& config, float exposure);
+double analog_gain(const ShotNoiseConfig& config, float exposure);
 
 /// Returns the frame, without labels, that a camera with these faults delivers. All noise is a
 /// function of (stream, pixel) alone; each kind uses its own stream.

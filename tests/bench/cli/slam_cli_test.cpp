@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "scenes/recorded/open_sequence.hpp"
 #include "scenes/recorded/tum_folder.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/trajectory_io.hpp"
@@ -202,7 +203,7 @@ TEST_F(SlamCommand, AMapAnswersByTheFactorsThatAreGiven) {
 
 TEST_F(SlamCommand, RefusesWhatItCannotUse) {
   const std::string out = " --out " + path("no");
-  expect_refused(path("nowhere") + out, "is not a folder, nor icl_nuim:FOLDER, tum:FOLDER");
+  expect_refused(path("nowhere") + out, "is not a folder, nor " + sequence_forms());
   fs::create_directories(folder_ / "empty");
   expect_refused(path("empty") + out, "holds neither rgb.txt nor associations.txt");
   expect_refused(path("room") + out + " --localize", "--localize needs a map");

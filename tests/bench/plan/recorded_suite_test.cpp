@@ -10,6 +10,7 @@
 
 #include "bench/plan/runs.hpp"
 #include "bench/plan/spec_json.hpp"
+#include "scenes/recorded/open_sequence.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
@@ -119,8 +120,7 @@ TEST_F(RecordedSuite, WhatIsOfScenesIsRefusedWithItsReason) {
                   "levels: [pepper.yaml]\n"),
             "no environment is one");
   expect_in(error("- {category: desk, sequence: 'tum:nowhere'}"), "is not there");
-  expect_in(error("- {category: desk, sequence: scans}"),
-            "name its layout: icl_nuim:FOLDER, tum:FOLDER, scannet:FOLDER");
+  expect_in(error("- {category: desk, sequence: scans}"), "name its layout: " + sequence_forms());
   expect_in(error(kDesk, "[recorded]", "", {.scene = folder_ / "house.yaml"}), "is a recording");
 }
 
@@ -149,8 +149,8 @@ TEST_F(RecordedSuite, APatternTakesTheCategoryOfEachScanAndCountsWhatItLeavesOut
   EXPECT_EQ(suite.environments[0].name, "scene0000_00");
   EXPECT_EQ(suite.environments[0].category, "bathroom");
   EXPECT_EQ(suite.environments[1].category, "bedroom");
-  ASSERT_EQ(suite.notes.size(), 1U);
-  expect_in(suite.notes[0], "2 of 4 recordings left out: 1 without a scene type, 1 'Stairs'");
+  ASSERT_EQ(suite.left_out.size(), 1U);
+  expect_in(suite.left_out[0], "2 of 4 recordings left out: 1 without a scene type, 1 'Stairs'");
   // Where the scans are not, their results are still read.
   SuiteOverrides elsewhere = set;
   elsewhere.found = suite.found;

@@ -622,7 +622,7 @@ TEST(ShippedSuites, AreWellFormed) {
     if (of_scans) {
       EXPECT_EQ(suite.environments.size(), 3U);
       EXPECT_EQ(suite.environments.back().category, "misc");
-      EXPECT_TRUE(suite.notes.empty());
+      EXPECT_TRUE(suite.left_out.empty());
     }
     EXPECT_GE(suite.systems.size(), 1u) << entry.path();
     std::set<std::string> names;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/sensors/color_noise.hpp"
+#include "sim/sensors/develop.hpp"
 
 #include <algorithm>
 #include <array>
@@ -90,7 +90,7 @@ void add_gray_noise(Grid2d<Rgb8>& color, double sigma, RandomStream stream) {
 
 }  // namespace
 
-double analogue_gain(const ShotNoiseConfig& config, float exposure) {
+double analog_gain(const ShotNoiseConfig& config, float exposure) {
   if (config.gain_at_exposure <= 0.0 || exposure <= 0.0F) return config.gain;
   return std::max(1.0, config.gain * static_cast<double>(exposure) / config.gain_at_exposure);
 }
