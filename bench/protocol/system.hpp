@@ -13,7 +13,8 @@
 namespace mh {
 
 /// A lost tracker on a frozen map, which answers one query. Sessions of one system share no mutable
-/// state, so they may run in any order and concurrently.
+/// state, so they may run in any order and concurrently; one exception is
+/// NeighborScores::kAsReleased, whose answers depend on the order.
 class RelocalizationSession {
  public:
   virtual ~RelocalizationSession() = default;

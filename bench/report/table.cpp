@@ -38,6 +38,17 @@ std::string recordings_text(const Suite& suite, std::span<const RunResult> runs)
   return text;
 }
 
+/// Whose rules relocalization follows, where they are not ours.
+std::string base_text(const Suite& suite) {
+  std::string text;
+  if (suite.slam.relocalize.acceptance == Acceptance::kOrbSlam2)
+    text += "\nbase: orb_slam2: poses of relocalization are accepted as ORB-SLAM2 accepts them\n";
+  if (suite.slam.relocalize.neighbor_scores == NeighborScores::kAsReleased)
+    text +=
+        "\nneighbor scores as ORB-SLAM2 released them: answers depend on the order of queries\n";
+  return text;
+}
+
 /// Why runs are missing from the table above.
 std::string failures_text(std::span<const FailedRun> failed) {
   if (failed.empty()) return "";
@@ -68,7 +79,8 @@ std::string results_table(const Suite& suite, std::span<const RunResult> runs,
          (parameter_points(suite).size() > 1 ? sweep_table(suite, rows)
           : suite.environments.size() > 1    ? scenes_table(suite, rows)
                                              : place_table(suite, rows)) +
-         recordings_text(suite, runs) + failures_text(failed) + missing_text(missing);
+         base_text(suite) + recordings_text(suite, runs) + failures_text(failed) +
+         missing_text(missing);
 }
 
 }  // namespace mh

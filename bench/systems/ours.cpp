@@ -6,6 +6,7 @@
 #include <optional>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "slam/pipeline/map_file.hpp"
 
@@ -29,15 +30,22 @@ SystemReport as_report(const StepReport& step) {
 
 class OurSession : public RelocalizationSession {
  public:
-  OurSession(const SlamState& frozen, const StepObservers& observers)
-      : frozen_(frozen), observers_(observers) {}
+  /// @param released  what earlier sessions left, and this one leaves to the next; may be null
+  OurSession(const SlamState& frozen, const StepObservers& observers,
+             std::vector<double>* released = nullptr)
+      : frozen_(frozen), observers_(observers), released_(released) {
+    if (released_ != nullptr) tracker_.released_scores = *released_;
+  }
   SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
-    return as_report(localize(frozen_, tracker_, frame, stream, observers_));
+    const StepReport report = localize(frozen_, tracker_, frame, stream, observers_);
+    if (released_ != nullptr) *released_ = tracker_.released_scores;
+    return as_report(report);
   }
 
  private:
   const SlamState& frozen_;  // the system that opened the session outlives it, like the observers
   const StepObservers& observers_;
+  std::vector<double>* released_;
   Tracker tracker_;
 };
 
@@ -110,14 +118,25 @@ class OurSystem : public System {
   std::unique_ptr<QueryMemo> make_memo() const override { return std::make_unique<OurMemo>(); }
   std::unique_ptr<RelocalizationSession> open_session() const override {
     assert(frozen_);
-    return std::make_unique<OurSession>(state_, options_.observers);
+    return std::make_unique<OurSession>(state_, options_.observers, released());
   }
   std::unique_ptr<RelocalizationSession> open_session_with(QueryMemo& memo) const override {
     assert(frozen_);
+    if (released() != nullptr) return open_session();  // answers depend on those before: no memo
     return std::make_unique<RememberingSession>(state_, static_cast<OurMemo&>(memo));
   }
 
  private:
+  /// What the queries so far left under these settings; null if the settings do not ask for it.
+  std::vector<double>* released() const {
+    if (state_.config.relocalize.neighbor_scores != NeighborScores::kAsReleased) return nullptr;
+    const SemanticConfig& s = state_.config.semantics;
+    const auto [place, is_new] =
+        released_.try_emplace({s.gamma, s.xi, s.alpha, s.beta, s.overlap, s.void_is_a_label});
+    if (is_new) place->second = state_.tracker.released_scores;  // as mapping left them
+    return &place->second;
+  }
+
   /// Starts a new map in place of this one, if the frame can initialize it.
   std::optional<SystemReport> begin_anew(const RgbdFrame& frame, RandomStream stream) {
     SlamState anew = make_slam(state_.camera, state_.config, state_.vocabulary);
@@ -132,6 +151,9 @@ class OurSystem : public System {
   std::unique_ptr<SlamState> own_;
   SlamState& state_;
   OurSystemOptions options_;
+  using QuerySettings = std::tuple<double, double, double, double, Overlap, bool>;
+  /// Under NeighborScores::kAsReleased sessions do share this: they depend on their order.
+  mutable std::map<QuerySettings, std::vector<double>> released_;
   bool found_ = false;  ///< a frame was tracked in this map
   bool frozen_ = false;
 };

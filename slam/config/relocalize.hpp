@@ -1,12 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <string_view>
+#include <utility>
+
 #include "slam/config/pose.hpp"
 #include "slam/config/setting.hpp"
 
 namespace mh {
 
+/// What it takes to accept a candidate keyframe's pose.
+enum class Acceptance {
+  kOurs,     ///< any consensus of ransac.min_inliers; guided searches follow whatever its size
+  kOrbSlam2  ///< as ORB-SLAM2 accepts (Mur-Artal and Tardos 2017): see candidate_trial.hpp
+};
+constexpr std::array<std::pair<std::string_view, Acceptance>, 2> setting_words(Acceptance) {
+  return {{{"ours", Acceptance::kOurs}, {"orb_slam2", Acceptance::kOrbSlam2}}};
+}
+
+/// The similarity of a neighbor in equation 5 that shares words with the query, but no more than
+/// alpha of the most.
+enum class NeighborScores {
+  kFresh,      ///< with this query
+  kAsReleased  ///< what an earlier query left, or 0: ORB-SLAM2's mRelocScore as released. Answers
+               ///< then depend on the order of the queries.
+};
+constexpr std::array<std::pair<std::string_view, NeighborScores>, 2> setting_words(NeighborScores) {
+  return {{{"fresh", NeighborScores::kFresh}, {"as_released", NeighborScores::kAsReleased}}};
+}
+
 struct RelocalizeConfig {
+  Acceptance acceptance = Acceptance::kOurs;
+  NeighborScores neighbor_scores = NeighborScores::kFresh;
   int min_word_matches = 15;
   int min_inliers = 50;  ///< to accept a pose
   /// Standard deviation of a true pair's disparity error (in addition to the keypoint's own, as in
@@ -22,7 +48,10 @@ struct RelocalizeConfig {
 
 template <Either<RelocalizeConfig> C, class Visit>
 void fields(C& c, Visit& v) {
-  auto& [min_word_matches, min_inliers, disparity_sigma_px, ransac] = c;
+  auto& [acceptance, neighbor_scores, min_word_matches, min_inliers, disparity_sigma_px, ransac] =
+      c;
+  v("acceptance", acceptance, {}, "of a candidate's pose: ours or orb_slam2");
+  v("neighbor_scores", neighbor_scores, {}, "in equation 5: fresh or as_released (by ORB-SLAM2)");
   v("min_word_matches", min_word_matches, setting::kPoints, "with a candidate keyframe");
   v("min_inliers", min_inliers, setting::kPoints, "to accept a pose");
   v("disparity_sigma_px", disparity_sigma_px, {0, 1000},

@@ -47,12 +47,13 @@ std::optional<Located> follow(const SlamState& state, const Tracker& tracker, Pr
   return std::nullopt;
 }
 
-std::optional<TrackedPose> search_everywhere(const SlamState& state, PreparedFrame& frame,
-                                             RandomStream stream, const StepObservers& observers,
-                                             StepReport& report) {
+std::optional<TrackedPose> search_everywhere(const SlamState& state, Tracker& tracker,
+                                             PreparedFrame& frame, RandomStream stream,
+                                             const StepObservers& observers, StepReport& report) {
   const InStage stage(observers, Stage::kRelocalization);
   RelocalizationResult found =
-      relocalize(with_words(frame, state, observers), context_of(state, observers, report), stream);
+      relocalize(with_words(frame, state, observers), context_of(state, observers, report), stream,
+                 nullptr, &tracker.released_scores);
   report.relocalization = found.stage;
   report.candidates = found.candidates;
   if (!found.camera_from_world) return std::nullopt;
@@ -76,7 +77,7 @@ std::optional<Located> confirm_in_local_map(const PreparedFrame& frame, const Tr
   return Located{std::move(refined->tracked), reference, std::move(refined->expected)};
 }
 
-std::optional<Located> locate(const SlamState& state, const Tracker& tracker, PreparedFrame& frame,
+std::optional<Located> locate(const SlamState& state, Tracker& tracker, PreparedFrame& frame,
                               RandomStream stream, const StepObservers& observers,
                               StepReport& report) {
   const SlamConfig& config = state.config;
@@ -86,7 +87,7 @@ std::optional<Located> locate(const SlamState& state, const Tracker& tracker, Pr
     report.status = tracker.coasting ? TrackStatus::kRelocalized : TrackStatus::kTracked;
     return located;
   }
-  const auto found = search_everywhere(state, frame, stream, observers, report);
+  const auto found = search_everywhere(state, tracker, frame, stream, observers, report);
   if (!found) return std::nullopt;
   auto located =
       confirm_in_local_map(frame, *found, config.relocalize.min_inliers, context, observers);

@@ -12,8 +12,8 @@ namespace mh {
 SlamContext context_of(const SlamState& state, const StepObservers& observers, StepReport& report);
 
 /// Localizes a frame in the map: by tracking from previous frames; if that fails, by
-/// relocalization. Reads the map, never writes it.
-std::optional<Located> locate(const SlamState& state, const Tracker& tracker, PreparedFrame& frame,
+/// relocalization. Reads the map, never writes it; of the tracker, only released_scores changes.
+std::optional<Located> locate(const SlamState& state, Tracker& tracker, PreparedFrame& frame,
                               RandomStream stream, const StepObservers& observers,
                               StepReport& report);
 

@@ -34,8 +34,9 @@ void fields(A& a, T& motion) {
 }
 template <class A, Either<Tracker> T>
 void fields(A& a, T& tracker) {
-  auto& [last, velocity_per_s, motion, reference, frames_since_keyframe, coasting] = tracker;
-  a(last, velocity_per_s, motion, reference, frames_since_keyframe, coasting);
+  auto& [last, velocity_per_s, motion, reference, frames_since_keyframe, coasting,
+         released_scores] = tracker;
+  a(last, velocity_per_s, motion, reference, frames_since_keyframe, coasting, released_scores);
 }
 template <class A, Either<LoopMemory> T>
 void fields(A& a, T& memory) {

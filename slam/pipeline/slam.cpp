@@ -31,7 +31,7 @@ SlamState make_slam(const Camera& camera, const SlamConfig& config,
 }
 
 void rewind(SlamState& state) {
-  state.tracker = Tracker{};
+  forget(state.tracker);
   state.last_stamp_ns.reset();
 }
 

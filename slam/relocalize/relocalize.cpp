@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "slam/config/slam.hpp"
-#include "slam/match/expect.hpp"
 
 namespace mh {
 namespace {
@@ -23,119 +22,6 @@ int overlap(const InvertedIndex::Score& score, Overlap what) {
   return score.shared_words;
 }
 
-using Attempt = CandidateAttempt;
-
-/// Relocalizes against one candidate keyframe.
-class CandidateTrial {
- public:
-  CandidateTrial(const Query& query, const SlamContext& context, PlaceMatchers matchers)
-      : query_(query), context_(context), matchers_(matchers) {}
-
-  Attempt run(KeyframeId candidate, RandomStream stream) {
-    Attempt attempt;
-    const Keyframe& keyframe = context_.map.at(candidate);
-    const MatchConfig& match = context_.config.match;
-    const RelocalizeConfig& config = context_.config.relocalize;
-    attempt.landmarks = match_landmarks(keyframe, query_, context_, matchers_.words);
-    attempt.inliers =
-        static_cast<int>(std::count_if(attempt.landmarks.begin(), attempt.landmarks.end(),
-                                       [](LandmarkId id) { return id.valid(); }));
-    if (attempt.inliers < config.min_word_matches) return attempt;
-
-    attempt.stage = RelocalizationStage::kPnp;
-    std::vector<std::uint32_t> feature_of;
-    const auto observations = observe_all(attempt.landmarks, feature_of);
-    const auto pnp = solve_pnp_ransac(observations, context_.camera, config.ransac,
-                                      context_.config.pose, stream);
-    if (!pnp) return attempt;
-    adopt(*pnp, feature_of, attempt);
-
-    // Few inliers after PnP usually mean few word matches, not a wrong pose: search again around
-    // the pose, first widely, then narrowly around the refined pose.
-    attempt.stage = RelocalizationStage::kInliers;
-    refine(attempt);
-    for (const auto& [radius_px, max_distance] :
-         {std::pair{10.0F, match.max_distance_loose},
-          std::pair{4.0F, 2 * match.max_distance_loose / 3}}) {
-      if (attempt.inliers >= config.min_inliers || attempt.inliers < config.ransac.min_inliers)
-        break;
-      search_by_pose(keyframe, radius_px, static_cast<float>(max_distance), attempt);
-      refine(attempt);
-    }
-    if (attempt.inliers >= config.min_inliers) attempt.stage = RelocalizationStage::kVerified;
-    return attempt;
-  }
-
- private:
-  std::vector<PoseObservation> observe_all(const std::vector<LandmarkId>& landmarks,
-                                           std::vector<std::uint32_t>& feature_of) const {
-    std::vector<PoseObservation> observations;
-    for (std::uint32_t i = 0; i < landmarks.size(); ++i)
-      if (landmarks[i].valid()) {
-        observations.push_back(observe(context_.map.at(landmarks[i]).position_in_world,
-                                       query_.features.keypoints[i], context_.camera,
-                                       context_.config.features));
-        feature_of.push_back(i);
-      }
-    return observations;
-  }
-
-  void adopt(const PoseEstimate& estimate, const std::vector<std::uint32_t>& feature_of,
-             Attempt& attempt) const {
-    attempt.camera_from_world = estimate.camera_from_world;
-    attempt.inliers = estimate.inlier_count;
-    for (std::size_t j = 0; j < feature_of.size(); ++j)
-      if (estimate.inlier[j] == 0) attempt.landmarks[feature_of[j]] = LandmarkId{};
-  }
-
-  void refine(Attempt& attempt) const {
-    std::vector<std::uint32_t> feature_of;
-    const auto observations = observe_all(attempt.landmarks, feature_of);
-    const auto estimate = estimate_pose(observations, attempt.camera_from_world, context_.camera,
-                                        context_.config.pose);
-    if (estimate)
-      adopt(*estimate, feature_of, attempt);
-    else
-      attempt.inliers = 0;
-  }
-
-  void search_by_pose(const Keyframe& keyframe, float radius_px, float max_distance,
-                      Attempt& attempt) {
-    std::vector<std::uint8_t> taken(query_.features.size(), 0);
-    std::vector<LandmarkId> known;
-    for (std::size_t i = 0; i < taken.size(); ++i)
-      if (attempt.landmarks[i].valid()) {
-        taken[i] = 1;
-        known.push_back(attempt.landmarks[i]);
-      }
-    std::sort(known.begin(), known.end());
-    const Eigen::Vector3d camera_in_world = attempt.camera_from_world.inverse().translation();
-    std::vector<ProjectionTarget> targets;
-    std::vector<LandmarkId> target_landmark;
-    for (std::size_t i = 0; i < keyframe.landmarks.size(); ++i) {
-      const LandmarkId id = keyframe.landmarks[i];
-      if (!id.valid() || std::binary_search(known.begin(), known.end(), id)) continue;
-      auto target = expect(context_.map.at(id), attempt.camera_from_world, camera_in_world,
-                           context_.camera, context_.config.features, radius_px);
-      if (!target) continue;
-      target->angle_rad = keyframe.features.keypoints[i].angle_rad;
-      targets.push_back(*target);
-      target_landmark.push_back(id);
-    }
-    const auto found = match_by_projection(targets, query_.features, query_.grid, taken,
-                                           {.max_distance = max_distance, .check_angle = true},
-                                           semantic_matcher(context_, matchers_.projection));
-    trace_projection(context_, matchers_.projection,
-                     {{}, query_.features, targets, found, target_landmark});
-    for (std::size_t t = 0; t < found.size(); ++t)
-      if (found[t] >= 0) attempt.landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
-  }
-
-  const Query& query_;
-  const SlamContext& context_;
-  PlaceMatchers matchers_;
-};
-
 }  // namespace
 
 std::vector<KeyframeId> neighborhood(const Map& map, KeyframeId k,
@@ -148,8 +34,22 @@ std::vector<KeyframeId> neighborhood(const Map& map, KeyframeId k,
   return result;
 }
 
+namespace {
+
+/// Stores the similarities of the keyframes that pass equation 4, as ORB-SLAM2 does for each query.
+void store(const std::vector<InvertedIndex::Score>& scores, Overlap what, double alpha,
+           ReleasedScores& released) {
+  int most = 0;
+  for (const InvertedIndex::Score& score : scores) most = std::max(most, overlap(score, what));
+  for (const InvertedIndex::Score& score : scores)
+    if (overlap(score, what) > alpha * most) released[score.keyframe.value] = score.similarity;
+}
+
+}  // namespace
+
 CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedVector& query,
-                                                const SemanticConfig& config) {
+                                                const SemanticConfig& config,
+                                                ReleasedScores* released) {
   // Keyframes that share nothing fail equation 3 and can be skipped.
   const std::vector<InvertedIndex::Score> scores = map.sharing(query);
   const Overlap what = query.labels.empty() ? Overlap::kWords : config.overlap;
@@ -159,12 +59,18 @@ CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedV
     keyframes.push_back(score.keyframe);
     of[score.keyframe.value] = &score;
   }
+  if (released != nullptr) {
+    released->resize(map.keyframes().size());
+    store(scores, what, config.alpha, *released);
+  }
+  const auto similarity = [&](KeyframeId k) {
+    if (of[k.value] == nullptr) return 0.0;
+    return released != nullptr ? (*released)[k.value] : of[k.value]->similarity;
+  };
   return select_candidates(
       std::span<const KeyframeId>(keyframes),
       [&](KeyframeId k) { return overlap(*of[k.value], what); },
-      [&](KeyframeId k) { return neighborhood(map, k); },
-      [&](KeyframeId k) { return of[k.value] ? of[k.value]->similarity : 0.0; }, config.alpha,
-      config.beta);
+      [&](KeyframeId k) { return neighborhood(map, k); }, similarity, config.alpha, config.beta);
 }
 
 RelocalizationResult try_candidates(const Query& query, std::span<const KeyframeId> candidates,
@@ -180,10 +86,10 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
       const SlamContext own_counts{context.camera, context.config, context.map, its_counts,
                                    context.trace};
       place->second =
-          CandidateTrial(query, own_counts, matchers).run(candidate, stream.fork(candidate.value));
+          try_candidate(candidate, query, own_counts, stream.fork(candidate.value), matchers);
       place->second.counts = its_counts;
     }
-    const Attempt& attempt = place->second;
+    const CandidateAttempt& attempt = place->second;
     add(attempt.counts, context.counts);
     result.stage = std::max(result.stage, attempt.stage);
     if (attempt.stage != RelocalizationStage::kVerified) continue;
@@ -197,14 +103,17 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
 }
 
 RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,
-                                AttemptMemo* memo) {
+                                AttemptMemo* memo, ReleasedScores* released) {
   const SlamConfig& config = context.config;
-  const auto selection = select_keyframes(context.map, query.words.vector, config.semantics);
+  const auto selection = select_keyframes(
+      context.map, query.words.vector, config.semantics,
+      config.relocalize.neighbor_scores == NeighborScores::kAsReleased ? released : nullptr);
   std::vector<KeyframeId> candidates;
   for (const auto& candidate : selection.candidates) candidates.push_back(candidate.keyframe);
   Camera lenient = context.camera;
-  lenient.disparity_sigma_px =
-      std::max(context.camera.disparity_sigma_px, config.relocalize.disparity_sigma_px);
+  if (config.relocalize.acceptance == Acceptance::kOurs)
+    lenient.disparity_sigma_px =
+        std::max(context.camera.disparity_sigma_px, config.relocalize.disparity_sigma_px);
   const SlamContext leniently{lenient, config, context.map, context.counts, context.trace};
   RelocalizationResult result = try_candidates(query, candidates, leniently, stream, {}, memo);
   result.candidates = {.keyframes = context.map.keyframe_count(),

@@ -9,6 +9,7 @@
 
 #include "slam/core/random.hpp"
 #include "slam/match/context.hpp"
+#include "slam/relocalize/candidate_trial.hpp"
 #include "slam/relocalize/outcome.hpp"
 #include "slam/semantics/candidate_selection.hpp"
 
@@ -28,25 +29,15 @@ struct RelocalizationResult {
 std::vector<KeyframeId> neighborhood(const Map& map, KeyframeId k,
                                      const std::function<bool(KeyframeId)>& belongs = {});
 
+/// The similarity of each keyframe, by id, with the last query for which it passed equation 4; 0 =
+/// none yet (NeighborScores::kAsReleased).
+using ReleasedScores = std::vector<double>;
+
 /// Algorithm 1 over the whole map. If the query has no label members, words are counted.
+/// @param released  updated and used in equation 5; null: each similarity is computed anew
 CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedVector& query,
-                                                const SemanticConfig& config);
-
-/// The matchers that a search reports under: relocalization and loop closing are counted
-/// separately.
-struct PlaceMatchers {
-  Matcher words = Matcher::kRelocalizationWords;
-  Matcher projection = Matcher::kRelocalizationProjection;
-};
-
-/// Result of trying one candidate.
-struct CandidateAttempt {
-  RelocalizationStage stage = RelocalizationStage::kMatches;
-  SE3 camera_from_world;
-  std::vector<LandmarkId> landmarks;  ///< per feature
-  int inliers = 0;
-  MatchCounts counts{};  ///< of this attempt alone
-};
+                                                const SemanticConfig& config,
+                                                ReleasedScores* released = nullptr);
 
 /// Attempts of one query under one stream and one xi for the candidates tried so far: searches that
 /// merely choose other candidates can reuse them.
@@ -62,7 +53,8 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
 /// Localizes the camera in the map without an initial guess: Algorithm 1 chooses the candidates, in
 /// order of score. Depth is weighted by RelocalizeConfig::disparity_sigma_px: the pose is a
 /// starting point that the local map, weighting depth as the camera does, must confirm.
+/// @param released  of earlier queries; used and updated if the settings say so. @pre not null then
 RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,
-                                AttemptMemo* memo = nullptr);
+                                AttemptMemo* memo = nullptr, ReleasedScores* released = nullptr);
 
 }  // namespace mh

@@ -33,12 +33,18 @@ void remember(Tracker& tracker, LastFrame frame, KeyframeId reference,
   tracker.coasting = false;
 }
 
+void forget(Tracker& tracker) {
+  Tracker fresh;
+  fresh.released_scores = std::move(tracker.released_scores);
+  tracker = std::move(fresh);
+}
+
 void lose(Tracker& tracker, Stamp stamp_ns, double coast_s) {
   const double lost_s = tracker.last ? seconds_since_last(tracker, stamp_ns) : HUGE_VAL;
   if (lost_s >= 0 && lost_s < coast_s)
     tracker.coasting = true;
   else
-    tracker = Tracker{};
+    forget(tracker);
 }
 
 }  // namespace mh

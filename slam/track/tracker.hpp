@@ -30,6 +30,8 @@ struct Tracker {
   KeyframeId reference;                    ///< keyframe that shares the most landmarks
   int frames_since_keyframe = 0;
   bool coasting = false;  ///< lost since `last`, but still within coast_s
+  /// Of earlier relocalizations, by keyframe (ReleasedScores); outlives losses.
+  std::vector<double> released_scores;
 
   bool tracking() const { return last.has_value() && !coasting; }
 };
@@ -49,6 +51,9 @@ void update_velocity(Tracker& tracker, Stamp stamp_ns, const SE3& camera_from_wo
 /// Records a tracked frame, to match the next one against.
 void remember(Tracker& tracker, LastFrame frame, KeyframeId reference,
               const std::optional<Motion>& motion);
+
+/// Forgets the last frame and the motion.
+void forget(Tracker& tracker);
 
 /// Records a lost frame. For `coast_s`, the last tracked frame still predicts where to look for the
 /// next.

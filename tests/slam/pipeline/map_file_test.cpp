@@ -204,6 +204,8 @@ class Layout {
     put<std::uint32_t>(t.reference.value);
     put<std::int32_t>(t.frames_since_keyframe);
     put<std::uint8_t>(t.coasting);
+    put<std::uint64_t>(t.released_scores.size());
+    for (const double score : t.released_scores) put<double>(score);
   }
 
   std::string out_;
@@ -215,7 +217,7 @@ std::string framed(const std::string& content) {
   const auto append = [&](auto value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
   };
-  append(std::uint32_t{5});
+  append(std::uint32_t{6});
   append(std::uint64_t{vocabulary()->digest()});
   append(std::uint64_t{content.size()});
   bytes += content;
@@ -333,6 +335,7 @@ TEST(MapFile, LiesAsAnotherReaderWouldExpect) {
   state.loop_memory = {.drift = SE3::exp((Vector6d() << 1, 2, 3, 0.4, 0.5, 0.6).finished()),
                        .keyframe = KeyframeId{1},
                        .agreeing = 1};
+  state.tracker.released_scores = {0.25, 0.5};
   for (const SlamState& of : {state, start()}) {
     const std::string bytes = framed(Layout(of).bytes());
     EXPECT_TRUE(bytes == encode_slam(of))
@@ -386,7 +389,7 @@ TEST(MapFile, SaysWhatIsWrong) {
   EXPECT_EQ(complaint(""), "room.mhmap: is not a map of Modelhouse's");
   std::string other = midway_bytes();
   other[8] = 9;
-  EXPECT_EQ(complaint(other), "room.mhmap: is a map of version 9, but this program reads 5");
+  EXPECT_EQ(complaint(other), "room.mhmap: is a map of version 9, but this program reads 6");
   EXPECT_NE(complaint(midway_bytes() + "x").find("too long"), std::string::npos);
   try {
     decode_slam(midway_bytes(), "room.mhmap", testing_support::box_room_vocabulary(2));

@@ -55,6 +55,19 @@ TEST(Settings, WhatIsWrittenReadsBackBitForBit) {
   EXPECT_NE(format_slam_config(unusual()), format_slam_config({}));
 }
 
+TEST(Settings, TheBaseStandsForItsAcceptance) {
+  EXPECT_EQ(parse_settings("{}", "s.yaml").slam.relocalize.acceptance, Acceptance::kOurs);
+  EXPECT_EQ(parse_settings("base: orb_slam2\n", "s.yaml").slam.relocalize.acceptance,
+            Acceptance::kOrbSlam2);
+  EXPECT_EQ(parse_settings("base: orb_slam2\nrelocalize: {acceptance: ours}\n", "s.yaml")
+                .slam.relocalize.acceptance,
+            Acceptance::kOurs)
+      << "what is said in full counts";
+  const std::string said = complaint("base: orbslam\n");
+  EXPECT_NE(said.find("s.yaml:1"), std::string::npos) << said;
+  EXPECT_NE(said.find("orb_slam2"), std::string::npos) << said;
+}
+
 TEST(Settings, TellsTheCameraAndLeavesTheRestAsItIs) {
   const Settings s = parse_settings(std::string(kCamera) +
                                         "images: {depth_per_meter: 1000, exchange_red_blue: "

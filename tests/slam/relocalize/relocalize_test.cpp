@@ -3,6 +3,8 @@
 #include "slam/config/slam.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -75,24 +77,58 @@ TEST(Relocalize, AnEmptyMapHasNoCandidate) {
   EXPECT_FALSE(result.camera_from_world.has_value());
 }
 
-// A keyframe of 60 points and a frame from beside it that sees them all without noise; the first
-// feature and the last may lie. What is found is each true one, no other, and the exact pose.
-TEST(Relocalize, FindsEachTrueLandmarkAndTheExactPose) {
-  const Camera camera;
-  const SlamConfig config;
-  constexpr std::uint32_t kPoints = 60;
-  const SE3 truth = SE3::exp((Vector6d() << 0.1, -0.05, 0.12, 0.03, -0.06, 0.02).finished());
-  const auto keypoint = [&](const Eigen::Vector3d& p) {
-    Keypoint k;
-    k.u_px = static_cast<float>(camera.project(p).x());
-    k.v_px = static_cast<float>(camera.project(p).y());
-    k.depth_m = static_cast<float>(p.z());
-    return k;
-  };
-  for (const bool lies : {false, true}) {
+// ORB-SLAM2 as released adds what an earlier query left with a neighbor (mRelocScore) where the
+// neighbor shares words but not enough of them: its answers depend on the order of the queries.
+TEST(ReleasedScores, OfNeighborsAreThoseOfEarlierQueries) {
+  constexpr std::uint32_t kShared = 20;  // landmarks: the two are neighbors
+  Map map;
+  for (const auto& words : {std::vector<std::uint32_t>{1, 2, 3, 4}, {4, 5, 6, 7}}) {
     Keyframe keyframe;
-    Features features;
-    WordIndex words;
+    keyframe.features.keypoints.resize(kShared);
+    keyframe.features.descriptors.resize(kShared);
+    keyframe.words.vector = vector_of({}, words);
+    map.add(std::move(keyframe));
+  }
+  for (std::uint32_t i = 0; i < kShared; ++i)
+    map.add_observation(map.add_landmark({0, 0, 2}, KeyframeId{0}, i), KeyframeId{1}, i);
+  map.update_covisibility(KeyframeId{0});
+  const AugmentedVector near_first = vector_of({}, {1, 2, 3, 4}),
+                        near_second = vector_of({}, {5, 6, 7, 9});
+  const SemanticConfig config{.alpha = 0.8, .beta = 0.0, .overlap = Overlap::kWords};
+  const auto score = [&](ReleasedScores* released) {
+    return select_keyframes(map, near_first, config, released).candidates.at(0).score;
+  };
+  // Four words of one's own share each: similarity 1 with the first, 1/4 with the second, which
+  // shares one word of four; the second query shares three of four with the second keyframe.
+  EXPECT_DOUBLE_EQ(score(nullptr), 1.25);
+  ReleasedScores released;
+  EXPECT_DOUBLE_EQ(score(&released), 1.0) << "nothing was ever computed for the neighbor";
+  select_keyframes(map, near_second, config, &released);
+  EXPECT_DOUBLE_EQ(score(&released), 1.75) << "the other query's similarity was not used";
+  EXPECT_DOUBLE_EQ(score(nullptr), 1.25);
+}
+
+/// A keyframe and a frame from beside it that sees the same points without noise.
+struct TwoViews {
+  static constexpr std::uint32_t kPoints = 60;
+  const Camera camera;
+  const SE3 truth = SE3::exp((Vector6d() << 0.1, -0.05, 0.12, 0.03, -0.06, 0.02).finished());
+  Map map;
+  Features features;
+  WordIndex words;
+
+  /// @param lying  whether the frame's keypoint of a point is 60 px away from where it should be
+  /// @param same_word  whether it has the word of the keyframe's
+  explicit TwoViews(const std::function<bool(std::uint32_t)>& lying,
+                    const std::function<bool(std::uint32_t)>& same_word = {}) {
+    const auto keypoint = [&](const Eigen::Vector3d& p) {
+      Keypoint k;
+      k.u_px = static_cast<float>(camera.project(p).x());
+      k.v_px = static_cast<float>(camera.project(p).y());
+      k.depth_m = static_cast<float>(p.z());
+      return k;
+    };
+    Keyframe keyframe;
     std::vector<Eigen::Vector3d> points;
     for (std::uint32_t i = 0; i < kPoints; ++i) {
       const RandomStream draw = RandomStream(4).fork(i);
@@ -102,30 +138,83 @@ TEST(Relocalize, FindsEachTrueLandmarkAndTheExactPose) {
       keyframe.features.descriptors.push_back(
           {draw.bits(3), draw.bits(4), draw.bits(5), draw.bits(6)});
       keyframe.words.by_node.emplace_back(i, i);
+      words.by_node.emplace_back(!same_word || same_word(i) ? i : i + 1000, i);
       features.keypoints.push_back(keypoint(truth * points[i]));
-      if (lies && (i == 0 || i == kPoints - 1)) features.keypoints[i].u_px += 60;
+      if (lying(i)) features.keypoints[i].u_px += 60;
     }
+    std::sort(words.by_node.begin(), words.by_node.end());
     features.descriptors = keyframe.features.descriptors;
-    words.by_node = keyframe.words.by_node;
     words.vector = keyframe.words.vector = vector_of({}, {1, 2, 3});
-    Map map;
     map.add(std::move(keyframe));
     for (std::uint32_t i = 0; i < kPoints; ++i)
-      map.refresh(map.add_landmark(points[i], KeyframeId{0}, i), config.features);
+      map.refresh(map.add_landmark(points[i], KeyframeId{0}, i), {});
+  }
+
+  RelocalizationResult find(Acceptance acceptance) const {
+    SlamConfig config;
+    config.relocalize.acceptance = acceptance;
     const FeatureGrid grid(features.keypoints, camera);
     MatchCounts counts{};
-    const auto found =
-        relocalize({features, grid, words}, {camera, config, map, counts}, RandomStream(1));
+    return relocalize({features, grid, words}, {camera, config, map, counts}, RandomStream(1));
+  }
+};
+
+constexpr auto kBoth = {Acceptance::kOurs, Acceptance::kOrbSlam2};
+
+// The first feature and the last may lie. What is found is each true one, no other, and the exact
+// pose.
+TEST(Relocalize, FindsEachTrueLandmarkAndTheExactPose) {
+  constexpr std::uint32_t kPoints = TwoViews::kPoints;
+  for (const Acceptance acceptance : kBoth)
+    for (const bool lies : {false, true}) {
+      const auto lying = [&](std::uint32_t i) { return lies && (i == 0 || i == kPoints - 1); };
+      const TwoViews views(lying);
+      const auto found = views.find(acceptance);
+      EXPECT_EQ(found.stage, RelocalizationStage::kVerified);
+      EXPECT_EQ(found.keyframe, KeyframeId{0});
+      EXPECT_EQ(found.inliers, static_cast<int>(lies ? kPoints - 2 : kPoints));
+      ASSERT_TRUE(found.camera_from_world);
+      EXPECT_LT((*found.camera_from_world * views.truth.inverse()).log().norm(), 1e-5);
+      ASSERT_EQ(found.landmarks.size(), kPoints);
+      for (std::uint32_t i = 0; i < kPoints; ++i)
+        EXPECT_EQ(found.landmarks[i], lying(i) ? LandmarkId{} : LandmarkId{i}) << i;
+    }
+}
+
+// 16 points share their words, the pose of these finds the others.
+TEST(Relocalize, BothAcceptancesSearchOnByThePose) {
+  for (const Acceptance acceptance : kBoth) {
+    const TwoViews views([](std::uint32_t) { return false; },
+                         [](std::uint32_t i) { return i < 16; });
+    const auto found = views.find(acceptance);
     EXPECT_EQ(found.stage, RelocalizationStage::kVerified);
-    EXPECT_EQ(found.keyframe, KeyframeId{0});
-    EXPECT_EQ(found.inliers, static_cast<int>(lies ? kPoints - 2 : kPoints));
-    ASSERT_TRUE(found.camera_from_world);
-    EXPECT_LT((*found.camera_from_world * truth.inverse()).log().norm(), 1e-5);
-    ASSERT_EQ(found.landmarks.size(), kPoints);
-    for (std::uint32_t i = 0; i < kPoints; ++i)
-      EXPECT_EQ(found.landmarks[i],
-                lies && (i == 0 || i == kPoints - 1) ? LandmarkId{} : LandmarkId{i})
-          << i;
+    EXPECT_EQ(found.inliers, static_cast<int>(TwoViews::kPoints));
+  }
+}
+
+// The first of 30 matches by words lie. Ours needs ten true ones, ORB-SLAM2 half of all.
+TEST(Relocalize, OrbSlam2AsksForHalfOfTheMatches) {
+  const auto stage = [](std::uint32_t liars, Acceptance acceptance) {
+    return TwoViews([=](std::uint32_t i) { return i < liars; },
+                    [](std::uint32_t i) { return i < 30; })
+        .find(acceptance)
+        .stage;
+  };
+  EXPECT_EQ(stage(10, Acceptance::kOrbSlam2), RelocalizationStage::kVerified);
+  EXPECT_EQ(stage(16, Acceptance::kOrbSlam2), RelocalizationStage::kPnp);
+  // 44 true ones are too few for anybody, but ours comes as far as counting them.
+  EXPECT_EQ(stage(16, Acceptance::kOurs), RelocalizationStage::kInliers);
+}
+
+// What a search adds counts for ORB-SLAM2 only if it completes the 50.
+TEST(Relocalize, OrbSlam2GivesUpWhereASearchCannotReachFifty) {
+  for (const auto& [liars, stage] : {std::pair{10U, RelocalizationStage::kVerified},
+                                     std::pair{11U, RelocalizationStage::kInliers}}) {
+    const std::uint32_t false_ones = liars;
+    const auto found = TwoViews([=](std::uint32_t i) { return i >= 60 - false_ones; },
+                                [](std::uint32_t i) { return i < 20; })
+                           .find(Acceptance::kOrbSlam2);
+    EXPECT_EQ(found.stage, stage) << liars;
   }
 }
 

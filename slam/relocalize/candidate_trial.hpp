@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "slam/core/random.hpp"
+#include "slam/match/context.hpp"
+#include "slam/relocalize/outcome.hpp"
+
+namespace mh {
+
+/// The matchers that a search reports under: relocalization and loop closing are counted
+/// separately.
+struct PlaceMatchers {
+  Matcher words = Matcher::kRelocalizationWords;
+  Matcher projection = Matcher::kRelocalizationProjection;
+};
+
+/// Result of trying one candidate.
+struct CandidateAttempt {
+  RelocalizationStage stage = RelocalizationStage::kMatches;
+  SE3 camera_from_world;
+  std::vector<LandmarkId> landmarks;  ///< per feature
+  int inliers = 0;
+  MatchCounts counts{};  ///< of this attempt alone
+};
+
+/// Tries one candidate keyframe as RelocalizeConfig::acceptance says.
+///
+/// `ours`: matches by words, PnP in RANSAC with depth, refinement; below min_inliers two searches
+/// guided by the pose, however few inliers it has.
+///
+/// `orb_slam2`, as R. Mur-Artal and J. D. Tardos, ORB-SLAM2 (IEEE T-RO 33(5), 2017) and its
+/// released program: EPnP on four matches at a time, gated at chi2_mono without depth; a consensus
+/// has half of the matches and at least ransac.min_inliers; as many tries as ransac.confidence
+/// demands for that share (35 for a half; the program counts with three points). Each consensus is
+/// refined; below min_inliers it is searched on (10 px, 100 bits), which counts only if both
+/// together reach min_inliers, and between 30 and min_inliers again (3 px, 64 bits). One departure:
+/// candidates are tried one after the other, not five tries each in turn. Which one wins may
+/// differ, not whether one can.
+CandidateAttempt try_candidate(KeyframeId candidate, const Query& query, const SlamContext& context,
+                               RandomStream stream, PlaceMatchers matchers);
+
+}  // namespace mh
