@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/guarded_child.hpp"
+#include "slam/core/guarded_child.hpp"
 #include "scenes/scene.hpp"
 
 namespace mh {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/guarded_child.hpp"
+#include "slam/core/guarded_child.hpp"
 
 #include <fcntl.h>
 #include <pthread.h>

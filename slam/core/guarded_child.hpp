@@ -7,7 +7,7 @@
 #include <functional>
 #include <string>
 
-#include "scenes/child_pipe.hpp"
+#include "slam/core/child_pipe.hpp"
 
 namespace mh {
 

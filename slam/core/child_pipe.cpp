@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/child_pipe.hpp"
+#include "slam/core/child_pipe.hpp"
 
 #include <poll.h>
 #include <unistd.h>

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "slam/core/counted.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/text_file.hpp"
+#include "slam/core/trajectory_io.hpp"
+#include "slam/detect/detector.hpp"
+#include "slam/detect/heads.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A box as a file states it.
+struct FiledBox {
+  double left = 0, top = 0, width = 0, height = 0;
+  double score = 1;
+  int network_class = 0;
+  bool normalized = false;  ///< in shares of the image, not pixels
+};
+
+/// Boxes by frame: by its index in the sequence, or by its stamp.
+struct FiledBoxes {
+  std::map<std::size_t, std::vector<FiledBox>> by_index;
+  std::map<Stamp, std::vector<FiledBox>> by_stamp;
+};
+
+constexpr Stamp kSameStamp_ns = 1'000'000;
+constexpr std::int64_t kMostFrames = 100'000'000;  // a larger number is a stamp in nanoseconds
+
+/// The boxes of a frame that a file calls "17" (an index) or "1305031229.528748" (a stamp, s).
+std::vector<FiledBox>& boxes_of(FiledBoxes& all, const std::string& frame,
+                                const std::string& place) {
+  const bool digits = !frame.empty() && frame.find_first_not_of("0123456789") == frame.npos;
+  if (digits && frame.size() <= 18) {
+    const std::int64_t number = std::stoll(frame);
+    if (number < kMostFrames) return all.by_index[static_cast<std::size_t>(number)];
+    return all.by_stamp[number];
+  }
+  char* end = nullptr;
+  const double seconds = std::strtod(frame.c_str(), &end);
+  if (frame.empty() || *end != '\0' || !std::isfinite(seconds) || std::abs(seconds) > 9e9)
+    throw InputError(
+        fmt::format("{}: frame '{}' is neither an index nor a stamp in seconds", place, frame));
+  return all.by_stamp[std::llround(seconds * 1e6) * 1000];
+}
+
+void check(const FiledBox& box, const ClassNames& names, const std::string& place) {
+  for (const auto& [what, value] : {std::pair("left", box.left),
+                                    {"top", box.top},
+                                    {"width", box.width},
+                                    {"height", box.height},
+                                    {"score", box.score}})
+    if (!std::isfinite(value))
+      throw InputError(fmt::format("{}: {} is {}, not a number", place, what, value));
+  if (box.width <= 0 || box.height <= 0)
+    throw InputError(fmt::format("{}: a box of {} x {} has no area", place, box.width, box.height));
+  if (box.score < 0 || box.score > 1)
+    throw InputError(fmt::format("{}: score {} is outside [0, 1]", place, box.score));
+  if (box.network_class < 0 || static_cast<std::size_t>(box.network_class) >= names.size())
+    throw InputError(fmt::format("{}: class {} is none of the {} that are named", place,
+                                 box.network_class, names.size()));
+}
+
+/// Numbers of a line, separated by blanks or commas. @throws InputError at any other word.
+std::vector<double> numbers(std::string line, const std::string& place) {
+  std::ranges::replace(line, ',', ' ');
+  std::istringstream words(line);
+  std::vector<double> all;
+  for (std::string word; words >> word;) {
+    char* end = nullptr;
+    all.push_back(std::strtod(word.c_str(), &end));
+    if (*end != '\0') throw InputError(fmt::format("{}: '{}' is not a number", place, word));
+  }
+  return all;
+}
+
+int whole(double value, const char* what, const std::string& place) {
+  if (!(std::abs(value) <= 1e9) || value != std::floor(value))
+    throw InputError(fmt::format("{}: {} {} is not a whole number", place, what, value));
+  return static_cast<int>(value);
+}
+
+/// Calls visit(place, numbers) for each line that is neither empty nor a comment.
+template <class Visit>
+void for_each_line(const fs::path& file, const Visit& visit) {
+  std::istringstream text(read_text(file));
+  int number = 0;
+  for (std::string line; std::getline(text, line);) {
+    const std::string place = fmt::format("{}:{}", file.string(), ++number);
+    if (line.find_first_not_of(" \t\r") == line.npos || line[0] == '#') continue;
+    visit(place, numbers(line, place));
+  }
+}
+
+/// YOLO's text: FRAME.txt of lines "class x y width height [score]", center and size in shares of
+/// the image.
+void read_yolo_folder(const fs::path& folder, const ClassNames& names, FiledBoxes& all) {
+  for (const std::string& name : list_folder(folder, "*.txt")) {
+    if (name == "classes.txt") continue;
+    const fs::path file = folder / name;
+    std::vector<FiledBox>& boxes = boxes_of(all, file.stem().string(), file.string());
+    for_each_line(file, [&](const std::string& place, const std::vector<double>& v) {
+      if (v.size() != 5 && v.size() != 6)
+        throw InputError(fmt::format("{}: {}, not class x y width height [score]", place,
+                                     counted(v.size(), "number")));
+      FiledBox box{.left = v[1] - v[3] / 2,
+                   .top = v[2] - v[4] / 2,
+                   .width = v[3],
+                   .height = v[4],
+                   .score = v.size() == 6 ? v[5] : 1,
+                   .network_class = whole(v[0], "class", place),
+                   .normalized = true};
+      check(box, names, place);
+      boxes.push_back(box);
+    });
+  }
+}
+
+/// MOT: lines "frame,id,left,top,width,height,confidence,class[,visibility]"; frames and classes
+/// count from 1.
+void read_mot(const fs::path& file, const ClassNames& names, FiledBoxes& all) {
+  for_each_line(file, [&](const std::string& place, const std::vector<double>& v) {
+    if (v.size() < 8)
+      throw InputError(
+          fmt::format("{}: {}, not frame, id, left, top, width, height, confidence, class", place,
+                      counted(v.size(), "number")));
+    const int frame = whole(v[0], "frame", place);
+    if (frame < 1) throw InputError(fmt::format("{}: frame {}: they count from 1", place, frame));
+    FiledBox box{.left = v[2] - 1,  // the upper left pixel is (1, 1)
+                 .top = v[3] - 1,
+                 .width = v[4],
+                 .height = v[5],
+                 .score = v[6],
+                 .network_class = whole(v[7], "class", place) - 1};
+    check(box, names, place);
+    all.by_index[static_cast<std::size_t>(frame - 1)].push_back(box);
+  });
+}
+
+/// COCO's results: [{"image_id": 0, "category_id": 62, "bbox": [x, y, width, height], "score":
+/// 0.9}, ...].
+void read_coco(const fs::path& file, const ClassNames& names, bool own_names, FiledBoxes& all) {
+  using Json = nlohmann::json;
+  const Json json = Json::parse(read_text(file), nullptr, false);
+  if (json.is_discarded() || !json.is_array())
+    throw InputError(fmt::format("{}: is not a list of COCO's results (JSON)", file.string()));
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const std::string place = fmt::format("{}: entry {}", file.string(), i);
+    const Json& entry = json[i];
+    const auto part = [&](const char* key) -> const Json& {
+      if (!entry.is_object() || !entry.contains(key))
+        throw InputError(fmt::format("{}: has no '{}'", place, key));
+      return entry.at(key);
+    };
+    const Json &image = part("image_id"), &category = part("category_id"), &bbox = part("bbox"),
+               &score = part("score");
+    const bool box_is_good = bbox.is_array() && bbox.size() == 4 &&
+                             std::ranges::all_of(bbox, [](const Json& v) { return v.is_number(); });
+    if (!box_is_good || !score.is_number() || !category.is_number_integer())
+      throw InputError(fmt::format(
+          "{}: bbox must be four numbers, score a number, category_id a whole one", place));
+    const double id = category.get<double>();
+    FiledBox box{.left = bbox[0],
+                 .top = bbox[1],
+                 .width = bbox[2],
+                 .height = bbox[3],
+                 .score = score,
+                 .network_class = 0};
+    const int number = whole(id, "category_id", place);
+    box.network_class = own_names ? number - 1 : coco80_of_category(number);
+    if (box.network_class < 0)
+      throw InputError(fmt::format("{}: category_id {} is none of {}", place, number,
+                                   own_names ? "the named classes, which count from 1" : "COCO's"));
+    check(box, names, place);
+    std::string frame = image.is_string() ? image.get<std::string>() : image.dump();
+    for (const char* ending : {".png", ".jpg", ".jpeg"})
+      if (frame.ends_with(ending)) frame.resize(frame.size() - std::string_view(ending).size());
+    boxes_of(all, frame, place).push_back(box);
+  }
+}
+
+class BoxesFromFiles : public Detector {
+ public:
+  explicit BoxesFromFiles(const DetectorSpec& spec)
+      : settings_(spec.settings),
+        names_(spec.classes.empty() ? coco80() : load_class_names(spec.classes)) {
+    const std::string ending = spec.boxes.extension().string();
+    if (is_folder(spec.boxes)) {
+      kind_ = "YOLO text";
+      read_yolo_folder(spec.boxes, names_, filed_);
+    } else if (ending == ".json") {
+      kind_ = "COCO results";
+      read_coco(spec.boxes, names_, !spec.classes.empty(), filed_);
+    } else if (ending == ".csv" || ending == ".txt") {
+      kind_ = "MOT";
+      read_mot(spec.boxes, names_, filed_);
+    } else {
+      if (!is_there(spec.boxes)) read_file(spec.boxes);  // for its message
+      throw InputError(
+          fmt::format("{}: boxes are .json (COCO), .csv or .txt (MOT), or a folder of "
+                      ".txt (YOLO)",
+                      spec.boxes.string()));
+    }
+    if (filed_.by_index.empty() && filed_.by_stamp.empty())
+      throw InputError(fmt::format("{}: holds no box", spec.boxes.string()));
+  }
+
+  Detected detect(const Grid2d<Rgb8>& color, std::size_t index, Stamp stamp_ns) const override {
+    const std::vector<FiledBox>* filed = nullptr;
+    if (const auto at = filed_.by_index.find(index); at != filed_.by_index.end())
+      filed = &at->second;
+    const auto near = filed_.by_stamp.lower_bound(stamp_ns - kSameStamp_ns);
+    if (near != filed_.by_stamp.end() && near->first <= stamp_ns + kSameStamp_ns)
+      filed = &near->second;
+    Detected found;
+    if (filed == nullptr) return found;
+    std::vector<Candidate> candidates;
+    for (const FiledBox& box : *filed) {
+      if (box.score < settings_.confidence) continue;
+      const double w = box.normalized ? color.width() : 1, h = box.normalized ? color.height() : 1;
+      Candidate candidate{.x = (box.left + box.width / 2) * w,
+                          .y = (box.top + box.height / 2) * h,
+                          .width = box.width * w,
+                          .height = box.height * h,
+                          .best = box.network_class,
+                          .scores = std::vector<float>(names_.size(), 0.0F)};
+      constexpr double kSlack_px = 1;
+      if (box.left * w < -kSlack_px || box.top * h < -kSlack_px ||
+          (box.left + box.width) * w > color.width() + kSlack_px ||
+          (box.top + box.height) * h > color.height() + kSlack_px)
+        ++found.clipped;
+      candidate.scores[static_cast<std::size_t>(box.network_class)] = static_cast<float>(box.score);
+      candidates.push_back(std::move(candidate));
+    }
+    found.boxes =
+        select_boxes(candidates, Placement{}, color.width(), color.height(), names_, settings_);
+    return found;
+  }
+  const ClassNames& names() const override { return names_; }
+  std::string description() const override {
+    std::size_t boxes = 0;
+    for (const auto& [frame, list] : filed_.by_index) boxes += list.size();
+    for (const auto& [frame, list] : filed_.by_stamp) boxes += list.size();
+    return fmt::format("{}: {} of {}", kind_, counted(boxes, "box", "boxes"),
+                       counted(filed_.by_index.size() + filed_.by_stamp.size(), "frame"));
+  }
+  std::uint64_t digest() const override { return 0; }
+
+ private:
+  DetectorSettings settings_;
+  ClassNames names_;
+  const char* kind_ = "";
+  FiledBoxes filed_;
+};
+
+}  // namespace
+
+std::unique_ptr<Detector> open_boxes(const DetectorSpec& spec) {
+  return std::make_unique<BoxesFromFiles>(spec);
+}
+
+}  // namespace mh

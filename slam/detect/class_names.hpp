@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "slam/core/labels.hpp"
+
+namespace mh {
+
+/// The classes of a network, by its own index.
+struct ClassNames {
+  std::vector<std::string> names;
+  std::vector<ClassId> ids;  ///< the class of ours with that name; void where none fits
+  std::size_t size() const { return names.size(); }
+};
+
+/// The 80 detection classes of COCO (Lin et al., ECCV 2014), in the order of its networks.
+const ClassNames& coco80();
+
+/// The index among coco80() of a COCO category id, which counts to 90 with gaps; -1 if there is
+/// none.
+int coco80_of_category(int category_id);
+
+/// Reads one name per line, as darknet's .names files are; blank lines at the end do not count.
+/// @throws InputError naming the file, also if it has no name.
+ClassNames load_class_names(const std::filesystem::path& file);
+
+}  // namespace mh

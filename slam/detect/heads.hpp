@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "slam/detect/class_names.hpp"
+#include "slam/detect/detected.hpp"
+#include "slam/detect/fit_image.hpp"
+
+namespace mh {
+
+/// One output of a network: its shape and its values, row-major.
+struct Tensor {
+  std::vector<int> shape;
+  std::span<const float> values;
+};
+
+/// "1 x 3549 x 85"
+std::string shape_text(const Tensor& tensor);
+
+/// What a network's outputs mean, by their shapes. A YOLOX whose boxes are decoded has the shape of
+/// one whose are not; they differ in the values.
+/// @param darknet  it comes from a Darknet .cfg
+/// @returns kAuto if none fits
+Head recognize_head(std::span<const Tensor> outputs, const InputSize& input, bool darknet);
+
+/// The number of classes of outputs with that head; 0 if they cannot be its outputs.
+int class_count(Head head, std::span<const Tensor> outputs, const InputSize& input);
+
+/// A box in a network's output, before the image is known.
+struct Candidate {
+  double x = 0, y = 0, width = 0, height = 0;  ///< center and size, px of the input
+  int best = 0;                                ///< class of the highest score
+  std::vector<float> scores;                   ///< by the network's classes
+};
+
+/// Returns the boxes of a detecting head whose best score is at least `confidence`, in the order of
+/// the output. A score is objectness times class probability, where a head has both. Values that
+/// are not finite make no box.
+std::vector<Candidate> decode(Head head, std::span<const Tensor> outputs, const InputSize& input,
+                              double confidence);
+
+/// Non-maximum suppression within each class, the best first, ties by their order; then the best
+/// `max_detections`, in pixels of the image. Parts of a box outside the image are cut off.
+std::vector<DetectedBox> select_boxes(const std::vector<Candidate>& candidates, const Placement& at,
+                                      int width, int height, const ClassNames& names,
+                                      const DetectorSettings& settings);
+
+/// The classes of scores: each of ours gets those of the network's that are called so; at most 1 in
+/// sum. Empty if the best has no class of ours; scores below 0.01 are left out.
+ClassDistribution our_classes(std::span<const float> scores, int best, const ClassNames& names);
+
+/// Labels of an image by a segmenting head: values of each class are probabilities, or turned into
+/// them (softmax), and interpolated between the output's cells. An entry of the palette is the mean
+/// of the pixels with the same best class and about the same certainty (steps of a quarter), its
+/// three most probable classes. Pixels of which no class reaches `confidence` are void.
+SemanticImage segmented(const Tensor& output, const Placement& at, const InputSize& input,
+                        int width, int height, const ClassNames& names, double confidence);
+
+}  // namespace mh

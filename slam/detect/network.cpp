@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <xxhash.h>
+#include <opencv2/core/utility.hpp>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/dnn.hpp>
+
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/guarded_child.hpp"
+#include "slam/core/settings_io.hpp"
+#include "slam/detect/detector.hpp"
+#include "slam/detect/fit_image.hpp"
+#include "slam/detect/heads.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kUsualInput_px = 640;
+
+/// OpenCV's importers write what they think to stderr; what matters is in their exceptions.
+class Quiet {
+ public:
+  Quiet() : before_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
+  ~Quiet() { cv::utils::logging::setLogLevel(before_); }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+ private:
+  cv::utils::logging::LogLevel before_;
+};
+
+/// OpenCV's reason in one line.
+std::string reason(const cv::Exception& error) {
+  constexpr std::size_t kMost = 300;
+  std::string text = error.err.empty() ? std::string(error.what()) : error.err;
+  std::ranges::replace(text, '\n', ' ');
+  if (text.size() > kMost) text = text.substr(0, kMost) + "...";
+  return text;
+}
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& why) {
+  throw InputError(fmt::format("{}: {}", file.string(), why));
+}
+
+/// Runs OpenCV on a file. @throws InputError with its reason.
+template <class Work>
+auto with_opencv(const fs::path& file, const char* what, const Work& work) {
+  const Quiet quiet;
+  try {
+    return work();
+  } catch (const cv::Exception& error) {
+    refuse(file, fmt::format("OpenCV {} cannot {} it: {}", CV_VERSION, what, reason(error)));
+  }
+}
+
+/// A whole number of the section [net] of a Darknet configuration; 0 if it is not there.
+int of_net(const std::string& config, std::string_view key) {
+  std::istringstream lines(config);
+  bool in_net = false;
+  for (std::string line; std::getline(lines, line);) {
+    std::erase_if(line, [](unsigned char c) { return std::isspace(c) != 0; });
+    if (line.starts_with('[')) in_net = line == "[net]" || line == "[network]";
+    if (!in_net || !line.starts_with(key) || line.size() <= key.size() || line[key.size()] != '=')
+      continue;
+    int value = 0;
+    std::from_chars(line.data() + key.size() + 1, line.data() + line.size(), value);
+    return value > 0 && value <= 8192 ? value : 0;
+  }
+  return 0;
+}
+
+/// Checks that Darknet's weights are as many as the layers take, which OpenCV does not: it would
+/// read beyond their end.
+void check_weights(const DetectorSpec& spec, cv::dnn::Net& net, std::string_view weights) {
+  std::uint64_t values = 0;
+  for (const cv::String& name : net.getLayerNames()) {
+    const cv::Ptr<cv::dnn::Layer> layer = net.getLayer(net.getLayerId(name));
+    if (layer->type == "Region") continue;  // anchors, of the configuration
+    for (const cv::Mat& blob : layer->blobs) values += blob.total();
+  }
+  std::int32_t version[2] = {};
+  std::memcpy(version, weights.data(), sizeof version);
+  const std::uint64_t head = version[0] * 10 + version[1] >= 2 ? 20 : 16;
+  const std::uint64_t expected = head + 4 * values;
+  if (weights.size() == expected) return;
+  refuse(spec.network, fmt::format("holds {} bytes where {} asks for {}: {}", weights.size(),
+                                   spec.config.string(), expected,
+                                   weights.size() < expected ? "it is truncated, or of another one"
+                                                             : "it is of another one"));
+}
+
+/// A network's files, read once.
+struct NetworkFiles {
+  std::string network, config;
+  bool is_darknet = false;
+};
+
+NetworkFiles read_files(const DetectorSpec& spec) {
+  NetworkFiles files;
+  files.is_darknet = !spec.config.empty();
+  if (files.is_darknet) files.config = read_file(spec.config);
+  files.network = read_file(spec.network);
+  if (files.network.size() > std::size_t{std::numeric_limits<int>::max()})
+    refuse(spec.network, "is larger than 2 GB");
+  if (files.is_darknet && files.network.size() < 20)
+    refuse(spec.network, "is too short for weights of Darknet");
+  return files;
+}
+
+/// An imported network, and how its input and output are to be understood.
+struct Imported {
+  cv::dnn::Net net;
+  std::vector<cv::String> outputs;
+  InputSize input;
+  DetectorSettings settings;  ///< without any kAuto
+  ClassNames names;
+};
+
+/// Outputs of one run; the tensors view the matrices.
+struct Outputs {
+  std::vector<cv::Mat> mats;
+  std::vector<Tensor> tensors;
+};
+
+Outputs forward(Imported& imported, const cv::Mat& input) {
+  Outputs out;
+  imported.net.setInput(input);
+  imported.net.forward(out.mats, imported.outputs);
+  for (cv::Mat& mat : out.mats) {
+    if (mat.depth() != CV_32F) mat.convertTo(mat, CV_32F);
+    if (!mat.isContinuous()) mat = mat.clone();
+    out.tensors.push_back({{mat.size.p, mat.size.p + mat.dims}, {mat.ptr<float>(), mat.total()}});
+  }
+  return out;
+}
+
+void resolve_auto(DetectorSettings& s, Head head) {
+  s.head = head;
+  const bool yolox = head == Head::kYolox || head == Head::kYoloxDecoded,
+             segments = head == Head::kSegmentation;
+  if (s.letterbox == Letterbox::kAuto)
+    s.letterbox = yolox ? Letterbox::kCorner : segments ? Letterbox::kStretch : Letterbox::kCenter;
+  if (s.normalize == Normalize::kAuto)
+    s.normalize = yolox ? Normalize::kNone : segments ? Normalize::kImagenet : Normalize::kUnit;
+  if (s.channels == Channels::kAuto) s.channels = yolox ? Channels::kBgr : Channels::kRgb;
+}
+
+/// The head by name or by what a gray image gives, and the classes that it must have.
+void understand(const DetectorSpec& spec, const NetworkFiles& files, Imported& imported) {
+  const std::vector<int> shape = {1, 3, imported.input.height, imported.input.width};
+  const cv::Mat gray(shape, CV_32F, cv::Scalar::all(0.5));
+  const Outputs out = with_opencv(spec.network, "run", [&] { return forward(imported, gray); });
+  std::vector<std::string> shapes;
+  for (const Tensor& tensor : out.tensors) shapes.push_back(shape_text(tensor));
+  const Head head = spec.settings.head != Head::kAuto
+                        ? spec.settings.head
+                        : recognize_head(out.tensors, imported.input, files.is_darknet);
+  if (head == Head::kAuto)
+    refuse(
+        spec.network,
+        fmt::format("its output ({}) at an input of {} x {} is that of no known head: name it by "
+                    "`head`, or its input by `width_px` and `height_px`",
+                    fmt::join(shapes, ", "), imported.input.width, imported.input.height));
+  const int classes = class_count(head, out.tensors, imported.input);
+  if (classes == 0)
+    refuse(spec.network, fmt::format("its output ({}) is not that of head '{}'",
+                                     fmt::join(shapes, ", "), SettingsWriter::word_of(head)));
+  resolve_auto(imported.settings, head);
+  imported.names = spec.classes.empty() ? coco80() : load_class_names(spec.classes);
+  if (imported.names.size() == static_cast<std::size_t>(classes)) return;
+  if (spec.classes.empty())
+    refuse(spec.network, fmt::format("has {} classes, not COCO's 80: name them by `classes`, a "
+                                     "file of one name per line",
+                                     classes));
+  refuse(spec.classes, fmt::format("names {} classes, and {} has {}", imported.names.size(),
+                                   spec.network.string(), classes));
+}
+
+Imported import(const DetectorSpec& spec, const NetworkFiles& files) {
+  Imported imported{.net = {}, .outputs = {}, .input = {}, .settings = spec.settings, .names = {}};
+  imported.net = with_opencv(spec.network, "import", [&] {
+    return files.is_darknet
+               ? cv::dnn::readNetFromDarknet(files.config.data(), files.config.size(),
+                                             files.network.data(), files.network.size())
+               : cv::dnn::readNetFromONNX(files.network.data(), files.network.size());
+  });
+  if (imported.net.empty()) refuse(spec.network, "holds no network");
+  if (files.is_darknet) check_weights(spec, imported.net, files.network);
+  imported.net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
+  imported.net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
+  imported.outputs = imported.net.getUnconnectedOutLayersNames();
+  const InputSize declared =
+      files.is_darknet ? InputSize{of_net(files.config, "width"), of_net(files.config, "height")}
+                       : onnx_input_size(files.network).value_or(InputSize{});
+  const auto side = [&](int named, int stated, const char* key) {
+    if (named > 0 && stated > 0 && named != stated && !files.is_darknet)
+      refuse(spec.network, fmt::format("its input is fixed to {} x {}: `{}: {}` cannot be",
+                                       declared.width, declared.height, key, named));
+    return named > 0 ? named : stated > 0 ? stated : kUsualInput_px;
+  };
+  imported.input = {side(spec.settings.width_px, declared.width, "width_px"),
+                    side(spec.settings.height_px, declared.height, "height_px")};
+  understand(spec, files, imported);
+  return imported;
+}
+
+/// Imports and runs the network once where a crash does no harm.
+void try_in_child(const DetectorSpec& spec, const NetworkFiles& files) {
+  if (reads_here()) return;
+  constexpr std::uint64_t kMemoryPerByte = 20;
+  const GuardLimits limits{
+      .processor_s = 30 + static_cast<int>(files.network.size() >> 22),
+      .memory_bytes = (std::uint64_t{4} << 30) + kMemoryPerByte * files.network.size()};
+  in_child(
+      spec.network, limits,
+      [&]() -> std::function<void(PipeWriter&)> {
+        import(spec, files);
+        return [](PipeWriter&) {};
+      },
+      [](PipeReader&) {});
+}
+
+class Network : public Detector {
+ public:
+  explicit Network(const DetectorSpec& spec) {
+    const NetworkFiles files = read_files(spec);
+    cv::setNumThreads(1);
+    try_in_child(spec, files);
+    imported_ = import(spec, files);
+    file_ = spec.network;
+    digest_ = XXH3_64bits(files.network.data(), files.network.size());
+    digest_ = XXH3_64bits_withSeed(files.config.data(), files.config.size(), digest_);
+    std::string decides = fmt::format("{}", fmt::join(imported_.names.names, "\n"));
+    DetectorSettings seen = imported_.settings;
+    seen.fill = {};  // of the labels, which are made of the boxes anew
+    decides += format_detector_settings(seen, false) +
+               fmt::format("OpenCV {} input {} x {}", CV_VERSION, imported_.input.width,
+                           imported_.input.height);
+    digest_ = XXH3_64bits_withSeed(decides.data(), decides.size(), digest_);
+  }
+
+  Detected detect(const Grid2d<Rgb8>& color, std::size_t, Stamp) const override {
+    const DetectorSettings& settings = imported_.settings;
+    const Placement at =
+        place_image(color.width(), color.height(), imported_.input, settings.letterbox);
+    const cv::Mat input = network_input(color, imported_.input, at, settings);
+    const std::scoped_lock lock(mutex_);
+    const Outputs out = with_opencv(file_, "run", [&] { return forward(imported_, input); });
+    Detected found;
+    if (settings.head == Head::kSegmentation) {
+      for (const Tensor& tensor : out.tensors)
+        if (tensor.shape.size() == 4)
+          found.pixels = segmented(tensor, at, imported_.input, color.width(), color.height(),
+                                   imported_.names, settings.confidence);
+    } else {
+      found.boxes =
+          select_boxes(decode(settings.head, out.tensors, imported_.input, settings.confidence), at,
+                       color.width(), color.height(), imported_.names, settings);
+    }
+    return found;
+  }
+  const ClassNames& names() const override { return imported_.names; }
+  std::string description() const override {
+    return fmt::format("{}, {} classes, input {} x {}",
+                       SettingsWriter::word_of(imported_.settings.head), imported_.names.size(),
+                       imported_.input.width, imported_.input.height);
+  }
+  std::uint64_t digest() const override { return digest_; }
+
+ private:
+  mutable std::mutex mutex_;
+  mutable Imported imported_;  // running a network changes its memory
+  fs::path file_;
+  std::uint64_t digest_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Detector> open_network(const DetectorSpec& spec) {
+  return std::make_unique<Network>(spec);
+}
+
+std::unique_ptr<Detector> open_detector(const DetectorSpec& spec) {
+  return spec.network.empty() ? open_boxes(spec) : open_network(spec);
+}
+
+}  // namespace mh

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/detect/settings.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/settings_io.hpp"
+
+namespace mh {
+
+namespace fs = std::filesystem;
+
+DetectorSpec detector_from_file(const fs::path& file) {
+  DetectorSpec spec;
+  const std::string ending = file.extension().string();
+  if (ending == ".onnx" || ending == ".weights") {
+    spec.network = file;
+    if (ending == ".weights") spec.config = fs::path(file).replace_extension(".cfg");
+  } else if (ending == ".json" || ending == ".csv" || ending == ".txt" || is_folder(file)) {
+    spec.boxes = file;
+  } else {
+    throw InputError(fmt::format(
+        "{}: is neither a network (.onnx, .weights) nor boxes (.json, .csv, .txt, a folder)",
+        file.string()));
+  }
+  return spec;
+}
+
+void read_detector(YamlReader& mapping, const fs::path& folder, DetectorSpec& spec) {
+  for (const auto& [key, path] : {std::pair("network", &spec.network),
+                                  {"config", &spec.config},
+                                  {"classes", &spec.classes},
+                                  {"boxes", &spec.boxes}})
+    if (const auto node = mapping.find(key))
+      *path = (folder / node->as_string()).lexically_normal();
+  MappingReader read(mapping);
+  fields(spec.settings, read);
+  if (spec.network.empty() == spec.boxes.empty())
+    mapping.fail(spec.boxes.empty() ? "names neither `network` nor `boxes`"
+                                    : "names both `network` and `boxes`");
+  if (spec.network.extension() == ".weights" && spec.config.empty())
+    spec.config = fs::path(spec.network).replace_extension(".cfg");
+}
+
+void load_detector_settings(const fs::path& file, DetectorSpec& spec) {
+  YamlReader yaml = YamlReader::load(file);
+  read_detector(yaml, file.parent_path(), spec);
+  yaml.finish();
+}
+
+std::string format_detector_settings(const DetectorSettings& settings, bool notes) {
+  SettingsWriter writer(notes);
+  fields(settings, writer);
+  // A file of these has no section: nothing is indented.
+  std::string text;
+  bool begins = true;
+  for (std::size_t i = 0; i < writer.text().size(); ++i) {
+    if (begins && writer.text().compare(i, 2, "  ") == 0) i += 2;
+    text += writer.text()[i];
+    begins = writer.text()[i] == '\n';
+  }
+  return text;
+}
+
+}  // namespace mh

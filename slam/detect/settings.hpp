@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "slam/core/setting.hpp"
+#include "slam/core/words.hpp"
+#include "slam/core/yaml.hpp"
+
+namespace mh {
+
+/// What a network's output means.
+enum class Head { kAuto, kYolox, kYoloxDecoded, kYolov5, kYolov8, kDarknet, kSegmentation };
+constexpr Names<Head, 7> setting_words(Head) {
+  return {{{"auto", Head::kAuto},
+           {"yolox", Head::kYolox},
+           {"yolox_decoded", Head::kYoloxDecoded},
+           {"yolov5", Head::kYolov5},
+           {"yolov8", Head::kYolov8},
+           {"darknet", Head::kDarknet},
+           {"segmentation", Head::kSegmentation}}};
+}
+
+/// How an image gets the network's input size.
+enum class Letterbox { kAuto, kCorner, kCenter, kStretch };
+constexpr Names<Letterbox, 4> setting_words(Letterbox) {
+  return {{{"auto", Letterbox::kAuto},
+           {"corner", Letterbox::kCorner},
+           {"center", Letterbox::kCenter},
+           {"stretch", Letterbox::kStretch}}};
+}
+
+/// What is done to a channel of 0 to 255.
+enum class Normalize { kAuto, kNone, kUnit, kImagenet };
+constexpr Names<Normalize, 4> setting_words(Normalize) {
+  return {{{"auto", Normalize::kAuto},
+           {"none", Normalize::kNone},
+           {"unit", Normalize::kUnit},
+           {"imagenet", Normalize::kImagenet}}};
+}
+
+enum class Channels { kAuto, kBgr, kRgb };
+constexpr Names<Channels, 3> setting_words(Channels) {
+  return {{{"auto", Channels::kAuto}, {"bgr", Channels::kBgr}, {"rgb", Channels::kRgb}}};
+}
+
+/// Which pixels of a box get its label: all of them, or those of its foreground surface.
+enum class BoxFill { kBox, kForeground };
+constexpr Names<BoxFill, 2> setting_words(BoxFill) {
+  return {{{"box", BoxFill::kBox}, {"foreground", BoxFill::kForeground}}};
+}
+
+struct DetectorSettings {
+  Head head = Head::kAuto;
+  Letterbox letterbox = Letterbox::kAuto;
+  int padding = 114;
+  Normalize normalize = Normalize::kAuto;
+  Channels channels = Channels::kAuto;
+  int width_px = 0, height_px = 0;
+  double confidence = 0.25;
+  double nms = 0.45;
+  int max_detections = 100;
+  BoxFill fill = BoxFill::kBox;
+  friend bool operator==(const DetectorSettings&, const DetectorSettings&) = default;
+};
+
+template <Either<DetectorSettings> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [head, letterbox, padding, normalize, channels, width_px, height_px, confidence, nms,
+         max_detections, fill] = c;
+  v("head", head, {}, "what the output means; auto: by its shape");
+  v("letterbox", letterbox, {},
+    "where the scaled image stands in the input, or stretched over it; auto: corner for yolox, "
+    "stretch for segmentation, else center");
+  v("padding", padding, {0, 255}, "gray level around it");
+  v("normalize", normalize, {},
+    "of 0 to 255: none, unit (to 0 to 1), imagenet (its mean and deviation); auto: none for yolox, "
+    "imagenet for segmentation, else unit");
+  v("channels", channels, {}, "auto: bgr for yolox, else rgb");
+  v("width_px", width_px, {0, 8192}, "of the input; 0: as the network states, else 640");
+  v("height_px", height_px, {0, 8192}, "of the input; 0: as the network states, else 640");
+  v("confidence", confidence, setting::kShare,
+    "least score of a box; of a pixel's class, if the network segments");
+  v("nms", nms, setting::kShare,
+    "a box is dropped that overlaps a better one of its class by more (intersection over union)");
+  v("max_detections", max_detections, {1, 250}, "the best of an image");
+  v("fill", fill, {},
+    "pixels that get a box's label: box (all), foreground (those of its surface, by depth)");
+}
+
+/// A real detector, as suites and the command line name it: a network with its settings, or boxes
+/// that another program found.
+struct DetectorSpec {
+  std::filesystem::path network;  ///< ONNX, or Darknet's weights; empty: boxes
+  std::filesystem::path config;   ///< Darknet's .cfg
+  std::filesystem::path classes;  ///< names, one per line; empty: COCO's 80
+  std::filesystem::path boxes;    ///< COCO JSON, MOT CSV, folder of YOLO text; empty: a network
+  DetectorSettings settings;
+  friend bool operator==(const DetectorSpec&, const DetectorSpec&) = default;
+};
+
+/// Returns a network or boxes by a file's ending; weights have their .cfg next to them.
+/// @throws InputError if the ending is none that is known.
+DetectorSpec detector_from_file(const std::filesystem::path& file);
+
+/// Reads the settings in a mapping into a spec, and its paths `network`, `config`, `classes` and
+/// `boxes`, relative to `folder`. Does not finish() the mapping.
+void read_detector(YamlReader& mapping, const std::filesystem::path& folder, DetectorSpec& spec);
+
+/// Reads a file of such keys. @throws InputError naming file, line and value.
+void load_detector_settings(const std::filesystem::path& file, DetectorSpec& spec);
+
+/// Every setting with its meaning, as a file.
+std::string format_detector_settings(const DetectorSettings& settings, bool notes);
+
+}  // namespace mh

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/temporary_folder.hpp"
+#include "slam/detect/detector.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+class BoxFiles : public testing::Test {
+ protected:
+  std::unique_ptr<Detector> open(const std::string& name, const std::string& content) {
+    const fs::path file = folder_.path() / name;
+    fs::create_directories(file.parent_path());
+    write_atomically(file, content);
+    return open_detector(
+        detector_from_file(name.find('/') == name.npos ? file : file.parent_path()));
+  }
+  std::string refusal(const std::string& name, const std::string& content) {
+    try {
+      open(name, content);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  TemporaryFolder folder_{fs::temp_directory_path()};
+  const Grid2d<Rgb8> image_{100, 50};
+};
+
+void expect_chair(const Detected& found) {
+  ASSERT_EQ(found.boxes.size(), 1U);
+  EXPECT_NEAR(found.boxes[0].left, 10, 1e-4);
+  EXPECT_NEAR(found.boxes[0].top, 20, 1e-4);
+  EXPECT_NEAR(found.boxes[0].right, 40, 1e-4);
+  EXPECT_NEAR(found.boxes[0].bottom, 40, 1e-4);
+  EXPECT_FLOAT_EQ(found.boxes[0].score, 0.8F);
+  EXPECT_EQ(found.boxes[0].classes.most_probable(), *class_by_name("chair"));
+}
+
+TEST_F(BoxFiles, OfCocoAreFoundByIndexOrStamp) {
+  const auto by_index = open(
+      "a.json", R"([{"image_id": 3, "category_id": 62, "bbox": [10, 20, 30, 20], "score": 0.8}])");
+  expect_chair(by_index->detect(image_, 3, 0));
+  EXPECT_TRUE(by_index->detect(image_, 2, 0).boxes.empty());
+  const auto by_stamp = open(
+      "a.json",
+      R"([{"image_id": "1305031229.528748.png", "category_id": 62, "bbox": [10, 20, 30, 20], "score": 0.8}])");
+  expect_chair(by_stamp->detect(image_, 0, 1305031229528748000));
+  EXPECT_TRUE(by_stamp->detect(image_, 0, 1305031229628748000).boxes.empty());
+}
+
+TEST_F(BoxFiles, OfYoloAreSharesOfTheImage) {
+  const auto boxes = open("yolo/000003.txt", "56 0.25 0.6 0.3 0.4 0.8\n");
+  expect_chair(boxes->detect(image_, 3, 0));
+}
+
+TEST_F(BoxFiles, OfMotCountFromOne) {
+  const auto boxes = open("a.csv", "4,-1,11,21,30,20,0.8,57,1\n");
+  expect_chair(boxes->detect(image_, 3, 0));
+}
+
+TEST_F(BoxFiles, OutsideTheImageAreCutAndCounted) {
+  const auto boxes =
+      open("a.csv", "1,-1,-20,1,50,20,0.8,57\n1,-1,500,1,50,20,0.8,57\n1,-1,1,1,9,9,0.8,57\n");
+  const Detected found = boxes->detect(image_, 0, 0);
+  EXPECT_EQ(found.boxes.size(), 2U);
+  EXPECT_EQ(found.clipped, 2);
+  for (const DetectedBox& box : found.boxes) EXPECT_GE(box.left, 0);
+}
+
+TEST_F(BoxFiles, NameTheirFaultAndItsPlace) {
+  const auto says = [&](const std::string& name, const std::string& content, const char* part) {
+    const std::string text = refusal(name, content);
+    EXPECT_NE(text.find(part), text.npos) << text;
+  };
+  says("a.csv", "1,-1,1,1,50,20,0.8,57\n1,-1,nan,1,50,20,0.8,57\n", "a.csv:2: left is nan");
+  says("a.csv", "1,-1,1,1,0,20,0.8,57\n", "a.csv:1: a box of 0 x 20 has no area");
+  says("a.csv", "1,-1,1,1,50,20,0.8,81\n", "class 80 is none of the 80");
+  says("a.csv", "1,-1,1,1,50\n", "5 numbers, not frame");
+  says("a.csv", "one,-1,1,1,50,20,0.8,57\n", "'one' is not a number");
+  says("a.csv", "", "holds no box");
+  says("yolo/0.txt", "56 0.25 0.6 0.3 0.4 1.8\n", "0.txt:1: score 1.8 is outside [0, 1]");
+  says("other/first.txt", "56 0.25 0.6 0.3 0.4\n", "'first' is neither an index nor a stamp");
+  says("a.json", "[{\"image_id\": 0, \"category_id\": 12, \"bbox\": [1,1,1,1], \"score\": 1}]",
+       "entry 0: category_id 12 is none of COCO's");
+  says("a.json", "[{\"image_id\": 0, \"bbox\": [1,1,1,1], \"score\": 1}]",
+       "entry 0: has no 'category_id'");
+  says("a.json", "[{\"image_id\": 0, \"category_id\": 1, \"bbox\": [1,1,null,1], \"score\": 1}]",
+       "bbox must be four numbers");
+  says("a.json", "[{\"image_id\"", "is not a list of COCO's results");
+}
+
+}  // namespace
+}  // namespace mh

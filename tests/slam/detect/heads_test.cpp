@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/detect/heads.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace mh {
+namespace {
+
+constexpr InputSize kInput{64, 32};  // 8 x 4, 4 x 2 and 2 x 1 cells: 42
+
+struct Made {
+  std::vector<int> shape;
+  std::vector<float> values;
+  explicit Made(std::vector<int> s) : shape(std::move(s)) {
+    std::size_t all = 1;
+    for (const int n : shape) all *= static_cast<std::size_t>(n);
+    values.resize(all, 0.0F);
+  }
+  Tensor tensor() const { return {shape, values}; }
+};
+
+TEST(RecognizeHead, GoesByTheOutputsShape) {
+  const auto of = [](const Made& made, bool darknet = false) {
+    const Tensor tensor = made.tensor();
+    return recognize_head({&tensor, 1}, kInput, darknet);
+  };
+  EXPECT_EQ(of(Made({1, 42, 8})), Head::kYolox);
+  EXPECT_EQ(of(Made({1, 126, 8})), Head::kYolov5);
+  EXPECT_EQ(of(Made({1, 7, 42})), Head::kYolov8);
+  EXPECT_EQ(of(Made({1, 21, 32, 64})), Head::kSegmentation);
+  EXPECT_EQ(of(Made({96, 8}), true), Head::kDarknet);
+  EXPECT_EQ(of(Made({1, 1000})), Head::kAuto);
+  EXPECT_EQ(of(Made({1, 41, 8})), Head::kAuto);
+}
+
+TEST(RecognizeHead, TellsDecodedBoxesByTheirPlaces) {
+  Made made({1, 42, 8});
+  int row = 0;
+  for (const int stride : {8, 16, 32})
+    for (int y = 0; y < kInput.height / stride; ++y)
+      for (int x = 0; x < kInput.width / stride; ++x, ++row) {
+        made.values[static_cast<std::size_t>(8 * row)] =
+            (static_cast<float>(x) + 0.4F) * static_cast<float>(stride);
+        made.values[static_cast<std::size_t>(8 * row) + 1] =
+            (static_cast<float>(y) + 0.6F) * static_cast<float>(stride);
+      }
+  const Tensor tensor = made.tensor();
+  EXPECT_EQ(recognize_head({&tensor, 1}, kInput, false), Head::kYoloxDecoded);
+}
+
+TEST(Decode, YoloxAddsTheCellAndTakesTheExponent) {
+  Made made({1, 42, 7});
+  float* row = made.values.data() + (32 + 4 + 1) * 7;  // of stride 16: second row, second cell
+  const std::vector<float> values = {0.25F, -0.5F, std::log(2.0F), std::log(3.0F), 0.8F,
+                                     0.1F,  0.5F};
+  std::copy(values.begin(), values.end(), row);
+  const Tensor tensor = made.tensor();
+  const auto found = decode(Head::kYolox, {&tensor, 1}, kInput, 0.3);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_FLOAT_EQ(static_cast<float>(found[0].x), 20);  // (0.25 + 1) 16
+  EXPECT_FLOAT_EQ(static_cast<float>(found[0].y), 8);
+  EXPECT_NEAR(found[0].width, 32, 1e-4);
+  EXPECT_NEAR(found[0].height, 48, 1e-4);
+  EXPECT_EQ(found[0].best, 1);
+  EXPECT_FLOAT_EQ(found[0].scores[1], 0.4F);
+  EXPECT_TRUE(decode(Head::kYolox, {&tensor, 1}, kInput, 0.41).empty());
+}
+
+TEST(Decode, Yolov8IsTransposedAndHasNoObjectness) {
+  Made made({1, 7, 42});
+  const std::vector<float> values = {10, 12, 4, 6, 0.2F, 0.9F, 0.1F};
+  for (std::size_t k = 0; k < values.size(); ++k) made.values[k * 42 + 5] = values[k];
+  const Tensor tensor = made.tensor();
+  const auto found = decode(Head::kYolov8, {&tensor, 1}, kInput, 0.3);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].x, 10);
+  EXPECT_EQ(found[0].height, 6);
+  EXPECT_EQ(found[0].best, 1);
+  EXPECT_FLOAT_EQ(found[0].scores[1], 0.9F);
+}
+
+TEST(Decode, DarknetsBoxesAreSharesOfTheInputOfAllScales) {
+  Made coarse({6, 7}), fine({24, 7});
+  const std::vector<float> values = {0.5F, 0.25F, 0.125F, 0.5F, 0.9F, 0.6F, 0};
+  std::copy(values.begin(), values.end(), coarse.values.begin());
+  std::copy(values.begin(), values.end(), fine.values.begin() + 7 * 23);
+  const std::vector<Tensor> outputs = {coarse.tensor(), fine.tensor()};
+  const auto found = decode(Head::kDarknet, outputs, kInput, 0.5);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[1].x, 32);
+  EXPECT_EQ(found[1].y, 8);
+  EXPECT_EQ(found[1].width, 8);
+  EXPECT_EQ(found[1].height, 16);
+}
+
+TEST(Decode, ValuesThatAreNotFiniteMakeNoBox) {
+  Made made({1, 42, 7});
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::vector<float> values = {0, 0, 0, 0, 1, 1, 0};
+    std::copy(values.begin(), values.end(),
+              made.values.begin() + static_cast<std::ptrdiff_t>(7 * i));
+  }
+  made.values[0] = std::numeric_limits<float>::quiet_NaN();
+  made.values[7 + 2] = 1000;  // its exponent is infinite
+  const Tensor tensor = made.tensor();
+  EXPECT_EQ(decode(Head::kYolox, {&tensor, 1}, kInput, 0.3).size(), 1U);
+}
+
+Candidate candidate(double left, double right, int best, float score) {
+  Candidate c{.x = (left + right) / 2,
+              .y = 10,
+              .width = right - left,
+              .height = 10,
+              .best = best,
+              .scores = std::vector<float>(80, 0.0F)};
+  c.scores[static_cast<std::size_t>(best)] = score;
+  return c;
+}
+
+constexpr int kChair = 56, kCat = 15;
+
+TEST(SelectBoxes, SuppressesWithinAClassAndBreaksTiesByOrder) {
+  DetectorSettings settings;
+  settings.nms = 0.5;
+  const auto select = [&](const std::vector<Candidate>& all) {
+    return select_boxes(all, Placement{}, 100, 100, coco80(), settings);
+  };
+  // 10 of 20 shared of 30: 1/3, stays; 15 of 25: 0.6, goes.
+  EXPECT_EQ(select({candidate(0, 20, kChair, 0.9F), candidate(10, 30, kChair, 0.8F)}).size(), 2U);
+  EXPECT_EQ(select({candidate(0, 20, kChair, 0.9F), candidate(5, 25, kChair, 0.8F)}).size(), 1U);
+  EXPECT_EQ(select({candidate(0, 20, kChair, 0.9F), candidate(5, 25, kCat, 0.8F)}).size(), 2U);
+  const auto tied = select({candidate(0, 20, kChair, 0.9F), candidate(5, 25, kChair, 0.9F)});
+  ASSERT_EQ(tied.size(), 1U);
+  EXPECT_EQ(tied[0].left, 0);
+  settings.max_detections = 1;
+  const auto best = select({candidate(0, 20, kChair, 0.4F), candidate(50, 70, kChair, 0.9F)});
+  ASSERT_EQ(best.size(), 1U);
+  EXPECT_EQ(best[0].left, 50);
+}
+
+TEST(SelectBoxes, CutsWhatIsOutsideTheImage) {
+  const auto found =
+      select_boxes({candidate(-10, 20, kChair, 0.9F), candidate(200, 220, kChair, 0.9F)},
+                   Placement{}, 100, 100, coco80(), {});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].left, 0);
+  EXPECT_EQ(found[0].right, 20);
+}
+
+TEST(OurClasses, SumThoseOfOneNameAndLeaveOutTheRest) {
+  std::vector<float> scores(80, 0.0F);
+  scores[24] = 0.5F, scores[26] = 0.2F, scores[56] = 0.1F,
+  scores[15] = 0.3F;  // two bags, chair, cat
+  const ClassDistribution bag = our_classes(scores, 24, coco80());
+  ASSERT_EQ(bag.entries.size(), 2U);
+  EXPECT_EQ(bag.most_probable(), *class_by_name("bag"));
+  EXPECT_FLOAT_EQ(bag.entries[1].second, 0.7F);
+  EXPECT_FLOAT_EQ(bag.entries[0].second, 0.1F);
+  EXPECT_TRUE(our_classes(scores, 15, coco80()).entries.empty());
+  scores[56] = 0.9F;
+  const ClassDistribution both = our_classes(scores, 56, coco80());
+  EXPECT_FLOAT_EQ(both.entries[0].second + both.entries[1].second, 1);
+}
+
+TEST(PlaceImage, ScalesIntoCornerOrCenterAndBack) {
+  const Placement corner = place_image(640, 480, {416, 416}, Letterbox::kCorner);
+  EXPECT_EQ(corner.width, 416);
+  EXPECT_EQ(corner.height, 312);
+  EXPECT_EQ(corner.top, 0);
+  const Placement center = place_image(640, 480, {416, 416}, Letterbox::kCenter);
+  EXPECT_EQ(center.top, 52);
+  EXPECT_DOUBLE_EQ(center.image_y(52 + 156), 240);
+  const Placement stretched = place_image(640, 480, {416, 416}, Letterbox::kStretch);
+  EXPECT_EQ(stretched.height, 416);
+  EXPECT_DOUBLE_EQ(stretched.image_y(208), 240);
+}
+
+TEST(ClassNames, OfCocoFallOnOurs) {
+  EXPECT_EQ(coco80().size(), 80U);
+  for (const ClassInfo& info : classes())
+    if (info.coco80 >= 0) {
+      EXPECT_EQ(coco80().ids[static_cast<std::size_t>(info.coco80)], info.id) << info.name;
+    }
+  EXPECT_EQ(coco80().ids[kCat], kVoid);
+  EXPECT_EQ(coco80_of_category(1), 0);
+  EXPECT_EQ(coco80_of_category(62), kChair);
+  EXPECT_EQ(coco80_of_category(90), 79);
+  EXPECT_EQ(coco80_of_category(12), -1);
+  int known = 0;
+  for (int id = -5; id < 100; ++id) known += coco80_of_category(id) >= 0 ? 1 : 0;
+  EXPECT_EQ(known, 80);
+}
+
+TEST(Segmented, TakesProbabilitiesOrValuesAndInterpolates) {
+  const ClassNames names{{"chair", "table", "cat"}, {5, 7, kVoid}};
+  Made made({1, 3, 2, 2});  // chair on the left, table on the right, as probabilities
+  for (const std::size_t cell : {0U, 2U}) made.values[cell] = 0.9F, made.values[4 + cell] = 0.1F;
+  for (const std::size_t cell : {1U, 3U}) made.values[cell] = 0.1F, made.values[4 + cell] = 0.9F;
+  const InputSize input{8, 8};
+  const Placement at = place_image(16, 16, input, Letterbox::kStretch);
+  const SemanticImage image = segmented(made.tensor(), at, input, 16, 16, names, 0.25);
+  EXPECT_EQ(image.at(0, 8).most_probable(), 5);
+  EXPECT_EQ(image.at(15, 8).most_probable(), 7);
+  EXPECT_NEAR(image.at(0, 8).entries[0].second, 0.9, 0.1);
+  EXPECT_EQ(image.at(7, 0).most_probable(), 5);
+  EXPECT_EQ(image.at(8, 0).most_probable(), 7);
+  for (float& value : made.values) value = 100 * value - 40;  // no longer shares of 1
+  EXPECT_GT(segmented(made.tensor(), at, input, 16, 16, names, 0.25).at(0, 8).entries[0].second,
+            0.95);
+  const SemanticImage strict = segmented(made.tensor(), at, input, 16, 16, names, 1.0);
+  EXPECT_TRUE(strict.at(7, 8).entries.empty());
+}
+
+}  // namespace
+}  // namespace mh

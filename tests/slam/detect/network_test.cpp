@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include <filesystem>
+
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/read_record.hpp"
+#include "slam/core/temporary_folder.hpp"
+#include "slam/detect/detected_sequence.hpp"
+#include "slam/detect/detector.hpp"
+#include "source_dir.hpp"
+#include "tests/slam/core/made_sequence.hpp"
+#include "tests/slam/detect/made_networks.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What an error says about a detector that must not open.
+std::string refusal(const DetectorSpec& spec) {
+  try {
+    open_detector(spec);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+#define EXPECT_SAYS(text, part) EXPECT_NE(std::string(text).find(part), std::string::npos) << (text)
+
+class Networks : public testing::Test {
+ protected:
+  fs::path write(const std::string& name, const std::string& content) {
+    write_atomically(folder_.path() / name, content);
+    return folder_.path() / name;
+  }
+  /// A network of two classes, chair and table.
+  DetectorSpec two_classes(const std::string& name, const std::string& content) {
+    return {.network = write(name, content),
+            .config = {},
+            .classes = write("two.names", "chair\ntable\n\n"),
+            .boxes = {},
+            .settings = {}};
+  }
+  /// Black, with a red square of 3 x 3 px around each of these pixels.
+  static Grid2d<Rgb8> red_at(int width, int height, const std::vector<std::pair<int, int>>& at) {
+    Grid2d<Rgb8> image(width, height);
+    for (const auto& [cx, cy] : at)
+      for (int y = cy - 1; y <= cy + 1; ++y)
+        for (int x = cx - 1; x <= cx + 1; ++x) image(x, y) = {255, 0, 0};
+    return image;
+  }
+
+  TemporaryFolder folder_{fs::temp_directory_path()};
+};
+
+TEST_F(Networks, YoloxFindsTheCellThatIsRed) {
+  const auto detector = open_detector(two_classes("a.onnx", test::onnx_detection(64, 32, {})));
+  EXPECT_EQ(detector->description(), "yolox, 2 classes, input 64 x 32");
+  // The image has twice the input's size: its pixel (88, 40) is (44, 20) there, the center of the
+  // cell (5, 2) of 8 px.
+  const Detected found = detector->detect(red_at(128, 64, {{88, 40}}), 0, 0);
+  ASSERT_EQ(found.boxes.size(), 1U);
+  const DetectedBox& box = found.boxes[0];
+  EXPECT_NEAR(box.left, 2 * (5.5 * 8 - 4), 1e-4);
+  EXPECT_NEAR(box.right, 2 * (5.5 * 8 + 4), 1e-4);
+  EXPECT_NEAR(box.top, 2 * (2.5 * 8 - 4), 1e-4);
+  EXPECT_NEAR(box.score, 1, 1e-3);
+  EXPECT_EQ(box.classes.most_probable(), *class_by_name("chair"));
+}
+
+TEST_F(Networks, YoloxIsBgrAndOthersAreRgb) {
+  // Scaled to shares of 1, the head's factor of 1 / 255 leaves 1 / 255 of a score.
+  DetectorSpec spec =
+      two_classes("a.onnx", test::onnx_detection(64, 32, {.box = {32, 16, 10, 8}, .yolov8 = true}));
+  spec.settings.normalize = Normalize::kNone;
+  const auto v8 = open_detector(spec);
+  EXPECT_EQ(v8->description(), "yolov8, 2 classes, input 64 x 32");
+  const Grid2d<Rgb8> red = red_at(64, 32, {{44, 20}});
+  EXPECT_TRUE(v8->detect(red, 0, 0).boxes.empty());  // its third plane is blue
+  Grid2d<Rgb8> blue = red;
+  for (Rgb8& pixel : blue) std::swap(pixel.r, pixel.b);
+  const Detected found = v8->detect(blue, 0, 0);
+  ASSERT_EQ(found.boxes.size(), 1U);
+  EXPECT_EQ(found.boxes[0].left, 27);
+  EXPECT_EQ(found.boxes[0].bottom, 20);
+}
+
+TEST_F(Networks, Yolov5HasThreeBoxesInACell) {
+  DetectorSpec spec = two_classes(
+      "a.onnx", test::onnx_detection(
+                    64, 32, {.box = {32, 16, 10, 8}, .classes = {0, 1}, .boxes_per_cell = 3}));
+  spec.settings.normalize = Normalize::kNone;
+  spec.settings.channels = Channels::kBgr;
+  const auto detector = open_detector(spec);
+  EXPECT_EQ(detector->description(), "yolov5, 2 classes, input 64 x 32");
+  const Detected found = detector->detect(red_at(64, 32, {{44, 20}}), 0, 0);
+  ASSERT_EQ(found.boxes.size(), 1U);  // the other two are the same
+  EXPECT_EQ(found.boxes[0].classes.most_probable(), *class_by_name("table"));
+}
+
+TEST_F(Networks, SegmentationGivesPixelsTheirClass) {
+  DetectorSpec spec = two_classes(
+      "a.onnx", test::onnx_segmentation(64, 32, {0.2F, 0, 0, 0, 0, 0.2F}));  // red, blue
+  spec.settings.normalize = Normalize::kNone;
+  const auto detector = open_detector(spec);
+  EXPECT_EQ(detector->description(), "segmentation, 2 classes, input 64 x 32");
+  Grid2d<Rgb8> image(64, 32, {255, 0, 0});
+  for (int y = 0; y < 32; ++y)
+    for (int x = 40; x < 64; ++x) image(x, y) = {0, 0, 255};
+  const SemanticImage pixels = detector->detect(image, 0, 0).pixels;
+  EXPECT_EQ(pixels.at(10, 10).most_probable(), *class_by_name("chair"));
+  EXPECT_EQ(pixels.at(60, 10).most_probable(), *class_by_name("table"));
+  EXPECT_EQ(pixels.at(39, 10).most_probable(), *class_by_name("chair"));
+}
+
+TEST_F(Networks, DarknetFindsTheCellThatIsRed) {
+  DetectorSpec spec = two_classes("a.weights", test::darknet_weights());
+  spec.config = write("a.cfg", test::darknet_config(64, 32));
+  const auto detector = open_detector(spec);
+  EXPECT_EQ(detector->description(), "darknet, 2 classes, input 64 x 32");
+  Grid2d<Rgb8> image(64, 32);
+  for (int y = 16; y < 24; ++y)
+    for (int x = 40; x < 48; ++x) image(x, y) = {255, 0, 0};
+  const Detected found = detector->detect(image, 0, 0);
+  ASSERT_EQ(found.boxes.size(), 1U);
+  EXPECT_NEAR(found.boxes[0].left, 40, 1e-3);  // 8 px wide, around the cell's middle
+  EXPECT_NEAR(found.boxes[0].right, 48, 1e-3);
+  EXPECT_NEAR(found.boxes[0].top, 16, 1e-3);
+  EXPECT_EQ(found.boxes[0].classes.most_probable(), *class_by_name("chair"));
+}
+
+TEST_F(Networks, GiveTheSameBitsAgain) {
+  const DetectorSpec spec = two_classes("a.onnx", test::onnx_detection(64, 32, {}));
+  const auto first = open_detector(spec), second = open_detector(spec);
+  const Grid2d<Rgb8> image = red_at(100, 70, {{88, 40}, {20, 20}, {50, 60}});
+  EXPECT_EQ(first->detect(image, 0, 0), second->detect(image, 1, 1));
+  EXPECT_EQ(first->detect(image, 0, 0), first->detect(image, 0, 0));
+  EXPECT_EQ(first->digest(), second->digest());
+}
+
+TEST_F(Networks, DigestFollowsWhatDecidesTheBoxes) {
+  const DetectorSpec spec = two_classes("a.onnx", test::onnx_detection(64, 32, {}));
+  const std::uint64_t digest = open_detector(spec)->digest();
+  DetectorSpec other = spec;
+  other.settings.confidence = 0.5;
+  EXPECT_NE(open_detector(other)->digest(), digest);
+  other = spec;
+  other.settings.fill = BoxFill::kForeground;
+  EXPECT_EQ(open_detector(other)->digest(), digest);
+  write("a.onnx", test::onnx_detection(64, 32, {.classes = {0.9F, 0}}));
+  EXPECT_NE(open_detector(spec)->digest(), digest);
+}
+
+TEST_F(Networks, ReportWhatTheyRead) {
+  DetectorSpec spec = two_classes("a.weights", test::darknet_weights());
+  spec.config = write("a.cfg", test::darknet_config(64, 32));
+  const ReadScope scope;
+  open_detector(spec);
+  std::vector<std::string> read;
+  for (const FileObservation& o : scope.record().observations)
+    if (o.kind == FileObservation::Kind::kRead) read.push_back(o.path.filename().string());
+  for (const char* name : {"a.weights", "a.cfg", "two.names"})
+    EXPECT_NE(std::ranges::find(read, name), read.end()) << name;
+}
+
+TEST_F(Networks, AreRefusedInOneLine) {
+  DetectorSpec spec = two_classes("a.onnx", "this is not a network");
+  EXPECT_SAYS(refusal(spec), "a.onnx: OpenCV");
+  spec = two_classes("empty.onnx", "");
+  EXPECT_SAYS(refusal(spec), "empty.onnx: ");
+  spec = two_classes("levitate.onnx", test::onnx_unknown_operator());
+  EXPECT_SAYS(refusal(spec), "Levitate");
+  spec = two_classes("other.onnx", test::onnx_segmentation(1, 1, {1, 0, 0, 0, 0, 1}));
+  EXPECT_SAYS(refusal(spec), "its output (1 x 2 x 1 x 1)");
+  spec = two_classes("three.onnx", test::onnx_detection(64, 32, {.classes = {1, 0, 0}}));
+  EXPECT_SAYS(refusal(spec), "two.names: names 2 classes, and ");
+  spec.classes.clear();
+  EXPECT_SAYS(refusal(spec), "three.onnx: has 3 classes, not COCO's 80");
+  spec = two_classes("fixed.onnx", test::onnx_detection(64, 32, {}));
+  spec.settings.width_px = 96;
+  EXPECT_SAYS(refusal(spec), "its input is fixed to 64 x 32");
+  spec.network = folder_.path() / "missing.onnx";
+  EXPECT_SAYS(refusal(spec), "missing.onnx");
+  for (const std::string& text : {refusal(spec)}) EXPECT_EQ(text.find('\n'), text.npos);
+}
+
+TEST_F(Networks, CutShortAnywhereNeverCrash) {
+  const std::string whole = test::onnx_detection(32, 32, {});
+  for (const std::size_t size :
+       {1UL, 5UL, 30UL, whole.size() / 2, whole.size() - 20, whole.size() - 1})
+    EXPECT_SAYS(refusal(two_classes("cut.onnx", whole.substr(0, size))), "cut.onnx: ");
+  const std::string weights = test::darknet_weights();
+  DetectorSpec spec = two_classes("cut.weights", "");
+  spec.config = write("a.cfg", test::darknet_config(64, 32));
+  for (const std::size_t size : {0UL, 8UL, 20UL, 100UL, weights.size() - 4}) {
+    write("cut.weights", weights.substr(0, size));
+    EXPECT_SAYS(refusal(spec), "cut.weights: ");
+  }
+  write("cut.weights", weights + "more");
+  EXPECT_SAYS(refusal(spec), "it is of another one");
+  write("cut.weights", weights);
+  const std::string config = test::darknet_config(64, 32);
+  for (std::size_t size = 0; size + 30 < config.size(); size += 7) {
+    write("a.cfg", config.substr(0, size));
+    EXPECT_NE(refusal(spec), "") << config.substr(0, size);
+  }
+}
+
+TEST_F(Networks, DetectionsAreKeptByContent) {
+  const std::shared_ptr<const Detector> detector =
+      open_detector(two_classes("a.onnx", test::onnx_detection(64, 32, {})));
+  std::map<std::string, std::string> kept;
+  int made = 0;
+  const KeepDetections keep = [&](const std::string& key, const auto& make) {
+    if (!kept.contains(key)) kept[key] = make(), ++made;
+    return kept[key];
+  };
+  const auto frames = std::make_shared<MadeSequence>(3, [](std::size_t i, RandomStream) {
+    RgbdFrame frame;
+    frame.stamp_ns = static_cast<Stamp>(i);
+    frame.color = red_at(64, 32, {{i == 2 ? 20 : 44, 20}});
+    frame.depth_m = Grid2d<float>(64, 32, 1.0F);
+    return frame;
+  });
+  const DetectedSequence with(frames, detector, BoxFill::kBox, keep),
+      without(frames, detector, BoxFill::kBox);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(with.frame(i, RandomStream()).semantics, without.frame(i, RandomStream()).semantics);
+  EXPECT_EQ(made, 2);  // the first two images are equal
+  EXPECT_EQ(with.frame(0, RandomStream()).semantics.at(44, 20).most_probable(),
+            *class_by_name("chair"));
+}
+
+/// YOLOX-Nano on a real frame, if both are there: README of ../shared/data/detector.
+TEST(RealNetwork, TakesTheMonitorForALaptop) {
+  const fs::path data = fs::path(MH_SOURCE_DIR) / "../shared/data";
+  const fs::path image = data / "tum_fr1_rpy/rgb/1305031229.528748.png";
+  if (!fs::exists(data / "detector/yolox_nano.onnx") || !fs::exists(image))
+    GTEST_SKIP() << "needs ../shared/data";
+  const auto detector = open_detector(detector_from_file(data / "detector/yolox_nano.onnx"));
+  EXPECT_EQ(detector->description(), "yolox, 80 classes, input 416 x 416");
+  cv::Mat rgb;
+  cv::cvtColor(cv::imread(image.string()), rgb, cv::COLOR_BGR2RGB);
+  Grid2d<Rgb8> color(rgb.cols, rgb.rows);
+  std::memcpy(color.data(), rgb.data, rgb.total() * 3);
+  const Detected found = detector->detect(color, 0, 0);
+  const auto laptop = std::ranges::find(found.boxes, 63, &DetectedBox::network_class);
+  ASSERT_NE(laptop, found.boxes.end());
+  EXPECT_NEAR(laptop->score, 0.50, 0.01);
+}
+
+}  // namespace
+}  // namespace mh
