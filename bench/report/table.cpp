@@ -9,6 +9,7 @@
 #include "bench/report/place_table.hpp"
 #include "bench/report/scenes_table.hpp"
 #include "bench/report/sweep_table.hpp"
+#include "slam/config/slam.hpp"
 #include "slam/core/counted.hpp"
 
 namespace mh {
@@ -41,9 +42,9 @@ std::string recordings_text(const Suite& suite, std::span<const RunResult> runs)
 /// Whose rules relocalization follows, where they are not ours.
 std::string base_text(const Suite& suite) {
   std::string text;
-  if (suite.slam.relocalize.acceptance == Acceptance::kOrbSlam2)
+  if (suite.slam->relocalize.acceptance == Acceptance::kOrbSlam2)
     text += "\nbase: orb_slam2: poses of relocalization are accepted as ORB-SLAM2 accepts them\n";
-  if (suite.slam.relocalize.neighbor_scores == NeighborScores::kAsReleased)
+  if (suite.slam->relocalize.neighbor_scores == NeighborScores::kAsReleased)
     text +=
         "\nneighbor scores as ORB-SLAM2 released them: answers depend on the order of queries\n";
   return text;

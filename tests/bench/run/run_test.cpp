@@ -929,8 +929,10 @@ TEST(ResultsTable, HasThePapersFormAndMarksASaturatedTable) {
     EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;
   EXPECT_EQ(table.find("is better"), std::string::npos) << table;
   EXPECT_EQ(table.find("base: "), std::string::npos) << table;
-  place.suite.slam.relocalize.acceptance = Acceptance::kOrbSlam2;
-  place.suite.slam.relocalize.neighbor_scores = NeighborScores::kAsReleased;
+  SlamConfig slam;
+  slam.relocalize.acceptance = Acceptance::kOrbSlam2;
+  slam.relocalize.neighbor_scores = NeighborScores::kAsReleased;
+  place.suite.slam = slam;
   const std::string other = results_table(place.suite, place.run());
   EXPECT_NE(other.find("base: orb_slam2"), std::string::npos) << other;
   EXPECT_NE(other.find("depend on the order of queries"), std::string::npos) << other;
