@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "slam/core/guarded_child.hpp"
 #include "scenes/scene.hpp"
+#include "slam/core/guarded_child.hpp"
 
 namespace mh {
 
