@@ -35,6 +35,8 @@ struct RelocalizeConfig {
   NeighborScores neighbor_scores = NeighborScores::kFresh;
   int min_word_matches = 15;
   int min_inliers = 50;  ///< to accept a pose
+  /// Around where a pose from few matches expects a landmark; the search after it uses 4 px.
+  double search_radius_px = 10;
   /// Standard deviation of a true pair's disparity error (in addition to the keypoint's own, as in
   /// Camera) before the pose is refined on the local map; never less than the camera's own. The
   /// camera's value describes a single reading. Here the landmark comes from another reading (0.1
@@ -48,12 +50,14 @@ struct RelocalizeConfig {
 
 template <Either<RelocalizeConfig> C, class Visit>
 void fields(C& c, Visit& v) {
-  auto& [acceptance, neighbor_scores, min_word_matches, min_inliers, disparity_sigma_px, ransac] =
-      c;
+  auto& [acceptance, neighbor_scores, min_word_matches, min_inliers, search_radius_px,
+         disparity_sigma_px, ransac] = c;
   v("acceptance", acceptance, {}, "of a candidate's pose: ours or orb_slam2");
   v("neighbor_scores", neighbor_scores, {}, "in equation 5: fresh or as_released (by ORB-SLAM2)");
   v("min_word_matches", min_word_matches, setting::kPoints, "with a candidate keyframe");
   v("min_inliers", min_inliers, setting::kPoints, "to accept a pose");
+  v("search_radius_px", search_radius_px, setting::kRadius_px,
+    "of the first search by pose (ours)");
   v("disparity_sigma_px", disparity_sigma_px, {0, 1000},
     "how far a true pair's depth strays; at least the camera's own");
   fields(ransac, v);

@@ -52,7 +52,7 @@ class CandidateTrial {
     attempt.stage = RelocalizationStage::kInliers;
     refine(attempt);
     for (const auto& [radius_px, max_distance] :
-         {std::pair{10.0F, match.max_distance_loose},
+         {std::pair{static_cast<float>(config.search_radius_px), match.max_distance_loose},
           std::pair{4.0F, 2 * match.max_distance_loose / 3}}) {
       if (attempt.inliers >= config.min_inliers || attempt.inliers < config.ransac.min_inliers)
         break;

@@ -150,9 +150,10 @@ struct TwoViews {
       map.refresh(map.add_landmark(points[i], KeyframeId{0}, i), {});
   }
 
-  RelocalizationResult find(Acceptance acceptance) const {
+  RelocalizationResult find(Acceptance acceptance, double search_radius_px = 10) const {
     SlamConfig config;
     config.relocalize.acceptance = acceptance;
+    config.relocalize.search_radius_px = search_radius_px;
     const FeatureGrid grid(features.keypoints, camera);
     MatchCounts counts{};
     return relocalize({features, grid, words}, {camera, config, map, counts}, RandomStream(1));
@@ -190,6 +191,18 @@ TEST(Relocalize, BothAcceptancesSearchOnByThePose) {
     EXPECT_EQ(found.stage, RelocalizationStage::kVerified);
     EXPECT_EQ(found.inliers, static_cast<int>(TwoViews::kPoints));
   }
+}
+
+// 44 keypoints are 1.5 px off and differ by 80 bits, which only the first search accepts.
+TEST(Relocalize, TheFirstSearchReachesAsFarAsItsRadius) {
+  TwoViews views([](std::uint32_t) { return false; }, [](std::uint32_t i) { return i < 16; });
+  for (std::uint32_t i = 16; i < TwoViews::kPoints; ++i) {
+    views.features.keypoints[i].v_px += 1.5F;
+    views.features.descriptors[i][0] = ~views.features.descriptors[i][0];
+    views.features.descriptors[i][1] ^= 0xffffU;
+  }
+  EXPECT_EQ(views.find(Acceptance::kOurs, 2).stage, RelocalizationStage::kVerified);
+  EXPECT_EQ(views.find(Acceptance::kOurs, 1).stage, RelocalizationStage::kInliers);
 }
 
 // The first of 30 matches by words lie. Ours needs ten true ones, ORB-SLAM2 half of all.
