@@ -11,11 +11,14 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/motion_option.hpp"
+#include "bench/cli/ros_output.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "robots/model/robot.hpp"
 #include "scenes/floor.hpp"
 #include "scenes/load.hpp"
+#include "scenes/recorded/ros/recorder.hpp"
 #include "sim/motion/robot_readings.hpp"
+#include "sim/world/robot_messages.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
@@ -25,7 +28,8 @@ namespace mh::cli {
 namespace {
 
 struct Options {
-  std::string scene, robot = "pepper", pedestrian, out;
+  std::string scene, robot = "pepper", pedestrian, out, format = "tum";
+  RosOption ros;
   MotionOption motion;
   SceneFrameOption frame;
   std::uint64_t seed = 0;
@@ -39,10 +43,16 @@ void run(Options options) {
   const std::string& motion = options.motion.given();
   if (options.sensors && options.out.empty())
     throw InputError("--sensors needs --out: a folder to write them into");
+  const bool writes_ros = is_ros_format(options.format);
+  options.ros.check(options.format);
+  if (writes_ros && options.out.empty())
+    throw InputError(
+        fmt::format("--format {} needs --out: a folder to write the file into", options.format));
   check_motion(motion);
   const bool driven = is_driven(motion);
-  for (const auto& [given, option] : {std::pair(options.sensors, "--sensors"),
-                                      std::pair(!options.pedestrian.empty(), "--pedestrian")})
+  for (const auto& [given, option] :
+       {std::pair(options.sensors, "--sensors"), std::pair(writes_ros, "--format"),
+        std::pair(!options.pedestrian.empty(), "--pedestrian")})
     if (given && !driven)
       throw InputError(fmt::format(
           "{}: motion '{}' moves a camera by hand, no robot drives along it", option, motion));
@@ -51,6 +61,7 @@ void run(Options options) {
   if (!options.out.empty()) {
     std::vector<std::string> names{"camera.tum", "base.tum"};
     if (options.sensors) names.insert(names.end(), kReadingFiles.begin(), kReadingFiles.end());
+    if (writes_ros) names.push_back(ros_file(options.format, out).filename().string());
     folder.emplace(out, "drive", std::move(names));
   }
   const Robot robot = load_robot(options.robot);
@@ -65,12 +76,16 @@ void run(Options options) {
   if (const std::string note = note_on(motion, robot); !note.empty())
     fmt::print(stderr, "modelhouse: warning: {}\n", note);
   const DrivenPath path = travel(scene, robot, motion, others);
-  if (options.sensors) {
-    const LevelScene level(scene);
-    Trajectory base = path.base;
-    for (TimedPose& pose : base)
-      pose.world_from_camera = level.world_from_level().inverse() * pose.world_from_camera;
-    write_readings(out, robot, read_sensors(*level, robot, base, options.seed, others));
+  if (options.sensors && !robot.equipment)
+    throw InputError(
+        fmt::format("robot '{}' has no sensors: its file has no 'equipment'", robot.name));
+  if (options.sensors || writes_ros) {
+    const DriveRecord record = record_drive(scene, robot, path, path.camera, options.seed, others);
+    if (options.sensors) write_readings(out, robot, *record.readings);
+    if (writes_ros) {
+      const auto file = options.ros.open(options.format, out);
+      write_log(*file, robot_messages(file->wire(), record));
+    }
   }
   if (!options.out.empty()) {
     write_tum(out / "camera.tum", path.camera);
@@ -127,6 +142,12 @@ void add_drive(CLI::App& app) {
   command->add_option("--pedestrian", options->pedestrian,
                       "Adds a pedestrian (YAML); reflex and sensors notice him");
   command->add_option("--out", options->out, "Folder for camera.tum and base.tum");
+  command
+      ->add_option("--format", options->format,
+                   "mcap or rosbag: also writes NAME.mcap (ROS 2) or NAME.bag (ROS 1) into --out, "
+                   "with tf, odometry, what the robot measures and the floor's grid")
+      ->check(one_of_words({"tum", "mcap", "rosbag"}));
+  options->ros.add_to(*command);
   command->add_flag(
       "--sensors", options->sensors,
       "Also writes wheel odometry, lasers, sonars, bumpers and IMU into --out; not for "

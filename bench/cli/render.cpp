@@ -12,15 +12,18 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/motion_option.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/cli/ros_output.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/inputs/inputs.hpp"
 #include "bench/plan/check_labels.hpp"
 #include "bench/plan/suite.hpp"
 #include "bench/provenance/digest.hpp"
+#include "scenes/recorded/ros/recorder.hpp"
 #include "scenes/scannet/files.hpp"
 #include "sim/sensors/shutter.hpp"
 #include "sim/world/lit_scene.hpp"
 #include "sim/world/render_sequence.hpp"
+#include "sim/world/robot_messages.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -38,6 +41,7 @@ struct Options {
   SceneFrameOption frame;
   RenderSequenceOptions sequence;
   PngCompression png_compression;
+  RosOption ros;
   bool json = false;
 };
 
@@ -65,6 +69,7 @@ std::string settings_of(const Options& o, const Scene& scene, const Trajectory& 
                                  {"every", o.sequence.every},
                                  {"seed", o.sequence.seed}};
   if (o.sequence.labels != LabelMode::kExact) json["labels"] = name(o.sequence.labels);
+  if (is_ros_format(o.format)) json["chunk_compression"] = o.ros.compression;
   if (o.png_compression) json["png_compression"] = *o.png_compression;
   if (o.sequence.frames != SIZE_MAX) json["frames"] = o.sequence.frames;
   return json.dump(2) + "\n";
@@ -82,16 +87,15 @@ void refuse_older_sequence(const fs::path& folder) {
     if (fs::exists(folder / part)) refuse_folder(folder);
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ".sens") refuse_folder(folder);
+    for (const char* whole : {".sens", ".bag", ".mcap"})
+      if (entry.path().extension() == whole) refuse_folder(folder);
 }
 
 /// Names of the written files except images; empty for a folder whose render.json states what is
 /// there.
 std::vector<std::string> names_written(const fs::path& out) {
   if (fs::exists(out / "render.json")) return {};
-  std::error_code error;  // an empty name is refused when the folder is made
-  const fs::path full = fs::absolute(out, error).lexically_normal();
-  const std::string name = (full.has_filename() ? full : full.parent_path()).filename().string();
+  const std::string name = name_of_folder(out);
   std::vector<std::string> names{"associations.txt",
                                  "groundtruth.txt",
                                  "camera.yaml",
@@ -100,7 +104,9 @@ std::vector<std::string> names_written(const fs::path& out) {
                                  kLabelTableV2,
                                  name + "_2d-label-filt.zip",
                                  name + "_2d-instance-filt.zip",
-                                 name + ".sens"};
+                                 name + ".sens",
+                                 name + ".mcap",
+                                 name + ".bag"};
   for (const std::string part : {"rgb", "depth", "label", "instance"}) {
     names.push_back(part);
     names.push_back(part + ".txt");
@@ -123,15 +129,16 @@ const MountedCamera* find_camera(const Options& options, const Robot& robot) {
 }
 
 /// Poses of a camera along the robot's path.
-Trajectory path_of(const MountedCamera& mounted, const Equipment& e, DrivenPath path) {
+Trajectory path_of(const MountedCamera& mounted, const Equipment& e, const DrivenPath& path) {
+  Trajectory camera = path.camera;
   for (std::size_t i = 0; i < path.base.size(); ++i) {
     std::map<std::string, double> joints;
     if (!path.head.empty())
       joints = {{e.head_yaw, path.head[i][0]}, {e.head_pitch, path.head[i][1]}};
-    path.camera[i].world_from_camera =
+    camera[i].world_from_camera =
         path.base[i].world_from_camera * e.tree.root_from(mounted.link, joints);
   }
-  return std::move(path.camera);
+  return camera;
 }
 
 void print_json(const RenderedSequence& done) {
@@ -152,6 +159,7 @@ void run(Options options) {
        {LabelMode::kExact, LabelMode::kAnnotated, LabelMode::kBoxes, LabelMode::kDetector})
     if (options.labels == name(mode)) options.sequence.labels = mode;
   refuse_older_sequence(out);
+  options.ros.check(options.format);
   make_renderer(options.renderer, Scene{});  // fails at once if the machine lacks it
   const OutputFolder folder(out, "render", names_written(out));
   std::vector<InputDigest> inputs;
@@ -181,11 +189,10 @@ void run(Options options) {
     progress.say("warning: " + note);
   std::vector<MovingObstacle> others;
   if (pedestrian) others.push_back(as_obstacle(scene, *pedestrian));
-  DrivenPath driven = travel(scene, robot, motion, others);
+  const DrivenPath driven = travel(scene, robot, motion, others);
   const Camera camera = mounted != nullptr ? mounted->camera : robot.camera;
-  const Trajectory path = mounted != nullptr
-                              ? path_of(*mounted, *robot.equipment, std::move(driven))
-                              : std::move(driven.camera);
+  const Trajectory path =
+      mounted != nullptr ? path_of(*mounted, *robot.equipment, driven) : driven.camera;
 
   const std::string settings = settings_of(options, scene, path, inputs.front());
   if (fs::exists(out / "render.json")) {
@@ -226,8 +233,17 @@ void run(Options options) {
     if (options.json) print_json(done);
     return;
   }
-  const auto writer =
-      make_sequence_writer(options.format, out, reported_camera, options.png_compression);
+  std::unique_ptr<SequenceWriter> writer;
+  if (is_ros_format(options.format)) {
+    std::unique_ptr<MessageWriter> file = options.ros.open(options.format, out);
+    std::optional<MessageLog> of_robot;
+    if (is_driven(motion))
+      of_robot = robot_messages(
+          file->wire(), record_drive(scene, robot, driven, path, options.sequence.seed, others));
+    writer = std::make_unique<RosRecorder>(std::move(file), reported_camera, std::move(of_robot));
+  } else {
+    writer = make_sequence_writer(options.format, out, reported_camera, options.png_compression);
+  }
   const RenderedSequence done = render_sequence(shutter, sensors, *writer, options.sequence,
                                                 [&](double share) { progress.share(share); });
   progress.end();
@@ -257,14 +273,16 @@ void add_render(CLI::App& app) {
                       "Adds a pedestrian (YAML); a robot that drives meets him");
   command
       ->add_option("--out", options->out,
-                   "Folder to write; goes on where it was stopped (scannet: anew, as a .sens is "
-                   "written in one go)")
+                   "Folder to write; goes on where it was stopped (scannet, mcap, rosbag: anew, as "
+                   "one file is written in one go)")
       ->required();
   command
       ->add_option("--format", options->format,
                    "tum: folders and lists; scannet: .sens, label images; "
-                   "scannet-frames: folders as extracted from a .sens")
-      ->check(one_of_words({"tum", "scannet", "scannet-frames"}));
+                   "scannet-frames: folders as extracted from a .sens; mcap, rosbag: NAME.mcap "
+                   "(ROS 2) or NAME.bag (ROS 1), with all that the robot measures")
+      ->check(one_of_words({"tum", "scannet", "scannet-frames", "mcap", "rosbag"}));
+  options->ros.add_to(*command);
   command->add_option("--frames", options->sequence.frames, "At most so many frames of the path")
       ->default_str("all")
       ->check(CLI::Range(1, 100000000));

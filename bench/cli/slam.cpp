@@ -34,7 +34,8 @@ constexpr std::string_view kScene = "scene:";
 constexpr const char* kUsualRobot = "pepper";
 
 struct Options {
-  std::string source, settings, classes, vocabulary = "vocabulary", out, map, save_map, truth;
+  std::string source, settings, classes, topics, vocabulary = "vocabulary", out, map, save_map,
+                                                 truth;
   SceneFrameOption frame;
   std::string tour, robot, level;
   std::optional<double> gamma, xi;
@@ -81,8 +82,10 @@ Source open_source(const Options& options) {
     return {settings_beside(options, *frames, notes), std::move(frames)};
   }
   Settings settings;
-  RecordingConfig config{.calibration = options.settings, .classes = options.classes};
+  RecordingConfig config{
+      .calibration = options.settings, .classes = options.classes, .topics = options.topics};
   config.read_camera = camera_reader(&settings);
+  config.has_camera = settings_have_camera;
   OpenedRecording opened = open_sequence(source, config);
   if (!settings.has_camera)
     return {settings_beside(options, *opened.sequence, opened.notes), std::move(opened.sequence)};
@@ -142,6 +145,8 @@ void check(const Options& options) {
   if (options.source.starts_with(kScene)) {
     if (!options.classes.empty())
       throw InputError("--classes is for recordings, but the source is a scene");
+    if (!options.topics.empty())
+      throw InputError("--topics is for recordings, but the source is a scene");
     return;
   }
   for (const auto& [name, value] : {std::pair("--tour", &options.tour),
@@ -306,6 +311,9 @@ void add_slam(CLI::App& app) {
       "folder's camera.yaml)");
   command->add_option("--classes", options->classes,
                       "What the labels of a recording mean (YAML), where they are not our classes");
+  command->add_option("--topics", options->topics,
+                      "Topics of a bag or MCAP file, where several could be meant: "
+                      "color=/a,depth=/b; also labels, info (CameraInfo), truth");
   command->add_option("--vocabulary", options->vocabulary,
                       "Vocabulary file, or the name of the shipped one");
   command->add_option("--out", options->out, "Folder for the results")->required();

@@ -64,8 +64,8 @@ std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
   std::vector<InputDigest> inputs;
   if (e.is_recorded()) {
     // Its content depends on the files next to it, too.
-    const std::string beside =
-        fmt::format("{} {}", e.settings.value_or("").string(), e.classes.value_or("").string());
+    const std::string beside = fmt::format("{} {} {}", e.settings.value_or("").string(),
+                                           e.classes.value_or("").string(), e.topics);
     const auto add = [&](const char* name, const std::string& sequence) {
       // One folder may be read as several layouts.
       const auto [layout, path] = split_sequence(sequence);

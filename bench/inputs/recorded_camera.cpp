@@ -21,6 +21,10 @@ std::function<RecordedCamera(const std::filesystem::path&)> camera_reader(Settin
   };
 }
 
+bool settings_have_camera(const std::filesystem::path& file) {
+  return load_settings(file).has_camera;
+}
+
 OpenedRecording open_recorded(const Environment& environment, const std::string& sequence,
                               bool labels) {
   Settings read;
@@ -28,7 +32,9 @@ OpenedRecording open_recorded(const Environment& environment, const std::string&
       open_sequence(sequence, {.calibration = environment.settings.value_or(""),
                                .classes = environment.classes.value_or(""),
                                .labels = labels,
-                               .read_camera = camera_reader(&read)});
+                               .topics = environment.topics,
+                               .read_camera = camera_reader(&read),
+                               .has_camera = settings_have_camera});
   if (environment.settings && read.has_camera && read.slam != SlamConfig{})
     opened.notes.push_back(
         fmt::format("{}: its settings of SLAM do not count in a suite: name them in `slam:`",

@@ -18,6 +18,9 @@ RecordedCamera recorded_camera(const Settings& settings);
 /// @throws InputError, also if the file has no camera.
 std::function<RecordedCamera(const std::filesystem::path&)> camera_reader(Settings* read = nullptr);
 
+/// Whether a settings file has a camera. @throws InputError if it is not a settings file.
+bool settings_have_camera(const std::filesystem::path& file);
+
 /// Opens one of an environment's recordings, by its name.
 /// @param labels  whether its frames have labels
 /// @throws InputError naming file and place.

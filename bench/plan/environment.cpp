@@ -12,6 +12,7 @@
 #include "bench/plan/names.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/recorded/open_sequence.hpp"
+#include "scenes/recorded/ros/topic_names.hpp"
 #include "scenes/scannet/files.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/core/counted.hpp"
@@ -120,11 +121,20 @@ std::string read_sequence(const YamlReader& node, const SuitePaths& paths, int i
 struct BesideFrames {
   std::optional<YamlReader> queries;
   std::optional<fs::path> settings, classes;
+  std::string topics;
 
   BesideFrames(YamlReader& node, const SuitePaths& paths) : queries(node.find("queries")) {
     if (const auto file = node.find("settings"))
       settings = named_file(*file, paths, Shipped::kSettings);
     if (const auto file = node.find("classes")) classes = named_file(*file, paths);
+    if (const auto named = node.find("topics")) {
+      topics = named->as_string();
+      try {
+        parse_topic_names(topics);
+      } catch (const InputError& error) {
+        named->fail(error.what());
+      }
+    }
     for (const char* key : {"scene", "robot", "mapping_tour", "query_tour", "query_scene",
                             "kidnapped_tour", "sensors", "pedestrian", "up", "floor_z_m"})
       if (const auto other = node.find(key))
@@ -141,6 +151,7 @@ Environment recorded_environment(std::string name, std::string category, std::st
   if (beside.queries) e.queries = read_sequence(*beside.queries, paths, index);
   e.settings = beside.settings;
   e.classes = beside.classes;
+  e.topics = beside.topics;
   return e;
 }
 

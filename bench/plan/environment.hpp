@@ -35,6 +35,7 @@ struct Environment {
   std::optional<std::string> queries = {};  ///< recording in the same world: the second tour
   std::optional<std::filesystem::path> settings = {};  ///< calibration of both
   std::optional<std::filesystem::path> classes = {};   ///< class map for the labels of both
+  std::string topics = {};  ///< of both, where they are ROS messages: "color=/a,depth=/b"
   bool is_recorded() const { return !sequence.empty(); }
 };
 

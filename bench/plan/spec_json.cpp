@@ -151,6 +151,7 @@ Json to_json(const Environment& e) {
                          {"queries", optional_json(e.queries)},
                          {"settings", path_json(e.settings)},
                          {"classes", path_json(e.classes)}};
+  if (!e.topics.empty()) json["recording"]["topics"] = e.topics;
   return json;
 }
 
@@ -173,6 +174,7 @@ Environment environment_from_json(const Json& json) {
   if (!recording.at("queries").is_null()) e.queries = recording.at("queries").get<std::string>();
   e.settings = path_from_json(recording.at("settings"));
   e.classes = path_from_json(recording.at("classes"));
+  e.topics = recording.value("topics", "");
   return e;
 }
 

@@ -35,12 +35,14 @@ Json recorded_json(const Suite& suite, const Environment& e) {
     const auto [layout, path] = split_sequence(sequence);
     return join_sequence(layout, from_suite(suite, path));
   };
-  return {{"name", e.name},
-          {"category", e.category},
-          {"sequence", name_of(e.sequence)},
-          {"queries", e.queries ? Json(name_of(*e.queries)) : Json()},
-          {"settings", e.settings ? Json(from_suite(suite, *e.settings)) : Json()},
-          {"classes", e.classes ? Json(from_suite(suite, *e.classes)) : Json()}};
+  Json json = {{"name", e.name},
+               {"category", e.category},
+               {"sequence", name_of(e.sequence)},
+               {"queries", e.queries ? Json(name_of(*e.queries)) : Json()},
+               {"settings", e.settings ? Json(from_suite(suite, *e.settings)) : Json()},
+               {"classes", e.classes ? Json(from_suite(suite, *e.classes)) : Json()}};
+  if (!e.topics.empty()) json["topics"] = e.topics;
+  return json;
 }
 
 Json environment_json(const Suite& suite, const Environment& e) {

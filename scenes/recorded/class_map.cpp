@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/recorded/class_map.hpp"
 
+#include <algorithm>
 #include <charconv>
 
 #include <fmt/format.h>
@@ -40,6 +41,19 @@ ClassMap load_class_map(const std::filesystem::path& file) {
     set(map, id, *class_id);
   }
   return map;
+}
+
+SemanticImage one_hot(const Grid2d<std::uint16_t>& ids, const ClassMap* map) {
+  SemanticImage semantics;
+  semantics.index = Grid2d<std::uint8_t>(ids.width(), ids.height());
+  for (const ClassInfo& info : classes())
+    semantics.palette.push_back(ClassDistribution::one_hot(info.id));
+  std::ranges::transform(ids, semantics.index.begin(), [&](std::uint16_t id) {
+    if (map != nullptr) return id < map->size() ? (*map)[id] : kVoid;
+    if (id >= semantics.palette.size()) throw InputError(fmt::format("class {} is unknown", id));
+    return static_cast<ClassId>(id);
+  });
+  return semantics;
 }
 
 }  // namespace mh

@@ -8,6 +8,7 @@
 
 #include "scenes/recorded/frame_sequence.hpp"
 #include "scenes/recorded/icl_nuim.hpp"
+#include "scenes/recorded/ros/sequence.hpp"
 #include "scenes/recorded/scannet_folder.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -19,7 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // Before TUM's, whose list it has as well.
-constexpr std::array kReaders = {&kIclNuimReader, &kTumReader, &kScannetReader};
+constexpr std::array kReaders = {&kIclNuimReader, &kTumReader, &kScannetReader, &kBagReader,
+                                 &kMcapReader};
 
 /// Notes a file's content in the open scopes; a missing file is noted as missing.
 void note_content(const fs::path& file) {
@@ -70,6 +72,9 @@ const SequenceReader& reader_of(const std::string& source) {
 OpenedRecording open_sequence(const std::string& source, const RecordingConfig& config) {
   const fs::path path = split_sequence(source).second;
   const SequenceReader& reader = reader_of(source);
+  if (!config.topics.empty() && !reader.has_topics)
+    throw InputError(fmt::format("{}: topics '{}': a recording of layout '{}' has none",
+                                 path.string(), config.topics, reader.name));
   if (!ReadScope::is_open()) return reader.open(path, config);
   OpenedRecording opened;
   std::uint64_t all = 0;

@@ -20,8 +20,12 @@ struct RecordingConfig {
                                       ///< them
   std::filesystem::path classes;      ///< class map of its labels; empty: labels are our classes
   bool labels = true;                 ///< false: ignore labels
+  /// Topics of a bag or MCAP file, "color=/a,depth=/b"; empty: found by type.
+  std::string topics = {};
   /// Reads a calibration file, for layouts that keep one. @throws InputError
   std::function<RecordedCamera(const std::filesystem::path&)> read_camera = {};
+  /// Whether such a file has a camera: for layouts that store one, which it then replaces.
+  std::function<bool(const std::filesystem::path&)> has_camera = {};
 };
 
 /// An opened recording.
@@ -44,6 +48,7 @@ struct SequenceReader {
   /// The data set's name for the kind of place ("Bedroom / Hotel"), "" if it has none; null for
   /// layouts that never have one.
   std::string (*scene_type)(const std::filesystem::path&);
+  bool has_topics = false;  ///< RecordingConfig::topics means something
 };
 
 /// Every layout, in the order in which they are tried on a path.

@@ -12,6 +12,7 @@
 
 #include "scenes/image_file.hpp"
 #include "scenes/images/write_image.hpp"
+#include "scenes/recorded/nearest_stamp.hpp"
 #include "scenes/recorded/tum_list.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -22,8 +23,6 @@ namespace mh {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr Stamp kMaxApart_ns = 20'000'000;  // as in TUM's associate.py
 
 using Listed = TumListEntry;
 
@@ -37,31 +36,24 @@ std::vector<Listed> read_list(const fs::path& list, int skip = 0) {
 /// Entries by stamp, for lookup by time.
 class ByStamp {
  public:
-  explicit ByStamp(const std::vector<Listed>& entries) {
-    for (const Listed& entry : entries) sorted_.push_back(&entry);
-    std::ranges::stable_sort(sorted_, {}, &stamp_of);
-  }
+  explicit ByStamp(const std::vector<Listed>& entries)
+      : entries_(entries), index_(stamps_of(entries)) {}
 
   /// The entry nearest in time, ties to the first in the list; null if none is near.
   const Listed* nearest(Stamp stamp_ns) const {
-    const Listed* best = nullptr;
-    const auto offer = [&](auto place) {  // the first of its stamp
-      place = std::ranges::lower_bound(sorted_, stamp_of(*place), {}, &stamp_of);
-      const Stamp apart_ns = std::abs((*place)->stamp_ns - stamp_ns);
-      if (apart_ns > kMaxApart_ns) return;
-      const Stamp best_ns =
-          best == nullptr ? kMaxApart_ns + 1 : std::abs(best->stamp_ns - stamp_ns);
-      if (apart_ns < best_ns || (apart_ns == best_ns && *place < best)) best = *place;
-    };
-    const auto after = std::ranges::lower_bound(sorted_, stamp_ns, {}, &stamp_of);
-    if (after != sorted_.begin()) offer(std::prev(after));
-    if (after != sorted_.end()) offer(after);
-    return best;
+    const auto found = index_.nearest(stamp_ns);
+    return found ? &entries_[*found] : nullptr;
   }
 
  private:
-  static Stamp stamp_of(const Listed* entry) { return entry->stamp_ns; }
-  std::vector<const Listed*> sorted_;
+  static std::vector<Stamp> stamps_of(const std::vector<Listed>& entries) {
+    std::vector<Stamp> stamps_ns;
+    for (const Listed& entry : entries) stamps_ns.push_back(entry.stamp_ns);
+    return stamps_ns;
+  }
+
+  const std::vector<Listed>& entries_;
+  StampIndex index_;
 };
 
 /// Reads a frame's image. Its declared format is checked before anything is decoded.
@@ -86,22 +78,11 @@ cv::Mat read_frame_image(const fs::path& file, std::initializer_list<int> types,
   return image;
 }
 
-SemanticImage one_hot(const cv::Mat& ids, const fs::path& file, const ClassMap* map) {
-  SemanticImage semantics;
-  semantics.index = Grid2d<std::uint8_t>(ids.cols, ids.rows);
-  for (const ClassInfo& info : classes())
-    semantics.palette.push_back(ClassDistribution::one_hot(info.id));
-  for (int y = 0; y < ids.rows; ++y)
-    for (int x = 0; x < ids.cols; ++x) {
-      const std::uint16_t id = ids.depth() == CV_16U ? ids.at<std::uint16_t>(y, x)
-                                                     : std::uint16_t{ids.at<std::uint8_t>(y, x)};
-      if (map == nullptr && id >= semantics.palette.size())
-        throw InputError(fmt::format("{}: class {} is unknown", file.string(), id));
-      semantics.index(x, y) = map == nullptr     ? static_cast<std::uint8_t>(id)
-                              : id < map->size() ? (*map)[id]
-                                                 : kVoid;
-    }
-  return semantics;
+Grid2d<std::uint16_t> widened(const cv::Mat& ids) {
+  Grid2d<std::uint16_t> wide(ids.cols, ids.rows);
+  cv::Mat out(ids.rows, ids.cols, CV_16UC1, wide.data());
+  ids.convertTo(out, CV_16U);
+  return wide;
 }
 
 }  // namespace
@@ -154,9 +135,13 @@ RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera
     }
   if (recorded.classes.empty()) return frame;
   const std::initializer_list<int> ours = {CV_8UC1}, foreign = {CV_8UC1, CV_16UC1};
-  frame.semantics = one_hot(
-      read_frame_image(recorded.classes, classes == nullptr ? ours : foreign, camera.camera),
-      recorded.classes, classes);
+  const cv::Mat ids =
+      read_frame_image(recorded.classes, classes == nullptr ? ours : foreign, camera.camera);
+  try {
+    frame.semantics = one_hot(widened(ids), classes);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", recorded.classes.string(), error.what()));
+  }
   return frame;
 }
 

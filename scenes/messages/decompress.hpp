@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace mh {
+
+/// Decompresses the content of a chunk. Memory is taken as bytes come out, not as they are claimed.
+/// @param compression  "lz4" (frames), "zstd" or "bz2"
+/// @param size         of the result, as the file claims
+/// @throws InputError "is ..." if the compression is unknown, the data is damaged or its size is
+/// another.
+std::string decompress(std::string_view stored, const std::string& compression, std::uint64_t size);
+
+/// Compresses a chunk: "lz4" (one frame) or "zstd" (level 1).
+std::string compress(std::string_view content, const std::string& compression);
+
+}  // namespace mh

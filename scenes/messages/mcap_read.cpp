@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <map>
+
+#include <fmt/format.h>
+
+#include "scenes/messages/byte_reader.hpp"
+#include "scenes/messages/mcap_format.hpp"
+#include "scenes/messages/message_file.hpp"
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+
+using mcap::Opcode;
+
+/// "sensor_msgs/Image" of either spelling.
+std::string common_type(std::string_view type) {
+  std::string common(type);
+  if (const auto at = common.find("/msg/"); at != std::string::npos) common.erase(at, 4);
+  return common;
+}
+
+class McapFile : public MessageFile {
+ public:
+  McapFile(HeldBytes bytes, const std::string& name, const Visit& visit)
+      : MessageFile(std::move(bytes), name), visit_(visit) {
+    const std::string_view all = this->bytes();
+    if (!all.starts_with(mcap::kMagic))
+      throw InputError(fmt::format("{}: is not an MCAP file", name));
+    read_records({all, mcap::kMagic.size(), MessagePlace::kFile, 0});
+    if (!ended_) leave_out("ends", all.size(), "it was cut short: what came before is used");
+  }
+
+ private:
+  /// Records one after the other: of the file, or of a chunk.
+  struct Records {
+    std::string_view bytes;
+    std::size_t begin = 0;
+    std::uint32_t chunk = MessagePlace::kFile;
+    std::uint64_t chunk_at = 0;  ///< in the file
+  };
+
+  void read_records(const Records& records) {
+    const bool in_chunk = records.chunk != MessagePlace::kFile;
+    for (std::size_t at = records.begin; at < records.bytes.size() && !ended_;) {
+      const std::uint64_t place = in_chunk ? records.chunk_at : at;
+      ByteReader from(records.bytes.substr(at));
+      if (from.left() < 9) return cut(in_chunk, place);
+      const auto opcode = static_cast<Opcode>(from.number<std::uint8_t>());
+      const auto size = from.number<std::uint64_t>();
+      if (size > from.left()) return cut(in_chunk, place);
+      const std::size_t content_at = at + 9;
+      const std::string_view content = from.take(size);
+      at = content_at + size;
+      try {
+        if (opcode == Opcode::kMessage)
+          read_message(content, {records.chunk, content_at, size});
+        else if (opcode == Opcode::kChunk && !in_chunk)
+          read_chunk(content, place);
+        else
+          read_other(opcode, content);
+      } catch (const InputError& error) {
+        leave_out("damaged records left out", place, error.what());
+      }
+    }
+  }
+
+  void cut(bool in_chunk, std::uint64_t place) {
+    if (in_chunk) throw InputError("ends within a record");
+    leave_out("records cut short", place, "a record is cut short");
+  }
+
+  void read_message(std::string_view content, MessagePlace place) {
+    constexpr std::size_t kHead = 22;  // channel, sequence, two stamps
+    ByteReader from(content);
+    const auto channel = channels_by_id_.find(from.number<std::uint16_t>());
+    if (content.size() < kHead) throw InputError("a message ends too early");
+    if (channel == channels_by_id_.end()) throw InputError("a message is of no channel");
+    place.at += kHead;
+    place.size -= kHead;
+    count_message();
+    visit_(channels()[channel->second], content.substr(kHead), place);
+  }
+
+  void read_chunk(std::string_view content, std::uint64_t at) {
+    ByteReader from(content);
+    from.take(16);  // stamps of the first and the last message
+    Chunk chunk;
+    chunk.at = at;
+    chunk.size = from.number<std::uint64_t>();
+    const auto crc = from.number<std::uint32_t>();
+    if (crc != 0) chunk.crc = crc;
+    chunk.compression = from.text();
+    chunk.stored = from.take(from.number<std::uint64_t>());
+    const std::uint32_t number = add_chunk(std::move(chunk));
+    const HeldBytes records = open_chunk(number);
+    read_records({records.view, 0, number, at});
+  }
+
+  void read_other(Opcode opcode, std::string_view content) {
+    ByteReader from(content);
+    if (opcode == Opcode::kSchema) {
+      const auto id = from.number<std::uint16_t>();
+      schemas_[id] = common_type(from.text());
+    } else if (opcode == Opcode::kChannel) {
+      const auto id = from.number<std::uint16_t>();
+      const auto schema = schemas_.find(from.number<std::uint16_t>());
+      MessageChannel channel{.topic = std::string(from.text()), .type = {}, .wire = {}};
+      if (schema != schemas_.end()) channel.type = schema->second;
+      const std::string_view encoding = from.text();
+      if (encoding == "cdr") channel.wire = ros::Wire::kCdr;
+      if (encoding == "ros1") channel.wire = ros::Wire::kRos1;
+      channels_by_id_[id] = this->channel(std::move(channel));
+    } else if (opcode == Opcode::kDataEnd || opcode == Opcode::kFooter) {
+      ended_ = true;
+    }
+  }
+
+  const Visit& visit_;
+  std::map<std::uint16_t, std::string> schemas_;  ///< types by id
+  std::map<std::uint16_t, std::size_t> channels_by_id_;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<MessageFile> open_mcap(HeldBytes bytes, const std::string& name,
+                                       const MessageFile::Visit& visit) {
+  return std::make_unique<McapFile>(std::move(bytes), name, visit);
+}
+
+}  // namespace mh

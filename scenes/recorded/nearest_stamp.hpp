@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "slam/core/rgbd_frame.hpp"
+
+namespace mh {
+
+/// Color and depth images further apart in time are no pair, as in TUM's associate.py.
+inline constexpr Stamp kMaxApart_ns = 20'000'000;
+
+/// A list of stamps, in any order, for lookup by time.
+class StampIndex {
+ public:
+  explicit StampIndex(const std::vector<Stamp>& stamps_ns);
+  /// The index of the stamp nearest in time, ties to the first in the list; nullopt if none is
+  /// within kMaxApart_ns.
+  std::optional<std::size_t> nearest(Stamp stamp_ns) const;
+
+ private:
+  std::vector<std::pair<Stamp, std::size_t>> sorted_;  ///< stamp, index
+};
+
+}  // namespace mh

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "scenes/recorded/ros/names.hpp"
+#include "scenes/recorded/ros/topics.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/suggest.hpp"
+
+namespace mh {
+namespace {
+
+constexpr std::array kColorEncodings = {"rgb8", "bgr8", "rgba8", "bgra8", "8UC3", "8UC4"};
+constexpr std::array kGrayEncodings = {"mono8", "8UC1"};
+constexpr std::array kDepthEncodings = {"32FC1", "16UC1", "mono16"};
+
+bool is_one_of(const auto& encodings, const std::string& encoding) {
+  return std::ranges::find(encodings, encoding) != encodings.end();
+}
+
+bool is_ours(const ImageTopic& topic) {
+  return topic.name == ros::kLabelTopic || topic.name == ros::kInstanceTopic;
+}
+bool is_compressed_depth(const ImageTopic& topic) {
+  return topic.compressed && topic.encoding.find("compressedDepth") != std::string::npos;
+}
+bool is_depth(const ImageTopic& topic) {
+  return !is_ours(topic) && (is_compressed_depth(topic) ||
+                             (!topic.compressed && is_one_of(kDepthEncodings, topic.encoding)));
+}
+bool is_color(const ImageTopic& topic) {
+  return !is_ours(topic) && (topic.compressed ? !is_compressed_depth(topic)
+                                              : is_one_of(kColorEncodings, topic.encoding));
+}
+bool is_gray(const ImageTopic& topic) {
+  return !is_ours(topic) && !topic.compressed && is_one_of(kGrayEncodings, topic.encoding);
+}
+
+std::string parent_of(const std::string& topic) {
+  return topic.substr(0, topic.rfind('/'));
+}
+
+std::string listed(const std::vector<const ImageTopic*>& topics) {
+  std::string text;
+  for (const ImageTopic* topic : topics)
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", topic->name,
+                        topic->compressed ? "compressed" : topic->encoding);
+  return text;
+}
+
+/// Every topic with its type, for a user who has to name one.
+std::string all_topics(const std::vector<MessageChannel>& channels) {
+  std::string text;
+  for (const MessageChannel& channel : channels)
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", channel.topic,
+                        channel.type.empty() ? "of no type" : channel.type);
+  return text.empty() ? "it has no topics" : "its topics: " + text;
+}
+
+class Chooser {
+ public:
+  Chooser(const RosTopics& topics, const std::vector<MessageChannel>& channels,
+          const std::string& file)
+      : topics_(topics), channels_(channels), file_(file) {}
+
+  const ImageTopic* named(const std::string& name) const {
+    const auto found = topics_.images.find(name);
+    if (found != topics_.images.end()) return &found->second;
+    std::vector<std::string> known;
+    for (const auto& [topic, images] : topics_.images) known.push_back(topic);
+    throw InputError(fmt::format("{}: topic '{}' holds no image{}; {}", file_, name,
+                                 hint(name, known), all_topics(channels_)));
+  }
+
+  std::vector<const ImageTopic*> all(const std::function<bool(const ImageTopic&)>& is) const {
+    std::vector<const ImageTopic*> found;
+    for (const auto& [name, topic] : topics_.images)
+      if (is(topic)) found.push_back(&topic);
+    // The compressed twin of an image gives way to it.
+    std::erase_if(found, [&](const ImageTopic* topic) {
+      const auto twin = topics_.images.find(parent_of(topic->name));
+      return topic->compressed && twin != topics_.images.end() && is(twin->second);
+    });
+    return found;
+  }
+
+  const ImageTopic* only(const std::vector<const ImageTopic*>& found, const char* what) const {
+    if (found.size() == 1) return found.front();
+    if (found.empty())
+      throw InputError(
+          fmt::format("{}: no topic holds {} images; {}", file_, what, all_topics(channels_)));
+    throw InputError(
+        fmt::format("{}: several topics hold {} images: {}; name one: --topics {}={} "
+                    "(in a suite `topics:`)",
+                    file_, what, listed(found), what, found.front()->name));
+  }
+
+  /// The calibration beside an image: /x/camera_info of /x/image_raw or /x/image_raw/compressed.
+  const ros::CameraInfo* calibration_of(const ImageTopic& image) const {
+    std::string folder = parent_of(image.name);
+    for (int up = 0; up < 2; ++up, folder = parent_of(folder)) {
+      const auto found = topics_.calibrations.find(folder + "/camera_info");
+      if (found != topics_.calibrations.end()) return &found->second;
+    }
+    return topics_.calibrations.size() == 1 ? &topics_.calibrations.begin()->second : nullptr;
+  }
+
+  const ros::CameraInfo* named_calibration(const std::string& name) const {
+    const auto found = topics_.calibrations.find(name);
+    if (found != topics_.calibrations.end()) return &found->second;
+    throw InputError(fmt::format("{}: topic '{}' holds no sensor_msgs/CameraInfo; {}", file_, name,
+                                 all_topics(channels_)));
+  }
+
+ private:
+  const RosTopics& topics_;
+  const std::vector<MessageChannel>& channels_;
+  const std::string& file_;
+};
+
+}  // namespace
+
+ChosenTopics choose_topics(const RosTopics& topics, const TopicNames& names,
+                           const std::vector<MessageChannel>& channels, const std::string& file) {
+  const Chooser choose(topics, channels, file);
+  ChosenTopics chosen;
+  const auto color_or_gray = [&] {
+    std::vector<const ImageTopic*> found = choose.all(is_color);
+    return found.empty() ? choose.all(is_gray) : found;
+  };
+  chosen.color =
+      names.color.empty() ? choose.only(color_or_gray(), "color") : choose.named(names.color);
+  chosen.depth =
+      names.depth.empty() ? choose.only(choose.all(is_depth), "depth") : choose.named(names.depth);
+  if (!names.labels.empty())
+    chosen.labels = choose.named(names.labels);
+  else if (const auto ours = topics.images.find(ros::kLabelTopic); ours != topics.images.end())
+    chosen.labels = &ours->second;
+  chosen.info = names.info.empty() ? choose.calibration_of(*chosen.color)
+                                   : choose.named_calibration(names.info);
+  chosen.depth_info = choose.calibration_of(*chosen.depth);
+  return chosen;
+}
+
+}  // namespace mh

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "scenes/messages/message_file.hpp"
+#include "scenes/recorded/open_sequence.hpp"
+#include "slam/core/held_bytes.hpp"
+
+namespace mh {
+
+/// ROS 1 bags and MCAP files, or a folder with one of them. Topics are found by type and encoding,
+/// or named (RecordingConfig::topics); calibration comes from CameraInfo unless a file is
+/// specified. Color images are paired with the nearest depth image in time, as in TUM's layout.
+extern const SequenceReader kBagReader, kMcapReader;
+
+/// open_bag() or open_mcap().
+using OpenMessages = std::unique_ptr<MessageFile> (*)(HeldBytes, const std::string&,
+                                                      const MessageFile::Visit&);
+
+/// Opens the content of such a file as a recording.
+/// @param name  names the file in messages
+/// @throws InputError naming file and topic.
+OpenedRecording open_messages(OpenMessages open, HeldBytes content, const std::string& name,
+                              const RecordingConfig& config);
+
+}  // namespace mh

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/recorded/ros/topics.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "scenes/messages/robot_types.hpp"
+#include "scenes/recorded/ros/names.hpp"
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+
+/// tf of ROS 1 wrote "/map" where tf2 writes "map".
+std::string frame_name(const std::string& name) {
+  return name.starts_with('/') ? name.substr(1) : name;
+}
+
+/// @throws InputError if it is no rigid transform.
+SE3 rigid(const ros::Quaternion& q, const SE3& pose) {
+  const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  if (!(std::abs(norm - 1) < 0.1) || !pose.translation().allFinite())
+    throw InputError("a pose is not a rigid transform");
+  return pose;
+}
+SE3 rigid(const ros::Pose& pose) {
+  return rigid(pose.orientation, ros::pose_of(pose));
+}
+SE3 rigid(const ros::Transform& t) {
+  return rigid(t.rotation, ros::pose_of(t));
+}
+
+}  // namespace
+
+void RosTopics::add(const MessageChannel& channel, std::string_view message,
+                    const MessagePlace& place) {
+  if (!channel.wire) return;
+  try {
+    add_known(channel, message, place);
+  } catch (const InputError& error) {
+    if (unreadable++ == 0)
+      first_unreadable =
+          fmt::format("topic {}: a {} {}", channel.topic, channel.type, error.what());
+  }
+}
+
+void RosTopics::add_known(const MessageChannel& channel, std::string_view message,
+                          const MessagePlace& place) {
+  const std::string& type = channel.type;
+  const ros::Wire wire = *channel.wire;
+  const auto add_pose = [&](const ros::Header& header, const std::string& child, const SE3& pose) {
+    PoseTopic& topic = poses[channel.topic];
+    topic.parent = frame_name(header.frame_id);
+    topic.child = frame_name(child);
+    topic.poses.push_back({header.stamp.ns, pose});
+  };
+  if (type == ros::Image::kType || type == ros::CompressedImage::kType) {
+    add_image(channel, message, place);
+  } else if (type == ros::CameraInfo::kType) {
+    if (!calibrations.contains(channel.topic))
+      calibrations[channel.topic] = ros::parsed<ros::CameraInfo>(message, wire);
+  } else if (type == ros::PoseStamped::kType) {
+    const auto m = ros::parsed<ros::PoseStamped>(message, wire);
+    add_pose(m.header, "", rigid(m.pose));
+  } else if (type == ros::TransformStamped::kType) {
+    const auto m = ros::parsed<ros::TransformStamped>(message, wire);
+    add_pose(m.header, m.child_frame_id, rigid(m.transform));
+  } else if (type == ros::Odometry::kType) {
+    const auto m = ros::parsed<ros::Odometry>(message, wire);
+    add_pose(m.header, m.child_frame_id, rigid(m.pose.pose));
+  } else if (type == ros::TfMessage::kType || type == "tf/tfMessage") {
+    const bool is_static = channel.topic.ends_with("tf_static");
+    for (const ros::TransformStamped& t : ros::parsed<ros::TfMessage>(message, wire).transforms)
+      add_transform(t, is_static);
+  }
+}
+
+void RosTopics::add_image(const MessageChannel& channel, std::string_view message,
+                          const MessagePlace& place) {
+  const auto [entry, is_new] = images.try_emplace(channel.topic);
+  ImageTopic& topic = entry->second;
+  ros::Header header;
+  try {
+    if (channel.type == ros::CompressedImage::kType) {
+      auto m = ros::parsed<ros::CompressedImage>(message, *channel.wire);
+      header = std::move(m.header);
+      if (is_new) topic.compressed = true, topic.encoding = m.format;
+    } else {
+      auto m = ros::parsed<ros::Image>(message, *channel.wire);
+      header = std::move(m.header);
+      if (is_new) {
+        topic.encoding = m.encoding;
+        topic.width_px = static_cast<int>(std::min<std::uint32_t>(m.width, INT32_MAX));
+        topic.height_px = static_cast<int>(std::min<std::uint32_t>(m.height, INT32_MAX));
+      }
+    }
+  } catch (const InputError&) {
+    if (is_new) images.erase(entry);
+    throw;
+  }
+  if (is_new) {
+    topic.name = channel.topic;
+    topic.frame = frame_name(header.frame_id);
+    topic.wire = *channel.wire;
+  }
+  topic.images.push_back({header.stamp.ns, place});
+}
+
+void RosTopics::add_transform(const ros::TransformStamped& t, bool is_static) {
+  TfEdge& edge = tf[frame_name(t.child_frame_id)];
+  const std::string parent = frame_name(t.header.frame_id);
+  if (edge.parent != parent) edge = {parent, is_static, {}};  // it hangs elsewhere from now on
+  edge.is_static = is_static;
+  edge.poses.push_back({t.header.stamp.ns, rigid(t.transform)});
+}
+
+}  // namespace mh

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenes/messages/message_file.hpp"
+#include "scenes/recorded/ros/topic_names.hpp"
+#include "slam/core/camera.hpp"
+#include "slam/core/trajectory.hpp"
+
+namespace mh {
+
+/// An image message of a file: when it was taken, and where it stands.
+struct StoredImage {
+  Stamp stamp_ns = 0;
+  MessagePlace place;
+};
+
+/// A topic of images. Encoding, size and frame are those of its first message.
+struct ImageTopic {
+  std::string name;
+  bool compressed = false;          ///< sensor_msgs/CompressedImage
+  std::string encoding;             ///< "rgb8"; of a compressed one its format, "jpeg"
+  int width_px = 0, height_px = 0;  ///< 0 of a compressed one
+  std::string frame;
+  ros::Wire wire = ros::Wire::kRos1;
+  std::vector<StoredImage> images;
+};
+
+/// A topic of poses: PoseStamped, PoseWithCovarianceStamped's like, TransformStamped, Odometry.
+struct PoseTopic {
+  std::string parent, child;  ///< frames; child is empty where the type has none
+  std::vector<TimedPose> poses;
+};
+
+/// A frame of tf, in the frame that it hangs on.
+struct TfEdge {
+  std::string parent;
+  bool is_static = false;
+  std::vector<TimedPose> poses;  ///< parent_from_child, in the file's order
+};
+
+/// What a file of messages holds for SLAM.
+struct RosTopics {
+  std::map<std::string, ImageTopic> images;
+  std::map<std::string, ros::CameraInfo> calibrations;  ///< the first of each topic
+  std::map<std::string, PoseTopic> poses;
+  std::map<std::string, TfEdge> tf;  ///< by the child's name
+  std::size_t unreadable = 0;        ///< messages of these types that could not be parsed
+  std::string first_unreadable;      ///< what was wrong with the first
+
+  /// Takes a message in. Types that are of no use here are ignored.
+  void add(const MessageChannel& channel, std::string_view message, const MessagePlace& place);
+
+ private:
+  void add_known(const MessageChannel& channel, std::string_view message,
+                 const MessagePlace& place);
+  void add_image(const MessageChannel& channel, std::string_view message,
+                 const MessagePlace& place);
+  void add_transform(const ros::TransformStamped& t, bool is_static);
+};
+
+/// The topics that a recording is made of.
+struct ChosenTopics {
+  const ImageTopic* color = nullptr;
+  const ImageTopic* depth = nullptr;
+  const ImageTopic* labels = nullptr;           ///< may be null
+  const ros::CameraInfo* info = nullptr;        ///< of color; may be null
+  const ros::CameraInfo* depth_info = nullptr;  ///< may be null
+};
+/// Chooses by name, otherwise by type and encoding.
+/// @throws InputError naming the file and its topics if there is none of a kind, or several.
+ChosenTopics choose_topics(const RosTopics& topics, const TopicNames& names,
+                           const std::vector<MessageChannel>& channels, const std::string& file);
+
+/// The true trajectory of the camera's optical frame, from a topic of poses (that of `names`, ours,
+/// or one that calls itself ground truth) or from tf between "world" or "map" and that frame.
+/// nullopt if there is none.
+/// @param frame   the optical frame
+/// @param stamps  of the frames, where tf is evaluated if more than one of its frames moves
+/// @param notes   receives what the truth was taken from, unless it is ours
+/// @throws InputError if a named topic holds no poses, or cannot be connected with the camera.
+std::optional<Trajectory> true_trajectory(const RosTopics& topics, const TopicNames& names,
+                                          const ImageTopic& color, std::vector<std::string>& notes,
+                                          const std::string& file);
+
+}  // namespace mh

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "robots/model/robot.hpp"
+#include "robots/navigation/floor_grid.hpp"
+#include "scenes/messages/message_log.hpp"
+#include "scenes/scene.hpp"
+#include "sim/motion/motion.hpp"
+#include "sim/motion/sensing.hpp"
+
+namespace mh {
+
+/// A drive, as the robot under it would report it.
+struct DriveRecord {
+  const Robot& robot;
+  const DrivenPath& path;                 ///< of a robot that drove
+  const Trajectory& camera;               ///< world_from_camera, stamps of the path
+  std::optional<RobotReadings> readings;  ///< of a robot with equipment
+  std::optional<FloorGrid> grid;          ///< of the level scene
+  SE3 world_from_level;                   ///< what readings and grid refer to
+};
+
+/// Collects what belongs to a drive: sensor readings of a robot that has equipment, and the floor
+/// as a grid, if it can be made.
+/// @param others  moving obstacles during the drive
+DriveRecord record_drive(const Scene& scene, const Robot& robot, const DrivenPath& path,
+                         const Trajectory& camera, std::uint64_t seed,
+                         const std::vector<MovingObstacle>& others);
+
+/// The messages of a robot: tf (map, odom, base_footprint, base_link, camera_link,
+/// camera_optical_frame and the sensors' frames), the true pose of its base and, where it has the
+/// sensors, odometry, laser scans, sonars, bumpers and IMU; the floor's grid. Sorted by stamp.
+MessageLog robot_messages(ros::Wire wire, const DriveRecord& drive);
+
+}  // namespace mh
