@@ -25,8 +25,11 @@ class ListedSequence : public Sequence {
   std::size_t size() const override { return listed_.frames.size(); }
   Stamp stamp_ns(std::size_t index) const override { return listed_.frames[index].stamp_ns; }
   RgbdFrame frame(std::size_t index, RandomStream) const override {
-    return read_frame(listed_.frames[index], listed_.camera,
-                      listed_.classes ? &*listed_.classes : nullptr);
+    RgbdFrame frame = read_frame(listed_.frames[index], listed_.camera,
+                                 listed_.classes ? &*listed_.classes : nullptr);
+    if (listed_.depth_camera)
+      frame.depth_m = registered_depth(frame.depth_m, *listed_.depth_camera, camera());
+    return frame;
   }
   const Trajectory* truth() const override { return listed_.truth ? &*listed_.truth : nullptr; }
 
@@ -51,7 +54,7 @@ class FramesInMemory : public Sequence {
 
 ListedFrames list_tum_folder(const fs::path& folder, const RecordedCamera& camera,
                              std::vector<std::string>* notes) {
-  ListedFrames listed{camera, load_tum_folder(folder, notes), {}, {}};
+  ListedFrames listed{camera, load_tum_folder(folder, notes), {}, {}, {}};
   const fs::path truth = folder / "groundtruth.txt";
   if (is_file(truth)) listed.truth = read_tum(truth);
   return listed;

@@ -9,6 +9,7 @@
 
 #include "scenes/recorded/class_map.hpp"
 #include "scenes/recorded/open_sequence.hpp"
+#include "scenes/recorded/registered_depth.hpp"
 #include "scenes/recorded/tum_folder.hpp"
 #include "slam/core/sequence.hpp"
 
@@ -20,6 +21,7 @@ struct ListedFrames {
   std::vector<RecordedFrame> frames;
   std::optional<ClassMap> classes;  ///< of its label images; absent: they are our classes
   std::optional<Trajectory> truth;
+  std::optional<DepthCamera> depth_camera;  ///< absent: depth is registered to color in the files
 };
 
 /// @param labels  false: frames come without

@@ -84,7 +84,8 @@ OpenedRecording open_icl_nuim(const fs::path& folder, const RecordingConfig& con
   ListedFrames listed{.camera = {.camera = published_camera()},
                       .frames = read_frames(folder),
                       .classes = {},
-                      .truth = read_truth(folder / truth.front())};
+                      .truth = read_truth(folder / truth.front()),
+                      .depth_camera = {}};
   if (!config.calibration.empty()) listed.camera = config.read_camera(config.calibration);
   return open_listed(std::move(listed));
 }

@@ -10,6 +10,7 @@
 #include "scenes/recorded/icl_nuim.hpp"
 #include "scenes/recorded/ros/sequence.hpp"
 #include "scenes/recorded/scannet_folder.hpp"
+#include "scenes/recorded/seven_scenes.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/read_record.hpp"
@@ -20,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // Before TUM's, whose list it has as well.
-constexpr std::array kReaders = {&kIclNuimReader, &kTumReader, &kScannetReader, &kBagReader,
-                                 &kMcapReader};
+constexpr std::array kReaders = {&kIclNuimReader,     &kTumReader, &kScannetReader,
+                                 &kSevenScenesReader, &kBagReader, &kMcapReader};
 
 /// Notes a file's content in the open scopes; a missing file is noted as missing.
 void note_content(const fs::path& file) {

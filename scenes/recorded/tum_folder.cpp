@@ -130,8 +130,9 @@ RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera
       const cv::Vec3b bgr = color.at<cv::Vec3b>(y, x);
       frame.color(x, y) = {bgr[2], bgr[1], bgr[0]};
       if (camera.exchange_red_blue) frame.color(x, y) = {bgr[0], bgr[1], bgr[2]};
+      const std::uint16_t units = depth.at<std::uint16_t>(y, x);
       frame.depth_m(x, y) =
-          static_cast<float>(depth.at<std::uint16_t>(y, x) / camera.depth_per_meter);
+          units == camera.no_depth ? 0.0F : static_cast<float>(units / camera.depth_per_meter);
     }
   if (recorded.classes.empty()) return frame;
   const std::initializer_list<int> ours = {CV_8UC1}, foreign = {CV_8UC1, CV_16UC1};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -23,6 +24,7 @@ struct RecordedCamera {
   Camera camera;
   double depth_per_meter = kDepthPerMeter;  ///< value of a depth pixel at one meter
   bool exchange_red_blue = false;           ///< the files' first channel is blue
+  std::uint16_t no_depth = 0;               ///< a depth pixel without measurement, besides 0
 };
 
 /// A pair of color and depth images of a recording.

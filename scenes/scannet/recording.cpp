@@ -24,22 +24,7 @@ namespace fs = std::filesystem;
 
 /// Sixteen numbers of a text file, row by row; "-inf" is a number.
 Eigen::Matrix4d read_matrix(const fs::path& file) {
-  const std::string text = read_text(file);
-  std::istringstream words(text);
-  Eigen::Matrix4d matrix;
-  std::string word;
-  for (int i = 0; i < 16; ++i) {
-    if (!(words >> word))
-      throw InputError(fmt::format("{}: holds {} numbers, 16 are needed", file.string(), i));
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size())
-      throw InputError(fmt::format("{}: number {}: '{}' is not a number", file.string(), i + 1,
-                                   word.substr(0, 40)));
-    matrix(i / 4, i % 4) = value;
-  }
-  if (words >> word) throw InputError(fmt::format("{}: holds more than 16 numbers", file.string()));
-  return matrix;
+  return parse_matrix(read_text(file), file.string());
 }
 
 /// color/ depth/ pose/ intrinsic/, as ScanNet's SensReader extracts them.
@@ -174,6 +159,24 @@ std::vector<fs::path> sens_files(const fs::path& folder) {
 }
 
 }  // namespace
+
+Eigen::Matrix4d parse_matrix(const std::string& text, const std::string& what) {
+  std::istringstream words(text);
+  Eigen::Matrix4d matrix;
+  std::string word;
+  for (int i = 0; i < 16; ++i) {
+    if (!(words >> word))
+      throw InputError(fmt::format("{}: holds {} numbers, 16 are needed", what, i));
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size())
+      throw InputError(
+          fmt::format("{}: number {}: '{}' is not a number", what, i + 1, word.substr(0, 40)));
+    matrix(i / 4, i % 4) = value;
+  }
+  if (words >> word) throw InputError(fmt::format("{}: holds more than 16 numbers", what));
+  return matrix;
+}
 
 RecordedLens lens_of(const Eigen::Matrix4d& intrinsics, const Eigen::Matrix4d& extrinsics,
                      int width_px, int height_px, const std::string& what) {

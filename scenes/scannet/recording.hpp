@@ -68,6 +68,8 @@ class Recording {
 /// @throws InputError naming file and place.
 std::unique_ptr<Recording> open_recording(const std::filesystem::path& path);
 
+/// 16 numbers, row by row; they need not be finite. @throws InputError "what: ..." on other text.
+Eigen::Matrix4d parse_matrix(const std::string& text, const std::string& what);
 /// A camera's 4x4 intrinsics or a pose, row by row. @throws InputError "what" on an invalid matrix.
 RecordedLens lens_of(const Eigen::Matrix4d& intrinsics, const Eigen::Matrix4d& extrinsics,
                      int width_px, int height_px, const std::string& what);

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "slam/core/trajectory.hpp"
+
+namespace mh {
+
+/// Collects true poses that a data set writes as 4x4 matrices. A frame whose text is none (another
+/// number of values, one that is not finite, no rotation) has no truth, and is counted.
+class MatrixPoses {
+ public:
+  /// @param text   16 numbers by rows
+  /// @param where  file and place, for the note
+  void add(Stamp stamp_ns, const std::string& text, const std::string& where);
+  /// Counts a frame for which nothing is written.
+  void add_absent(const std::string& where);
+
+  /// The poses, in the order in which they were added.
+  const Trajectory& poses() const { return poses_; }
+  /// Adds a line about the frames without a pose, if there are any.
+  void note(const std::string& recording, std::vector<std::string>& notes) const;
+
+ private:
+  void miss(const std::string& fault);
+
+  Trajectory poses_;
+  std::size_t missing_ = 0;
+  std::string first_fault_;
+};
+
+}  // namespace mh

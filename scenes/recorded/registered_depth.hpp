@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "slam/core/camera.hpp"
+#include "slam/core/grid2d.hpp"
+#include "slam/core/se3.hpp"
+
+namespace mh {
+
+/// A depth camera that stands beside the color camera.
+struct DepthCamera {
+  Camera camera;  ///< without distortion
+  SE3 color_from_depth;
+};
+
+/// Registers a depth image to the color camera: each pixel's point goes to the pixel nearest to
+/// where the color camera sees it, with its depth there; of several, the nearest point stays.
+/// Pixels that no point meets have depth 0.
+/// @param depth_m  along z of the depth camera; 0: not measured
+/// @pre  color has no distortion.
+Grid2d<float> registered_depth(const Grid2d<float>& depth_m, const DepthCamera& depth,
+                               const Camera& color);
+
+}  // namespace mh
