@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/recorded/seven_scenes.hpp"
 
-#include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <optional>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -14,6 +11,7 @@
 
 #include "scenes/recorded/frame_sequence.hpp"
 #include "scenes/recorded/matrix_poses.hpp"
+#include "scenes/recorded/numbered_images.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/text_file.hpp"
@@ -25,32 +23,6 @@ namespace fs = std::filesystem;
 
 constexpr double kRate_hz = 30;              // of the Kinect; the files have no stamps
 constexpr Stamp kPause_ns = 10'000'000'000;  // between two sequences: nothing connects them
-constexpr std::string_view kColorEnding = ".color.png";
-
-/// A whole number without sign, of digits alone.
-std::optional<int> number_of(std::string_view digits) {
-  int number = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  if (error != std::errc() || end != digits.data() + digits.size() || number < 0)
-    return std::nullopt;
-  return number;
-}
-
-/// The color images of a sequence's folder, in numeric order.
-std::vector<std::pair<int, std::string>> color_images(const fs::path& folder) {
-  constexpr std::string_view kBeginning = "frame-";
-  std::vector<std::pair<int, std::string>> images;
-  for (const std::string& name : list_folder(folder, fmt::format("frame-*{}", kColorEnding))) {
-    std::string_view digits = name;
-    digits.remove_prefix(kBeginning.size());
-    digits.remove_suffix(kColorEnding.size());
-    if (const auto number = number_of(digits)) images.emplace_back(*number, name);
-  }
-  std::ranges::sort(images);
-  const auto repeated = std::ranges::unique(images, {}, &std::pair<int, std::string>::first);
-  images.erase(repeated.begin(), repeated.end());
-  return images;
-}
 
 /// The folders that a split names: "sequence7" stands for seq-07 beside it.
 std::vector<fs::path> folders_of(const fs::path& split) {
@@ -60,7 +32,7 @@ std::vector<fs::path> folders_of(const fs::path& split) {
     std::string_view digits = word;
     for (const std::string_view start : {"sequence", "seq-"})
       if (digits.starts_with(start)) digits.remove_prefix(start.size());
-    const auto number = number_of(digits);
+    const auto number = whole_number_of(digits);
     if (!number)
       throw InputError(fmt::format("{}: '{}' is not a sequence such as sequence1", split.string(),
                                    word.substr(0, 40)));
@@ -78,20 +50,20 @@ std::vector<fs::path> folders_of(const fs::path& split) {
 class Reading {
  public:
   void add(const fs::path& folder) {
-    const auto images = color_images(folder);
-    if (images.empty())
+    const auto color = numbered_images(folder, "frame-", ".color.png");
+    if (color.empty())
       throw InputError(fmt::format("{}: holds no frame-XXXXXX.color.png", folder.string()));
+    const auto depth = numbered_images(folder, "frame-", ".depth.png");
+    offered_ += color.size();
     Stamp last_ns = start_ns_;
-    for (const auto& [number, name] : images) {
-      const std::string stem = name.substr(0, name.size() - kColorEnding.size());
-      ++offered_;
-      if (!is_file(folder / (stem + ".depth.png"))) {
-        if (without_depth_++ == 0) first_without_depth_ = (folder / name).string();
+    for (const auto& [number, file] : color) {
+      if (!depth.contains(number)) {
+        without_depth_.add(file);
         continue;
       }
       last_ns = start_ns_ + static_cast<Stamp>(std::llround(1e9 * number / kRate_hz));
-      frames_.push_back({last_ns, folder / name, folder / (stem + ".depth.png"), fs::path()});
-      const fs::path pose = folder / (stem + ".pose.txt");
+      frames_.push_back({last_ns, file, depth.at(number), fs::path()});
+      const fs::path pose = folder / fmt::format("frame-{:06}.pose.txt", number);
       if (is_file(pose))
         poses_.add(last_ns, read_file(pose), pose.string());
       else
@@ -110,11 +82,7 @@ class Reading {
   }
   std::vector<std::string> notes(const fs::path& path) const {
     std::vector<std::string> notes;
-    if (without_depth_ > 0)
-      notes.push_back(
-          fmt::format("{}: {} of {} color images have no depth image and are left out "
-                      "(the first is {})",
-                      path.string(), without_depth_, offered_, first_without_depth_));
+    without_depth_.note(path, offered_, notes);
     poses_.note(path.string(), notes);
     return notes;
   }
@@ -123,8 +91,8 @@ class Reading {
   std::vector<RecordedFrame> frames_;
   MatrixPoses poses_;
   Stamp start_ns_ = 0;
-  std::size_t offered_ = 0, without_depth_ = 0;
-  std::string first_without_depth_;
+  std::size_t offered_ = 0;
+  LeftOut without_depth_;
 };
 
 bool is_seven_scenes(const fs::path& path) {

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mh {
+
+/// A whole number without sign, of digits alone.
+std::optional<int> whole_number_of(std::string_view digits);
+
+/// The files of a folder named by a number between two words, "frame-" and ".color.png", by
+/// number; of two files with one number the first by name.
+std::map<int, std::filesystem::path> numbered_images(const std::filesystem::path& folder,
+                                                     std::string_view before,
+                                                     std::string_view after);
+
+/// Counts color images that are left out because they have no depth image.
+class LeftOut {
+ public:
+  void add(const std::filesystem::path& color);
+  /// Adds a line about them, if there are any. @param offered  color images in all
+  void note(const std::filesystem::path& recording, std::size_t offered,
+            std::vector<std::string>& notes) const;
+
+ private:
+  std::size_t count_ = 0;
+  std::filesystem::path first_;
+};
+
+}  // namespace mh
