@@ -22,6 +22,7 @@ void add_scene(CLI::App& app);
 void add_scene_statistics(CLI::App& scene);
 void add_sensors(CLI::App& app);
 void add_slam(CLI::App& app);
+void add_twin(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_vocabulary(CLI::App& app);
 /// Adds `completion` and `manual`, which are generated from all of `app`.

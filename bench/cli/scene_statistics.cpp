@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
@@ -51,14 +50,6 @@ std::vector<std::string> names_of(const Options& options) {
   return names;
 }
 
-cv::Mat gray_of(const Grid2d<Rgb8>& color) {
-  // cv::Mat does not write through this view.
-  const cv::Mat rgb(color.height(), color.width(), CV_8UC3, const_cast<Rgb8*>(color.data()));
-  cv::Mat gray;
-  cv::cvtColor(rgb, gray, cv::COLOR_RGB2GRAY);
-  return gray;
-}
-
 /// Measures moments of a hand-held scan of the scene, evenly spaced, as the level's sensors see
 /// them.
 MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const Options& options,
@@ -77,7 +68,7 @@ MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const O
     const auto from = scan.begin() + static_cast<std::ptrdiff_t>(first);
     const SimulatedSequence moment(renderer, robot.camera, Trajectory(from, from + 2 * kAround + 1),
                                    sensors, LabelMode::kNone);
-    place.frames.push_back(measure_image(gray_of(moment.frame(kAround, RandomStream(k)).color)));
+    place.frames.push_back(measure_image(moment.frame(kAround, RandomStream(k)).color));
   }
   return place;
 }

@@ -10,7 +10,7 @@
 namespace mh {
 
 SlamConfig settings_of(const SystemSpec& system, const SlamConfig& settings) {
-  SlamConfig seen = system.is_outside() ? SlamConfig{} : settings;
+  SlamConfig seen = system.takes_settings() ? settings : SlamConfig{};
   if (!system.weighs_labels()) seen.semantics = seen.semantics.neutralized();
   return seen;
 }

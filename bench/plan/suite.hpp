@@ -38,7 +38,7 @@ struct Suite {
   std::filesystem::path file;
   std::vector<Environment> environments;
   std::filesystem::path vocabulary;  ///< empty if no system needs it
-  /// Sensor settings, named by their files; kRecordedLevel comes last if there are recordings.
+  /// Sensor levels, as paths of their files; kRecordedLevel is last if there are recordings.
   std::vector<std::filesystem::path> levels;
   std::vector<SystemSpec> systems;
   std::vector<LabelMode> labels;
@@ -47,30 +47,30 @@ struct Suite {
   SharedSlamConfig slam;
   Sweep sweep;
   ProtocolConfig protocol;
-  /// Which systems are compared: first minus second. Default: `semantic` with `plain`, if the suite
-  /// has both.
+  /// Pairs of systems to compare; differences are first minus second. Default: `semantic` and
+  /// `plain`, if the suite has both.
   std::vector<SystemPair> compare;
-  /// The first of a pair is not inferior if the interval of its success minus the second's stays
-  /// above -margin. Stated in the suite, before any measurement.
+  /// The first of a pair is non-inferior if the confidence interval of its success rate minus the
+  /// second's lies above -margin. Fixed in the suite, before any measurement.
   std::optional<double> non_inferiority_margin;
-  std::optional<Published> published;      ///< whose figures are shown next to the measured ones
+  std::optional<Published> published;      ///< results to show next to the measured ones
   GateConfig gate;                         ///< what `modelhouse check` tolerates
   std::optional<std::size_t> max_frames;   ///< truncates the tours: for a quick look
-  bool scene_replaced = false;             ///< by SuiteOverrides::scene
-  std::map<std::string, std::string> set;  ///< as SuiteOverrides
-  FoundRecordings found;                   ///< what its recording patterns found
-  std::vector<std::string> left_out;       ///< recordings that patterns found, one line each
+  bool scene_replaced = false;             ///< SuiteOverrides::scene was set
+  std::map<std::string, std::string> set;  ///< as in SuiteOverrides
+  FoundRecordings found;                   ///< recordings that the suite's patterns matched
+  std::vector<std::string> left_out;       ///< matched recordings that are not used, one line each
 };
 
 /// What the command line may override in a suite.
 struct SuiteOverrides {
   std::optional<std::filesystem::path> scene = {};
-  SceneFrame frame = {};  ///< of that scene, otherwise of the suite's only scene
+  SceneFrame frame = {};  ///< of that scene or, if none is given, of the suite's only scene
   std::optional<int> trials = {};
   std::optional<std::size_t> max_frames = {};
   /// Values that replace `${name}` in the suite's text.
   std::map<std::string, std::string> set = {};
-  /// For a suite that is read from its results: patterns are not searched for again.
+  /// For a suite read back from a results file: what its patterns found, so as not to search again.
   FoundRecordings found = {};
 };
 
@@ -78,18 +78,19 @@ struct SuiteOverrides {
 /// @throws InputError naming file, line, field and value.
 Suite load_suite(const std::filesystem::path& file, const SuiteOverrides& overrides = {});
 
-/// Parses the text of a suite whose file need not exist any more, nor, on request, the files that
-/// it names.
+/// Parses the text of a suite. The file itself need not exist anymore; if `files_must_exist` is
+/// false, the files that it names need not exist either.
 Suite parse_suite(const std::string& content, const std::filesystem::path& file,
                   const SuiteOverrides& overrides = {}, bool files_must_exist = true);
 
-/// The level of recordings, which contain their own noise; no file has this name.
+/// The level name of recordings, whose noise is already in the data; no level file has this name.
 inline constexpr const char* kRecordedLevel = "recorded";
 
-/// Whether runs of an environment may have these labels: recorded ones for a recording, drawn ones
-/// for a scene. Any may have none.
+/// Whether runs of an environment may use these labels: a recording has recorded labels, a scene
+/// simulated ones; both may run without labels.
 bool fits(const Environment& environment, LabelMode labels);
-/// Whether runs of an environment are made at this level: a recording's only at kRecordedLevel.
+/// Whether an environment is run at this level. Recordings are run only at kRecordedLevel, scenes
+/// only at other levels.
 bool fits(const Environment& environment, const std::filesystem::path& level);
 
 std::string level_name(const std::filesystem::path& level);

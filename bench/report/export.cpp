@@ -142,7 +142,7 @@ std::string export_latex(const Store& store) {
         "{} & {} & {} & {} & ", latex_cell(suite.environments[row.environment].name),
         latex_cell(level_name(suite.levels[row.level])), name(row.labels), latex_cell(system.name));
     for (const std::string& name : suite.sweep.varied)
-      head += (system.is_outside() ? "--" : latex_cell(shown_value(seen, name))) + " & ";
+      head += (system.takes_settings() ? latex_cell(shown_value(seen, name)) : "--") + " & ";
     const auto trials = static_cast<std::size_t>(suite.trials);
     head += row.trials.size() == trials ? fmt::format("{}", trials)
                                         : fmt::format("{} of {}", row.trials.size(), trials);

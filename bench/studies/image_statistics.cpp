@@ -98,6 +98,14 @@ double percentile(std::vector<double> values, double share) {
   return a + (at - static_cast<double>(low)) * (*std::min_element(middle + 1, values.end()) - a);
 }
 
+ImageStatistics measure_image(const Grid2d<Rgb8>& color) {
+  // cv::Mat does not write through this view.
+  const cv::Mat rgb(color.height(), color.width(), CV_8UC3, const_cast<Rgb8*>(color.data()));
+  cv::Mat gray;
+  cv::cvtColor(rgb, gray, cv::COLOR_RGB2GRAY);
+  return measure_image(gray);
+}
+
 ImageStatistics measure_image(const cv::Mat& image) {
   cv::Mat gray = image;
   if (gray.cols != kWidth || gray.rows != kHeight)

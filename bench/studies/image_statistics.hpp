@@ -7,6 +7,9 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include "slam/core/grid2d.hpp"
+#include "slam/core/rgbd_frame.hpp"
+
 namespace mh {
 
 /// Measures of how hard an image is for features: texture, blankness, sharpness. In the order of
@@ -38,6 +41,7 @@ inline constexpr std::array<ImageQuantity, kImageQuantityCount> kImageQuantities
 /// - the variance of the 4-neighbor Laplacian.
 /// @param gray 8 bits, one channel, not empty
 ImageStatistics measure_image(const cv::Mat& gray);
+ImageStatistics measure_image(const Grid2d<Rgb8>& color);
 
 /// The value below which that share of a list falls, interpolated between neighbors; NaN if empty.
 double percentile(std::vector<double> values, double share);

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A SLAM system as a shared library that Modelhouse loads (docs/outside_systems.md, "In the same
- * process"). C99 and C++; needs nothing else, so that a copy of this file is enough.
+ * process"). C99 and C++; this header is self-contained, so a copy of it is all you need.
  *
  * The library defines mh_make_system(). A suite names the library:
  *   systems:
  *   - {name: mine, library: build/libmine.so, settings: mine.yaml}
  *
- * Calls come one at a time, all from one thread. Work that answers depend on must be finished when
- * a call returns. The same calls must give the same answers: randomness comes only from the seeds,
- * and no answer may depend on a clock.
+ * Calls come one at a time, all from one thread. Finish all work that affects any answer before a
+ * call returns. The same calls must give the same answers: take randomness only from the seeds, and
+ * let no answer depend on a clock.
  *
- * A function that returns a status returns 0 on success. Any other value fails the run: the
- * function writes one line to mh_setup.message, and no function of the system is called again, not
- * even destroy(). No C++ exception may leave a function.
+ * A function that returns a status returns 0 on success. Any other value fails the run: write one
+ * line to mh_setup.message before returning it. After that, no function of the system is called
+ * again, not even destroy(). Do not let a C++ exception escape from a function.
  */
 #ifndef MODELHOUSE_SYSTEM_H
 #define MODELHOUSE_SYSTEM_H
@@ -32,7 +32,7 @@ extern "C" {
 /** A count that is not reported. */
 #define MH_UNKNOWN (-1)
 
-/** A pinhole camera. Pixel centers are at integers. */
+/** A pinhole camera. Pixel centers have integer coordinates. */
 typedef struct mh_camera {
   int32_t width_px, height_px;
   double fx_px, fy_px, cx_px, cy_px;
@@ -53,20 +53,20 @@ typedef struct mh_setup {
   char* message;              /**< MH_MESSAGE_SIZE characters: why a function failed */
 } mh_setup;
 
-/** A registered frame: the same pixel of all images sees the same point. Rows are stored from top
- * to bottom without gaps. The bench owns it; it is valid until the function returns. */
+/** A registered frame: a given pixel shows the same point in all images. Rows are stored from top
+ * to bottom without padding. The bench owns it; it is valid until the function returns. */
 typedef struct mh_frame {
   int64_t stamp_ns;
   int32_t width_px, height_px;
   const uint8_t* color;  /**< red, green, blue: 3 per pixel */
   const uint16_t* depth; /**< along the optical axis, see depth_per_meter; 0 = no return */
-  const uint8_t* labels; /**< class id per pixel; NULL where the run has no labels */
-  int32_t seed;          /**< for all random draws of this call, >= 0; differs in each attempt */
+  const uint8_t* labels; /**< class id per pixel; NULL if the run has no labels */
+  int32_t seed;          /**< seeds all randomness of this call, >= 0; each attempt has its own */
 } mh_frame;
 
-/** x y z qx qy qz qw of the camera in the system's own world (world_from_camera): meters and a unit
- * quaternion. The camera looks along its z, its x points right, its y down. The world stays the
- * same until reset() or map_reset. */
+/** Pose of the camera in the system's own world (world_from_camera): x y z in meters, then the unit
+ * quaternion qx qy qz qw. Camera axes: x right, y down, z forward. The world must stay the same
+ * until reset() or map_reset. */
 typedef struct mh_pose {
   double values[7];
 } mh_pose;
@@ -87,42 +87,43 @@ typedef struct mh_answer {
   int32_t has_pose; /**< 0: the system is lost */
   mh_pose pose;
   int32_t keypoints, inliers; /**< or MH_UNKNOWN, like all counts here */
-  int32_t keyframe_added;     /**< not 0: the frame became a keyframe; its depth is added to the
+  int32_t keyframe_added;     /**< nonzero: the frame became a keyframe; its depth is added to the
                                    occupancy map */
-  int32_t map_reset;          /**< not 0: the system discarded its map and started another with
-                                   this frame; its earlier poses are void */
+  int32_t map_reset;          /**< nonzero: the system discarded its map and started a new one with
+                                   this frame; its earlier poses are invalid */
   int32_t stage;              /**< an mh_stage */
-  /** Relocalization: keyframes in the map, and how many remain after each step. */
+  /** Relocalization: keyframes in the map, and how many remain after each step of Algorithm 1. */
   int32_t keyframes, c1, c2, c3, final;
 } mh_answer;
 
-/** Takes one pose of the finished map. */
+/** Callback that receives one pose of the finished map. */
 typedef void (*mh_add_pose)(void* to, int64_t stamp_ns, const mh_pose* pose);
 
-/** A system: functions, and the object that each receives as `self`. A function may be NULL only
- * where stated. */
+/** A system: its functions and the object that is passed to each as `self`. A function pointer may
+ * be NULL only where stated. */
 typedef struct mh_system {
   uint32_t version; /**< MH_SYSTEM_VERSION of the library */
   void* self;
 
   /** Processes the next frame, mapping included. */
   int (*track)(void* self, const mh_frame* frame, mh_answer* answer);
-  /** The feed goes back in time: treat tracking as lost, keep the map. */
+  /** The input jumps back in time: treat tracking as lost, keep the map. */
   int (*rewind)(void* self);
   /** Forgets everything, including the map. */
   int (*reset)(void* self);
-  /** Mapping is over: the map must not change any more. Queries follow, none of the calls above. */
+  /** Mapping is over: from now on the map must not change. Queries follow; no function above is
+   * called again. */
   int (*freeze)(void* self);
   /** Called once after freeze(): passes each tracked frame once to `add`, with its pose in the
-   * finished map, in any order. NULL: the last answer to each frame counts. */
-  int (*trajectory)(void* self, mh_add_pose add, void* to);
+   * finished map, in any order. If NULL, the last answer to each frame is used instead. */
 
-  /** Begins a query, which must not depend on the one before it: tracking is lost, the map is the
-   * frozen one. NULL: the system keeps no state of a query. */
+  /** Begins a query, which must not depend on the one before it: start with tracking lost and the
+   * frozen map. May be NULL if the system keeps no state between queries. */
   int (*begin_query)(void* self);
-  /** A black frame without depth: the camera is covered. NULL: tracking is lost at once. */
+  /** Processes a black frame without depth, as from a covered camera. If NULL, tracking counts as
+   * lost at once. */
   int (*blank)(void* self, const mh_frame* frame, mh_answer* answer);
-  /** Finds a frame in the frozen map. */
+  /** Relocalizes a frame in the frozen map. */
   int (*relocalize)(void* self, const mh_frame* frame, mh_answer* answer);
 
   /** Destroys the system: the last call. The mh_system itself may be freed, too. */

@@ -18,7 +18,7 @@ namespace mh {
 struct RecordingConfig {
   std::filesystem::path calibration;  ///< a file; empty: the one next to the frames, or stored with
                                       ///< them
-  std::filesystem::path classes;      ///< class map of its labels; empty: labels are our classes
+  std::filesystem::path classes;      ///< class map of its labels; empty: they are our class ids
   bool labels = true;                 ///< false: ignore labels
   /// Topics of a bag or MCAP file, "color=/a,depth=/b"; empty: found by type.
   std::string topics = {};
@@ -37,11 +37,11 @@ struct OpenedRecording {
 };
 
 /// A recording layout. To add one: a file with its SequenceReader, a line in the table of
-/// open_sequence.cpp, docs/recordings.md, a test.
+/// open_sequence.cpp, docs/recordings.md, docs/scenes.md, a test.
 struct SequenceReader {
-  const char* name;   ///< before the colon: "tum"
+  const char* name;   ///< the prefix in LAYOUT:PATH: "tum"
   const char* place;  ///< what follows it: "FOLDER"
-  /// Whether a path that names no layout looks like one of these. Throws nothing.
+  /// Whether a path without a layout prefix looks like this layout. Does not throw.
   bool (*recognizes)(const std::filesystem::path&);
   /// @throws InputError naming file and place.
   OpenedRecording (*open)(const std::filesystem::path&, const RecordingConfig&);
@@ -67,9 +67,9 @@ std::string join_sequence(const std::string& layout, const std::filesystem::path
 /// @throws InputError if it is neither named nor recognized.
 const SequenceReader& reader_of(const std::string& source);
 
-/// Opens a recording, "LAYOUT:PATH" or a path whose layout is recognized. A ReadScope that is open
-/// notes one observation: the digest of everything that the recording is made of, each image
-/// included, which reads all of it.
+/// Opens a recording, "LAYOUT:PATH" or a path whose layout is recognized. An open ReadScope
+/// records one observation: the digest of all files of the recording, images included, which reads
+/// them all.
 /// @throws InputError naming file and place.
 OpenedRecording open_sequence(const std::string& source, const RecordingConfig& config);
 

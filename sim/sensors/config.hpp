@@ -17,10 +17,10 @@ namespace mh {
 inline constexpr double kSecondsPerMs = 1e-3;
 
 /// Xtion/Kinect v1 depth. Axial and lateral noise: Nguyen, Izadi and Lovell, "Modeling Kinect
-/// sensor noise for improved 3D reconstruction and tracking", 3DIMPVT 2012; disparity quantization
-/// and the shadow of the projector, camera.baseline_m to the right of the camera: Khoshelham and
-/// Elberink, "Accuracy and resolution of Kinect depth data", Sensors 2012; range: ASUS Xtion data
-/// sheet.
+/// sensor noise for improved 3D reconstruction and tracking", 3DIMPVT 2012. Disparity quantization
+/// and projector shadow (the projector is camera.baseline_m to the right of the camera): Khoshelham
+/// and Elberink, "Accuracy and resolution of Kinect depth data", Sensors 2012. Range: ASUS Xtion
+/// data sheet.
 struct DepthNoiseConfig {
   bool enabled = true;            ///< off: the exact depth at any range
   bool axial = true;              ///< sigma_z(z, incidence)
@@ -43,12 +43,12 @@ void fields(C& c, Visit& v) {
   v("quantization", quantization, setting::kSwitch, "steps of 1/8 px of disparity");
   v("grazing_holes", grazing_holes, setting::kSwitch, "no return beyond 80 degrees of incidence");
   v("projector_shadow", projector_shadow, setting::kSwitch,
-    "no return where the projector does not shine");
+    "no return where the projector's light is blocked");
   v("min_range_m", min_range_m, {0, setting::kMany}, "nearer surfaces give no return");
-  v("max_range_m", max_range_m, {0, setting::kMany}, "nor do farther ones; above min_range_m");
+  v("max_range_m", max_range_m, {0, setting::kMany}, "farther ones give none; above min_range_m");
 }
 
-/// All depth faults off, and any range: for switching on a single fault.
+/// All depth faults off and no range limits: a base for enabling a single fault.
 inline DepthNoiseConfig no_depth_noise() {
   return {.axial = false,
           .lateral = false,
@@ -72,18 +72,18 @@ void fields(C& c, Visit& v) {
   v("sigma", sigma, setting::kShare, "standard deviation, share of full scale");
 }
 
-/// Light is counted in electrons: shot noise of variance L * well, and read noise, both divided by
-/// the well of a white pixel. Defaults: OV5640, with the figures of Aldebaran's documentation of
-/// Pepper's 2D camera: signal to noise at most 36 dB, so a well of 10^3.6 = 3981 electrons; dynamic
-/// range 68 dB, so 3981 / 10^3.4 = 1.6 electrons of read noise. Model: Healey and Kondepudy, PAMI
-/// 1994.
+/// Light is measured in electrons: shot noise of variance L * well (L = linear light, 1 at white)
+/// and read noise, both divided by the well, the electron count of a white pixel. Defaults: OV5640,
+/// from Aldebaran's documentation of Pepper's 2D camera. Signal-to-noise ratio at most 36 dB: well
+/// of 10^3.6 = 3981 electrons. Dynamic range 68 dB: read noise of 3981 / 10^3.4 = 1.6 electrons.
+/// Model: Healey and Kondepudy, PAMI 1994.
 struct ShotNoiseConfig {
   bool enabled = false;
   double well_e = 3981.0;
   double read_noise_e = 1.6;
   double gain = 1.0;  ///< analog: a white pixel holds well_e / gain electrons
-  /// The exposure (RenderedFrame) at which this gain applies; for other exposures it scales in
-  /// proportion: dark rooms are noisier. 0: this gain at every exposure.
+  /// The exposure (RenderedFrame) at which `gain` applies. At other exposures the gain scales in
+  /// proportion, so dark rooms are noisier. 0: the same gain at every exposure.
   double gain_at_exposure = 0.0;
   friend bool operator==(const ShotNoiseConfig&, const ShotNoiseConfig&) = default;
 };
@@ -96,7 +96,7 @@ void fields(C& c, Visit& v) {
   v("read_noise_e", read_noise_e, {0, 1e6}, "electrons, standard deviation");
   v("gain", gain, {1, 1000}, "a white pixel holds well_e / gain electrons");
   v("gain_at_exposure", gain_at_exposure, {0, 1e6},
-    "the exposure that takes this gain, others in proportion; 0: all take it");
+    "the exposure at which gain applies, scaled in proportion at others; 0: it always applies");
 }
 
 /// Gain that follows the mean luminance with a lag, like the average-based control of OmniVision's
@@ -106,7 +106,7 @@ struct AutoExposureConfig {
   bool enabled = false;
   double target = 0.18;
   double time_constant_s = 0.5;  ///< of the lag; 0 = none
-  double max_gain = 4.0;         ///< on top of the renderer's exposure; the minimum is 1 / this
+  double max_gain = 4.0;         ///< on top of the renderer's exposure; the minimum is 1 / max_gain
   friend bool operator==(const AutoExposureConfig&, const AutoExposureConfig&) = default;
 };
 
@@ -114,9 +114,9 @@ template <Either<AutoExposureConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, target, time_constant_s, max_gain] = c;
   v("enabled", enabled, setting::kSwitch, "gain that follows the mean luminance with a lag");
-  v("target", target, setting::above(0, 1), "mean linear luminance, share of full light");
-  v("time_constant_s", time_constant_s, {0, 60}, "of the lag; 0: none");
-  v("max_gain", max_gain, {1, 1000}, "the least is its inverse");
+  v("target", target, setting::above(0, 1), "mean linear luminance, as a fraction of white");
+  v("time_constant_s", time_constant_s, {0, 60}, "time constant of the lag; 0: no lag");
+  v("max_gain", max_gain, {1, 1000}, "maximum gain; the minimum is 1 / max_gain");
 }
 
 /// A fraction of the natural falloff, cos^4 of the angle from the axis (the rest is removed by a
@@ -130,11 +130,11 @@ struct VignettingConfig {
 template <Either<VignettingConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, strength] = c;
-  v("enabled", enabled, setting::kSwitch, "light falls off towards the corners");
-  v("strength", strength, setting::kShare, "share of cos^4 of the angle from the axis");
+  v("enabled", enabled, setting::kSwitch, "light falls off toward the corners");
+  v("strength", strength, setting::kShare, "fraction of the natural cos^4 falloff");
 }
 
-/// A Gaussian point spread in linear light.
+/// A Gaussian point spread function, applied in linear light.
 struct LensBlurConfig {
   bool enabled = false;
   double sigma_px = 0.0;
@@ -144,12 +144,12 @@ struct LensBlurConfig {
 template <Either<LensBlurConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, sigma_px] = c;
-  v("enabled", enabled, setting::kSwitch, "a lens that is not quite sharp");
+  v("enabled", enabled, setting::kSwitch, "blur of the lens");
   v("sigma_px", sigma_px, setting::required({0, 20}),
-    "standard deviation of its Gaussian point spread");
+    "standard deviation of its Gaussian point spread function");
 }
 
-/// The camera's processing of its sensor's image: see processing.hpp.
+/// In-camera image processing: see processing.hpp.
 struct ProcessingConfig {
   bool enabled = false;
   double contrast = 0.0;
@@ -161,11 +161,11 @@ struct ProcessingConfig {
 template <Either<ProcessingConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, contrast, sharpening, sharpening_px] = c;
-  v("enabled", enabled, setting::kSwitch, "what the camera does with its sensor's image");
-  v("contrast", contrast, setting::kShare, "of an S-shaped tone curve; 0: none beyond sRGB");
-  v("sharpening", sharpening, {0, 20}, "unsharp masking of the luma; 0: none");
+  v("enabled", enabled, setting::kSwitch, "in-camera image processing");
+  v("contrast", contrast, setting::kShare, "strength of an S-shaped tone curve; 0: sRGB alone");
+  v("sharpening", sharpening, {0, 20}, "strength of unsharp masking of the luma; 0: none");
   v("sharpening_px", sharpening_px, setting::above(0, 20),
-    "standard deviation of the blur that is compared with");
+    "standard deviation of the blur in unsharp masking");
 }
 
 struct LensDistortionConfig {
@@ -178,7 +178,7 @@ template <Either<LensDistortionConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, lens] = c;
   auto& [k1, k2, p1, p2, k3] = lens;
-  v("enabled", enabled, setting::kSwitch, "Brown-Conrady, as OpenCV; off: the camera's own");
+  v("enabled", enabled, setting::kSwitch, "Brown-Conrady as in OpenCV; off: the camera's own lens");
   v("k1", k1, {-2, 2}, "radial");
   v("k2", k2, {-2, 2}, "radial");
   v("p1", p1, {-0.2, 0.2}, "tangential");
@@ -186,8 +186,8 @@ void fields(C& c, Visit& v) {
   v("k3", k3, {-2, 2}, "radial");
 }
 
-// Timing of the exposure, along the true motion. Row y of h is exposed for exposure_s() around
-// stamp + ((y + 1/2) / h - 1/2) readout_s(): the stamp is the middle of the image's exposure.
+// Exposure timing, along the true motion. Row y of h rows is exposed for exposure_s(), centered on
+// stamp + ((y + 1/2) / h - 1/2) * readout_s(): the stamp is the middle of the image's exposure.
 
 struct MotionBlurConfig {
   bool enabled = false;
@@ -199,8 +199,8 @@ struct MotionBlurConfig {
 template <Either<MotionBlurConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, exposure_ms] = c;
-  v("enabled", enabled, setting::kSwitch, "integral over the true motion");
-  v("exposure_ms", exposure_ms, setting::above(0, 1000), "for which each row collects light");
+  v("enabled", enabled, setting::kSwitch, "images are integrated along the true motion");
+  v("exposure_ms", exposure_ms, setting::above(0, 1000), "how long each row collects light");
 }
 
 struct RollingShutterConfig {
@@ -229,9 +229,9 @@ struct DepthOffsetConfig {
 template <Either<DepthOffsetConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, offset_ms] = c;
-  v("enabled", enabled, setting::kSwitch, "depth and color of different moments");
+  v("enabled", enabled, setting::kSwitch, "depth and color are captured at different times");
   v("offset_ms", offset_ms, setting::required({-1000, 1000}),
-    "the depth is that of so much later than the stamp");
+    "how much later than the stamp the depth is captured");
 }
 
 /// The fraction of frames that are blank (black, without depth and labels) or never arrive.
@@ -247,16 +247,16 @@ void fields(C& c, Visit& v) {
   auto& [enabled, share] = c;
   v("enabled", enabled, setting::kSwitch, "whether frames are lost");
   v("share", share, setting::required(setting::kShare),
-    "of frames that arrive black (blank) or not at all (dropped)");
+    "fraction of frames that arrive black (blank) or not at all (dropped)");
 }
 
 /// How finely motion within a frame is sampled: the image is the mean, in linear light, of images
-/// along the motion. This sets the accuracy of the simulation and is not a fault of a sensor:
+/// along the motion. This controls the accuracy of the simulation; it is not a sensor fault, so
 /// levels do not set it.
 struct MotionSampling {
-  double step_px = 1.5;   ///< maximum motion between two images, unless limited by
-  int max_images = 33;    ///< the maximum number of images
-  double sharp_px = 0.5;  ///< with less motion within a frame, one image is enough
+  double step_px = 1.5;   ///< maximum motion between two images, unless max_images is reached
+  int max_images = 33;    ///< maximum number of images
+  double sharp_px = 0.5;  ///< up to this much motion within a frame, one image is enough
   friend bool operator==(const MotionSampling&, const MotionSampling&) = default;
 };
 

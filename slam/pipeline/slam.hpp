@@ -25,7 +25,7 @@ struct TrackedFrame {
   SE3 camera_from_reference;
 };
 
-/// The complete state of one SLAM run: a value. Copying it copies the map.
+/// The complete state of one SLAM run. It has value semantics: copying it copies the map.
 struct SlamState {
   Camera camera;
   SlamConfig config;
@@ -43,14 +43,14 @@ struct SlamState {
 SlamState make_slam(const Camera& camera, const SlamConfig& config,
                     std::shared_ptr<const Vocabulary> vocabulary);
 
-/// Processes one frame, mapping included: the whole system on one page (step.cpp). The first frame
-/// with enough depth defines the world origin. Random draws depend only on the stream.
+/// Processes one frame, including mapping; step.cpp shows the whole pipeline on one page. The first
+/// frame with enough depth defines the world origin. Random draws depend only on the stream.
 /// @throws InputError if the frame does not fit the camera or its stamp does not increase.
 StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream,
                 const StepObservers& observers = {});
 
-/// The same from existing features: from a cache or a synthetic world. step(state, frame, stream)
-/// is extract() followed by this.
+/// The same, starting from features that exist already, from a cache or a synthetic world. The
+/// overload for a frame calls extract() and then this one.
 /// @throws InputError if the stamp does not increase or the numbers of descriptors and keypoints
 /// differ.
 StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStream stream,
@@ -59,17 +59,18 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
 /// @throws InputError naming both if a frame's stamp is not later than the last one's.
 void require_increasing_stamp(Stamp stamp_ns, std::optional<Stamp> last_ns);
 
-/// Restarts the input: tracking is lost and earlier stamps are accepted; the map stays.
+/// Prepares for input that jumps back in time: tracking is lost, earlier stamps are accepted, and
+/// the map is kept.
 void rewind(SlamState& state);
 
 /// Localizes a frame in a frozen map. The caller owns the tracker, so that many queries can start
-/// from equal states: Tracker{} is lost. Stamps are not checked.
+/// from the same state; a new Tracker{} starts lost. Stamps are not checked.
 StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& frame,
                     RandomStream stream, const StepObservers& observers = {});
 
-/// What localizations of one frame under one stream, each from a lost tracker, can share while xi
-/// and the void policy stay the same: features, words, attempts at candidates, refined poses.
-/// Settings that choose other candidates (gamma, alpha, beta, overlap) then cost only that choice.
+/// Results that localizations of one frame, each from a lost tracker, can share if stream, xi and
+/// void policy are the same: features, words, attempts at candidates, refined poses. Changing the
+/// settings that select candidates (gamma, alpha, beta, overlap) then repeats only the selection.
 class LocalizeMemo {
  public:
   LocalizeMemo();
@@ -87,13 +88,13 @@ class LocalizeMemo {
 StepReport localize(const SlamState& frozen, const RgbdFrame& frame, RandomStream stream,
                     LocalizeMemo& memo);
 
-/// Changes the semantic settings by which the map answers queries and is extended from now on: its
-/// keyframes' vectors (equation 1) are reweighted if gamma or the void policy changes.
-/// @throws InputError naming the setting that is out of range; then nothing has changed.
+/// Changes the semantic settings that are used from now on to answer queries and extend the map. If
+/// gamma or the void policy changes, the keyframes' vectors (equation 1) are reweighted.
+/// @throws InputError naming the setting that is out of range; the state is then unchanged.
 void set_query_settings(SlamState& state, const SemanticConfig& settings);
 
 /// Each tracked frame once (its last attempt), ordered by stamp: its pose relative to its reference
-/// keyframe, composed with that keyframe's current pose. The reference frame is the first camera.
+/// keyframe, composed with that keyframe's current pose. The world origin is the first camera pose.
 Trajectory trajectory(const SlamState& state);
 
 }  // namespace mh

@@ -104,12 +104,38 @@ class CommandLine : public testing::Test {
 TEST_F(CommandLine, EveryCommandHasHelpWithAnExample) {
   for (const char* command :
        {"", "bench", "verify", "evaluate", "scene", "scene info", "scene preview", "scene convert",
-        "drive", "render", "slam", "merge", "export", "vocabulary", "vocabulary train",
+        "drive", "render", "slam", "twin", "merge", "export", "vocabulary", "vocabulary train",
         "vocabulary convert", "vocabulary info"}) {
     EXPECT_EQ(run(std::string(command) + " --help"), 0) << command;
     EXPECT_NE(out_.find("Example"), std::string::npos) << command;
     EXPECT_NE(out_.find("  modelhouse "), std::string::npos) << command;
   }
+}
+
+// A recording made by the renderer is its own twin: what differs is the depth's unit in the file.
+TEST_F(CommandLine, ATwinOfARenderingIsItself) {
+  const std::string room = std::string(MH_SOURCE_DIR) + "/bench/scenarios/room.yaml";
+  const std::string recording = (folder_ / "recording").string(), out = (folder_ / "twin").string();
+  ASSERT_EQ(run("render " + room + " --motion handheld:0:70 --level ideal --out " + recording), 0)
+      << err_;
+  ASSERT_EQ(run("twin tum:" + recording + " " + room + " --level ideal --every 35 --out " + out), 0)
+      << err_;
+  EXPECT_NE(out_.find("2 frames compared"), std::string::npos) << out_;
+  EXPECT_TRUE(fs::exists(fs::path(out) / "pairs.png"));
+  const auto json = nlohmann::json::parse(read_file(fs::path(out) / "twin.json"));
+  EXPECT_EQ(json["frames_with_pose"], 70);
+  for (const auto& frame : json["frames"]) {
+    EXPECT_EQ(frame["recorded"], frame["rendered"]);
+    EXPECT_LE(frame["depth_difference_m"], 0.5 / 5000 + 1e-6);
+    EXPECT_EQ(frame["across"]["repeated"], frame["across"]["keypoints"]);
+  }
+  for (const char* map : {"map_of_recorded", "map_of_rendered"}) {
+    EXPECT_EQ(json[map]["completeness"], 1.0) << map;
+    EXPECT_EQ(json[map]["other_queries"]["correct"], 1.0) << map;
+  }
+  expect_refused(
+      "twin " + recording + " " + room + " --out " + out + " --scene-from-recording 0 0 0 0 0 0 0",
+      "--scene-from-recording");
 }
 
 TEST_F(CommandLine, BadUsageIsRefused) {
