@@ -41,13 +41,15 @@ std::string recordings_text(const Suite& suite, std::span<const RunResult> runs)
 
 /// Whose rules relocalization follows, where they are not ours.
 std::string base_text(const Suite& suite) {
-  std::string text;
-  if (suite.slam->relocalize.acceptance == Acceptance::kOrbSlam2)
-    text += "\nbase: orb_slam2: poses of relocalization are accepted as ORB-SLAM2 accepts them\n";
-  if (suite.slam->relocalize.neighbor_scores == NeighborScores::kAsReleased)
-    text +=
-        "\nneighbor scores as ORB-SLAM2 released them: answers depend on the order of queries\n";
-  return text;
+  const RelocalizeConfig& relocalize = suite.slam->relocalize;
+  return fmt::format(
+      "{}{}",
+      relocalize.acceptance == Acceptance::kOrbSlam2
+          ? "\nbase: orb_slam2: poses of relocalization are accepted as ORB-SLAM2 accepts them\n"
+          : "",
+      relocalize.neighbor_scores == NeighborScores::kAsReleased
+          ? "\nneighbor scores as ORB-SLAM2 released them: answers depend on the order of queries\n"
+          : "");
 }
 
 /// Why runs are missing from the table above.
