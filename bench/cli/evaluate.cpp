@@ -111,7 +111,8 @@ void print_row(const std::string& what, const ErrorStatistics& s) {
 /// Loads both files in one format. KITTI's lines have no stamps: line i of one belongs to line i of
 /// the other.
 std::pair<Trajectory, Trajectory> load(const Options& options) {
-  if (options.format == "tum") return {read_tum(options.truth), read_tum(options.estimate)};
+  if (options.format == "tum")
+    return {read_trajectory(options.truth), read_trajectory(options.estimate)};
   const auto period_ns = static_cast<Stamp>(std::llround(1e9 / options.rate_hz));
   std::pair<Trajectory, Trajectory> both{read_kitti(options.truth, period_ns),
                                          read_kitti(options.estimate, period_ns)};
@@ -163,7 +164,9 @@ void add_evaluate(CLI::App& app) {
   command->add_option("estimate", options->estimate, "Estimated trajectory")->required();
   command->add_option("--align", options->align, "How the estimate is laid over the truth")
       ->check(one_of_words({"se3", "sim3", "origin", "none"}));
-  command->add_option("--format", options->format, "Of both files")
+  command
+      ->add_option("--format", options->format,
+                   "Of both files; where tum is expected, EuRoC's CSV is recognized")
       ->check(one_of_words({"tum", "kitti"}));
   command
       ->add_option("--delta", options->deltas,

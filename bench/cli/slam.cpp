@@ -226,7 +226,7 @@ void run(Options options) {
   Source source = open_source(options);
   // Before the work, so that a mistake costs no time.
   std::optional<Trajectory> named_truth;
-  if (!options.truth.empty()) named_truth = read_tum(options.truth);
+  if (!options.truth.empty()) named_truth = read_trajectory(options.truth);
   const OutputFolder folder(options.out, "slam", {kSlamFiles.begin(), kSlamFiles.end()});
   for (const char* name : kSlamFiles) {
     const fs::path file = fs::path(options.out) / name;
@@ -328,8 +328,10 @@ void add_slam(CLI::App& app) {
                  "the feed goes back where tracking is lost")
       ->excludes(localize);
   command->add_option("--save-map", options->save_map, "Map file to write")->excludes(localize);
-  command->add_option("--truth", options->truth,
-                      "True trajectory (TUM text) (default: the folder's groundtruth.txt)");
+  command->add_option(
+      "--truth", options->truth,
+      "True trajectory, TUM text or EuRoC CSV (default: the folder's groundtruth.txt "
+      "or groundtruth.csv)");
   command->add_option("--frames", options->frames, "At most so many frames")
       ->default_str("all")
       ->check(CLI::Range(1, 100000000));

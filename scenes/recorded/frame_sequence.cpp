@@ -55,8 +55,8 @@ class FramesInMemory : public Sequence {
 ListedFrames list_tum_folder(const fs::path& folder, const RecordedCamera& camera,
                              std::vector<std::string>* notes) {
   ListedFrames listed{camera, load_tum_folder(folder, notes), {}, {}, {}};
-  const fs::path truth = folder / "groundtruth.txt";
-  if (is_file(truth)) listed.truth = read_tum(truth);
+  for (const char* name : {"groundtruth.txt", "groundtruth.csv"})
+    if (!listed.truth && is_file(folder / name)) listed.truth = read_trajectory(folder / name);
   return listed;
 }
 

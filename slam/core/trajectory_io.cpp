@@ -2,11 +2,14 @@
 #include "slam/core/trajectory_io.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <functional>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -31,6 +34,19 @@ std::vector<std::string> split(std::string_view line) {
   return words;
 }
 
+/// The values between commas, without blanks around them; a comma at the end adds none.
+std::vector<std::string> split_at_commas(std::string_view line) {
+  std::vector<std::string> words;
+  while (!line.empty()) {
+    const std::size_t comma = std::min(line.find(','), line.size());
+    const std::vector<std::string> word = split(line.substr(0, comma));
+    line.remove_prefix(std::min(comma + 1, line.size()));
+    if (word.empty() && line.find_first_not_of(kBlanks) == std::string_view::npos) break;
+    words.push_back(word.empty() ? "" : word.size() == 1 ? word[0] : word[0] + " " + word[1]);
+  }
+  return words;
+}
+
 /// Position of a line, for messages.
 struct Place {
   const std::string& file;
@@ -44,7 +60,7 @@ struct Place {
 double parse_number(const std::string& word, const char* field, const Place& place) {
   double value = 0;
   // from_chars does not accept a leading plus.
-  const char* begin = word.data() + (word.front() == '+' ? 1 : 0);
+  const char* begin = word.data() + (word.starts_with('+') ? 1 : 0);
   const char* end = word.data() + word.size();
   const auto [stop, error] = std::from_chars(begin, end, value);
   if (error != std::errc() || stop != end)
@@ -55,13 +71,14 @@ double parse_number(const std::string& word, const char* field, const Place& pla
 
 /// Calls `use` with the words of each line that is neither empty nor a comment.
 void for_each_line(const std::string& text, const std::string& name,
-                   const std::function<void(const std::vector<std::string>&, const Place&)>& use) {
+                   const std::function<void(const std::vector<std::string>&, const Place&)>& use,
+                   std::vector<std::string> (*words_of)(std::string_view) = split) {
   int number = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     ++number;
     const std::string_view line = std::string_view(text).substr(begin, end - begin);
-    const std::vector<std::string> words = split(line.substr(0, line.find('#')));
+    const std::vector<std::string> words = words_of(line.substr(0, line.find('#')));
     if (!words.empty()) use(words, Place{name, number});
     begin = end + 1;
   }
@@ -73,6 +90,35 @@ Stamp parse_stamp_at(const std::string& word, const Place& place) {
   } catch (const InputError& error) {
     place.fail(fmt::format("stamp: {}", error.what()));
   }
+}
+
+bool starts_with_letter(const std::string& word) {
+  return !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) != 0;
+}
+
+using PoseFields = std::array<const char*, 7>;
+
+/// The seven numbers after the stamp.
+std::array<double, 7> numbers_of(const std::vector<std::string>& words, const PoseFields& fields,
+                                 const Place& place) {
+  std::array<double, 7> values{};
+  for (std::size_t k = 0; k < values.size(); ++k)
+    values[k] = parse_number(words[k + 1], fields[k], place);
+  return values;
+}
+
+void require_later(const Trajectory& trajectory, Stamp stamp_ns, const std::string& word,
+                   const Place& place) {
+  if (!trajectory.empty() && stamp_ns <= trajectory.back().stamp_ns)
+    place.fail(fmt::format("stamp: {} does not come after {}", word,
+                           format_stamp(trajectory.back().stamp_ns)));
+}
+
+void add_pose(Trajectory& trajectory, Stamp stamp_ns, const Eigen::Vector3d& position_m,
+              const Eigen::Quaterniond& rotation, const Place& place) {
+  if (std::abs(rotation.norm() - 1.0) > 0.1)
+    place.fail(fmt::format("quaternion: norm {:g}, expected 1", rotation.norm()));
+  trajectory.push_back({stamp_ns, SE3(rotation, position_m)});
 }
 
 }  // namespace
@@ -134,25 +180,61 @@ std::string format_stamp(Stamp stamp_ns) {
 }
 
 Trajectory parse_tum(const std::string& text, const std::string& name) {
-  static constexpr const char* kFields[] = {"tx", "ty", "tz", "qx", "qy", "qz", "qw"};
+  static constexpr PoseFields kFields = {"tx", "ty", "tz", "qx", "qy", "qz", "qw"};
   Trajectory trajectory;
   for_each_line(text, name, [&](const std::vector<std::string>& words, const Place& place) {
     if (words.size() != 8)
       place.fail(fmt::format("pose: {}, expected 8 (stamp tx ty tz qx qy qz qw)",
                              counted(words.size(), "value")));
     const Stamp stamp_ns = parse_stamp_at(words[0], place);
-    if (!trajectory.empty() && stamp_ns <= trajectory.back().stamp_ns)
-      place.fail(fmt::format("stamp: {} does not come after {}", words[0],
-                             format_stamp(trajectory.back().stamp_ns)));
-    double v[7];
-    for (std::size_t k = 0; k < 7; ++k) v[k] = parse_number(words[k + 1], kFields[k], place);
-    const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
-    if (std::abs(rotation.norm() - 1.0) > 0.1)
-      place.fail(fmt::format("quaternion: norm {:g}, expected 1", rotation.norm()));
-    trajectory.push_back({stamp_ns, SE3(rotation, Eigen::Vector3d(v[0], v[1], v[2]))});
+    require_later(trajectory, stamp_ns, words[0], place);
+    const std::array<double, 7> v = numbers_of(words, kFields, place);
+    add_pose(trajectory, stamp_ns, {v[0], v[1], v[2]}, {v[6], v[3], v[4], v[5]}, place);
   });
   if (trajectory.empty()) throw InputError(fmt::format("{}: contains no poses", name));
   return trajectory;
+}
+
+Trajectory parse_euroc(const std::string& text, const std::string& name) {
+  static constexpr PoseFields kFields = {"p x", "p y", "p z", "q w", "q x", "q y", "q z"};
+  Trajectory trajectory;
+  bool is_first = true;
+  const auto read_line = [&](const std::vector<std::string>& words, const Place& place) {
+    const bool may_be_head = std::exchange(is_first, false);
+    Stamp stamp_ns = 0;
+    const char* end = words[0].data() + words[0].size();
+    const auto [stop, error] = std::from_chars(words[0].data(), end, stamp_ns);
+    if (error != std::errc() || stop != end || stamp_ns < 0) {
+      if (may_be_head && starts_with_letter(words[0])) return;
+      place.fail(fmt::format("timestamp: '{}' is not a whole number of nanoseconds", words[0]));
+    }
+    if (words.size() < 8)
+      place.fail(
+          fmt::format("pose: {}, expected at least 8 (timestamp p_x p_y p_z q_w q_x q_y q_z)",
+                      counted(words.size(), "value")));
+    require_later(trajectory, stamp_ns, words[0], place);
+    const std::array<double, 7> v = numbers_of(words, kFields, place);
+    add_pose(trajectory, stamp_ns, {v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}, place);
+  };
+  for_each_line(text, name, read_line, split_at_commas);
+  if (trajectory.empty()) throw InputError(fmt::format("{}: contains no poses", name));
+  return trajectory;
+}
+
+Trajectory parse_trajectory(const std::string& text, const std::string& name) {
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = std::string_view(text).substr(begin, end - begin);
+    const std::string_view data = line.substr(0, line.find('#'));
+    if (data.find(',') != std::string_view::npos) return parse_euroc(text, name);
+    if (data.find_first_not_of(kBlanks) != std::string_view::npos) break;
+    begin = end + 1;
+  }
+  return parse_tum(text, name);
+}
+
+Trajectory read_trajectory(const std::filesystem::path& file) {
+  return parse_trajectory(read_text(file), file.string());
 }
 
 Trajectory read_tum(const std::filesystem::path& file) {

@@ -17,6 +17,14 @@ namespace mh {
 Trajectory read_tum(const std::filesystem::path& file);
 /// Parses the same from text; `name` names the file in messages.
 Trajectory parse_tum(const std::string& text, const std::string& name);
+/// EuRoC's ground truth, CSV: `timestamp, p x y z, q w x y z` (ns, m) and columns that are ignored;
+/// '#' starts a comment, a first line of words is skipped. The poses are those of the sensor or
+/// body that the file is about.
+/// @throws InputError as above; also if a stamp is not a whole number of nanoseconds.
+Trajectory parse_euroc(const std::string& text, const std::string& name);
+/// Reads true poses in either form: EuRoC's if the first line of data contains a comma.
+Trajectory read_trajectory(const std::filesystem::path& file);
+Trajectory parse_trajectory(const std::string& text, const std::string& name);
 /// Writes doubles so that they read back to the same value. @pre stamps are not negative.
 std::string format_tum(const Trajectory& trajectory);
 void write_tum(const std::filesystem::path& file, const Trajectory& trajectory);

@@ -115,6 +115,53 @@ TEST(Tum, EveryErrorNamesFileLineAndValue) {
             "/nowhere/f.txt: cannot be read: no such file");
 }
 
+// The head and the first line of numbers of EuRoC's V1_01_easy, and what others make of the format.
+TEST(Euroc, ReadsNanosecondsAndQuaternionsThatBeginWithW) {
+  const Trajectory read = parse_trajectory(
+      "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
+      "q_RS_z [], v_RS_R_x [m s^-1]\r\n"
+      "1403715274302142976,0.878612,2.142470,0.947262,0.060514,-0.828459,-0.058956,-0.553641,0."
+      "1\r\n"
+      "1403715274307142976, 1, 2, 3, 1, 0, 0, 0,\n",
+      "f.csv");
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read[0].stamp_ns, 1'403'715'274'302'142'976);
+  EXPECT_EQ(read[0].world_from_camera.translation(), Eigen::Vector3d(0.878612, 2.142470, 0.947262));
+  const Eigen::Quaterniond rotation(0.060514, -0.828459, -0.058956, -0.553641);
+  EXPECT_LT(
+      (read[0].world_from_camera.rotation() - rotation.normalized().toRotationMatrix()).norm(),
+      1e-12);
+  EXPECT_EQ(read[1].world_from_camera.rotation(), Eigen::Matrix3d::Identity());
+  const std::string line = "5,1,2,3,1,0,0,0\n";
+  EXPECT_EQ(parse_trajectory("timestamp,x,y,z,qw,qx,qy,qz\n" + line, "f.csv").size(), 1U);
+  EXPECT_EQ(parse_trajectory("# one, two\n\n5 1 2 3 1 0 0 0\n", "f.txt")[0].stamp_ns, 5'000'000'000)
+      << "a comment's commas do not count";
+}
+
+TEST(Euroc, EveryErrorNamesFileLineAndValue) {
+  const auto error = [](const std::string& text) {
+    return error_of([&] { parse_trajectory(text, "f.csv"); });
+  };
+  const std::string good = "5,1,2,3,1,0,0,0\n";
+  EXPECT_EQ(error(good + "6,1,2\n"),
+            "f.csv:2: pose: 3 values, expected at least 8 (timestamp p_x p_y p_z q_w q_x q_y q_z)");
+  EXPECT_EQ(error(good + "6,1,,3,1,0,0,0\n"), "f.csv:2: p y: '' is not a number");
+  EXPECT_EQ(error(good + "6,1,2 3,1,0,0,0,0\n"), "f.csv:2: p y: '2 3' is not a number");
+  EXPECT_EQ(error(good + "6,1,nan,3,1,0,0,0\n"), "f.csv:2: p y: 'nan' is not finite");
+  EXPECT_EQ(error(good + "6,1,2,3,0,0,0,0\n"), "f.csv:2: quaternion: norm 0, expected 1");
+  EXPECT_EQ(error(good + good), "f.csv:2: stamp: 5 does not come after 0.000000005");
+  EXPECT_EQ(error("1403715274.3,1,2,3,1,0,0,0\n"),
+            "f.csv:1: timestamp: '1403715274.3' is not a whole number of nanoseconds");
+  EXPECT_EQ(error(good + "end,1,2,3,1,0,0,0\n"),
+            "f.csv:2: timestamp: 'end' is not a whole number of nanoseconds");
+  EXPECT_EQ(error("-5,1,2,3,1,0,0,0\n"),
+            "f.csv:1: timestamp: '-5' is not a whole number of nanoseconds");
+  EXPECT_EQ(error("timestamp,x\n"), "f.csv: contains no poses");
+  EXPECT_EQ(error(",\n"), "f.csv: contains no poses");
+  EXPECT_EQ(error(",1,2,3,1,0,0,0\n"),
+            "f.csv:1: timestamp: '' is not a whole number of nanoseconds");
+}
+
 TEST(Kitti, RoundTripsAndCountsFrames) {
   const Trajectory written = some_trajectory();
   const auto file = std::filesystem::temp_directory_path() / "mh_metrics_round_trip.kitti";
