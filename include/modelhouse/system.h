@@ -116,6 +116,7 @@ typedef struct mh_system {
   int (*freeze)(void* self);
   /** Called once after freeze(): passes each tracked frame once to `add`, with its pose in the
    * finished map, in any order. If NULL, the last answer to each frame is used instead. */
+  int (*trajectory)(void* self, mh_add_pose add, void* to);
 
   /** Begins a query, which must not depend on the one before it: start with tracking lost and the
    * frozen map. May be NULL if the system keeps no state between queries. */
