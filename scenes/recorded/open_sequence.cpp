@@ -8,6 +8,7 @@
 
 #include "scenes/recorded/frame_sequence.hpp"
 #include "scenes/recorded/icl_nuim.hpp"
+#include "scenes/recorded/openloris.hpp"
 #include "scenes/recorded/replica.hpp"
 #include "scenes/recorded/ros/sequence.hpp"
 #include "scenes/recorded/scannet_folder.hpp"
@@ -22,8 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // Before TUM's, whose list it has as well.
-constexpr std::array kReaders = {&kIclNuimReader, &kTumReader, &kScannetReader, &kSevenScenesReader,
-                                 &kReplicaReader, &kBagReader, &kMcapReader};
+constexpr std::array kReaders = {&kIclNuimReader,     &kTumReader,     &kScannetReader,
+                                 &kSevenScenesReader, &kReplicaReader, &kOpenlorisReader,
+                                 &kBagReader,         &kMcapReader};
 
 /// Notes a file's content in the open scopes; a missing file is noted as missing.
 void note_content(const fs::path& file) {

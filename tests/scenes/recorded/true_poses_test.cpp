@@ -19,8 +19,8 @@ TEST_F(TruePoses, OfATumFolderMayBeEurocCsv) {
     const auto read_camera = [&](const std::filesystem::path&) {
       return RecordedCamera{.camera = camera};
     };
-    const auto opened =
-        open_sequence(folder_.string(), {.calibration = {}, .read_camera = read_camera});
+    const auto opened = open_sequence(
+        folder_.string(), {.calibration = {}, .classes = {}, .read_camera = read_camera});
     const Trajectory* poses = opened.sequence->truth();
     return poses == nullptr ? Trajectory() : *poses;
   };
