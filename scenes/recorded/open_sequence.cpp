@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/recorded/bonn.hpp"
 #include "scenes/recorded/frame_sequence.hpp"
 #include "scenes/recorded/icl_nuim.hpp"
 #include "scenes/recorded/openloris.hpp"
@@ -22,10 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Before TUM's, whose list it has as well.
-constexpr std::array kReaders = {&kIclNuimReader,     &kTumReader,     &kScannetReader,
-                                 &kSevenScenesReader, &kReplicaReader, &kOpenlorisReader,
-                                 &kBagReader,         &kMcapReader};
+// ICL-NUIM and Bonn before TUM, whose lists they have as well.
+constexpr std::array kReaders = {&kIclNuimReader,   &kBonnReader,        &kTumReader,
+                                 &kScannetReader,   &kSevenScenesReader, &kReplicaReader,
+                                 &kOpenlorisReader, &kBagReader,         &kMcapReader};
 
 /// Notes a file's content in the open scopes; a missing file is noted as missing.
 void note_content(const fs::path& file) {

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -14,12 +13,12 @@
 #include "scenes/recorded/nearest_stamp.hpp"
 #include "scenes/recorded/numbered_images.hpp"
 #include "scenes/recorded/tum_list.hpp"
+#include "scenes/recorded/valid_poses.hpp"
 #include "scenes/scannet/recording.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/text_file.hpp"
-#include "slam/core/trajectory_io.hpp"
 #include "slam/core/yaml.hpp"
 
 namespace mh {
@@ -103,33 +102,6 @@ SE3 base_from_camera(const fs::path& file) {
   return found->second.normalized();
 }
 
-/// Poses of the base; lines that are no pose or not after the one before are left out and counted.
-Trajectory read_base_poses(const fs::path& file, std::vector<std::string>& notes) {
-  std::istringstream text(read_text(file));
-  Trajectory poses;
-  std::size_t left_out = 0;
-  std::string first_fault;
-  std::string line;
-  for (int number = 1; std::getline(text, line); ++number) {
-    if (line.substr(0, line.find('#')).find_first_not_of(" \t\r") == std::string::npos) continue;
-    const std::string where = fmt::format("{}:{}", file.string(), number);
-    try {
-      const TimedPose pose = parse_tum(line, where).front();
-      if (!poses.empty() && pose.stamp_ns <= poses.back().stamp_ns)
-        throw InputError(fmt::format("{}: stamp: {} does not come after {}", where,
-                                     format_stamp(pose.stamp_ns),
-                                     format_stamp(poses.back().stamp_ns)));
-      poses.push_back(pose);
-    } catch (const InputError& error) {
-      if (left_out++ == 0) first_fault = error.what();
-    }
-  }
-  if (left_out > 0)
-    notes.push_back(fmt::format("{}: {} left out of the truth; {}", file.string(),
-                                counted(left_out, "line is", "lines are"), first_fault));
-  return poses;
-}
-
 std::optional<Trajectory> read_truth(const fs::path& folder, std::vector<std::string>& notes) {
   const fs::path truth = folder / "groundtruth.txt", transforms = folder / "trans_matrix.yaml";
   if (!is_file(truth)) return std::nullopt;
@@ -141,7 +113,7 @@ std::optional<Trajectory> read_truth(const fs::path& folder, std::vector<std::st
     return std::nullopt;
   }
   const SE3 base_from_color = base_from_camera(transforms);
-  Trajectory poses = read_base_poses(truth, notes);
+  Trajectory poses = read_valid_poses(truth, notes);
   for (TimedPose& pose : poses) pose.world_from_camera = pose.world_from_camera * base_from_color;
   if (poses.empty()) return std::nullopt;
   return poses;
