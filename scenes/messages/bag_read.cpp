@@ -13,6 +13,8 @@ namespace {
 
 using bag::Op;
 
+constexpr const char* kCut = "records cut short";
+
 /// The fields of a record's header: "name=value" each, after its length.
 using Fields = std::map<std::string_view, std::string_view>;
 
@@ -48,7 +50,7 @@ class BagFile : public MessageFile {
     const std::string_view all = this->bytes();
     if (!all.starts_with(bag::kMagic)) refuse(all);
     read_records({all, bag::kMagic.size(), MessagePlace::kFile, 0});
-    if (!indexed_)
+    if (!indexed_ && !leaves_out(kCut))
       leave_out("ends", all.size(), "it was not closed: its messages are used as far as it goes");
   }
 
@@ -81,7 +83,7 @@ class BagFile : public MessageFile {
         data = from.text();
       } catch (const InputError&) {
         if (in_chunk) throw InputError("ends within a record");
-        leave_out("records cut short", place, "a record is cut short");
+        leave_out(kCut, place, "a record is cut short; what came before is used");
         return;
       }
       at = records.bytes.size() - from.left();

@@ -13,6 +13,8 @@ namespace {
 
 using mcap::Opcode;
 
+constexpr const char* kCut = "records cut short";
+
 /// "sensor_msgs/Image" of either spelling.
 std::string common_type(std::string_view type) {
   std::string common(type);
@@ -28,7 +30,8 @@ class McapFile : public MessageFile {
     if (!all.starts_with(mcap::kMagic))
       throw InputError(fmt::format("{}: is not an MCAP file", name));
     read_records({all, mcap::kMagic.size(), MessagePlace::kFile, 0});
-    if (!ended_) leave_out("ends", all.size(), "it was cut short: what came before is used");
+    if (!ended_ && !leaves_out(kCut))
+      leave_out("ends", all.size(), "it was cut short: what came before is used");
   }
 
  private:
@@ -67,7 +70,7 @@ class McapFile : public MessageFile {
 
   void cut(bool in_chunk, std::uint64_t place) {
     if (in_chunk) throw InputError("ends within a record");
-    leave_out("records cut short", place, "a record is cut short");
+    leave_out(kCut, place, "a record is cut short; what came before is used");
   }
 
   void read_message(std::string_view content, MessagePlace place) {

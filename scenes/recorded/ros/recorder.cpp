@@ -2,6 +2,7 @@
 #include "scenes/recorded/ros/recorder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
@@ -65,33 +66,36 @@ std::vector<ros::Detection2D> detections_of(const Grid2d<ClassId>& classes,
                                             const Grid2d<InstanceId>& instances) {
   struct Seen {
     int left = 0, right = 0, top = 0, bottom = 0;  // first and last pixels
-    std::map<ClassId, int> pixels;
+    std::array<int, 256> pixels;                   // by class
   };
   std::map<InstanceId, Seen> all;
+  Seen* seen = nullptr;  // of the pixel before, as mostly of this one
+  InstanceId last = 0;
   for (int y = 0; y < instances.height(); ++y)
     for (int x = 0; x < instances.width(); ++x) {
       const InstanceId id = instances(x, y);
       const ClassId c = classes(x, y);
       if (id == 0 || c == kVoid || c == kBackground) continue;
-      const auto [entry, is_new] = all.try_emplace(id, Seen{x, x, y, y, {}});
-      Seen& seen = entry->second;
-      seen.left = std::min(seen.left, x);
-      seen.right = std::max(seen.right, x);
-      seen.bottom = y;
-      ++seen.pixels[c];
+      if (seen == nullptr || id != last) {
+        seen = &all.try_emplace(id, Seen{x, x, y, y, {}}).first->second;
+        last = id;
+      }
+      seen->left = std::min(seen->left, x);
+      seen->right = std::max(seen->right, x);
+      seen->bottom = y;
+      ++seen->pixels[c];
     }
   std::vector<ros::Detection2D> detections;
-  for (const auto& [id, seen] : all) {
-    const ClassId c = std::ranges::max_element(seen.pixels, {}, [](const auto& entry) {
-                        return entry.second;
-                      })->first;
+  for (const auto& [id, found] : all) {
+    const auto c =
+        static_cast<ClassId>(std::ranges::max_element(found.pixels) - found.pixels.begin());
     ros::Detection2D detection;
     // Pixel centers are at integers: the box reaches half a pixel beyond them.
-    const double x = 0.5 * (seen.left + seen.right), y = 0.5 * (seen.top + seen.bottom);
+    const double x = 0.5 * (found.left + found.right), y = 0.5 * (found.top + found.bottom);
     detection.bbox = {{x, y, 0},
                       {{x, y}, 0},
-                      static_cast<double>(seen.right - seen.left + 1),
-                      static_cast<double>(seen.bottom - seen.top + 1)};
+                      static_cast<double>(found.right - found.left + 1),
+                      static_cast<double>(found.bottom - found.top + 1)};
     ros::ObjectHypothesisWithPose result;
     result.id = c;
     result.hypothesis = {std::string(mh::classes()[c].name), 1.0};

@@ -149,6 +149,31 @@ void add_scannet(std::vector<HostileCase>& cases) {
   sens("sens_of_zeros_for_images", 4, 64, 1, 10, "neither JPEG nor PNG");
 }
 
+void add_messages(std::vector<HostileCase>& cases) {
+  const auto slam = [&](const std::string& name, const std::string& file, const std::string& bytes,
+                        const std::string& says) {
+    cases.push_back({name, {{file, bytes}}, "slam {}/" + file + kSlam, says});
+  };
+  const std::string seeds = "tests/fuzz/seeds/";
+  const std::string bag = content(seeds + "bag/bz2.bag"), mcap = content(seeds + "mcap/none.mcap");
+  slam("bag_of_ones", "a.bag", std::string(5000, '\xff'), "a.bag: is not a ROS 1 bag");
+  slam("bag_of_version_1", "a.bag", "#ROSBAG V1.2\n" + std::string(100, '\0'), "of version 1.2");
+  slam("bag_cut_in_its_first_chunk", "a.bag", bag.substr(0, 4300),
+       "a.bag: holds no messages: at byte 4117: a record is cut short");
+  std::string encrypted = bag;
+  encrypted.replace(13, 4096,
+                    raw(std::uint32_t{33}) + raw(std::uint32_t{4}) + "op=\3" +
+                        raw(std::uint32_t{21}) + "encryptor=rosbag/None" + raw(std::uint32_t{0}));
+  slam("bag_encrypted", "a.bag", encrypted, "is an encrypted bag");
+  slam("bag_of_a_record_of_4_gb", "a.bag", "#ROSBAG V2.0\n" + std::string(8, '\xff'),
+       "a record is cut short");
+  slam("mcap_of_its_magic_alone", "a.mcap", mcap.substr(0, 8), "a.mcap: holds no messages");
+  std::string endless = mcap;
+  endless.replace(9, 8, std::string(8, '\xff'));
+  slam("mcap_of_a_record_of_2e64_bytes", "a.mcap", endless, "a record is cut short");
+  slam("mcap_of_frames_of_2_pixels", "a.mcap", mcap, "nothing could be mapped");
+}
+
 void add_vocabularies(std::vector<HostileCase>& cases) {
   const auto info = [&](const std::string& name, const std::string& text, const std::string& says) {
     cases.push_back({"vocabulary_" + name, {{"v", text}}, "vocabulary info {}/v", says});
@@ -178,6 +203,7 @@ std::vector<HostileCase> hostile_recordings() {
   std::vector<HostileCase> cases;
   add_tum(cases);
   add_scannet(cases);
+  add_messages(cases);
   add_vocabularies(cases);
   return cases;
 }

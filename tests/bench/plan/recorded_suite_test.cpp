@@ -108,6 +108,19 @@ TEST_F(RecordedSuite, ARecordingTakesThePlaceOfASceneAndHasALevelOfItsOwn) {
             "scannet:" + (folder_ / "scans/scene0001_00").string());
 }
 
+TEST_F(RecordedSuite, TopicsOfMessagesArePartOfWhatARunIs) {
+  std::ofstream(folder_ / "desk.mcap") << "x";
+  const std::string plain = "- {category: desk, sequence: 'mcap:desk.mcap'}";
+  const std::string named =
+      "- {category: desk, sequence: 'mcap:desk.mcap', topics: 'color=/a,depth=/b'}";
+  const RunSpec run = expand(load(named)).front();
+  EXPECT_EQ(run.environment.topics, "color=/a,depth=/b");
+  EXPECT_EQ(run_spec_from_json(to_json(run)).environment.topics, run.environment.topics);
+  EXPECT_NE(to_json(run), to_json(expand(load(plain)).front()));
+  expect_in(error("- {category: desk, sequence: 'mcap:desk.mcap', topics: 'hue=/a'}"),
+            "suite.yaml:2: ");
+}
+
 TEST_F(RecordedSuite, WhatIsOfScenesIsRefusedWithItsReason) {
   for (const char* key : {"robot: robot.yaml", "mapping_tour: auto", "query_tour: auto",
                           "pedestrian: robot.yaml", "sensors: pepper.yaml", "up: y"})
