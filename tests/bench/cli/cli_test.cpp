@@ -21,6 +21,7 @@
 
 #include "bench/protocol/config.hpp"
 #include "sim/sensors/config.hpp"
+#include "slam/core/files.hpp"
 #include "slam/core/settings_io.hpp"
 #include "source_dir.hpp"
 
