@@ -111,7 +111,9 @@ class EntryLock {
 }  // namespace
 
 Cache::Cache(fs::path folder, std::uintmax_t max_bytes)
-    : folder_(std::move(folder)), max_bytes_(max_bytes) {}
+    : folder_(std::move(folder)),
+      max_bytes_(max_bytes),
+      unseen_bytes_(std::make_shared<std::atomic<std::uintmax_t>>(max_bytes)) {}
 
 fs::path Cache::default_folder() {
   const char* cache = std::getenv("XDG_CACHE_HOME");
@@ -185,14 +187,19 @@ std::string Cache::get(std::string_view kind, std::string_view key,
       fs::rename(file, aside);
     }
     write_atomically(file, pack(content));
-    keep_within_bounds(own);
+    keep_within_bounds(own, content.size());
   } catch (const std::exception&) {
     // Then nothing is cached; the work continues.
   }
   return content;
 }
 
-void Cache::keep_within_bounds(const fs::path& own) const {
+void Cache::keep_within_bounds(const fs::path& own, std::uintmax_t written_bytes) const {
+  // Looking at the entries takes longer than writing a small one.
+  constexpr std::uintmax_t kParts = 64;
+  *unseen_bytes_ += written_bytes;
+  if (*unseen_bytes_ < max_bytes_ / kParts) return;
+  *unseen_bytes_ = 0;
   struct Entry {
     fs::file_time_type read;
     fs::path file;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -43,10 +45,12 @@ class Cache {
  private:
   /// Creates it if missing. @throws InputError if it cannot be created, or is not the cache's.
   std::filesystem::path own_folder() const;
-  void keep_within_bounds(const std::filesystem::path& own) const;
+  /// Looks at all entries, but only once a share of the bound has been written since.
+  void keep_within_bounds(const std::filesystem::path& own, std::uintmax_t written_bytes) const;
 
   std::filesystem::path folder_;
   std::uintmax_t max_bytes_;
+  std::shared_ptr<std::atomic<std::uintmax_t>> unseen_bytes_;  // written since; shared by copies
 };
 
 }  // namespace mh

@@ -54,7 +54,7 @@ std::string content(const char* what, const std::optional<std::filesystem::path>
 RunFigures figures(const RunResult& run) {
   const RunSpec& spec = run.spec;
   std::string system = spec.system.name;
-  if (spec.labels != LabelMode::kNone) system += fmt::format("-{}", name(spec.labels));
+  if (spec.labels != Labels()) system += fmt::format("-{}", name(spec.labels));
   RunFigures figures{.scenario = spec.environment.name,
                      .system = system + "-" + level_name(spec.level),
                      .seed = spec.seed,
@@ -81,7 +81,7 @@ std::string gate_suite_digest(const Suite& suite) {
       "trials={};seed={};frames={};protocol={};", suite.trials, suite.seed,
       suite.max_frames ? std::to_string(*suite.max_frames) : "all", to_json(suite.protocol).dump());
   for (const SystemSpec& system : suite.systems) text += fmt::format("system={};", system.name);
-  for (const LabelMode labels : suite.labels) text += fmt::format("labels={};", name(labels));
+  for (const Labels& labels : suite.labels) text += fmt::format("labels={};", name(labels));
   for (const auto& level : suite.levels)
     text += level == kRecordedLevel ? "recorded;" : content(level_name(level), level);
   InputReader reader;

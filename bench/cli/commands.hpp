@@ -11,6 +11,8 @@ struct CheckFailed {};
 // Each adds one subcommand; its work runs in the callback, after the whole command line is parsed.
 void add_bench(CLI::App& app);
 void add_check(CLI::App& app);
+void add_detector(CLI::App& app);
+void add_detector_score(CLI::App& detector);
 void add_drive(CLI::App& app);
 void add_evaluate(CLI::App& app);
 void add_export(CLI::App& app);

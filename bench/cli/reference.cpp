@@ -21,6 +21,7 @@
 #include "slam/config/slam.hpp"
 #include "slam/core/labels.hpp"
 #include "slam/core/settings_io.hpp"
+#include "slam/detect/settings.hpp"
 
 namespace mh::cli {
 namespace {
@@ -183,17 +184,29 @@ std::string protocol() {
          tables.text();
 }
 
+std::string detector() {
+  SettingsTables tables;
+  tables.section("At the top");
+  const DetectorSettings settings;
+  fields(settings, tables);
+  return heading("Settings of a detector", "detector") +
+         "Keys of a file for `--detector-settings` and of a mapping in `labels` of a suite\n"
+         "([detector.md](../detector.md)), beside `network`, `config`, `classes` and `boxes`.\n" +
+         tables.text();
+}
+
 struct Page {
   const char* name;
   std::string (*text)();
 };
-constexpr std::array<Page, 7> kPages{{{"furniture", furniture},
+constexpr std::array<Page, 8> kPages{{{"furniture", furniture},
                                       {"materials", materials},
                                       {"classes", class_table},
                                       {"robot", robot},
                                       {"slam", slam_settings},
                                       {"sensors", sensors},
-                                      {"protocol", protocol}}};
+                                      {"protocol", protocol},
+                                      {"detector", detector}}};
 
 }  // namespace
 

@@ -10,14 +10,16 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
+#include "bench/cli/detector_option.hpp"
 #include "bench/cli/motion_option.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/ros_output.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/inputs/inputs.hpp"
 #include "bench/plan/check_labels.hpp"
-#include "bench/plan/suite.hpp"
+#include "bench/plan/labels.hpp"
 #include "bench/provenance/digest.hpp"
+#include "bench/world/cached_detections.hpp"
 #include "scenes/recorded/ros/recorder.hpp"
 #include "scenes/scannet/files.hpp"
 #include "sim/sensors/shutter.hpp"
@@ -39,6 +41,7 @@ struct Options {
   std::string labels = "exact";
   MotionOption motion;
   SceneFrameOption frame;
+  DetectorOption detector;
   RenderSequenceOptions sequence;
   PngCompression png_compression;
   RosOption ros;
@@ -50,15 +53,15 @@ std::string digest_of_file(const std::string& file) {
 }
 
 /// Everything that determines the images: a folder is resumed only if all of it is the same.
-/// @param robot  all files read for it, including its URDF
+/// @param inputs  all files read for the robot, including its URDF, and for the detector, if any
 std::string settings_of(const Options& o, const Scene& scene, const Trajectory& path,
-                        const InputDigest& robot) {
+                        const std::vector<InputDigest>& inputs) {
   nlohmann::ordered_json json = {{"scene", o.scene},
                                  {"scene_digest", hex(digest(scene))},
                                  {"motion", o.motion.given()},
                                  {"path_digest", hex(digest(path))},
                                  {"robot", o.robot},
-                                 {"robot_digest", hex(robot.digest)},
+                                 {"robot_digest", hex(inputs.front().digest)},
                                  {"camera", o.camera},
                                  {"level", o.level},
                                  {"level_digest", digest_of_file(o.level)},
@@ -70,6 +73,11 @@ std::string settings_of(const Options& o, const Scene& scene, const Trajectory& 
                                  {"seed", o.sequence.seed}};
   if (o.sequence.labels != LabelMode::kExact) json["labels"] = name(o.sequence.labels);
   if (is_ros_format(o.format)) json["chunk_compression"] = o.ros.compression;
+  if (const auto spec = o.detector.spec()) {
+    json["detector"] = source_of(*spec).filename().string();
+    json["detector_digest"] = hex(inputs.back().digest);
+    json["detector_settings"] = format_detector_settings(spec->settings, false);
+  }
   if (o.png_compression) json["png_compression"] = *o.png_compression;
   if (o.sequence.frames != SIZE_MAX) json["frames"] = o.sequence.frames;
   return json.dump(2) + "\n";
@@ -165,6 +173,17 @@ void run(Options options) {
   std::vector<InputDigest> inputs;
   const Robot robot =
       noted(inputs, "robot", options.robot, [&] { return load_robot(options.robot); });
+  if (const auto spec = options.detector.spec()) {
+    const std::shared_ptr<const Detector> detector =
+        noted(inputs, "detector", source_of(*spec), [&] { return open_detector(*spec); });
+    options.sequence.relabel = [detector, fill = spec->settings.fill,
+                                keep = detections_in(Cache(options.detector.cache))](
+                                   RgbdFrame& frame, std::size_t i) {
+      frame.semantics = labels_of(detect_kept(*detector, frame, i, keep), frame.depth_m,
+                                  frame.color.width(), frame.color.height(), fill);
+    };
+    options.sequence.labels = LabelMode::kNone;
+  }
   const MountedCamera* const mounted = find_camera(options, robot);
   check_motion(motion);
   SensorConfig sensors = exact_sensors();
@@ -194,7 +213,7 @@ void run(Options options) {
   const Trajectory path =
       mounted != nullptr ? path_of(*mounted, *robot.equipment, driven) : driven.camera;
 
-  const std::string settings = settings_of(options, scene, path, inputs.front());
+  const std::string settings = settings_of(options, scene, path, inputs);
   if (fs::exists(out / "render.json")) {
     if (read_file(out / "render.json") != settings)
       throw InputError(fmt::format(
@@ -295,6 +314,7 @@ void add_render(CLI::App& app) {
                    "exact, annotated, boxes or detector: what `label` holds, faults of the level "
                    "with it")
       ->check(one_of_words({"exact", "annotated", "boxes", "detector"}));
+  options->detector.add_to(*command);
   command->add_option("--seed", options->sequence.seed, "Seed of the noise")->check(seed_number());
   command
       ->add_option("--threads", options->sequence.threads,

@@ -9,12 +9,14 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
+#include "bench/cli/detector_option.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/cli/slam_report.hpp"
 #include "bench/inputs/recorded_camera.hpp"
 #include "bench/run/run_one.hpp"
 #include "bench/systems/ours.hpp"
+#include "bench/world/cached_detections.hpp"
 #include "bench/world/first_frames.hpp"
 #include "scenes/recorded/open_sequence.hpp"
 #include "sim/world/scene_sequence.hpp"
@@ -37,6 +39,7 @@ struct Options {
   std::string source, settings, classes, topics, vocabulary = "vocabulary", out, map, save_map,
                                                  truth;
   SceneFrameOption frame;
+  DetectorOption detector;
   std::string tour, robot, level;
   std::optional<double> gamma, xi;
   bool plain = false, localize = false, resume = false, protocol = false;
@@ -225,6 +228,13 @@ void run(Options options) {
   const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
   Source source = open_source(options);
   // Before the work, so that a mistake costs no time.
+  if (const auto spec = options.detector.spec()) {
+    const std::shared_ptr<const Detector> detector = open_detector(*spec);
+    fmt::print(stderr, "slam: labels from {}\n", detector->description());
+    source.frames = std::make_unique<DetectedSequence>(
+        std::shared_ptr<const Sequence>(std::move(source.frames)), detector, spec->settings.fill,
+        detections_in(Cache(options.detector.cache)));
+  }
   std::optional<Trajectory> named_truth;
   if (!options.truth.empty()) named_truth = read_trajectory(options.truth);
   const OutputFolder folder(options.out, "slam", {kSlamFiles.begin(), kSlamFiles.end()});
@@ -343,6 +353,7 @@ void add_slam(CLI::App& app) {
       "--level", options->level,
       "scene: sensor level (YAML), or the name of a shipped one; without: no noise");
   options->frame.add_to(*command);
+  options->detector.add_to(*command);
   CLI::Option* gamma = command
                            ->add_option("--gamma", options->gamma,
                                         "Weight of a label, equation 1 (default: the settings')")

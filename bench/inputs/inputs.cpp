@@ -16,6 +16,7 @@
 #include "sim/sensors/sensors.hpp"
 #include "sim/world/pedestrian.hpp"
 #include "sim/world/travel.hpp"
+#include "slam/detect/detector.hpp"
 #include "slam/vocabulary/vocabulary.hpp"
 
 namespace mh {
@@ -109,6 +110,11 @@ std::vector<InputDigest> InputReader::inputs_of(const RunSpec& spec) {
   if (!spec.environment.is_recorded())
     inputs.push_back(
         read("level", "level", spec.level, [](const fs::path& file) { load_sensor_config(file); }));
+  if (const auto& detector = spec.labels.detector)
+    inputs.push_back(
+        read("detector",
+             fmt::format("detector {} {}", detector->config.string(), detector->classes.string()),
+             source_of(*detector), [&](const fs::path&) { open_detector(*detector); }));
   if (!spec.vocabulary.empty())
     inputs.push_back(read("vocabulary", "vocabulary", spec.vocabulary,
                           [](const fs::path& file) { Vocabulary::load(file); }));

@@ -17,6 +17,9 @@ nlohmann::ordered_json determining(const RunSpec& spec, std::span<const InputDig
   nlohmann::ordered_json json = to_json(spec);
   if (spec.system.is_outside()) json["system"]["outside"].erase("folder");
   for (const char* named : {"name", "environment", "level", "vocabulary"}) json.erase(named);
+  if (spec.labels.detector)
+    for (const char* named : {"name", "network", "config", "classes", "boxes"})
+      json["labels"].erase(named);
   for (const InputDigest& input : inputs) json["inputs"][input.name] = hex(input.digest);
   if (spec.environment.frame != SceneFrame{}) json["scene_frame"] = to_json(spec.environment.frame);
   json["code"] = code_of_run();
@@ -72,6 +75,12 @@ std::string stored_spec(const RunSpec& spec) {
   shorten("sensors", spec.environment.sensors);
   shorten("pedestrian", spec.environment.pedestrian);
   json["level"] = level_name(spec.level);
+  if (const auto& detector = spec.labels.detector)
+    for (const auto& [key, file] : {std::pair("network", detector->network),
+                                    {"config", detector->config},
+                                    {"classes", detector->classes},
+                                    {"boxes", detector->boxes}})
+      json["labels"][key] = file.filename().string();
   json["vocabulary"] = name_of(spec.vocabulary);
   if (spec.system.is_outside()) json["system"]["outside"].erase("folder");
   return json.dump();

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/plan/suite.hpp"
+#include "bench/plan/labels.hpp"
 #include "sim/sensors/visible_objects.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"

@@ -60,14 +60,14 @@ std::vector<RunSpec> expand(const Suite& suite) {
       for (int trial = 0; trial < suite.trials; ++trial)
         for (const SystemSpec& system : suite.systems) {
           const std::vector<Study> studies = studies_of(system, suite);
-          const std::vector<LabelMode> labels =
-              !system.sees_labels() ? std::vector{LabelMode::kNone} : suite.labels;
+          const std::vector<Labels> labels =
+              !system.sees_labels() ? std::vector<Labels>{LabelMode::kNone} : suite.labels;
           for (std::size_t s = 0; s < studies.size(); ++s)
-            for (const LabelMode mode : labels) {
+            for (const Labels& mode : labels) {
               if (!fits(environment, mode)) continue;
               std::string run = suite.environments.size() > 1 ? environment.name + "-" : "";
               run += system.name;
-              if (mode != LabelMode::kNone) run += fmt::format("-{}", name(mode));
+              if (mode != Labels()) run += fmt::format("-{}", name(mode));
               run += fmt::format("-{}", level_name(level));
               if (studies.size() > 1) run += fmt::format("-p{:02}", s);
               runs.push_back({.name = run + fmt::format("-{}", trial),

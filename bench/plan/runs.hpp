@@ -19,7 +19,7 @@ struct RunSpec {
   Environment environment;
   std::filesystem::path level, vocabulary;
   SystemSpec system;
-  LabelMode labels = LabelMode::kNone;
+  Labels labels;
   int trial = 0;
   std::uint64_t seed = 0;  ///< of the trial
   SharedSlamConfig slam;   ///< mapping settings; neutral for the plain system

@@ -178,6 +178,27 @@ Environment environment_from_json(const Json& json) {
   return e;
 }
 
+Json labels_json(const Labels& labels) {
+  if (!labels.detector) return name(labels.mode);
+  const DetectorSpec& d = *labels.detector;
+  return {{"name", labels.called},       {"network", d.network.string()},
+          {"config", d.config.string()}, {"classes", d.classes.string()},
+          {"boxes", d.boxes.string()},   {"settings", section_json(d.settings)}};
+}
+
+Labels labels_from_json(const Json& json) {
+  if (!json.is_object())
+    return named(json, {LabelMode::kNone, LabelMode::kExact, LabelMode::kAnnotated,
+                        LabelMode::kBoxes, LabelMode::kDetector, LabelMode::kRecorded});
+  const auto path = [&](const char* key) { return json.at(key).get<std::string>(); };
+  return {{.network = path("network"),
+           .config = path("config"),
+           .classes = path("classes"),
+           .boxes = path("boxes"),
+           .settings = section_from<DetectorSettings>(json.at("settings"))},
+          json.at("name")};
+}
+
 SlamConfig slam_from_json(const Json& json) {
   SlamConfig settings;
   for_each_setting(settings, ReadSettings(json));
@@ -191,9 +212,7 @@ RunSpec read(const Json& json) {
   spec.level = json.at("level").get<std::string>();
   spec.vocabulary = json.at("vocabulary").get<std::string>();
   spec.system = system_from_json(json.at("system"));
-  spec.labels =
-      named(json.at("labels"), {LabelMode::kNone, LabelMode::kExact, LabelMode::kAnnotated,
-                                LabelMode::kBoxes, LabelMode::kDetector, LabelMode::kRecorded});
+  spec.labels = labels_from_json(json.at("labels"));
   spec.trial = json.at("trial");
   spec.seed = json.at("seed");
   spec.slam = slam_from_json(json.at("slam"));
@@ -236,7 +255,7 @@ Json to_json(const RunSpec& spec) {
           {"level", spec.level.string()},
           {"vocabulary", spec.vocabulary.string()},
           {"system", to_json(spec.system)},
-          {"labels", name(spec.labels)},
+          {"labels", labels_json(spec.labels)},
           {"trial", spec.trial},
           {"seed", spec.seed},
           {"slam", to_json(spec.slam)},

@@ -21,12 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Names<LabelMode, 6> kLabels{{{"exact", LabelMode::kExact},
-                                       {"annotated", LabelMode::kAnnotated},
-                                       {"boxes", LabelMode::kBoxes},
-                                       {"detector", LabelMode::kDetector},
-                                       {"none", LabelMode::kNone},
-                                       {"recorded", LabelMode::kRecorded}}};
 constexpr Names<Published, 1> kPublished{{{"table2", Published::kTable2}}};
 
 /// @throws InputError at this place if no system of the suite has the name.
@@ -93,26 +87,39 @@ std::vector<fs::path> read_levels(YamlReader& yaml, const SuitePaths& paths, con
   return levels;
 }
 
+/// Boxes of files are of the frames of one sequence.
+void check_boxes(const YamlReader& node, const Labels& labels, const Suite& suite) {
+  if (!labels.detector || labels.detector->boxes.empty()) return;
+  for (const Environment& e : suite.environments)
+    if (e.query_tour || e.queries)
+      node.fail(fmt::format(
+          "boxes are of the frames of one sequence, and '{}' has a second to be queried", e.name));
+}
+
 /// Reads the kinds of labels: each must fit some environment, and each environment needs at least
 /// one.
-std::vector<LabelMode> read_labels(const YamlReader& list, const Suite& suite) {
-  std::vector<LabelMode> all;
+std::vector<Labels> read_labels(const YamlReader& list, const Suite& suite,
+                                const fs::path& folder) {
+  std::vector<Labels> all;
   for (const YamlReader& node : items_of(list)) {
-    add_once(all, one_of(node, kLabels), node);
-    const LabelMode labels = all.back();
+    const Labels labels = read_label_source(node, folder);
+    const auto same = [&](const Labels& l) { return name(l) == name(labels); };
+    if (std::ranges::any_of(all, same)) node.fail(fmt::format("'{}' stands twice", name(labels)));
+    check_boxes(node, labels, suite);
+    all.push_back(labels);
     if (std::ranges::any_of(suite.environments,
                             [&](const Environment& e) { return fits(e, labels); }))
       continue;
-    node.fail(labels == LabelMode::kRecorded
+    node.fail(labels.mode == LabelMode::kRecorded
                   ? "'recorded' labels are a recording's (`sequence`), and no environment is one"
                   : fmt::format("'{}' labels are drawn of a simulated scene; recordings have "
-                                "'recorded' ones or 'none'",
-                                node.as_string()));
+                                "'recorded' ones, a detector's or 'none'",
+                                name(labels)));
   }
   for (const Environment& e : suite.environments)
-    if (std::ranges::none_of(all, [&](LabelMode labels) { return fits(e, labels); }))
+    if (std::ranges::none_of(all, [&](const Labels& labels) { return fits(e, labels); }))
       list.fail(fmt::format("none of them is for '{}', which is {}", e.name,
-                            e.is_recorded() ? "a recording: 'recorded' or 'none'"
+                            e.is_recorded() ? "a recording: 'recorded', a detector's or 'none'"
                                             : "a scene: 'exact', 'none' or another"));
   return all;
 }
@@ -129,29 +136,9 @@ std::string value_of(const std::string& name, const SuiteOverrides& overrides) {
 
 }  // namespace
 
-std::string_view name(LabelMode labels) {
-  return name_of(labels, kLabels);
-}
-std::string with_labels(LabelMode labels) {
-  switch (labels) {
-    case LabelMode::kExact:
-      return "exact labels";
-    case LabelMode::kAnnotated:
-      return "annotated labels";
-    case LabelMode::kBoxes:
-      return "labels from boxes";
-    case LabelMode::kDetector:
-      return "labels from the detector";
-    case LabelMode::kRecorded:
-      return "recorded labels";
-    case LabelMode::kNone:
-      break;
-  }
-  return "no labels";
-}
-bool fits(const Environment& environment, LabelMode labels) {
-  return labels == LabelMode::kNone ||
-         environment.is_recorded() == (labels == LabelMode::kRecorded);
+bool fits(const Environment& environment, const Labels& labels) {
+  return labels.mode == LabelMode::kNone ||
+         environment.is_recorded() == (labels.mode == LabelMode::kRecorded);
 }
 bool fits(const Environment& environment, const fs::path& level) {
   return environment.is_recorded() == (level == kRecordedLevel);
@@ -198,7 +185,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   suite.compare = read_compare(yaml, suite.systems);
   if (yaml.has("vocabulary") || std::ranges::any_of(suite.systems, &SystemSpec::takes_settings))
     suite.vocabulary = named_file(yaml.at("vocabulary"), paths, Shipped::kVocabulary);
-  suite.labels = read_labels(yaml.at("labels"), suite);
+  suite.labels = read_labels(yaml.at("labels"), suite, paths.folder);
   suite.trials = static_cast<int>(yaml.integer_or("trials", suite.trials, 1, 1000));
   suite.seed = static_cast<std::uint64_t>(yaml.integer_or("seed", 0, 0, INT64_MAX / 2));
   if (const auto published = yaml.find("published"))

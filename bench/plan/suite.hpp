@@ -11,6 +11,7 @@
 
 #include "bench/plan/environment.hpp"
 #include "bench/plan/gate_config.hpp"
+#include "bench/plan/labels.hpp"
 #include "bench/plan/parameters.hpp"
 #include "bench/plan/system_spec.hpp"
 #include "bench/protocol/config.hpp"
@@ -18,10 +19,6 @@
 #include "slam/config/shared.hpp"
 
 namespace mh {
-
-std::string_view name(LabelMode labels);
-/// "exact labels", "labels from boxes", "no labels"
-std::string with_labels(LabelMode labels);
 
 /// A table of the paper that a suite reproduces.
 enum class Published { kTable2 };
@@ -41,7 +38,7 @@ struct Suite {
   /// Sensor levels, as paths of their files; kRecordedLevel is last if there are recordings.
   std::vector<std::filesystem::path> levels;
   std::vector<SystemSpec> systems;
-  std::vector<LabelMode> labels;
+  std::vector<Labels> labels;
   int trials = 1;
   std::uint64_t seed = 0;  ///< trial t uses seed + t
   SharedSlamConfig slam;
@@ -87,8 +84,8 @@ Suite parse_suite(const std::string& content, const std::filesystem::path& file,
 inline constexpr const char* kRecordedLevel = "recorded";
 
 /// Whether runs of an environment may use these labels: a recording has recorded labels, a scene
-/// simulated ones; both may run without labels.
-bool fits(const Environment& environment, LabelMode labels);
+/// simulated ones; both may run without labels or with those of a real detector.
+bool fits(const Environment& environment, const Labels& labels);
 /// Whether an environment is run at this level. Recordings are run only at kRecordedLevel, scenes
 /// only at other levels.
 bool fits(const Environment& environment, const std::filesystem::path& level);

@@ -94,7 +94,7 @@ Json suite_json(const Suite& suite) {
   for (const auto& level : suite.levels)
     levels.push_back(level == kRecordedLevel ? kRecordedLevel : from_suite(suite, level));
   for (const SystemSpec& system : suite.systems) systems.push_back(system_json(system));
-  for (const LabelMode mode : suite.labels) labels.push_back(name(mode));
+  for (const Labels& mode : suite.labels) labels.push_back(name(mode));
   return {
       {"name", suite.name},
       {"environments", environments},

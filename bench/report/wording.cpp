@@ -56,7 +56,7 @@ std::string incomplete(const CategoryRow& row) {
 }
 
 bool already_shown(const Suite& suite, const Row& row) {
-  const auto first = std::ranges::find_if(suite.labels, [&](LabelMode labels) {
+  const auto first = std::ranges::find_if(suite.labels, [&](const Labels& labels) {
     return fits(suite.environments[row.environment], labels);
   });
   return !suite.systems[row.system].sees_labels() && row.labels != *first;

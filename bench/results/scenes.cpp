@@ -59,7 +59,8 @@ std::vector<std::string> categories(const Suite& suite) {
 
 /// Rows of one system, one per environment; null if it has none.
 std::vector<const Row*> scenes_of(const Suite& suite, std::span<const Row> rows, std::size_t level,
-                                  LabelMode labels, std::size_t parameters, std::size_t system) {
+                                  const Labels& labels, std::size_t parameters,
+                                  std::size_t system) {
   std::vector<const Row*> scenes(suite.environments.size(), nullptr);
   for (const Row& row : rows)
     if (row.level == level && row.labels == labels && row.parameters == parameters &&
@@ -88,7 +89,7 @@ PairedDifference ate(const Row& a, const Row& b, QuerySet) {
 }
 
 std::vector<Comparison> compare(const std::vector<const Row*>& first,
-                                const std::vector<const Row*>& second, LabelMode labels,
+                                const std::vector<const Row*>& second, const Labels& labels,
                                 std::uint64_t seed) {
   std::vector<Comparison> comparisons;
   const auto add = [&](const std::string& what, Difference between_rows, QuerySet set, bool shares,
@@ -124,7 +125,7 @@ std::vector<CategoryRow> make_category_rows(const Suite& suite, std::span<const 
   groups.emplace_back(kAllCategories);
   std::vector<CategoryRow> result;
   for (std::size_t level = 0; level < suite.levels.size(); ++level)
-    for (const LabelMode labels : suite.labels)
+    for (const Labels& labels : suite.labels)
       for (std::size_t p = 0; p < parameter_points(suite).size(); ++p)
         for (std::size_t g = 0; g < groups.size(); ++g)
           for (std::size_t s = 0; s < suite.systems.size(); ++s) {
@@ -149,7 +150,7 @@ std::vector<SceneFamily> compare_over_scenes(const Suite& suite, std::span<const
     for (std::size_t level = 0; level < suite.levels.size(); ++level)
       for (std::size_t p = 0; p < parameter_points(suite).size(); ++p) {
         SceneFamily family{level, p, systems, {}};
-        for (const LabelMode labels : suite.labels)
+        for (const Labels& labels : suite.labels)
           for (Comparison& c : compare(scenes_of(suite, rows, level, labels, p, systems.first),
                                        scenes_of(suite, rows, level, labels, p, systems.second),
                                        labels, suite.seed))

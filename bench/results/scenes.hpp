@@ -18,7 +18,7 @@ inline constexpr std::string_view kAllCategories = "all";
 struct CategoryRow {
   std::string category;
   std::size_t level = 0, system = 0, parameters = 0;
-  LabelMode labels = LabelMode::kNone;
+  Labels labels;
   std::size_t scenes = 0;  ///< where the system has a result; all figures are over these; may be 0
   std::size_t of = 0;      ///< scenes of the category in the suite
   std::size_t failed = 0;  ///< runs that failed, in all of them

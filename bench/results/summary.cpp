@@ -107,7 +107,7 @@ bool belongs(const RunSpec& spec, const Suite& suite, const Row& row) {
   const SystemSpec& system = suite.systems[row.system];
   return spec.environment.name == suite.environments[row.environment].name &&
          spec.level == suite.levels[row.level] && spec.system.name == system.name &&
-         (!system.sees_labels() || spec.labels == row.labels);
+         (!system.sees_labels() || name(spec.labels) == name(row.labels));
 }
 
 /// Index of the pass over a run's queries that had these settings.
@@ -204,7 +204,7 @@ std::vector<Row> make_rows(const Suite& suite, std::span<const RunResult> runs,
   std::vector<Row> rows;
   for (std::size_t e = 0; e < suite.environments.size(); ++e)
     for (std::size_t level = 0; level < suite.levels.size(); ++level)
-      for (const LabelMode labels : suite.labels)
+      for (const Labels& labels : suite.labels)
         for (std::size_t p = 0; p < points.size(); ++p)
           for (std::size_t s = 0; s < suite.systems.size(); ++s) {
             Row row;

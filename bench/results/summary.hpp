@@ -30,7 +30,7 @@ struct Trial {
 /// one parameter point, over all trials.
 struct Row {
   std::size_t environment = 0, level = 0, system = 0;  ///< indices into the suite's lists
-  LabelMode labels = LabelMode::kNone;
+  Labels labels;
   std::size_t parameters = 0;  ///< index into parameter_points(suite)
   std::vector<Trial> trials;   ///< those that are done
   std::size_t failed = 0;      ///< its failed runs

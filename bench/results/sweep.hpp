@@ -13,7 +13,7 @@ namespace mh {
 /// environments combined.
 struct SweepResult {
   std::size_t level = 0, system = 0;
-  LabelMode labels = LabelMode::kNone;
+  Labels labels;
   std::vector<SharedSlamConfig> points;  ///< as the suite states them
   std::vector<CategoryRow> answers;      ///< as points
 };

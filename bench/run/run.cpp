@@ -38,7 +38,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Checks that frames of an environment's recordings can be read, with labels if requested.
-void check_recordings(const Environment& e, LabelMode labels,
+void check_recordings(const Environment& e, const Labels& labels,
                       const std::function<void(std::string_view)>& say) {
   std::optional<Camera> camera;
   for (const std::string& sequence : {e.sequence, e.queries.value_or("")}) {
@@ -87,7 +87,7 @@ void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
                           const std::optional<fs::path>& pedestrian = {}) {
       if (is_generated(scene)) return;
       Uses& uses = uses_of[{scene, e.frame}];
-      uses.labels.insert(spec.labels);
+      uses.labels.insert(spec.labels.mode);
       if (tour && !is_generated(*tour)) uses.drives.insert({e.robot, *tour, pedestrian});
     };
     note(e.scene, e.mapping_tour, e.pedestrian);

@@ -9,6 +9,7 @@
 #include "bench/inputs/inputs.hpp"
 #include "bench/inputs/recorded_camera.hpp"
 #include "bench/provenance/digest.hpp"
+#include "bench/world/cached_detections.hpp"
 #include "bench/world/cached_light.hpp"
 #include "bench/world/first_frames.hpp"
 #include "scenes/load.hpp"
@@ -197,13 +198,24 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   return built;
 }
 
+/// Replaces the labels of both sequences by a detector's.
+void add_detector(World& world, const DetectorSpec& spec, const Cache& cache) {
+  const std::shared_ptr<const Detector> detector =
+      noted(world.inputs, "detector", source_of(spec), [&] { return open_detector(spec); });
+  for (std::shared_ptr<const Sequence>* sequence : {&world.mapping, &world.second})
+    if (*sequence != nullptr)
+      *sequence = std::make_shared<DetectedSequence>(std::move(*sequence), detector,
+                                                     spec.settings.fill, detections_in(cache));
+}
+
 }  // namespace
 
 World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
                   const BakeWatch& baked) {
   World world = spec.environment.is_recorded() ? open_recordings(spec)
                                                : build(spec, threads, cache, say, baked);
-  if (world.simulated) simulate(world, spec.labels);
+  if (world.simulated) simulate(world, spec.labels.mode);
+  if (spec.labels.detector) add_detector(world, *spec.labels.detector, cache);
   std::ranges::move(inputs_of_program(spec), std::back_inserter(world.inputs));
   std::ranges::sort(world.inputs, {}, &InputDigest::name);
   return world;

@@ -32,7 +32,8 @@ ExactFrame exact_frame(const Shutter& shutter, const SensorConfig& sensors,
                        const RenderSequenceOptions& options, std::size_t i) {
   auto [seen, exact] =
       sense_moment(shutter, sensors, options.labels, i, RandomStream(options.seed));
-  const bool labels_are_exact = is_per_pixel(options.labels) &&
+  if (options.relabel) options.relabel(seen, i);
+  const bool labels_are_exact = !options.relabel && is_per_pixel(options.labels) &&
                                 sensors.blank_frames.lost() == 0.0 && sensors.labels.noise.none();
   if (!labels_are_exact)
     exact.classes = seen.semantics.index.empty()

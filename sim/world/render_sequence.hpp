@@ -17,6 +17,8 @@ struct RenderSequenceOptions {
   std::uint64_t seed = 0;  ///< of the sensors' noise
   int threads = 2;         ///< each works on its own frame, from rays to files
   bool resume = false;     ///< skips frames that already exist
+  /// Replaces a frame's labels, if set: of the path's i-th moment. Called by several threads.
+  std::function<void(RgbdFrame& frame, std::size_t i)> relabel = nullptr;
 };
 
 /// Returns the camera as recorded in the sequence: with `every`, its rate is that of the kept

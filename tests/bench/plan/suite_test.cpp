@@ -607,18 +607,59 @@ TEST(Sobol, TheFirstTwoDimensionsAreANet) {
   EXPECT_EQ(in, std::vector<int>(64, 1));
 }
 
+TEST_F(SuiteFile, TakesDetectorsAsLabels) {
+  const Suite suite =
+      load("", "[pepper.yaml]",
+           "[exact, {network: nano.onnx, fill: foreground}, {network: yolo.weights, "
+           "name: third, classes: my.names, confidence: 0.4}]");
+  ASSERT_EQ(suite.labels.size(), 3U);
+  EXPECT_EQ(name(suite.labels[1]), "nano");
+  EXPECT_EQ(with_labels(suite.labels[2]), "labels from third");
+  EXPECT_EQ(suite.labels[2].detector->config, folder_ / "yolo.cfg");
+  EXPECT_EQ(suite.labels[2].detector->settings.confidence, 0.4);
+  const std::vector<RunSpec> runs = expand(suite);
+  EXPECT_EQ(runs[1].name, "semantic-nano-pepper-0");
+  const RunSpec back = run_spec_from_json(to_json(runs[1]));
+  EXPECT_EQ(back.labels, runs[1].labels);
+  // The key depends on the contents of the files and on the settings, not on names.
+  const std::vector<InputDigest> inputs = {{"detector", 7, {}}};
+  RunSpec other = runs[1];
+  other.labels.called = "another";
+  other.labels.detector->network = "/elsewhere/nano.onnx";
+  EXPECT_EQ(run_key(other, inputs), run_key(runs[1], inputs));
+  other.labels.detector->settings.fill = BoxFill::kBox;
+  EXPECT_NE(run_key(other, inputs), run_key(runs[1], inputs));
+}
+
+TEST_F(SuiteFile, RefusesDetectorsThatCannotBeMeant) {
+  const auto says = [&](const char* labels, const char* part) {
+    const std::string text = error("", "[pepper.yaml]", labels);
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  says("[{network: a.onnx, boxes: b.json}]", "names both `network` and `boxes`");
+  says("[{fill: box}]", "names neither `network` nor `boxes`");
+  says("[{network: a.onnx, fil: box}]", "fil");
+  says("[{network: a.onnx, fill: boxes}]", "'boxes' is not one of box, foreground");
+  says("[{network: a.onnx, name: exact}]", "'exact' is a kind of labels");
+  says("[{network: a.onnx}, {network: b/a.onnx}]", "'a' stands twice");
+}
+
 TEST(ShippedSuites, AreWellFormed) {
   for (const auto& entry : fs::directory_iterator(fs::path(MH_SOURCE_DIR) / "bench/suites")) {
     if (entry.path().extension() != ".yaml") continue;
     // Nobody has the scans here; results are read without them, too.
     const bool of_scans = entry.path().stem() == "table1_scannet";
+    const bool of_network = entry.path().stem() == "real_detector";
+    const SuiteOverrides network{.set = {{"network", "/yolox_nano.onnx"}}};
     const SuiteOverrides scans{.set = {{"scans", "/scans"}},
                                .found = {{"scannet:/scans/scene????_00",
                                           {{"scannet:/scans/scene0000_00", "Bedroom / Hotel"},
                                            {"scannet:/scans/scene0001_00", "Lobby"},
                                            {"scannet:/scans/scene0002_00", "Gym"}}}}};
     const Suite suite = of_scans ? parse_suite(read_file(entry.path()), entry.path(), scans, false)
-                                 : load_suite(entry.path());
+                        : of_network
+                            ? parse_suite(read_file(entry.path()), entry.path(), network, false)
+                            : load_suite(entry.path());
     if (of_scans) {
       EXPECT_EQ(suite.environments.size(), 3U);
       EXPECT_EQ(suite.environments.back().category, "misc");

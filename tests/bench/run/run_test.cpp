@@ -158,7 +158,7 @@ struct Place {
     std::vector<RunResult> results;
     for (const RunSpec& spec : expand(suite)) {
       World as_seen = world;
-      simulate(as_seen, spec.labels);
+      simulate(as_seen, spec.labels.mode);
       results.push_back(run_one(spec, as_seen,
                                 {.system =
                                      [](const RunSpec& s, const World&) {

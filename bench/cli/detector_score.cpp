@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "bench/cli/arguments.hpp"
+#include "bench/cli/commands.hpp"
+#include "bench/cli/detector_option.hpp"
+#include "bench/cli/progress.hpp"
+#include "bench/studies/detector_score.hpp"
+#include "bench/studies/draw_detections.hpp"
+#include "bench/world/cached_detections.hpp"
+#include "bench/world/cached_light.hpp"
+#include "scenes/generate/generate.hpp"
+#include "scenes/generate/grammar.hpp"
+#include "scenes/images/write_image.hpp"
+#include "scenes/load.hpp"
+#include "sim/sensors/config.hpp"
+#include "sim/world/lit_scene.hpp"
+#include "sim/world/sequence.hpp"
+#include "sim/world/travel.hpp"
+#include "slam/core/counted.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  DetectorOption detector;
+  std::vector<std::string> scenes;
+  std::string level = "handheld", robot = "pepper", out, base = "pepper";
+  int per_category = 2, threads = 2;
+  std::size_t frames = 10;
+  bool json = false;
+};
+
+/// COCO's evaluation asks for boxes down to here; a detector's own least score is far above.
+constexpr double kLeastScore = 0.01;
+
+std::vector<std::string> names_of(const Options& options) {
+  if (!options.scenes.empty()) return options.scenes;
+  std::vector<std::string> names;
+  for (const Category& category : categories())
+    for (int i = 0; i < std::min(options.per_category, category.count); ++i)
+      names.push_back(to_string({category.name, static_cast<std::uint64_t>(i)}));
+  return names;
+}
+
+/// One frame as it was judged.
+struct JudgedFrame {
+  Grid2d<Rgb8> color;
+  std::vector<VisibleObject> missed;
+  std::vector<DetectedBox> found;
+  double missed_pixels = 0;
+};
+
+/// The frames of which a detector missed most.
+class Worst {
+ public:
+  void add(JudgedFrame frame) {
+    for (const VisibleObject& object : frame.missed) frame.missed_pixels += object.pixels;
+    frames_.push_back(std::move(frame));
+    std::ranges::stable_sort(frames_, std::greater<>(), &JudgedFrame::missed_pixels);
+    if (frames_.size() > kMost) frames_.pop_back();
+  }
+  cv::Mat sheet(const ClassNames& names) const {
+    constexpr int kColumns = 3, kWidth = 480, kHeight = 360;
+    const int rows = (static_cast<int>(frames_.size()) + kColumns - 1) / kColumns;
+    cv::Mat sheet(rows * kHeight, kColumns * kWidth, CV_8UC3, cv::Scalar::all(255));
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      const JudgedFrame& f = frames_[i];
+      const int k = static_cast<int>(i);
+      cv::Mat tile =
+          sheet(cv::Rect(k % kColumns * kWidth, k / kColumns * kHeight, kWidth, kHeight));
+      cv::resize(draw_missed(f.color, f.missed, f.found, names), tile, tile.size(), 0, 0,
+                 cv::INTER_AREA);
+    }
+    return sheet;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 12;
+  std::vector<JudgedFrame> frames_;
+};
+
+/// The level's simulated detector with other dials, judged on the same frames.
+struct Judged {
+  DetectorScore real;
+  std::optional<DetectorScore> simulated;
+};
+
+/// One moment of a scan, as the sensors deliver it.
+struct Moment {
+  SensedMoment sensed;
+  SE3 world_from_camera;
+};
+
+/// Calls visit(moment, index) for each moment of the rooms: of a hand-held scan of each, evenly
+/// spaced.
+void for_each_moment(const Options& options, const Robot& robot, const SensorConfig& sensors,
+                     const std::function<void(const Moment&, std::size_t)>& visit) {
+  constexpr std::size_t kAround = 3;  // poses before and after a moment, which determine its blur
+  const std::vector<std::string> names = names_of(options);
+  Progress progress("detector");
+  std::size_t index = 0;
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    std::vector<std::string> warnings;
+    Scene scene = load_scene(names[n], &warnings);
+    light_from_cache(scene, options.threads, Cache(options.detector.cache));
+    for (const std::string& warning : warnings) progress.say("warning: " + warning);
+    const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene);
+    const Trajectory scan = travel(scene, robot, "handheld").camera;
+    for (std::size_t k = 0; k < options.frames; ++k, ++index) {
+      const std::size_t at = (2 * k + 1) * scan.size() / (2 * options.frames);
+      const std::size_t first = std::clamp(at, kAround, scan.size() - 1 - kAround) - kAround;
+      const auto from = scan.begin() + static_cast<std::ptrdiff_t>(first);
+      const Shutter shutter(renderer, robot.camera, Trajectory(from, from + 2 * kAround + 1),
+                            sensors);
+      visit({sense_moment(shutter, sensors, LabelMode::kNone, kAround, RandomStream(index)),
+             shutter.path()[kAround].world_from_camera},
+            index);
+    }
+    progress.share(static_cast<double>(n + 1) / static_cast<double>(names.size()));
+  }
+  progress.end();
+}
+
+/// Judges the detector, then the simulated one with the dials that were measured.
+Judged judge(const Options& options, const DetectorSpec& asked, Worst* worst) {
+  DetectorSpec spec = asked;
+  const double confidence = spec.settings.confidence;
+  spec.settings.confidence = std::min(confidence, kLeastScore);
+  const std::unique_ptr<Detector> detector = open_detector(spec);
+  const Robot robot = load_robot(options.robot);
+  const SensorConfig sensors = load_sensor_config(options.level);
+  const KeepDetections keep = detections_in(Cache(options.detector.cache));
+  DetectorJudge real(confidence);
+  std::vector<RenderedFrame> exact;  // without what the simulated detector does not look at
+  std::vector<SE3> poses;
+  for_each_moment(options, robot, sensors, [&](const Moment& moment, std::size_t index) {
+    const RgbdFrame& frame = moment.sensed.frame;
+    const Detected found = detect_kept(*detector, frame, index, keep);
+    if (!found.pixels.index.empty())
+      throw InputError(fmt::format("{}: segments: only boxes are scored", asked.network.string()));
+    JudgedFrame judged{.color = frame.color, .missed = {}, .found = {}};
+    judged.missed = real.add(moment.sensed.exact, found.boxes, frame.depth_m);
+    for (const DetectedBox& box : found.boxes)
+      if (box.score >= confidence) judged.found.push_back(box);
+    if (worst != nullptr) worst->add(std::move(judged));
+    RenderedFrame& kept = exact.emplace_back();
+    kept.classes = moment.sensed.exact.classes;
+    kept.instances = moment.sensed.exact.instances;
+    poses.push_back(moment.world_from_camera);
+  });
+  Judged both{.real = real.score(), .simulated = {}};
+  LabelConfig fitted = sensors.labels;
+  fitted.detector = both.real.dials;
+  DetectorJudge simulated(0);
+  for (std::size_t i = 0; i < exact.size(); ++i)
+    simulated.add(exact[i], as_detected(detect(exact[i], fitted, poses[i], RandomStream(i))));
+  both.simulated = simulated.score();
+  return both;
+}
+
+std::string_view class_name(ClassId id, const char* none) {
+  return id == kVoid || id == kBackground ? none : classes()[id].name;
+}
+
+std::string percent(double share) {
+  return std::isnan(share) ? "-" : fmt::format("{:.1f}", 100 * share);
+}
+
+void print_dials(const DetectorConfig& real, const DetectorConfig& simulated) {
+  const DetectorConfig published;
+  fmt::print("\n{:<16}{:>10}{:>12}{:>12}\n", "dial", "measured", "simulated", "YOLOv3");
+  const auto line = [&](const char* name, double DetectorConfig::*dial) {
+    fmt::print("{:<16}{:>10.3f}{:>12.3f}{:>12.3f}\n", name, real.*dial, simulated.*dial,
+               published.*dial);
+  };
+  line("recall_small", &DetectorConfig::recall_small);
+  line("recall_medium", &DetectorConfig::recall_medium);
+  line("recall_large", &DetectorConfig::recall_large);
+  line("confusion", &DetectorConfig::confusion);
+  line("false_alarms", &DetectorConfig::false_alarms);
+  line("box_sigma", &DetectorConfig::box_sigma);
+}
+
+/// The largest counts, as "table 12, bed 3".
+template <class Key, class Name>
+std::string most(const std::map<Key, std::size_t>& counts, const Name& name) {
+  std::vector<std::pair<std::size_t, std::string>> all;
+  for (const auto& [key, count] : counts)
+    if (const std::string text = name(key); !text.empty()) all.emplace_back(count, text);
+  std::ranges::stable_sort(all, std::greater<>(), [](const auto& e) { return e.first; });
+  std::string text;
+  for (std::size_t i = 0; i < std::min<std::size_t>(12, all.size()); ++i)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", all[i].second, all[i].first);
+  return text.empty() ? "none" : text;
+}
+
+void print_score(const Judged& judged) {
+  const DetectorScore& s = judged.real;
+  fmt::print("{}, {} of classes that COCO has\n\n", counted(s.images, "image"),
+             counted(s.mean.truths, "object"));
+  fmt::print("{:<16}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}   {:>6}{:>8}\n", "class", "objects", "AP",
+             "AP50", "AP75", "small", "medium", "large", "right", "wrong");
+  const auto line = [](std::string_view name, const AveragePrecision& p, const std::string& more) {
+    fmt::print("{:<16}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}   {}\n", name, p.truths, percent(p.ap),
+               percent(p.ap50), percent(p.ap75), percent(p.small), percent(p.medium),
+               percent(p.large), more);
+  };
+  for (const ClassScore& of : s.classes)
+    line(
+        class_name(of.class_id, "?"), of.precision,
+        fmt::format("{:>5.0f}%{:>7.0f}%",
+                    100.0 * static_cast<double>(of.right) / static_cast<double>(of.objects),
+                    100.0 * static_cast<double>(of.wrong_class) / static_cast<double>(of.objects)));
+  line("mean", s.mean, "");
+  fmt::print("\nconfused: {}\n", most(s.outcomes, [](const Outcome& o) {
+               if (o.truth == kVoid || o.found == kVoid || o.truth == o.found) return std::string();
+               return fmt::format("{} as {}", class_name(o.truth, "?"),
+                                  class_name(o.found, "another of COCO's"));
+             }));
+  fmt::print("of nothing: {}\n", most(s.false_alarms, [](const auto& key) {
+               return fmt::format("{} on {}", class_name(key.first, "another of COCO's"),
+                                  class_name(key.second, "void"));
+             }));
+  fmt::print("badly placed: {}\n", s.badly_placed);
+  fmt::print("labels filled as box: {} % of labeled pixels right, {} % of objects' pixels found\n",
+             percent(s.box.right_share), percent(s.box.found_share));
+  fmt::print("labels filled as foreground: {} % right, {} % found\n",
+             percent(s.foreground.right_share), percent(s.foreground.found_share));
+  print_dials(s.dials, judged.simulated->dials);
+}
+
+nlohmann::ordered_json to_json(const DetectorConfig& dials) {
+  return {{"recall_small", dials.recall_small}, {"recall_medium", dials.recall_medium},
+          {"recall_large", dials.recall_large}, {"confusion", dials.confusion},
+          {"false_alarms", dials.false_alarms}, {"box_sigma", dials.box_sigma}};
+}
+
+nlohmann::ordered_json to_json(const AveragePrecision& p) {
+  const auto value = [](double v) {
+    return std::isnan(v) ? nlohmann::ordered_json() : nlohmann::ordered_json(v);
+  };
+  return {{"truths", p.truths},     {"ap", value(p.ap)},       {"ap50", value(p.ap50)},
+          {"ap75", value(p.ap75)},  {"small", value(p.small)}, {"medium", value(p.medium)},
+          {"large", value(p.large)}};
+}
+
+std::string json_of(const Judged& judged) {
+  const DetectorScore& s = judged.real;
+  nlohmann::ordered_json json = {{"images", s.images}, {"mean", to_json(s.mean)}};
+  for (const ClassScore& of : s.classes) {
+    nlohmann::ordered_json entry = to_json(of.precision);
+    entry["found_right"] = of.right;
+    entry["found_as_another"] = of.wrong_class;
+    json["classes"][std::string(class_name(of.class_id, "?"))] = entry;
+  }
+  json["confusion"] = nlohmann::ordered_json::array();
+  for (const auto& [outcome, count] : s.outcomes)
+    json["confusion"].push_back(
+        {{"truth", class_name(outcome.truth, "nothing")},
+         {"found",
+          outcome.found == kBackground ? "another of COCO's" : class_name(outcome.found, "missed")},
+         {"count", count}});
+  json["badly_placed"] = s.badly_placed;
+  json["dials"] = to_json(s.dials);
+  json["dials_of_simulated"] = to_json(judged.simulated->dials);
+  return json.dump(2) + "\n";
+}
+
+DetectorSpec spec_of(Options& options) {
+  resolve(options.level, Shipped::kLevel);
+  resolve(options.robot, Shipped::kRobot);
+  for (std::string& name : options.scenes) resolve(name, Shipped::kScene);
+  const auto spec = options.detector.spec();
+  if (!spec) throw InputError("no detector is named: --network does");
+  if (spec->network.empty())
+    throw InputError(fmt::format(
+        "{}: boxes of files are not of rendered rooms: a network is scored", spec->boxes.string()));
+  return *spec;
+}
+
+void score(Options options) {
+  const DetectorSpec spec = spec_of(options);
+  std::optional<OutputFolder> folder;
+  if (!options.out.empty())
+    folder.emplace(options.out, "detector score",
+                   std::vector<std::string>{"score.json", "missed.png"});
+  Worst worst;
+  const Judged judged = judge(options, spec, &worst);
+  options.json ? fmt::print("{}", json_of(judged)) : print_score(judged);
+  if (options.out.empty()) return;
+  write_atomically(fs::path(options.out) / "score.json", json_of(judged));
+  write_image(fs::path(options.out) / "missed.png", worst.sheet(open_detector(spec)->names()));
+}
+
+void fit(Options options) {
+  const DetectorSpec spec = spec_of(options);
+  resolve(options.base, Shipped::kLevel);
+  require_writable(options.out, {options.base, options.level, spec.network});
+  SensorConfig level = load_sensor_config(options.base);
+  const Judged judged = judge(options, spec, nullptr);
+  level.labels.detector = judged.real.dials;
+  write_atomically(
+      options.out,
+      fmt::format("# Level `{}` with the dials of the simulated detector as measured of {}\n"
+                  "# ({} of {} at level `{}`): `modelhouse detector fit`.\n{}",
+                  fs::path(options.base).stem().string(), spec.network.filename().string(),
+                  counted(judged.real.images, "image"), counted(names_of(options).size(), "place"),
+                  fs::path(options.level).stem().string(), format_sensor_config(level, false)));
+  print_dials(judged.real.dials, judged.simulated->dials);
+}
+
+void add_common(CLI::App& command, const std::shared_ptr<Options>& options) {
+  options->detector.add_to(command, "--network,--detector");
+  command.add_option("--scenes", options->scenes,
+                     "Scenes (default: generated rooms of every category)");
+  command.add_option("--per-category", options->per_category, "So many rooms of each category")
+      ->check(CLI::Range(1, 1000));
+  command
+      .add_option("--frames", options->frames, "Of each scene, evenly spaced along a scan by hand")
+      ->check(CLI::Range(1, 100000));
+  command.add_option("--level", options->level,
+                     "Sensor level (YAML), or the name of a shipped one");
+  command.add_option("--robot", options->robot,
+                     "Whose camera (YAML), or the name of a shipped robot");
+  command.add_option("--threads", options->threads, "That bake light; changes no figure")
+      ->check(CLI::Range(1, 256));
+}
+
+}  // namespace
+
+void add_detector_score(CLI::App& detector) {
+  auto options = std::make_shared<Options>();
+  CLI::App* s = detector.add_subcommand(
+      "score", "Average precision per class on rendered rooms, and what is taken for what.");
+  add_common(*s, options);
+  s->add_option("--out", options->out, "Folder for score.json and missed.png, what it missed most");
+  s->add_flag("--json", options->json, "Prints JSON");
+  s->footer("Example:\n  modelhouse detector score --network yolox_nano.onnx --out out/score");
+  s->callback([options] { score(*options); });
+
+  auto of_fit = std::make_shared<Options>();
+  CLI::App* f = detector.add_subcommand(
+      "fit",
+      "Writes a sensor level whose simulated detector errs as the real one was measured to.");
+  add_common(*f, of_fit);
+  f->add_option("--base", of_fit->base, "Level whose other settings it keeps");
+  f->add_option("--out", of_fit->out, "Level to write (YAML)")->required();
+  f->footer(
+      "Example:\n  modelhouse detector fit --network yolox_nano.onnx --base pepper "
+      "--out out/pepper_fitted.yaml");
+  f->callback([of_fit] { fit(*of_fit); });
+}
+
+}  // namespace mh::cli
