@@ -2,45 +2,22 @@
 #include "slam/optimize/epnp.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include <opencv2/calib3d.hpp>
 
+#include "slam/optimize/minimal_set.hpp"
+
 namespace mh {
 namespace {
 
 constexpr std::size_t kMinimal = 4;
 
-/// Indices of observations, different from each other.
-std::vector<std::size_t> draw_four(RandomStream stream, int iteration, std::size_t count) {
-  std::vector<std::size_t> drawn;
-  for (std::size_t k = 0; k < kMinimal; ++k) {
-    std::size_t next =
-        stream.below(static_cast<std::uint64_t>(iteration) * kMinimal + k, count - k);
-    std::vector<std::size_t> taken = drawn;
-    std::sort(taken.begin(), taken.end());
-    for (const std::size_t t : taken)
-      if (next >= t) ++next;
-    drawn.push_back(next);
-  }
-  return drawn;
-}
-
 std::optional<SE3> solve_epnp(std::span<const PoseObservation> observations,
                               std::span<const std::size_t> used, const Camera& camera) {
-  const auto rows = static_cast<int>(used.size());
-  cv::Mat points(rows, 3, CV_64F), pixels(rows, 2, CV_64F);
-  for (int row = 0; row < rows; ++row) {
-    const PoseObservation& o = observations[used[static_cast<std::size_t>(row)]];
-    for (int k = 0; k < 3; ++k) points.at<double>(row, k) = o.point_in_world[k];
-    pixels.at<double>(row, 0) = o.u_px;
-    pixels.at<double>(row, 1) = o.v_px;
-  }
-  const cv::Matx33d intrinsics(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0,
-                               1);
+  const auto [points, pixels, intrinsics] = correspondences(observations, used, camera);
   cv::Mat rotation, translation;
   try {
     if (!cv::solvePnP(points, pixels, intrinsics, cv::noArray(), rotation, translation, false,
@@ -49,20 +26,7 @@ std::optional<SE3> solve_epnp(std::span<const PoseObservation> observations,
   } catch (const cv::Exception&) {
     return std::nullopt;  // one unlucky choice is no reason to abort the query
   }
-  const Eigen::Vector3d r(rotation.ptr<double>());
-  const Eigen::Vector3d t(translation.ptr<double>());
-  if (!r.allFinite() || !t.allFinite()) return std::nullopt;
-  return SE3(so3_exp(r), t);
-}
-
-/// As many tries as draw three true observations at once with config.confidence if `needed` of
-/// them all are true.
-int tries(int needed, std::size_t count, const RansacConfig& config) {
-  const double share = std::max(0.5, static_cast<double>(needed) / static_cast<double>(count));
-  if (share >= 1) return 1;
-  const double wanted =
-      std::ceil(std::log(1 - config.confidence) / std::log(1 - share * share * share));
-  return static_cast<int>(std::clamp<double>(wanted, 1, config.max_iterations));
+  return finite_pose(rotation, translation);
 }
 
 }  // namespace
@@ -81,10 +45,11 @@ void for_each_epnp_consensus(std::span<const PoseObservation> observations, cons
     return estimate;
   };
   PoseEstimate best;
-  const int limit = tries(needed, observations.size(), config);
+  const double share = std::max(0.5, static_cast<double>(needed) / count);
+  const int limit = std::max(1, iterations_needed(share, config));
   for (int iteration = 0; iteration < limit; ++iteration) {
-    const auto guess =
-        solve_epnp(observations, draw_four(stream, iteration, observations.size()), camera);
+    const auto guess = solve_epnp(
+        observations, draw_different<kMinimal>(stream, iteration, observations.size()), camera);
     if (!guess) continue;
     PoseEstimate estimate = judged(*guess);
     if (estimate.inlier_count < needed) continue;

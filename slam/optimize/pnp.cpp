@@ -5,27 +5,13 @@
 
 #include <opencv2/calib3d.hpp>
 
+#include "slam/optimize/minimal_set.hpp"
 #include "slam/optimize/pose.hpp"
 
 namespace mh {
 namespace {
 
 using Triple = std::array<std::size_t, 3>;
-
-/// Draws three different indices below count for one iteration.
-Triple draw_triple(RandomStream stream, int iteration, std::size_t count) {
-  const auto base = static_cast<std::uint64_t>(iteration) * 3;
-  Triple triple{};
-  triple[0] = stream.below(base, count);
-  triple[1] = stream.below(base + 1, count - 1);
-  if (triple[1] >= triple[0]) ++triple[1];
-  // The third skips both others, the smaller first.
-  triple[2] = stream.below(base + 2, count - 2);
-  const auto [low, high] = std::minmax(triple[0], triple[1]);
-  if (triple[2] >= low) ++triple[2];
-  if (triple[2] >= high) ++triple[2];
-  return triple;
-}
 
 /// True if the triangle is so thin, in space or in the image, that P3P has no stable solution:
 /// height below a thousandth of its base, or an area of less than one square pixel.
@@ -45,16 +31,7 @@ bool is_degenerate(std::span<const PoseObservation> observations, const Triple& 
 /// Up to four poses that map three points onto their pixels; empty if the solver finds none.
 std::vector<SE3> solve_p3p(std::span<const PoseObservation> observations, const Triple& triple,
                            const Camera& camera) {
-  cv::Mat points(3, 3, CV_64F);
-  cv::Mat pixels(3, 2, CV_64F);
-  for (int row = 0; row < 3; ++row) {
-    const PoseObservation& o = observations[triple[static_cast<std::size_t>(row)]];
-    for (int k = 0; k < 3; ++k) points.at<double>(row, k) = o.point_in_world[k];
-    pixels.at<double>(row, 0) = o.u_px;
-    pixels.at<double>(row, 1) = o.v_px;
-  }
-  const cv::Matx33d intrinsics(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0,
-                               1);
+  const auto [points, pixels, intrinsics] = correspondences(observations, triple, camera);
   std::vector<cv::Mat> rotations;
   std::vector<cv::Mat> translations;
   try {
@@ -64,24 +41,9 @@ std::vector<SE3> solve_p3p(std::span<const PoseObservation> observations, const 
     return {};  // one unlucky triple is no reason to abort the query
   }
   std::vector<SE3> poses;
-  for (std::size_t i = 0; i < rotations.size(); ++i) {
-    const Eigen::Vector3d rotation(rotations[i].ptr<double>());
-    const Eigen::Vector3d translation(translations[i].ptr<double>());
-    if (rotation.allFinite() && translation.allFinite())
-      poses.emplace_back(so3_exp(rotation), translation);
-  }
+  for (std::size_t i = 0; i < rotations.size(); ++i)
+    if (const auto pose = finite_pose(rotations[i], translations[i])) poses.push_back(*pose);
   return poses;
-}
-
-/// Number of iterations after which a triple without outliers was drawn with the given confidence
-/// (Fischler and Bolles 1981), capped at max_iterations.
-int iterations_needed(int inliers, std::size_t count, const RansacConfig& config) {
-  const double share = static_cast<double>(inliers) / static_cast<double>(count);
-  const double miss = 1.0 - share * share * share;
-  if (miss <= 0.0) return 1;
-  if (miss >= 1.0) return config.max_iterations;
-  const double needed = std::ceil(std::log(1.0 - config.confidence) / std::log(miss));
-  return static_cast<int>(std::min<double>(needed, config.max_iterations));
 }
 
 std::vector<PoseObservation> select(std::span<const PoseObservation> observations,
@@ -105,7 +67,7 @@ Consensus best_consensus(std::span<const PoseObservation> observations, const Ca
   std::vector<std::uint8_t> inlier;
   int limit = config.max_iterations;
   for (int iteration = 0; iteration < limit; ++iteration) {
-    const Triple triple = draw_triple(stream, iteration, observations.size());
+    const Triple triple = draw_different<3>(stream, iteration, observations.size());
     if (is_degenerate(observations, triple)) continue;
     for (const SE3& pose : solve_p3p(observations, triple, camera)) {
       const int count = find_inliers(observations, pose, camera, gates, inlier);
@@ -114,7 +76,8 @@ Consensus best_consensus(std::span<const PoseObservation> observations, const Ca
       best.inlier.swap(inlier);
       best.count = count;
     }
-    limit = std::min(limit, iterations_needed(best.count, observations.size(), config));
+    const double share = static_cast<double>(best.count) / static_cast<double>(observations.size());
+    limit = std::min(limit, iterations_needed(share, config));
   }
   return best;
 }
