@@ -182,13 +182,17 @@ cv::Mat read_image(const std::filesystem::path& file, ImageForm form) {
   }
 }
 
-std::optional<Grid2d<Rgb8>> decode_color(std::string_view bytes) {
-  const cv::Mat bgr = decode(bytes);
-  if (bgr.empty() || bgr.type() != CV_8UC3) return std::nullopt;
+Grid2d<Rgb8> color_of(const cv::Mat& bgr) {
   Grid2d<Rgb8> image(bgr.cols, bgr.rows);
   cv::Mat rgb(bgr.rows, bgr.cols, CV_8UC3, image.data());
   cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
   return image;
+}
+
+std::optional<Grid2d<Rgb8>> decode_color(std::string_view bytes) {
+  const cv::Mat bgr = decode(bytes);
+  if (bgr.empty() || bgr.type() != CV_8UC3) return std::nullopt;
+  return color_of(bgr);
 }
 
 std::optional<Grid2d<std::uint16_t>> decode_gray16(std::string_view bytes) {

@@ -49,6 +49,9 @@ cv::Mat decode_image(std::string_view bytes, ImageForm form = ImageForm::kStored
 /// Reads an image file. @throws InputError naming the file.
 cv::Mat read_image(const std::filesystem::path& file, ImageForm form = ImageForm::kStored);
 
+/// OpenCV's blue-green-red image, 8 bits, as color.
+Grid2d<Rgb8> color_of(const cv::Mat& bgr);
+
 /// Decodes an image of three 8-bit channels; nullopt if the bytes are not such an image.
 std::optional<Grid2d<Rgb8>> decode_color(std::string_view bytes);
 /// Decodes an image of one channel, 8 or 16 bits; nullopt if the bytes are not such an image.

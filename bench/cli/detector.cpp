@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
@@ -42,14 +41,6 @@ bool is_image(const fs::path& file) {
   return ending == ".png" || ending == ".jpg" || ending == ".jpeg";
 }
 
-Grid2d<Rgb8> load_color(const fs::path& file) {
-  const cv::Mat bgr = read_image(file, ImageForm::kColor);
-  Grid2d<Rgb8> color(bgr.cols, bgr.rows);
-  cv::Mat rgb(bgr.rows, bgr.cols, CV_8UC3, color.data());
-  cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
-  return color;
-}
-
 /// Image files as they are, or the frames of one recording.
 class Frames {
  public:
@@ -72,7 +63,7 @@ class Frames {
   RgbdFrame frame(std::size_t i) const {
     if (sequence_) return sequence_->frame(i, RandomStream());
     RgbdFrame frame;
-    frame.color = load_color(images_[i]);
+    frame.color = color_of(read_image(images_[i], ImageForm::kColor));
     return frame;
   }
 

@@ -18,10 +18,9 @@
 #include "bench/cli/progress.hpp"
 #include "bench/studies/detector_score.hpp"
 #include "bench/studies/draw_detections.hpp"
+#include "bench/studies/survey.hpp"
 #include "bench/world/cached_detections.hpp"
 #include "bench/world/cached_light.hpp"
-#include "scenes/generate/generate.hpp"
-#include "scenes/generate/grammar.hpp"
 #include "scenes/images/write_image.hpp"
 #include "scenes/load.hpp"
 #include "sim/sensors/config.hpp"
@@ -50,12 +49,7 @@ struct Options {
 constexpr double kLeastScore = 0.01;
 
 std::vector<std::string> names_of(const Options& options) {
-  if (!options.scenes.empty()) return options.scenes;
-  std::vector<std::string> names;
-  for (const Category& category : categories())
-    for (int i = 0; i < std::min(options.per_category, category.count); ++i)
-      names.push_back(to_string({category.name, static_cast<std::uint64_t>(i)}));
-  return names;
+  return options.scenes.empty() ? generated_rooms(options.per_category) : options.scenes;
 }
 
 /// One frame as it was judged.
@@ -111,7 +105,6 @@ struct Moment {
 /// spaced.
 void for_each_moment(const Options& options, const Robot& robot, const SensorConfig& sensors,
                      const std::function<void(const Moment&, std::size_t)>& visit) {
-  constexpr std::size_t kAround = 3;  // poses before and after a moment, which determine its blur
   const std::vector<std::string> names = names_of(options);
   Progress progress("detector");
   std::size_t index = 0;
@@ -123,13 +116,10 @@ void for_each_moment(const Options& options, const Robot& robot, const SensorCon
     const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene);
     const Trajectory scan = travel(scene, robot, "handheld").camera;
     for (std::size_t k = 0; k < options.frames; ++k, ++index) {
-      const std::size_t at = (2 * k + 1) * scan.size() / (2 * options.frames);
-      const std::size_t first = std::clamp(at, kAround, scan.size() - 1 - kAround) - kAround;
-      const auto from = scan.begin() + static_cast<std::ptrdiff_t>(first);
-      const Shutter shutter(renderer, robot.camera, Trajectory(from, from + 2 * kAround + 1),
-                            sensors);
-      visit({sense_moment(shutter, sensors, LabelMode::kNone, kAround, RandomStream(index)),
-             shutter.path()[kAround].world_from_camera},
+      ScanMoment moment = scan_moment(scan, k, options.frames);
+      const Shutter shutter(renderer, robot.camera, std::move(moment.around), sensors);
+      visit({sense_moment(shutter, sensors, LabelMode::kNone, moment.at, RandomStream(index)),
+             shutter.path()[moment.at].world_from_camera},
             index);
     }
     progress.share(static_cast<double>(n + 1) / static_cast<double>(names.size()));

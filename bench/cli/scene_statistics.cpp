@@ -12,8 +12,6 @@
 #include "bench/cli/scene_option.hpp"
 #include "bench/studies/survey.hpp"
 #include "bench/world/cached_light.hpp"
-#include "scenes/generate/generate.hpp"
-#include "scenes/generate/grammar.hpp"
 #include "scenes/image_file.hpp"
 #include "scenes/load.hpp"
 #include "scenes/recorded/tum_folder.hpp"
@@ -39,22 +37,13 @@ struct Options {
 };
 
 std::vector<std::string> names_of(const Options& options) {
-  if (!options.scenes.empty()) return options.scenes;
-  std::vector<std::string> names;
-  for (const Category& category : categories()) {
-    const int count =
-        options.per_category > 0 ? std::min(options.per_category, category.count) : category.count;
-    for (int i = 0; i < count; ++i)
-      names.push_back(to_string({category.name, static_cast<std::uint64_t>(i)}));
-  }
-  return names;
+  return options.scenes.empty() ? generated_rooms(options.per_category) : options.scenes;
 }
 
 /// Measures moments of a hand-held scan of the scene, evenly spaced, as the level's sensors see
 /// them.
 MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const Options& options,
                             const Robot& robot, const SensorConfig& sensors) {
-  constexpr std::size_t kAround = 3;  // poses before and after a moment, which determine its blur
   std::vector<std::string> warnings;
   Scene scene = load_scene(name, &warnings, options.frame.frame());
   light_from_cache(scene, options.threads, Cache(options.cache));
@@ -63,12 +52,10 @@ MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const O
   const Trajectory scan = travel(scene, robot, "handheld").camera;
   MeasuredPlace place{.name = name, .frames = {}};
   for (std::size_t k = 0; k < frames; ++k) {
-    const std::size_t at = (2 * k + 1) * scan.size() / (2 * frames);
-    const std::size_t first = std::clamp(at, kAround, scan.size() - 1 - kAround) - kAround;
-    const auto from = scan.begin() + static_cast<std::ptrdiff_t>(first);
-    const SimulatedSequence moment(renderer, robot.camera, Trajectory(from, from + 2 * kAround + 1),
-                                   sensors, LabelMode::kNone);
-    place.frames.push_back(measure_image(moment.frame(kAround, RandomStream(k)).color));
+    ScanMoment moment = scan_moment(scan, k, frames);
+    const SimulatedSequence sequence(renderer, robot.camera, std::move(moment.around), sensors,
+                                     LabelMode::kNone);
+    place.frames.push_back(measure_image(sequence.frame(moment.at, RandomStream(k)).color));
   }
   return place;
 }
@@ -81,10 +68,6 @@ MeasuredPlace measure_recording(const fs::path& folder) {
   return place;
 }
 
-std::string number(double v) {
-  return std::abs(v) >= 1000 ? fmt::format("{:.0f}", v) : fmt::format("{:.3g}", v);
-}
-
 void print_table(const std::vector<MeasuredPlace>& places, const std::vector<RealFrames>& real,
                  const std::optional<MeasuredPlace>& recording) {
   std::size_t frames = 0;
@@ -95,13 +78,13 @@ void print_table(const std::vector<MeasuredPlace>& places, const std::vector<Rea
     fmt::print("\n{}\n", kImageQuantities[q].name);
     const auto line = [](const std::string& name, const std::array<double, 5>& p,
                          const std::string& more) {
-      fmt::print("  {:<14}{:>8}{:>8}{:>8}{:>8}{:>8}   {}\n", name, number(p[0]), number(p[1]),
-                 number(p[2]), number(p[3]), number(p[4]), more);
+      fmt::print("  {:<14}{:>8}{:>8}{:>8}{:>8}{:>8}   {}\n", name, shown(p[0]), shown(p[1]),
+                 shown(p[2]), shown(p[3]), shown(p[4]), more);
     };
     const RealismRow row = compare(places, real.front(), q);
     line("generated", row.ours,
          fmt::format("median of places {} {} the middle half of {}; spread {:.2f} of it",
-                     number(row.median_of_places), row.in_range ? "within" : "OUTSIDE",
+                     shown(row.median_of_places), row.in_range ? "within" : "OUTSIDE",
                      real.front().name, row.spread_ratio));
     for (const RealFrames& set : real) line(set.name, set.percentiles[q], "");
     if (recording) {
@@ -113,7 +96,7 @@ void print_table(const std::vector<MeasuredPlace>& places, const std::vector<Rea
     if (row.outside.empty()) continue;
     std::vector<std::string> outside;
     for (const std::size_t i : row.outside)
-      outside.push_back(fmt::format("{} ({})", places[i].name, number(places[i].at(q, 0.5))));
+      outside.push_back(fmt::format("{} ({})", places[i].name, shown(places[i].at(q, 0.5))));
     fmt::print("  {} whose median leaves {}'s 5 to 95 %: {}\n", counted(outside.size(), "place"),
                real.front().name, fmt::join(outside, ", "));
   }

@@ -15,6 +15,7 @@
 #include "bench/drawing/contact_sheet.hpp"
 #include "bench/inputs/recorded_camera.hpp"
 #include "bench/plan/shipped.hpp"
+#include "bench/report/figures_json.hpp"
 #include "bench/results/summary.hpp"
 #include "bench/run/run_one.hpp"
 #include "bench/studies/twin.hpp"
@@ -101,28 +102,12 @@ nlohmann::ordered_json as_json(const KeypointAgreement& a) {
           {"mismatched", a.mismatched}};
 }
 
-template <class T>
-nlohmann::ordered_json optional_json(const std::optional<T>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
-}
-
-nlohmann::ordered_json as_json(const QuerySummary& q) {
-  return {{"queries", q.queries},
-          {"success", q.success},
-          {"correct", optional_json(q.correct)},
-          {"distance_median_m", optional_json(q.distance_median_m)}};
-}
-
 nlohmann::ordered_json as_json(const Mapped& m) {
-  return {{"completeness", m.trajectory.completeness},
-          {"ate_rmse_m", optional_json(m.trajectory.ate_rmse_m)},
-          {"restarts", m.mapping.restarts},
-          {"own_queries", as_json(m.own)},
-          {"other_queries", as_json(m.other)}};
-}
-
-std::string number(double v) {
-  return std::abs(v) >= 1000 ? fmt::format("{:.0f}", v) : fmt::format("{:.3g}", v);
+  nlohmann::ordered_json json = figures_json(figures_of(m.trajectory));
+  json["restarts"] = m.mapping.restarts;
+  json["own_queries"] = figures_json(figures_of(m.own));
+  json["other_queries"] = figures_json(figures_of(m.other));
+  return json;
 }
 
 std::string percent(const std::optional<double>& share) {
@@ -134,7 +119,7 @@ void print(const std::vector<TwinFrame>& frames, const std::vector<TwinRow>& row
   fmt::print("{} compared; medians over frames\n{:<48}{:>12}{:>12}\n",
              counted(frames.size(), "frame"), "", "recorded", "rendered");
   for (const TwinRow& row : rows)
-    fmt::print("{:<48}{:>12}{:>12}\n", row.name, number(row.recorded), number(row.rendered));
+    fmt::print("{:<48}{:>12}{:>12}\n", row.name, shown(row.recorded), shown(row.rendered));
   fmt::print(
       "(of the last three, \"rendered\" is the bound: the same rendering with other noise)\n");
   std::vector<double> differences;
@@ -142,7 +127,7 @@ void print(const std::vector<TwinFrame>& frames, const std::vector<TwinRow>& row
     if (frame.depth_difference_m) differences.push_back(*frame.depth_difference_m);
   if (!differences.empty())
     fmt::print("{:<48}{:>12}\n", "depth, rendered minus recorded, median of medians (m)",
-               number(percentile(differences, 0.5)));
+               shown(percentile(differences, 0.5)));
   if (!maps) return;
   fmt::print("\n{:<20}{:>10}{:>10}{:>10}{:>24}{:>24}\n", "map of", "complete", "ATE m", "restarts",
              "recorded queries", "rendered queries");
@@ -224,14 +209,16 @@ void run(Options options) {
   for (const TwinRow& row : rows)
     json["medians"][row.key] = {{"recorded", row.recorded}, {"rendered", row.rendered}};
   for (const TwinFrame& f : frames)
-    json["frames"].push_back({{"stamp_ns", f.stamp_ns},
-                              {"recorded", f.recorded},
-                              {"rendered", f.rendered},
-                              {"recorded_depth_share", f.recorded_depth_share},
-                              {"rendered_depth_share", f.rendered_depth_share},
-                              {"depth_difference_m", optional_json(f.depth_difference_m)},
-                              {"across", as_json(f.across)},
-                              {"noise", as_json(f.noise)}});
+    json["frames"].push_back(
+        {{"stamp_ns", f.stamp_ns},
+         {"recorded", f.recorded},
+         {"rendered", f.rendered},
+         {"recorded_depth_share", f.recorded_depth_share},
+         {"rendered_depth_share", f.rendered_depth_share},
+         {"depth_difference_m", f.depth_difference_m ? nlohmann::ordered_json(*f.depth_difference_m)
+                                                     : nlohmann::ordered_json()},
+         {"across", as_json(f.across)},
+         {"noise", as_json(f.noise)}});
   if (maps) json["map_of_recorded"] = as_json(maps->first);
   if (maps) json["map_of_rendered"] = as_json(maps->second);
   write_atomically(fs::path(options.out) / "twin.json", json.dump(2) + "\n");

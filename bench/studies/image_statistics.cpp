@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -127,6 +128,11 @@ ImageStatistics measure_image(const cv::Mat& image) {
           blank_share(gradient),
           spectrum_slope(smooth),
           deviation[0] * deviation[0]};
+}
+
+std::string shown(double quantity) {
+  return std::abs(quantity) >= 1000 ? fmt::format("{:.0f}", quantity)
+                                    : fmt::format("{:.3g}", quantity);
 }
 
 }  // namespace mh

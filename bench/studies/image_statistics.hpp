@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -42,6 +43,9 @@ inline constexpr std::array<ImageQuantity, kImageQuantityCount> kImageQuantities
 /// @param gray 8 bits, one channel, not empty
 ImageStatistics measure_image(const cv::Mat& gray);
 ImageStatistics measure_image(const Grid2d<Rgb8>& color);
+
+/// A quantity as tables show it: three digits, whole from 1000 on.
+std::string shown(double quantity);
 
 /// The value below which that share of a list falls, interpolated between neighbors; NaN if empty.
 double percentile(std::vector<double> values, double share);

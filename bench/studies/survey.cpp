@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/studies/survey.hpp"
 
+#include <algorithm>
+
+#include "scenes/generate/generate.hpp"
+#include "scenes/generate/grammar.hpp"
 #include "slam/core/yaml.hpp"
 
 namespace mh {
@@ -47,6 +51,24 @@ RealismRow compare(const std::vector<MeasuredPlace>& places, const RealFrames& r
   row.in_range = row.median_of_places >= theirs[1] && row.median_of_places <= theirs[3];
   row.spread_ratio = (row.ours[4] - row.ours[0]) / (theirs[4] - theirs[0]);
   return row;
+}
+
+std::vector<std::string> generated_rooms(int per_category) {
+  std::vector<std::string> names;
+  for (const Category& category : categories()) {
+    const int count = per_category > 0 ? std::min(per_category, category.count) : category.count;
+    for (int i = 0; i < count; ++i)
+      names.push_back(to_string({category.name, static_cast<std::uint64_t>(i)}));
+  }
+  return names;
+}
+
+ScanMoment scan_moment(const Trajectory& scan, std::size_t k, std::size_t count) {
+  constexpr std::size_t kAround = 3;
+  const std::size_t at = (2 * k + 1) * scan.size() / (2 * count);
+  const std::size_t first = std::clamp(at, kAround, scan.size() - 1 - kAround) - kAround;
+  const auto from = scan.begin() + static_cast<std::ptrdiff_t>(first);
+  return {Trajectory(from, from + 2 * kAround + 1), kAround};
 }
 
 }  // namespace mh

@@ -7,8 +7,22 @@
 #include <vector>
 
 #include "bench/studies/image_statistics.hpp"
+#include "slam/core/trajectory.hpp"
 
 namespace mh {
+
+/// The names of the first environments of each category.
+/// @param per_category  at most so many of each; 0: all
+std::vector<std::string> generated_rooms(int per_category);
+
+/// One of several moments spread evenly over a scan, with the poses before and after it that
+/// determine its blur.
+struct ScanMoment {
+  Trajectory around;
+  std::size_t at = 0;  ///< which of them is the moment
+};
+/// @param k  of `count` moments, from 0
+ScanMoment scan_moment(const Trajectory& scan, std::size_t k, std::size_t count);
 
 /// The frames of one environment, or of one recording.
 struct MeasuredPlace {
