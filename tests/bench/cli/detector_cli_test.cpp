@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// Real detectors as a user meets them, with made networks on a small textured room.
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "scenes/recorded/tum_folder.hpp"
+#include "sim/sensors/config.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/temporary_folder.hpp"
+#include "tests/slam/detect/made_networks.hpp"
+#include "tests/slam/pipeline/box_room_slam.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+using testing_support::BoxRoom;
+
+class DetectorCommands : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<TemporaryFolder>(fs::temp_directory_path());
+    TumWriter writer(path("room"), BoxRoom::camera());
+    for (int i = 0; i < kFrames; ++i) writer.add(testing_support::box_room_frame(i));
+    writer.finish();
+    testing_support::box_room_vocabulary()->save(path("words.mhvoc"));
+    // Its boxes are chairs wherever a cell's center is red enough.
+    write_atomically(
+        path("chairs.onnx"),
+        test::onnx_detection(320, 256, {.box = {0.5F, 0.5F, 1, 1}, .classes = {1, 0.1F}}));
+    write_atomically(path("two.names"), "chair\ntable\n");
+    write_atomically(path("two.yaml"), "classes: two.names\nconfidence: 0.5\n");
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  int run(const std::string& arguments) {
+    const int status = std::system((std::string(MH_EXECUTABLE) + " " + arguments + " >" +
+                                    path("stdout") + " 2>" + path("stderr"))
+                                       .c_str());
+    out_ = read_file(path("stdout"));
+    err_ = read_file(path("stderr"));
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  void expect_refused(const std::string& arguments, const std::string& part) {
+    EXPECT_EQ(run(arguments), 2) << err_;
+    EXPECT_NE(err_.find(part), std::string::npos) << err_;
+    EXPECT_EQ(err_.find('\n'), err_.size() - 1) << err_;
+  }
+  static std::string path(const std::string& name) { return (folder_->path() / name).string(); }
+  static std::string network() {
+    return "--detector " + path("chairs.onnx") + " --detector-settings " + path("two.yaml");
+  }
+  /// Runs `slam` on the room. @returns its trajectory and map
+  std::string slam(const std::string& out, const std::string& more) {
+    EXPECT_EQ(run("slam " + path("room") + " --vocabulary " + path("words.mhvoc") + " --out " +
+                  path(out) + " --save-map " + path(out + ".mhmap") + " " + more),
+              0)
+        << err_;
+    return read_file(path(out + "/estimate.tum")) + read_file(path(out + ".mhmap"));
+  }
+
+  static constexpr int kFrames = 30;
+  static inline std::unique_ptr<TemporaryFolder> folder_;
+  std::string out_, err_;
+};
+
+TEST_F(DetectorCommands, FoundBoxesServeAsAFile) {
+  ASSERT_EQ(
+      run("detector run " + path("room") + " " + network() + " --labels --out " + path("boxes")), 0)
+      << err_;
+  EXPECT_NE(out_.find("yolox, 2 classes, input 320 x 256\n30 images, "), out_.npos) << out_;
+  EXPECT_NE(out_.find("  chair\n"), out_.npos) << out_;
+  const auto found = nlohmann::json::parse(read_file(path("boxes/detections.json")));
+  ASSERT_GT(found.size(), 30U);
+  for (const auto& box : found) {
+    EXPECT_EQ(box["category_id"], 1);
+    EXPECT_GE(box["score"], 0.5);
+  }
+  for (int i = 0; i < kFrames; ++i)
+    EXPECT_TRUE(fs::exists(path(fmt::format("boxes/{:06}.png", i)))) << i;
+
+  const std::string own = slam("own", ""), by_network = slam("network", network());
+  EXPECT_NE(own, by_network) << "labels leave no trace in the map";
+  EXPECT_EQ(slam("again", network()), by_network);
+  const std::string cached = network() + " --detector-cache " + path("cache");
+  EXPECT_EQ(slam("cached", cached), by_network);
+  EXPECT_FALSE(fs::is_empty(path("cache")));
+  EXPECT_EQ(slam("from_cache", cached), by_network);
+  // The file knows the best class of a box alone, and so must the network that it is compared with.
+  write_atomically(path("sure.onnx"), test::onnx_detection(320, 256, {.box = {0.5F, 0.5F, 1, 1}}));
+  const std::string sure =
+      "--detector " + path("sure.onnx") + " --detector-settings " + path("two.yaml");
+  ASSERT_EQ(run("detector run " + path("room") + " " + sure + " --out " + path("sure")), 0) << err_;
+  EXPECT_EQ(slam("by_file", "--detector " + path("sure/detections.json") + " --detector-settings " +
+                                path("two.yaml")),
+            slam("by_network", sure));
+}
+
+TEST_F(DetectorCommands, RenderedFramesCarryItsLabels) {
+  const std::string render =
+      "render generated:bathroom:0 --motion handheld:0 --level ideal --frames 2 --out ";
+  ASSERT_EQ(run(render + path("exact")), 0) << err_;
+  ASSERT_EQ(run(render + path("detected") + " " + network()), 0) << err_;
+  EXPECT_EQ(read_file(path("exact/rgb.txt")), read_file(path("detected/rgb.txt")));
+  const std::string label = list_folder(path("exact/label"), "*.png").front();
+  EXPECT_NE(read_file(path("exact/label/" + label)), read_file(path("detected/label/" + label)));
+}
+
+TEST_F(DetectorCommands, ScoreAndFitAgree) {
+  const std::string rooms = network() + " --scenes generated:office:0 --frames 2 --level ideal";
+  ASSERT_EQ(run("detector score " + rooms + " --json --out " + path("score")), 0) << err_;
+  EXPECT_EQ(out_, read_file(path("score/score.json")));
+  EXPECT_TRUE(fs::exists(path("score/missed.png")));
+  const auto score = nlohmann::json::parse(out_);
+  EXPECT_EQ(score["images"], 2);
+  EXPECT_GT(score["classes"]["chair"]["truths"], 0);
+  EXPECT_GT(score["dials"]["false_alarms"], 0) << "chairs where it is red";
+  ASSERT_EQ(run("detector fit " + rooms + " --base ideal --out " + path("fitted.yaml")), 0) << err_;
+  const DetectorConfig dials = load_sensor_config(path("fitted.yaml")).labels.detector;
+  EXPECT_NEAR(dials.false_alarms, score["dials"]["false_alarms"], 1e-6);
+  EXPECT_NEAR(dials.recall_large, score["dials"]["recall_large"], 1e-6);
+}
+
+TEST_F(DetectorCommands, RefuseInOneLine) {
+  const std::string to = " --out " + path("refused");
+  expect_refused("detector run " + path("room") + to, "no detector is named");
+  expect_refused("detector run " + path("room") + " --network " + path("two.names") + to,
+                 "two.names");
+  expect_refused("detector run " + path("room") + " --network " + path("chairs.onnx") + to,
+                 "has 2 classes, not COCO's 80");
+  write_atomically(path("far.csv"), "1,-1,10,10,20,20,nan,1\n");
+  expect_refused("slam " + path("room") + " --detector " + path("far.csv") + to, "far.csv:1: ");
+  write_atomically(path("one.csv"), "1,-1,10,10,20,20,0.9,1\n");
+  expect_refused("detector score --network " + path("one.csv") + to, "a network is scored");
+  EXPECT_FALSE(fs::exists(path("refused")));
+}
+
+}  // namespace
+}  // namespace mh
