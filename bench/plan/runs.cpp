@@ -5,12 +5,14 @@
 
 #include <fmt/format.h>
 
+#include "slam/config/by_name.hpp"
 #include "slam/config/slam.hpp"
 
 namespace mh {
 
 SlamConfig settings_of(const SystemSpec& system, const SlamConfig& settings) {
   SlamConfig seen = system.takes_settings() ? settings : SlamConfig{};
+  for (const auto& [name, value] : system.settings) read_setting(seen, name, value);
   if (!system.weighs_labels()) seen.semantics = seen.semantics.neutralized();
   return seen;
 }

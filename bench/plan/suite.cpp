@@ -40,7 +40,7 @@ std::vector<SystemPair> read_compare(YamlReader& yaml, const std::vector<SystemS
   const auto node = yaml.find("compare");
   if (!node) {
     const auto own = [&](SystemKind kind) {
-      return static_cast<std::size_t>(std::ranges::find(systems, kind, &SystemSpec::kind) -
+      return static_cast<std::size_t>(std::ranges::find(systems, name(kind), &SystemSpec::name) -
                                       systems.begin());
     };
     const SystemPair pair{own(SystemKind::kSemantic), own(SystemKind::kPlain)};

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include "bench/plan/names.hpp"
+#include "slam/config/by_name.hpp"
 #include "slam/core/error.hpp"
+#include "slam/pipeline/settings.hpp"
 
 namespace mh {
 namespace {
@@ -38,6 +40,23 @@ void read_library(YamlReader& node, OutsideProgram& program, const SuitePaths& p
   }
 }
 
+/// Reads one of ours under another name.
+void read_variant(YamlReader& node, SystemSpec& spec) {
+  spec.kind = one_of(node.at("system"), kOurs);
+  YamlReader slam = node.at("slam");
+  read_slam_config(slam);  // checks the names and values
+  slam.finish();
+  for (auto& [section, keys] : slam.entries()) {
+    if (section == "base")
+      spec.settings.emplace_back("relocalize.acceptance", keys);
+    else
+      for (const auto& [key, value] : keys.entries())
+        spec.settings.emplace_back(section + "." + key, value);
+  }
+  if (spec.settings.empty()) slam.fail("sets nothing: it would be '" + node.string("system") + "'");
+  node.finish();
+}
+
 }  // namespace
 
 std::string_view name(SystemKind kind) {
@@ -54,11 +73,15 @@ SystemSpec read_system(YamlReader node, const SuitePaths& paths) {
     spec.name = name(spec.kind);
     return spec;
   }
-  spec.kind = SystemKind::kOutside;
   spec.name = node.string("name");
   check_folder_name(node.at("name"), spec.name);
   if (value_of(spec.name, kOurs))
     node.at("name").fail("'" + spec.name + "' is one of Modelhouse's own systems");
+  if (node.has("system")) {
+    read_variant(node, spec);
+    return spec;
+  }
+  spec.kind = SystemKind::kOutside;
   OutsideProgram& program = spec.outside;
   program.name = spec.name;
   program.folder = paths.folder.empty() ? "." : paths.folder;

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "bench/plan/environment.hpp"
 #include "bench/plan/outside_program.hpp"
@@ -22,6 +24,9 @@ struct SystemSpec {
   SystemKind kind = SystemKind::kSemantic;
   std::string name = "semantic";
   OutsideProgram outside;  ///< only for an outside system
+  /// Settings of its own, by full name (slam/config/by_name.hpp), in place of the suite's: only of
+  /// ours under another name.
+  std::vector<std::pair<std::string, YamlReader>> settings = {};
 
   // Its capabilities; no other code checks its kind.
   bool is_outside() const { return kind == SystemKind::kOutside; }
@@ -37,7 +42,8 @@ struct SystemSpec {
   bool weighs_labels() const { return takes_settings() && sees_labels(); }
 };
 
-/// Reads `semantic`, `plain`, or a mapping {name, command, protocol: trajectory | conversation}
+/// Reads `semantic`, `plain`, one of these under another name with settings of its own, {name,
+/// system: plain, slam: {...}}, or a mapping {name, command, protocol: trajectory | conversation}
 /// with `run_limit_s`, `answer_limit_s`, `memory_limit_mb`, `disk_limit_mb` to override defaults,
 /// and `inputs`, a list of files. The command runs in the suite's folder. Or a mapping {name,
 /// library} with `settings`, a file, and `inputs`.

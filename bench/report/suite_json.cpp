@@ -56,7 +56,12 @@ Json environment_json(const Suite& suite, const Environment& e) {
 }
 
 Json system_json(const SystemSpec& system) {
-  if (!system.is_outside()) return system.name;
+  if (!system.is_outside() && system.settings.empty()) return system.name;
+  if (!system.is_outside()) {
+    Json slam = Json::object();
+    for (const auto& [setting, value] : system.settings) slam[setting] = value.as_string();
+    return {{"name", system.name}, {"system", name(system.kind)}, {"slam", slam}};
+  }
   const OutsideProgram& p = system.outside;
   if (p.mode == OutsideMode::kLibrary)
     return {{"name", system.name},

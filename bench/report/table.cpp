@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "bench/plan/parameters.hpp"
+#include "bench/plan/runs.hpp"
 #include "bench/report/place_table.hpp"
 #include "bench/report/scenes_table.hpp"
 #include "bench/report/sweep_table.hpp"
@@ -39,17 +41,31 @@ std::string recordings_text(const Suite& suite, std::span<const RunResult> runs)
   return text;
 }
 
-/// Whose rules relocalization follows, where they are not ours.
+/// Whose rules relocalization follows, where they are not ours, and the systems with settings of
+/// their own.
 std::string base_text(const Suite& suite) {
   const RelocalizeConfig& relocalize = suite.slam->relocalize;
+  bool as_released = relocalize.neighbor_scores == NeighborScores::kAsReleased;
+  std::string variants;
+  for (const SystemSpec& system : suite.systems) {
+    if (system.settings.empty()) continue;
+    const SlamConfig own = settings_of(system, *suite.slam);
+    as_released |= own.relocalize.neighbor_scores == NeighborScores::kAsReleased;
+    std::vector<std::string> changes;
+    for (const auto& [setting, value] : system.settings)
+      changes.push_back(fmt::format("{} {}", shown_name(setting), shown_value(own, setting)));
+    variants +=
+        fmt::format("{}: {}, {}\n", system.name, name(system.kind), fmt::join(changes, ", "));
+  }
   return fmt::format(
-      "{}{}",
+      "{}{}{}{}",
       relocalize.acceptance == Acceptance::kOrbSlam2
           ? "\nbase: orb_slam2: poses of relocalization are accepted as ORB-SLAM2 accepts them\n"
           : "",
-      relocalize.neighbor_scores == NeighborScores::kAsReleased
-          ? "\nneighbor scores as ORB-SLAM2 released them: answers depend on the order of queries\n"
-          : "");
+      as_released ? "\nneighbor scores as ORB-SLAM2 released them: answers depend on the order of "
+                    "queries\n"
+                  : "",
+      variants.empty() ? "" : "\n", variants);
 }
 
 /// Why runs are missing from the table above.

@@ -23,11 +23,14 @@ constexpr std::array<std::pair<std::string_view, Acceptance>, 2> setting_words(A
 /// alpha of the most.
 enum class NeighborScores {
   kFresh,      ///< with this query
+  kCleared,    ///< 0: ORB-SLAM2's mRelocScore if it were cleared before each query
   kAsReleased  ///< what an earlier query left, or 0: ORB-SLAM2's mRelocScore as released. Answers
                ///< then depend on the order of the queries.
 };
-constexpr std::array<std::pair<std::string_view, NeighborScores>, 2> setting_words(NeighborScores) {
-  return {{{"fresh", NeighborScores::kFresh}, {"as_released", NeighborScores::kAsReleased}}};
+constexpr std::array<std::pair<std::string_view, NeighborScores>, 3> setting_words(NeighborScores) {
+  return {{{"fresh", NeighborScores::kFresh},
+           {"cleared", NeighborScores::kCleared},
+           {"as_released", NeighborScores::kAsReleased}}};
 }
 
 struct RelocalizeConfig {
@@ -53,7 +56,8 @@ void fields(C& c, Visit& v) {
   auto& [acceptance, neighbor_scores, min_word_matches, min_inliers, search_radius_px,
          disparity_sigma_px, ransac] = c;
   v("acceptance", acceptance, {}, "of a candidate's pose: ours or orb_slam2");
-  v("neighbor_scores", neighbor_scores, {}, "in equation 5: fresh or as_released (by ORB-SLAM2)");
+  v("neighbor_scores", neighbor_scores, {},
+    "in equation 5: fresh, cleared or as_released (by ORB-SLAM2)");
   v("min_word_matches", min_word_matches, setting::kPoints, "with a candidate keyframe");
   v("min_inliers", min_inliers, setting::kPoints, "to accept a pose");
   v("search_radius_px", search_radius_px, setting::kRadius_px,

@@ -105,9 +105,12 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
 RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,
                                 AttemptMemo* memo, ReleasedScores* released) {
   const SlamConfig& config = context.config;
-  const auto selection = select_keyframes(
-      context.map, query.words.vector, config.semantics,
-      config.relocalize.neighbor_scores == NeighborScores::kAsReleased ? released : nullptr);
+  const NeighborScores neighbors = config.relocalize.neighbor_scores;
+  ReleasedScores cleared;
+  if (neighbors != NeighborScores::kAsReleased)
+    released = neighbors == NeighborScores::kCleared ? &cleared : nullptr;
+  const auto selection =
+      select_keyframes(context.map, query.words.vector, config.semantics, released);
   std::vector<KeyframeId> candidates;
   for (const auto& candidate : selection.candidates) candidates.push_back(candidate.keyframe);
   Camera lenient = context.camera;

@@ -541,6 +541,54 @@ TEST_F(SuiteFile, NamesALibraryAndItsRunIsNamedByWhatItsFilesHold) {
   expect_refused("command: slam, protocol: library", "'library' is not one of");
 }
 
+TEST_F(SuiteFile, OneOfOursMayHaveSettingsOfItsOwn) {
+  const std::string content = read_file(load("slam: {features: {count: 500}}\n").file);
+  const auto suite = [&](const std::string& system) {
+    std::string text = content;
+    const std::string systems = "systems: [semantic, plain]";
+    text.replace(text.find(systems), systems.size(), "systems: [semantic, plain, " + system + "]");
+    return parse_suite(text, folder_ / "suite.yaml");
+  };
+  const Suite read = suite(
+      "{name: released, system: plain, slam: {base: orb_slam2, relocalize: {neighbor_scores: "
+      "as_released}, semantics: {alpha: 0.7}}}");
+  const SystemSpec& released = read.systems.back();
+  EXPECT_EQ(released.kind, SystemKind::kPlain);
+  EXPECT_EQ(read.compare, (std::vector<SystemPair>{{0, 1}}));
+  const RunSpec run = expand(read).back();
+  EXPECT_EQ(run.name, "released-pepper-0");
+  EXPECT_EQ(run.slam->relocalize.neighbor_scores, NeighborScores::kAsReleased);
+  EXPECT_EQ(run.slam->relocalize.acceptance, Acceptance::kOrbSlam2);
+  EXPECT_EQ(run.slam->semantics.alpha, 0.7);
+  EXPECT_EQ(run.slam->semantics.gamma, 0) << "plain stays plain";
+  EXPECT_EQ(run.slam->features.count, 500) << "what it does not set is the suite's";
+  EXPECT_EQ(to_json(run_spec_from_json(to_json(run))), to_json(run));
+  EXPECT_EQ(
+      expand(suite("{name: same, system: plain, slam: {features: {count: 500}}}")).back().slam,
+      expand(read).at(2).slam);
+
+  const auto refused = [&](const std::string& system) {
+    try {
+      suite(system);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  for (const auto& [system, part] : {std::pair{"{name: a, system: plane, slam: {}}", "'plane'"},
+                                     {"{name: plain, system: plain, slam: {}}", "Modelhouse's own"},
+                                     {"{name: a, system: plain}", "slam"},
+                                     {"{name: a, system: plain, slam: {}}", "sets nothing"},
+                                     {"{name: a, system: plain, slam: {semantics: {xi: 0.5}}}",
+                                      "slam.semantics.xi: 0.5 is outside"},
+                                     {"{name: a, system: plain, slam: {semantics: {x: 1}}}",
+                                      "unknown key 'systems[2].slam.semantics.x'"},
+                                     {"{name: a, system: plain, slam: {words: 1}}", "unknown key"},
+                                     {"{name: a, system: plain, command: b, slam: {base: ours}}",
+                                      "unknown key 'systems[2].command'"}})
+    EXPECT_NE(refused(system).find(part), std::string::npos) << refused(system);
+}
+
 TEST(FilesOf, TheFirstWordIsLookedForOnThePath) {
   const auto files = files_of({.name = "vo", .command = "sh -c true"});
   ASSERT_EQ(files.size(), 1u);

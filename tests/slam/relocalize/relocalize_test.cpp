@@ -79,8 +79,9 @@ TEST(Relocalize, AnEmptyMapHasNoCandidate) {
 
 // ORB-SLAM2 as released adds what an earlier query left with a neighbor (mRelocScore) where the
 // neighbor shares words but not enough of them: its answers depend on the order of the queries.
-TEST(ReleasedScores, OfNeighborsAreThoseOfEarlierQueries) {
-  constexpr std::uint32_t kShared = 20;  // landmarks: the two are neighbors
+/// A keyframe with words 1 to 4 and its neighbor with 4 to 7.
+Map map_of_neighbors() {
+  constexpr std::uint32_t kShared = 20;  // landmarks
   Map map;
   for (const auto& words : {std::vector<std::uint32_t>{1, 2, 3, 4}, {4, 5, 6, 7}}) {
     Keyframe keyframe;
@@ -92,6 +93,11 @@ TEST(ReleasedScores, OfNeighborsAreThoseOfEarlierQueries) {
   for (std::uint32_t i = 0; i < kShared; ++i)
     map.add_observation(map.add_landmark({0, 0, 2}, KeyframeId{0}, i), KeyframeId{1}, i);
   map.update_covisibility(KeyframeId{0});
+  return map;
+}
+
+TEST(ReleasedScores, OfNeighborsAreThoseOfEarlierQueries) {
+  const Map map = map_of_neighbors();
   const AugmentedVector near_first = vector_of({}, {1, 2, 3, 4}),
                         near_second = vector_of({}, {5, 6, 7, 9});
   const SemanticConfig config{.alpha = 0.8, .beta = 0.0, .overlap = Overlap::kWords};
@@ -106,6 +112,30 @@ TEST(ReleasedScores, OfNeighborsAreThoseOfEarlierQueries) {
   select_keyframes(map, near_second, config, &released);
   EXPECT_DOUBLE_EQ(score(&released), 1.75) << "the other query's similarity was not used";
   EXPECT_DOUBLE_EQ(score(nullptr), 1.25);
+}
+
+TEST(ReleasedScores, ThatAreClearedAreThoseOfAFirstQuery) {
+  Map map = map_of_neighbors();
+  Keyframe other;  // similarity 0.8: more than beta of 1, not of 1.25
+  other.words.vector = vector_of({}, {1, 2, 3, 4, 8});
+  map.add(std::move(other));
+  const Features features;
+  const FeatureGrid grid(features.keypoints, Camera{});
+  WordIndex words;
+  words.vector = vector_of({}, {1, 2, 3, 4});
+  MatchCounts counts{};
+  const auto candidates = [&](NeighborScores neighbors) {
+    SlamConfig config;
+    config.semantics = {.alpha = 0.8, .beta = 0.75, .overlap = Overlap::kWords};
+    config.relocalize.neighbor_scores = neighbors;
+    ReleasedScores released;
+    return relocalize({features, grid, words}, {Camera{}, config, map, counts}, RandomStream(1),
+                      nullptr, &released)
+        .candidates.final;
+  };
+  EXPECT_EQ(candidates(NeighborScores::kFresh), 1);
+  EXPECT_EQ(candidates(NeighborScores::kCleared), 2);
+  EXPECT_EQ(candidates(NeighborScores::kAsReleased), 2);
 }
 
 /// A keyframe and a frame from beside it that sees the same points without noise.
