@@ -32,6 +32,7 @@ struct Options {
   bool retry_failed = false;
   double time_limit_s = BenchOptions{}.time_limit_s;
   double memory_limit_mb = 0;
+  double images_limit_gb = BenchOptions{}.images_limit_gb;
   bool json = false;
 };
 
@@ -74,6 +75,7 @@ void run(Options options) {
   bench.cache = cache_folder(options);
   bench.time_limit_s = options.time_limit_s;
   bench.memory_limit_mb = options.memory_limit_mb;
+  bench.images_limit_gb = options.images_limit_gb;
   bench.retry_failed = options.retry_failed;
   const OutputFolder folder(bench.out, "bench", names_written(bench.out, suite));
 
@@ -110,8 +112,9 @@ void add_bench(CLI::App& app) {
                       "Another scene or mesh file (default: the suite's)");
   options->frame.add_to(*command);
   options->set.add_to(*command);
-  command->add_option("--shard", options->shard,
-                      "i/n: takes run i, i + n, ... alone; `merge` puts them together");
+  command->add_option(
+      "--shard", options->shard,
+      "i/n: takes the i-th of n equal parts of the runs; `merge` puts them together");
   command->add_option("--cache", options->cache,
                       "Cache folder for expensive results (default: $XDG_CACHE_HOME/modelhouse)");
   command->add_flag("--no-cache", options->no_cache, "Rebuilds everything, caches nothing");
@@ -120,6 +123,10 @@ void add_bench(CLI::App& app) {
       ->check(number_between(0.0, 1e9));
   command->add_option("--memory-limit", options->memory_limit_mb, "MB for one run; 0 = none")
       ->check(number_between(0.0, 1e9));
+  command
+      ->add_option("--images-limit", options->images_limit_gb,
+                   "GB of disk, in --out, for images that runs share; 0 = each makes its own")
+      ->check(number_between(0.0, 1e6));
   command->add_flag("--json", options->json, "Prints results.json instead of the table");
   command->add_flag_callback(
       "--print-settings",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 
@@ -13,7 +14,8 @@ namespace mh::cli {
 namespace {
 
 struct Options {
-  std::string description, store, folder, cache, maps, views, key, session_start;
+  std::string description, store, folder, cache, maps, images, views, key, session_start;
+  std::uint64_t images_limit = 0;
   int jobs = 1;
   int parent = 0;
   bool metrics_only = false;
@@ -29,6 +31,7 @@ void run(const Options& options) {
                .folder = options.folder,
                .cache = options.cache,
                .maps = options.maps,
+               .images = {options.images, options.images_limit},
                .key = options.key,
                .views = options.views,
                .session_start = options.session_start,
@@ -74,6 +77,8 @@ void add_run_one(CLI::App& app) {
   command->add_option("--folder", options->folder)->required();
   command->add_option("--cache", options->cache);
   command->add_option("--maps", options->maps);
+  command->add_option("--images", options->images);
+  command->add_option("--images-limit", options->images_limit);
   command->add_option("--views", options->views)->required();
   command->add_option("--session-start", options->session_start);
   command->add_option("--jobs", options->jobs);

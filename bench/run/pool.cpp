@@ -9,9 +9,10 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <deque>
 #include <fstream>
 #include <memory>
+#include <numeric>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -122,26 +123,45 @@ class Pool {
     return available_mb() - promised_mb > require_mb();
   }
 
+  /// Positions in waiting_, best first: images that are there and that nobody is at, images that
+  /// nobody has begun, the others.
+  std::vector<std::size_t> by_preference() const {
+    std::set<std::string> in_use;
+    for (const Running& r : running_) in_use.insert(r.what.job.images);
+    const auto rank = [&](std::size_t i) {
+      const std::string& images = waiting_[i].job.images;
+      return in_use.contains(images) ? 2 : begun_.contains(images) ? 0 : 1;
+    };
+    std::vector<std::size_t> order(waiting_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, rank);
+    return order;
+  }
+
   void start_what_fits() {
+    while (another_fits() && start_next()) {
+    }
+  }
+
+  /// Starts a run, or notes that another process finished it; false if none can be started now.
+  bool start_next() {
     const bool only_alone =
         std::all_of(waiting_.begin(), waiting_.end(), [](const Waiting& w) { return w.alone; });
-    for (std::size_t i = 0, n = waiting_.size(); i < n && another_fits(); ++i) {
-      Waiting next = std::move(waiting_.front());
-      waiting_.pop_front();
-      if (const auto status = store_.status(next.job.key)) {  // another process finished it
-        note_end(*status == RunStatus::kDone);
-        continue;
-      }
-      const bool must_wait = next.alone
-                                 ? !only_alone || !running_.empty()
-                                 : std::any_of(running_.begin(), running_.end(),
-                                               [](const Running& r) { return r.what.alone; });
-      if (must_wait || !store_.claim(next.job.key)) {
-        waiting_.push_back(std::move(next));
-        continue;
-      }
-      start(std::move(next));
+    const bool one_is_alone = std::any_of(running_.begin(), running_.end(),
+                                          [](const Running& r) { return r.what.alone; });
+    for (const std::size_t i : by_preference()) {
+      const auto status = store_.status(waiting_[i].job.key);
+      const bool must_wait = waiting_[i].alone ? !only_alone || !running_.empty() : one_is_alone;
+      if (!status && (must_wait || !store_.claim(waiting_[i].job.key))) continue;
+      Waiting next = std::move(waiting_[i]);
+      waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
+      if (status)  // another process finished it
+        note_end(next.job, *status == RunStatus::kDone);
+      else
+        start(std::move(next));
+      return true;
     }
+    return false;
   }
 
   std::filesystem::path work_file(const Job& job, const char* ending) const {
@@ -150,6 +170,7 @@ class Pool {
 
   void start(Waiting next) {
     const Job& job = next.job;
+    begun_.insert(job.images);
     const auto description = work_file(job, ".json");
     write_atomically(description, to_json(job.spec).dump(1));
     auto process = std::make_unique<RunProcess>(
@@ -205,7 +226,7 @@ class Pool {
       std::filesystem::remove(work_file(job, ".json"));
       std::filesystem::remove(work_file(job, ".log"));
       forecast_.note(job.spec, end.cost.wall_s);
-      note_end(true);
+      note_end(job, true);
       return;
     }
     const bool killed = end.signal == SIGKILL || end.signal == SIGTERM;
@@ -231,7 +252,7 @@ class Pool {
     const std::string error = describe(ended, end);
     store_.put_failure(job.key, job.spec, error, end.cost);
     options_.say(fmt::format("{}: failed: {}", job.spec.name, error));
-    note_end(false);
+    note_end(job, false);
   }
 
   static std::string describe(const Running& ended, const ProcessEnd& end) {
@@ -244,10 +265,17 @@ class Pool {
     return end.code == kBadInputCode ? std::string(kBadInputMark) + end.message : end.message;
   }
 
-  void note_end(bool good) {
+  void note_end(const Job& job, bool good) {
     ++(good ? done_ : failed_);
+    const auto sees_them = [&](const auto& other) { return images_of(other) == job.images; };
+    if (std::ranges::none_of(waiting_, sees_them) && std::ranges::none_of(running_, sees_them)) {
+      begun_.erase(job.images);
+      options_.forget_images(job.images);
+    }
     report();
   }
+  static const std::string& images_of(const Waiting& w) { return w.job.images; }
+  static const std::string& images_of(const Running& r) { return r.what.job.images; }
 
   void report() const {
     double sum = static_cast<double>(done_ + failed_);
@@ -281,8 +309,9 @@ class Pool {
   std::size_t all_, done_ = 0, failed_ = 0;
   double require_mb_ = 0;  ///< of one run, as measured so far
   Forecast forecast_;
-  std::deque<Waiting> waiting_;
+  std::vector<Waiting> waiting_;
   std::vector<Running> running_;
+  std::set<std::string> begun_;  // images that a run has begun to make
 };
 
 }  // namespace

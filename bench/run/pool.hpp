@@ -23,6 +23,7 @@ struct Interrupted {
 struct Job {
   RunSpec spec;
   std::string key;
+  std::string images = {};  ///< what it sees: the same text for runs that see the same
 };
 
 /// Prefix of the error of a run that failed on bad input, which the user can fix.
@@ -45,6 +46,8 @@ struct PoolOptions {
   /// The command line of a run's process. It finishes by putting the result into the store.
   std::function<std::vector<std::string>(const Job&, const std::filesystem::path& description)>
       arguments;
+  /// Called when no more run will need these images (Job::images).
+  std::function<void(const std::string& images)> forget_images = [](const std::string&) {};
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(const PoolProgress&)> progress = [](const PoolProgress&) {};
 };
@@ -53,6 +56,9 @@ struct PoolOptions {
 /// are in the store, done or failed. Runs that another process has claimed are left to it and
 /// waited for.
 ///
+/// - Runs that see the same images (Job::images) follow one another, so that one of them makes the
+///   images and the others find them: a process that is free takes a run of images that are there
+///   and that no other one is at, else of the next ones in the order of `jobs`.
 /// - Another process starts only if there is enough memory for it and for what the running ones
 ///   still need (as measured on finished ones); one always runs.
 /// - A run that ends by itself without success is a failure and stays one. One that was killed from

@@ -22,6 +22,7 @@
 #include "bench/plan/check_labels.hpp"
 #include "bench/plan/find_program.hpp"
 #include "bench/plan/spec_json.hpp"
+#include "bench/provenance/digest.hpp"
 #include "bench/report/write.hpp"
 #include "bench/run/run_one.hpp"
 #include "bench/systems/timed.hpp"
@@ -185,7 +186,22 @@ RunCost cost_of_this_process(const RunResult& run, double wall_s, double world_s
                             .load = load_per_processor()}};
 }
 
+/// Space for the images of each environment at work.
+std::uint64_t limit_of_images(const std::vector<Job>& jobs, const BenchOptions& options) {
+  std::set<std::string> all;
+  for (const Job& job : jobs) all.insert(job.images);
+  const std::size_t at_work = std::min(all.size(), static_cast<std::size_t>(options.jobs));
+  return static_cast<std::uint64_t>(1e9 * options.images_limit_gb /
+                                    static_cast<double>(std::max<std::size_t>(1, at_work)));
+}
+
 }  // namespace
+
+std::string images_of(const RunSpec& run) {
+  const nlohmann::ordered_json json = to_json(run);
+  return text_key(json.at("environment").dump() + json.at("level").dump() +
+                  json.at("max_frames").dump());
+}
 
 Shard parse_shard(const std::string& text) {
   Shard shard;
@@ -214,8 +230,9 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
   std::vector<std::pair<std::string, std::string>> plan;
   for (std::size_t i = 0; i < specs.size(); ++i) {
     plan.emplace_back(specs[i].name, run_key(specs[i], inputs->inputs_of(specs[i])));
-    if (i % options.shard.of + 1 == options.shard.index)
-      mine.push_back({specs[i], plan.back().second});
+    if (i * options.shard.of / specs.size() + 1 == options.shard.index)
+      mine.push_back(
+          {specs[i], plan.back().second, options.images_limit_gb > 0 ? images_of(specs[i]) : ""});
   }
   const fs::path results = options.out / "results.sqlite";
   if (fs::exists(results)) {
@@ -240,6 +257,8 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
       if (const std::string why = Cache(cache).why_unwritable(); !why.empty())
         options.say(fmt::format(
             "warning: the cache keeps nothing, light is baked anew in each run: {}", why));
+    const fs::path images = work.path() / "images";
+    const std::uint64_t images_limit = limit_of_images(mine, options);
     const std::string session_start = utc_now();
     PoolOptions pool;
     pool.jobs = options.jobs;
@@ -258,8 +277,15 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
                                          "--session-start", session_start,
                                          "--parent",        std::to_string(getpid())};
       if (options.cache) arguments.insert(arguments.end(), {"--maps", cache.string()});
+      if (!job.images.empty() && !job.spec.environment.is_recorded())
+        arguments.insert(arguments.end(), {"--images", (images / job.images).string(),
+                                           "--images-limit", std::to_string(images_limit)});
       if (options.metrics_only) arguments.emplace_back("--metrics-only");
       return arguments;
+    };
+    pool.forget_images = [&](const std::string& name) {
+      std::error_code no_matter;
+      if (!name.empty()) fs::remove_all(images / name, no_matter);
     };
     pool.say = options.say;
     pool.progress = options.progress;
@@ -281,7 +307,7 @@ void execute_run(const SingleRunOptions& order) {
     const auto baked = [&](double share) {
       order.status(fmt::format("light {:.0f} %", 100 * share));
     };
-    return build_world(spec, order.jobs, Cache(order.cache), order.say, baked);
+    return build_world(spec, order.jobs, Cache(order.cache), order.say, baked, order.images);
   }();
   if (run_key(spec, world.inputs) != order.key)
     throw InputChanged(fmt::format(

@@ -13,11 +13,13 @@
 #include "bench/run/pool.hpp"
 #include "bench/store/load_results.hpp"
 #include "bench/store/store.hpp"
+#include "sim/world/shared_exposures.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
 
-/// The part of a suite's runs that one machine takes: run i of all is in shard (i mod of) + 1.
+/// The part of a suite's runs that one machine takes: consecutive ones, so that those that see the
+/// same images mostly stay together. Of n runs, run i (from 0) is in shard i * of / n + 1.
 struct Shard {
   std::size_t index = 1, of = 1;
 };
@@ -33,6 +35,9 @@ struct BenchOptions {
   std::optional<std::filesystem::path> cache;
   double time_limit_s = 14400;  ///< of one run; 0 = none
   double memory_limit_mb = 0;   ///< of one run; 0 = none
+  /// Disk space, in options.out, for the images that runs leave for others; 0: each makes its own.
+  /// Never changes a result.
+  double images_limit_gb = 20;
   bool retry_failed = false;
   /// Metrics only: no occupancy map, no images and no files of runs.
   bool metrics_only = false;
@@ -46,6 +51,9 @@ struct InputChanged : InputError {
   using InputError::InputError;
 };
 
+/// Names the images that a run sees: the same text for runs of one environment at one level.
+std::string images_of(const RunSpec& run);
+
 /// Runs a suite into options.out / "results.sqlite". A finished run is never repeated.
 /// @throws InputError if an input cannot be read; Interrupted on Ctrl-C.
 BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
@@ -58,6 +66,7 @@ struct SingleRunOptions {
   std::filesystem::path store, folder;
   std::filesystem::path cache;  ///< for baked light; empty: keeps nothing
   std::filesystem::path maps;   ///< for finished maps; empty: keeps nothing
+  SharedImages images = {};     ///< of runs that see the same
   std::string key;
   std::string views;          ///< file name of the environment's contact sheet
   std::string session_start;  ///< start of the command that issued this order

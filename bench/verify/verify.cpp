@@ -116,12 +116,15 @@ Verification verify(const Suite& suite, const SuiteOverrides& overrides, BenchOp
     if (!what.starts_with("warning: ") || reported.emplace(what).second) say(what);
   };
   const auto report = std::exchange(options.progress, [](const PoolProgress&) {});
+  const double shared_gb = options.images_limit_gb;
   const auto execute = [&](int jobs, double share_before) {
     options.say(fmt::format("executing with {}", counted(jobs, "job")));
     const TemporaryFolder folder(std::filesystem::temp_directory_path());
     options.out = folder.path();
     options.cache.reset();
     options.jobs = jobs;
+    // Once every run makes its own images, once they share them.
+    options.images_limit_gb = share_before == 0 ? 0.0 : shared_gb;
     options.progress = [&](PoolProgress progress) {
       progress.share = share_before + 0.5 * progress.share;
       if (share_before == 0) progress.to_go_s.reset();  // the second half is still to come

@@ -68,14 +68,19 @@ PlaceFacts recorded_facts(const World& world, const RunSpec& spec) {
 
 }  // namespace
 
-void simulate(World& world, LabelMode labels) {
+void simulate(World& world, LabelMode labels, const SharedImages& images) {
   const SimulatedPlace& p = *world.simulated;
-  world.mapping = std::make_shared<SimulatedSequence>(p.renderer, p.robot.camera, p.mapping.camera,
-                                                      p.sensors, labels, p.pedestrian_scene);
+  const auto sequence = [&](const char* name, const auto& renderer, const DrivenPath& path,
+                            const auto& pedestrian_scene) {
+    auto made = std::make_shared<SimulatedSequence>(renderer, p.robot.camera, path.camera,
+                                                    p.sensors, labels, pedestrian_scene);
+    if (!images.folder.empty()) made->share(images, name);
+    return made;
+  };
+  world.mapping = sequence("mapping", p.renderer, p.mapping, p.pedestrian_scene);
   if (p.second)
     world.second =
-        std::make_shared<SimulatedSequence>(p.second_renderer ? p.second_renderer : p.renderer,
-                                            p.robot.camera, p.second->camera, p.sensors, labels);
+        sequence("second", p.second_renderer ? p.second_renderer : p.renderer, *p.second, nullptr);
 }
 
 PlaceFacts facts(const World& world, const RunSpec& spec) {
@@ -211,10 +216,10 @@ void add_detector(World& world, const DetectorSpec& spec, const Cache& cache) {
 }  // namespace
 
 World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
-                  const BakeWatch& baked) {
+                  const BakeWatch& baked, const SharedImages& images) {
   World world = spec.environment.is_recorded() ? open_recordings(spec)
                                                : build(spec, threads, cache, say, baked);
-  if (world.simulated) simulate(world, spec.labels.mode);
+  if (world.simulated) simulate(world, spec.labels.mode, images);
   if (spec.labels.detector) add_detector(world, *spec.labels.detector, cache);
   std::ranges::move(inputs_of_program(spec), std::back_inserter(world.inputs));
   std::ranges::sort(world.inputs, {}, &InputDigest::name);

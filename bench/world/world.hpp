@@ -18,6 +18,7 @@
 #include "sim/sensors/labels.hpp"
 #include "sim/sensors/sensors.hpp"
 #include "sim/world/pedestrian.hpp"
+#include "sim/world/shared_exposures.hpp"
 #include "slam/core/sequence.hpp"
 #include "slam/vocabulary/vocabulary.hpp"
 
@@ -48,15 +49,17 @@ struct World {
 };
 
 /// Rebuilds the sequences of a simulated world from its existing paths.
-void simulate(World& world, LabelMode labels);
+/// @param images  as of build_world()
+void simulate(World& world, LabelMode labels, const SharedImages& images = {});
 
 /// What results record of it.
 PlaceFacts facts(const World& world, const RunSpec& spec);
 
 /// Loads scene, robot, vocabulary and level of a run, bakes the light, drives both tours; or opens
 /// its recordings. Reports baking through `say`, since it takes long.
+/// @param images  of all runs in this environment at this level, and of no other
 /// @throws InputError if a file is bad or a tour cannot be driven.
 World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
-                  const BakeWatch& baked = {});
+                  const BakeWatch& baked = {}, const SharedImages& images = {});
 
 }  // namespace mh

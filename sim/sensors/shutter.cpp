@@ -160,7 +160,6 @@ Shutter::Shutter(SceneAt scene, const Camera& camera, Trajectory path, const Sen
       path_(std::move(path)),
       config_(config) {
   assert(scene_ && !path_.empty());
-  if (config_.auto_exposure.enabled) gains_ = exposure_gains();
 }
 
 Shutter::Shutter(std::shared_ptr<const Renderer> renderer, const Camera& camera, Trajectory path,
@@ -176,7 +175,7 @@ Shutter::Exposed Shutter::expose(std::size_t i, LabelMode labels) const {
     image.depth_m = render(lens_.pinhole(), i, offset_s).depth_m;
   image = lens_.bend(std::move(image));
   if (config_.lens_blur.enabled) blur_by_lens(image.color, config_.lens_blur.sigma_px);
-  return {std::move(image), gains_.empty() ? 1.0 : gains_[i]};
+  return {std::move(image), gain(i)};
 }
 
 RenderedFrame Shutter::render(const Camera& pinhole, std::size_t i, double after_s) const {
@@ -219,6 +218,12 @@ void Shutter::blur(RenderedFrame& image, std::size_t i, LabelMode labels) const 
     }
   }
   sum.write(image.color);
+}
+
+double Shutter::gain(std::size_t i) const {
+  if (!config_.auto_exposure.enabled) return 1.0;
+  std::call_once(gains_->made, [&] { gains_->by_frame = exposure_gains(); });
+  return gains_->by_frame[i];
 }
 
 std::vector<double> Shutter::exposure_gains() const {

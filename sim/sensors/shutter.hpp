@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "sim/render/renderer.hpp"
@@ -52,13 +53,18 @@ class Shutter {
   RenderedFrame render(const Camera& pinhole, std::size_t i, double after_s) const;
   void blur(RenderedFrame& image, std::size_t i, LabelMode labels) const;
   std::vector<double> exposure_gains() const;
+  double gain(std::size_t i) const;
 
   SceneAt scene_;
   Camera camera_;
   Lens lens_;
   Trajectory path_;
   SensorConfig config_;
-  std::vector<double> gains_;  // by frame; empty without exposure control
+  struct Gains {
+    std::once_flag made;
+    std::vector<double> by_frame;
+  };
+  std::shared_ptr<Gains> gains_ = std::make_shared<Gains>();  // made when the first is needed
 };
 
 /// The camera with the distortion that a level specifies.

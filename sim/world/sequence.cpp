@@ -15,6 +15,18 @@ Shutter::SceneAt scene_at(std::shared_ptr<const Renderer> renderer,
   return [renderer = std::move(renderer)](Stamp) { return renderer; };
 }
 
+/// Senses and labels what the shutter exposed at the path's i-th moment.
+SensedMoment sense_exposed(const Shutter& shutter, const SensorConfig& sensors, LabelMode labels,
+                           std::size_t i, RandomStream noise, Shutter::Exposed exposed) {
+  const TimedPose& moment = shutter.path()[i];
+  const RandomStream its_noise = noise.fork(i);
+  RgbdFrame frame =
+      sense(exposed.seen, shutter.camera(), sensors, its_noise, moment.stamp_ns, exposed.gain);
+  frame.semantics =
+      sense_labels(exposed.seen, labels, sensors, moment.world_from_camera, its_noise);
+  return {std::move(frame), std::move(exposed.seen)};
+}
+
 }  // namespace
 
 SimulatedSequence::SimulatedSequence(std::shared_ptr<const Renderer> renderer, Camera camera,
@@ -26,20 +38,22 @@ SimulatedSequence::SimulatedSequence(std::shared_ptr<const Renderer> renderer, C
       sensors_(sensors),
       labels_(labels) {}
 
+void SimulatedSequence::share(const SharedImages& images, const std::string& name) {
+  const bool annotated = labels_ == LabelMode::kAnnotated;  // all other labels see the same
+  shared_ = std::make_unique<SharedExposures>(images, annotated ? name + "-annotated" : name,
+                                              shutter_.camera(), shutter_.path().size());
+}
+
 SensedMoment sense_moment(const Shutter& shutter, const SensorConfig& sensors, LabelMode labels,
                           std::size_t i, RandomStream noise) {
-  const TimedPose& moment = shutter.path()[i];
-  const RandomStream its_noise = noise.fork(i);
-  Shutter::Exposed exposed = shutter.expose(i, labels);
-  RgbdFrame frame =
-      sense(exposed.seen, shutter.camera(), sensors, its_noise, moment.stamp_ns, exposed.gain);
-  frame.semantics =
-      sense_labels(exposed.seen, labels, sensors, moment.world_from_camera, its_noise);
-  return {std::move(frame), std::move(exposed.seen)};
+  return sense_exposed(shutter, sensors, labels, i, noise, shutter.expose(i, labels));
 }
 
 RgbdFrame SimulatedSequence::frame(std::size_t i, RandomStream noise) const {
-  return sense_moment(shutter_, sensors_, labels_, i, noise).frame;
+  const auto expose = [&](std::size_t k) { return shutter_.expose(k, labels_); };
+  return sense_exposed(shutter_, sensors_, labels_, i, noise,
+                       shared_ ? shared_->get(i, expose) : expose(i))
+      .frame;
 }
 
 }  // namespace mh

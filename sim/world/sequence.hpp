@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "sim/sensors/shutter.hpp"
 #include "sim/world/pedestrian.hpp"
+#include "sim/world/shared_exposures.hpp"
 #include "slam/core/sequence.hpp"
 
 namespace mh {
@@ -30,6 +32,10 @@ class SimulatedSequence : public Sequence {
                     LabelMode labels,
                     std::shared_ptr<const PedestrianScene> pedestrian_scene = nullptr);
 
+  /// From now on, exposures are shared with the processes that give the same folder and name.
+  /// @param name  stands for everything that the constructor received, save labels
+  void share(const SharedImages& images, const std::string& name);
+
   const Camera& camera() const override { return shutter_.camera(); }
   std::size_t size() const override { return shutter_.path().size(); }
   Stamp stamp_ns(std::size_t i) const override { return shutter_.path()[i].stamp_ns; }
@@ -40,6 +46,7 @@ class SimulatedSequence : public Sequence {
   Shutter shutter_;
   SensorConfig sensors_;
   LabelMode labels_;
+  std::unique_ptr<SharedExposures> shared_;  // or null
 };
 
 }  // namespace mh

@@ -63,7 +63,8 @@ const std::string kRoom = MH_SOURCE_DIR "/bench/scenarios/room.yaml";
 /// A suite of three short runs, or of what `systems` says.
 fs::path write_suite(const std::string& name = "small",
                      const std::string& systems = "[semantic, plain]", const std::string& more = "",
-                     const std::string& scene = kRoom) {
+                     const std::string& scene = kRoom, const std::string& labels = "[exact, boxes]",
+                     const std::string& level = "pepper") {
   const std::string root = MH_SOURCE_DIR;
   const fs::path file = test_folder() / (name + ".yaml");
   std::ofstream(file) << "environments:\n- {category: room, scene: " << scene
@@ -71,9 +72,9 @@ fs::path write_suite(const std::string& name = "small",
                       << "/bench/scenarios/tours/room.yaml, query_tour: " << root
                       << "/bench/scenarios/tours/room_query.yaml}\nrobot: " << root
                       << "/bench/scenarios/robot.yaml\nvocabulary: " << root
-                      << "/assets/vocabulary.mhvoc\nlevels: [" << root
-                      << "/sim/sensors/levels/pepper.yaml]\nsystems: " << systems
-                      << "\nlabels: [exact, boxes]\nprotocol: {test_interval: 10}\n"
+                      << "/assets/vocabulary.mhvoc\nlevels: [" << root << "/sim/sensors/levels/"
+                      << level << ".yaml]\nsystems: " << systems << "\nlabels: " << labels
+                      << "\nprotocol: {test_interval: 10}\n"
                       << more;
   return file;
 }
@@ -180,6 +181,28 @@ TEST(BenchProcess, JobsAndShardsChangeNoByte) {
   }
   EXPECT_EQ(run("merge " + (test_folder() / "merged").string() + shards), 0) << errors();
   EXPECT_EQ(tables("merged"), undisturbed());
+}
+
+// Two trials of three systems and labels at a level that blurs, each run with images of its own,
+// and with images that the first one to need them made.
+TEST(BenchProcess, SharedImagesChangeNoByte) {
+  const std::string root = MH_SOURCE_DIR;
+  const fs::path suite = write_suite("blurred", "[semantic, plain]",
+                                     "parameters: {map: fixed, semantics.gamma: [0, 1]}\n", kRoom,
+                                     "[exact, annotated]", "handheld");
+  const auto folders_of_work = [](const std::string& out) {
+    return std::ranges::count_if(fs::directory_iterator(test_folder() / out), [](const auto& one) {
+      return one.is_directory() && one.path().filename().string().starts_with(".");
+    });
+  };
+  EXPECT_EQ(run(bench(suite, "own_images", "--images-limit 0")), 0) << errors();
+  const std::string own = tables("own_images");
+  EXPECT_EQ(run(bench(suite, "shared_images", "--jobs 2")), 0) << errors();
+  EXPECT_EQ(tables("shared_images"), own);
+  EXPECT_EQ(folders_of_work("shared_images"), 0);
+  // Room for a few only.
+  EXPECT_EQ(run(bench(suite, "few_images", "--images-limit 0.01")), 0) << errors();
+  EXPECT_EQ(tables("few_images"), own);
 }
 
 TEST(BenchProcess, AFinishedRunIsNotRepeated) {

@@ -393,6 +393,53 @@ TEST_F(StoreFile, TheWorkDoneIsTheRunsThatAreSettled) {
   EXPECT_EQ(store.error("badly"), "returned 1");
 }
 
+// Six runs of three environments, planned trial by trial: those that see the same images follow one
+// another, and the images go when the last one is over, whether it succeeded or not.
+TEST_F(StoreFile, RunsThatSeeTheSameImagesFollowOneAnother) {
+  Store store(folder_ / "r.sqlite");
+  std::vector<std::string> events;
+  PoolOptions options;
+  options.executable = "/bin/false";
+  options.work_folder = folder_;
+  options.arguments = [&](const Job& job, const fs::path&) {
+    events.push_back(job.key);
+    return std::vector<std::string>();
+  };
+  options.forget_images = [&](const std::string& images) { events.push_back("no " + images); };
+  std::vector<Job> jobs;
+  for (const char* trial : {"1", "2"})
+    for (const char* images : {"a", "b", "c"})
+      jobs.push_back(
+          {some_run(std::string(images) + trial).spec, std::string(images) + trial, images});
+  run_pending(store, jobs, options);
+  EXPECT_EQ(events,
+            (std::vector<std::string>{"a1", "a2", "no a", "b1", "b2", "no b", "c1", "c2", "no c"}));
+}
+
+TEST_F(StoreFile, TwoAtATimeAreAtImagesOfTheirOwnAsLongAsThereAreTwo) {
+  const fs::path program = folder_ / "program";
+  std::ofstream(program) << "#!/bin/sh\nwhile [ ! -e \"$1\" ]; do sleep 0.02; done\nexit 1\n";
+  fs::permissions(program, fs::perms::owner_all);
+  Store store(folder_ / "r.sqlite");
+  std::vector<std::string> started;
+  PoolOptions options;
+  options.jobs = 2;
+  options.executable = program;
+  options.work_folder = folder_;
+  options.arguments = [&](const Job& job, const fs::path&) {
+    started.push_back(job.key);
+    const fs::path gate = folder_ / "gate";
+    if (job.key == "b2") std::ofstream(gate) << "open";
+    return std::vector<std::string>{job.key == "a1" ? gate : program};  // waits for that file
+  };
+  std::vector<Job> jobs;
+  for (const char* key : {"a1", "a2", "b1", "b2"})
+    jobs.push_back({some_run(key).spec, key, std::string(1, key[0])});
+  run_pending(store, jobs, options);
+  // a2 joins a1 only when there is nothing else to do.
+  EXPECT_EQ(started, (std::vector<std::string>{"a1", "b1", "b2", "a2"}));
+}
+
 TEST_F(StoreFile, AFileWithoutItsTablesIsRefusedWithAdvice) {
   const fs::path file = folder_ / "r.sqlite";
   { Store store(file); }
