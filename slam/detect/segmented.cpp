@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <map>
 
 #include "slam/detect/heads.hpp"
@@ -47,8 +48,7 @@ Cells our_cells(const Tensor& output, const ClassNames& names) {
       static_cast<std::size_t>(cells.width) * static_cast<std::size_t>(cells.height);
   cells.ids = names.ids;
   std::ranges::sort(cells.ids);
-  const auto repeated = std::ranges::unique(cells.ids);
-  cells.ids.erase(repeated.begin(), repeated.end());
+  cells.ids.erase(std::unique(cells.ids.begin(), cells.ids.end()), cells.ids.end());
   std::vector<std::size_t> slot;
   for (const ClassId id : names.ids)
     slot.push_back(
@@ -120,8 +120,8 @@ SemanticImage segmented(const Tensor& output, const Placement& at, const InputSi
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < n; ++k)
       if (cells.ids[k] != kVoid) order.push_back(k);
-    std::ranges::stable_sort(
-        order, [&](std::size_t a, std::size_t b) { return sum.shares[a] > sum.shares[b]; });
+    std::ranges::stable_sort(order, std::greater<>(),
+                             [&shares = sum.shares](std::size_t k) { return shares[k]; });
     order.resize(std::min(order.size(), kTop));
     std::ranges::sort(order);
     ClassDistribution classes;
