@@ -84,21 +84,23 @@ fs::path read_tour(const YamlReader& node, const SuitePaths& paths, int index) {
   return read_source(node, paths, index, Shipped::kTour);
 }
 
-/// How an entry names its environments, and how many it creates; if several, `name` contains {i}.
+/// How an entry names its environments, and which it creates: {i} from first to end - 1; if
+/// several, `name` contains {i}.
 struct EntryNames {
   std::string category, name;
-  int count = 1;
+  int first = 0, end = 1;
 };
 
 EntryNames read_names(YamlReader& node) {
   EntryNames names;
-  names.count = static_cast<int>(node.integer_or("count", 1, 1, 100000));
+  const int count = static_cast<int>(node.integer_or("count", 1, 1, 100000));
+  names.first = static_cast<int>(node.integer_or("first", 0, 0, 100000));
+  names.end = names.first + count;
   names.category = node.string("category");
   check_folder_name(node.at("category"), names.category);
   names.name = node.string("name", node.has("count") ? names.category + "-{i}" : names.category);
-  if (names.count > 1 && names.name.find("{i}") == std::string::npos)
-    node.at("name").fail(
-        fmt::format("'{}' needs an {{i}}: there are {} of it", names.name, names.count));
+  if (count > 1 && names.name.find("{i}") == std::string::npos)
+    node.at("name").fail(fmt::format("'{}' needs an {{i}}: there are {} of it", names.name, count));
   return names;
 }
 
@@ -156,12 +158,12 @@ Environment recorded_environment(std::string name, std::string category, std::st
 }
 
 std::vector<Environment> read_recorded_entry(YamlReader node, const SuitePaths& paths) {
-  const auto [category, name, count] = read_names(node);
+  const auto [category, name, first, end] = read_names(node);
   const YamlReader sequence = node.at("sequence");
   const BesideFrames beside(node, paths);
   node.finish();
   std::vector<Environment> environments;
-  for (int i = 0; i < count; ++i) {
+  for (int i = first; i < end; ++i) {
     environments.push_back(recorded_environment(
         with_index(name, i), category, read_sequence(sequence, paths, i), beside, paths, i));
     check_folder_name(node, environments.back().name);
@@ -253,7 +255,7 @@ void read_pattern_entry(YamlReader node, const SuitePaths& paths, Environments& 
 std::vector<Environment> read_entry(YamlReader node, const SuitePaths& paths,
                                     const std::optional<fs::path>& default_robot) {
   if (node.has("sequence")) return read_recorded_entry(node, paths);
-  const auto [category, name, count] = read_names(node);
+  const auto [category, name, first, end] = read_names(node);
   const YamlReader scene = node.at("scene");
   const auto tour = node.find("mapping_tour");
   const auto query_tour = node.find("query_tour");
@@ -267,7 +269,7 @@ std::vector<Environment> read_entry(YamlReader node, const SuitePaths& paths,
   node.finish();
 
   std::vector<Environment> environments;
-  for (int i = 0; i < count; ++i) {
+  for (int i = first; i < end; ++i) {
     Environment e{.name = with_index(name, i),
                   .category = category,
                   .scene = read_scene(scene, paths, i),

@@ -69,8 +69,8 @@ struct Environments {
 
 /// Reads the list `environments` of a suite. Each entry is a mapping with the fields of Environment
 /// that apply to a scene, or those that apply to a recording, and optionally one of these:
-/// - `count: N` creates N environments, {i} in name, scene and tours replaced by 0 .. N-1; the
-///   name defaults to CATEGORY-{i}.
+/// - `count: N` creates N environments, {i} in name, scene and tours replaced by `first`, default
+///   0, and those after it; the name defaults to CATEGORY-{i}.
 /// - `sequences: PATTERN` instead of `sequence` creates an environment for each recording that
 ///   matches (* and ? in the last part of the path), sorted by name, named after its folder or
 ///   file. Its category is the given one, or what the mapping `categories` assigns to the scene

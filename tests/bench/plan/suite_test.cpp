@@ -265,14 +265,17 @@ TEST_F(SuiteFile, EnvironmentsAreListedCountedOrFoundInFiles) {
   std::ofstream(folder_ / "suite.yaml")
       << "environments:\n- files: '*.env.yaml'\n"
          "- {category: hall, count: 3, scene: 'generated:hall:{i}', mapping_tour: tour.yaml}\n"
+         "- {category: hall, first: 5, count: 2, scene: 'generated:hall:{i}'}\n"
          "robot: robot.yaml\nvocabulary: words\nlevels: [pepper.yaml]\nsystems: [plain]\n"
          "labels: [exact]\n";
   const Suite suite = load_suite(folder_ / "suite.yaml");
   std::vector<std::string> names;
   for (const Environment& e : suite.environments) names.push_back(e.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"first", "second", "hall-0", "hall-1", "hall-2"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"first", "second", "hall-0", "hall-1", "hall-2",
+                                             "hall-5", "hall-6"}));
   EXPECT_TRUE(suite.environments[0].query_tour);
   EXPECT_EQ(suite.environments[3].scene, "generated:hall:1");
+  EXPECT_EQ(suite.environments[6].scene, "generated:hall:6");
   EXPECT_TRUE(is_generated(suite.environments[3].scene));
   EXPECT_EQ(expand(suite)[3].name, "hall-1-plain-pepper-0");
 }
