@@ -226,7 +226,7 @@ double median(std::vector<double> values) {
 }
 
 /// z = middle.z + slope . ((x, y) - middle).
-struct Plane {
+struct FloorPlane {
   Vector3d middle_m = Vector3d::Zero();
   Vector2d slope = Vector2d::Zero();
   double above(const Vector3d& p) const {
@@ -235,13 +235,13 @@ struct Plane {
 };
 
 /// Least-squares fit to the points near the plane; the height is then the median.
-Plane refitted(const std::vector<Vector3d>& points, const Plane& plane, double reach_m,
-               bool may_slope) {
+FloorPlane refitted(const std::vector<Vector3d>& points, const FloorPlane& plane, double reach_m,
+                    bool may_slope) {
   std::vector<Vector3d> near;
   for (const Vector3d& p : points)
     if (std::abs(plane.above(p)) <= reach_m) near.push_back(p);
   if (near.empty()) return plane;
-  Plane result;
+  FloorPlane result;
   for (const Vector3d& p : near) result.middle_m += p / static_cast<double>(near.size());
   result.middle_m.z() = plane.middle_m.z();
   if (may_slope) {
@@ -263,7 +263,7 @@ Plane refitted(const std::vector<Vector3d>& points, const Plane& plane, double r
 
 /// Whether too much of the scene is below the plane for a floor: this excludes table tops and
 /// seats.
-bool too_much_below(const Scene& scene, const Plane& plane, const Columns& columns) {
+bool too_much_below(const Scene& scene, const FloorPlane& plane, const Columns& columns) {
   double below = 0, above = 0, all = 0;
   for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
     const auto area = static_cast<double>(normal_of(scene, face).norm());
@@ -283,7 +283,7 @@ bool too_much_below(const Scene& scene, const Plane& plane, const Columns& colum
 
 /// Five standard deviations of the corners of its faces: enough that none of a scan's many
 /// thousands exceeds it by noise.
-double roughness_m(const Scene& scene, const Plane& plane) {
+double roughness_m(const Scene& scene, const FloorPlane& plane) {
   std::vector<double> away;
   for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
     const Vector3f n = normal_of(scene, face);
@@ -296,9 +296,9 @@ double roughness_m(const Scene& scene, const Plane& plane) {
   return away.empty() ? 0.03 : std::clamp(5 * 1.4826 * median(std::move(away)), 0.03, 0.12);
 }
 
-Plane fitted(const std::vector<Vector3d>& points, double z_m, std::vector<std::string>* warnings,
-             const std::string& name) {
-  Plane plane;
+FloorPlane fitted(const std::vector<Vector3d>& points, double z_m,
+                  std::vector<std::string>* warnings, const std::string& name) {
+  FloorPlane plane;
   plane.middle_m.z() = z_m;
   for (const double reach_m : {0.15, 0.1, 0.1, 0.08, 0.08, 0.08})
     plane = refitted(points, plane, reach_m, true);
@@ -347,7 +347,7 @@ std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> f
 
   std::vector<Vector3d> points;
   for (const Sample& sample : inner) points.push_back(columns.point(sample));
-  Plane plane;
+  FloorPlane plane;
   plane.middle_m.z() = *z_m;
   if (!floor_z_m) plane = fitted(points, *z_m, warnings, scene.name);
   if (!floor_z_m && !labeled && too_much_below(scene, plane, columns)) return std::nullopt;

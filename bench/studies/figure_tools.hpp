@@ -3,17 +3,16 @@
 
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "bench/drawing/plot.hpp"
 #include "sim/sensors/sensors.hpp"
+#include "slam/core/angles.hpp"
 
 // Helpers that the figures of the sensor models share.
 namespace mh::figure {
 
-inline constexpr double kDegree = std::numbers::pi / 180.0;
 inline const Camera kCamera;
 
 /// The points of a function over a range.

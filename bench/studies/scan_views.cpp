@@ -9,6 +9,7 @@
 
 #include "bench/drawing/contact_sheet.hpp"
 #include "scenes/dice.hpp"
+#include "slam/core/angles.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
@@ -49,7 +50,6 @@ bool is_free(const Scene& scene, const Vector3d& eye) {
 
 std::vector<SE3> scan_views(const Scene& scene, std::uint64_t seed, std::size_t count) {
   if (scene.rooms.empty()) throw InputError(fmt::format("scene {}: has no room", scene.name));
-  constexpr double kDegree = std::numbers::pi / 180.0;
   Dice dice(RandomStream(seed).fork(0x77616c6b));
   std::vector<SE3> views;
   for (std::size_t tries = 0; views.size() < count; ++tries) {

@@ -4,20 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "robots/model/robot_fields.hpp"
+#include "slam/core/angles.hpp"
 #include "slam/core/settings_io.hpp"
 #include "slam/core/yaml.hpp"
 
 namespace mh {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// Reads the fields of a list (robot_fields.hpp) from the mapping that contains them.
 template <class Fields>
@@ -38,7 +36,7 @@ Fields read_all(YamlReader mapping) {
 
 /// The focal length (px) that spreads `fov_deg` over `size_px` pixels.
 double focal_px(double fov_deg, int size_px) {
-  return 0.5 * size_px / std::tan(0.5 * fov_deg * kRadPerDeg);
+  return 0.5 * size_px / std::tan(0.5 * fov_deg * kDegree);
 }
 
 Camera read_lens(YamlReader& yaml) {
@@ -61,9 +59,9 @@ SE3 read_mount(YamlReader& yaml) {
   const std::vector<double> xyz = yaml.at("position_m").as_numbers(3);
   const std::vector<double> rpy = yaml.at("roll_pitch_yaw_deg").as_numbers(3);
   const Eigen::Matrix3d base_from_body =
-      (Eigen::AngleAxisd(rpy[2] * kRadPerDeg, Eigen::Vector3d::UnitZ()) *
-       Eigen::AngleAxisd(rpy[1] * kRadPerDeg, Eigen::Vector3d::UnitY()) *
-       Eigen::AngleAxisd(rpy[0] * kRadPerDeg, Eigen::Vector3d::UnitX()))
+      (Eigen::AngleAxisd(rpy[2] * kDegree, Eigen::Vector3d::UnitZ()) *
+       Eigen::AngleAxisd(rpy[1] * kDegree, Eigen::Vector3d::UnitY()) *
+       Eigen::AngleAxisd(rpy[0] * kDegree, Eigen::Vector3d::UnitX()))
           .toRotationMatrix();
   Eigen::Matrix3d body_from_optical;  // REP 103: columns are the optical axes in the body frame
   body_from_optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
@@ -183,7 +181,7 @@ class EquipmentReader {
     LaserScanner laser{.name = name,
                        .base_from_laser = read_link(yaml),
                        .rays = fan.rays,
-                       .field_of_view_rad = fan.field_of_view_deg * kRadPerDeg};
+                       .field_of_view_rad = fan.field_of_view_deg * kDegree};
     read_range(yaml, laser.min_range_m, laser.max_range_m);
     yaml.finish();
     return laser;
@@ -192,7 +190,7 @@ class EquipmentReader {
     const auto cone = read_fields<ConeFields>(yaml);
     Sonar sonar{.name = name,
                 .base_from_sonar = read_link(yaml),
-                .field_of_view_rad = cone.field_of_view_deg * kRadPerDeg};
+                .field_of_view_rad = cone.field_of_view_deg * kDegree};
     read_range(yaml, sonar.min_range_m, sonar.max_range_m);
     sonar.resolution_m = cone.resolution_m;
     yaml.finish();

@@ -3,17 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "scenes/generate/parts.hpp"
+#include "slam/core/angles.hpp"
 
 namespace mh::generate {
 namespace {
 
 using Eigen::Vector2d;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// One piece of a pattern in a frame at the room's middle, with its parts.
 bool add_in_frame(Draft& draft, const Design& d, const Vector2d& local, double frame_deg,

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/describe.hpp"
+#include "slam/core/angles.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 namespace mh::generate {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::vector<MaterialSpec> used_materials(const Draft& draft) {
   const Surfaces& s = draft.surfaces;

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/layout.hpp"
+#include "slam/core/angles.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace mh {
 namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kDoorSwing_m = 0.95;    // floor that a door sweeps, which is also where one enters
 constexpr double kRobotHeight_m = 1.25;  // what hangs higher is in nobody's way
 constexpr double kFlat_m = 0.03;         // rugs

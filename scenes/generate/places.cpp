@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/places.hpp"
+#include "slam/core/angles.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace mh::generate {
 namespace {
 
 using Eigen::Vector2d;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Width and depth of the axis-aligned rectangle around a rotated one.
 Vector2d turned_size(const Eigen::Vector3d& size_m, double turn_deg) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
 #include "scenes/house/plan_parts.hpp"
+#include "slam/core/angles.hpp"
 #include "slam/core/suggest.hpp"
 
 namespace mh {
@@ -14,7 +14,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kTouch = 0.01;  // furniture may touch: builders' tolerances, not an overlap
 constexpr double kFlat = 0.03;   // rugs: things stand and people walk on them
 

@@ -13,8 +13,6 @@ namespace {
 
 using bag::Op;
 
-constexpr const char* kCut = "records cut short";
-
 /// The fields of a record's header: "name=value" each, after its length.
 using Fields = std::map<std::string_view, std::string_view>;
 

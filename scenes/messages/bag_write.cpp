@@ -16,8 +16,7 @@ namespace {
 
 using bag::Op;
 
-constexpr std::size_t kChunkBytes = std::size_t{4} << 20;  // a chunk ends once it has as many
-constexpr std::size_t kBagHeaderBytes = 4096;              // padded, so that it can be rewritten
+constexpr std::size_t kBagHeaderBytes = 4096;  // padded, so that it can be rewritten
 
 /// Fields of a record's header.
 class HeaderFields {

@@ -13,8 +13,6 @@ namespace {
 
 using mcap::Opcode;
 
-constexpr const char* kCut = "records cut short";
-
 /// "sensor_msgs/Image" of either spelling.
 std::string common_type(std::string_view type) {
   std::string common(type);

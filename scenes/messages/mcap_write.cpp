@@ -18,7 +18,6 @@ namespace {
 
 using mcap::Opcode;
 
-constexpr std::size_t kChunkBytes = std::size_t{4} << 20;  // a chunk ends once it has as many
 constexpr std::array kCompressionNames = {"", "lz4", "zstd"};
 
 std::uint32_t checksum(std::uint32_t before, std::string_view bytes) {

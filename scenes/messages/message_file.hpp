@@ -75,6 +75,8 @@ class MessageFile {
   HeldBytes open_chunk(std::uint32_t number) const;
   /// Counts something that is left out; the first of its kind is described.
   void leave_out(const std::string& kind, std::uint64_t at, const std::string& why);
+  /// The kind of what follows the last whole record.
+  static constexpr const char* kCut = "records cut short";
   /// Whether anything of a kind was left out.
   bool leaves_out(const std::string& kind) const { return left_out_.contains(kind); }
   /// @returns the number of a channel, which is added if there is none like it

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -29,6 +30,9 @@ TopicSpec topic_spec(std::string name, ros::Wire wire, bool latched = false) {
 
 /// How the chunks of a file are compressed.
 enum class ChunkCompression { kNone, kLz4, kZstd };
+
+/// A chunk ends once it has as many, before compression.
+inline constexpr std::size_t kChunkBytes = std::size_t{4} << 20;
 
 /// Writes a file of messages, MCAP or a ROS 1 bag. The file gets its name when it is finished; one
 /// that is not leaves nothing.

@@ -9,6 +9,7 @@
 #include <Eigen/SVD>
 
 #include "scenes/recorded/class_map.hpp"
+#include "scenes/recorded/frame_files.hpp"
 #include "scenes/recorded/frame_sequence.hpp"
 #include "scenes/recorded/valid_poses.hpp"
 #include "slam/core/error.hpp"
@@ -19,9 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDepthPerMeter = 5000;
-
-Camera published_camera() {
+Camera bonn_camera() {
   Camera camera;
   camera.width_px = 640;
   camera.height_px = 480;
@@ -65,7 +64,7 @@ bool is_bonn(const fs::path& folder) {
 
 OpenedRecording open_bonn(const fs::path& folder, const RecordingConfig& config) {
   if (!is_folder(folder)) throw InputError(fmt::format("{}: is not a folder", folder.string()));
-  RecordedCamera camera{.camera = published_camera()};
+  RecordedCamera camera{.camera = bonn_camera()};
   if (!config.calibration.empty()) camera = config.read_camera(config.calibration);
   camera.depth_per_meter = kDepthPerMeter;
   std::vector<std::string> notes;

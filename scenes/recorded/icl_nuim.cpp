@@ -28,7 +28,7 @@ Stamp stamp_of_number(Stamp number_ns) {
 
 /// The published calibration. Its fy is -480 in the world of the poses; the images of this layout
 /// are stored top row first, which makes it positive.
-Camera published_camera() {
+Camera icl_nuim_camera() {
   Camera camera;
   camera.width_px = 640;
   camera.height_px = 480;
@@ -81,7 +81,7 @@ OpenedRecording open_icl_nuim(const fs::path& folder, const RecordingConfig& con
   if (truth.size() != 1)
     throw InputError(fmt::format("{}: holds {}, one is needed", folder.string(),
                                  counted(truth.size(), ".gt.freiburg file")));
-  ListedFrames listed{.camera = {.camera = published_camera()},
+  ListedFrames listed{.camera = {.camera = icl_nuim_camera()},
                       .frames = read_frames(folder),
                       .classes = {},
                       .truth = read_truth(folder / truth.front()),

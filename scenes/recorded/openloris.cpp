@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kColorFrame = "d400_color_optical_frame";
-constexpr double kDepthPerMeter = 1000;  // of the D435i's images
+constexpr double kUnitsPerMeter = 1000;  // of the D435i's images
 
 /// Reads OpenCV's dialect of YAML, whose first line is not valid YAML.
 YamlReader read_opencv_yaml(const fs::path& file) {
@@ -153,7 +153,7 @@ OpenedRecording open_openloris(const fs::path& folder, const RecordingConfig& co
   std::vector<std::string> notes;
   RecordedCamera camera = config.calibration.empty() ? read_sensors(folder / "sensors.yaml")
                                                      : config.read_camera(config.calibration);
-  camera.depth_per_meter = kDepthPerMeter;
+  camera.depth_per_meter = kUnitsPerMeter;
   ListedFrames listed{.camera = camera,
                       .frames = read_frames(folder, notes),
                       .classes = {},

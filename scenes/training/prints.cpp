@@ -10,7 +10,7 @@
 namespace mh::training {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kFullTurn = 2 * std::numbers::pi_v<float>;
 
 /// Draws one number after the other from an ink.
 class Draws {
@@ -84,7 +84,7 @@ Sheet collage(const Ink& ink) {
   const double largest = draw.uniform(30, 130);
   for (int piece = 0; piece < 220; ++piece) {
     const float x = draw.uniform(-20, kTexels + 20), y = draw.uniform(-20, kTexels + 20);
-    const float turn = draw.uniform(0, 2 * kPi), a = draw.uniform(5, largest),
+    const float turn = draw.uniform(0, kFullTurn), a = draw.uniform(5, largest),
                 b = draw.uniform(5, largest);
     const Tint tint = draw.pick() * draw.uniform(0.7, 1.25);
     const int shape = draw.whole(0, 2);
@@ -95,7 +95,7 @@ Sheet collage(const Ink& ink) {
     const int corners = shape == 1 ? 4 : 3;
     std::vector<Eigen::Vector2f> outline;
     for (int i = 0; i < corners; ++i) {
-      const float angle = turn + 2 * kPi * static_cast<float>(i) / static_cast<float>(corners);
+      const float angle = turn + kFullTurn * static_cast<float>(i) / static_cast<float>(corners);
       outline.emplace_back(x + 0.6F * (i % 2 == 0 ? a : b) * std::cos(angle),
                            y + 0.6F * (i % 2 == 0 ? a : b) * std::sin(angle));
     }
@@ -113,7 +113,7 @@ Sheet confetti(const Ink& ink) {
   const double size = draw.uniform(4, 11);
   for (int i = 0; i < bits; ++i) {
     const float x = draw.uniform(0, kTexels), y = draw.uniform(0, kTexels);
-    const float turn = draw.uniform(0, 2 * kPi), length = draw.uniform(2, size);
+    const float turn = draw.uniform(0, kFullTurn), length = draw.uniform(2, size);
     const Tint tint = draw.pick();
     if (i % 3 == 0)
       canvas.ellipse(x, y, 0.6F * length, 0.6F * length, 0, tint);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -13,6 +12,7 @@
 #include "sim/motion/peaks.hpp"
 #include "sim/motion/start.hpp"
 #include "sim/physics/outline.hpp"
+#include "slam/core/angles.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/yaml.hpp"
 
@@ -20,9 +20,6 @@ namespace mh {
 namespace {
 
 using Eigen::Vector2d;
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr double kStepRate_hz = 240.0;  // physics steps per second, at least
 
 Vector2d turned(const Vector2d& v, double angle_rad) {
   return {std::cos(angle_rad) * v.x() - std::sin(angle_rad) * v.y(),
@@ -129,8 +126,8 @@ struct HeadJoint {
     if (!goal) return;
     if (*goal < joint->lower || *goal > joint->upper)
       throw InputError(fmt::format("{}:{}: {}: {:.1f} deg is outside {:.1f} to {:.1f}",
-                                   script.file.string(), line, joint->name, *goal / kRadPerDeg,
-                                   joint->lower / kRadPerDeg, joint->upper / kRadPerDeg));
+                                   script.file.string(), line, joint->name, *goal / kDegree,
+                                   joint->lower / kDegree, joint->upper / kDegree));
     goal_rad = *goal;
   }
   void step(double step_s) {
@@ -157,11 +154,11 @@ CommandScript load_commands(const std::filesystem::path& file) {
     command.duration_s = item.number("for_s", 0.0, 3600.0);
     command.forward_m_per_s = item.number_or("forward_m_per_s", 0.0, -5.0, 5.0);
     command.left_m_per_s = item.number_or("left_m_per_s", 0.0, -5.0, 5.0);
-    command.turn_rad_per_s = item.number_or("turn_deg_per_s", 0.0, -720.0, 720.0) * kRadPerDeg;
+    command.turn_rad_per_s = item.number_or("turn_deg_per_s", 0.0, -720.0, 720.0) * kDegree;
     if (const auto yaw = item.find("head_yaw_deg"))
-      command.head_yaw_rad = yaw->as_double(-360.0, 360.0) * kRadPerDeg;
+      command.head_yaw_rad = yaw->as_double(-360.0, 360.0) * kDegree;
     if (const auto pitch = item.find("head_pitch_deg"))
-      command.head_pitch_rad = pitch->as_double(-360.0, 360.0) * kRadPerDeg;
+      command.head_pitch_rad = pitch->as_double(-360.0, 360.0) * kDegree;
     item.finish();
     script.commands.push_back(command);
   }

@@ -17,7 +17,6 @@
 namespace mh {
 namespace {
 
-constexpr double kStepRate_hz = 240.0;  // physics steps per second, at least
 // Drift from single precision is corrected gently; a push, firmly.
 constexpr double kDriftGain_per_s = 0.2, kPushGain_per_s = 2.0;
 constexpr double kDrift_m = 0.005;

@@ -2,10 +2,10 @@
 #include "sim/motion/start.hpp"
 
 #include <algorithm>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "slam/core/angles.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
@@ -32,10 +32,9 @@ Eigen::Vector2d read_place(const YamlReader& yaml) {
 Start read_start(YamlReader& motion) {
   YamlReader yaml = motion.at("start");
   const YamlReader position = yaml.at("position");
-  const Start start{
-      .place_m = read_place(position),
-      .heading_rad = yaml.number("heading_deg", -360.0, 360.0) * (std::numbers::pi / 180.0),
-      .line = position.line()};
+  const Start start{.place_m = read_place(position),
+                    .heading_rad = yaml.number("heading_deg", -360.0, 360.0) * kDegree,
+                    .line = position.line()};
   yaml.finish();
   return start;
 }

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <numbers>
 
 #include "sim/motion/motion.hpp"
 #include "sim/motion/start.hpp"
+#include "slam/core/angles.hpp"
 #include "slam/core/yaml.hpp"
 
 namespace mh {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// @param before_m where the robot is before this waypoint
 Waypoint read_waypoint(YamlReader yaml, const Eigen::Vector2d& before_m) {
@@ -17,7 +15,7 @@ Waypoint read_waypoint(YamlReader yaml, const Eigen::Vector2d& before_m) {
   const auto to = yaml.find("to");
   waypoint.position_m = to ? read_place(*to) : before_m;
   if (const auto heading = yaml.find("heading_deg"))
-    waypoint.heading_rad = heading->as_double(-360.0, 360.0) * kRadPerDeg;
+    waypoint.heading_rad = heading->as_double(-360.0, 360.0) * kDegree;
   if (const auto face = yaml.find("face")) {
     if (waypoint.heading_rad) face->fail("stands beside heading_deg: only one can be had");
     if (face->is_sequence())
@@ -25,7 +23,7 @@ Waypoint read_waypoint(YamlReader yaml, const Eigen::Vector2d& before_m) {
     else if (face->as_string() != "travel")
       face->fail("'" + face->as_string() + "' is neither 'travel' nor a place [x, y]");
   }
-  waypoint.turn_rad = yaml.number_or("turn_deg", 0.0, -1080.0, 1080.0) * kRadPerDeg;
+  waypoint.turn_rad = yaml.number_or("turn_deg", 0.0, -1080.0, 1080.0) * kDegree;
   waypoint.pause_s = yaml.number_or("pause_s", 0.0, 0.0, 600.0);
   yaml.finish();
   if (!to && !waypoint.heading_rad && waypoint.turn_rad == 0.0 && waypoint.pause_s == 0.0)
@@ -47,7 +45,7 @@ Tour load_tour(const std::filesystem::path& file) {
   if (const auto speed = yaml.find("speed_m_per_s"))
     tour.max_velocity_m_per_s = speed->as_double(0.01, 5.0);
   if (const auto turn = yaml.find("turn_deg_per_s"))
-    tour.max_turn_rad_per_s = turn->as_double(1.0, 360.0) * kRadPerDeg;
+    tour.max_turn_rad_per_s = turn->as_double(1.0, 360.0) * kDegree;
   tour.plan = yaml.boolean("plan", false);
   YamlReader list = yaml.at("waypoints");
   for (const YamlReader& item : list.items())

@@ -12,6 +12,9 @@
 
 namespace mh {
 
+/// Physics steps per second, at least.
+inline constexpr double kStepRate_hz = 240.0;
+
 /// Pose and velocity of the base. World frame; heading measured from world x, in (-pi, pi].
 struct BaseState {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
@@ -60,7 +63,7 @@ class PlanarWorld {
   /// @pre the scene's floor is z = 0 (LevelScene)
   /// @param step_s  duration of one step; contacts stay shallow for steps up to 1/200 s.
   PlanarWorld(const Scene& scene, const Robot& robot, const Eigen::Vector2d& start_m,
-              double start_heading_rad, double step_s = 1.0 / 240.0);
+              double start_heading_rad, double step_s = 1.0 / kStepRate_hz);
   ~PlanarWorld();
   PlanarWorld(const PlanarWorld&) = delete;
   PlanarWorld& operator=(const PlanarWorld&) = delete;

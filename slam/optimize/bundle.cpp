@@ -15,8 +15,6 @@ namespace {
 
 using Matrix63d = Eigen::Matrix<double, 6, 3>;
 
-/// A cost at rounding level: (1e-9 sigma)^2 per observation.
-constexpr double kPerfectChi2 = 1e-18;
 /// Marquardt damping, relative to the diagonal. The minimum still bounds the inverse of a point
 /// without parallax.
 constexpr double kInitialDamping = 1e-4;

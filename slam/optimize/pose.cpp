@@ -14,8 +14,6 @@ namespace {
 /// A step that lowers the cost by a smaller share than this moves the pose by far less than the
 /// noise.
 constexpr double kRelativeDecrease = 1e-6;
-/// A cost at rounding level: (1e-9 sigma)^2 per observation.
-constexpr double kPerfectChi2 = 1e-18;
 /// Below this ratio of pivots the pose is undetermined: a regular view gives about 1e-5, a rank
 /// deficiency only rounding errors, about 1e-16.
 constexpr double kSingularPivotRatio = 1e-12;

@@ -14,6 +14,9 @@ namespace mh {
 /// inside the blind zone of every depth camera and keeps 1/z far from overflow.
 inline constexpr double kMinimumDepth_m = 0.01;
 
+/// A cost at rounding level: (1e-9 sigma)^2 per observation.
+inline constexpr double kPerfectChi2 = 1e-18;
+
 /// One measurement (u, v[, disparity]) in px; disparity < 0 = no depth.
 struct ImageMeasurement {
   double u_px = 0, v_px = 0;
