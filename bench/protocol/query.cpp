@@ -37,22 +37,25 @@ bool is_blank(const RgbdFrame& frame) {
                      [](Rgb8 color) { return color == Rgb8{}; });
 }
 
+Presentation presentation(RandomStream stream, std::size_t index, int attempt) {
+  const auto key = static_cast<std::uint64_t>(attempt);
+  return {stream.fork(kNoise).fork(index).fork(key), stream.fork(kSlam).fork(index).fork(key)};
+}
+
 QueryAnswer query(const System& frozen, std::size_t index, const Sequence& sequence,
                   const ProtocolConfig& config, RandomStream stream, QueryMemo* memo) {
-  const RandomStream noise = stream.fork(kNoise).fork(index);
-  const RandomStream draws = stream.fork(kSlam).fork(index);
   const auto session = memo == nullptr ? frozen.open_session() : frozen.open_session_with(*memo);
 
   QueryAnswer answer;
   answer.index = index;
   for (int attempt = 0; attempt < config.query_attempts; ++attempt) {
-    const auto key = static_cast<std::uint64_t>(attempt);
-    const RgbdFrame frame = usable_frame(sequence, index, noise.fork(key));
+    const auto [noise, draws] = presentation(stream, index, attempt);
+    const RgbdFrame frame = usable_frame(sequence, index, noise);
     if (attempt == 0)
       answer.blank_frames =
           lose(*session, frame, config.max_blank_frames, stream.fork(kBlank).fork(index));
 
-    const SystemReport report = session->feed(frame, draws.fork(key));
+    const SystemReport report = session->feed(frame, draws);
     ++answer.attempts;
     answer.stage = std::max(answer.stage, report.relocalization);
     if (attempt == 0) answer.candidates = report.candidates;

@@ -48,6 +48,15 @@ RgbdFrame blank_frame(int width_px, int height_px, Stamp stamp_ns);
 /// Whether a frame shows nothing at all, as blank_frame() does.
 bool is_blank(const RgbdFrame& frame);
 
+/// The random streams of one presentation of a test frame.
+struct Presentation {
+  RandomStream noise, draws;  ///< of the frame, of the system
+};
+/// @param stream   of the set of queries
+/// @param index    of the test frame
+/// @param attempt  from 0
+Presentation presentation(RandomStream stream, std::size_t index, int attempt);
+
 /// Queries a frozen system with one test frame (section 3.2 of the paper): a fresh session, blank
 /// frames until it is lost, then the test frame up to config.query_attempts times or until a pose
 /// is returned. Noise and SLAM draw from streams keyed by (test frame, attempt) alone: the answer

@@ -202,6 +202,10 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
   return make_our_system(world.mapping->camera(), spec.slam, world.vocabulary);
 }
 
+RandomStream query_stream(const RunSpec& spec, QuerySet set) {
+  return RandomStream(spec.seed).fork(set == QuerySet::kHeldOut ? kHeldOut : kSecondTour);
+}
+
 RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools) {
   const RandomStream stream(spec.seed);
   const RunTamper& tamper = tools.tamper;
@@ -274,11 +278,12 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     tools.status("queries");
 
     run.points.resize(spec.points.size());
-    const QueryRound held_out(spec, mapping, NearestBy::kTime, tamper, run, stream.fork(kHeldOut));
+    const QueryRound held_out(spec, mapping, NearestBy::kTime, tamper, run,
+                              query_stream(spec, QuerySet::kHeldOut));
     std::optional<QueryRound> second_tour;
     if (world.second)
       second_tour.emplace(spec, *world.second, NearestBy::kPlace, tamper, run,
-                          stream.fork(kSecondTour));
+                          query_stream(spec, QuerySet::kSecondTour));
     for (std::size_t p = 0; p < spec.points.size(); p = end_of_alike(spec.points, p)) {
       const std::size_t end = end_of_alike(spec.points, p);
       system.set_query_settings(spec.points[p]);

@@ -18,10 +18,37 @@ LabeledDescriptor view(const Features& features, std::uint32_t i) {
   return {features.descriptors[i], features.keypoints[i].label};
 }
 
+/// Runs a search and, where decisions are traced, again without equation 2.
+/// @param search    search(SemanticMatcher) -> what it found
+/// @param decision  decision(GatedPair) -> who was matched with whom
+template <class Search, class Decide>
+auto traced(const SlamContext& context, Matcher matcher, Search search, Decide decision) {
+  if (context.decisions == nullptr) return search(semantic_matcher(context, matcher));
+  GateLog log;
+  const auto note = [&](bool with_xi) {
+    for (const GatedPair& pair : log) {
+      MatchDecision decided = decision(pair);
+      decided.matcher = matcher;
+      decided.with_xi = with_xi;
+      decided.gate = pair.gate;
+      context.decisions->push_back(decided);
+    }
+    log.clear();
+  };
+  auto found = search(semantic_matcher(context, matcher, &log));
+  note(true);
+  SemanticConfig without_xi = context.config.semantics;
+  without_xi.xi = 1;
+  MatcherCounts not_counted;
+  search(SemanticMatcher(without_xi, not_counted, &log));
+  note(false);
+  return found;
+}
+
 }  // namespace
 
-SemanticMatcher semantic_matcher(const SlamContext& context, Matcher matcher) {
-  return {context.config.semantics, at(context.counts, matcher)};
+SemanticMatcher semantic_matcher(const SlamContext& context, Matcher matcher, GateLog* log) {
+  return {context.config.semantics, at(context.counts, matcher), log};
 }
 
 std::vector<LandmarkId> match_landmarks(const Keyframe& keyframe, const Query& query,
@@ -31,16 +58,43 @@ std::vector<LandmarkId> match_landmarks(const Keyframe& keyframe, const Query& q
   for (std::size_t i = 0; i < with_landmark.size(); ++i)
     with_landmark[i] = keyframe.landmarks[i].valid();
   const std::vector<std::uint8_t> all(query.features.size(), 1);
-  const auto matches = match_by_words({keyframe.features, keyframe.words, with_landmark},
-                                      {query.features, query.words, all},
-                                      {.max_distance = static_cast<float>(config.max_distance),
-                                       .ratio = static_cast<float>(config.ratio)},
-                                      semantic_matcher(context, matcher));
+  const auto matches = traced(
+      context, matcher,
+      [&](SemanticMatcher equation_2) {
+        return match_by_words({keyframe.features, keyframe.words, with_landmark},
+                              {query.features, query.words, all},
+                              {.max_distance = static_cast<float>(config.max_distance),
+                               .ratio = static_cast<float>(config.ratio)},
+                              equation_2);
+      },
+      [&](const GatedPair& pair) {
+        return MatchDecision{.feature = pair.feature,
+                             .landmark = keyframe.landmarks[pair.asked],
+                             .keyframe = keyframe.id,
+                             .other_feature = pair.asked};
+      });
   trace_words(context, matcher,
               {keyframe.id, keyframe.features, keyframe.landmarks, {}, query.features, matches});
   std::vector<LandmarkId> landmarks(query.features.size());
   for (const FeatureMatch& m : matches) landmarks[m.b] = keyframe.landmarks[m.a];
   return landmarks;
+}
+
+std::vector<std::int32_t> find_landmarks(const ProjectionSearch& search, const SlamContext& context,
+                                         Matcher matcher) {
+  auto found = traced(
+      context, matcher,
+      [&](SemanticMatcher equation_2) {
+        return match_by_projection(search.targets, search.query.features, search.query.grid,
+                                   search.taken, search.gate, equation_2);
+      },
+      [&](const GatedPair& pair) {
+        return MatchDecision{
+            .feature = pair.feature, .landmark = search.landmarks[pair.asked], .keyframe = {}};
+      });
+  trace_projection(context, matcher,
+                   {{}, search.query.features, search.targets, found, search.landmarks});
+  return found;
 }
 
 void trace_projection(const SlamContext& context, Matcher matcher, const ProjectionPairs& pairs) {

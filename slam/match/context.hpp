@@ -25,15 +25,30 @@ struct SlamContext {
   const Map& map;               ///< read-only; stages that modify it take it as `Map&` in addition
   MatchCounts& counts;          ///< incremented by each use of equation 2
   MatchTrace* trace = nullptr;  ///< receives every accepted pair, if not null
+  DecisionTrace* decisions = nullptr;  ///< receives what became of every pair, if not null
 };
 
 /// Equation 2 under the context's settings, counted under a matcher's name.
-SemanticMatcher semantic_matcher(const SlamContext& context, Matcher matcher);
+SemanticMatcher semantic_matcher(const SlamContext& context, Matcher matcher,
+                                 GateLog* log = nullptr);
 
 /// Matches the landmarks that a keyframe sees to a frame by appearance alone (words, tight gate,
 /// ratio test) and traces them: one per feature of the frame, invalid = none.
 std::vector<LandmarkId> match_landmarks(const Keyframe& keyframe, const Query& query,
                                         const SlamContext& context, Matcher matcher);
+
+/// A search for landmarks in the current frame, where they should appear.
+struct ProjectionSearch {
+  const Query& query;
+  std::span<const ProjectionTarget> targets;
+  std::span<const LandmarkId> landmarks;  ///< of each target
+  std::span<const std::uint8_t> taken;    ///< as of match_by_projection()
+  ProjectionGate gate;
+};
+
+/// Returns the feature that each target matches, or -1, and traces them.
+std::vector<std::int32_t> find_landmarks(const ProjectionSearch& search, const SlamContext& context,
+                                         Matcher matcher);
 
 /// Pairs that match_by_projection() accepted.
 struct ProjectionPairs {

@@ -36,6 +36,30 @@ class RotationHistogram {
   std::array<bool, kBins> dominant_{};
 };
 
+/// The pairs of one search in a matcher's log, if it keeps one.
+class SearchLog {
+ public:
+  explicit SearchLog(GateLog* log) : log_(log), begin_(log == nullptr ? 0 : log->size()) {}
+  void add(std::uint32_t asked, const SemanticMatcher::Best& best, bool accepted,
+           float max_distance) {
+    if (log_ == nullptr || best.index == UINT32_MAX) return;
+    const MatchGate refused =
+        best.first.semantic > max_distance ? MatchGate::kThreshold : MatchGate::kRatio;
+    log_->push_back({asked, best.index, accepted ? MatchGate::kKept : refused});
+  }
+  /// Names the gate that removed the pairs for which `kept` is false now.
+  template <class Kept>
+  void settle(MatchGate gate, Kept kept) {
+    if (log_ == nullptr) return;
+    for (std::size_t i = begin_; i < log_->size(); ++i)
+      if ((*log_)[i].gate == MatchGate::kKept && !kept((*log_)[i])) (*log_)[i].gate = gate;
+  }
+
+ private:
+  GateLog* log_;
+  std::size_t begin_;
+};
+
 }  // namespace
 
 bool SemanticMatcher::accept(const Best& best, float max_distance, float ratio) {
@@ -57,6 +81,10 @@ std::vector<std::int32_t> match_by_projection(std::span<const ProjectionTarget> 
   std::vector<std::int32_t> match(targets.size(), -1);
   std::vector<std::int32_t> owner(features.size(), -1);
   std::vector<float> owner_distance(features.size(), 0.0F);
+  SearchLog log(matcher.log());
+  const auto is_match = [&](const GatedPair& pair) {
+    return match[pair.asked] == static_cast<std::int32_t>(pair.feature);
+  };
 
   for (std::size_t t = 0; t < targets.size(); ++t) {
     const ProjectionTarget& target = targets[t];
@@ -71,7 +99,9 @@ std::vector<std::int32_t> match_by_projection(std::span<const ProjectionTarget> 
                  k.octave);
     });
     const float ratio = best.first_octave == best.second_octave ? gate.ratio : 1.0F;
-    if (!matcher.accept(best, gate.max_distance, ratio)) continue;
+    const bool accepted = matcher.accept(best, gate.max_distance, ratio);
+    log.add(static_cast<std::uint32_t>(t), best, accepted, gate.max_distance);
+    if (!accepted) continue;
     std::int32_t& holder = owner[best.index];
     if (holder >= 0) {
       if (owner_distance[best.index] <= best.first.semantic) continue;
@@ -81,6 +111,8 @@ std::vector<std::int32_t> match_by_projection(std::span<const ProjectionTarget> 
     owner_distance[best.index] = best.first.semantic;
     match[t] = static_cast<std::int32_t>(best.index);
   }
+
+  log.settle(MatchGate::kTaken, is_match);
 
   if (gate.check_angle) {
     RotationHistogram histogram;
@@ -94,6 +126,7 @@ std::vector<std::int32_t> match_by_projection(std::span<const ProjectionTarget> 
           !histogram.keeps(targets[t].angle_rad,
                            features.keypoints[static_cast<std::size_t>(match[t])].angle_rad))
         match[t] = -1;
+    log.settle(MatchGate::kRotation, is_match);
   }
   return match;
 }
@@ -105,6 +138,7 @@ std::vector<FeatureMatch> match_by_words(
   const Features& b = view_b.features;
   std::vector<std::int32_t> owner(b.size(), -1);
   std::vector<float> owner_distance(b.size(), 0.0F);
+  SearchLog log(matcher.log());
 
   const auto& by_a = view_a.words.by_node;
   const auto& by_b = view_b.words.by_node;
@@ -131,13 +165,18 @@ std::vector<FeatureMatch> match_by_words(
                            {b.descriptors[fb], b.keypoints[fb].label}),
                    0);
       }
-      if (!matcher.accept(best, gate.max_distance, gate.ratio)) continue;
+      const bool accepted = matcher.accept(best, gate.max_distance, gate.ratio);
+      log.add(fa, best, accepted, gate.max_distance);
+      if (!accepted) continue;
       if (owner[best.index] >= 0 && owner_distance[best.index] <= best.first.semantic) continue;
       owner[best.index] = static_cast<std::int32_t>(fa);
       owner_distance[best.index] = best.first.semantic;
     }
     j = end_b;
   }
+  log.settle(MatchGate::kTaken, [&](const GatedPair& pair) {
+    return owner[pair.feature] == static_cast<std::int32_t>(pair.asked);
+  });
 
   RotationHistogram histogram;
   for (std::uint32_t fb = 0; fb < owner.size(); ++fb)
@@ -151,6 +190,9 @@ std::vector<FeatureMatch> match_by_words(
         histogram.keeps(a.keypoints[static_cast<std::size_t>(owner[fb])].angle_rad,
                         b.keypoints[fb].angle_rad))
       matches.push_back({static_cast<std::uint32_t>(owner[fb]), fb});
+  log.settle(MatchGate::kRotation, [&](const GatedPair& pair) {
+    return histogram.keeps(a.keypoints[pair.asked].angle_rad, b.keypoints[pair.feature].angle_rad);
+  });
   return matches;
 }
 

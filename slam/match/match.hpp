@@ -10,6 +10,7 @@
 #include "slam/features/feature_grid.hpp"
 #include "slam/features/features.hpp"
 #include "slam/match/counts.hpp"
+#include "slam/match/gate.hpp"
 #include "slam/vocabulary/word_index.hpp"
 
 namespace mh {
@@ -23,10 +24,12 @@ struct LabeledDescriptor {
 /// Equation 2 over ORB descriptors, with counts of its effect.
 class SemanticMatcher {
  public:
-  SemanticMatcher(const SemanticConfig& config, MatcherCounts& counts)
+  /// @param log  receives what became of each pair; null: nobody asks
+  SemanticMatcher(const SemanticConfig& config, MatcherCounts& counts, GateLog* log = nullptr)
       : xi_(static_cast<float>(config.xi)),
         policy_(config.void_is_a_label ? VoidPolicy::kIsALabel : VoidPolicy::kUnknown),
-        counts_(counts) {}
+        counts_(counts),
+        log_(log) {}
 
   struct Distance {
     float plain = 0;     ///< Hamming distance, bits
@@ -60,11 +63,13 @@ class SemanticMatcher {
   };
   /// Applies gate and ratio test (ratio >= 1: no test) and counts where xi changed the outcome.
   bool accept(const Best& best, float max_distance, float ratio);
+  GateLog* log() const { return log_; }
 
  private:
   float xi_;
   VoidPolicy policy_;
   MatcherCounts& counts_;
+  GateLog* log_;
 };
 
 /// A point with a predicted image position, to be searched for among a frame's features.

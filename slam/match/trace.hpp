@@ -6,6 +6,7 @@
 
 #include "slam/core/ids.hpp"
 #include "slam/match/counts.hpp"
+#include "slam/match/gate.hpp"
 
 namespace mh {
 
@@ -30,5 +31,21 @@ struct MatchedPair {
 /// Every pair that the matchers of a step accepted, in order. A disabled trace costs one
 /// null-pointer test per matcher call.
 using MatchTrace = std::vector<MatchedPair>;
+
+/// A pair that a search for the map's points in the current frame considered, kept or not. Each
+/// search is traced twice: first as it was, then as it would have been without equation 2 (xi = 1),
+/// which affects nothing.
+struct MatchDecision {
+  Matcher matcher{};
+  bool with_xi = true;
+  MatchGate gate = MatchGate::kKept;
+  std::uint32_t feature = 0;  ///< of the current frame
+  LandmarkId landmark;
+  KeyframeId keyframe;  ///< owner of the feature that was compared; invalid = the landmark's own
+  std::uint32_t other_feature = MatchedPair::kNone;  ///< of that keyframe
+};
+
+/// Decisions of a step, in order: relocalization by words and by pose, and the local map.
+using DecisionTrace = std::vector<MatchDecision>;
 
 }  // namespace mh

@@ -63,7 +63,8 @@ std::optional<TrackedPose> search_everywhere(const SlamState& state, Tracker& tr
 }  // namespace
 
 SlamContext context_of(const SlamState& state, const StepObservers& observers, StepReport& report) {
-  return {state.camera, state.config, state.map, report.matches, observers.matches};
+  return {state.camera,   state.config,      state.map,
+          report.matches, observers.matches, observers.decisions};
 }
 
 std::optional<Located> confirm_in_local_map(const PreparedFrame& frame, const TrackedPose& tracked,

@@ -2,6 +2,7 @@
 #include "slam/relocalize/candidate_trial.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <utility>
 
@@ -15,14 +16,19 @@ namespace {
 /// Relocalizes against one candidate keyframe.
 class CandidateTrial {
  public:
-  CandidateTrial(const Query& query, const SlamContext& context, PlaceMatchers matchers)
-      : query_(query), context_(context), matchers_(matchers) {}
+  CandidateTrial(const Query& query, const SlamContext& context, PlaceMatchers matchers,
+                 const TrialGivens& givens)
+      : query_(query), context_(context), matchers_(matchers), givens_(givens) {}
 
   CandidateAttempt run(KeyframeId candidate, RandomStream stream) {
     CandidateAttempt attempt;
     const Keyframe& keyframe = context_.map.at(candidate);
     const RelocalizeConfig& config = context_.config.relocalize;
+    if (givens_.camera_from_world) return search_around(*givens_.camera_from_world, keyframe);
     attempt.landmarks = match_landmarks(keyframe, query_, context_, matchers_.words);
+    for (std::uint32_t i = 0; i < attempt.landmarks.size(); ++i)
+      if (attempt.landmarks[i].valid() && !is_allowed(i, attempt.landmarks[i]))
+        attempt.landmarks[i] = LandmarkId{};
     attempt.inliers =
         static_cast<int>(std::count_if(attempt.landmarks.begin(), attempt.landmarks.end(),
                                        [](LandmarkId id) { return id.valid(); }));
@@ -38,7 +44,6 @@ class CandidateTrial {
 
  private:
   void accept_ours(const Keyframe& keyframe, RandomStream stream, CandidateAttempt& attempt) {
-    const MatchConfig& match = context_.config.match;
     const RelocalizeConfig& config = context_.config.relocalize;
     std::vector<std::uint32_t> feature_of;
     const auto observations = observe_all(attempt.landmarks, feature_of);
@@ -51,15 +56,41 @@ class CandidateTrial {
     // the pose, first widely, then narrowly around the refined pose.
     attempt.stage = RelocalizationStage::kInliers;
     refine(attempt);
-    for (const auto& [radius_px, max_distance] :
-         {std::pair{static_cast<float>(config.search_radius_px), match.max_distance_loose},
-          std::pair{4.0F, 2 * match.max_distance_loose / 3}}) {
+    for (const auto& [radius_px, max_distance] : guided_searches()) {
       if (attempt.inliers >= config.min_inliers || attempt.inliers < config.ransac.min_inliers)
         break;
-      search_by_pose(keyframe, radius_px, static_cast<float>(max_distance), attempt);
+      search_by_pose(keyframe, radius_px, max_distance, attempt);
       refine(attempt);
     }
     if (attempt.inliers >= config.min_inliers) attempt.stage = RelocalizationStage::kVerified;
+  }
+
+  /// Radius (px) and threshold (bits) of each.
+  std::array<std::pair<float, float>, 2> guided_searches() const {
+    const int loose = context_.config.match.max_distance_loose;
+    return {std::pair{static_cast<float>(context_.config.relocalize.search_radius_px),
+                      static_cast<float>(loose)},
+            std::pair{4.0F, static_cast<float>(2 * loose / 3)}};
+  }
+
+  /// The guided searches alone, from a given pose: TrialGivens::camera_from_world.
+  CandidateAttempt search_around(const SE3& camera_from_world, const Keyframe& keyframe) {
+    CandidateAttempt attempt;
+    attempt.stage = RelocalizationStage::kInliers;
+    attempt.camera_from_world = camera_from_world;
+    attempt.landmarks.resize(query_.features.size());
+    for (const auto& [radius_px, max_distance] : guided_searches()) {
+      search_by_pose(keyframe, radius_px, max_distance, attempt);
+      refine(attempt);
+      if (attempt.inliers < context_.config.relocalize.ransac.min_inliers) return attempt;
+    }
+    if (attempt.inliers >= context_.config.relocalize.min_inliers)
+      attempt.stage = RelocalizationStage::kVerified;
+    return attempt;
+  }
+
+  bool is_allowed(std::uint32_t feature, LandmarkId landmark) const {
+    return !givens_.allows || givens_.allows(feature, landmark);
   }
 
   void accept_as_orb_slam2(const Keyframe& keyframe, RandomStream stream,
@@ -154,14 +185,15 @@ class CandidateTrial {
       targets.push_back(*target);
       target_landmark.push_back(id);
     }
-    const auto found = match_by_projection(targets, query_.features, query_.grid, taken,
-                                           {.max_distance = max_distance, .check_angle = true},
-                                           semantic_matcher(context_, matchers_.projection));
-    trace_projection(context_, matchers_.projection,
-                     {{}, query_.features, targets, found, target_landmark});
+    const auto found = find_landmarks({query_,
+                                       targets,
+                                       target_landmark,
+                                       taken,
+                                       {.max_distance = max_distance, .check_angle = true}},
+                                      context_, matchers_.projection);
     int added = 0;
     for (std::size_t t = 0; t < found.size(); ++t)
-      if (found[t] >= 0) {
+      if (found[t] >= 0 && is_allowed(static_cast<std::uint32_t>(found[t]), target_landmark[t])) {
         attempt.landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
         ++added;
       }
@@ -171,13 +203,15 @@ class CandidateTrial {
   const Query& query_;
   const SlamContext& context_;
   PlaceMatchers matchers_;
+  const TrialGivens& givens_;
 };
 
 }  // namespace
 
 CandidateAttempt try_candidate(KeyframeId candidate, const Query& query, const SlamContext& context,
-                               RandomStream stream, PlaceMatchers matchers) {
-  return CandidateTrial(query, context, matchers).run(candidate, stream);
+                               RandomStream stream, PlaceMatchers matchers,
+                               const TrialGivens& givens) {
+  return CandidateTrial(query, context, matchers, givens).run(candidate, stream);
 }
 
 }  // namespace mh

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "slam/core/random.hpp"
@@ -25,6 +27,14 @@ struct CandidateAttempt {
   MatchCounts counts{};  ///< of this attempt alone
 };
 
+/// What an audit gives a trial to find what limits it. Empty wherever a system runs.
+struct TrialGivens {
+  /// Which matches to keep; others are dropped as soon as they are found. Empty: all.
+  std::function<bool(std::uint32_t feature, LandmarkId landmark)> allows = {};
+  /// The searches guided by a pose start from this one, without matches by words.
+  std::optional<SE3> camera_from_world = {};
+};
+
 /// Tries one candidate keyframe as RelocalizeConfig::acceptance says.
 ///
 /// `ours`: matches by words, PnP in RANSAC with depth, refinement; below min_inliers two searches
@@ -39,6 +49,7 @@ struct CandidateAttempt {
 /// candidates are tried one after the other, not five tries each in turn. Which one wins may
 /// differ, not whether one can.
 CandidateAttempt try_candidate(KeyframeId candidate, const Query& query, const SlamContext& context,
-                               RandomStream stream, PlaceMatchers matchers);
+                               RandomStream stream, PlaceMatchers matchers,
+                               const TrialGivens& givens = {});
 
 }  // namespace mh

@@ -83,8 +83,8 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
     const auto [place, is_new] = known.try_emplace(candidate);
     if (is_new) {
       MatchCounts its_counts{};
-      const SlamContext own_counts{context.camera, context.config, context.map, its_counts,
-                                   context.trace};
+      const SlamContext own_counts{context.camera, context.config, context.map,
+                                   its_counts,     context.trace,  context.decisions};
       place->second =
           try_candidate(candidate, query, own_counts, stream.fork(candidate.value), matchers);
       place->second.counts = its_counts;
@@ -102,6 +102,27 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
   return result;
 }
 
+namespace {
+
+/// The camera with the weight of depth that candidates are tried with.
+Camera lenient(const Camera& camera, const RelocalizeConfig& config) {
+  Camera camera_of_trials = camera;
+  if (config.acceptance == Acceptance::kOurs)
+    camera_of_trials.disparity_sigma_px =
+        std::max(camera.disparity_sigma_px, config.disparity_sigma_px);
+  return camera_of_trials;
+}
+
+}  // namespace
+
+CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamContext& context,
+                           RandomStream stream, const TrialGivens& givens) {
+  const Camera camera = lenient(context.camera, context.config.relocalize);
+  const SlamContext leniently{camera,         context.config, context.map,
+                              context.counts, context.trace,  context.decisions};
+  return try_candidate(candidate, query, leniently, stream.fork(candidate.value), {}, givens);
+}
+
 RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,
                                 AttemptMemo* memo, ReleasedScores* released) {
   const SlamConfig& config = context.config;
@@ -113,11 +134,9 @@ RelocalizationResult relocalize(const Query& query, const SlamContext& context, 
       select_keyframes(context.map, query.words.vector, config.semantics, released);
   std::vector<KeyframeId> candidates;
   for (const auto& candidate : selection.candidates) candidates.push_back(candidate.keyframe);
-  Camera lenient = context.camera;
-  if (config.relocalize.acceptance == Acceptance::kOurs)
-    lenient.disparity_sigma_px =
-        std::max(context.camera.disparity_sigma_px, config.relocalize.disparity_sigma_px);
-  const SlamContext leniently{lenient, config, context.map, context.counts, context.trace};
+  const Camera camera = lenient(context.camera, config.relocalize);
+  const SlamContext leniently{camera,         config,        context.map,
+                              context.counts, context.trace, context.decisions};
   RelocalizationResult result = try_candidates(query, candidates, leniently, stream, {}, memo);
   result.candidates = {.keyframes = context.map.keyframe_count(),
                        .c1 = selection.c1,

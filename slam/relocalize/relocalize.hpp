@@ -50,6 +50,10 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
                                     const SlamContext& context, RandomStream stream,
                                     PlaceMatchers matchers = {}, AttemptMemo* memo = nullptr);
 
+/// Tries one keyframe as relocalize() tries its candidates.
+CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamContext& context,
+                           RandomStream stream, const TrialGivens& givens = {});
+
 /// Localizes the camera in the map without an initial guess: Algorithm 1 chooses the candidates, in
 /// order of score. Depth is weighted by RelocalizeConfig::disparity_sigma_px: the pose is a
 /// starting point that the local map, weighting depth as the camera does, must confirm.

@@ -268,13 +268,14 @@ std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedP
     target_landmark.push_back(id);
     result.expected.push_back(id);
   }
-  const auto found = match_by_projection(
-      targets, query.features, query.grid, taken,
-      {.max_distance = static_cast<float>(context.config.match.max_distance_loose),
-       .ratio = static_cast<float>(context.config.match.ratio_projection)},
-      semantic_matcher(context, Matcher::kLocalMap));
-  trace_projection(context, Matcher::kLocalMap,
-                   {{}, query.features, targets, found, target_landmark});
+  const auto found =
+      find_landmarks({query,
+                      targets,
+                      target_landmark,
+                      taken,
+                      {.max_distance = static_cast<float>(context.config.match.max_distance_loose),
+                       .ratio = static_cast<float>(context.config.match.ratio_projection)}},
+                     context, Matcher::kLocalMap);
   for (std::size_t t = 0; t < found.size(); ++t)
     if (found[t] >= 0) landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
 

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "slam/pipeline/prepared_frame.hpp"
+#include "slam/relocalize/candidate_trial.hpp"
+
+namespace mh {
+
+/// What localize() would answer to a lost frame if one keyframe were its only candidate.
+struct Probe {
+  RelocalizationStage stage = RelocalizationStage::kNone;  ///< as of relocalize()
+  std::optional<SE3> world_from_camera;
+};
+
+/// Tries one keyframe for a lost frame, and refines its pose in the local map.
+/// @param frame   has its words
+/// @param stream  of localize(): the same draws, so that the winner among localize()'s candidates
+///                answers bit-identically alone
+/// @param givens  bear on the trial, not on the refinement
+Probe probe(KeyframeId candidate, const SlamState& frozen, const PreparedFrame& frame,
+            RandomStream stream, const TrialGivens& givens = {});
+
+}  // namespace mh
