@@ -33,6 +33,7 @@ digest_of(RUN slam/*.cpp slam/*.hpp scenes/*.cpp scenes/*.hpp scenes/categories/
           bench/results/call_times.* bench/results/run_result.hpp
           bench/run/occupancy.* bench/run/run_one.* include/modelhouse/*.h
           CMakeLists.txt)
+digest_of(AUDIT bench/audit/*.cpp bench/audit/*.hpp)
 
 # Where git is not installed: what .git says, a worktree's included. Changes in files go unseen.
 function(commit_from_files variable)
@@ -85,5 +86,6 @@ file(CONFIGURE OUTPUT ${OUT} CONTENT
 #pragma once
 #define MH_CODE_LIGHT \"${LIGHT}\"
 #define MH_CODE_RUN \"${RUN}\"
+#define MH_CODE_AUDIT \"${AUDIT}\"
 #define MH_COMMIT \"${commit}\"
 ")

@@ -9,6 +9,7 @@ namespace mh::cli {
 struct CheckFailed {};
 
 // Each adds one subcommand; its work runs in the callback, after the whole command line is parsed.
+void add_audit(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_check(CLI::App& app);
 void add_detector(CLI::App& app);

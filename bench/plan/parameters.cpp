@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "bench/plan/names.hpp"
 #include "slam/config/by_name.hpp"
 #include "slam/config/slam.hpp"
@@ -97,6 +99,14 @@ std::string_view shown_name(std::string_view setting) {
 std::string shown_value(const SlamConfig& config, std::string_view setting) {
   return is_number(setting) ? fmt::format("{:.4g}", setting_value(config, setting))
                             : setting_text(config, setting);
+}
+
+std::string shown_point(const Sweep& sweep, const SlamConfig& point) {
+  std::string text;
+  for (const std::string& name : sweep.varied)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", shown_name(name),
+                        shown_value(point, name));
+  return text;
 }
 
 Sweep read_sweep(YamlReader node, const SlamConfig& base) {

@@ -39,6 +39,9 @@ std::string_view shown_name(std::string_view setting);
 /// The value of a setting there: numbers to four digits.
 std::string shown_value(const SlamConfig& config, std::string_view setting);
 
+/// Those that the sweep varies: "gamma 1, features.count 500".
+std::string shown_point(const Sweep& sweep, const SlamConfig& point);
+
 /// The maximum number of settings that a Sobol sequence can vary.
 inline constexpr std::size_t kSobolDimensions = 8;
 

@@ -11,6 +11,9 @@ std::string_view code_of_light() {
 std::string_view code_of_run() {
   return MH_CODE_RUN;
 }
+std::string_view code_of_audit() {
+  return MH_CODE_AUDIT;
+}
 std::string_view built_commit() {
   return MH_COMMIT;
 }

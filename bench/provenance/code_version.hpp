@@ -9,6 +9,8 @@ namespace mh {
 std::string_view code_of_light();
 /// Digest of the sources that determine a run's result.
 std::string_view code_of_run();
+/// Digest of the sources that determine an audit of it, in addition.
+std::string_view code_of_audit();
 /// `git describe` of what was built; empty outside a repository.
 std::string_view built_commit();
 

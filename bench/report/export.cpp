@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/report/text_table.hpp"
 #include "bench/results/summary.hpp"
 #include "bench/store/load_results.hpp"
 #include "slam/config/slam.hpp"
@@ -16,13 +17,6 @@ namespace mh {
 namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
-
-std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
 
 std::string latex_cell(std::string_view text) {
   std::string safe;

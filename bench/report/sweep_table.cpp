@@ -16,15 +16,6 @@
 namespace mh {
 namespace {
 
-/// "gamma 1, features.count 500"
-std::string shown_point(const Sweep& sweep, const SlamConfig& point) {
-  std::string text;
-  for (const std::string& name : sweep.varied)
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", shown_name(name),
-                        shown_value(point, name));
-  return text;
-}
-
 std::string best_points(const Suite& suite, std::span<const Row> rows) {
   std::string text =
       "\nmost correct answers, and the difference to the suite's own settings, or to the first "

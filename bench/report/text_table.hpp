@@ -30,4 +30,7 @@ class TextTable {
   std::vector<Line> lines_;
 };
 
+/// A cell of a CSV file, in quotes where it needs them.
+std::string csv_cell(const std::string& text);
+
 }  // namespace mh

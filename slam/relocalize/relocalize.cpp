@@ -115,6 +115,16 @@ Camera lenient(const Camera& camera, const RelocalizeConfig& config) {
 
 }  // namespace
 
+CandidateSelection<KeyframeId> choose_candidates(const Map& map, const AugmentedVector& query,
+                                                 const SlamConfig& config,
+                                                 ReleasedScores* released) {
+  const NeighborScores neighbors = config.relocalize.neighbor_scores;
+  ReleasedScores cleared;
+  if (neighbors != NeighborScores::kAsReleased)
+    released = neighbors == NeighborScores::kCleared ? &cleared : nullptr;
+  return select_keyframes(map, query, config.semantics, released);
+}
+
 CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamContext& context,
                            RandomStream stream, const TrialGivens& givens) {
   const Camera camera = lenient(context.camera, context.config.relocalize);
@@ -126,12 +136,7 @@ CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamC
 RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,
                                 AttemptMemo* memo, ReleasedScores* released) {
   const SlamConfig& config = context.config;
-  const NeighborScores neighbors = config.relocalize.neighbor_scores;
-  ReleasedScores cleared;
-  if (neighbors != NeighborScores::kAsReleased)
-    released = neighbors == NeighborScores::kCleared ? &cleared : nullptr;
-  const auto selection =
-      select_keyframes(context.map, query.words.vector, config.semantics, released);
+  const auto selection = choose_candidates(context.map, query.words.vector, config, released);
   std::vector<KeyframeId> candidates;
   for (const auto& candidate : selection.candidates) candidates.push_back(candidate.keyframe);
   const Camera camera = lenient(context.camera, config.relocalize);

@@ -50,6 +50,12 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
                                     const SlamContext& context, RandomStream stream,
                                     PlaceMatchers matchers = {}, AttemptMemo* memo = nullptr);
 
+/// The candidates of relocalize(): select_keyframes() under RelocalizeConfig::neighbor_scores.
+/// @param released  of earlier queries; used and updated if the settings say so. @pre not null then
+CandidateSelection<KeyframeId> choose_candidates(const Map& map, const AugmentedVector& query,
+                                                 const SlamConfig& config,
+                                                 ReleasedScores* released);
+
 /// Tries one keyframe as relocalize() tries its candidates.
 CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamContext& context,
                            RandomStream stream, const TrialGivens& givens = {});

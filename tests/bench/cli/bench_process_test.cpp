@@ -680,6 +680,25 @@ TEST(BenchProcess, PartsThatDoNotBelongTogetherAreRefusedAndLeaveNothing) {
   EXPECT_FALSE(fs::exists(out));
 }
 
+TEST(BenchProcess, AnAuditLeavesItsTablesAndIsNotRepeated) {
+  const fs::path out = test_folder() / "audited";
+  const std::string command = "audit " + write_suite().string() + " --frames 45 --cache " +
+                              (test_folder() / "cache").string() + " --out " + out.string();
+  ASSERT_EQ(run(command), 0) << errors();
+  EXPECT_NE(errors().find("run and audit of semantic-exact"), std::string::npos) << errors();
+  const std::string table = content(test_folder() / "stdout");
+  for (const char* part : {"first cause", "ceilings", "retrieval", "matches by words", "CPU time"})
+    EXPECT_NE(table.find(part), std::string::npos) << part;
+  const std::string csv = content(out / "audit.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * (4 + 4)) << csv;
+  const std::string json = content(out / "audit.json");
+
+  ASSERT_EQ(run(command + " --json"), 0) << errors();
+  EXPECT_EQ(errors().find("run and audit of"), std::string::npos) << errors();
+  EXPECT_EQ(content(test_folder() / "stdout"), json);
+  EXPECT_EQ(content(out / "audit.csv"), csv);
+}
+
 TEST(BenchProcess, BadInputIsTold) {
   std::ofstream(test_folder() / "empty.yaml");
   EXPECT_EQ(run("bench " + (test_folder() / "empty.yaml").string()), 2);

@@ -104,9 +104,9 @@ class CommandLine : public testing::Test {
 
 TEST_F(CommandLine, EveryCommandHasHelpWithAnExample) {
   for (const char* command :
-       {"", "bench", "verify", "evaluate", "scene", "scene info", "scene preview", "scene convert",
-        "drive", "render", "slam", "twin", "merge", "export", "vocabulary", "vocabulary train",
-        "vocabulary convert", "vocabulary info"}) {
+       {"", "audit", "bench", "verify", "evaluate", "scene", "scene info", "scene preview",
+        "scene convert", "drive", "render", "slam", "twin", "merge", "export", "vocabulary",
+        "vocabulary train", "vocabulary convert", "vocabulary info"}) {
     EXPECT_EQ(run(std::string(command) + " --help"), 0) << command;
     EXPECT_NE(out_.find("Example"), std::string::npos) << command;
     EXPECT_NE(out_.find("  modelhouse "), std::string::npos) << command;
@@ -362,6 +362,22 @@ TEST_F(CommandLine, BenchFindsWhatCannotBeWorkedWithBeforeTheWork) {
       "systems",
       "[{name: vo, protocol: conversation, command: '" + write("plain.txt", "x").string() + "'}]",
       "it may not be executed");
+}
+
+TEST_F(CommandLine, AnAuditTakesOurOwnSystemsInSimulatedScenes) {
+  const std::string out = (folder_ / "audit").string();
+  const std::string theirs = "[semantic, {name: theirs, protocol: conversation, command: cat}]";
+  expect_refused("audit " + suite_with("systems", theirs).string() + " --out " + out,
+                 "'theirs' is an outside system, which gives no match traces");
+  fs::create_directories(folder_ / "desk");
+  write("desk/rgb.txt", "# none\n");
+  const fs::path recorded = write(
+      "recorded.yaml", "environments: [{category: desk, sequence: 'tum:desk', settings: " +
+                           std::string(MH_SOURCE_DIR) +
+                           "/assets/cameras/tum_freiburg1.yaml}]\nvocabulary: " + MH_SOURCE_DIR +
+                           "/assets/vocabulary.mhvoc\nsystems: [plain]\nlabels: [none]\n");
+  expect_refused("audit " + recorded.string() + " --out " + out, "is a recording");
+  EXPECT_FALSE(fs::exists(out)) << "refused, and yet it left a folder";
 }
 
 TEST_F(CommandLine, MissingSceneFile) {

@@ -52,6 +52,34 @@ TEST(MatchByProjection, PenalizesDisagreeingLabelsAndCounts) {
   EXPECT_EQ(semantic.rejected_by_xi, 0);
 }
 
+TEST(MatchByProjection, LogsWhatBecameOfEachPair) {
+  Frame frame;
+  frame.add(100, 100, flipped(kBase, 10));
+  frame.add(200, 100, flipped(kBase, 70));
+  frame.add(300, 100, flipped(kBase, 20));
+  frame.add(303, 100, flipped(kBase, 22));
+  const FeatureGrid grid(frame.features.keypoints, Camera{});
+  const std::vector<std::uint8_t> taken(4, 0);
+  const Descriptor nearer = flipped(kBase, 5);
+  const auto target = [](float u_px, const Descriptor& descriptor) {
+    return ProjectionTarget{.u_px = u_px, .v_px = 100, .radius_px = 10, .descriptor = &descriptor};
+  };
+  const std::vector<ProjectionTarget> targets{target(100, kBase), target(101, nearer),
+                                              target(200, kBase), target(301, kBase),
+                                              target(500, kBase)};
+  MatcherCounts counts;
+  GateLog log{{7, 7, MatchGate::kKept}};  // of a search before
+  const auto match =
+      match_by_projection(targets, frame.features, grid, taken, {.max_distance = 50, .ratio = 0.8F},
+                          SemanticMatcher(SemanticConfig{}, counts, &log));
+  EXPECT_EQ(match, (std::vector<std::int32_t>{-1, 0, -1, -1, -1}));
+  std::vector<std::pair<std::uint32_t, MatchGate>> gates;
+  for (const GatedPair& pair : log) gates.emplace_back(pair.asked, pair.gate);
+  using enum MatchGate;
+  EXPECT_EQ(gates, (std::vector<std::pair<std::uint32_t, MatchGate>>{
+                       {7, kKept}, {0, kTaken}, {1, kKept}, {2, kThreshold}, {3, kRatio}}));
+}
+
 TEST(SemanticMatcher, CountsThresholdAndRatioEffectsApart) {
   MatcherCounts counts;
   SemanticMatcher matcher(SemanticConfig{.xi = 2.0}, counts);

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bench/audit/query_audit.hpp"
+#include "bench/plan/runs.hpp"
+#include "bench/results/run_result.hpp"
+#include "bench/run/run_one.hpp"
+#include "bench/world/world.hpp"
+#include "slam/pipeline/slam.hpp"
+
+namespace mh {
+
+/// @throws InputError naming the run and the reason, if it has no match traces (an outside system)
+/// or no exact truth (a recording).
+void require_auditable(const RunSpec& spec);
+
+/// Executes a run as run_one() does, and keeps its finished map.
+/// @param frozen  receives it, under the settings of the run's last point
+RunResult run_with_map(const RunSpec& spec, const World& world, RunTools tools, SlamState& frozen);
+
+/// Compares every query of a finished run with the truth of its scene. The system is asked again,
+/// on the side: the run's result stays as it is.
+/// @param frozen    of run_with_map(); ends under the settings of the last point
+/// @param progress  receives the share of the work that is done
+/// @throws MachineError if the map does not answer as it did in the run.
+RunAudit audit_run(
+    const RunResult& run, const World& world, SlamState& frozen,
+    const std::function<void(double)>& progress = [](double) {});
+
+}  // namespace mh

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/audit/audit_suite.hpp"
+
+#include <fmt/format.h>
+
+#include "bench/audit/audit.hpp"
+#include "bench/cache/cache.hpp"
+#include "bench/inputs/inputs.hpp"
+#include "bench/inputs/run_key.hpp"
+#include "bench/provenance/code_version.hpp"
+#include "bench/provenance/digest.hpp"
+#include "bench/provenance/json_fields.hpp"
+#include "bench/systems/timed.hpp"
+#include "slam/core/temporary_folder.hpp"
+
+namespace mh {
+namespace {
+
+RunAudit execute(const RunSpec& spec, const AuditOptions& options, const Cache& cache,
+                 const std::function<void(double, std::string_view)>& progress) {
+  double run_s = 0;
+  SlamState frozen;
+  std::optional<World> world;
+  const RunResult run = [&] {
+    const ProcessorTimer timer(run_s);
+    world = build_world(spec, options.threads, cache, options.say);
+    std::string status = "starts";
+    return run_with_map(spec, *world,
+                        {.progress = [&](double share) { progress(0.5 * share, status); },
+                         .status = [&](std::string_view now) { status = now; },
+                         .maps = cache},
+                        frozen);
+  }();
+  RunAudit audit =
+      audit_run(run, *world, frozen, [&](double share) { progress(0.5 + 0.5 * share, "audit"); });
+  audit.run_s = run_s;
+  return audit;
+}
+
+/// What an audit depends on: its run, and the code of the audit.
+std::string audit_key(const RunSpec& spec, InputReader& inputs) {
+  return text_key(run_key(spec, inputs.inputs_of(spec)) + std::string(code_of_audit()));
+}
+
+}  // namespace
+
+std::vector<AuditedRun> audit_suite(const Suite& suite, const AuditOptions& options) {
+  const std::vector<RunSpec> specs = expand(suite);
+  for (const RunSpec& spec : specs) require_auditable(spec);
+  std::optional<TemporaryFolder> for_now;  // light and maps are shared among these runs anyway
+  if (!options.cache) for_now.emplace(std::filesystem::temp_directory_path());
+  const Cache cache(options.cache ? *options.cache : for_now->path());
+  InputReader inputs(options.say);
+  std::vector<AuditedRun> audited;
+  for (const RunSpec& spec : specs) {
+    const auto progress = [&](double share, std::string_view what) {
+      options.progress(
+          (static_cast<double>(audited.size()) + share) / static_cast<double>(specs.size()),
+          fmt::format("{} of {} audited, {}", audited.size(), specs.size(), what));
+    };
+    const std::string kept = cache.get("audit", audit_key(spec, inputs), [&] {
+      options.say(fmt::format("run and audit of {}", spec.name));
+      return json_of(execute(spec, options, cache, progress)).dump();
+    });
+    audited.push_back({spec, {}});
+    read_json(nlohmann::ordered_json::parse(kept), audited.back().audit);
+  }
+  return audited;
+}
+
+}  // namespace mh

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "bench/audit/summary.hpp"
+
+namespace mh {
+
+struct AuditOptions {
+  /// Keeps baked light, finished maps and finished audits; nullopt: nothing is kept.
+  std::optional<std::filesystem::path> cache;
+  int threads = 1;  ///< for baking light
+  std::function<void(std::string_view)> say = [](std::string_view) {};
+  /// Receives the share of the work that is done, and what is being done.
+  std::function<void(double, std::string_view)> progress = [](double, std::string_view) {};
+};
+
+/// Executes the runs of a suite one after the other and audits each. An audit that is in the cache
+/// is not repeated.
+/// @throws InputError before any work if a run cannot be audited (require_auditable()).
+std::vector<AuditedRun> audit_suite(const Suite& suite, const AuditOptions& options);
+
+}  // namespace mh

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "bench/audit/true_view.hpp"
+#include "slam/core/fields.hpp"
+#include "slam/match/trace.hpp"
+#include "slam/semantics/descriptor_distance.hpp"
+
+namespace mh {
+
+/// The stages of relocalization that match features.
+enum class MatchStage { kWords, kGuided, kLocalMap };
+inline constexpr MatchStage kMatchStages[] = {MatchStage::kWords, MatchStage::kGuided,
+                                              MatchStage::kLocalMap};
+inline constexpr std::size_t kMatchStageCount = 3;
+std::string_view name(MatchStage stage);
+/// nullopt: no stage of relocalization.
+std::optional<MatchStage> stage_of(Matcher matcher);
+
+/// What there is to know of one end of a match.
+struct MatchEnd {
+  std::optional<TruePoint> point;  ///< none: it shows no surface
+  ClassId label = kVoid;           ///< as SLAM has it
+};
+
+/// Pairs of a stage, with the truth known, by the gate that each one met.
+struct GateCounts {
+  std::array<std::int64_t, kMatchGates> right{}, wrong{};  ///< by MatchGate
+
+  std::int64_t kept_right() const { return right[0]; }
+  std::int64_t kept_wrong() const { return wrong[0]; }
+  /// Share of the kept pairs that are right; absent without any.
+  std::optional<double> precision() const;
+  /// Share of the right pairs that were kept; absent without any. Of a point that was looked for,
+  /// only the nearest feature makes a pair.
+  std::optional<double> recall() const;
+  GateCounts& operator+=(const GateCounts& more);
+};
+
+template <Either<GateCounts> C, class Visit>
+void fields(C& counts, Visit& v) {
+  auto& [right, wrong] = counts;
+  v("right", right);
+  v("wrong", wrong);
+}
+
+/// What equation 2 changed in a stage.
+struct XiEffect {
+  // Right pairs that would be kept at xi = 1 and are not, by what took them; another: a pair that
+  // xi favors, or the rotation of most.
+  std::int64_t lost_to_threshold = 0, lost_to_ratio = 0, lost_to_another = 0;
+  // The same by why their labels differ: one is void, one is within kBorder_px of another class, or
+  // else one must be wrong. The labels of the rest agree: another pair's change cost them.
+  std::int64_t lost_by_void = 0, lost_at_border = 0, lost_by_label_error = 0;
+  std::int64_t right_gained = 0;  ///< kept, and would not be at xi = 1
+  std::int64_t wrong_removed = 0, wrong_gained = 0;
+  // Pairs kept at xi = 1 whose labels differ.
+  std::int64_t right_differ = 0, wrong_differ = 0;
+
+  std::int64_t right_lost() const { return lost_to_threshold + lost_to_ratio + lost_to_another; }
+  XiEffect& operator+=(const XiEffect& more);
+};
+
+template <Either<XiEffect> E, class Visit>
+void fields(E& effect, Visit& v) {
+  auto& [lost_to_threshold, lost_to_ratio, lost_to_another, lost_by_void, lost_at_border,
+         lost_by_label_error, right_gained, wrong_removed, wrong_gained, right_differ,
+         wrong_differ] = effect;
+  v("right_lost_to_threshold", lost_to_threshold);
+  v("right_lost_to_ratio", lost_to_ratio);
+  v("right_lost_to_another", lost_to_another);
+  v("right_lost_by_void", lost_by_void);
+  v("right_lost_at_border", lost_at_border);
+  v("right_lost_by_label_error", lost_by_label_error);
+  v("right_gained", right_gained);
+  v("wrong_removed", wrong_removed);
+  v("wrong_gained", wrong_gained);
+  v("right_differ", right_differ);
+  v("wrong_differ", wrong_differ);
+}
+
+/// One stage's matches.
+struct StageMatches {
+  GateCounts with_xi, without_xi;
+  XiEffect xi;
+  StageMatches& operator+=(const StageMatches& more);
+};
+
+template <Either<StageMatches> M, class Visit>
+void fields(M& matches, Visit& v) {
+  auto& [with_xi, without_xi, xi] = matches;
+  v("with_xi", with_xi);
+  v("without_xi", without_xi);
+  v("xi", xi);
+}
+using MatchAudit = std::array<StageMatches, kMatchStageCount>;
+void add(const MatchAudit& more, MatchAudit& sum);
+
+/// The two ends of a decision: the frame's feature, and the map's point.
+using EndsOf = std::function<std::pair<MatchEnd, MatchEnd>(const MatchDecision&)>;
+
+/// Compares the decisions of one step with the truth. Pairs of which an end shows no surface are
+/// left out.
+/// @param policy  how void is treated by equation 2
+MatchAudit audit_matches(const DecisionTrace& decisions, const EndsOf& ends_of, VoidPolicy policy);
+
+}  // namespace mh

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "bench/audit/matches.hpp"
+#include "bench/metrics/query_summary.hpp"
+#include "slam/core/fields.hpp"
+#include "slam/core/words.hpp"
+#include "slam/relocalize/outcome.hpp"
+
+namespace mh {
+
+/// A keyframe shows nothing of what a query sees if it shows less than this share of it.
+inline constexpr double kInSight = 0.1;
+/// A keyframe is relevant to a query if it shows at least this share of what the query sees.
+inline constexpr double kRelevant = 0.25;
+/// "The nearest": so many keyframes, by true distance, 1 rad equivalent to 1 m.
+inline constexpr std::size_t kNearest = 5;
+
+/// Why the first attempt at a query gave no correct answer: the first of these that applies.
+enum class FirstCause {
+  kNone,             ///< it was correct
+  kWrongCandidates,  ///< a keyframe alone would have given a correct answer
+  kNothingInSight,   ///< no keyframe shows kInSight of what the query sees
+  kFewMatches,       ///< with no keyframe enough matches by words to try a pose
+  kFalseAnswer,      ///< a pose was returned
+  kFewInliers        ///< no pose with enough inliers
+};
+
+constexpr Names<FirstCause, 6> words(FirstCause) {
+  return {{{"none", FirstCause::kNone},
+           {"wrong_candidates", FirstCause::kWrongCandidates},
+           {"nothing_in_sight", FirstCause::kNothingInSight},
+           {"few_matches", FirstCause::kFewMatches},
+           {"false_answer", FirstCause::kFalseAnswer},
+           {"few_inliers", FirstCause::kFewInliers}}};
+}
+
+/// What is true of one query under one parameter point. All but `correct` and `attempts` is of the
+/// first attempt.
+struct QueryAudit {
+  std::size_t frame = 0;  ///< of its sequence
+  bool correct = false;   ///< in the run, after all its attempts
+  int attempts = 0;
+  bool first_answered = false, first_correct = false;
+  RelocalizationStage stage = RelocalizationStage::kNone;
+  FirstCause cause = FirstCause::kNone;
+
+  // Where the query is: co-visibility is the share of its surface that a keyframe shows.
+  double best_co_visible = 0;
+  std::optional<double> nearest_m = {},
+                        nearest_deg = {};  ///< to the truly nearest keyframe, if any
+  int keyframes = 0, relevant = 0;
+
+  // Retrieval: what Algorithm 1 chose, and all keyframes by their similarity (equation 5).
+  int candidates = 0, relevant_candidates = 0;
+  std::optional<int> solving_candidate = {};  ///< rank of the first that solves, from 1
+  std::optional<double> average_precision = {};
+  std::optional<double> precision_1 = {}, precision_5 = {}, precision_10 = {};
+  std::optional<double> recall_1 = {}, recall_5 = {}, recall_10 = {};
+  std::optional<int> solving_rank = {};  ///< of the most similar keyframe that solves, from 1
+  std::optional<double> solving_m = {}, solving_deg = {},
+                        solving_co_visible = {};  ///< of that keyframe
+  double label_mass = 0;
+
+  // Ceilings: what would solve the query. The last two include the first.
+  bool by_any = false;          ///< some keyframe as the only candidate
+  bool by_nearest = false;      ///< one of the kNearest keyframes
+  bool without_false = false;   ///< some keyframe, with all false matches removed
+  bool with_true_pose = false;  ///< some keyframe, if guided searches start from the true pose
+  MatchAudit matches{};
+};
+
+template <Either<QueryAudit> A, class Visit>
+void fields(A& audit, Visit& v) {
+  auto& [frame, correct, attempts, first_answered, first_correct, stage, cause, best_co_visible,
+         nearest_m, nearest_deg, keyframes, relevant, candidates, relevant_candidates,
+         solving_candidate, average_precision, precision_1, precision_5, precision_10, recall_1,
+         recall_5, recall_10, solving_rank, solving_m, solving_deg, solving_co_visible, label_mass,
+         by_any, by_nearest, without_false, with_true_pose, matches] = audit;
+  v("frame", frame);
+  v("correct", correct);
+  v("attempts", attempts);
+  v("first_answered", first_answered);
+  v("first_correct", first_correct);
+  v("stage", stage);
+  v("cause", cause);
+  v("best_co_visible", best_co_visible);
+  v("nearest_m", nearest_m);
+  v("nearest_deg", nearest_deg);
+  v("keyframes", keyframes);
+  v("relevant", relevant);
+  v("candidates", candidates);
+  v("relevant_candidates", relevant_candidates);
+  v("solving_candidate", solving_candidate);
+  v("average_precision", average_precision);
+  v("precision_1", precision_1);
+  v("precision_5", precision_5);
+  v("precision_10", precision_10);
+  v("recall_1", recall_1);
+  v("recall_5", recall_5);
+  v("recall_10", recall_10);
+  v("solving_rank", solving_rank);
+  v("solving_m", solving_m);
+  v("solving_deg", solving_deg);
+  v("solving_co_visible", solving_co_visible);
+  v("label_mass", label_mass);
+  v("by_any", by_any);
+  v("by_nearest", by_nearest);
+  v("without_false", without_false);
+  v("with_true_pose", with_true_pose);
+  v("matches", matches);
+}
+
+/// The queries of one parameter point.
+struct PointAudit {
+  std::vector<QueryAudit> held_out, second_tour;
+};
+inline const std::vector<QueryAudit>& queries(const PointAudit& point, QuerySet set) {
+  return set == QuerySet::kHeldOut ? point.held_out : point.second_tour;
+}
+inline std::vector<QueryAudit>& queries(PointAudit& point, QuerySet set) {
+  return set == QuerySet::kHeldOut ? point.held_out : point.second_tour;
+}
+
+template <Either<PointAudit> A, class Visit>
+void fields(A& point, Visit& v) {
+  auto& [held_out, second_tour] = point;
+  v("held_out", held_out);
+  v("second_tour", second_tour);
+}
+
+/// The audit of one run.
+struct RunAudit {
+  std::vector<PointAudit> points;  ///< as RunSpec::points
+  // CPU time, s: not deterministic.
+  double audit_s = 0, run_s = 0;
+  bool map_from_cache = false;  ///< run_s is then without the mapping
+};
+
+template <Either<RunAudit> A, class Visit>
+void fields(A& audit, Visit& v) {
+  auto& [points, audit_s, run_s, map_from_cache] = audit;
+  v("points", points);
+  v("audit_s", audit_s);
+  v("run_s", run_s);
+  v("map_from_cache", map_from_cache);
+}
+
+}  // namespace mh

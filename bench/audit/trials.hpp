@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "bench/audit/query_audit.hpp"
+#include "bench/audit/true_map.hpp"
+#include "slam/pipeline/probe.hpp"
+
+namespace mh {
+
+/// What came of one keyframe as the only candidate.
+struct TrialOutcome {
+  RelocalizationStage stage = RelocalizationStage::kNone;
+  bool correct = false;
+};
+
+/// Outcomes known so far of one query under one xi and void policy, which alone bear on them: as
+/// the system is, without false matches, from the true pose.
+struct TrialMemo {
+  std::map<KeyframeId, TrialOutcome> plain, without_false, with_true_pose;
+};
+
+/// Tries single keyframes for one query, each at most once.
+class Trials {
+ public:
+  /// What the trials are of; the references outlive them.
+  struct Subject {
+    const SlamState& frozen;
+    const PreparedFrame& frame;  ///< with its words
+    RandomStream draws;
+    const TrueMap& truth;
+    const TrueView& view;  ///< of the query
+    std::function<bool(const SE3& world_from_camera)> is_correct;
+    std::optional<SE3> camera_from_map;  ///< true; none: unknown in this map
+  };
+  Trials(Subject subject, TrialMemo& memo) : subject_(std::move(subject)), memo_(memo) {}
+
+  const TrialOutcome& outcome(KeyframeId keyframe);
+  bool solves(KeyframeId keyframe) { return outcome(keyframe).correct; }
+  bool solves_without_false(KeyframeId keyframe);
+  bool solves_with_true_pose(KeyframeId keyframe);
+
+ private:
+  const TrialOutcome& known(std::map<KeyframeId, TrialOutcome>& memo, KeyframeId keyframe,
+                            const std::function<TrialGivens()>& givens);
+  Subject subject_;
+  TrialMemo& memo_;
+};
+
+/// Keyframes in the orders in which an audit asks for them.
+struct KeyframeOrders {
+  std::span<const KeyframeId> nearest;     ///< by true distance
+  std::span<const KeyframeId> co_visible;  ///< by co-visibility, those with any; best first
+};
+
+/// Fills in the ceilings of a query and its first cause. Tries no more keyframes than it must.
+/// @param audit  has its answers and best_co_visible
+void find_ceilings(Trials& trials, const KeyframeOrders& orders, QueryAudit& audit);
+
+}  // namespace mh

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "bench/audit/true_view.hpp"
+#include "bench/metrics/query_summary.hpp"
+#include "bench/world/world.hpp"
+#include "slam/map/map.hpp"
+
+namespace mh {
+
+/// What a finished map truly shows.
+struct TrueMap {
+  std::vector<KeyframeId> live;                     ///< keyframes, by id
+  std::vector<std::optional<TrueView>> views;       ///< by keyframe id; none of erased ones
+  std::vector<std::optional<TruePoint>> landmarks;  ///< by landmark id: see true_landmark()
+};
+
+/// The point that a landmark stands for: the median, by coordinate, of what the keypoints that
+/// observe it show, so that one wrong observation does not move it. None if no keypoint shows
+/// anything.
+std::optional<TruePoint> true_landmark(const Landmark& landmark,
+                                       const std::vector<std::optional<TrueView>>& views);
+
+/// The scene as it is at a moment of the mapping (with its pedestrian), or of the second tour.
+std::shared_ptr<const Renderer> scene_at(const SimulatedPlace& place, QuerySet set, Stamp stamp_ns);
+
+/// Renders every live keyframe at its true pose. @pre world.simulated
+TrueMap true_map(const Map& map, const World& world, const TrueCamera& camera);
+
+}  // namespace mh

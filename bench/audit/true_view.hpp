@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "sim/render/renderer.hpp"
+#include "slam/core/camera.hpp"
+#include "slam/core/grid2d.hpp"
+#include "slam/core/se3.hpp"
+#include "slam/features/features.hpp"
+
+namespace mh {
+
+/// Two points are of the same surface if they are no farther apart than this, or than this share of
+/// their depth if that is more.
+inline constexpr double kSamePoint_m = 0.08;
+inline constexpr double kSamePointShare = 0.04;
+
+/// What a keypoint truly shows.
+struct TruePoint {
+  Eigen::Vector3d in_world;
+  double depth_m = 0;      ///< in the view that it was seen in
+  bool at_border = false;  ///< of two classes, kBorder_px away at most
+};
+inline constexpr int kBorder_px = 3;
+
+/// The exact surface in sight of a camera.
+struct TrueView {
+  SE3 world_from_camera;  ///< true
+  Camera camera;          ///< without its lens
+  Grid2d<float> depth_m;  ///< of every kStep-th pixel and row; 0 = nothing hit
+  std::vector<std::optional<TruePoint>> points;  ///< by feature; none where nothing is hit
+
+  static constexpr int kStep = 4;
+};
+
+/// A camera as SLAM knows it, and one without a lens that sees at least as much.
+struct TrueCamera {
+  explicit TrueCamera(const Camera& camera);
+  Camera camera, wide;
+};
+
+/// Renders what a camera at a true pose sees, and looks up what its keypoints show. A keypoint that
+/// straddles two surfaces shows the nearer one, as it does to SLAM.
+/// @param features  of the frame taken there (undistorted); with a rolling shutter they are off by
+///                  the camera's motion within the frame, which is not undone
+TrueView look(const Renderer& renderer, const TrueCamera& camera, const SE3& world_from_camera,
+              const Features& features);
+
+/// Whether two keypoints show the same place.
+bool same_place(const TruePoint& a, const TruePoint& b);
+
+/// Share, in [0, 1], of the surface that `view` shows which `other` shows too: points behind a
+/// regular grid of pixels, projected into `other`, where its own depth agrees. 0 if `view` shows
+/// nothing.
+double co_visible_share(const TrueView& view, const TrueView& other);
+
+}  // namespace mh

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bench/audit/audit_suite.hpp"
+#include "bench/audit/write.hpp"
+#include "bench/cache/cache.hpp"
+#include "bench/cli/arguments.hpp"
+#include "bench/cli/commands.hpp"
+#include "bench/cli/progress.hpp"
+#include "bench/cli/set_option.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh::cli {
+namespace {
+
+struct Options {
+  std::string suite, out, cache;
+  std::optional<int> trials;
+  std::optional<std::size_t> frames;
+  SetOption set;
+  bool no_cache = false, json = false;
+};
+
+void run(Options options) {
+  resolve(options.suite, Shipped::kSuite);
+  SuiteOverrides overrides;
+  overrides.set = options.set.values();
+  overrides.trials = options.trials;
+  overrides.max_frames = options.frames;
+  const Suite suite = load_suite(options.suite, overrides);
+  const std::filesystem::path out = options.out.empty()
+                                        ? std::filesystem::path("out") / (suite.name + "-audit")
+                                        : std::filesystem::path(options.out);
+  const OutputFolder folder(out, "audit", {"audit.json", "audit.csv", "audit.txt"});
+
+  Progress progress("audit");
+  AuditOptions how;
+  if (!options.no_cache) {
+    how.cache =
+        options.cache.empty() ? Cache::default_folder() : std::filesystem::absolute(options.cache);
+    if (how.cache->empty()) how.cache.reset();
+  }
+  how.say = [&](std::string_view stage) { progress.say(stage); };
+  how.progress = [&](double share, std::string_view status) { progress.share(share, status); };
+  const std::vector<AuditedRun> audited = audit_suite(suite, how);
+  progress.end();
+
+  const std::string text = audit_text(suite, audited);
+  const std::string json = audit_json(suite, audited).dump(2) + "\n";
+  write_atomically(out / "audit.json", json);
+  write_atomically(out / "audit.csv", audit_csv(audited));
+  write_atomically(out / "audit.txt", text);
+  if (options.json)
+    fmt::print("{}", json);
+  else
+    fmt::print("{}\naudit.json, audit.csv, audit.txt in {}\n", text, out.string());
+}
+
+}  // namespace
+
+void add_audit(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "audit", "Says why queries fail: a suite's matches and candidates against the exact truth.");
+  command->add_option("suite", options->suite, "Suite: a file (YAML), or the name of a shipped one")
+      ->required();
+  command->add_option("--out", options->out, "Folder for the tables (default: out/<suite>-audit)");
+  command
+      ->add_option("--trials", options->trials,
+                   "Repeats with seeds 0 .. N-1 (default: the suite's)")
+      ->check(CLI::Range(1, 1000));
+  command
+      ->add_option("--frames", options->frames,
+                   "Cuts the tours after N frames, for a quick look (default: all)")
+      ->check(CLI::Range(1, 100000000));
+  options->set.add_to(*command);
+  command->add_option("--cache", options->cache,
+                      "Cache folder for expensive results (default: $XDG_CACHE_HOME/modelhouse)");
+  command->add_flag("--no-cache", options->no_cache, "Rebuilds everything, caches nothing");
+  command->add_flag("--json", options->json, "Prints audit.json instead of the tables");
+  command->footer(
+      "Example:\n  modelhouse audit model_house\n"
+      "For simulated scenes and the systems `semantic` and `plain`; see docs/audit.md.");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace mh::cli

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole runs in a room whose exact images are known in closed form.
+#include "bench/audit/audit.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "bench/audit/summary.hpp"
+#include "bench/audit/write.hpp"
+#include "bench/provenance/json_fields.hpp"
+#include "sim/world/sequence.hpp"
+#include "slam/config/slam.hpp"
+#include "slam/core/error.hpp"
+#include "slam/pipeline/map_file.hpp"
+#include "tests/bench/audit/box_room_renderer.hpp"
+#include "tests/slam/pipeline/box_room_slam.hpp"
+
+namespace mh {
+namespace {
+
+using testing_support::BoxRoom;
+using testing_support::BoxRoomRenderer;
+using testing_support::kFrame_ns;
+
+constexpr int kTurn = 240;  // frames of a whole turn; the tours see a part of it
+
+Trajectory tour(int first, int last, const Eigen::Vector3d& moved_m = Eigen::Vector3d::Zero()) {
+  Trajectory path;
+  for (int i = first; i < last; ++i) {
+    const SE3 pose = BoxRoom::round_trip(i, kTurn);
+    path.push_back({i * kFrame_ns, SE3(pose.rotation(), pose.translation() + moved_m)});
+  }
+  return path;
+}
+
+/// The room is mapped over a third of a turn. The second tour is another path through it, or
+/// through `elsewhere`.
+World world(Trajectory second = tour(10, 70, {0.15, -0.1, 0.05}),
+            std::shared_ptr<const Renderer> elsewhere = nullptr) {
+  World made;
+  SimulatedPlace& place = made.simulated.emplace();
+  place.scene = std::make_shared<Scene>();
+  place.renderer = std::make_shared<BoxRoomRenderer>();
+  place.second_renderer = std::move(elsewhere);
+  place.robot.camera = BoxRoom::camera();
+  place.mapping.camera = tour(0, 80);
+  place.second.emplace().camera = std::move(second);
+  place.sensors = exact_sensors();
+  made.vocabulary = testing_support::vocabulary();
+  simulate(made, LabelMode::kExact);
+  return made;
+}
+
+RunSpec spec(std::vector<SemanticConfig> points = {SemanticConfig{}}) {
+  RunSpec made;
+  made.name = "semantic-exact-room-0";
+  made.environment.name = made.environment.category = "room";
+  made.labels = LabelMode::kExact;
+  made.seed = 3;
+  made.slam = testing_support::box_room_settings(points.front());
+  made.points = std::move(points);
+  made.protocol.test_interval = 10;
+  return made;
+}
+
+RunTools quick() {
+  return {.occupancy = false};
+}
+
+struct Audited {
+  SlamState frozen;
+  RunResult run;
+  RunAudit audit;
+};
+
+Audited audited(const RunSpec& of, const World& in) {
+  Audited made;
+  made.run = run_with_map(of, in, quick(), made.frozen);
+  made.audit = audit_run(made.run, in, made.frozen);
+  return made;
+}
+
+/// Digests of everything that a run showed and answered.
+std::vector<std::uint64_t> bits_of(const RunResult& run) {
+  std::vector<std::uint64_t> bits{run.map_digest};
+  for (const MappedFrame& call : run.mapping.calls)
+    bits.insert(bits.end(), {call.image_digest, call.matching_digest, call.pose_digest});
+  for_each_query(run, [&](const QueryScore& q) {
+    bits.insert(bits.end(),
+                {q.answer.image_digest, q.answer.matching_digest, q.answer.pose_digest});
+  });
+  return bits;
+}
+
+TEST(AuditRun, ChangesNoBitOfTheRunNorOfItsMap) {
+  const World in = world();
+  const RunSpec of = spec({SemanticConfig{}, SemanticConfig::neutral()});
+  const RunResult plain = run_one(of, in, quick());
+  SlamState frozen;
+  const RunResult run = run_with_map(of, in, quick(), frozen);
+  const std::string map = encode_slam(frozen);
+  audit_run(run, in, frozen);
+  EXPECT_EQ(bits_of(run), bits_of(plain));
+  EXPECT_GT(bits_of(run).size(), 100U);
+  EXPECT_EQ(encode_slam(frozen), map);
+}
+
+TEST(AuditRun, FindsEachQuerySolvableThatIsAnsweredRightly) {
+  const World in = world();
+  const Audited a = audited(spec(), in);
+  ASSERT_EQ(a.audit.points.size(), 1U);
+  const PointAudit& point = a.audit.points[0];
+  EXPECT_EQ(point.held_out.size(), 8U);
+  EXPECT_EQ(point.second_tour.size(), 6U);
+  for (const QuerySet set : kQuerySets)
+    for (const QueryAudit& q : queries(point, set)) {
+      EXPECT_TRUE(q.first_correct) << name(set) << " " << q.frame;
+      EXPECT_TRUE(q.correct);
+      EXPECT_EQ(q.cause, FirstCause::kNone);
+      EXPECT_TRUE(q.by_any && q.without_false && q.with_true_pose);
+      EXPECT_TRUE(q.solving_candidate.has_value())
+          << "the winning candidate alone does not answer as it did among the others";
+      EXPECT_GT(q.best_co_visible, 0.7);
+      EXPECT_LT(*q.nearest_m, 0.3);
+      EXPECT_GE(q.relevant, 1);
+      EXPECT_GT(*q.average_precision, 0.5);
+      const StageMatches& words = q.matches[static_cast<std::size_t>(MatchStage::kWords)];
+      EXPECT_GE(words.with_xi.kept_right(), 15);
+      EXPECT_GT(*words.with_xi.precision(), 0.8) << "the room is sharp and all its patches differ";
+    }
+}
+
+TEST(AuditRun, WithoutAnythingInCommonNothingIsInSight) {
+  const World in = world(tour(10, 70, {100, 0, 0}), std::make_shared<BoxRoomRenderer>(100, true));
+  const Audited a = audited(spec(), in);
+  for (const QueryAudit& q : a.audit.points[0].second_tour) {
+    EXPECT_EQ(q.cause, FirstCause::kNothingInSight);
+    EXPECT_EQ(q.best_co_visible, 0.0);
+    EXPECT_EQ(q.relevant, 0);
+    EXPECT_FALSE(q.average_precision.has_value());
+    EXPECT_FALSE(q.by_any || q.without_false || q.with_true_pose);
+    EXPECT_NEAR(*q.nearest_m, 100, 3);
+  }
+}
+
+// The same walls in sight, but gray: nothing can be matched to them.
+TEST(AuditRun, WithoutTextureThereAreFewMatches) {
+  const World in = world(tour(10, 70), std::make_shared<BoxRoomRenderer>(0, true));
+  const Audited a = audited(spec(), in);
+  for (const QueryAudit& q : a.audit.points[0].second_tour) {
+    EXPECT_EQ(q.cause, FirstCause::kFewMatches);
+    EXPECT_GT(q.best_co_visible, 0.7);
+    EXPECT_FALSE(q.first_answered || q.by_any);
+  }
+}
+
+TEST(AuditRun, XiOneChangesNoMatch) {
+  SemanticConfig neutral = SemanticConfig::neutral();
+  const Audited a = audited(spec({neutral}), world());
+  for (const QueryAudit& q : a.audit.points[0].held_out)
+    for (const StageMatches& m : q.matches) {
+      EXPECT_EQ(m.with_xi.right, m.without_xi.right);
+      EXPECT_EQ(m.with_xi.wrong, m.without_xi.wrong);
+      EXPECT_EQ(m.xi.right_lost() + m.xi.right_gained + m.xi.wrong_removed + m.xi.wrong_gained, 0);
+    }
+}
+
+TEST(AuditRun, OfManyPointsIsThatOfEachAlone) {
+  const SemanticConfig paper{}, heavy{.gamma = 5, .xi = 3};
+  const World in = world();
+  // One map, made under the first settings.
+  const Audited both = audited(spec({paper, heavy, paper}), in);
+  const Audited alone = audited(spec({paper}), in);
+  EXPECT_EQ(json_of(both.audit.points[0]), json_of(alone.audit.points[0]));
+  EXPECT_EQ(json_of(both.audit.points[2]), json_of(alone.audit.points[0]));
+  EXPECT_NE(json_of(both.audit.points[1]), json_of(alone.audit.points[0]));
+}
+
+// The answers then depend on the order of the queries and on each attempt.
+TEST(AuditRun, FollowsTheRunUnderReleasedScores) {
+  RunSpec of = spec({SemanticConfig{}, SemanticConfig::neutral()});
+  SlamConfig settings = *of.slam;
+  settings.relocalize.neighbor_scores = NeighborScores::kAsReleased;
+  of.slam = settings;
+  EXPECT_NO_THROW(audited(of, world()));  // MachineError where an answer differs from the run's
+}
+
+TEST(AuditRun, AnswersThatAreNotTheRunsAreRefused) {
+  const World in = world();
+  SlamState frozen;
+  RunResult run = run_with_map(spec(), in, quick(), frozen);
+  run.points[0].held_out[2].answer.world_from_camera = SE3();
+  EXPECT_THROW(audit_run(run, in, frozen), MachineError);
+}
+
+TEST(AuditRun, IsReadBackAsItWasWritten) {
+  const Audited a = audited(spec(), world());
+  RunAudit read;
+  read_json(nlohmann::ordered_json::parse(json_of(a.audit).dump()), read);
+  EXPECT_EQ(json_of(read), json_of(a.audit));
+}
+
+std::string why_refused(const RunSpec& of) {
+  try {
+    require_auditable(of);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(RequireAuditable, RefusesOutsideSystemsAndRecordings) {
+  EXPECT_EQ(why_refused(spec()), "");
+  RunSpec outside = spec();
+  outside.system = {SystemKind::kOutside, "theirs", {}};
+  EXPECT_NE(why_refused(outside).find("'theirs' is an outside system"), std::string::npos);
+  RunSpec recorded = spec();
+  recorded.environment.sequence = "tum:desk";
+  EXPECT_NE(why_refused(recorded).find("'room' is a recording"), std::string::npos);
+}
+
+QueryAudit made_up(FirstCause cause, bool solvable) {
+  QueryAudit q;
+  q.first_correct = q.correct = cause == FirstCause::kNone;
+  q.cause = cause;
+  q.by_any = q.without_false = q.with_true_pose = solvable;
+  q.candidates = 2;
+  q.relevant_candidates = 1;
+  if (solvable) q.solving_candidate = cause == FirstCause::kNone ? 1 : 3;
+  return q;
+}
+
+TEST(AuditSummary, CausesAndSuccessAddUpToAllQueries) {
+  using enum FirstCause;
+  std::vector<QueryAudit> all;
+  for (const FirstCause cause : {kNone, kNone, kNone, kWrongCandidates, kNothingInSight,
+                                 kFewMatches, kFalseAnswer, kFewInliers})
+    all.push_back(made_up(cause, cause == kNone || cause == kWrongCandidates));
+  std::vector<const QueryAudit*> pointers;
+  for (const QueryAudit& q : all) pointers.push_back(&q);
+  const AuditSummary s = summarize(pointers);
+  EXPECT_EQ(s.queries, 8U);
+  EXPECT_DOUBLE_EQ(s.first_correct + s.wrong_candidates + s.nothing_in_sight + s.few_matches +
+                       s.false_answer + s.few_inliers,
+                   1.0);
+  EXPECT_DOUBLE_EQ(s.by_any, 0.5);
+  EXPECT_DOUBLE_EQ(*s.first_correct_of_solvable, 0.75);
+  EXPECT_DOUBLE_EQ(*s.first_candidate_solves, 0.75);
+  EXPECT_DOUBLE_EQ(*s.relevant_candidates, 0.5);
+  EXPECT_FALSE(s.average_precision.has_value());
+}
+
+TEST(AuditFiles, HaveOneRowPerQueryAndEveryFigure) {
+  const RunSpec of = spec({SemanticConfig{}, SemanticConfig::neutral()});
+  Suite suite;
+  suite.name = "made up";
+  const std::vector<AuditedRun> runs{{of,
+                                      {.points = {{{made_up(FirstCause::kNone, true)}, {}},
+                                                  {{made_up(FirstCause::kFewMatches, false)}, {}}},
+                                       .audit_s = 2,
+                                       .run_s = 8}}};
+  const std::string csv = audit_csv(runs);
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 3);
+  const auto columns = [&](std::size_t begin) {
+    return std::ranges::count(csv.substr(begin, csv.find('\n', begin) - begin), ',');
+  };
+  EXPECT_EQ(columns(0), columns(csv.find('\n') + 1));
+  EXPECT_NE(csv.find("few_matches"), std::string::npos);
+
+  const auto json = audit_json(suite, runs);
+  EXPECT_EQ(json["rows"].size(), 1U) << "without a sweep the points of a run are one row";
+  EXPECT_EQ(json["rows"][0]["queries"], 2);
+  EXPECT_EQ(json["rows"][0]["few_matches"], 0.5);
+  EXPECT_EQ(json["environments"][0]["environment"], "room");
+  const std::string text = audit_text(suite, runs);
+  EXPECT_NE(text.find("1.00 s of CPU time per query (2 queries), 25 % of what the run took"),
+            std::string::npos)
+      << text;
+}
+
+}  // namespace
+}  // namespace mh
