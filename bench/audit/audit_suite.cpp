@@ -16,19 +16,25 @@
 namespace mh {
 namespace {
 
-RunAudit execute(const RunSpec& spec, const AuditOptions& options, const Cache& cache,
+/// What the runs of a suite share.
+struct Shared {
+  Cache cache;  ///< of light, maps and audits
+  SharedImages images;
+};
+
+RunAudit execute(const RunSpec& spec, const AuditOptions& options, const Shared& shared,
                  const std::function<void(double, std::string_view)>& progress) {
   double run_s = 0;
   SlamState frozen;
   std::optional<World> world;
   const RunResult run = [&] {
     const ProcessorTimer timer(run_s);
-    world = build_world(spec, options.threads, cache, options.say);
+    world = build_world(spec, options.threads, shared.cache, options.say, {}, shared.images);
     std::string status = "starts";
     return run_with_map(spec, *world,
                         {.progress = [&](double share) { progress(0.5 * share, status); },
                          .status = [&](std::string_view now) { status = now; },
-                         .maps = cache},
+                         .maps = shared.cache},
                         frozen);
   }();
   RunAudit audit =
@@ -47,9 +53,10 @@ std::string audit_key(const RunSpec& spec, InputReader& inputs) {
 std::vector<AuditedRun> audit_suite(const Suite& suite, const AuditOptions& options) {
   const std::vector<RunSpec> specs = expand(suite);
   for (const RunSpec& spec : specs) require_auditable(spec);
-  std::optional<TemporaryFolder> for_now;  // light and maps are shared among these runs anyway
-  if (!options.cache) for_now.emplace(std::filesystem::temp_directory_path());
-  const Cache cache(options.cache ? *options.cache : for_now->path());
+  const TemporaryFolder for_now(std::filesystem::temp_directory_path());
+  const Shared shared{
+      Cache(options.cache ? *options.cache : for_now.path() / "cache"),
+      {for_now.path() / "images", static_cast<std::uint64_t>(1e9 * options.images_limit_gb)}};
   InputReader inputs(options.say);
   std::vector<AuditedRun> audited;
   for (const RunSpec& spec : specs) {
@@ -58,9 +65,13 @@ std::vector<AuditedRun> audit_suite(const Suite& suite, const AuditOptions& opti
           (static_cast<double>(audited.size()) + share) / static_cast<double>(specs.size()),
           fmt::format("{} of {} audited, {}", audited.size(), specs.size(), what));
     };
-    const std::string kept = cache.get("audit", audit_key(spec, inputs), [&] {
+    // Images are of one environment at one level; its runs follow one another.
+    if (!audited.empty() && (audited.back().spec.environment.name != spec.environment.name ||
+                             audited.back().spec.level != spec.level))
+      std::filesystem::remove_all(shared.images.folder);
+    const std::string kept = shared.cache.get("audit", audit_key(spec, inputs), [&] {
       options.say(fmt::format("run and audit of {}", spec.name));
-      return json_of(execute(spec, options, cache, progress)).dump();
+      return json_of(execute(spec, options, shared, progress)).dump();
     });
     audited.push_back({spec, {}});
     read_json(nlohmann::ordered_json::parse(kept), audited.back().audit);

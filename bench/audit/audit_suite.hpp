@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/audit/summary.hpp"
+#include "bench/run/run.hpp"
 
 namespace mh {
 
@@ -15,6 +16,8 @@ struct AuditOptions {
   /// Keeps baked light, finished maps and finished audits; nullopt: nothing is kept.
   std::optional<std::filesystem::path> cache;
   int threads = 1;  ///< for baking light
+  /// Space for the images of one environment, which its runs share.
+  double images_limit_gb = BenchOptions{}.images_limit_gb;
   std::function<void(std::string_view)> say = [](std::string_view) {};
   /// Receives the share of the work that is done, and what is being done.
   std::function<void(double, std::string_view)> progress = [](double, std::string_view) {};
