@@ -138,7 +138,11 @@ class RunAuditor {
           apart(asked, truth_.views[asked.nearest.front().value]->world_from_camera);
 
     const SemanticConfig& settings = frozen_.config.semantics;
-    Trials trials(subject(asked), asked.tried[{settings.xi, settings.void_is_a_label}]);
+    TrialMemo& tried = asked.tried[{settings.xi, settings.void_is_a_label}];
+    if (!tried.with_every_keyframe) tried.with_every_keyframe = match_every_keyframe(asked);
+    audit.matches[static_cast<std::size_t>(MatchStage::kEveryKeyframe)] =
+        *tried.with_every_keyframe;
+    Trials trials(subject(asked), tried);
     find_ceilings(trials, {asked.nearest, asked.best_in_view}, audit);
     score_retrieval(asked, retrieved, trials, audit);
     return audit;
@@ -172,10 +176,26 @@ class RunAuditor {
     if (digest(pose) != digest(in_run))
       throw MachineError(fmt::format("{}: {} {}: the audit's answer is not the run's", spec_.name,
                                      name(asked.set), score.answer.index));
+    audit.matches = audit_of(asked, decisions);
+  }
+
+  MatchAudit audit_of(const Asked& asked, const DecisionTrace& decisions) const {
     const VoidPolicy policy =
         frozen_.config.semantics.void_is_a_label ? VoidPolicy::kIsALabel : VoidPolicy::kUnknown;
-    audit.matches = audit_matches(
+    return audit_matches(
         decisions, [&](const MatchDecision& d) { return ends_of(asked, d); }, policy);
+  }
+
+  StageMatches match_every_keyframe(Asked& asked) const {
+    DecisionTrace decisions;
+    StepObservers observers;
+    observers.decisions = &decisions;
+    StepReport not_reported;
+    const SlamContext context = context_of(frozen_, observers, not_reported);
+    const Query query = with_words(asked.frame, frozen_, StepObservers());
+    for (const KeyframeId k : truth_.live)
+      match_landmarks(frozen_.map.at(k), query, context, Matcher::kRelocalizationWords);
+    return audit_of(asked, decisions)[static_cast<std::size_t>(MatchStage::kWords)];
   }
 
   std::pair<std::optional<SE3>, RelocalizationStage> ask(PreparedFrame& frame, RandomStream draws,

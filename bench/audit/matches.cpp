@@ -101,9 +101,11 @@ std::string_view name(MatchStage stage) {
     case MatchStage::kGuided:
       return "guided";
     case MatchStage::kLocalMap:
+      return "local_map";
+    case MatchStage::kEveryKeyframe:
       break;
   }
-  return "local_map";
+  return "every_keyframe";
 }
 
 std::optional<MatchStage> stage_of(Matcher matcher) {

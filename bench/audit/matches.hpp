@@ -15,11 +15,12 @@
 
 namespace mh {
 
-/// The stages of relocalization that match features.
-enum class MatchStage { kWords, kGuided, kLocalMap };
+/// The stages of relocalization that match features, and matching by words with every keyframe of
+/// the map, which does not depend on the choice of candidates.
+enum class MatchStage { kWords, kGuided, kLocalMap, kEveryKeyframe };
 inline constexpr MatchStage kMatchStages[] = {MatchStage::kWords, MatchStage::kGuided,
-                                              MatchStage::kLocalMap};
-inline constexpr std::size_t kMatchStageCount = 3;
+                                              MatchStage::kLocalMap, MatchStage::kEveryKeyframe};
+inline constexpr std::size_t kMatchStageCount = 4;
 std::string_view name(MatchStage stage);
 /// nullopt: no stage of relocalization.
 std::optional<MatchStage> stage_of(Matcher matcher);

@@ -109,24 +109,52 @@ std::string retrieval(std::span<const AuditRow> rows) {
       });
 }
 
+std::string_view title(MatchStage stage) {
+  switch (stage) {
+    case MatchStage::kWords:
+      return "by words with the candidates that were tried";
+    case MatchStage::kGuided:
+      return "guided by a first pose";
+    case MatchStage::kLocalMap:
+      return "in the local map";
+    case MatchStage::kEveryKeyframe:
+      break;
+  }
+  return "by words with every keyframe of the map";
+}
+
+std::string differ(std::int64_t part, std::int64_t all) {
+  if (all == 0) return "-";
+  return percent(static_cast<double>(part) / static_cast<double>(all));
+}
+
 std::string matches(std::span<const AuditRow> rows) {
   std::string text;
   for (const MatchStage stage : kMatchStages)
     text += table(
-        fmt::format("matches by {}: with equation 2 and as they would be at xi = 1", name(stage)),
+        fmt::format("matches {}: with equation 2 and as they would be at xi = 1", title(stage)),
         rows,
         {"kept right", "wrong", "precision", "at 1", "recall", "at 1", "right lost", "threshold",
-         "ratio", "other", "border", "label error", "void", "wrong removed"},
+         "ratio", "other", "border", "label error", "void", "wrong removed", "right differ %",
+         "wrong differ %"},
         [&](const AuditSummary& s) {
           const StageMatches& m = s.matches[static_cast<std::size_t>(stage)];
-          return std::vector{
-              std::to_string(m.with_xi.kept_right()), std::to_string(m.with_xi.kept_wrong()),
-              number(m.with_xi.precision(), 3),       number(m.without_xi.precision(), 3),
-              number(m.with_xi.recall(), 3),          number(m.without_xi.recall(), 3),
-              std::to_string(m.xi.right_lost()),      std::to_string(m.xi.lost_to_threshold),
-              std::to_string(m.xi.lost_to_ratio),     std::to_string(m.xi.lost_to_another),
-              std::to_string(m.xi.lost_at_border),    std::to_string(m.xi.lost_by_label_error),
-              std::to_string(m.xi.lost_by_void),      std::to_string(m.xi.wrong_removed)};
+          return std::vector{std::to_string(m.with_xi.kept_right()),
+                             std::to_string(m.with_xi.kept_wrong()),
+                             number(m.with_xi.precision(), 3),
+                             number(m.without_xi.precision(), 3),
+                             number(m.with_xi.recall(), 3),
+                             number(m.without_xi.recall(), 3),
+                             std::to_string(m.xi.right_lost()),
+                             std::to_string(m.xi.lost_to_threshold),
+                             std::to_string(m.xi.lost_to_ratio),
+                             std::to_string(m.xi.lost_to_another),
+                             std::to_string(m.xi.lost_at_border),
+                             std::to_string(m.xi.lost_by_label_error),
+                             std::to_string(m.xi.lost_by_void),
+                             std::to_string(m.xi.wrong_removed),
+                             differ(m.xi.right_differ, m.without_xi.kept_right()),
+                             differ(m.xi.wrong_differ, m.without_xi.kept_wrong())};
         });
   return text;
 }

@@ -23,6 +23,7 @@ struct TrialOutcome {
 /// the system is, without false matches, from the true pose.
 struct TrialMemo {
   std::map<KeyframeId, TrialOutcome> plain, without_false, with_true_pose;
+  std::optional<StageMatches> with_every_keyframe;  ///< matches by words
 };
 
 /// Tries single keyframes for one query, each at most once.

@@ -128,6 +128,9 @@ TEST(AuditRun, FindsEachQuerySolvableThatIsAnsweredRightly) {
       const StageMatches& words = q.matches[static_cast<std::size_t>(MatchStage::kWords)];
       EXPECT_GE(words.with_xi.kept_right(), 15);
       EXPECT_GT(*words.with_xi.precision(), 0.8) << "the room is sharp and all its patches differ";
+      const StageMatches& all = q.matches[static_cast<std::size_t>(MatchStage::kEveryKeyframe)];
+      EXPECT_GE(all.with_xi.kept_right(), words.with_xi.kept_right());
+      EXPECT_GE(all.with_xi.kept_wrong(), words.with_xi.kept_wrong());
     }
 }
 

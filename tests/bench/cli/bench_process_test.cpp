@@ -687,7 +687,8 @@ TEST(BenchProcess, AnAuditLeavesItsTablesAndIsNotRepeated) {
   ASSERT_EQ(run(command), 0) << errors();
   EXPECT_NE(errors().find("run and audit of semantic-exact"), std::string::npos) << errors();
   const std::string table = content(test_folder() / "stdout");
-  for (const char* part : {"first cause", "ceilings", "retrieval", "matches by words", "CPU time"})
+  for (const char* part :
+       {"first cause", "ceilings", "retrieval", "by words with every keyframe", "CPU time"})
     EXPECT_NE(table.find(part), std::string::npos) << part;
   const std::string csv = content(out / "audit.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * (4 + 4)) << csv;
