@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include "bench/audit/audit_suite.hpp"
 #include "bench/audit/write.hpp"
 #include "bench/cache/cache.hpp"
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/set_option.hpp"
+#include "bench/cli/write_audit.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh::cli {
@@ -33,32 +33,42 @@ void run(Options options) {
   const std::filesystem::path out = options.out.empty()
                                         ? std::filesystem::path("out") / (suite.name + "-audit")
                                         : std::filesystem::path(options.out);
-  const OutputFolder folder(out, "audit", {"audit.json", "audit.csv", "audit.txt"});
+  const OutputFolder folder(out, "audit", names_of_audit());
 
+  std::optional<std::filesystem::path> cache;
+  if (!options.no_cache) {
+    cache =
+        options.cache.empty() ? Cache::default_folder() : std::filesystem::absolute(options.cache);
+    if (cache->empty()) cache.reset();
+  }
+  const WrittenAudit written = write_audit(out, suite, cache);
+  if (options.json)
+    fmt::print("{}", written.json);
+  else
+    fmt::print("{}\naudit.json, audit.csv, audit.txt in {}\n", written.text, out.string());
+}
+
+}  // namespace
+
+std::vector<std::string> names_of_audit() {
+  return {"audit.json", "audit.csv", "audit.txt"};
+}
+
+WrittenAudit write_audit(const std::filesystem::path& out, const Suite& suite,
+                         const std::optional<std::filesystem::path>& cache) {
   Progress progress("audit");
   AuditOptions how;
-  if (!options.no_cache) {
-    how.cache =
-        options.cache.empty() ? Cache::default_folder() : std::filesystem::absolute(options.cache);
-    if (how.cache->empty()) how.cache.reset();
-  }
+  how.cache = cache;
   how.say = [&](std::string_view stage) { progress.say(stage); };
   how.progress = [&](double share, std::string_view status) { progress.share(share, status); };
   const std::vector<AuditedRun> audited = audit_suite(suite, how);
   progress.end();
-
-  const std::string text = audit_text(suite, audited);
-  const std::string json = audit_json(suite, audited).dump(2) + "\n";
-  write_atomically(out / "audit.json", json);
+  WrittenAudit made{audit_text(suite, audited), audit_json(suite, audited).dump(2) + "\n"};
+  write_atomically(out / "audit.json", made.json);
   write_atomically(out / "audit.csv", audit_csv(audited));
-  write_atomically(out / "audit.txt", text);
-  if (options.json)
-    fmt::print("{}", json);
-  else
-    fmt::print("{}\naudit.json, audit.csv, audit.txt in {}\n", text, out.string());
+  write_atomically(out / "audit.txt", made.text);
+  return made;
 }
-
-}  // namespace
 
 void add_audit(CLI::App& app) {
   auto options = std::make_shared<Options>();

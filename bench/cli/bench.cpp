@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include <fmt/format.h>
 
+#include "bench/audit/audit.hpp"
 #include "bench/cache/cache.hpp"
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
@@ -10,8 +13,10 @@
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/cli/set_option.hpp"
+#include "bench/cli/write_audit.hpp"
 #include "bench/protocol/config.hpp"
 #include "bench/run/run.hpp"
+#include "slam/core/error.hpp"
 #include "slam/core/settings_io.hpp"
 
 namespace mh::cli {
@@ -30,6 +35,7 @@ struct Options {
   std::string cache;
   bool no_cache = false;
   bool retry_failed = false;
+  bool audit = false;
   double time_limit_s = BenchOptions{}.time_limit_s;
   double memory_limit_mb = 0;
   double images_limit_gb = BenchOptions{}.images_limit_gb;
@@ -77,7 +83,13 @@ void run(Options options) {
   bench.memory_limit_mb = options.memory_limit_mb;
   bench.images_limit_gb = options.images_limit_gb;
   bench.retry_failed = options.retry_failed;
-  const OutputFolder folder(bench.out, "bench", names_written(bench.out, suite));
+  std::vector<std::string> names = names_written(bench.out, suite);
+  if (options.audit) {
+    if (bench.shard.of > 1) throw InputError("--audit: takes the whole suite, no --shard");
+    for (const RunSpec& spec : expand(suite)) require_auditable(spec);
+    if (!names.empty()) std::ranges::move(names_of_audit(), std::back_inserter(names));
+  }
+  const OutputFolder folder(bench.out, "bench", names);
 
   Progress progress("bench");
   bench.say = [&](std::string_view stage) { progress.say(stage); };
@@ -85,6 +97,9 @@ void run(Options options) {
   const BenchResults results = run_suite(suite, overrides, bench);
   progress.end();
   finish(bench.out, suite, results, options.json);
+  if (!options.audit) return;
+  const WrittenAudit audit = write_audit(bench.out, suite, bench.cache);
+  if (!options.json) fmt::print("{}", audit.text);
 }
 
 }  // namespace
@@ -118,6 +133,8 @@ void add_bench(CLI::App& app) {
   command->add_option("--cache", options->cache,
                       "Cache folder for expensive results (default: $XDG_CACHE_HOME/modelhouse)");
   command->add_flag("--no-cache", options->no_cache, "Rebuilds everything, caches nothing");
+  command->add_flag("--audit", options->audit,
+                    "Audits every query afterward, as `audit` does: maps come from the cache");
   command->add_flag("--retry-failed", options->retry_failed, "Tries failed runs again");
   command->add_option("--time-limit", options->time_limit_s, "Seconds for one run; 0 = none")
       ->check(number_between(0.0, 1e9));

@@ -700,6 +700,19 @@ TEST(BenchProcess, AnAuditLeavesItsTablesAndIsNotRepeated) {
   EXPECT_EQ(content(out / "audit.csv"), csv);
 }
 
+TEST(BenchProcess, ABenchWithAnAuditGivesTheSameResultsAndTheSameAudit) {
+  ASSERT_EQ(run(bench(write_suite(), "bench_and_audit", "--audit")), 0) << errors();
+  EXPECT_NE(content(test_folder() / "stdout").find("ceilings"), std::string::npos);
+  EXPECT_EQ(tables("bench_and_audit"), undisturbed());
+  const std::string alone = (test_folder() / "audit_alone").string();
+  ASSERT_EQ(run("audit " + write_suite().string() + " --frames 45 --no-cache --out " + alone), 0)
+      << errors();
+  EXPECT_EQ(content(test_folder() / "bench_and_audit" / "audit.csv"),
+            content(fs::path(alone) / "audit.csv"));
+  EXPECT_EQ(run(bench(write_suite(), "part", "--audit --shard 1/3")), 2);
+  EXPECT_NE(errors().find("--audit: takes the whole suite"), std::string::npos) << errors();
+}
+
 TEST(BenchProcess, BadInputIsTold) {
   std::ofstream(test_folder() / "empty.yaml");
   EXPECT_EQ(run("bench " + (test_folder() / "empty.yaml").string()), 2);

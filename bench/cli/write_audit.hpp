@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/audit/audit_suite.hpp"
+
+namespace mh::cli {
+
+/// Names of the files that write_audit() leaves in a folder.
+std::vector<std::string> names_of_audit();
+
+/// What was written: the tables and audit.json.
+struct WrittenAudit {
+  std::string text, json;
+};
+
+/// Audits a suite and writes the files into a folder.
+/// @param cache  as of AuditOptions
+WrittenAudit write_audit(const std::filesystem::path& out, const Suite& suite,
+                         const std::optional<std::filesystem::path>& cache);
+
+}  // namespace mh::cli
