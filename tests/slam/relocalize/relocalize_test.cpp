@@ -249,6 +249,48 @@ TEST(Relocalize, OrbSlam2AsksForHalfOfTheMatches) {
   EXPECT_EQ(stage(16, Acceptance::kOurs), RelocalizationStage::kInliers);
 }
 
+CandidateAttempt alone(const TwoViews& views, const TrialGivens& givens = {}) {
+  const SlamConfig config;
+  const FeatureGrid grid(views.features.keypoints, views.camera);
+  MatchCounts counts{};
+  return try_alone(KeyframeId{0}, {views.features, grid, views.words},
+                   {views.camera, config, views.map, counts}, RandomStream(1), givens);
+}
+
+TEST(TryAlone, AnswersAsAmongTheCandidates) {
+  const TwoViews views([](std::uint32_t i) { return i < 7; });
+  const auto among = views.find(Acceptance::kOurs);
+  const CandidateAttempt tried = alone(views);
+  EXPECT_EQ(tried.stage, among.stage);
+  EXPECT_EQ(tried.landmarks, among.landmarks);
+  EXPECT_EQ(tried.camera_from_world.translation(), among.camera_from_world->translation());
+  EXPECT_EQ(tried.camera_from_world.rotation(), among.camera_from_world->rotation());
+}
+
+TEST(TryAlone, KeepsOnlyTheMatchesThatAreAllowed) {
+  const TwoViews views([](std::uint32_t) { return false; });
+  const auto first = [&](std::uint32_t count) {
+    return alone(views, {.allows = [=](std::uint32_t feature, LandmarkId landmark) {
+                   EXPECT_EQ(feature, landmark.value);
+                   return feature < count;
+                 }});
+  };
+  EXPECT_EQ(first(14).stage, RelocalizationStage::kMatches) << "one fewer than it takes";
+  EXPECT_EQ(first(40).stage, RelocalizationStage::kInliers) << "guided searches found the others";
+  EXPECT_EQ(first(55).inliers, 55);
+}
+
+// No keypoint shares a word with the keyframe: by words there is no match, around the pose all.
+TEST(TryAlone, AGivenPoseNeedsNoMatchByWords) {
+  const TwoViews views([](std::uint32_t) { return false; }, [](std::uint32_t) { return false; });
+  EXPECT_EQ(alone(views).stage, RelocalizationStage::kMatches);
+  const CandidateAttempt given = alone(views, {.camera_from_world = views.truth});
+  EXPECT_EQ(given.stage, RelocalizationStage::kVerified);
+  EXPECT_EQ(given.inliers, static_cast<int>(TwoViews::kPoints));
+  const SE3 turned = SE3::exp((Vector6d() << 0, 0, 0, 0, 1, 0).finished()) * views.truth;
+  EXPECT_EQ(alone(views, {.camera_from_world = turned}).stage, RelocalizationStage::kInliers);
+}
+
 // What a search adds counts for ORB-SLAM2 only if it completes the 50.
 TEST(Relocalize, OrbSlam2GivesUpWhereASearchCannotReachFifty) {
   for (const auto& [liars, stage] : {std::pair{10U, RelocalizationStage::kVerified},
