@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include <Eigen/Core>
 
@@ -17,6 +18,15 @@ Eigen::Vector3f srgb_to_linear(Rgb8 color);
 /// The nearest 8-bit sRGB value of a linear one, clamped to [0, 1]; a table of 2^14 entries, whose
 /// steps are below 1/4 of a gray level.
 std::uint8_t linear_to_srgb(float linear);
+
+// The same for rows, eight values at a time.
+
+/// Adds weight * srgb_to_linear() of each channel to sum[0 ... 3 row.size()).
+void add_linear(std::span<const Rgb8> row, float weight, float* sum);
+/// srgb_to_linear() of each channel.
+void decode_row(std::span<const Rgb8> row, float* linear);
+/// linear_to_srgb() of each channel of `linear`.
+void encode_row(const float* linear, std::span<Rgb8> row);
 
 /// The table behind linear_to_srgb: entry i is for linear i / kSrgbTableMax. Four bytes can be read
 /// starting at any entry.

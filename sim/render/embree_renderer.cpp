@@ -7,6 +7,8 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "sim/render/color.hpp"
 #include "sim/render/edges.hpp"
@@ -111,26 +113,86 @@ class EmbreeRenderer final : public Renderer {
   }
 
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
+    return render_rows(camera, world_from_camera, 0, camera.height_px);
+  }
+
+  /// Traces and smooths whole blocks, so that packets are those of the whole image.
+  RenderedFrame render_rows(const Camera& camera, const SE3& world_from_camera, int first,
+                            int last) const override {
     check_projection(camera);
     const View view(camera, world_from_camera);
     RenderedFrame frame = empty_frame(view.width, view.height);
-    parallel_for((view.height + Tile::kHeight - 1) / Tile::kHeight, config_.threads,
-                 [&] { return Scratch(view); },
-                 [&](int row, Scratch& scratch) {
-                   for (int x = 0; x < view.width; x += Tile::kWidth)
-                     render_tile(view, x, row * Tile::kHeight, scratch, frame);
-                   _mm_sfence();
-                 });
+    const int first_block = std::max(0, first) / kEdgeBlock;
+    const int end_block = (std::min(last, view.height) + kEdgeBlock - 1) / kEdgeBlock;
+    // An edge is found by the rows above and below.
+    const int first_tile = std::max(0, first_block * kEdgeBlock - 1) / Tile::kHeight;
+    const int end_tile = std::min(end_block * kEdgeBlock / Tile::kHeight + 1,
+                                  (view.height + Tile::kHeight - 1) / Tile::kHeight);
+    parallel_for(
+        end_tile - first_tile, config_.threads, [&] { return Scratch(view); },
+        [&](int row, Scratch& scratch) {
+          for (int x = 0; x < view.width; x += Tile::kWidth)
+            render_tile(view, x, (first_tile + row) * Tile::kHeight, scratch, frame);
+          _mm_sfence();
+        });
     if (config_.antialiasing != Antialiasing::kEdges) return frame;
-    parallel_for((view.height + kEdgeBlock - 1) / kEdgeBlock, config_.threads,
-                 [&] { return EdgeScratch(view); },
-                 [&](int row, EdgeScratch& scratch) {
-                   find_edges(frame, row * kEdgeBlock, scratch.edges);
-                   for (std::size_t first = 0; first < scratch.edges.size();
-                        first += kLanes / kEdgeSamples)
-                     smooth(view, scratch.edges, first, scratch.packet, frame);
-                 });
+    parallel_for(
+        end_block - first_block, config_.threads, [&] { return EdgeScratch(view); },
+        [&](int row, EdgeScratch& scratch) {
+          find_edges(frame, (first_block + row) * kEdgeBlock, scratch.edges);
+          for (std::size_t edge = 0; edge < scratch.edges.size(); edge += kLanes / kEdgeSamples)
+            smooth(view, scratch.edges, edge, scratch.packet, frame);
+        });
     return frame;
+  }
+
+  Grid2d<float> render_depth(const Camera& camera, const SE3& world_from_camera) const override {
+    check_projection(camera);
+    const View view(camera, world_from_camera);
+    Grid2d<float> depth_m(view.width, view.height, Unfilled{});
+    parallel_for(
+        (view.height + kSide - 1) / kSide, config_.threads, [&] { return Scratch(view); },
+        [&](int row, Scratch& scratch) {
+          alignas(64) std::array<int, kLanes> all;
+          all.fill(-1);
+          for (int x0 = 0; x0 < view.width; x0 += Tile::kWidth) {
+            const int count = std::min(Tile::kPackets, (view.width - x0 + kSide - 1) / kSide);
+            for (int k = 0; k < count; ++k)
+              scratch.packets[static_cast<std::size_t>(k)].aim(view, x0 + kSide * k, row * kSide);
+            for (int k = 0; k < count; ++k) {
+              Packet& packet = scratch.packets[static_cast<std::size_t>(k)];
+              bvh_.intersect16(all.data(), packet.rays, true);
+              const std::array<float, kLanes> lanes = depths_of(packet);
+              copy(x0 + kSide * k, row * kSide, view.width, view.height,
+                   Output{lanes.data(), depth_m});
+            }
+          }
+        });
+    return depth_m;
+  }
+
+  std::vector<float> depth_at(const Camera& camera, const SE3& world_from_camera,
+                              std::span<const Eigen::Vector2i> pixels) const override {
+    check_projection(camera);
+    const View view(camera, world_from_camera);
+    const FlushDenormals flush;
+    Packet packet;
+    packet.start(view);
+    alignas(64) std::array<int, kLanes> all;
+    all.fill(-1);
+    std::vector<float> depths;
+    while (depths.size() < pixels.size()) {
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        const Eigen::Vector2i& pixel = pixels[std::min(depths.size() + i, pixels.size() - 1)];
+        packet.aim(view, static_cast<int>(i), {pixel.x(), pixel.y()}, {});
+      }
+      packet.forget_hits();
+      bvh_.intersect16(all.data(), packet.rays, false);
+      const std::array<float, kLanes> lanes = depths_of(packet);
+      depths.insert(depths.end(), lanes.begin(), lanes.end());
+    }
+    depths.resize(pixels.size());
+    return depths;
   }
 
  private:
@@ -147,6 +209,14 @@ class EmbreeRenderer final : public Renderer {
     if (extra.barycentric) frame.barycentric = Grid2d<std::array<float, 2>>(w, h);
     if (extra.points) frame.points_m = Grid2d<Eigen::Vector3f>(w, h, Eigen::Vector3f::Zero());
     return frame;
+  }
+
+  static std::array<float, kLanes> depths_of(const Packet& packet) {
+    std::array<float, kLanes> depths;
+    for (std::size_t i = 0; i < kLanes; ++i)
+      depths[i] =
+          packet.rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID ? 0.0F : packet.rays.ray.tfar[i];
+    return depths;
   }
 
   /// The light that reaches the camera from what a packet's lanes show.

@@ -3,7 +3,11 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "scenes/scene.hpp"
 #include "slam/core/camera.hpp"
@@ -55,6 +59,16 @@ class Renderer {
   /// Safe to call from several threads at once; lens distortion of the camera is ignored.
   /// @throws InputError if the camera's size or focal length is out of range.
   virtual RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const = 0;
+
+  // Parts of that image, to the bit, for less than the whole of it.
+
+  /// The image, in which only rows first to last - 1 are defined.
+  virtual RenderedFrame render_rows(const Camera& camera, const SE3& world_from_camera, int first,
+                                    int last) const;
+  virtual Grid2d<float> render_depth(const Camera& camera, const SE3& world_from_camera) const;
+  /// The depth of some pixels.
+  virtual std::vector<float> depth_at(const Camera& camera, const SE3& world_from_camera,
+                                      std::span<const Eigen::Vector2i> pixels) const;
 };
 
 /// What both renderers refuse: a size or focal length out of range. The principal point may be

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "sim/render/color.hpp"
@@ -17,25 +18,32 @@ double seconds_between(const TimedPose& a, const TimedPose& b) {
   return static_cast<double>(b.stamp_ns - a.stamp_ns) * 1e-9;
 }
 
-/// The maximum motion (px) of the image content between two poses, evaluated on a grid of pixels.
-double farthest_motion_px(const Camera& camera, const Grid2d<float>& depth_m, const SE3& seen_from,
-                          const SE3& first, const SE3& last) {
+/// The pixels on which motion is evaluated.
+std::vector<Eigen::Vector2i> motion_grid(const Camera& camera) {
   constexpr int kGrid = 9;
+  std::vector<Eigen::Vector2i> pixels;
+  for (int j = 0; j < kGrid; ++j)
+    for (int i = 0; i < kGrid; ++i)
+      pixels.emplace_back(i * (camera.width_px - 1) / (kGrid - 1),
+                          j * (camera.height_px - 1) / (kGrid - 1));
+  return pixels;
+}
+
+/// The maximum motion (px) of some pixels' content between two poses.
+/// @param depth_m  of those pixels, seen from a third pose
+double farthest_motion_px(const Camera& camera, std::span<const Eigen::Vector2i> pixels,
+                          std::span<const float> depth_m, const SE3& first_from_seen,
+                          const SE3& last_from_seen) {
   constexpr double kNothingM = 10.0;  // where nothing is seen, motion is computed at this depth
   constexpr double kNearestM = 0.05;
-  const SE3 first_from_seen = first.inverse() * seen_from,
-            last_from_seen = last.inverse() * seen_from;
   double farthest = 0.0;
-  for (int j = 0; j < kGrid; ++j)
-    for (int i = 0; i < kGrid; ++i) {
-      const int x = i * (camera.width_px - 1) / (kGrid - 1);
-      const int y = j * (camera.height_px - 1) / (kGrid - 1);
-      const double z = depth_m(x, y) > 0.0F ? depth_m(x, y) : kNothingM;
-      const Eigen::Vector3d point = camera.unproject(x, y, z);
-      const Eigen::Vector3d a = first_from_seen * point, b = last_from_seen * point;
-      if (a.z() < kNearestM || b.z() < kNearestM) continue;
-      farthest = std::max(farthest, (camera.project(a) - camera.project(b)).norm());
-    }
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const double z = depth_m[i] > 0.0F ? depth_m[i] : kNothingM;
+    const Eigen::Vector3d point = camera.unproject(pixels[i].x(), pixels[i].y(), z);
+    const Eigen::Vector3d a = first_from_seen * point, b = last_from_seen * point;
+    if (a.z() < kNearestM || b.z() < kNearestM) continue;
+    farthest = std::max(farthest, (camera.project(a) - camera.project(b)).norm());
+  }
   return farthest;
 }
 
@@ -75,6 +83,13 @@ class Rows {
     return std::clamp(static_cast<int>(std::floor(middle_s / step_s_ + 0.5 * images_)), 0,
                       images_ - 1);
   }
+  /// The rows that are exposed during image k's share of the time: first, and one past the last.
+  std::pair<int, int> exposed_during(int k) const {
+    int first = 0, last = height_;
+    while (first < last && overlap_s(k, first) <= 0.0) ++first;
+    while (last > first && overlap_s(k, last - 1) <= 0.0) --last;
+    return {first, last};
+  }
   /// The fraction of row y's light that image k contributes.
   double weight(int k, int y) const {
     return overlap_s(k, y) / collected_s_[static_cast<std::size_t>(y)];
@@ -89,27 +104,21 @@ class Rows {
 /// Sums the rows of images in linear light.
 class LightSum {
  public:
-  explicit LightSum(const Grid2d<Rgb8>& like)
-      : width_(like.width()), light_(3 * like.size(), 0.0F) {}
+  LightSum(int width, int height)
+      : width_(width),
+        light_(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0.0F) {}
 
   void add_row(int y, std::span<const Rgb8> color, float weight) {
-    float* out =
-        light_.data() + 3U * static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
-    for (const Rgb8& c : color) {
-      *out++ += weight * srgb_to_linear(c.r);
-      *out++ += weight * srgb_to_linear(c.g);
-      *out++ += weight * srgb_to_linear(c.b);
-    }
+    add_linear(color, weight, light_.data() + place(y));
   }
   void write(Grid2d<Rgb8>& color) const {
-    const float* in = light_.data();
-    for (Rgb8& c : color) {
-      c = {linear_to_srgb(in[0]), linear_to_srgb(in[1]), linear_to_srgb(in[2])};
-      in += 3;
-    }
+    for (int y = 0; y < color.height(); ++y) encode_row(light_.data() + place(y), color.row(y));
   }
 
  private:
+  std::size_t place(int y) const {
+    return 3U * static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+  }
   int width_;
   std::vector<float> light_;
 };
@@ -169,39 +178,62 @@ Shutter::Shutter(std::shared_ptr<const Renderer> renderer, const Camera& camera,
 
 Shutter::Exposed Shutter::expose(std::size_t i, LabelMode labels) const {
   assert(i < path_.size());
-  RenderedFrame image = render(lens_.pinhole(), i, 0.0);
-  blur(image, i, labels);
-  if (const double offset_s = config_.depth_offset.offset_s(); offset_s != 0.0)
-    image.depth_m = render(lens_.pinhole(), i, offset_s).depth_m;
+  const int images = images_within(i);
+  const double offset_s = config_.depth_offset.offset_s();
+  RenderedFrame image = images > 1 && offset_s != 0.0 && labels != LabelMode::kAnnotated
+                            ? RenderedFrame{}  // neither its depth nor most of its rows are seen
+                            : render(lens_.pinhole(), i, 0.0);
+  if (images > 1) blur(image, i, images, labels);
+  if (offset_s != 0.0) {
+    const auto [scene, pose] = moment(i, offset_s);
+    image.depth_m = scene->render_depth(lens_.pinhole(), pose);
+  }
   image = lens_.bend(std::move(image));
   if (config_.lens_blur.enabled) blur_by_lens(image.color, config_.lens_blur.sigma_px);
   return {std::move(image), gain(i)};
 }
 
-RenderedFrame Shutter::render(const Camera& pinhole, std::size_t i, double after_s) const {
+Shutter::Moment Shutter::moment(std::size_t i, double after_s) const {
   const Stamp stamp_ns = path_[i].stamp_ns + static_cast<Stamp>(std::llround(after_s * 1e9));
-  return scene_(stamp_ns)->render(pinhole, pose_at(path_, i, after_s));
+  return {scene_(stamp_ns), pose_at(path_, i, after_s)};
 }
 
-void Shutter::blur(RenderedFrame& image, std::size_t i, LabelMode labels) const {
+RenderedFrame Shutter::render(const Camera& pinhole, std::size_t i, double after_s) const {
+  const auto [scene, pose] = moment(i, after_s);
+  return scene->render(pinhole, pose);
+}
+
+/// How many images are to be blended into a frame.
+int Shutter::images_within(std::size_t i) const {
   const MotionSampling& sampling = config_.motion_sampling;
   const double duration_s = Rows::duration_s(config_);
-  if (duration_s <= 0.0) return;
+  if (duration_s <= 0.0) return 1;
   const Camera& camera = lens_.pinhole();
-  const double motion_px =
-      farthest_motion_px(camera, image.depth_m, path_[i].world_from_camera,
-                         pose_at(path_, i, -0.5 * duration_s), pose_at(path_, i, 0.5 * duration_s));
-  if (motion_px <= sampling.sharp_px) return;
-  // With an odd number, the existing image is the middle one.
+  const auto [scene, world_from_seen] = moment(i, 0.0);
+  const std::vector<Eigen::Vector2i> pixels = motion_grid(camera);
+  const double motion_px = farthest_motion_px(
+      camera, pixels, scene->depth_at(camera, world_from_seen, pixels),
+      pose_at(path_, i, -0.5 * duration_s).inverse() * path_[i].world_from_camera,
+      pose_at(path_, i, 0.5 * duration_s).inverse() * path_[i].world_from_camera);
+  if (motion_px <= sampling.sharp_px) return 1;
+  // With an odd number, the image of the stamp is the middle one.
   const int wanted = static_cast<int>(std::ceil(motion_px / sampling.step_px)) | 1;
-  const int images = std::clamp(wanted, 3, std::max(3, sampling.max_images | 1));
+  return std::clamp(wanted, 3, std::max(3, sampling.max_images | 1));
+}
 
+/// Blends the images of a frame's time.
+/// @param image  of the stamp; empty: its rows are rendered as they are needed
+void Shutter::blur(RenderedFrame& image, std::size_t i, int images, LabelMode labels) const {
+  const Camera& camera = lens_.pinhole();
   const Rows rows(config_, camera.height_px, images);
-  LightSum sum(image.color);
+  if (image.color.empty()) {
+    const auto [first, last] = rows.exposed_during(images / 2);
+    const auto [scene, pose] = moment(i, 0.0);
+    image = scene->render_rows(camera, pose, first, last);
+  }
+  LightSum sum(camera.width_px, camera.height_px);
   for (int k = 0; k < images; ++k) {
-    int first = 0, last = camera.height_px;
-    while (first < last && rows.overlap_s(k, first) <= 0.0) ++first;
-    while (last > first && rows.overlap_s(k, last - 1) <= 0.0) --last;
+    const auto [first, last] = rows.exposed_during(k);
     if (first == last) continue;
     const bool middle = k == images / 2;
     Camera strip = camera;
@@ -210,8 +242,9 @@ void Shutter::blur(RenderedFrame& image, std::size_t i, LabelMode labels) const 
     RenderedFrame part;
     if (!middle) part = render(strip, i, rows.time_s(k));
     for (int y = first; y < last; ++y) {
-      sum.add_row(y, middle ? image.color.row(y) : std::as_const(part.color).row(y - first),
-                  static_cast<float>(rows.weight(k, y)));
+      sum.add_row(
+          y, middle ? std::as_const(image.color).row(y) : std::as_const(part.color).row(y - first),
+          static_cast<float>(rows.weight(k, y)));
       if (middle || labels == LabelMode::kAnnotated || rows.middle_image(y) != k) continue;
       std::ranges::copy(part.classes.row(y - first), image.classes.row(y).begin());
       std::ranges::copy(part.instances.row(y - first), image.instances.row(y).begin());

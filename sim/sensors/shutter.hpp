@@ -50,8 +50,14 @@ class Shutter {
   const Camera& camera() const { return camera_; }
 
  private:
+  struct Moment {
+    std::shared_ptr<const Renderer> scene;
+    SE3 world_from_camera;
+  };
+  Moment moment(std::size_t i, double after_s) const;
   RenderedFrame render(const Camera& pinhole, std::size_t i, double after_s) const;
-  void blur(RenderedFrame& image, std::size_t i, LabelMode labels) const;
+  int images_within(std::size_t i) const;
+  void blur(RenderedFrame& image, std::size_t i, int images, LabelMode labels) const;
   std::vector<double> exposure_gains() const;
   double gain(std::size_t i) const;
 

@@ -6,7 +6,9 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "scenes/floor.hpp"
 #include "scenes/mesh_builder.hpp"
@@ -57,6 +59,11 @@ Vector3f mean_light(const Scene& scene) {
   return (sum / static_cast<double>(scene.light.size())).cast<float>();
 }
 
+/// The depth of the nearer surface.
+float nearer_m(float depth_m, float other_m) {
+  return other_m <= 0 || (depth_m > 0 && depth_m <= other_m) ? depth_m : other_m;
+}
+
 void merge(RenderedFrame& image, const RenderedFrame& pedestrian, InstanceId instance) {
   for (std::size_t i = 0; i < image.depth_m.size(); ++i) {
     const float near = pedestrian.depth_m.data()[i];
@@ -82,6 +89,20 @@ class Moment : public Renderer {
     RenderedFrame image = scene_.render(camera, world_from_camera);
     merge(image, body_.render(camera, body_from_world_ * world_from_camera), instance_);
     return image;
+  }
+  Grid2d<float> render_depth(const Camera& camera, const SE3& world_from_camera) const override {
+    Grid2d<float> depth_m = scene_.render_depth(camera, world_from_camera);
+    const Grid2d<float> body_m = body_.render_depth(camera, body_from_world_ * world_from_camera);
+    std::ranges::transform(depth_m, body_m, depth_m.begin(), nearer_m);
+    return depth_m;
+  }
+  std::vector<float> depth_at(const Camera& camera, const SE3& world_from_camera,
+                              std::span<const Eigen::Vector2i> pixels) const override {
+    std::vector<float> depth_m = scene_.depth_at(camera, world_from_camera, pixels);
+    const std::vector<float> body_m =
+        body_.depth_at(camera, body_from_world_ * world_from_camera, pixels);
+    std::ranges::transform(depth_m, body_m, depth_m.begin(), nearer_m);
+    return depth_m;
   }
 
  private:

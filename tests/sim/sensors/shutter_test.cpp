@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/sensors/shutter.hpp"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
+
+#include <gtest/gtest.h>
 
 #include "sim/render/color.hpp"
 #include "tests/sim/scene_builder.hpp"
@@ -39,6 +41,11 @@ class Edge : public Renderer {
       }
     rows += h;
     return frame;
+  }
+  std::vector<float> depth_at(const Camera&, const SE3& world_from_camera,
+                              std::span<const Eigen::Vector2i> pixels) const override {
+    const double depth_m = kDepthM + world_from_camera.translation().y();
+    return std::vector<float>(pixels.size(), static_cast<float>(depth_m));
   }
   mutable long rows = 0;
 };

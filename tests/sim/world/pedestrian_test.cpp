@@ -101,6 +101,11 @@ TEST_F(PedestrianSceneTest, HeHidesWhatIsBehindHimAndNothingElseChanges) {
                                          {.path_m = {{3, -2}, {3, 2}}, .speed_m_per_s = 1});
   const RenderedFrame empty = renderer_->render(camera_, world_from_camera_);
   const RenderedFrame seen = pedestrian_scene.at(2 * kSecond)->render(camera_, world_from_camera_);
+  EXPECT_EQ(pedestrian_scene.at(2 * kSecond)->render_depth(camera_, world_from_camera_),
+            seen.depth_m);
+  const std::vector<Eigen::Vector2i> pixel = {{camera_.width_px / 2, camera_.height_px / 2}};
+  EXPECT_EQ(pedestrian_scene.at(2 * kSecond)->depth_at(camera_, world_from_camera_, pixel)[0],
+            seen.depth_m(pixel[0].x(), pixel[0].y()));
   // He stands on the axis, seen from the side: 2 * 0.65 * 0.22 m broad at chest height.
   const ClassId person = *class_by_name("person");
   EXPECT_EQ(seen.classes(159, 119), person);

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is fast in making a frame equals, to the bit, what is plain.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sim/render/color.hpp"
+#include "sim/sensors/gaussian.hpp"
+#include "sim/sensors/lens.hpp"
+#include "sim/sensors/processing.hpp"
+#include "sim/sensors/shutter.hpp"
+#include "slam/core/random.hpp"
+#include "tests/sim/scene_builder.hpp"
+
+namespace mh {
+namespace {
+
+Grid2d<Rgb8> noise_image(int width, int height) {
+  Grid2d<Rgb8> color(width, height);
+  for (std::size_t i = 0; i < color.size(); ++i) {
+    const std::uint64_t bits = RandomStream(3).bits(i);
+    color.data()[i] = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8),
+                       static_cast<std::uint8_t>(bits >> 16)};
+  }
+  return color;
+}
+
+TEST(ColorRows, AreTheirValuesOneByOne) {
+  for (const int width : {1, 2, 7, 11, 640}) {
+    const Grid2d<Rgb8> color = noise_image(width, 1);
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(color.data());
+    const std::size_t count = 3 * color.size();
+    std::vector<float> decoded(count), sum(count), light(count);
+    decode_row(color.row(0), decoded.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(decoded[i], srgb_to_linear(bytes[i]));
+      sum[i] = static_cast<float>(i) / 7;
+      light[i] = static_cast<float>(RandomStream(4).uniform(i, -0.1, 1.1));
+    }
+    add_linear(color.row(0), 0.3F, sum.data());
+    Grid2d<Rgb8> encoded(width, 1);
+    encode_row(light.data(), encoded.row(0));
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(sum[i], static_cast<float>(i) / 7 + 0.3F * srgb_to_linear(bytes[i]));
+      EXPECT_EQ(reinterpret_cast<const std::uint8_t*>(encoded.data())[i], linear_to_srgb(light[i]));
+    }
+  }
+}
+
+/// A grid of floats blurred pass by pass, one value at a time.
+Grid2d<float> plainly_blurred(const Grid2d<float>& image, const std::vector<float>& kernel) {
+  const int radius = static_cast<int>(kernel.size()) - 1, w = image.width(), h = image.height();
+  Grid2d<float> across(w, h), both(w, h);
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x)
+      for (int k = -radius; k <= radius; ++k)
+        across(x, y) +=
+            kernel[static_cast<std::size_t>(std::abs(k))] * image(std::clamp(x + k, 0, w - 1), y);
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x)
+      for (int k = -radius; k <= radius; ++k)
+        both(x, y) +=
+            kernel[static_cast<std::size_t>(std::abs(k))] * across(x, std::clamp(y + k, 0, h - 1));
+  return both;
+}
+
+constexpr std::uint8_t Rgb8::*kChannels[] = {&Rgb8::r, &Rgb8::g, &Rgb8::b};
+
+TEST(LensBlur, IsThePlainOne) {
+  for (const auto& [width, height] : {std::pair(1, 1), {3, 2}, {37, 23}, {64, 48}}) {
+    Grid2d<Rgb8> color = noise_image(width, height);
+    const Grid2d<Rgb8> before = color;
+    blur_by_lens(color, 1.05);
+    for (const auto channel : kChannels) {
+      Grid2d<float> light(width, height);
+      for (std::size_t i = 0; i < light.size(); ++i)
+        light.data()[i] = srgb_to_linear(before.data()[i].*channel);
+      const Grid2d<float> blurred = plainly_blurred(light, gaussian_kernel(1.05));
+      for (std::size_t i = 0; i < light.size(); ++i)
+        ASSERT_EQ(color.data()[i].*channel, linear_to_srgb(blurred.data()[i])) << i;
+    }
+  }
+}
+
+TEST(Processing, IsThePlainOne) {
+  const ProcessingConfig config{
+      .enabled = true, .contrast = 0.7, .sharpening = 2.75, .sharpening_px = 0.55};
+  const auto curve = [&](std::uint8_t value) {
+    const double v = value / 255.0, c = config.contrast;
+    return static_cast<float>(255.0 * ((1.0 - c) * v + c * v * v * (3.0 - 2.0 * v)));
+  };
+  for (const auto& [width, height] : {std::pair(1, 1), {3, 2}, {37, 23}, {64, 48}}) {
+    Grid2d<Rgb8> color = noise_image(width, height);
+    const Grid2d<Rgb8> before = color;
+    process(color, config);
+    Grid2d<float> luma(width, height);
+    for (std::size_t i = 0; i < luma.size(); ++i) {
+      const Rgb8 c = before.data()[i];
+      luma.data()[i] = 0.299F * curve(c.r) + 0.587F * curve(c.g) + 0.114F * curve(c.b);
+    }
+    const Grid2d<float> smooth = plainly_blurred(luma, gaussian_kernel(config.sharpening_px));
+    for (const auto channel : kChannels)
+      for (std::size_t i = 0; i < luma.size(); ++i) {
+        const float more = 2.75F * (luma.data()[i] - smooth.data()[i]);
+        const float level = std::clamp(curve(before.data()[i].*channel) + more, 0.0F, 255.0F);
+        ASSERT_EQ(color.data()[i].*channel, static_cast<std::uint8_t>(std::lrint(level))) << i;
+      }
+  }
+}
+
+/// A renderer all of whose images are whole.
+class WholeImages : public Renderer {
+ public:
+  explicit WholeImages(std::shared_ptr<const Renderer> inner) : inner_(std::move(inner)) {}
+  RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
+    return inner_->render(camera, world_from_camera);
+  }
+
+ private:
+  std::shared_ptr<const Renderer> inner_;
+};
+
+/// A room with boxes of noise textures; every second one is a plain color.
+Scene room_of_boxes() {
+  Scene scene = test::plain_scene();
+  test::add_box(scene, {-3, -3, -3}, {3, 3, 3}, true, 1, 1);
+  for (int i = 0; i < 12; ++i) {
+    const auto u = [&](int k) {
+      return static_cast<float>(RandomStream(8).uniform(static_cast<std::uint64_t>(3 * i + k)));
+    };
+    const Eigen::Vector3f low(4 * u(0) - 2.5F, 4 * u(1) - 2.5F, 1 + u(2));
+    test::add_box(scene, low, low + Eigen::Vector3f(0.4F, 0.3F, 0.5F), false,
+                  static_cast<ClassId>(2 + i), static_cast<InstanceId>(2 + i));
+  }
+  return scene;
+}
+
+TEST(Shutter, RendersOnlyWhatIsSeenAndSeesTheSame) {
+  const std::shared_ptr<const Renderer> renderer = make_embree_renderer(room_of_boxes());
+  const auto whole = std::make_shared<WholeImages>(renderer);
+  Camera camera;
+  camera.width_px = 150, camera.height_px = 117;
+  camera.cx_px = 74, camera.cy_px = 58;
+  camera.fx_px = camera.fy_px = 130;
+  for (const double speed_rad_per_s : {0.0, 0.1, 0.6, 2.0})
+    for (int faults = 0; faults < 8; ++faults)
+      for (const LabelMode labels : {LabelMode::kExact, LabelMode::kAnnotated}) {
+        SensorConfig config = exact_sensors();
+        config.motion_blur = {.enabled = (faults & 1) != 0, .exposure_ms = 10};
+        config.rolling_shutter.enabled = (faults & 2) != 0;
+        config.depth_offset = {.enabled = (faults & 4) != 0, .offset_ms = 6.8};
+        Trajectory path;
+        for (int i = 0; i < 5; ++i)
+          path.push_back(
+              {33'333'333 * i, SE3(Eigen::AngleAxisd(speed_rad_per_s * i / 30.0,
+                                                     Eigen::Vector3d(0.3, 1, 0.2).normalized())
+                                       .toRotationMatrix(),
+                                   {0.01 * i, 0, 0})});
+        const auto fast = Shutter(renderer, camera, path, config).expose(2, labels);
+        const auto plain = Shutter(whole, camera, path, config).expose(2, labels);
+        EXPECT_EQ(fast.seen.color, plain.seen.color) << speed_rad_per_s << ' ' << faults;
+        EXPECT_EQ(fast.seen.depth_m, plain.seen.depth_m) << speed_rad_per_s << ' ' << faults;
+        EXPECT_EQ(fast.seen.classes, plain.seen.classes) << speed_rad_per_s << ' ' << faults;
+        EXPECT_EQ(fast.seen.instances, plain.seen.instances) << speed_rad_per_s << ' ' << faults;
+        EXPECT_EQ(fast.seen.exposure, plain.seen.exposure);
+      }
+}
+
+TEST(Renderer, PartsAreThoseOfTheWholeImage) {
+  const std::unique_ptr<const Renderer> renderer = make_embree_renderer(room_of_boxes());
+  Camera camera;
+  camera.width_px = 150, camera.height_px = 117;
+  const SE3 pose(Eigen::Matrix3d::Identity(), {0.1, 0, -1});
+  const RenderedFrame whole = renderer->render(camera, pose);
+  EXPECT_EQ(renderer->render_depth(camera, pose), whole.depth_m);
+  std::vector<Eigen::Vector2i> pixels;
+  for (int i = 0; i < 40; ++i) pixels.emplace_back(i * 149 / 39, i * 116 / 39);
+  const std::vector<float> depths = renderer->depth_at(camera, pose, pixels);
+  ASSERT_EQ(depths.size(), pixels.size());
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    EXPECT_EQ(depths[i], whole.depth_m(pixels[i].x(), pixels[i].y()));
+  for (const auto& [first, last] : {std::pair(0, 1), {15, 17}, {40, 90}, {100, 117}, {0, 117}}) {
+    const RenderedFrame part = renderer->render_rows(camera, pose, first, last);
+    for (int y = first; y < last; ++y) {
+      EXPECT_TRUE(std::ranges::equal(part.color.row(y), whole.color.row(y))) << y;
+      EXPECT_TRUE(std::ranges::equal(part.classes.row(y), whole.classes.row(y))) << y;
+      EXPECT_TRUE(std::ranges::equal(part.instances.row(y), whole.instances.row(y))) << y;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mh
