@@ -28,7 +28,8 @@ digest_of(RUN slam/*.cpp slam/*.hpp scenes/*.cpp scenes/*.hpp scenes/categories/
           sim/*.hpp bench/protocol/*.cpp bench/protocol/*.hpp bench/metrics/*.cpp
           bench/metrics/*.hpp bench/systems/*.cpp bench/systems/*.hpp bench/world/*.cpp
           bench/world/*.hpp bench/inputs/inputs.cpp bench/inputs/inputs.hpp bench/inputs/recorded_camera.*
-          bench/plan/find_program.* bench/plan/outside_program.* bench/provenance/digest.*
+          bench/plan/find_program.* bench/plan/graded_spec.*
+          bench/plan/outside_program.* bench/provenance/digest.*
           bench/provenance/input_digest.hpp bench/provenance/place_facts.hpp
           bench/results/call_times.* bench/results/run_result.hpp
           bench/run/occupancy.* bench/run/run_one.* include/modelhouse/*.h

@@ -87,9 +87,9 @@ class RunAuditor {
 
   Asked prepare_query(QuerySet set, std::size_t place) {
     const QueryScore& score = queries(run_.points.front(), set)[place];
-    const Sequence& sequence = sequence_of(set);
-    const Presentation first =
-        presentation(query_stream(spec_, set), score.answer.index, /*attempt=*/0);
+    const Sequence& sequence = *sequence_of(world_, set);
+    const Presentation first = presentation(query_stream(spec_, set), score.answer.index,
+                                            /*attempt=*/0, spec_.protocol.attempts);
     PreparedFrame frame = prepared(sequence, score.answer.index, first.noise);
     const SE3& pose = *score.true_world_from_camera;
     TrueView view =
@@ -216,9 +216,9 @@ class RunAuditor {
   void repeat_attempts(const Asked& asked, const QueryScore& score, ReleasedScores& released) {
     if (frozen_.config.relocalize.neighbor_scores != NeighborScores::kAsReleased) return;
     for (int attempt = 1; attempt < score.answer.attempts; ++attempt) {
-      const auto [noise, draws] =
-          presentation(query_stream(spec_, asked.set), score.answer.index, attempt);
-      PreparedFrame frame = prepared(sequence_of(asked.set), score.answer.index, noise);
+      const auto [noise, draws] = presentation(query_stream(spec_, asked.set), score.answer.index,
+                                               attempt, spec_.protocol.attempts);
+      PreparedFrame frame = prepared(*sequence_of(world_, asked.set), score.answer.index, noise);
       ask(frame, draws, released, nullptr);
     }
   }
@@ -300,10 +300,6 @@ class RunAuditor {
     const RgbdFrame frame = usable_frame(sequence, index, noise);
     return prepare(frame.stamp_ns, extract(frame, frozen_.camera, frozen_.config.features), frozen_,
                    Tracker{});
-  }
-
-  const Sequence& sequence_of(QuerySet set) const {
-    return set == QuerySet::kHeldOut ? *world_.mapping : *world_.second;
   }
 
   const RunResult& run_;

@@ -116,20 +116,21 @@ void fields(A& audit, Visit& v) {
 
 /// The queries of one parameter point.
 struct PointAudit {
-  std::vector<QueryAudit> held_out, second_tour;
+  std::vector<QueryAudit> held_out = {}, second_tour = {}, graded = {};
 };
 inline const std::vector<QueryAudit>& queries(const PointAudit& point, QuerySet set) {
-  return set == QuerySet::kHeldOut ? point.held_out : point.second_tour;
+  return of_query_set(point, set);
 }
 inline std::vector<QueryAudit>& queries(PointAudit& point, QuerySet set) {
-  return set == QuerySet::kHeldOut ? point.held_out : point.second_tour;
+  return of_query_set(point, set);
 }
 
 template <Either<PointAudit> A, class Visit>
 void fields(A& point, Visit& v) {
-  auto& [held_out, second_tour] = point;
+  auto& [held_out, second_tour, graded] = point;
   v("held_out", held_out);
   v("second_tour", second_tour);
+  v("graded", graded);
 }
 
 /// The audit of one run.

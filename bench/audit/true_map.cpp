@@ -30,7 +30,7 @@ std::optional<TruePoint> true_landmark(const Landmark& landmark,
 
 std::shared_ptr<const Renderer> scene_at(const SimulatedPlace& place, QuerySet set,
                                          Stamp stamp_ns) {
-  if (set == QuerySet::kSecondTour)
+  if (set != QuerySet::kHeldOut)
     return place.second_renderer ? place.second_renderer : place.renderer;
   return place.pedestrian_scene ? place.pedestrian_scene->at(stamp_ns) : place.renderer;
 }

@@ -102,6 +102,7 @@ std::string csv_row(const AuditedRun& run, const SemanticConfig& point, QuerySet
   visit.put("labels", name(run.spec.labels));
   visit.put("trial", run.spec.trial);
   visit.put("gamma", point.gamma);
+  visit.put("label_mass", point.label_mass);
   visit.put("xi", point.xi);
   visit.put("alpha", point.alpha);
   visit.put("beta", point.beta);

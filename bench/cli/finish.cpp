@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "bench/plan/runs.hpp"
+#include "bench/report/graded_report.hpp"
 #include "bench/report/json.hpp"
 #include "bench/report/table.hpp"
 #include "bench/report/write.hpp"
@@ -35,6 +36,9 @@ std::vector<std::string> names_written(const std::filesystem::path& out, const S
                                  "times.json", "reproduction.json", "views.png"};
   for (const Environment& e : suite.environments)
     names.push_back(fmt::format("views-{}.png", e.name));
+  if (suite.graded)
+    for (const auto& level : suite.levels)
+      for (const Labels& labels : suite.labels) names.push_back(graded_image_name(labels, level));
   for (const RunSpec& spec : expand(suite)) {
     names.push_back(spec.name);
     // As in sweep_image_name(): the run's name without its trial.

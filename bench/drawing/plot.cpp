@@ -39,11 +39,14 @@ struct Axis {
 
 void draw_panel(Canvas& canvas, const Plot& plot, double x0, double y0) {
   double least_x = 1e300, most_x = -1e300, least_y = 1e300, most_y = -1e300;
-  for (const Series& series : plot.series)
+  for (const Series& series : plot.series) {
     for (const cv::Point2d& p : series.points) {
       least_x = std::min(least_x, p.x), most_x = std::max(most_x, p.x);
       least_y = std::min(least_y, p.y), most_y = std::max(most_y, p.y);
     }
+    for (const auto& [from, to] : series.bars)
+      least_y = std::min(least_y, from), most_y = std::max(most_y, to);
+  }
   const Axis across(least_x, most_x), up(least_y, most_y);
   const double left = x0 + 58, right = x0 + kPanelWidth - 14;
   const double top = y0 + 44, bottom = y0 + kPanelHeight - 42;
@@ -81,6 +84,10 @@ void draw_panel(Canvas& canvas, const Plot& plot, double x0, double y0) {
         canvas.line(at(series.points[i - 1].x, series.points[i - 1].y), here, color, 1.2);
       }
     }
+    for (std::size_t i = 0; i < series.bars.size(); ++i)
+      canvas.line(at(series.points[i].x, series.bars[i].first),
+                  at(series.points[i].x, series.bars[i].second), color, 0.8);
+    if (series.name.empty() && !series.bars.empty()) continue;
     if (series.dots)
       canvas.disc({legend_x + 16, legend - 3}, 2.6, color);
     else

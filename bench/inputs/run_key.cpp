@@ -38,10 +38,11 @@ std::string map_key(const RunSpec& spec, std::span<const InputDigest> inputs) {
   json.erase("points");
   json.erase("trial");  // implied by the seed
   json["system"].erase("name");
+  json.erase("graded");
   for (const char* of_queries : {"query_tour", "query_scene", "queries"})
     json["inputs"].erase(of_queries);
-  for (const char* of_queries :
-       {"query_attempts", "max_blank_frames", "correct_distance_m", "correct_angle_deg", "truth"})
+  for (const char* of_queries : {"query_attempts", "attempts", "max_blank_frames",
+                                 "correct_distance_m", "correct_angle_deg", "truth"})
     json["protocol"].erase(of_queries);
   return text_key(json.dump());
 }

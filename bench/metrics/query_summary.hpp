@@ -5,11 +5,26 @@
 
 namespace mh {
 
-/// Which test frames; the sets are never pooled.
-enum class QuerySet { kHeldOut, kSecondTour };
-inline constexpr QuerySet kQuerySets[] = {QuerySet::kHeldOut, QuerySet::kSecondTour};
+/// Which queries; the sets are never pooled.
+enum class QuerySet {
+  kHeldOut,     ///< test frames of the mapping tour
+  kSecondTour,  ///< test frames of another tour
+  kGraded,      ///< drawn by distance and angle from the nearest mapped view
+};
+inline constexpr QuerySet kQuerySets[] = {QuerySet::kHeldOut, QuerySet::kSecondTour,
+                                          QuerySet::kGraded};
 inline std::string_view name(QuerySet set) {
-  return set == QuerySet::kHeldOut ? "held_out" : "second_tour";
+  return set == QuerySet::kHeldOut      ? "held_out"
+         : set == QuerySet::kSecondTour ? "second_tour"
+                                        : "graded";
+}
+
+/// The member of a record that has one for each set.
+template <class Sets>
+auto& of_query_set(Sets& sets, QuerySet set) {
+  return set == QuerySet::kHeldOut      ? sets.held_out
+         : set == QuerySet::kSecondTour ? sets.second_tour
+                                        : sets.graded;
 }
 
 /// Summary of one run's answers to one set of queries, or of many such summaries.
@@ -27,6 +42,7 @@ struct QuerySummary {
   std::optional<double> keyframes, c1, c2, c3, final;
   std::optional<double> single_candidate;  ///< share of queries with exactly one left
   std::optional<double> label_mass;        ///< mean share of the query vector held by labels
+  std::optional<double> gamma;             ///< mean weight of a label, equation 1
 };
 
 template <Either<QuerySummary> S, class Visit>
@@ -34,7 +50,7 @@ void fields(S& summary, Visit& v) {
   using enum Better;
   auto& [queries, success, correct, false_positive, distance_mean_m, distance_median_m,
          aligned_distance_mean_m, attempts, keyframes, c1, c2, c3, final, single_candidate,
-         label_mass] = summary;
+         label_mass, gamma] = summary;
   v(Metric{.name = "queries"}, queries);
   v(Metric{"success", "success", "%", 2, kMore, "queries", true}, success);
   v(Metric{"correct", "correct", "%", 2, kMore, "queries", true}, correct);
@@ -50,6 +66,7 @@ void fields(S& summary, Visit& v) {
   v(Metric{.name = "candidates.final"}, final);
   v(Metric{.name = "candidates.single", .unit = "%"}, single_candidate);
   v(Metric{.name = "candidates.label_mass", .unit = "%"}, label_mass);
+  v(Metric{.name = "candidates.gamma"}, gamma);
 }
 
 }  // namespace mh

@@ -36,6 +36,13 @@ Sweep read_sweep(YamlReader node, const SlamConfig& base);
 /// their full names.
 std::string_view shown_name(std::string_view setting);
 
+/// How much labels weigh in equation 1: as a factor, or as the share of a vector's mass that it is
+/// to give. The same factor weighs otherwise with another vocabulary, detector or place.
+inline constexpr std::string_view kGamma = "semantics.gamma", kLabelMass = "semantics.label_mass";
+inline bool weighs_labels(std::string_view setting) {
+  return setting == kGamma || setting == kLabelMass;
+}
+
 /// The value of a setting there: numbers to four digits.
 std::string shown_value(const SlamConfig& config, std::string_view setting);
 

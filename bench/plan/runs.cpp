@@ -83,6 +83,7 @@ std::vector<RunSpec> expand(const Suite& suite) {
                               .slam = studies[s].mapping,
                               .points = studies[s].points,
                               .protocol = suite.protocol,
+                              .graded = suite.graded,
                               .max_frames = suite.max_frames});
             }
         }

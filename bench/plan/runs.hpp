@@ -26,6 +26,7 @@ struct RunSpec {
   /// Settings of the queries: for each, one pass over all queries on the same map. At least one.
   std::vector<SemanticConfig> points;
   ProtocolConfig protocol;
+  std::optional<GradedSpec> graded = {};
   std::optional<std::size_t> max_frames;
 };
 

@@ -205,6 +205,23 @@ SlamConfig slam_from_json(const Json& json) {
   return settings;
 }
 
+Json graded_json(const std::optional<GradedSpec>& graded) {
+  if (!graded) return {};
+  return {{"distance_m", graded->distance_m}, {"angle_deg", graded->angle_deg},
+          {"per_bin", graded->per_bin},       {"seed", graded->seed},
+          {"speed", graded->speed},           {"least_shown", graded->least_shown}};
+}
+
+std::optional<GradedSpec> graded_from_json(const Json& json) {
+  if (json.is_null()) return std::nullopt;
+  return GradedSpec{.distance_m = json.at("distance_m").get<std::vector<double>>(),
+                    .angle_deg = json.at("angle_deg").get<std::vector<double>>(),
+                    .per_bin = whole_number<std::size_t>(json.at("per_bin")),
+                    .seed = json.at("seed"),
+                    .speed = json.at("speed").get<std::vector<double>>(),
+                    .least_shown = json.at("least_shown")};
+}
+
 RunSpec read(const Json& json) {
   RunSpec spec;
   spec.name = json.at("name");
@@ -219,6 +236,7 @@ RunSpec read(const Json& json) {
   for (const Json& point : json.at("points"))
     spec.points.push_back(section_from<SemanticConfig>(point));
   spec.protocol = section_from<ProtocolConfig>(json.at("protocol"));
+  spec.graded = graded_from_json(json.at("graded"));
   if (!json.at("max_frames").is_null())
     spec.max_frames = whole_number<std::size_t>(json.at("max_frames"));
   return spec;
@@ -261,6 +279,7 @@ Json to_json(const RunSpec& spec) {
           {"slam", to_json(spec.slam)},
           {"points", points},
           {"protocol", to_json(spec.protocol)},
+          {"graded", graded_json(spec.graded)},
           {"max_frames", optional_json(spec.max_frames)}};
 }
 

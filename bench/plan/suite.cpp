@@ -201,6 +201,13 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   protocol.finish();
   if (suite.protocol.test_interval == 1)
     yaml.at("protocol").at("test_interval").fail("would hold out every frame");
+  if (const auto graded = yaml.find("graded")) {
+    suite.graded = read_graded(*graded);
+    for (const Environment& e : suite.environments)
+      if (e.is_recorded())
+        graded->fail(
+            fmt::format("queries are drawn from a scene, and '{}' is a recording", e.name));
+  }
   if (const auto margin = yaml.find("non_inferiority_margin"))
     suite.non_inferiority_margin = margin->as_double(0.0, 1.0);
   if (const auto check = yaml.find("check")) {

@@ -11,6 +11,7 @@
 
 #include "bench/plan/environment.hpp"
 #include "bench/plan/gate_config.hpp"
+#include "bench/plan/graded_spec.hpp"
 #include "bench/plan/labels.hpp"
 #include "bench/plan/parameters.hpp"
 #include "bench/plan/system_spec.hpp"
@@ -44,6 +45,7 @@ struct Suite {
   SharedSlamConfig slam;
   Sweep sweep;
   ProtocolConfig protocol;
+  std::optional<GradedSpec> graded;  ///< asked in every environment
   /// Pairs of systems to compare; differences are first minus second. Default: `semantic` and
   /// `plain`, if the suite has both.
   std::vector<SystemPair> compare;

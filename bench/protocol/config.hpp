@@ -42,6 +42,16 @@ constexpr std::array<std::pair<std::string_view, QueryTruth>, 2> setting_words(Q
   return {{{"local", QueryTruth::kLocal}, {"interpolated", QueryTruth::kInterpolated}}};
 }
 
+/// What the attempts of one query differ in. RANSAC's draws differ in any case.
+enum class Attempts {
+  kSameFrame,  ///< the same frame again, with its noise
+  kNewNoise,   ///< a frame of the same moment with another noise: more than a robot at rest has
+};
+
+constexpr std::array<std::pair<std::string_view, Attempts>, 2> setting_words(Attempts) {
+  return {{{"same_frame", Attempts::kSameFrame}, {"new_noise", Attempts::kNewNoise}}};
+}
+
 /// The settings of the paper's sections 3.1 and 3.2.
 struct ProtocolConfig {
   int test_interval = 30;  ///< 0: no frame is held out
@@ -53,6 +63,7 @@ struct ProtocolConfig {
   /// dropped frame.
   double max_effort = 6.0;
   int query_attempts = 5;
+  Attempts attempts = Attempts::kSameFrame;
   int max_blank_frames = 30;
   double correct_distance_m = 0.25;
   double correct_angle_deg = 10.0;
@@ -71,7 +82,8 @@ inline ProtocolConfig live_feed() {
 template <Either<ProtocolConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [test_interval, on_failure, rewind_frames, restarts_per_frame, reset, max_effort,
-         query_attempts, max_blank_frames, correct_distance_m, correct_angle_deg, truth] = c;
+         query_attempts, attempts, max_blank_frames, correct_distance_m, correct_angle_deg, truth] =
+      c;
   v("test_interval", test_interval, {0, 100000},
     "every so many frames one is held out as a test frame; 0: none");
   v("on_failure", on_failure, {},
@@ -82,6 +94,8 @@ void fields(C& c, Visit& v) {
   v("reset", reset, {}, "after a drop the count of restarts starts again (counter), or all (map)");
   v("max_effort", max_effort, {1, 1000}, "mapping gives up after so many track calls per frame");
   v("query_attempts", query_attempts, {1, 1000}, "times that a test frame is shown");
+  v("attempts", attempts, {},
+    "they repeat the same frame (same_frame), or show its moment with new noise (new_noise)");
   v("max_blank_frames", max_blank_frames, {1, 100000},
     "blank frames shown at most until the system is lost");
   v("correct_distance_m", correct_distance_m, setting::kLength_m,

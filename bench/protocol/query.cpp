@@ -37,9 +37,11 @@ bool is_blank(const RgbdFrame& frame) {
                      [](Rgb8 color) { return color == Rgb8{}; });
 }
 
-Presentation presentation(RandomStream stream, std::size_t index, int attempt) {
+Presentation presentation(RandomStream stream, std::size_t index, int attempt, Attempts attempts) {
   const auto key = static_cast<std::uint64_t>(attempt);
-  return {stream.fork(kNoise).fork(index).fork(key), stream.fork(kSlam).fork(index).fork(key)};
+  const std::uint64_t noise_key = attempts == Attempts::kNewNoise ? key : 0;
+  return {stream.fork(kNoise).fork(index).fork(noise_key),
+          stream.fork(kSlam).fork(index).fork(key)};
 }
 
 QueryAnswer query(const System& frozen, std::size_t index, const Sequence& sequence,
@@ -48,9 +50,11 @@ QueryAnswer query(const System& frozen, std::size_t index, const Sequence& seque
 
   QueryAnswer answer;
   answer.index = index;
+  RgbdFrame frame;
   for (int attempt = 0; attempt < config.query_attempts; ++attempt) {
-    const auto [noise, draws] = presentation(stream, index, attempt);
-    const RgbdFrame frame = usable_frame(sequence, index, noise);
+    const auto [noise, draws] = presentation(stream, index, attempt, config.attempts);
+    if (attempt == 0 || config.attempts == Attempts::kNewNoise)
+      frame = usable_frame(sequence, index, noise);
     if (attempt == 0)
       answer.blank_frames =
           lose(*session, frame, config.max_blank_frames, stream.fork(kBlank).fork(index));

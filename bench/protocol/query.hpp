@@ -55,12 +55,12 @@ struct Presentation {
 /// @param stream   of the set of queries
 /// @param index    of the test frame
 /// @param attempt  from 0
-Presentation presentation(RandomStream stream, std::size_t index, int attempt);
+Presentation presentation(RandomStream stream, std::size_t index, int attempt, Attempts attempts);
 
 /// Queries a frozen system with one test frame (section 3.2 of the paper): a fresh session, blank
 /// frames until it is lost, then the test frame up to config.query_attempts times or until a pose
-/// is returned. Noise and SLAM draw from streams keyed by (test frame, attempt) alone: the answer
-/// depends on no other query.
+/// is returned; config.attempts says with which noise. Noise and SLAM draw from streams keyed by
+/// (test frame, attempt) alone: the answer depends on no other query.
 /// @throws UnusableFrame if the frame cannot be shown.
 /// @param memo  from frozen.make_memo(), for this query alone, or null; does not change the answer
 QueryAnswer query(const System& frozen, std::size_t index, const Sequence& sequence,

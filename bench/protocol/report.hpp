@@ -18,18 +18,20 @@ struct Candidates {
   std::optional<int> c1, c2, c3;     ///< after equations 3, 4 and 5
   std::optional<int> final;          ///< after equation 6
   std::optional<double> label_mass;  ///< share of the query vector's L1 mass held by labels
+  std::optional<double> gamma;       ///< the weight of a label that gave it
   friend bool operator==(const Candidates&, const Candidates&) = default;
 };
 
 template <Either<Candidates> C, class Visit>
 void fields(C& candidates, Visit& v) {
-  auto& [keyframes, c1, c2, c3, final, label_mass] = candidates;
+  auto& [keyframes, c1, c2, c3, final, label_mass, gamma] = candidates;
   v("keyframes", keyframes);
   v("c1", c1);
   v("c2", c2);
   v("c3", c3);
   v("final", final);
   v("label_mass", label_mass);
+  v("gamma", gamma);
 }
 
 /// A system's report on one frame. What it does not report is absent.

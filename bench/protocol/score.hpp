@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "bench/protocol/grade.hpp"
 #include "bench/protocol/query.hpp"
 #include "slam/core/interpolate.hpp"
 #include "slam/core/trajectory.hpp"
@@ -66,12 +67,13 @@ struct QueryScore {
   // Absent if nothing was answered, or nothing was mapped that an answer could be compared with.
   std::optional<double> distance_m = {}, angle_deg = {};  ///< to the local truth
   std::optional<double> aligned_distance_m = {};  ///< to the truth after aligning the trajectory
+  QueryGrade grade = {};
 };
 
 template <Either<QueryScore> S, class Visit>
 void fields(S& score, Visit& v) {
   auto& [answer, stamp_ns, true_world_from_camera, success, correct, false_positive, distance_m,
-         angle_deg, aligned_distance_m] = score;
+         angle_deg, aligned_distance_m, grade] = score;
   fields(answer, v);
   v("stamp_ns", stamp_ns);
   v("truth", true_world_from_camera);
@@ -81,6 +83,7 @@ void fields(S& score, Visit& v) {
   v("distance_m", distance_m);
   v("angle_deg", angle_deg);
   v("aligned_distance_m", aligned_distance_m);
+  v("grade", grade);
 }
 
 /// Whether an answer can be judged: there is a truth, or a distance without one

@@ -27,6 +27,22 @@ void fields(P& path, Visit& v) {
   v("max_penetration_m", max_penetration_m);
 }
 
+/// Graded queries of one pair of bins, by index.
+struct GradedCell {
+  std::size_t distance = 0, angle = 0;
+  std::size_t asked = 0;   ///< poses, each at every speed
+  std::size_t hidden = 0;  ///< drawn, but the mapped frames show nothing of what they see
+};
+
+template <Either<GradedCell> C, class Visit>
+void fields(C& cell, Visit& v) {
+  auto& [distance, angle, asked, hidden] = cell;
+  v("distance", distance);
+  v("angle", angle);
+  v("asked", asked);
+  v("hidden", hidden);
+}
+
 /// What a run records of its place, so that its results can be read without the world.
 struct PlaceFacts {
   std::string scene, robot;  ///< their names
@@ -34,14 +50,15 @@ struct PlaceFacts {
   std::size_t vocabulary_words = 0;
   PathFacts mapping;
   std::optional<PathFacts> second;
-  bool cut = false;  ///< the tours were cut after RunSpec::max_frames
+  std::vector<GradedCell> graded = {};  ///< empty: no graded queries
+  bool cut = false;                     ///< the tours were cut after RunSpec::max_frames
   std::vector<InputDigest> inputs;
 };
 
 template <Either<PlaceFacts> P, class Visit>
 void fields(P& place, Visit& v) {
   auto& [scene, robot, scene_digest, path_digest, vocabulary_digest, vocabulary_words, mapping,
-         second, cut, inputs] = place;
+         second, graded, cut, inputs] = place;
   v("scene", scene);
   v("robot", robot);
   v("scene_digest", as_digest(scene_digest));
@@ -50,6 +67,7 @@ void fields(P& place, Visit& v) {
   v("vocabulary_words", vocabulary_words);
   v("mapping_tour", mapping);
   v("query_tour", second);
+  v("graded", graded);
   v("cut", cut);
   v("inputs", inputs);
 }

@@ -27,7 +27,11 @@ std::string comparison_line(const PairNames& names, const Comparison& c) {
           ? fmt::format("undecided; smallest detectable difference {:.4f}", c.detectable)
           : std::string("undecided; too few pairs");
   const std::string corrected =
-      c.in_family ? fmt::format("(Holm {:.4f})  {}", c.p_holm, word) : "(outside the family)";
+      c.in_family ? fmt::format("(Holm {:.4f})  {}", c.p_holm, word)
+      : c.clusters > 0
+          ? fmt::format("(outside the family; {} of {} as clusters)",
+                        counted(c.pairs, "query", "queries"), counted(c.clusters, "scene"))
+          : "(outside the family)";
   return fmt::format("  {:<62}{:+.4f} {}  p = {:.4f} {}\n", c.what, c.difference, interval(c), c.p,
                      corrected);
 }
@@ -79,7 +83,7 @@ std::string comparisons_text(const Suite& suite, const SceneFamily& family) {
   const PairNames names(suite, family.systems);
   const std::size_t scenes = suite.environments.size();
   for (const Comparison& c : family.comparisons) {
-    if (c.pairs < scenes)
+    if (c.clusters == 0 && c.pairs < scenes)
       text += fmt::format("  over {} of {}, where both have a value:\n", c.pairs,
                           counted(scenes, "scene"));
     text += comparison_line(names, c) + margin_line(suite, names, c);

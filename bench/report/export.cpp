@@ -70,7 +70,8 @@ std::string export_csv(const Store& store) {
         names[i][0]);
   const Rows rows = store.rows(
       "SELECT p.name AS run, r.environment, r.category, r.level, r.system, r.labels, r.trial, "
-      "r.seed, r.status, r.error, o.point, o.gamma, o.xi, o.alpha, o.beta, o.overlap" +
+      "r.seed, r.status, r.error, o.point, o.gamma, o.label_mass, o.xi, o.alpha, o.beta, "
+      "o.overlap" +
       columns +
       " FROM plan p JOIN runs r ON r.key = p.key LEFT JOIN points o ON o.key = r.key "
       "ORDER BY p.position, o.point");

@@ -5,6 +5,7 @@
 
 #include "bench/provenance/json_fields.hpp"
 #include "bench/report/figures_json.hpp"
+#include "bench/report/graded_report.hpp"
 #include "bench/report/run_json.hpp"
 #include "bench/report/suite_json.hpp"
 #include "bench/results/scenes.hpp"
@@ -33,6 +34,7 @@ Json row_json(const Row& row, const Suite& suite) {
           {"mapping", known(figures_json(figures_of(row.mapping)))},
           {"held_out", summary_json(row.held_out)},
           {"second_tour", summary_json(row.second_tour)},
+          {"graded", summary_json(row.graded)},
           {"matchers", matches_json(row.matches)}};
 }
 
@@ -47,7 +49,8 @@ Json category_json(const CategoryRow& row, const Suite& suite) {
           {"failed", row.failed},
           {"trajectory", row.scenes > 0 ? figures_json(figures_of(row.trajectory)) : Json()},
           {"held_out", summary_json(row.held_out)},
-          {"second_tour", summary_json(row.second_tour)}};
+          {"second_tour", summary_json(row.second_tour)},
+          {"graded", summary_json(row.graded)}};
 }
 
 Json comparison_json(const Suite& suite, const SystemPair& systems, const Comparison& c) {
@@ -59,6 +62,7 @@ Json comparison_json(const Suite& suite, const SystemPair& systems, const Compar
           {"first", first},
           {"second", second},
           {"pairs", c.pairs},
+          {"clusters", c.clusters > 0 ? Json(c.clusters) : Json()},
           {"in_family", c.in_family},
           {"difference", known(c.difference)},
           {"low", known(c.low)},
@@ -108,6 +112,7 @@ Json results_json(const Suite& suite, std::span<const RunResult> runs,
       {"rows", row_list},
       {"comparisons", comparisons},
       {"categories", categories},
+      {"graded", graded_json(suite, rows)},
       {"comparisons_over_scenes", over_scenes},
       {"runs", run_list},
       {"missing", missing}};

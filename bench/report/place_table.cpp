@@ -37,7 +37,9 @@ double most_queries(const Block& block, QuerySet set) {
 }
 
 std::string title(QuerySet set) {
-  return set == QuerySet::kHeldOut ? "held-out frames (the paper's way)" : "second tour";
+  return set == QuerySet::kHeldOut      ? "held-out frames (the paper's way)"
+         : set == QuerySet::kSecondTour ? "second tour"
+                                        : "graded by distance and angle";
 }
 
 /// Table in the form of the paper's Table 2. Empty if there were no queries, as in a suite of

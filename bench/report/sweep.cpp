@@ -81,6 +81,25 @@ std::map<double, std::string> distinct(const SweepResult& result, std::string_vi
   return values;
 }
 
+/// What labels weighed under each value of a setting, below it: the measured label mass, and the
+/// gamma that gave it where the mass itself is varied. Empty for a setting of something else.
+std::map<double, std::string> weights_of_labels(const SweepResult& result, std::string_view name) {
+  if (!weighs_labels(name)) return {};
+  std::map<double, std::vector<double>> masses, gammas;
+  for (std::size_t i = 0; i < result.points.size(); ++i)
+    for (const QuerySet set : kQuerySets) {
+      const QuerySummary& s = summary(result.answers[i], set);
+      const double value = setting_value(result.points[i], name);
+      if (s.label_mass) masses[value].push_back(*s.label_mass);
+      if (s.gamma) gammas[value].push_back(*s.gamma);
+    }
+  std::map<double, std::string> texts;
+  for (const auto& [value, measured] : masses)
+    texts[value] = name == kGamma ? fmt::format("({:.1f} %)", 100 * mean(measured))
+                                  : fmt::format("(gamma {:.3g})", mean(gammas[value]));
+  return texts;
+}
+
 /// The place of a panel, with space for the numbers on its axes.
 struct Box {
   double left, right, top, bottom;
@@ -94,7 +113,7 @@ struct Box {
 void draw_names(Canvas& canvas, const Box& box, const std::string& title, std::string_view across,
                 std::string_view up) {
   canvas.text(title, {box.left, box.top - 12}, 9.5, kInk, Canvas::Align::kLeft, true);
-  canvas.text(std::string(across), {(box.left + box.right) / 2, box.bottom + 34}, 9, kGray,
+  canvas.text(std::string(across), {(box.left + box.right) / 2, box.bottom + 38}, 9, kGray,
               Canvas::Align::kCenter);
   if (!up.empty())
     canvas.text(std::string(up), {box.left - 8, box.top - 12}, 9, kGray, Canvas::Align::kRight);
@@ -128,13 +147,21 @@ void draw_grid(Canvas& canvas, const Panel& panel) {
   };
   draw_names(canvas, box, title, shown_name(across), shown_name(up));
   double column = 0, row = 0;
+  const auto below_x = weights_of_labels(result, across), below_y = weights_of_labels(result, up);
+  const auto number = [&](double value, const std::string& text,
+                          const std::map<double, std::string>& below, cv::Point2d at,
+                          Canvas::Align align) {
+    canvas.text(text, at, 8, kGray, align);
+    if (const auto more = below.find(value); more != below.end())
+      canvas.text(more->second, at + cv::Point2d(0, 10), 6.5, kGray, align);
+  };
   for (const auto& [value, text] : xs)
-    canvas.text(text, {box.left + width * (column++ + 0.5), box.bottom + 16}, 8, kGray,
-                Canvas::Align::kCenter);
+    number(value, text, below_x, {box.left + width * (column++ + 0.5), box.bottom + 14},
+           Canvas::Align::kCenter);
   for (const auto& [value, text] : ys)
     if (!up.empty())
-      canvas.text(text, {box.left - 8, box.bottom - height * (row++ + 0.5) + 4}, 8, kGray,
-                  Canvas::Align::kRight);
+      number(value, text, below_y, {box.left - 8, box.bottom - height * (row++ + 0.5) + 4},
+             Canvas::Align::kRight);
   for (std::size_t i = 0; i < result.points.size(); ++i) {
     if (!values.of[i]) continue;
     const double share = values.share(*values.of[i]);

@@ -45,6 +45,24 @@ std::string best_points(const Suite& suite, std::span<const Row> rows) {
   return text;
 }
 
+/// Whether how much labels weigh is varied, as a factor or as a share.
+bool varies_weight_of_labels(const Sweep& sweep) {
+  return std::ranges::any_of(sweep.varied, weighs_labels);
+}
+
+/// The gamma that gave a wished label mass, and the mass that queries then had.
+void add_weight_headings(const Sweep& sweep, std::vector<std::string>& headings) {
+  if (!varies_weight_of_labels(sweep)) return;
+  if (std::ranges::count(sweep.varied, kLabelMass) > 0) headings.emplace_back("gamma");
+  headings.emplace_back("measured mass");
+}
+void add_weight_cells(const Sweep& sweep, const QuerySummary& s, std::vector<std::string>& cells) {
+  if (!varies_weight_of_labels(sweep)) return;
+  if (std::ranges::count(sweep.varied, kLabelMass) > 0)
+    cells.push_back(s.gamma ? fmt::format("{:.4g}", *s.gamma) : "-");
+  cells.push_back(shown_mass(s));
+}
+
 /// Rows of one level and kind of labels.
 std::string block_text(const Suite& suite, std::span<const CategoryRow> rows,
                        std::span<const CategoryRow> all) {
@@ -54,6 +72,7 @@ std::string block_text(const Suite& suite, std::span<const CategoryRow> rows,
     if (!was_asked(all, set)) continue;
     std::ranges::move(query_headings(set), std::back_inserter(headings));
     headings.emplace_back("candidates");
+    add_weight_headings(suite.sweep, headings);
   }
   TextTable table(std::move(headings));
   const std::vector<SharedSlamConfig> points = parameter_points(suite);
@@ -68,6 +87,7 @@ std::string block_text(const Suite& suite, std::span<const CategoryRow> rows,
       std::ranges::move(query_cells(row, set), std::back_inserter(cells));
       const std::optional<double>& left = summary(row, set).final;
       cells.push_back(left ? fmt::format("{:.2f}", *left) : "-");
+      add_weight_cells(suite.sweep, summary(row, set), cells);
     }
     table.add(std::move(cells), incomplete(row));
   }

@@ -8,6 +8,7 @@
 
 #include "bench/plan/parameters.hpp"
 #include "bench/plan/runs.hpp"
+#include "bench/report/graded_report.hpp"
 #include "bench/report/place_table.hpp"
 #include "bench/report/scenes_table.hpp"
 #include "bench/report/sweep_table.hpp"
@@ -29,8 +30,7 @@ std::string warning_of_cut(const Suite& suite, std::span<const RunResult> runs) 
 /// Notes on recordings: their single noise, and frames that were not shown to any system.
 std::string recordings_text(const Suite& suite, std::span<const RunResult> runs) {
   if (std::ranges::none_of(suite.environments, &Environment::is_recorded)) return "";
-  std::string text =
-      "\nrecordings have one noise: trials and attempts differ in RANSAC's draws alone\n";
+  std::string text = "\nrecordings have one noise: trials differ in RANSAC's draws alone\n";
   std::set<std::string> named;
   for (const RunResult& run : runs) {
     const SkippedFrames& skipped = run.mapping.skipped;
@@ -98,8 +98,8 @@ std::string results_table(const Suite& suite, std::span<const RunResult> runs,
          (parameter_points(suite).size() > 1 ? sweep_table(suite, rows)
           : suite.environments.size() > 1    ? scenes_table(suite, rows)
                                              : place_table(suite, rows)) +
-         base_text(suite) + recordings_text(suite, runs) + failures_text(failed) +
-         missing_text(missing);
+         graded_table(suite, rows) + base_text(suite) + recordings_text(suite, runs) +
+         failures_text(failed) + missing_text(missing);
 }
 
 }  // namespace mh

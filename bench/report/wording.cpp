@@ -28,7 +28,9 @@ std::vector<std::string> overview_headings() {
 }  // namespace
 
 std::string_view short_title(QuerySet set) {
-  return set == QuerySet::kHeldOut ? "held out" : "2nd tour";
+  return set == QuerySet::kHeldOut      ? "held out"
+         : set == QuerySet::kSecondTour ? "2nd tour"
+                                        : "graded";
 }
 
 std::string shortened(const Suite& suite, std::span<const Row> rows) {
@@ -78,6 +80,10 @@ std::vector<std::string> trajectory_cells(const CategoryRow& row) {
 
 std::vector<std::string> query_cells(const CategoryRow& row, QuerySet set) {
   return overview_cells(figures_of(summary(row, set)), summary(row, set).queries > 0);
+}
+
+std::string shown_mass(const QuerySummary& summary) {
+  return summary.label_mass ? fmt::format("{:.1f}%", 100 * *summary.label_mass) : "-";
 }
 
 bool was_asked(std::span<const CategoryRow> rows, QuerySet set) {

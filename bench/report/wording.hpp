@@ -14,7 +14,7 @@ namespace mh {
 /// Above this success rate of a system without labels, labels have nothing left to gain.
 inline constexpr double kSaturated = 0.97;
 
-/// "held out", "2nd tour"
+/// "held out", "2nd tour", "graded"
 std::string_view short_title(QuerySet set);
 
 /// ", first 200 frames" if the tours were cut; empty otherwise.
@@ -35,6 +35,9 @@ std::vector<std::string> query_headings(QuerySet set);
 /// Their cells; "-" if there were no queries.
 std::vector<std::string> trajectory_cells(const CategoryRow& row);
 std::vector<std::string> query_cells(const CategoryRow& row, QuerySet set);
+
+/// The share of the queries' vectors that labels held, "17.2%"; "-" if unknown.
+std::string shown_mass(const QuerySummary& summary);
 
 /// Whether any of the rows answered queries of the set.
 bool was_asked(std::span<const CategoryRow> rows, QuerySet set);

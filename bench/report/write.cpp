@@ -8,6 +8,7 @@
 #include "bench/plan/spec_json.hpp"
 #include "bench/provenance/code_version.hpp"
 #include "bench/provenance/digest.hpp"
+#include "bench/report/graded_report.hpp"
 #include "bench/report/json.hpp"
 #include "bench/report/sweep.hpp"
 #include "bench/report/table.hpp"
@@ -95,8 +96,10 @@ std::string write_results(const fs::path& folder, const Suite& suite,
   write_atomically(folder / "times.json", times_json(runs).dump(2) + "\n");
   write_atomically(folder / "reproduction.json", reproduction_json(suite, runs).dump(2) + "\n");
   write_atomically(folder / "times.txt", times_table(suite, runs));
+  const std::vector<Row> rows = make_rows(suite, runs);
+  for (const GradedImage& drawn : draw_graded_curves(suite, rows))
+    write_image(folder / drawn.file, drawn.image);
   if (parameter_points(suite).size() > 1) {
-    const std::vector<Row> rows = make_rows(suite, runs);
     for (const SweepResult& result : sweep_results(suite, rows))
       write_image(folder / sweep_image_name(suite, result), draw_sweep(suite, rows, result));
   }

@@ -20,7 +20,8 @@ namespace mh {
 /// The answers under one of the run's parameter points.
 struct PointResult {
   std::vector<QueryScore> held_out;
-  std::vector<QueryScore> second_tour;  ///< never pooled with held_out
+  std::vector<QueryScore> second_tour = {};  ///< never pooled with held_out
+  std::vector<QueryScore> graded = {};       ///< nor with these
 };
 
 /// When and where a run's times were measured: times of different sessions are not comparable.
@@ -59,7 +60,7 @@ struct FailedRun {
 };
 
 inline const std::vector<QueryScore>& queries(const PointResult& point, QuerySet set) {
-  return set == QuerySet::kHeldOut ? point.held_out : point.second_tour;
+  return of_query_set(point, set);
 }
 
 /// Calls visit(query) for every query of a run: by point, then set, then query order.

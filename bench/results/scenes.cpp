@@ -44,8 +44,7 @@ CategoryRow together(std::string category, std::vector<const Row*> scenes, std::
   std::vector<TrajectoryScore> trajectories;
   for (const Row* row : scenes) trajectories.push_back(row->trajectory);
   c.trajectory = reduce(std::span(std::as_const(trajectories)), mean_of_known);
-  c.held_out = mean_summary(scenes, QuerySet::kHeldOut);
-  c.second_tour = mean_summary(scenes, QuerySet::kSecondTour);
+  for (const QuerySet set : kQuerySets) of_query_set(c, set) = mean_summary(scenes, set);
   return c;
 }
 
@@ -95,13 +94,25 @@ std::vector<Comparison> compare(const std::vector<const Row*>& first,
   const auto add = [&](const std::string& what, Difference between_rows, QuerySet set, bool shares,
                        bool more_is_better, bool in_family) {
     std::vector<PairedDifference> differences;
-    for (std::size_t i = 0; i < first.size(); ++i)
-      differences.push_back(has_result(first[i]) && has_result(second[i])
-                                ? between_rows(*first[i], *second[i], set)
-                                : PairedDifference{});
-    comparisons.push_back(compare_scenes(what, differences, shares, seed));
+    std::size_t answers = 0;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      if (!has_result(first[i]) || !has_result(second[i])) continue;
+      differences.push_back(between_rows(*first[i], *second[i], set));
+      if (shares && differences.back().present)
+        answers += shared_queries(*first[i], *second[i], set);
+    }
+    comparisons.push_back(compare_scenes(what, differences, answers, seed));
     comparisons.back().more_is_better = more_is_better;
     comparisons.back().in_family = in_family;
+    if (comparisons.back().pairs == 0) comparisons.pop_back();
+  };
+  const auto add_pooled = [&](const std::string& what, auto pairs_of, QuerySet set) {
+    std::vector<std::vector<PairedDifference>> scenes;
+    for (std::size_t i = 0; i < first.size(); ++i)
+      if (has_result(first[i]) && has_result(second[i]))
+        scenes.push_back(pairs_of(*first[i], *second[i], set));
+    comparisons.push_back(compare_clusters(what, scenes, true, seed));
+    comparisons.back().in_family = false;
     if (comparisons.back().pairs == 0) comparisons.pop_back();
   };
   for (const QuerySet set : kQuerySets) {
@@ -109,7 +120,9 @@ std::vector<Comparison> compare(const std::vector<const Row*>& first,
       return fmt::format("{}, {}, {}", measure, name(set), with_labels(labels));
     };
     add(what("success"), share<&QuerySummary::success>, set, true, true, true);
+    add_pooled(what("pooled success"), paired_success, set);
     add(what("correct"), share<&QuerySummary::correct>, set, true, true, false);
+    add_pooled(what("pooled correct"), paired_correct, set);
     add(what("false positive"), share<&QuerySummary::false_positive>, set, true, false, false);
     add(what("distance where both answer, m"), distance, set, false, false, true);
   }

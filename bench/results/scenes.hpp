@@ -22,11 +22,11 @@ struct CategoryRow {
   std::size_t scenes = 0;  ///< where the system has a result; all figures are over these; may be 0
   std::size_t of = 0;      ///< scenes of the category in the suite
   std::size_t failed = 0;  ///< runs that failed, in all of them
-  TrajectoryScore trajectory;          ///< each figure over the scenes that have it
-  QuerySummary held_out, second_tour;  ///< over the scenes with such queries
+  TrajectoryScore trajectory;                  ///< each figure over the scenes that have it
+  QuerySummary held_out, second_tour, graded;  ///< over the scenes with such queries
 };
 inline const QuerySummary& summary(const CategoryRow& row, QuerySet set) {
-  return set == QuerySet::kHeldOut ? row.held_out : row.second_tour;
+  return of_query_set(row, set);
 }
 
 /// By level, labels, parameters and category (in the order of their first environments, "all"
@@ -35,7 +35,8 @@ std::vector<CategoryRow> make_category_rows(const Suite& suite, std::span<const 
 
 /// First minus second of each pair that the suite compares, over scenes: one family per pair, level
 /// and parameter point, corrected by Holm. Success, correct, false positive, distance over the
-/// queries that both answered, ATE over the frames that both tracked.
+/// queries that both answered, ATE over the frames that both tracked. Beside the means over scenes,
+/// outside the family: success and correct of all queries pooled, with scenes as clusters.
 struct SceneFamily {
   std::size_t level = 0, parameters = 0;
   SystemPair systems;

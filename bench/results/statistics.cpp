@@ -10,14 +10,29 @@
 namespace mh {
 namespace {
 
-double mean_difference(std::span<const PairedDifference> queries,
-                       std::span<const std::size_t> chosen) {
+/// What is resampled as a whole: its known differences, summed and counted.
+struct Unit {
+  double sum = 0;
+  std::size_t count = 0;
+  void add(const PairedDifference& pair) {
+    if (!pair.present) return;
+    sum += pair.difference;
+    ++count;
+  }
+};
+
+std::vector<Unit> one_by_one(std::span<const PairedDifference> pairs) {
+  std::vector<Unit> units(pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) units[i].add(pairs[i]);
+  return units;
+}
+
+double mean_difference(std::span<const Unit> units, std::span<const std::size_t> chosen) {
   double sum = 0;
   std::size_t count = 0;
   for (const std::size_t i : chosen) {
-    if (!queries[i].present) continue;
-    sum += queries[i].difference;
-    ++count;
+    sum += units[i].sum;
+    count += units[i].count;
   }
   return count == 0 ? 0.0 : sum / static_cast<double>(count);
 }
@@ -34,16 +49,26 @@ std::vector<std::size_t> draw_blocks(std::size_t n, std::size_t block, RandomStr
 
 constexpr std::size_t kFewestPairs = 4;  // with fewer, resampling is meaningless
 
+/// Draws for the interval.
+struct Draws {
+  std::size_t block = 1;  ///< consecutive units that are drawn together
+  std::uint64_t seed = 0;
+  int resamples = 0;
+};
+
 /// Difference, interval and detectable difference by a circular block bootstrap.
-Comparison resample(std::string what, std::span<const PairedDifference> pairs, std::size_t block,
-                    bool shares, std::uint64_t seed, int resamples) {
+/// @param answers  yes-or-no observations behind the differences; 0: they are not shares
+Comparison resample(std::string what, std::span<const Unit> units, std::size_t answers,
+                    const Draws& draws) {
+  const auto& [block, seed, resamples] = draws;
   Comparison c{.what = std::move(what)};
-  const std::size_t n = pairs.size();
-  for (const PairedDifference& q : pairs) c.pairs += q.present ? 1 : 0;
+  const std::size_t n = units.size();
+  for (const Unit& unit : units) c.pairs += unit.count;
   std::vector<std::size_t> all(n);
   std::iota(all.begin(), all.end(), std::size_t{0});
-  c.difference = mean_difference(pairs, all);
-  if (c.pairs < kFewestPairs) {
+  c.difference = mean_difference(units, all);
+  const auto known = std::ranges::count_if(units, [](const Unit& unit) { return unit.count > 0; });
+  if (static_cast<std::size_t>(known) < kFewestPairs) {
     c.low = -INFINITY;
     c.high = INFINITY;
     c.detectable = INFINITY;
@@ -53,7 +78,7 @@ Comparison resample(std::string what, std::span<const PairedDifference> pairs, s
   means.reserve(static_cast<std::size_t>(resamples));
   for (int r = 0; r < resamples; ++r) {
     const RandomStream stream = RandomStream(seed).fork(static_cast<std::uint64_t>(r));
-    means.push_back(mean_difference(pairs, draw_blocks(n, block, stream)));
+    means.push_back(mean_difference(units, draw_blocks(n, block, stream)));
   }
   std::sort(means.begin(), means.end());
   const auto at = [&](double share) {
@@ -66,7 +91,7 @@ Comparison resample(std::string what, std::span<const PairedDifference> pairs, s
       std::accumulate(means.begin(), means.end(), 0.0) / static_cast<double>(means.size());
   for (const double m : means) variance += (m - center) * (m - center);
   c.detectable = (1.96 + 0.84) * std::sqrt(variance / (static_cast<double>(means.size()) - 1.0));
-  if (shares) c.detectable = std::max(c.detectable, 3.0 / static_cast<double>(c.pairs));
+  if (answers > 0) c.detectable = std::max(c.detectable, 3.0 / static_cast<double>(answers));
   return c;
 }
 
@@ -100,7 +125,10 @@ Comparison compare_paired(std::string what, std::span<const PairedDifference> qu
                           std::uint64_t seed, int resamples) {
   const auto block = std::max<std::size_t>(
       2, static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(queries.size())))));
-  Comparison c = resample(std::move(what), queries, block, shares, seed, resamples);
+  const auto known =
+      static_cast<std::size_t>(std::ranges::count_if(queries, &PairedDifference::present));
+  Comparison c =
+      resample(std::move(what), one_by_one(queries), shares ? known : 0, {block, seed, resamples});
   std::vector<double> sums;  // of blocks with any known difference
   for (std::size_t first = 0; first < queries.size(); first += block) {
     const auto part = queries.subspan(first, std::min(block, queries.size() - first));
@@ -141,8 +169,8 @@ double sign_flip(std::span<const double> sums, std::uint64_t seed) {
   return (drawn + static_cast<double>(hits)) / (drawn + static_cast<double>(patterns));
 }
 
-Comparison compare_scenes(std::string what, std::span<const PairedDifference> scenes, bool shares,
-                          std::uint64_t seed, int resamples) {
+Comparison compare_scenes(std::string what, std::span<const PairedDifference> scenes,
+                          std::size_t answers, std::uint64_t seed, int resamples) {
   std::vector<PairedDifference> known;
   std::vector<double> differences;
   for (const PairedDifference& scene : scenes)
@@ -150,9 +178,32 @@ Comparison compare_scenes(std::string what, std::span<const PairedDifference> sc
       known.push_back(scene);
       differences.push_back(scene.difference);
     }
-  Comparison c = resample(std::move(what), known, 1, shares, seed, resamples);
+  Comparison c =
+      resample(std::move(what), one_by_one(known), answers, {.seed = seed, .resamples = resamples});
   if (c.pairs >= kFewestPairs) c.p = wilcoxon_signed_rank(differences);
   note_least_p(c, c.pairs);
+  return c;
+}
+
+Comparison compare_clusters(std::string what,
+                            std::span<const std::vector<PairedDifference>> clusters, bool shares,
+                            std::uint64_t seed, int resamples) {
+  std::vector<Unit> units;
+  std::vector<double> sums;
+  std::size_t known = 0;
+  for (const std::vector<PairedDifference>& cluster : clusters) {
+    Unit whole;
+    for (const PairedDifference& pair : cluster) whole.add(pair);
+    if (whole.count == 0) continue;
+    units.push_back(whole);
+    sums.push_back(whole.sum);
+    known += whole.count;
+  }
+  Comparison c =
+      resample(std::move(what), units, shares ? known : 0, {.seed = seed, .resamples = resamples});
+  c.clusters = units.size();
+  if (c.clusters >= kFewestPairs) c.p = sign_flip(sums, seed);
+  note_least_p(c, c.clusters);
   return c;
 }
 

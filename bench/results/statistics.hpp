@@ -33,13 +33,16 @@ struct Comparison {
   bool more_is_better = true;
   bool in_family = true;     ///< false: shown alongside the declared family, never judged
   std::size_t pairs = 0;     ///< queries (or scenes) where both have a value; 0: unknown
+  std::size_t clusters = 0;  ///< scenes that pooled queries are of; 0: they are not pooled
   double difference = 0;     ///< mean of first - second
   double low = 0, high = 0;  ///< 95 % bootstrap interval
   double p = 1;              ///< two-sided; for queries by sign flips, for scenes Wilcoxon's
   double p_holm = 1;         ///< corrected over the family (see holm)
   /// The true difference that would be detected with 80 % power at the 5 % level: 2.8 standard
-  /// errors; for shares at least 3 / pairs, since differences may exist even if none was observed.
-  /// Infinite if even the clearest difference could not reach the 5 % level: too few pairs.
+  /// errors; for shares at least 3 / answers, the yes-or-no answers behind them, since differences
+  /// may exist even if none was observed (the rule of three). A mean over scenes has as many
+  /// answers as its scenes have queries: it moves in far smaller steps than 1 / scenes. Infinite if
+  /// even the clearest difference could not reach the 5 % level: too few pairs.
   double detectable = 0;
 };
 
@@ -51,9 +54,20 @@ double wilcoxon_signed_rank(std::span<const double> differences);
 /// Mean difference of two systems over scenes: scenes are independent, so they are resampled
 /// individually for the interval, and p is Wilcoxon's. Scenes where one of the two has no value are
 /// left out; with fewer than 4 left the interval stays wide open.
-/// @param scenes  per scene, the difference of the two systems' medians over trials
-Comparison compare_scenes(std::string what, std::span<const PairedDifference> scenes, bool shares,
-                          std::uint64_t seed, int resamples = 10000);
+/// @param scenes   per scene, the difference of the two systems' medians over trials
+/// @param answers  yes-or-no answers behind the scenes' shares, in all; 0: they are not shares
+Comparison compare_scenes(std::string what, std::span<const PairedDifference> scenes,
+                          std::size_t answers, std::uint64_t seed, int resamples = 10000);
+
+/// Mean difference of two systems over the pooled queries of many scenes: each query counts the
+/// same, wherever it was asked. Queries of one scene depend on each other, so scenes are resampled
+/// as wholes (the cluster bootstrap: Field and Welsh, 2007), and p is that of sign_flip() over the
+/// sums of scenes (signs by cluster: Canay, Romano and Shaikh, 2017). With fewer than 4 scenes the
+/// interval stays wide open; fewer than 6 cannot be significant.
+/// @param clusters  per scene, its paired queries
+Comparison compare_clusters(std::string what,
+                            std::span<const std::vector<PairedDifference>> clusters, bool shares,
+                            std::uint64_t seed, int resamples = 10000);
 
 /// Two-sided p of a sign-flip test (Fisher, 1935) that sums are symmetric about 0: the share of
 /// sign patterns under which their mean is at least as far from 0 as the observed one. Exact, over

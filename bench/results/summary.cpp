@@ -31,8 +31,7 @@ QuerySummary median_summary(const std::vector<Trial>& trials, QuerySet set) {
 Row fill_in(Row row) {
   row.trajectory = median_score(row.trials, [](const Trial& t) { return t.run->trajectory; });
   row.mapping = median_score(row.trials, [](const Trial& t) { return count(t.run->mapping); });
-  row.held_out = median_summary(row.trials, QuerySet::kHeldOut);
-  row.second_tour = median_summary(row.trials, QuerySet::kSecondTour);
+  for (const QuerySet set : kQuerySets) of_query_set(row, set) = median_summary(row.trials, set);
 
   std::vector<double> track_ms, relocalize_ms;
   for (const Trial& trial : row.trials) {
@@ -78,9 +77,25 @@ std::vector<PairedDifference> differences(const Row& first, const Row& second, Q
   return result;
 }
 
+std::optional<double> answered(const QueryScore& q) {
+  return q.success ? 1.0 : 0.0;
+}
+
 std::optional<double> judged_correct(const QueryScore& q) {
   return is_judged(q) ? std::optional(q.correct ? 1.0 : 0.0) : std::nullopt;
 }
+
+}  // namespace
+
+std::vector<PairedDifference> paired_success(const Row& first, const Row& second, QuerySet set) {
+  return differences(first, second, set, answered);
+}
+
+std::vector<PairedDifference> paired_correct(const Row& first, const Row& second, QuerySet set) {
+  return differences(first, second, set, judged_correct);
+}
+
+namespace {
 
 std::vector<Comparison> compare_rows(const Row& first, const Row& second, std::uint64_t seed) {
   std::vector<Comparison> comparisons;
@@ -89,11 +104,10 @@ std::vector<Comparison> compare_rows(const Row& first, const Row& second, std::u
     const auto label = [&](const char* what) {
       return fmt::format("{}, {}, {}", what, name(set), with_labels(first.labels));
     };
-    const auto success = [](const QueryScore& q) { return std::optional(q.success ? 1.0 : 0.0); };
     comparisons.push_back(
-        compare_paired(label("success"), differences(first, second, set, success), true, seed));
-    comparisons.push_back(compare_paired(
-        label("correct"), differences(first, second, set, judged_correct), true, seed));
+        compare_paired(label("success"), paired_success(first, second, set), true, seed));
+    comparisons.push_back(
+        compare_paired(label("correct"), paired_correct(first, second, set), true, seed));
     comparisons.back().in_family = false;
     comparisons.push_back(
         compare_distances(first, second, set, label("distance where both answer, m"), seed));
@@ -167,6 +181,7 @@ QuerySummary summarize(std::span<const QueryScore> queries) {
     return c.final ? std::optional<double>(*c.final == 1) : std::nullopt;
   });
   s.label_mass = mean_reported(queries, [](const Candidates& c) { return c.label_mass; });
+  s.gamma = mean_reported(queries, [](const Candidates& c) { return c.gamma; });
   if (distances.empty()) return s;
   s.distance_mean_m = mean(distances);
   s.aligned_distance_mean_m = mean(aligned);
@@ -257,8 +272,13 @@ Comparison compare_distances(const Row& first, const Row& second, QuerySet set, 
   return compare_paired(std::move(what), differences(first, second, set, distance), false, seed);
 }
 
+std::size_t shared_queries(const Row& first, const Row& second, QuerySet set) {
+  return static_cast<std::size_t>(
+      std::lround(std::min(summary(first, set).queries, summary(second, set).queries)));
+}
+
 Comparison compare_correct(const Row& first, const Row& second, QuerySet set, std::uint64_t seed) {
-  return compare_paired("correct", differences(first, second, set, judged_correct), true, seed);
+  return compare_paired("correct", paired_correct(first, second, set), true, seed);
 }
 
 std::array<std::optional<double>, 2> ate_over_common_frames(const Row& first, const Row& second) {

@@ -36,12 +36,12 @@ struct Row {
   std::size_t failed = 0;      ///< its failed runs
   TrajectoryScore trajectory;  ///< medians over the trials that have the score
   MappingCounts mapping;       ///< medians over the trials
-  QuerySummary held_out, second_tour;
+  QuerySummary held_out, second_tour, graded;
   std::optional<MatchCounts> matches;  ///< summed over trials, mapping and queries, where reported
   TimeSummary track, relocalize;
 };
 inline const QuerySummary& summary(const Row& row, QuerySet set) {
-  return set == QuerySet::kHeldOut ? row.held_out : row.second_tour;
+  return of_query_set(row, set);
 }
 
 /// Returns one row per environment, level, labels, parameter point and system that has a run, in
@@ -63,6 +63,14 @@ struct Family {
 /// kind and query set: success, and the distance where both answer. *Correct* is shown alongside:
 /// without false positives it equals success.
 std::vector<Family> compare_systems(const Suite& suite, std::span<const Row> rows);
+
+/// Per query, in order: first minus second, each the median over trials.
+std::vector<PairedDifference> paired_success(const Row& first, const Row& second, QuerySet set);
+/// The same for correct answers; absent where an answer cannot be judged.
+std::vector<PairedDifference> paired_correct(const Row& first, const Row& second, QuerySet set);
+
+/// The queries of a set that two rows share: the yes-or-no answers behind a difference of shares.
+std::size_t shared_queries(const Row& first, const Row& second, QuerySet set);
 
 /// Compares distances over the queries that both answered, first minus second, by blocks of
 /// queries.

@@ -69,12 +69,14 @@ std::optional<BestPoint> best_point(const Suite& suite, std::span<const Row> row
     return found;
   }
   std::vector<PairedDifference> differences;
+  std::size_t answers = 0;
   for (const Row* a : at_best)
-    for (const Row* b : at_reference)
-      if (a->environment == b->environment)
-        differences.push_back(
-            paired_difference(summary(*a, set).correct, summary(*b, set).correct));
-  found.to_reference = compare_scenes("correct", differences, true, suite.seed);
+    for (const Row* b : at_reference) {
+      if (a->environment != b->environment) continue;
+      differences.push_back(paired_difference(summary(*a, set).correct, summary(*b, set).correct));
+      answers += shared_queries(*a, *b, set);
+    }
+  found.to_reference = compare_scenes("correct", differences, answers, suite.seed);
   return found;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <optional>
 
 #include <fmt/format.h>
@@ -23,7 +24,7 @@
 namespace mh {
 namespace {
 
-enum StreamName : std::uint64_t { kMapping = 1, kHeldOut = 2, kSecondTour = 3 };
+enum StreamName : std::uint64_t { kMapping = 1, kHeldOut = 2, kSecondTour = 3, kGraded = 4 };
 
 /// Counts units of work and reports their share.
 class WorkDone {
@@ -91,23 +92,39 @@ class FramesMadeOnce : public FramesOf {
   mutable std::map<std::uint64_t, RgbdFrame> made_;
 };
 
+/// The frames of a set of queries.
+std::vector<std::size_t> asked_frames(QuerySet set, const Sequence& sequence,
+                                      const ProtocolConfig& config) {
+  if (set != QuerySet::kGraded) return test_frames(sequence.size(), config);
+  std::vector<std::size_t> all(sequence.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
 /// One set of queries.
 class QueryRound {
  public:
-  QueryRound(const RunSpec& spec, const Sequence& sequence, NearestBy by, const RunTamper& tamper,
-             RunResult& run, RandomStream stream)
-      : spec_(spec), by_(by), frames_(sequence, tamper, run.frames_s), run_(run), stream_(stream) {}
+  QueryRound(const RunSpec& spec, QuerySet set, const World& world, const RunTamper& tamper,
+             RunResult& run)
+      : spec_(spec),
+        set_(set),
+        world_(world),
+        frames_(*sequence_of(world, set), tamper, run.frames_s),
+        run_(run),
+        stream_(query_stream(spec, set)) {}
+  QuerySet set() const { return set_; }
 
   /// Makes each query under the points first .. end - 1; `scores[p]` receives the answers under
   /// point p.
   void put(System& frozen, std::size_t first, std::size_t end,
            const std::vector<std::vector<QueryScore>*>& scores, WorkDone& work) const {
-    for (const std::size_t index : test_frames(frames_.size(), spec_.protocol)) {
+    const NearestBy by = set_ == QuerySet::kHeldOut ? NearestBy::kTime : NearestBy::kPlace;
+    for (const std::size_t index : asked_frames(set_, frames_, spec_.protocol)) {
       const Trajectory* truth = run_.truth.empty() ? nullptr : frames_.truth();
       const QueryMoment moment = moment_of(frames_.stamp_ns(index), truth);
       // If there is a truth, skip frames without one: no answer to them could be judged.
       if (truth != nullptr && !moment.true_world_from_camera) continue;
-      const auto anchor = find_anchor(run_.estimate, run_.truth, moment, by_, spec_.protocol);
+      const auto anchor = find_anchor(run_.estimate, run_.truth, moment, by, spec_.protocol);
       const bool once = end - first == 1;  // nothing to share
       const FramesMadeOnce shared(frames_);
       const Sequence& frames = once ? static_cast<const Sequence&>(frames_) : shared;
@@ -119,6 +136,8 @@ class QueryRound {
               query(frozen, index, frames, spec_.protocol, stream_, memo.get());
           scores[p]->push_back(
               score(answer, moment, anchor, run_.frames.truth_from_estimate, spec_.protocol));
+          if (set_ == QuerySet::kGraded)
+            scores[p]->back().grade = world_.simulated->graded.list[index].grade;
         } catch (const UnusableFrame& error) {
           if (p == 0) run_.mapping.skipped.add(error.what());
         }
@@ -129,7 +148,8 @@ class QueryRound {
 
  private:
   const RunSpec& spec_;
-  NearestBy by_;
+  QuerySet set_;
+  const World& world_;
   WatchedFrames frames_;
   RunResult& run_;
   RandomStream stream_;
@@ -140,6 +160,7 @@ class QueryRound {
 std::size_t end_of_alike(const std::vector<SemanticConfig>& points, std::size_t first) {
   std::size_t end = first + 1;
   while (end < points.size() && points[end].gamma == points[first].gamma &&
+         points[end].label_mass == points[first].label_mass &&
          points[end].void_is_a_label == points[first].void_is_a_label)
     ++end;
   return end;
@@ -147,8 +168,7 @@ std::size_t end_of_alike(const std::vector<SemanticConfig>& points, std::size_t 
 
 std::vector<std::vector<QueryScore>*> lists(RunResult& run, QuerySet set) {
   std::vector<std::vector<QueryScore>*> all;
-  for (PointResult& point : run.points)
-    all.push_back(set == QuerySet::kHeldOut ? &point.held_out : &point.second_tour);
+  for (PointResult& point : run.points) all.push_back(&of_query_set(point, set));
   return all;
 }
 
@@ -159,8 +179,10 @@ std::string status_of(const MappedFrame& call, std::size_t frames) {
 }
 
 std::size_t pieces_of_work(const RunSpec& spec, const World& world) {
-  std::size_t queries = test_frames(world.mapping->size(), spec.protocol).size();
-  if (world.second) queries += test_frames(world.second->size(), spec.protocol).size();
+  std::size_t queries = 0;
+  for (const QuerySet set : kQuerySets)
+    if (const Sequence* sequence = sequence_of(world, set))
+      queries += asked_frames(set, *sequence, spec.protocol).size();
   return world.mapping->size() + spec.points.size() * queries;
 }
 
@@ -203,7 +225,9 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
 }
 
 RandomStream query_stream(const RunSpec& spec, QuerySet set) {
-  return RandomStream(spec.seed).fork(set == QuerySet::kHeldOut ? kHeldOut : kSecondTour);
+  return RandomStream(spec.seed).fork(set == QuerySet::kHeldOut      ? kHeldOut
+                                      : set == QuerySet::kSecondTour ? kSecondTour
+                                                                     : kGraded);
 }
 
 RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools) {
@@ -278,17 +302,14 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     tools.status("queries");
 
     run.points.resize(spec.points.size());
-    const QueryRound held_out(spec, mapping, NearestBy::kTime, tamper, run,
-                              query_stream(spec, QuerySet::kHeldOut));
-    std::optional<QueryRound> second_tour;
-    if (world.second)
-      second_tour.emplace(spec, *world.second, NearestBy::kPlace, tamper, run,
-                          query_stream(spec, QuerySet::kSecondTour));
+    std::vector<QueryRound> rounds;
+    for (const QuerySet set : kQuerySets)
+      if (sequence_of(world, set) != nullptr) rounds.emplace_back(spec, set, world, tamper, run);
     for (std::size_t p = 0; p < spec.points.size(); p = end_of_alike(spec.points, p)) {
       const std::size_t end = end_of_alike(spec.points, p);
       system.set_query_settings(spec.points[p]);
-      held_out.put(system, p, end, lists(run, QuerySet::kHeldOut), work);
-      if (second_tour) second_tour->put(system, p, end, lists(run, QuerySet::kSecondTour), work);
+      for (const QueryRound& round : rounds)
+        round.put(system, p, end, lists(run, round.set()), work);
     }
     system.finish();
     run.times = system.times();

@@ -54,8 +54,8 @@ void put_points(SQLite::Database& db, const std::string& key, const RunSpec& spe
     const SemanticConfig& s = spec.points[p];
     rows << key << p;
     if (spec.system.takes_settings())  // else the rest stays null
-      rows << s.gamma << s.xi << s.alpha << s.beta << SettingsWriter::word_of(s.overlap)
-           << s.void_is_a_label;
+      rows << s.gamma << s.label_mass << s.xi << s.alpha << s.beta
+           << SettingsWriter::word_of(s.overlap) << s.void_is_a_label;
     rows.end_row();
   }
 }
@@ -124,7 +124,7 @@ void load_queries(SQLite::Database& db, const std::string& key, RunResult& run) 
   run.points.resize(run.spec.points.size());
   for (std::size_t p = 0; p < run.points.size(); ++p)
     for (const QuerySet set : kQuerySets) {
-      auto& list = set == QuerySet::kHeldOut ? run.points[p].held_out : run.points[p].second_tour;
+      auto& list = of_query_set(run.points[p], set);
       s.bind(1, key);
       s.bind(2, static_cast<std::int64_t>(p));
       s.bind(3, std::string(name(set)));

@@ -25,7 +25,8 @@ CREATE TABLE runs (
   seed INTEGER NOT NULL, status TEXT NOT NULL CHECK (status IN ('done', 'failed')),
   error TEXT NOT NULL, spec TEXT NOT NULL, result TEXT NOT NULL, digest INTEGER) WITHOUT ROWID;
 CREATE TABLE points (
-  key TEXT NOT NULL, point INTEGER NOT NULL, gamma REAL, xi REAL, alpha REAL, beta REAL,
+  key TEXT NOT NULL, point INTEGER NOT NULL, gamma REAL, label_mass REAL, xi REAL, alpha REAL,
+  beta REAL,
   overlap TEXT, void_is_a_label INTEGER, digest INTEGER, PRIMARY KEY (key, point)) WITHOUT ROWID;
 CREATE TABLE metrics (
   key TEXT NOT NULL, point INTEGER NOT NULL, name TEXT NOT NULL, value REAL, digest INTEGER,

@@ -238,7 +238,8 @@ class Conversation {
             .c2 = count(*it, "c2"),
             .c3 = count(*it, "c3"),
             .final = count(*it, "final"),
-            .label_mass = {}};
+            .label_mass = {},
+            .gamma = {}};
   }
 
   const ScratchFolder scratch_;

@@ -233,7 +233,8 @@ class LibrarySystem : public OutsideSystem {
                          .c2 = count("c2", answer.c2),
                          .c3 = count("c3", answer.c3),
                          .final = count("final", answer.final),
-                         .label_mass = {}};
+                         .label_mass = {},
+                         .gamma = {}};
     return report;
   }
 

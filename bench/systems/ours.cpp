@@ -13,7 +13,8 @@
 namespace mh {
 namespace {
 
-SystemReport as_report(const StepReport& step) {
+/// @param state  after the step
+SystemReport as_report(const StepReport& step, const SlamState& state) {
   SystemReport report{.status = step.status,
                       .world_from_camera = step.world_from_camera,
                       .keypoints = step.keypoints,
@@ -24,7 +25,8 @@ SystemReport as_report(const StepReport& step) {
                       .candidates = {},
                       .matches = step.matches};
   if (const auto& c = step.candidates)
-    report.candidates = {c->keyframes, c->c1, c->c2, c->c3, c->final, c->label_mass};
+    report.candidates = {
+        c->keyframes, c->c1, c->c2, c->c3, c->final, c->label_mass, state.config.semantics.gamma};
   return report;
 }
 
@@ -39,7 +41,7 @@ class OurSession : public RelocalizationSession {
   SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
     const StepReport report = localize(frozen_, tracker_, frame, stream, observers_);
     if (released_ != nullptr) *released_ = tracker_.released_scores;
-    return as_report(report);
+    return as_report(report, frozen_);
   }
 
  private:
@@ -70,11 +72,11 @@ class RememberingSession : public RelocalizationSession {
       localize(frozen_, tracker_, found_->first, found_->second);
       found_.reset();
     }
-    if (tracker_.last) return as_report(localize(frozen_, tracker_, frame, stream));
+    if (tracker_.last) return as_report(localize(frozen_, tracker_, frame, stream), frozen_);
     const StepReport report =
         localize(frozen_, frame, stream, memo_.of(stream, frozen_.config.semantics));
     if (report.status != TrackStatus::kLost) found_.emplace(frame, stream);
-    return as_report(report);
+    return as_report(report, frozen_);
   }
 
  private:
@@ -98,7 +100,7 @@ class OurSystem : public System {
     if (lost && found_ && state_.map.keyframe_count() <= options_.small_map)
       if (auto first = begin_anew(frame, stream)) return *first;
     found_ = found_ || !lost;
-    return as_report(report);
+    return as_report(report, state_);
   }
   void rewind() override { mh::rewind(state_); }
   void reset() override { state_ = make_slam(state_.camera, state_.config, state_.vocabulary); }
@@ -143,7 +145,7 @@ class OurSystem : public System {
     const StepReport first = step(anew, frame, stream, options_.observers);
     if (first.status != TrackStatus::kInitialized) return std::nullopt;
     state_ = std::move(anew);
-    SystemReport report = as_report(first);
+    SystemReport report = as_report(first, state_);
     report.map_reset = true;
     return report;
   }

@@ -8,6 +8,7 @@
 
 #include "bench/inputs/inputs.hpp"
 #include "bench/inputs/recorded_camera.hpp"
+#include "bench/protocol/mapping.hpp"
 #include "bench/provenance/digest.hpp"
 #include "bench/world/cached_detections.hpp"
 #include "bench/world/cached_light.hpp"
@@ -81,6 +82,10 @@ void simulate(World& world, LabelMode labels, const SharedImages& images) {
   if (p.second)
     world.second =
         sequence("second", p.second_renderer ? p.second_renderer : p.renderer, *p.second, nullptr);
+  if (!p.graded.list.empty())
+    world.graded =
+        std::make_shared<GradedSequence>(p.second_renderer ? p.second_renderer : p.renderer,
+                                         p.robot.camera, p.graded.list, p.sensors, labels);
 }
 
 PlaceFacts facts(const World& world, const RunSpec& spec) {
@@ -93,10 +98,12 @@ PlaceFacts facts(const World& world, const RunSpec& spec) {
   f.path_digest = digest(place.mapping.camera);
   f.mapping = facts(place.mapping);
   if (place.second_scene) f.scene_digest = chained(f.scene_digest, digest(*place.second_scene));
+  f.graded = place.graded.cells;
   if (place.second) {
     f.second = facts(*place.second);
     f.path_digest = chained(f.path_digest, digest(place.second->camera));
   }
+  if (world.graded) f.path_digest = chained(f.path_digest, digest(*world.graded->truth()));
   return f;
 }
 
@@ -125,6 +132,22 @@ World open_recordings(const RunSpec& spec) {
   if (e.queries) world.second = open("queries", *e.queries);
   world.vocabulary = load_vocabulary(spec, world);
   return world;
+}
+
+/// Draws the graded queries of a run.
+/// @pre the world has its scenes, robot and mapping path
+GradedQueries graded_queries(const RunSpec& spec, const SimulatedPlace& world) {
+  Trajectory offered;
+  for (const std::size_t i : offered_frames(world.mapping.camera.size(), spec.protocol))
+    offered.push_back(world.mapping.camera[i]);
+  return draw_graded(
+      *spec.graded,
+      {.queried = world.second_scene ? *world.second_scene : *world.scene,
+       .mapped_renderer = world.renderer,
+       .queried_renderer = world.second_renderer ? world.second_renderer : world.renderer,
+       .robot = world.robot,
+       .offered = offered,
+       .by_hand = !is_driven(spec.environment.mapping_tour)});
 }
 
 /// Builds the world with the inputs of everything except an outside program.
@@ -188,12 +211,12 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   }
   lose_frames(world.mapping);
   shorten(world.mapping);
-  if (!environment.query_tour) return built;
-
   if (environment.query_scene) {
     world.second_scene = lit_scene("query_scene", *environment.query_scene);
     world.second_renderer = make_scene_renderer(*world.second_scene);
   }
+  if (spec.graded) world.graded = graded_queries(spec, world);
+  if (!environment.query_tour) return built;
   world.second = input("query_tour", *environment.query_tour, [&] {
     return travel(world.second_scene ? *world.second_scene : *scene, world.robot,
                   *environment.query_tour);
@@ -207,7 +230,7 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
 void add_detector(World& world, const DetectorSpec& spec, const Cache& cache) {
   const std::shared_ptr<const Detector> detector =
       noted(world.inputs, "detector", source_of(spec), [&] { return open_detector(spec); });
-  for (std::shared_ptr<const Sequence>* sequence : {&world.mapping, &world.second})
+  for (std::shared_ptr<const Sequence>* sequence : {&world.mapping, &world.second, &world.graded})
     if (*sequence != nullptr)
       *sequence = std::make_shared<DetectedSequence>(std::move(*sequence), detector,
                                                      spec.settings.fill, detections_in(cache));

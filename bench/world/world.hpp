@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "bench/cache/cache.hpp"
+#include "bench/metrics/query_summary.hpp"
 #include "bench/plan/runs.hpp"
 #include "bench/provenance/place_facts.hpp"
 #include "bench/world/cached_light.hpp"
+#include "bench/world/graded.hpp"
 #include "robots/model/robot.hpp"
 #include "scenes/scene.hpp"
 #include "sim/motion/motion.hpp"
@@ -36,17 +38,26 @@ struct SimulatedPlace {
   std::shared_ptr<const PedestrianScene>
       pedestrian_scene;  ///< with the pedestrians that are present during the mapping; or null
   SensorConfig sensors;  ///< the level
+  GradedQueries graded;  ///< empty if the run asks none
 };
 
 /// The environment of one run, built once and then only read.
 struct World {
-  std::shared_ptr<const Sequence> mapping;  ///< what is mapped
-  std::shared_ptr<const Sequence> second;   ///< what is queried in addition; or null
-  std::optional<SimulatedPlace> simulated;  ///< what they are made from; a recording has none
+  std::shared_ptr<const Sequence> mapping;      ///< what is mapped
+  std::shared_ptr<const Sequence> second;       ///< what is queried in addition; or null
+  std::shared_ptr<const Sequence> graded = {};  ///< graded queries, each frame one; or null
+  std::optional<SimulatedPlace> simulated;      ///< what they are made from; a recording has none
   std::shared_ptr<const Vocabulary> vocabulary;
   bool cut = false;                 ///< the sequences were cut after RunSpec::max_frames
   std::vector<InputDigest> inputs;  ///< what was read to build it, by name
 };
+
+/// What the queries of a set are frames of; null if there are none.
+inline const Sequence* sequence_of(const World& world, QuerySet set) {
+  return set == QuerySet::kHeldOut      ? world.mapping.get()
+         : set == QuerySet::kSecondTour ? world.second.get()
+                                        : world.graded.get();
+}
 
 /// Rebuilds the sequences of a simulated world from its existing paths.
 /// @param images  as of build_world()

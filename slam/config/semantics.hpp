@@ -25,6 +25,7 @@ constexpr std::array<std::pair<std::string_view, Overlap>, 3> setting_words(Over
 /// The paper's parameters.
 struct SemanticConfig {
   double gamma = 1.0;
+  double label_mass = 0.0;
   double xi = 1.5;
   double alpha = 0.8;
   double beta = 0.75;
@@ -36,6 +37,7 @@ struct SemanticConfig {
   SemanticConfig neutralized() const {
     SemanticConfig plain = *this;
     plain.gamma = 0.0;
+    plain.label_mass = 0.0;
     plain.xi = 1.0;
     plain.overlap = Overlap::kWords;
     return plain;
@@ -47,8 +49,10 @@ struct SemanticConfig {
 
 template <Either<SemanticConfig> C, class Visit>
 void fields(C& c, Visit& v) {
-  auto& [gamma, xi, alpha, beta, overlap, void_is_a_label] = c;
+  auto& [gamma, label_mass, xi, alpha, beta, overlap, void_is_a_label] = c;
   v("gamma", gamma, {0, setting::kMany}, "weight of a label, equation 1");
+  v("label_mass", label_mass, {0, 0.99},
+    "if not 0: queries take the gamma with which labels hold this share of the keyframes' vectors");
   v("xi", xi, {1, setting::kMany}, "factor where labels disagree, equation 2");
   v("alpha", alpha, setting::kOpenShare, "equation 4");
   v("beta", beta, setting::kOpenShare, "equation 6");

@@ -2,6 +2,7 @@
 #include "slam/pipeline/slam.hpp"
 
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -26,6 +27,7 @@ SlamState make_slam(const Camera& camera, const SlamConfig& config,
   SlamState state;
   state.camera = camera;
   state.config = config;
+  state.config.semantics.label_mass = 0;  // of queries; a map is made with gamma
   state.vocabulary = std::move(vocabulary);
   return state;
 }
@@ -35,18 +37,39 @@ void rewind(SlamState& state) {
   state.last_stamp_ns.reset();
 }
 
+namespace {
+
+/// The gamma with which labels hold the wished share of the keyframes' vectors.
+double solved_gamma(const SlamState& state, SemanticConfig settings) {
+  settings.gamma = 1;
+  std::vector<double> shares;
+  for (const Keyframe& keyframe : state.map.keyframes())
+    if (!keyframe.erased)
+      shares.push_back(
+          index_words(keyframe.features, *state.vocabulary, settings).vector.label_mass());
+  return gamma_for_label_mass(shares, settings.label_mass, setting::kMany);
+}
+
+}  // namespace
+
 void set_query_settings(SlamState& state, const SemanticConfig& settings) {
   SemanticConfig& own = state.config.semantics;
-  const bool same_vectors =
-      settings.gamma == own.gamma && settings.void_is_a_label == own.void_is_a_label;
+  const bool by_mass = settings.label_mass > 0;
+  const bool same_vectors = settings.void_is_a_label == own.void_is_a_label &&
+                            settings.label_mass == own.label_mass &&
+                            (by_mass || settings.gamma == own.gamma);
   SlamConfig config = state.config;
   config.semantics = settings;
   validate(config);
+  const double gamma = !by_mass       ? settings.gamma
+                       : same_vectors ? own.gamma
+                                      : solved_gamma(state, settings);
   own = settings;
+  own.gamma = gamma;
   if (same_vectors) return;
   for (const Keyframe& keyframe : state.map.keyframes())
     if (!keyframe.erased)
-      state.map.set_words(keyframe.id, index_words(keyframe.features, *state.vocabulary, settings));
+      state.map.set_words(keyframe.id, index_words(keyframe.features, *state.vocabulary, own));
 }
 
 Trajectory trajectory(const SlamState& state) {

@@ -89,7 +89,8 @@ StepReport localize(const SlamState& frozen, const RgbdFrame& frame, RandomStrea
                     LocalizeMemo& memo);
 
 /// Changes the semantic settings that are used from now on to answer queries and extend the map. If
-/// gamma or the void policy changes, the keyframes' vectors (equation 1) are reweighted.
+/// gamma or the void policy changes, the keyframes' vectors (equation 1) are reweighted. A label
+/// mass is turned into the gamma that gives it on the keyframes of the map as it is.
 /// @throws InputError naming the setting that is out of range; the state is then unchanged.
 void set_query_settings(SlamState& state, const SemanticConfig& settings);
 

@@ -95,6 +95,29 @@ AugmentedVector augmented_vector(std::span<const Label> labels,
   return vector;
 }
 
+/// The gamma with which labels hold the wished share of the L1 mass of vectors (equation 1), on
+/// average over them. With m the share at gamma = 1, it is gamma m / (gamma m + 1 - m): it grows
+/// with gamma, so that bisection finds it.
+/// @param shares_at_one  AugmentedVector::label_mass() of each vector at gamma = 1
+/// @param wished         in [0, 1)
+/// @param most           returned where no smaller gamma is enough: some vectors have no labels
+/// @returns 0 if no vector has labels
+inline double gamma_for_label_mass(std::span<const double> shares_at_one, double wished,
+                                   double most) {
+  if (std::all_of(shares_at_one.begin(), shares_at_one.end(), [](double m) { return m == 0; }))
+    return 0;
+  // Bisects s = gamma / (1 + gamma), which is bounded.
+  double low = 0, high = most / (1 + most);
+  for (int step = 0; step < 60; ++step) {
+    const double s = 0.5 * (low + high);
+    double sum = 0;
+    for (const double m : shares_at_one)
+      if (m > 0) sum += s * m / (s * m + (1 - s) * (1 - m));
+    (sum < wished * static_cast<double>(shares_at_one.size()) ? low : high) = s;
+  }
+  return high / (1 - high);
+}
+
 /// The same vector without its labels: words alone, renormalized.
 inline AugmentedVector words_alone(const AugmentedVector& vector) {
   AugmentedVector plain;

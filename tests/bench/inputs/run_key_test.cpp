@@ -83,6 +83,7 @@ class RunKey : public testing::Test {
              .slam = {},
              .points = {SemanticConfig{}, SemanticConfig{.gamma = 0.5}},
              .protocol = {},
+             .graded = GradedSpec{.distance_m = {0, 0.5, 2}, .angle_deg = {0, 60}},
              .max_frames = 100};
     theirs_ = ours_;
     theirs_.system = {SystemKind::kOutside,
@@ -107,9 +108,9 @@ class RunKey : public testing::Test {
   RunSpec with_another(const RunSpec& spec, const Pointer& place) const {
     const Json json = to_json(spec);
     const Json& old = json[place];
-    std::vector<Json> others = {other_,     "conversation", "boxes",        "plain",
-                                "words",    "map",          "interpolated", "z",
-                                "continue", "orb_slam2",    "as_released",  7};
+    std::vector<Json> others = {other_,        "conversation", "boxes", "plain",    "words",
+                                "map",         "interpolated", "z",     "continue", "orb_slam2",
+                                "as_released", "new_noise",    7};
     if (old.is_boolean()) others = {!old.get<bool>()};
     if (old.is_number_integer()) others = {old.get<int>() + 1};
     if (old.is_number_float()) others = {old.get<double>() + 0.125};
@@ -167,11 +168,11 @@ TEST_F(RunKey, ChangesWithEveryFieldOfAnOutsideSystemButItsFolder) {
 TEST_F(RunKey, OfAMapLeavesOutWhatOnlyItsQueriesDependOn) {
   std::set<std::string> free = kNames;
   free.insert({"/trial", "/system/name", "/environment/query_tour", "/environment/query_scene",
-               "/protocol/query_attempts", "/protocol/max_blank_frames",
+               "/protocol/query_attempts", "/protocol/attempts", "/protocol/max_blank_frames",
                "/protocol/correct_distance_m", "/protocol/correct_angle_deg", "/protocol/truth"});
   const Json places = to_json(ours_).flatten();
   for (const auto& [place, value] : places.items())
-    if (place.starts_with("/points/")) free.insert(place);
+    if (place.starts_with("/points/") || place.starts_with("/graded/")) free.insert(place);
   EXPECT_EQ(free_places(ours_, map_key_of), free);
 }
 

@@ -722,5 +722,36 @@ TEST(ShippedSuites, AreWellFormed) {
   }
 }
 
+TEST_F(SuiteFile, NamesGradedQueries) {
+  const Suite suite =
+      load("graded: {distance_m: [0, 0.4, 2], angle_deg: [0, 30, 60], speed: [1, 3]}");
+  ASSERT_TRUE(suite.graded);
+  EXPECT_EQ(suite.graded->distance_m, (std::vector<double>{0, 0.4, 2}));
+  EXPECT_EQ(suite.graded->per_bin, 10u);
+  EXPECT_EQ(suite.graded->speed, (std::vector<double>{1, 3}));
+  for (const RunSpec& spec : expand(suite)) {
+    EXPECT_EQ(spec.graded, suite.graded);
+    EXPECT_EQ(run_spec_from_json(to_json(spec)).graded, suite.graded);
+  }
+  EXPECT_FALSE(load("").graded);
+}
+
+TEST_F(SuiteFile, RefusesBadGradedQueries) {
+  const auto complaint = [&](const char* text) { return error(std::string("graded: ") + text); };
+  EXPECT_NE(complaint("{distance_m: [0, 1]}").find("angle_deg"), std::string::npos);
+  EXPECT_NE(complaint("{distance_m: [1], angle_deg: [0, 9]}").find("at least two"),
+            std::string::npos);
+  EXPECT_NE(complaint("{distance_m: [0, 2, 1], angle_deg: [0, 9]}").find("edges grow"),
+            std::string::npos);
+  EXPECT_NE(complaint("{distance_m: [0, 1], angle_deg: [0, 200]}").find("outside 0 to 180"),
+            std::string::npos);
+  EXPECT_NE(complaint("{distance_m: [0, 1], angle_deg: [0, 9], speed: [0]}").find("0.1 to 10"),
+            std::string::npos);
+  EXPECT_NE(complaint("{distance_m: [0, 1], angle_deg: [0, 9], per_bin: 0}").find("per_bin"),
+            std::string::npos);
+  EXPECT_NE(complaint("{distance_m: [0, 1], angle_deg: [0, 9], bins: 3}").find("bins"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace mh

@@ -83,7 +83,8 @@ class FakeSession : public RelocalizationSession {
     }
     const bool found = ++attempts_ == system_.answers_at(frame.stamp_ns);
     report.relocalization = found ? RelocalizationStage::kVerified : RelocalizationStage::kMatches;
-    report.candidates = {.keyframes = 10, .c1 = 9, .c2 = 4, .c3 = 3, .final = 1, .label_mass = {}};
+    report.candidates = {
+        .keyframes = 10, .c1 = 9, .c2 = 4, .c3 = 3, .final = 1, .label_mass = {}, .gamma = {}};
     system_.on_report(attempts_, report);
     if (!found) return report;
     report.status = TrackStatus::kRelocalized;

@@ -37,21 +37,48 @@ TEST(Query, StopsAtTheFirstPoseThatComesBack) {
   EXPECT_EQ(answer.candidates.c2, 4);
 }
 
-TEST(Query, EachAttemptAtEachFrameHasItsOwnNoiseAndDraws) {
+/// Noise and draws of two queries of five attempts each, none of which is answered.
+struct Streams {
+  std::set<std::uint64_t> noise, draws;
+};
+Streams streams_of(Attempts attempts) {
   FakeSystem system = mapped();
   system.answers_at = [](Stamp) { return 0; };
-  std::set<std::uint64_t> noise, draws;
+  Streams seen;
   const MadeSequence spy(
       300,
       [&](std::size_t index, RandomStream stream) {
-        noise.insert(stream.key());
+        seen.noise.insert(stream.key());
         return fake_frame(index, stream);
       },
       fake_camera());
-  system.on_query = [&](RandomStream stream) { draws.insert(stream.key()); };
-  for (const std::size_t index : {29, 59}) query(system, index, spy, {}, RandomStream(1));
-  EXPECT_EQ(noise.size(), 10u);
-  EXPECT_EQ(draws.size(), 10u + 2u);  // and a blank frame for each
+  system.on_query = [&](RandomStream stream) { seen.draws.insert(stream.key()); };
+  ProtocolConfig config;
+  config.attempts = attempts;
+  for (const std::size_t index : {29, 59}) query(system, index, spy, config, RandomStream(1));
+  return seen;
+}
+
+TEST(Query, AttemptsRepeatTheSameFrameAndOnlyTheDrawsDiffer) {
+  const Streams seen = streams_of(ProtocolConfig{}.attempts);
+  EXPECT_EQ(seen.noise.size(), 2u);        // one for each query
+  EXPECT_EQ(seen.draws.size(), 10u + 2u);  // and a blank frame for each
+}
+
+TEST(Query, WithNewNoiseEachAttemptAtEachFrameHasItsOwnNoiseAndDraws) {
+  const Streams seen = streams_of(Attempts::kNewNoise);
+  EXPECT_EQ(seen.noise.size(), 10u);
+  EXPECT_EQ(seen.draws.size(), 10u + 2u);
+}
+
+TEST(Query, TheFirstAttemptIsTheSameWithNewNoiseAndWithout) {
+  const FakeSystem system = mapped();
+  ProtocolConfig config;
+  const auto first = [&](Attempts attempts) {
+    config.attempts = attempts;
+    return query(system, 59, fake_frames(300), config, RandomStream(1)).image_digest;
+  };
+  EXPECT_EQ(first(Attempts::kSameFrame), first(Attempts::kNewNoise));
 }
 
 TEST(Query, GivesUpAfterFiveAttemptsAndNamesTheStage) {
@@ -100,6 +127,8 @@ TEST(Query, TheDigestOfMatchingIsOfEveryAttempt) {
 TEST(Query, TheDigestsOfPosesAndImagesAreOfEveryAttempt) {
   FakeSystem system = mapped();
   system.answers_at = [](Stamp) { return 3; };
+  ProtocolConfig new_noise;
+  new_noise.attempts = Attempts::kNewNoise;
   std::set<std::uint64_t> poses, images;
   for (const int changed : {0, 1, 2}) {  // 0: none; a pose of a lost system is one, too
     system.on_report = [&](int attempt, SystemReport& report) {
@@ -115,7 +144,7 @@ TEST(Query, TheDigestsOfPosesAndImagesAreOfEveryAttempt) {
           return frame;
         },
         fake_camera());
-    images.insert(query(system, 59, tampered, {}, RandomStream(1)).image_digest);
+    images.insert(query(system, 59, tampered, new_noise, RandomStream(1)).image_digest);
   }
   EXPECT_EQ(poses.size(), 3u);
   EXPECT_EQ(images.size(), 3u);

@@ -18,7 +18,7 @@ struct MadeUpAnswers {
   double aligned_more_m = 0;         ///< how much farther they are after aligning
   std::vector<int> attempts, final;  ///< of all
   int keyframes = 0, c1 = 0, c2 = 0, c3 = 0;
-  double label_mass = 0;
+  double label_mass = 0, gamma = 0;
   RelocalizationStage unanswered = RelocalizationStage::kNone;
 };
 
@@ -46,7 +46,8 @@ inline std::vector<QueryScore> made_up_queries(const MadeUpAnswers& a) {
                            .c2 = a.c2,
                            .c3 = a.c3,
                            .final = a.final[i],
-                           .label_mass = a.label_mass};
+                           .label_mass = a.label_mass,
+                           .gamma = a.gamma};
     q.answer.stage = a.unanswered;
     if (i < a.distances_m.size()) {
       q.success = true;

@@ -74,7 +74,7 @@ TEST(ComparePaired, FewBlocksCannotBeSignificantHoweverClear) {
   const Comparison six = compare_paired("x", all_equal_to(1, 12), true, 1);
   EXPECT_DOUBLE_EQ(six.p, 2.0 / 64);
   EXPECT_DOUBLE_EQ(six.detectable, 3.0 / 12);
-  EXPECT_TRUE(std::isinf(compare_scenes("x", all_equal_to(1, 5), true, 1).detectable));
+  EXPECT_TRUE(std::isinf(compare_scenes("x", all_equal_to(1, 5), 5, 1).detectable));
 }
 
 TEST(SignFlip, CountsThePatternsThatAreAsFarFromZero) {
@@ -148,14 +148,86 @@ TEST(Wilcoxon, NearsTheNormalDistributionForManyScenes) {
 TEST(CompareScenes, ScenesAreIndependentAndThoseWithoutAValueAreLeftOut) {
   std::vector<PairedDifference> scenes = all_equal_to(0.1, 20);
   for (std::size_t i = 0; i < 20; i += 2) scenes[i].difference = 0.3;
-  const Comparison full = compare_scenes("x", scenes, false, 1);
+  const Comparison full = compare_scenes("x", scenes, 0, 1);
   EXPECT_NEAR(full.difference, 0.2, 1e-12);
   EXPECT_NEAR(full.high - full.low, 2 * 1.96 * 0.1 / std::sqrt(20.0), 0.02);
   EXPECT_LT(full.p, 1e-4);
   scenes.push_back({99, false});
-  const Comparison same = compare_scenes("x", scenes, false, 1);
+  const Comparison same = compare_scenes("x", scenes, 0, 1);
   EXPECT_EQ(same.pairs, 20u);
   EXPECT_EQ(same.low, full.low);
+}
+
+// Six scenes of thirty queries each: that none of 180 answers differed bounds the share of those
+// that would by 3 / 180. 3 / 6, as if a scene were one answer, bounds nothing.
+TEST(CompareScenes, TheFloorOfWhatCanBeDetectedIsOfAnswersNotOfScenes) {
+  const Comparison same = compare_scenes("x", all_equal_to(0, 6), 6 * 30, 1);
+  EXPECT_DOUBLE_EQ(same.detectable, 3.0 / 180);
+  std::vector<PairedDifference> scenes = all_equal_to(0, 6);
+  for (std::size_t i = 0; i < 6; ++i) scenes[i].difference = i % 2 == 0 ? 0.1 : -0.1;
+  const Comparison spread = compare_scenes("x", scenes, 6 * 30, 1);
+  // A scene's difference has a standard deviation of 0.1 (as resampled), the mean of six 0.1 /
+  // 6^0.5.
+  EXPECT_NEAR(spread.detectable, 2.8 * 0.1 / std::sqrt(6.0), 0.005);
+  EXPECT_EQ(compare_scenes("x", all_equal_to(0, 6), 0, 1).detectable, 0) << "no shares, no floor";
+}
+
+/// Scenes of some pairs each, all of a scene's the same.
+std::vector<std::vector<PairedDifference>> scenes_of(const std::vector<double>& values,
+                                                     std::size_t pairs) {
+  std::vector<std::vector<PairedDifference>> scenes;
+  for (const double value : values) scenes.push_back(all_equal_to(value, pairs));
+  return scenes;
+}
+
+TEST(CompareClusters, EachQueryCountsTheSameAndScenesAreDrawnAsWholes) {
+  // One large scene without a difference, nine small ones with one each: 9 of 90 + 9 queries.
+  std::vector<std::vector<PairedDifference>> scenes = scenes_of(std::vector<double>(9, 1.0), 1);
+  scenes.push_back(all_equal_to(0, 90));
+  scenes.back().resize(120);  // without a value: not counted
+  const Comparison c = compare_clusters("x", scenes, true, 1);
+  EXPECT_DOUBLE_EQ(c.difference, 9.0 / 99);
+  EXPECT_EQ(c.pairs, 99u);
+  EXPECT_EQ(c.clusters, 10u);
+  EXPECT_DOUBLE_EQ(c.p, 2.0 / 512);  // nine sums of one sign, one of zero
+  // Without the large scene, which 35 % of the draws leave out, all differ.
+  EXPECT_DOUBLE_EQ(c.high, 1.0);
+}
+
+TEST(CompareClusters, QueriesOfOneSceneSayLittleMoreThanOne) {
+  const std::vector<double> values{1, -1, 1, 0, 0, 1, -1, 0, 1, 0, 0, 1};
+  const Comparison ten = compare_clusters("x", scenes_of(values, 10), false, 1),
+                   one = compare_clusters("x", scenes_of(values, 1), false, 1);
+  EXPECT_EQ(ten.pairs, 120u);
+  EXPECT_EQ(ten.difference, one.difference);
+  EXPECT_EQ(ten.low, one.low);
+  EXPECT_EQ(ten.p, one.p);
+}
+
+TEST(CompareClusters, FewScenesDecideNothing) {
+  EXPECT_TRUE(std::isinf(compare_clusters("x", scenes_of({1, 1, 1}, 50), true, 1).high));
+  const Comparison five = compare_clusters("x", scenes_of({1, 1, 1, 1, 1}, 50), true, 1);
+  EXPECT_DOUBLE_EQ(five.p, 2.0 / 32);
+  EXPECT_TRUE(std::isinf(five.detectable));
+  EXPECT_EQ(compare_clusters("x", {}, true, 1).pairs, 0u);
+  EXPECT_EQ(compare_clusters("x", scenes_of({1, 0}, 0), true, 1).p, 1);
+}
+
+// Scenes whose queries all share half of their noise, and no difference between the systems.
+TEST(CompareClusters, ClaimsWhereNothingDiffersStayNearFivePercent) {
+  for (const std::size_t count : {6u, 12u, 60u}) {
+    int claims = 0;
+    constexpr int kTrials = 500;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const RandomStream noise = RandomStream(11).fork(static_cast<std::uint64_t>(trial));
+      std::vector<std::vector<PairedDifference>> scenes(count);
+      for (std::size_t s = 0; s < count; ++s)
+        for (std::size_t q = 0; q < 3 + s % 7; ++q)
+          scenes[s].push_back({noise.normal(1000 * s) + noise.fork(s + 1).normal(q), true});
+      claims += compare_clusters("x", scenes, false, 1, 100).p < 0.05 ? 1 : 0;
+    }
+    EXPECT_LE(static_cast<double>(claims) / kTrials, 0.07) << count << " scenes";
+  }
 }
 
 TEST(Holm, CorrectsByRankAndStaysMonotone) {

@@ -43,7 +43,8 @@ TEST(FrameLog, ItsNumbersStandUnderTheirHeadings) {
   report.inliers = 52;
   report.keyframe_added = true;
   report.relocalization = RelocalizationStage::kVerified;
-  report.candidates = {.keyframes = 90, .c1 = 31, .c2 = 22, .c3 = 13, .final = 4, .label_mass = {}};
+  report.candidates = {
+      .keyframes = 90, .c1 = 31, .c2 = 22, .c3 = 13, .final = 4, .label_mass = {}, .gamma = {}};
   log.add(call, report);
   call.index = 2;
   report = {};

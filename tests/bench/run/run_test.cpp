@@ -82,7 +82,7 @@ class MixingSystem : public System {
         SystemReport report;
         if (frame.depth_m(0, 0) == 0) return report;
         report.candidates = {
-            .keyframes = 10, .c1 = 9, .c2 = 4, .c3 = 3, .final = 1, .label_mass = {}};
+            .keyframes = 10, .c1 = 9, .c2 = 4, .c3 = 3, .final = 1, .label_mass = {}, .gamma = {}};
         report.status = TrackStatus::kRelocalized;
         report.relocalization = RelocalizationStage::kVerified;
         report.world_from_camera =

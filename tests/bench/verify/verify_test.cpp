@@ -141,7 +141,8 @@ TEST(Digests, EachSeesItsOwnAndNoOther) {
 
 TEST(DigestOfMatching, SeesAllThatAStepSaidOfItButThePose) {
   SystemReport report;
-  report.candidates = {.keyframes = 0, .c1 = 0, .c2 = 0, .c3 = 0, .final = 0, .label_mass = 0};
+  report.candidates = {
+      .keyframes = 0, .c1 = 0, .c2 = 0, .c3 = 0, .final = 0, .label_mass = 0, .gamma = {}};
   report.matches.emplace();
   std::set<std::uint64_t> seen = {digest_of_matching(report)};
   std::size_t changes = 1;

@@ -259,6 +259,44 @@ TEST(Localize, WithAMemoItSaysWhatItSaysFromALostTracker) {
   EXPECT_EQ(unconfirmed, 3 * 6);
 }
 
+TEST(SetQuerySettings, AWishedLabelMassIsThatOfTheKeyframesOnAverage) {
+  SlamState state = mapped().state;
+  const auto mass = [&] {
+    double sum = 0, count = 0;
+    for (const Keyframe& keyframe : state.map.keyframes())
+      if (!keyframe.erased) sum += keyframe.words.vector.label_mass(), ++count;
+    return sum / count;
+  };
+  const double as_mapped = mass();
+  ASSERT_GT(as_mapped, 0);
+  SemanticConfig settings = state.config.semantics;
+  for (const double wished : {0.02, 0.3, 0.02}) {
+    settings.label_mass = wished;
+    set_query_settings(state, settings);
+    EXPECT_NEAR(mass(), wished, 1e-9);
+  }
+  const double solved = state.config.semantics.gamma;
+  set_query_settings(state, settings);  // again: nothing is to be solved
+  EXPECT_EQ(state.config.semantics.gamma, solved);
+  Tracker lost;
+  const StepReport report = localize(state, lost, frame(40), RandomStream(5));
+  ASSERT_TRUE(report.candidates);
+  EXPECT_NEAR(report.candidates->label_mass, 0.02, 0.02);
+  settings.label_mass = 0;
+  set_query_settings(state, settings);
+  EXPECT_EQ(state.config.semantics.gamma, settings.gamma);
+  EXPECT_EQ(mass(), as_mapped);
+}
+
+TEST(SetQuerySettings, AMapIsMadeWithGammaWhateverTheLabelMassOfItsQueries) {
+  SlamConfig config;
+  config.semantics.label_mass = 0.05;
+  const SlamState state = make_slam(BoxRoom::camera(), config, mapped().state.vocabulary);
+  EXPECT_EQ(state.config.semantics.label_mass, 0);
+  EXPECT_EQ(state.config.semantics.gamma, config.semantics.gamma);
+  EXPECT_EQ(config.semantics.neutralized().label_mass, 0);
+}
+
 TEST(Localize, ABlankFrameIsLostAndLeavesTheTrackerLost) {
   const Drive& r = mapped();
   Tracker tracker;

@@ -39,6 +39,28 @@ TEST(AugmentedVector, ZeroGammaLeavesNoLabelMember) {
   EXPECT_EQ(vector_of({1, 2, 3}, {4, 5, 6}, 0.0), vector_of({}, {4, 5, 6}, 1.0));
 }
 
+TEST(GammaForLabelMass, GivesTheWishedMassOnAverage) {
+  // Of unit words: n labels and w words have the mass gamma n / (gamma n + w).
+  const auto share = [](int labels, int words, double gamma) {
+    std::vector<Label> l(static_cast<std::size_t>(labels), 3);
+    std::vector<std::uint32_t> w;
+    for (int i = 0; i < words; ++i) w.push_back(static_cast<std::uint32_t>(i));
+    return vector_of(l, w, gamma).label_mass();
+  };
+  const std::vector<double> one{share(4, 12, 1)};
+  EXPECT_NEAR(gamma_for_label_mass(one, 0.2, 1e6), 0.75, 1e-12);  // 0.75 * 4 / (3 + 12)
+  const std::vector<double> three{share(4, 12, 1), share(1, 30, 1), share(0, 9, 1)};
+  for (const double wished : {0.005, 0.02, 0.2, 0.5}) {
+    const double gamma = gamma_for_label_mass(three, wished, 1e6);
+    EXPECT_NEAR((share(4, 12, gamma) + share(1, 30, gamma) + share(0, 9, gamma)) / 3, wished, 1e-9)
+        << wished;
+  }
+  // One of three vectors has no labels: they never hold more than two thirds.
+  EXPECT_NEAR(gamma_for_label_mass(three, 0.9, 1000), 1000, 1e-6);
+  EXPECT_EQ(gamma_for_label_mass(std::vector<double>{0, 0}, 0.1, 1000), 0);
+  EXPECT_EQ(gamma_for_label_mass({}, 0.1, 1000), 0);
+}
+
 TEST(AugmentedVector, VoidIsALabelOnlyOnRequest) {
   const std::vector<Label> labels{kNoLabel, kNoLabel};
   const std::vector<std::uint32_t> words{1};

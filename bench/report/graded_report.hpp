@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+#include <opencv2/core/mat.hpp>
+
+#include "bench/results/graded.hpp"
+
+namespace mh {
+
+/// Tables of success over what queries are graded by; "" without graded queries.
+std::string graded_table(const Suite& suite, std::span<const Row> rows);
+
+/// The same curves for programs; an empty list without graded queries.
+nlohmann::ordered_json graded_json(const Suite& suite, std::span<const Row> rows);
+
+/// "graded-exact-pepper.png"
+std::string graded_image_name(const Labels& labels, const std::filesystem::path& level);
+
+/// The curves of one level and kind of labels: a panel each, a line per system with 95 % intervals.
+struct GradedImage {
+  std::string file;  ///< its name
+  cv::Mat image;
+};
+std::vector<GradedImage> draw_graded_curves(const Suite& suite, std::span<const Row> rows);
+
+}  // namespace mh
