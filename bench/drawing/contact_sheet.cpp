@@ -21,10 +21,10 @@
 namespace mh {
 namespace {
 
-constexpr double kMargin = 30, kGap = 12, kCaption = 22, kHeader = 92;
+constexpr double kSheetMargin = 30, kGap = 12, kCaption = 22, kSheetHeader = 92;
 constexpr double kTileWidth = 400;
 constexpr float kNear_m = 0.4F, kFar_m = 8.0F;  // range of the false colors
-constexpr double kEye_m = 1.45;                 // of a person who sits or a child who stands
+constexpr double kSheetEye_m = 1.45;            // of a person who sits or a child who stands
 
 cv::Mat class_image(const Grid2d<ClassId>& labels) {
   Grid2d<Rgb8> colors(labels.width(), labels.height());
@@ -175,7 +175,7 @@ std::vector<View> views_of(const Scene& scene, const Renderer& renderer) {
       const Eigen::Vector2d eye = middle + 0.8 * (room.polygon_m[i] - middle);
       corners.push_back(
           shoot_corner(scene, room, renderer, camera,
-                       look_at({eye.x(), eye.y(), kEye_m}, {middle.x(), middle.y(), 0.75})));
+                       look_at({eye.x(), eye.y(), kSheetEye_m}, {middle.x(), middle.y(), 0.75})));
     }
     // Those that show the most; if furniture blocks a corner, another one.
     constexpr float kFree_m = 0.7F;
@@ -191,23 +191,24 @@ std::vector<View> views_of(const Scene& scene, const Renderer& renderer) {
 cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& views) {
   const double tile_height =
       views.empty() ? 300 : kTileWidth * views[0].color.height() / views[0].color.width();
-  const double width = 2 * kMargin + 3 * kTileWidth + 2 * kGap;
+  const double width = 2 * kSheetMargin + 3 * kTileWidth + 2 * kGap;
   const std::vector<ClassId> seen = classes_seen(views);
   const double legend_rows =
       std::ceil(static_cast<double>(seen.size()) / static_cast<double>(kLegendColumns));
-  const double rows_end = kHeader + static_cast<double>(views.size()) * (tile_height + kCaption);
-  const double height = rows_end + 62 + legend_rows * kLegendRow + kMargin;
+  const double rows_end =
+      kSheetHeader + static_cast<double>(views.size()) * (tile_height + kCaption);
+  const double height = rows_end + 62 + legend_rows * kLegendRow + kSheetMargin;
 
   Canvas canvas(static_cast<int>(width), static_cast<int>(height));
-  canvas.text(title, {kMargin, 42}, 17, {35, 38, 45}, Canvas::Align::kLeft, true);
-  canvas.text("without sensor noise", {width - kMargin, 42}, 9, {110, 115, 125},
+  canvas.text(title, {kSheetMargin, 42}, 17, {35, 38, 45}, Canvas::Align::kLeft, true);
+  canvas.text("without sensor noise", {width - kSheetMargin, 42}, 9, {110, 115, 125},
               Canvas::Align::kRight);
-  const auto column = [&](int k) { return kMargin + k * (kTileWidth + kGap); };
+  const auto column = [&](int k) { return kSheetMargin + k * (kTileWidth + kGap); };
   const std::array<const char*, 3> headings = {"color", "depth", "labels"};
   for (int k = 0; k < 3; ++k)
-    canvas.text(headings[static_cast<std::size_t>(k)], {column(k), kHeader - 10}, 11);
+    canvas.text(headings[static_cast<std::size_t>(k)], {column(k), kSheetHeader - 10}, 11);
 
-  double y = kHeader;
+  double y = kSheetHeader;
   for (const View& view : views) {
     canvas.image(color_image(view.color), column(0), y, kTileWidth, tile_height);
     canvas.image(depth_colors(view.depth_m, kNear_m, kFar_m), column(1), y, kTileWidth,
@@ -217,7 +218,7 @@ cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& vi
     y += tile_height + kCaption;
   }
   draw_depth_scale(canvas, column(1), rows_end + 6, kTileWidth);
-  draw_class_legend(canvas, seen, kMargin, rows_end + 58, width - 2 * kMargin);
+  draw_class_legend(canvas, seen, kSheetMargin, rows_end + 58, width - 2 * kSheetMargin);
   return canvas.finish();
 }
 
@@ -227,13 +228,14 @@ cv::Mat draw_gallery(const std::vector<View>& views, int columns, bool captions)
       views.empty() ? 300 : kTileWidth * views[0].color.height() / views[0].color.width();
   const auto rows =
       (views.size() + static_cast<std::size_t>(columns) - 1) / static_cast<std::size_t>(columns);
-  Canvas canvas(static_cast<int>(2 * kMargin + columns * kTileWidth + (columns - 1) * kGap),
-                static_cast<int>(2 * kMargin + static_cast<double>(rows) * (tile_height + below)));
+  Canvas canvas(
+      static_cast<int>(2 * kSheetMargin + columns * kTileWidth + (columns - 1) * kGap),
+      static_cast<int>(2 * kSheetMargin + static_cast<double>(rows) * (tile_height + below)));
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const double x =
-        kMargin + static_cast<double>(i % static_cast<std::size_t>(columns)) * (kTileWidth + kGap);
-    const double y = kMargin + static_cast<double>(i / static_cast<std::size_t>(columns)) *
-                                   (tile_height + below);
+    const double x = kSheetMargin + static_cast<double>(i % static_cast<std::size_t>(columns)) *
+                                        (kTileWidth + kGap);
+    const double y = kSheetMargin + static_cast<double>(i / static_cast<std::size_t>(columns)) *
+                                        (tile_height + below);
     canvas.image(color_image(views[i].color), x, y, kTileWidth, tile_height);
     if (captions) canvas.text(views[i].caption, {x, y + tile_height + 14}, 9.5, {60, 64, 72});
   }

@@ -4,12 +4,11 @@
 #include <algorithm>
 
 #include "bench/protocol/step_digest.hpp"
+#include "bench/protocol/streams.hpp"
 #include "bench/provenance/digest.hpp"
 
 namespace mh {
 namespace {
-
-enum StreamName : std::uint64_t { kNoise = 1, kSlam = 2 };
 
 /// State of the feed. Indices are frames of the sequence.
 struct Feed {
@@ -75,7 +74,7 @@ std::vector<std::size_t> offered_frames(std::size_t count, const ProtocolConfig&
 }
 
 RandomStream mapping_noise(RandomStream stream, int restart) {
-  return stream.fork(kNoise).fork(static_cast<std::uint64_t>(restart));
+  return stream.fork(RunDraw::kNoise).fork(static_cast<std::uint64_t>(restart));
 }
 
 MappingOutcome map_sequence(System& system, const Sequence& sequence, const ProtocolConfig& config,
@@ -103,7 +102,7 @@ MappingOutcome map_sequence(System& system, const Sequence& sequence, const Prot
       continue;
     }
     const RandomStream draws =
-        stream.fork(kSlam).fork(static_cast<std::uint64_t>(outcome.restarts)).fork(i);
+        stream.fork(RunDraw::kSlam).fork(static_cast<std::uint64_t>(outcome.restarts)).fork(i);
     const SystemReport report = system.track(*frame, draws);
     note(outcome, i, *frame, report, observe);
 
@@ -151,7 +150,7 @@ Localization localize_sequence(const System& frozen, const Sequence& sequence,
   for (const std::size_t i : offered) {
     const auto frame = frames.frame(i, mapping_noise(stream, 0));
     if (!frame) continue;
-    const SystemReport report = session->feed(*frame, stream.fork(kSlam).fork(0).fork(i));
+    const SystemReport report = session->feed(*frame, stream.fork(RunDraw::kSlam).fork(0).fork(i));
     note(found.outcome, i, *frame, report, observe);
     if (report.status != TrackStatus::kLost)
       found.trajectory.push_back({frame->stamp_ns, *report.world_from_camera});

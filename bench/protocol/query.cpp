@@ -4,12 +4,11 @@
 #include <algorithm>
 
 #include "bench/protocol/step_digest.hpp"
+#include "bench/protocol/streams.hpp"
 #include "bench/provenance/digest.hpp"
 
 namespace mh {
 namespace {
-
-enum StreamName : std::uint64_t { kNoise = 1, kSlam = 2, kBlank = 3 };
 
 /// Shows blank frames until the session reports that it is lost.
 int lose(RelocalizationSession& session, const RgbdFrame& like, int at_most, RandomStream stream) {
@@ -40,8 +39,8 @@ bool is_blank(const RgbdFrame& frame) {
 Presentation presentation(RandomStream stream, std::size_t index, int attempt, Attempts attempts) {
   const auto key = static_cast<std::uint64_t>(attempt);
   const std::uint64_t noise_key = attempts == Attempts::kNewNoise ? key : 0;
-  return {stream.fork(kNoise).fork(index).fork(noise_key),
-          stream.fork(kSlam).fork(index).fork(key)};
+  return {stream.fork(RunDraw::kNoise).fork(index).fork(noise_key),
+          stream.fork(RunDraw::kSlam).fork(index).fork(key)};
 }
 
 QueryAnswer query(const System& frozen, std::size_t index, const Sequence& sequence,
@@ -57,7 +56,7 @@ QueryAnswer query(const System& frozen, std::size_t index, const Sequence& seque
       frame = usable_frame(sequence, index, noise);
     if (attempt == 0)
       answer.blank_frames =
-          lose(*session, frame, config.max_blank_frames, stream.fork(kBlank).fork(index));
+          lose(*session, frame, config.max_blank_frames, stream.fork(RunDraw::kBlank).fork(index));
 
     const SystemReport report = session->feed(frame, draws);
     ++answer.attempts;

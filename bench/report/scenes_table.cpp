@@ -14,8 +14,8 @@ namespace mh {
 namespace {
 
 /// Rows of one level and kind of labels.
-std::string block_text(const Suite& suite, std::span<const CategoryRow> rows,
-                       std::span<const CategoryRow> all) {
+std::string categories_text(const Suite& suite, std::span<const CategoryRow> rows,
+                            std::span<const CategoryRow> all) {
   std::vector<std::string> headings{"environments", "system", "scenes"};
   std::ranges::move(trajectory_headings(), std::back_inserter(headings));
   for (const QuerySet set : kQuerySets)
@@ -47,7 +47,7 @@ std::string scenes_table(const Suite& suite, std::span<const Row> rows) {
         "\n{}, level {}, {}, {}{}; per scene the median over trials, then the mean over scenes\n",
         suite.name, level_name(suite.levels[first->level]), with_labels(first->labels),
         counted(suite.trials, "trial"), shortened(suite, rows));
-    text += block_text(suite, {first, end}, all);
+    text += categories_text(suite, {first, end}, all);
     first = end;
   }
   for (const SceneFamily& family : compare_over_scenes(suite, rows))

@@ -16,9 +16,10 @@
 namespace mh {
 namespace {
 
-constexpr double kPanelWidth = 400, kPanelHeight = 340, kMargin = 24, kHeader = 62, kFooter = 30;
+constexpr double kPanelWidth = 400, kPanelHeight = 340, kSweepMargin = 24, kSweepHeader = 62,
+                 kSweepFooter = 30;
 constexpr int kColumns = 3;
-constexpr Rgb8 kInk = {40, 43, 50}, kGray = {110, 115, 125}, kFrame = {214, 39, 40};
+constexpr Rgb8 kSweepInk = {40, 43, 50}, kGray = {110, 115, 125}, kFrame = {214, 39, 40};
 constexpr Rgb8 kWhite = {255, 255, 255};
 
 struct Shades {
@@ -112,7 +113,7 @@ struct Box {
 
 void draw_names(Canvas& canvas, const Box& box, const std::string& title, std::string_view across,
                 std::string_view up) {
-  canvas.text(title, {box.left, box.top - 12}, 9.5, kInk, Canvas::Align::kLeft, true);
+  canvas.text(title, {box.left, box.top - 12}, 9.5, kSweepInk, Canvas::Align::kLeft, true);
   canvas.text(std::string(across), {(box.left + box.right) / 2, box.bottom + 38}, 9, kGray,
               Canvas::Align::kCenter);
   if (!up.empty())
@@ -168,7 +169,7 @@ void draw_grid(Canvas& canvas, const Panel& panel) {
     const cv::Point2d at = corner_of(result.points[i]);
     canvas.fill(at.x, at.y, width, height, measure.shades.at(share));
     canvas.text(fmt::format("{:.{}f}", *values.of[i], measure.digits),
-                {at.x + width / 2, at.y + height / 2 + 4}, 8.5, share > 0.5 ? kWhite : kInk,
+                {at.x + width / 2, at.y + height / 2 + 4}, 8.5, share > 0.5 ? kWhite : kSweepInk,
                 Canvas::Align::kCenter);
   }
   if (!framed) return;
@@ -264,19 +265,20 @@ cv::Mat draw_sweep(const Suite& suite, std::span<const Row> rows, const SweepRes
   const std::vector<PanelMeasure> all = panel_measures();
   const std::size_t panels = grid ? all.size() : pairs.size();
   const auto lines = static_cast<int>((panels + kColumns - 1) / kColumns);
-  const double block_height = lines * kPanelHeight + kFooter;
+  const double block_height = lines * kPanelHeight + kSweepFooter;
 
-  Canvas canvas(static_cast<int>(2 * kMargin + kColumns * kPanelWidth),
-                static_cast<int>(kHeader + static_cast<double>(blocks.size()) * block_height + 16));
+  Canvas canvas(
+      static_cast<int>(2 * kSweepMargin + kColumns * kPanelWidth),
+      static_cast<int>(kSweepHeader + static_cast<double>(blocks.size()) * block_height + 16));
   canvas.text(fmt::format("{}: {}, {}, level {}, map: {}", suite.name,
                           suite.systems[result.system].name, with_labels(result.labels),
                           level_name(suite.levels[result.level]), name(suite.sweep.map)),
-              {kMargin, 34}, 14, kInk, Canvas::Align::kLeft, true);
+              {kSweepMargin, 34}, 14, kSweepInk, Canvas::Align::kLeft, true);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const auto& [set, best] = blocks[b];
-    const double top = kHeader + static_cast<double>(b) * block_height;
+    const double top = kSweepHeader + static_cast<double>(b) * block_height;
     for (std::size_t i = 0; i < panels; ++i) {
-      const cv::Point2d corner(kMargin + static_cast<double>(i % kColumns) * kPanelWidth,
+      const cv::Point2d corner(kSweepMargin + static_cast<double>(i % kColumns) * kPanelWidth,
                                top + static_cast<double>(i / kColumns) * kPanelHeight);
       const PanelMeasure& measure = grid ? all[i] : all.front();
       const Values values(result, set, measure);
@@ -292,11 +294,11 @@ cv::Mat draw_sweep(const Suite& suite, std::span<const Row> rows, const SweepRes
         draw_dots(canvas, {corner, result, pairs[i].first, pairs[i].second, title, measure, values,
                            framed});
     }
-    canvas.text(caption(result, set, varied, best), {kMargin + 8, top + lines * kPanelHeight + 12},
-                9, kInk);
+    canvas.text(caption(result, set, varied, best),
+                {kSweepMargin + 8, top + lines * kPanelHeight + 12}, 9, kSweepInk);
   }
   canvas.text("framed: most correct answers, chosen by these same queries: confirm it on others",
-              {kMargin + 8, static_cast<double>(canvas.height()) - 10}, 8, kGray);
+              {kSweepMargin + 8, static_cast<double>(canvas.height()) - 10}, 8, kGray);
   return canvas.finish();
 }
 

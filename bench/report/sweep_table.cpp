@@ -64,8 +64,8 @@ void add_weight_cells(const Sweep& sweep, const QuerySummary& s, std::vector<std
 }
 
 /// Rows of one level and kind of labels.
-std::string block_text(const Suite& suite, std::span<const CategoryRow> rows,
-                       std::span<const CategoryRow> all) {
+std::string points_text(const Suite& suite, std::span<const CategoryRow> rows,
+                        std::span<const CategoryRow> all) {
   std::vector<std::string> headings{"system"};
   for (const std::string& varied : suite.sweep.varied) headings.emplace_back(shown_name(varied));
   for (const QuerySet set : kQuerySets) {
@@ -108,7 +108,7 @@ std::string sweep_table(const Suite& suite, std::span<const Row> rows) {
         fmt::format("\n{}, level {}, {}, map: {}, {}{}\n", suite.name,
                     level_name(suite.levels[first->level]), with_labels(first->labels),
                     name(suite.sweep.map), counted(suite.trials, "trial"), shortened(suite, rows));
-    text += block_text(suite, {first, end}, all);
+    text += points_text(suite, {first, end}, all);
     first = end;
   }
   return text + best_points(suite, rows);

@@ -14,13 +14,13 @@ namespace {
 MaterialSpec porcelain() {
   return plain("ceramic", {232, 232, 228}, 0.1, 61);
 }
-MaterialSpec chrome() {
+MaterialSpec tap_chrome() {
   return plain("brushed_metal", {196, 198, 200}, 0.2, 62);
 }
 
 /// A tap: a post, a spout that bends forward, a lever; its foot at `foot`, facing -y.
 void tap(Piece& p, const Vector3f& foot, float tall) {
-  const MaterialId metal = p.fixed(chrome());
+  const MaterialId metal = p.fixed(tap_chrome());
   MeshBuilder& m = p.mesh;
   m.cylinder(metal, foot, foot + Vector3f(0, 0, tall), {0.018F, 0.016F}, 12);
   const std::array<Vector3f, 4> spout = {
@@ -37,7 +37,7 @@ void toilet(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId white = p.material("body", porcelain());
   const MaterialId seat = p.material("seat", plain("plastic", {238, 238, 236}, 0.1, 63));
-  const MaterialId metal = p.fixed(chrome());
+  const MaterialId metal = p.fixed(tap_chrome());
   MeshBuilder& m = p.mesh;
   const float rim = 0.40F, tank = 0.19F;
   // Cistern with its lid and button.
@@ -82,7 +82,7 @@ void toilet(Piece& p) {
 
 void bathtub(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
-  const MaterialId white = p.material("body", porcelain()), metal = p.fixed(chrome());
+  const MaterialId white = p.material("body", porcelain()), metal = p.fixed(tap_chrome());
   MeshBuilder& m = p.mesh;
   const float lip = 0.07F;
   // An apron in front and at the ends, a rim, and the inside as one rounded basin.
@@ -118,7 +118,7 @@ void bathtub(Piece& p) {
 
 void shower(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
-  const MaterialId white = p.material("body", porcelain()), metal = p.fixed(chrome());
+  const MaterialId white = p.material("body", porcelain()), metal = p.fixed(tap_chrome());
   const MaterialId wall = p.material("wall", plain("tiles", {214, 222, 224}, 0.2, 65));
   MeshBuilder& m = p.mesh;
   // Tray, tiled back and side, a framed half-high screen at the other side, rail and head.
@@ -174,7 +174,7 @@ void washbasin(Piece& p) {
     m.box(wood, {-w / 2 + 0.03F, y0 + 0.04F, 0}, {w / 2 - 0.03F, d / 2, 0.08F});
     m.box(wood, {-w / 2 + 0.012F, y0, 0.081F}, {w / 2 - 0.012F, d / 2, top - 0.17F});
     m.box(wood, {-w / 2 + 0.012F, y0, top - 0.169F}, {w / 2 - 0.012F, y0 + 0.02F, top});
-    const MaterialId grip = p.fixed(chrome());
+    const MaterialId grip = p.fixed(tap_chrome());
     const int doors = w > 0.9F ? 3 : 2;
     const float each = (w - 0.024F) / static_cast<float>(doors);
     for (int i = 0; i < doors; ++i) {
@@ -212,7 +212,7 @@ void washbasin(Piece& p) {
                                            {0.2F, h - 0.145F},
                                            {0.01F, h - 0.145F}}};
   oval(p, white, {0, cy, 0}, {bx, by, 0.55F}, hollow, 32);
-  m.cylinder(p.fixed(chrome()), {0, cy, h - 0.144F}, {0, cy, h - 0.14F}, {0.022F, 0.02F}, 14);
+  m.cylinder(p.fixed(tap_chrome()), {0, cy, h - 0.144F}, {0, cy, h - 0.14F}, {0.022F, 0.02F}, 14);
   tap(p, {0, cy + by + 0.035F, h - 0.002F}, 0.13F);
   p.body();
 }
@@ -221,7 +221,8 @@ void washing_machine(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId body = p.material("body", plain("plastic", {232, 234, 234}, 0.1, 68));
   const MaterialId gray = p.fixed(plain("plastic", {150, 154, 158}, 0.2, 69));
-  const MaterialId dark = p.fixed(plain("glass", {38, 44, 52}, 0.3, 70)), metal = p.fixed(chrome());
+  const MaterialId dark = p.fixed(plain("glass", {38, 44, 52}, 0.3, 70)),
+                   metal = p.fixed(tap_chrome());
   MeshBuilder& m = p.mesh;
   const float y = -d / 2 + 0.05F;
   m.box(body, {-w / 2, y, 0.02F}, {w / 2, d / 2, h}, {.bevel_m = 0.012F});
@@ -287,7 +288,7 @@ void trash_can(Piece& p) {
 void toilet_paper(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId paper = p.fixed(plain("plaster", {240, 240, 236}, 0.3, 75)),
-                   metal = p.fixed(chrome());
+                   metal = p.fixed(tap_chrome());
   MeshBuilder& m = p.mesh;
   const float r = std::min(0.4F * h, 0.45F * d), y = d / 2 - r - 0.012F, z = 0.55F * h;
   m.cylinder(paper, {-0.42F * w, y, z}, {0.36F * w, y, z}, {r, r}, 22);

@@ -19,7 +19,7 @@ constexpr float kHalfPi = 1.57079633F;
 MaterialSpec white_plastic() {
   return plain("plastic", {230, 230, 226}, 0.1, 161);
 }
-MaterialSpec dark_plastic() {
+MaterialSpec outlet_plastic() {
   return plain("plastic", {34, 34, 38}, 0.2, 162);
 }
 MaterialSpec chrome() {
@@ -44,7 +44,7 @@ void outlet(Piece& p, MaterialId face, MaterialId dark, const Vector3f& at, floa
 
 void socket(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
-  const MaterialId face = p.material("body", white_plastic()), dark = p.fixed(dark_plastic());
+  const MaterialId face = p.material("body", white_plastic()), dark = p.fixed(outlet_plastic());
   const float half = 0.25F * w, z = h - half - 0.004F;
   for (const float s : {-1.0F, 1.0F}) outlet(p, face, dark, {s * half, d / 2, z}, half - 0.001F);
   if (p.random.uniform(0) < 0.4) return;
@@ -63,7 +63,7 @@ void socket(Piece& p) {
 
 void trunking(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
-  const MaterialId body = p.material("body", white_plastic()), dark = p.fixed(dark_plastic());
+  const MaterialId body = p.material("body", white_plastic()), dark = p.fixed(outlet_plastic());
   MeshBuilder& m = p.mesh;
   const float front = -d / 2 + 0.012F;
   m.box(body, {-w / 2, front, 0}, {w / 2, d / 2, h}, {.bevel_m = 0.003F});
@@ -167,7 +167,7 @@ void tile_panel(Piece& p) {
 void fuse_box(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId body = p.material("body", plain("plastic", {206, 206, 200}, 0.1, 168));
-  const MaterialId dark = p.fixed(dark_plastic()), metal = p.fixed(chrome());
+  const MaterialId dark = p.fixed(outlet_plastic()), metal = p.fixed(chrome());
   MeshBuilder& m = p.mesh;
   const float y = -d / 2 + 0.02F;
   m.box(body, {-w / 2, y, 0}, {w / 2, d / 2, h}, {.bevel_m = 0.004F});
@@ -244,7 +244,7 @@ void sign(Piece& p) {
 void calendar(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId paper = p.fixed(plain("plaster", {238, 236, 230}, 0.1, 172));
-  const MaterialId ink = p.fixed(dark_plastic());
+  const MaterialId ink = p.fixed(outlet_plastic());
   const MaterialId red = p.fixed(plain("plastic", {180, 44, 40}, 0.1, 173));
   MeshBuilder& m = p.mesh;
   m.box(paper, {-w / 2, -d / 2 + 0.002F, 0}, {w / 2, d / 2, h}, {.bevel_m = 0.0F});

@@ -10,10 +10,10 @@ using Eigen::Vector3f;
 
 namespace {
 
-MaterialSpec steel() {
+MaterialSpec sink_steel() {
   return plain("brushed_metal", {172, 174, 176}, 0.4, 73);
 }
-MaterialSpec black_plastic() {
+MaterialSpec knob_plastic() {
   return plain("plastic", {30, 30, 32}, 0.2, 2);
 }
 
@@ -31,7 +31,7 @@ void refrigerator(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId body = p.material("body", plain("plastic", {206, 208, 210}, 0.2, 31));
   const MaterialId door = p.material("door", plain("brushed_metal", {196, 199, 202}, 0.25, 32));
-  const MaterialId metal = p.fixed(steel()), black = p.fixed(black_plastic());
+  const MaterialId metal = p.fixed(sink_steel()), black = p.fixed(knob_plastic());
   MeshBuilder& m = p.mesh;
   const float x = w / 2, face = -d / 2 + 0.045F, split = 0.66F;
   m.box(body, {-x, face + 0.065F, 0.03F}, {x, d / 2, h}, {.bevel_m = 0.008F});
@@ -70,7 +70,7 @@ void kitchen_counter(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId wood = p.material("wood", oak());
   const MaterialId top = p.material("top", plain("stone", {142, 138, 130}, 0.45, 26));
-  const MaterialId metal = p.fixed(steel());
+  const MaterialId metal = p.fixed(sink_steel());
   MeshBuilder& m = p.mesh;
   const float x = w / 2, y0 = -d / 2 + 0.05F, zt = h - 0.035F;
   m.box(wood, {-x + 0.01F, y0 + 0.05F, 0}, {x - 0.01F, d / 2, 0.099F});
@@ -120,7 +120,7 @@ void kitchen_counter(Piece& p) {
   m.box(metal, {bx0 + t, by1 - t, deep}, {bx1 - t, by1 - 0.001F, h - 0.0015F}, {.bevel_m = 0.0F});
   m.box(metal, {bx0 + 0.001F, by0 + 0.001F, deep - 0.006F}, {bx1 - 0.001F, by1 - 0.001F, deep},
         {.bevel_m = 0.0F});
-  m.cylinder(p.fixed(black_plastic()), {-0.03F, 0, deep}, {-0.03F, 0, deep + 0.004F},
+  m.cylinder(p.fixed(knob_plastic()), {-0.03F, 0, deep}, {-0.03F, 0, deep + 0.004F},
              {0.04F, 0.035F}, 16);
   // Tap: a base, a swan neck and a lever.
   const float ty = by1 + 0.05F, tx = -0.03F;
@@ -139,8 +139,8 @@ void kitchen_counter(Piece& p) {
 
 void oven(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
-  const MaterialId body = p.material("body", steel());
-  const MaterialId black = p.fixed(black_plastic());
+  const MaterialId body = p.material("body", sink_steel());
+  const MaterialId black = p.fixed(knob_plastic());
   const MaterialId glass = p.fixed(plain("glass", {26, 28, 32}, 0.3, 41));
   const MaterialId metal = p.fixed(plain("brushed_metal", {200, 200, 200}, 0.3, 42));
   MeshBuilder& m = p.mesh;
@@ -185,8 +185,8 @@ void oven(Piece& p) {
 
 void range_hood(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
-  const MaterialId body = p.material("body", steel());
-  const MaterialId black = p.fixed(black_plastic());
+  const MaterialId body = p.material("body", sink_steel());
+  const MaterialId black = p.fixed(knob_plastic());
   MeshBuilder& m = p.mesh;
   const float x = w / 2, y = d / 2;
   m.box(body, {-x, -y, 0}, {x, y, 0.06F}, {.bevel_m = 0.004F});
@@ -215,7 +215,7 @@ void range_hood(Piece& p) {
 void wall_cabinet(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId wood = p.material("wood", oak());
-  const MaterialId metal = p.fixed(steel());
+  const MaterialId metal = p.fixed(sink_steel());
   const float x = w / 2, y0 = -d / 2 + 0.05F;
   p.mesh.box(wood, {-x, y0 + 0.001F, 0}, {x, d / 2, h}, {.grain_axis = 2});
   const int n = std::max(2, static_cast<int>(w / 0.42F));
@@ -232,9 +232,9 @@ void wall_cabinet(Piece& p) {
 void microwave(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId body = p.material("body", plain("plastic", {222, 222, 220}, 0.2, 51));
-  const MaterialId black = p.fixed(black_plastic());
+  const MaterialId black = p.fixed(knob_plastic());
   const MaterialId glass = p.fixed(plain("glass", {34, 36, 40}, 0.3, 52));
-  const MaterialId metal = p.fixed(steel());
+  const MaterialId metal = p.fixed(sink_steel());
   MeshBuilder& m = p.mesh;
   const float x = w / 2, y = -d / 2 + 0.035F;
   m.box(body, {-x, y + 0.012F, 0.012F}, {x, d / 2, h}, {.bevel_m = 0.008F});
@@ -260,7 +260,7 @@ void microwave(Piece& p) {
 void toaster(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId body = p.material("body", plain("ceramic", {176, 58, 48}, 0.3, 61));
-  const MaterialId black = p.fixed(black_plastic());
+  const MaterialId black = p.fixed(knob_plastic());
   MeshBuilder& m = p.mesh;
   m.cushion(body, {-0.01F, 0, 0.5F * h + 0.006F}, {w - 0.04F, d - 0.01F, h - 0.012F}, 0.035F, 0.0F,
             0.06F);
@@ -274,7 +274,7 @@ void toaster(Piece& p) {
 void kettle(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId body = p.material("body", plain("brushed_metal", {190, 192, 194}, 0.4, 62));
-  const MaterialId black = p.fixed(black_plastic());
+  const MaterialId black = p.fixed(knob_plastic());
   MeshBuilder& m = p.mesh;
   const float r = 0.48F * d, top = 0.78F * h;
   const std::array<Vector2f, 9> profile = {{{0.001F, 0},
@@ -310,7 +310,7 @@ void kettle(Piece& p) {
 void pan(Piece& p) {
   const float d = p.size_m.y(), h = p.size_m.z(), w = p.size_m.x();
   const MaterialId body = p.material("body", plain("brushed_metal", {62, 62, 66}, 0.3, 63));
-  const MaterialId black = p.fixed(black_plastic());
+  const MaterialId black = p.fixed(knob_plastic());
   const float r = d / 2, cx = -w / 2 + r, z = 0.018F;
   const std::array<Vector2f, 6> profile = {{{0.001F, z},
                                             {0.85F * r, z},

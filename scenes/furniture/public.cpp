@@ -15,10 +15,10 @@ using Eigen::Vector3f;
 
 namespace {
 
-MaterialSpec steel() {
+MaterialSpec public_steel() {
   return plain("brushed_metal", {160, 163, 166}, 0.3, 171);
 }
-MaterialSpec black_plastic() {
+MaterialSpec rail_plastic() {
   return plain("plastic", {34, 35, 38}, 0.2, 172);
 }
 
@@ -28,7 +28,7 @@ void reception_desk(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId wood = p.material("wood", oak()),
                    top = p.material("top", plain("stone", {196, 192, 184}, 0.3, 173));
-  const MaterialId metal = p.fixed(steel());
+  const MaterialId metal = p.fixed(public_steel());
   MeshBuilder& m = p.mesh;
   const float work = 0.74F, front = 0.10F;
   m.box(metal, {-w / 2 + 0.03F, -d / 2 + 0.03F, 0}, {w / 2 - 0.03F, -d / 2 + front, 0.08F});
@@ -53,7 +53,7 @@ void reception_desk(Piece& p) {
 
 void lift_door(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
-  const MaterialId metal = p.material("metal", steel()), black = p.fixed(black_plastic());
+  const MaterialId metal = p.material("metal", public_steel()), black = p.fixed(rail_plastic());
   MeshBuilder& m = p.mesh;
   const float frame = 0.10F;
   for (const float s : {-1.0F, 1.0F}) {
@@ -121,7 +121,7 @@ void magazine_rack(Piece& p) {
 
 void school_desk(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
-  const MaterialId top = p.material("wood", oak()), metal = p.material("metal", steel());
+  const MaterialId top = p.material("wood", oak()), metal = p.material("metal", public_steel());
   MeshBuilder& m = p.mesh;
   m.max_edge_m = 0.07F;
   m.box(top, {-w / 2, -d / 2, h - 0.022F}, {w / 2, d / 2, h}, {.bevel_m = 0.005F, .grain_axis = 0});
@@ -144,7 +144,7 @@ void school_desk(Piece& p) {
 void school_chair(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId shell = p.material("body", plain("plastic", {48, 84, 130}, 0.2, 174)),
-                   metal = p.material("metal", steel());
+                   metal = p.material("metal", public_steel());
   MeshBuilder& m = p.mesh;
   const float seat = 0.44F, x = w / 2 - 0.04F;
   for (const float s : {-1.0F, 1.0F}) {
@@ -175,7 +175,7 @@ void school_chair(Piece& p) {
 void projector_screen(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId cloth = p.fixed(plain("ceramic", {240, 240, 238}, 0.05, 175)),
-                   black = p.fixed(black_plastic());
+                   black = p.fixed(rail_plastic());
   const MaterialId body = p.material("body", plain("plastic", {226, 226, 222}, 0.1, 176));
   MeshBuilder& m = p.mesh;
   m.box(body, {-w / 2, -d / 2, h - 0.09F}, {w / 2, d / 2, h}, {.bevel_m = 0.012F});
@@ -189,7 +189,7 @@ void projector_screen(Piece& p) {
 
 void wall_screen(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
-  const MaterialId black = p.fixed(black_plastic());
+  const MaterialId black = p.fixed(rail_plastic());
   MaterialSpec usual = plain("screen", {70, 110, 150}, 0.7, 177);
   usual.size_m = {w - 0.03F, h - 0.03F};
   const MaterialId screen = p.random.uniform(1) < 0.4
@@ -205,7 +205,7 @@ void wall_screen(Piece& p) {
 void lockers(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId body = p.material("body", plain("plastic", {96, 116, 140}, 0.2, 179)),
-                   metal = p.fixed(steel()), black = p.fixed(black_plastic());
+                   metal = p.fixed(public_steel()), black = p.fixed(rail_plastic());
   MeshBuilder& m = p.mesh;
   const float y = -d / 2 + 0.03F;
   m.box(black, {-w / 2 + 0.01F, y + 0.03F, 0}, {w / 2 - 0.01F, d / 2, 0.08F}, {.bevel_m = 0.0F});
@@ -230,7 +230,7 @@ void lockers(Piece& p) {
 void fire_extinguisher(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId red = p.fixed(plain("ceramic", {186, 30, 28}, 0.1, 180)),
-                   black = p.fixed(black_plastic());
+                   black = p.fixed(rail_plastic());
   MaterialSpec label = plain("paper", {236, 234, 226}, 0.7, 181);
   label.size_m = {0.09F, 0.12F};
   const float r = 0.42F * std::min(w, d), y = 0.0F;
@@ -259,7 +259,7 @@ void fire_extinguisher(Piece& p) {
 
 void storage_shelf(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
-  const MaterialId metal = p.material("metal", steel());
+  const MaterialId metal = p.material("metal", public_steel());
   MeshBuilder& m = p.mesh;
   for (const float sx : {-1.0F, 1.0F})
     for (const float sy : {-1.0F, 1.0F}) {
@@ -313,7 +313,7 @@ void base_counter(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId wood = p.material("wood", oak()),
                    top = p.material("top", plain("stone", {142, 138, 130}, 0.45, 26)),
-                   metal = p.fixed(steel());
+                   metal = p.fixed(public_steel());
   MeshBuilder& m = p.mesh;
   const float y0 = -d / 2 + 0.05F, zt = h - 0.035F;
   m.box(wood, {-w / 2 + 0.01F, y0 + 0.05F, 0}, {w / 2 - 0.01F, d / 2, 0.099F});
@@ -344,7 +344,7 @@ void base_counter(Piece& p) {
 void vending_machine(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const MaterialId body = p.material("body", plain("plastic", {40, 70, 130}, 0.2, 184)),
-                   black = p.fixed(black_plastic());
+                   black = p.fixed(rail_plastic());
   MeshBuilder& m = p.mesh;
   const float y = -d / 2 + 0.03F;
   m.box(body, {-w / 2, y, 0.03F}, {w / 2, d / 2, h}, {.bevel_m = 0.01F});

@@ -8,12 +8,10 @@
 namespace mh {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
 /// Plain weave with threads four texels wide: height of the cloth in about [-1, 1].
 float weave(int x, int y) {
-  const float u = std::sin(kPi * (static_cast<float>(x) + 0.5F) / 4.0F);
-  const float v = std::sin(kPi * (static_cast<float>(y) + 0.5F) / 4.0F);
+  const float u = std::sin(std::numbers::pi_v<float> * (static_cast<float>(x) + 0.5F) / 4.0F);
+  const float v = std::sin(std::numbers::pi_v<float> * (static_cast<float>(y) + 0.5F) / 4.0F);
   const bool warp_above = ((x / 4 + y / 4) & 1) == 0;
   return warp_above ? std::abs(u) - 0.6F : std::abs(v) - 0.75F;
 }
@@ -49,8 +47,8 @@ Image paint_knit(const PaintJob& job) {
     const float row =
         (static_cast<float>(y) + 0.5F) * static_cast<float>(rows) / static_cast<float>(job.height) +
         0.7F * std::abs(across);
-    const float ridge = std::abs(std::sin(kPi * row));
-    const float leg = std::sin(kPi * std::abs(across));
+    const float ridge = std::abs(std::sin(std::numbers::pi_v<float> * row));
+    const float leg = std::sin(std::numbers::pi_v<float> * std::abs(across));
     const float height = 0.55F * ridge + 0.6F * std::sqrt(std::max(0.0F, leg)) - 0.75F;
     return job.tone *
            (1.0F + job.variation * (0.75F * height + 0.25F * yarn(x, y) + 0.08F * broad(x, y)));
@@ -103,7 +101,7 @@ Image paint_curtain(const PaintJob& job) {
     const int motifs = 6;
     const float v = std::fmod(static_cast<float>(y) / static_cast<float>(h) * motifs, 1.0F) - 0.5F;
     const float du = (u - 0.6F) * band * motifs / static_cast<float>(h);
-    const float side = std::abs(du) - 0.20F * std::sin(kPi * (v + 0.5F));
+    const float side = std::abs(du) - 0.20F * std::sin(std::numbers::pi_v<float> * (v + 0.5F));
     const bool leaf = std::abs(v) < 0.36F && std::abs(side) < 0.05F && std::abs(du) > 0.02F;
     if (leaf || (std::abs(du) < 0.018F && std::abs(v) < 0.45F)) tint = ink;
     return tint * (1.0F + 0.06F * weave(x, y) + 0.10F * slubs(x, y));

@@ -23,7 +23,7 @@ struct Kind {
   Painter paint;
 };
 
-constexpr std::array kKinds = {
+constexpr std::array kMaterialKinds = {
     Kind{"bark", 0.5F, 0.5F, 0.002F, paint_bark},
     Kind{"book_covers", kWhole, kWhole, 0.001F, paint_book_cover},
     Kind{"book_spines", kWhole, kWhole, 0.001F, paint_book_spines},
@@ -53,17 +53,18 @@ constexpr std::array kKinds = {
     Kind{"wood_grain", 2.0F, 0.8F, 0.002F, paint_wood_grain},
 };
 
-constexpr auto kNames = [] {
-  std::array<std::string_view, kKinds.size()> names;
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kKinds[i].name;
+constexpr auto kMaterialNames = [] {
+  std::array<std::string_view, kMaterialKinds.size()> names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kMaterialKinds[i].name;
   return names;
 }();
 
 constexpr int kMaxTexels = 1024;
 
 const Kind& find_kind(std::string_view name) {
-  const auto* const found = std::ranges::find(kKinds, name, &Kind::name);
-  if (found == kKinds.end()) throw InputError(fmt::format("unknown kind of material: {}", name));
+  const auto* const found = std::ranges::find(kMaterialKinds, name, &Kind::name);
+  if (found == kMaterialKinds.end())
+    throw InputError(fmt::format("unknown kind of material: {}", name));
   return *found;
 }
 
@@ -102,7 +103,7 @@ Material make_material(const MaterialSpec& spec) {
 }
 
 std::span<const std::string_view> material_kinds() {
-  return kNames;
+  return kMaterialNames;
 }
 
 bool is_image(std::string_view kind) {

@@ -31,7 +31,7 @@ constexpr std::string_view kAbout[] = {"with", "of", "on", "for", "in", "under",
 /// The words of a name in lower case: letters between other characters, and split at a change of
 /// case (TVCabinet is "tv cabinet"). The "b" left over from a counter such as FloorB_01 is not a
 /// word.
-std::vector<std::string> words_of(std::string_view name) {
+std::vector<std::string> words_in_name(std::string_view name) {
   std::vector<std::string> words;
   const auto is = [&](std::size_t i, int (*kind)(int)) {
     return i < name.size() && kind(static_cast<unsigned char>(name[i])) != 0;
@@ -112,7 +112,7 @@ NodeLabel parse_node_name(std::string_view node) {
 }
 
 ClassId guess_class(std::string_view name) {
-  const std::vector<std::string> words = words_of(name.substr(name.rfind('/') + 1));
+  const std::vector<std::string> words = words_in_name(name.substr(name.rfind('/') + 1));
   ClassId head = kVoid;
   for (std::size_t i = 0; i < words.size();) {
     // What follows "with" or "of" describes the thing before it.
@@ -132,7 +132,7 @@ ClassId guess_class(std::string_view name) {
 }
 
 std::optional<ClassId> class_of_noun(std::string_view name) {
-  const std::vector<std::string> words = words_of(name);
+  const std::vector<std::string> words = words_in_name(name);
   for (std::size_t count = std::min(kLongest, words.size()); count > 0; --count)
     if (const auto found =
             class_of_words({words.end() - static_cast<std::ptrdiff_t>(count), words.end()}))

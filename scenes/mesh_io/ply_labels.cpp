@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-constexpr std::uint16_t kLastNyu40 = 40;
-constexpr std::uint32_t kLastObject = 65534;  // its instance is the largest 16-bit id
+constexpr std::uint16_t kLastNyu40InPly = 40;
+constexpr std::uint32_t kLastObjectInPly = 65534;  // its instance is the largest 16-bit id
 
 /// Object names from a file next to the mesh.
 using Names = std::map<std::uint32_t, std::string>;
@@ -33,7 +33,8 @@ Names read_names(std::initializer_list<fs::path> files, const char* list, const 
     try {
       const Json json = Json::parse(read_file(file));
       for (const Json& item : json.at(list))
-        if (item.at(id).is_number_unsigned() && item.at(id).get<std::uint64_t>() <= kLastObject)
+        if (item.at(id).is_number_unsigned() &&
+            item.at(id).get<std::uint64_t>() <= kLastObjectInPly)
           names[item.at(id).get<std::uint32_t>()] = item.at(name).get<std::string>();
     } catch (const Json::exception& wrong) {
       throw InputError(fmt::format("{}: {}", file.string(), wrong.what()));
@@ -101,7 +102,7 @@ class Labeler {
   }
 
   ClassId nyu40_class(std::uint16_t id) {
-    if (id <= kLastNyu40) return static_cast<ClassId>(id);
+    if (id <= kLastNyu40InPly) return static_cast<ClassId>(id);
     ++unknown_;
     return kVoid;
   }
@@ -120,9 +121,9 @@ class Labeler {
   }
 
   InstanceId object(std::uint32_t id) {
-    if (id > kLastObject)
+    if (id > kLastObjectInPly)
       throw InputError(
-          fmt::format("{}: object {} is more than {}", file_.string(), id, kLastObject));
+          fmt::format("{}: object {} is more than {}", file_.string(), id, kLastObjectInPly));
     return static_cast<InstanceId>(id + 1);
   }
 

@@ -20,10 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kRate_hz = 30;  // of the rendered camera, as published
+constexpr double kIclNuimRate_hz = 30;  // of the rendered camera, as published
 
 Stamp stamp_of_number(Stamp number_ns) {
-  return static_cast<Stamp>(std::llround(static_cast<double>(number_ns) / kRate_hz));
+  return static_cast<Stamp>(std::llround(static_cast<double>(number_ns) / kIclNuimRate_hz));
 }
 
 /// The published calibration. Its fy is -480 in the world of the poses; the images of this layout
@@ -36,7 +36,7 @@ Camera icl_nuim_camera() {
   camera.fy_px = 480.00;
   camera.cx_px = 319.50;
   camera.cy_px = 239.50;
-  camera.rate_hz = kRate_hz;
+  camera.rate_hz = kIclNuimRate_hz;
   return camera;
 }
 

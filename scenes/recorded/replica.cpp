@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kRate_hz = 30;  // assumed: nothing states it
+constexpr double kReplicaRate_hz = 30;  // assumed: nothing states it
 
 /// cam_params.json of the folder, or the one that all scenes share; empty if there is none.
 fs::path camera_file(const fs::path& folder) {
@@ -53,7 +53,7 @@ RecordedCamera read_camera_file(const fs::path& file) {
   camera.fy_px = number("fy");
   camera.cx_px = number("cx");
   camera.cy_px = number("cy");
-  camera.rate_hz = kRate_hz;
+  camera.rate_hz = kReplicaRate_hz;
   recorded.depth_per_meter = number("scale");
   try {
     validate(camera);
@@ -109,7 +109,7 @@ OpenedRecording open_replica(const fs::path& folder, const RecordingConfig& conf
       without_depth.add(file);
       continue;
     }
-    const auto stamp_ns = static_cast<Stamp>(std::llround(1e9 * number / kRate_hz));
+    const auto stamp_ns = static_cast<Stamp>(std::llround(1e9 * number / kReplicaRate_hz));
     listed.frames.push_back({stamp_ns, file, depth.at(number), fs::path()});
     const auto line = static_cast<std::size_t>(number);
     const std::string where = fmt::format("{}:{}", trajectory.string(), line + 1);

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kRate_hz = 30;              // of the Kinect; the files have no stamps
+constexpr double kSevenScenesRate_hz = 30;   // of the Kinect; the files have no stamps
 constexpr Stamp kPause_ns = 10'000'000'000;  // between two sequences: nothing connects them
 
 /// The folders that a split names: "sequence7" stands for seq-07 beside it.
@@ -61,7 +61,7 @@ class Reading {
         without_depth_.add(file);
         continue;
       }
-      last_ns = start_ns_ + static_cast<Stamp>(std::llround(1e9 * number / kRate_hz));
+      last_ns = start_ns_ + static_cast<Stamp>(std::llround(1e9 * number / kSevenScenesRate_hz));
       frames_.push_back({last_ns, file, depth.at(number), fs::path()});
       const fs::path pose = folder / fmt::format("frame-{:06}.pose.txt", number);
       if (is_file(pose))
@@ -134,7 +134,7 @@ Camera camera_of_kinect(double focal_px) {
   camera.fx_px = camera.fy_px = focal_px;
   camera.cx_px = 320;
   camera.cy_px = 240;
-  camera.rate_hz = kRate_hz;
+  camera.rate_hz = kSevenScenesRate_hz;
   return camera;
 }
 

@@ -300,7 +300,7 @@ constexpr std::array kFamilies = {Family{"barcodes", barcodes},
                                   Family{"wash", wash},
                                   Family{"wire_mesh", wire_mesh}};
 
-constexpr auto kNames = [] {
+constexpr auto kPatternNames = [] {
   std::array<std::string_view, kFamilies.size()> names;
   for (std::size_t i = 0; i < names.size(); ++i) names[i] = kFamilies[i].name;
   return names;
@@ -309,7 +309,7 @@ constexpr auto kNames = [] {
 }  // namespace
 
 std::span<const std::string_view> training_patterns() {
-  return kNames;
+  return kPatternNames;
 }
 
 Material make_training_pattern(std::string_view family, std::uint64_t seed) {

@@ -20,7 +20,6 @@ using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 constexpr float kMaxEdge = 0.15F;  // m; baked light lives at the vertices
-constexpr float kPi = std::numbers::pi_v<float>;
 /// Assembles a training room from flat and round faces.
 class RoomMaker {
  public:
@@ -156,7 +155,7 @@ class RoomMaker {
     const float along = dice_.uniform(0.7, length - 0.7), z = dice_.uniform(1.0, height_ - 0.6);
     const float across = far_side ? (long_wall ? depth_ : width_) - 0.011F : 0.011F;
     const Vector3f center = long_wall ? Vector3f(along, across, z) : Vector3f(across, along, z);
-    box(any_material(), center, size, turned(long_wall ? 0.0F : kPi / 2));
+    box(any_material(), center, size, turned(long_wall ? 0.0F : std::numbers::pi_v<float> / 2));
   }
 
   /// A place near the walls for something of this radius, leaving the center free.
@@ -182,7 +181,7 @@ class RoomMaker {
     const Vector3f size{dice_.uniform(0.25, 0.8), dice_.uniform(0.25, 0.6),
                         dice_.uniform(0.3, 1.5)};
     const Vector2f at = place(0.5F * size.head<2>().norm());
-    const float yaw = dice_.uniform(-kPi, kPi);
+    const float yaw = dice_.uniform(-std::numbers::pi_v<float>, std::numbers::pi_v<float>);
     box(any_material(), {at.x(), at.y(), 0.5F * size.z()}, size, turned(yaw));
     if (dice_.whole(0, 1) == 1) {  // something on top
       const Vector3f top = size * dice_.uniform(0.3, 0.6);
@@ -193,14 +192,15 @@ class RoomMaker {
 
   void cylinder(std::uint16_t material, const Vector3f& base, float radius, float height) {
     const auto rim = [&](float s, float r, float z) -> Vector3f {
-      const float turn = -2.0F * kPi * s;  // images read left to right from outside
+      const float turn =
+          -2.0F * std::numbers::pi_v<float> * s;  // images read left to right from outside
       return base + Vector3f(r * std::cos(turn), -r * std::sin(turn), z);
     };
     sheet(
-        material, {2 * kPi * radius, height},
+        material, {2 * std::numbers::pi_v<float> * radius, height},
         [&](float s, float t) { return rim(s, radius, height * (1 - t)); }, 16);
     sheet(
-        material, {2 * kPi * radius, radius},
+        material, {2 * std::numbers::pi_v<float> * radius, radius},
         [&](float s, float t) { return rim(s, radius * t, height); }, 16);
   }
 
@@ -254,7 +254,8 @@ class RoomMaker {
     begin(fmt::format("slab_{}", index), "otherfurniture");
     const Vector3f size{dice_.uniform(0.5, 1.1), 0.04F, dice_.uniform(0.6, 1.4)};
     const Vector2f at = place(0.5F * size.x());
-    const float yaw = dice_.uniform(-kPi, kPi), lean = dice_.uniform(0.1, 0.5);
+    const float yaw = dice_.uniform(-std::numbers::pi_v<float>, std::numbers::pi_v<float>),
+                lean = dice_.uniform(0.1, 0.5);
     const Eigen::Matrix3f axes =
         turned(yaw) * Eigen::AngleAxisf(lean, Vector3f::UnitX()).toRotationMatrix();
     box(any_material(), {at.x(), at.y(), 0.5F * size.z()}, size, axes);
@@ -339,7 +340,8 @@ std::vector<SE3> training_views(const Scene& scene, std::uint64_t seed, int coun
       throw InputError(fmt::format("scene {}: no free place for a camera", scene.name));
     const Vector3f from{dice.uniform(outline.min().x(), outline.max().x()),
                         dice.uniform(outline.min().y(), outline.max().y()), dice.uniform(0.8, 1.6)};
-    const float yaw = dice.uniform(-kPi, kPi), pitch = dice.uniform(-0.45, 0.25);
+    const float yaw = dice.uniform(-std::numbers::pi_v<float>, std::numbers::pi_v<float>),
+                pitch = dice.uniform(-0.45, 0.25);
     const float roll = dice.uniform(-0.1, 0.1);
     const Vector3f ahead = from + kOutlook * Vector3f(std::cos(yaw), std::sin(yaw), 0);
     if (!inside(from, kClearance) || !inside(ahead, 0.0)) continue;

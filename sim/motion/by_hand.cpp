@@ -10,6 +10,7 @@
 #include "sim/motion/feet.hpp"
 #include "sim/motion/gaze.hpp"
 #include "sim/motion/signal.hpp"
+#include "slam/core/angles.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/random.hpp"
 
@@ -20,8 +21,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 using namespace by_hand;
-
-constexpr double kDeg = M_PI / 180.0;
 
 enum Stream : std::uint64_t { kPlaces, kBouts, kGaze, kRoll, kHeight, kBody, kHands, kTremor };
 
@@ -75,7 +74,7 @@ DrivenPath scan_by_hand(const Scene& scene, const Camera& camera, const Handheld
   const Looks looks = looks_along(scene, feet_m, ground, camera, config, stream.fork(kGaze));
 
   const BandNoise height(stream.fork(kHeight), 0.03, 0.05, 0.2);
-  const BandNoise roll(stream.fork(kRoll), 1.5 * kDeg, 0.05, 0.4);
+  const BandNoise roll(stream.fork(kRoll), 1.5 * kDegree, 0.05, 0.4);
   std::vector<BandNoise> sway, wander, tremor, shake;
   for (std::uint64_t axis = 0; axis < 3; ++axis) {
     sway.emplace_back(stream.fork(kBody).fork(axis), config.sway_rms_m, 0.1, 0.9);

@@ -18,7 +18,7 @@ using Eigen::Vector2d;
 
 // Space that a person takes, less in narrow places.
 constexpr std::array kBody_m = {0.26, 0.20, 0.15, 0.11};
-constexpr double kSmallestFloor_m2 = 0.25;
+constexpr double kSmallestStanding_m2 = 0.25;
 constexpr double kEyeBand_m = 0.12;  // what is this near the camera's height blocks its view
 
 /// The path of the feet: a closed round trip through places all over the floor, walked repeatedly.
@@ -91,7 +91,7 @@ Ground ground_of(const Scene& scene, double height_m) {
     ground.region = largest_region(ground.floor, clearance_m);
     ground.area_m2 = static_cast<double>(std::ranges::count(ground.region, 1)) * cell_m2;
     ground.clearance_m = clearance_m;
-    if (ground.area_m2 >= kSmallestFloor_m2) return ground;
+    if (ground.area_m2 >= kSmallestStanding_m2) return ground;
   }
   throw InputError(
       fmt::format("{}: has no free floor that a person with a camera could walk on", scene.name));

@@ -8,15 +8,15 @@
 #include <utility>
 
 #include "sim/motion/signal.hpp"
+#include "slam/core/angles.hpp"
 
 namespace mh::by_hand {
 namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kDeg = M_PI / 180.0;
 constexpr double kAhead_s = 1.5;  // gaze targets are chosen for the position at the end of the turn
-constexpr double kFastTurn_rad = 60 * kDeg;  // a fast turn goes to a distant direction
+constexpr double kFastTurn_rad = 60 * kDegree;  // a fast turn goes to a distant direction
 
 /// A view that ends nearer than this shows little: weight by the square of the distance.
 double room_before(double d_m) {
@@ -159,7 +159,8 @@ class Gaze {
     const double top_m =
         look.bare || best->id == 0 ? height_m_ : std::min(look.top_m, height_m_ + 0.05);
     const double z_m = stream_.uniform(count_++) * std::max(0.0, top_m);
-    return std::clamp(std::atan2(height_m_ - z_m, std::max(0.8, best->d_m)), -5 * kDeg, 40 * kDeg);
+    return std::clamp(std::atan2(height_m_ - z_m, std::max(0.8, best->d_m)), -5 * kDegree,
+                      40 * kDegree);
   }
 
   const Ground& ground_;
@@ -186,7 +187,7 @@ Looks looks_along(const Scene& scene, const std::vector<Vector2d>& feet_m, const
   const auto ahead = static_cast<std::size_t>(std::lround(kAhead_s * camera.rate_hz));
   const RandomStream draw = stream.fork(1);
   Looks looks;
-  double yaw_rad = draw.uniform(0, -M_PI, M_PI), pitch_rad = 15 * kDeg;
+  double yaw_rad = draw.uniform(0, -M_PI, M_PI), pitch_rad = 15 * kDegree;
   yaw_rad = gaze.next(feet_m.front(), yaw_rad).yaw_rad;
   for (std::uint64_t turn = 1; looks.yaw_rad.size() < feet_m.size(); ++turn) {
     const bool fast = config.fast_turn_every > 0 &&

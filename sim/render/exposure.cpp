@@ -29,28 +29,28 @@ bool inside(const Room& room, double x, double y) {
   return odd;
 }
 
-constexpr int kLanes = 16;
+constexpr int kRays = 16;
 constexpr int kViewpoints = 64;  // per room
 constexpr float kEyeM = 1.1F;    // the height of a robot's camera
 constexpr float kElevationRad = 0.6F;
 
-struct Bounds {
+struct Place {
   Eigen::AlignedBox3f box;
   const Room* room = nullptr;  // null: the whole bounding box
 };
 
 /// Where viewpoints are sampled: in the rooms or, without a plan, in the whole scene.
-std::vector<Bounds> places(const Scene& scene) {
-  std::vector<Bounds> places;
+std::vector<Place> places(const Scene& scene) {
+  std::vector<Place> places;
   for (const Room& room : scene.rooms) {
-    Bounds bounds{{}, &room};
+    Place bounds{{}, &room};
     const float eye_m = static_cast<float>(scene.floor.middle_m.z()) + kEyeM;
     for (const Eigen::Vector2d& p : room.polygon_m)
       bounds.box.extend(Vector3f(static_cast<float>(p.x()), static_cast<float>(p.y()), eye_m));
     places.push_back(bounds);
   }
   if (!places.empty()) return places;
-  Bounds all;
+  Place all;
   for (const Vector3f& p : scene.positions_m) all.box.extend(p);
   return {all};
 }
@@ -91,11 +91,11 @@ class Meter {
 void look_around(const EmbreeScene& bvh, const Meter& meter, const Vector3f& eye,
                  const RandomStream& stream, std::vector<float>& seen) {
   alignas(64) RTCRayHit16 packet;
-  alignas(64) std::array<int, kLanes> valid;
+  alignas(64) std::array<int, kRays> valid;
   valid.fill(-1);
-  for (int i = 0; i < kLanes; ++i) {
+  for (int i = 0; i < kRays; ++i) {
     const auto index = static_cast<std::uint64_t>(2 * i);
-    const double heading = 2.0 * std::numbers::pi * (i + stream.uniform(index)) / kLanes;
+    const double heading = 2.0 * std::numbers::pi * (i + stream.uniform(index)) / kRays;
     const double rise = stream.uniform(index + 1, -kElevationRad, kElevationRad);
     packet.ray.org_x[i] = eye.x(), packet.ray.org_y[i] = eye.y(), packet.ray.org_z[i] = eye.z();
     packet.ray.dir_x[i] = static_cast<float>(std::cos(rise) * std::cos(heading));
@@ -109,7 +109,7 @@ void look_around(const EmbreeScene& bvh, const Meter& meter, const Vector3f& eye
   bvh.intersect16(valid.data(), packet, false);
   int backs = 0;
   std::vector<float> found;
-  for (int i = 0; i < kLanes; ++i) {
+  for (int i = 0; i < kRays; ++i) {
     if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
     backs += packet.hit.Ng_x[i] * packet.ray.dir_x[i] + packet.hit.Ng_y[i] * packet.ray.dir_y[i] +
                  packet.hit.Ng_z[i] * packet.ray.dir_z[i] >
@@ -117,7 +117,7 @@ void look_around(const EmbreeScene& bvh, const Meter& meter, const Vector3f& eye
     found.push_back(meter.at(bvh.face_of(packet.hit.geomID[i], packet.hit.primID[i]),
                              packet.hit.u[i], packet.hit.v[i]));
   }
-  if (2 * backs <= kLanes) seen.insert(seen.end(), found.begin(), found.end());
+  if (2 * backs <= kRays) seen.insert(seen.end(), found.begin(), found.end());
 }
 
 }  // namespace
@@ -129,7 +129,7 @@ float suggest_exposure(const Scene& scene, float median_radiance) {
   const Meter meter(scene);
   std::vector<float> seen;
   std::uint64_t name = 0;
-  for (const Bounds& place : places(scene))
+  for (const Place& place : places(scene))
     for (int i = 0; i < kViewpoints; ++i) {
       const RandomStream stream = RandomStream(0).fork(name++);
       const Vector3f share(static_cast<float>(stream.uniform(100)),

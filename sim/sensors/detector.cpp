@@ -9,7 +9,7 @@
 namespace mh {
 namespace {
 
-enum Purpose : std::uint64_t {
+enum DetectorDraw : std::uint64_t {
   kFound = 11,
   kConfused = 12,
   kTakenFor = 13,
@@ -37,7 +37,7 @@ double recall(const VisibleObject& object, const DetectorConfig& config) {
 /// A box with displaced sides, within the image and at least one pixel large.
 Detection place(const VisibleObject& object, const DetectorConfig& config, const FaultDraws& draws,
                 const RenderedFrame& truth) {
-  const auto side = [&](Purpose purpose, int at, int size, int limit) {
+  const auto side = [&](DetectorDraw purpose, int at, int size, int limit) {
     const double stray = config.box_sigma * size * draws.normal(purpose, object.instance);
     return std::clamp(at + static_cast<int>(std::lround(stray)), 0, limit - 1);
   };

@@ -13,7 +13,7 @@
 namespace mh {
 namespace {
 
-enum StreamName : std::uint64_t { kShot = 1 };
+enum DevelopStream : std::uint64_t { kShot = 1 };
 
 /// Linear light of an 8-bit value and the standard deviation of its noise.
 struct Signal {

@@ -7,7 +7,7 @@
 namespace mh {
 namespace {
 
-enum Purpose : std::uint64_t { kConfusion = 1, kWhichClass = 2, kSwap = 3, kDropout = 4 };
+enum FaultDraw : std::uint64_t { kConfusion = 1, kWhichClass = 2, kSwap = 3, kDropout = 4 };
 
 void confuse(std::vector<VisibleObject>& objects, double share, const FaultDraws& draws) {
   for (VisibleObject& object : objects)

@@ -9,7 +9,7 @@
 namespace mh {
 namespace {
 
-enum StreamName : std::uint64_t { kDepth = 1, kColor = 2, kLabels = 3, kBlank = 4 };
+enum SenseStream : std::uint64_t { kDepth = 1, kColor = 2, kLabels = 3, kBlank = 4 };
 
 bool is_blank(const SensorConfig& config, RandomStream stream) {
   return stream.fork(kBlank).uniform(0) < config.blank_frames.lost();

@@ -12,7 +12,7 @@
 namespace mh {
 namespace {
 
-enum StreamName : std::uint64_t { kDropped = 1 };
+enum ShutterStream : std::uint64_t { kDropped = 1 };
 
 double seconds_between(const TimedPose& a, const TimedPose& b) {
   return static_cast<double>(b.stamp_ns - a.stamp_ns) * 1e-9;

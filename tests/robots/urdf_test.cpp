@@ -32,7 +32,7 @@ std::string refusal_of(const std::string& text) {
 }
 
 /// The message with which Pepper's URDF is refused after one edit.
-std::string refusal(const std::string& from, const std::string& to) {
+std::string urdf_refusal(const std::string& from, const std::string& to) {
   std::string text = read_file(kFolder + "pepper.urdf");
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
@@ -93,22 +93,23 @@ void expect_in(const std::string& part, const std::string& message) {
 TEST(LoadUrdf, RefusesWhatIsNoRobot) {
   expect_in("urdf_test.urdf:" + line_of("<joint name=\"HeadYaw\"") +
                 ": joint 'HeadYaw': its child link 'Nekc' is missing",
-            refusal("<child link=\"Neck\"/>", "<child link=\"Nekc\"/>"));
+            urdf_refusal("<child link=\"Neck\"/>", "<child link=\"Nekc\"/>"));
   expect_in("its parent link 'Nekc' is missing",
-            refusal("<parent link=\"Neck\"/>", "<parent link=\"Nekc\"/>"));
+            urdf_refusal("<parent link=\"Neck\"/>", "<parent link=\"Nekc\"/>"));
   expect_in(
       ":" + line_of("<link name=\"Tibia\"") + ": link 'Tibia': its mass -11.6 kg is not positive",
-      refusal("<mass value=\"11.6015\"/>", "<mass value=\"-11.6\"/>"));
-  expect_in("link 'Tibia': no body has", refusal("ixx=\"0.129229\"", "ixx=\"9\""));
+      urdf_refusal("<mass value=\"11.6015\"/>", "<mass value=\"-11.6\"/>"));
+  expect_in("link 'Tibia': no body has", urdf_refusal("ixx=\"0.129229\"", "ixx=\"9\""));
   expect_in(":" + line_of("<joint name=\"HeadPitch\"") + ": joint 'HeadPitch': its lower limit",
-            refusal("lower=\"-0.706858\"", "lower=\"0.9\""));
+            urdf_refusal("lower=\"-0.706858\"", "lower=\"0.9\""));
   // What urdfdom finds has a place, too.
   const std::string tibia = ":" + line_of("<link name=\"Tibia\"") + ": link 'Tibia': ";
   expect_in(tibia + "Inertial: mass [nan]",
-            refusal("<mass value=\"11.6015\"/>", "<mass value=\"nan\"/>"));
+            urdf_refusal("<mass value=\"11.6015\"/>", "<mass value=\"nan\"/>"));
   const std::string head = ":" + line_of("<joint name=\"HeadPitch\"") + ": joint 'HeadPitch': ";
-  expect_in(head, refusal("lower=\"-0.706858\"", "lower=\"x\""));
-  expect_in(head + "its limit has an upper end but no lower", refusal("lower=\"-0.706858\"", ""));
+  expect_in(head, urdf_refusal("lower=\"-0.706858\"", "lower=\"x\""));
+  expect_in(head + "its limit has an upper end but no lower",
+            urdf_refusal("lower=\"-0.706858\"", ""));
   const auto sphere = [](const char* radius) {
     return refusal_of(std::string("<robot name=\"r\">\n<link name=\"a\"><visual><geometry><sphere "
                                   "radius=\"") +

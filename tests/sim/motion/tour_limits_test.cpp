@@ -27,7 +27,7 @@ void PrintTo(const Case& c, std::ostream* out) {
 constexpr const char* kPepper = "robots/pepper/pepper.yaml";
 constexpr const char* kSmall = "bench/scenarios/robot.yaml";
 constexpr const char* kFast = "bench/scenarios/robot_fast.yaml";
-constexpr const char* kHouse = "scenes/model_house/house.yaml";
+constexpr const char* kModelHouse = "scenes/model_house/house.yaml";
 
 /// How far from a waypoint the rounded way passes.
 double off_corner_m(const Tour& tour, std::size_t i) {
@@ -69,8 +69,8 @@ TEST_P(TourLimits, AreKeptPastEveryWaypointAndClearOfEverything) {
 INSTANTIATE_TEST_SUITE_P(
     Tours, TourLimits,
     testing::Values(
-        Case{kHouse, "scenes/model_house/tours/mapping.yaml", kPepper},
-        Case{kHouse, "scenes/model_house/tours/query.yaml", kPepper},
+        Case{kModelHouse, "scenes/model_house/tours/mapping.yaml", kPepper},
+        Case{kModelHouse, "scenes/model_house/tours/query.yaml", kPepper},
         Case{"bench/scenarios/corridor.yaml", "bench/scenarios/tours/corridor.yaml", kSmall},
         Case{"bench/scenarios/corridor.yaml", "bench/scenarios/tours/corridor_query.yaml", kSmall},
         Case{"bench/scenarios/room.yaml", "bench/scenarios/tours/fast_turn.yaml", kFast},

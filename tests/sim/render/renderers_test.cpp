@@ -19,7 +19,7 @@ using test::add_quad;
 using test::plain_scene;
 
 /// The camera's axes in a world of the same axes: x right, y down, z forward.
-const SE3 kIdentity;
+const SE3 kFromOrigin;
 
 class BothRenderers : public testing::TestWithParam<const char*> {
  protected:
@@ -44,7 +44,7 @@ Scene plane_at_two_meters() {
 }
 
 /// Colors that vary smoothly from texel to texel, so that every bilinear weight matters.
-Grid2d<Rgb8> smooth_image(int width, int height) {
+Grid2d<Rgb8> smooth_texture(int width, int height) {
   Grid2d<Rgb8> image(width, height);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
@@ -82,7 +82,7 @@ TEST_P(BothRenderers, LooksThroughTheHolesOfACutOut) {
   add_quad(scene, {-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, 2, 2);
   for (std::size_t f = before; f < scene.triangles.size(); ++f) scene.material_of[f] = 1;
   const Camera camera;
-  const RenderedFrame frame = make(scene)->render(camera, kIdentity);
+  const RenderedFrame frame = make(scene)->render(camera, kFromOrigin);
   int holes = 0;
   for (int y = 0; y < camera.height_px; ++y)
     for (int x = 0; x < camera.width_px; ++x) {
@@ -119,7 +119,7 @@ TEST_P(BothRenderers, SeesThroughPanesInTheirColors) {
   for (const Antialiasing antialiasing :
        {Antialiasing::kNone, Antialiasing::kEdges, Antialiasing::kSupersample}) {
     const RenderedFrame frame =
-        make(scene, {.antialiasing = antialiasing})->render(camera, kIdentity);
+        make(scene, {.antialiasing = antialiasing})->render(camera, kFromOrigin);
     const Vector3f wall = srgb_to_linear(Rgb8{200, 100, 50});
     for (int y = 0; y < camera.height_px; ++y)
       for (int x = 0; x < camera.width_px; ++x) {
@@ -146,13 +146,13 @@ TEST_P(BothRenderers, WhatIsBrighterThanWhiteIsDimmedBeforeItIsCutOff) {
   scene.materials.push_back(shade);
   add_quad(scene, {-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, 2, 2);
   scene.material_of[2] = scene.material_of[3] = 1;
-  const Rgb8 seen = make(scene)->render(Camera{}, kIdentity).color(320, 240);
+  const Rgb8 seen = make(scene)->render(Camera{}, kFromOrigin).color(320, 240);
   EXPECT_NEAR(seen.g, linear_to_srgb(0.1F * (4 + srgb_to_linear(Rgb8{200, 100, 50}).y())), 1);
 }
 
 TEST_P(BothRenderers, PlaneAtTwoMetersReadsTwoMetersAtEveryPixel) {
   const auto renderer = make(plane_at_two_meters());
-  const RenderedFrame frame = renderer->render(Camera{}, kIdentity);
+  const RenderedFrame frame = renderer->render(Camera{}, kFromOrigin);
   ASSERT_EQ(frame.depth_m.size(), 640U * 480U);
   // Embree computes in float: one part in 2^22.
   for (const float depth : frame.depth_m) ASSERT_NEAR(depth, 2.0F, 1e-6);
@@ -201,7 +201,7 @@ TEST_P(BothRenderers, FinelyCutSphereHasTheDepthOfASphere) {
   const Eigen::Vector3d center(0.0123, -0.0211, distance);
   for (Vector3f& p : scene.positions_m) p += center.cast<float>();
   const Camera camera;
-  const RenderedFrame frame = make(scene)->render(camera, kIdentity);
+  const RenderedFrame frame = make(scene)->render(camera, kFromOrigin);
   int hits = 0;
   for (int y = 0; y < camera.height_px; ++y)
     for (int x = 0; x < camera.width_px; ++x) {
@@ -235,11 +235,11 @@ TEST_P(BothRenderers, PixelCentersLieAtIntegers) {
                 .cy_px = 2,
                 .distortion = {}};
   const auto renderer = make(scene);
-  EXPECT_EQ(renderer->render(camera, kIdentity).classes(10, 2), 1);  // 1 mm = 0.1 px right of it
-  EXPECT_EQ(renderer->render(camera, kIdentity).classes(11, 2), 2);
+  EXPECT_EQ(renderer->render(camera, kFromOrigin).classes(10, 2), 1);  // 1 mm = 0.1 px right of it
+  EXPECT_EQ(renderer->render(camera, kFromOrigin).classes(11, 2), 2);
   camera.cx_px = 9.8;  // now pixel 10 looks 0.2 px to the right of the axis, beyond the edge
-  EXPECT_EQ(renderer->render(camera, kIdentity).classes(10, 2), 2);
-  EXPECT_EQ(renderer->render(camera, kIdentity).classes(9, 2), 1);
+  EXPECT_EQ(renderer->render(camera, kFromOrigin).classes(10, 2), 2);
+  EXPECT_EQ(renderer->render(camera, kFromOrigin).classes(9, 2), 1);
 }
 
 TEST_P(BothRenderers, PoseIsWorldFromCamera) {
@@ -261,7 +261,7 @@ TEST_P(BothRenderers, MissShowsTheSkyAndNothingElse) {
   Scene scene = plain_scene();
   add_quad(scene, {5, 5, -5}, {1, 0, 0}, {0, 1, 0}, 3, 1);
   scene.lights.push_back({.kind = Light::Kind::kSky, .color = {0.5F, 0.25F, 0.1F}});
-  const RenderedFrame frame = make(scene)->render(Camera{}, kIdentity);
+  const RenderedFrame frame = make(scene)->render(Camera{}, kFromOrigin);
   for (const float depth : frame.depth_m) ASSERT_EQ(depth, 0.0F);
   for (const ClassId id : frame.classes) ASSERT_EQ(id, kVoid);
   for (const InstanceId id : frame.instances) ASSERT_EQ(id, 0);
@@ -274,7 +274,7 @@ TEST_P(BothRenderers, LabelsAreThoseOfTheNearestFaceSeenFromEitherSide) {
   add_quad(scene, {-5, -5, 3}, {10, 0, 0}, {0, 10, 0}, 1, 1);
   add_quad(scene, {0, -5, 2}, {0, 10, 0}, {5, 0, 0}, 5, 2);  // its back looks at the camera
   const Camera camera;
-  const RenderedFrame frame = make(scene)->render(camera, kIdentity);
+  const RenderedFrame frame = make(scene)->render(camera, kFromOrigin);
   for (int y = 0; y < camera.height_px; ++y)
     for (int x = 0; x < camera.width_px; ++x) {
       const bool near = x > camera.cx_px;
@@ -285,12 +285,12 @@ TEST_P(BothRenderers, LabelsAreThoseOfTheNearestFaceSeenFromEitherSide) {
 
 TEST_P(BothRenderers, MagnifiedTextureIsBilinearInLinearLight) {
   Scene scene = plain_scene({200, 220, 240});
-  scene.materials[0].texture = smooth_image(7, 5);
+  scene.materials[0].texture = smooth_texture(7, 5);
   // u = x / 1.28 m + 0.5 and so on: 7 texels over 640 px at 2 m and f = 1000.
   add_quad(scene, {-0.64F, -0.48F, 2}, {1.28F, 0, 0}, {0, 0.96F, 0}, 1, 1);
   for (auto& uv : scene.uvs) uv = {uv.x() * 2.0F - 1.0F, uv.y() + 3.0F};  // repeats, negative too
   const Camera camera{.fx_px = 1000, .fy_px = 1000, .distortion = {}};
-  const RenderedFrame frame = make(scene)->render(camera, kIdentity);
+  const RenderedFrame frame = make(scene)->render(camera, kFromOrigin);
   for (int y = 3; y < 477; ++y)
     for (int x = 3; x < 637; ++x) {
       const double u = ((x - 319.5) * 0.002 + 0.64) / 1.28 * 2.0 - 1.0;
@@ -312,7 +312,7 @@ TEST_P(BothRenderers, FarTextureShowsItsMeanInLinearLight) {
   scene.materials[0].texture = texture;
   add_quad(scene, {-50, -50, 10}, {100, 0, 0}, {0, 100, 0}, 1, 1);
   for (auto& uv : scene.uvs) uv *= 1000.0F;  // 10 cm per repeat: some 12 texels per pixel
-  const RenderedFrame frame = make(scene)->render(Camera{}, kIdentity);
+  const RenderedFrame frame = make(scene)->render(Camera{}, kFromOrigin);
   const int half = linear_to_srgb(0.5F);  // 188: half the light, not half the code value
   for (const Rgb8& color : frame.color) ASSERT_NEAR(color.g, half, 1);
 }
@@ -323,7 +323,7 @@ TEST_P(BothRenderers, OutputIsAlbedoTimesLightTimesExposurePlusEmission) {
   scene.colors.assign(scene.positions_m.size(), Rgb8{188, 255, 0});
   scene.light.assign(scene.positions_m.size(), Vector3f(0.5F, 0.25F, 1.0F));
   scene.materials[0].emission = {0.0F, 0.1F, 0.05F};
-  const RenderedFrame frame = make(scene, {.exposure = 1.5F})->render(Camera{}, kIdentity);
+  const RenderedFrame frame = make(scene, {.exposure = 1.5F})->render(Camera{}, kFromOrigin);
   const float gray = srgb_to_linear(std::uint8_t{188});
   const Rgb8 seen = frame.color(100, 100);
   EXPECT_NEAR(seen.r, linear_to_srgb(1.5F * gray * gray * 0.5F), 1);
@@ -331,7 +331,7 @@ TEST_P(BothRenderers, OutputIsAlbedoTimesLightTimesExposurePlusEmission) {
   EXPECT_NEAR(seen.b, linear_to_srgb(1.5F * 0.05F), 1);
   EXPECT_EQ(frame.exposure, 1.5F);
   scene.light.clear();
-  EXPECT_EQ(make(scene, {.exposure = 1.5F})->render(Camera{}, kIdentity).exposure, 0.0F);
+  EXPECT_EQ(make(scene, {.exposure = 1.5F})->render(Camera{}, kFromOrigin).exposure, 0.0F);
 }
 
 TEST_P(BothRenderers, RefusesACameraWithoutSizeOrFocalLength) {
@@ -341,7 +341,7 @@ TEST_P(BothRenderers, RefusesACameraWithoutSizeOrFocalLength) {
            [](Camera& c) { c.width_px = 0; }, [](Camera& c) { c.height_px = 0; }}) {
     Camera camera;
     spoil(camera);
-    EXPECT_THROW(renderer->render(camera, kIdentity), InputError);
+    EXPECT_THROW(renderer->render(camera, kFromOrigin), InputError);
   }
 }
 
@@ -355,7 +355,7 @@ TEST_P(BothRenderers, CheckerboardHasItsColorsCellByCell) {
   scene.materials[0].texture = texture;
   add_quad(scene, {-0.64F, -0.48F, 2}, {1.28F, 0, 0}, {0, 0.96F, 0}, 1, 1);
   const Camera camera{.fx_px = 1000, .fy_px = 1000, .distortion = {}};
-  const RenderedFrame frame = make(scene)->render(camera, kIdentity);
+  const RenderedFrame frame = make(scene)->render(camera, kFromOrigin);
   for (int y = 0; y < 480; ++y)
     for (int x = 0; x < 640; ++x) {
       const int in_x = x % 80, in_y = y % 80;  // the filter reaches half a texel, 5 px, over a side
@@ -378,7 +378,7 @@ TEST_P(BothRenderers, TexelsPerPixelChooseTheMipLevel) {
     const Camera camera{.fx_px = 500, .fy_px = 500, .distortion = {}};
     const double texels_per_m = texels_per_pixel * 500.0;
     for (auto& uv : scene.uvs) uv *= static_cast<float>(10.0 * texels_per_m / 64.0);
-    const RenderedFrame frame = make(scene)->render(camera, kIdentity);
+    const RenderedFrame frame = make(scene)->render(camera, kFromOrigin);
     float low = 1.0F, high = 0.0F;
     for (int x = 100; x < 500; ++x) {
       const float g = srgb_to_linear(frame.color(x, 240).g);
@@ -421,7 +421,7 @@ TEST(Renderers, AgreeOverAGeneratedRoom) {
 TEST(Agreement, CountsWhatDiffers) {
   Scene scene = plain_scene({100, 100, 100});
   add_quad(scene, {-5, -5, 2}, {10, 0, 0}, {0, 10, 0}, 1, 1);
-  const RenderedFrame a = make_embree_renderer(scene)->render(Camera{}, kIdentity);
+  const RenderedFrame a = make_embree_renderer(scene)->render(Camera{}, kFromOrigin);
   RenderedFrame b = a;
   b.classes(5, 5) = 9;
   b.color(6, 6).g = static_cast<std::uint8_t>(b.color(6, 6).g - 3);

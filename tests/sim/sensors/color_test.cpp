@@ -23,15 +23,15 @@ SensorConfig nothing() {
   return config;
 }
 
-struct Moments {
+struct ColorMoments {
   double n = 0, sum = 0, square = 0;
   void add(double x) { n += 1, sum += x, square += x * x; }
   double mean() const { return sum / n; }
   double sigma() const { return std::sqrt(square / n - mean() * mean()); }
 };
 
-Moments light_of(const Grid2d<Rgb8>& color) {
-  Moments moments;
+ColorMoments light_of(const Grid2d<Rgb8>& color) {
+  ColorMoments moments;
   for (const Rgb8& c : color) moments.add(srgb_to_linear(c.g));
   return moments;
 }
@@ -43,7 +43,7 @@ TEST(ShotNoise, SignalToNoiseIsThatOfTheElectrons) {
       config.shot_noise.enabled = true;
       config.shot_noise.gain = gain;
       const RenderedFrame truth = gray_frame(static_cast<std::uint8_t>(gray));
-      const Moments seen = light_of(sense(truth, {}, config, RandomStream(1), 0).color);
+      const ColorMoments seen = light_of(sense(truth, {}, config, RandomStream(1), 0).color);
       const double light = srgb_to_linear(static_cast<std::uint8_t>(gray));
       const double well = 3981.0 / gain, electrons = light * well;
       const double sigma = std::sqrt(electrons + 1.6 * 1.6) / well;

@@ -12,9 +12,9 @@ namespace mh {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 240;
-constexpr ClassId kWall = 1, kBed = 4, kChair = 5, kTable = 7;
+constexpr ClassId kWall = 1, kBed = 4, kFaultyChair = 5, kTable = 7;
 
-RenderedFrame empty_frame() {
+RenderedFrame unpainted_frame() {
   return {Grid2d<Rgb8>(kWidth, kHeight), Grid2d<float>(kWidth, kHeight, 2.0F),
           Grid2d<ClassId>(kWidth, kHeight), Grid2d<InstanceId>(kWidth, kHeight)};
 }
@@ -28,11 +28,12 @@ void paint(RenderedFrame& frame, int left, int top, int width, int height, Class
     }
 }
 
-/// 12 x 9 chairs of 20 x 20 px, instances 1 to 108.
-RenderedFrame chairs() {
-  RenderedFrame frame = empty_frame();
+/// 12 x 9 row_of_chairs of 20 x 20 px, instances 1 to 108.
+RenderedFrame row_of_chairs() {
+  RenderedFrame frame = unpainted_frame();
   for (int i = 0; i < 108; ++i)
-    paint(frame, i % 12 * 26 + 2, i / 12 * 26 + 2, 20, 20, kChair, static_cast<InstanceId>(i + 1));
+    paint(frame, i % 12 * 26 + 2, i / 12 * 26 + 2, 20, 20, kFaultyChair,
+          static_cast<InstanceId>(i + 1));
   return frame;
 }
 
@@ -46,7 +47,7 @@ SemanticImage labels(const RenderedFrame& truth, LabelMode mode, const LabelConf
   return label_image(truth, mode, config, view, RandomStream(frame));
 }
 
-/// How many of the chairs' middles carry the class.
+/// How many of the row_of_chairs' middles carry the class.
 int count(const SemanticImage& image, ClassId class_id) {
   int found = 0;
   for (int i = 0; i < 108; ++i)
@@ -68,19 +69,19 @@ TEST(WrongClass, IsAnyOtherOfItsKindAndNeverTheTruth) {
 }
 
 TEST(LabelNoise, NoneIsNone) {
-  const RenderedFrame truth = chairs();
+  const RenderedFrame truth = row_of_chairs();
   for (const LabelMode mode : {LabelMode::kNone, LabelMode::kExact, LabelMode::kBoxes})
     EXPECT_EQ(labels(truth, mode, {}), label_image(truth, mode));
 }
 
 TEST(LabelNoise, DialsAreSharesOfInstances) {
-  const RenderedFrame truth = chairs();
+  const RenderedFrame truth = row_of_chairs();
   for (const double share : {0.1, 0.5}) {
     int confused = 0, dropped = 0, trials = 0;
     for (std::uint64_t seed = 0; seed < 30; ++seed) {
       LabelConfig config{.seed = seed};
       config.noise = {.enabled = true, .confusion = share};
-      confused += 108 - count(labels(truth, LabelMode::kExact, config), kChair);
+      confused += 108 - count(labels(truth, LabelMode::kExact, config), kFaultyChair);
       config.noise = {.enabled = true, .dropout = share};
       dropped += count(labels(truth, LabelMode::kExact, config), kVoid);
       EXPECT_EQ(count(labels(truth, LabelMode::kBoxes, config), kBackground),
@@ -95,11 +96,11 @@ TEST(LabelNoise, DialsAreSharesOfInstances) {
 }
 
 TEST(LabelNoise, AnInstanceIsConfusedAsAWholeAndAlwaysWithTheSameClass) {
-  const RenderedFrame truth = chairs();
+  const RenderedFrame truth = row_of_chairs();
   LabelConfig config{.persistent_share = 0.0, .frame_share = 1.0};
   config.noise = {.enabled = true, .confusion = 1.0};
   const SemanticImage a = labels(truth, LabelMode::kExact, config, view_at(0), 1);
-  EXPECT_EQ(count(a, kChair), 0);
+  EXPECT_EQ(count(a, kFaultyChair), 0);
   EXPECT_EQ(a, labels(truth, LabelMode::kExact, config, view_at(7), 2));
   for (int y = 2; y < 22; ++y)
     for (int x = 2; x < 22; ++x) ASSERT_EQ(a.at(x, y), a.at(12, 12));
@@ -107,7 +108,7 @@ TEST(LabelNoise, AnInstanceIsConfusedAsAWholeAndAlwaysWithTheSameClass) {
 }
 
 TEST(LabelNoise, FaultsStayWithTheViewAndFadeWithDistance) {
-  const RenderedFrame truth = chairs();
+  const RenderedFrame truth = row_of_chairs();
   LabelConfig config{.persistent_share = 0.0, .frame_share = 0.0};
   config.noise = {.enabled = true, .dropout = 0.5};
   const SemanticImage here = labels(truth, LabelMode::kExact, config, view_at(0.2), 1);
@@ -146,20 +147,20 @@ TEST(LabelNoise, SharesOfTheVarianceAreThoseStated) {
 }
 
 TEST(LabelNoise, SwappedNeighborsExchangeTheirClasses) {
-  RenderedFrame truth = empty_frame();
-  paint(truth, 10, 10, 50, 50, kChair, 1);
+  RenderedFrame truth = unpainted_frame();
+  paint(truth, 10, 10, 50, 50, kFaultyChair, 1);
   paint(truth, 70, 10, 50, 50, kTable, 2);  // nearest to both others
   paint(truth, 200, 10, 50, 50, kBed, 3);
   LabelConfig config;
   config.noise = {.enabled = true, .swap = 1.0};
   const SemanticImage image = labels(truth, LabelMode::kExact, config);
   EXPECT_EQ(image.at(30, 30).most_probable(), kTable);
-  EXPECT_EQ(image.at(90, 30).most_probable(), kChair);
+  EXPECT_EQ(image.at(90, 30).most_probable(), kFaultyChair);
   EXPECT_EQ(image.at(220, 30).most_probable(), kBed);  // nobody is left to exchange with
 }
 
 TEST(LabelNoise, ErosionMakesVoidWhatIsNearABorder) {
-  RenderedFrame truth = empty_frame();
+  RenderedFrame truth = unpainted_frame();
   paint(truth, 0, 0, kWidth, kHeight, kWall, 1);
   paint(truth, 100, 80, 60, 40, kTable, 2);
   for (const int radius : {1, 3, 8}) {

@@ -273,8 +273,8 @@ TEST(Sense, SameKeySameBitsOtherKeyOtherNoise) {
   EXPECT_EQ(sensed(truth, color_only).color, a.color);
 }
 
-void paint(RenderedFrame& frame, int left, int top, int right, int bottom, ClassId class_id,
-           InstanceId instance) {
+void paint_box(RenderedFrame& frame, int left, int top, int right, int bottom, ClassId class_id,
+               InstanceId instance) {
   for (int y = top; y <= bottom; ++y)
     for (int x = left; x <= right; ++x) {
       frame.classes(x, y) = class_id;
@@ -284,8 +284,8 @@ void paint(RenderedFrame& frame, int left, int top, int right, int bottom, Class
 
 TEST(LabelImage, ExactLabelsAreThePixelsClasses) {
   RenderedFrame truth = blank_frame(2.0F);
-  paint(truth, 10, 10, 200, 200, 1, 1);
-  paint(truth, 50, 60, 90, 99, 5, 2);
+  paint_box(truth, 10, 10, 200, 200, 1, 1);
+  paint_box(truth, 50, 60, 90, 99, 5, 2);
   const SemanticImage image = label_image(truth, LabelMode::kExact);
   for (int y = 0; y < kCamera.height_px; ++y)
     for (int x = 0; x < kCamera.width_px; ++x)
@@ -299,13 +299,13 @@ TEST(LabelImage, ExactLabelsAreThePixelsClasses) {
 TEST(LabelImage, BoxesAreThoseWorkedOutByHand) {
   constexpr ClassId kChair = 5, kTable = 7, kWall = 1;
   RenderedFrame truth = blank_frame(2.0F);
-  paint(truth, 0, 0, 639, 479, kWall, 1);       // no COCO class: background
-  paint(truth, 100, 100, 299, 249, kTable, 2);  // box 100..299 x 100..249
-  paint(truth, 150, 150, 179, 299, kChair, 3);  // smaller: over the table
-  paint(truth, 400, 50, 408, 60, kChair, 4);    // 9 x 11 = 99 px: too little to be seen
-  paint(truth, 500, 50, 509, 59, kChair, 5);    // 100 px: just enough
-  paint(truth, 600, 300, 604, 319, kTable, 6);  // one object in two parts, 100 px each:
-  paint(truth, 620, 400, 624, 419, kTable, 6);  // one box around both
+  paint_box(truth, 0, 0, 639, 479, kWall, 1);       // no COCO class: background
+  paint_box(truth, 100, 100, 299, 249, kTable, 2);  // box 100..299 x 100..249
+  paint_box(truth, 150, 150, 179, 299, kChair, 3);  // smaller: over the table
+  paint_box(truth, 400, 50, 408, 60, kChair, 4);    // 9 x 11 = 99 px: too little to be seen
+  paint_box(truth, 500, 50, 509, 59, kChair, 5);    // 100 px: just enough
+  paint_box(truth, 600, 300, 604, 319, kTable, 6);  // one object in two parts, 100 px each:
+  paint_box(truth, 620, 400, 624, 419, kTable, 6);  // one box around both
   const SemanticImage image = label_image(truth, LabelMode::kBoxes);
   const auto expected = [&](int x, int y) -> ClassId {
     const auto within = [&](int l, int t, int r, int b) {
@@ -322,11 +322,11 @@ TEST(LabelImage, BoxesAreThoseWorkedOutByHand) {
 
 TEST(LabelImage, SmallerBoxesLieOverLargerOnesWhateverTheirIds) {
   RenderedFrame truth = blank_frame(2.0F);
-  paint(truth, 0, 0, 400, 400, 6, 9);      // sofa
-  paint(truth, 100, 100, 200, 200, 4, 3);  // bed inside its box, lower id
+  paint_box(truth, 0, 0, 400, 400, 6, 9);      // sofa
+  paint_box(truth, 100, 100, 200, 200, 4, 3);  // bed inside its box, lower id
   EXPECT_EQ(label_image(truth, LabelMode::kBoxes).at(150, 150).most_probable(), 4);
-  paint(truth, 0, 0, 400, 400, 6, 3);
-  paint(truth, 100, 100, 200, 200, 4, 9);
+  paint_box(truth, 0, 0, 400, 400, 6, 3);
+  paint_box(truth, 100, 100, 200, 200, 4, 9);
   EXPECT_EQ(label_image(truth, LabelMode::kBoxes).at(150, 150).most_probable(), 4);
 }
 

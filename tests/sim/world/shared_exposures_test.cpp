@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kFrames = 12;
 constexpr std::uint64_t kMuch = std::uint64_t{1} << 40;
 
-Camera small_camera() {
+Camera tiny_camera() {
   Camera camera;
   camera.width_px = 37, camera.height_px = 23;
   return camera;
@@ -35,7 +35,7 @@ Camera small_camera() {
 
 /// An exposure full of values that a careless copy would change.
 Shutter::Exposed some_exposure(std::size_t frame) {
-  const Camera camera = small_camera();
+  const Camera camera = tiny_camera();
   const RandomStream stream = RandomStream(5).fork(frame);
   Shutter::Exposed made;
   made.gain = stream.uniform(1) / 3;
@@ -70,7 +70,7 @@ class SharedExposuresFolder : public testing::Test {
   /// Another process's, as far as the file is concerned.
   std::unique_ptr<SharedExposures> open(std::uint64_t limit_bytes = kMuch) {
     return std::make_unique<SharedExposures>(SharedImages{folder(), limit_bytes}, "path",
-                                             small_camera(), kFrames);
+                                             tiny_camera(), kFrames);
   }
   /// Gets every frame, expects the right ones, and returns how many were made.
   int get_all(SharedExposures& shared) {

@@ -12,7 +12,7 @@
 namespace mh {
 namespace {
 
-std::string error_of(const std::function<void()>& action) {
+std::string refusal_of(const std::function<void()>& action) {
   try {
     action();
   } catch (const InputError& error) {
@@ -22,7 +22,7 @@ std::string error_of(const std::function<void()>& action) {
 }
 
 std::string tum_error(const std::string& text) {
-  return error_of([&] { parse_tum(text, "f.txt"); });
+  return refusal_of([&] { parse_tum(text, "f.txt"); });
 }
 
 Trajectory some_trajectory() {
@@ -111,7 +111,7 @@ TEST(Tum, EveryErrorNamesFileLineAndValue) {
             "f.txt:1: stamp: '-1' is no time in seconds from 0 to 9.2e9");
   EXPECT_EQ(tum_error("# nothing\n"), "f.txt: contains no poses");
   EXPECT_EQ(tum_error(""), "f.txt: contains no poses");
-  EXPECT_EQ(error_of([] { read_tum("/nowhere/f.txt"); }),
+  EXPECT_EQ(refusal_of([] { read_tum("/nowhere/f.txt"); }),
             "/nowhere/f.txt: cannot be read: no such file");
 }
 
@@ -140,7 +140,7 @@ TEST(Euroc, ReadsNanosecondsAndQuaternionsThatBeginWithW) {
 
 TEST(Euroc, EveryErrorNamesFileLineAndValue) {
   const auto error = [](const std::string& text) {
-    return error_of([&] { parse_trajectory(text, "f.csv"); });
+    return refusal_of([&] { parse_trajectory(text, "f.csv"); });
   };
   const std::string good = "5,1,2,3,1,0,0,0\n";
   EXPECT_EQ(error(good + "6,1,2\n"),
@@ -180,7 +180,7 @@ TEST(Kitti, RoundTripsAndCountsFrames) {
 
 TEST(Kitti, EveryErrorNamesFileLineAndValue) {
   const auto kitti_error = [](const std::string& text) {
-    return error_of([&] { parse_kitti(text, "k.txt"); });
+    return refusal_of([&] { parse_kitti(text, "k.txt"); });
   };
   EXPECT_EQ(kitti_error("1 0 0 0 0 1 0 0 0 0 1 0\n1 2\n"),
             "k.txt:2: pose: 2 values, expected 12 (3x4 matrix by rows)");

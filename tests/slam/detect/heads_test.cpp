@@ -120,7 +120,7 @@ Candidate candidate(double left, double right, int best, float score) {
   return c;
 }
 
-constexpr int kChair = 56, kCat = 15;
+constexpr int kCocoChair = 56, kCat = 15;
 
 TEST(SelectBoxes, SuppressesWithinAClassAndBreaksTiesByOrder) {
   DetectorSettings settings;
@@ -129,21 +129,25 @@ TEST(SelectBoxes, SuppressesWithinAClassAndBreaksTiesByOrder) {
     return select_boxes(all, Placement{}, 100, 100, coco80(), settings);
   };
   // 10 of 20 shared of 30: 1/3, stays; 15 of 25: 0.6, goes.
-  EXPECT_EQ(select({candidate(0, 20, kChair, 0.9F), candidate(10, 30, kChair, 0.8F)}).size(), 2U);
-  EXPECT_EQ(select({candidate(0, 20, kChair, 0.9F), candidate(5, 25, kChair, 0.8F)}).size(), 1U);
-  EXPECT_EQ(select({candidate(0, 20, kChair, 0.9F), candidate(5, 25, kCat, 0.8F)}).size(), 2U);
-  const auto tied = select({candidate(0, 20, kChair, 0.9F), candidate(5, 25, kChair, 0.9F)});
+  EXPECT_EQ(
+      select({candidate(0, 20, kCocoChair, 0.9F), candidate(10, 30, kCocoChair, 0.8F)}).size(), 2U);
+  EXPECT_EQ(select({candidate(0, 20, kCocoChair, 0.9F), candidate(5, 25, kCocoChair, 0.8F)}).size(),
+            1U);
+  EXPECT_EQ(select({candidate(0, 20, kCocoChair, 0.9F), candidate(5, 25, kCat, 0.8F)}).size(), 2U);
+  const auto tied =
+      select({candidate(0, 20, kCocoChair, 0.9F), candidate(5, 25, kCocoChair, 0.9F)});
   ASSERT_EQ(tied.size(), 1U);
   EXPECT_EQ(tied[0].left, 0);
   settings.max_detections = 1;
-  const auto best = select({candidate(0, 20, kChair, 0.4F), candidate(50, 70, kChair, 0.9F)});
+  const auto best =
+      select({candidate(0, 20, kCocoChair, 0.4F), candidate(50, 70, kCocoChair, 0.9F)});
   ASSERT_EQ(best.size(), 1U);
   EXPECT_EQ(best[0].left, 50);
 }
 
 TEST(SelectBoxes, CutsWhatIsOutsideTheImage) {
   const auto found =
-      select_boxes({candidate(-10, 20, kChair, 0.9F), candidate(200, 220, kChair, 0.9F)},
+      select_boxes({candidate(-10, 20, kCocoChair, 0.9F), candidate(200, 220, kCocoChair, 0.9F)},
                    Placement{}, 100, 100, coco80(), {});
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].left, 0);
@@ -186,7 +190,7 @@ TEST(ClassNames, OfCocoFallOnOurs) {
     }
   EXPECT_EQ(coco80().ids[kCat], kVoid);
   EXPECT_EQ(coco80_of_category(1), 0);
-  EXPECT_EQ(coco80_of_category(62), kChair);
+  EXPECT_EQ(coco80_of_category(62), kCocoChair);
   EXPECT_EQ(coco80_of_category(90), 79);
   EXPECT_EQ(coco80_of_category(12), -1);
   int known = 0;

@@ -19,15 +19,15 @@ using testing::BundleShape;
 using testing::make_bundle;
 using testing::SyntheticBundle;
 
-const Camera kCamera{};
+const Camera kBundleCamera{};
 
 double chi2_of(const BundleObservation& o, const std::vector<SE3>& poses,
                const std::vector<Eigen::Vector3d>& points) {
   const Eigen::Vector3d p = poses[o.pose] * points[o.point];
   if (p.z() <= 0) return 1e9;
-  double d = o.disparity_px < 0 ? 0 : kCamera.disparity_px(p.z()) - o.disparity_px;
-  d /= testing::disparity_sigma_px(kCamera);
-  const Eigen::Vector2d e = kCamera.project(p) - Eigen::Vector2d(o.u_px, o.v_px);
+  double d = o.disparity_px < 0 ? 0 : kBundleCamera.disparity_px(p.z()) - o.disparity_px;
+  d /= testing::disparity_sigma_px(kBundleCamera);
+  const Eigen::Vector2d e = kBundleCamera.project(p) - Eigen::Vector2d(o.u_px, o.v_px);
   return (e.squaredNorm() + d * d) / (static_cast<double>(o.sigma_px) * o.sigma_px);
 }
 
@@ -51,12 +51,13 @@ struct CeresCost {
     ceres::AngleAxisRotatePoint(pose, point, p);
     for (int k = 0; k < 3; ++k) p[k] += pose[3 + k];
     const double sigma = static_cast<double>(o.sigma_px);
-    residual[0] = (kCamera.fx_px * p[0] / p[2] + kCamera.cx_px - T(o.u_px)) / sigma;
-    residual[1] = (kCamera.fy_px * p[1] / p[2] + kCamera.cy_px - T(o.v_px)) / sigma;
-    residual[2] = o.disparity_px < 0
-                      ? T(0)
-                      : (kCamera.fx_px * kCamera.baseline_m / p[2] - T(o.disparity_px)) /
-                            (sigma * testing::disparity_sigma_px(kCamera));
+    residual[0] = (kBundleCamera.fx_px * p[0] / p[2] + kBundleCamera.cx_px - T(o.u_px)) / sigma;
+    residual[1] = (kBundleCamera.fy_px * p[1] / p[2] + kBundleCamera.cy_px - T(o.v_px)) / sigma;
+    residual[2] =
+        o.disparity_px < 0
+            ? T(0)
+            : (kBundleCamera.fx_px * kBundleCamera.baseline_m / p[2] - T(o.disparity_px)) /
+                  (sigma * testing::disparity_sigma_px(kBundleCamera));
     return true;
   }
 };
@@ -99,13 +100,14 @@ double worst_pose_m(const std::vector<SE3>& a, const std::vector<SE3>& b) {
 }
 
 TEST(Adjust, RecoversTruthWithoutNoise) {
-  const SyntheticBundle bundle = make_bundle(
-      {.poses = 6, .points = 200, .noise_px = 0, .disturbance_m = 0.1}, kCamera, RandomStream(1));
+  const SyntheticBundle bundle =
+      make_bundle({.poses = 6, .points = 200, .noise_px = 0, .disturbance_m = 0.1}, kBundleCamera,
+                  RandomStream(1));
   ASSERT_GT(worst_pose_m(bundle.problem.camera_from_world, bundle.true_poses), 0.05);
   // Pixels are stored as float: half a unit in the last place at 300 px is 1.5e-5 px, some 1e-7 m
   // at 3 m and 525 px; averaged over 100 observations it stays below that.
   const BundleResult result =
-      adjust(bundle.problem, kCamera, {.iterations = 20, .refine_iterations = 10});
+      adjust(bundle.problem, kBundleCamera, {.iterations = 20, .refine_iterations = 10});
   EXPECT_LT(worst_pose_m(result.camera_from_world, bundle.true_poses), 1e-7);
   double worst = 0;
   for (std::size_t i = 0; i < bundle.true_points.size(); ++i)
@@ -125,9 +127,9 @@ TEST(Adjust, RecoversTruthFromPixelsAloneWithTwoFixedPoses) {
                                               .depth_share = 0,
                                               .noise_px = 0,
                                               .disturbance_m = 0.05},
-                                             kCamera, RandomStream(2));
+                                             kBundleCamera, RandomStream(2));
   const BundleResult result =
-      adjust(bundle.problem, kCamera, {.iterations = 30, .refine_iterations = 10});
+      adjust(bundle.problem, kBundleCamera, {.iterations = 30, .refine_iterations = 10});
   // Scale now comes from 0.24 m between the fixed poses: ten times weaker than with depth.
   EXPECT_LT(worst_pose_m(result.camera_from_world, bundle.true_poses), 1e-6);
 }
@@ -136,14 +138,14 @@ class AdjustAgainstCeres : public ::testing::TestWithParam<double> {};
 
 TEST_P(AdjustAgainstCeres, ReachesTheSameMinimum) {
   SyntheticBundle bundle =
-      make_bundle({.poses = 8, .fixed_poses = 2, .points = 300, .depth_share = GetParam()}, kCamera,
-                  RandomStream(3));
+      make_bundle({.poses = 8, .fixed_poses = 2, .points = 300, .depth_share = GetParam()},
+                  kBundleCamera, RandomStream(3));
   // Every twentieth pixel is wrong by up to 40 px, so that Huber's loss matters.
   const RandomStream wrong(4);
   for (std::size_t i = 0; i < bundle.problem.observations.size(); i += 20)
     bundle.problem.observations[i].u_px += static_cast<float>(wrong.uniform(i, -40, 40));
   const BundleResult result =
-      adjust(bundle.problem, kCamera,
+      adjust(bundle.problem, kBundleCamera,
              {.iterations = 100, .refine_iterations = 0, .relative_decrease = 1e-10});
   const double ours = huber_cost(bundle.problem, result.camera_from_world, result.points_in_world);
   const double oracle = ceres_minimum(bundle.problem);
@@ -159,14 +161,14 @@ INSTANTIATE_TEST_SUITE_P(ShareOfDepth, AdjustAgainstCeres, ::testing::Values(1.0
 
 TEST(Adjust, FindsTheOutliersAndIsNotMovedByThem) {
   SyntheticBundle bundle = make_bundle({.poses = 8, .points = 300, .observations_per_point = 6},
-                                       kCamera, RandomStream(5));
-  const BundleResult clean = adjust(bundle.problem, kCamera);
+                                       kBundleCamera, RandomStream(5));
+  const BundleResult clean = adjust(bundle.problem, kBundleCamera);
   std::vector<std::uint8_t> wrong(bundle.problem.observations.size(), 0);
   for (std::size_t i = 0; i < wrong.size(); i += 10) {
     bundle.problem.observations[i].u_px += i % 20 ? 60.0F : -60.0F;
     wrong[i] = 1;
   }
-  const BundleResult result = adjust(bundle.problem, kCamera);
+  const BundleResult result = adjust(bundle.problem, kBundleCamera);
   int good_rejected = 0;
   for (std::size_t i = 0; i < wrong.size(); ++i) {
     if (wrong[i]) {
@@ -192,22 +194,22 @@ TEST(Adjust, FindsTheOutliersAndIsNotMovedByThem) {
 // comes to the truth where the first, however long, does not.
 TEST(Adjust, TheSecondPhaseForgetsTheOutliersThatTheFirstHasBorne) {
   SyntheticBundle bundle =
-      make_bundle({.poses = 6, .points = 200, .observations_per_point = 6, .noise_px = 0}, kCamera,
-                  RandomStream(10));
+      make_bundle({.poses = 6, .points = 200, .observations_per_point = 6, .noise_px = 0},
+                  kBundleCamera, RandomStream(10));
   for (std::size_t i = 0; i < bundle.problem.observations.size(); i += 10)
     bundle.problem.observations[i].u_px += 60;  // all to one side
   const auto error_m = [&](const BundleConfig& config) {
-    return worst_pose_m(adjust(bundle.problem, kCamera, config).camera_from_world,
+    return worst_pose_m(adjust(bundle.problem, kBundleCamera, config).camera_from_world,
                         bundle.true_poses);
   };
   EXPECT_GT(error_m({.iterations = 100, .refine_iterations = 0, .relative_decrease = 0}), 1e-4);
   EXPECT_LT(error_m({.iterations = 20, .refine_iterations = 10}), 1e-6);
   const BundleResult result =
-      adjust(bundle.problem, kCamera, {.iterations = 20, .refine_iterations = 10});
+      adjust(bundle.problem, kBundleCamera, {.iterations = 20, .refine_iterations = 10});
   EXPECT_LT(result.final_cost, 1e-6) << "the sum over the inliers";
   // Trial steps of both phases are reported.
   const auto steps = [&](int refine_iterations) {
-    return adjust(bundle.problem, kCamera,
+    return adjust(bundle.problem, kBundleCamera,
                   {.iterations = 1, .refine_iterations = refine_iterations, .relative_decrease = 0})
         .iterations;
   };
@@ -218,7 +220,7 @@ TEST(Adjust, TheSecondPhaseForgetsTheOutliersThatTheFirstHasBorne) {
 
 TEST(Adjust, MovesNeitherFixedPosesNorWhatNobodyDetermines) {
   SyntheticBundle bundle =
-      make_bundle({.poses = 6, .fixed_poses = 2, .points = 100}, kCamera, RandomStream(6));
+      make_bundle({.poses = 6, .fixed_poses = 2, .points = 100}, kBundleCamera, RandomStream(6));
   BundleProblem& problem = bundle.problem;
   // One point loses its depth and all observations but the first; one more loses all of them.
   std::erase_if(problem.observations, [seen = false](const BundleObservation& o) mutable {
@@ -233,7 +235,7 @@ TEST(Adjust, MovesNeitherFixedPosesNorWhatNobodyDetermines) {
   ++problem.free_poses;
   for (BundleObservation& o : problem.observations) o.pose += o.pose >= 4;
 
-  const BundleResult result = adjust(problem, kCamera);
+  const BundleResult result = adjust(problem, kBundleCamera);
   EXPECT_LT(result.final_cost, 0.5 * result.initial_cost);
   for (std::size_t i = 5; i < 7; ++i) {
     EXPECT_EQ(result.camera_from_world[i].rotation(), problem.camera_from_world[i].rotation());
@@ -248,32 +250,33 @@ TEST(Adjust, MovesNeitherFixedPosesNorWhatNobodyDetermines) {
 
 TEST(Adjust, DropsAnObservationFromBehindTheCamera) {
   SyntheticBundle bundle =
-      make_bundle({.poses = 6, .points = 150, .noise_px = 0}, kCamera, RandomStream(7));
+      make_bundle({.poses = 6, .points = 150, .noise_px = 0}, kBundleCamera, RandomStream(7));
   BundleProblem& problem = bundle.problem;
   const BundleObservation first = problem.observations.front();
   // The start puts the point behind all cameras: nothing pulls it forward.
   problem.points_in_world[first.point] = Eigen::Vector3d(0, 0, -50);
-  const BundleResult result = adjust(problem, kCamera, {.iterations = 20, .refine_iterations = 10});
+  const BundleResult result =
+      adjust(problem, kBundleCamera, {.iterations = 20, .refine_iterations = 10});
   for (std::size_t i = 0; i < problem.observations.size(); ++i)
     EXPECT_EQ(result.outlier[i], problem.observations[i].point == first.point) << i;
   EXPECT_LT(worst_pose_m(result.camera_from_world, bundle.true_poses), 1e-7);
 }
 
 TEST(Adjust, AcceptsAnEmptyProblemAndOneWithoutFreePoses) {
-  const BundleResult empty = adjust({}, kCamera);
+  const BundleResult empty = adjust({}, kBundleCamera);
   EXPECT_EQ(empty.final_cost, 0);
   const SyntheticBundle bundle = make_bundle(
-      {.poses = 4, .fixed_poses = 4, .points = 50, .noise_px = 0}, kCamera, RandomStream(8));
+      {.poses = 4, .fixed_poses = 4, .points = 50, .noise_px = 0}, kBundleCamera, RandomStream(8));
   const BundleResult result =
-      adjust(bundle.problem, kCamera, {.iterations = 20, .refine_iterations = 10});
+      adjust(bundle.problem, kBundleCamera, {.iterations = 20, .refine_iterations = 10});
   for (std::size_t i = 0; i < bundle.true_points.size(); ++i)
     EXPECT_LT((result.points_in_world[i] - bundle.true_points[i]).norm(), 1e-6);
 }
 
 TEST(Adjust, GivesTheSameBitsTwice) {
-  const SyntheticBundle bundle = make_bundle({.points = 200}, kCamera, RandomStream(9));
-  const BundleResult a = adjust(bundle.problem, kCamera);
-  const BundleResult b = adjust(bundle.problem, kCamera);
+  const SyntheticBundle bundle = make_bundle({.points = 200}, kBundleCamera, RandomStream(9));
+  const BundleResult a = adjust(bundle.problem, kBundleCamera);
+  const BundleResult b = adjust(bundle.problem, kBundleCamera);
   EXPECT_EQ(a.points_in_world, b.points_in_world);
   for (std::size_t i = 0; i < a.camera_from_world.size(); ++i) {
     EXPECT_EQ(a.camera_from_world[i].rotation(), b.camera_from_world[i].rotation());

@@ -15,12 +15,12 @@ using testing::make_outliers;
 using testing::observe;
 using testing::true_pose;
 
-const Camera kCamera{};
+const Camera kEpnpCamera{};
 
 /// Exact observations from pixels alone, the first `wrong` of them false.
 std::vector<PoseObservation> pixels(int count, int wrong, std::uint64_t seed) {
-  auto observations = observe(count, true_pose(), kCamera, RandomStream(seed).fork(0));
-  make_outliers(observations, wrong, kCamera, RandomStream(seed).fork(1));
+  auto observations = observe(count, true_pose(), kEpnpCamera, RandomStream(seed).fork(0));
+  make_outliers(observations, wrong, kEpnpCamera, RandomStream(seed).fork(1));
   for (PoseObservation& o : observations) o.disparity_px = -1;
   return observations;
 }
@@ -29,7 +29,7 @@ std::vector<PoseObservation> pixels(int count, int wrong, std::uint64_t seed) {
 std::vector<PoseEstimate> offered(const std::vector<PoseObservation>& observations,
                                   std::uint64_t seed, bool accept) {
   std::vector<PoseEstimate> all;
-  for_each_epnp_consensus(observations, kCamera, {}, {}, RandomStream(seed),
+  for_each_epnp_consensus(observations, kEpnpCamera, {}, {}, RandomStream(seed),
                           [&](const PoseEstimate& estimate) {
                             all.push_back(estimate);
                             return accept;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kStep = 1e-6;
 constexpr double kTolerance = 1e-5;
 
-const Camera kCamera{};
+const Camera kReprojectionCamera{};
 const Eigen::Vector3d kPoints[] = {{0.3, -0.4, 1.7}, {-1.2, 0.8, 3.5}, {0.01, 0.0, 0.6}};
 
 ImageMeasurement measured(bool depth) {
@@ -24,12 +24,12 @@ TEST(Reprojection, PointJacobianEqualsCentralDifferences) {
   for (const bool depth : {false, true}) {
     const ImageMeasurement m = measured(depth);
     for (const Eigen::Vector3d& p : kPoints) {
-      const Eigen::Matrix3d analytic = reprojection_jacobian(p, m, kCamera);
+      const Eigen::Matrix3d analytic = reprojection_jacobian(p, m, kReprojectionCamera);
       for (int k = 0; k < 3; ++k) {
         const Eigen::Vector3d h = kStep * Eigen::Vector3d::Unit(k);
-        const Eigen::Vector3d numeric =
-            (reprojection_residual(p + h, m, kCamera) - reprojection_residual(p - h, m, kCamera)) /
-            (2 * kStep);
+        const Eigen::Vector3d numeric = (reprojection_residual(p + h, m, kReprojectionCamera) -
+                                         reprojection_residual(p - h, m, kReprojectionCamera)) /
+                                        (2 * kStep);
         EXPECT_LT((analytic.col(k) - numeric).norm(), kTolerance);
       }
       EXPECT_EQ(analytic.row(2).isZero(0), !depth);
@@ -44,13 +44,13 @@ TEST(Reprojection, PoseJacobianEqualsCentralDifferences) {
     for (const Eigen::Vector3d& p : kPoints) {
       const Eigen::Vector3d point_in_world = pose.inverse() * p;
       const Eigen::Matrix<double, 3, 6> analytic =
-          reprojection_jacobian(p, m, kCamera) * perturbation_jacobian(p);
+          reprojection_jacobian(p, m, kReprojectionCamera) * perturbation_jacobian(p);
       for (int k = 0; k < 6; ++k) {
         const Vector6d h = kStep * Vector6d::Unit(k);
         const Eigen::Vector3d plus =
-            reprojection_residual(SE3::exp(h) * pose * point_in_world, m, kCamera);
+            reprojection_residual(SE3::exp(h) * pose * point_in_world, m, kReprojectionCamera);
         const Eigen::Vector3d minus =
-            reprojection_residual(SE3::exp(-h) * pose * point_in_world, m, kCamera);
+            reprojection_residual(SE3::exp(-h) * pose * point_in_world, m, kReprojectionCamera);
         EXPECT_LT((analytic.col(k) - (plus - minus) / (2 * kStep)).norm(), kTolerance);
       }
     }
@@ -62,12 +62,14 @@ TEST(Reprojection, WorldPointJacobianEqualsCentralDifferences) {
   const ImageMeasurement m = measured(true);
   for (const Eigen::Vector3d& p : kPoints) {
     const Eigen::Vector3d point = pose.inverse() * p;
-    const Eigen::Matrix3d analytic = reprojection_jacobian(p, m, kCamera) * pose.rotation();
+    const Eigen::Matrix3d analytic =
+        reprojection_jacobian(p, m, kReprojectionCamera) * pose.rotation();
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector3d h = kStep * Eigen::Vector3d::Unit(k);
-      const Eigen::Vector3d numeric = (reprojection_residual(pose * (point + h), m, kCamera) -
-                                       reprojection_residual(pose * (point - h), m, kCamera)) /
-                                      (2 * kStep);
+      const Eigen::Vector3d numeric =
+          (reprojection_residual(pose * (point + h), m, kReprojectionCamera) -
+           reprojection_residual(pose * (point - h), m, kReprojectionCamera)) /
+          (2 * kStep);
       EXPECT_LT((analytic.col(k) - numeric).norm(), kTolerance);
     }
   }
@@ -77,9 +79,9 @@ TEST(Reprojection, CameraFrameTermIsTheProductOfJacobians) {
   for (const bool depth : {false, true}) {
     const ImageMeasurement m = measured(depth);
     for (const Eigen::Vector3d& p : kPoints) {
-      const Eigen::Vector3d r = reprojection_residual(p, m, kCamera);
-      const Eigen::Matrix3d j = reprojection_jacobian(p, m, kCamera);
-      const CameraFrameTerm term = camera_frame_term(p, r, 0.6, m, kCamera);
+      const Eigen::Vector3d r = reprojection_residual(p, m, kReprojectionCamera);
+      const Eigen::Matrix3d j = reprojection_jacobian(p, m, kReprojectionCamera);
+      const CameraFrameTerm term = camera_frame_term(p, r, 0.6, m, kReprojectionCamera);
       const Eigen::Matrix3d information = 0.6 * j.transpose() * j;
       const Eigen::Vector3d gradient = 0.6 * j.transpose() * r;
       EXPECT_LT((term.information - information).norm(), 1e-12 * information.norm());

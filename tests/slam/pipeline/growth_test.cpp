@@ -13,7 +13,7 @@ namespace {
 using testing_support::BoxRoom;
 using testing_support::FeatureWorld;
 
-std::shared_ptr<const Vocabulary> vocabulary() {
+std::shared_ptr<const Vocabulary> world_vocabulary() {
   static const auto loaded = std::make_shared<const Vocabulary>(
       Vocabulary::load(std::string(MH_SOURCE_DIR) + "/assets/vocabulary.mhvoc"));
   return loaded;
@@ -25,7 +25,7 @@ const FeatureWorld kWorld(2500, 400);
 SlamState new_run() {
   SlamConfig config;
   config.features.count = 400;
-  return make_slam(FeatureWorld::camera(), config, vocabulary());
+  return make_slam(FeatureWorld::camera(), config, world_vocabulary());
 }
 
 StepReport feed(SlamState& state, const SE3& world_from_camera, std::uint64_t frame) {
@@ -74,7 +74,7 @@ TEST(Growth, AFrameIsComparedWithItsSurroundingsNotWithTheMap) {
 
 TEST(Step, FeaturesAtHandGiveTheBitsOfTheirFrames) {
   const auto run = [](bool at_hand) {
-    SlamState state = make_slam(BoxRoom::camera(), SlamConfig{}, vocabulary());
+    SlamState state = make_slam(BoxRoom::camera(), SlamConfig{}, world_vocabulary());
     for (int i = 0; i < 20; ++i) {
       const RgbdFrame frame = BoxRoom::render(BoxRoom::round_trip(i, 120), (i + 1) * kPeriod_ns);
       const RandomStream stream = RandomStream(1).fork(static_cast<std::uint64_t>(i));

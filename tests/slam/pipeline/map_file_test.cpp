@@ -50,7 +50,7 @@ const std::string& midway_bytes() {
 }
 
 /// What decoding says against these bytes; empty if it finds nothing wrong.
-std::string complaint(const std::string& bytes) {
+std::string refusal_of(const std::string& bytes) {
   try {
     decode_slam(bytes, "room.mhmap", vocabulary());
     return "";
@@ -250,7 +250,7 @@ TEST(MapFile, WhatPointsNowhereIsRefusedByItsName) {
     p.seen = &*std::ranges::find_if(
         p.landmarks, [](const Landmark& l) { return !l.erased && l.observations.size() > 1; });
     lie(p);
-    return complaint(framed(Layout(p.state, p.keyframes, p.landmarks).bytes()));
+    return refusal_of(framed(Layout(p.state, p.keyframes, p.landmarks).bytes()));
   };
   ASSERT_EQ(said([](Parts&) {}), "");
   const auto refuses = [&](const std::string& what, const std::function<void(Parts&)>& lie) {
@@ -324,7 +324,7 @@ TEST(MapFile, WhatPointsNowhereIsRefusedByItsName) {
   // Both sides store which keyframe sees which landmark.
   EXPECT_NE(said([](Parts& p) { p.seen->observations.pop_back(); }), "");
   EXPECT_NE(said([](Parts& p) { p.standing->covisible.pop_back(); }), "");
-  EXPECT_EQ(complaint(framed(Layout(midway()).bytes() + "x")),
+  EXPECT_EQ(refusal_of(framed(Layout(midway()).bytes() + "x")),
             "room.mhmap: is not a consistent map: it goes on after its end");
 }
 
@@ -385,12 +385,12 @@ TEST(MapFile, DigestsTellEveryPartOfAMapApart) {
 }
 
 TEST(MapFile, SaysWhatIsWrong) {
-  EXPECT_EQ(complaint("P5 an image"), "room.mhmap: is not a map of Modelhouse's");
-  EXPECT_EQ(complaint(""), "room.mhmap: is not a map of Modelhouse's");
+  EXPECT_EQ(refusal_of("P5 an image"), "room.mhmap: is not a map of Modelhouse's");
+  EXPECT_EQ(refusal_of(""), "room.mhmap: is not a map of Modelhouse's");
   std::string other = midway_bytes();
   other[8] = 9;
-  EXPECT_EQ(complaint(other), "room.mhmap: is a map of version 9, but this program reads 6");
-  EXPECT_NE(complaint(midway_bytes() + "x").find("too long"), std::string::npos);
+  EXPECT_EQ(refusal_of(other), "room.mhmap: is a map of version 9, but this program reads 6");
+  EXPECT_NE(refusal_of(midway_bytes() + "x").find("too long"), std::string::npos);
   try {
     decode_slam(midway_bytes(), "room.mhmap", testing_support::box_room_vocabulary(2));
     FAIL();
@@ -405,7 +405,7 @@ TEST(MapFile, EveryCutIsNoticed) {
   for (std::uint64_t i = 0; i < 300; ++i) {
     // Half of them near the front, where the header is.
     const std::size_t length = draws.below(i, i % 2 ? 200 : midway_bytes().size());
-    const std::string said = complaint(midway_bytes().substr(0, length));
+    const std::string said = refusal_of(midway_bytes().substr(0, length));
     EXPECT_TRUE(said.find("truncated") != std::string::npos ||
                 (length == 0 && said.find("not a map") != std::string::npos))
         << length << ": " << said;
@@ -419,10 +419,10 @@ TEST(MapFile, EveryFlippedBitIsNoticed) {
     const std::size_t place = draws.below(2 * i, i % 4 == 0 ? 32 : bytes.size());
     const char bit = static_cast<char>(1 << draws.below(2 * i + 1, 8));
     bytes[place] ^= bit;
-    EXPECT_NE(complaint(bytes), "") << "byte " << place;
+    EXPECT_NE(refusal_of(bytes), "") << "byte " << place;
     bytes[place] ^= bit;
   }
-  EXPECT_EQ(complaint(bytes), "");
+  EXPECT_EQ(refusal_of(bytes), "");
 }
 
 // A file that was made wrong, its checksum right: whatever it says, it is refused or it can be

@@ -16,7 +16,7 @@
 namespace mh {
 namespace {
 
-constexpr const char* kCamera =
+constexpr const char* kSettingsCamera =
     "camera: {width_px: 320, height_px: 240, fx_px: 288, fy_px: 289, cx_px: 159.5, cy_px: 119.5,\n"
     "         baseline_m: 0.06, distortion: {k1: 0.1, p2: -0.02}}\n";
 
@@ -47,7 +47,7 @@ std::string complaint(const std::string& text) {
 TEST(Settings, WhatIsWrittenReadsBackBitForBit) {
   for (const bool notes : {false, true}) {
     const std::string text = format_slam_config(unusual(), notes);
-    const SlamConfig read = parse_settings(kCamera + text, "s.yaml").slam;
+    const SlamConfig read = parse_settings(kSettingsCamera + text, "s.yaml").slam;
     EXPECT_EQ(format_slam_config(read), format_slam_config(unusual()));
     EXPECT_EQ(read.relocalize.ransac.confidence, unusual().relocalize.ransac.confidence);
     EXPECT_EQ(read.features.scale, unusual().features.scale);
@@ -69,7 +69,7 @@ TEST(Settings, TheBaseStandsForItsAcceptance) {
 }
 
 TEST(Settings, TellsTheCameraAndLeavesTheRestAsItIs) {
-  const Settings s = parse_settings(std::string(kCamera) +
+  const Settings s = parse_settings(std::string(kSettingsCamera) +
                                         "images: {depth_per_meter: 1000, exchange_red_blue: "
                                         "true}\nsemantics: {gamma: 2.5}\n",
                                     "s.yaml");
@@ -85,7 +85,7 @@ TEST(Settings, TellsTheCameraAndLeavesTheRestAsItIs) {
 }
 
 TEST(Settings, AWholeFileReadsBackBitForBit) {
-  Settings s = parse_settings(kCamera + format_slam_config(unusual()), "s.yaml");
+  Settings s = parse_settings(kSettingsCamera + format_slam_config(unusual()), "s.yaml");
   s.depth_per_meter = 1000.0 / 3.0;
   s.exchange_red_blue = true;
   const Settings read = parse_settings(format_settings(s), "written.yaml");
@@ -97,16 +97,17 @@ TEST(Settings, AWholeFileReadsBackBitForBit) {
 }
 
 TEST(Settings, NamesFileLinePlaceAndValue) {
-  EXPECT_EQ(complaint(std::string(kCamera) + "track:\n  min_inliers: 3\n"),
+  EXPECT_EQ(complaint(std::string(kSettingsCamera) + "track:\n  min_inliers: 3\n"),
             "s.yaml:4: track.min_inliers: 3 is outside [4, 1000000]");
-  EXPECT_NE(
-      complaint(std::string(kCamera) + "track:\n  min_inlier: 30\n").find("s.yaml:4: unknown"),
-      std::string::npos);
-  EXPECT_NE(complaint(std::string(kCamera) + "tracks: {}\n").find("unknown key 'tracks'"),
+  EXPECT_NE(complaint(std::string(kSettingsCamera) + "track:\n  min_inlier: 30\n")
+                .find("s.yaml:4: unknown"),
             std::string::npos);
-  EXPECT_NE(complaint(std::string(kCamera) + "semantics: {alpha: 1}").find("[0, 1)"),
+  EXPECT_NE(complaint(std::string(kSettingsCamera) + "tracks: {}\n").find("unknown key 'tracks'"),
             std::string::npos);
-  EXPECT_NE(complaint(std::string(kCamera) + "semantics: {overlap: all}").find("'all' is not one"),
+  EXPECT_NE(complaint(std::string(kSettingsCamera) + "semantics: {alpha: 1}").find("[0, 1)"),
+            std::string::npos);
+  EXPECT_NE(complaint(std::string(kSettingsCamera) + "semantics: {overlap: all}")
+                .find("'all' is not one"),
             std::string::npos);
   EXPECT_NE(complaint("camera: {fx_px: 500}").find("'fy_px' is missing"), std::string::npos);
   EXPECT_NE(complaint("").find("the file holds nothing"), std::string::npos);

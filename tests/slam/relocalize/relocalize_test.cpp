@@ -139,7 +139,7 @@ TEST(ReleasedScores, ThatAreClearedAreThoseOfAFirstQuery) {
 }
 
 /// A keyframe and a frame from beside it that sees the same points without noise.
-struct TwoViews {
+struct MappedViews {
   static constexpr std::uint32_t kPoints = 60;
   const Camera camera;
   const SE3 truth = SE3::exp((Vector6d() << 0.1, -0.05, 0.12, 0.03, -0.06, 0.02).finished());
@@ -149,8 +149,8 @@ struct TwoViews {
 
   /// @param lying  whether the frame's keypoint of a point is 60 px away from where it should be
   /// @param same_word  whether it has the word of the keyframe's
-  explicit TwoViews(const std::function<bool(std::uint32_t)>& lying,
-                    const std::function<bool(std::uint32_t)>& same_word = {}) {
+  explicit MappedViews(const std::function<bool(std::uint32_t)>& lying,
+                       const std::function<bool(std::uint32_t)>& same_word = {}) {
     const auto keypoint = [&](const Eigen::Vector3d& p) {
       Keypoint k;
       k.u_px = static_cast<float>(camera.project(p).x());
@@ -195,11 +195,11 @@ constexpr auto kBoth = {Acceptance::kOurs, Acceptance::kOrbSlam2};
 // The first feature and the last may lie. What is found is each true one, no other, and the exact
 // pose.
 TEST(Relocalize, FindsEachTrueLandmarkAndTheExactPose) {
-  constexpr std::uint32_t kPoints = TwoViews::kPoints;
+  constexpr std::uint32_t kPoints = MappedViews::kPoints;
   for (const Acceptance acceptance : kBoth)
     for (const bool lies : {false, true}) {
       const auto lying = [&](std::uint32_t i) { return lies && (i == 0 || i == kPoints - 1); };
-      const TwoViews views(lying);
+      const MappedViews views(lying);
       const auto found = views.find(acceptance);
       EXPECT_EQ(found.stage, RelocalizationStage::kVerified);
       EXPECT_EQ(found.keyframe, KeyframeId{0});
@@ -215,18 +215,18 @@ TEST(Relocalize, FindsEachTrueLandmarkAndTheExactPose) {
 // 16 points share their words, the pose of these finds the others.
 TEST(Relocalize, BothAcceptancesSearchOnByThePose) {
   for (const Acceptance acceptance : kBoth) {
-    const TwoViews views([](std::uint32_t) { return false; },
-                         [](std::uint32_t i) { return i < 16; });
+    const MappedViews views([](std::uint32_t) { return false; },
+                            [](std::uint32_t i) { return i < 16; });
     const auto found = views.find(acceptance);
     EXPECT_EQ(found.stage, RelocalizationStage::kVerified);
-    EXPECT_EQ(found.inliers, static_cast<int>(TwoViews::kPoints));
+    EXPECT_EQ(found.inliers, static_cast<int>(MappedViews::kPoints));
   }
 }
 
 // 44 keypoints are 1.5 px off and differ by 80 bits, which only the first search accepts.
 TEST(Relocalize, TheFirstSearchReachesAsFarAsItsRadius) {
-  TwoViews views([](std::uint32_t) { return false; }, [](std::uint32_t i) { return i < 16; });
-  for (std::uint32_t i = 16; i < TwoViews::kPoints; ++i) {
+  MappedViews views([](std::uint32_t) { return false; }, [](std::uint32_t i) { return i < 16; });
+  for (std::uint32_t i = 16; i < MappedViews::kPoints; ++i) {
     views.features.keypoints[i].v_px += 1.5F;
     views.features.descriptors[i][0] = ~views.features.descriptors[i][0];
     views.features.descriptors[i][1] ^= 0xffffU;
@@ -238,8 +238,8 @@ TEST(Relocalize, TheFirstSearchReachesAsFarAsItsRadius) {
 // The first of 30 matches by words lie. Ours needs ten true ones, ORB-SLAM2 half of all.
 TEST(Relocalize, OrbSlam2AsksForHalfOfTheMatches) {
   const auto stage = [](std::uint32_t liars, Acceptance acceptance) {
-    return TwoViews([=](std::uint32_t i) { return i < liars; },
-                    [](std::uint32_t i) { return i < 30; })
+    return MappedViews([=](std::uint32_t i) { return i < liars; },
+                       [](std::uint32_t i) { return i < 30; })
         .find(acceptance)
         .stage;
   };
@@ -249,7 +249,7 @@ TEST(Relocalize, OrbSlam2AsksForHalfOfTheMatches) {
   EXPECT_EQ(stage(16, Acceptance::kOurs), RelocalizationStage::kInliers);
 }
 
-CandidateAttempt alone(const TwoViews& views, const TrialGivens& givens = {}) {
+CandidateAttempt alone(const MappedViews& views, const TrialGivens& givens = {}) {
   const SlamConfig config;
   const FeatureGrid grid(views.features.keypoints, views.camera);
   MatchCounts counts{};
@@ -258,7 +258,7 @@ CandidateAttempt alone(const TwoViews& views, const TrialGivens& givens = {}) {
 }
 
 TEST(TryAlone, AnswersAsAmongTheCandidates) {
-  const TwoViews views([](std::uint32_t i) { return i < 7; });
+  const MappedViews views([](std::uint32_t i) { return i < 7; });
   const auto among = views.find(Acceptance::kOurs);
   const CandidateAttempt tried = alone(views);
   EXPECT_EQ(tried.stage, among.stage);
@@ -268,7 +268,7 @@ TEST(TryAlone, AnswersAsAmongTheCandidates) {
 }
 
 TEST(TryAlone, KeepsOnlyTheMatchesThatAreAllowed) {
-  const TwoViews views([](std::uint32_t) { return false; });
+  const MappedViews views([](std::uint32_t) { return false; });
   const auto first = [&](std::uint32_t count) {
     return alone(views, {.allows = [=](std::uint32_t feature, LandmarkId landmark) {
                    EXPECT_EQ(feature, landmark.value);
@@ -282,11 +282,11 @@ TEST(TryAlone, KeepsOnlyTheMatchesThatAreAllowed) {
 
 // No keypoint shares a word with the keyframe: by words there is no match, around the pose all.
 TEST(TryAlone, AGivenPoseNeedsNoMatchByWords) {
-  const TwoViews views([](std::uint32_t) { return false; }, [](std::uint32_t) { return false; });
+  const MappedViews views([](std::uint32_t) { return false; }, [](std::uint32_t) { return false; });
   EXPECT_EQ(alone(views).stage, RelocalizationStage::kMatches);
   const CandidateAttempt given = alone(views, {.camera_from_world = views.truth});
   EXPECT_EQ(given.stage, RelocalizationStage::kVerified);
-  EXPECT_EQ(given.inliers, static_cast<int>(TwoViews::kPoints));
+  EXPECT_EQ(given.inliers, static_cast<int>(MappedViews::kPoints));
   const SE3 turned = SE3::exp((Vector6d() << 0, 0, 0, 0, 1, 0).finished()) * views.truth;
   EXPECT_EQ(alone(views, {.camera_from_world = turned}).stage, RelocalizationStage::kInliers);
 }
@@ -296,8 +296,8 @@ TEST(Relocalize, OrbSlam2GivesUpWhereASearchCannotReachFifty) {
   for (const auto& [liars, stage] : {std::pair{10U, RelocalizationStage::kVerified},
                                      std::pair{11U, RelocalizationStage::kInliers}}) {
     const std::uint32_t false_ones = liars;
-    const auto found = TwoViews([=](std::uint32_t i) { return i >= 60 - false_ones; },
-                                [](std::uint32_t i) { return i < 20; })
+    const auto found = MappedViews([=](std::uint32_t i) { return i >= 60 - false_ones; },
+                                   [](std::uint32_t i) { return i < 20; })
                            .find(Acceptance::kOrbSlam2);
     EXPECT_EQ(found.stage, stage) << liars;
   }

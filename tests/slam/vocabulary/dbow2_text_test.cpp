@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::StartsWith;
 
-Descriptor random_descriptor(RandomStream random) {
+Descriptor drawn_descriptor(RandomStream random) {
   return {random.bits(0), random.bits(1), random.bits(2), random.bits(3)};
 }
 
@@ -33,7 +33,7 @@ class TextWriter {
     expand(0, 1);
   }
   const std::string& text() const { return text_; }
-  Descriptor center(int id) const { return random_descriptor(RandomStream(1).fork(id)); }
+  Descriptor center(int id) const { return drawn_descriptor(RandomStream(1).fork(id)); }
   float weight(int id) const { return static_cast<float>(id) / 7; }
 
   // The leaf that a walk through the tree as written ends at.
@@ -79,7 +79,7 @@ TEST(Dbow2Text, WalksTheSameTreeToTheSameWeight) {
   ASSERT_EQ(v.size(), 625U);
   std::map<WordId, int> leaf_of;
   for (std::uint64_t i = 0; i < 2000; ++i) {
-    const Descriptor d = random_descriptor(RandomStream(2).fork(i));
+    const Descriptor d = drawn_descriptor(RandomStream(2).fork(i));
     const int leaf = written.walk(d);
     const WordId word = v.quantize(d).word;
     EXPECT_EQ(v.idf(word), written.weight(leaf));
@@ -120,7 +120,7 @@ TEST(Dbow2Text, IsLoadedLikeAFileOfOurOwnAndSavedAsOne) {
   EXPECT_EQ(own.digest(), text.digest());
   EXPECT_EQ(own.training_images(), 0U);  // not known
   for (std::uint64_t i = 0; i < 200; ++i) {
-    const Descriptor d = random_descriptor(RandomStream(3).fork(i));
+    const Descriptor d = drawn_descriptor(RandomStream(3).fork(i));
     EXPECT_EQ(own.quantize(d).word, text.quantize(d).word);
     EXPECT_EQ(own.quantize(d).node, text.quantize(d).node);
   }
