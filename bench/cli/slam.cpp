@@ -35,7 +35,7 @@ constexpr std::string_view kScene = "scene:";
 
 constexpr const char* kUsualRobot = "pepper";
 
-struct Options {
+struct SlamArguments {
   std::string source, settings, classes, topics, vocabulary = "vocabulary", out, map, save_map,
                                                  truth;
   SceneFrameOption frame;
@@ -53,7 +53,7 @@ struct Source {
 };
 
 /// Settings for a source with its own camera and image scale.
-Settings settings_beside(const Options& options, const Sequence& frames,
+Settings settings_beside(const SlamArguments& options, const Sequence& frames,
                          std::vector<std::string> notes) {
   Settings settings;
   if (!options.settings.empty()) {
@@ -69,7 +69,7 @@ Settings settings_beside(const Options& options, const Sequence& frames,
   return settings;
 }
 
-Source open_source(const Options& options) {
+Source open_source(const SlamArguments& options) {
   const std::string& source = options.source;
   if (source.starts_with(kScene)) {
     if (options.tour.empty()) throw InputError(fmt::format("source '{}' needs --tour", source));
@@ -99,7 +99,8 @@ Source open_source(const Options& options) {
 /// Applies what --settings may change for a loaded map: the settings of relocalization. The others
 /// have shaped the map: the map's values are kept, and a note lists those that the file would
 /// change.
-void apply_settings(const Options& options, SlamConfig& of_map, std::vector<std::string>& notes) {
+void apply_settings(const SlamArguments& options, SlamConfig& of_map,
+                    std::vector<std::string>& notes) {
   const SlamConfig asked = load_settings(options.settings, of_map).slam;
   of_map.relocalize = asked.relocalize;
   std::istringstream kept(format_slam_config(of_map)), wanted(format_slam_config(asked));
@@ -114,8 +115,8 @@ void apply_settings(const Options& options, SlamConfig& of_map, std::vector<std:
 }
 
 /// Returns a new state, or that of the map file.
-SlamState first_state(const Options& options, const std::shared_ptr<const Vocabulary>& vocabulary,
-                      Settings& settings) {
+SlamState first_state(const SlamArguments& options,
+                      const std::shared_ptr<const Vocabulary>& vocabulary, Settings& settings) {
   SlamState state;
   if (options.map.empty()) {
     state = make_slam(settings.camera, settings.slam, vocabulary);
@@ -138,7 +139,7 @@ SlamState first_state(const Options& options, const std::shared_ptr<const Vocabu
   return state;
 }
 
-void check(const Options& options) {
+void check(const SlamArguments& options) {
   if (options.localize && options.map.empty())
     throw InputError("--localize needs a map: name one by --map");
   if (options.resume && options.map.empty())
@@ -162,7 +163,8 @@ void check(const Options& options) {
 
 /// Returns the first frame that the map has not received yet.
 /// @throws InputError if none is left
-std::size_t first_frame(const Options& options, const SlamState& state, const Sequence& frames) {
+std::size_t first_frame(const SlamArguments& options, const SlamState& state,
+                        const Sequence& frames) {
   if (!options.resume) return 0;
   if (!state.last_stamp_ns)
     throw InputError(fmt::format("{}: holds no run that could be resumed", options.map));
@@ -189,7 +191,7 @@ void require_no_other_file(const fs::path& map) {
 
 /// Runs the protocol on one sequence: that of the bench, or a live camera feed without held-out
 /// frames.
-RunResult run_sequence(const Options& options, const World& world, SlamState& state,
+RunResult run_sequence(const SlamArguments& options, const World& world, SlamState& state,
                        std::size_t first, const StepObservers& observers,
                        const MappingObserver& watch) {
   // The map size up to which the original ORB-SLAM2 resets; under the bench's protocol the feed
@@ -221,7 +223,7 @@ RunResult run_sequence(const Options& options, const World& world, SlamState& st
   return run;
 }
 
-void run(Options options) {
+void run(SlamArguments options) {
   check(options);
   resolve(options.vocabulary, Shipped::kVocabulary);
   resolve(options.settings, Shipped::kSettings);
@@ -307,7 +309,7 @@ void run(Options options) {
 }  // namespace
 
 void add_slam(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SlamArguments>();
   CLI::App* command =
       app.add_subcommand("slam", "Runs SLAM on a recorded sequence or along a tour of a scene.");
   command
