@@ -54,6 +54,13 @@ Scene with_small_faces(const Scene& scene) {
   return scene;
 }
 
+/// How many vertices the triangles use.
+std::size_t used_vertices(const std::vector<std::uint32_t>& corners, std::size_t vertices) {
+  std::vector<bool> used(vertices);
+  for (const std::uint32_t corner : corners) used[corner] = true;
+  return static_cast<std::size_t>(std::ranges::count(used, true));
+}
+
 /// Triangles as few as fit, if there are too many.
 std::vector<std::uint32_t> decimated(const Scene& scene) {
   std::vector<std::uint32_t> all;
@@ -61,18 +68,20 @@ std::vector<std::uint32_t> decimated(const Scene& scene) {
   for (const auto& triangle : scene.triangles)
     all.insert(all.end(), triangle.begin(), triangle.end());
   const std::size_t vertices = scene.positions_m.size();
-  if (bytes_of(vertices, scene.triangles.size()) <= kMeshBytes) return all;
-  // About half as many vertices as triangles remain.
-  const std::size_t target = 3 * (kMeshBytes * 3 / 4 / 17);
-  std::vector<std::uint32_t> few(all.size());
-  std::size_t count =
-      meshopt_simplify(few.data(), all.data(), all.size(), scene.positions_m.front().data(),
-                       vertices, sizeof(Eigen::Vector3f), target, 0.05F, 0, nullptr);
-  if (count > target + target / 4)  // many loose parts: only the other method gets there
-    count =
-        meshopt_simplifySloppy(few.data(), all.data(), all.size(), scene.positions_m.front().data(),
-                               vertices, sizeof(Eigen::Vector3f), target, 1e-1F, nullptr);
-  few.resize(count);
+  const float* const first = scene.positions_m.front().data();
+  std::vector<std::uint32_t> few = all;
+  for (std::size_t target = all.size();
+       bytes_of(used_vertices(few, vertices), few.size() / 3) > kMeshBytes && target > 3;
+       target = target / 12 * 9) {
+    few.resize(all.size());
+    few.resize(meshopt_simplify(few.data(), all.data(), all.size(), first, vertices,
+                                sizeof(Eigen::Vector3f), target, 0.02F, 0, nullptr));
+    if (few.size() <= target + target / 4) continue;
+    // Many loose parts: only the other method gets there.
+    few.resize(all.size());
+    few.resize(meshopt_simplifySloppy(few.data(), all.data(), all.size(), first, vertices,
+                                      sizeof(Eigen::Vector3f), target, 0.1F, nullptr));
+  }
   return few;
 }
 
