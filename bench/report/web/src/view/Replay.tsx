@@ -157,7 +157,7 @@ function Player({ run, queries, rows, piece, onFail }: Props & { onFail: (why: s
       </div>
       {data && (
         <p class="note">
-          Run again to be shown: {data.same ? "the same trajectory, bit for bit" : "its trajectory differs from that of the results, which another machine or version made"}. {data.landmarks.class.length} landmarks, {data.keyframes.length} keyframes
+          Run again to be shown: {data.same ? "the same positions, bit for bit" : "its trajectory differs from that of the results, which another machine or version made"}. {data.landmarks.class.length} landmarks, {data.keyframes.length} keyframes
           {data.mesh && `; the scene has ${data.mesh.triangles} triangles of ${data.mesh.of_triangles}`}.
         </p>
       )}
