@@ -8,7 +8,6 @@
 #include "bench/cli/commands.hpp"
 #include "bench/pages/plot.hpp"
 #include "bench/pages/write.hpp"
-#include "bench/provenance/digest.hpp"
 #include "bench/replay/replay.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
@@ -44,7 +43,7 @@ void add_replays(std::vector<PagesSource>& sources, const Options& options) {
       const bool by_name = std::ranges::count(options.replay, run.spec.name) > 0;
       const bool can = run.spec.system.takes_settings() && !run.spec.environment.is_recorded();
       if (is_asked(run) && (can || by_name))
-        source.replay_of[run.spec.name] = replay_json(run.spec, digest(run.estimate), tools);
+        source.replay_of[run.spec.name] = replay_json(run.spec, run.estimate, tools);
     }
   for (const std::string& word : options.replay)
     if (std::ranges::count(names, word) == 0)

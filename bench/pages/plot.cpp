@@ -62,7 +62,8 @@ class PlotTable {
 std::string beginning(const PlotOrder& order, const fs::path& pdf, double height_cm) {
   return fmt::format(
       "set terminal pdfcairo size {}cm,{}cm font 'DejaVu Sans,8' fontscale 0.8 linewidth 1\n"
-      "set output {}\nset key top left noenhanced samplen 2\nset border 3\nset tics nomirror "
+      "set output {}\nset key outside top center horizontal noenhanced samplen 2\nset border "
+      "3\nset tics nomirror "
       "out scale 0.5\nset grid linecolor '#dddddd' linewidth 0.5\n",
       order.width_cm, height_cm, gnuplot_text(pdf.string()));
 }
@@ -163,7 +164,7 @@ std::string by_frame(const PagesSource& source, const PlotOrder& order, const fs
         a == 0 ? "" : ", ", a, a + 1, ink_of(a));
   }
   return script + fmt::format(
-                      "set multiplot\nset lmargin 9\nset size 1,0.66\nset origin 0,0.34\n"
+                      "set multiplot\nset lmargin 11\nset size 1,0.66\nset origin 0,0.34\n"
                       "set ylabel 'mean position error, m'\nset yrange [0:*]\nplot {}\n"
                       "set size 1,0.36\nset origin 0,0\nset ylabel 'environments'\n"
                       "set xlabel 'frame of the tour'\nplot {}\nunset multiplot\n",
@@ -219,7 +220,8 @@ std::string from_above(const PagesSource& source, const PlotOrder& order, const 
     throw InputError(
         fmt::format("{}: neither a true nor an estimated path is known", run->spec.name));
   return script +
-         "set size ratio -1\nset key outside top center horizontal\nset xlabel 'x, m'\n"
+         "set size ratio -1\nset xtics rotate by 90 right\nset key outside top center "
+         "horizontal\nset xlabel 'x, m'\n"
          "set ylabel 'y, m'\nplot " +
          plots + "\n";
 }

@@ -69,6 +69,10 @@ PagesSource read_source(const fs::path& path) {
     const Store store = Store::open_to_read(file);
     source.suite = store.planned_suite();
     source.results = load_results(store, *source.suite);
+    // A store holds no alignments: they follow from both paths.
+    for (RunResult& run : source.results.runs)
+      if (!run.truth.empty() && !run.estimate.empty())
+        run.frames = frames_of(run.estimate, run.truth);
     read_costs(store, source);
   } catch (const InputError& error) {
     source.suite.reset();

@@ -9,7 +9,6 @@
 #include <meshoptimizer.h>
 
 #include "bench/audit/audit.hpp"
-#include "bench/provenance/digest.hpp"
 #include "scenes/mesh_io/seen_colors.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/labels.hpp"
@@ -54,6 +53,13 @@ Scene with_small_faces(const Scene& scene) {
   return scene;
 }
 
+/// How many vertices the triangles use.
+std::size_t used_vertices(const std::vector<std::uint32_t>& corners, std::size_t vertices) {
+  std::vector<bool> used(vertices);
+  for (const std::uint32_t corner : corners) used[corner] = true;
+  return static_cast<std::size_t>(std::ranges::count(used, true));
+}
+
 /// Triangles as few as fit, if there are too many.
 std::vector<std::uint32_t> decimated(const Scene& scene) {
   std::vector<std::uint32_t> all;
@@ -61,18 +67,20 @@ std::vector<std::uint32_t> decimated(const Scene& scene) {
   for (const auto& triangle : scene.triangles)
     all.insert(all.end(), triangle.begin(), triangle.end());
   const std::size_t vertices = scene.positions_m.size();
-  if (bytes_of(vertices, scene.triangles.size()) <= kMeshBytes) return all;
-  // About half as many vertices as triangles remain.
-  const std::size_t target = 3 * (kMeshBytes * 3 / 4 / 17);
-  std::vector<std::uint32_t> few(all.size());
-  std::size_t count =
-      meshopt_simplify(few.data(), all.data(), all.size(), scene.positions_m.front().data(),
-                       vertices, sizeof(Eigen::Vector3f), target, 0.05F, 0, nullptr);
-  if (count > target + target / 4)  // many loose parts: only the other method gets there
-    count =
-        meshopt_simplifySloppy(few.data(), all.data(), all.size(), scene.positions_m.front().data(),
-                               vertices, sizeof(Eigen::Vector3f), target, 1e-1F, nullptr);
-  few.resize(count);
+  const float* const first = scene.positions_m.front().data();
+  std::vector<std::uint32_t> few = all;
+  for (std::size_t target = all.size();
+       bytes_of(used_vertices(few, vertices), few.size() / 3) > kMeshBytes && target > 3;
+       target = target / 12 * 9) {
+    few.resize(all.size());
+    few.resize(meshopt_simplify(few.data(), all.data(), all.size(), first, vertices,
+                                sizeof(Eigen::Vector3f), target, 0.02F, 0, nullptr));
+    if (few.size() <= target + target / 4) continue;
+    // Many loose parts: only the other method gets there.
+    few.resize(all.size());
+    few.resize(meshopt_simplifySloppy(few.data(), all.data(), all.size(), first, vertices,
+                                      sizeof(Eigen::Vector3f), target, 0.1F, nullptr));
+  }
   return few;
 }
 
@@ -145,15 +153,19 @@ Json mesh_json(const Scene& whole) {
           {"indices", base64(indices)}};
 }
 
-Json replay_json(const RunSpec& spec, std::uint64_t trajectory_digest, const ReplayTools& tools) {
+Json replay_json(const RunSpec& spec, const Trajectory& estimate, const ReplayTools& tools) {
   require_auditable(spec);
   const World world = build_world(spec, tools.threads, tools.cache, tools.say);
   SlamState frozen;
   tools.say(fmt::format("{}: runs again", spec.name));
   const RunResult run = run_with_map(spec, world, {.maps = tools.cache}, frozen);
   const SE3& to_dock = run.frames.dock_from_estimate;
+  const auto is_same = [](const TimedPose& a, const TimedPose& b) {
+    return a.stamp_ns == b.stamp_ns &&
+           a.world_from_camera.translation() == b.world_from_camera.translation();
+  };
   return {{"run", spec.name},
-          {"same", digest(run.estimate) == trajectory_digest},
+          {"same", std::ranges::equal(run.estimate, estimate, is_same)},
           {"mesh", mesh_json(*world.simulated->scene)},
           {"landmarks", landmarks_json(frozen.map, to_dock)},
           {"keyframes", keyframes_json(frozen.map, to_dock)}};

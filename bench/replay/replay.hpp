@@ -9,6 +9,7 @@
 #include "bench/cache/cache.hpp"
 #include "bench/plan/runs.hpp"
 #include "scenes/scene.hpp"
+#include "slam/core/trajectory.hpp"
 
 namespace mh {
 
@@ -29,10 +30,10 @@ struct ReplayTools {
 
 /// Executes a run again and records what its result does not hold: the scene's mesh, the landmarks
 /// of the finished map with their classes, its keyframes. Runs repeat bit for bit; `same` states
-/// whether this one gave the trajectory that the result holds.
-/// @param trajectory_digest  of the result's estimate
+/// whether this one gave the positions that the result holds (a results file rounds orientations).
+/// @param estimate  of the result
 /// @throws InputError naming the run if it is of a recording or of an outside system.
-nlohmann::ordered_json replay_json(const RunSpec& spec, std::uint64_t trajectory_digest,
+nlohmann::ordered_json replay_json(const RunSpec& spec, const Trajectory& estimate,
                                    const ReplayTools& tools);
 
 }  // namespace mh

@@ -14,6 +14,11 @@
 
 namespace mh {
 
+/// Where a made-up system has its origin, seen from the world.
+inline SE3 made_up_origin() {
+  return {Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()).toRotationMatrix(), {1.0, -2.0, 0.1}};
+}
+
 /// A circular tour of 1/30 s steps and an estimate that leaves it by `drift_m` at its end.
 inline void put_paths(RunResult& run, std::size_t frames, double drift_m) {
   for (std::size_t i = 0; i < frames; ++i) {
@@ -22,8 +27,9 @@ inline void put_paths(RunResult& run, std::size_t frames, double drift_m) {
     const Eigen::Vector3d at(2 * std::cos(angle), 1.5 * std::sin(angle), 1.1);
     const auto stamp = static_cast<Stamp>(i) * 33'333'333;
     run.truth.push_back({stamp, SE3(Eigen::Matrix3d::Identity(), at)});
-    run.estimate.push_back({stamp, SE3(Eigen::Matrix3d::Identity(),
-                                       at + Eigen::Vector3d(drift_m * share, 0.3 * drift_m, 0))});
+    const Eigen::Vector3d drifted = at + Eigen::Vector3d(drift_m * share, 0.3 * drift_m, 0);
+    run.estimate.push_back(
+        {stamp, made_up_origin().inverse() * SE3(Eigen::Matrix3d::Identity(), drifted)});
     MappedFrame call;
     call.index = i;
     call.stamp_ns = stamp;
@@ -89,6 +95,7 @@ inline std::vector<RunResult> made_up_runs(const Suite& suite, std::size_t frame
             SE3(Eigen::Matrix3d::Identity(), {2 * std::cos(angle), 1.5 * std::sin(angle), 1.1});
         if (q.answer.world_from_camera)
           q.answer.world_from_camera =
+              made_up_origin().inverse() *
               SE3(Eigen::Matrix3d::Identity(),
                   q.true_world_from_camera->translation() + Eigen::Vector3d(*q.distance_m, 0, 0));
         if (i < p % 3) q.success = q.correct = false;  // points differ

@@ -128,6 +128,33 @@ TEST_F(Reports, HoldTheFiguresOfTheirResults) {
   EXPECT_EQ(ReadTable{table2}.number("success", 3), 0.7143);
 }
 
+TEST_F(Reports, OfAResultsFileShowEstimatesInTheFrameOfTheTruth) {
+  const PagesSource made = source_of({"den"});
+  const fs::path folder = work_.path() / "results";
+  fs::create_directories(folder);
+  {
+    Store store(folder / "results.sqlite");
+    std::vector<std::pair<std::string, std::string>> keys;
+    for (const RunResult& run : made.results.runs)
+      keys.emplace_back(run.spec.name, "key-" + run.spec.name);
+    store.plan(*made.suite, {}, keys);
+    for (const RunResult& run : made.results.runs)
+      store.put("key-" + run.spec.name, run, {.wall_s = 12.5, .max_rss_mb = 99});
+  }
+  const PagesSource read = read_source(folder);
+  ASSERT_EQ(read.problem, "");
+  write_pages(out(), std::array{read});
+  const Json run = piece(out(), "0/paths0").at(0);
+  ASSERT_EQ(run.at("truth").at("mm").size(), run.at("estimate").at("mm").size());
+  for (std::size_t i = 0; i < run.at("truth").at("mm").size(); ++i)  // the drift is 20 mm
+    EXPECT_NEAR(run.at("truth").at("mm").at(i).get<int>(),
+                run.at("estimate").at("mm").at(i).get<int>(), 50);
+  const Json curve = piece(out(), "0/figures").at("by_frame");
+  for (std::size_t row = 0; row < curve.at("rows"); ++row)
+    EXPECT_LT(ReadTable{curve}.number("error_m", row).get<double>(), 0.02);
+  EXPECT_EQ(ReadTable{piece(out(), "0/runs")}.number("wall_s", 0), 12.5);
+}
+
 TEST_F(Reports, StateTheVerdictWithItsIntervalAndWhatWouldDecideIt) {
   const PagesSource source = source_of({"a", "b", "c", "d", "e", "f"});
   write_pages(out(), std::array{source});

@@ -64,7 +64,7 @@ function Density({ density }: { density: NonNullable<Figures["density"]> }): JSX
         marginTop: 26,
         fx: { domain: density.groups, label: "objects per 10 m² of floor", padding: 0.08, axis: "bottom" },
         x: { domain: systems.map((s) => s.name), axis: null, padding: 0.15 },
-        y: { zero: true, axis: null },
+        y: { zero: true, nice: true, insetTop: 16, axis: null },
         marginBottom: 46,
         marks: [
           Plot.gridY({ facetAnchor: null }),
@@ -217,7 +217,7 @@ export function RunFromAbove({ run, queries, chosen = null }: { run: RunPaths | 
         title={`From above: ${run.name}`}
         about={`x and y in m, in the frame of the dock${rows.length > 0 ? "; × true place of a query, ○ its answer (green correct, red false), a line between both" : ""}. Source: results.sqlite${run.grid ? ", map.pgm" : ""}.`}
         legend={legend}
-        marks={{ query: found.truths.length, answer: found.answers.length }}
+        marks={{ path: Number((run.truth?.ms.length ?? 0) > 1) + Number((run.estimate?.ms.length ?? 0) > 1), query: found.truths.length, answer: found.answers.length }}
         make={make}
         wide
       />

@@ -35,12 +35,14 @@ function Differences({ sentences, unit }: { sentences: Sentence[]; unit: string 
   const make = useCallback(
     (width: number): Plot.PlotOptions => {
       const left = width > 560 ? 30 + 6.4 * Math.max(...shown.map((d) => d.what.length)) : 20;
+      const ends = [0, ...shown.map((d) => d.difference), ...bounded.flatMap((d) => [d.low ?? 0, d.high ?? 0])];
+      const spare = Math.max(unit === "%" ? 1 : 0.0005, 0.05 * (Math.max(...ends) - Math.min(...ends)));
       const color = (d: { decided: boolean }) => (d.decided ? colorOf(0) : ink().faint);
       return {
         height: 60 + shown.length * (width > 560 ? 28 : 44),
         marginLeft: left,
         marginTop: 24,
-        x: { label: unit === "%" ? "difference, percentage points" : "difference, m", grid: true, nice: true },
+        x: { label: unit === "%" ? "difference, percentage points" : "difference, m", grid: true, domain: [Math.min(...ends) - spare, Math.max(...ends) + spare] },
         y: { label: null, domain: shown.map((d) => d.what), axis: width > 560 ? "left" : null, padding: 0.4 },
         marks: [
           Plot.ruleX([0], { stroke: ink().text }),

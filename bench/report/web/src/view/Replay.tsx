@@ -129,11 +129,11 @@ function Player({ run, queries, rows, piece, onFail }: Props & { onFail: (why: s
         }}
       />
       <div class="choices">
-        <button type="button" onClick={() => step(-1)} aria-label="Step back">⏮</button>
-        <button type="button" onClick={() => (ms >= end && setMs(0), setPlaying(!playing))} aria-label={playing ? "Pause" : "Play"}>
-          {playing ? "⏸" : "▶"}
+        <button type="button" onClick={() => step(-1)}>Step back</button>
+        <button type="button" onClick={() => (ms >= end && setMs(0), setPlaying(!playing))}>
+          {playing ? "Pause" : "Play"}
         </button>
-        <button type="button" onClick={() => step(1)} aria-label="Step forward">⏭</button>
+        <button type="button" onClick={() => step(1)}>Step forward</button>
         <input type="range" class="scrub" aria-label="Moment of the tour, ms" min={0} max={end} step={10} value={ms} onInput={(event) => (setPlaying(false), setMs(Number(event.currentTarget.value)))} />
         <output>{(ms / 1e3).toFixed(2)} s{inliers === null || inliers === undefined ? "" : `, ${inliers} inliers`}</output>
         <Choice label="Speed" options={["0.25", "1", "4", "16"].map((key) => ({ key, title: `${key}×` }))} value={speed} onPick={setSpeed} />
@@ -157,7 +157,7 @@ function Player({ run, queries, rows, piece, onFail }: Props & { onFail: (why: s
       </div>
       {data && (
         <p class="note">
-          Run again to be shown: {data.same ? "the same trajectory, bit for bit" : "its trajectory differs from that of the results, which another machine or version made"}. {data.landmarks.class.length} landmarks, {data.keyframes.length} keyframes
+          Run again to be shown: {data.same ? "the same positions, bit for bit" : "its trajectory differs from that of the results, which another machine or version made"}. {data.landmarks.class.length} landmarks, {data.keyframes.length} keyframes
           {data.mesh && `; the scene has ${data.mesh.triangles} triangles of ${data.mesh.of_triangles}`}.
         </p>
       )}

@@ -104,7 +104,7 @@ export function topView(
     );
   }
   if (truth.length > 1)
-    marks.push(Plot.line(truth, { x: "x", y: "y", stroke: text, strokeWidth: 1.2 }));
+    marks.push(Plot.line(truth, { x: "x", y: "y", stroke: text, strokeWidth: 1.2, className: "m-path" }));
   if (estimate.length > 1)
     marks.push(
       Plot.line(estimate, {
@@ -113,6 +113,7 @@ export function topView(
         stroke: colorOf(0),
         strokeWidth: 1.6,
         strokeDasharray: "5 3",
+        className: "m-path",
 
       }),
     );
