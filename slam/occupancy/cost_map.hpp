@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "slam/occupancy/occupancy_grid.hpp"
+
+namespace mh {
+
+// Costs as Nav2 numbers them (nav2_costmap_2d/cost_values.hpp).
+inline constexpr std::uint8_t kFreeCost = 0;
+inline constexpr std::uint8_t kInscribedCost = 253;
+inline constexpr std::uint8_t kLethalCost = 254;
+inline constexpr std::uint8_t kUnknownCost = 255;
+
+struct CostMapConfig {
+  double inscribed_radius_m = 0.26;  ///< of the footprint: Pepper's disc
+  double inflation_radius_m = 0.55;  ///< costs end here; Nav2's default
+  double cost_scaling_factor = 3.0;  ///< 1/m, of the decay; that of Nav2's bringup
+};
+
+/// A grid of costs for a planner; cells and origin as the OccupancyGrid's.
+struct CostMap {
+  Grid2d<std::uint8_t> costs;
+  double resolution_m = 0.05;
+  Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();
+};
+
+/// The cost at a distance from the nearest obstacle, as Nav2's inflation layer computes it: 254 at
+/// 0, 253 up to the inscribed radius, then 252 exp(-factor (distance - inscribed)), cut to an
+/// integer; 0 beyond the inflation radius.
+std::uint8_t cost_at_distance(double distance_m, const CostMapConfig& config);
+
+/// Inflates the obstacles of a grid. Distances are between centers of cells, exact. As in Nav2,
+/// unknown cells stay unknown but where the robot's disc would touch an obstacle (253).
+/// @throws InputError naming a setting that is out of range, or a grid of resolution zero.
+CostMap cost_map(const OccupancyGrid& grid, const CostMapConfig& config = {});
+
+/// Writes stem.pgm and stem.yaml in mode raw: a gray level is the cost.
+/// @throws InputError if a file cannot be written.
+void save_cost_map(const CostMap& map, const std::filesystem::path& stem);
+CostMap load_cost_map(const std::filesystem::path& yaml_file);
+
+}  // namespace mh

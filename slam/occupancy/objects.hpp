@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "slam/core/labels.hpp"
+#include "slam/occupancy/voxel_map.hpp"
+
+namespace mh {
+
+/// A thing in a map: voxels of one class that hang together.
+struct MapObject {
+  std::string name;  ///< class and number, e.g. "chair 2"; unique in a map
+  ClassId class_id = kVoid;
+  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();  ///< of its box, map frame
+  Eigen::Vector3d min_m = Eigen::Vector3d::Zero(), max_m = Eigen::Vector3d::Zero();  ///< box
+  /// Share of the votes in its voxels that are for its class, times how much of a smallest object
+  /// was seen: 0 to 1.
+  double score = 0;
+  std::size_t voxels = 0;
+};
+
+struct ObjectsConfig {
+  int min_voxels = 6;  ///< smaller clusters are noise of labels
+  /// Voxels of one class hang together across gaps up to this: holes in depth.
+  double gap_m = 0.10;
+  double min_label_share = 0.4;  ///< of a voxel's votes, for it to count as its class
+};
+
+/// Whether a class is of things, in contrast to structure (wall, floor, ceiling, ...), unknown
+/// labels and people.
+bool is_thing(ClassId class_id);
+
+/// Finds the objects of a map, computed from its voxels alone: they move with the map. Ordered by
+/// class, then by number; the largest of a class is number 1.
+std::vector<MapObject> find_objects(const VoxelMap& map, const ObjectsConfig& config = {});
+
+/// Indices of the objects meant by a name: of one object ("chair 2") or of a class ("refrigerator",
+/// synonyms too), best score first.
+/// @throws InputError with a suggestion if the name means nothing, or nothing in this map.
+std::vector<std::size_t> objects_named(const std::vector<MapObject>& objects,
+                                       std::string_view name);
+
+/// As JSON: `objects`, each with name, class, class_id, score, center_m, min_m, max_m, voxels.
+std::string objects_json(const std::vector<MapObject>& objects, double resolution_m);
+
+}  // namespace mh

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "slam/core/se3.hpp"
+#include "slam/occupancy/occupancy_grid.hpp"
+#include "slam/occupancy/voxel_map.hpp"
+
+namespace mh {
+
+/// Which part of a map obstructs a robot. Heights above the map's z = 0.
+struct ObstacleGridConfig {
+  double floor_z_m = 0.0;
+  /// What is lower than this above the floor is floor. 0.10 m: two voxels; depth noise at 4 m stays
+  /// below it.
+  double ground_m = 0.10;
+  double robot_height_m = 1.21;  ///< what is higher does not touch the robot
+  /// A cell is free if it is free from below this height above the floor on: what was seen only
+  /// above may hide something low.
+  double seen_below_m = 0.40;
+};
+
+/// Projects the part of a map between ground and the robot's head to cells of the map's resolution:
+/// occupied if any voxel there is, so a table top is an obstacle and a lintel is not; free if none
+/// is and the lower part was seen free; else unknown. Empty if nothing was seen there.
+/// @throws InputError if the heights leave nothing between them.
+OccupancyGrid obstacle_grid(const VoxelMap& map, const ObstacleGridConfig& config = {});
+
+/// One turn of a planar laser. A range of 0, or not finite, or outside [min, max], tells nothing.
+struct RangeScan {
+  double first_angle_rad = 0;      ///< of ranges_m[0], about z of the sensor, 0 = its x axis
+  double angle_increment_rad = 0;  ///< between readings
+  double min_range_m = 0.0, max_range_m = 3.0;
+  std::vector<float> ranges_m;
+};
+
+/// What lasers saw of a floor, as counts per cell: a second source of a grid beside depth. Counts
+/// depend on the set of scans alone, not on their order.
+class ScanGrid {
+ public:
+  explicit ScanGrid(double resolution_m = 0.05) : resolution_m_(resolution_m) {}
+  /// Adds a scan taken at a pose. @param map_from_sensor  a plane's: only x, y and heading count
+  void add_scan(const SE3& map_from_sensor, const RangeScan& scan) {
+    tell(map_from_sensor, scan, 1);
+  }
+  /// Takes back a scan that was added with the same pose and readings.
+  void remove_scan(const SE3& map_from_sensor, const RangeScan& scan) {
+    tell(map_from_sensor, scan, -1);
+  }
+  /// Adds what the scans say to a grid, which grows as needed: occupied where the lasers hit more
+  /// than they saw through (log-odds of VoxelMap), free where they saw through and the grid knows
+  /// nothing. Occupied cells of the grid stay: the laser's plane passes below a table top.
+  /// @pre the grid's origin is a multiple of its resolution, as of obstacle_grid()
+  /// @throws InputError if the resolutions differ.
+  void add_to(OccupancyGrid& grid) const;
+
+ private:
+  struct Counts {
+    int hits = 0, misses = 0;
+  };
+  void tell(const SE3& map_from_sensor, const RangeScan& scan, int sign);
+
+  double resolution_m_;
+  std::map<std::pair<int, int>, Counts> cells_;  // by (row, column)
+};
+
+}  // namespace mh

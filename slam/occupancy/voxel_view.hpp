@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "slam/core/camera.hpp"
+#include "slam/core/grid2d.hpp"
+#include "slam/core/labels.hpp"
+#include "slam/core/se3.hpp"
+
+namespace mh {
+
+/// What one view told of 8 x 8 x 8 voxels: bit x + 8 y + 64 z of a set is the voxel at (x, y, z).
+struct VoxelBlock {
+  using Bits = std::array<std::uint64_t, 8>;        ///< one word per z
+  Eigen::Vector3i index = Eigen::Vector3i::Zero();  ///< covers voxels [8 index, 8 index + 8)
+  Bits free{}, hit{};                               ///< disjoint
+  /// Classes of hit voxels that have one: (place in the block, class), ordered by place.
+  std::vector<std::pair<std::uint16_t, ClassId>> votes;
+};
+
+/// What one view told of space, ordered by block (z, then y, then x).
+using VoxelView = std::vector<VoxelBlock>;
+
+/// How depth tells of space.
+struct DepthModel {
+  double resolution_m = 0.05;  ///< side of a voxel
+  double min_range_m = 0.4;    ///< a nearer return tells nothing: below the range of an Xtion
+  /// A farther return only clears the space up to this range. 4 m: depth noise there (3 cm, Nguyen
+  /// et al., 3DIMPVT 2012) is about a voxel. At most 250 resolutions.
+  double max_range_m = 4.0;
+  /// A ray stops clearing where it is this close to the surface that it hits, measured along the
+  /// surface's normal, in voxels: voxels that the surface cuts are not free. A grazing ray stops
+  /// earlier, at most `grazing_stop_m` before its end.
+  double clear_to_voxels = 1.0;
+  double grazing_stop_m = 0.5;
+};
+
+/// What a depth image tells, labels included. Frame: of `map_from_camera`.
+/// @param depth_m  along z, undistorted; 0 = no return, which tells nothing
+/// @param labels   of the same size, kVoid = none; or empty
+VoxelView look(const Grid2d<float>& depth_m, const Grid2d<ClassId>& labels, const Camera& camera,
+               const SE3& map_from_camera, const DepthModel& model);
+
+}  // namespace mh
