@@ -72,6 +72,7 @@ int run(int argc, char** argv) {
   mh::cli::add_verify(app);
   mh::cli::add_check(app);
   mh::cli::add_audit(app);
+  mh::cli::add_episode(app);
   mh::cli::add_evaluate(app);
   mh::cli::add_scene(app);
   mh::cli::add_drive(app);
