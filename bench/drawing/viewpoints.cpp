@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "bench/drawing/contact_sheet.hpp"
+#include "robots/navigation/floor_grid.hpp"
 #include "robots/navigation/plan.hpp"
 #include "scenes/floor.hpp"
 #include "slam/core/error.hpp"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "robots/navigation/floor_grid.hpp"
+#include "robots/navigation/grid.hpp"
 
 namespace mh {
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "robots/navigation/floor_grid.hpp"
 #include "robots/navigation/plan.hpp"
 #include "sim/motion/path.hpp"
 #include "sim/motion/start.hpp"

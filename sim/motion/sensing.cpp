@@ -55,32 +55,51 @@ float ping(const PlanarWorld& world, const Sonar& sonar, const SE3& world_from_b
   return static_cast<float>(nearest_m);
 }
 
-/// Fills in the IMU's readings, from the second difference of its position.
-void feel(std::vector<RobotReading>& moments, const Trajectory& base, const SE3& base_from_imu) {
-  const auto n = base.size();
-  const auto world_from_imu = [&](std::size_t i) {
-    return base[i].world_from_camera * base_from_imu;
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t a = i == 0 ? 0 : i - 1, c = std::min(i + 1, n - 1);
-    const double before_s = 1e-9 * static_cast<double>(base[i].stamp_ns - base[a].stamp_ns);
-    const double after_s = 1e-9 * static_cast<double>(base[c].stamp_ns - base[i].stamp_ns);
-    const Vector3d here = world_from_imu(i).translation();
-    Vector3d acceleration = Vector3d::Zero();
-    if (before_s > 0 && after_s > 0)
-      acceleration = ((world_from_imu(c).translation() - here) / after_s -
-                      (here - world_from_imu(a).translation()) / before_s) /
-                     (0.5 * (before_s + after_s));
-    moments[i].specific_force_m_per_s2 = world_from_imu(i).rotation().transpose() *
-                                         (acceleration + Vector3d(0, 0, kGravity_m_per_s2));
-    if (before_s + after_s > 0)
-      moments[i].turn_rad_per_s =
-          so3_log((world_from_imu(a).inverse() * world_from_imu(c)).rotation()) /
-          (before_s + after_s);
-  }
+}  // namespace
+
+RobotReading read_ranges(const PlanarWorld& world, const Equipment& equipment,
+                         const SE3& world_from_base) {
+  RobotReading reading;
+  for (const LaserScanner& laser : equipment.lasers)
+    reading.lasers_m.push_back(scan(world, laser, world_from_base));
+  for (const Sonar& sonar : equipment.sonars)
+    reading.sonars_m.push_back(ping(world, sonar, world_from_base));
+  return reading;
 }
 
-}  // namespace
+std::vector<bool> pressed_bumpers(const Contact& contact, const Equipment& equipment,
+                                  const SE3& world_from_base) {
+  std::vector<bool> pressed;
+  for (const std::string& link : equipment.bumpers) {
+    const Vector3d at = equipment.tree.root_from(link).translation();
+    const Vector3d out = world_from_base.rotation() * Vector3d(at.x(), at.y(), 0.0).normalized();
+    pressed.push_back(contact.touching && contact.direction.norm() > 0 &&
+                      std::acos(std::clamp(contact.direction.dot(out.head<2>()), -1.0, 1.0)) <
+                          kBumperReach_rad);
+  }
+  return pressed;
+}
+
+void feel(RobotReading& reading, const TimedPose& before, const TimedPose& here,
+          const TimedPose& after, const SE3& base_from_imu) {
+  const auto world_from_imu = [&](const TimedPose& pose) {
+    return pose.world_from_camera * base_from_imu;
+  };
+  const double before_s = 1e-9 * static_cast<double>(here.stamp_ns - before.stamp_ns);
+  const double after_s = 1e-9 * static_cast<double>(after.stamp_ns - here.stamp_ns);
+  const Vector3d place_m = world_from_imu(here).translation();
+  Vector3d acceleration = Vector3d::Zero();
+  if (before_s > 0 && after_s > 0)
+    acceleration = ((world_from_imu(after).translation() - place_m) / after_s -
+                    (place_m - world_from_imu(before).translation()) / before_s) /
+                   (0.5 * (before_s + after_s));
+  reading.specific_force_m_per_s2 = world_from_imu(here).rotation().transpose() *
+                                    (acceleration + Vector3d(0, 0, kGravity_m_per_s2));
+  if (before_s + after_s > 0)
+    reading.turn_rad_per_s =
+        so3_log((world_from_imu(before).inverse() * world_from_imu(after)).rotation()) /
+        (before_s + after_s);
+}
 
 RobotReadings read_sensors(const Scene& scene, const Robot& robot, const Trajectory& base,
                            std::uint64_t seed, const std::vector<MovingObstacle>& others) {
@@ -94,29 +113,19 @@ RobotReadings read_sensors(const Scene& scene, const Robot& robot, const Traject
   const Vector2d start_m = base.front().world_from_camera.translation().head<2>();
   PlanarWorld world(scene, robot, start_m, 0.0);
   for (const MovingObstacle& other : others) world.add(other);
-  for (const TimedPose& pose : base) {
-    const SE3& world_from_base = pose.world_from_camera;
+  for (std::size_t i = 0; i < base.size(); ++i) {
+    const SE3& world_from_base = base[i].world_from_camera;
     const Vector2d place_m = world_from_base.translation().head<2>();
     const Vector3d ahead = world_from_base.rotation().col(0);
     world.place(place_m, std::atan2(ahead.y(), ahead.x()));
-    world.show_at(1e-9 * static_cast<double>(pose.stamp_ns));
-    RobotReading reading;
-    reading.stamp_ns = pose.stamp_ns;
-    for (const LaserScanner& laser : equipment.lasers)
-      reading.lasers_m.push_back(scan(world, laser, world_from_base));
-    for (const Sonar& sonar : equipment.sonars)
-      reading.sonars_m.push_back(ping(world, sonar, world_from_base));
-    const Contact contact = world.contact();
-    for (const std::string& link : equipment.bumpers) {
-      const Vector3d at = equipment.tree.root_from(link).translation();
-      const Vector3d out = world_from_base.rotation() * Vector3d(at.x(), at.y(), 0.0).normalized();
-      reading.bumpers.push_back(contact.touching && contact.direction.norm() > 0 &&
-                                std::acos(std::clamp(contact.direction.dot(out.head<2>()), -1.0,
-                                                     1.0)) < kBumperReach_rad);
-    }
+    world.show_at(1e-9 * static_cast<double>(base[i].stamp_ns));
+    RobotReading reading = read_ranges(world, equipment, world_from_base);
+    reading.stamp_ns = base[i].stamp_ns;
+    reading.bumpers = pressed_bumpers(world.contact(), equipment, world_from_base);
+    feel(reading, base[i == 0 ? 0 : i - 1], base[i], base[std::min(i + 1, base.size() - 1)],
+         equipment.base_from_imu);
     readings.moments.push_back(std::move(reading));
   }
-  feel(readings.moments, base, equipment.base_from_imu);
   return readings;
 }
 

@@ -27,6 +27,17 @@ struct RobotReadings {
   std::vector<RobotReading> moments;
 };
 
+/// Lasers and sonars in the world as it is; the rest of the reading is left empty.
+RobotReading read_ranges(const PlanarWorld& world, const Equipment& equipment,
+                         const SE3& world_from_base);
+/// Which bumpers a contact presses, by bumper.
+std::vector<bool> pressed_bumpers(const Contact& contact, const Equipment& equipment,
+                                  const SE3& world_from_base);
+/// Fills in the IMU's readings, from the second difference of its position; the poses are the
+/// base's.
+void feel(RobotReading& reading, const TimedPose& before, const TimedPose& here,
+          const TimedPose& after, const SE3& base_from_imu);
+
 /// Simulates the robot's sensors along the path of its base.
 /// @param others  moving obstacles during the drive
 /// @throws InputError if the robot has no equipment.

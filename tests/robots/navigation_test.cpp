@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "robots/navigation/floor_grid.hpp"
 #include "robots/navigation/plan.hpp"
 #include "slam/core/error.hpp"
 #include "tests/sim/boxes.hpp"

@@ -5,6 +5,7 @@ import os
 import tempfile
 import unittest
 
+from apart import faults
 from rooms import read_rooms, violations
 
 ROOMS = """low|a/low.cpp|Eigen3::Eigen|
@@ -46,6 +47,23 @@ class Violations(unittest.TestCase):
     def test_a_circle_of_links_is_found(self):
         rooms = ROOMS.replace("Eigen3::Eigen|", "Eigen3::Eigen|mh::high")
         self.assertEqual(self.found({}, rooms), ["circle: low -> high -> low"])
+
+    def test_a_navigation_that_reaches_the_truth_is_found(self):
+        apart = "core|a.cpp||\nscenes|b.cpp|mh::core|\nrobots|c.cpp|mh::core|\n"
+        with tempfile.TemporaryDirectory() as root:
+            os.makedirs(os.path.join(root, "robots/navigation"))
+            drive = os.path.join(root, "robots/navigation/drive.cpp")
+            with open(drive, "w", encoding="utf-8") as text:
+                text.write('#include "slam/core/se3.hpp"\n')
+            rooms = read_rooms(apart + "navigation|d.cpp|mh::robots|\n")
+            self.assertEqual(faults(rooms, root), [])
+            rooms = read_rooms(apart.replace("c.cpp|mh::core|", "c.cpp||mh::scenes") +
+                               "navigation|d.cpp|mh::robots|\n")
+            self.assertEqual(faults(rooms, root), ["navigation links scenes"])
+            with open(drive, "w", encoding="utf-8") as text:
+                text.write('#include "scenes/scene.hpp"\n')
+            self.assertEqual(faults(rooms, root)[1:],
+                             ["robots/navigation/drive.cpp includes scenes/scene.hpp"])
 
 
 if __name__ == "__main__":

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "robots/model/wheel_base.hpp"
+#include "robots/navigation/pose2.hpp"
+
+namespace mh {
+
+struct FollowConfig {
+  double speed_m_per_s = 0.35;   ///< MaxVelXY's default (robots/pepper/pepper.yaml)
+  double turn_rad_per_s = 0.6;   ///< lower than the base's: at 10 Hz, 3.4 degrees per frame
+  double ahead_m = 0.30;         ///< it steers to the place so far along the path
+  double braking = 0.4;          ///< share of the base's acceleration: the jerk limit delays it
+  double face_rad = 0.5;         ///< turned farther from its way than this, it only turns
+  double shell_margin_m = 0.04;  ///< kept from what the sensors show
+  double arrived_m = 0.08;       ///< from the end of the path
+};
+
+/// The fastest that the base may move in a direction so that it can stop before the nearest of some
+/// places; infinite if none is in the way.
+/// @param radius_m  of the disc that must not touch
+double speed_before(std::span<const Eigen::Vector2d> obstacles_m, const Eigen::Vector2d& place_m,
+                    const Eigen::Vector2d& direction, double radius_m, double braking_m_per_s2);
+
+/// Steering of a holonomic base along a path: pure pursuit (Coulter, 1992) of a place ahead, facing
+/// it, slower before the end, in turns, and before what the sensors show.
+struct Steering {
+  Twist2d command = Twist2d::Zero();
+  double left_m = 0;     ///< of the path
+  bool arrived = false;  ///< at its end
+  bool blocked = false;  ///< something stands in the way
+};
+
+/// @param path       in the frame of `at`; at least one place
+/// @param at         pose of the base
+/// @param obstacles  in the same frame
+Steering follow(const std::vector<Eigen::Vector2d>& path, const Pose2& at,
+                std::span<const Eigen::Vector2d> obstacles_m, const Robot& robot,
+                const FollowConfig& config = {});
+
+/// Turning in place toward a heading; 0 once within `close_rad`.
+Twist2d turn_in_place(double left_rad, const BaseLimits& limits, const FollowConfig& config,
+                      double close_rad = 0.03);
+
+}  // namespace mh

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "robots/model/robot.hpp"
+#include "robots/navigation/grid.hpp"
+#include "robots/navigation/pose2.hpp"
+#include "slam/core/camera.hpp"
+
+namespace mh {
+
+struct LocalMapConfig {
+  double resolution_m = 0.05;
+  double half_size_m = 5.0;  ///< of the window that moves along with the robot
+  // What the depth camera shows between these heights stands in the way. 8 cm: depth noise at
+  // max_depth_m, seen from 1.1 m, stays below it.
+  double bottom_m = 0.08, top_m = 1.25;
+  double max_depth_m = 3.5;
+  /// Nearer than this the camera looks over what is lower than itself: nothing is cleared there.
+  double blind_m = 1.2;
+};
+
+/// What lasers, bumpers and the depth camera have shown around the robot lately, in the frame of
+/// the wheel odometry: it needs no map and no pose in one. What was seen stays until the same kind
+/// of sensor sees through it.
+class LocalMap {
+ public:
+  explicit LocalMap(const LocalMapConfig& config = {});
+
+  /// Forgets everything: the robot was carried.
+  void clear();
+  /// Adds the scans of all lasers. @param lasers_m  as RobotReading's
+  void add_lasers(const Equipment& equipment, std::span<const std::vector<float>> lasers_m,
+                  const Pose2& odom_from_base);
+  /// Adds a depth image taken at that pose. Nothing where it has no return.
+  void add_depth(const Grid2d<float>& depth_m, const Camera& camera, const SE3& base_from_camera,
+                 const Pose2& odom_from_base);
+  /// Something was touched there.
+  void add_contact(const Eigen::Vector2d& place_in_odom_m);
+
+  /// Places (odometry frame) where something stands, within a radius of a place.
+  std::vector<Eigen::Vector2d> obstacles_near(const Eigen::Vector2d& place_m,
+                                              double radius_m) const;
+  /// The window as a grid to plan on; what was never seen is blocked.
+  FloorGrid grid() const;
+
+ private:
+  enum Layer : std::uint8_t { kLaser = 1, kDepth = 2, kTouched = 4, kSeen = 8 };
+  std::uint8_t* cell(const Eigen::Vector2d& place_m);
+  Eigen::Vector2d center_of(int x, int y) const;
+  void move_to(const Eigen::Vector2d& place_m);
+  /// Clears a layer and marks as seen along a ray, from `from` m to `to` m.
+  void see_through(const Eigen::Vector2d& start_m, const Eigen::Vector2d& direction, double from_m,
+                   double to_m, Layer layer);
+
+  LocalMapConfig config_;
+  int cells_;                     ///< of a side of the window
+  Eigen::Vector2i corner_{0, 0};  ///< cell of the odometry frame that is cell (0, 0) of the window
+  Grid2d<std::uint8_t> layers_;
+};
+
+}  // namespace mh

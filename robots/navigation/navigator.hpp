@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "robots/model/robot.hpp"
+#include "robots/navigation/belief.hpp"
+#include "robots/navigation/follow.hpp"
+#include "robots/navigation/grid.hpp"
+#include "robots/navigation/local_map.hpp"
+#include "robots/navigation/lost.hpp"
+
+namespace mh {
+
+/// A thing of the robot's own map, seen from above.
+struct NamedThing {
+  std::string name;                                 ///< of its class
+  Eigen::Vector2d low_m = Eigen::Vector2d::Zero();  ///< box, map frame
+  Eigen::Vector2d high_m = Eigen::Vector2d::Zero();
+  double score = 0;  ///< higher is surer
+};
+
+/// Distance (m) of a place from a box seen from above; 0 inside.
+double distance_to_box(const Eigen::Vector2d& place_m, const Eigen::Vector2d& low_m,
+                       const Eigen::Vector2d& high_m);
+
+/// What a robot knows of a place that it has mapped.
+struct KnownMap {
+  FloorGrid grid;                 ///< clearance; what is unknown is blocked
+  Grid2d<std::uint8_t> blocked;   ///< of the same cells: occupied or unknown
+  Grid2d<std::uint8_t> occupied;  ///< of the same cells
+  std::vector<NamedThing> things;
+};
+
+/// What to drive to.
+struct NavigatorGoal {
+  std::string name;  ///< for what is said
+  Eigen::Vector2d low_m = Eigen::Vector2d::Zero(), high_m = Eigen::Vector2d::Zero();
+};
+
+struct NavigatorConfig {
+  FollowConfig follow;
+  LostConfig lost;
+  BeliefConfig belief;
+  double lost_speed_m_per_s = 0.25;  ///< while it does not know where it is
+  // Clearances of the robot's center beyond its radius: the wanted one and what must do.
+  double margin_m = 0.08, least_margin_m = 0.03;
+  double reach_m = 0.9;    ///< it has arrived if the thing's box is no farther than this
+  double patience_s = 10;  ///< without progress
+  int most_recoveries = 4, most_bumps = 3;
+};
+
+/// What the robot perceives at one moment. No truth.
+struct Perception {
+  double time_s = 0;
+  Pose2 odom_from_base;
+  std::span<const std::vector<float>> lasers_m;
+  std::vector<bool> bumpers;
+  /// A frame, with the odometry of its moment.
+  struct Seen {
+    const Grid2d<float>* depth_m = nullptr;  ///< null: the frame is blank
+    Pose2 odom_from_base;
+    std::optional<Pose2> map_from_base;  ///< the SLAM system's answer to it
+  };
+  std::optional<Seen> seen;
+};
+
+enum class NavigatorState {
+  kLooking,    ///< turns in place, lost
+  kExploring,  ///< drives to where it looks around next, lost
+  kPlanning,
+  kDriving,
+  kFacing,   ///< at the end of its way, it turns to the thing
+  kBacking,  ///< away from what it touched
+  // Ends; the robot stands still.
+  kArrived,
+  kNoPath,
+  kStuck,
+  kCollided,
+};
+std::string_view name(NavigatorState state);
+inline bool is_end(NavigatorState state) {
+  return state >= NavigatorState::kArrived;
+}
+
+/// Drives a robot to a place of its own map, from wherever it was put: looks around until it knows
+/// where it is, plans over the map and what its sensors show, follows the way, stops for what is in
+/// it, and says when it has arrived, is stuck or gives up. It receives what the robot measures and
+/// what its SLAM system answers, nothing else: its library links no scene and no simulator.
+class Navigator {
+ public:
+  /// @param map    outlives it
+  /// @param robot  outlives it
+  /// @throws InputError if the robot has no lasers or bumpers, or the goal is not within reach of
+  /// any free place of the map.
+  Navigator(const KnownMap& map, const Robot& robot, const NavigatorGoal& goal,
+            const NavigatorConfig& config = {});
+
+  /// The command for the next moments (base frame).
+  Twist2d step(const Perception& now);
+
+  NavigatorState state() const { return state_; }
+  bool knows_its_place() const { return belief_.known(); }
+  /// Where it believes to be. @pre knows_its_place()
+  Pose2 map_from_base(const Pose2& odom_from_base) const {
+    return belief_.map_from_odom() * odom_from_base;
+  }
+  /// The way that it follows, in the map if it knows its place, else in the odometry's frame.
+  const std::vector<Eigen::Vector2d>& path() const { return path_; }
+  /// What it decided, one line each, since the last call.
+  std::vector<std::string> take_said() { return std::exchange(said_, {}); }
+
+ private:
+  void say(std::string_view text) { said_.emplace_back(text); }
+  void enter(NavigatorState state, double time_s);
+  void perceive(const Perception& now);
+  Twist2d look(const Perception& now);
+  Twist2d explore(const Perception& now);
+  Twist2d plan(const Perception& now);
+  Twist2d drive(const Perception& now);
+  Twist2d face(const Perception& now);
+  Twist2d back(const Perception& now);
+  bool touched(const Perception& now);
+  /// The map with what the sensors show now.
+  FloorGrid present_grid(const Pose2& map_from_base) const;
+  bool find_way(const Pose2& map_from_base);
+  void recover(const Perception& now, const std::string& why);
+
+  const KnownMap& map_;
+  const Robot& robot_;
+  NavigatorGoal goal_;
+  NavigatorConfig config_;
+  LocalMap local_;
+  PlaceBelief belief_;
+  NavigatorState state_ = NavigatorState::kLooking;
+  std::vector<std::string> said_;
+  std::vector<Eigen::Vector2d> path_;
+  std::vector<Eigen::Vector2d> looked_;  ///< where it has turned, odometry's frame
+  double since_s_ = 0;                   ///< when the state was entered
+  double turned_rad_ = 0;
+  std::optional<double> heading_before_;
+  Eigen::Vector2d away_ = Eigen::Vector2d::Zero();  ///< base frame: from what it touched
+  double planned_s_ = 0, progress_s_ = 0, least_left_m_ = 0;
+  int recoveries_ = 0, bumps_ = 0;
+  bool was_known_ = false;
+};
+
+/// The place of a map that is best to stand at before a thing: the nearest to its box, the nearest
+/// by way among those; nullopt if no place that can be reached from `from_m` is within reach.
+std::optional<Eigen::Vector2d> place_before(const FloorGrid& grid, const Eigen::Vector2d& from_m,
+                                            const NavigatorGoal& goal, double clearance_m,
+                                            double reach_m);
+
+}  // namespace mh

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "robots/navigation/grid.hpp"
+
+namespace mh {
+
+/// Samples a way every `spacing_m` and pulls its corners round: each sample moves toward the middle
+/// of its neighbors, as long as it keeps the clearance that it had, or `clearance_m`. Ends stay.
+std::vector<Eigen::Vector2d> smoothed(const FloorGrid& grid,
+                                      const std::vector<Eigen::Vector2d>& way, double clearance_m,
+                                      double spacing_m = 0.05);
+
+/// Length of a polyline, m.
+double length_m(const std::vector<Eigen::Vector2d>& way);
+
+}  // namespace mh

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/world/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sim/motion/start.hpp"
+#include "sim/world/sequence.hpp"
+#include "sim/world/travel.hpp"
+
+namespace mh {
+namespace {
+
+/// Ticks that a frame depends on: its motion, and what an exposure control saw before.
+constexpr std::size_t kClip = 10;
+
+Shutter::SceneAt moment_of_scene(const SimulatedScene& scene) {
+  if (scene.pedestrian)
+    return [walked = scene.pedestrian](Stamp stamp_ns) { return walked->at(stamp_ns); };
+  return [renderer = scene.renderer](Stamp) { return renderer; };
+}
+
+}  // namespace
+
+Simulation::Simulation(SimulatedScene scene, const Robot& robot, const SensorConfig& level,
+                       const SimulationConfig& config)
+    : scene_(std::move(scene)),
+      robot_(robot),
+      level_(level),
+      config_(config),
+      base_(*scene_.scene, robot, config.start_m, config.start_heading_rad, config.reflex),
+      odometer_(robot.equipment->wheels, robot.equipment->odometry, config.seed) {
+  robot_.camera = with_lens(robot_.camera, level_);
+  if (scene_.pedestrian) base_.add(as_obstacle(*scene_.scene, scene_.pedestrian->pedestrian()));
+  check_start(base_.world(), *scene_.scene, config_.start_m, "start");
+  odom_from_base_ = odometer_.drive_to(base_.world_from_base());
+  recent_.push_back(pose_now());
+}
+
+TimedPose Simulation::pose_now() const {
+  return {std::llround(static_cast<double>(ticks_) * 1e9 / robot_.camera.rate_hz),
+          base_.world_from_base()};
+}
+
+void Simulation::tick() {
+  ++ticks_;
+  odom_from_base_ = odometer_.drive_to(base_.world_from_base());
+  recent_.push_back(pose_now());
+  if (recent_.size() > kClip) recent_.erase(recent_.begin());
+}
+
+RgbdFrame Simulation::frame() const {
+  const std::size_t at = recent_.size() < 2 ? 0 : recent_.size() - 2;
+  const Stamp stamp_ns = recent_[at].stamp_ns;
+  if (!light_)
+    return {.stamp_ns = stamp_ns,
+            .color = Grid2d<Rgb8>(robot_.camera.width_px, robot_.camera.height_px),
+            .depth_m = Grid2d<float>(robot_.camera.width_px, robot_.camera.height_px),
+            .semantics = {}};
+  Trajectory path;
+  for (const TimedPose& pose : recent_)
+    path.push_back({pose.stamp_ns, pose.world_from_camera * robot_.base_from_camera});
+  const Shutter shutter(moment_of_scene(scene_), robot_.camera, std::move(path), level_);
+  const RandomStream noise = RandomStream(config_.seed).fork(static_cast<std::uint64_t>(ticks_));
+  return sense_moment(shutter, level_, config_.labels, at, noise).frame;
+}
+
+Observation Simulation::step(const Twist2d& command, double dt_s) {
+  const long ticks = std::max(1L, std::lround(dt_s * robot_.camera.rate_hz));
+  Observation seen;
+  bool due = false;
+  std::vector<bool> pressed(robot_.equipment->bumpers.size(), false);
+  for (long t = 0; t < ticks; ++t) {
+    for (int s = 0; s < base_.steps_per_frame(); ++s) {
+      base_.step(command);
+      const std::vector<bool> now =
+          base_.contact().touching
+              ? pressed_bumpers(base_.contact(), *robot_.equipment, base_.world_from_base())
+              : std::vector<bool>(pressed.size(), false);
+      for (std::size_t b = 0; b < pressed.size(); ++b) pressed[b] = pressed[b] || now[b];
+    }
+    tick();
+    due = due || ticks_ % config_.ticks_per_frame == 0;
+  }
+  if (due) seen.frame = frame();
+  seen.reading = read_ranges(base_.world(), *robot_.equipment, base_.world_from_base());
+  seen.stamp_ns = seen.reading.stamp_ns = recent_.back().stamp_ns;
+  seen.reading.bumpers = std::move(pressed);
+  const std::size_t n = recent_.size(), here = n < 2 ? 0 : n - 2;
+  feel(seen.reading, recent_[here == 0 ? 0 : here - 1], recent_[here], recent_[n - 1],
+       robot_.equipment->base_from_imu);
+  seen.odom_from_base = odom_from_base_;
+  return seen;
+}
+
+void Simulation::carry_to(const Eigen::Vector2d& place_m, double heading_rad) {
+  base_.carry_to(place_m, heading_rad);
+  check_start(base_.world(), *scene_.scene, place_m, "carried");
+  odometer_.lift_to(base_.world_from_base());
+  recent_.clear();
+  recent_.push_back(pose_now());
+}
+
+}  // namespace mh

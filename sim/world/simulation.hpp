@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "robots/model/odometry.hpp"
+#include "sim/motion/commanded_base.hpp"
+#include "sim/motion/sensing.hpp"
+#include "sim/sensors/labels.hpp"
+#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/shutter.hpp"
+#include "sim/world/pedestrian.hpp"
+#include "slam/core/rgbd_frame.hpp"
+
+namespace mh {
+
+/// A lit place to simulate a robot in. Everything is shared and only read: any number of
+/// simulations may use it, in any threads.
+struct SimulatedScene {
+  std::shared_ptr<const Scene> scene;  ///< its floor is z = 0 (LevelScene)
+  std::shared_ptr<const Renderer> renderer;
+  std::shared_ptr<const PedestrianScene> pedestrian = nullptr;  ///< of that renderer; or null
+};
+
+struct SimulationConfig {
+  Eigen::Vector2d start_m = Eigen::Vector2d::Zero();
+  double start_heading_rad = 0;
+  /// A frame is delivered every so many ticks of the camera: 3 are 10 Hz of 30, what Pepper's
+  /// driver publishes (naoqi_driver aed1b87, boot_config.json).
+  int ticks_per_frame = 3;
+  LabelMode labels = LabelMode::kExact;
+  std::uint64_t seed = 0;  ///< of all noise
+  bool reflex = false;     ///< the external-collision reflex is awake
+};
+
+/// What the robot's sensors deliver after a step.
+struct Observation {
+  Stamp stamp_ns = 0;
+  /// If one was due during the step; the latest, if several. Stamped one tick of the camera before
+  /// it arrives: an exposure is over before it is read out.
+  std::optional<RgbdFrame> frame;
+  /// Lasers, sonars and bumpers now; the IMU one tick ago.
+  RobotReading reading;
+  SE3 odom_from_base;  ///< wheel odometry
+};
+
+/// A robot in a scene, stepped by whoever steers it: physics, sensors and camera of a robot that is
+/// commanded by velocity. Command scripts (sim/motion/commands.hpp) drive on the same
+/// CommandedBase. Deterministic: the same commands give the same bits.
+class Simulation {
+ public:
+  /// @param level  sensor settings
+  /// @throws InputError if the robot has no equipment or no jerk limits, or cannot stand at the
+  /// start.
+  Simulation(SimulatedScene scene, const Robot& robot, const SensorConfig& level,
+             const SimulationConfig& config);
+
+  /// Drives by a velocity in the base's frame and returns what is sensed at the end.
+  /// @param dt_s  rounded to whole ticks of the camera, at least one
+  Observation step(const Twist2d& command, double dt_s);
+
+  /// Lifts the robot to another place; its wheels do not turn. @throws InputError if it cannot
+  /// stand there.
+  void carry_to(const Eigen::Vector2d& place_m, double heading_rad);
+  /// While the light is off, frames are blank.
+  void switch_light(bool on) { light_ = on; }
+
+  // The truth: for scores alone.
+  const CommandedBase& truth() const { return base_; }
+  double time_s() const { return base_.time_s(); }
+
+ private:
+  void tick();
+  TimedPose pose_now() const;
+  RgbdFrame frame() const;
+
+  SimulatedScene scene_;
+  Robot robot_;
+  SensorConfig level_;
+  SimulationConfig config_;
+  CommandedBase base_;
+  WheelOdometer odometer_;
+  SE3 odom_from_base_;
+  std::vector<TimedPose> recent_;  ///< world_from_base, one per tick, since it was last carried
+  long ticks_ = 0;
+  bool light_ = true;
+};
+
+}  // namespace mh
