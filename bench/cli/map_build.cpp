@@ -14,8 +14,8 @@
 #include "bench/studies/map_score.hpp"
 #include "bench/studies/map_study.hpp"
 #include "robots/model/robot.hpp"
-#include "scenes/load.hpp"
 #include "scenes/images/write_image.hpp"
+#include "scenes/load.hpp"
 #include "sim/render/renderer.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
@@ -33,7 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options : SourceOptions {
+struct MapBuildArguments : SourceOptions {
   std::string vocabulary = "vocabulary", out, map, poses;
   double resolution_m = 0.05, height_m = 1.21;
   std::size_t frames = SIZE_MAX, every = 1;
@@ -59,7 +59,7 @@ Posed posed_by(const SlamState& state) {
 
 /// Maps the sequence as a live feed.
 /// @param keep  receives each keyframe's frame
-Posed run_slam(const Options& options, const Source& source,
+Posed run_slam(const MapBuildArguments& options, const Source& source,
                const std::shared_ptr<const Vocabulary>& vocabulary,
                const std::function<void(const RgbdFrame&)>& keep) {
   SlamConfig config = source.settings.slam;
@@ -78,13 +78,14 @@ Posed run_slam(const Options& options, const Source& source,
   }
   progress.end();
   if (state.map.empty())
-    throw InputError(options.source + ": nothing could be mapped: no frame showed 100 keypoints "
-                                      "with depth to begin with");
+    throw InputError(options.source +
+                     ": nothing could be mapped: no frame showed 100 keypoints "
+                     "with depth to begin with");
   return posed_by(state);
 }
 
 /// Keeps the frames of the sequence at the stamps of known poses.
-void keep_posed(const Options& options, const Source& source, const Trajectory& poses,
+void keep_posed(const MapBuildArguments& options, const Source& source, const Trajectory& poses,
                 const std::function<void(const RgbdFrame&)>& keep) {
   std::size_t met = 0;
   auto pose = poses.begin();
@@ -102,8 +103,8 @@ void keep_posed(const Options& options, const Source& source, const Trajectory& 
 }
 
 /// The frame of the map: that of a scene, whose robot knows its dock; else the floor's.
-SE3 find_map_frame(const Options& options, const Source& source, const OccupancyMapper& mapper,
-                   const Trajectory& poses) {
+SE3 find_map_frame(const MapBuildArguments& options, const Source& source,
+                   const OccupancyMapper& mapper, const Trajectory& poses) {
   if (const Trajectory* truth = source.frames->truth(); options.is_scene() && truth != nullptr)
     for (const TimedPose& pose : poses)
       if (const TimedPose* known = pose_at(*truth, pose.stamp_ns))
@@ -118,21 +119,20 @@ SE3 find_map_frame(const Options& options, const Source& source, const Occupancy
   return floor->floor_from_world;
 }
 
-void score(const Options& options, const Source& source, const OccupancyMapper& mapper,
+void score(const MapBuildArguments& options, const Source& source, const OccupancyMapper& mapper,
            const MapStudy& study) {
   const Scene scene = load_scene(find_scene(options.source.substr(kSceneSource.size())), nullptr,
                                  options.frame.frame());
-  const MapScores scores = score_map(scene, mapper, *source.frames->truth(), study,
-                                     {.resolution_m = options.resolution_m,
-                                      .floor_z_m = 0,
-                                      .robot_height_m = options.height_m});
+  const MapScores scores = score_map(
+      scene, mapper, *source.frames->truth(), study,
+      {.resolution_m = options.resolution_m, .floor_z_m = 0, .robot_height_m = options.height_m});
   const fs::path out = options.out;
   write_atomically(out / "score.json", scores_json(scores));
   write_image(out / "grid_against_truth.png", draw_against_truth(study.grid, scores.plan));
   fmt::print("{}", scores_text(scores));
 }
 
-void run(Options options) {
+void run(MapBuildArguments options) {
   options.check();
   if (!options.map.empty() && !options.poses.empty())
     throw InputError("--map and --poses: one of them says where the frames are");
@@ -169,8 +169,7 @@ void run(Options options) {
                                  options.source, counted(kept, "keyframe")));
   const SE3 map_from_world = find_map_frame(options, source, mapper, posed.poses);
   mapper.update(posed.poses, map_from_world);
-  for (MapPoint& landmark : posed.landmarks)
-    landmark.point_m = map_from_world * landmark.point_m;
+  for (MapPoint& landmark : posed.landmarks) landmark.point_m = map_from_world * landmark.point_m;
   const MapStudy study = study_of(mapper.map(), {.robot_height_m = options.height_m});
   write_map_files(options.out, mapper.map(), study);
   if (posed.landmarks.empty()) posed.landmarks = points_of(mapper.map());
@@ -186,25 +185,33 @@ void run(Options options) {
 }  // namespace
 
 void add_map_build(CLI::App& map) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MapBuildArguments>();
   CLI::App* command = map.add_subcommand(
       "build", "Octree, grid, costs and objects from the depth of a sequence's keyframes.");
   options->add_to(*command);
   command->add_option("--out", options->out, "Folder for the results")->required();
-  command->add_option("--map", options->map, "Saved map (slam --save-map) of this sequence: where its keyframes are; without: SLAM is run");
-  command->add_option("--poses", options->poses, "Trajectory of this sequence instead, TUM text or EuRoC CSV");
-  command->add_option("--every", options->every, "--poses, --map: only every n-th frame that has a pose")
+  command->add_option("--map", options->map,
+                      "Saved map (slam --save-map) of this sequence: where its keyframes are; "
+                      "without: SLAM is run");
+  command->add_option("--poses", options->poses,
+                      "Trajectory of this sequence instead, TUM text or EuRoC CSV");
+  command
+      ->add_option("--every", options->every,
+                   "--poses, --map: only every n-th frame that has a pose")
       ->check(CLI::Range(1, 1000000));
-  command->add_option("--vocabulary", options->vocabulary, "Vocabulary file, or the name of the shipped one");
+  command->add_option("--vocabulary", options->vocabulary,
+                      "Vocabulary file, or the name of the shipped one");
   command->add_option("--resolution", options->resolution_m, "Side of a voxel, m")
       ->check(number_between(0.01, 1.0));
-  command->add_option("--height", options->height_m, "Of the robot, m: what is higher is no obstacle")
+  command
+      ->add_option("--height", options->height_m, "Of the robot, m: what is higher is no obstacle")
       ->check(number_between(0.15, 10.0));
   command->add_option("--frames", options->frames, "At most so many frames")
       ->default_str("all")
       ->check(CLI::Range(1, 100000000));
   command->add_flag("--plain", options->plain, "SLAM without semantics");
-  command->add_flag("--score", options->score, "scene: against the exact mesh, with the poses given and with the true ones");
+  command->add_flag("--score", options->score,
+                    "scene: against the exact mesh, with the poses given and with the true ones");
   command->footer("Example:\n  modelhouse map build out/sequence --out out/map");
   command->callback([options] { run(*options); });
 }

@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-struct Options : SourceOptions {
+struct SlamArguments : SourceOptions {
   std::string vocabulary = "vocabulary", out, map, save_map, truth;
   DetectorOption detector;
   std::optional<double> gamma, xi;
@@ -39,7 +39,8 @@ struct Options : SourceOptions {
 /// Applies what --settings may change for a loaded map: the settings of relocalization. The others
 /// have shaped the map: the map's values are kept, and a note lists those that the file would
 /// change.
-void apply_settings(const Options& options, SlamConfig& of_map, std::vector<std::string>& notes) {
+void apply_settings(const SlamArguments& options, SlamConfig& of_map,
+                    std::vector<std::string>& notes) {
   const SlamConfig asked = load_settings(options.settings, of_map).slam;
   of_map.relocalize = asked.relocalize;
   std::istringstream kept(format_slam_config(of_map)), wanted(format_slam_config(asked));
@@ -54,8 +55,8 @@ void apply_settings(const Options& options, SlamConfig& of_map, std::vector<std:
 }
 
 /// Returns a new state, or that of the map file.
-SlamState first_state(const Options& options, const std::shared_ptr<const Vocabulary>& vocabulary,
-                      Settings& settings) {
+SlamState first_state(const SlamArguments& options,
+                      const std::shared_ptr<const Vocabulary>& vocabulary, Settings& settings) {
   SlamState state;
   if (options.map.empty()) {
     state = make_slam(settings.camera, settings.slam, vocabulary);
@@ -78,7 +79,7 @@ SlamState first_state(const Options& options, const std::shared_ptr<const Vocabu
   return state;
 }
 
-void check_options(const Options& options) {
+void check(const SlamArguments& options) {
   options.check();
   if (options.localize && options.map.empty())
     throw InputError("--localize needs a map: name one by --map");
@@ -90,7 +91,8 @@ void check_options(const Options& options) {
 
 /// Returns the first frame that the map has not received yet.
 /// @throws InputError if none is left
-std::size_t first_frame(const Options& options, const SlamState& state, const Sequence& frames) {
+std::size_t first_frame(const SlamArguments& options, const SlamState& state,
+                        const Sequence& frames) {
   if (!options.resume) return 0;
   if (!state.last_stamp_ns)
     throw InputError(fmt::format("{}: holds no run that could be resumed", options.map));
@@ -117,7 +119,7 @@ void require_no_other_file(const fs::path& map) {
 
 /// Runs the protocol on one sequence: that of the bench, or a live camera feed without held-out
 /// frames.
-RunResult run_sequence(const Options& options, const World& world, SlamState& state,
+RunResult run_sequence(const SlamArguments& options, const World& world, SlamState& state,
                        std::size_t first, const StepObservers& observers,
                        const MappingObserver& watch) {
   // The map size up to which the original ORB-SLAM2 resets; under the bench's protocol the feed
@@ -149,8 +151,8 @@ RunResult run_sequence(const Options& options, const World& world, SlamState& st
   return run;
 }
 
-void run(Options options) {
-  check_options(options);
+void run(SlamArguments options) {
+  check(options);
   resolve(options.vocabulary, Shipped::kVocabulary);
   resolve(options.settings, Shipped::kSettings);
   const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
@@ -235,7 +237,7 @@ void run(Options options) {
 }  // namespace
 
 void add_slam(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SlamArguments>();
   CLI::App* command =
       app.add_subcommand("slam", "Runs SLAM on a recorded sequence or along a tour of a scene.");
   options->add_to(*command);

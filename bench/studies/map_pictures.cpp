@@ -112,8 +112,9 @@ cv::Mat draw_classes_over(const OccupancyGrid& grid, const std::vector<MapPoint>
 }
 
 cv::Mat draw_against_truth(const OccupancyGrid& grid, const OccupancyGrid& plan) {
-  constexpr Rgb8 kRightFree{238, 242, 238}, kRightObstacle{70, 70, 70}, kMissedObstacle{222, 60, 50},
-      kInventedObstacle{240, 150, 40}, kNotSeen{170, 205, 240}, kFreeElsewhere{150, 90, 200};
+  constexpr Rgb8 kRightFree{238, 242, 238}, kRightObstacle{70, 70, 70},
+      kMissedObstacle{222, 60, 50}, kInventedObstacle{240, 150, 40}, kNotSeen{170, 205, 240},
+      kFreeElsewhere{150, 90, 200};
   const auto [low, high] = known_part(plan);
   const double px = (kMapWidth - 2 * kMapMargin) / std::max(1, high.x() - low.x());
   const int height = static_cast<int>(2 * kMapMargin + (high.y() - low.y()) * px + 60);

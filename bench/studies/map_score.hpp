@@ -17,7 +17,9 @@ namespace mh {
 struct Share {
   std::size_t good = 0, all = 0;
   void add(bool is_good) { good += is_good ? 1 : 0, ++all; }
-  double value() const { return all == 0 ? 0.0 : static_cast<double>(good) / static_cast<double>(all); }
+  double value() const {
+    return all == 0 ? 0.0 : static_cast<double>(good) / static_cast<double>(all);
+  }
 };
 
 /// A voxel map against the exact mesh. "Seen": by exact rays from the true poses of the same

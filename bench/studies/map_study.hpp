@@ -24,10 +24,18 @@ struct MapStudy {
 MapStudy study_of(const VoxelMap& map, const ObstacleGridConfig& config);
 
 /// Files that write_map_files() and `map build` write.
-inline constexpr std::array<const char*, 13> kMapFiles{
-    "map.ot",    "map.bt",        "grid.pgm",       "grid.yaml",   "grid_raw.pgm",
-    "grid_raw.yaml", "cost.pgm",  "cost.yaml",      "objects.json", "grid_classes.png",
-    "grid_against_truth.png", "score.json", "cost_published.pgm"};
+inline constexpr std::array<const char*, 12> kMapFiles{"map.ot",
+                                                       "map.bt",
+                                                       "grid.pgm",
+                                                       "grid.yaml",
+                                                       "grid_raw.pgm",
+                                                       "grid_raw.yaml",
+                                                       "cost.pgm",
+                                                       "cost.yaml",
+                                                       "objects.json",
+                                                       "grid_classes.png",
+                                                       "grid_against_truth.png",
+                                                       "score.json"};
 
 /// Writes octree, grid (trinary and raw), costs and objects. @throws InputError naming the file.
 void write_map_files(const std::filesystem::path& folder, const VoxelMap& map,

@@ -51,8 +51,7 @@ TrueSpace::TrueSpace(const Scene& scene, double resolution_m, std::span<const Ve
     if (scene.materials[scene.material_of[face]].is_pane()) continue;
     std::array<Vector3d, 3> corners;
     for (std::size_t i = 0; i < 3; ++i)
-      corners[i] =
-          scene.positions_m[scene.triangles[face][i]].cast<double>() / resolution_m;
+      corners[i] = scene.positions_m[scene.triangles[face][i]].cast<double>() / resolution_m;
     mark(corners);
   }
   for (const Vector3d& seed : seeds)

@@ -62,8 +62,8 @@ class OccupancyMapper {
   SE3 rounded(const SE3& map_from_camera) const;
 
   OccupancyConfig config_;
-  int width_px_, height_px_;  ///< of frames
-  Camera camera_;             ///< of thinned frames: a pinhole without distortion
+  int width_px_, height_px_;        ///< of frames
+  Camera camera_;                   ///< of thinned frames: a pinhole without distortion
   std::vector<std::size_t> pixel_;  ///< of a frame, that a thinned pixel is taken from; kNoPixel
   VoxelMap map_;
   std::map<Stamp, Kept> kept_;
