@@ -15,7 +15,7 @@
 namespace mh::cli {
 namespace {
 
-struct Options {
+struct AuditArguments {
   std::string suite, out, cache;
   std::optional<int> trials;
   std::optional<std::size_t> frames;
@@ -23,7 +23,7 @@ struct Options {
   bool no_cache = false, json = false;
 };
 
-void run(Options options) {
+void run(AuditArguments options) {
   resolve(options.suite, Shipped::kSuite);
   SuiteOverrides overrides;
   overrides.set = options.set.values();
@@ -71,7 +71,7 @@ WrittenAudit write_audit(const std::filesystem::path& out, const Suite& suite,
 }
 
 void add_audit(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<AuditArguments>();
   CLI::App* command = app.add_subcommand(
       "audit", "Says why queries fail: a suite's matches and candidates against the exact truth.");
   command->add_option("suite", options->suite, "Suite: a file (YAML), or the name of a shipped one")

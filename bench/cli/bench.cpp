@@ -24,7 +24,7 @@
 namespace mh::cli {
 namespace {
 
-struct Options {
+struct BenchArguments {
   std::string suite;
   std::string out;
   int jobs = 1;
@@ -44,7 +44,7 @@ struct Options {
   bool json = false;
 };
 
-std::optional<std::filesystem::path> cache_folder(const Options& options) {
+std::optional<std::filesystem::path> cache_folder(const BenchArguments& options) {
   if (options.no_cache) return std::nullopt;
   if (!options.cache.empty()) return std::filesystem::absolute(options.cache);
   const std::filesystem::path usual = Cache::default_folder();
@@ -67,7 +67,7 @@ std::filesystem::path usual_folder(const Suite& suite) {
 }
 
 /// A suite of kidnappings: no queries are asked in it.
-void run_kidnappings(const Suite& suite, const Options& options) {
+void run_kidnappings(const Suite& suite, const BenchArguments& options) {
   if (options.audit) throw InputError("--audit: a suite with `episodes` asks no queries");
   if (options.frames) throw InputError("--frames: a suite with `episodes` maps its whole tour");
   if (options.shard != "1/1")
@@ -92,7 +92,7 @@ void run_kidnappings(const Suite& suite, const Options& options) {
     fmt::print("{}\nresults in {}\n", table, episodes.out.string());
 }
 
-void run(Options options) {
+void run(BenchArguments options) {
   resolve(options.suite, Shipped::kSuite);
   if (options.scene) resolve(*options.scene, Shipped::kScene);
   SuiteOverrides overrides;
@@ -134,7 +134,7 @@ void run(Options options) {
 }  // namespace
 
 void add_bench(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BenchArguments>();
   CLI::App* command = app.add_subcommand(
       "bench", "Runs a suite: drives, maps, relocalizes, scores; prints the table.");
   command->add_option("suite", options->suite, "Suite: a file (YAML), or the name of a shipped one")

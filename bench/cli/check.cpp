@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct CheckArguments {
   std::string suite, baseline, junit;
   int jobs = 1;
   std::optional<std::size_t> frames;
@@ -34,7 +34,7 @@ struct Options {
   bool update = false, json = false;
 };
 
-fs::path baseline_file(const Options& options) {
+fs::path baseline_file(const CheckArguments& options) {
   if (!options.baseline.empty()) return options.baseline;
   return fs::path(options.suite).replace_extension(".baseline.json");
 }
@@ -65,7 +65,7 @@ std::optional<OwnedFolder> place_for(const fs::path& suite) {
 
 /// Runs the suite. Reuses no earlier results except those of the same interrupted check; baked
 /// light is shared among these runs only.
-Baseline measure(const Suite& suite, const Options& of) {
+Baseline measure(const Suite& suite, const CheckArguments& of) {
   std::optional<OwnedFolder> place = place_for(suite.file);
   std::optional<TemporaryFolder> folder;
   if (!place) folder.emplace(fs::temp_directory_path());
@@ -103,7 +103,7 @@ Baseline measure(const Suite& suite, const Options& of) {
           .runs = figures(results.runs)};
 }
 
-void report(const Options& options, const GateResult& result, const std::string& suite) {
+void report(const CheckArguments& options, const GateResult& result, const std::string& suite) {
   if (!options.junit.empty()) write_atomically(options.junit, gate_junit(result, suite));
   if (options.json)
     fmt::print("{}\n", gate_json(result, suite).dump(2));
@@ -121,7 +121,7 @@ GateResult judge(const Suite& suite, const Baseline& before, const Baseline& now
 }
 
 /// Shows what a new baseline changes, if the old one contains the same runs, and writes it.
-void update(const Options& options, const Suite& suite, const Baseline& now) {
+void update(const CheckArguments& options, const Suite& suite, const Baseline& now) {
   const fs::path file = baseline_file(options);
   if (fs::exists(file)) {
     try {
@@ -135,7 +135,7 @@ void update(const Options& options, const Suite& suite, const Baseline& now) {
   fmt::print("{}: {} written\n", file.string(), counted(now.runs.size(), "run"));
 }
 
-void run(Options options) {
+void run(CheckArguments options) {
   resolve(options.suite, Shipped::kSuite);
   SuiteOverrides overrides;
   overrides.set = options.set.values();
@@ -164,7 +164,7 @@ void run(Options options) {
 }  // namespace
 
 void add_check(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CheckArguments>();
   CLI::App* command = app.add_subcommand(
       "check", "Runs a suite and compares it with committed figures: a gate for CI.");
   command

@@ -18,6 +18,8 @@ void add_drive(CLI::App& app);
 void add_episode(CLI::App& app);
 void add_evaluate(CLI::App& app);
 void add_export(CLI::App& app);
+void add_map(CLI::App& app);
+void add_map_build(CLI::App& map);
 void add_merge(CLI::App& app);
 void add_run_one(CLI::App& app);
 void add_reference(CLI::App& app);

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct DetectorArguments {
   std::vector<std::string> sources;
   std::string settings, out;
   DetectorOption detector;
@@ -44,7 +44,7 @@ bool is_image(const fs::path& file) {
 /// Image files as they are, or the frames of one recording.
 class Frames {
  public:
-  Frames(const Options& options) {
+  Frames(const DetectorArguments& options) {
     if (std::ranges::all_of(options.sources, is_image)) {
       images_ = options.sources;
       return;
@@ -85,7 +85,7 @@ void add_results(nlohmann::ordered_json& json, std::size_t frame, const Detected
                     {"score", box.score}});
 }
 
-void run(Options options) {
+void run(DetectorArguments options) {
   resolve(options.settings, Shipped::kSettings);
   const auto spec = options.detector.spec();
   if (!spec) throw InputError("no detector is named: --network does");
@@ -151,7 +151,7 @@ void add_detector(CLI::App& app) {
       "out/boxes\n"
       "  modelhouse detector score --network yolox_nano.onnx --out out/score");
 
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DetectorArguments>();
   CLI::App* r = command->add_subcommand("run", "Draws what it finds in a recording or in images.");
   r->add_option("sources", options->sources, "Images (.png, .jpg), or one recording")->required();
   options->detector.add_to(*r, "--network,--detector");

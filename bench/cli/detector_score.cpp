@@ -36,7 +36,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct DetectorScoreArguments {
   DetectorOption detector;
   std::vector<std::string> scenes;
   std::string level = "handheld", robot = "pepper", out, base = "pepper";
@@ -48,7 +48,7 @@ struct Options {
 /// COCO's evaluation asks for boxes down to here; a detector's own least score is far above.
 constexpr double kLeastScore = 0.01;
 
-std::vector<std::string> names_of(const Options& options) {
+std::vector<std::string> names_of(const DetectorScoreArguments& options) {
   return options.scenes.empty() ? generated_rooms(options.per_category) : options.scenes;
 }
 
@@ -103,7 +103,8 @@ struct Moment {
 
 /// Calls visit(moment, index) for each moment of the rooms: of a hand-held scan of each, evenly
 /// spaced.
-void for_each_moment(const Options& options, const Robot& robot, const SensorConfig& sensors,
+void for_each_moment(const DetectorScoreArguments& options, const Robot& robot,
+                     const SensorConfig& sensors,
                      const std::function<void(const Moment&, std::size_t)>& visit) {
   const std::vector<std::string> names = names_of(options);
   Progress progress("detector");
@@ -128,7 +129,7 @@ void for_each_moment(const Options& options, const Robot& robot, const SensorCon
 }
 
 /// Judges the detector, then the simulated one with the dials that were measured.
-Judged judge(const Options& options, const DetectorSpec& asked, Worst* worst) {
+Judged judge(const DetectorScoreArguments& options, const DetectorSpec& asked, Worst* worst) {
   DetectorSpec spec = asked;
   const double confidence = spec.settings.confidence;
   spec.settings.confidence = std::min(confidence, kLeastScore);
@@ -272,7 +273,7 @@ std::string json_of(const Judged& judged) {
   return json.dump(2) + "\n";
 }
 
-DetectorSpec spec_of(Options& options) {
+DetectorSpec spec_of(DetectorScoreArguments& options) {
   resolve(options.level, Shipped::kLevel);
   resolve(options.robot, Shipped::kRobot);
   for (std::string& name : options.scenes) resolve(name, Shipped::kScene);
@@ -284,7 +285,7 @@ DetectorSpec spec_of(Options& options) {
   return *spec;
 }
 
-void score(Options options) {
+void score(DetectorScoreArguments options) {
   const DetectorSpec spec = spec_of(options);
   std::optional<OutputFolder> folder;
   if (!options.out.empty())
@@ -298,7 +299,7 @@ void score(Options options) {
   write_image(fs::path(options.out) / "missed.png", worst.sheet(open_detector(spec)->names()));
 }
 
-void fit(Options options) {
+void fit(DetectorScoreArguments options) {
   const DetectorSpec spec = spec_of(options);
   resolve(options.base, Shipped::kLevel);
   require_writable(options.out, {options.base, options.level, spec.network});
@@ -315,7 +316,7 @@ void fit(Options options) {
   print_dials(judged.real.dials, judged.simulated->dials);
 }
 
-void add_common(CLI::App& command, const std::shared_ptr<Options>& options) {
+void add_common(CLI::App& command, const std::shared_ptr<DetectorScoreArguments>& options) {
   options->detector.add_to(command, "--network,--detector");
   command.add_option("--scenes", options->scenes,
                      "Scenes (default: generated rooms of every category)");
@@ -335,7 +336,7 @@ void add_common(CLI::App& command, const std::shared_ptr<Options>& options) {
 }  // namespace
 
 void add_detector_score(CLI::App& detector) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DetectorScoreArguments>();
   CLI::App* s = detector.add_subcommand(
       "score", "Average precision per class on rendered rooms, and what is taken for what.");
   add_common(*s, options);
@@ -344,7 +345,7 @@ void add_detector_score(CLI::App& detector) {
   s->footer("Example:\n  modelhouse detector score --network yolox_nano.onnx --out out/score");
   s->callback([options] { score(*options); });
 
-  auto of_fit = std::make_shared<Options>();
+  auto of_fit = std::make_shared<DetectorScoreArguments>();
   CLI::App* f = detector.add_subcommand(
       "fit",
       "Writes a sensor level whose simulated detector errs as the real one was measured to.");

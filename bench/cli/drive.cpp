@@ -27,7 +27,7 @@
 namespace mh::cli {
 namespace {
 
-struct Options {
+struct DriveArguments {
   std::string scene, robot = "pepper", pedestrian, out, format = "tum";
   RosOption ros;
   MotionOption motion;
@@ -37,7 +37,7 @@ struct Options {
   bool json = false;
 };
 
-void run(Options options) {
+void run(DriveArguments options) {
   resolve(options.scene, Shipped::kScene);
   resolve(options.robot, Shipped::kRobot);
   const std::string& motion = options.motion.given();
@@ -129,7 +129,7 @@ void run(Options options) {
 }  // namespace
 
 void add_drive(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DriveArguments>();
   CLI::App* command =
       app.add_subcommand("drive", "Drives the robot through a scene, or moves a camera by hand.");
   command

@@ -23,14 +23,14 @@
 namespace mh::cli {
 namespace {
 
-struct Options {
+struct EpisodeArguments {
   std::string suite, out, system, environment, variant, cache;
   SetOption set;
   std::size_t start = 0;
   bool no_cache = false, json = false;
 };
 
-std::optional<std::filesystem::path> episode_cache(const Options& options) {
+std::optional<std::filesystem::path> episode_cache(const EpisodeArguments& options) {
   if (options.no_cache) return std::nullopt;
   if (!options.cache.empty()) return std::filesystem::absolute(options.cache);
   const std::filesystem::path usual = Cache::default_folder();
@@ -38,7 +38,7 @@ std::optional<std::filesystem::path> episode_cache(const Options& options) {
 }
 
 /// The run that the options name; by default the first.
-RunSpec chosen_run(const Suite& suite, const Options& options) {
+RunSpec chosen_run(const Suite& suite, const EpisodeArguments& options) {
   const std::vector<RunSpec> runs = episode_runs(suite);
   const auto check = [&](const char* option, const std::string& word,
                          const std::vector<std::string>& all) {
@@ -57,7 +57,7 @@ RunSpec chosen_run(const Suite& suite, const Options& options) {
   throw InputError(fmt::format("{}: has no such run", suite.file.string()));
 }
 
-const VariantPlace& chosen_variant(const EpisodeWorld& world, const Options& options) {
+const VariantPlace& chosen_variant(const EpisodeWorld& world, const EpisodeArguments& options) {
   for (const VariantPlace& place : world.variants)
     if (options.variant.empty() || place.variant.name == options.variant) return place;
   throw InputError(fmt::format(
@@ -66,7 +66,7 @@ const VariantPlace& chosen_variant(const EpisodeWorld& world, const Options& opt
            words_of(world.variants, [](const VariantPlace& v) { return v.variant.name; }))));
 }
 
-void run(Options options) {
+void run(EpisodeArguments options) {
   resolve(options.suite, Shipped::kSuite);
   SuiteOverrides overrides;
   overrides.set = options.set.values();
@@ -107,7 +107,7 @@ void run(Options options) {
 }  // namespace
 
 void add_episode(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EpisodeArguments>();
   CLI::App* command = app.add_subcommand(
       "episode", "Kidnaps the robot once, as a suite does, and shows what it saw and decided.");
   command->add_option("suite", options->suite, "Suite: a file (YAML), or the name of a shipped one")

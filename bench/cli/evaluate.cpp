@@ -20,7 +20,7 @@
 namespace mh::cli {
 namespace {
 
-struct Options {
+struct EvaluateArguments {
   std::string truth, estimate;
   std::string align = "se3";
   std::string format = "tum";
@@ -110,7 +110,7 @@ void print_row(const std::string& what, const ErrorStatistics& s) {
 
 /// Loads both files in one format. KITTI's lines have no stamps: line i of one belongs to line i of
 /// the other.
-std::pair<Trajectory, Trajectory> load(const Options& options) {
+std::pair<Trajectory, Trajectory> load(const EvaluateArguments& options) {
   if (options.format == "tum")
     return {read_trajectory(options.truth), read_trajectory(options.estimate)};
   const auto period_ns = static_cast<Stamp>(std::llround(1e9 / options.rate_hz));
@@ -123,7 +123,7 @@ std::pair<Trajectory, Trajectory> load(const Options& options) {
   return both;
 }
 
-void run(const Options& options) {
+void run(const EvaluateArguments& options) {
   EvaluationOptions how{.alignment = kAlignments.at(options.align), .rpe_deltas = {}};
   how.max_difference_ns = options.format == "tum"
                               ? static_cast<Stamp>(std::llround(1e9 * options.max_difference_s))
@@ -157,7 +157,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_evaluate(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EvaluateArguments>();
   CLI::App* command =
       app.add_subcommand("evaluate", "Scores an estimated trajectory against the true one.");
   command->add_option("truth", options->truth, "True trajectory")->required();

@@ -12,11 +12,11 @@
 namespace mh::cli {
 namespace {
 
-struct Options {
+struct ExportArguments {
   std::string store, format = "csv", out;
 };
 
-void run(const Options& options) {
+void run(const ExportArguments& options) {
   if (!options.out.empty())
     require_writable(options.out,
                      {options.store, std::filesystem::path(options.store) / "results.sqlite"});
@@ -34,7 +34,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_export(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportArguments>();
   CLI::App* command = app.add_subcommand("export", "Results of a suite as CSV, JSON or LaTeX.");
   command->add_option("store", options->store, "results.sqlite, or the folder that holds it")
       ->required();

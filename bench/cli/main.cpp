@@ -79,6 +79,7 @@ int run(int argc, char** argv) {
   mh::cli::add_render(app);
   mh::cli::add_sensors(app);
   mh::cli::add_slam(app);
+  mh::cli::add_map(app);
   mh::cli::add_twin(app);
   mh::cli::add_detector(app);
   mh::cli::add_vocabulary(app);

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct MergeArguments {
   std::string out;
   std::vector<std::string> in;
   bool json = false;
@@ -43,7 +43,7 @@ void copy_files(const fs::path& from, const fs::path& to) {
   }
 }
 
-void run(const Options& options) {
+void run(const MergeArguments& options) {
   const fs::path results = fs::path(options.out) / "results.sqlite";
   std::vector<fs::path> all;
   if (fs::exists(results)) all.push_back(results);
@@ -70,7 +70,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_merge(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MergeArguments>();
   CLI::App* command = app.add_subcommand(
       "merge", "Puts the results of a suite's shards together; prints the table.");
   command->add_option("out", options->out, "Folder for all results; may hold some already")

@@ -35,7 +35,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct RenderArguments {
   std::string scene, robot = "pepper", camera, level, pedestrian, out, format = "tum",
                      renderer = "embree";
   std::string labels = "exact";
@@ -54,7 +54,7 @@ std::string digest_of_file(const std::string& file) {
 
 /// Everything that determines the images: a folder is resumed only if all of it is the same.
 /// @param inputs  all files read for the robot, including its URDF, and for the detector, if any
-std::string settings_of(const Options& o, const Scene& scene, const Trajectory& path,
+std::string settings_of(const RenderArguments& o, const Scene& scene, const Trajectory& path,
                         const std::vector<InputDigest>& inputs) {
   nlohmann::ordered_json json = {{"scene", o.scene},
                                  {"scene_digest", hex(digest(scene))},
@@ -125,7 +125,7 @@ std::vector<std::string> names_written(const fs::path& out) {
 }
 
 /// The camera named by --camera; nullptr for the robot's own.
-const MountedCamera* find_camera(const Options& options, const Robot& robot) {
+const MountedCamera* find_camera(const RenderArguments& options, const Robot& robot) {
   if (options.camera.empty()) return nullptr;
   if (!robot.equipment)
     throw InputError(fmt::format("--camera {}: robot '{}' has no other cameras than its own",
@@ -157,7 +157,7 @@ void print_json(const RenderedSequence& done) {
                          .dump(2));
 }
 
-void run(Options options) {
+void run(RenderArguments options) {
   resolve(options.scene, Shipped::kScene);
   resolve(options.robot, Shipped::kRobot);
   resolve(options.level, Shipped::kLevel);
@@ -272,7 +272,7 @@ void run(Options options) {
 }  // namespace
 
 void add_render(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RenderArguments>();
   CLI::App* command = app.add_subcommand(
       "render",
       "Writes what a camera sees on its way through a scene, with labels, instances and poses.");

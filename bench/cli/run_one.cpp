@@ -13,7 +13,7 @@
 namespace mh::cli {
 namespace {
 
-struct Options {
+struct RunOneArguments {
   std::string description, store, folder, cache, maps, images, views, key, session_start;
   std::uint64_t images_limit = 0;
   int jobs = 1;
@@ -21,7 +21,7 @@ struct Options {
   bool metrics_only = false;
 };
 
-void run(const Options& options) {
+void run(const RunOneArguments& options) {
   if (options.parent != 0) die_with(options.parent);
   int last = -1;
   std::chrono::steady_clock::time_point reported;
@@ -67,7 +67,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_run_one(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunOneArguments>();
   CLI::App* command =
       app.add_subcommand("run-one", "One run of a suite: what `bench` starts for each.");
   command->group("");  // for bench alone: not listed

@@ -40,7 +40,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr int kThreads = 2;  // for baking light; does not change the result
 
-struct Options {
+struct SceneArguments {
   std::string scene, out, format;
   SceneFrameOption frame;
   std::vector<std::string> scenes;  ///< preview
@@ -76,7 +76,7 @@ void print_labeled(const LabeledSurface& surface) {
     fmt::print("             {} more: --suggest-labels\n", surface.unlabeled.size() - kTold);
 }
 
-void info(Options options) {
+void info(SceneArguments options) {
   resolve(options.scene, Shipped::kScene);
   const Scene scene = load(options.scene, options.frame);
   const LabeledSurface surface = survey_labels(scene);
@@ -134,7 +134,8 @@ void keep_of_each_room(std::vector<View>& views, int count) {
 
 /// Returns a scene's name and views of it with its light baked; the scene is freed once they are
 /// rendered.
-std::pair<std::string, std::vector<View>> see(const std::string& name, const Options& options,
+std::pair<std::string, std::vector<View>> see(const std::string& name,
+                                              const SceneArguments& options,
                                               const BakeWatch& baked) {
   const ReadScope reading;
   Scene scene = load(find_scene(name).string(), options.frame);
@@ -144,7 +145,7 @@ std::pair<std::string, std::vector<View>> see(const std::string& name, const Opt
   return {scene.name, views_of(scene, *renderer)};
 }
 
-void preview(const Options& options) {
+void preview(const SceneArguments& options) {
   if (fs::path(options.out).extension() != ".png" || fs::is_directory(options.out))
     throw InputError(fmt::format("{}: must name a file that ends in .png", options.out));
   require_writable(options.out, {options.scenes.begin(), options.scenes.end()});
@@ -184,7 +185,7 @@ void require_mesh_writable(const fs::path& out, const std::vector<fs::path>& rea
         "{}: is there already, and would be overwritten: name another --out", labels.string()));
 }
 
-void require_ending(const Options& options, const std::vector<std::string>& endings) {
+void require_ending(const SceneArguments& options, const std::vector<std::string>& endings) {
   const std::string ending = fs::path(options.out).extension().string();
   if (std::ranges::find(endings, ending) == endings.end())
     throw InputError(fmt::format("{}: must end in {}", options.out, fmt::join(endings, " or ")));
@@ -215,7 +216,7 @@ void write_mesh(Scene scene, const fs::path& out, bool scan = false) {
   out.extension() == ".ply" ? save_scannet_ply(scene, out) : save_glb(scene, out);
 }
 
-void convert(Options options) {
+void convert(SceneArguments options) {
   resolve(options.scene, Shipped::kScene);
   const std::string ending = fs::path(options.out).extension().string();
   std::string format = options.format;
@@ -255,7 +256,7 @@ nlohmann::ordered_json facts_json(const GeneratedReference& reference, const Gen
           {"free_floor", plan.free_share}};
 }
 
-void make(const Options& options) {
+void make(const SceneArguments& options) {
   const GeneratedReference reference{options.scene, options.seed};
   if (options.scan_look && options.out.empty())
     throw InputError("--scan-look writes a mesh: name its file by --out FILE.glb or FILE.ply");
@@ -279,7 +280,7 @@ void make(const Options& options) {
 
 /// Lists every environment of every category, and how many are in each group of the paper's Figure
 /// 3.
-void list(const Options& options) {
+void list(const SceneArguments& options) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   std::array<int, kDensityGroups> total{};
   int count = 0, made = 0, wanted = 0;
@@ -322,7 +323,7 @@ void list(const Options& options) {
 }  // namespace
 
 void add_scene(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SceneArguments>();
   CLI::App* command = app.add_subcommand("scene", "Looks at scenes and converts them.");
   command->require_subcommand(1);
   command->footer("Example:\n  modelhouse scene info model_house");

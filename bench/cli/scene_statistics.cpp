@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct SceneStatisticsArguments {
   std::vector<std::string> scenes;
   std::string level, robot, reference, tum, cache;
   int per_category = 0;
@@ -36,14 +36,15 @@ struct Options {
   SceneFrameOption frame;
 };
 
-std::vector<std::string> names_of(const Options& options) {
+std::vector<std::string> names_of(const SceneStatisticsArguments& options) {
   return options.scenes.empty() ? generated_rooms(options.per_category) : options.scenes;
 }
 
 /// Measures moments of a hand-held scan of the scene, evenly spaced, as the level's sensors see
 /// them.
-MeasuredPlace measure_scene(const std::string& name, std::size_t frames, const Options& options,
-                            const Robot& robot, const SensorConfig& sensors) {
+MeasuredPlace measure_scene(const std::string& name, std::size_t frames,
+                            const SceneStatisticsArguments& options, const Robot& robot,
+                            const SensorConfig& sensors) {
   std::vector<std::string> warnings;
   Scene scene = load_scene(name, &warnings, options.frame.frame());
   light_from_cache(scene, options.threads, Cache(options.cache));
@@ -122,7 +123,7 @@ void print_json(const std::vector<MeasuredPlace>& places, const RealFrames& real
   fmt::print("{}\n", json.dump(2));
 }
 
-void run(Options options) {
+void run(SceneStatisticsArguments options) {
   resolve(options.level, Shipped::kLevel);
   resolve(options.robot, Shipped::kRobot);
   for (std::string& name : options.scenes) resolve(name, Shipped::kScene);
@@ -150,7 +151,7 @@ void run(Options options) {
 }  // namespace
 
 void add_scene_statistics(CLI::App& scene) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SceneStatisticsArguments>();
   options->level = "handheld";
   options->robot = "pepper";
   CLI::App* command = scene.add_subcommand(

@@ -20,11 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct SensorsArguments {
   std::string scene, out, level;
 };
 
-void print_settings(Options options) {
+void print_settings(SensorsArguments options) {
   SensorConfig config;
   if (!options.level.empty()) {
     resolve(options.level, Shipped::kLevel);
@@ -33,7 +33,7 @@ void print_settings(Options options) {
   fmt::print("{}", format_sensor_config(config, true));
 }
 
-void plot(const Options& options) {
+void plot(const SensorsArguments& options) {
   const OutputFolder folder(options.out, "sensors plot", {"figures.png"});
   const fs::path file = fs::path(options.out) / "figures.png";
   Progress progress("sensors plot");
@@ -50,7 +50,7 @@ void plot(const Options& options) {
   fmt::print("{}\n", file.string());
 }
 
-void sheet(Options options) {
+void sheet(SensorsArguments options) {
   resolve(options.scene, Shipped::kScene);
   const OutputFolder folder(options.out, "sensors sheet",
                             {"color.png", "depth.png", "frames.png", "labels.png"});
@@ -71,7 +71,7 @@ void sheet(Options options) {
 }  // namespace
 
 void add_sensors(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SensorsArguments>();
   CLI::App* command = app.add_subcommand("sensors", "Shows what the sensor models do.");
   command->require_subcommand(1);
   CLI::Option* level =

@@ -40,7 +40,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 2> kFiles{"pairs.png", "twin.json"};
 
-struct Options {
+struct TwinArguments {
   std::string recording, scene, settings, level = "handheld", vocabulary = "vocabulary", cache, out;
   std::vector<double> scene_from_recording;
   std::size_t frames = SIZE_MAX, every = 5;
@@ -52,7 +52,7 @@ struct Options {
 
 /// From the frame of the recording's poses to that of the scene: as stated, else ScanNet's
 /// alignment, which the scene's loader applies and the recording's poses lack.
-SE3 scene_from_recording(const Options& options) {
+SE3 scene_from_recording(const TwinArguments& options) {
   if (!options.scene_from_recording.empty()) {
     const std::vector<double>& v = options.scene_from_recording;
     const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
@@ -159,7 +159,7 @@ void draw_pairs(const Sequence& recorded, const Sequence& twin, const fs::path& 
   write_image(file, draw_gallery(views, 2, true));
 }
 
-void run(Options options) {
+void run(TwinArguments options) {
   resolve(options.vocabulary, Shipped::kVocabulary);
   resolve(options.level, Shipped::kLevel);
   resolve(options.settings, Shipped::kSettings);
@@ -230,7 +230,7 @@ void run(Options options) {
 }  // namespace
 
 void add_twin(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TwinArguments>();
   CLI::App* command = app.add_subcommand(
       "twin", "Renders a recording's own scene along its poses and compares the two.");
   command->add_option("recording", options->recording, sequence_forms())->required();

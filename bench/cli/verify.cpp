@@ -15,7 +15,7 @@
 namespace mh::cli {
 namespace {
 
-struct Options {
+struct VerifyArguments {
   std::string suite;
   std::optional<std::size_t> frames;
   SetOption set;
@@ -56,7 +56,7 @@ void print_table(const Verification& v) {
                                   : std::string("same input, same bits"));
 }
 
-void run(Options options) {
+void run(VerifyArguments options) {
   resolve(options.suite, Shipped::kSuite);
   SuiteOverrides overrides;
   overrides.set = options.set.values();
@@ -75,7 +75,7 @@ void run(Options options) {
 }  // namespace
 
 void add_verify(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<VerifyArguments>();
   CLI::App* command = app.add_subcommand(
       "verify", "Runs a suite twice, with 1 and with 4 jobs, and compares every bit.");
   command->add_option("suite", options->suite, "Suite: a file (YAML), or the name of a shipped one")

@@ -21,7 +21,7 @@
 namespace mh::cli {
 namespace {
 
-struct Options {
+struct VocabularyArguments {
   std::string file, list, out;
   std::string frames, queries, settings;  ///< of `info`
   VocabularyTraining training;
@@ -38,7 +38,7 @@ Vocabulary load_timed(const std::string& file) {
   return vocabulary;
 }
 
-void train(Options& options) {
+void train(VocabularyArguments& options) {
   const std::filesystem::path out = options.out;
   require_writable(out, {options.list});
   if (!options.list.empty()) options.training.images = load_image_list(options.list);
@@ -52,7 +52,7 @@ void train(Options& options) {
              hex(vocabulary.digest()));
 }
 
-void convert(const Options& options) {
+void convert(const VocabularyArguments& options) {
   require_writable(options.out, {options.file});
   const Vocabulary vocabulary = load_timed(options.file);
   vocabulary.save(options.out);
@@ -71,7 +71,7 @@ std::filesystem::path folder_of(const std::string& source) {
 }
 
 /// Prints how well the words retrieve images with known poses.
-void print_score(const Vocabulary& vocabulary, const Options& options) {
+void print_score(const Vocabulary& vocabulary, const VocabularyArguments& options) {
   const RecordedCamera camera = load_recorded_camera(options.settings);
   const auto views = load_placed_views(folder_of(options.frames), camera, options.score);
   std::vector<PlacedView> queries;
@@ -90,7 +90,7 @@ void print_score(const Vocabulary& vocabulary, const Options& options) {
       score.average_precision);
 }
 
-void info(Options options) {
+void info(VocabularyArguments options) {
   resolve(options.file, Shipped::kVocabulary);
   resolve(options.settings, Shipped::kSettings);
   const Vocabulary vocabulary = load_timed(options.file);
@@ -112,7 +112,7 @@ void info(Options options) {
 }  // namespace
 
 void add_vocabulary(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<VocabularyArguments>();
   CLI::App* command = app.add_subcommand("vocabulary", "Trains and shows visual vocabularies.");
   command->require_subcommand(1);
   command->footer("Example:\n  modelhouse vocabulary info vocabulary");

@@ -12,9 +12,15 @@ namespace mh {
 namespace {
 
 constexpr std::size_t kMostPerImage = 100;
-constexpr int kRecalls = 101;
+constexpr int kRecalls = 101, kOverlaps = 10;
 constexpr double kSmallest = 32.0 * 32.0, kLargest = 96.0 * 96.0;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// The k-th of `count` evenly spaced values, rounded as pycocotools' numpy.linspace rounds them: a
+/// recall of 29 in 100 is 0.29, and whether that reaches the 29th of them is a matter of its bits.
+double spaced(double first, double last, int count, int k) {
+  return k == count - 1 ? last : first + k * ((last - first) / (count - 1));
+}
 
 bool is_of(double area, ObjectSize size) {
   switch (size) {
@@ -109,7 +115,7 @@ double average_precision(std::span<const TruthBox> truths, std::span<const Score
     precision[i - 1] = std::max(precision[i - 1], precision[i]);
   double sum = 0;
   for (int k = 0; k < kRecalls; ++k) {
-    const auto at = std::ranges::lower_bound(recall, static_cast<double>(k) / (kRecalls - 1));
+    const auto at = std::ranges::lower_bound(recall, spaced(0, 1, kRecalls, k));
     if (at != recall.end()) sum += precision[static_cast<std::size_t>(at - recall.begin())];
   }
   return sum / kRecalls;
@@ -117,11 +123,10 @@ double average_precision(std::span<const TruthBox> truths, std::span<const Score
 
 AveragePrecision average_precision(std::span<const TruthBox> truths,
                                    std::span<const ScoredBox> found) {
-  constexpr int kOverlaps = 10;
   const auto mean = [&](ObjectSize size) {
     double sum = 0;
     for (int k = 0; k < kOverlaps; ++k)
-      sum += average_precision(truths, found, (50 + 5 * k) / 100.0, size);
+      sum += average_precision(truths, found, spaced(0.5, 0.95, kOverlaps, k), size);
     return sum / kOverlaps;
   };
   return {.ap = mean(ObjectSize::kAll),

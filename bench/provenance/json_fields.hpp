@@ -40,15 +40,15 @@ std::string key_of(const Metric& metric) {
 
 template <class T>
 nlohmann::ordered_json json_of(const T& value) {
-  using Json = nlohmann::ordered_json;
+  using Node = nlohmann::ordered_json;
   if constexpr (std::is_same_v<T, double>) {
-    return std::isfinite(value) ? Json(value) : Json();
+    return std::isfinite(value) ? Node(value) : Node();
   } else if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
     return value;
   } else if constexpr (kIsOptional<T>) {
-    return value ? json_of(*value) : Json();
+    return value ? json_of(*value) : Node();
   } else if constexpr (kIsVector<T> || kIsArray<T>) {
-    Json list = Json::array();
+    Node list = Node::array();
     for (const auto& element : value) list.push_back(json_of(element));
     return list;
   } else if constexpr (std::is_enum_v<T>) {
@@ -58,14 +58,14 @@ nlohmann::ordered_json json_of(const T& value) {
   } else if constexpr (std::is_same_v<T, SE3>) {
     const Eigen::Vector3d& t = value.translation();
     const Eigen::Quaterniond q = value.quaternion();
-    return Json::array({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
+    return Node::array({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
   } else if constexpr (kAsList<T>) {
-    Json list = Json::array();
+    Node list = Node::array();
     const auto add = [&](const char*, const auto& field) { list.push_back(json_of(field)); };
     fields(value, add);
     return list;
   } else {
-    Json object = Json::object();
+    Node object = Node::object();
     const auto add = [&](const auto& name, const auto& field) {
       object[key_of(name)] = json_of(field);
     };

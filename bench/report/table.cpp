@@ -41,9 +41,10 @@ std::string recordings_text(const Suite& suite, std::span<const RunResult> runs)
   return text;
 }
 
-/// Whose rules relocalization follows, where they are not ours, and the systems with settings of
-/// their own.
+/// Whose rules relocalization follows, so that no figure stands without its base, and the systems
+/// with settings of their own.
 std::string base_text(const Suite& suite) {
+  if (std::ranges::none_of(suite.systems, &SystemSpec::takes_settings)) return "";
   const RelocalizeConfig& relocalize = suite.slam->relocalize;
   bool as_released = relocalize.neighbor_scores == NeighborScores::kAsReleased;
   std::string variants;
@@ -61,7 +62,7 @@ std::string base_text(const Suite& suite) {
       "{}{}{}{}",
       relocalize.acceptance == Acceptance::kOrbSlam2
           ? "\nbase: orb_slam2: poses of relocalization are accepted as ORB-SLAM2 accepts them\n"
-          : "",
+          : "\nbase: ours: poses of relocalization are accepted by the rule of docs/slam.md\n",
       as_released ? "\nneighbor scores as ORB-SLAM2 released them: answers depend on the order of "
                     "queries\n"
                   : "",

@@ -48,6 +48,28 @@ void for_each_depth(const PixelBox& box, const Grid2d<float>& depth_m, const Dep
 constexpr int kBins = 64;
 constexpr float kApart = 1.1F;  // mean depth of the farther part over that of the nearer
 constexpr int kMiddlePercent = 30;
+constexpr float kJump = 1.04F;  // between neighbors on two surfaces: farther over nearer
+constexpr int kJumpPercent = 50;
+
+/// Whether the pixels of a range that lie before a depth end at a step there. A bed or a table that
+/// reaches into the room is cut by any depth, but has no step at it.
+bool ends_at_a_step(const PixelBox& box, const Grid2d<float>& depth_m, const DepthRange& range,
+                    float cut_m) {
+  std::int64_t pairs = 0, jumps = 0;
+  const auto visit = [&](float a, float b) {
+    if (!(a > 0) || !(b > 0) || !range.contains(a) || !range.contains(b)) return;
+    const auto [near, far] = std::minmax(a, b);
+    if (near > cut_m || far <= cut_m) return;
+    ++pairs;
+    jumps += far >= near * kJump ? 1 : 0;
+  };
+  for (int y = box.top; y < box.bottom; ++y)
+    for (int x = box.left; x < box.right; ++x) {
+      if (x + 1 < box.right) visit(depth_m(x, y), depth_m(x + 1, y));
+      if (y + 1 < box.bottom) visit(depth_m(x, y), depth_m(x, y + 1));
+    }
+  return 100 * jumps >= kJumpPercent * pairs;
+}
 
 /// Splits the depths of a box within a range; returns whether there were two surfaces.
 bool split(const PixelBox& box, const Grid2d<float>& depth_m, DepthRange& range) {
@@ -86,6 +108,7 @@ bool split(const PixelBox& box, const Grid2d<float>& depth_m, DepthRange& range)
   }
   if (cut < 0 || best_ratio < kApart) return false;
   const float at_m = 1 / (low + step * static_cast<float>(cut + 1));
+  if (!ends_at_a_step(box, depth_m, range, at_m)) return false;
   std::int64_t near = 0, middle = 0;
   for_each_depth(box.middle(), depth_m, range, [&](float z) {
     near += z <= at_m ? 1 : 0;

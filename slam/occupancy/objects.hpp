@@ -30,6 +30,9 @@ struct ObjectsConfig {
   int min_voxels = 6;  ///< smaller clusters are noise of labels
   /// Voxels of one class hang together across gaps up to this: holes in depth.
   double gap_m = 0.10;
+  /// Parts above one another belong together across larger gaps: the rim of a seat or a table top
+  /// is thin.
+  double stacked_gap_m = 0.25;
   double min_label_share = 0.4;  ///< of a voxel's votes, for it to count as its class
 };
 

@@ -3,8 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <fstream>
 #include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "source_dir.hpp"
 
 namespace mh {
 namespace {
@@ -82,6 +88,35 @@ TEST(AveragePrecision, KeepsAHundredBoxesOfAnImage) {
   EXPECT_EQ(average_precision(std::vector{truth(0, 0, 50)}, boxes).ap, 0);
   boxes.erase(boxes.begin());
   EXPECT_GT(average_precision(std::vector{truth(0, 0, 50)}, boxes).ap, 0);
+}
+
+// 30 images with three classes of boxes at whole pixels, and what pycocotools (cocoapi 8c9bcc3)
+// says of each class: AP, AP50, AP75, small, medium, large.
+TEST(AveragePrecision, IsThatOfPycocotools) {
+  constexpr std::array<std::array<double, 6>, 3> kTheirs = {
+      {{0.23081135298727457, 0.4578608594660631, 0.20078831541679365, 0.08810044914265863,
+        0.2642015450264813, 0.4496003407454685},
+       {0.22523831993537322, 0.38737857615825694, 0.19856252255555626, 0.039606532081779604,
+        0.25882467194087827, 0.5252446929788069},
+       {0.2641695977570601, 0.538266803226657, 0.23128128624201275, 0.18815676897360067,
+        0.26162221789011636, 0.48807017543859654}}};
+  std::ifstream file(MH_SOURCE_DIR "/tests/bench/metrics/coco_case.json");
+  const auto json = nlohmann::json::parse(file);
+  for (std::size_t k = 0; k < kTheirs.size(); ++k) {
+    const auto box = [](const nlohmann::json& row) {
+      return ImageBox{row[0], row[2], row[3], row[4], row[5]};
+    };
+    std::vector<TruthBox> truths;
+    std::vector<ScoredBox> boxes;
+    for (const auto& row : json["truths"])
+      if (row[1] == k) truths.push_back({box(row), row[6]});
+    for (const auto& row : json["found"])
+      if (row[1] == k) boxes.push_back({box(row), row[6]});
+    const AveragePrecision ap = average_precision(truths, boxes);
+    const std::array<double, 6> ours = {ap.ap, ap.ap50, ap.ap75, ap.small, ap.medium, ap.large};
+    for (std::size_t i = 0; i < ours.size(); ++i)
+      EXPECT_NEAR(ours[i], kTheirs[k][i], 1e-12) << k << " " << i;
+  }
 }
 
 }  // namespace

@@ -297,22 +297,22 @@ TEST(LabelImage, ExactLabelsAreThePixelsClasses) {
 }
 
 TEST(LabelImage, BoxesAreThoseWorkedOutByHand) {
-  constexpr ClassId kChair = 5, kTable = 7, kWall = 1;
+  constexpr ClassId chair = 5, table = 7, wall = 1;
   RenderedFrame truth = blank_frame(2.0F);
-  paint_box(truth, 0, 0, 639, 479, kWall, 1);       // no COCO class: background
-  paint_box(truth, 100, 100, 299, 249, kTable, 2);  // box 100..299 x 100..249
-  paint_box(truth, 150, 150, 179, 299, kChair, 3);  // smaller: over the table
-  paint_box(truth, 400, 50, 408, 60, kChair, 4);    // 9 x 11 = 99 px: too little to be seen
-  paint_box(truth, 500, 50, 509, 59, kChair, 5);    // 100 px: just enough
-  paint_box(truth, 600, 300, 604, 319, kTable, 6);  // one object in two parts, 100 px each:
-  paint_box(truth, 620, 400, 624, 419, kTable, 6);  // one box around both
+  paint_box(truth, 0, 0, 639, 479, wall, 1);       // no COCO class: background
+  paint_box(truth, 100, 100, 299, 249, table, 2);  // box 100..299 x 100..249
+  paint_box(truth, 150, 150, 179, 299, chair, 3);  // smaller: over the table
+  paint_box(truth, 400, 50, 408, 60, chair, 4);    // 9 x 11 = 99 px: too little to be seen
+  paint_box(truth, 500, 50, 509, 59, chair, 5);    // 100 px: just enough
+  paint_box(truth, 600, 300, 604, 319, table, 6);  // one object in two parts, 100 px each:
+  paint_box(truth, 620, 400, 624, 419, table, 6);  // one box around both
   const SemanticImage image = label_image(truth, LabelMode::kBoxes);
   const auto expected = [&](int x, int y) -> ClassId {
     const auto within = [&](int l, int t, int r, int b) {
       return x >= l && x <= r && y >= t && y <= b;
     };
-    if (within(150, 150, 179, 299) || within(500, 50, 509, 59)) return kChair;
-    if (within(100, 100, 299, 249) || within(600, 300, 624, 419)) return kTable;
+    if (within(150, 150, 179, 299) || within(500, 50, 509, 59)) return chair;
+    if (within(100, 100, 299, 249) || within(600, 300, 624, 419)) return table;
     return kBackground;
   };
   for (int y = 0; y < kCamera.height_px; ++y)

@@ -66,6 +66,17 @@ TEST(ForegroundDepth, IsTheWholeBoxWhereItHasOneSurface) {
   EXPECT_TRUE(range.contains(2.16F));
 }
 
+// A table seen along its length: half of it is nearer than two thirds of the other's depth, yet
+// nothing ends between.
+TEST(ForegroundDepth, KeepsALongThingWhole) {
+  Grid2d<float> depth_m(40, 40, 0.0F);
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x) depth_m(x, y) = 3.0F - 0.04F * static_cast<float>(y);
+  const DepthRange range = foreground_depth(box(0, 0, 40, 40, kChair, 1), depth_m);
+  EXPECT_TRUE(range.contains(3.0F));
+  EXPECT_TRUE(range.contains(1.44F));
+}
+
 TEST(ForegroundDepth, LeavesOutAThingInFrontThatMissesTheMiddle) {
   Grid2d<float> depth_m(40, 40, 3.0F);
   for (int y = 0; y < 40; ++y)

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/occupancy/voxel_view.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace mh {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3i;
+
+constexpr int kSide = 8;  // of a block, voxels
+
+int floor_div(int a, int b) {
+  return a >= 0 ? a / b : -((-a + b - 1) / b);
+}
+
+Vector3i voxel_of(const Vector3d& point_m, double resolution_m) {
+  return (point_m / resolution_m).array().floor().cast<int>();
+}
+
+Vector3i block_of(const Vector3i& voxel) {
+  return {floor_div(voxel.x(), kSide), floor_div(voxel.y(), kSide), floor_div(voxel.z(), kSide)};
+}
+
+/// The least and the greatest of a depth image in any square, in four lookups: the extremes of all
+/// squares whose side is a power of two (a sparse table).
+class DepthExtremes {
+ public:
+  explicit DepthExtremes(const Grid2d<float>& depth_m) {
+    constexpr float kFar = std::numeric_limits<float>::infinity();
+    least_.push_back(depth_m);
+    for (float& z : least_.back())
+      if (!(z > 0)) z = kFar;
+    greatest_.push_back(depth_m);
+    const int w = depth_m.width(), h = depth_m.height();
+    for (int side = 1; 2 * side <= std::min({w, h, kLargest}); side *= 2) {
+      least_.push_back(wider(least_.back(), side, [](float a, float b) { return std::min(a, b); }));
+      greatest_.push_back(
+          wider(greatest_.back(), side, [](float a, float b) { return std::max(a, b); }));
+    }
+  }
+
+  /// Of the valid depths within `radius` pixels; infinite if there is none.
+  float least(int x, int y, int radius) const {
+    return extreme(least_, x, y, radius, [](float a, float b) { return std::min(a, b); });
+  }
+  /// 0 if there is none.
+  float greatest(int x, int y, int radius) const {
+    return extreme(greatest_, x, y, radius, [](float a, float b) { return std::max(a, b); });
+  }
+
+ private:
+  static constexpr int kLargest = 64;
+
+  /// Squares of twice the side; element (x, y) is the square whose upper left corner is there.
+  template <class F>
+  static Grid2d<float> wider(const Grid2d<float>& of, int side, F f) {
+    Grid2d<float> wide(of.width() - side, of.height() - side, Unfilled{});
+    for (int y = 0; y < wide.height(); ++y)
+      for (int x = 0; x < wide.width(); ++x)
+        wide(x, y) = f(f(of(x, y), of(x + side, y)), f(of(x, y + side), of(x + side, y + side)));
+    return wide;
+  }
+
+  template <class F>
+  static float extreme(const std::vector<Grid2d<float>>& levels, int x, int y, int radius, F f) {
+    const int w = levels[0].width(), h = levels[0].height();
+    const int x0 = std::clamp(x - radius, 0, w - 1), x1 = std::clamp(x + radius, 0, w - 1);
+    const int y0 = std::clamp(y - radius, 0, h - 1), y1 = std::clamp(y + radius, 0, h - 1);
+    std::size_t k = 0;
+    while (k + 1 < levels.size() && (2 << k) <= std::min(x1 - x0, y1 - y0) + 1) ++k;
+    const int side = 1 << k;
+    float result = levels[k](x0, y0);
+    // A square that is larger than four of these is covered by more of them.
+    for (int v = y0;; v = std::min(v + side, y1 - side + 1)) {
+      for (int u = x0;; u = std::min(u + side, x1 - side + 1)) {
+        result = f(result, levels[k](u, v));
+        if (u == x1 - side + 1) break;
+      }
+      if (v == y1 - side + 1) break;
+    }
+    return result;
+  }
+
+  std::vector<Grid2d<float>> least_, greatest_;
+};
+
+/// A camera's view of one map: points there and back.
+class View {
+ public:
+  View(const Camera& camera, const SE3& map_from_camera)
+      : camera_(camera),
+        eye_(map_from_camera.translation()),
+        map_from_camera_(map_from_camera),
+        camera_from_map_(map_from_camera.inverse()) {}
+  const Camera& camera() const { return camera_; }
+  const Vector3d& eye() const { return eye_; }
+  Vector3d in_map(const Vector3d& in_camera) const { return map_from_camera_ * in_camera; }
+  Vector3d in_camera(const Vector3d& in_map) const { return camera_from_map_ * in_map; }
+  const Eigen::Matrix3d& turn() const { return camera_from_map_.rotation(); }
+  double f_px() const { return std::max(camera_.fx_px, camera_.fy_px); }
+
+ private:
+  const Camera& camera_;
+  Vector3d eye_;
+  SE3 map_from_camera_, camera_from_map_;
+};
+
+struct Hit {
+  std::uint32_t block;  ///< its place in the box of blocks
+  std::uint16_t place;
+  ClassId label;
+};
+
+/// The blocks around a camera, as far as it can tell.
+struct BlockBox {
+  BlockBox(const Vector3d& eye, const DepthModel& model) {
+    const int reach = static_cast<int>(std::ceil(model.max_range_m / model.resolution_m)) + 1;
+    const Vector3i voxel = voxel_of(eye, model.resolution_m);
+    low = block_of(voxel - Vector3i::Constant(reach));
+    size = block_of(voxel + Vector3i::Constant(reach)) - low + Vector3i::Ones();
+  }
+  std::uint32_t place(const Vector3i& block) const {
+    const Vector3i at = block - low;
+    return static_cast<std::uint32_t>((at.z() * size.y() + at.y()) * size.x() + at.x());
+  }
+  Vector3i block(std::uint32_t place) const {
+    const int i = static_cast<int>(place);
+    return low + Vector3i(i % size.x(), i / size.x() % size.y(), i / (size.x() * size.y()));
+  }
+  std::size_t count() const {
+    return static_cast<std::size_t>(size.x()) * static_cast<std::size_t>(size.y()) *
+           static_cast<std::size_t>(size.z());
+  }
+  Vector3i low, size;
+};
+
+/// The returns within range, ordered by block, then voxel, then class.
+std::vector<Hit> hits_of(const Grid2d<float>& depth_m, const Grid2d<ClassId>& labels,
+                         const View& view, const DepthModel& model, const BlockBox& box) {
+  std::vector<Hit> hits;
+  const double least2 = model.min_range_m * model.min_range_m,
+               most2 = model.max_range_m * model.max_range_m;
+  for (int y = 0; y < depth_m.height(); ++y)
+    for (int x = 0; x < depth_m.width(); ++x) {
+      const double z = static_cast<double>(depth_m(x, y));
+      if (!(z > 0)) continue;
+      const Vector3d in_camera = view.camera().unproject(x, y, z);
+      const double range2 = in_camera.squaredNorm();
+      if (range2 < least2 || range2 > most2) continue;
+      const Vector3i voxel = voxel_of(view.in_map(in_camera), model.resolution_m);
+      const Vector3i block = block_of(voxel), at = voxel - kSide * block;
+      hits.push_back({box.place(block),
+                      static_cast<std::uint16_t>(at.x() + kSide * (at.y() + kSide * at.z())),
+                      labels.empty() ? kVoid : labels(x, y)});
+    }
+  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
+    return std::tie(a.block, a.place, a.label) < std::tie(b.block, b.place, b.label);
+  });
+  return hits;
+}
+
+/// Sets the hit voxels of a block, each with the class of most of its returns (ties to the
+/// smallest id). @returns the first hit of another block
+std::vector<Hit>::const_iterator take_hits(std::vector<Hit>::const_iterator hit,
+                                           std::vector<Hit>::const_iterator end,
+                                           std::uint32_t place, VoxelBlock& block) {
+  while (hit != end && hit->block == place) {
+    const std::uint16_t voxel = hit->place;
+    block.hit[voxel / 64] |= std::uint64_t{1} << voxel % 64U;
+    ClassId best = kVoid;
+    std::ptrdiff_t most = 0;
+    while (hit != end && hit->block == place && hit->place == voxel) {
+      const auto first = hit;
+      while (hit != end && hit->block == place && hit->place == voxel && hit->label == first->label)
+        ++hit;
+      if (first->label != kVoid && hit - first > most) {
+        most = hit - first;
+        best = first->label;
+      }
+    }
+    if (best != kVoid) block.votes.emplace_back(voxel, best);
+  }
+  return hit;
+}
+
+/// Finds the free voxels of blocks.
+class Clearing {
+ public:
+  Clearing(const Grid2d<float>& depth_m, const View& view, const DepthModel& model)
+      : depth_m_(depth_m), view_(view), model_(model), extremes_(depth_m) {
+    step_ = view.turn().col(0) * model.resolution_m;
+    half_px_m_ = view.f_px() * model.around_voxels * model.resolution_m;
+    before_m_ = model.before_voxels * model.resolution_m;
+  }
+
+  void clear(VoxelBlock& block) const {
+    const double r = model_.resolution_m;
+    const Vector3d corner = r * (kSide * block.index).cast<double>();
+    if (!may_clear(view_.in_camera(corner + Vector3d::Constant(0.5 * kSide * r)))) return;
+    for (int z = 0; z < kSide; ++z)
+      for (int y = 0; y < kSide; ++y) {
+        Vector3d p = view_.in_camera(corner + r * Vector3d(0.5, y + 0.5, z + 0.5));
+        std::uint64_t row = 0;
+        for (int x = 0; x < kSide; ++x, p += step_)
+          if (is_free(p)) row |= std::uint64_t{1} << static_cast<unsigned>(x);
+        block.free[static_cast<std::size_t>(z)] |= row << static_cast<unsigned>(kSide * y);
+      }
+  }
+
+ private:
+  /// Nearer than this to the camera's plane nothing is told: projections there are unbounded.
+  static constexpr double kNearest_m = 0.1;
+
+  /// Whether any voxel of the block around a center (camera frame) may be free.
+  bool may_clear(const Vector3d& center) const {
+    const double radius = 0.5 * std::sqrt(3.0) * kSide * model_.resolution_m;
+    if (center.norm() - radius > model_.max_range_m || center.z() + radius < kNearest_m)
+      return false;
+    const double nearest = center.z() - radius;
+    if (nearest < 2 * kNearest_m) return true;
+    const Eigen::Vector2d at = view_.camera().project(center);
+    // A ball's image reaches farther than its radius over its nearest depth, in the corners of a
+    // wide image; there the whole row or column decides.
+    const double reach_px = view_.f_px() * radius / nearest * (1 + (center.norm() / center.z()));
+    const int w = depth_m_.width(), h = depth_m_.height();
+    if (at.x() + reach_px < 0 || at.y() + reach_px < 0 || at.x() - reach_px > w - 1 ||
+        at.y() - reach_px > h - 1)
+      return false;
+    return static_cast<double>(extremes_.greatest(static_cast<int>(std::lround(at.x())),
+                                                  static_cast<int>(std::lround(at.y())),
+                                                  static_cast<int>(std::ceil(reach_px)))) > nearest;
+  }
+
+  bool is_free(const Vector3d& p) const {
+    if (p.z() < kNearest_m || p.squaredNorm() > model_.max_range_m * model_.max_range_m)
+      return false;
+    const Camera& camera = view_.camera();
+    const double inverse_z = 1 / p.z();
+    const double u = camera.fx_px * p.x() * inverse_z + camera.cx_px + 0.5,
+                 v = camera.fy_px * p.y() * inverse_z + camera.cy_px + 0.5;
+    if (!(u >= 0 && v >= 0 && u < depth_m_.width() && v < depth_m_.height())) return false;
+    const int x = static_cast<int>(u), y = static_cast<int>(v);
+    const double behind = p.z() + before_m_;
+    if (!(static_cast<double>(depth_m_(x, y)) > behind)) return false;  // or no return
+    const int around = static_cast<int>(half_px_m_ * inverse_z + 0.5);
+    return around == 0 || static_cast<double>(extremes_.least(x, y, around)) > behind;
+  }
+
+  const Grid2d<float>& depth_m_;
+  const View& view_;
+  const DepthModel& model_;
+  DepthExtremes extremes_;
+  Vector3d step_;
+  double half_px_m_ = 0, before_m_ = 0;
+};
+
+}  // namespace
+
+VoxelView look(const Grid2d<float>& depth_m, const Grid2d<ClassId>& labels, const Camera& camera,
+               const SE3& map_from_camera, const DepthModel& model) {
+  assert(labels.empty() ||
+         (labels.width() == depth_m.width() && labels.height() == depth_m.height()));
+  const View view(camera, map_from_camera);
+  const BlockBox box(view.eye(), model);
+  const std::vector<Hit> hits = hits_of(depth_m, labels, view, model, box);
+  const Clearing clearing(depth_m, view, model);
+  VoxelView told;
+  auto hit = hits.begin();
+  for (std::uint32_t place = 0; place < box.count(); ++place) {
+    VoxelBlock block;
+    block.index = box.block(place);
+    clearing.clear(block);
+    hit = take_hits(hit, hits.end(), place, block);
+    std::uint64_t any = 0;
+    for (std::size_t z = 0; z < block.free.size(); ++z) {
+      block.free[z] &= ~block.hit[z];
+      any |= block.free[z] | block.hit[z];
+    }
+    if (any != 0) told.push_back(std::move(block));
+  }
+  return told;
+}
+
+}  // namespace mh
