@@ -14,10 +14,11 @@
 namespace mh {
 namespace {
 
-constexpr double kStep_s = 0.1;    // between commands
-constexpr double kSettle_s = 1.0;  // it comes to rest after it has said that it stops
+constexpr double kStep_s = 0.1;      // between commands
+constexpr double kMapError_m = 0.1;  // it goes so much nearer by its map than the truth asks
+constexpr double kSettle_s = 1.0;    // it comes to rest after it has said that it stops
 
-enum StreamName : std::uint64_t { kNoise = 0x6570, kDraws = 0x6571 };
+constexpr std::uint64_t kNoiseStream = 0x6570, kDrawStream = 0x6571;
 
 /// A pose between two.
 Pose2 between(const Pose2& a, const Pose2& b, double share) {
@@ -32,7 +33,7 @@ std::uint64_t digest_of(const Twist2d& command, std::uint64_t sum) {
 /// The same for every system, another for every variant and start.
 std::uint64_t noise_seed(const EpisodesSpec& spec, const std::string& variant, std::size_t start) {
   const std::uint64_t of_variant = digest_bytes(variant.data(), variant.size());
-  return RandomStream(spec.seed).fork(kNoise).fork(of_variant).fork(start).key();
+  return RandomStream(spec.seed).fork(kNoiseStream).fork(of_variant).fork(start).key();
 }
 
 class Episode {
@@ -43,7 +44,7 @@ class Episode {
         spec_(spec),
         start_(start),
         observe_(observe),
-        draws_(RandomStream(place.system_seed).fork(kDraws).fork(start.index)),
+        draws_(RandomStream(place.system_seed).fork(kDrawStream).fork(start.index)),
         world_from_map_(
             from_above(place.truth_from_estimate * place.map.map_from_estimate.inverse())) {
     score_.variant = place.variant;
@@ -65,7 +66,9 @@ class Episode {
     }
     std::optional<Navigator> navigator;
     try {
-      navigator.emplace(place_.map.known, place_.robot, *goal);
+      NavigatorConfig config;
+      config.reach_m = spec_.arrival_m - kMapError_m;
+      navigator.emplace(place_.map.known, place_.robot, *goal, config);
     } catch (const InputError&) {
       return failed("no_path");
     }
@@ -91,7 +94,7 @@ class Episode {
   void in_the_dark(Simulation& simulation) {
     simulation.switch_light(false);
     while (simulation.time_s() < spec_.dark_s) {
-      const Observation seen = simulation.step(Twist2d::Zero(), kStep_s);
+      const RobotObservation seen = simulation.step(Twist2d::Zero(), kStep_s);
       if (seen.frame) answer(*seen.frame);
       odometry_ = from_above(seen.odom_from_base);
     }
@@ -121,7 +124,7 @@ class Episode {
     std::optional<double> ended_s;
     while (simulation.time_s() < spec_.limit_s &&
            !(ended_s && simulation.time_s() > *ended_s + kSettle_s)) {
-      const Observation seen = simulation.step(command, kStep_s);
+      const RobotObservation seen = simulation.step(command, kStep_s);
       const Pose2 before = odometry_;
       odometry_ = from_above(seen.odom_from_base);
       Perception now{.time_s = simulation.time_s(),
@@ -170,7 +173,7 @@ class Episode {
         std::abs(turn_to(belief->heading_rad, truth.heading_rad)) * 180 / std::numbers::pi;
   }
 
-  void tell(const Simulation& simulation, Navigator& navigator, const Observation& seen,
+  void tell(const Simulation& simulation, Navigator& navigator, const RobotObservation& seen,
             const SystemReport& report) {
     EpisodeMoment moment;
     moment.time_s = simulation.time_s();

@@ -18,7 +18,7 @@
 namespace mh {
 namespace {
 
-enum StreamName : std::uint64_t { kTour = 0x746f7572 };
+constexpr std::uint64_t kTourStream = 0x746f7572;
 
 void require_level_floor(const Scene& scene) {
   if (!scene.floor.is_level_zero())
@@ -71,6 +71,7 @@ EpisodeWorld build_episode_world(const RunSpec& spec, const EpisodesSpec& episod
                                  spec.environment.robot.string(), robot.name));
   place.mapping = std::make_shared<EveryNth>(place.world.mapping,
                                              static_cast<std::size_t>(episodes.ticks_per_frame));
+  place.world.mapping = place.mapping;  // systems are made for a camera of that rate
   for (const EpisodeVariant& variant : episodes.variants)
     place.variants.push_back(variant_place(variant, episodes, place.world, threads, cache, say));
   return place;
@@ -100,7 +101,7 @@ class Unlabeled : public Sequence {
 
 MappedSystem map_tour(const RunSpec& spec, const EpisodeWorld& place, const MapTools& tools) {
   const Sequence& frames = *place.mapping;
-  const RandomStream stream = RandomStream(spec.seed).fork(kTour);
+  const RandomStream stream = RandomStream(spec.seed).fork(kTourStream);
   MappedSystem mapped;
   mapped.system = make_system(spec, place.world, tools.folder);
   if (mapped.system == nullptr)

@@ -19,9 +19,9 @@ struct EpisodeStart {
   std::size_t index = 0;
   Eigen::Vector2d place_m = Eigen::Vector2d::Zero();  ///< world
   double heading_rad = 0;
-  std::string goal;
-  std::vector<TrueBox> boxes;  ///< of every thing of that class
-  double shortest_m = 0;       ///< of the ways over the true floor that end in success
+  std::string goal = {};
+  std::vector<TrueBox> boxes = {};  ///< of every thing of that class
+  double shortest_m = 0;            ///< of the ways over the true floor that end in success
 };
 
 /// Distance (m) of a place from the nearest box; infinite if there is none.

@@ -45,7 +45,7 @@ Drive drive_about(const SimulatedScene& scene, const Robot& robot, const SensorC
   while (simulation.time_s() < seconds) {
     // Turns, and drives a little to and fro.
     const bool forward = static_cast<int>(simulation.time_s() / 2) % 2 == 0;
-    const Observation seen = simulation.step({forward ? 0.15 : -0.15, 0, 0.5}, 0.1);
+    const RobotObservation seen = simulation.step({forward ? 0.15 : -0.15, 0, 0.5}, 0.1);
     if (seen.frame) {
       ++drive.frames;
       drive.digest = chained(drive.digest, digest(*seen.frame));

@@ -30,7 +30,7 @@ bool touches_cube(const std::array<Vector3d, 3>& corners) {
   return true;
 }
 
-constexpr std::array<std::array<int, 3>, 6> kSides{
+constexpr std::array<std::array<int, 3>, 6> kBoxSides{
     {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
 
 }  // namespace
@@ -105,7 +105,7 @@ void TrueSpace::open_from(const Vector3i& seed) {
     State* state = cell(voxel);
     if (state == nullptr || *state != State::kClosed) continue;
     *state = State::kOpen;
-    for (const auto& [x, y, z] : kSides) stack.push_back(voxel + Vector3i(x, y, z));
+    for (const auto& [x, y, z] : kBoxSides) stack.push_back(voxel + Vector3i(x, y, z));
   }
 }
 
@@ -130,7 +130,7 @@ OccupancyGrid TrueSpace::floor_plan(double low_m, double high_m,
     stack.pop_back();
     if (!grid.cells.contains(c.x(), c.y()) || grid.cells(c.x(), c.y()) != kUnknownCell) continue;
     grid.cells(c.x(), c.y()) = kFreeCell;
-    for (const auto& [x, y, z] : kSides)
+    for (const auto& [x, y, z] : kBoxSides)
       if (z == 0) stack.push_back(c + Eigen::Vector2i(x, y));
   }
   return grid;

@@ -78,7 +78,7 @@ TEST(Simulation, ItsSensorsReadWhatTheyReadAlongAFinishedPath) {
   const SimulatedScene place = place_of(furnished());
   Simulation simulation(place, robot, {},
                         {.start_m = {4.5, 5}, .ticks_per_frame = 1000, .seed = 7});
-  std::vector<Observation> seen;
+  std::vector<RobotObservation> seen;
   Trajectory base{{0, simulation.truth().world_from_base()}};
   for (int i = 0; i < 90; ++i) {
     seen.push_back(simulation.step({0.3, 0, 0.2}, 1.0 / 30));
@@ -105,7 +105,7 @@ TEST(Simulation, SameCommandsGiveTheSameBits) {
     std::uint64_t sum = 0;
     int frames = 0;
     for (int i = 0; i < 20; ++i) {
-      const Observation seen = simulation.step(command_at(i), 0.1);
+      const RobotObservation seen = simulation.step(command_at(i), 0.1);
       if (!seen.frame) continue;
       ++frames;
       EXPECT_LT(seen.frame->stamp_ns, seen.stamp_ns);
@@ -125,7 +125,7 @@ TEST(Simulation, ABumpIsToldWithItsSpeedAndPressesABumper) {
                         {.start_m = {4.8, 5}, .ticks_per_frame = 1000});
   bool pressed = false;
   for (int i = 0; i < 60; ++i) {
-    const Observation seen = simulation.step({0.3, 0, 0}, 0.1);
+    const RobotObservation seen = simulation.step({0.3, 0, 0}, 0.1);
     pressed = pressed || std::ranges::any_of(seen.reading.bumpers, [](bool b) { return b; });
   }
   EXPECT_TRUE(pressed);
@@ -139,13 +139,13 @@ TEST(Simulation, CarriedInTheDarkItSeesNothingAndItsWheelsRest) {
   const SE3 before = simulation.step(Twist2d::Zero(), 0.1).odom_from_base;
   simulation.switch_light(false);
   simulation.carry_to({8, 8}, 1.0);
-  const Observation dark = simulation.step(Twist2d::Zero(), 0.1);
+  const RobotObservation dark = simulation.step(Twist2d::Zero(), 0.1);
   ASSERT_TRUE(dark.frame);
   EXPECT_TRUE(std::ranges::all_of(dark.frame->depth_m, [](float d) { return d == 0; }));
   EXPECT_LT((dark.odom_from_base.translation() - before.translation()).norm(), 1e-6);
   EXPECT_NEAR(simulation.truth().state().position_m.x(), 8, 1e-6);
   simulation.switch_light(true);
-  const Observation lit = simulation.step(Twist2d::Zero(), 0.1);
+  const RobotObservation lit = simulation.step(Twist2d::Zero(), 0.1);
   EXPECT_TRUE(std::ranges::any_of(lit.frame->depth_m, [](float d) { return d > 0; }));
   EXPECT_THROW(simulation.carry_to({6.5, 5}, 0), InputError);  // into the table
 }
