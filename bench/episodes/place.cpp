@@ -11,6 +11,8 @@
 #include "bench/run/run_one.hpp"
 #include "bench/world/cached_light.hpp"
 #include "scenes/load.hpp"
+#include "sim/motion/sensing.hpp"
+#include "sim/physics/planar_world.hpp"
 #include "sim/world/lit_scene.hpp"
 #include "sim/world/pedestrian.hpp"
 #include "slam/core/error.hpp"
@@ -64,6 +66,7 @@ EpisodeWorld build_episode_world(const RunSpec& spec, const EpisodesSpec& episod
                                  const Cache& cache, const Say& say) {
   EpisodeWorld place;
   place.labels = spec.labels.mode;
+  place.ticks_per_frame = episodes.ticks_per_frame;
   place.world = build_world(spec, threads, cache, say);
   const Robot& robot = place.world.simulated->robot;
   if (!robot.equipment || robot.equipment->lasers.empty())
@@ -110,13 +113,16 @@ MappedSystem map_tour(const RunSpec& spec, const EpisodeWorld& place, const MapT
         "or a library can",
         spec.system.name));
   const Unlabeled unlabeled(frames);
+  double furthest = 0;
   const auto map_now = [&] {
-    map_sequence(
-        *mapped.system,
-        spec.system.sees_labels() ? frames : static_cast<const Sequence&>(unlabeled), spec.protocol,
-        stream, [&](const MappedFrame& call, const RgbdFrame&, const SystemReport&) {
-          tools.progress(static_cast<double>(call.index + 1) / static_cast<double>(frames.size()));
-        });
+    map_sequence(*mapped.system,
+                 spec.system.sees_labels() ? frames : static_cast<const Sequence&>(unlabeled),
+                 spec.protocol, stream,
+                 [&](const MappedFrame& call, const RgbdFrame&, const SystemReport&) {
+                   const double share =
+                       static_cast<double>(call.index + 1) / static_cast<double>(frames.size());
+                   if (share > furthest) tools.progress(furthest = share);
+                 });
     mapped.system->freeze();
   };
   if (spec.system.saves_map()) {
@@ -139,8 +145,19 @@ MappedSystem map_tour(const RunSpec& spec, const EpisodeWorld& place, const MapT
   mapped.offered = offered_frames(frames.size(), spec.protocol).size();
   mapped.tracked = estimate.size();
   mapped.truth_from_estimate = frames_of(estimate, *frames.truth()).truth_from_estimate;
-  mapped.map =
-      build_robot_map(frames, estimate, place.world.simulated->robot, mapping_noise(stream, 0));
+  const SimulatedPlace& simulated = *place.world.simulated;
+  PlanarWorld seen(*simulated.scene, simulated.robot, Eigen::Vector2d::Zero(), 0);
+  mapped.map = build_robot_map(
+      {.frames = frames,
+       .estimate = estimate,
+       .robot = simulated.robot,
+       .noise = mapping_noise(stream, 0),
+       .lasers = [&](std::size_t i) {
+         const SE3& world_from_base =
+             simulated.mapping.base[i * static_cast<std::size_t>(place.ticks_per_frame)]
+                 .world_from_camera;
+         return read_ranges(seen, *simulated.robot.equipment, world_from_base).lasers_m;
+       }});
   return mapped;
 }
 

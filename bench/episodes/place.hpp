@@ -43,6 +43,7 @@ struct VariantPlace {
 struct EpisodeWorld {
   World world;  ///< labeled: systems that see no labels receive frames without
   LabelMode labels = LabelMode::kExact;
+  int ticks_per_frame = 1;
   std::shared_ptr<const Sequence> mapping;  ///< at the rate of the episodes
   std::vector<VariantPlace> variants;
 };

@@ -20,19 +20,28 @@ struct RobotMap {
   SE3 map_from_estimate;  ///< estimate: the system's own world
   OccupancyGrid grid;
   std::vector<MapObject> objects;
-  KnownMap known;  ///< of both, as the navigator reads it
+  std::vector<std::vector<Eigen::Vector2d>> footprints_m;  ///< of each object: cells that it covers
+  KnownMap known;                                          ///< the grid, as the navigator reads it
 };
 
 /// Frames that the map is made of: those of the trajectory after which the camera moved or turned
 /// by some, as indices of the sequence.
 std::vector<std::size_t> frames_for_map(const Sequence& frames, const Trajectory& estimate);
 
-/// Builds the map. Makes the frames again; what was seen in a second attempt after tracking failed
-/// is seen with the noise of the first.
-/// @param estimate  world_from_camera in the system's own world
+/// What a map is built from.
+struct MapInput {
+  const Sequence& frames;
+  const Trajectory& estimate;  ///< world_from_camera in the system's own world
+  const Robot& robot;
+  RandomStream noise;  ///< of the frames
+  /// The scans at a frame, by laser; empty: depth alone makes the grid.
+  std::function<std::vector<std::vector<float>>(std::size_t frame)> lasers = {};
+};
+
+/// Builds the map from depth, labels and lasers. Makes the frames again; what was seen in a second
+/// attempt after tracking failed is seen with the noise of the first.
 /// @throws InputError if nothing was tracked, or no free floor was seen.
-RobotMap build_robot_map(const Sequence& frames, const Trajectory& estimate, const Robot& robot,
-                         RandomStream noise);
+RobotMap build_robot_map(const MapInput& input);
 
 /// The object meant by a name, as a goal; the best-scored if several.
 /// @throws InputError with suggestions if the map has none.

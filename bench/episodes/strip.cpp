@@ -171,13 +171,13 @@ cv::Mat EpisodeRecord::strip(const std::string& title, const EpisodeScore& score
   const MapView view =
       view_of(map_.grid, kMargin, map_top, width - 3 * kMargin - kLegendWidth, kMapHeight);
   draw_grid(canvas, map_.grid, view);
-  for (const MapObject& object : map_.objects) {
-    if (class_by_name(score.goal) != object.class_id) continue;
-    const Vector2d low = object.min_m.head<2>().cast<double>(),
-                   high = object.max_m.head<2>().cast<double>();
-    draw_way(canvas, view, {low, {high.x(), low.y()}, high, {low.x(), high.y()}, low}, kGoalBox,
-             2.5);
-  }
+  for (std::size_t i = 0; i < map_.objects.size(); ++i)
+    if (class_by_name(score.goal) == map_.objects[i].class_id)
+      for (const Vector2d& place : map_.footprints_m[i]) {
+        const double side = view.scale * map_.grid.resolution_m;
+        const cv::Point2d at = view(place);
+        canvas.fill(at.x - side / 2, at.y - side / 2, side, side, kGoalBox);
+      }
   const Pose2 map_from_world = world_from_map_.inverse();
   for (const auto& plan : plans_) draw_way(canvas, view, plan, kPlan, 5);
   for (std::size_t i = 0; i + 1 < steps_.size(); ++i) {
@@ -200,7 +200,7 @@ cv::Mat EpisodeRecord::strip(const std::string& title, const EpisodeScore& score
     canvas.text(std::to_string(i + 1), {at.x + 6, at.y - 6 - 3 * static_cast<double>(i % 3)}, 9,
                 kDark, Canvas::Align::kLeft, true);
   }
-  const double x = width - kMargin - kLegendWidth;
+  const double x = view({view.high_m.x(), view.low_m.y()}).x + 2 * kMargin;
   double y = map_top + 14;
   const auto legend = [&](Rgb8 color, const std::string& text) {
     canvas.line({x, y - 4}, {x + 26, y - 4}, color, 4);

@@ -92,6 +92,7 @@ TEST(GoalNamed, AnUnknownNameGetsASuggestion) {
   RobotMap map;
   map.objects = {{.name = "bed 1", .class_id = *class_by_name("bed"), .score = 0.9},
                  {.name = "desk 1", .class_id = *class_by_name("desk"), .score = 0.8}};
+  map.footprints_m = {{{1, 1}}, {{2, 2}}};
   EXPECT_EQ(goal_named(map, "desk").name, "desk 1");
   try {
     goal_named(map, "dexk");
