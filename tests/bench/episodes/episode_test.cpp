@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kidnappings from start to end, in a small generated room.
+// Kidnappings from start to end, in a small room.
 #include "bench/episodes/episode.hpp"
 
 #include <algorithm>
@@ -23,13 +23,16 @@ namespace fs = std::filesystem;
 Suite small_suite(const std::string& robot = "pepper") {
   const std::string root = MH_SOURCE_DIR;
   return parse_suite("name: small\nrobot: " + root + "/robots/" + robot + "/" + robot + R"(.yaml
-environments: [{category: bedroom, scene: "generated:bedroom:1"}]
+environments:
+- {category: room, scene: )" +
+                         root + "/bench/scenarios/room.yaml, mapping_tour: " + root +
+                         R"(/bench/scenarios/tours/room.yaml}
 vocabulary: )" + root + R"(/assets/vocabulary.mhvoc
 levels: [)" + root + R"(/sim/sensors/levels/pepper.yaml]
 systems: [semantic, plain]
 labels: [exact]
 protocol: {test_interval: 0}
-episodes: {starts: 2, limit_s: 90, goals: [bed]}
+episodes: {starts: 2, limit_s: 90, goals: [sofa]}
 )",
                      fs::path(root) / "small.yaml");
 }
