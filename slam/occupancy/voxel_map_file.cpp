@@ -237,7 +237,7 @@ void VoxelMap::write_ot(std::ostream& out) const {
     else
       tree.setNodeColor(leaf.getKey(), info.r, info.g, info.b);
   }
-  tree.updateInnerOccupancy();
+  if (tree.size() > 0) tree.updateInnerOccupancy();
   tree.prune();
   tree.write(out);
   const std::string counts = counts_of(impl_->tree);

@@ -261,6 +261,42 @@ class Clearing {
 
 }  // namespace
 
+Grid2d<float> smoothed_depth(const Grid2d<float>& depth_m, double noise_per_m) {
+  // The depth of neighbors on a slanted surface differs by more than the noise: up to this factor,
+  // which at 2 m is a surface seen at 20 degrees.
+  constexpr double kLeast_m = 0.01, kMostSlant = 2.0;
+  Grid2d<float> smooth(depth_m.width(), depth_m.height());
+  for (int y = 0; y < depth_m.height(); ++y)
+    for (int x = 0; x < depth_m.width(); ++x) {
+      const auto z = static_cast<double>(depth_m(x, y));
+      if (!(z > 0)) continue;
+      const double most = std::max(kLeast_m, 3 * noise_per_m * z * z);
+      double sum = z, count_of = 1;
+      int neighbors = 0;
+      // Opposite neighbors count together, so that the mean of a slanted plane stays on it.
+      for (const auto& [u, v] : {std::pair{1, 0}, {0, 1}, {1, 1}, {1, -1}}) {
+        double pair = 0;
+        int on = 0;
+        for (const int side : {1, -1}) {
+          const int px = x + side * u, py = y + side * v;
+          if (!depth_m.contains(px, py)) continue;
+          const auto other = static_cast<double>(depth_m(px, py));
+          // Along a slant the two differ from the middle in opposite directions.
+          if (!(other > 0) || std::abs(other - z) > kMostSlant * most) continue;
+          pair += other;
+          ++on;
+        }
+        neighbors += on;
+        if (on == 2 && std::abs(0.5 * pair - z) <= most) {
+          sum += pair;
+          count_of += 2;
+        }
+      }
+      if (neighbors >= 2) smooth(x, y) = static_cast<float>(sum / count_of);
+    }
+  return smooth;
+}
+
 VoxelView look(const Grid2d<float>& depth_m, const Grid2d<ClassId>& labels, const Camera& camera,
                const SE3& map_from_camera, const DepthModel& model) {
   assert(labels.empty() ||
