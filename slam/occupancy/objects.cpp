@@ -157,7 +157,9 @@ std::pair<int, int> extent_of(const Cluster& cluster, const std::vector<LabeledV
 MapObject object_of(const Cluster& cluster, const std::vector<LabeledVoxel>& voxels, double r,
                     const ObjectsConfig& config) {
   MapObject object;
-  for (int axis = 0; axis < 3; ++axis) {
+  object.min_m.z() = r * cluster.low.z();  // legs are thin: few votes are no noise there
+  object.max_m.z() = r * (cluster.high.z() + 1);
+  for (int axis = 0; axis < 2; ++axis) {
     const auto [low, high] = extent_of(cluster, voxels, axis);
     object.min_m[axis] = r * low;
     object.max_m[axis] = r * (high + 1);

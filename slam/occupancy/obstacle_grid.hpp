@@ -26,7 +26,8 @@ struct ObstacleGridConfig {
 
 /// Projects the part of a map between ground and the robot's head to cells of the map's resolution:
 /// occupied if any voxel there is, so a table top is an obstacle and a lintel is not; free if none
-/// is and the lower part was seen free; else unknown. Empty if nothing was seen there.
+/// is, the lower part was seen free, and no gap is between what was seen free: a table top that
+/// gave no return has free space below and above it; else unknown. Empty if nothing was seen there.
 /// @throws InputError if the heights leave nothing between them.
 OccupancyGrid obstacle_grid(const VoxelMap& map, const ObstacleGridConfig& config = {});
 
