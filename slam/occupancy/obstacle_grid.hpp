@@ -21,7 +21,7 @@ struct ObstacleGridConfig {
   double robot_height_m = 1.21;  ///< what is higher does not touch the robot
   /// A cell is free if it is free from below this height above the floor on: what was seen only
   /// above may hide something low.
-  double seen_below_m = 0.40;
+  double seen_below_m = 0.50;
 };
 
 /// Projects the part of a map between ground and the robot's head to cells of the map's resolution:
