@@ -10,7 +10,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/sequence_source.hpp"
-#include "bench/studies/map_pictures.hpp"
+#include "bench/studies/map_images.hpp"
 #include "bench/studies/map_score.hpp"
 #include "bench/studies/map_study.hpp"
 #include "robots/model/robot.hpp"

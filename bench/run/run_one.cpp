@@ -319,9 +319,8 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
 
   const ProcessorTimer timer(run.products_s);
   if (run.volume && world.simulated)  // the floor of a recording is unknown
-    run.grid = obstacle_grid(*run.volume,
-                             {.floor_z_m = world.simulated->scene->floor.middle_m.z(),
-                              .robot_height_m = world.simulated->robot.height_m});
+    run.grid = obstacle_grid(*run.volume, {.floor_z_m = world.simulated->scene->floor.middle_m.z(),
+                                           .robot_height_m = world.simulated->robot.height_m});
   run.map_digest = digest_bytes(run.grid.cells.data(), run.grid.cells.size(), digest(run.estimate));
   return run;
 }

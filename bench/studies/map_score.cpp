@@ -62,10 +62,6 @@ GridScore score_grid(const OccupancyGrid& grid, const OccupancyGrid& plan) {
       const std::int8_t mapped = cell_at(grid, plan.center_m(x, y));
       add(mapped == kFreeCell, plan.cells(x, y) == kFreeCell, mapped != kUnknownCell);
     }
-  for (int y = 0; y < grid.cells.height(); ++y)
-    for (int x = 0; x < grid.cells.width(); ++x)
-      if (grid.cells(x, y) == kFreeCell && !plan.cell_of(grid.center_m(x, y)))
-        add(true, false, true);
   return score;
 }
 

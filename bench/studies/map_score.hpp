@@ -23,7 +23,7 @@ struct Share {
 };
 
 /// A voxel map against the exact mesh. "Seen": by exact rays from the true poses of the same
-/// keyframes, within the depth model's range.
+/// keyframes, within the depth model's range, through pixels in which the sensor had a return.
 struct VoxelScore {
   Share occupied_precision;  ///< occupied voxels with a true surface within one cell
   Share occupied_recall;     ///< true surfaces that were seen, with an occupied voxel within one

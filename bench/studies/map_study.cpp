@@ -97,8 +97,11 @@ MapScores score_map(const Scene& scene, const OccupancyMapper& mapper, const Tra
     if (pose == nullptr) continue;
     const SE3& at = pose->world_from_camera;
     seeds.push_back(at.translation());
-    const VoxelView seen =
-        look(renderer->render_depth(mapper.thin_camera(), at), {}, mapper.thin_camera(), at, model);
+    Grid2d<float> exact_m = renderer->render_depth(mapper.thin_camera(), at);
+    const Grid2d<float>& sensed_m = *mapper.depth_of(stamp_ns);
+    for (std::size_t i = 0; i < exact_m.size(); ++i)
+      if (!(sensed_m.data()[i] > 0)) exact_m.data()[i] = 0;
+    const VoxelView seen = look(exact_m, {}, mapper.thin_camera(), at, model);
     exact.replace(nullptr, &seen);
     const VoxelView told = look(*mapper.depth_of(stamp_ns), *mapper.labels_of(stamp_ns),
                                 mapper.thin_camera(), at, model);

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 namespace mh {
 namespace {
 
@@ -30,7 +32,7 @@ bool touches_cube(const std::array<Vector3d, 3>& corners) {
   return true;
 }
 
-constexpr std::array<std::array<int, 3>, 6> kBoxSides{
+constexpr std::array<std::array<int, 3>, 6> kFaceSteps{
     {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
 
 }  // namespace
@@ -47,6 +49,18 @@ TrueSpace::TrueSpace(const Scene& scene, double resolution_m, std::span<const Ve
   cells_.assign(static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()) *
                     static_cast<std::size_t>(size_.z()),
                 State::kClosed);
+  plan_low_ = low_.head<2>();
+  plan_high_ = plan_low_ + size_.head<2>();
+  if (!scene.rooms.empty()) {
+    Eigen::AlignedBox2d rooms;
+    for (const Room& room : scene.rooms)
+      for (const Eigen::Vector2d& corner : room.polygon_m) rooms.extend(corner);
+    plan_low_ =
+        plan_low_.cwiseMax((rooms.min() / resolution_m).array().floor().cast<int>().matrix() -
+                           Eigen::Vector2i::Ones());
+    plan_high_ = plan_high_.cwiseMin(
+        (rooms.max() / resolution_m).array().ceil().cast<int>().matrix() + Eigen::Vector2i::Ones());
+  }
   for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
     if (scene.materials[scene.material_of[face]].is_pane()) continue;
     std::array<Vector3d, 3> corners;
@@ -105,21 +119,22 @@ void TrueSpace::open_from(const Vector3i& seed) {
     State* state = cell(voxel);
     if (state == nullptr || *state != State::kClosed) continue;
     *state = State::kOpen;
-    for (const auto& [x, y, z] : kBoxSides) stack.push_back(voxel + Vector3i(x, y, z));
+    for (const auto& [x, y, z] : kFaceSteps) stack.push_back(voxel + Vector3i(x, y, z));
   }
 }
 
 OccupancyGrid TrueSpace::floor_plan(double low_m, double high_m,
                                     std::span<const Vector3d> seeds) const {
-  OccupancyGrid grid{.cells = Grid2d<std::int8_t>(size_.x(), size_.y(), kUnknownCell),
+  const Eigen::Vector2i cells = plan_high_ - plan_low_;
+  OccupancyGrid grid{.cells = Grid2d<std::int8_t>(cells.x(), cells.y(), kUnknownCell),
                      .resolution_m = resolution_m_,
-                     .origin_m = resolution_m_ * low_.head<2>().cast<double>()};
-  for (int y = 0; y < size_.y(); ++y)
-    for (int x = 0; x < size_.x(); ++x)
+                     .origin_m = resolution_m_ * plan_low_.cast<double>()};
+  for (int y = 0; y < cells.y(); ++y)
+    for (int x = 0; x < cells.x(); ++x)
       for (int z = 0; z < size_.z(); ++z) {
         const double center_m = resolution_m_ * (low_.z() + z + 0.5);
         if (center_m >= low_m && center_m <= high_m &&
-            at(low_ + Vector3i(x, y, z)) == State::kSurface)
+            at({plan_low_.x() + x, plan_low_.y() + y, low_.z() + z}) == State::kSurface)
           grid.cells(x, y) = kOccupiedCell;
       }
   std::vector<Eigen::Vector2i> stack;
@@ -130,7 +145,7 @@ OccupancyGrid TrueSpace::floor_plan(double low_m, double high_m,
     stack.pop_back();
     if (!grid.cells.contains(c.x(), c.y()) || grid.cells(c.x(), c.y()) != kUnknownCell) continue;
     grid.cells(c.x(), c.y()) = kFreeCell;
-    for (const auto& [x, y, z] : kBoxSides)
+    for (const auto& [x, y, z] : kFaceSteps)
       if (z == 0) stack.push_back(c + Eigen::Vector2i(x, y));
   }
   return grid;

@@ -29,7 +29,8 @@ class TrueSpace {
   /// Whether a voxel within one cell along each axis has that state.
   bool is_near(const Eigen::Vector3i& voxel, State state) const;
   /// The true floor plan between two heights: occupied where a surface is, free where a robot's
-  /// place is connected with a seed without crossing an occupied cell, else unknown.
+  /// place is connected with a seed without crossing an occupied cell, else unknown. Cut to the box
+  /// of the rooms, if the scene has any: what is seen through a window is no part of the plan.
   OccupancyGrid floor_plan(double low_m, double high_m,
                            std::span<const Eigen::Vector3d> seeds) const;
 
@@ -40,6 +41,7 @@ class TrueSpace {
 
   double resolution_m_;
   Eigen::Vector3i low_, size_;
+  Eigen::Vector2i plan_low_, plan_high_;  ///< cells of the rooms, the last excluded
   std::vector<State> cells_;
 };
 

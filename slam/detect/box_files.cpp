@@ -153,9 +153,17 @@ void read_mot(const fs::path& file, const ClassNames& names, FiledBoxes& all) {
 /// 0.9}, ...].
 void read_coco(const fs::path& file, const ClassNames& names, bool own_names, FiledBoxes& all) {
   using Json = nlohmann::json;
-  const Json json = Json::parse(read_text(file), nullptr, false);
-  if (json.is_discarded() || !json.is_array())
-    throw InputError(fmt::format("{}: is not a list of COCO's results (JSON)", file.string()));
+  const std::string text = read_text(file);
+  Json json;
+  try {
+    json = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    const std::string_view before = std::string_view(text).substr(0, error.byte);
+    throw InputError(fmt::format("{}:{}: is not JSON (which has no NaN and no comments)",
+                                 file.string(), 1 + std::ranges::count(before, '\n')));
+  }
+  if (!json.is_array())
+    throw InputError(fmt::format("{}: is not a list of COCO's results", file.string()));
   for (std::size_t i = 0; i < json.size(); ++i) {
     const std::string place = fmt::format("{}: entry {}", file.string(), i);
     const Json& entry = json[i];

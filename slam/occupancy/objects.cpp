@@ -61,7 +61,9 @@ struct Cluster {
   Vector3i low, high;  ///< both included
 };
 
-std::vector<Cluster> clusters_of(const std::vector<LabeledVoxel>& voxels, int reach) {
+/// Voxels that touch, corners included.
+std::vector<Cluster> clusters_of(const std::vector<LabeledVoxel>& voxels) {
+  constexpr int reach = 1;
   std::unordered_map<std::uint64_t, std::size_t> at;  // only looked up, never walked
   at.reserve(voxels.size());
   for (std::size_t i = 0; i < voxels.size(); ++i) at.emplace(key_of(voxels[i].index), i);
@@ -104,33 +106,64 @@ void absorb(Cluster& into, const Cluster& part) {
   into.high = into.high.cwiseMax(part.high);
 }
 
-/// Merges parts that stand above one another with a gap: the legs of a chair and its seat, whose
-/// rims depth left out.
-void merge_stacked(std::vector<Cluster>& clusters, int gap) {
-  const auto is_part = [gap](const Cluster& a, const Cluster& b) {
-    const int apart = std::max(a.low.z() - b.high.z(), b.low.z() - a.high.z()) - 1;
-    return apart <= gap && shared_above(a, b) >= 0.5;
-  };
-  // The larger ones take the smaller ones, until nothing merges.
-  for (bool merged = true; merged;) {
-    merged = false;
-    std::ranges::stable_sort(clusters, std::ranges::greater(),
-                             [](const Cluster& c) { return c.voxels.size(); });
-    for (std::size_t a = 0; a < clusters.size(); ++a)
-      for (std::size_t b = clusters.size(); b-- > a + 1;)
-        if (is_part(clusters[a], clusters[b])) {
-          absorb(clusters[a], clusters[b]);
-          clusters.erase(clusters.begin() + static_cast<std::ptrdiff_t>(b));
-          merged = true;
-        }
+/// Whether a cluster is a fragment of a larger one: at most a quarter of it, and beside it or above
+/// or below it, where depth left a gap.
+bool is_fragment(const Cluster& small, const Cluster& large, int gap, int stacked_gap) {
+  if (4 * small.voxels.size() > large.voxels.size()) return false;
+  const Vector3i apart =
+      (small.low - large.high).cwiseMax(large.low - small.high).array() - 1;  // empty voxels
+  if (apart.maxCoeff() <= gap) return true;
+  return apart.z() <= stacked_gap && shared_above(small, large) >= 0.5;
+}
+
+/// Gives fragments to the largest cluster that they belong to.
+void merge_fragments(std::vector<Cluster>& clusters, int gap, int stacked_gap) {
+  std::ranges::stable_sort(clusters, std::ranges::greater(),
+                           [](const Cluster& c) { return c.voxels.size(); });
+  std::vector<Cluster> merged;
+  for (const Cluster& cluster : clusters) {
+    const auto whole = std::ranges::find_if(merged, [&](const Cluster& large) {
+      return is_fragment(cluster, large, gap, stacked_gap);
+    });
+    if (whole == merged.end())
+      merged.push_back(cluster);
+    else
+      absorb(*whole, cluster);
   }
+  clusters = std::move(merged);
+}
+
+/// Where the votes of an object lie along an axis: the least and the greatest index without the
+/// hundredth of the votes beyond each of them. What few views voted for is noise at edges.
+std::pair<int, int> extent_of(const Cluster& cluster, const std::vector<LabeledVoxel>& voxels,
+                              int axis) {
+  std::map<int, std::uint64_t> votes;
+  std::uint64_t all = 0;
+  for (const std::size_t i : cluster.voxels) {
+    votes[voxels[i].index[axis]] += voxels[i].votes;
+    all += voxels[i].votes;
+  }
+  const auto most_beyond = static_cast<double>(all) * 0.01;
+  auto low = votes.begin();
+  for (std::uint64_t sum = low->second; static_cast<double>(sum) <= most_beyond; sum += low->second)
+    ++low;
+  auto high = std::prev(votes.end());
+  for (std::uint64_t sum = high->second; static_cast<double>(sum) <= most_beyond;
+       sum += high->second)
+    --high;
+  return {low->first, high->first};
 }
 
 MapObject object_of(const Cluster& cluster, const std::vector<LabeledVoxel>& voxels, double r,
                     const ObjectsConfig& config) {
   MapObject object;
-  object.min_m = r * cluster.low.cast<double>();
-  object.max_m = r * (cluster.high + Vector3i::Ones()).cast<double>();
+  object.min_m.z() = r * cluster.low.z();  // legs are thin: few votes are no noise there
+  object.max_m.z() = r * (cluster.high.z() + 1);
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto [low, high] = extent_of(cluster, voxels, axis);
+    object.min_m[axis] = r * low;
+    object.max_m[axis] = r * (high + 1);
+  }
   object.center_m = 0.5 * (object.min_m + object.max_m);
   object.voxels = cluster.voxels.size();
   double votes = 0, all = 0;
@@ -162,8 +195,8 @@ std::vector<MapObject> find_objects(const VoxelMap& map, const ObjectsConfig& co
   const int gap = static_cast<int>(std::lround(config.gap_m / r));
   std::vector<MapObject> objects;
   for (std::size_t id = 0; id < by_class.size(); ++id) {
-    std::vector<Cluster> clusters = clusters_of(by_class[id], gap + 1);
-    merge_stacked(clusters, static_cast<int>(std::lround(config.stacked_gap_m / r)));
+    std::vector<Cluster> clusters = clusters_of(by_class[id]);
+    merge_fragments(clusters, gap, static_cast<int>(std::lround(config.stacked_gap_m / r)));
     int number = 0;
     for (const Cluster& cluster : clusters) {
       if (cluster.voxels.size() < static_cast<std::size_t>(config.min_voxels)) continue;

@@ -65,31 +65,38 @@ OccupancyGrid obstacle_grid(const VoxelMap& map, const ObstacleGridConfig& confi
     throw InputError(fmt::format("grid: nothing is between {} m and {} m above the floor",
                                  config.ground_m, config.robot_height_m));
   const double r = map.resolution_m();
-  struct Column {
-    Vector2i cell;
-    std::int8_t state;
-  };
-  std::vector<Column> columns;
   constexpr int kFar = std::numeric_limits<int>::max();
+  /// What is known of the voxels above a cell.
+  struct Column {
+    bool occupied = false;
+    int lowest = kFar, highest = -kFar, free = 0;  ///< of its free voxels
+  };
   Vector2i low(kFar, kFar), high(-kFar, -kFar);
+  std::map<std::pair<int, int>, Column> columns;  // by (row, column)
   map.for_each([&](const Voxel& voxel) {
     const double z_m = r * (voxel.index.z() + 0.5);
     if (z_m < low_m || z_m > high_m) return;
     const Vector2i cell = voxel.index.head<2>();
     low = low.cwiseMin(cell);
     high = high.cwiseMax(cell);
-    const bool is_low = z_m < config.floor_z_m + std::max(config.seen_below_m, config.ground_m + r);
-    if (voxel.occupied || is_low)
-      columns.push_back({cell, voxel.occupied ? kOccupiedCell : kFreeCell});
+    Column& column = columns[{cell.y(), cell.x()}];
+    column.occupied = column.occupied || voxel.occupied;
+    if (voxel.occupied) return;
+    column.lowest = std::min(column.lowest, voxel.index.z());
+    column.highest = std::max(column.highest, voxel.index.z());
+    ++column.free;
   });
   OccupancyGrid grid;
   grid.resolution_m = r;
-  if (low.x() == kFar) return grid;
+  if (columns.empty()) return grid;
   grow_to(grid, low, high + Vector2i::Ones());
-  for (const Column& column : columns) {
-    const Vector2i at = column.cell - low;
-    std::int8_t& cell = grid.cells(at.x(), at.y());
-    cell = std::max(cell, column.state);
+  const double seen_m = config.floor_z_m + std::max(config.seen_below_m, config.ground_m + r);
+  for (const auto& [cell, column] : columns) {
+    const bool is_free = column.free > 0 && r * (column.lowest + 0.5) < seen_m &&
+                         column.highest - column.lowest + 1 == column.free;
+    grid.cells(cell.second - low.x(), cell.first - low.y()) = column.occupied ? kOccupiedCell
+                                                              : is_free       ? kFreeCell
+                                                                              : kUnknownCell;
   }
   return grid;
 }

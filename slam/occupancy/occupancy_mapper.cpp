@@ -104,7 +104,7 @@ void OccupancyMapper::keep(const RgbdFrame& frame) {
                                  height_px_));
   Kept& kept = kept_[frame.stamp_ns];
   if (kept.pose) map_.replace(&kept.told, nullptr);
-  kept = {thin_depth(frame.depth_m, camera_, pixel_),
+  kept = {smoothed_depth(thin_depth(frame.depth_m, camera_, pixel_)),
           thin_labels(frame.semantics, camera_, pixel_),
           std::nullopt,
           {}};

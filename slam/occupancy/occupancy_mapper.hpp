@@ -45,7 +45,8 @@ class OccupancyMapper {
 
   const VoxelMap& map() const { return map_; }
   VoxelMap take_map() && { return std::move(map_); }
-  /// Depth of a keyframe thinned to stride_px, and the camera that fits it; nullptr if unknown.
+  /// Depth of a keyframe thinned to stride_px and smoothed, and the camera that fits it; nullptr if
+  /// unknown.
   const Grid2d<float>* depth_of(Stamp stamp_ns) const;
   const Grid2d<ClassId>* labels_of(Stamp stamp_ns) const;
   /// Of all kept keyframes, in order.

@@ -166,10 +166,10 @@ void read_block(CountsReader& in, VoxelTree& tree) {
   for (unsigned place = 0; place < 512; ++place) {
     if ((known[place / 64] >> place % 64U & 1U) == 0) continue;
     VoxelNode& node = tree.voxel(block, place);
-    if (node.is_told()) in.fail("a block is there twice");
+    if (node.is_known()) in.fail("a block is there twice");
     node.hits = in.number();
     node.misses = in.number();
-    if (!node.is_told()) in.fail("a voxel without views");
+    if (!node.is_known()) in.fail("a voxel without views");
     read_votes(in, node);
     node.follow_counts();
   }
@@ -237,7 +237,7 @@ void VoxelMap::write_ot(std::ostream& out) const {
     else
       tree.setNodeColor(leaf.getKey(), info.r, info.g, info.b);
   }
-  tree.updateInnerOccupancy();
+  if (tree.size() > 0) tree.updateInnerOccupancy();
   tree.prune();
   tree.write(out);
   const std::string counts = counts_of(impl_->tree);

@@ -81,7 +81,7 @@ VoxelNode& VoxelTree::voxel(VoxelNode& block, unsigned place) {
 }
 
 bool VoxelTree::drop_untold_below(VoxelNode& node, unsigned levels) {
-  if (levels == 0) return !node.is_told();
+  if (levels == 0) return !node.is_known();
   bool is_empty = true;
   for (unsigned child = 0; child < 8; ++child) {
     if (!nodeChildExists(&node, child)) continue;

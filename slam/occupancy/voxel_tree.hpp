@@ -51,7 +51,7 @@ class VoxelNode : public octomap::OcTreeNode {
     const float sum = kHitLogOdds * hits + kMissLogOdds * misses;
     value = std::min(std::max(sum, kLeastLogOdds), kMostLogOdds);
   }
-  bool is_told() const { return hits > 0 || misses > 0; }
+  bool is_known() const { return hits > 0 || misses > 0; }
   /// Frees the array of children. @pre all were deleted
   void free_children() {
     delete[] children;

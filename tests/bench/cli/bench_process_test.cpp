@@ -552,8 +552,8 @@ TEST(BenchProcess, ASweepOverAFixedMapAnswersAsSeparateQueriesWould) {
       std::istringstream lines(content(test_folder() / "stdout"));
       std::string line, all;
       while (std::getline(lines, line))
-        if (line.find("," + std::to_string(at) + ",1,,1.5," + alpha + "," + beta) !=
-            std::string::npos)  // no label mass is asked for
+        if (line.find("," + std::to_string(at) + ",1,0,1.5," + alpha + "," + beta) !=
+            std::string::npos)  // a label mass of 0: none is asked for
           all += line.substr(line.find("," + std::string(alpha) + ",")) + "\n";
       return all;
     };

@@ -95,7 +95,8 @@ TEST_F(BoxFiles, NameTheirFaultAndItsPlace) {
        "entry 0: has no 'category_id'");
   says("a.json", "[{\"image_id\": 0, \"category_id\": 1, \"bbox\": [1,1,null,1], \"score\": 1}]",
        "bbox must be four numbers");
-  says("a.json", "[{\"image_id\"", "is not a list of COCO's results");
+  says("a.json", "[{\"image_id\"", "a.json:1: is not JSON");
+  says("a.json", "{}", "is not a list of COCO's results");
 }
 
 }  // namespace

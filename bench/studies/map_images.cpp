@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/studies/map_pictures.hpp"
+#include "bench/studies/map_images.hpp"
 
 #include <algorithm>
 #include <array>
