@@ -35,6 +35,7 @@ digest_of(RUN slam/*.cpp slam/*.hpp scenes/*.cpp scenes/*.hpp scenes/categories/
           bench/run/occupancy.* bench/run/run_one.* include/modelhouse/*.h
           CMakeLists.txt)
 digest_of(AUDIT bench/audit/*.cpp bench/audit/*.hpp)
+digest_of(EPISODES bench/episodes/*.cpp bench/episodes/*.hpp bench/plan/episodes_spec.*)
 
 # Where git is not installed: what .git says, a worktree's included. Changes in files go unseen.
 function(commit_from_files variable)
@@ -88,5 +89,6 @@ file(CONFIGURE OUTPUT ${OUT} CONTENT
 #define MH_CODE_LIGHT \"${LIGHT}\"
 #define MH_CODE_RUN \"${RUN}\"
 #define MH_CODE_AUDIT \"${AUDIT}\"
+#define MH_CODE_EPISODES \"${EPISODES}\"
 #define MH_COMMIT \"${commit}\"
 ")

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "bench/audit/audit.hpp"
 #include "bench/cache/cache.hpp"
@@ -14,6 +15,7 @@
 #include "bench/cli/scene_option.hpp"
 #include "bench/cli/set_option.hpp"
 #include "bench/cli/write_audit.hpp"
+#include "bench/episodes/report.hpp"
 #include "bench/protocol/config.hpp"
 #include "bench/run/run.hpp"
 #include "slam/core/error.hpp"
@@ -64,6 +66,32 @@ std::filesystem::path usual_folder(const Suite& suite) {
   return std::filesystem::path("out") / name;
 }
 
+/// A suite of kidnappings: no queries are asked in it.
+void run_kidnappings(const Suite& suite, const BenchArguments& options) {
+  if (options.audit) throw InputError("--audit: a suite with `episodes` asks no queries");
+  if (options.frames) throw InputError("--frames: a suite with `episodes` maps its whole tour");
+  if (options.shard != "1/1")
+    throw InputError("--shard: a suite with `episodes` runs as a whole; it resumes");
+  EpisodeOptions episodes;
+  episodes.out = options.out.empty() ? usual_folder(suite) : std::filesystem::path(options.out);
+  episodes.jobs = options.jobs;
+  episodes.cache = cache_folder(options);
+  std::vector<std::string> names;
+  if (!std::filesystem::exists(episodes.out / "episodes.sqlite"))
+    names.assign(std::begin(kEpisodeFiles), std::end(kEpisodeFiles));
+  const OutputFolder folder(episodes.out, "bench", names);
+  Progress progress("bench");
+  episodes.say = [&](std::string_view stage) { progress.say(stage); };
+  episodes.progress = [&](double share) { progress.share(share); };
+  const std::vector<EpisodeRun> runs = run_episodes(suite, episodes);
+  progress.end();
+  const std::string table = write_episodes(episodes.out, suite, runs);
+  if (options.json)
+    fmt::print("{}\n", episodes_json(suite, runs).dump(2));
+  else
+    fmt::print("{}\nresults in {}\n", table, episodes.out.string());
+}
+
 void run(BenchArguments options) {
   resolve(options.suite, Shipped::kSuite);
   if (options.scene) resolve(*options.scene, Shipped::kScene);
@@ -74,6 +102,7 @@ void run(BenchArguments options) {
   if (options.scene) overrides.scene = *options.scene;
   overrides.frame = options.frame.frame();
   const Suite suite = load_suite(options.suite, overrides);
+  if (suite.episodes) return run_kidnappings(suite, options);
   BenchOptions bench;
   bench.shard = parse_shard(options.shard);
   bench.out = options.out.empty() ? usual_folder(suite) : std::filesystem::path(options.out);

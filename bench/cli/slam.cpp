@@ -11,15 +11,12 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/detector_option.hpp"
 #include "bench/cli/progress.hpp"
-#include "bench/cli/scene_option.hpp"
+#include "bench/cli/sequence_source.hpp"
 #include "bench/cli/slam_report.hpp"
-#include "bench/inputs/recorded_camera.hpp"
 #include "bench/run/run_one.hpp"
 #include "bench/systems/ours.hpp"
 #include "bench/world/cached_detections.hpp"
 #include "bench/world/first_frames.hpp"
-#include "scenes/recorded/open_sequence.hpp"
-#include "sim/world/scene_sequence.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/trajectory_io.hpp"
@@ -31,70 +28,13 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::string_view kScene = "scene:";
-
-constexpr const char* kUsualRobot = "pepper";
-
-struct SlamArguments {
-  std::string source, settings, classes, topics, vocabulary = "vocabulary", out, map, save_map,
-                                                 truth;
-  SceneFrameOption frame;
+struct SlamArguments : SourceOptions {
+  std::string vocabulary = "vocabulary", out, map, save_map, truth;
   DetectorOption detector;
-  std::string tour, robot, level;
   std::optional<double> gamma, xi;
   bool plain = false, localize = false, resume = false, protocol = false;
   std::size_t frames = SIZE_MAX;
-  std::uint64_t seed = 0;
 };
-
-struct Source {
-  Settings settings;
-  std::unique_ptr<Sequence> frames;
-};
-
-/// Settings for a source with its own camera and image scale.
-Settings settings_beside(const SlamArguments& options, const Sequence& frames,
-                         std::vector<std::string> notes) {
-  Settings settings;
-  if (!options.settings.empty()) {
-    Settings named = load_settings(options.settings);
-    settings.slam = named.slam;
-    settings.notes = std::move(named.notes);
-    if (named.has_camera && named.camera != frames.camera())
-      settings.notes.push_back(
-          fmt::format("{}: its camera gives way to that of {}", options.settings, options.source));
-  }
-  settings.notes.insert(settings.notes.end(), notes.begin(), notes.end());
-  settings.camera = frames.camera();
-  return settings;
-}
-
-Source open_source(const SlamArguments& options) {
-  const std::string& source = options.source;
-  if (source.starts_with(kScene)) {
-    if (options.tour.empty()) throw InputError(fmt::format("source '{}' needs --tour", source));
-    const std::string robot = options.robot.empty() ? kUsualRobot : options.robot;
-    std::vector<std::string> notes;
-    auto frames = open_scene({.scene = find_scene(source.substr(kScene.size())),
-                              .tour = find_shipped(options.tour, Shipped::kTour),
-                              .robot = find_shipped(robot, Shipped::kRobot),
-                              .level = find_shipped(options.level, Shipped::kLevel),
-                              .seed = options.seed,
-                              .frame = options.frame.frame()},
-                             &notes);
-    return {settings_beside(options, *frames, notes), std::move(frames)};
-  }
-  Settings settings;
-  RecordingConfig config{
-      .calibration = options.settings, .classes = options.classes, .topics = options.topics};
-  config.read_camera = camera_reader(&settings);
-  config.has_camera = settings_have_camera;
-  OpenedRecording opened = open_sequence(source, config);
-  if (!settings.has_camera)
-    return {settings_beside(options, *opened.sequence, opened.notes), std::move(opened.sequence)};
-  settings.notes.insert(settings.notes.end(), opened.notes.begin(), opened.notes.end());
-  return {std::move(settings), std::move(opened.sequence)};
-}
 
 /// Applies what --settings may change for a loaded map: the settings of relocalization. The others
 /// have shaped the map: the map's values are kept, and a note lists those that the file would
@@ -140,25 +80,13 @@ SlamState first_state(const SlamArguments& options,
 }
 
 void check(const SlamArguments& options) {
+  options.check();
   if (options.localize && options.map.empty())
     throw InputError("--localize needs a map: name one by --map");
   if (options.resume && options.map.empty())
     throw InputError("--resume needs a map: name one by --map");
   if (options.resume && options.protocol)
     throw InputError("--protocol and --resume: held-out frames need a whole run");
-  if (options.source.starts_with(kScene)) {
-    if (!options.classes.empty())
-      throw InputError("--classes is for recordings, but the source is a scene");
-    if (!options.topics.empty())
-      throw InputError("--topics is for recordings, but the source is a scene");
-    return;
-  }
-  for (const auto& [name, value] : {std::pair("--tour", &options.tour),
-                                    {"--robot", &options.robot},
-                                    {"--level", &options.level}})
-    if (!value->empty())
-      throw InputError(fmt::format("{} {}: is for scene:FILE, but the source is '{}'", name, *value,
-                                   options.source));
 }
 
 /// Returns the first frame that the map has not received yet.
@@ -312,20 +240,7 @@ void add_slam(CLI::App& app) {
   auto options = std::make_shared<SlamArguments>();
   CLI::App* command =
       app.add_subcommand("slam", "Runs SLAM on a recorded sequence or along a tour of a scene.");
-  command
-      ->add_option("source", options->source,
-                   sequence_forms() + ", a path whose layout is recognized, or scene:FILE")
-      ->required();
-  command->add_option(
-      "--settings", options->settings,
-
-      "Settings (YAML), also ORB-SLAM2's, or the name of shipped ones (default: the "
-      "folder's camera.yaml)");
-  command->add_option("--classes", options->classes,
-                      "What the labels of a recording mean (YAML), where they are not our classes");
-  command->add_option("--topics", options->topics,
-                      "Topics of a bag or MCAP file, where several could be meant: "
-                      "color=/a,depth=/b; also labels, info (CameraInfo), truth");
+  options->add_to(*command);
   command->add_option("--vocabulary", options->vocabulary,
                       "Vocabulary file, or the name of the shipped one");
   command->add_option("--out", options->out, "Folder for the results")->required();
@@ -347,14 +262,6 @@ void add_slam(CLI::App& app) {
   command->add_option("--frames", options->frames, "At most so many frames")
       ->default_str("all")
       ->check(CLI::Range(1, 100000000));
-  command->add_option("--tour", options->tour, "scene: tour (YAML), or the name of a shipped one");
-  command
-      ->add_option("--robot", options->robot, "scene: robot (YAML), or the name of a shipped one")
-      ->default_str(kUsualRobot);
-  command->add_option(
-      "--level", options->level,
-      "scene: sensor level (YAML), or the name of a shipped one; without: no noise");
-  options->frame.add_to(*command);
   options->detector.add_to(*command);
   CLI::Option* gamma = command
                            ->add_option("--gamma", options->gamma,
@@ -366,8 +273,6 @@ void add_slam(CLI::App& app) {
                        "Penalty of labels that differ, equation 2 (default: the settings')")
           ->check(number_between(1.0, 1e6));
   command->add_flag("--plain", options->plain, "Without semantics")->excludes(gamma, xi);
-  command->add_option("--seed", options->seed, "Seed of RANSAC and of a scene's noise")
-      ->check(seed_number());
   command->add_flag_callback(
       "--print-settings",
       [] {

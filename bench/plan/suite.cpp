@@ -208,6 +208,12 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
         graded->fail(
             fmt::format("queries are drawn from a scene, and '{}' is a recording", e.name));
   }
+  if (const auto episodes = yaml.find("episodes")) {
+    suite.episodes = read_episodes(*episodes, paths);
+    for (const Environment& e : suite.environments)
+      if (e.is_recorded())
+        episodes->fail(fmt::format("a robot drives in a scene, and '{}' is a recording", e.name));
+  }
   if (const auto margin = yaml.find("non_inferiority_margin"))
     suite.non_inferiority_margin = margin->as_double(0.0, 1.0);
   if (const auto check = yaml.find("check")) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bench/plan/environment.hpp"
+#include "bench/plan/episodes_spec.hpp"
 #include "bench/plan/gate_config.hpp"
 #include "bench/plan/graded_spec.hpp"
 #include "bench/plan/labels.hpp"
@@ -46,6 +47,8 @@ struct Suite {
   Sweep sweep;
   ProtocolConfig protocol;
   std::optional<GradedSpec> graded;  ///< asked in every environment
+  /// Kidnappings of a robot that drives by its map; `bench` then runs these and no queries.
+  std::optional<EpisodesSpec> episodes;
   /// Pairs of systems to compare; differences are first minus second. Default: `semantic` and
   /// `plain`, if the suite has both.
   std::vector<SystemPair> compare;

@@ -17,6 +17,7 @@
 #include "scenes/images/write_image.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/occupancy/objects.hpp"
 
 namespace mh {
 namespace fs = std::filesystem;
@@ -50,7 +51,7 @@ std::string identity_of_views(const World& world, const RunSpec& spec) {
 void remove_run(const fs::path& folder) {
   std::error_code error;
   for (const char* file : {"topdown.png", "topdown_second_tour.png", "truth.tum", "estimate.tum",
-                           "map.bt", "map.pgm", "map.yaml", kRunKey})
+                           "map.bt", "map.ot", "map.pgm", "map.yaml", "objects.json", kRunKey})
     fs::remove(folder / file, error);
 }
 
@@ -66,6 +67,9 @@ void write_run(const fs::path& folder, const World& world, const RunResult& run,
   if (!run.truth.empty()) write_tum(folder / "truth.tum", run.truth);
   write_tum(folder / "estimate.tum", run.estimate);
   run.volume->save_bt(folder / "map.bt");
+  run.volume->save_ot(folder / "map.ot");
+  write_atomically(folder / "objects.json",
+                   objects_json(find_objects(*run.volume), run.volume->resolution_m()));
   if (!world.simulated) {
     write_atomically(folder / kRunKey, key);  // last: it marks the files as complete
     return;

@@ -10,10 +10,10 @@
 
 namespace mh {
 
-/// Writes the large files of a run into its folder: truth.tum, estimate.tum, map.bt, map.pgm,
-/// map.yaml and topdown.png, which contains the run's key. For a recording, whose floor is unknown,
-/// there is no map.pgm and no image, and run.key contains the key. Each file appears whole or not
-/// at all.
+/// Writes the large files of a run into its folder: truth.tum, estimate.tum, map.bt, map.ot,
+/// objects.json, map.pgm, map.yaml and topdown.png, which contains the run's key. For a recording,
+/// whose floor is unknown, there is no map.pgm and no image, and run.key contains the key. Each
+/// file appears whole or not at all.
 void write_run(const std::filesystem::path& folder, const World& world, const RunResult& run,
                const std::string& key);
 /// Removes what write_run() writes and nothing else: files of an earlier run must not remain next

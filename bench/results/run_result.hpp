@@ -13,7 +13,8 @@
 #include "bench/provenance/place_facts.hpp"
 #include "bench/results/call_times.hpp"
 #include "slam/core/trajectory.hpp"
-#include "slam/occupancy/occupancy.hpp"
+#include "slam/occupancy/occupancy_grid.hpp"
+#include "slam/occupancy/voxel_map.hpp"
 
 namespace mh {
 
@@ -41,11 +42,11 @@ struct RunResult {
   Trajectory estimate;
   TrajectoryScore trajectory;
   EstimateFrames frames;
-  std::vector<PointResult> points;                ///< as spec.points
-  std::shared_ptr<const OccupancyMapper> volume;  ///< keyframe depth at its final poses, dock frame
-  OccupancyGrid grid;                             ///< the part of it that obstructs a robot
-  std::uint64_t map_digest = 0;                   ///< of trajectory and grid
-  CallTimes times;                                ///< not deterministic: never part of results.json
+  std::vector<PointResult> points;         ///< as spec.points
+  std::shared_ptr<const VoxelMap> volume;  ///< keyframe depth at its final poses, dock frame
+  OccupancyGrid grid;                      ///< the part of it that obstructs a robot
+  std::uint64_t map_digest = 0;            ///< of trajectory and grid
+  CallTimes times;                         ///< not deterministic: never part of results.json
   // Not deterministic either. CPU time spent on making the frames, and on products that are neither
   // SLAM nor scored: octree, grid, images.
   double frames_s = 0, products_s = 0;

@@ -10,7 +10,6 @@
 
 #include "bench/inputs/run_key.hpp"
 #include "bench/provenance/digest.hpp"
-#include "bench/run/occupancy.hpp"
 #include "bench/systems/conversation.hpp"
 #include "bench/systems/finished_map.hpp"
 #include "bench/systems/library.hpp"
@@ -20,6 +19,8 @@
 #include "bench/systems/tampered.hpp"
 #include "bench/systems/timed.hpp"
 #include "slam/core/counted.hpp"
+#include "slam/occupancy/obstacle_grid.hpp"
+#include "slam/occupancy/occupancy_mapper.hpp"
 
 namespace mh {
 namespace {
@@ -240,12 +241,13 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   run.spec = spec;
   run.place = facts(world, spec);
   if (mapping.truth() != nullptr) run.truth = *mapping.truth();
-  KeyframeDepths depths;
+  OccupancyMapper mapper(camera);
   const WatchedFrames frames(mapping, tamper, run.frames_s);
   const auto integrate = [&] {
     const ProcessorTimer timer(run.products_s);
-    if (tools.occupancy)
-      run.volume = depths.integrate(camera, run.estimate, run.frames.dock_from_estimate);
+    if (!tools.occupancy) return;
+    mapper.update(run.estimate, run.frames.dock_from_estimate);
+    run.volume = std::make_shared<const VoxelMap>(std::move(mapper).take_map());
   };
 
   std::unique_ptr<System> inner =
@@ -272,7 +274,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
           system, frames, spec.protocol, stream.fork(kMapping),
           [&](const MappedFrame& call, const RgbdFrame& frame, const SystemReport& report) {
             const ProcessorTimer timer(run.products_s);
-            if (call.keyframe_added && tools.occupancy) depths.keep(frame);
+            if (call.keyframe_added && tools.occupancy) mapper.keep(frame);
             if (tools.observe) tools.observe(call, frame, report);
             work.reached(call.index + 1);
             tools.status(status_of(call, mapping.size()));
@@ -316,12 +318,9 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   }
 
   const ProcessorTimer timer(run.products_s);
-  // From just above the floor (depth noise at 4 m is below this) to the top of the head. The floor
-  // of a recording is unknown.
-  if (run.volume && world.simulated) {
-    const double floor_z_m = world.simulated->scene->floor.middle_m.z();
-    run.grid = run.volume->project(floor_z_m + 0.10, floor_z_m + world.simulated->robot.height_m);
-  }
+  if (run.volume && world.simulated)  // the floor of a recording is unknown
+    run.grid = obstacle_grid(*run.volume, {.floor_z_m = world.simulated->scene->floor.middle_m.z(),
+                                           .robot_height_m = world.simulated->robot.height_m});
   run.map_digest = digest_bytes(run.grid.cells.data(), run.grid.cells.size(), digest(run.estimate));
   return run;
 }

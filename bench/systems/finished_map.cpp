@@ -31,7 +31,7 @@ void fields(A& a, T& record) {
 
 std::string encode(const FinishedMap& map) {
   std::ostringstream volume;
-  map.volume->write_bt(volume);
+  map.volume->write_ot(volume);
   archive::Writer writer;
   writer(map.outcome.calls, map.outcome, map.system, volume.str());
   return writer.take();
@@ -44,7 +44,7 @@ FinishedMap decode_finished_map(const std::string& bytes, const std::string& nam
   reader(map.outcome.calls, map.outcome, map.system, volume);
   reader.require(reader.at_end(), "it goes on after its end");
   std::istringstream stream(volume);
-  map.volume = std::make_shared<const OccupancyMapper>(OccupancyMapper::read_bt(stream, name));
+  map.volume = std::make_shared<const VoxelMap>(VoxelMap::read_ot(stream, name));
   return map;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bench/protocol/mapping.hpp"
-#include "slam/occupancy/occupancy.hpp"
+#include "slam/occupancy/voxel_map.hpp"
 
 namespace mh {
 
@@ -13,11 +13,10 @@ namespace mh {
 struct FinishedMap {
   std::string system;  ///< System::save()
   MappingOutcome outcome;
-  std::shared_ptr<const OccupancyMapper> volume;  ///< as RunResult::volume
+  std::shared_ptr<const VoxelMap> volume;  ///< as RunResult::volume
 };
 
-/// Converts to bytes and back. Of the volume, each voxel's state (free, occupied, unknown) is kept,
-/// not its probability.
+/// Converts to bytes and back, exactly.
 std::string encode(const FinishedMap& map);
 /// @param name  the file's name in messages
 /// @throws InputError if the bytes are not a finished map.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,6 +24,8 @@ constexpr double kBackOff_s = 1.5, kBackOff_m_per_s = 0.08;
 constexpr double kShown_m = 1.5;       // what is nearer is looked at for braking
 constexpr double kSamePlace_m = 0.10;  // places equally near to a thing: the nearest by way counts
 constexpr double kFaced_rad = 0.1;
+constexpr double kBeforeThing_m = 0.1;
+constexpr double kReachSlack_m = 0.3;  // of the distances kept, beyond what counts as arrival
 
 }  // namespace
 
@@ -33,13 +36,40 @@ std::string_view name(NavigatorState state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
-double distance_to_box(const Vector2d& place_m, const Vector2d& low_m, const Vector2d& high_m) {
-  return (place_m - place_m.cwiseMax(low_m).cwiseMin(high_m)).norm();
+bool wall_between(const FloorGrid& grid, const Grid2d<std::uint8_t>& walls, const Vector2d& from_m,
+                  const Vector2d& to_m) {
+  if (walls.empty()) return false;
+  const double length_m = (to_m - from_m).norm();
+  for (double at_m = 0; at_m < length_m - kBeforeThing_m; at_m += 0.5 * grid.resolution_m) {
+    const auto cell = grid.cell_of(from_m + at_m / length_m * (to_m - from_m));
+    if (cell && walls(cell->first, cell->second) != 0) return true;
+  }
+  return false;
 }
 
-std::optional<Vector2d> place_before(const FloorGrid& grid, const Vector2d& from_m,
-                                     const NavigatorGoal& goal, double clearance_m,
-                                     double reach_m) {
+Grid2d<float> distances_m(const KnownMap& map, std::span<const Vector2d> places_m, double reach_m) {
+  constexpr float kBeyond = std::numeric_limits<float>::infinity();
+  const FloorGrid& grid = map.grid;
+  Grid2d<float> away_m(grid.clearance_m.width(), grid.clearance_m.height(), kBeyond);
+  for (int y = 0; y < away_m.height(); ++y)
+    for (int x = 0; x < away_m.width(); ++x) {
+      if (map.blocked(x, y) != 0) continue;  // nobody stands there
+      const Vector2d place_m = grid.center_of({x, y});
+      const Vector2d* nearest = nullptr;
+      double nearest_m = reach_m;
+      for (const Vector2d& goal : places_m)
+        if (const double away = (goal - place_m).norm(); away <= nearest_m) {
+          nearest_m = away;
+          nearest = &goal;
+        }
+      if (nearest != nullptr && !wall_between(grid, map.walls, place_m, *nearest))
+        away_m(x, y) = static_cast<float>(nearest_m);
+    }
+  return away_m;
+}
+
+std::optional<Vector2d> place_before(const FloorGrid& grid, const Grid2d<float>& away_m,
+                                     const Vector2d& from_m, double clearance_m, double reach_m) {
   const auto start = nearest_clear(grid, from_m, clearance_m, 0.5);
   if (!start) return std::nullopt;
   const Grid2d<float> lengths = way_lengths(grid, *start, clearance_m);
@@ -47,17 +77,15 @@ std::optional<Vector2d> place_before(const FloorGrid& grid, const Vector2d& from
   const auto visit = [&](auto&& use) {
     for (int y = 0; y < lengths.height(); ++y)
       for (int x = 0; x < lengths.width(); ++x)
-        if (std::isfinite(lengths(x, y))) {
-          const Vector2d place_m = grid.center_of({x, y});
-          use(place_m, distance_to_box(place_m, goal.low_m, goal.high_m),
+        if (std::isfinite(lengths(x, y)))
+          use(grid.center_of({x, y}), static_cast<double>(away_m(x, y)),
               static_cast<double>(lengths(x, y)));
-        }
   };
-  visit([&](const Vector2d&, double away_m, double) { nearest_m = std::min(nearest_m, away_m); });
+  visit([&](const Vector2d&, double away, double) { nearest_m = std::min(nearest_m, away); });
   std::optional<Vector2d> best;
   double best_m = std::numeric_limits<double>::infinity();
-  visit([&](const Vector2d& place_m, double away_m, double length_m) {
-    if (away_m > std::min(reach_m, nearest_m + kSamePlace_m) || length_m >= best_m) return;
+  visit([&](const Vector2d& place_m, double away, double length_m) {
+    if (away > std::min(reach_m, nearest_m + kSamePlace_m) || length_m >= best_m) return;
     best_m = length_m;
     best = place_m;
   });
@@ -66,28 +94,37 @@ std::optional<Vector2d> place_before(const FloorGrid& grid, const Vector2d& from
 
 Navigator::Navigator(const KnownMap& map, const Robot& robot, const NavigatorGoal& goal,
                      const NavigatorConfig& config)
-    : map_(map), robot_(robot), goal_(goal), config_(config), belief_(config.belief) {
-  if (!robot.equipment || robot.equipment->lasers.empty())
-    throw InputError(fmt::format(
-        "robot '{}' has no lasers: it cannot drive on its own (its file: equipment.lasers)",
-        robot.name));
-  if (robot.equipment->bumpers.empty())
-    throw InputError(fmt::format(
-        "robot '{}' has no bumpers: it cannot drive on its own (its file: equipment.bumpers)",
-        robot.name));
+    : map_(map),
+      robot_(robot),
+      goal_(goal),
+      config_(config),
+      away_m_(distances_m(map, goal.places_m, config.reach_m + kReachSlack_m)),
+      belief_(config.belief) {
+  for (const char* part : {"lasers", "bumpers"})
+    if (!robot.equipment ||
+        (part[0] == 'l' ? robot.equipment->lasers.empty() : robot.equipment->bumpers.empty()))
+      throw InputError(
+          fmt::format("robot '{}' has no {}: it cannot drive on its own (its file: equipment.{})",
+                      robot.name, part, part));
+  for (const Vector2d& place : goal.places_m)
+    middle_m_ += place / static_cast<double>(goal.places_m.size());
   double nearest_m = std::numeric_limits<double>::infinity();
   const double clearance_m = robot.footprint_radius_m + config.least_margin_m;
-  for (int y = 0; y < map.grid.clearance_m.height(); ++y)
-    for (int x = 0; x < map.grid.clearance_m.width(); ++x)
+  for (int y = 0; y < away_m_.height(); ++y)
+    for (int x = 0; x < away_m_.width(); ++x)
       if (static_cast<double>(map.grid.clearance_m(x, y)) >= clearance_m)
-        nearest_m = std::min(nearest_m,
-                             distance_to_box(map.grid.center_of({x, y}), goal.low_m, goal.high_m));
+        nearest_m = std::min(nearest_m, static_cast<double>(away_m_(x, y)));
   if (nearest_m > config.reach_m)
     throw InputError(fmt::format(
         "goal '{}' at [{:.2f}, {:.2f}] m: the robot cannot stand within {:.2f} m of it: it is "
         "inside a wall or in space that the map does not know",
-        goal.name, 0.5 * (goal.low_m.x() + goal.high_m.x()),
-        0.5 * (goal.low_m.y() + goal.high_m.y()), config.reach_m));
+        goal.name, middle_m_.x(), middle_m_.y(), config.reach_m));
+}
+
+double Navigator::away_from_goal_m(const Vector2d& place_in_map_m) const {
+  const auto cell = map_.grid.cell_of(place_in_map_m);
+  return cell ? static_cast<double>(away_m_(cell->first, cell->second))
+              : std::numeric_limits<double>::infinity();
 }
 
 void Navigator::enter(NavigatorState state, double time_s) {
@@ -218,7 +255,7 @@ bool Navigator::find_way(const Pose2& map_from_base) {
   for (const double margin_m : {config_.margin_m, config_.least_margin_m}) {
     const double clearance_m = robot_.footprint_radius_m + margin_m;
     const auto place_m =
-        place_before(grid, map_from_base.place_m, goal_, clearance_m, config_.reach_m);
+        place_before(grid, away_m_, map_from_base.place_m, clearance_m, config_.reach_m);
     if (!place_m) continue;
     const auto way = way_out(grid, map_from_base.place_m, *place_m, clearance_m);
     if (!way) continue;
@@ -275,11 +312,11 @@ Twist2d Navigator::drive(const Perception& now) {
 
 Twist2d Navigator::face(const Perception& now) {
   const Pose2 at = map_from_base(now.odom_from_base);
-  const Vector2d to = 0.5 * (goal_.low_m + goal_.high_m) - at.place_m;
+  const Vector2d to = middle_m_ - at.place_m;
   const double left_rad = turn_to(at.heading_rad, std::atan2(to.y(), to.x()));
   if (std::abs(left_rad) > kFaced_rad && now.time_s - since_s_ < 15)
     return turn_in_place(left_rad, robot_.limits, config_.follow, kFaced_rad);
-  if (distance_to_box(at.place_m, goal_.low_m, goal_.high_m) > config_.reach_m) {
+  if (away_from_goal_m(at.place_m) > config_.reach_m) {
     recover(now, fmt::format("is not at {} after all", goal_.name));
     return Twist2d::Zero();
   }

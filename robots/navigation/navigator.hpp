@@ -17,30 +17,17 @@
 
 namespace mh {
 
-/// A thing of the robot's own map, seen from above.
-struct NamedThing {
-  std::string name;                                 ///< of its class
-  Eigen::Vector2d low_m = Eigen::Vector2d::Zero();  ///< box, map frame
-  Eigen::Vector2d high_m = Eigen::Vector2d::Zero();
-  double score = 0;  ///< higher is surer
-};
-
-/// Distance (m) of a place from a box seen from above; 0 inside.
-double distance_to_box(const Eigen::Vector2d& place_m, const Eigen::Vector2d& low_m,
-                       const Eigen::Vector2d& high_m);
-
 /// What a robot knows of a place that it has mapped.
 struct KnownMap {
-  FloorGrid grid;                 ///< clearance; what is unknown is blocked
-  Grid2d<std::uint8_t> blocked;   ///< of the same cells: occupied or unknown
-  Grid2d<std::uint8_t> occupied;  ///< of the same cells
-  std::vector<NamedThing> things;
+  FloorGrid grid;                ///< clearance; what is unknown is blocked
+  Grid2d<std::uint8_t> blocked;  ///< of the same cells: occupied or unknown
+  Grid2d<std::uint8_t> walls;    ///< of the same cells: known as walls; empty: none is known
 };
 
-/// What to drive to.
+/// What to drive to: a thing of the robot's own map, seen from above.
 struct NavigatorGoal {
-  std::string name;  ///< for what is said
-  Eigen::Vector2d low_m = Eigen::Vector2d::Zero(), high_m = Eigen::Vector2d::Zero();
+  std::string name;                       ///< for what is said
+  std::vector<Eigen::Vector2d> places_m;  ///< centers of the cells that it covers, map frame
 };
 
 struct NavigatorConfig {
@@ -50,7 +37,7 @@ struct NavigatorConfig {
   double lost_speed_m_per_s = 0.25;  ///< while it does not know where it is
   // Clearances of the robot's center beyond its radius: the wanted one and what must do.
   double margin_m = 0.08, least_margin_m = 0.03;
-  double reach_m = 0.9;    ///< it has arrived if the thing's box is no farther than this
+  double reach_m = 0.9;    ///< it has arrived if the thing is no farther than this
   double patience_s = 10;  ///< without progress
   int most_recoveries = 4, most_bumps = 3;
 };
@@ -130,11 +117,14 @@ class Navigator {
   FloorGrid present_grid(const Pose2& map_from_base) const;
   bool find_way(const Pose2& map_from_base);
   void recover(const Perception& now, const std::string& why);
+  double away_from_goal_m(const Eigen::Vector2d& place_in_map_m) const;
 
   const KnownMap& map_;
   const Robot& robot_;
   NavigatorGoal goal_;
   NavigatorConfig config_;
+  Grid2d<float> away_m_;                                ///< of the map's cells from the goal
+  Eigen::Vector2d middle_m_ = Eigen::Vector2d::Zero();  ///< of the goal
   LocalMap local_;
   PlaceBelief belief_;
   NavigatorState state_ = NavigatorState::kLooking;
@@ -150,10 +140,22 @@ class Navigator {
   bool was_known_ = false;
 };
 
-/// The place of a map that is best to stand at before a thing: the nearest to its box, the nearest
-/// by way among those; nullopt if no place that can be reached from `from_m` is within reach.
-std::optional<Eigen::Vector2d> place_before(const FloorGrid& grid, const Eigen::Vector2d& from_m,
-                                            const NavigatorGoal& goal, double clearance_m,
+/// Whether a wall stands on the straight line between two places; what is within 10 cm of `to_m`
+/// does not count: things stand against walls.
+/// @param walls  of the grid's cells; empty: none
+bool wall_between(const FloorGrid& grid, const Grid2d<std::uint8_t>& walls,
+                  const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m);
+
+/// Distance (m) of each cell of a map from the nearest of some places, infinite beyond `reach_m`
+/// and where a wall is between: who stands behind a wall has not arrived.
+Grid2d<float> distances_m(const KnownMap& map, std::span<const Eigen::Vector2d> places_m,
+                          double reach_m);
+
+/// The place of a map that is best to stand at before a thing: the nearest to it, the nearest by
+/// way among those; nullopt if no place that can be reached from `from_m` is within reach.
+/// @param away_m  of each cell from the thing
+std::optional<Eigen::Vector2d> place_before(const FloorGrid& grid, const Grid2d<float>& away_m,
+                                            const Eigen::Vector2d& from_m, double clearance_m,
                                             double reach_m);
 
 }  // namespace mh

@@ -21,21 +21,23 @@ using Cell = FloorGrid::Cell;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr double kNarrowPrice = 2.0;  // a meter at the minimum clearance costs three
 
-/// Shortest paths from one cell, each step weighted by `price`; stops early at `goal`.
+/// Shortest paths from one of some cells, each step weighted by `price`; stops early at `goal`.
 struct Search {
   Grid2d<float> cost;
   Grid2d<std::int32_t> before;  ///< index of the predecessor cell, -1 = none
 
   template <class Price, class Guess>
-  Search(const FloorGrid& grid, Cell start, std::optional<Cell> goal, double clearance_m,
-         Price price, Guess guess)
+  Search(const FloorGrid& grid, std::span<const Cell> starts, std::optional<Cell> goal,
+         double clearance_m, Price price, Guess guess)
       : cost(grid.clearance_m.width(), grid.clearance_m.height(), kFar),
         before(grid.clearance_m.width(), grid.clearance_m.height(), -1) {
     const int w = cost.width();
     using Entry = std::tuple<float, float, std::int32_t>;  // estimate, cost, cell: a total order
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-    cost(start.first, start.second) = 0;
-    open.emplace(guess(start), 0.0F, start.second * w + start.first);
+    for (const Cell& start : starts) {
+      cost(start.first, start.second) = 0;
+      open.emplace(guess(start), 0.0F, start.second * w + start.first);
+    }
     while (!open.empty()) {
       const auto [estimate, so_far, index] = open.top();
       open.pop();
@@ -112,7 +114,7 @@ std::optional<std::vector<Vector2d>> plan_way(const FloorGrid& grid, const Vecto
   if (!start || !goal) return std::nullopt;
   const Vector2d goal_m = grid.center_of(*goal);
   const Search search(
-      grid, *start, goal, clearance_m,
+      grid, std::span(&*start, 1), goal, clearance_m,
       [&](double room_m) { return narrow_price(room_m, clearance_m); },
       [&](Cell c) { return static_cast<float>(0.999 * (grid.center_of(c) - goal_m).norm()); });
   if (search.cost(goal->first, goal->second) == kFar) return std::nullopt;
@@ -127,13 +129,19 @@ std::optional<std::vector<Vector2d>> plan_way(const FloorGrid& grid, const Vecto
   return straightened(grid, way, clearance_m);
 }
 
-Grid2d<float> way_lengths(const FloorGrid& grid, const Vector2d& from_m, double clearance_m) {
-  const auto start = free_cell(grid, from_m, clearance_m);
-  if (!start) return {grid.clearance_m.width(), grid.clearance_m.height(), kFar};
+Grid2d<float> way_lengths(const FloorGrid& grid, std::span<const Vector2d> from_m,
+                          double clearance_m) {
+  std::vector<Cell> starts;
+  for (const Vector2d& place_m : from_m)
+    if (const auto start = free_cell(grid, place_m, clearance_m)) starts.push_back(*start);
   return Search(
-             grid, *start, std::nullopt, clearance_m, [](double) { return 1.0; },
+             grid, starts, std::nullopt, clearance_m, [](double) { return 1.0; },
              [](Cell) { return 0.0F; })
       .cost;
+}
+
+Grid2d<float> way_lengths(const FloorGrid& grid, const Vector2d& from_m, double clearance_m) {
+  return way_lengths(grid, std::span(&from_m, 1), clearance_m);
 }
 
 std::vector<Vector2d> spread_places(const FloorGrid& grid, const Grid2d<std::uint8_t>& region,

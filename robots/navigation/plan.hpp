@@ -22,6 +22,9 @@ std::optional<std::vector<Eigen::Vector2d>> plan_way(const FloorGrid& grid,
 /// Length (m) of the shortest path over the grid from a place to every cell, infinite if there is
 /// none.
 Grid2d<float> way_lengths(const FloorGrid& grid, const Eigen::Vector2d& from_m, double clearance_m);
+/// The same from the nearest of several places.
+Grid2d<float> way_lengths(const FloorGrid& grid, std::span<const Eigen::Vector2d> from_m,
+                          double clearance_m);
 
 /// Places spread over a region, each as far as possible from those before it, seeded.
 /// @param apart_m  minimum distance between any two

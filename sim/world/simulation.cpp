@@ -66,9 +66,9 @@ RgbdFrame Simulation::frame() const {
   return sense_moment(shutter, level_, config_.labels, at, noise).frame;
 }
 
-Observation Simulation::step(const Twist2d& command, double dt_s) {
+RobotObservation Simulation::step(const Twist2d& command, double dt_s) {
   const long ticks = std::max(1L, std::lround(dt_s * robot_.camera.rate_hz));
-  Observation seen;
+  RobotObservation seen;
   bool due = false;
   std::vector<bool> pressed(robot_.equipment->bumpers.size(), false);
   for (long t = 0; t < ticks; ++t) {

@@ -37,7 +37,7 @@ struct SimulationConfig {
 };
 
 /// What the robot's sensors deliver after a step.
-struct Observation {
+struct RobotObservation {
   Stamp stamp_ns = 0;
   /// If one was due during the step; the latest, if several. Stamped one tick of the camera before
   /// it arrives: an exposure is over before it is read out.
@@ -60,7 +60,7 @@ class Simulation {
 
   /// Drives by a velocity in the base's frame and returns what is sensed at the end.
   /// @param dt_s  rounded to whole ticks of the camera, at least one
-  Observation step(const Twist2d& command, double dt_s);
+  RobotObservation step(const Twist2d& command, double dt_s);
 
   /// Lifts the robot to another place; its wheels do not turn. @throws InputError if it cannot
   /// stand there.

@@ -37,7 +37,12 @@ std::uint8_t cost_at_distance(double distance_m, const CostMapConfig& config);
 /// @throws InputError naming a setting that is out of range, or a grid of resolution zero.
 CostMap cost_map(const OccupancyGrid& grid, const CostMapConfig& config = {});
 
-/// Writes stem.pgm and stem.yaml in mode raw: a gray level is the cost.
+/// The costs as Nav2 publishes them for others to show, nav_msgs/OccupancyGrid: 0 free, 1 to 98
+/// inflated, 99 inscribed, 100 lethal, -1 unknown. In mode raw nav2_map_server reads these.
+OccupancyGrid as_published(const CostMap& map);
+
+/// Writes stem.pgm and stem.yaml: a gray level is the cost as Nav2 numbers it. (map_server reads
+/// no level above 100: write as_published() for it.)
 /// @throws InputError if a file cannot be written.
 void save_cost_map(const CostMap& map, const std::filesystem::path& stem);
 CostMap load_cost_map(const std::filesystem::path& yaml_file);

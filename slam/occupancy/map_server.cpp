@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <sstream>
 #include <string>
@@ -8,7 +9,8 @@
 
 #include "slam/core/files.hpp"
 #include "slam/core/yaml.hpp"
-#include "slam/occupancy/occupancy.hpp"
+#include "slam/occupancy/map_image.hpp"
+#include "slam/occupancy/occupancy_grid.hpp"
 
 namespace mh {
 namespace {
@@ -18,7 +20,10 @@ namespace {
 constexpr std::uint8_t kFreeGray = 254, kOccupiedGray = 0, kUnknownGray = 205;
 constexpr double kOccupiedThreshold = 0.65, kFreeThreshold = 0.196;
 
-std::uint8_t gray(std::int8_t cell) {
+constexpr std::uint8_t kUnknownRaw = 255;
+
+std::uint8_t gray(std::int8_t cell, GridMode mode) {
+  if (mode == GridMode::kRaw) return cell < 0 ? kUnknownRaw : static_cast<std::uint8_t>(cell);
   return cell == kUnknownCell ? kUnknownGray : cell == kFreeCell ? kFreeGray : kOccupiedGray;
 }
 
@@ -49,44 +54,75 @@ Grid2d<std::uint8_t> read_pgm(const std::filesystem::path& file) {
 
 }  // namespace
 
-void save_map_server(const OccupancyGrid& grid, const std::filesystem::path& stem) {
+std::optional<Eigen::Vector2i> OccupancyGrid::cell_of(const Eigen::Vector2d& place_m) const {
+  const Eigen::Vector2d p = (place_m - origin_m) / resolution_m;
+  if (!(p.array() >= 0).all() || p.x() >= cells.width() || p.y() >= cells.height())
+    return std::nullopt;
+  return p.array().floor().cast<int>().matrix();
+}
+
+void save_map_server(const OccupancyGrid& grid, const std::filesystem::path& stem, GridMode mode) {
+  Grid2d<std::uint8_t> image(grid.cells.width(), grid.cells.height());
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) image(x, y) = gray(grid.cells(x, y), mode);
+  write_map_image({image, grid.resolution_m, grid.origin_m}, stem,
+                  mode == GridMode::kRaw ? "raw" : "trinary");
+}
+
+void write_map_image(const MapImage& map, const std::filesystem::path& stem, const char* mode) {
   std::filesystem::path pgm = stem, yaml = stem;
   pgm += ".pgm";
   yaml += ".yaml";
-  const int width = grid.cells.width(), height = grid.cells.height();
+  const int width = map.levels.width(), height = map.levels.height();
   std::string image = fmt::format("P5\n{} {}\n255\n", width, height);
   for (int y = height - 1; y >= 0; --y)
-    for (int x = 0; x < width; ++x) image.push_back(static_cast<char>(gray(grid.cells(x, y))));
+    for (const std::uint8_t level : map.levels.row(y)) image.push_back(static_cast<char>(level));
   write_atomically(pgm, image);
-  write_atomically(yaml, fmt::format("image: {}\nmode: trinary\nresolution: {}\n"
-                                     "origin: [{}, {}, 0]\nnegate: 0\noccupied_thresh: {}\n"
-                                     "free_thresh: {}\n",
-                                     pgm.filename().string(), grid.resolution_m, grid.origin_m.x(),
-                                     grid.origin_m.y(), kOccupiedThreshold, kFreeThreshold));
+  write_atomically(yaml,
+                   fmt::format("image: {}\nmode: {}\nresolution: {}\n"
+                               "origin: [{}, {}, 0]\nnegate: 0\noccupied_thresh: {}\n"
+                               "free_thresh: {}\n",
+                               pgm.filename().string(), mode, map.resolution_m, map.origin_m.x(),
+                               map.origin_m.y(), kOccupiedThreshold, kFreeThreshold));
+}
+
+MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file) {
+  const std::filesystem::path file = yaml.string("image");
+  MapImage map;
+  map.resolution_m = yaml.number("resolution", 1e-4, 100.0);
+  const std::vector<double> origin = yaml.at("origin").as_numbers(3);
+  if (origin[2] != 0)
+    yaml.at("origin").fail(fmt::format("a map turned by {} rad is not supported", origin[2]));
+  map.origin_m = {origin[0], origin[1]};
+  const Grid2d<std::uint8_t> image =
+      read_pgm(file.is_absolute() ? file : yaml_file.parent_path() / file);
+  map.levels = Grid2d<std::uint8_t>(image.width(), image.height());
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) map.levels(x, y) = image(x, image.height() - 1 - y);
+  return map;
 }
 
 OccupancyGrid load_map_server(const std::filesystem::path& yaml_file) {
   YamlReader yaml = YamlReader::load(yaml_file);
-  const std::filesystem::path file = yaml.string("image");
-  if (const std::string mode = yaml.string("mode", "trinary"); mode != "trinary")
-    yaml.at("mode").fail("'" + mode + "' is not supported, only trinary is");
-  OccupancyGrid grid;
-  grid.resolution_m = yaml.number("resolution", 1e-4, 100.0);
-  const std::vector<double> origin = yaml.at("origin").as_numbers(3);
-  if (origin[2] != 0) yaml.at("origin").fail("a turned map is not supported");
-  grid.origin_m = {origin[0], origin[1]};
+  const std::string mode = yaml.string("mode", "trinary");
+  if (mode != "trinary" && mode != "raw")
+    yaml.at("mode").fail("'" + mode + "' is not supported, only trinary and raw are");
+  const MapImage map = read_map_image(yaml, yaml_file);
   const bool negate = yaml.integer("negate", 0, 1) == 1;
   const double occupied = yaml.number("occupied_thresh", 0, 1);
   const double free = yaml.number("free_thresh", 0, 1);
   yaml.finish();
-
-  const Grid2d<std::uint8_t> image =
-      read_pgm(file.is_absolute() ? file : yaml_file.parent_path() / file);
-  grid.cells = Grid2d<std::int8_t>(image.width(), image.height());
-  for (int y = 0; y < image.height(); ++y)
-    for (int x = 0; x < image.width(); ++x) {
-      const double level = image(x, image.height() - 1 - y) / 255.0;
-      const double p = negate ? level : 1.0 - level;
+  OccupancyGrid grid{.cells = Grid2d<std::int8_t>(map.levels.width(), map.levels.height()),
+                     .resolution_m = map.resolution_m,
+                     .origin_m = map.origin_m};
+  for (int y = 0; y < grid.cells.height(); ++y)
+    for (int x = 0; x < grid.cells.width(); ++x) {
+      const std::uint8_t level = map.levels(x, y);
+      if (mode == "raw") {  // as nav2_map_server: what is not 0 to 100 is unknown
+        grid.cells(x, y) = level <= kOccupiedCell ? static_cast<std::int8_t>(level) : kUnknownCell;
+        continue;
+      }
+      const double p = negate ? level / 255.0 : 1.0 - level / 255.0;
       grid.cells(x, y) = p > occupied ? kOccupiedCell : p < free ? kFreeCell : kUnknownCell;
     }
   return grid;

@@ -28,9 +28,12 @@ struct MapObject {
 
 struct ObjectsConfig {
   int min_voxels = 6;  ///< smaller clusters are noise of labels
-  /// Voxels of one class hang together across gaps up to this: holes in depth.
+  /// Voxels of one class that touch hang together. A cluster of at most a quarter of another's
+  /// voxels is a fragment of it if the gap between their boxes is at most this,
   double gap_m = 0.10;
-  double min_label_share = 0.4;  ///< of a voxel's votes, for it to count as its class
+  /// or this where one is above the other: the legs below a seat, whose rim is thin.
+  double stacked_gap_m = 0.25;
+  double min_label_share = 0.5;  ///< of a voxel's votes, for it to count as its class
 };
 
 /// Whether a class is of things, in contrast to structure (wall, floor, ceiling, ...), unknown

@@ -21,12 +21,13 @@ struct ObstacleGridConfig {
   double robot_height_m = 1.21;  ///< what is higher does not touch the robot
   /// A cell is free if it is free from below this height above the floor on: what was seen only
   /// above may hide something low.
-  double seen_below_m = 0.40;
+  double seen_below_m = 0.50;
 };
 
 /// Projects the part of a map between ground and the robot's head to cells of the map's resolution:
 /// occupied if any voxel there is, so a table top is an obstacle and a lintel is not; free if none
-/// is and the lower part was seen free; else unknown. Empty if nothing was seen there.
+/// is, the lower part was seen free, and no gap is between what was seen free: a table top that
+/// gave no return has free space below and above it; else unknown. Empty if nothing was seen there.
 /// @throws InputError if the heights leave nothing between them.
 OccupancyGrid obstacle_grid(const VoxelMap& map, const ObstacleGridConfig& config = {});
 

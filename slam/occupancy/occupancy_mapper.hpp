@@ -45,9 +45,12 @@ class OccupancyMapper {
 
   const VoxelMap& map() const { return map_; }
   VoxelMap take_map() && { return std::move(map_); }
-  /// Depth of a keyframe thinned to stride_px, and the camera that fits it; nullptr if unknown.
+  /// Depth of a keyframe thinned to stride_px and smoothed, and the camera that fits it; nullptr if
+  /// unknown.
   const Grid2d<float>* depth_of(Stamp stamp_ns) const;
   const Grid2d<ClassId>* labels_of(Stamp stamp_ns) const;
+  /// Of all kept keyframes, in order.
+  std::vector<Stamp> stamps() const;
   const Camera& thin_camera() const { return camera_; }
 
  private:
@@ -60,8 +63,9 @@ class OccupancyMapper {
   SE3 rounded(const SE3& map_from_camera) const;
 
   OccupancyConfig config_;
-  int width_px_, height_px_;  ///< of frames
-  Camera camera_;             ///< of thinned frames
+  int width_px_, height_px_;        ///< of frames
+  Camera camera_;                   ///< of thinned frames: a pinhole without distortion
+  std::vector<std::size_t> pixel_;  ///< of a frame, that a thinned pixel is taken from; kNoPixel
   VoxelMap map_;
   std::map<Stamp, Kept> kept_;
 };

@@ -33,6 +33,7 @@ struct Voxel {
   bool occupied = false;
   ClassId label = kVoid;          ///< with the most votes, ties to the smallest id
   std::uint16_t label_views = 0;  ///< its votes
+  std::uint32_t votes = 0;        ///< of all classes
 
   Eigen::Vector3d center_m(double resolution_m) const {
     return resolution_m * (index.cast<double>().array() + 0.5).matrix();

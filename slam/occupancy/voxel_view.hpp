@@ -26,19 +26,27 @@ struct VoxelBlock {
 /// What one view told of space, ordered by block (z, then y, then x).
 using VoxelView = std::vector<VoxelBlock>;
 
-/// How depth tells of space.
+/// How depth tells of space. A voxel is free if it lies before everything that the image shows
+/// around the pixel of its center, so that a voxel cut by a grazing surface or by an edge is not.
 struct DepthModel {
   double resolution_m = 0.05;  ///< side of a voxel
   double min_range_m = 0.4;    ///< a nearer return tells nothing: below the range of an Xtion
   /// A farther return only clears the space up to this range. 4 m: depth noise there (3 cm, Nguyen
   /// et al., 3DIMPVT 2012) is about a voxel. At most 250 resolutions.
   double max_range_m = 4.0;
-  /// A ray stops clearing where it is this close to the surface that it hits, measured along the
-  /// surface's normal, in voxels: voxels that the surface cuts are not free. A grazing ray stops
-  /// earlier, at most `grazing_stop_m` before its end.
-  double clear_to_voxels = 1.0;
-  double grazing_stop_m = 0.5;
+  /// How far around the pixel of a voxel's center the image must show nothing in it or before it:
+  /// half the side of the seen square, in voxels.
+  double around_voxels = 0.5;
+  /// How far behind a voxel's center everything around must be, in voxels along the optical axis.
+  double before_voxels = 0.6;
 };
+
+/// Averages the depth of each pixel with those of its eight neighbors that lie on the same surface:
+/// within three standard deviations of the noise. A pixel with fewer than two such neighbors floats
+/// between two surfaces, as the sensor makes them at edges, and becomes one without a return.
+/// @param noise_per_m  the standard deviation is this times the squared depth. 0.0019: an Xtion's,
+/// Nguyen et al., 3DIMPVT 2012
+Grid2d<float> smoothed_depth(const Grid2d<float>& depth_m, double noise_per_m = 0.0019);
 
 /// What a depth image tells, labels included. Frame: of `map_from_camera`.
 /// @param depth_m  along z, undistorted; 0 = no return, which tells nothing

@@ -229,7 +229,7 @@ TEST(RunOne, CountsWhatHappened) {
     EXPECT_LT(q.distance_m.value(), 0.01);
     EXPECT_GT(q.distance_m.value(), 0.0);
   }
-  EXPECT_GT(run.volume->leaf_count(), 0u);
+  EXPECT_GT(run.volume->voxel_count(), 0u);
 }
 
 // It answers for the first 29 frames, twice as far from the start: a fifth of the 145 that are no

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+// `modelhouse map grid|cost|objects|plan`: what a robot draws from a saved octree.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "bench/cli/arguments.hpp"
+#include "bench/cli/commands.hpp"
+#include "robots/navigation/grid.hpp"
+#include "robots/navigation/plan.hpp"
+#include "slam/core/counted.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/occupancy/cost_map.hpp"
+#include "slam/occupancy/objects.hpp"
+#include "slam/occupancy/obstacle_grid.hpp"
+
+namespace mh::cli {
+namespace {
+
+using Eigen::Vector2d;
+
+struct MapGridArguments {
+  std::string map, out;
+  ObstacleGridConfig band;
+  bool raw = false;
+};
+
+struct MapCostArguments {
+  std::string grid, out;
+  CostMapConfig config;
+};
+
+struct MapObjectsArguments {
+  std::string map, name, out;
+};
+
+struct MapPlanArguments {
+  std::string map, thing, out;
+  ObstacleGridConfig band;
+  std::vector<double> from, to;
+  double radius_m = 0.26, margin_m = 0.05;
+};
+
+void add_band(CLI::App& command, ObstacleGridConfig& band) {
+  command
+      .add_option("--height", band.robot_height_m, "Of the robot, m: what is higher is no obstacle")
+      ->check(number_between(0.15, 10.0));
+  command.add_option("--floor-z", band.floor_z_m, "Height of the floor in the map, m")
+      ->check(number_between(-1000.0, 1000.0));
+}
+
+std::string place(const Vector2d& p) {
+  return fmt::format("({:.2f}, {:.2f})", p.x(), p.y());
+}
+
+/// @throws InputError if the map shows nothing between ground and head.
+OccupancyGrid grid_of(const std::string& map, const ObstacleGridConfig& band) {
+  OccupancyGrid grid = obstacle_grid(VoxelMap::load_ot(map), band);
+  if (grid.cells.empty())
+    throw InputError(fmt::format("{}: knows nothing between {} m and {} m", map,
+                                 band.floor_z_m + band.ground_m,
+                                 band.floor_z_m + band.robot_height_m));
+  return grid;
+}
+
+void run(const MapGridArguments& options) {
+  const OccupancyGrid grid = grid_of(options.map, options.band);
+  save_map_server(grid, options.out, options.raw ? GridMode::kRaw : GridMode::kTrinary);
+  std::size_t free = 0, occupied = 0;
+  for (const std::int8_t cell : grid.cells) {
+    free += cell == kFreeCell ? 1 : 0;
+    occupied += cell == kOccupiedCell ? 1 : 0;
+  }
+  const double cell_m2 = grid.resolution_m * grid.resolution_m;
+  fmt::print("{} x {} cells of {} m: {:.2f} m2 free, {:.2f} m2 occupied\n", grid.cells.width(),
+             grid.cells.height(), grid.resolution_m, static_cast<double>(free) * cell_m2,
+             static_cast<double>(occupied) * cell_m2);
+}
+
+void run(const MapCostArguments& options) {
+  const CostMap costs = cost_map(load_map_server(options.grid), options.config);
+  save_cost_map(costs, options.out);
+  save_map_server(as_published(costs), options.out + "_published", GridMode::kRaw);
+  fmt::print("{} x {} cells of {} m\n", costs.costs.width(), costs.costs.height(),
+             costs.resolution_m);
+}
+
+void run(const MapObjectsArguments& options) {
+  const VoxelMap map = VoxelMap::load_ot(options.map);
+  const std::vector<MapObject> objects = find_objects(map);
+  if (!options.out.empty())
+    write_atomically(options.out, objects_json(objects, map.resolution_m()));
+  std::vector<std::size_t> shown;
+  if (options.name.empty())
+    for (std::size_t i = 0; i < objects.size(); ++i) shown.push_back(i);
+  else
+    shown = objects_named(objects, options.name);
+  fmt::print("{:<22}{:>7}  {:>24}  {:>20}\n", "object", "score", "center m", "size m");
+  for (const std::size_t i : shown) {
+    const MapObject& o = objects[i];
+    const Eigen::Vector3d size_m = o.max_m - o.min_m;
+    fmt::print("{:<22}{:>7.2f}  {:>8.2f}{:>8.2f}{:>8.2f}  {:>8.2f}{:>6.2f}{:>6.2f}\n", o.name,
+               o.score, o.center_m.x(), o.center_m.y(), o.center_m.z(), size_m.x(), size_m.y(),
+               size_m.z());
+  }
+}
+
+/// The grid to plan on: what is not known to be free is blocked.
+FloorGrid floor_grid_of(const OccupancyGrid& grid) {
+  Grid2d<std::uint8_t> blocked(grid.cells.width(), grid.cells.height());
+  std::transform(grid.cells.begin(), grid.cells.end(), blocked.begin(),
+                 [](std::int8_t cell) { return static_cast<std::uint8_t>(cell != kFreeCell); });
+  return {.resolution_m = grid.resolution_m,
+          .origin_m = grid.center_m(0, 0),
+          .clearance_m = clearances_m(blocked, grid.resolution_m),
+          .occupant = {}};
+}
+
+/// A goal next to an object: the place with the clearance that is nearest to its box.
+Vector2d place_beside(const MapObject& object, const FloorGrid& grid, const Vector2d& from_m,
+                      double clearance_m) {
+  const Grid2d<float> ways = way_lengths(grid, from_m, clearance_m);
+  std::optional<Vector2d> best;
+  double nearest_m = 1.5;  // farther than this is not at the object
+  for (int y = 0; y < ways.height(); ++y)
+    for (int x = 0; x < ways.width(); ++x) {
+      if (!std::isfinite(ways(x, y))) continue;
+      const Vector2d at = grid.center_of({x, y});
+      const double away_m =
+          (at - at.cwiseMax(object.min_m.head<2>()).cwiseMin(object.max_m.head<2>())).norm();
+      if (away_m >= nearest_m) continue;
+      nearest_m = away_m;
+      best = at;
+    }
+  if (!best)
+    throw InputError(
+        fmt::format("goal '{}': no free place within 1.5 m of it can be reached from {}",
+                    object.name, place(from_m)));
+  return *best;
+}
+
+/// @throws InputError if a robot cannot stand at a place of the grid.
+void require_clear(const char* what, const Vector2d& at, const OccupancyGrid& grid,
+                   const FloorGrid& floor, double clearance_m) {
+  const auto cell = grid.cell_of(at);
+  if (!cell) throw InputError(fmt::format("{} {}: is outside of the map", what, place(at)));
+  const std::int8_t state = grid.cells(cell->x(), cell->y());
+  if (state == kUnknownCell)
+    throw InputError(fmt::format("{} {}: is in unknown space", what, place(at)));
+  if (state == kOccupiedCell)
+    throw InputError(fmt::format("{} {}: is inside of an obstacle", what, place(at)));
+  if (const double has_m = floor.clearance_at(at); has_m < clearance_m)
+    throw InputError(
+        fmt::format("{} {}: has {:.2f} m to the nearest obstacle or unknown space, "
+                    "and the robot needs {:.2f} m",
+                    what, place(at), has_m, clearance_m));
+}
+
+void run(const MapPlanArguments& options) {
+  if (options.to.empty() == options.thing.empty())
+    throw InputError("plan: the goal is either --to or --to-object");
+  const VoxelMap map = VoxelMap::load_ot(options.map);
+  const OccupancyGrid grid = grid_of(options.map, options.band);
+  const FloorGrid floor = floor_grid_of(grid);
+  const double clearance_m = options.radius_m + options.margin_m;
+  const Vector2d from(options.from[0], options.from[1]);
+  require_clear("start", from, grid, floor, clearance_m);
+  Vector2d to;
+  if (!options.thing.empty()) {
+    const std::vector<MapObject> objects = find_objects(map);
+    to = place_beside(objects[objects_named(objects, options.thing).front()], floor, from,
+                      clearance_m);
+  } else {
+    to = {options.to[0], options.to[1]};
+    require_clear("goal", to, grid, floor, clearance_m);
+  }
+  const auto way = plan_way(floor, from, to, clearance_m);
+  if (!way)
+    throw InputError(fmt::format("goal {}: no way leads there from {} that keeps {:.2f} m clear",
+                                 place(to), place(from), clearance_m));
+  double length_m = 0;
+  std::string text = "x_m,y_m\n";
+  for (std::size_t i = 0; i < way->size(); ++i) {
+    if (i > 0) length_m += ((*way)[i] - (*way)[i - 1]).norm();
+    text += fmt::format("{:.3f},{:.3f}\n", (*way)[i].x(), (*way)[i].y());
+  }
+  if (!options.out.empty()) write_atomically(options.out, text);
+  fmt::print("{}{}, {:.2f} m\n", options.out.empty() ? text : "", counted(way->size(), "corner"),
+             length_m);
+}
+
+void add_grid(CLI::App& map) {
+  auto options = std::make_shared<MapGridArguments>();
+  CLI::App* command =
+      map.add_subcommand("grid", "The part of a saved octree that obstructs a robot.");
+  command->add_option("map", options->map, "map.ot of `map build` or `bench`")->required();
+  command->add_option("--out", options->out, "Path without extension: .pgm and .yaml are written")
+      ->required();
+  add_band(*command, options->band);
+  command->add_flag("--raw", options->raw, "map_server's mode raw instead of trinary");
+  command->footer("Example:\n  modelhouse map grid out/map/map.ot --out out/grid");
+  command->callback([options] { run(*options); });
+}
+
+void add_cost(CLI::App& map) {
+  auto options = std::make_shared<MapCostArguments>();
+  CLI::App* command = map.add_subcommand("cost", "Costs of a grid, as Nav2 numbers them.");
+  command->add_option("grid", options->grid, "YAML file of a grid for map_server")->required();
+  command
+      ->add_option("--out", options->out,
+                   "Path without extension: costs as gray levels, and with _published the values "
+                   "that Nav2 publishes")
+      ->required();
+  command->add_option("--radius", options->config.inscribed_radius_m, "Of the robot's disc, m")
+      ->check(number_between(0.0, 10.0));
+  command->add_option("--inflation", options->config.inflation_radius_m, "Where costs end, m")
+      ->check(number_between(0.0, 10.0));
+  command->add_option("--scaling", options->config.cost_scaling_factor, "Decay, 1/m")
+      ->check(number_between(0.0, 1000.0));
+  command->footer("Example:\n  modelhouse map cost out/map/grid.yaml --out out/cost");
+  command->callback([options] { run(*options); });
+}
+
+void add_objects(CLI::App& map) {
+  auto options = std::make_shared<MapObjectsArguments>();
+  CLI::App* command =
+      map.add_subcommand("objects", "The objects of a saved octree, or those of a name.");
+  command->add_option("map", options->map, "map.ot of `map build` or `bench`")->required();
+  command->add_option("name", options->name, "Class or object: refrigerator, \"chair 2\"");
+  command->add_option("--out", options->out, "JSON file of all objects");
+  command->footer("Example:\n  modelhouse map objects out/map/map.ot refrigerator");
+  command->callback([options] { run(*options); });
+}
+
+void add_plan(CLI::App& map) {
+  auto options = std::make_shared<MapPlanArguments>();
+  CLI::App* command = map.add_subcommand("plan", "A way over the floor of a saved octree.");
+  command->add_option("map", options->map, "map.ot of `map build` or `bench`")->required();
+  command->add_option("--from", options->from, "Start: x y, m")->expected(2)->required();
+  command->add_option("--to", options->to, "Goal: x y, m")->expected(2);
+  command->add_option("--to-object", options->thing, "Goal: a place beside this object");
+  command->add_option("--radius", options->radius_m, "Of the robot's disc, m")
+      ->check(number_between(0.0, 10.0));
+  command->add_option("--margin", options->margin_m, "Kept beyond the radius, m")
+      ->check(number_between(0.0, 10.0));
+  command->add_option("--out", options->out, "CSV file of the way's corners");
+  add_band(*command, options->band);
+  command->footer(
+      "Example:\n  modelhouse map plan out/map/map.ot --from 1.5 2.5 --to-object refrigerator");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace
+
+void add_map(CLI::App& app) {
+  CLI::App* map = app.add_subcommand(
+      "map", "Space, grids, costs, objects and ways from what a robot has mapped.");
+  map->require_subcommand(1);
+  add_map_build(*map);
+  add_grid(*map);
+  add_cost(*map);
+  add_objects(*map);
+  add_plan(*map);
+}
+
+}  // namespace mh::cli

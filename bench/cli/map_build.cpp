@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// `modelhouse map build`: space, grid, costs and objects from a sequence's depth at known poses.
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bench/cli/arguments.hpp"
+#include "bench/cli/commands.hpp"
+#include "bench/cli/progress.hpp"
+#include "bench/cli/sequence_source.hpp"
+#include "bench/studies/map_images.hpp"
+#include "bench/studies/map_score.hpp"
+#include "bench/studies/map_study.hpp"
+#include "robots/model/robot.hpp"
+#include "scenes/images/write_image.hpp"
+#include "scenes/load.hpp"
+#include "sim/render/renderer.hpp"
+#include "slam/core/counted.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/trajectory_io.hpp"
+#include "slam/occupancy/cost_map.hpp"
+#include "slam/occupancy/floor_frame.hpp"
+#include "slam/occupancy/obstacle_grid.hpp"
+#include "slam/occupancy/occupancy_mapper.hpp"
+#include "slam/pipeline/map_file.hpp"
+#include "slam/pipeline/slam.hpp"
+
+namespace mh::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct MapBuildArguments : SourceOptions {
+  std::string vocabulary = "vocabulary", out, map, poses;
+  double resolution_m = 0.05, height_m = 1.21;
+  std::size_t frames = SIZE_MAX, every = 1;
+  bool plain = false, score = false;
+};
+
+/// Poses of the frames whose depth is taken, in the frame of their first camera.
+struct Posed {
+  Trajectory poses;
+  std::vector<MapPoint> landmarks;  ///< of the SLAM map; empty without one
+};
+
+Posed posed_by(const SlamState& state) {
+  Posed posed;
+  for (const Keyframe& keyframe : state.map.keyframes())
+    if (!keyframe.erased)
+      posed.poses.push_back({keyframe.stamp_ns, keyframe.camera_from_world.inverse()});
+  std::ranges::sort(posed.poses, {}, &TimedPose::stamp_ns);
+  for (const Landmark& landmark : state.map.landmarks())
+    if (!landmark.erased) posed.landmarks.push_back({landmark.position_in_world, landmark.label});
+  return posed;
+}
+
+/// Maps the sequence as a live feed.
+/// @param keep  receives each keyframe's frame
+Posed run_slam(const MapBuildArguments& options, const Source& source,
+               const std::shared_ptr<const Vocabulary>& vocabulary,
+               const std::function<void(const RgbdFrame&)>& keep) {
+  SlamConfig config = source.settings.slam;
+  if (options.plain) config.semantics = config.semantics.neutralized();
+  SlamState state = make_slam(source.frames->camera(), config, vocabulary);
+  Progress progress("map");
+  const std::size_t end = std::min(options.frames, source.frames->size());
+  for (std::size_t i = 0; i < end; ++i) {
+    const RandomStream stream = RandomStream(options.seed).fork(i);
+    const RgbdFrame frame = source.frames->frame(i, stream);
+    if (state.last_stamp_ns && frame.stamp_ns <= *state.last_stamp_ns) continue;
+    const StepReport report = step(state, frame, stream.fork(1));
+    if (report.keyframe_added) keep(frame);
+    progress.share(static_cast<double>(i + 1) / static_cast<double>(end),
+                   counted(state.map.keyframe_count(), "keyframe"));
+  }
+  progress.end();
+  if (state.map.empty())
+    throw InputError(options.source +
+                     ": nothing could be mapped: no frame showed 100 keypoints "
+                     "with depth to begin with");
+  return posed_by(state);
+}
+
+/// Keeps the frames of the sequence at the stamps of known poses.
+void keep_posed(const MapBuildArguments& options, const Source& source, const Trajectory& poses,
+                const std::function<void(const RgbdFrame&)>& keep) {
+  std::size_t met = 0;
+  auto pose = poses.begin();
+  for (std::size_t i = 0; i < std::min(options.frames, source.frames->size()); ++i) {
+    const Stamp stamp_ns = source.frames->stamp_ns(i);
+    while (pose != poses.end() && pose->stamp_ns < stamp_ns) ++pose;
+    if (pose == poses.end()) break;
+    if (pose->stamp_ns == stamp_ns && met++ % options.every == 0)
+      keep(source.frames->frame(i, RandomStream(options.seed).fork(i)));
+  }
+  if (met == 0)
+    throw InputError(fmt::format("{}: has no frame at the time of any of the {} of {}",
+                                 options.source, counted(poses.size(), "pose"),
+                                 options.map.empty() ? options.poses : options.map));
+}
+
+/// The frame of the map: that of a scene, whose robot knows its dock; else the floor's.
+SE3 find_map_frame(const MapBuildArguments& options, const Source& source,
+                   const OccupancyMapper& mapper, const Trajectory& poses) {
+  if (const Trajectory* truth = source.frames->truth(); options.is_scene() && truth != nullptr)
+    for (const TimedPose& pose : poses)
+      if (const TimedPose* known = pose_at(*truth, pose.stamp_ns))
+        return known->world_from_camera * pose.world_from_camera.inverse();
+  const auto floor = floor_of(mapper, poses);
+  if (!floor)
+    throw InputError(options.source +
+                     ": no floor was found under the camera's path: no grid can be made");
+  fmt::print(stderr, "map: floor found by {}, {}, median distance {:.3f} m\n",
+             floor->by_labels ? "labels" : "geometry", counted(floor->points, "point"),
+             floor->spread_m);
+  return floor->floor_from_world;
+}
+
+void score(const MapBuildArguments& options, const Source& source, const OccupancyMapper& mapper,
+           const MapStudy& study) {
+  const Scene scene = load_scene(find_scene(options.source.substr(kSceneSource.size())), nullptr,
+                                 options.frame.frame());
+  const MapScores scores = score_map(
+      scene, mapper, *source.frames->truth(), study,
+      {.resolution_m = options.resolution_m, .floor_z_m = 0, .robot_height_m = options.height_m});
+  const fs::path out = options.out;
+  write_atomically(out / "score.json", scores_json(scores));
+  write_image(out / "grid_against_truth.png", draw_against_truth(study.grid, scores.plan));
+  fmt::print("{}", scores_text(scores));
+}
+
+void run(MapBuildArguments options) {
+  options.check();
+  if (!options.map.empty() && !options.poses.empty())
+    throw InputError("--map and --poses: one of them says where the frames are");
+  if (options.score && !options.is_scene())
+    throw InputError("--score needs the exact mesh: the source must be scene:FILE");
+  resolve(options.vocabulary, Shipped::kVocabulary);
+  resolve(options.settings, Shipped::kSettings);
+  const Source source = open_source(options);
+  const OutputFolder folder(options.out, "map build", {kMapFiles.begin(), kMapFiles.end()});
+  OccupancyMapper mapper(source.frames->camera(),
+                         {.depth = {.resolution_m = options.resolution_m}});
+  std::size_t kept = 0, with_depth = 0;
+  const auto keep = [&](const RgbdFrame& frame) {
+    mapper.keep(frame);
+    ++kept;
+    with_depth += std::ranges::any_of(frame.depth_m, [](float z) { return z > 0; }) ? 1 : 0;
+  };
+  Posed posed;
+  if (!options.poses.empty()) {
+    posed.poses = read_trajectory(options.poses);
+    keep_posed(options, source, posed.poses, keep);
+  } else {
+    const auto vocabulary =
+        std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
+    if (options.map.empty()) {
+      posed = run_slam(options, source, vocabulary, keep);
+    } else {
+      posed = posed_by(load_slam(options.map, vocabulary));
+      keep_posed(options, source, posed.poses, keep);
+    }
+  }
+  if (with_depth == 0)
+    throw InputError(fmt::format("{}: none of {} has depth: space cannot be mapped without",
+                                 options.source, counted(kept, "keyframe")));
+  const SE3 map_from_world = find_map_frame(options, source, mapper, posed.poses);
+  mapper.update(posed.poses, map_from_world);
+  for (MapPoint& landmark : posed.landmarks) landmark.point_m = map_from_world * landmark.point_m;
+  const MapStudy study = study_of(mapper.map(), {.robot_height_m = options.height_m});
+  write_map_files(options.out, mapper.map(), study);
+  if (posed.landmarks.empty()) posed.landmarks = points_of(mapper.map());
+  write_image(fs::path(options.out) / "grid_classes.png",
+              draw_classes_over(study.grid, posed.landmarks));
+  fmt::print("{}, {} ({:.1f} MB as an octree), grid of {} x {} cells, {}\n",
+             counted(kept, "keyframe"), counted(mapper.map().voxel_count(), "voxel"),
+             static_cast<double>(mapper.map().memory_bytes()) * 1e-6, study.grid.cells.width(),
+             study.grid.cells.height(), counted(study.objects.size(), "object"));
+  if (options.score) score(options, source, mapper, study);
+}
+
+}  // namespace
+
+void add_map_build(CLI::App& map) {
+  auto options = std::make_shared<MapBuildArguments>();
+  CLI::App* command = map.add_subcommand(
+      "build", "Octree, grid, costs and objects from the depth of a sequence's keyframes.");
+  options->add_to(*command);
+  command->add_option("--out", options->out, "Folder for the results")->required();
+  command->add_option("--map", options->map,
+                      "Saved map (slam --save-map) of this sequence: where its keyframes are; "
+                      "without: SLAM is run");
+  command->add_option("--poses", options->poses,
+                      "Trajectory of this sequence instead, TUM text or EuRoC CSV");
+  command
+      ->add_option("--every", options->every,
+                   "--poses, --map: only every n-th frame that has a pose")
+      ->check(CLI::Range(1, 1000000));
+  command->add_option("--vocabulary", options->vocabulary,
+                      "Vocabulary file, or the name of the shipped one");
+  command->add_option("--resolution", options->resolution_m, "Side of a voxel, m")
+      ->check(number_between(0.01, 1.0));
+  command
+      ->add_option("--height", options->height_m, "Of the robot, m: what is higher is no obstacle")
+      ->check(number_between(0.15, 10.0));
+  command->add_option("--frames", options->frames, "At most so many frames")
+      ->default_str("all")
+      ->check(CLI::Range(1, 100000000));
+  command->add_flag("--plain", options->plain, "SLAM without semantics");
+  command->add_flag("--score", options->score,
+                    "scene: against the exact mesh, with the poses given and with the true ones");
+  command->footer("Example:\n  modelhouse map build out/sequence --out out/map");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace mh::cli

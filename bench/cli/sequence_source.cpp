@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/cli/sequence_source.hpp"
+
+#include <fmt/format.h>
+
+#include "bench/cli/arguments.hpp"
+#include "bench/inputs/recorded_camera.hpp"
+#include "scenes/recorded/open_sequence.hpp"
+#include "sim/world/scene_sequence.hpp"
+#include "slam/core/error.hpp"
+
+namespace mh::cli {
+namespace {
+
+constexpr const char* kUsualRobot = "pepper";
+
+/// Settings for a source with its own camera and image scale.
+Settings settings_beside(const SourceOptions& options, const Sequence& frames,
+                         std::vector<std::string> notes) {
+  Settings settings;
+  if (!options.settings.empty()) {
+    Settings named = load_settings(options.settings);
+    settings.slam = named.slam;
+    settings.notes = std::move(named.notes);
+    if (named.has_camera && named.camera != frames.camera())
+      settings.notes.push_back(
+          fmt::format("{}: its camera gives way to that of {}", options.settings, options.source));
+  }
+  settings.notes.insert(settings.notes.end(), notes.begin(), notes.end());
+  settings.camera = frames.camera();
+  return settings;
+}
+
+}  // namespace
+
+void SourceOptions::add_to(CLI::App& command) {
+  command
+      .add_option("source", source,
+                  sequence_forms() + ", a path whose layout is recognized, or scene:FILE")
+      ->required();
+  command.add_option("--settings", settings,
+
+                     "Settings (YAML), also ORB-SLAM2's, or the name of shipped ones (default: the "
+                     "folder's camera.yaml)");
+  command.add_option("--classes", classes,
+                     "What the labels of a recording mean (YAML), where they are not our classes");
+  command.add_option("--topics", topics,
+                     "Topics of a bag or MCAP file, where several could be meant: "
+                     "color=/a,depth=/b; also labels, info (CameraInfo), truth");
+  command.add_option("--tour", tour, "scene: tour (YAML), or the name of a shipped one");
+  command.add_option("--robot", robot, "scene: robot (YAML), or the name of a shipped one")
+      ->default_str(kUsualRobot);
+  command.add_option("--level", level,
+                     "scene: sensor level (YAML), or the name of a shipped one; without: no noise");
+  frame.add_to(command);
+  command.add_option("--seed", seed, "Seed of RANSAC and of a scene's noise")->check(seed_number());
+}
+
+void SourceOptions::check() const {
+  if (is_scene()) {
+    if (!classes.empty())
+      throw InputError("--classes is for recordings, but the source is a scene");
+    if (!topics.empty()) throw InputError("--topics is for recordings, but the source is a scene");
+    return;
+  }
+  for (const auto& [name, value] :
+       {std::pair("--tour", &tour), {"--robot", &robot}, {"--level", &level}})
+    if (!value->empty())
+      throw InputError(
+          fmt::format("{} {}: is for scene:FILE, but the source is '{}'", name, *value, source));
+}
+
+Source open_source(const SourceOptions& options) {
+  const std::string& source = options.source;
+  if (options.is_scene()) {
+    if (options.tour.empty()) throw InputError(fmt::format("source '{}' needs --tour", source));
+    const std::string robot = options.robot.empty() ? kUsualRobot : options.robot;
+    std::vector<std::string> notes;
+    auto frames = open_scene({.scene = find_scene(source.substr(kSceneSource.size())),
+                              .tour = find_shipped(options.tour, Shipped::kTour),
+                              .robot = find_shipped(robot, Shipped::kRobot),
+                              .level = find_shipped(options.level, Shipped::kLevel),
+                              .seed = options.seed,
+                              .frame = options.frame.frame()},
+                             &notes);
+    return {settings_beside(options, *frames, notes), std::move(frames)};
+  }
+  Settings settings;
+  RecordingConfig config{
+      .calibration = options.settings, .classes = options.classes, .topics = options.topics};
+  config.read_camera = camera_reader(&settings);
+  config.has_camera = settings_have_camera;
+  OpenedRecording opened = open_sequence(source, config);
+  if (!settings.has_camera)
+    return {settings_beside(options, *opened.sequence, opened.notes), std::move(opened.sequence)};
+  settings.notes.insert(settings.notes.end(), opened.notes.begin(), opened.notes.end());
+  return {std::move(settings), std::move(opened.sequence)};
+}
+
+}  // namespace mh::cli

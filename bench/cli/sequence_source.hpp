@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+
+#include "bench/cli/scene_option.hpp"
+#include "slam/core/sequence.hpp"
+#include "slam/pipeline/settings.hpp"
+
+namespace mh::cli {
+
+/// What a source that is a scene begins with.
+inline constexpr std::string_view kSceneSource = "scene:";
+
+/// A recording, or a scene with a tour, as options of a command name it.
+struct SourceOptions {
+  std::string source, settings, classes, topics;
+  SceneFrameOption frame;
+  std::string tour, robot, level;
+  std::uint64_t seed = 0;
+
+  bool is_scene() const { return source.starts_with(kSceneSource); }
+  void add_to(CLI::App& command);
+  /// @throws InputError if an option does not fit the kind of source.
+  void check() const;
+};
+
+struct Source {
+  Settings settings;
+  std::unique_ptr<Sequence> frames;
+};
+
+/// @throws InputError naming the file and the problem.
+Source open_source(const SourceOptions& options);
+
+}  // namespace mh::cli

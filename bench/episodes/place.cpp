@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/episodes/place.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "bench/metrics/trajectory_score.hpp"
+#include "bench/protocol/mapping.hpp"
+#include "bench/run/run_one.hpp"
+#include "bench/world/cached_light.hpp"
+#include "scenes/load.hpp"
+#include "sim/motion/sensing.hpp"
+#include "sim/physics/planar_world.hpp"
+#include "sim/world/lit_scene.hpp"
+#include "sim/world/pedestrian.hpp"
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+
+constexpr std::uint64_t kTourStream = 0x746f7572;
+
+void require_level_floor(const Scene& scene) {
+  if (!scene.floor.is_level_zero())
+    throw InputError(fmt::format(
+        "{}: its floor is not at z = 0: episodes drive in houses and generated rooms", scene.name));
+}
+
+VariantPlace variant_place(const EpisodeVariant& variant, const EpisodesSpec& episodes,
+                           const World& world, int threads, const Cache& cache, const Say& say) {
+  const SimulatedPlace& mapped = *world.simulated;
+  VariantPlace place{.variant = variant,
+                     .scene = {mapped.scene, mapped.renderer},
+                     .level = mapped.sensors,
+                     .starts = {}};
+  if (variant.scene) {
+    Scene scene = load_scene(*variant.scene);
+    light_from_cache(scene, threads, cache, say);
+    place.scene.scene = std::make_shared<const Scene>(std::move(scene));
+    place.scene.renderer = make_scene_renderer(*place.scene.scene);
+  }
+  require_level_floor(*place.scene.scene);
+  if (variant.pedestrian)
+    place.scene.pedestrian = make_pedestrian_scene(*place.scene.scene, place.scene.renderer,
+                                                   load_pedestrian(*variant.pedestrian));
+  if (variant.level) {
+    place.level = load_sensor_config(*variant.level);
+    place.level.lens_distortion = mapped.sensors.lens_distortion;  // the camera stays the same one
+  }
+  place.starts = draw_starts(episodes, *place.scene.scene, mapped.robot);
+  return place;
+}
+
+}  // namespace
+
+EveryNth::EveryNth(std::shared_ptr<const Sequence> all, std::size_t n)
+    : all_(std::move(all)), n_(n), camera_(all_->camera()) {
+  camera_.rate_hz /= static_cast<double>(n);
+  if (all_->truth() == nullptr) return;
+  for (std::size_t i = 0; i < all_->truth()->size(); i += n) truth_.push_back((*all_->truth())[i]);
+}
+
+EpisodeWorld build_episode_world(const RunSpec& spec, const EpisodesSpec& episodes, int threads,
+                                 const Cache& cache, const Say& say) {
+  EpisodeWorld place;
+  place.labels = spec.labels.mode;
+  place.ticks_per_frame = episodes.ticks_per_frame;
+  place.world = build_world(spec, threads, cache, say);
+  const Robot& robot = place.world.simulated->robot;
+  if (!robot.equipment || robot.equipment->lasers.empty())
+    throw InputError(fmt::format("{}: robot '{}' has no lasers: it cannot drive on its own",
+                                 spec.environment.robot.string(), robot.name));
+  place.mapping = std::make_shared<EveryNth>(place.world.mapping,
+                                             static_cast<std::size_t>(episodes.ticks_per_frame));
+  place.world.mapping = place.mapping;  // systems are made for a camera of that rate
+  for (const EpisodeVariant& variant : episodes.variants)
+    place.variants.push_back(variant_place(variant, episodes, place.world, threads, cache, say));
+  return place;
+}
+
+namespace {
+
+/// Forwards frames without their labels.
+class Unlabeled : public Sequence {
+ public:
+  explicit Unlabeled(const Sequence& inner) : inner_(inner) {}
+  const Camera& camera() const override { return inner_.camera(); }
+  std::size_t size() const override { return inner_.size(); }
+  Stamp stamp_ns(std::size_t i) const override { return inner_.stamp_ns(i); }
+  RgbdFrame frame(std::size_t i, RandomStream noise) const override {
+    RgbdFrame frame = inner_.frame(i, noise);
+    frame.semantics = {};
+    return frame;
+  }
+  const Trajectory* truth() const override { return inner_.truth(); }
+
+ private:
+  const Sequence& inner_;
+};
+
+}  // namespace
+
+MappedSystem map_tour(const RunSpec& spec, const EpisodeWorld& place, const MapTools& tools) {
+  const Sequence& frames = *place.mapping;
+  const RandomStream stream = RandomStream(spec.seed).fork(kTourStream);
+  MappedSystem mapped;
+  mapped.system = make_system(spec, place.world, tools.folder);
+  if (mapped.system == nullptr)
+    throw InputError(fmt::format(
+        "{}: a program that only returns a trajectory cannot be kidnapped: protocol: conversation "
+        "or a library can",
+        spec.system.name));
+  const Unlabeled unlabeled(frames);
+  double furthest = 0;
+  const auto map_now = [&] {
+    map_sequence(*mapped.system,
+                 spec.system.sees_labels() ? frames : static_cast<const Sequence&>(unlabeled),
+                 spec.protocol, stream,
+                 [&](const MappedFrame& call, const RgbdFrame&, const SystemReport&) {
+                   const double share =
+                       static_cast<double>(call.index + 1) / static_cast<double>(frames.size());
+                   if (share > furthest) tools.progress(furthest = share);
+                 });
+    mapped.system->freeze();
+  };
+  if (spec.system.saves_map()) {
+    bool made = false;
+    const std::string kept = tools.maps.get("episode-map", tools.key, [&] {
+      map_now();
+      made = true;
+      return mapped.system->save();
+    });
+    if (!made) {
+      mapped.system->restore(kept);
+      mapped.system->freeze();
+    }
+  } else {
+    map_now();
+  }
+  const Trajectory estimate = mapped.system->trajectory();
+  if (estimate.empty())
+    throw InputError(fmt::format("{}: tracked no frame of the mapping tour", spec.name));
+  mapped.offered = offered_frames(frames.size(), spec.protocol).size();
+  mapped.tracked = estimate.size();
+  mapped.truth_from_estimate = frames_of(estimate, *frames.truth()).truth_from_estimate;
+  const SimulatedPlace& simulated = *place.world.simulated;
+  PlanarWorld seen(*simulated.scene, simulated.robot, Eigen::Vector2d::Zero(), 0);
+  mapped.map = build_robot_map(
+      {.frames = frames,
+       .estimate = estimate,
+       .robot = simulated.robot,
+       .noise = mapping_noise(stream, 0),
+       .lasers = [&](std::size_t i) {
+         const SE3& world_from_base =
+             simulated.mapping.base[i * static_cast<std::size_t>(place.ticks_per_frame)]
+                 .world_from_camera;
+         return read_ranges(seen, *simulated.robot.equipment, world_from_base).lasers_m;
+       }});
+  return mapped;
+}
+
+}  // namespace mh

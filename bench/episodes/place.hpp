@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/episodes/episode.hpp"
+#include "bench/plan/runs.hpp"
+#include "bench/world/world.hpp"
+
+namespace mh {
+
+/// Every n-th frame of a sequence.
+class EveryNth : public Sequence {
+ public:
+  EveryNth(std::shared_ptr<const Sequence> all, std::size_t n);
+  const Camera& camera() const override { return camera_; }
+  std::size_t size() const override { return (all_->size() + n_ - 1) / n_; }
+  Stamp stamp_ns(std::size_t i) const override { return all_->stamp_ns(i * n_); }
+  RgbdFrame frame(std::size_t i, RandomStream noise) const override {
+    return all_->frame(i * n_, noise);
+  }
+  const Trajectory* truth() const override { return all_->truth() != nullptr ? &truth_ : nullptr; }
+
+ private:
+  std::shared_ptr<const Sequence> all_;
+  std::size_t n_;
+  Camera camera_;  ///< at the lower rate
+  Trajectory truth_;
+};
+
+/// One variant of the episodes in an environment: what differs from the mapping, and the starts.
+struct VariantPlace {
+  EpisodeVariant variant;
+  SimulatedScene scene;
+  SensorConfig level;
+  std::vector<EpisodeStart> starts;
+};
+
+/// An environment at a level, with everything that all systems share.
+struct EpisodeWorld {
+  World world;  ///< labeled: systems that see no labels receive frames without
+  LabelMode labels = LabelMode::kExact;
+  int ticks_per_frame = 1;
+  std::shared_ptr<const Sequence> mapping;  ///< at the rate of the episodes
+  std::vector<VariantPlace> variants;
+};
+
+/// @param spec  a run of this environment, level and labels
+/// @throws InputError as build_world(), and as draw_starts(); if a scene's floor is not z = 0, or
+/// the robot cannot drive on its own.
+EpisodeWorld build_episode_world(const RunSpec& spec, const EpisodesSpec& episodes, int threads,
+                                 const Cache& cache, const Say& say);
+
+/// A system that has mapped the tour, and its robot's map.
+struct MappedSystem {
+  std::unique_ptr<System> system;  ///< frozen
+  RobotMap map;
+  SE3 truth_from_estimate;
+  std::size_t offered = 0, tracked = 0;  ///< frames of the tour
+};
+
+struct MapTools {
+  std::filesystem::path folder;  ///< for an outside program's log; exists
+  Cache maps = Cache();          ///< finished maps of systems that can save them
+  std::string key;               ///< of the map
+  std::function<void(double)> progress = [](double) {};
+};
+
+/// Maps the tour with the system of a run, or takes its map from the cache, and makes the robot's
+/// map of it. @throws InputError if nothing was mapped; OutsideError.
+MappedSystem map_tour(const RunSpec& spec, const EpisodeWorld& place, const MapTools& tools);
+
+}  // namespace mh

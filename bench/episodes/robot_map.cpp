@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/episodes/robot_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "slam/core/error.hpp"
+#include "slam/occupancy/obstacle_grid.hpp"
+#include "slam/occupancy/occupancy_mapper.hpp"
+
+namespace mh {
+namespace {
+
+using Eigen::Vector2d;
+
+// A view tells the map something new after so much: at 2 m, 0.26 rad are half a meter.
+constexpr double kMoved_m = 0.25, kTurned_rad = 0.26;
+
+KnownMap known_map(const OccupancyGrid& grid) {
+  KnownMap known;
+  known.grid.resolution_m = grid.resolution_m;
+  known.grid.origin_m = grid.center_m(0, 0);
+  const int w = grid.cells.width(), h = grid.cells.height();
+  known.blocked = Grid2d<std::uint8_t>(w, h);
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) known.blocked(x, y) = grid.cells(x, y) != kFreeCell;
+  known.grid.clearance_m = clearances_m(known.blocked, grid.resolution_m);
+  known.grid.occupant = Grid2d<std::uint16_t>(w, h);
+  return known;
+}
+
+/// The cells in which a wall was seen.
+Grid2d<std::uint8_t> walls_of(const VoxelMap& map, const OccupancyGrid& grid) {
+  const std::optional<ClassId> wall = class_by_name("wall");
+  Grid2d<std::uint8_t> walls(grid.cells.width(), grid.cells.height());
+  map.for_each([&](const Voxel& voxel) {
+    if (!voxel.occupied || voxel.label != wall) return;
+    const Eigen::Vector3d center = voxel.center_m(map.resolution_m());
+    if (const auto cell = grid.cell_of(center.head<2>())) walls(cell->x(), cell->y()) = 1;
+  });
+  return walls;
+}
+
+/// The cells that each object covers: of its class, inside its box. A box alone says too much of a
+/// thing that stands askew in the map's frame.
+std::vector<std::vector<Vector2d>> footprints_of(const VoxelMap& map,
+                                                 const std::vector<MapObject>& objects) {
+  std::vector<std::set<std::pair<int, int>>> cells(objects.size());
+  map.for_each([&](const Voxel& voxel) {
+    if (!voxel.occupied || voxel.label == kVoid) return;
+    const Eigen::Vector3d center = voxel.center_m(map.resolution_m());
+    for (std::size_t i = 0; i < objects.size(); ++i)
+      if (objects[i].class_id == voxel.label &&
+          (center.array() >= objects[i].min_m.cast<double>().array()).all() &&
+          (center.array() <= objects[i].max_m.cast<double>().array()).all())
+        cells[i].emplace(voxel.index.x(), voxel.index.y());
+  });
+  std::vector<std::vector<Vector2d>> footprints(objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    for (const auto& [x, y] : cells[i])
+      footprints[i].push_back(map.resolution_m() * Vector2d(x + 0.5, y + 0.5));
+  return footprints;
+}
+
+/// What the lasers saw from those frames' places, as the system estimated them.
+void add_scans(const MapInput& input, const std::vector<std::size_t>& chosen,
+               const SE3& map_from_estimate, OccupancyGrid& grid) {
+  if (!input.lasers) return;
+  const Equipment& equipment = *input.robot.equipment;
+  ScanGrid scans(grid.resolution_m);
+  auto pose = input.estimate.begin();
+  for (const std::size_t i : chosen) {
+    while (pose->stamp_ns < input.frames.stamp_ns(i)) ++pose;
+    const SE3 map_from_base =
+        map_from_estimate * pose->world_from_camera * input.robot.base_from_camera.inverse();
+    for (std::size_t l = 0; l < equipment.lasers.size(); ++l) {
+      const LaserScanner& laser = equipment.lasers[l];
+      scans.add_scan(map_from_base * laser.base_from_laser,
+                     {.first_angle_rad = -0.5 * laser.field_of_view_rad,
+                      .angle_increment_rad = laser.field_of_view_rad / (laser.rays - 1),
+                      .min_range_m = laser.min_range_m,
+                      .max_range_m = laser.max_range_m,
+                      .ranges_m = input.lasers(i)[l]});
+    }
+  }
+  scans.add_to(grid);
+}
+
+}  // namespace
+
+std::vector<std::size_t> frames_for_map(const Sequence& frames, const Trajectory& estimate) {
+  std::vector<std::size_t> chosen;
+  std::optional<SE3> last;
+  auto pose = estimate.begin();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    while (pose != estimate.end() && pose->stamp_ns < frames.stamp_ns(i)) ++pose;
+    if (pose == estimate.end()) break;
+    if (pose->stamp_ns != frames.stamp_ns(i)) continue;
+    const SE3& now = pose->world_from_camera;
+    if (last && (now.translation() - last->translation()).norm() < kMoved_m &&
+        angle_between_rad(now, *last) < kTurned_rad)
+      continue;
+    chosen.push_back(i);
+    last = now;
+  }
+  return chosen;
+}
+
+RobotMap build_robot_map(const MapInput& input) {
+  if (input.estimate.empty()) throw InputError("the system tracked no frame: there is no map");
+  RobotMap map;
+  map.map_from_estimate =
+      input.robot.base_from_camera * input.estimate.front().world_from_camera.inverse();
+  OccupancyMapper mapper(input.frames.camera());
+  const std::vector<std::size_t> chosen = frames_for_map(input.frames, input.estimate);
+  for (const std::size_t i : chosen) mapper.keep(input.frames.frame(i, input.noise));
+  mapper.update(input.estimate, map.map_from_estimate);
+  map.grid = obstacle_grid(mapper.map(), {.robot_height_m = input.robot.height_m});
+  if (std::ranges::count(map.grid.cells, kFreeCell) == 0)
+    throw InputError("the map shows no free floor: its frames have no depth");
+  add_scans(input, chosen, map.map_from_estimate, map.grid);
+  map.objects = find_objects(mapper.map());
+  map.footprints_m = footprints_of(mapper.map(), map.objects);
+  map.known = known_map(map.grid);
+  map.known.walls = walls_of(mapper.map(), map.grid);
+  return map;
+}
+
+NavigatorGoal goal_named(const RobotMap& map, const std::string& name) {
+  const std::size_t best = objects_named(map.objects, name).front();
+  return {map.objects[best].name, map.footprints_m[best]};
+}
+
+}  // namespace mh

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/episodes/run_episodes.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/episodes/episode_store.hpp"
+#include "bench/inputs/inputs.hpp"
+#include "bench/inputs/run_key.hpp"
+#include "bench/plan/spec_json.hpp"
+#include "bench/provenance/code_version.hpp"
+#include "bench/provenance/digest.hpp"
+#include "scenes/load.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+using Slot = std::pair<std::string, std::size_t>;  ///< variant, start
+
+/// Everything about the episodes that decides one of them, except how many there are.
+std::string text_of(const EpisodesSpec& spec) {
+  nlohmann::ordered_json json = {
+      {"seed", spec.seed},          {"goals", spec.goals},
+      {"limit_s", spec.limit_s},    {"arrival_m", spec.arrival_m},
+      {"dark_s", spec.dark_s},      {"ticks_per_frame", spec.ticks_per_frame},
+      {"code", code_of_episodes()}, {"variants", nlohmann::ordered_json::array()}};
+  for (const EpisodeVariant& variant : spec.variants) {
+    std::vector<InputDigest> inputs;
+    if (variant.scene)
+      noted(inputs, "scene", *variant.scene, [&] { return load_scene(*variant.scene); });
+    if (variant.pedestrian)
+      noted(inputs, "pedestrian", *variant.pedestrian,
+            [&] { return load_pedestrian(*variant.pedestrian); });
+    if (variant.level)
+      noted(inputs, "level", *variant.level, [&] { return load_sensor_config(*variant.level); });
+    nlohmann::ordered_json one = {{"name", variant.name}};
+    for (const InputDigest& input : inputs) one[input.name] = hex(input.digest);
+    json["variants"].push_back(one);
+  }
+  return json.dump();
+}
+
+/// Keys of a run and of its map.
+struct Keys {
+  std::string run, map;
+};
+Keys keys_of(const RunSpec& run, const Suite& suite, InputReader& inputs,
+             const std::string& episodes) {
+  const std::vector<InputDigest> read = inputs.inputs_of(labeled(run, suite));
+  return {text_key(run_key(run, read) + episodes),
+          text_key(map_key(run, read) + fmt::format("every {}", suite.episodes->ticks_per_frame))};
+}
+
+bool same_place(const RunSpec& a, const RunSpec& b) {
+  return a.environment.name == b.environment.name && a.level == b.level;
+}
+
+/// The episodes of one mapped system that are still to run, several at a time.
+class Kidnapper {
+ public:
+  Kidnapper(const Suite& suite, const EpisodeRun& run, EpisodeStore& store,
+            const std::function<void()>& done)
+      : suite_(suite), run_(run), store_(store), done_(done) {}
+
+  /// @param slots  what to run: indices of variants and starts
+  std::vector<EpisodeScore> work(const EpisodeWorld& world, const MappedSystem& mapped,
+                                 const std::vector<std::pair<std::size_t, std::size_t>>& slots,
+                                 int jobs) {
+    std::vector<EpisodeScore> scores(slots.size());
+    std::atomic<std::size_t> next = 0;
+    std::mutex storing;
+    std::exception_ptr failure;
+    const auto worker = [&] {
+      for (std::size_t k = next++; k < slots.size(); k = next++) try {
+          const VariantPlace& variant = world.variants[slots[k].first];
+          const EpisodePlace place = episode_place(run_.spec, world, variant, mapped);
+          scores[k] = run_episode(place, *suite_.episodes, variant.starts[slots[k].second]);
+          const std::scoped_lock lock(storing);
+          store_.put(run_.key, run_.spec.name, scores[k]);
+          done_();
+        } catch (...) {
+          const std::scoped_lock lock(storing);
+          if (!failure) failure = std::current_exception();
+          next = slots.size();
+        }
+    };
+    {
+      std::vector<std::jthread> helpers;
+      for (int t = 1; t < jobs; ++t) helpers.emplace_back(worker);
+      worker();
+    }
+    if (failure) std::rethrow_exception(failure);
+    return scores;
+  }
+
+ private:
+  const Suite& suite_;
+  const EpisodeRun& run_;
+  EpisodeStore& store_;
+  const std::function<void()>& done_;
+};
+
+Suite with_starts(Suite suite, std::optional<std::size_t> starts) {
+  if (starts) suite.episodes->starts = std::min(*starts, suite.episodes->starts);
+  return suite;
+}
+
+}  // namespace
+
+RunSpec labeled(RunSpec run, const Suite& suite) {
+  if (run.labels == Labels()) run.labels = suite.labels.front();
+  return run;
+}
+
+std::vector<RunSpec> episode_runs(const Suite& suite) {
+  if (!suite.episodes)
+    throw InputError(fmt::format("{}: has no section `episodes`: nobody is kidnapped in it",
+                                 suite.file.string()));
+  std::vector<RunSpec> runs;
+  for (const RunSpec& run : expand(suite))
+    if (run.trial == 0 && (run.labels == Labels() || run.labels == suite.labels.front()))
+      runs.push_back(run);
+  return runs;
+}
+
+EpisodePlace episode_place(const RunSpec& run, const EpisodeWorld& world,
+                           const VariantPlace& variant, const MappedSystem& mapped) {
+  return {.scene = variant.scene,
+          .robot = world.world.simulated->robot,
+          .level = variant.level,
+          .labels = world.labels,
+          .system_sees_labels = run.system.sees_labels() && run.labels != Labels(),
+          .map = mapped.map,
+          .frozen = *mapped.system,
+          .truth_from_estimate = mapped.truth_from_estimate,
+          .variant = variant.variant.name,
+          .system_seed = run.seed};
+}
+
+std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& options) {
+  const Suite suite = with_starts(given, options.starts);
+  const Cache cache(options.cache.value_or(std::filesystem::path()));
+  std::vector<EpisodeRun> runs;
+  std::vector<std::string> map_keys;
+  {
+    const std::vector<RunSpec> specs = episode_runs(suite);
+    const std::string episodes = text_of(*suite.episodes);
+    InputReader inputs(options.say);
+    for (const RunSpec& spec : specs) {
+      const Keys keys = keys_of(spec, suite, inputs, episodes);
+      runs.push_back({spec, keys.run, {}});
+      map_keys.push_back(keys.map);
+    }
+  }
+  EpisodeStore store(options.out / "episodes.sqlite");
+  const std::size_t each = suite.episodes->variants.size() * suite.episodes->starts;
+  std::size_t done = 0;
+  const std::function<void()> one_done = [&] {
+    options.progress(static_cast<double>(++done) / static_cast<double>(each * runs.size()));
+  };
+  std::optional<EpisodeWorld> world;
+  std::optional<RunSpec> world_of;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    EpisodeRun& run = runs[r];
+    std::map<Slot, EpisodeScore> known;
+    for (EpisodeScore& score : store.load(run.key))
+      known.emplace(Slot{score.variant, score.start}, std::move(score));
+    std::vector<std::pair<std::size_t, std::size_t>> todo;
+    for (std::size_t v = 0; v < suite.episodes->variants.size(); ++v)
+      for (std::size_t s = 0; s < suite.episodes->starts; ++s)
+        if (known.contains({suite.episodes->variants[v].name, s}))
+          one_done();
+        else
+          todo.emplace_back(v, s);
+    if (!todo.empty()) {
+      if (!world_of || !same_place(*world_of, run.spec)) {
+        world.reset();
+        world = build_episode_world(labeled(run.spec, suite), *suite.episodes, options.jobs, cache,
+                                    options.say);
+        world_of = run.spec;
+      }
+      const std::filesystem::path folder = options.out / run.spec.name;
+      if (run.spec.system.is_outside()) make_output_folder(folder);
+      options.say(fmt::format("{}: maps the tour", run.spec.name));
+      MappedSystem mapped =
+          map_tour(run.spec, *world, {.folder = folder, .maps = cache, .key = map_keys[r]});
+      options.say(fmt::format("{}: {} of {} frames mapped, {} objects; {} kidnappings",
+                              run.spec.name, mapped.tracked, mapped.offered,
+                              mapped.map.objects.size(), todo.size()));
+      const int jobs = run.spec.system.is_outside() ? 1 : options.jobs;
+      for (EpisodeScore& score :
+           Kidnapper(suite, run, store, one_done).work(*world, mapped, todo, jobs))
+        known.insert_or_assign(Slot{score.variant, score.start}, std::move(score));
+    }
+    for (const EpisodeVariant& variant : suite.episodes->variants)
+      for (std::size_t s = 0; s < suite.episodes->starts; ++s)
+        run.scores.push_back(known.at({variant.name, s}));
+  }
+  return runs;
+}
+
+OneEpisode prepare_episode(const Suite& suite, const RunSpec& run, const EpisodeOptions& options) {
+  const Cache cache(options.cache.value_or(std::filesystem::path()));
+  InputReader inputs(options.say);
+  const Keys keys = keys_of(run, suite, inputs, "");
+  OneEpisode one{.world = build_episode_world(labeled(run, suite), *suite.episodes, options.jobs,
+                                              cache, options.say),
+                 .mapped = {}};
+  options.say(fmt::format("{}: maps the tour", run.name));
+  one.mapped = map_tour(
+      run, one.world,
+      {.folder = options.out, .maps = cache, .key = keys.map, .progress = options.progress});
+  return one;
+}
+
+}  // namespace mh

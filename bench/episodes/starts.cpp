@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/episodes/starts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "robots/navigation/floor_grid.hpp"
+#include "robots/navigation/lost.hpp"
+#include "robots/navigation/navigator.hpp"
+#include "robots/navigation/plan.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/random.hpp"
+
+namespace mh {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kClear_m = 0.05;     // around a robot that is put down
+constexpr double kSqueeze_m = 0.015;  // around one that takes the shortest way
+constexpr double kLeast_m = 0.5;      // a shorter way is no search
+
+/// Shortest way (m) from each cell to a place where the robot has arrived.
+Grid2d<float> ways_to(const EpisodeStart& goal, double arrival_m, double clearance_m) {
+  const FloorGrid& grid = *goal.floor;
+  std::vector<Vector2d> ends;
+  for (int y = 0; y < grid.clearance_m.height(); ++y)
+    for (int x = 0; x < grid.clearance_m.width(); ++x) {
+      const Vector2d place_m = grid.center_of({x, y});
+      if (static_cast<double>(grid.clearance_m(x, y)) >= clearance_m &&
+          distance_in_sight(goal, place_m) <= arrival_m)
+        ends.push_back(place_m);
+    }
+  return way_lengths(grid, ends, clearance_m);
+}
+
+/// The cells of a true floor in which walls stand.
+std::shared_ptr<const Grid2d<std::uint8_t>> true_walls(const FloorGrid& grid, const Scene& scene) {
+  std::set<InstanceId> ids;
+  for (const Instance& instance : scene.instances)
+    if (instance.class_id == class_by_name("wall")) ids.insert(instance.id);
+  auto walls =
+      std::make_shared<Grid2d<std::uint8_t>>(grid.occupant.width(), grid.occupant.height());
+  for (int y = 0; y < walls->height(); ++y)
+    for (int x = 0; x < walls->width(); ++x)
+      (*walls)(x, y) = ids.contains(grid.occupant(x, y)) ? 1 : 0;
+  return walls;
+}
+
+}  // namespace
+
+double distance_to(const std::vector<TrueBox>& boxes, const Vector2d& place_m) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const auto& [low, high] : boxes)
+    nearest_m = std::min(nearest_m, (place_m - place_m.cwiseMax(low).cwiseMin(high)).norm());
+  return nearest_m;
+}
+
+double distance_in_sight(const EpisodeStart& start, const Vector2d& place_m) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const auto& [low, high] : start.boxes) {
+    const Vector2d to_m = place_m.cwiseMax(low).cwiseMin(high);
+    if (!wall_between(*start.floor, *start.walls, place_m, to_m))
+      nearest_m = std::min(nearest_m, (place_m - to_m).norm());
+  }
+  return nearest_m;
+}
+
+std::vector<EpisodeStart> draw_starts(const EpisodesSpec& spec, const Scene& scene,
+                                      const Robot& robot) {
+  const auto floor =
+      std::make_shared<const FloorGrid>(make_floor_grid(scene, {.top_m = robot.height_m}));
+  const FloorGrid& grid = *floor;
+  const auto walls = true_walls(grid, scene);
+  const Grid2d<std::uint8_t> region = largest_region(grid, robot.footprint_radius_m + kClear_m);
+  std::vector<Vector2d> cells;
+  for (int y = 0; y < region.height(); ++y)
+    for (int x = 0; x < region.width(); ++x)
+      if (region(x, y) != 0) cells.push_back(grid.center_of({x, y}));
+  if (cells.empty())
+    throw InputError(fmt::format("{}: there is no floor for the robot", scene.name));
+
+  struct Goal {
+    EpisodeStart start;  ///< without its place
+    Grid2d<float> way_m;
+  };
+  std::vector<Goal> goals;
+  for (const std::string& name : spec.goals) {
+    const std::optional<ClassId> id = class_by_name(name);
+    Goal goal{.start = {.goal = name, .floor = floor, .walls = walls}, .way_m = {}};
+    for (const Instance& instance : scene.instances)
+      if (id && instance.class_id == *id)
+        goal.start.boxes.emplace_back(instance.min_m.head<2>().cast<double>(),
+                                      instance.max_m.head<2>().cast<double>());
+    if (goal.start.boxes.empty()) continue;
+    goal.way_m = ways_to(goal.start, spec.arrival_m, robot.footprint_radius_m + kSqueeze_m);
+    if (std::ranges::any_of(cells, [&](const Vector2d& place) {
+          const auto cell = grid.cell_of(place);
+          return std::isfinite(goal.way_m(cell->first, cell->second));
+        }))
+      goals.push_back(std::move(goal));
+  }
+  if (goals.empty())
+    throw InputError(fmt::format("{}: has none of the goals where the robot can reach it: {}",
+                                 scene.name, fmt::join(spec.goals, ", ")));
+
+  std::vector<EpisodeStart> starts;
+  const RandomStream stream = RandomStream(spec.seed).fork(0x73746172);
+  for (std::size_t i = 0; i < spec.starts; ++i) {
+    const RandomStream draw = stream.fork(i);
+    const Goal& goal = goals[draw.below(0, goals.size())];
+    EpisodeStart start = goal.start;
+    start.index = i;
+    start.heading_rad = draw.uniform(1, -std::numbers::pi, std::numbers::pi);
+    for (std::uint64_t k = 0; k < 1000; ++k) {  // the last one counts in a place that is too small
+      start.place_m = cells[draw.below(2 + k, cells.size())];
+      const auto cell = grid.cell_of(start.place_m);
+      start.shortest_m = static_cast<double>(goal.way_m(cell->first, cell->second));
+      if (std::isfinite(start.shortest_m) && start.shortest_m >= kLeast_m) break;
+    }
+    starts.push_back(std::move(start));
+  }
+  return starts;
+}
+
+}  // namespace mh

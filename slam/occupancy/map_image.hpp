@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// The file format under grids and costs: a PGM image beside a YAML file, as map_server reads them.
+
+#include <cstdint>
+#include <filesystem>
+
+#include <Eigen/Core>
+
+#include "slam/core/grid2d.hpp"
+#include "slam/core/yaml.hpp"
+
+namespace mh {
+
+/// Gray levels of a map, row 0 the southernmost.
+struct MapImage {
+  Grid2d<std::uint8_t> levels;
+  double resolution_m = 0.05;
+  Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();
+};
+
+/// Writes stem.pgm (upper row = north) and stem.yaml. @throws InputError naming the file.
+void write_map_image(const MapImage& map, const std::filesystem::path& stem, const char* mode);
+
+/// Reads the keys image, resolution and origin, and the image. The caller reads the others.
+/// @throws InputError naming file, line, field and value.
+MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file);
+
+}  // namespace mh

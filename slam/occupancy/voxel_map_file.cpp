@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+// The counts that follow the tree in an .ot file, little-endian:
+//   the line "modelhouse voxel counts 1"
+//   u64  size of the content
+//   content: f64 resolution (m); for each block of 8 x 8 x 8 voxels with any known voxel:
+//     3 x i16   index of the block
+//     8 x u64   known voxels, bit x + 8 y of word z
+//     for each of them, by place: hits, misses, number of votes; then class and views of each vote
+//     (numbers in groups of 7 bits, the lowest first; the top bit says that another group follows)
+//   u64  xxh3-64 of the content
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <octomap/ColorOcTree.h>
+#include <octomap/OcTree.h>
+#include <xxhash.h>
+
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/occupancy/voxel_tree.hpp"
+
+namespace mh {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are stored as they lie");
+
+constexpr std::string_view kTreeMagic = "# Octomap OcTree file";
+constexpr std::string_view kCountsMagic = "modelhouse voxel counts 1\n";
+
+template <class T>
+void put(std::string& bytes, const T& value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+void put_number(std::string& bytes, unsigned number) {
+  for (; number >= 128; number >>= 7U) bytes.push_back(static_cast<char>(number | 128U));
+  bytes.push_back(static_cast<char>(number));
+}
+
+/// Takes what put() wrote from the front of a byte string.
+class CountsReader {
+ public:
+  CountsReader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+  bool at_end() const { return bytes_.empty(); }
+  [[noreturn]] void fail(std::string_view what) const {
+    throw InputError(fmt::format("{}: is damaged: {}", name_, what));
+  }
+  std::string_view take(std::size_t size) {
+    if (size > bytes_.size()) fail("it is truncated");
+    const std::string_view front = bytes_.substr(0, size);
+    bytes_.remove_prefix(size);
+    return front;
+  }
+  template <class T>
+  T get() {
+    T value;
+    std::memcpy(&value, take(sizeof value).data(), sizeof value);
+    return value;
+  }
+  std::uint16_t number() {
+    unsigned value = 0;
+    for (unsigned shift = 0;; shift += 7) {
+      const auto byte = static_cast<unsigned char>(take(1)[0]);
+      if (shift > 14) fail("a number is too long");
+      value |= (byte & 127U) << shift;
+      if (byte < 128) break;
+    }
+    if (value > UINT16_MAX) fail("a number is too large");
+    return static_cast<std::uint16_t>(value);
+  }
+
+ private:
+  std::string_view bytes_;
+  const std::string& name_;
+};
+
+/// The place of a voxel in its block, and the block.
+std::pair<Eigen::Vector3i, unsigned> block_and_place(const octomap::OcTreeKey& key) {
+  Eigen::Vector3i block;
+  unsigned place = 0;
+  for (int axis = 2; axis >= 0; --axis) {
+    const unsigned k = key[static_cast<unsigned>(axis)];
+    block[axis] = static_cast<int>(k >> 3U) - VoxelTree::kMiddle / 8;
+    place = place << 3U | (k & 7U);
+  }
+  return {block, place};
+}
+
+/// Collects a block's voxels, which the octree visits in another order than that of places.
+class BlockWriter {
+ public:
+  explicit BlockWriter(std::string& bytes) : bytes_(bytes) {}
+  void add(const Eigen::Vector3i& block, unsigned place, const VoxelNode& node) {
+    if (block != block_) {
+      end();
+      block_ = block;
+    }
+    nodes_[place] = &node;
+    any_ = true;
+  }
+  void end() {
+    if (!any_) return;
+    for (int axis = 0; axis < 3; ++axis) put(bytes_, static_cast<std::int16_t>(block_[axis]));
+    VoxelBlock::Bits known{};
+    for (std::size_t place = 0; place < nodes_.size(); ++place)
+      if (nodes_[place]) known[place / 64] |= std::uint64_t{1} << place % 64;
+    put(bytes_, known);
+    for (const VoxelNode*& node : nodes_) {
+      if (node == nullptr) continue;
+      put_number(bytes_, node->hits);
+      put_number(bytes_, node->misses);
+      put_number(bytes_, static_cast<unsigned>(node->votes.all().size()));
+      for (const ClassVote& vote : node->votes.all()) {
+        put_number(bytes_, vote.class_id);
+        put_number(bytes_, vote.views);
+      }
+      node = nullptr;
+    }
+    any_ = false;
+  }
+
+ private:
+  std::string& bytes_;
+  Eigen::Vector3i block_ = Eigen::Vector3i::Zero();
+  std::array<const VoxelNode*, 512> nodes_{};
+  bool any_ = false;
+};
+
+std::string counts_of(const VoxelTree& tree) {
+  std::string bytes;
+  put(bytes, tree.getResolution());
+  BlockWriter writer(bytes);
+  for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf) {
+    const auto [block, place] = block_and_place(leaf.getKey());
+    writer.add(block, place, *leaf);
+  }
+  writer.end();
+  return bytes;
+}
+
+void read_votes(CountsReader& in, VoxelNode& node) {
+  const unsigned count = in.number();
+  if (count > classes().size()) in.fail("a voxel has too many votes");
+  std::vector<ClassVote> votes(count);
+  for (std::size_t i = 0; i < votes.size(); ++i) {
+    const unsigned class_id = in.number();
+    votes[i] = {static_cast<ClassId>(class_id), in.number()};
+    if (class_id == kVoid || class_id >= classes().size() || votes[i].views == 0 ||
+        (i > 0 && votes[i].class_id <= votes[i - 1].class_id))
+      in.fail("a voxel's votes");
+  }
+  node.votes.assign(votes);
+}
+
+void read_block(CountsReader& in, VoxelTree& tree) {
+  Eigen::Vector3i index;
+  for (int axis = 0; axis < 3; ++axis) index[axis] = in.get<std::int16_t>();
+  if ((index.array() < -VoxelTree::kMiddle / 8).any() ||
+      (index.array() >= VoxelTree::kMiddle / 8).any())
+    in.fail("a block is outside of an octree");
+  const auto known = in.get<VoxelBlock::Bits>();
+  VoxelNode& block = tree.block(index);
+  for (unsigned place = 0; place < 512; ++place) {
+    if ((known[place / 64] >> place % 64U & 1U) == 0) continue;
+    VoxelNode& node = tree.voxel(block, place);
+    if (node.is_known()) in.fail("a block is there twice");
+    node.hits = in.number();
+    node.misses = in.number();
+    if (!node.is_known()) in.fail("a voxel without views");
+    read_votes(in, node);
+    node.follow_counts();
+  }
+  if (!tree.nodeHasChildren(&block)) in.fail("an empty block");
+}
+
+/// Skips a node of a ColorOcTree and everything below it.
+void skip_node(CountsReader& in, unsigned levels_left) {
+  in.take(sizeof(float) + 3);  // log-odds, color
+  const auto children = in.get<std::uint8_t>();
+  if (children != 0 && levels_left == 0) in.fail("its tree is too deep");
+  for (int i = 0; i < std::popcount(children); ++i) skip_node(in, levels_left - 1);
+}
+
+struct OtHeader {
+  std::string type;
+  std::size_t size = 0;
+  double resolution_m = 0;
+};
+
+/// Reads the lines before the tree.
+OtHeader read_header(std::istream& in, const std::string& name) {
+  std::string line, key;
+  std::getline(in, line);
+  if (!line.starts_with(kTreeMagic))
+    throw InputError(fmt::format("{}: is not an OctoMap file (.ot)", name));
+  OtHeader header;
+  while (in >> key && key != "data") {
+    if (key == "id") in >> header.type;
+    if (key == "size") in >> header.size;
+    if (key == "res") in >> header.resolution_m;
+    if (key[0] == '#') std::getline(in, line);
+  }
+  in.get();  // the end of the line "data"
+  if (!in) throw InputError(fmt::format("{}: is truncated", name));
+  if (header.type != "ColorOcTree")
+    throw InputError(
+        fmt::format("{}: holds a tree of type '{}', not a ColorOcTree", name, header.type));
+  if (!(header.resolution_m >= 1e-3 && header.resolution_m <= 10))
+    throw InputError(fmt::format("{}: its resolution {} m is not within 0.001 to 10 m", name,
+                                 header.resolution_m));
+  return header;
+}
+
+}  // namespace
+
+void VoxelMap::write_bt(std::ostream& out) const {
+  octomap::OcTree tree(resolution_m());
+  for (auto leaf = impl_->tree.begin_leafs(), end = impl_->tree.end_leafs(); leaf != end; ++leaf)
+    tree.setNodeValue(leaf.getKey(), leaf->getLogOdds() >= 0 ? kMostLogOdds : kLeastLogOdds, true);
+  tree.writeBinary(out);
+}
+
+void VoxelMap::write_ot(std::ostream& out) const {
+  octomap::ColorOcTree tree(resolution_m());
+  for (auto leaf = impl_->tree.begin_leafs(), end = impl_->tree.end_leafs(); leaf != end; ++leaf) {
+    tree.setNodeValue(leaf.getKey(), leaf->getLogOdds(), true);
+    ClassVote best;
+    for (const ClassVote& vote : leaf->votes.all())
+      if (vote.views > best.views) best = vote;
+    if (leaf->getLogOdds() < 0) continue;
+    const ClassInfo& info = classes()[best.class_id];
+    if (best.class_id == kVoid)
+      tree.setNodeColor(leaf.getKey(), 160, 160, 160);
+    else
+      tree.setNodeColor(leaf.getKey(), info.r, info.g, info.b);
+  }
+  if (tree.size() > 0) tree.updateInnerOccupancy();
+  tree.prune();
+  tree.write(out);
+  const std::string counts = counts_of(impl_->tree);
+  std::string end(kCountsMagic);
+  put(end, static_cast<std::uint64_t>(counts.size()));
+  end += counts;
+  put(end, static_cast<std::uint64_t>(XXH3_64bits(counts.data(), counts.size())));
+  out.write(end.data(), static_cast<std::streamsize>(end.size()));
+}
+
+VoxelMap VoxelMap::read_ot(std::istream& in, const std::string& name) {
+  const OtHeader header = read_header(in, name);
+  std::ostringstream rest;
+  rest << in.rdbuf();
+  const std::string bytes = std::move(rest).str();
+  CountsReader reader(bytes, name);
+  if (header.size > 0) skip_node(reader, 16);
+  if (reader.at_end())
+    throw InputError(fmt::format(
+        "{}: has no counts after its tree: it is from another program, or was edited", name));
+  if (reader.take(kCountsMagic.size()) != kCountsMagic) reader.fail("its counts do not begin");
+  const std::string_view content = reader.take(reader.get<std::uint64_t>());
+  if (XXH3_64bits(content.data(), content.size()) != reader.get<std::uint64_t>())
+    reader.fail("the checksum of its counts is wrong");
+  if (!reader.at_end()) reader.fail("it goes on after its end");
+  CountsReader counts(content, name);
+  const auto resolution_m = counts.get<double>();  // the header's is rounded
+  if (!(std::abs(resolution_m - header.resolution_m) <= 1e-4 * header.resolution_m))
+    counts.fail("its counts have another resolution");
+  VoxelMap map(resolution_m);
+  while (!counts.at_end()) read_block(counts, map.impl_->tree);
+  return map;
+}
+
+void VoxelMap::save_bt(const std::filesystem::path& file) const {
+  std::ostringstream out;
+  write_bt(out);
+  write_atomically(file, out.view());
+}
+
+void VoxelMap::save_ot(const std::filesystem::path& file) const {
+  std::ostringstream out;
+  write_ot(out);
+  write_atomically(file, out.view());
+}
+
+VoxelMap VoxelMap::load_ot(const std::filesystem::path& file) {
+  std::istringstream in(read_file(file));
+  return read_ot(in, file.string());
+}
+
+}  // namespace mh

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Kidnappings from start to end, in a small room.
+#include "bench/episodes/episode.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/episodes/report.hpp"
+#include "bench/episodes/run_episodes.hpp"
+#include "bench/episodes/strip.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/temporary_folder.hpp"
+#include "source_dir.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+Suite small_suite(const std::string& robot = "pepper") {
+  const std::string root = MH_SOURCE_DIR;
+  return parse_suite("name: small\nrobot: " + root + "/robots/" + robot + "/" + robot + R"(.yaml
+environments:
+- {category: room, scene: )" +
+                         root + "/bench/scenarios/room.yaml, mapping_tour: " + root +
+                         R"(/bench/scenarios/tours/room.yaml}
+vocabulary: )" + root + R"(/assets/vocabulary.mhvoc
+levels: [)" + root + R"(/sim/sensors/levels/pepper.yaml]
+systems: [semantic, plain]
+labels: [exact]
+protocol: {test_interval: 0}
+episodes: {starts: 2, limit_s: 90, goals: [sofa]}
+)",
+                     fs::path(root) / "small.yaml");
+}
+
+TEST(Episodes, TheSameBitsAtOneAndAtTwoJobsAndResumed) {
+  const Suite suite = small_suite();
+  const TemporaryFolder work(fs::temp_directory_path());
+  EpisodeOptions options;
+  options.cache = work.path() / "cache";
+  const auto run = [&](const char* name, int jobs, std::optional<std::size_t> starts) {
+    options.out = work.path() / name;
+    fs::create_directories(options.out);
+    options.jobs = jobs;
+    options.starts = starts;
+    return run_episodes(suite, options);
+  };
+  const std::vector<EpisodeRun> once = run("one", 1, {});
+  ASSERT_EQ(once.size(), 2U);
+  run("two", 1, 1);  // the first start alone; the same command then resumes
+  const std::vector<EpisodeRun> again = run("two", 2, {});
+  EXPECT_EQ(episodes_json(suite, once).dump(), episodes_json(suite, again).dump());
+  for (const EpisodeRun& r : once)
+    for (const EpisodeScore& score : r.scores) {
+      EXPECT_NE(score.digest, 0U);
+      EXPECT_EQ(score.collisions, 0);
+      EXPECT_EQ(score.success, score.reason.empty());
+      EXPECT_LE(score.spl, 1.0);
+    }
+  // Semantic and plain are put at the same places.
+  for (std::size_t s = 0; s < 2; ++s)
+    EXPECT_EQ(once[0].scores[s].start_x_m, once[1].scores[s].start_x_m);
+  EXPECT_TRUE(std::ranges::any_of(once[0].scores, &EpisodeScore::success))
+      << episodes_table(suite, once);
+  EXPECT_NE(episodes_table(suite, once).find("semantic"), std::string::npos);
+}
+
+TEST(Episodes, ARobotWithoutLasersIsRefused) {
+  Suite suite = small_suite();
+  const TemporaryFolder work(fs::temp_directory_path());
+  std::string text = read_file(suite.environments.front().robot);
+  text = text.substr(0, text.find("equipment:"));
+  write_atomically(work.path() / "blind.yaml", text);
+  suite.environments.front().robot = work.path() / "blind.yaml";
+  try {
+    build_episode_world(labeled(episode_runs(suite).front(), suite), *suite.episodes, 2, Cache(),
+                        {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("has no lasers"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Episodes, ASuiteWithoutThemIsRefused) {
+  Suite suite = small_suite();
+  suite.episodes.reset();
+  EXPECT_THROW(episode_runs(suite), InputError);
+}
+
+TEST(GoalNamed, AnUnknownNameGetsASuggestion) {
+  RobotMap map;
+  map.objects = {{.name = "bed 1", .class_id = *class_by_name("bed"), .score = 0.9},
+                 {.name = "desk 1", .class_id = *class_by_name("desk"), .score = 0.8}};
+  map.footprints_m = {{{1, 1}}, {{2, 2}}};
+  EXPECT_EQ(goal_named(map, "desk").name, "desk 1");
+  try {
+    goal_named(map, "dexk");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("desk"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(goal_named(map, "toilet"), InputError);  // not in this map
+}
+
+}  // namespace
+}  // namespace mh

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/episodes/starts.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "bench/episodes/episode_store.hpp"
+#include "bench/plan/suite.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/temporary_folder.hpp"
+#include "tests/sim/boxes.hpp"
+
+namespace mh {
+namespace {
+
+constexpr const char* kSuite = R"(
+name: k
+robot: pepper
+environments: [{category: bathroom, scene: "generated:bathroom:0"}]
+vocabulary: vocabulary
+levels: [pepper]
+systems: [plain]
+labels: [exact]
+episodes:
+)";
+
+std::string refusal(const std::string& episodes) {
+  try {
+    parse_suite(kSuite + episodes, "k.yaml", {}, false);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(EpisodesSpec, IsReadAndItsMistakesAreNamed) {
+  const Suite suite = parse_suite(std::string(kSuite) +
+                                      "  starts: 3\n  goals: [refrigerator, bed]\n  variants:\n"
+                                      "  - {name: as_mapped}\n  - {name: dim, level: ideal}\n",
+                                  "k.yaml", {}, false);
+  ASSERT_TRUE(suite.episodes);
+  EXPECT_EQ(suite.episodes->starts, 3U);
+  EXPECT_EQ(suite.episodes->goals, (std::vector<std::string>{"refrigerator", "bed"}));
+  ASSERT_EQ(suite.episodes->variants.size(), 2U);
+  EXPECT_TRUE(suite.episodes->variants[1].level);
+
+  const std::string typo = refusal("  goals: [refrigratr]\n");
+  EXPECT_NE(typo.find("'refrigratr' is no class of things"), std::string::npos) << typo;
+  EXPECT_NE(typo.find("did you mean 'refrid"), std::string::npos) << typo;
+  EXPECT_NE(refusal("  goals: []\n").find("at least one"), std::string::npos);
+  EXPECT_NE(refusal("  goals: [bed]\n  starts: 0\n").find("starts"), std::string::npos);
+  EXPECT_NE(refusal("  goals: [bed]\n  variants: [{name: a}, {name: a}]\n").find("stands twice"),
+            std::string::npos);
+  EXPECT_NE(refusal("  goals: [bed]\n  sleep: 1\n").find("sleep"), std::string::npos);
+}
+
+Scene room_with_a_bed() {
+  Scene scene = test::empty_room();
+  test::add_box(scene, "bed", {7, 7, 0}, {9, 9, 0.5F});
+  for (std::size_t f = scene.class_of.size() - 12; f < scene.class_of.size(); ++f)
+    scene.class_of[f] = *class_by_name("bed");
+  scene.instances.back().class_id = *class_by_name("bed");
+  return scene;
+}
+
+TEST(DrawStarts, AreOnTheFloorAndKnowTheShortestWay) {
+  const Scene scene = room_with_a_bed();
+  const Robot robot = test::pepper();
+  const EpisodesSpec spec{.starts = 12, .goals = {"toilet", "bed"}};
+  const std::vector<EpisodeStart> starts = draw_starts(spec, scene, robot);
+  ASSERT_EQ(starts.size(), 12U);
+  for (const EpisodeStart& start : starts) {
+    EXPECT_EQ(start.goal, "bed");  // there is no toilet
+    const double away_m = distance_to(start.boxes, start.place_m);
+    EXPECT_GE(away_m, 0.3);
+    EXPECT_GE(start.shortest_m, away_m - spec.arrival_m - 0.06);
+    EXPECT_LE(start.shortest_m, 1.15 * (away_m - spec.arrival_m) + 2.0);
+  }
+  EXPECT_GT((starts[0].place_m - starts[1].place_m).norm(), 0.05);
+  const std::vector<EpisodeStart> fewer =
+      draw_starts({.starts = 3, .goals = {"toilet", "bed"}}, scene, robot);
+  for (std::size_t i = 0; i < fewer.size(); ++i) EXPECT_EQ(fewer[i].place_m, starts[i].place_m);
+  EXPECT_THROW(draw_starts({.starts = 1, .goals = {"toilet"}}, scene, robot), InputError);
+}
+
+TEST(EpisodeStore, KeepsEveryFieldAndReplacesAnEpisode) {
+  const TemporaryFolder folder(std::filesystem::temp_directory_path());
+  const std::filesystem::path file = folder.path() / "episodes.sqlite";
+  EpisodeScore score{.variant = "moved",
+                     .start = 4,
+                     .goal = "bed",
+                     .reason = "stuck",
+                     .time_s = 12.5,
+                     .located_s = 3.25,
+                     .length_m = 7,
+                     .collisions = 1,
+                     .digest = 0xfedcba9876543210ULL};
+  {
+    EpisodeStore store(file);
+    store.put("key", "run", score);
+    score.reason = "no_path";
+    store.put("key", "run", score);
+    score.start = 2;
+    score.located_s.reset();
+    store.put("key", "run", score);
+  }
+  EpisodeStore store(file);
+  const std::vector<EpisodeScore> back = store.load("key");
+  ASSERT_EQ(back.size(), 2U);
+  EXPECT_EQ(back[0].start, 2U);
+  EXPECT_FALSE(back[0].located_s);
+  EXPECT_EQ(back[1].start, 4U);
+  EXPECT_EQ(back[1].reason, "no_path");
+  EXPECT_EQ(back[1].located_s, 3.25);
+  EXPECT_EQ(back[1].collisions, 1);
+  EXPECT_EQ(back[1].digest, 0xfedcba9876543210ULL);
+  EXPECT_TRUE(store.load("another").empty());
+}
+
+}  // namespace
+}  // namespace mh

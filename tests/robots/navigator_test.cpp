@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robots/navigation/navigator.hpp"
+
+#include <cmath>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "slam/core/error.hpp"
+#include "tests/sim/boxes.hpp"
+
+namespace mh {
+namespace {
+
+using Eigen::Vector2d;
+
+/// A floor of 6 x 4 m with a wall across it that has a gap, as a map and as the world it is of.
+struct Flat {
+  double resolution_m = 0.05;
+  Grid2d<std::uint8_t> solid{120, 80};
+  Flat() {
+    for (int y = 0; y < 80; ++y)
+      for (int x = 0; x < 120; ++x)
+        solid(x, y) = x < 2 || y < 2 || x > 117 || y > 77 || (x > 58 && x < 62 && y < 50);
+  }
+  bool is_solid(const Vector2d& p) const {
+    const int x = static_cast<int>(std::lround(p.x() / resolution_m));
+    const int y = static_cast<int>(std::lround(p.y() / resolution_m));
+    return !solid.contains(x, y) || solid(x, y) != 0;
+  }
+  KnownMap map() const {
+    KnownMap known;
+    known.grid.resolution_m = resolution_m;
+    known.blocked = solid;
+    known.grid.clearance_m = clearances_m(solid, resolution_m);
+    known.grid.occupant = Grid2d<std::uint16_t>(120, 80);
+    return known;
+  }
+};
+
+NavigatorGoal box_at(double x, double y) {
+  NavigatorGoal goal{"box 1", {}};
+  for (double dx = -0.2; dx < 0.21; dx += 0.05)
+    for (double dy = -0.2; dy < 0.21; dy += 0.05) goal.places_m.emplace_back(x + dx, y + dy);
+  return goal;
+}
+
+/// A robot that does what it is told, with lasers in the flat world. Its odometry's frame is not
+/// the map's.
+class Driven {
+ public:
+  Driven(const Flat& world, const Robot& robot, Pose2 start)
+      : world_(world), robot_(robot), at_(std::move(start)) {}
+  bool answers = true;                        ///< the SLAM system tells its pose
+  std::function<bool(double)> bumper = {};    ///< by time, of the first bumper
+  std::function<void(Twist2d&)> wheels = {};  ///< what the wheels make of a command
+
+  /// Until the navigator ends, or so many seconds.
+  void run(Navigator& navigator, double limit_s) {
+    Twist2d command = Twist2d::Zero();
+    for (time_s = 0; time_s < limit_s && !is_end(navigator.state()); time_s += 0.1) {
+      if (wheels) wheels(command);
+      Vector2d step = 0.1 * command.head<2>();
+      if (!world_.is_solid(at_ * (step + 0.26 * step.normalized()))) at_.place_m = at_ * step;
+      at_.heading_rad = std::remainder(at_.heading_rad + 0.1 * command.z(), 2 * M_PI);
+      nearest_m = std::min(nearest_m, clearance());
+      const std::vector<std::vector<float>> lasers_m = scan();
+      Perception now{.time_s = time_s,
+                     .odom_from_base = odometry(),
+                     .lasers_m = lasers_m,
+                     .bumpers = {bumper && bumper(time_s), false, false},
+                     .seen = {}};
+      now.seen = Perception::Seen{nullptr, odometry(), {}};
+      if (answers) now.seen->map_from_base = at_;
+      command = navigator.step(now);
+      EXPECT_LE(command.head<2>().norm(), robot_.limits.max_velocity_m_per_s + 1e-9);
+      for (std::string& line : navigator.take_said()) said += line + "\n";
+    }
+  }
+  const Pose2& at() const { return at_; }
+  std::string said;
+  double time_s = 0, nearest_m = 1e9;
+
+ private:
+  Pose2 odometry() const { return Pose2{{7, -3}, 1.2} * at_; }
+  double clearance() const {
+    double best = 1e9;
+    for (int y = 0; y < 80; ++y)
+      for (int x = 0; x < 120; ++x)
+        if (world_.solid(x, y) != 0)
+          best = std::min(best, (0.05 * Vector2d(x, y) - at_.place_m).norm());
+    return best;
+  }
+  std::vector<std::vector<float>> scan() const {
+    std::vector<std::vector<float>> all;
+    for (const LaserScanner& laser : robot_.equipment->lasers) {
+      const Pose2 from = at_ * from_above(laser.base_from_laser);
+      all.emplace_back();
+      for (int k = 0; k < laser.rays; ++k) {
+        const double a =
+            from.heading_rad + laser.field_of_view_rad * (k / (laser.rays - 1.0) - 0.5);
+        float range_m = 0;
+        for (double r = laser.min_range_m; r < laser.max_range_m; r += 0.01)
+          if (world_.is_solid(from.place_m + r * Vector2d(std::cos(a), std::sin(a)))) {
+            range_m = static_cast<float>(r);
+            break;
+          }
+        all.back().push_back(range_m);
+      }
+    }
+    return all;
+  }
+
+  const Flat& world_;
+  const Robot& robot_;
+  Pose2 at_;
+};
+
+TEST(Navigator, DrivesThroughTheGapAndSaysThatItHasArrived) {
+  const Flat flat;
+  const Robot robot = test::pepper();
+  const KnownMap map = flat.map();
+  Navigator navigator(map, robot, box_at(5.0, 0.6));
+  Driven driven(flat, robot, {{1, 1}, 2.0});
+  driven.run(navigator, 120);
+  EXPECT_EQ(navigator.state(), NavigatorState::kArrived) << driven.said;
+  EXPECT_LT((driven.at().place_m - Vector2d(5.0, 0.6)).norm(), 0.9 + 0.2);
+  EXPECT_GT(driven.nearest_m, 0.27);
+  EXPECT_NE(driven.said.find("knows its place"), std::string::npos);
+  EXPECT_NE(driven.said.find("has arrived at box 1"), std::string::npos);
+}
+
+TEST(Navigator, LostItLooksAroundElsewhere) {
+  const Flat flat;
+  const Robot robot = test::pepper();
+  const KnownMap map = flat.map();
+  Navigator navigator(map, robot, box_at(5.0, 0.6));
+  Driven driven(flat, robot, {{1, 1}, 2.0});
+  driven.answers = false;
+  driven.run(navigator, 60);
+  EXPECT_FALSE(navigator.knows_its_place());
+  EXPECT_FALSE(is_end(navigator.state())) << driven.said;
+  EXPECT_NE(driven.said.find("is lost: drives"), std::string::npos) << driven.said;
+  EXPECT_GT((driven.at().place_m - Vector2d(1, 1)).norm(), 0.5);
+  EXPECT_GT(driven.nearest_m, 0.27);
+}
+
+TEST(Navigator, AGoalInAWallOrBeyondTheMapIsRefused) {
+  const Flat flat;
+  const Robot robot = test::pepper();
+  const KnownMap map = flat.map();
+  for (const NavigatorGoal& goal : {box_at(9.0, 1.0), box_at(-3, -3)}) try {
+      Navigator(map, robot, goal);
+      FAIL();
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("goal 'box 1'"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("inside a wall or in space that the map does not"),
+                std::string::npos);
+    }
+}
+
+TEST(Navigator, ARobotWithoutLasersOrBumpersIsRefused) {
+  const Flat flat;
+  const KnownMap map = flat.map();
+  Robot robot = test::pepper();
+  auto equipment = std::make_shared<Equipment>(*robot.equipment);
+  equipment->bumpers.clear();
+  robot.equipment = equipment;
+  EXPECT_THROW(Navigator(map, robot, box_at(5, 1)), InputError);
+  equipment = std::make_shared<Equipment>(*test::pepper().equipment);
+  equipment->lasers.clear();
+  robot.equipment = equipment;
+  EXPECT_THROW(Navigator(map, robot, box_at(5, 1)), InputError);
+  robot.equipment = nullptr;
+  try {
+    Navigator(map, robot, box_at(5, 1));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("has no lasers"), std::string::npos);
+  }
+}
+
+TEST(Navigator, StuckItSaysSoAndStops) {
+  const Flat flat;
+  const Robot robot = test::pepper();
+  const KnownMap map = flat.map();
+  Navigator navigator(map, robot, box_at(5.0, 0.6));
+  Driven driven(flat, robot, {{1, 1}, 2.0});
+  driven.wheels = [](Twist2d& command) { command.head<2>().setZero(); };  // they only turn it
+  driven.run(navigator, 400);
+  EXPECT_EQ(navigator.state(), NavigatorState::kStuck) << driven.said;
+  EXPECT_NE(driven.said.find("it is stuck and stops"), std::string::npos);
+}
+
+TEST(Navigator, ItGivesUpWhereNoWayLeads) {
+  Flat flat;
+  for (int y = 0; y < 80; ++y) flat.solid(60, y) = 1;  // the gap is closed
+  const Robot robot = test::pepper();
+  const KnownMap map = flat.map();
+  Navigator navigator(map, robot, box_at(5.0, 0.6));
+  Driven driven(flat, robot, {{1, 1}, 2.0});
+  driven.run(navigator, 200);
+  EXPECT_EQ(navigator.state(), NavigatorState::kNoPath) << driven.said;
+}
+
+TEST(Navigator, ABumperStopsItAndManyEndTheDrive) {
+  const Flat flat;
+  const Robot robot = test::pepper();
+  const KnownMap map = flat.map();
+  Navigator once(map, robot, box_at(5.0, 0.6));
+  Driven driven(flat, robot, {{1, 1}, 0});
+  driven.bumper = [](double t) { return t > 3 && t < 3.1; };
+  driven.run(once, 120);
+  EXPECT_EQ(once.state(), NavigatorState::kArrived) << driven.said;
+  EXPECT_NE(driven.said.find("bump 1"), std::string::npos);
+  Navigator always(map, robot, box_at(5.0, 0.6));
+  Driven pressed(flat, robot, {{1, 1}, 0});
+  pressed.bumper = [](double) { return true; };
+  pressed.run(always, 120);
+  EXPECT_EQ(always.state(), NavigatorState::kCollided) << pressed.said;
+}
+
+}  // namespace
+}  // namespace mh

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/occupancy/cost_map.hpp"
+#include "slam/occupancy/obstacle_grid.hpp"
+#include "tests/slam/occupancy/box_room.hpp"
+#include "tests/slam/occupancy/made_map.hpp"
+
+namespace mh {
+namespace {
+
+int count(const OccupancyGrid& grid, std::int8_t value) {
+  return static_cast<int>(std::count(grid.cells.begin(), grid.cells.end(), value));
+}
+
+TEST(ObstacleGrid, ABoxRoomIsFreeAmidItsWalls) {
+  const OccupancyGrid grid = obstacle_grid(mapped_room().map(), {.floor_z_m = 0.02});
+  // 3.54 x 2.29 m; walls of one cell around it.
+  EXPECT_EQ(grid.cells.width(), 72);
+  EXPECT_EQ(grid.cells.height(), 47);
+  const auto at = [&](double x, double y) {
+    const auto cell = grid.cell_of({x, y});
+    return cell ? grid.cells(cell->x(), cell->y()) : kUnknownCell;
+  };
+  EXPECT_EQ(at(0.5, 0.5), kFreeCell);
+  EXPECT_EQ(at(2.02, 0.5), kOccupiedCell);
+  EXPECT_EQ(at(0.5, -1.02), kOccupiedCell);
+  EXPECT_GT(count(grid, kFreeCell), 0.95 * 70 * 45);
+  EXPECT_FALSE(grid.cell_of({2.3, 0.0}));
+}
+
+// A table top is an obstacle though the robot's base fits below; a lintel over its head is not, nor
+// what lies flat on the floor.
+TEST(ObstacleGrid, CountsWhatIsBetweenGroundAndHead) {
+  MadeMap made;
+  for (int x = 0; x < 20; ++x)
+    for (int z = 0; z < 40; ++z) made.free({x, 0, z});
+  made.hit({3, 0, 14});  // 0.70 to 0.75 m
+  made.hit({6, 0, 30});  // 1.50 m
+  made.hit({9, 0, 1});   // 0.05 to 0.10 m
+  made.hit({12, 0, 2});  // 0.10 to 0.15 m
+  const VoxelMap map = made.map();
+  const OccupancyGrid grid = obstacle_grid(map);
+  EXPECT_EQ(grid.cells(3, 0), kOccupiedCell);
+  EXPECT_EQ(grid.cells(6, 0), kFreeCell);
+  EXPECT_EQ(grid.cells(9, 0), kFreeCell);
+  EXPECT_EQ(grid.cells(12, 0), kOccupiedCell);
+  EXPECT_EQ(count(grid, kFreeCell), 18);
+  // A higher floor: nothing of it is in the way.
+  EXPECT_EQ(count(obstacle_grid(map, {.floor_z_m = 0.05}), kOccupiedCell), 1);
+  EXPECT_EQ(count(obstacle_grid(map, {.robot_height_m = 1.6}), kOccupiedCell), 3);
+  EXPECT_THROW(obstacle_grid(map, {.robot_height_m = 0.05}), InputError);
+  EXPECT_TRUE(obstacle_grid(VoxelMap(0.05)).cells.empty());
+}
+
+TEST(ObstacleGrid, WhatWasSeenOnlyAboveIsNotFree) {
+  MadeMap made;
+  for (int z = 10; z < 24; ++z) made.free({0, 0, z});  // from 0.5 m on
+  for (int z = 2; z < 24; ++z) made.free({1, 0, z});
+  const OccupancyGrid grid = obstacle_grid(made.map());
+  EXPECT_EQ(grid.cells(0, 0), kUnknownCell);
+  EXPECT_EQ(grid.cells(1, 0), kFreeCell);
+}
+
+RangeScan four_ways(float range_m) {
+  return {.first_angle_rad = 0,
+          .angle_increment_rad = M_PI / 2,
+          .min_range_m = 0.1,
+          .max_range_m = 3.0,
+          .ranges_m = {range_m, range_m, 0.0F, std::numeric_limits<float>::infinity()}};
+}
+
+TEST(ScanGrid, ALaserIsASecondSource) {
+  ScanGrid scans;
+  const SE3 pose(Eigen::Matrix3d::Identity(), {0.025, 0.025, 0.3});
+  scans.add_scan(pose, four_ways(0.5F));
+  OccupancyGrid grid{.cells = Grid2d<std::int8_t>(2, 1, kUnknownCell), .origin_m = {0.05, 0.0}};
+  grid.cells(0, 0) = kOccupiedCell;  // a table top, above the laser
+  scans.add_to(grid);
+  const auto at = [&](double x, double y) {
+    const auto cell = grid.cell_of({x, y});
+    return cell ? grid.cells(cell->x(), cell->y()) : kUnknownCell;
+  };
+  EXPECT_EQ(at(0.525, 0.025), kOccupiedCell);
+  EXPECT_EQ(at(0.025, 0.525), kOccupiedCell);
+  EXPECT_EQ(at(0.125, 0.025), kFreeCell);
+  EXPECT_EQ(at(0.025, 0.125), kFreeCell);
+  EXPECT_EQ(at(0.075, 0.025), kOccupiedCell);  // stays
+  EXPECT_EQ(at(0.125, 0.125), kUnknownCell);
+  EXPECT_EQ(at(-0.1, 0.025), kUnknownCell);  // 0 and infinity tell nothing
+  EXPECT_EQ(count(grid, kOccupiedCell), 3);
+
+  scans.remove_scan(pose, four_ways(0.5F));
+  OccupancyGrid empty;
+  scans.add_to(empty);
+  EXPECT_TRUE(empty.cells.empty());
+  OccupancyGrid other{.cells = {}, .resolution_m = 0.1};
+  scans.add_scan(pose, four_ways(0.5F));
+  EXPECT_THROW(scans.add_to(other), InputError);
+}
+
+// nav2_costmap_2d: inflation_layer.hpp, computeCost().
+TEST(CostMap, CostsDecayAsNav2PublishesIt) {
+  const CostMapConfig config{
+      .inscribed_radius_m = 0.26, .inflation_radius_m = 1.0, .cost_scaling_factor = 3.0};
+  EXPECT_EQ(cost_at_distance(0.0, config), 254);
+  EXPECT_EQ(cost_at_distance(0.26, config), 253);
+  EXPECT_EQ(cost_at_distance(0.30, config), static_cast<int>(252 * std::exp(-3.0 * 0.04)));
+  EXPECT_EQ(cost_at_distance(1.0, config), static_cast<int>(252 * std::exp(-3.0 * 0.74)));
+  EXPECT_EQ(cost_at_distance(1.01, config), 0);
+
+  OccupancyGrid grid{.cells = Grid2d<std::int8_t>(61, 41, kFreeCell)};
+  grid.cells(30, 20) = grid.cells(31, 20) = kOccupiedCell;
+  grid.cells(33, 20) = grid.cells(60, 0) = kUnknownCell;
+  const CostMap costs = cost_map(grid, config);
+  for (int y = 0; y < 41; ++y)
+    for (int x = 0; x < 61; ++x) {
+      const double away_m = 0.05 * std::min(std::hypot(x - 30, y - 20), std::hypot(x - 31, y - 20));
+      const int expected = x == 60 && y == 0 ? 255 : cost_at_distance(away_m, config);
+      EXPECT_EQ(costs.costs(x, y), expected) << x << " " << y;  // (33, 20): the disc would touch
+    }
+}
+
+TEST(CostMap, RefusesSettingsOutOfRange) {
+  OccupancyGrid grid{.cells = Grid2d<std::int8_t>(3, 3, kFreeCell)};
+  EXPECT_THROW(cost_map(grid, {.inscribed_radius_m = 0.6, .inflation_radius_m = 0.5}), InputError);
+  EXPECT_THROW(cost_map(grid, {.cost_scaling_factor = -1}), InputError);
+  grid.resolution_m = 0;
+  EXPECT_THROW(cost_map(grid), InputError);
+}
+
+TEST(CostMap, FilesKeepNav2sNumbers) {
+  CostMap costs{.costs = Grid2d<std::uint8_t>(5, 1)};
+  const std::array<std::uint8_t, 5> levels{0, 128, 253, 254, 255};
+  std::copy(levels.begin(), levels.end(), costs.costs.begin());
+  const std::string stem = testing::TempDir() + "costs";
+  save_cost_map(costs, stem);
+  EXPECT_EQ(load_cost_map(stem + ".yaml").costs, costs.costs);
+  EXPECT_NE(read_file(stem + ".yaml").find("mode: raw\n"), std::string::npos);
+  // costmap_2d_publisher.cpp: 1 + 97 (cost - 1) / 251.
+  const OccupancyGrid published = as_published(costs);
+  const std::array<std::int8_t, 5> expected{0, 50, 99, 100, -1};
+  EXPECT_TRUE(std::equal(expected.begin(), expected.end(), published.cells.begin()));
+  save_map_server(published, stem + "_published", GridMode::kRaw);
+  EXPECT_EQ(load_map_server(stem + "_published.yaml").cells, published.cells);
+  EXPECT_THROW(load_cost_map(stem + "_none.yaml"), InputError);
+}
+
+TEST(MapServer, RoundTripKeepsCellsAndPlace) {
+  OccupancyGrid grid{.cells = Grid2d<std::int8_t>(3, 2, kUnknownCell),
+                     .resolution_m = 0.05,
+                     .origin_m = {-1.25, 0.1}};
+  grid.cells(0, 0) = kOccupiedCell;
+  grid.cells(2, 1) = kFreeCell;
+  const std::string stem = testing::TempDir() + "map.v1";  // the dot is part of the name
+  save_map_server(grid, stem);
+  const OccupancyGrid back = load_map_server(stem + ".yaml");
+  EXPECT_EQ(back.cells, grid.cells);
+  EXPECT_EQ(back.origin_m, grid.origin_m);
+  EXPECT_EQ(back.resolution_m, grid.resolution_m);
+  // The origin is the lower left pixel: the first of the last row.
+  EXPECT_EQ(read_file(stem + ".pgm"),
+            std::string("P5\n3 2\n255\n") + "\xCD\xCD\xFE" + std::string(1, '\0') + "\xCD\xCD");
+  // Every field that nav2_map_server requires or documents, in its words.
+  EXPECT_EQ(read_file(stem + ".yaml"),
+            "image: map.v1.pgm\nmode: trinary\nresolution: 0.05\norigin: [-1.25, 0.1, 0]\n"
+            "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  save_map_server(grid, stem, GridMode::kRaw);
+  EXPECT_EQ(load_map_server(stem + ".yaml").cells, grid.cells);
+  EXPECT_EQ(read_file(stem + ".pgm"),
+            std::string("P5\n3 2\n255\n") + "\xFF\xFF" + std::string(1, '\0') + "\x64\xFF\xFF");
+}
+
+void expect_map_refused(const std::string& yaml, const std::string& message) {
+  const std::string file = testing::TempDir() + "bad_map.yaml";
+  write_atomically(file, yaml);
+  try {
+    load_map_server(file);
+    ADD_FAILURE() << "was read: " << yaml;
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+  }
+}
+
+TEST(MapServer, RefusesWhatItCannotRead) {
+  const std::string pgm = testing::TempDir() + "bad_map.pgm";
+  const auto yaml = [](const std::string& resolution, const std::string& origin,
+                       const std::string& mode = "trinary") {
+    return "image: bad_map.pgm\nmode: " + mode + "\nresolution: " + resolution +
+           "\norigin: " + origin + "\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n";
+  };
+  const std::string good = yaml("0.05", "[0, 0, 0]");
+  write_atomically(pgm, "P5\n3 2\n255\nab");
+  expect_map_refused(good, "truncated");
+  write_atomically(pgm, "P5\n65536 65536\n255\nab");  // 4 GB that are not there
+  expect_map_refused(good, "truncated");
+  write_atomically(pgm, "P5\n1 1\n255");
+  expect_map_refused(good, "truncated");
+  write_atomically(pgm, "P5\n# a comment\n1 2\n255\nab");
+  expect_map_refused(yaml("0", "[0, 0, 0]"), "resolution");
+  expect_map_refused(yaml("0.05", "[0, 0, 0.7]"), "turned");
+  expect_map_refused(yaml("0.05", "[0, 0, 0]", "scale"), "scale");
+  write_atomically(testing::TempDir() + "bad_map.yaml", good);
+  EXPECT_EQ(load_map_server(testing::TempDir() + "bad_map.yaml").cells.height(), 2);
+}
+
+}  // namespace
+}  // namespace mh

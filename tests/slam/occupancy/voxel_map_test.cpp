@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/occupancy/voxel_map.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <octomap/ColorOcTree.h>
+#include <octomap/OcTree.h>
+
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "tests/slam/occupancy/box_room.hpp"
+
+namespace mh {
+namespace {
+
+using Eigen::Vector3d;
+
+std::string bytes_of(const VoxelMap& map) {
+  std::ostringstream out;
+  map.write_ot(out);
+  return std::move(out).str();
+}
+
+std::string in_temporary(const std::string& name) {
+  return testing::TempDir() + name;
+}
+
+TEST(VoxelMap, ABoxRoomIsFreeInsideAndOccupiedAtItsWalls) {
+  const OccupancyMapper mapper = mapped_room();
+  const VoxelMap& map = mapper.map();
+  EXPECT_EQ(map.state_at({0.5, 0.3, 0.6}), VoxelState::kFree);
+  EXPECT_EQ(map.state_at({2.02, 0.3, 0.6}), VoxelState::kOccupied);
+  EXPECT_EQ(map.state_at({-1.52, 0.3, 0.6}), VoxelState::kOccupied);
+  EXPECT_EQ(map.state_at({2.3, 0.3, 0.6}), VoxelState::kUnknown);
+  EXPECT_EQ(map.state_at({1.5, 0.0, 0.02}), VoxelState::kOccupied);  // the floor, at a slant
+  map.for_each([&](const Voxel& voxel) {
+    const Vector3d center = voxel.center_m(0.05);
+    const double outside = std::max((kRoomMin - center).maxCoeff(), (center - kRoomMax).maxCoeff());
+    if (voxel.occupied)
+      EXPECT_LT(std::abs(outside), 0.03) << center.transpose();
+    else
+      EXPECT_LT(outside, 0.0) << center.transpose();
+  });
+}
+
+TEST(VoxelMap, EveryVoxelOfTheSurfacesWithinTheImageIsOccupied) {
+  const OccupancyMapper mapper = mapped_room();
+  for (double z = 0.2; z < 0.8; z += 0.05)
+    for (double y = -0.9; y < 1.2; y += 0.05)
+      EXPECT_EQ(mapper.map().state_at({2.02, y, z}), VoxelState::kOccupied) << y << " " << z;
+}
+
+TEST(VoxelMap, BeyondTheRangeNothingIsSeen) {
+  const OccupancyMapper mapper = mapped_room(0.8);
+  std::size_t free = 0;
+  mapper.map().for_each([&](const Voxel& voxel) {
+    EXPECT_LT((voxel.center_m(0.05) - kEye).norm(), 0.85);
+    free += voxel.occupied ? 0 : 1;
+  });
+  EXPECT_GT(free, 1000u);
+}
+
+TEST(VoxelMap, WhereThereIsNoReturnNothingIsTold) {
+  OccupancyMapper mapper(room_camera(), every_pixel());
+  RgbdFrame frame = room_frame(0, room_pose(0));
+  for (int y = 0; y < 120; ++y)
+    for (int x = 0; x < 80; ++x) frame.depth_m(x, y) = 0;  // its left half
+  mapper.keep(frame);
+  mapper.update({{0, room_pose(0)}});
+  EXPECT_GT(mapper.map().voxel_count(), 1000u);
+  mapper.map().for_each([&](const Voxel& voxel) {
+    EXPECT_LT(voxel.center_m(0.05).y(), kEye.y() + 0.03);  // y points left
+  });
+}
+
+TEST(VoxelMap, VotesAreOfTheClassThatIsSeen) {
+  const OccupancyMapper mapper = mapped_room();
+  std::size_t labeled = 0;
+  mapper.map().for_each([&](const Voxel& voxel) {
+    if (voxel.label == kVoid) return;
+    ++labeled;
+    EXPECT_TRUE(voxel.occupied);
+    if (std::abs(voxel.center_m(0.05).x()) < 1 && std::abs(voxel.center_m(0.05).y()) < 0.9)
+      EXPECT_TRUE(voxel.label == kFloorLabel || voxel.label == kCeilingLabel);
+    EXPECT_LE(voxel.label_views, voxel.votes);
+    EXPECT_LE(voxel.votes, voxel.hits);
+  });
+  EXPECT_GT(labeled, 1000u);
+}
+
+// After whatever order of additions, moves and removals, the map is the one built at once.
+TEST(VoxelMap, IsAFunctionOfItsKeyframesPosesAlone) {
+  OccupancyMapper changed(room_camera(), every_pixel());
+  Trajectory poses = look_around();
+  for (std::size_t i = 0; i < poses.size(); i += 2)
+    changed.keep(room_frame(poses[i].stamp_ns, poses[i].world_from_camera));
+  changed.update(look_around(0.30));
+  for (std::size_t i = 1; i < poses.size(); i += 2)
+    changed.keep(room_frame(poses[i].stamp_ns, poses[i].world_from_camera));
+  Trajectory some(poses.begin() + 5, poses.end());
+  EXPECT_EQ(changed.update(some).removed, 3u);  // 0, 2, 4
+  const std::string part = bytes_of(changed.map());
+  OccupancyUpdate update = changed.update(poses);
+  EXPECT_EQ(update.added, 5u);
+  EXPECT_EQ(update.kept, 11u);
+  EXPECT_EQ(update.moved, 0u);
+  changed.keep(room_frame(3, room_pose(0.1)));  // seen again after a rewind, another image
+  changed.keep(room_frame(3, poses[3].world_from_camera));
+  changed.update(poses);
+  EXPECT_EQ(bytes_of(changed.map()), bytes_of(mapped_room().map()));
+
+  OccupancyMapper at_once(room_camera(), every_pixel());
+  for (const TimedPose& pose : some)
+    at_once.keep(room_frame(pose.stamp_ns, pose.world_from_camera));
+  at_once.update(some);
+  EXPECT_EQ(bytes_of(at_once.map()), part);
+}
+
+TEST(VoxelMap, OnlyKeyframesThatMovedAreToldAnew) {
+  OccupancyMapper mapper = mapped_room();
+  const std::string before = bytes_of(mapper.map());
+  Trajectory poses = look_around();
+  poses[4].world_from_camera = SE3(
+      poses[4].world_from_camera.rotation(),
+      poses[4].world_from_camera.translation() + Vector3d(0.001, 0, 0));  // less than half a step
+  EXPECT_EQ(mapper.update(poses).kept, 16u);
+  EXPECT_EQ(bytes_of(mapper.map()), before);
+  poses[4] = {4, room_pose(4 * std::numbers::pi / 8, 0.2)};
+  EXPECT_EQ(mapper.update(poses).moved, 1u);
+  EXPECT_NE(bytes_of(mapper.map()), before);
+  mapper.update({});
+  EXPECT_TRUE(mapper.map().empty());
+  EXPECT_EQ(bytes_of(mapper.map()), bytes_of(VoxelMap(0.05)));
+}
+
+TEST(VoxelMap, FilesRestoreEveryCount) {
+  const OccupancyMapper mapper = mapped_room();
+  const std::string file = in_temporary("voxel_map.ot");
+  mapper.map().save_ot(file);
+  const VoxelMap back = VoxelMap::load_ot(file);
+  EXPECT_EQ(bytes_of(back), bytes_of(mapper.map()));
+  EXPECT_EQ(back.voxel_count(), mapper.map().voxel_count());
+  EXPECT_EQ(back.votes_at({2.02, 0.3, 0.6}), mapper.map().votes_at({2.02, 0.3, 0.6}));
+  EXPECT_FALSE(back.votes_at({2.02, 0.3, 0.6}).empty());
+}
+
+void expect_refused(const std::string& bytes, const std::string& message) {
+  std::istringstream in(bytes);
+  try {
+    VoxelMap::read_ot(in, "it");
+    ADD_FAILURE() << "was read";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+  }
+}
+
+TEST(VoxelMap, DamagedFilesAreRefused) {
+  const std::string good = bytes_of(mapped_room().map());
+  expect_refused("", "is not an OctoMap file");
+  expect_refused("P5\n", "is not an OctoMap file");
+  expect_refused(good.substr(0, 40), "truncated");
+  for (const std::size_t size : {good.size() / 9, good.size() / 2, good.size() - 1})
+    expect_refused(good.substr(0, size), "");
+  std::string flipped = good;
+  flipped[good.size() - 100] = static_cast<char>(flipped[good.size() - 100] ^ 4);
+  expect_refused(flipped, "checksum");
+  expect_refused(good + "x", "after its end");
+  octomap::ColorOcTree other(0.05);
+  other.updateNode(octomap::point3d(0, 0, 0), true);
+  std::ostringstream out;
+  other.write(out);
+  expect_refused(out.str(), "another program");
+  EXPECT_THROW(VoxelMap::load_ot("/no/such/map.ot"), InputError);
+  EXPECT_THROW(mapped_room().map().save_ot("/no/such/folder/map.ot"), InputError);
+  EXPECT_THROW(mapped_room().map().save_bt("/no/such/folder/map.bt"), InputError);
+}
+
+TEST(VoxelMap, OctoMapReadsTheFilesWithColorsOfClasses) {
+  const OccupancyMapper mapper = mapped_room();
+  const std::string ot = in_temporary("octomap_reads.ot"), bt = in_temporary("octomap_reads.bt");
+  mapper.map().save_ot(ot);
+  mapper.map().save_bt(bt);
+  const std::unique_ptr<octomap::AbstractOcTree> any(octomap::AbstractOcTree::read(ot));
+  const auto* colored = dynamic_cast<octomap::ColorOcTree*>(any.get());
+  ASSERT_NE(colored, nullptr);
+  octomap::OcTree binary(0.1);
+  ASSERT_TRUE(binary.readBinary(bt));
+  EXPECT_DOUBLE_EQ(binary.getResolution(), 0.05);
+  std::size_t checked = 0;
+  mapper.map().for_each([&](const Voxel& voxel) {
+    const Vector3d c = voxel.center_m(0.05);
+    const auto* in_colored = colored->search(c.x(), c.y(), c.z());
+    const auto* in_binary = binary.search(c.x(), c.y(), c.z());
+    ASSERT_TRUE(in_colored && in_binary) << c.transpose();
+    EXPECT_EQ(colored->isNodeOccupied(in_colored), voxel.occupied);
+    EXPECT_EQ(binary.isNodeOccupied(in_binary), voxel.occupied);
+    if (!voxel.occupied || voxel.label == kVoid) return;
+    const ClassInfo& info = classes()[voxel.label];
+    EXPECT_TRUE(in_colored->getColor() == octomap::ColorOcTreeNode::Color(info.r, info.g, info.b));
+    ++checked;
+  });
+  EXPECT_GT(checked, 1000u);
+  EXPECT_EQ(binary.search(0, 0, 5), nullptr);
+}
+
+// Debian's octomap-tools: convert_octree reads any tree, bt2vrml a binary one.
+TEST(VoxelMap, OctoMapsOwnToolsOpenTheFiles) {
+  if (std::system("command -v convert_octree bt2vrml > /dev/null 2>&1") != 0)
+    GTEST_SKIP() << "octomap-tools is not installed";
+  const OccupancyMapper mapper = mapped_room();
+  const std::string ot = in_temporary("tools.ot"), bt = in_temporary("tools.bt"),
+                    converted = in_temporary("tools_converted.bt"), drawn = bt + ".wrl";
+  mapper.map().save_ot(ot);
+  mapper.map().save_bt(bt);
+  for (const std::string& made : {converted, drawn}) std::remove(made.c_str());
+  EXPECT_EQ(std::system(("convert_octree " + ot + " " + converted + " > /dev/null 2>&1").c_str()),
+            0);
+  octomap::OcTree back(0.1), direct(0.1);
+  ASSERT_TRUE(back.readBinary(converted));
+  ASSERT_TRUE(direct.readBinary(bt));
+  EXPECT_EQ(back.getNumLeafNodes(), direct.getNumLeafNodes());
+  EXPECT_EQ(std::system(("bt2vrml " + bt + " > /dev/null 2>&1").c_str()), 0);
+  EXPECT_TRUE(is_file(drawn));
+}
+
+TEST(OccupancyMapper, RefusesSettingsOutOfRangeAndFramesOfAnotherSize) {
+  OccupancyConfig config;
+  config.depth.resolution_m = 0;
+  EXPECT_THROW(OccupancyMapper(room_camera(), config), InputError);
+  config = {};
+  config.depth.max_range_m = 13;  // more than 250 voxels
+  EXPECT_THROW(OccupancyMapper(room_camera(), config), InputError);
+  config = {};
+  config.stride_px = 0;
+  EXPECT_THROW(OccupancyMapper(room_camera(), config), InputError);
+  OccupancyMapper mapper(room_camera());
+  RgbdFrame frame;
+  frame.depth_m = Grid2d<float>(10, 10);
+  EXPECT_THROW(mapper.keep(frame), InputError);
+}
+
+}  // namespace
+}  // namespace mh
