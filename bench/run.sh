@@ -60,4 +60,7 @@ if (( status == 0 )); then
   echo "Images:"
   find "$out" -name '*.png' | LC_ALL=C sort | sed 's/^/  /'
 fi
+if [[ -f $out/results.sqlite ]]; then
+  build/release/modelhouse report "$out" --out "$out/report"
+fi
 exit "$status"

@@ -7,7 +7,7 @@ install(TARGETS modelhouse RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
 # Data keep the layout of the sources: suites name their files relative to their own folder.
 set(data_dir ${CMAKE_INSTALL_DATADIR}/modelhouse)
-foreach(folder assets bench/scenarios bench/suites robots/pepper scenes/model_house scenes/rooms
+foreach(folder assets bench/pages/bundle bench/scenarios bench/suites robots/pepper scenes/model_house scenes/rooms
                sim/sensors/levels)
   install(DIRECTORY ${folder}/ DESTINATION ${data_dir}/${folder})
 endforeach()

@@ -23,6 +23,7 @@ void add_merge(CLI::App& app);
 void add_run_one(CLI::App& app);
 void add_reference(CLI::App& app);
 void add_render(CLI::App& app);
+void add_report(CLI::App& app);
 void add_scene(CLI::App& app);
 void add_scene_statistics(CLI::App& scene);
 void add_sensors(CLI::App& app);

@@ -69,6 +69,7 @@ int run(int argc, char** argv) {
   mh::cli::add_run_one(app);
   mh::cli::add_merge(app);
   mh::cli::add_export(app);
+  mh::cli::add_report(app);
   mh::cli::add_verify(app);
   mh::cli::add_check(app);
   mh::cli::add_audit(app);

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bench/cli/arguments.hpp"
+#include "bench/cli/commands.hpp"
+#include "bench/pages/plot.hpp"
+#include "bench/pages/write.hpp"
+#include "bench/replay/replay.hpp"
+#include "slam/core/counted.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/suggest.hpp"
+
+namespace mh::cli {
+namespace {
+
+struct Options {
+  std::vector<std::string> results, replay;
+  std::string out, cache;
+};
+
+/// Runs those again whose replay is asked for: by name, `failed` (runs with a query that was not
+/// answered correctly) or `all`. @throws InputError if no results hold a run of a name.
+void add_replays(std::vector<PagesSource>& sources, const Options& options) {
+  const ReplayTools tools{
+      .cache = Cache(options.cache.empty() ? Cache::default_folder()
+                                           : std::filesystem::absolute(options.cache)),
+      .threads = 1,
+      .say = [](std::string_view stage) { fmt::print(stderr, "report: {}\n", stage); }};
+  const auto is_asked = [&](const RunResult& run) {
+    bool failed = false;
+    for_each_query(run, [&](const QueryScore& q) { failed |= is_judged(q) && !q.correct; });
+    return std::ranges::any_of(options.replay, [&](const std::string& word) {
+      return word == "all" || (word == "failed" && failed) || word == run.spec.name;
+    });
+  };
+  std::vector<std::string> names{"all", "failed"};
+  for (PagesSource& source : sources)
+    for (const RunResult& run : source.results.runs) {
+      names.push_back(run.spec.name);
+      const bool by_name = std::ranges::count(options.replay, run.spec.name) > 0;
+      const bool can = run.spec.system.takes_settings() && !run.spec.environment.is_recorded();
+      if (is_asked(run) && (can || by_name))
+        source.replay_of[run.spec.name] = replay_json(run.spec, run.estimate, tools);
+    }
+  for (const std::string& word : options.replay)
+    if (std::ranges::count(names, word) == 0)
+      throw InputError(fmt::format("--replay: no run is named '{}'{}", word, hint(word, names)));
+}
+
+void run(const Options& options) {
+  std::vector<PagesSource> sources;
+  for (const std::string& folder : options.results) sources.push_back(read_source(folder));
+  const OutputFolder folder(options.out, "report", names_of_pages());
+  if (!options.replay.empty()) add_replays(sources, options);
+  const WrittenPages written = write_pages(options.out, sources);
+  for (const PagesSource& source : sources)
+    if (!source.problem.empty())
+      fmt::print(stderr, "report: {}: {}\n", source.name, source.problem);
+  fmt::print("{} in {}, {:.1f} MB: open {}\n", counted(written.files, "file"), options.out,
+             static_cast<double>(written.bytes) / 1e6, written.index.string());
+}
+
+struct PlotOptions {
+  std::string results, out;
+  PlotOrder order;
+};
+
+void draw(const PlotOptions& options) {
+  require_writable(options.out, {options.results});
+  write_plot(options.out, read_source(options.results), options.order);
+}
+
+void add_plot(CLI::App& app) {
+  auto options = std::make_shared<PlotOptions>();
+  CLI::App* command = app.add_subcommand(
+      "plot", "A figure for a paper: PDF, vectors, fonts embedded, as wide as a column.");
+  command->add_option("results", options->results, "Folder of `bench`")->required();
+  command
+      ->add_option("--figure", options->order.figure,
+                   "Of the paper: 2 or 5, a run from above; 3, boxes by density of objects; 4, "
+                   "error against frames")
+      ->required()
+      ->check(CLI::IsMember({2, 3, 4, 5}));
+  command->add_option("--run", options->order.run, "Of figures 2 and 5 (default: the first)");
+  command->add_option("--measure", options->order.measure,
+                      "Of figure 3: ate_rmse_m, held_out.success, ...");
+  command->add_option("--width", options->order.width_cm, "Of the figure, cm")
+      ->check(number_between(2.0, 100.0));
+  command->add_option("--out", options->out, "PDF file")->required();
+  command->footer(
+      "Example:\n  modelhouse plot out/table1_quick --figure 3 --out figure3.pdf\n"
+      "Needs gnuplot (Debian: gnuplot-nox).");
+  command->callback([options] { draw(*options); });
+}
+
+}  // namespace
+
+void add_report(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "report", "Results as pages for a browser, which open from the disk without a network.");
+  command
+      ->add_option("results", options->results,
+                   "Folders of `bench`; several are shown side by side")
+      ->required();
+  command->add_option("--out", options->out, "Folder for the pages")->required();
+  command->add_option("--replay", options->replay,
+                      "Runs to run again, so that their pages show scene and landmarks: names, "
+                      "`failed` or `all`");
+  command->add_option("--cache", options->cache,
+                      "Cache folder for light and maps (default: $XDG_CACHE_HOME/modelhouse)");
+  command->footer(
+      "Example:\n  modelhouse report out/model_house --out out/model_house/report\n"
+      "Open index.html in that folder; see docs/report.md.");
+  command->callback([options] { run(*options); });
+  add_plot(app);
+}
+
+}  // namespace mh::cli

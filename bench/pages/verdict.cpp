@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/pages/verdict.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "bench/pages/page_table.hpp"
+#include "slam/core/counted.hpp"
+
+namespace mh {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool is_share(const Comparison& c) {
+  return std::ranges::any_of(std::array{"success", "correct", "false positive", "pooled"},
+                             [&](const char* word) { return c.what.starts_with(word); });
+}
+
+/// A signed amount with its unit: "+4.2 percentage points", "-0.0031 m".
+std::string amount(const Comparison& c, double value, bool with_unit = true) {
+  if (is_share(c))
+    return fmt::format("{:+.2f}{}", 100 * value, with_unit ? " percentage points" : "");
+  return fmt::format("{:+.4f}{}", value, with_unit ? " m" : "");
+}
+
+/// What the pairs are: "149 queries", "12 environments".
+std::string pairs_text(const Comparison& c, bool over_scenes) {
+  if (c.clusters > 0)
+    return fmt::format("{} in {}", counted(c.pairs, "query", "queries"),
+                       counted(c.clusters, "environment"));
+  return over_scenes ? counted(c.pairs, "environment") : counted(c.pairs, "query", "queries");
+}
+
+std::string needed_text(const Comparison& c, bool over_scenes) {
+  const auto needed = pairs_to_decide(c);
+  if (!std::isfinite(c.detectable))
+    return " These are too few to decide at the 5 % level, however large the difference.";
+  if (!needed) return "";
+  const bool of_scenes = over_scenes || c.clusters > 0;
+  return fmt::format(" If the true difference is the observed one, about {:.0f} {} would decide.",
+                     *needed, of_scenes ? "environments" : "queries");
+}
+
+/// One comparison with what it is of.
+struct Judged {
+  SystemPair systems;
+  std::size_t level = 0;
+  std::string environment;  ///< empty: over all of them
+  Comparison comparison;
+};
+
+std::string sentence(const Suite& suite, const Judged& j) {
+  Comparison c = j.comparison;
+  std::ranges::replace(c.what, '_', ' ');
+  const std::string& first = suite.systems[j.systems.first].name;
+  const std::string& second = suite.systems[j.systems.second].name;
+  const bool over_scenes = j.environment.empty();
+  if (c.pairs == 0)
+    return fmt::format("{}: {} and {} cannot be compared: nothing that both have a value for.",
+                       c.what, first, second);
+  const std::string interval =
+      std::isfinite(c.low) && std::isfinite(c.high)
+          ? fmt::format("95 % interval {} to {}", amount(c, c.low, false), amount(c, c.high, false))
+          : std::string("too few for an interval");
+  const Verdict v = verdict(c);
+  if (v != Verdict::kUndecided)
+    return fmt::format("{} is better than {} in {}: {} ({}) over {}.",
+                       v == Verdict::kFirstBetter ? first : second,
+                       v == Verdict::kFirstBetter ? second : first, c.what, amount(c, c.difference),
+                       interval, pairs_text(c, over_scenes));
+  return fmt::format("Undecided whether {} or {} is better in {}: {} ({}) over {}.{}", first,
+                     second, c.what, amount(c, c.difference), interval, pairs_text(c, over_scenes),
+                     needed_text(c, over_scenes));
+}
+
+std::vector<Judged> judged(const Suite& suite, std::span<const Row> rows) {
+  std::vector<Judged> all;
+  if (suite.environments.size() > 1) {
+    for (const SceneFamily& family : compare_over_scenes(suite, rows)) {
+      if (family.parameters != 0) continue;
+      for (const Comparison& c : family.comparisons)
+        all.push_back({family.systems, family.level, "", c});
+    }
+  } else {
+    for (const Family& family : compare_systems(suite, rows))
+      for (const Comparison& c : family.comparisons)
+        all.push_back(
+            {family.systems, family.level, suite.environments[family.environment].name, c});
+  }
+  // Success first: the paper's first measure; what is judged before what is shown beside it.
+  std::ranges::stable_sort(all, {}, [](const Judged& j) {
+    const Comparison& c = j.comparison;
+    return std::array{c.pairs == 0, !c.what.starts_with("success"), !c.in_family};
+  });
+  return all;
+}
+
+}  // namespace
+
+std::optional<double> pairs_to_decide(const Comparison& c) {
+  const double size = static_cast<double>(c.clusters > 0 ? c.clusters : c.pairs);
+  if (c.pairs == 0 || c.difference == 0 || !std::isfinite(c.detectable) || c.detectable <= 0)
+    return std::nullopt;
+  const double ratio = c.detectable / std::abs(c.difference);
+  return std::ceil(size * ratio * ratio);
+}
+
+std::string verdict_sentence(const Suite& suite, const SystemPair& systems, const Comparison& c) {
+  return sentence(suite, {systems, 0, suite.environments.size() > 1 ? "" : "here", c});
+}
+
+Json verdicts_json(const Suite& suite, std::span<const Row> rows) {
+  PageTable table("What differs between the systems",
+                  "First minus second, 95 % bootstrap intervals, p corrected by Holm over the "
+                  "declared family; shares in percentage points, distances in m.");
+  Json sentences = Json::array();
+  for (const Judged& j : judged(suite, rows)) {
+    const Comparison& c = j.comparison;
+    const auto known = [&](double value) {
+      return c.pairs > 0 ? std::optional(value) : std::nullopt;
+    };
+    const char* unit = is_share(c) ? "%" : "m";
+    const Verdict v = verdict(c);
+    sentences.push_back({{"text", sentence(suite, j)},
+                         {"decided", v != Verdict::kUndecided},
+                         {"in_family", c.in_family},
+                         {"what", c.what},
+                         {"level", level_name(suite.levels[j.level])},
+                         {"unit", unit},
+                         {"first", suite.systems[j.systems.first].name},
+                         {"second", suite.systems[j.systems.second].name},
+                         {"difference", page_number(known(c.difference))},
+                         {"low", page_number(known(c.low))},
+                         {"high", page_number(known(c.high))}});
+    table.begin_row();
+    table.text({"what", "compared"}, c.what);
+    table.text({"level", "level"}, level_name(suite.levels[j.level]));
+    table.text({"first", "first"}, suite.systems[j.systems.first].name);
+    table.text({"second", "second"}, suite.systems[j.systems.second].name);
+    table.number({"pairs", "pairs"}, static_cast<double>(c.pairs));
+    table.number({"difference", "difference", "", 4}, known(c.difference));
+    table.number({"low", "low", "", 4}, known(c.low));
+    table.number({"high", "high", "", 4}, known(c.high));
+    table.number({"p", "p", "", 4}, known(c.p));
+    table.number({"p_holm", "p (Holm)", "", 4}, counts(c) ? std::optional(c.p_holm) : std::nullopt);
+    table.number({"detectable", "detectable", "", 4}, known(c.detectable));
+    table.number({"needed", "would decide", "", 0}, pairs_to_decide(c));
+    table.text({"verdict", "verdict"}, !c.in_family               ? "beside the family"
+                                       : v == Verdict::kUndecided ? "undecided"
+                                       : v == Verdict::kFirstBetter
+                                           ? suite.systems[j.systems.first].name + " is better"
+                                           : suite.systems[j.systems.second].name + " is better");
+  }
+  return {{"sentences", sentences}, {"table", table.json()}};
+}
+
+}  // namespace mh

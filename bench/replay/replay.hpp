@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/cache/cache.hpp"
+#include "bench/plan/runs.hpp"
+#include "scenes/scene.hpp"
+#include "slam/core/trajectory.hpp"
+
+namespace mh {
+
+/// The most that a scene takes in a report, bytes of its script file.
+inline constexpr std::size_t kMeshBytes = 3'000'000;
+
+/// A scene for a browser: positions in 16 bits within its box, colors with baked light at its
+/// vertices, triangles. Faces are split where texture or light shows, as finely as kMeshBytes
+/// allow; a scene that is too large as it is gets decimated (meshoptimizer).
+nlohmann::ordered_json mesh_json(const Scene& scene);
+
+/// Where replays come from.
+struct ReplayTools {
+  Cache cache;      ///< of light and finished maps
+  int threads = 1;  ///< for baking light
+  std::function<void(std::string_view)> say = [](std::string_view) {};
+};
+
+/// Executes a run again and records what its result does not hold: the scene's mesh, the landmarks
+/// of the finished map with their classes, its keyframes. Runs repeat bit for bit; `same` states
+/// whether this one gave the positions that the result holds (a results file rounds orientations).
+/// @param estimate  of the result
+/// @throws InputError naming the run if it is of a recording or of an outside system.
+nlohmann::ordered_json replay_json(const RunSpec& spec, const Trajectory& estimate,
+                                   const ReplayTools& tools);
+
+}  // namespace mh

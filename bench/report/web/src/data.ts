@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `modelhouse report` wrote: pieces of data in script files, which assign to one registry.
+// Scripts load from the disk, where a page may not read other files.
+
+/** A column as it was written; words are written once each. */
+interface WrittenColumn {
+  key: string;
+  title: string;
+  hidden?: boolean;
+  unit?: string;
+  decimals?: number;
+  words?: string[];
+  values: (number | null)[];
+}
+export interface WrittenTable {
+  title: string;
+  note: string;
+  rows: number;
+  columns: WrittenColumn[];
+}
+
+export interface Folder {
+  name: string;
+  problem: string | null;
+  suite: string | null;
+  runs: number;
+  failed: number;
+  missing: number;
+  audit: boolean;
+  runs_of_file: number;
+  replays: string[]; // names of runs
+}
+export interface Sentence {
+  text: string;
+  decided: boolean;
+  in_family: boolean;
+  what: string;
+  level: string;
+  unit: string;
+  first: string;
+  second: string;
+  difference: number | null;
+  low: number | null;
+  high: number | null;
+}
+export interface Overview {
+  remarks: string[];
+  suite?: {
+    name: string;
+    trials: number;
+    environments: number;
+    systems: string[];
+    labels: string[];
+    levels: string[];
+    settings: unknown;
+  };
+  verdicts?: { sentences: Sentence[]; table: WrittenTable };
+  table1?: WrittenTable | null;
+  table2?: WrittenTable | null;
+}
+export interface GradedShare {
+  success: number;
+  correct: number;
+  false_positive: number;
+  low?: number;
+  high?: number;
+}
+export interface Figures {
+  candidates?: WrittenTable | null;
+  density?: { table: WrittenTable; groups: string[] } | null;
+  by_frame?: WrittenTable | null;
+  sweep?: { table: WrittenTable; varied: string[]; best: string[] } | null;
+  graded?: unknown;
+}
+export interface Path {
+  of: number;
+  ms: number[];
+  mm: number[];
+  turn: number[];
+}
+export interface RunPaths {
+  name: string;
+  scene: string;
+  robot: string;
+  length_m: number | null;
+  frames: number;
+  cut: boolean;
+  truth: Path | null;
+  estimate: Path | null;
+  calls: {
+    of: number;
+    ms: number[];
+    inliers: (number | null)[];
+    lost_ms: number[];
+    keyframes_ms: number[];
+  } | null;
+  loops: number;
+  grid: { width: number; height: number; cell_m: number; x_m: number; y_m: number; cells: number[] } | null;
+  inputs: Record<string, string>;
+  trajectory_digest: string;
+  seed: number;
+  settings: unknown;
+}
+export interface Audit {
+  tables: WrittenTable[];
+  definitions: Record<string, unknown> | null;
+}
+
+declare global {
+  // eslint-disable-next-line no-var
+  var modelhouse: Record<string, unknown> | undefined;
+}
+
+const waiting = new Map<string, Promise<unknown>>();
+
+/** Loads a piece ("0/runs") and, once it is there, keeps it. */
+export function load<T>(piece: string): Promise<T> {
+  const here = globalThis.modelhouse?.[piece];
+  if (here !== undefined) return Promise.resolve(here as T);
+  let found = waiting.get(piece);
+  if (!found) {
+    found = new Promise<T>((resolve, reject) => {
+      const script = document.createElement("script");
+      script.src = `data/${piece.replaceAll("/", "-")}.js`;
+      script.onload = () => resolve(globalThis.modelhouse?.[piece] as T);
+      script.onerror = () => reject(new Error(`data/${piece} is missing`));
+      document.head.append(script);
+    });
+    waiting.set(piece, found);
+  }
+  return found as Promise<T>;
+}
+
+export const folders: Folder[] =
+  (globalThis.modelhouse?.index as { folders: Folder[] } | undefined)?.folders ?? [];
+
+export interface Column {
+  key: string;
+  title: string;
+  hidden: boolean;
+  isText: boolean;
+  unit: string;
+  decimals: number;
+}
+
+/** A table by columns. Cells are read by row; nothing is copied. */
+export class Table {
+  readonly title: string;
+  readonly note: string;
+  readonly rows: number;
+  readonly columns: Column[];
+  private readonly written = new Map<string, WrittenColumn>();
+
+  constructor(table: WrittenTable) {
+    this.title = table.title;
+    this.note = table.note;
+    this.rows = table.rows;
+    this.columns = table.columns.map((c) => ({
+      key: c.key,
+      title: c.title,
+      hidden: c.hidden ?? false,
+      isText: c.words !== undefined,
+      unit: c.unit ?? "",
+      decimals: c.decimals ?? 0,
+    }));
+    for (const c of table.columns) this.written.set(c.key, c);
+  }
+
+  has(key: string): boolean {
+    return this.written.has(key);
+  }
+  column(key: string): Column | undefined {
+    return this.columns.find((c) => c.key === key);
+  }
+  text(key: string, row: number): string {
+    const column = this.written.get(key);
+    const value = column?.values[row];
+    return value === null || value === undefined ? "" : (column?.words?.[value] ?? String(value));
+  }
+  number(key: string, row: number): number | null {
+    const column = this.written.get(key);
+    if (!column || column.words) return null;
+    return column.values[row] ?? null;
+  }
+  /** What a reader sees: "87.50 %", "0.0123", "" if unknown. */
+  shown(column: Column, row: number): string {
+    if (column.isText) return this.text(column.key, row);
+    return shownNumber(this.number(column.key, row), column.unit, column.decimals);
+  }
+  /** Rows with all of these texts, in order. */
+  where(texts: Record<string, string>): number[] {
+    const found: number[] = [];
+    for (let row = 0; row < this.rows; ++row)
+      if (Object.entries(texts).every(([key, value]) => this.text(key, row) === value))
+        found.push(row);
+    return found;
+  }
+  /** The different texts of a column, in the order of their first rows. */
+  words(key: string): string[] {
+    return [...new Set(Array.from({ length: this.rows }, (_, row) => this.text(key, row)))].filter(
+      (word) => word !== "",
+    );
+  }
+}
+
+export function shownNumber(value: number | null, unit: string, decimals: number): string {
+  if (value === null) return "";
+  if (unit === "%") return (100 * value).toFixed(decimals);
+  return value.toFixed(decimals);
+}
+
+/** A column's heading with its unit. */
+export function heading(column: Column): string {
+  const has = column.unit === "" || column.title.endsWith(` ${column.unit}`) || column.title.includes(`${column.unit}/`);
+  return has ? column.title : `${column.title}, ${column.unit}`;
+}

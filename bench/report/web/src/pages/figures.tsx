@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+import * as Plot from "@observablehq/plot";
+import type { JSX } from "preact";
+import { useCallback, useMemo, useState } from "preact/hooks";
+import { type Figures, type RunPaths, Table, type WrittenTable, heading, folders } from "../data";
+import { linkTo } from "../route";
+import { ink, kSymbols } from "../theme";
+import { armStyle } from "../view/arm";
+import { Chart } from "../view/Chart";
+import { DataTable } from "../view/DataTable";
+import { Choice, Missing, PerFolder, Piece, systemsOf } from "../view/parts";
+import { queryPlaces, topView } from "../view/topview";
+import { GradedCurves } from "./graded";
+
+/** Rows of the level and labels that a reader picked, where there are several. */
+function useArm(table: Table): { rows: number[]; picker: JSX.Element | null; arm: string } {
+  const arms = [...new Set(Array.from({ length: table.rows }, (_, r) => `${table.text("level", r)}, ${table.text("labels", r)}`))];
+  const levels = table.words("level");
+  const [level, setLevel] = useState(levels[0] ?? "");
+  const rows = useMemo(() => table.where({ level }), [table, level]);
+  const picker =
+    levels.length > 1 ? (
+      <Choice label="Level" options={levels.map((key) => ({ key, title: key }))} value={level} onPick={setLevel} />
+    ) : null;
+  return { rows, picker, arm: arms.length > 1 ? `level ${level}` : (arms[0] ?? "") };
+}
+
+function armOf(table: Table, row: number): string {
+  const labels = table.words("labels");
+  const system = table.text("system", row);
+  return labels.length > 1 && table.text("labels", row) !== "none" ? `${system}, ${table.text("labels", row)}` : system;
+}
+
+function Density({ density }: { density: NonNullable<Figures["density"]> }): JSX.Element {
+  const table = useMemo(() => new Table(density.table), [density]);
+  const measures = table.columns.filter((c) => !c.isText && ["ate_rmse_m", "rpe_frame_rmse_m", "held_out.success", "held_out.distance_mean_m", "second_tour.success", "graded.success"].includes(c.key));
+  const [key, setKey] = useState(measures[0]?.key ?? "");
+  const { rows, picker, arm } = useArm(table);
+  const column = table.column(key);
+  const systems = systemsOf(table);
+  const values = useMemo(
+    () =>
+      rows.flatMap((row) => {
+        const value = table.number(key, row);
+        if (value === null) return [];
+        return [{ group: table.text("group", row), system: table.text("system", row), value: column?.unit === "%" ? 100 * value : value }];
+      }),
+    [rows, key],
+  );
+  const means = useMemo(() => {
+    const of = new Map<string, { group: string; system: string; sum: number; count: number }>();
+    for (const v of values) {
+      const at = `${v.group} ${v.system}`;
+      const sum = of.get(at) ?? { group: v.group, system: v.system, sum: 0, count: 0 };
+      of.set(at, { ...sum, sum: sum.sum + v.value, count: sum.count + 1 });
+    }
+    return [...of.values()].map((m) => ({ ...m, mean: m.sum / m.count }));
+  }, [values]);
+  const make = useCallback(
+    (width: number): Plot.PlotOptions => {
+      const color = (d: { system: string }) => systems.find((s) => s.name === d.system)?.color ?? "gray";
+      return {
+        height: 340,
+        marginTop: 26,
+        fx: { domain: density.groups, label: "objects per 10 m² of floor", padding: 0.08, axis: "bottom" },
+        x: { domain: systems.map((s) => s.name), axis: null, padding: 0.15 },
+        y: { zero: true, nice: true, insetTop: 16, axis: null },
+        marginBottom: 46,
+        marks: [
+          Plot.gridY({ facetAnchor: null }),
+          Plot.axisY({ facetAnchor: "left", label: column ? heading(column) : "" }),
+          Plot.boxY(values, { fx: "group", x: "system", y: "value", fill: color, fillOpacity: 0.35, stroke: color, r: 0 }),
+          Plot.dot(values, { fx: "group", x: "system", y: "value", fill: color, r: 2.2, className: "m-environment" }),
+          Plot.dot(means, { fx: "group", x: "system", y: "mean", symbol: "diamond", fill: ink().paper, stroke: ink().text, strokeWidth: 1.5, r: 5, className: "m-mean" }),
+          Plot.text(means, { fx: "group", x: "system", frameAnchor: "top", dy: -12, fontSize: width < 480 ? 9 : 11, text: (d: { count: number }) => `n ${d.count}` }),
+        ],
+      };
+    },
+    [values, means, key],
+  );
+  return (
+    <>
+      <div class="choices">
+        <Choice label="Measure" options={measures.map((m) => ({ key: m.key, title: heading(m) }))} value={key} onPick={setKey} />
+        {picker}
+      </div>
+      {values.length === 0 ? (
+        <Missing>No environment has a value of this measure.</Missing>
+      ) : (
+        <Chart
+          title="Figure 3: by density of objects"
+          about={`${column ? heading(column) : ""}, ${arm}: a dot per environment (median over trials), boxes with medians, diamonds are means, n environments. Source: results.sqlite; objects counted by the grammar of each generated scene.`}
+          legend={systems.map((s) => ({ ...s, dash: "0" }))}
+          marks={{ environment: values.length, mean: means.length }}
+          make={make}
+        />
+      )}
+    </>
+  );
+}
+
+function ByFrame({ written }: { written: WrittenTable }): JSX.Element {
+  const table = useMemo(() => new Table(written), [written]);
+  const { rows, picker, arm } = useArm(table);
+  const points = useMemo(
+    () =>
+      rows.map((row) => ({
+        arm: armOf(table, row),
+        frame: table.number("frame", row) ?? 0,
+        error: table.number("error_m", row) ?? 0,
+        low: table.number("low", row),
+        high: table.number("high", row),
+        scenes: table.number("scenes", row) ?? 0,
+      })),
+    [rows],
+  );
+  const names = [...new Set(points.map((p) => p.arm))];
+  const legend = names.map((name, i) => ({ ...armStyle(i), name }));
+  const style = (name: string) => legend.find((entry) => entry.name === name);
+  const banded = points.filter((p) => p.low !== null);
+  const make = useCallback(
+    (): Plot.PlotOptions => ({
+      height: 320,
+      marginTop: 24,
+      x: { label: "frame of the tour", grid: true },
+      y: { label: "mean position error, m", grid: true, zero: true },
+      marks: [
+        ...names.flatMap((name) => [
+          Plot.areaY(banded.filter((p) => p.arm === name), { x: "frame", y1: "low", y2: "high", fill: style(name)?.color, fillOpacity: 0.18 }),
+          Plot.line(points.filter((p) => p.arm === name), { x: "frame", y: "error", stroke: style(name)?.color, strokeWidth: 2, strokeDasharray: style(name)?.dash }),
+        ]),
+        ...names.map((name, i) =>
+          Plot.dot(points.filter((p) => p.arm === name), { x: "frame", y: "error", fill: style(name)?.color, symbol: kSymbols[i % kSymbols.length], r: 2.6, className: "m-window" }),
+        ),
+      ],
+    }),
+    [points],
+  );
+  const makeCounts = useCallback(
+    (): Plot.PlotOptions => ({
+      height: 170,
+      marginTop: 24,
+      x: { label: "frame of the tour", grid: true },
+      y: { label: "environments still counted", grid: true, zero: true },
+      marks: names.map((name) =>
+        Plot.line(points.filter((p) => p.arm === name), { x: "frame", y: "scenes", curve: "step", className: "m-counted", stroke: style(name)?.color, strokeWidth: 2, strokeDasharray: style(name)?.dash }),
+      ),
+    }),
+    [points],
+  );
+  return (
+    <>
+      <div class="choices">{picker}</div>
+      <Chart
+        title="Figure 4: error against frames"
+        about={`Mean position error (m) over windows of 30 frames after SE(3) alignment, ${arm}; bands are 95 % intervals over environments. Source: results.sqlite.`}
+        legend={legend}
+        marks={{ window: points.length }}
+        make={make}
+      />
+      <Chart
+        title="Figure 4: environments still counted"
+        about="Number of environments whose tour reaches the frame and is tracked there. Source: results.sqlite."
+        legend={legend}
+        marks={{ "counted": names.length }}
+        make={makeCounts}
+      />
+    </>
+  );
+}
+
+/** Figure 2 or 5: one run from above. */
+function FromAbove({ place }: { place: number }): JSX.Element {
+  const folder = folders[place];
+  const [chosen, setChosen] = useState(0);
+  if (!folder || folder.runs === 0) return <Missing>No run is finished: there is no path to show.</Missing>;
+  const file = Math.floor(chosen / folder.runs_of_file);
+  return (
+    <Piece<WrittenTable> piece={`${place}/runs`}>
+      {(runs) => {
+        const table = new Table(runs);
+        const options = Array.from({ length: Math.min(folder.runs, 4000) }, (_, row) => ({ key: String(row), title: table.text("run", row) }));
+        return (
+          <>
+            <div class="choices">
+              <Choice label="Run" options={options} value={String(chosen)} onPick={(key) => setChosen(Number(key))} />
+              <a href={linkTo(["run", String(place), table.text("run", chosen)])}>Its page</a>
+            </div>
+            <Piece<RunPaths[]> piece={`${place}/paths${file}`}>
+              {(paths) => <Piece<WrittenTable> piece={`${place}/queries`}>{(queries) => <RunFromAbove run={paths[chosen % folder.runs_of_file]} queries={new Table(queries)} />}</Piece>}
+            </Piece>
+          </>
+        );
+      }}
+    </Piece>
+  );
+}
+
+export function RunFromAbove({ run, queries, chosen = null }: { run: RunPaths | undefined; queries: Table; chosen?: number | null }): JSX.Element {
+  const rows = useMemo(() => (run ? queries.where({ run: run.name }).filter((row) => (queries.number("point", row) ?? 0) === 0) : []), [run, queries]);
+  const sets = [...new Set(rows.map((row) => queries.text("query_set", row)))];
+  const [set, setSet] = useState(chosen === null ? (sets[0] ?? "") : queries.text("query_set", chosen));
+  const found = useMemo(() => queryPlaces(queries, rows.filter((row) => queries.text("query_set", row) === set)), [rows, set]);
+  const make = useCallback((width: number) => topView(run as RunPaths, found, width, chosen), [run, found, chosen]);
+  if (!run) return <Missing>This run left no path.</Missing>;
+  if (!run.truth && !run.estimate) return <Missing>Neither a true nor an estimated path is known: nothing was mapped.</Missing>;
+  const missing = [run.truth ? "" : "The true path is unknown.", run.estimate ? "" : "Nothing was mapped.", run.grid ? "" : "The run's folder holds no occupancy grid.", rows.length > 0 ? "" : "No queries were asked."].filter(Boolean);
+  const legend = [
+    ...(run.truth ? [{ name: "true path", color: ink().text }] : []),
+    ...(run.estimate ? [{ name: "estimated path", color: armStyle(0).color, dash: "5 3" }] : []),
+  ];
+  return (
+    <>
+      {sets.length > 1 && <Choice label="Queries" options={sets.map((key) => ({ key, title: key.replaceAll("_", " ") }))} value={set} onPick={setSet} />}
+      {missing.length > 0 && <Missing>{missing.join(" ")}</Missing>}
+      <Chart
+        title={`From above: ${run.name}`}
+        about={`x and y in m, in the frame of the dock${rows.length > 0 ? "; × true place of a query, ○ its answer (green correct, red false), a line between both" : ""}. Source: results.sqlite${run.grid ? ", map.pgm" : ""}.`}
+        legend={legend}
+        marks={{ path: Number((run.truth?.ms.length ?? 0) > 1) + Number((run.estimate?.ms.length ?? 0) > 1), query: found.truths.length, answer: found.answers.length }}
+        make={make}
+        wide
+      />
+    </>
+  );
+}
+
+
+export function FiguresPage(): JSX.Element {
+  return (
+    <>
+      <h1>Figures of the paper</h1>
+      <PerFolder>
+        {(folder, place) =>
+          folder.suite === null ? null : (
+            <Piece<Figures> piece={`${place}/figures`}>
+              {(figures) => (
+                <>
+                  <h2>Figures 2 and 5: a run from above</h2>
+                  <FromAbove place={place} />
+                  <h2>Figure 3: error by density of objects</h2>
+                  {figures.density ? <Density density={figures.density} /> : <Missing>No environment of this suite was generated, so that the number of its objects is unknown.</Missing>}
+                  <h2>Figure 4: error against frames</h2>
+                  {figures.by_frame ? <ByFrame written={figures.by_frame} /> : <Missing>No run has both a true and an estimated path.</Missing>}
+                  <h2>Section 3.3.3: candidates</h2>
+                  {figures.candidates ? <DataTable id={`cand-${place}`} table={new Table(figures.candidates)} /> : <Missing>No system reported its candidates: no queries were asked, or the system reports a trajectory alone.</Missing>}
+                  <GradedCurves graded={figures.graded} />
+                </>
+              )}
+            </Piece>
+          )
+        }
+      </PerFolder>
+    </>
+  );
+}

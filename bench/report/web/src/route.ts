@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a reader is stands behind the # of the address, so that every place has a link.
+import { useEffect, useState } from "preact/hooks";
+
+export interface Route {
+  page: string[];
+  at: URLSearchParams;
+}
+
+export function currentRoute(): Route {
+  const [path = "", query = ""] = location.hash.replace(/^#\/?/, "").split("?");
+  const page = path.split("/").filter(Boolean).map(safeDecode);
+  return { page: page.length > 0 ? page : ["overview"], at: new URLSearchParams(query) };
+}
+
+function safeDecode(text: string): string {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return text;
+  }
+}
+
+export function linkTo(page: string[], at: Record<string, string | number> = {}): string {
+  const query = new URLSearchParams(
+    Object.entries(at).map(([key, value]) => [key, String(value)] as [string, string]),
+  ).toString();
+  return `#/${page.map(encodeURIComponent).join("/")}${query === "" ? "" : `?${query}`}`;
+}
+
+/** Notes something about the place without a new step in the history; "" removes it. */
+export function note(changes: Record<string, string>): void {
+  const { page, at } = currentRoute();
+  for (const [key, value] of Object.entries(changes))
+    if (value === "") at.delete(key);
+    else at.set(key, value);
+  const query = at.toString();
+  const hash = `#/${page.map(encodeURIComponent).join("/")}${query === "" ? "" : `?${query}`}`;
+  history.replaceState(null, "", hash);
+}
+
+export function useRoute(): Route {
+  const [route, setRoute] = useState(currentRoute);
+  useEffect(() => {
+    const follow = () => setRoute(currentRoute());
+    addEventListener("hashchange", follow);
+    return () => removeEventListener("hashchange", follow);
+  }, []);
+  return route;
+}

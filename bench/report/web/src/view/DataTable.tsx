@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// A table that sorts, filters and copies. Its state stands in the address, so that it has a link.
+import type { JSX } from "preact";
+import { useMemo, useState } from "preact/hooks";
+import { type Column, type Table, heading } from "../data";
+import { currentRoute, note } from "../route";
+import { type Format, tableText } from "./copy";
+
+const kFirst = 60; // rows at first: more are one click away
+
+interface Props {
+  id: string; // unique on its page: the name of its state in the address
+  table: Table;
+  rows?: number[]; // of the table; all by default
+  usual?: string[]; // keys of the columns at first, in the table's order; all by default
+  link?: (row: number) => { column: string; href: string } | null;
+}
+
+interface Sorting {
+  key: string;
+  down: boolean;
+}
+
+function sortingIn(text: string | null): Sorting | null {
+  if (!text) return null;
+  return { key: text.replace(/^-/, ""), down: text.startsWith("-") };
+}
+
+function compare(table: Table, column: Column, down: boolean): (a: number, b: number) => number {
+  const sign = down ? -1 : 1;
+  if (column.isText)
+    return (a, b) =>
+      sign * table.text(column.key, a).localeCompare(table.text(column.key, b), "en", { numeric: true });
+  return (a, b) => {
+    const x = table.number(column.key, a);
+    const y = table.number(column.key, b);
+    if (x === null || y === null) return x === y ? 0 : x === null ? 1 : -1; // unknown last
+    return sign * (x - y);
+  };
+}
+
+/** Rows that hold every word of a filter, in some cell that is shown; "column:word" in that one. */
+function matching(table: Table, columns: Column[], rows: number[], filter: string): number[] {
+  const words = filter.toLowerCase().split(/\s+/).filter(Boolean);
+  if (words.length === 0) return rows;
+  return rows.filter((row) =>
+    words.every((word) => {
+      const [, key, value] = /^([^:]+):(.+)$/.exec(word) ?? [];
+      const asked = key ? columns.filter((c) => c.key === key || c.title === key) : [];
+      if (asked.length > 0)
+        return asked.some((c) => table.shown(c, row).toLowerCase().includes(value ?? ""));
+      return columns.some((c) => table.shown(c, row).toLowerCase().includes(word));
+    }),
+  );
+}
+
+export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element {
+  const at = currentRoute().at;
+  const [filter, setFilter] = useState(at.get(`${id}.q`) ?? "");
+  const [sorting, setSorting] = useState(sortingIn(at.get(`${id}.sort`)));
+  const [all, setAll] = useState(at.get(`${id}.all`) === "1");
+  const [most, setMost] = useState(kFirst);
+  const [said, setSaid] = useState("");
+
+  const open = table.columns.filter((c) => !c.hidden);
+  const few = usual ? open.filter((c) => usual.includes(c.key)) : open;
+  const columns = all ? open : few;
+  const found = useMemo(() => {
+    const every = rows ?? Array.from({ length: table.rows }, (_, row) => row);
+    const kept = matching(table, open, every, filter);
+    const by = sorting && table.column(sorting.key);
+    return by ? [...kept].sort(compare(table, by, sorting.down)) : kept;
+  }, [table, rows, filter, sorting]);
+
+  const sortBy = (column: Column) => {
+    const same = sorting?.key === column.key;
+    // Numbers first from the largest; a third click ends the sorting.
+    const first = !column.isText;
+    const next = !same ? { key: column.key, down: first } : sorting.down === first ? { key: column.key, down: !first } : null;
+    setSorting(next);
+    note({ [`${id}.sort`]: next ? `${next.down ? "-" : ""}${next.key}` : "" });
+  };
+  const copy = async (format: Format) => {
+    const done = await tableText(table, columns, found, format);
+    setSaid(done ? `${found.length} rows are copied as ${format}.` : "The browser denied the clipboard.");
+  };
+
+  return (
+    <section class="table" data-rows={table.rows} data-found={found.length}>
+      <div class="tools">
+        <label>
+          Filter{" "}
+          <input
+            type="search"
+            value={filter}
+            placeholder="words, or column:word"
+            onInput={(event) => {
+              setFilter(event.currentTarget.value);
+              setMost(kFirst);
+              note({ [`${id}.q`]: event.currentTarget.value });
+            }}
+          />
+        </label>
+        <span class="count" role="status">
+          {found.length} of {rows?.length ?? table.rows} rows{said && `. ${said}`}
+        </span>
+        {few.length < open.length && (
+          <label class="check">
+            <input
+              type="checkbox"
+              checked={all}
+              onChange={(event) => {
+                setAll(event.currentTarget.checked);
+                note({ [`${id}.all`]: event.currentTarget.checked ? "1" : "" });
+              }}
+            />
+            all {open.length} columns
+          </label>
+        )}
+        <span class="copies">
+          Copy as{" "}
+          {(["CSV", "Markdown", "LaTeX"] as const).map((format) => (
+            <button type="button" key={format} onClick={() => void copy(format)}>
+              {format}
+            </button>
+          ))}
+        </span>
+      </div>
+      <div class="scroll" tabIndex={0} role="region" aria-label={table.title}>
+        <table>
+          <caption class="unseen">{table.title}</caption>
+          <thead>
+            <tr>
+              {columns.map((column) => {
+                const here = sorting?.key === column.key;
+                return (
+                  <th
+                    key={column.key}
+                    scope="col"
+                    class={column.isText ? "text" : "number"}
+                    aria-sort={here ? (sorting.down ? "descending" : "ascending") : undefined}
+                  >
+                    <button type="button" onClick={() => sortBy(column)}>
+                      {heading(column)}
+                      <span aria-hidden="true">{here ? (sorting.down ? " ▾" : " ▴") : ""}</span>
+                    </button>
+                  </th>
+                );
+              })}
+            </tr>
+          </thead>
+          <tbody>
+            {found.slice(0, most).map((row) => {
+              const linked = link?.(row);
+              return (
+                <tr key={row}>
+                  {columns.map((column) => {
+                    const shown = table.shown(column, row);
+                    return (
+                      <td key={column.key} class={column.isText ? "text" : "number"}>
+                        {linked?.column === column.key ? <a href={linked.href}>{shown}</a> : shown}
+                      </td>
+                    );
+                  })}
+                </tr>
+              );
+            })}
+          </tbody>
+        </table>
+      </div>
+      {found.length > most && (
+        <p>
+          <button type="button" onClick={() => setMost(most + 500)}>
+            Show {Math.min(500, found.length - most)} more of {found.length - most}
+          </button>
+        </p>
+      )}
+      {table.note && <p class="note">{table.note}</p>}
+    </section>
+  );
+}

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// What pages share: pieces of data on their way, what is missing, folders side by side.
+import type { ComponentChildren, JSX } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import { type Folder, type Table, folders, load } from "../data";
+import { colorOf, kDashes } from "../theme";
+import type { LegendEntry } from "./Chart";
+
+/** A piece of data: undefined while it loads, an Error if it is missing. */
+export function usePiece<T>(piece: string): T | Error | undefined {
+  const [found, setFound] = useState<T | Error | undefined>(undefined);
+  useEffect(() => {
+    let live = true;
+    setFound(undefined);
+    load<T>(piece).then(
+      (value) => live && setFound(value),
+      (error: Error) => live && setFound(error),
+    );
+    return () => {
+      live = false;
+    };
+  }, [piece]);
+  return found;
+}
+
+interface PieceProps<T> {
+  piece: string;
+  children: (value: T) => ComponentChildren;
+}
+export function Piece<T>({ piece, children }: PieceProps<T>): JSX.Element {
+  const found = usePiece<T>(piece);
+  if (found === undefined) return <p class="loading">Loading …</p>;
+  if (found instanceof Error) return <Missing>{found.message}.</Missing>;
+  return <>{children(found)}</>;
+}
+
+/** States what is not there, in place of an empty chart. */
+export function Missing({ children }: { children: ComponentChildren }): JSX.Element {
+  return <p class="missing">{children}</p>;
+}
+
+/** The same for each results folder, side by side where there is room. */
+export function PerFolder({
+  children,
+}: {
+  children: (folder: Folder, place: number) => ComponentChildren;
+}): JSX.Element {
+  return (
+    <div class={folders.length > 1 ? "folders several" : "folders"}>
+      {folders.map((folder, place) => (
+        <section key={place} class="folder" aria-label={folder.name}>
+          {folders.length > 1 && <h2 class="folder-name">{folder.name}</h2>}
+          {folder.problem !== null && <Missing>{folder.problem}</Missing>}
+          {children(folder, place)}
+        </section>
+      ))}
+    </div>
+  );
+}
+
+/** Colors and dashes of the systems of a table, by the order of their first rows. */
+export function systemsOf(table: Table): LegendEntry[] {
+  return table.words("system").map((name, i) => ({
+    name,
+    color: colorOf(i),
+    dash: kDashes[i % kDashes.length],
+  }));
+}
+
+interface ChoiceProps {
+  label: string;
+  options: { key: string; title: string }[];
+  value: string;
+  onPick: (key: string) => void;
+}
+export function Choice({ label, options, value, onPick }: ChoiceProps): JSX.Element {
+  return (
+    <label class="choice">
+      {label}{" "}
+      <select value={value} onChange={(event) => onPick(event.currentTarget.value)}>
+        {options.map((option) => (
+          <option key={option.key} value={option.key}>
+            {option.title}
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
+/** Facts as a list of terms. */
+export function Facts({ facts }: { facts: [string, ComponentChildren][] }): JSX.Element {
+  return (
+    <dl class="facts">
+      {facts.map(([term, value]) => (
+        <div key={term}>
+          <dt>{term}</dt>
+          <dd>{value}</dd>
+        </div>
+      ))}
+    </dl>
+  );
+}

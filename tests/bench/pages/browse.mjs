@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opens reports as a reader does, in headless Chromium, and checks what stands there.
+//   node browse.mjs FOLDER_WITH_REPORTS SCREENSHOTS [REPORT...]
+// Prints a line per finding and, at the end, JSON of what was measured; exit code 1 at a finding.
+import { chromium } from "playwright-core";
+import { existsSync, mkdirSync, readFileSync, readdirSync } from "node:fs";
+import { join } from "node:path";
+import { createRequire } from "node:module";
+
+const [, , root, screenshots, ...asked] = process.argv;
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const program = ["/usr/bin/chromium", "/usr/bin/chromium-browser"].find(existsSync);
+const pages = ["overview", "figures", "sweeps", "failures", "audit", "speed", "runs", "reproduction"];
+// What is done, for a look at a part: STEPS=use node browse.mjs ...
+const steps = (process.env.STEPS ?? "walk,axe,use").split(",");
+const sizes = { laptop: { width: 1440, height: 900 }, phone: { width: 390, height: 844 } };
+const findings = [];
+const measured = { charts: 0, marks: 0, screenshots: 0 };
+const expect = (holds, what) => {
+  if (!holds) {
+    findings.push(what);
+    console.log(`FOUND ${what}`);
+  }
+};
+
+/** A page that notes every message and every request that leaves the folder. */
+async function open(browser, report, options = {}) {
+  const context = await browser.newContext({ viewport: sizes.laptop, ...options });
+  const page = await context.newPage();
+  const address = `file://${join(root, report)}/`;
+  // The first is said by a software imitation of a GPU, not by the page.
+  page.on("console", (message) => message.text().includes("GPU stall due to ReadPixels") || expect(false, `${report} ${page.url()}: console: ${message.text()}`));
+  page.on("pageerror", (error) => expect(false, `${report} ${page.url()}: ${error.message}`));
+  page.on("dialog", (dialog) => {
+    expect(false, `${report}: a dialog opened: ${dialog.message()}`);
+    void dialog.dismiss();
+  });
+  page.on("request", (request) => {
+    const url = request.url();
+    expect(
+      url.startsWith(address) || url.startsWith("data:") || url.startsWith("blob:"),
+      `${report}: asks for ${url.slice(0, 200)}`,
+    );
+  });
+  return { context, page, go: (place) => visit(page, `${address}index.html#/${place}`) };
+}
+
+async function settled(page) {
+  await page.waitForSelector("main", { timeout: 20000 });
+  await page.waitForFunction(() => document.querySelector(".loading") === null, undefined, { timeout: 20000 });
+  // Charts are drawn after their width is known.
+  await page.waitForFunction(
+    () => [...document.querySelectorAll(".plot-place")].every((place) => place.offsetParent === null || place.querySelector("svg")),
+    undefined,
+    { timeout: 20000 },
+  );
+}
+
+async function visit(page, address) {
+  await page.goto(address);
+  await settled(page);
+}
+
+/** Charts whose marks are not as many as their data, and charts without any. */
+function countMarks(page) {
+  return page.evaluate(() =>
+    [...document.querySelectorAll("figure.chart")].map((figure) => {
+      const expected = JSON.parse(figure.dataset.marks);
+      const drawn = {};
+      for (const label of Object.keys(expected))
+        drawn[label] = figure.querySelectorAll(`g.m-${label} :is(circle, path, rect, line, text)`).length;
+      return { title: figure.querySelector("strong").textContent, expected, drawn, visible: figure.offsetParent !== null };
+    }),
+  );
+}
+
+async function checkCharts(page, where) {
+  for (const { title, expected, drawn, visible } of await countMarks(page)) {
+    if (!visible) continue;
+    measured.charts += 1;
+    for (const [label, count] of Object.entries(expected)) {
+      measured.marks += drawn[label];
+      expect(drawn[label] === count, `${where}: ${title}: ${drawn[label]} ${label} of ${count}`);
+    }
+    expect(Object.values(drawn).some((count) => count > 0), `${where}: ${title} is empty`);
+  }
+}
+
+/** Every page in both sizes and, of the first report, in both themes: charts, width, an image. */
+async function walk(browser, report, themesOf) {
+  for (const [size, viewport] of Object.entries(sizes))
+    for (const colorScheme of themesOf[size]) {
+      const { context, page, go } = await open(browser, report, { colorScheme, viewport });
+      const run = await firstRun(page, go);
+      for (const place of run ? [...pages, run] : pages) {
+        await go(place);
+        const name = place.startsWith("run/") ? "run" : place;
+        await checkCharts(page, `${report} ${name} ${size}`);
+        const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+        expect(wide <= 0, `${report} ${name} ${size}: ${wide} px wider than the window`);
+        mkdirSync(join(screenshots, report), { recursive: true });
+        await page.screenshot({ path: join(screenshots, report, `${name}-${size}-${colorScheme}.png`), fullPage: true });
+        measured.screenshots += 1;
+      }
+      await context.close();
+    }
+}
+
+async function firstRun(page, go) {
+  await go("runs");
+  const href = await page.evaluate(() => document.querySelector("td a")?.getAttribute("href") ?? null);
+  return href ? href.slice(2) : null;
+}
+
+/** Accessibility, with the policy out of axe's way. */
+async function accessible(browser, report) {
+  for (const colorScheme of ["light", "dark"]) {
+    const { context, page, go } = await open(browser, report, { bypassCSP: true, colorScheme });
+    const run = await firstRun(page, go);
+    for (const place of run ? [...pages, run] : pages) {
+      await go(place);
+      await page.evaluate(axe);
+      const faults = await page.evaluate(async () => {
+        const found = await globalThis.axe.run(document, { resultTypes: ["violations"], preload: false });
+        return found.violations
+          .filter((v) => v.impact === "serious" || v.impact === "critical")
+          .map((v) => `${v.id}: ${v.nodes[0].html.slice(0, 140)} (${v.nodes.length})`);
+      });
+      for (const fault of faults) expect(false, `${report} ${place} ${colorScheme}: axe: ${fault}`);
+    }
+    await context.close();
+  }
+}
+
+const cells = (page, column) =>
+  page.evaluate((name) => {
+    const table = [...document.querySelectorAll("section.table")].at(-1);
+    const heads = [...table.querySelectorAll("th")].map((th) => th.textContent.replace(/ [▾▴]$/, ""));
+    const at = heads.indexOf(name);
+    return [...table.querySelectorAll("tbody tr")].map((row) => row.children[at]?.textContent ?? "");
+  }, column);
+
+/** What a reader does: sort, filter, copy, change the theme, follow and reload links. */
+async function use(browser, report) {
+  const { context, page, go } = await open(browser, report, { acceptDownloads: true });
+  await go("runs");
+  const before = await cells(page, "run");
+  await page.getByRole("button", { name: /^ATE m/ }).click();
+  const falling = (await cells(page, "ATE m")).filter(Boolean).map(Number);
+  expect(falling.length > 1 && falling.every((v, i) => i === 0 || v <= falling[i - 1]), `${report}: sorting down by ATE`);
+  await page.getByRole("button", { name: /^ATE m/ }).click();
+  const rising = (await cells(page, "ATE m")).filter(Boolean).map(Number);
+  expect(rising.every((v, i) => i === 0 || v >= rising[i - 1]), `${report}: sorting up by ATE`);
+  await page.reload();
+  await settled(page);
+  expect(JSON.stringify((await cells(page, "ATE m")).filter(Boolean).map(Number)) === JSON.stringify(rising), `${report}: a sorted table has no link`);
+  await page.getByRole("searchbox").fill("system:semantic");
+  const systems = await cells(page, "system");
+  expect(systems.length > 0 && systems.length < before.length && systems.every((s) => s === "semantic"), `${report}: filtering by system`);
+  expect(page.url().includes("q="), `${report}: a filter has no link`);
+  await context.grantPermissions(["clipboard-read", "clipboard-write"]);
+  for (const [format, sign] of [["CSV", /^run,/], ["Markdown", /^\| run /], ["LaTeX", /^\\begin\{tabular\}/]]) {
+    await page.getByRole("button", { name: format, exact: true }).click();
+    await page.waitForFunction((word) => document.body.textContent.includes(`copied as ${word}`), format);
+    const text = await page.evaluate(() => navigator.clipboard.readText());
+    expect(sign.test(text) && text.includes("semantic"), `${report}: copied as ${format}: ${text.slice(0, 60)}`);
+  }
+  const dark = () => page.evaluate(() => document.documentElement.dataset.theme);
+  const first = await dark();
+  await page.getByRole("button", { name: /theme$/ }).click();
+  expect((await dark()) !== first, `${report}: the theme does not change`);
+  await page.reload();
+  await settled(page);
+  expect((await dark()) !== first, `${report}: the theme is forgotten`);
+  // By keyboard alone: the second link of the navigation.
+  await go("overview");
+  await page.getByRole("link", { name: "Figures" }).focus();
+  await page.keyboard.press("Enter");
+  await settled(page);
+  expect((await page.locator("h1").textContent()) === "Figures of the paper", `${report}: Enter follows no link`);
+  // A failing query opens its run with that query chosen.
+  await go("failures");
+  const link = page.locator("td a").first();
+  if ((await link.count()) > 0) {
+    const frame = await link.textContent();
+    await link.click();
+    await page.waitForSelector(".query h2");
+    await settled(page);
+    expect((await page.locator(".query h2").textContent()).includes(`frame ${frame}`), `${report}: opens another query`);
+    await page.reload();
+    await page.waitForSelector(".query h2");
+    await settled(page);
+    await checkCharts(page, `${report} query`);
+  }
+  await replay(page, go, report);
+  await go("figures");
+  if ((await page.locator("figure.chart").count()) > 0)
+    for (const kind of ["SVG", "PNG"]) {
+      const [file] = await Promise.all([
+        page.waitForEvent("download"),
+        page.locator("figure.chart").last().getByRole("button", { name: new RegExp(`as ${kind}$`) }).click(),
+      ]);
+      const bytes = readFileSync(await file.path());
+      const good = kind === "SVG" ? bytes.toString().startsWith("<svg") : bytes.subarray(1, 4).toString() === "PNG";
+      expect(good && bytes.length > 1500, `${report}: saved ${kind} is ${bytes.length} bytes`);
+    }
+  await context.close();
+}
+
+/** Play, step, scrub, and a link to a moment. */
+async function replay(page, go, report) {
+  const run = await firstRun(page, go);
+  await go(`${run}?t=1000`);
+  await page.waitForSelector(".replay canvas[data-engine]", { timeout: 20000 });
+  const moment = async () => Number(await page.locator(".replay").getAttribute("data-ms"));
+  expect((await moment()) === 1000, `${report}: a link to a moment opens another: ${await moment()}`);
+  await page.getByRole("button", { name: "Step forward" }).click();
+  const next = await moment();
+  expect(next > 1000 && next < 1300, `${report}: one step leads to ${next}`);
+  await page.getByRole("button", { name: "Step back" }).click();
+  expect((await moment()) <= 1000, `${report}: a step back leads to ${await moment()}`);
+  await page.getByLabel("Moment of the tour, ms").fill("2000");
+  expect((await moment()) === 2000, `${report}: scrubbing leads to ${await moment()}`);
+  expect(page.url().includes("t=2000"), `${report}: a moment has no link`);
+  await page.getByRole("button", { name: "Play" }).click();
+  await page.waitForFunction(() => Number(document.querySelector(".replay").dataset.ms) > 2100, undefined, { timeout: 20000 });
+}
+
+/** A large study: how long until its table stands there, and what it takes. */
+async function large(browser, report) {
+  const { context, page, go } = await open(browser, report);
+  const session = await context.newCDPSession(page);
+  await session.send("Performance.enable");
+  const start = Date.now();
+  await go("runs");
+  measured.large_open_s = (Date.now() - start) / 1000;
+  const { metrics } = await session.send("Performance.getMetrics");
+  measured.large_work_s = metrics.find(({ name }) => name === "TaskDuration").value;
+  for (const place of ["overview", "figures", "failures", "speed"]) {
+    const from = Date.now();
+    await go(place);
+    measured[`large_${place}_s`] = (Date.now() - from) / 1000;
+  }
+  await session.send("HeapProfiler.collectGarbage");
+  const { usedSize } = await session.send("Runtime.getHeapUsage");
+  measured.large_heap_mb = usedSize / 1e6;
+  // The page's own work: other programs of a loaded machine are none of its time.
+  expect(measured.large_work_s <= 3, `${report}: opens after ${measured.large_work_s} s of work`);
+  expect(measured.large_heap_mb < 300, `${report}: takes ${measured.large_heap_mb} MB`);
+  await context.close();
+}
+
+const browser = await chromium.launch({
+  executablePath: program,
+  // Without the flags, pages would be painted through a software imitation of a GPU: 20 times slower.
+  args: ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader"],
+});
+measured.chromium = browser.version();
+for (const report of asked.length > 0 ? asked : readdirSync(root).sort()) {
+  if (!existsSync(join(root, report, "index.html"))) continue;
+  if (report === "large") {
+    await large(browser, report);
+    continue;
+  }
+  const whole = report === "rooms" || asked.length > 0;
+  if (steps.includes("walk")) await walk(browser, report, {
+    laptop: whole ? ["light", "dark"] : ["light"],
+    phone: whole ? ["light", "dark"] : ["dark"],
+  });
+  if (steps.includes("axe")) await accessible(browser, report);
+  if (steps.includes("use") && !report.startsWith("odd")) await use(browser, report);
+}
+await browser.close();
+console.log(JSON.stringify(measured));
+process.exit(findings.length > 0 ? 1 : 0);

@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `modelhouse report` writes: data that are those of the results, text that stays text.
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "bench/pages/page_table.hpp"
+#include "bench/pages/verdict.hpp"
+#include "bench/pages/write.hpp"
+#include "slam/core/temporary_folder.hpp"
+#include "source_dir.hpp"
+#include "tests/bench/pages/made_up_reports.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kHostile = "<img src=x onerror=alert(1)>";
+
+/// A piece of data as a page gets it.
+Json piece(const fs::path& report, const std::string& name) {
+  std::string file = name + ".js";
+  std::ranges::replace(file, '/', '-');
+  const std::string text = read_file(report / "data" / file);
+  const auto from = text.find("]=");
+  EXPECT_TRUE(text.starts_with("(globalThis.modelhouse?\?={})[")) << text.substr(0, 80);
+  return Json::parse(text.substr(from + 2, text.rfind(';') - from - 2));
+}
+
+/// Cells of a table in columns, as text and as numbers.
+struct ReadTable {
+  const Json& json;
+  const Json& column(const std::string& key) const {
+    for (const Json& c : json.at("columns"))
+      if (c.at("key") == key) return c;
+    throw std::out_of_range(key);
+  }
+  std::string text(const std::string& key, std::size_t row) const {
+    const Json& c = column(key);
+    const Json& value = c.at("values").at(row);
+    return value.is_null() ? "" : c.at("words").at(value.get<std::size_t>()).get<std::string>();
+  }
+  Json number(const std::string& key, std::size_t row) const {
+    return column(key).at("values").at(row);
+  }
+};
+
+class Reports : public testing::Test {
+ protected:
+  PagesSource source_of_suite(const Suite& suite, std::size_t frames = 120,
+                              std::size_t queries = 8) const {
+    PagesSource source{.name = suite.name, .folder = {}};
+    source.suite = suite;
+    source.results.runs = made_up_runs(suite, frames, queries);
+    put_costs(source);
+    return source;
+  }
+  /// @param environments  of one category
+  PagesSource source_of(const std::vector<std::string>& environments) const {
+    return source_of_suite(made_up_suite(work_.path(), environments));
+  }
+  /// 201 environments, two systems, ten trials.
+  PagesSource large_study() const {
+    std::vector<std::string> names;
+    for (int i = 0; i < 201; ++i) names.push_back(fmt::format("room-{}", i));
+    Suite suite = made_up_suite(work_.path(), names);
+    suite.trials = 10;
+    return source_of_suite(suite, 60, 10);
+  }
+  fs::path out() const { return work_.path() / "report"; }
+
+  TemporaryFolder work_{fs::temp_directory_path()};
+};
+
+TEST_F(Reports, TheCommittedBundleIsOfItsSources) {
+  const std::string digest = digest_of_web(fs::path(MH_SOURCE_DIR) / "bench/report/web");
+  for (const char* file : {"app.js", "replay.js"}) {
+    const std::string text = read_file(fs::path(MH_SOURCE_DIR) / "bench/pages/bundle" / file);
+    EXPECT_NE(text.find("// sources: " + digest + "\n"), std::string::npos)
+        << file << ": run `npm ci && npm run build` in bench/report/web and commit the bundle";
+  }
+}
+
+TEST_F(Reports, OpenWithoutANetworkAndRunOnlyTheirOwnScripts) {
+  const std::string index = read_file(bundle_folder() / "index.html");
+  EXPECT_NE(index.find("default-src 'none'"), std::string::npos);
+  EXPECT_EQ(index.find("unsafe"), std::string::npos);
+  for (const char* file : {"index.html", "app.css"}) {
+    const std::string text = read_file(bundle_folder() / file);
+    EXPECT_EQ(text.find("http:"), std::string::npos) << file;
+    EXPECT_EQ(text.find("https:"), std::string::npos) << file;
+  }
+}
+
+TEST_F(Reports, HoldTheFiguresOfTheirResults) {
+  const PagesSource source = source_of({"den", "hall"});
+  const WrittenPages written = write_pages(out(), std::array{source});
+  EXPECT_TRUE(fs::exists(written.index));
+  const Json json = piece(out(), "0/runs");
+  const ReadTable runs{json};
+  ASSERT_EQ(json.at("rows"), source.results.runs.size());
+  for (std::size_t i = 0; i < source.results.runs.size(); ++i) {
+    const RunResult& run = source.results.runs[i];
+    EXPECT_EQ(runs.text("run", i), run.spec.name);
+    EXPECT_EQ(runs.text("system", i), run.spec.system.name);
+    EXPECT_NEAR(runs.number("ate_rmse_m", i).get<double>(), *run.trajectory.ate_rmse_m, 1e-6);
+    EXPECT_EQ(runs.number("wall_s", i), source.cost_of.at(run.spec.name).wall_s);
+  }
+  const Json query_json = piece(out(), "0/queries");
+  const ReadTable queries{query_json};
+  EXPECT_EQ(query_json.at("rows"), 8 * source.results.runs.size());
+  std::size_t correct = 0, expected = 0;
+  for (std::size_t row = 0; row < 8 * source.results.runs.size(); ++row)
+    correct += queries.text("outcome", row) == "correct" ? 1 : 0;
+  for (const RunResult& run : source.results.runs)
+    for_each_query(run, [&](const QueryScore& q) { expected += q.correct ? 1 : 0; });
+  EXPECT_EQ(correct, expected);
+  const Json overview = piece(out(), "0/overview");
+  const Json table2 = overview.at("table2");
+  EXPECT_EQ(ReadTable{table2}.text("query_set", 2), "published, other data");
+  EXPECT_EQ(ReadTable{table2}.number("success", 3), 0.7143);
+}
+
+TEST_F(Reports, OfAResultsFileShowEstimatesInTheFrameOfTheTruth) {
+  const PagesSource made = source_of({"den"});
+  const fs::path folder = work_.path() / "results";
+  fs::create_directories(folder);
+  {
+    Store store(folder / "results.sqlite");
+    std::vector<std::pair<std::string, std::string>> keys;
+    for (const RunResult& run : made.results.runs)
+      keys.emplace_back(run.spec.name, "key-" + run.spec.name);
+    store.plan(*made.suite, {}, keys);
+    for (const RunResult& run : made.results.runs)
+      store.put("key-" + run.spec.name, run, {.wall_s = 12.5, .max_rss_mb = 99});
+  }
+  const PagesSource read = read_source(folder);
+  ASSERT_EQ(read.problem, "");
+  write_pages(out(), std::array{read});
+  const Json run = piece(out(), "0/paths0").at(0);
+  ASSERT_EQ(run.at("truth").at("mm").size(), run.at("estimate").at("mm").size());
+  for (std::size_t i = 0; i < run.at("truth").at("mm").size(); ++i)  // the drift is 20 mm
+    EXPECT_NEAR(run.at("truth").at("mm").at(i).get<int>(),
+                run.at("estimate").at("mm").at(i).get<int>(), 50);
+  const Json curve = piece(out(), "0/figures").at("by_frame");
+  for (std::size_t row = 0; row < curve.at("rows"); ++row)
+    EXPECT_LT(ReadTable{curve}.number("error_m", row).get<double>(), 0.02);
+  EXPECT_EQ(ReadTable{piece(out(), "0/runs")}.number("wall_s", 0), 12.5);
+}
+
+TEST_F(Reports, StateTheVerdictWithItsIntervalAndWhatWouldDecideIt) {
+  const PagesSource source = source_of({"a", "b", "c", "d", "e", "f"});
+  write_pages(out(), std::array{source});
+  const Json first = piece(out(), "0/overview").at("verdicts").at("sentences").at(0);
+  const auto text = first.at("text").get<std::string>();
+  EXPECT_NE(text.find("success"), std::string::npos) << text;
+  EXPECT_NE(text.find("95 % interval"), std::string::npos) << text;
+  EXPECT_NE(text.find("6 environments"), std::string::npos) << text;
+}
+
+TEST(PairsToDecide, GrowWithTheSquareOfWhatIsMissing) {
+  Comparison c;
+  c.pairs = 10;
+  c.difference = 0.02;
+  c.detectable = 0.04;
+  EXPECT_EQ(pairs_to_decide(c), 40);
+  c.difference = -0.04;
+  EXPECT_EQ(pairs_to_decide(c), 10);
+  c.clusters = 5;
+  EXPECT_EQ(pairs_to_decide(c), 5);
+  c.difference = 0;
+  EXPECT_EQ(pairs_to_decide(c), std::nullopt);
+}
+
+TEST_F(Reports, ShowNamesAsText) {
+  PagesSource source = source_of({"den"});
+  source.name = kHostile;
+  source.suite->name = kHostile;
+  source.suite->environments[0].name = kHostile;
+  source.suite->systems[0].name = kHostile;
+  for (RunResult& run : source.results.runs) run.spec.environment.name = kHostile;
+  source.results.failed.push_back({source.results.runs[0].spec, "</script><script>alert(1)"});
+  write_pages(out(), std::array{source});
+  for (const auto& entry : fs::directory_iterator(out() / "data")) {
+    const std::string text = read_file(entry.path());
+    EXPECT_EQ(text.find('<'), std::string::npos) << entry.path();
+    EXPECT_NE(text.find("(globalThis.modelhouse"), std::string::npos);
+  }
+  EXPECT_EQ(ReadTable{piece(out(), "0/runs")}.text("environment", 0), kHostile);
+}
+
+TEST_F(Reports, SayWhatIsMissing) {
+  // A trajectory and nothing else; a recording without truth; a failed run.
+  PagesSource source = source_of({"den"});
+  RunResult& outside = source.results.runs[0];
+  outside.points = {PointResult()};
+  outside.mapping.calls.clear();
+  RunResult& blind = source.results.runs[1];
+  blind.truth.clear();
+  blind.trajectory = {};
+  blind.points = {PointResult()};
+  source.results.failed.push_back({outside.spec, "out of memory"});
+  source.cost_of.clear();
+  write_pages(out(), std::array{source});
+  EXPECT_TRUE(piece(out(), "0/overview").at("table2").is_null());
+  EXPECT_TRUE(piece(out(), "0/figures").at("density").is_null());
+  EXPECT_TRUE(piece(out(), "0/reproduction").is_null());
+  EXPECT_EQ(piece(out(), "0/queries").at("rows"), 0);
+  EXPECT_TRUE(piece(out(), "0/paths0").at(1).at("truth").is_null());
+  EXPECT_EQ(ReadTable{piece(out(), "0/runs")}.text("error", 2), "out of memory");
+}
+
+TEST_F(Reports, OfAFileThatIsNoResultsFileSayWhy) {
+  const fs::path folder = work_.path() / "old";
+  fs::create_directories(folder);
+  write_atomically(folder / "results.sqlite", "SQLite format 2: something older");
+  const PagesSource source = read_source(folder);
+  EXPECT_FALSE(source.problem.empty());
+  write_pages(out(), std::array{source});
+  EXPECT_EQ(piece(out(), "index").at("folders").at(0).at("problem"), source.problem);
+  EXPECT_THROW(read_source(work_.path() / "nowhere"), InputError);
+}
+
+TEST_F(Reports, OfAStudyOf4020RunsStaySmall) {
+  const PagesSource source = large_study();
+  ASSERT_EQ(source.results.runs.size(), 4020U);
+  const WrittenPages written = write_pages(out(), std::array{source});
+  EXPECT_LT(written.bytes, 25'000'000U);
+  RecordProperty("megabytes", std::to_string(written.bytes / 1'000'000));
+}
+
+// ---- in a browser -------------------------------------------------------------------------------
+
+struct Ended {
+  int code = 0;
+  std::string out;
+};
+Ended ended(const std::string& command) {
+  Ended made;
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  std::array<char, 4096> part{};
+  while (pipe != nullptr && fgets(part.data(), part.size(), pipe) != nullptr)
+    made.out += part.data();
+  made.code = WEXITSTATUS(pclose(pipe));
+  return made;
+}
+
+/// The npm packages of the web sources, installed once beside the build; why not, if they cannot
+/// be.
+std::string installed_packages(const fs::path& home) {
+  const fs::path web = fs::path(MH_SOURCE_DIR) / "bench/report/web";
+  fs::create_directories(home);
+  for (const char* file : {"package.json", "package-lock.json"})
+    fs::copy_file(web / file, home / file, fs::copy_options::overwrite_existing);
+  const Ended installed = ended(
+      fmt::format("cd '{}' && flock lock sh -c 'cmp -s package-lock.json installed || (npm ci "
+                  "--ignore-scripts --no-audit --no-fund && cp package-lock.json installed)'",
+                  home.string()));
+  return installed.code == 0 ? "" : installed.out;
+}
+
+bool has_browser() {
+  return fs::exists("/usr/bin/chromium") || fs::exists("/usr/bin/chromium-browser");
+}
+
+/// Reports of every kind, each in a folder of its own.
+class InTheBrowser : public Reports {
+ protected:
+  static void write(const std::string& name, const PagesSource& source) {
+    write_pages(root() / name, std::array{source});
+  }
+  static fs::path root() { return fs::path(MH_BROWSER) / "reports"; }
+
+  /// A suite with a sweep over two settings.
+  Suite sweep() const {
+    const fs::path file = work_.path() / "sweep.yaml";
+    write_atomically(file,
+                     "environments:\n- {name: den, category: rooms, scene: d.yaml, "
+                     "mapping_tour: t.yaml}\nrobot: r.yaml\nvocabulary: v.mhvoc\n"
+                     "levels: [pepper.yaml]\nsystems: [semantic, plain]\nlabels: [exact]\n"
+                     "parameters: {map: fixed, semantics.gamma: [0, 0.5, 1, 2], "
+                     "semantics.xi: [1, 1.5, 2]}\n");
+    return parse_suite(read_file(file), file, {}, false);
+  }
+
+  void write_all() const {
+    fs::remove_all(root());
+    Suite suite = made_up_suite(work_.path(), {"bath", "kitchen", "lobby", "office", "study"});
+    suite.name = suite.environments[1].name = suite.systems[1].name = kHostile;
+    int seed = 0;
+    for (Environment& e : suite.environments) {
+      const char* category = seed % 2 == 0 ? "bathroom" : "kitchen";
+      e.category = category;
+      e.scene = fmt::format("generated:{}:{}", category, seed++);
+    }
+    PagesSource rooms = source_of_suite(suite);
+    rooms.audit = {
+        {"rows", {{{"system", "semantic"}, {"wrong_candidates", 0.1}, {"few_matches", 0.05}}}}};
+    write("rooms", rooms);
+    PagesSource later = rooms;
+    later.name = "after";
+    write_pages(root() / "two", std::array{rooms, later});
+    write("sweep", source_of_suite(sweep()));
+    PagesSource bare = source_of({"den"});
+    for (RunResult& run : bare.results.runs) {
+      run.points = {PointResult()};
+      run.mapping.calls.clear();
+      run.truth.clear();
+      run.trajectory = {};
+    }
+    bare.cost_of.clear();
+    bare.results.failed.push_back({bare.results.runs[0].spec, kHostile});
+    write("odd-bare", bare);
+    write("odd-older", {.name = "older", .folder = {}, .problem = "results.sqlite: is older"});
+    write("large", large_study());
+  }
+};
+
+TEST_F(InTheBrowser, EveryPageShowsItsDataAndAnswersItsReader) {
+  if (!has_browser()) GTEST_SKIP() << "chromium is missing (packages.txt)";
+  if (ended("command -v node && command -v npm").code != 0) GTEST_SKIP() << "npm is missing";
+  const fs::path home = MH_BROWSER;
+  if (const std::string why = installed_packages(home); !why.empty())
+    GTEST_SKIP() << "npm cannot install the packages: " << why;
+  fs::copy_file(fs::path(MH_SOURCE_DIR) / "tests/bench/pages/browse.mjs", home / "browse.mjs",
+                fs::copy_options::overwrite_existing);
+  write_all();
+  const Ended seen = ended(fmt::format("cd '{}' && node browse.mjs '{}' '{}'", home.string(),
+                                       root().string(), (home / "screenshots").string()));
+  EXPECT_EQ(seen.code, 0) << seen.out;
+  std::puts(seen.out.c_str());
+}
+
+TEST_F(InTheBrowser, TheCommittedBundleIsWhatItsSourcesGive) {
+  if (ended("command -v node && command -v npm").code != 0) GTEST_SKIP() << "npm is missing";
+  const fs::path home = MH_BROWSER;
+  if (const std::string why = installed_packages(home); !why.empty())
+    GTEST_SKIP() << "npm cannot install the packages: " << why;
+  const fs::path web = fs::path(MH_SOURCE_DIR) / "bench/report/web";
+  fs::remove_all(home / "sources");
+  fs::create_directories(home / "sources");
+  for (const auto& entry : fs::directory_iterator(web))
+    if (entry.path().filename() != "node_modules")
+      fs::copy(entry.path(), home / "sources" / entry.path().filename(),
+               fs::copy_options::recursive);
+  fs::create_directory_symlink("../node_modules", home / "sources/node_modules");
+  const Ended built = ended(fmt::format("cd '{}' && node --preserve-symlinks build.mjs '{}'",
+                                        (home / "sources").string(), out().string()));
+  ASSERT_EQ(built.code, 0) << built.out;
+  for (const char* file : {"app.js", "app.css", "replay.js", "index.html", "LICENSES.txt"})
+    EXPECT_EQ(read_file(out() / file), read_file(bundle_folder() / file)) << file;
+}
+
+}  // namespace
+}  // namespace mh
