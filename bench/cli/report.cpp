@@ -16,14 +16,14 @@
 namespace mh::cli {
 namespace {
 
-struct Options {
+struct ReportArguments {
   std::vector<std::string> results, replay;
   std::string out, cache;
 };
 
 /// Runs those again whose replay is asked for: by name, `failed` (runs with a query that was not
 /// answered correctly) or `all`. @throws InputError if no results hold a run of a name.
-void add_replays(std::vector<PagesSource>& sources, const Options& options) {
+void add_replays(std::vector<PagesSource>& sources, const ReportArguments& options) {
   const ReplayTools tools{
       .cache = Cache(options.cache.empty() ? Cache::default_folder()
                                            : std::filesystem::absolute(options.cache)),
@@ -50,7 +50,7 @@ void add_replays(std::vector<PagesSource>& sources, const Options& options) {
       throw InputError(fmt::format("--replay: no run is named '{}'{}", word, hint(word, names)));
 }
 
-void run(const Options& options) {
+void run(const ReportArguments& options) {
   std::vector<PagesSource> sources;
   for (const std::string& folder : options.results) sources.push_back(read_source(folder));
   const OutputFolder folder(options.out, "report", names_of_pages());
@@ -99,7 +99,7 @@ void add_plot(CLI::App& app) {
 }  // namespace
 
 void add_report(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReportArguments>();
   CLI::App* command = app.add_subcommand(
       "report", "Results as pages for a browser, which open from the disk without a network.");
   command
