@@ -59,17 +59,18 @@ std::string place(const Vector2d& p) {
 }
 
 /// @throws InputError if the map shows nothing between ground and head.
-OccupancyGrid grid_of(const std::string& map, const ObstacleGridConfig& band) {
-  OccupancyGrid grid = obstacle_grid(VoxelMap::load_ot(map), band);
+OccupancyGrid grid_of(const VoxelMap& map, const std::string& file,
+                      const ObstacleGridConfig& band) {
+  OccupancyGrid grid = obstacle_grid(map, band);
   if (grid.cells.empty())
-    throw InputError(fmt::format("{}: knows nothing between {} m and {} m", map,
+    throw InputError(fmt::format("{}: knows nothing between {} m and {} m", file,
                                  band.floor_z_m + band.ground_m,
                                  band.floor_z_m + band.robot_height_m));
   return grid;
 }
 
 void run(const MapGridArguments& options) {
-  const OccupancyGrid grid = grid_of(options.map, options.band);
+  const OccupancyGrid grid = grid_of(VoxelMap::load_ot(options.map), options.map, options.band);
   save_map_server(grid, options.out, options.raw ? GridMode::kRaw : GridMode::kTrinary);
   std::size_t free = 0, occupied = 0;
   for (const std::int8_t cell : grid.cells) {
@@ -108,17 +109,6 @@ void run(const MapObjectsArguments& options) {
                o.score, o.center_m.x(), o.center_m.y(), o.center_m.z(), size_m.x(), size_m.y(),
                size_m.z());
   }
-}
-
-/// The grid to plan on: what is not known to be free is blocked.
-FloorGrid floor_grid_of(const OccupancyGrid& grid) {
-  Grid2d<std::uint8_t> blocked(grid.cells.width(), grid.cells.height());
-  std::transform(grid.cells.begin(), grid.cells.end(), blocked.begin(),
-                 [](std::int8_t cell) { return static_cast<std::uint8_t>(cell != kFreeCell); });
-  return {.resolution_m = grid.resolution_m,
-          .origin_m = grid.center_m(0, 0),
-          .clearance_m = clearances_m(blocked, grid.resolution_m),
-          .occupant = {}};
 }
 
 /// A goal next to an object: the place with the clearance that is nearest to its box.
@@ -165,8 +155,9 @@ void run(const MapPlanArguments& options) {
   if (options.to.empty() == options.thing.empty())
     throw InputError("plan: the goal is either --to or --to-object");
   const VoxelMap map = VoxelMap::load_ot(options.map);
-  const OccupancyGrid grid = grid_of(options.map, options.band);
-  const FloorGrid floor = floor_grid_of(grid);
+  const OccupancyGrid grid = grid_of(map, options.map, options.band);
+  const FloorGrid floor =
+      floor_grid_of(blocked_cells(grid), grid.resolution_m, grid.center_m(0, 0));
   const double clearance_m = options.radius_m + options.margin_m;
   const Vector2d from(options.from[0], options.from[1]);
   require_clear("start", from, grid, floor, clearance_m);

@@ -22,15 +22,8 @@ using Eigen::Vector2d;
 constexpr double kMoved_m = 0.25, kTurned_rad = 0.26;
 
 KnownMap known_map(const OccupancyGrid& grid) {
-  KnownMap known;
-  known.grid.resolution_m = grid.resolution_m;
-  known.grid.origin_m = grid.center_m(0, 0);
-  const int w = grid.cells.width(), h = grid.cells.height();
-  known.blocked = Grid2d<std::uint8_t>(w, h);
-  for (int y = 0; y < h; ++y)
-    for (int x = 0; x < w; ++x) known.blocked(x, y) = grid.cells(x, y) != kFreeCell;
-  known.grid.clearance_m = clearances_m(known.blocked, grid.resolution_m);
-  known.grid.occupant = Grid2d<std::uint16_t>(w, h);
+  KnownMap known{.grid = {}, .blocked = blocked_cells(grid), .walls = {}};
+  known.grid = floor_grid_of(known.blocked, grid.resolution_m, grid.center_m(0, 0));
   return known;
 }
 

@@ -88,13 +88,8 @@ void print_row(const char* what, double ms, double limit_ms, double octomap_ms) 
 }
 
 void plan_all(const OccupancyGrid& grid) {
-  Grid2d<std::uint8_t> blocked(grid.cells.width(), grid.cells.height());
-  std::transform(grid.cells.begin(), grid.cells.end(), blocked.begin(),
-                 [](std::int8_t cell) { return static_cast<std::uint8_t>(cell != kFreeCell); });
-  const FloorGrid floor{.resolution_m = grid.resolution_m,
-                        .origin_m = grid.center_m(0, 0),
-                        .clearance_m = clearances_m(blocked, grid.resolution_m),
-                        .occupant = {}};
+  const FloorGrid floor =
+      floor_grid_of(blocked_cells(grid), grid.resolution_m, grid.center_m(0, 0));
   const std::vector<Eigen::Vector2d> places =
       spread_places(floor, largest_region(floor, 0.31), 1.0, 12, 1);
   std::vector<double> times_ms;

@@ -137,4 +137,12 @@ Grid2d<float> clearances_m(const Grid2d<std::uint8_t>& blocked, double resolutio
   return clearance_m;
 }
 
+FloorGrid floor_grid_of(const Grid2d<std::uint8_t>& blocked, double resolution_m,
+                        const Eigen::Vector2d& origin_m) {
+  return {.resolution_m = resolution_m,
+          .origin_m = origin_m,
+          .clearance_m = clearances_m(blocked, resolution_m),
+          .occupant = {}};
+}
+
 }  // namespace mh

@@ -138,17 +138,12 @@ std::vector<Vector2d> LocalMap::obstacles_near(const Vector2d& place_m, double r
 }
 
 FloorGrid LocalMap::grid() const {
-  FloorGrid grid;
-  grid.resolution_m = config_.resolution_m;
-  grid.origin_m = center_of(0, 0);
   Grid2d<std::uint8_t> blocked(cells_, cells_);
   for (int y = 0; y < cells_; ++y)
     for (int x = 0; x < cells_; ++x)
       blocked(x, y) =
           (layers_(x, y) & kSeen) == 0 || (layers_(x, y) & (kLaser | kDepth | kTouched)) != 0;
-  grid.clearance_m = clearances_m(blocked, config_.resolution_m);
-  grid.occupant = Grid2d<std::uint16_t>(cells_, cells_);
-  return grid;
+  return floor_grid_of(blocked, config_.resolution_m, center_of(0, 0));
 }
 
 }  // namespace mh

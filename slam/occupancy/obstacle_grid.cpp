@@ -101,6 +101,14 @@ OccupancyGrid obstacle_grid(const VoxelMap& map, const ObstacleGridConfig& confi
   return grid;
 }
 
+Grid2d<std::uint8_t> blocked_cells(const OccupancyGrid& grid) {
+  Grid2d<std::uint8_t> blocked(grid.cells.width(), grid.cells.height());
+  std::ranges::transform(grid.cells, blocked.begin(), [](std::int8_t cell) {
+    return static_cast<std::uint8_t>(cell != kFreeCell);
+  });
+  return blocked;
+}
+
 void ScanGrid::tell(const SE3& map_from_sensor, const RangeScan& scan, int sign) {
   const Vector2d eye = map_from_sensor.translation().head<2>() / resolution_m_;
   const Vector2d ahead = map_from_sensor.rotation().col(0).head<2>();

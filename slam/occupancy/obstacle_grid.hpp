@@ -31,6 +31,9 @@ struct ObstacleGridConfig {
 /// @throws InputError if the heights leave nothing between them.
 OccupancyGrid obstacle_grid(const VoxelMap& map, const ObstacleGridConfig& config = {});
 
+/// 1 in each cell that is not known to be free: where nobody should plan to go.
+Grid2d<std::uint8_t> blocked_cells(const OccupancyGrid& grid);
+
 /// One turn of a planar laser. A range of 0, or not finite, or outside [min, max], tells nothing.
 struct RangeScan {
   double first_angle_rad = 0;      ///< of ranges_m[0], about z of the sensor, 0 = its x axis

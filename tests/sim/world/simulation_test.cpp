@@ -90,9 +90,10 @@ TEST(Simulation, ItsSensorsReadWhatTheyReadAlongAFinishedPath) {
     EXPECT_EQ(seen[i].reading.sonars_m, readings.moments[i + 1].sonars_m) << i;
     EXPECT_EQ(seen[i].odom_from_base.translation(),
               readings.odometry[i + 1].world_from_camera.translation());
-    if (i > 0)
+    if (i > 0) {
       EXPECT_EQ(seen[i].reading.specific_force_m_per_s2,
                 readings.moments[i].specific_force_m_per_s2);
+    }
   }
 }
 

@@ -85,8 +85,9 @@ TEST(VoxelMap, VotesAreOfTheClassThatIsSeen) {
     if (voxel.label == kVoid) return;
     ++labeled;
     EXPECT_TRUE(voxel.occupied);
-    if (std::abs(voxel.center_m(0.05).x()) < 1 && std::abs(voxel.center_m(0.05).y()) < 0.9)
+    if (std::abs(voxel.center_m(0.05).x()) < 1 && std::abs(voxel.center_m(0.05).y()) < 0.9) {
       EXPECT_TRUE(voxel.label == kFloorLabel || voxel.label == kCeilingLabel);
+    }
     EXPECT_LE(voxel.label_views, voxel.votes);
     EXPECT_LE(voxel.votes, voxel.hits);
   });
