@@ -35,7 +35,7 @@ struct Asked {
   std::vector<double> co_visible = {};  ///< by keyframe id
   std::vector<double> distance = {};    ///< by keyframe id, m + rad
   std::vector<KeyframeId> nearest = {}, best_in_view = {};
-  std::map<std::pair<double, bool>, TrialMemo> tried = {};  ///< by xi and void policy
+  std::map<TrialKey, TrialMemo> tried = {};
 };
 
 double distance_of(const SE3& a, const SE3& b) {
@@ -138,7 +138,7 @@ class RunAuditor {
           apart(asked, truth_.views[asked.nearest.front().value]->world_from_camera);
 
     const SemanticConfig& settings = frozen_.config.semantics;
-    TrialMemo& tried = asked.tried[{settings.xi, settings.void_is_a_label}];
+    TrialMemo& tried = asked.tried[trial_key(settings)];
     if (!tried.with_every_keyframe) tried.with_every_keyframe = match_every_keyframe(asked);
     audit.matches[static_cast<std::size_t>(MatchStage::kEveryKeyframe)] =
         *tried.with_every_keyframe;
@@ -151,8 +151,7 @@ class RunAuditor {
   Retrieved retrieve(Asked& asked, ReleasedScores released, QueryAudit& audit) {
     const StepObservers unobserved;
     const Query query = with_words(asked.frame, frozen_, unobserved);
-    const auto selection =
-        choose_candidates(frozen_.map, query.words.vector, frozen_.config, &released);
+    const auto selection = choose_candidates(frozen_.map, query, frozen_.config, &released);
     Retrieved retrieved;
     for (const auto& candidate : selection.candidates)
       retrieved.candidates.push_back(candidate.keyframe);

@@ -208,7 +208,8 @@ void run(RenderArguments options) {
     progress.say("warning: " + note);
   std::vector<MovingObstacle> others;
   if (pedestrian) others.push_back(as_obstacle(scene, *pedestrian));
-  const DrivenPath driven = travel(scene, robot, motion, others);
+  const DrivenPath driven =
+      hurried(travel(scene, robot, motion, others), motion, sensors, robot.camera.rate_hz);
   const Camera camera = mounted != nullptr ? mounted->camera : robot.camera;
   const Trajectory path =
       mounted != nullptr ? path_of(*mounted, *robot.equipment, driven) : driven.camera;

@@ -2,6 +2,8 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 #include "bench/studies/sheets.hpp"
 #include "scenes/images/write_image.hpp"
 #include "sim/sensors/config.hpp"
+#include "sim/sensors/difficulty.hpp"
 #include "sim/world/lit_scene.hpp"
 
 namespace mh::cli {
@@ -22,6 +25,7 @@ namespace fs = std::filesystem;
 
 struct SensorsArguments {
   std::string scene, out, level;
+  std::optional<double> difficulty;
 };
 
 void print_settings(SensorsArguments options) {
@@ -30,6 +34,7 @@ void print_settings(SensorsArguments options) {
     resolve(options.level, Shipped::kLevel);
     config = load_sensor_config(options.level);
   }
+  if (options.difficulty) config = at_difficulty(config, *options.difficulty);
   fmt::print("{}", format_sensor_config(config, true));
 }
 
@@ -77,16 +82,22 @@ void add_sensors(CLI::App& app) {
   CLI::Option* level =
       command->add_option("--level", options->level,
                           "For --print-settings: level (YAML), or the name of a shipped one");
-  level->needs(command->add_flag_callback(
+  CLI::Option* difficulty = command->add_option(
+      "--difficulty", options->difficulty,
+      "For --print-settings: makes the level harder, 0 (as it is) to 1 (docs/sensors.md)");
+  CLI::Option* print = command->add_flag_callback(
       "--print-settings",
       [options] {
         print_settings(*options);
         throw CLI::Success();
       },
-      "Prints every key of a sensor level with its value, meaning and range"));
+      "Prints every key of a sensor level with its value, meaning and range");
+  level->needs(print);
+  difficulty->needs(level);
   command->footer(
       "Examples:\n  modelhouse sensors plot --out out/sensors\n"
-      "  modelhouse sensors --print-settings --level handheld");
+      "  modelhouse sensors --print-settings --level handheld\n"
+      "  modelhouse sensors --print-settings --level handheld --difficulty 0.5 > harder.yaml");
 
   CLI::App* p = command->add_subcommand(
       "plot", "Plots the figure of each model's source beside what is measured of the model.");

@@ -31,7 +31,8 @@ struct Shades {
     return {mix(low.r, high.r), mix(low.g, high.g), mix(low.b, high.b)};
   }
 };
-constexpr Shades kGood = {{236, 243, 251}, {8, 69, 148}}, kBad = {{253, 243, 231}, {166, 54, 3}};
+constexpr Shades kMoreIsBetter = {{236, 243, 251}, {8, 69, 148}},
+                 kLessIsBetter = {{253, 243, 231}, {166, 54, 3}};
 
 /// The measure that a panel shows for each point.
 struct PanelMeasure {
@@ -47,10 +48,11 @@ std::optional<double> in_percent(const std::optional<double>& share) {
 
 std::vector<PanelMeasure> panel_measures() {
   return {
-      {"correct answers, %", kGood, 1, [](const QuerySummary& s) { return in_percent(s.correct); }},
-      {"false answers, %", kBad, 1,
+      {"correct answers, %", kMoreIsBetter, 1,
+       [](const QuerySummary& s) { return in_percent(s.correct); }},
+      {"false answers, %", kLessIsBetter, 1,
        [](const QuerySummary& s) { return in_percent(s.false_positive); }},
-      {"mean distance, mm", kBad, 1, [](const QuerySummary& s) -> std::optional<double> {
+      {"mean distance, mm", kLessIsBetter, 1, [](const QuerySummary& s) -> std::optional<double> {
          if (!s.distance_mean_m) return std::nullopt;
          return 1e3 * *s.distance_mean_m;
        }}};

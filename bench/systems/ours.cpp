@@ -4,11 +4,11 @@
 #include <cassert>
 #include <map>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "slam/pipeline/map_file.hpp"
+#include "slam/relocalize/candidate_trial.hpp"
 
 namespace mh {
 namespace {
@@ -55,11 +55,11 @@ class OurSession : public RelocalizationSession {
 class OurMemo : public QueryMemo {
  public:
   LocalizeMemo& of(RandomStream stream, const SemanticConfig& settings) {
-    return known_[{stream.key(), settings.xi, settings.void_is_a_label}];
+    return known_[{stream.key(), trial_key(settings)}];
   }
 
  private:
-  std::map<std::tuple<std::uint64_t, double, bool>, LocalizeMemo> known_;
+  std::map<std::pair<std::uint64_t, TrialKey>, LocalizeMemo> known_;
 };
 
 /// A session that uses a memo while it is lost.

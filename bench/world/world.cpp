@@ -201,12 +201,15 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
           as_obstacle(*scene, *pedestrian, static_cast<double>(frames_before) / rate_hz));
     return others;
   };
-  world.mapping = input("mapping_tour", environment.mapping_tour, [&] {
-    return travel(*scene, world.robot, environment.mapping_tour, obstacles(0));
-  });
+  const auto along = [&](const Scene& in, const std::string& motion,
+                         const std::vector<MovingObstacle>& others = {}) {
+    return hurried(travel(in, world.robot, motion, others), motion, world.sensors, rate_hz);
+  };
+  world.mapping = input("mapping_tour", environment.mapping_tour,
+                        [&] { return along(*scene, environment.mapping_tour, obstacles(0)); });
   if (environment.kidnapped_tour) {
-    const DrivenPath elsewhere = travel(*scene, world.robot, environment.kidnapped_tour->string(),
-                                        obstacles(world.mapping.camera.size()));
+    const DrivenPath elsewhere =
+        along(*scene, *environment.kidnapped_tour, obstacles(world.mapping.camera.size()));
     world.mapping = joined(std::move(world.mapping), elsewhere, rate_hz);
   }
   lose_frames(world.mapping);
@@ -218,8 +221,7 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   if (spec.graded) world.graded = graded_queries(spec, world);
   if (!environment.query_tour) return built;
   world.second = input("query_tour", *environment.query_tour, [&] {
-    return travel(world.second_scene ? *world.second_scene : *scene, world.robot,
-                  *environment.query_tour);
+    return along(world.second_scene ? *world.second_scene : *scene, *environment.query_tour);
   });
   lose_frames(*world.second);
   shorten(*world.second);

@@ -27,7 +27,7 @@ using Eigen::Vector3f;
 
 // Incremented whenever the same scene and config result in different light.
 constexpr std::uint64_t kBakeVersion = 2;
-constexpr int kLanes = 16;
+constexpr int kRaysAtOnce = 16;
 constexpr int kVerticesPerJob = 1024;
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -89,7 +89,7 @@ void set_ray(RTCRay16& rays, int lane, const Vector3f& origin, const Vector3f& d
 }
 
 int whole_packets(int count) {
-  return (count + kLanes - 1) / kLanes * kLanes;
+  return (count + kRaysAtOnce - 1) / kRaysAtOnce * kRaysAtOnce;
 }
 
 struct Gathered {
@@ -253,12 +253,12 @@ class Baker {
   template <class Aim>
   float shadowed_mean(std::size_t v, float side, const Turn& turn, const Aim& aim) const {
     float sum = 0.0F;
-    for (int first = 0; first < shadow_.size(); first += kLanes) {
+    for (int first = 0; first < shadow_.size(); first += kRaysAtOnce) {
       alignas(64) RTCRay16 rays;
-      alignas(64) std::array<int, kLanes> valid;
-      std::array<float, kLanes> weight;
+      alignas(64) std::array<int, kRaysAtOnce> valid;
+      std::array<float, kRaysAtOnce> weight;
       bool any = false;
-      for (int i = 0; i < kLanes; ++i) {
+      for (int i = 0; i < kRaysAtOnce; ++i) {
         Vector3f way = Vector3f::UnitZ();
         float end = 0.0F;
         const Vector3f origin = points_.origin_m(v, first + i, turn.shift, side);
@@ -269,7 +269,7 @@ class Baker {
       }
       if (!any) continue;
       bvh_.occluded16(valid.data(), rays);
-      for (int i = 0; i < kLanes; ++i)
+      for (int i = 0; i < kRaysAtOnce; ++i)
         if (valid[i] != 0 && rays.tfar[i] >= 0.0F) sum += weight[i];
     }
     return sum / static_cast<float>(shadow_.size());
@@ -287,9 +287,9 @@ class Baker {
         random_turn(RandomStream(config_.seed).fork(static_cast<std::uint64_t>(round)), v);
     Vector3f sum = Vector3f::Zero();
     int backs = 0;
-    for (int first = 0; first < pattern.size(); first += kLanes) {
+    for (int first = 0; first < pattern.size(); first += kRaysAtOnce) {
       alignas(64) RTCRayHit16 packet;
-      for (int i = 0; i < kLanes; ++i) {
+      for (int i = 0; i < kRaysAtOnce; ++i) {
         const Vector2f p = pattern.at(first + i, turn.rotation, turn.shift);
         const float up = std::sqrt(std::max(0.0F, 1.0F - p.squaredNorm()));
         set_ray(packet.ray, i, points_.origin_m(v, first + i, turn.shift, side),
@@ -297,7 +297,7 @@ class Baker {
         packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
       }
       bvh_.intersect16(valid_.data(), packet, false);
-      for (int i = 0; i < kLanes; ++i) {
+      for (int i = 0; i < kRaysAtOnce; ++i) {
         if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
           sum += sky_;
           continue;
@@ -343,7 +343,7 @@ class Baker {
   BakePoints points_;
   VertexNeighbors neighbors_{scene_};
   DiscPattern hemisphere_, rough_, shadow_;
-  alignas(64) std::array<int, kLanes> valid_{};
+  alignas(64) std::array<int, kRaysAtOnce> valid_{};
   Colors albedo_;  // by material
   Colors glow_;    // by face
   Vector3f sky_ = Vector3f::Zero(), ambient_ = Vector3f::Zero();

@@ -250,6 +250,22 @@ void fields(C& c, Visit& v) {
     "fraction of frames that arrive black (blank) or not at all (dropped)");
 }
 
+/// A camera in somebody's hand passes along its path in less time: sim/world/travel.hpp, hurried().
+struct HurryConfig {
+  bool enabled = false;
+  double speed = 1.0;  ///< multiple of the path's own
+  double factor() const { return enabled ? speed : 1.0; }
+  friend bool operator==(const HurryConfig&, const HurryConfig&) = default;
+};
+
+template <Either<HurryConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, speed] = c;
+  v("enabled", enabled, setting::kSwitch, "a camera in somebody's hand is in a hurry");
+  v("speed", speed, setting::required({1, 10}),
+    "multiple of the speed of the path; a robot that drives keeps its own");
+}
+
 /// How finely motion within a frame is sampled: the image is the mean, in linear light, of images
 /// along the motion. This controls the accuracy of the simulation; it is not a sensor fault, so
 /// levels do not set it.
@@ -274,6 +290,7 @@ struct SensorConfig {
   DepthOffsetConfig depth_offset;
   LostFramesConfig blank_frames;    ///< arrive black, without depth and labels
   LostFramesConfig dropped_frames;  ///< never arrive
+  HurryConfig hurry;
   LabelConfig labels;
   MotionSampling motion_sampling;
   friend bool operator==(const SensorConfig&, const SensorConfig&) = default;
@@ -285,8 +302,8 @@ template <Either<SensorConfig> C, class Visit>
 void for_each_setting(C& config, Visit&& visit) {
   [[maybe_unused]] auto& [depth_noise, color_noise, shot_noise, auto_exposure, vignetting,
                           lens_blur, processing, lens_distortion, motion_blur, rolling_shutter,
-                          depth_offset, blank_frames, dropped_frames, labels, motion_sampling] =
-      config;
+                          depth_offset, blank_frames, dropped_frames, hurry, labels,
+                          motion_sampling] = config;
   const auto part = [&](const char* name, auto& c) {
     visit.section(name);
     fields(c, visit);
@@ -304,6 +321,7 @@ void for_each_setting(C& config, Visit&& visit) {
   part("depth_offset", depth_offset);
   part("blank_frames", blank_frames);
   part("dropped_frames", dropped_frames);
+  part("hurry", hurry);
   for_each_setting(labels, visit);
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -19,6 +20,7 @@
 #include "sim/motion/commands.hpp"
 #include "sim/motion/replay.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/interpolate.hpp"
 #include "slam/core/path_length.hpp"
 #include "slam/core/trajectory_io.hpp"
 
@@ -155,6 +157,24 @@ bool cut(DrivenPath& path, std::size_t max_frames) {
   path.turned_in_place_rad = path.contact_time_s = path.max_penetration_m =
       std::numeric_limits<double>::quiet_NaN();
   return true;
+}
+
+DrivenPath hurried(DrivenPath path, const std::string& motion, const SensorConfig& level,
+                   double rate_hz) {
+  const double speed = level.hurry.factor();
+  if (speed == 1 || is_driven(motion)) return path;
+  for (Trajectory* poses : {&path.camera, &path.base}) {
+    const Trajectory slow = std::exchange(*poses, {});
+    for (std::size_t i = 0; !slow.empty(); ++i) {
+      const double after_ns = static_cast<double>(i) * 1e9 / rate_hz;
+      const Stamp first_ns = slow.front().stamp_ns;
+      const auto pose = interpolated_pose(slow, first_ns + std::llround(after_ns * speed));
+      if (!pose) break;
+      poses->push_back({first_ns + std::llround(after_ns), *pose});
+    }
+  }
+  path.contact_time_s /= speed;
+  return path;
 }
 
 DrivenPath joined(DrivenPath first, const DrivenPath& second, double rate_hz) {

@@ -8,6 +8,7 @@
 #include "robots/model/robot.hpp"
 #include "scenes/scene.hpp"
 #include "sim/motion/motion.hpp"
+#include "sim/sensors/config.hpp"
 #include "sim/world/pedestrian.hpp"
 
 namespace mh {
@@ -29,6 +30,12 @@ DrivenPath travel(const Scene& scene, const Robot& robot, const std::string& mot
 /// Keeps the first frames of a path and their length; the other measures, which need the whole
 /// drive, become NaN. @returns whether anything was cut off
 bool cut(DrivenPath& path, std::size_t max_frames);
+
+/// Returns the path of a camera in somebody's hand in less time, as the level's `hurry` says: poses
+/// at the camera's rate, interpolated where a moment falls between two of them. A robot that drives
+/// keeps its own speed. @param motion  what `path` came from
+DrivenPath hurried(DrivenPath path, const std::string& motion, const SensorConfig& level,
+                   double rate_hz);
 
 /// Concatenates two paths, without motion in between: the stamps continue at the camera's rate.
 DrivenPath joined(DrivenPath first, const DrivenPath& second, double rate_hz);

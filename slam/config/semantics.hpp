@@ -22,7 +22,30 @@ constexpr std::array<std::pair<std::string_view, Overlap>, 3> setting_words(Over
            {"words", Overlap::kWords}}};
 }
 
-/// The paper's parameters.
+/// Which candidates relocalization tries.
+enum class CandidateLists {
+  kOne,        ///< those of Algorithm 1
+  kSideBySide  ///< in turns with those of Algorithm 1 over words alone
+};
+
+constexpr std::array<std::pair<std::string_view, CandidateLists>, 2> setting_words(CandidateLists) {
+  return {{{"one", CandidateLists::kOne}, {"side_by_side", CandidateLists::kSideBySide}}};
+}
+
+/// Where relocalization also looks for matches if a candidate has too few by words.
+enum class WiderSearch {
+  kNone,
+  kSameLabel,  ///< among all keypoints with the landmark's label
+  kAll         ///< among all keypoints; uses no label, so the plain system has it, too
+};
+
+constexpr std::array<std::pair<std::string_view, WiderSearch>, 3> setting_words(WiderSearch) {
+  return {{{"none", WiderSearch::kNone},
+           {"same_label", WiderSearch::kSameLabel},
+           {"all", WiderSearch::kAll}}};
+}
+
+/// The paper's parameters, and from `candidates` on rules beyond it (slam/relocalize/rules.hpp).
 struct SemanticConfig {
   double gamma = 1.0;
   double label_mass = 0.0;
@@ -31,6 +54,10 @@ struct SemanticConfig {
   double beta = 0.75;
   Overlap overlap = Overlap::kAugmented;
   bool void_is_a_label = false;
+  CandidateLists candidates = CandidateLists::kOne;
+  double nearness = 0.0;
+  WiderSearch wider_search = WiderSearch::kNone;
+  double min_agreement = 0.0;
 
   /// These settings with the method switched off: the plain system. Settings that are not part of
   /// the method (alpha, beta) are kept.
@@ -40,6 +67,10 @@ struct SemanticConfig {
     plain.label_mass = 0.0;
     plain.xi = 1.0;
     plain.overlap = Overlap::kWords;
+    plain.candidates = CandidateLists::kOne;
+    plain.nearness = 0.0;
+    if (wider_search == WiderSearch::kSameLabel) plain.wider_search = WiderSearch::kNone;
+    plain.min_agreement = 0.0;
     return plain;
   }
   /// The plain system's defaults.
@@ -49,7 +80,8 @@ struct SemanticConfig {
 
 template <Either<SemanticConfig> C, class Visit>
 void fields(C& c, Visit& v) {
-  auto& [gamma, label_mass, xi, alpha, beta, overlap, void_is_a_label] = c;
+  auto& [gamma, label_mass, xi, alpha, beta, overlap, void_is_a_label, candidates, nearness,
+         wider_search, min_agreement] = c;
   v("gamma", gamma, {0, setting::kMany}, "weight of a label, equation 1");
   v("label_mass", label_mass, {0, 0.99},
     "if not 0: queries take the gamma with which labels hold this share of the keyframes' vectors");
@@ -58,6 +90,14 @@ void fields(C& c, Visit& v) {
   v("beta", beta, setting::kOpenShare, "equation 6");
   v("overlap", overlap, {}, "what equation 3 counts: labels, augmented or words");
   v("void_is_a_label", void_is_a_label, setting::kSwitch, "void disagrees with every label");
+  v("candidates", candidates, {},
+    "of relocalization: one list, or words' and labels' side_by_side");
+  v("nearness", nearness, {0, 100},
+    "power of the agreement of sizes by which a candidate's score is multiplied; 0: off");
+  v("wider_search", wider_search, {},
+    "below relocalize.min_word_matches: none, same_label or all keypoints");
+  v("min_agreement", min_agreement, setting::kShare,
+    "of the labels of a pose's inliers, or relocalization refuses it; 0: off");
 }
 
 }  // namespace mh

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/match/context.hpp"
 
+#include <algorithm>
+
 #include "slam/config/slam.hpp"
 
 namespace mh {
@@ -51,8 +53,17 @@ SemanticMatcher semantic_matcher(const SlamContext& context, Matcher matcher, Ga
   return {context.config.semantics, at(context.counts, matcher), log};
 }
 
-std::vector<LandmarkId> match_landmarks(const Keyframe& keyframe, const Query& query,
-                                        const SlamContext& context, Matcher matcher) {
+namespace {
+
+/// Features of the two views that may match: those under equal nodes.
+struct Nodes {
+  const WordIndex& keyframe;
+  const WordIndex& query;
+};
+
+std::vector<LandmarkId> match_under(const Nodes& nodes, const Keyframe& keyframe,
+                                    const Query& query, const SlamContext& context,
+                                    Matcher matcher) {
   const MatchConfig& config = context.config.match;
   std::vector<std::uint8_t> with_landmark(keyframe.features.size());
   for (std::size_t i = 0; i < with_landmark.size(); ++i)
@@ -61,8 +72,8 @@ std::vector<LandmarkId> match_landmarks(const Keyframe& keyframe, const Query& q
   const auto matches = traced(
       context, matcher,
       [&](SemanticMatcher equation_2) {
-        return match_by_words({keyframe.features, keyframe.words, with_landmark},
-                              {query.features, query.words, all},
+        return match_by_words({keyframe.features, nodes.keyframe, with_landmark},
+                              {query.features, nodes.query, all},
                               {.max_distance = static_cast<float>(config.max_distance),
                                .ratio = static_cast<float>(config.ratio)},
                               equation_2);
@@ -78,6 +89,35 @@ std::vector<LandmarkId> match_landmarks(const Keyframe& keyframe, const Query& q
   std::vector<LandmarkId> landmarks(query.features.size());
   for (const FeatureMatch& m : matches) landmarks[m.b] = keyframe.landmarks[m.a];
   return landmarks;
+}
+
+/// All features under one node, or each under its label.
+WordIndex nodes_of(const Features& features, WiderSearch where) {
+  WordIndex index;
+  for (std::uint32_t i = 0; i < features.size(); ++i) {
+    const ClassId label = features.keypoints[i].label;
+    if (where == WiderSearch::kAll)
+      index.by_node.emplace_back(0, i);
+    else if (label != kVoid)
+      index.by_node.emplace_back(label, i);
+  }
+  std::sort(index.by_node.begin(), index.by_node.end());
+  return index;
+}
+
+}  // namespace
+
+std::vector<LandmarkId> match_landmarks(const Keyframe& keyframe, const Query& query,
+                                        const SlamContext& context, Matcher matcher) {
+  return match_under({keyframe.words, query.words}, keyframe, query, context, matcher);
+}
+
+std::vector<LandmarkId> match_landmarks_widely(const Keyframe& keyframe, const Query& query,
+                                               const SlamContext& context, Matcher matcher,
+                                               WiderSearch where) {
+  const WordIndex of_keyframe = nodes_of(keyframe.features, where);
+  const WordIndex of_query = nodes_of(query.features, where);
+  return match_under({of_keyframe, of_query}, keyframe, query, context, matcher);
 }
 
 std::vector<std::int32_t> find_landmarks(const ProjectionSearch& search, const SlamContext& context,

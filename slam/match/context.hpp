@@ -37,6 +37,12 @@ SemanticMatcher semantic_matcher(const SlamContext& context, Matcher matcher,
 std::vector<LandmarkId> match_landmarks(const Keyframe& keyframe, const Query& query,
                                         const SlamContext& context, Matcher matcher);
 
+/// The same among all features of the frame, or those of the landmark's label, instead of those
+/// under the same vocabulary node. Void has no label. @pre where is not kNone
+std::vector<LandmarkId> match_landmarks_widely(const Keyframe& keyframe, const Query& query,
+                                               const SlamContext& context, Matcher matcher,
+                                               WiderSearch where);
+
 /// A search for landmarks in the current frame, where they should appear.
 struct ProjectionSearch {
   const Query& query;

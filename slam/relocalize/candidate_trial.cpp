@@ -9,6 +9,7 @@
 #include "slam/config/slam.hpp"
 #include "slam/match/expect.hpp"
 #include "slam/optimize/epnp.hpp"
+#include "slam/relocalize/rules.hpp"
 
 namespace mh {
 namespace {
@@ -25,13 +26,9 @@ class CandidateTrial {
     const Keyframe& keyframe = context_.map.at(candidate);
     const RelocalizeConfig& config = context_.config.relocalize;
     if (givens_.camera_from_world) return search_around(*givens_.camera_from_world, keyframe);
-    attempt.landmarks = match_landmarks(keyframe, query_, context_, matchers_.words);
-    for (std::uint32_t i = 0; i < attempt.landmarks.size(); ++i)
-      if (attempt.landmarks[i].valid() && !is_allowed(i, attempt.landmarks[i]))
-        attempt.landmarks[i] = LandmarkId{};
-    attempt.inliers =
-        static_cast<int>(std::count_if(attempt.landmarks.begin(), attempt.landmarks.end(),
-                                       [](LandmarkId id) { return id.valid(); }));
+    attempt.landmarks = allowed(match_landmarks(keyframe, query_, context_, matchers_.words));
+    attempt.inliers = count(attempt.landmarks);
+    if (attempt.inliers < config.min_word_matches) search_widely(keyframe, attempt);
     if (attempt.inliers < config.min_word_matches) return attempt;
 
     attempt.stage = RelocalizationStage::kPnp;
@@ -39,10 +36,38 @@ class CandidateTrial {
       accept_ours(keyframe, stream, attempt);
     else
       accept_as_orb_slam2(keyframe, stream, attempt);
+    if (attempt.stage == RelocalizationStage::kVerified && !labels_agree(attempt))
+      attempt.stage = RelocalizationStage::kInliers;
     return attempt;
   }
 
  private:
+  std::vector<LandmarkId> allowed(std::vector<LandmarkId> landmarks) const {
+    for (std::uint32_t i = 0; i < landmarks.size(); ++i)
+      if (landmarks[i].valid() && !is_allowed(i, landmarks[i])) landmarks[i] = LandmarkId{};
+    return landmarks;
+  }
+
+  static int count(const std::vector<LandmarkId>& landmarks) {
+    return static_cast<int>(std::ranges::count_if(landmarks, &LandmarkId::valid));
+  }
+
+  void search_widely(const Keyframe& keyframe, CandidateAttempt& attempt) const {
+    const WiderSearch where = context_.config.semantics.wider_search;
+    if (where == WiderSearch::kNone || matchers_.words != Matcher::kRelocalizationWords) return;
+    std::vector<LandmarkId> landmarks =
+        allowed(match_landmarks_widely(keyframe, query_, context_, matchers_.words, where));
+    const int found = count(landmarks);
+    if (found <= attempt.inliers) return;
+    attempt.landmarks = std::move(landmarks);
+    attempt.inliers = found;
+  }
+
+  bool labels_agree(const CandidateAttempt& attempt) const {
+    const double least = context_.config.semantics.min_agreement;
+    return least <= 0 || label_agreement(query_.features, attempt.landmarks, context_.map) >= least;
+  }
+
   void accept_ours(const Keyframe& keyframe, RandomStream stream, CandidateAttempt& attempt) {
     const RelocalizeConfig& config = context_.config.relocalize;
     std::vector<std::uint32_t> feature_of;

@@ -3,8 +3,10 @@
 
 #include <functional>
 #include <optional>
+#include <tuple>
 #include <vector>
 
+#include "slam/config/semantics.hpp"
 #include "slam/core/random.hpp"
 #include "slam/match/context.hpp"
 #include "slam/relocalize/outcome.hpp"
@@ -17,6 +19,13 @@ struct PlaceMatchers {
   Matcher words = Matcher::kRelocalizationWords;
   Matcher projection = Matcher::kRelocalizationProjection;
 };
+
+/// What a trial depends on of the settings that queries may have of their own: under equal ones a
+/// result can be reused.
+using TrialKey = std::tuple<double, bool, WiderSearch, double>;
+inline TrialKey trial_key(const SemanticConfig& s) {
+  return {s.xi, s.void_is_a_label, s.wider_search, s.min_agreement};
+}
 
 /// Result of trying one candidate.
 struct CandidateAttempt {

@@ -2,8 +2,11 @@
 #include "slam/relocalize/relocalize.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 
 #include "slam/config/slam.hpp"
+#include "slam/relocalize/rules.hpp"
 
 namespace mh {
 namespace {
@@ -115,14 +118,35 @@ Camera lenient(const Camera& camera, const RelocalizeConfig& config) {
 
 }  // namespace
 
-CandidateSelection<KeyframeId> choose_candidates(const Map& map, const AugmentedVector& query,
+namespace {
+
+/// Multiplies each score by how alike the sizes of things are, to a power, and sorts again.
+void prefer_near(std::vector<Candidate<KeyframeId>>& candidates, const Map& map,
+                 const Features& features, double power) {
+  for (Candidate<KeyframeId>& candidate : candidates)
+    candidate.score *=
+        std::pow(size_agreement(features, map.at(candidate.keyframe).features), power);
+  std::ranges::stable_sort(candidates, std::ranges::greater{}, &Candidate<KeyframeId>::score);
+}
+
+}  // namespace
+
+CandidateSelection<KeyframeId> choose_candidates(const Map& map, const Query& query,
                                                  const SlamConfig& config,
                                                  ReleasedScores* released) {
   const NeighborScores neighbors = config.relocalize.neighbor_scores;
   ReleasedScores cleared;
   if (neighbors != NeighborScores::kAsReleased)
     released = neighbors == NeighborScores::kCleared ? &cleared : nullptr;
-  return select_keyframes(map, query, config.semantics, released);
+  const SemanticConfig& rules = config.semantics;
+  CandidateSelection<KeyframeId> selection =
+      select_keyframes(map, query.words.vector, rules, released);
+  if (rules.candidates == CandidateLists::kSideBySide)
+    selection.candidates =
+        side_by_side(selection.candidates,
+                     select_keyframes(map, words_alone(query.words.vector), rules).candidates);
+  if (rules.nearness > 0) prefer_near(selection.candidates, map, query.features, rules.nearness);
+  return selection;
 }
 
 CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamContext& context,
@@ -136,7 +160,7 @@ CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamC
 RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,
                                 AttemptMemo* memo, ReleasedScores* released) {
   const SlamConfig& config = context.config;
-  const auto selection = choose_candidates(context.map, query.words.vector, config, released);
+  const auto selection = choose_candidates(context.map, query, config, released);
   std::vector<KeyframeId> candidates;
   for (const auto& candidate : selection.candidates) candidates.push_back(candidate.keyframe);
   const Camera camera = lenient(context.camera, config.relocalize);

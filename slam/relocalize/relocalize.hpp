@@ -50,9 +50,10 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
                                     const SlamContext& context, RandomStream stream,
                                     PlaceMatchers matchers = {}, AttemptMemo* memo = nullptr);
 
-/// The candidates of relocalize(): select_keyframes() under RelocalizeConfig::neighbor_scores.
+/// The candidates of relocalize(): select_keyframes() under RelocalizeConfig::neighbor_scores, and
+/// the rules of SemanticConfig beyond the paper.
 /// @param released  of earlier queries; used and updated if the settings say so. @pre not null then
-CandidateSelection<KeyframeId> choose_candidates(const Map& map, const AugmentedVector& query,
+CandidateSelection<KeyframeId> choose_candidates(const Map& map, const Query& query,
                                                  const SlamConfig& config,
                                                  ReleasedScores* released);
 

@@ -90,5 +90,29 @@ TEST(Travel, FloorThatLiesHigherLiftsThePathAndNothingElse) {
   }
 }
 
+TEST(Travel, AHurriedHandPassesTheSameWayInLessTime) {
+  const Scene room = settled(ScannedRoom{}.build());
+  const Robot robot = test::pepper();
+  SensorConfig level = exact_sensors();
+  const DrivenPath path = travel(room, robot, "handheld:0:90");
+  const auto hurry = [&](const std::string& motion, double speed) {
+    level.hurry = {.enabled = true, .speed = speed};
+    return hurried(path, motion, level, robot.camera.rate_hz);
+  };
+  EXPECT_EQ(hurry("handheld:0:90", 1).camera.size(), path.camera.size());
+  EXPECT_EQ(hurry("auto:0", 3).camera.size(), path.camera.size());
+  const DrivenPath thrice = hurry("handheld:0:90", 3);
+  ASSERT_EQ(thrice.camera.size(), 30U);
+  ASSERT_EQ(thrice.base.size(), 30U);
+  for (std::size_t i = 0; i < thrice.camera.size(); ++i) {
+    const SE3 apart =
+        thrice.camera[i].world_from_camera.inverse() * path.camera[3 * i].world_from_camera;
+    EXPECT_LT(apart.log().norm(), 1e-6) << i;  // stamps are whole nanoseconds
+    EXPECT_EQ(thrice.camera[i].stamp_ns, path.camera[i].stamp_ns);
+  }
+  // 89 frames of the path at 1.5 fit in 59 steps.
+  EXPECT_EQ(hurry("handheld:0:90", 1.5).camera.size(), 60U);
+}
+
 }  // namespace
 }  // namespace mh

@@ -180,6 +180,64 @@ TEST(SemanticLaw, NeutralSettingsOnLabeledInputAreThePlainSystem) {
   }
 }
 
+SemanticConfig with_all_rules() {
+  SemanticConfig rules;
+  rules.candidates = CandidateLists::kSideBySide;
+  rules.nearness = 2;
+  rules.wider_search = WiderSearch::kSameLabel;
+  rules.min_agreement = 0.5;
+  return rules;
+}
+
+TEST(SemanticLaw, RulesBeyondThePaperAreOffInThePlainSystem) {
+  EXPECT_EQ(with_all_rules().neutralized(), SemanticConfig::neutral());
+  // All keypoints are compared without their labels: the plain system may, too.
+  SemanticConfig everywhere;
+  everywhere.wider_search = WiderSearch::kAll;
+  EXPECT_EQ(everywhere.neutralized().wider_search, WiderSearch::kAll);
+}
+
+TEST(SemanticLaw, WithoutLabelsRulesBeyondThePaperChangeNothing) {
+  const Drive plain = run(SemanticConfig::neutral(), 60, false);
+  SlamState ruled = plain.state;
+  set_query_settings(ruled, with_all_rules());
+  for (const int i : {3, 30, 55}) {
+    Tracker a, b;
+    const StepReport ra = localize(ruled, a, frame(i, false), RandomStream(i));
+    const StepReport rb = localize(plain.state, b, frame(i, false), RandomStream(i));
+    ASSERT_TRUE(ra.world_from_camera && rb.world_from_camera);
+    EXPECT_EQ(ra.world_from_camera->translation(), rb.world_from_camera->translation());
+    EXPECT_EQ(ra.candidates->final, rb.candidates->final);
+  }
+}
+
+TEST(Localize, AWiderSearchFindsWhatWordsDoNot) {
+  // Similar words still choose the keyframes, but no keypoint falls under the same node.
+  SlamState state = mapped().state;
+  for (const Keyframe& keyframe : mapped().state.map.keyframes()) {
+    if (keyframe.erased) continue;
+    WordIndex words = keyframe.words;
+    for (auto& [node, feature] : words.by_node) node += 1'000'000;
+    state.map.set_words(keyframe.id, words);
+  }
+  const auto locate = [&](WiderSearch where, bool labels) {
+    SemanticConfig settings = state.config.semantics;
+    settings.wider_search = where;
+    set_query_settings(state, settings);
+    Tracker tracker;
+    return localize(state, tracker, frame(40, labels), RandomStream(5));
+  };
+  EXPECT_EQ(locate(WiderSearch::kNone, true).relocalization, RelocalizationStage::kMatches);
+  EXPECT_EQ(locate(WiderSearch::kSameLabel, false).relocalization, RelocalizationStage::kMatches);
+  const StepReport among_labels = locate(WiderSearch::kSameLabel, true);
+  const StepReport everywhere = locate(WiderSearch::kAll, true);
+  EXPECT_EQ(among_labels.relocalization, RelocalizationStage::kVerified);
+  EXPECT_EQ(everywhere.relocalization, RelocalizationStage::kVerified);
+  EXPECT_EQ(at(among_labels.matches, Matcher::kRelocalizationWords).penalized, 0);
+  EXPECT_GT(at(everywhere.matches, Matcher::kRelocalizationWords).compared,
+            at(among_labels.matches, Matcher::kRelocalizationWords).compared);
+}
+
 TEST(SemanticLaw, WithoutLabelsTheSemanticSystemIsThePlainOne) {
   const Drive semantic = run(SemanticConfig{}, 60, false);
   const Drive plain = run(SemanticConfig::neutral(), 60, false);

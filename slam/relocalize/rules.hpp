@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "slam/core/ids.hpp"
+#include "slam/features/features.hpp"
+#include "slam/map/map.hpp"
+#include "slam/semantics/candidate_selection.hpp"
+
+// Rules that use labels beyond the paper (the last settings of SemanticConfig). Each is off by
+// default, and off means: the paper's results, bit for bit.
+
+namespace mh {
+
+/// How alike the sizes are in which two views show the same classes, in (0, 1]: near 1 where they
+/// see things from the same distance. The size of a class in a view is the root mean square
+/// distance of its keypoints from their mean, px; classes with fewer than five keypoints in either
+/// view are left out. Mean over shared classes of the smaller size divided by the larger, weighted
+/// by the smaller number of keypoints; 1 if no class is shared.
+double size_agreement(const Features& a, const Features& b);
+
+/// Two lists in turns: the first of a, the first of b, the second of a, and so on; what occurred
+/// before is left out. A list with itself is itself.
+std::vector<Candidate<KeyframeId>> side_by_side(std::span<const Candidate<KeyframeId>> a,
+                                                std::span<const Candidate<KeyframeId>> b);
+
+/// Share of matches whose two classes are known and equal, among those with both known; 1 if fewer
+/// than ten have both.
+/// @param landmarks  of each feature of the view; invalid = none
+double label_agreement(const Features& view, std::span<const LandmarkId> landmarks, const Map& map);
+
+}  // namespace mh
