@@ -5,6 +5,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <xxhash.h>
 
 #include "bench/plan/gate_config.hpp"
 #include "bench/plan/names.hpp"
@@ -124,6 +125,22 @@ std::vector<Labels> read_labels(const YamlReader& list, const Suite& suite,
   return all;
 }
 
+/// A study states its design before its evaluation begins, and its suite names that text by digest:
+/// a design that changed meanwhile is refused.
+void check_design(YamlReader study, const SuitePaths& paths) {
+  const fs::path file = named_file(study.at("design"), paths);
+  const std::string stated = study.string("xxh3");
+  study.finish();
+  if (!paths.must_exist) return;
+  const std::string text = read_text(file);
+  const std::string found = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+  if (found != stated)
+    study.at("xxh3").fail(
+        fmt::format("the design {} has changed since it was stated: its xxh3 is {}, not '{}'. "
+                    "Restore it, or state a new study",
+                    file.string(), found, stated));
+}
+
 /// The value of a variable of the suite. @throws InputError if it was not set.
 std::string value_of(const std::string& name, const SuiteOverrides& overrides) {
   const auto value = overrides.set.find(name);
@@ -188,6 +205,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   suite.labels = read_labels(yaml.at("labels"), suite, paths.folder);
   suite.trials = static_cast<int>(yaml.integer_or("trials", suite.trials, 1, 1000));
   suite.seed = static_cast<std::uint64_t>(yaml.integer_or("seed", 0, 0, INT64_MAX / 2));
+  if (const auto study = yaml.find("study")) check_design(*study, paths);
   if (const auto published = yaml.find("published"))
     suite.published = one_of(*published, kPublished);
   if (auto slam = yaml.find("slam")) {

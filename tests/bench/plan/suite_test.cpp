@@ -81,6 +81,18 @@ TEST_F(SuiteFile, ReadsWhatStandsThere) {
   EXPECT_EQ(suite.seed, 7u);
 }
 
+TEST_F(SuiteFile, RefusesADesignThatChangedSinceItWasStated) {
+  std::ofstream(folder_ / "design.md") << "The question, and how it is answered.\n";
+  const std::string study = "study: {design: design.md, xxh3: 'ca917f622f4946c3'}\n";
+  EXPECT_EQ(error(study), "");
+  std::ofstream(folder_ / "design.md", std::ios::app) << "And another one.\n";
+  const std::string message = error(study);
+  EXPECT_NE(message.find("suite.yaml:7"), std::string::npos) << message;
+  EXPECT_NE(message.find("design.md has changed since it was stated"), std::string::npos)
+      << message;
+  EXPECT_NE(error("study: {design: none.md, xxh3: '0'}\n").find("none.md"), std::string::npos);
+}
+
 TEST_F(SuiteFile, IsReadElsewhereWhereTheFilesThatItNamesNeedNotBe) {
   const Suite here = load("");
   const std::string content = read_file(here.file);
