@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <wordexp.h>
+
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "bench/audit/audit.hpp"
@@ -18,6 +22,8 @@
 #include "bench/episodes/report.hpp"
 #include "bench/protocol/config.hpp"
 #include "bench/run/run.hpp"
+#include "bench/run/slurm.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/settings_io.hpp"
 
@@ -38,6 +44,9 @@ struct BenchArguments {
   bool no_cache = false;
   bool retry_failed = false;
   bool audit = false;
+  std::optional<std::size_t> slurm;
+  std::string sbatch;
+  std::vector<std::string> of_share;  // arguments as given, for each share of --slurm
   double time_limit_s = BenchOptions{}.time_limit_s;
   double memory_limit_mb = 0;
   double images_limit_gb = BenchOptions{}.images_limit_gb;
@@ -72,6 +81,8 @@ void run_kidnappings(const Suite& suite, const BenchArguments& options) {
   if (options.frames) throw InputError("--frames: a suite with `episodes` maps its whole tour");
   if (options.shard != "1/1")
     throw InputError("--shard: a suite with `episodes` runs as a whole; it resumes");
+  if (options.slurm)
+    throw InputError("--slurm: a suite with `episodes` runs as a whole, on one machine");
   EpisodeOptions episodes;
   episodes.out = options.out.empty() ? usual_folder(suite) : std::filesystem::path(options.out);
   episodes.jobs = options.jobs;
@@ -90,6 +101,42 @@ void run_kidnappings(const Suite& suite, const BenchArguments& options) {
     fmt::print("{}\n", episodes_json(suite, runs).dump(2));
   else
     fmt::print("{}\nresults in {}\n", table, episodes.out.string());
+}
+
+/// The words of a text, as a shell splits and expands them.
+std::vector<std::string> words_in(const std::string& option, const std::string& text) {
+  wordexp_t found{};
+  if (wordexp(text.c_str(), &found, WRDE_NOCMD | WRDE_UNDEF) != 0)
+    throw InputError(fmt::format("{} '{}': are not words as a shell takes them", option, text));
+  std::vector<std::string> words(found.we_wordv, found.we_wordv + found.we_wordc);
+  wordfree(&found);
+  return words;
+}
+
+void run_shares(const Suite& suite, const SuiteOverrides& overrides, BenchOptions bench,
+                const BenchArguments& options) {
+  if (bench.shard.of > 1) throw InputError("--slurm: makes the shards itself, no --shard");
+  if (options.audit) throw InputError("--slurm: audits nothing: run `audit` afterward");
+  SlurmOptions slurm{.shares = *options.slurm,
+                     .sbatch = words_in("--sbatch", options.sbatch),
+                     .arguments = {"bench", options.suite}};
+  std::ranges::copy(options.of_share, std::back_inserter(slurm.arguments));
+  std::vector<std::string> names = names_written(bench.out, suite);
+  if (!names.empty()) names.emplace_back("slurm");
+  const OutputFolder folder(bench.out, "bench", names);
+  Progress progress("bench");
+  bench.say = [&](std::string_view stage) { progress.say(stage); };
+  const SlurmResults made = run_on_slurm(suite, overrides, bench, slurm);
+  progress.end();
+  std::string missing;
+  if (!made.incomplete.empty())
+    missing = fmt::format("{} missing: of share {} of {}; see {}; the same command goes on",
+                          counted(made.results.missing.size(), "run"),
+                          fmt::join(made.incomplete, ", "), *options.slurm,
+                          share_folder(bench.out, made.incomplete.front()).string() + ".log");
+  if (!made.results.failed.empty() && !missing.empty()) progress.say(missing);
+  finish(bench.out, suite, made.results, options.json);
+  if (!missing.empty()) throw MachineError(missing);
 }
 
 void run(BenchArguments options) {
@@ -112,6 +159,7 @@ void run(BenchArguments options) {
   bench.memory_limit_mb = options.memory_limit_mb;
   bench.images_limit_gb = options.images_limit_gb;
   bench.retry_failed = options.retry_failed;
+  if (options.slurm) return run_shares(suite, overrides, bench, options);
   std::vector<std::string> names = names_written(bench.out, suite);
   if (options.audit) {
     if (bench.shard.of > 1) throw InputError("--audit: takes the whole suite, no --shard");
@@ -156,9 +204,19 @@ void add_bench(CLI::App& app) {
                       "Another scene or mesh file (default: the suite's)");
   options->frame.add_to(*command);
   options->set.add_to(*command);
-  command->add_option(
-      "--shard", options->shard,
-      "i/n: takes the i-th of n equal parts of the runs; `merge` puts them together");
+  command->add_option("--shard", options->shard,
+                      "i/n: takes the i-th of n shares of the runs, of about equal cost; `merge` "
+                      "puts them together");
+  CLI::Option* const slurm =
+      command
+          ->add_option("--slurm", options->slurm,
+                       "Submits an array of N tasks to Slurm, each with a share of the runs, waits "
+                       "for them and merges their results")
+          ->check(CLI::Range(1, 1000));
+  command
+      ->add_option("--sbatch", options->sbatch,
+                   "Further options of sbatch: --sbatch=\"--partition=long --mem=8G\"")
+      ->needs(slurm);
   command->add_option("--cache", options->cache,
                       "Cache folder for expensive results (default: $XDG_CACHE_HOME/modelhouse)");
   command->add_flag("--no-cache", options->no_cache, "Rebuilds everything, caches nothing");
@@ -184,7 +242,19 @@ void add_bench(CLI::App& app) {
   command->footer(
       "Examples:\n  modelhouse bench model_house --jobs 2\n"
       "  modelhouse bench my_suite.yaml --scene house.glb --frames 600");
-  command->callback([options] { run(*options); });
+  command->callback([=] {
+    // What the submitting command alone does; a share has a folder of its own.
+    const std::set<std::string> not_of_share{"suite",   "--out",   "--json",  "--shard",
+                                             "--audit", "--slurm", "--sbatch"};
+    for (const CLI::Option* option : command->get_options()) {
+      const std::string name = option->get_name();
+      if (option->count() == 0 || not_of_share.contains(name)) continue;
+      const bool flag = option->get_items_expected_max() == 0;
+      for (const std::string& value : option->results())
+        options->of_share.push_back(flag ? name : name + "=" + value);
+    }
+    run(*options);
+  });
 }
 
 }  // namespace mh::cli

@@ -6,9 +6,8 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/finish.hpp"
+#include "bench/run/merge_parts.hpp"
 #include "bench/run/run.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
 
 namespace mh::cli {
 namespace {
@@ -21,50 +20,16 @@ struct MergeArguments {
   bool json = false;
 };
 
-/// Copies what the output lacks of a file or folder. Each file appears whole or not at all, so that
-/// a copy that was stopped by a full disk can be resumed.
-void copy_missing(const fs::path& from, const fs::path& to) {
-  if (fs::is_directory(from)) {
-    make_output_folder(to);
-    for (const auto& entry : fs::directory_iterator(from))
-      copy_missing(entry.path(), to / entry.path().filename());
-  } else if (fs::is_regular_file(from) && !fs::exists(to)) {
-    write_atomically(to, read_file(from));
-  }
-}
-
-/// Copies the folders of runs and the images that the output lacks.
-void copy_files(const fs::path& from, const fs::path& to) {
-  for (const auto& entry : fs::directory_iterator(from)) {
-    const std::string name = entry.path().filename().string();
-    const bool run = entry.is_directory() && fs::exists(entry.path() / "estimate.tum");
-    const bool views = name.starts_with("views") && name.ends_with(".png");
-    if (run || views) copy_missing(entry.path(), to / name);
-  }
-}
-
 void run(const MergeArguments& options) {
-  const fs::path results = fs::path(options.out) / "results.sqlite";
-  std::vector<fs::path> all;
-  if (fs::exists(results)) all.push_back(results);
-  for (const std::string& in : options.in) {
-    all.push_back(fs::path(in) / "results.sqlite");
-    if (!fs::is_regular_file(all.back()))
-      throw InputError(fmt::format("{}: holds no results.sqlite", in));
-  }
-  Store::check_mergeable(all);  // before anything is written
-  const OutputFolder folder(
-      options.out, "bench",
-      names_written(options.out, Store::open_to_read(all.back()).planned_suite()));
-  Store store(results);
-  for (const std::string& in : options.in) {
-    const bool itself = fs::equivalent(in, options.out);
-    if (itself || store.merge(fs::path(in) / "results.sqlite") == 0)
-      fmt::print(stderr, "merge: {}: holds no result that is not here already\n", in);
-    if (!itself) copy_files(in, options.out);
-  }
+  const fs::path out = options.out;
+  const std::vector<fs::path> parts(options.in.begin(), options.in.end());
+  const std::vector<fs::path> all = mergeable_results(out, parts);  // before anything is written
+  const OutputFolder folder(out, "bench",
+                            names_written(out, Store::open_to_read(all.back()).planned_suite()));
+  merge_parts(out, parts, [](std::string_view note) { fmt::print(stderr, "merge: {}\n", note); });
+  const Store store(out / "results.sqlite");
   const Suite suite = store.planned_suite();
-  finish(options.out, suite, load_results(store, suite), options.json);
+  finish(out, suite, load_results(store, suite), options.json);
 }
 
 }  // namespace

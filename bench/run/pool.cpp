@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <memory>
@@ -19,6 +18,7 @@
 #include "bench/plan/spec_json.hpp"
 #include "bench/run/forecast.hpp"
 #include "bench/run/run_process.hpp"
+#include "bench/run/signal_watch.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
@@ -31,30 +31,6 @@ using Clock = std::chrono::steady_clock;
 constexpr double kFirstGuess_mb = 1500;  // until a run was measured
 constexpr int kPoll_ms = 100;
 constexpr auto kBeat = std::chrono::seconds(10);
-
-volatile std::sig_atomic_t g_signal = 0;
-
-/// During its lifetime, records SIGINT and SIGTERM instead of terminating.
-class SignalWatch {
- public:
-  SignalWatch() {
-    g_signal = 0;
-    struct sigaction action {};
-    action.sa_handler = [](int number) { g_signal = number; };
-    sigaction(SIGINT, &action, &old_int_);
-    sigaction(SIGTERM, &action, &old_term_);
-  }
-  ~SignalWatch() {
-    sigaction(SIGINT, &old_int_, nullptr);
-    sigaction(SIGTERM, &old_term_, nullptr);
-  }
-  SignalWatch(const SignalWatch&) = delete;
-  SignalWatch& operator=(const SignalWatch&) = delete;
-
- private:
-  struct sigaction old_int_ {
-  }, old_term_{};
-};
 
 double available_mb() {
   std::ifstream file("/proc/meminfo");
@@ -89,9 +65,9 @@ class Pool {
     auto next_beat = Clock::now() + kBeat;
     report();
     while (!waiting_.empty() || !running_.empty()) {
-      if (g_signal != 0) {
+      if (watch.signal() != 0) {
         give_up();
-        throw Interrupted{static_cast<int>(g_signal)};
+        throw Interrupted{watch.signal()};
       }
       start_what_fits();
       wait_a_moment();

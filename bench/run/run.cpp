@@ -7,27 +7,21 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <map>
 #include <optional>
 #include <set>
-#include <tuple>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "bench/cache/cache.hpp"
 #include "bench/inputs/inputs.hpp"
-#include "bench/inputs/recorded_camera.hpp"
 #include "bench/inputs/run_key.hpp"
-#include "bench/plan/check_labels.hpp"
-#include "bench/plan/find_program.hpp"
 #include "bench/plan/spec_json.hpp"
-#include "bench/provenance/digest.hpp"
 #include "bench/report/write.hpp"
+#include "bench/run/plan_runs.hpp"
 #include "bench/run/run_one.hpp"
 #include "bench/systems/timed.hpp"
 #include "bench/world/world.hpp"
-#include "sim/world/travel.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -37,91 +31,6 @@ namespace mh {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Checks that frames of an environment's recordings can be read, with labels if requested.
-void check_recordings(const Environment& e, const Labels& labels,
-                      const std::function<void(std::string_view)>& say) {
-  std::optional<Camera> camera;
-  for (const std::string& sequence : {e.sequence, e.queries.value_or("")}) {
-    if (sequence.empty()) continue;
-    say(fmt::format("checking {}", sequence));
-    const bool wanted = labels == LabelMode::kRecorded;
-    const OpenedRecording opened = open_recorded(e, sequence, wanted);
-    if (wanted && !opened.has_labels)
-      throw InputError(fmt::format("{}: holds no labels: take `labels: [none]` for it", sequence));
-    require_usable_frames(*opened.sequence);
-    if (camera && *camera != opened.sequence->camera())
-      throw InputError(fmt::format("{}: was taken with another camera than {}: a system has one",
-                                   sequence, e.sequence));
-    camera = opened.sequence->camera();
-    if (opened.sequence->truth() == nullptr)
-      say(
-          fmt::format("warning: {}: has no ground truth: answers are successes, and "
-                      "nothing is said of correct ones, of distances and of the trajectory",
-                      sequence));
-  }
-}
-
-/// Checks all inputs that the runs name, each once: outside programs can be started, scenes read,
-/// tours driven. Generated scenes and motions are valid by construction.
-void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
-                     const std::function<void(std::string_view)>& say) {
-  std::set<std::string> programs;
-  std::set<std::pair<std::string, bool>> checked;  // recordings, and whether with labels
-  struct Uses {
-    std::set<std::tuple<fs::path, fs::path, std::optional<fs::path>>>
-        drives;  // robot, tour, pedestrian
-    std::set<LabelMode> labels;
-  };
-  std::map<std::pair<fs::path, SceneFrame>, Uses> uses_of;  // of each scene
-  for (const Job& job : jobs) {
-    const RunSpec& spec = job.spec;
-    if (spec.system.is_outside() && programs.insert(spec.system.name).second)
-      require_program(spec.system.outside);
-    const Environment& e = spec.environment;
-    if (e.is_recorded()) {
-      if (checked.insert({e.name, spec.labels == LabelMode::kRecorded}).second)
-        check_recordings(e, spec.labels, say);
-      continue;
-    }
-    const auto note = [&](const fs::path& scene, const std::optional<fs::path>& tour,
-                          const std::optional<fs::path>& pedestrian = {}) {
-      if (is_generated(scene)) return;
-      Uses& uses = uses_of[{scene, e.frame}];
-      uses.labels.insert(spec.labels.mode);
-      if (tour && !is_generated(*tour)) uses.drives.insert({e.robot, *tour, pedestrian});
-    };
-    note(e.scene, e.mapping_tour, e.pedestrian);
-    note(e.scene, e.kidnapped_tour);
-    note(e.query_scene.value_or(e.scene), e.query_tour);
-  }
-  for (const auto& [place, uses] : uses_of) {
-    const auto& [file, frame] = place;
-    say(fmt::format("checking {}", file.string()));
-    const std::shared_ptr<const Scene> scene = inputs.scene(file, frame);
-    for (const LabelMode labels : uses.labels)
-      if (const std::string warning = check_labels(*scene, labels); !warning.empty())
-        say("warning: " + warning);
-    for (const auto& [robot, tour, pedestrian] : uses.drives) {
-      std::vector<MovingObstacle> others;
-      if (pedestrian) others.push_back(as_obstacle(*scene, load_pedestrian(*pedestrian)));
-      travel(*scene, load_robot(robot), tour, others);
-    }
-  }
-}
-
-void check_names(const Suite& suite, const std::vector<RunSpec>& specs) {
-  std::set<std::string> names;
-  for (const RunSpec& spec : specs)
-    if (!names.insert(spec.name).second)
-      throw InputError(fmt::format("{}: two runs are named '{}': rename an environment or a level",
-                                   suite.file.string(), spec.name));
-}
-
-std::string views_name(const Suite& suite, const RunSpec& spec) {
-  return suite.environments.size() == 1 ? std::string("views.png")
-                                        : fmt::format("views-{}.png", spec.environment.name);
-}
 
 fs::path real_executable(const fs::path& executable) {
   std::error_code error;
@@ -186,6 +95,25 @@ RunCost cost_of_this_process(const RunResult& run, double wall_s, double world_s
                             .load = load_per_processor()}};
 }
 
+/// Keeps the jobs of this machine's share.
+void take_share(std::vector<Job>& jobs, const BenchOptions& options) {
+  if (options.shard.of > 1) {
+    std::vector<PredictedCost> costs;
+    double all_s = 0;
+    for (const Job& job : jobs) costs.push_back(predicted_cost(job.spec));
+    const std::vector<PredictedShare> shares = split_runs(costs, options.shard.of);
+    const PredictedShare& mine = shares[options.shard.index - 1];
+    for (const PredictedShare& share : shares) all_s += share.predicted_s;
+    options.say(fmt::format("share {} of {}: {}, {:.0f} of {:.0f} s of processor time as predicted",
+                            options.shard.index, options.shard.of,
+                            counted(mine.end - mine.begin, "run"), mine.predicted_s, all_s));
+    jobs = {jobs.begin() + static_cast<std::ptrdiff_t>(mine.begin),
+            jobs.begin() + static_cast<std::ptrdiff_t>(mine.end)};
+  }
+  if (options.images_limit_gb <= 0)
+    for (Job& job : jobs) job.images.clear();
+}
+
 /// Space for the images of each environment at work.
 std::uint64_t limit_of_images(const std::vector<Job>& jobs, const BenchOptions& options) {
   std::set<std::string> all;
@@ -197,43 +125,12 @@ std::uint64_t limit_of_images(const std::vector<Job>& jobs, const BenchOptions& 
 
 }  // namespace
 
-std::string images_of(const RunSpec& run) {
-  const nlohmann::ordered_json json = to_json(run);
-  return text_key(json.at("environment").dump() + json.at("level").dump() +
-                  json.at("max_frames").dump());
-}
-
-Shard parse_shard(const std::string& text) {
-  Shard shard;
-  char slash = 0, more = 0;
-  if (std::sscanf(text.c_str(), "%zu%c%zu%c", &shard.index, &slash, &shard.of, &more) != 3 ||
-      slash != '/' || shard.index < 1 || shard.index > shard.of ||
-      text.find('-') != std::string::npos)
-    throw InputError(fmt::format("shard '{}' is not i/n with 1 <= i <= n", text));
-  return shard;
-}
-
 BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
                        const BenchOptions& options) {
-  const std::vector<RunSpec> specs = expand(suite);
-  check_names(suite, specs);
-  for (const std::string& line : suite.left_out) options.say(line);
-
-  std::set<std::string> warned;
-  for (const RunSpec& spec : specs)
-    if (spec.system.is_outside() && warned.insert(spec.system.name).second)
-      if (const std::string warning = unseen_program(spec.system.outside); !warning.empty())
-        options.say(warning);
-
   std::optional<InputReader> inputs(std::in_place, options.say);
-  std::vector<Job> mine;
-  std::vector<std::pair<std::string, std::string>> plan;
-  for (std::size_t i = 0; i < specs.size(); ++i) {
-    plan.emplace_back(specs[i].name, run_key(specs[i], inputs->inputs_of(specs[i])));
-    if (i * options.shard.of / specs.size() + 1 == options.shard.index)
-      mine.push_back(
-          {specs[i], plan.back().second, options.images_limit_gb > 0 ? images_of(specs[i]) : ""});
-  }
+  std::vector<Job> mine = plan_runs(suite, *inputs, options.say);
+  const auto plan = keys_by_name(mine);
+  take_share(mine, options);
   const fs::path results = options.out / "results.sqlite";
   if (fs::exists(results)) {
     Store before(results);
@@ -248,7 +145,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
 
   Store store(results);
   store.plan(suite, overrides, plan);
-  options.say(fmt::format("{}, {} of them to do", counted(specs.size(), "run"), mine.size()));
+  options.say(fmt::format("{}, {} of them to do", counted(plan.size(), "run"), mine.size()));
 
   if (!mine.empty()) {
     const TemporaryFolder work(options.out);

@@ -11,21 +11,13 @@
 #include "bench/plan/suite.hpp"
 #include "bench/results/run_result.hpp"
 #include "bench/run/pool.hpp"
+#include "bench/run/shard.hpp"
 #include "bench/store/load_results.hpp"
 #include "bench/store/store.hpp"
 #include "sim/world/shared_exposures.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
-
-/// The part of a suite's runs that one machine takes: consecutive ones, so that those that see the
-/// same images mostly stay together. Of n runs, run i (from 0) is in shard i * of / n + 1.
-struct Shard {
-  std::size_t index = 1, of = 1;
-};
-
-/// "2/3". @throws InputError unless 1 <= i <= n.
-Shard parse_shard(const std::string& text);
 
 struct BenchOptions {
   std::filesystem::path out;  ///< exists; holds results.sqlite and a folder per run
@@ -50,9 +42,6 @@ struct BenchOptions {
 struct InputChanged : InputError {
   using InputError::InputError;
 };
-
-/// Names the images that a run sees: the same text for runs of one environment at one level.
-std::string images_of(const RunSpec& run);
 
 /// Runs a suite into options.out / "results.sqlite". A finished run is never repeated.
 /// @throws InputError if an input cannot be read; Interrupted on Ctrl-C.

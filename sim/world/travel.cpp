@@ -107,6 +107,10 @@ bool is_driven(const std::string& motion) {
   return kind != Motion::Kind::kHandheld && kind != Motion::Kind::kReplay;
 }
 
+std::optional<std::size_t> frames_stated(const std::string& motion) {
+  return parse(motion).frames;
+}
+
 std::string note_on(const std::string& motion, const Robot& robot) {
   const Motion parsed = parse(motion);
   if (parsed.kind != Motion::Kind::kTour) return "";

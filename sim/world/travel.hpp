@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,10 @@ namespace mh {
 /// @throws InputError if there is no such motion, a file is bad or the path is blocked.
 DrivenPath travel(const Scene& scene, const Robot& robot, const std::string& motion,
                   const std::vector<MovingObstacle>& others = {});
+
+/// The number of frames that a motion's name states (`handheld:SEED:FRAMES`); nullopt: the scene or
+/// a file decides. @throws InputError if there is no such motion.
+std::optional<std::size_t> frames_stated(const std::string& motion);
 
 /// Keeps the first frames of a path and their length; the other measures, which need the whole
 /// drive, become NaN. @returns whether anything was cut off

@@ -90,6 +90,13 @@ TEST(Travel, FloorThatLiesHigherLiftsThePathAndNothingElse) {
   }
 }
 
+TEST(Travel, AScanByHandMayStateItsFrames) {
+  EXPECT_EQ(frames_stated("handheld:3:450"), 450u);
+  EXPECT_EQ(frames_stated("generated:handheld:3:450"), 450u);
+  for (const char* motion : {"handheld", "handheld:3", "auto:3", "replay:x.tum", "tour.yaml"})
+    EXPECT_EQ(frames_stated(motion), std::nullopt) << motion;
+}
+
 TEST(Travel, AHurriedHandPassesTheSameWayInLessTime) {
   const Scene room = settled(ScannedRoom{}.build());
   const Robot robot = test::pepper();

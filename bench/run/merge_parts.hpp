@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "bench/plan/suite.hpp"
+
+namespace mh {
+
+/// The results files of parts and, first, the one in `out` if there is one.
+/// @throws InputError if a part has none, or as Store::check_mergeable(); nothing is written.
+std::vector<std::filesystem::path> mergeable_results(
+    const std::filesystem::path& out, const std::vector<std::filesystem::path>& parts);
+
+/// Copies what `out` lacks of the results, the folders of runs and the images of a suite's parts.
+/// @param say  receives a line about each part that adds nothing
+/// @pre mergeable_results() passed
+void merge_parts(const std::filesystem::path& out, const std::vector<std::filesystem::path>& parts,
+                 const std::function<void(std::string_view)>& say);
+
+}  // namespace mh

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/run/shard.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/plan/spec_json.hpp"
+#include "bench/provenance/digest.hpp"
+#include "sim/world/travel.hpp"
+#include "slam/core/error.hpp"
+
+namespace mh {
+namespace {
+
+// Measured: docs/measurements/cost_of_the_bench.md, "Shares of an array".
+constexpr double kImage_s = 0.066;  // an image with blur and rolling shutter, 640x480
+constexpr double kFrame_s = 0.017;  // a run's noise, SLAM and files, per frame whose image is there
+constexpr double kAssumedFrames = 600;  // generated rooms have 300 to 1,500
+
+double frames_of(const std::optional<std::filesystem::path>& tour, const RunSpec& run) {
+  if (!tour) return 0;
+  const auto stated = frames_stated(tour->string());
+  const double frames = stated ? static_cast<double>(*stated) : kAssumedFrames;
+  return run.max_frames ? std::min(frames, static_cast<double>(*run.max_frames)) : frames;
+}
+
+/// The cheapest split of the first runs into parts, for any number of them.
+class SplitTable {
+ public:
+  explicit SplitTable(std::span<const PredictedCost> runs) {
+    double own_s = 0;                   // of the runs so far
+    double before_s = 0, images_s = 0;  // of the images so far, without and with this run's
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (i > 0 && runs[i].images != runs[i - 1].images) before_s = images_s;
+      images_s = before_s + runs[i].images_s;
+      begin_s_.push_back(own_s + before_s);
+      own_s += runs[i].own_s;
+      end_s_.push_back(own_s + images_s);
+    }
+  }
+
+  /// Predicted cost of the runs [begin, end), not empty.
+  double cost_s(std::size_t begin, std::size_t end) const {
+    return end_s_[end - 1] - begin_s_[begin];
+  }
+
+  /// Begins of `parts` shares, none of them empty. @pre 1 <= parts <= runs
+  std::vector<std::size_t> begins(std::size_t parts) {
+    const std::size_t runs = begin_s_.size();
+    std::vector<std::vector<std::size_t>> last_begin;  // of the split of the first runs, by part
+    least_.assign(runs + 1, std::numeric_limits<double>::infinity());
+    least_[0] = 0;
+    for (std::size_t part = 1; part <= parts; ++part) {
+      next_.assign(runs + 1, std::numeric_limits<double>::infinity());
+      begin_.assign(runs + 1, 0);
+      fill(part, runs, part - 1, runs - 1);
+      least_ = next_;
+      last_begin.push_back(begin_);
+    }
+    std::vector<std::size_t> found(parts);
+    for (std::size_t part = parts, end = runs; part > 0; --part)
+      found[part - 1] = end = last_begin[part - 1][end];
+    return found;
+  }
+
+ private:
+  /// Fills next_[low .. high], whose last share begins within [first, last]. The cost is convex in
+  /// end_s_[end] - begin_s_[begin], both of which ascend: the best begin does not go back as the
+  /// end goes on, so that halves share the candidates.
+  void fill(std::size_t low, std::size_t high, std::size_t first, std::size_t last) {
+    if (low > high) return;
+    const std::size_t middle = (low + high) / 2;
+    for (std::size_t begin = first; begin <= std::min(last, middle - 1); ++begin) {
+      const double square = cost_s(begin, middle) * cost_s(begin, middle);
+      const double sum = least_[begin] + square * square * square * square;
+      if (sum >= next_[middle]) continue;
+      next_[middle] = sum;
+      begin_[middle] = begin;
+    }
+    fill(low, middle - 1, first, begin_[middle]);
+    fill(middle + 1, high, begin_[middle], last);
+  }
+
+  std::vector<double> begin_s_, end_s_;  // of a share that begins, ends at this run
+  std::vector<double> least_, next_;     // by the number of runs: with one part less; with it
+  std::vector<std::size_t> begin_;       // of the last part, by the number of runs
+};
+
+}  // namespace
+
+Shard parse_shard(const std::string& text) {
+  Shard shard;
+  char slash = 0, more = 0;
+  if (std::sscanf(text.c_str(), "%zu%c%zu%c", &shard.index, &slash, &shard.of, &more) != 3 ||
+      slash != '/' || shard.index < 1 || shard.index > shard.of ||
+      text.find('-') != std::string::npos)
+    throw InputError(fmt::format("shard '{}' is not i/n with 1 <= i <= n", text));
+  return shard;
+}
+
+std::string images_of(const RunSpec& run) {
+  const nlohmann::ordered_json json = to_json(run);
+  return text_key(json.at("environment").dump() + json.at("level").dump() +
+                  json.at("max_frames").dump());
+}
+
+PredictedCost predicted_cost(const RunSpec& run) {
+  const Environment& e = run.environment;
+  const double mapped = e.is_recorded()
+                            ? frames_of(e.sequence, run)
+                            : frames_of(e.mapping_tour, run) + frames_of(e.kidnapped_tour, run);
+  const double second = e.is_recorded() ? frames_of(e.queries, run) : frames_of(e.query_tour, run);
+  const double share = run.protocol.test_interval > 0 ? 1.0 / run.protocol.test_interval : 0;
+  const double asked = share * static_cast<double>(run.points.size()) * (mapped + second);
+  return {.images = images_of(run),
+          .images_s = e.is_recorded() ? 0 : kImage_s * (mapped + share * second),
+          .own_s = kFrame_s * (mapped + asked)};
+}
+
+std::vector<PredictedShare> split_runs(std::span<const PredictedCost> runs, std::size_t parts) {
+  std::vector<PredictedShare> shares(parts, {runs.size(), runs.size(), 0});
+  if (runs.empty() || parts == 0) return shares;
+  SplitTable table(runs);
+  const std::vector<std::size_t> begins = table.begins(std::min(parts, runs.size()));
+  for (std::size_t i = 0; i < begins.size(); ++i) {
+    const std::size_t end = i + 1 < begins.size() ? begins[i + 1] : runs.size();
+    shares[i] = {begins[i], end, table.cost_s(begins[i], end)};
+  }
+  return shares;
+}
+
+std::vector<PredictedShare> split_runs(std::span<const RunSpec> runs, std::size_t parts) {
+  std::vector<PredictedCost> costs;
+  for (const RunSpec& run : runs) costs.push_back(predicted_cost(run));
+  return split_runs(costs, parts);
+}
+
+}  // namespace mh

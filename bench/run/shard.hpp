@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/plan/runs.hpp"
+
+namespace mh {
+
+/// The part of a suite's runs that one machine takes: share `index` of split_runs().
+struct Shard {
+  std::size_t index = 1, of = 1;
+};
+
+/// "2/3". @throws InputError unless 1 <= i <= n.
+Shard parse_shard(const std::string& text);
+
+/// Names the images that a run sees: the same text for runs of one environment at one level.
+std::string images_of(const RunSpec& run);
+
+/// Predicted processor time of a run, known before anything has run. It serves to balance shares;
+/// docs/store.md states how far it is from what was measured.
+struct PredictedCost {
+  std::string images;   ///< as images_of()
+  double images_s = 0;  ///< making these images; spent once by all runs that see them
+  double own_s = 0;     ///< tracking, queries, noise
+};
+
+/// Predicts from the lengths of the tours: `handheld:SEED:FRAMES` states one, others count as 600
+/// frames, all are cut by max_frames. Images of a recording cost nothing.
+PredictedCost predicted_cost(const RunSpec& run);
+
+/// Consecutive runs, [begin, end).
+struct PredictedShare {
+  std::size_t begin = 0, end = 0;
+  double predicted_s = 0;
+};
+
+/// Splits runs into consecutive shares of about equal predicted cost: those whose eighth powers
+/// have the least sum, so that the most expensive share counts most. A share that begins among runs
+/// of the same images makes these again, which keeps such runs together where that does not
+/// unbalance the shares. Every run is in exactly one share; with more parts than runs the last
+/// shares are empty.
+/// @param runs  those that see the same images follow one another, as expand() orders them
+/// @returns `parts` shares
+std::vector<PredictedShare> split_runs(std::span<const PredictedCost> runs, std::size_t parts);
+std::vector<PredictedShare> split_runs(std::span<const RunSpec> runs, std::size_t parts);
+
+}  // namespace mh

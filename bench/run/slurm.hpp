@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bench/run/run.hpp"
+
+namespace mh {
+
+/// How a suite is spread over the machines of a cluster.
+struct SlurmOptions {
+  std::size_t shares = 1;           ///< tasks of the array
+  std::vector<std::string> sbatch;  ///< further arguments of sbatch: partition, account, memory
+  /// Arguments that this program takes for one share: `bench SUITE ...`, without --shard and --out.
+  std::vector<std::string> arguments;
+};
+
+struct SlurmResults {
+  BenchResults results;
+  std::vector<std::size_t> incomplete;  ///< shares, from 1, some of whose runs are missing
+};
+
+/// The folder of a share's results in that of the suite's.
+std::filesystem::path share_folder(const std::filesystem::path& out, std::size_t share);
+
+/// The script of an array's task, whose number is that of its share. It runs the share, and
+/// requeues itself if the program was killed: three times at most. The log is next to the share's
+/// folder.
+/// @param executable  as the machines of the cluster see it; `out`, too
+std::string task_script(const std::filesystem::path& executable, const std::filesystem::path& out,
+                        const SlurmOptions& slurm);
+
+/// run_suite() by an array of Slurm: a share of the runs per task (split_runs), each into a folder
+/// of its own, merged into options.out in the end. Only shares with unfinished runs are submitted,
+/// so that the same call resumes.
+/// @throws InputError if an input cannot be read; MachineError if Slurm's commands are missing or
+/// nothing could be submitted; Interrupted on Ctrl-C, after the array was canceled.
+SlurmResults run_on_slurm(const Suite& suite, const SuiteOverrides& overrides,
+                          const BenchOptions& options, const SlurmOptions& slurm);
+
+}  // namespace mh
