@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <vector>
@@ -60,6 +61,11 @@ class Frames {
     sequence_ = std::move(opened.sequence);
   }
   std::size_t size() const { return sequence_ ? sequence_->size() : images_.size(); }
+  /// Images in files have none: boxes of files name them by index.
+  std::vector<Stamp> stamps_ns() const {
+    return sequence_ ? stamps_of(*sequence_)
+                     : std::vector<Stamp>(size(), std::numeric_limits<Stamp>::lowest() / 2);
+  }
   RgbdFrame frame(std::size_t i) const {
     if (sequence_) return sequence_->frame(i, RandomStream());
     RgbdFrame frame;
@@ -91,9 +97,11 @@ void run(DetectorArguments options) {
   if (!spec) throw InputError("no detector is named: --network does");
   const Frames frames(options);
   const std::unique_ptr<Detector> detector = open_detector(*spec);
+  const std::string unmatched = detector->check_frames(frames.stamps_ns());
   const OutputFolder folder(options.out, "detector run", {"detections.json"});
   const fs::path out = options.out;
   Progress progress("detector run");
+  if (!unmatched.empty()) progress.say("warning: " + unmatched);
   std::map<std::string, std::size_t> count;
   std::vector<double> ms;
   auto results = nlohmann::ordered_json::array();
@@ -130,7 +138,7 @@ void run(DetectorArguments options) {
     throw InputError(fmt::format("{}: no frame can be read", options.sources.front()));
   write_atomically(out / "detections.json", results.dump(1) + "\n");
   std::ranges::sort(ms);
-  fmt::print("{}\n{}, {}, {:.1f} ms an image (median)\n", detector->description(),
+  fmt::print("{}\n{}, {}, {:.1f} ms an image (median, on the clock)\n", detector->description(),
              counted(ms.size(), "image"), counted(boxes, "box", "boxes"), ms[ms.size() / 2]);
   if (clipped > 0) fmt::print("{} reached beyond the image\n", counted(clipped, "box", "boxes"));
   if (skipped > 0) fmt::print("{} could not be read\n", counted(skipped, "frame"));

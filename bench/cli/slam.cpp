@@ -161,6 +161,8 @@ void run(SlamArguments options) {
   if (const auto spec = options.detector.spec()) {
     const std::shared_ptr<const Detector> detector = open_detector(*spec);
     fmt::print(stderr, "slam: labels from {}\n", detector->description());
+    if (const std::string note = detector->check_frames(stamps_of(*source.frames)); !note.empty())
+      fmt::print(stderr, "slam: warning: {}\n", note);
     source.frames = std::make_unique<DetectedSequence>(
         std::shared_ptr<const Sequence>(std::move(source.frames)), detector, spec->settings.fill,
         detections_in(Cache(options.detector.cache)));

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/metrics/trajectory_score.hpp"
 
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+
 #include "bench/metrics/evaluate.hpp"
 
 namespace mh {
@@ -9,6 +15,21 @@ namespace {
 /// The root mean square of no errors is unknown, not 0.
 std::optional<double> rmse(const ErrorStatistics& s) {
   return s.count > 0 ? std::optional(s.rmse) : std::nullopt;
+}
+
+/// Whether the path extends far enough beside its main direction that the alignment's turn about it
+/// means something: an error of the positions turns it by about error / extent.
+bool turn_is_determined(const Trajectory& truth, double error_m) {
+  constexpr double kLeastExtent = 10;  // in multiples of the error: a turn of 0.1 rad
+  Eigen::MatrixX3d at(static_cast<Eigen::Index>(truth.size()), 3);
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    at.row(static_cast<Eigen::Index>(i)) = truth[i].world_from_camera.translation();
+  const Eigen::Matrix3d scatter =
+      (at.rowwise() - at.colwise().mean()).transpose() * (at.rowwise() - at.colwise().mean());
+  const Eigen::Vector3d squares =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter / static_cast<double>(truth.size()))
+          .eigenvalues();  // ascending
+  return std::sqrt(std::max(0.0, squares[1])) >= kLeastExtent * error_m;
 }
 
 }  // namespace
@@ -21,7 +42,9 @@ TrajectoryScore score_trajectory(const Trajectory& estimate, const Trajectory& t
   score.tracked = static_cast<double>(estimate.size());
   score.completeness = offered == 0 ? 0 : score.tracked / score.offered;
   score.ate_rmse_m = rmse(e.ape_translation_m);
-  score.ate_rmse_deg = rmse(e.ape_rotation_deg);
+  if (score.ate_rmse_m &&
+      turn_is_determined(match_by_stamp(truth, estimate).truth, *score.ate_rmse_m))
+    score.ate_rmse_deg = rmse(e.ape_rotation_deg);
   score.rpe_frame_rmse_m = rmse(e.rpe[0].translation_m);
   score.rpe_second_rmse_m = rmse(e.rpe[1].translation_m);
   // One pose aligned with itself has no meaningful error.

@@ -18,7 +18,7 @@ struct PairNames {
 };
 
 std::string comparison_line(const PairNames& names, const Comparison& c) {
-  if (c.pairs == 0) return fmt::format("  {:<62}-  (no pairs)\n", c.what);
+  if (c.pairs == 0) return fmt::format("  {:<61} -  (no pairs)\n", c.what);
   const Verdict v = verdict(c);
   const std::string word =
       v == Verdict::kFirstBetter    ? names.first + " is better"
@@ -32,7 +32,7 @@ std::string comparison_line(const PairNames& names, const Comparison& c) {
           ? fmt::format("(outside the family; {} of {} as clusters)",
                         counted(c.pairs, "query", "queries"), counted(c.clusters, "scene"))
           : "(outside the family)";
-  return fmt::format("  {:<62}{:+.4f} {}  p = {:.4f} {}\n", c.what, c.difference, interval(c), c.p,
+  return fmt::format("  {:<61} {:+.4f} {}  p = {:.4f} {}\n", c.what, c.difference, interval(c), c.p,
                      corrected);
 }
 
@@ -41,7 +41,7 @@ std::string margin_line(const Suite& suite, const PairNames& names, const Compar
   if (!suite.non_inferiority_margin || c.pairs == 0 || !c.what.starts_with("success")) return "";
   const double margin = *suite.non_inferiority_margin;
   const std::string finding = fmt::format("{} is not worse", names.first);
-  return fmt::format("  {:<62}{} by more than the {:.3f} stated beforehand\n", "",
+  return fmt::format("  {:<61} {} by more than the {:.3f} stated beforehand\n", "",
                      not_inferior(c, margin) ? finding
                      : enough_for(c, margin) ? "not shown that " + finding
                                              : "too few pairs to show that " + finding,

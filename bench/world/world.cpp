@@ -233,9 +233,11 @@ void add_detector(World& world, const DetectorSpec& spec, const Cache& cache) {
   const std::shared_ptr<const Detector> detector =
       noted(world.inputs, "detector", source_of(spec), [&] { return open_detector(spec); });
   for (std::shared_ptr<const Sequence>* sequence : {&world.mapping, &world.second, &world.graded})
-    if (*sequence != nullptr)
+    if (*sequence != nullptr) {
+      detector->check_frames(stamps_of(**sequence));
       *sequence = std::make_shared<DetectedSequence>(std::move(*sequence), detector,
                                                      spec.settings.fill, detections_in(cache));
+    }
 }
 
 }  // namespace

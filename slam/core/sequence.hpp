@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "slam/core/camera.hpp"
 #include "slam/core/random.hpp"
@@ -28,5 +29,12 @@ class Sequence {
   /// absent.
   virtual const Trajectory* truth() const = 0;
 };
+
+/// The stamps of all frames, in order.
+inline std::vector<Stamp> stamps_of(const Sequence& sequence) {
+  std::vector<Stamp> stamps_ns(sequence.size());
+  for (std::size_t i = 0; i < stamps_ns.size(); ++i) stamps_ns[i] = sequence.stamp_ns(i);
+  return stamps_ns;
+}
 
 }  // namespace mh

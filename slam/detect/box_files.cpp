@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <optional>
+#include <span>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -157,6 +159,9 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
   Json json;
   try {
     json = Json::parse(text);
+  } catch (const Json::out_of_range&) {
+    throw InputError(
+        fmt::format("{}: holds a number that is beyond a double's range", file.string()));
   } catch (const Json::parse_error& error) {
     const std::string_view before = std::string_view(text).substr(0, error.byte);
     throw InputError(fmt::format("{}:{}: is not JSON (which has no NaN and no comments)",
@@ -202,7 +207,8 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
 class BoxesFromFiles : public Detector {
  public:
   explicit BoxesFromFiles(const DetectorSpec& spec)
-      : settings_(spec.settings),
+      : file_(spec.boxes),
+        settings_(spec.settings),
         names_(spec.classes.empty() ? coco80() : load_class_names(spec.classes)) {
     const std::string ending = spec.boxes.extension().string();
     if (is_folder(spec.boxes)) {
@@ -226,16 +232,9 @@ class BoxesFromFiles : public Detector {
   }
 
   Detected detect(const Grid2d<Rgb8>& color, std::size_t index, Stamp stamp_ns) const override {
-    const std::vector<FiledBox>* filed = nullptr;
-    if (const auto at = filed_.by_index.find(index); at != filed_.by_index.end())
-      filed = &at->second;
-    const auto near = filed_.by_stamp.lower_bound(stamp_ns - kSameStamp_ns);
-    if (near != filed_.by_stamp.end() && near->first <= stamp_ns + kSameStamp_ns)
-      filed = &near->second;
     Detected found;
-    if (filed == nullptr) return found;
     std::vector<Candidate> candidates;
-    for (const FiledBox& box : *filed) {
+    for (const FiledBox& box : of_frame(index, stamp_ns)) {
       if (box.score < settings_.confidence) continue;
       const double w = box.normalized ? color.width() : 1, h = box.normalized ? color.height() : 1;
       Candidate candidate{.x = (box.left + box.width / 2) * w,
@@ -265,8 +264,36 @@ class BoxesFromFiles : public Detector {
                        counted(filed_.by_index.size() + filed_.by_stamp.size(), "frame"));
   }
   std::uint64_t digest() const override { return 0; }
+  std::string check_frames(std::span<const Stamp> stamps_ns) const override {
+    const auto is_near = [](Stamp a, Stamp b) { return std::abs(a - b) <= kSameStamp_ns; };
+    const std::size_t all = filed_.by_index.size() + filed_.by_stamp.size();
+    std::size_t matched = 0;
+    for (const auto& [index, boxes] : filed_.by_index) matched += index < stamps_ns.size();
+    for (const auto& [stamp_ns, boxes] : filed_.by_stamp)
+      matched += std::ranges::any_of(stamps_ns, [&](Stamp s) { return is_near(s, stamp_ns); });
+    if (matched == 0)
+      throw InputError(fmt::format(
+          "{}: none of its {} is one of the sequence's {}: they are named by index from 0 or by "
+          "stamp",
+          file_.string(), counted(all, "frame"), stamps_ns.size()));
+    if (matched == all) return "";
+    return fmt::format("{}: {} of its {} are none of the sequence's {}", file_.string(),
+                       all - matched, counted(all, "frame"), stamps_ns.size());
+  }
 
  private:
+  /// The boxes of a frame, whichever way the file names it.
+  std::vector<FiledBox> of_frame(std::size_t index, Stamp stamp_ns) const {
+    std::vector<FiledBox> boxes;
+    if (const auto at = filed_.by_index.find(index); at != filed_.by_index.end())
+      boxes = at->second;
+    const auto near = filed_.by_stamp.lower_bound(stamp_ns - kSameStamp_ns);
+    if (near != filed_.by_stamp.end() && near->first <= stamp_ns + kSameStamp_ns)
+      boxes.insert(boxes.end(), near->second.begin(), near->second.end());
+    return boxes;
+  }
+
+  fs::path file_;
   DetectorSettings settings_;
   ClassNames names_;
   const char* kind_ = "";

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,9 @@ class Detector {
   virtual const ClassNames& names() const = 0;
   /// One line for a person: "yolox, 80 classes, input 416 x 416".
   virtual std::string description() const = 0;
+  /// Checks that boxes of files are of this sequence's frames. @returns a note on those that are
+  /// not, or "". @throws InputError if none is
+  virtual std::string check_frames(std::span<const Stamp> /*stamps_ns*/) const { return ""; }
   /// Digest of everything besides the image that decides what detect() returns; 0 if that is not
   /// worth keeping in a cache.
   virtual std::uint64_t digest() const = 0;

@@ -22,8 +22,9 @@ bool is_one_of(const auto& encodings, const std::string& encoding) {
   return std::ranges::find(encodings, encoding) != encodings.end();
 }
 
+/// Ours, whatever camera they are of: labels and instances are neither color nor depth.
 bool is_ours(const ImageTopic& topic) {
-  return topic.name == ros::kLabelTopic || topic.name == ros::kInstanceTopic;
+  return topic.name.ends_with("/labels/image") || topic.name.ends_with("/instances/image");
 }
 bool is_compressed_depth(const ImageTopic& topic) {
   return topic.compressed && topic.encoding.find("compressedDepth") != std::string::npos;
@@ -44,6 +45,17 @@ std::string parent_of(const std::string& topic) {
   return topic.substr(0, topic.rfind('/'));
 }
 
+/// Of several, those whose names begin as the color's does: "/camera2/...".
+std::vector<const ImageTopic*> of_same_camera(std::vector<const ImageTopic*> topics,
+                                              const ImageTopic& color) {
+  const auto camera_of = [](const std::string& name) { return name.substr(0, name.find('/', 1)); };
+  const auto is_other = [&](const ImageTopic* topic) {
+    return camera_of(topic->name) != camera_of(color.name);
+  };
+  if (topics.size() > 1 && !std::ranges::all_of(topics, is_other)) std::erase_if(topics, is_other);
+  return topics;
+}
+
 std::string listed(const std::vector<const ImageTopic*>& topics) {
   std::string text;
   for (const ImageTopic* topic : topics)
@@ -56,8 +68,9 @@ std::string listed(const std::vector<const ImageTopic*>& topics) {
 std::string all_topics(const std::vector<MessageChannel>& channels) {
   std::string text;
   for (const MessageChannel& channel : channels)
-    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", channel.topic,
-                        channel.type.empty() ? "of no type" : channel.type);
+    text += fmt::format("{}{} ({}{})", text.empty() ? "" : ", ", channel.topic,
+                        channel.type.empty() ? "of no type" : channel.type,
+                        channel.wire ? "" : ", not encoded as ROS 1 or CDR");
   return text.empty() ? "it has no topics" : "its topics: " + text;
 }
 
@@ -88,11 +101,20 @@ class Chooser {
     return found;
   }
 
-  const ImageTopic* only(const std::vector<const ImageTopic*>& found, const char* what) const {
+  std::vector<const ImageTopic*> all_images() const {
+    std::vector<const ImageTopic*> images;
+    for (const auto& [name, topic] : topics_.images) images.push_back(&topic);
+    return images;
+  }
+
+  /// @param encodings  that could have been, for the message
+  const ImageTopic* only(const std::vector<const ImageTopic*>& found, const char* what,
+                         const std::string& encodings) const {
     if (found.size() == 1) return found.front();
     if (found.empty())
-      throw InputError(
-          fmt::format("{}: no topic holds {} images; {}", file_, what, all_topics(channels_)));
+      throw InputError(fmt::format(
+          "{}: no topic holds {} images that are read ({}); {}", file_, what, encodings,
+          topics_.images.empty() ? all_topics(channels_) : "its images: " + listed(all_images())));
     throw InputError(
         fmt::format("{}: several topics hold {} images: {}; name one: --topics {}={} "
                     "(in a suite `topics:`)",
@@ -133,9 +155,16 @@ ChosenTopics choose_topics(const RosTopics& topics, const TopicNames& names,
     return found.empty() ? choose.all(is_gray) : found;
   };
   chosen.color =
-      names.color.empty() ? choose.only(color_or_gray(), "color") : choose.named(names.color);
+      names.color.empty()
+          ? choose.only(color_or_gray(), "color",
+                        fmt::format("{}, {}, compressed", fmt::join(kColorEncodings, ", "),
+                                    fmt::join(kGrayEncodings, ", ")))
+          : choose.named(names.color);
   chosen.depth =
-      names.depth.empty() ? choose.only(choose.all(is_depth), "depth") : choose.named(names.depth);
+      names.depth.empty()
+          ? choose.only(of_same_camera(choose.all(is_depth), *chosen.color), "depth",
+                        fmt::format("{}, compressedDepth", fmt::join(kDepthEncodings, ", ")))
+          : choose.named(names.depth);
   if (!names.labels.empty())
     chosen.labels = choose.named(names.labels);
   else if (const auto ours = topics.images.find(ros::kLabelTopic); ours != topics.images.end())

@@ -117,7 +117,8 @@ Grid2d<Rgb8> color_in(std::string_view message, ros::Wire wire, bool compressed)
     const auto image = ros::parsed<ros::CompressedImage>(message, wire);
     if (auto color = decode_color(image.data)) return std::move(*color);
     const auto gray = decode_gray16(image.data);
-    if (!gray) refuse(image.format, "color");
+    if (!gray)
+      throw InputError(fmt::format("cannot be decoded as an image (format '{}')", image.format));
     Grid2d<Rgb8> color(gray->width(), gray->height());
     std::ranges::transform(*gray, color.begin(), [](std::uint16_t v) {
       const auto byte = static_cast<std::uint8_t>(std::min<std::uint16_t>(v, 255));

@@ -296,6 +296,12 @@ OpenedRecording open_messages(OpenMessages open, HeldBytes content, const std::s
   if (chosen.labels != nullptr && config.labels) {
     sequence->labels = source_of(*chosen.labels);
     if (!config.classes.empty()) sequence->classes = load_class_map(config.classes);
+    const auto without = std::ranges::count_if(
+        sequence->frames, [](const StoredFrame& frame) { return !frame.labels.has_value(); });
+    if (without > 0)
+      opened.notes.push_back(
+          fmt::format("{}: {} of {} frames have no label image within 0.02 s: all is void there",
+                      name, without, sequence->frames.size()));
   } else {
     for (StoredFrame& frame : sequence->frames) frame.labels.reset();
   }
