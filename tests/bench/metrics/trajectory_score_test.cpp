@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/metrics/trajectory_score.hpp"
 
+#include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -47,6 +48,23 @@ TEST(ScoreTrajectory, OrientationsHaveAnErrorOfTheirOwn) {
   ASSERT_TRUE(score.ate_rmse_deg);
   EXPECT_NEAR(*score.ate_rmse_deg, 3.0, 1e-6);
   EXPECT_NEAR(score.ate_rmse_m.value(), 0.0, 1e-9);
+}
+
+// Along a corridor the alignment may turn about the path: an angle would be an accident.
+TEST(ScoreTrajectory, APathThatIsNearlyALineHasNoAngle) {
+  const auto corridor = [](double width_m, double error_m) {
+    Trajectory truth, estimate;
+    for (int i = 0; i < 100; ++i) {
+      const double side = std::sin(0.1 * i);
+      truth.push_back({1000 * i, SE3(Eigen::Matrix3d::Identity(), {0.1 * i, width_m * side, 0})});
+      estimate.push_back({1000 * i, SE3(Eigen::Matrix3d::Identity(),
+                                        {0.1 * i, width_m * side, error_m * std::cos(0.3 * i)})});
+    }
+    return score_trajectory(estimate, truth, truth.size());
+  };
+  EXPECT_TRUE(corridor(1, 0.01).ate_rmse_deg);
+  EXPECT_FALSE(corridor(0.02, 0.01).ate_rmse_deg);
+  EXPECT_TRUE(corridor(0.02, 0.01).ate_rmse_m);
 }
 
 }  // namespace

@@ -261,15 +261,58 @@ TEST_P(RosRecording, WhatIsMissingIsNamedWithWhatIsThere) {
   robot.color("/image");
   robot.write(writer());
   const std::string error = error_of([&] { open(); });
-  EXPECT_NE(error.find("no topic holds depth images; its topics: /image (sensor_msgs/Image)"),
+  EXPECT_NE(error.find("no topic holds depth images that are read (32FC1, 16UC1, mono16, "
+                       "compressedDepth); its images: /image (bgr8)"),
             std::string::npos)
       << error;
+  Foreign mosaic(wire());
+  mosaic.color("/image", "bayer_rggb8");
+  mosaic.depth("/depth");
+  mosaic.write(writer());
+  EXPECT_NE(error_of([&] { open(); }).find("/image (bayer_rggb8)"), std::string::npos);
   Foreign uncalibrated(wire());
   uncalibrated.color("/image");
   uncalibrated.depth("/depth");
   uncalibrated.write(writer());
   EXPECT_NE(error_of([&] { open(); }).find("holds no sensor_msgs/CameraInfo for /image"),
             std::string::npos);
+}
+
+TEST_P(RosRecording, InstancesAreNoDepthWhateverTheirCamera) {
+  Foreign robot(wire());
+  robot.color("/cam2/color/image_raw");
+  robot.depth("/cam2/instances/image");
+  robot.info("/cam2/color/camera_info");
+  robot.write(writer());
+  EXPECT_NE(error_of([&] { open(); }).find("no topic holds depth images"), std::string::npos);
+}
+
+TEST_P(RosRecording, DepthIsOfTheColorsCamera) {
+  Foreign robot(wire());
+  for (const std::string camera : {"/left", "/right"}) {
+    robot.color(camera + "/image");
+    robot.depth(camera + "/depth");
+    robot.info(camera + "/camera_info");
+  }
+  robot.write(writer());
+  EXPECT_EQ(open(with_topics("color=/right/image")).sequence->size(), kFrames);
+}
+
+TEST_P(RosRecording, FramesWithoutLabelsAreCounted) {
+  Foreign robot(wire());
+  robot.color("/image");
+  robot.depth("/depth");
+  robot.info("/camera_info");
+  robot.add("/ids", 0, ros::Image{robot.header(0), 1, 2, "mono8", 0, 2, std::string("\1\2", 2)});
+  robot.write(writer());
+  RecordingConfig config = with_topics("labels=/ids");
+  config.labels = true;
+  const std::vector<std::string> notes = open(config).notes;
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find(std::to_string(kFrames - 1) + " of " + std::to_string(kFrames) +
+                          " frames have no label image"),
+            std::string::npos)
+      << notes[0];
 }
 
 TEST_P(RosRecording, GrayImagesServeWhereNoColorIs) {

@@ -76,6 +76,29 @@ TEST_F(BoxFiles, OutsideTheImageAreCutAndCounted) {
   for (const DetectedBox& box : found.boxes) EXPECT_GE(box.left, 0);
 }
 
+TEST_F(BoxFiles, OfOneFrameUnderTwoNamesAreAllFound) {
+  const auto boxes =
+      open("a.json",
+           R"([{"image_id": 3, "category_id": 62, "bbox": [10, 20, 30, 20], "score": 0.8},
+          {"image_id": "2.5", "category_id": 62, "bbox": [60, 10, 20, 20], "score": 0.7}])");
+  EXPECT_EQ(boxes->detect(image_, 3, 2'500'000'000).boxes.size(), 2U);
+}
+
+TEST_F(BoxFiles, MustBeOfFramesOfTheSequence) {
+  const auto by_index =
+      open("a.csv", "1,-1,1,1,9,9,0.8,57\n4,-1,1,1,9,9,0.8,57\n9,-1,1,1,9,9,0.8,57\n");
+  const std::vector<Stamp> ten(10), five(5), none;
+  EXPECT_EQ(by_index->check_frames(ten), "");
+  EXPECT_NE(by_index->check_frames(five).find("1 of its 3 frames are none of the sequence's 5"),
+            std::string::npos);
+  EXPECT_THROW(by_index->check_frames(none), InputError);
+  const auto by_stamp =
+      open("a.json",
+           R"([{"image_id": "12.5", "category_id": 62, "bbox": [10, 20, 30, 20], "score": 0.8}])");
+  EXPECT_EQ(by_stamp->check_frames(std::vector<Stamp>{12'500'400'000}), "");
+  EXPECT_THROW(by_stamp->check_frames(std::vector<Stamp>{13'500'000'000}), InputError);
+}
+
 TEST_F(BoxFiles, NameTheirFaultAndItsPlace) {
   const auto says = [&](const std::string& name, const std::string& content, const char* part) {
     const std::string text = refusal(name, content);
@@ -96,6 +119,8 @@ TEST_F(BoxFiles, NameTheirFaultAndItsPlace) {
   says("a.json", "[{\"image_id\": 0, \"category_id\": 1, \"bbox\": [1,1,null,1], \"score\": 1}]",
        "bbox must be four numbers");
   says("a.json", "[{\"image_id\"", "a.json:1: is not JSON");
+  says("a.json", "[{\"image_id\": 0, \"category_id\": 1, \"bbox\": [1,1,1,1], \"score\": 1e999}]",
+       "a.json: holds a number that is beyond a double's range");
   says("a.json", "{}", "is not a list of COCO's results");
 }
 
