@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -15,19 +16,53 @@ namespace mh {
 namespace {
 
 /// A box with its name on a plate of the same color.
-void draw_box(Canvas& canvas, const ImageBox& box, const std::string& text, Rgb8 color) {
-  constexpr double kText = 9, kThickness = 2;
+struct NamedBox {
+  ImageBox box;
+  std::string text;
+  Rgb8 color;
+};
+
+constexpr double kText = 9, kPlate = kText + 6;
+
+bool is_bright(Rgb8 color) {
+  return 299 * color.r + 587 * color.g + 114 * color.b > 140'000;
+}
+
+void outline(Canvas& canvas, const ImageBox& box, Rgb8 color, double thickness) {
   const double right = box.left + box.width, bottom = box.top + box.height;
-  canvas.line({box.left, box.top}, {right, box.top}, color, kThickness);
-  canvas.line({right, box.top}, {right, bottom}, color, kThickness);
-  canvas.line({right, bottom}, {box.left, bottom}, color, kThickness);
-  canvas.line({box.left, bottom}, {box.left, box.top}, color, kThickness);
-  const double width = Canvas::text_width(text, kText) + 6;
-  const double top = std::max(0.0, box.top - kText - 6);
-  canvas.fill(box.left, top, width, kText + 6, color);
-  const bool bright = 299 * color.r + 587 * color.g + 114 * color.b > 140'000;
-  canvas.text(text, {box.left + 3, top + kText + 3}, kText,
-              bright ? Rgb8{0, 0, 0} : Rgb8{255, 255, 255});
+  canvas.line({box.left, box.top}, {right, box.top}, color, thickness);
+  canvas.line({right, box.top}, {right, bottom}, color, thickness);
+  canvas.line({right, bottom}, {box.left, bottom}, color, thickness);
+  canvas.line({box.left, bottom}, {box.left, box.top}, color, thickness);
+}
+
+/// Draws boxes with an edge that is seen on dark and bright ground, then their names: above the
+/// box, below it or inside, wherever no name stands yet. The first come first.
+void draw_boxes(Canvas& canvas, const std::vector<NamedBox>& boxes) {
+  for (const NamedBox& b : boxes)
+    outline(canvas, b.box, is_bright(b.color) ? Rgb8{0, 0, 0} : Rgb8{255, 255, 255}, 4);
+  for (const NamedBox& b : boxes) outline(canvas, b.box, b.color, 2);
+  std::vector<ImageBox> plates;
+  for (const NamedBox& b : boxes) {
+    ImageBox plate{0, b.box.left, 0, Canvas::text_width(b.text, kText) + 6, kPlate};
+    const auto is_free = [&](double top) {
+      return std::ranges::none_of(plates, [&](const ImageBox& other) {
+        return plate.left < other.left + other.width && other.left < plate.left + plate.width &&
+               top < other.top + kPlate && other.top < top + kPlate;
+      });
+    };
+    const double above = std::max(0.0, b.box.top - kPlate);
+    plate.top = above;
+    for (const double top : {above, b.box.top + b.box.height - kPlate, b.box.top})
+      if (is_free(top)) {
+        plate.top = top;
+        break;
+      }
+    plates.push_back(plate);
+    canvas.fill(plate.left, plate.top, plate.width, kPlate, b.color);
+    canvas.text(b.text, {plate.left + 3, plate.top + kText + 3}, kText,
+                is_bright(b.color) ? Rgb8{0, 0, 0} : Rgb8{255, 255, 255});
+  }
 }
 
 ImageBox image_box(const DetectedBox& box) {
@@ -53,9 +88,11 @@ cv::Mat draw_detections(const Grid2d<Rgb8>& color, const std::vector<DetectedBox
         classes(x, y) = class_color(labels.at(x, y).most_probable());
     canvas.image(color_image(classes), color.width(), 0, color.width(), color.height());
   }
-  for (std::size_t i = boxes.size(); i-- > 0;)  // the best on top
-    draw_box(canvas, image_box(boxes[i]), caption(boxes[i], names),
-             class_color(boxes[i].classes.most_probable()));
+  std::vector<NamedBox> named;
+  for (const DetectedBox& box : boxes)
+    named.push_back(
+        {image_box(box), caption(box, names), class_color(box.classes.most_probable())});
+  draw_boxes(canvas, named);
   return canvas.finish();
 }
 
@@ -63,13 +100,15 @@ cv::Mat draw_missed(const Grid2d<Rgb8>& color, const std::vector<VisibleObject>&
                     const std::vector<DetectedBox>& found, const ClassNames& names) {
   Canvas canvas(color.width(), color.height());
   canvas.image(color_image(color), 0, 0, color.width(), color.height());
+  std::vector<NamedBox> named;
   for (const VisibleObject& object : missed)
-    draw_box(canvas,
-             {0, static_cast<double>(object.left), static_cast<double>(object.top),
-              static_cast<double>(object.width()), static_cast<double>(object.height())},
-             std::string(classes()[object.class_id].name), {220, 30, 30});
+    named.push_back({{0, static_cast<double>(object.left), static_cast<double>(object.top),
+                      static_cast<double>(object.width()), static_cast<double>(object.height())},
+                     std::string(classes()[object.class_id].name),
+                     {220, 30, 30}});
   for (const DetectedBox& box : found)
-    draw_box(canvas, image_box(box), caption(box, names), {255, 255, 255});
+    named.push_back({image_box(box), caption(box, names), {255, 255, 255}});
+  draw_boxes(canvas, named);
   return canvas.finish();
 }
 
