@@ -87,7 +87,7 @@ TEST_F(SuiteFile, RefusesADesignThatChangedSinceItWasStated) {
   EXPECT_EQ(error(study), "");
   std::ofstream(folder_ / "design.md", std::ios::app) << "And another one.\n";
   const std::string message = error(study);
-  EXPECT_NE(message.find("suite.yaml:7"), std::string::npos) << message;
+  EXPECT_NE(message.find("suite.yaml:8"), std::string::npos) << message;
   EXPECT_NE(message.find("design.md has changed since it was stated"), std::string::npos)
       << message;
   EXPECT_NE(error("study: {design: none.md, xxh3: '0'}\n").find("none.md"), std::string::npos);
