@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <memory>
 #include <vector>
@@ -61,10 +60,10 @@ class Frames {
     sequence_ = std::move(opened.sequence);
   }
   std::size_t size() const { return sequence_ ? sequence_->size() : images_.size(); }
-  /// Images in files have none: boxes of files name them by index.
+  /// Images in files have that of an RgbdFrame without one.
   std::vector<Stamp> stamps_ns() const {
     return sequence_ ? stamps_of(*sequence_)
-                     : std::vector<Stamp>(size(), std::numeric_limits<Stamp>::lowest() / 2);
+                     : std::vector<Stamp>(images_.size(), RgbdFrame{}.stamp_ns);
   }
   RgbdFrame frame(std::size_t i) const {
     if (sequence_) return sequence_->frame(i, RandomStream());

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <sstream>
 
@@ -265,12 +266,12 @@ class BoxesFromFiles : public Detector {
   }
   std::uint64_t digest() const override { return 0; }
   std::string check_frames(std::span<const Stamp> stamps_ns) const override {
-    const auto is_near = [](Stamp a, Stamp b) { return std::abs(a - b) <= kSameStamp_ns; };
     const std::size_t all = filed_.by_index.size() + filed_.by_stamp.size();
-    std::size_t matched = 0;
-    for (const auto& [index, boxes] : filed_.by_index) matched += index < stamps_ns.size();
-    for (const auto& [stamp_ns, boxes] : filed_.by_stamp)
-      matched += std::ranges::any_of(stamps_ns, [&](Stamp s) { return is_near(s, stamp_ns); });
+    std::set<const std::vector<FiledBox>*> found;
+    for (std::size_t i = 0; i < stamps_ns.size(); ++i)
+      for (const std::vector<FiledBox>* boxes : lists_of(i, stamps_ns[i])) found.insert(boxes);
+    found.erase(nullptr);
+    const std::size_t matched = found.size();
     if (matched == 0)
       throw InputError(fmt::format(
           "{}: none of its {} is one of the sequence's {}: they are named by index from 0 or by "
@@ -282,15 +283,19 @@ class BoxesFromFiles : public Detector {
   }
 
  private:
-  /// The boxes of a frame, whichever way the file names it.
-  std::vector<FiledBox> of_frame(std::size_t index, Stamp stamp_ns) const {
-    std::vector<FiledBox> boxes;
-    if (const auto at = filed_.by_index.find(index); at != filed_.by_index.end())
-      boxes = at->second;
+  /// The boxes of a frame under its index and under its stamp; null where there are none.
+  std::array<const std::vector<FiledBox>*, 2> lists_of(std::size_t index, Stamp stamp_ns) const {
+    const auto at = filed_.by_index.find(index);
     const auto near = filed_.by_stamp.lower_bound(stamp_ns - kSameStamp_ns);
-    if (near != filed_.by_stamp.end() && near->first <= stamp_ns + kSameStamp_ns)
-      boxes.insert(boxes.end(), near->second.begin(), near->second.end());
-    return boxes;
+    const bool is_near = near != filed_.by_stamp.end() && near->first <= stamp_ns + kSameStamp_ns;
+    return {at == filed_.by_index.end() ? nullptr : &at->second, is_near ? &near->second : nullptr};
+  }
+
+  std::vector<FiledBox> of_frame(std::size_t index, Stamp stamp_ns) const {
+    std::vector<FiledBox> all;
+    for (const std::vector<FiledBox>* boxes : lists_of(index, stamp_ns))
+      if (boxes != nullptr) all.insert(all.end(), boxes->begin(), boxes->end());
+    return all;
   }
 
   fs::path file_;

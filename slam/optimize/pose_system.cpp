@@ -62,7 +62,6 @@ bool PoseSystem::solve(Eigen::VectorXd& right_side) const {
 }
 
 bool PoseSystem::factorize(Eigen::VectorXd& x) const {
-  assert(kBlocksAreTheSameEverywhere);
   Eigen::MatrixXd matrix(first_of(poses_), first_of(poses_));
   for (std::uint32_t row = 0; row < poses_; ++row)
     for (std::uint32_t column = 0; column <= row; ++column)

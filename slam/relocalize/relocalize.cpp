@@ -116,10 +116,6 @@ Camera lenient(const Camera& camera, const RelocalizeConfig& config) {
   return camera_of_trials;
 }
 
-}  // namespace
-
-namespace {
-
 /// Multiplies each score by how alike the sizes of things are, to a power, and sorts again.
 void prefer_near(std::vector<Candidate<KeyframeId>>& candidates, const Map& map,
                  const Features& features, double power) {

@@ -20,16 +20,12 @@
 #include <gtest/gtest.h>
 
 #include "source_dir.hpp"
+#include "tests/bench/cli/small_suite.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string content(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
+using mh::test::content;
 
 const fs::path& test_folder() {
   static const struct Folder {
@@ -65,17 +61,10 @@ fs::path write_suite(const std::string& name = "small",
                      const std::string& systems = "[semantic, plain]", const std::string& more = "",
                      const std::string& scene = kRoom, const std::string& labels = "[exact, boxes]",
                      const std::string& level = "pepper") {
-  const std::string root = MH_SOURCE_DIR;
   const fs::path file = test_folder() / (name + ".yaml");
-  std::ofstream(file) << "environments:\n- {category: room, scene: " << scene
-                      << ", mapping_tour: " << root
-                      << "/bench/scenarios/tours/room.yaml, query_tour: " << root
-                      << "/bench/scenarios/tours/room_query.yaml}\nrobot: " << root
-                      << "/bench/scenarios/robot.yaml\nvocabulary: " << root
-                      << "/assets/vocabulary.mhvoc\nlevels: [" << root << "/sim/sensors/levels/"
-                      << level << ".yaml]\nsystems: " << systems << "\nlabels: " << labels
-                      << "\nprotocol: {test_interval: 10}\n"
-                      << more;
+  mh::test::SmallSuite{
+      .scene = scene, .systems = systems, .labels = labels, .level = level, .more = more}
+      .write(file);
   return file;
 }
 
@@ -96,7 +85,7 @@ class Command {
   int wait() {
     if (!ended_) waitpid(process_, &status_, 0);
     ended_ = true;
-    return WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_);
+    return mh::test::code_of(status_);
   }
   /// Its processes, by their parent.
   std::vector<pid_t> children() const {

@@ -24,17 +24,13 @@
 #include "slam/core/files.hpp"
 #include "slam/core/settings_io.hpp"
 #include "source_dir.hpp"
+#include "tests/bench/cli/small_suite.hpp"
 
 namespace mh {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string content(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
+using mh::test::content;
 
 class CommandLine : public testing::Test {
  protected:

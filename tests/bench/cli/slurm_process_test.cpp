@@ -25,17 +25,14 @@
 #include <gtest/gtest.h>
 
 #include "source_dir.hpp"
+#include "tests/bench/cli/small_suite.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
+using mh::test::code_of;
+using mh::test::content;
 using namespace std::chrono_literals;
-
-std::string content(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 /// A folder whose name has a blank, as those of users may.
 const fs::path& test_folder() {
@@ -45,11 +42,6 @@ const fs::path& test_folder() {
     ~Folder() { fs::remove_all(path); }
   } folder;
   return folder.path;
-}
-
-/// Exit code of a program that ended, or minus the signal that ended it.
-int code_of(int status) {
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
 /// By the shell, with the outputs in files `stdout` and `stderr`.
@@ -65,16 +57,8 @@ std::string errors() {
 
 /// Three runs per trial in a small room.
 fs::path write_suite() {
-  const std::string root = MH_SOURCE_DIR;
   const fs::path file = test_folder() / "small suite.yaml";
-  std::ofstream(file) << "environments:\n- {category: room, scene: " << root
-                      << "/bench/scenarios/room.yaml, mapping_tour: " << root
-                      << "/bench/scenarios/tours/room.yaml, query_tour: " << root
-                      << "/bench/scenarios/tours/room_query.yaml}\nrobot: " << root
-                      << "/bench/scenarios/robot.yaml\nvocabulary: " << root
-                      << "/assets/vocabulary.mhvoc\nlevels: [" << root
-                      << "/sim/sensors/levels/pepper.yaml]\nsystems: [semantic, plain]\n"
-                      << "labels: [exact, boxes]\nprotocol: {test_interval: 10}\n";
+  mh::test::SmallSuite{}.write(file);
   return file;
 }
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/wait.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "source_dir.hpp"
+
+// What tests of the program as a user meets it have in common.
+
+namespace mh::test {
+
+/// What a file holds; "" if it is not there.
+inline std::string content(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+/// Exit code of a program that ended, or minus the signal that ended it.
+inline int code_of(int status) {
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+/// Three short runs per trial in a small room.
+struct SmallSuite {
+  std::string scene = MH_SOURCE_DIR "/bench/scenarios/room.yaml";
+  std::string systems = "[semantic, plain]", labels = "[exact, boxes]", level = "pepper";
+  std::string more = "";
+
+  void write(const std::filesystem::path& file) const {
+    const std::string root = MH_SOURCE_DIR;
+    std::ofstream(file) << "environments:\n- {category: room, scene: " << scene
+                        << ", mapping_tour: " << root
+                        << "/bench/scenarios/tours/room.yaml, query_tour: " << root
+                        << "/bench/scenarios/tours/room_query.yaml}\nrobot: " << root
+                        << "/bench/scenarios/robot.yaml\nvocabulary: " << root
+                        << "/assets/vocabulary.mhvoc\nlevels: [" << root << "/sim/sensors/levels/"
+                        << level << ".yaml]\nsystems: " << systems << "\nlabels: " << labels
+                        << "\nprotocol: {test_interval: 10}\n"
+                        << more;
+  }
+};
+
+}  // namespace mh::test
