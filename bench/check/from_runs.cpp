@@ -80,6 +80,7 @@ std::string gate_suite_digest(const Suite& suite) {
   std::string text = fmt::format(
       "trials={};seed={};frames={};protocol={};", suite.trials, suite.seed,
       suite.max_frames ? std::to_string(*suite.max_frames) : "all", to_json(suite.protocol).dump());
+  if (suite.graded) text += fmt::format("graded={};", to_json(*suite.graded).dump());
   for (const SystemSpec& system : suite.systems) text += fmt::format("system={};", system.name);
   for (const Labels& labels : suite.labels) text += fmt::format("labels={};", name(labels));
   for (const auto& level : suite.levels)
@@ -108,7 +109,10 @@ nlohmann::ordered_json gate_settings(const Suite& suite) {
   nlohmann::ordered_json settings = {{"slam", to_json(suite.slam)}};
   if (!suite.vocabulary.empty()) settings["vocabulary"] = hex(digest_file(suite.vocabulary));
   for (const SystemSpec& system : suite.systems)
-    if (system.is_outside())
+    if (!system.is_outside())
+      for (const auto& [setting, value] : system.settings)
+        settings[system.name][setting] = value.as_string();
+    else
       for (const ProgramFile& file : files_of(system.outside))
         settings[system.name][file.word] = hex(digest_file(file.file));
   return settings;

@@ -21,8 +21,9 @@ std::vector<RunFigures> figures(std::span<const RunResult> runs);
 /// settings, the vocabulary, tolerances) is excluded.
 std::string gate_suite_digest(const Suite& suite);
 
-/// What a change to the program may alter along with it: the section `slam`, the digests of the
-/// vocabulary and of the files of outside programs. If these differ, different bits are expected.
+/// What a change to the program may alter along with it: the section `slam`, systems' own settings,
+/// the digests of the vocabulary and of the files of outside programs. If these differ, different
+/// bits are expected.
 nlohmann::ordered_json gate_settings(const Suite& suite);
 
 /// Program and machine: digest of the executable, processor and the CPU features by which libraries

@@ -205,13 +205,6 @@ SlamConfig slam_from_json(const Json& json) {
   return settings;
 }
 
-Json graded_json(const std::optional<GradedSpec>& graded) {
-  if (!graded) return {};
-  return {{"distance_m", graded->distance_m}, {"angle_deg", graded->angle_deg},
-          {"per_bin", graded->per_bin},       {"seed", graded->seed},
-          {"speed", graded->speed},           {"least_shown", graded->least_shown}};
-}
-
 std::optional<GradedSpec> graded_from_json(const Json& json) {
   if (json.is_null()) return std::nullopt;
   return GradedSpec{.distance_m = json.at("distance_m").get<std::vector<double>>(),
@@ -243,6 +236,12 @@ RunSpec read(const Json& json) {
 }
 
 }  // namespace
+
+Json to_json(const GradedSpec& graded) {
+  return {{"distance_m", graded.distance_m}, {"angle_deg", graded.angle_deg},
+          {"per_bin", graded.per_bin},       {"seed", graded.seed},
+          {"speed", graded.speed},           {"least_shown", graded.least_shown}};
+}
 
 Json to_json(const SceneFrame& frame) {
   Json json = Json::object();
@@ -279,7 +278,7 @@ Json to_json(const RunSpec& spec) {
           {"slam", to_json(spec.slam)},
           {"points", points},
           {"protocol", to_json(spec.protocol)},
-          {"graded", graded_json(spec.graded)},
+          {"graded", spec.graded ? to_json(*spec.graded) : Json()},
           {"max_frames", optional_json(spec.max_frames)}};
 }
 

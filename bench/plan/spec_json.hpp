@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/plan/graded_spec.hpp"
 #include "bench/plan/runs.hpp"
 
 namespace mh {
@@ -11,6 +12,7 @@ nlohmann::ordered_json to_json(const SemanticConfig& settings);
 /// All settings of SLAM, section by section.
 nlohmann::ordered_json to_json(const SlamConfig& settings);
 nlohmann::ordered_json to_json(const ProtocolConfig& protocol);
+nlohmann::ordered_json to_json(const GradedSpec& graded);
 /// Only the fields that are set: none set gives {}.
 nlohmann::ordered_json to_json(const SceneFrame& frame);
 /// Everything about a run, with paths unchanged: the input of a separate process.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/report/suite_json.hpp"
 
+#include <utility>
+
 #include "bench/plan/shipped.hpp"
 #include "bench/plan/spec_json.hpp"
 #include "bench/provenance/json_fields.hpp"
@@ -47,12 +49,43 @@ Json recorded_json(const Suite& suite, const Environment& e) {
 
 Json environment_json(const Suite& suite, const Environment& e) {
   if (e.is_recorded()) return recorded_json(suite, e);
-  return {{"name", e.name},
-          {"category", e.category},
-          {"scene", source_json(suite, e.scene)},
-          {"robot", from_suite(suite, e.robot)},
-          {"mapping_tour", source_json(suite, e.mapping_tour)},
-          {"query_tour", e.query_tour ? source_json(suite, *e.query_tour) : Json()}};
+  Json json = {{"name", e.name},
+               {"category", e.category},
+               {"scene", source_json(suite, e.scene)},
+               {"robot", from_suite(suite, e.robot)},
+               {"mapping_tour", source_json(suite, e.mapping_tour)},
+               {"query_tour", e.query_tour ? source_json(suite, *e.query_tour) : Json()}};
+  json.update(to_json(e.frame));
+  for (const auto& [key, source] :
+       {std::pair("query_scene", e.query_scene), std::pair("kidnapped_tour", e.kidnapped_tour),
+        std::pair("sensors", e.sensors), std::pair("pedestrian", e.pedestrian)})
+    if (source) json[key] = source_json(suite, *source);
+  return json;
+}
+
+Json compare_json(const Suite& suite) {
+  Json pairs = Json::array();
+  for (const SystemPair& pair : suite.compare)
+    pairs.push_back({suite.systems[pair.first].name, suite.systems[pair.second].name});
+  return pairs;
+}
+
+Json episodes_json(const Suite& suite) {
+  if (!suite.episodes) return nullptr;
+  const EpisodesSpec& spec = *suite.episodes;
+  Json variants = Json::array();
+  for (const EpisodeVariant& variant : spec.variants) {
+    Json json = {{"name", variant.name}};
+    for (const auto& [key, source] :
+         {std::pair("scene", variant.scene), std::pair("pedestrian", variant.pedestrian),
+          std::pair("level", variant.level)})
+      if (source) json[key] = source_json(suite, *source);
+    variants.push_back(std::move(json));
+  }
+  return {{"starts", spec.starts},       {"seed", spec.seed},
+          {"goals", spec.goals},         {"limit_s", spec.limit_s},
+          {"arrival_m", spec.arrival_m}, {"ticks_per_frame", spec.ticks_per_frame},
+          {"dark_s", spec.dark_s},       {"variants", variants}};
 }
 
 Json system_json(const SystemSpec& system) {
@@ -112,6 +145,9 @@ Json suite_json(const Suite& suite) {
       {"seed", suite.seed},
       {"slam", to_json(suite.slam)},
       {"parameters", sweep_json(suite.sweep)},
+      {"graded", suite.graded ? to_json(*suite.graded) : Json()},
+      {"episodes", episodes_json(suite)},
+      {"compare", compare_json(suite)},
       {"non_inferiority_margin", json_of(suite.non_inferiority_margin)},
       {"protocol", to_json(suite.protocol)}};
 }

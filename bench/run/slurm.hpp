@@ -23,19 +23,19 @@ struct SlurmResults {
   std::vector<std::size_t> incomplete;  ///< shares, from 1, some of whose runs are missing
 };
 
-/// The folder of a share's results in that of the suite's.
+/// Folder of a share's results, inside the suite's.
 std::filesystem::path share_folder(const std::filesystem::path& out, std::size_t share);
 
-/// The script of an array's task, whose number is that of its share. It runs the share, and
-/// requeues itself if the program was killed: three times at most. The log is next to the share's
+/// Batch script of the job array; a task's number is its share's, from 1. A task runs its share and
+/// requeues itself if the program was killed, three times at most. The log is next to the share's
 /// folder.
-/// @param executable  as the machines of the cluster see it; `out`, too
+/// @param executable, out  paths as seen from the cluster's nodes
 std::string task_script(const std::filesystem::path& executable, const std::filesystem::path& out,
                         const SlurmOptions& slurm);
 
-/// run_suite() by an array of Slurm: a share of the runs per task (split_runs), each into a folder
-/// of its own, merged into options.out in the end. Only shares with unfinished runs are submitted,
-/// so that the same call resumes.
+/// Like run_suite(), as a job array of Slurm: a share of the runs per task (split_runs), each into
+/// a folder of its own, merged into options.out in the end. Only shares with unfinished runs are
+/// submitted, so that the same call resumes.
 /// @throws InputError if an input cannot be read; MachineError if Slurm's commands are missing or
 /// nothing could be submitted; Interrupted on Ctrl-C, after the array was canceled.
 SlurmResults run_on_slurm(const Suite& suite, const SuiteOverrides& overrides,

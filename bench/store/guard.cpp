@@ -23,7 +23,7 @@ void throw_meaning(const std::filesystem::path& file, const SQLite::Exception& e
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
       throw MachineError(fmt::format(
-          "{}: another process does not let go of it: wait or end it, then run again", name));
+          "{}: another process holds a lock on it: wait or end it, then run again", name));
     case SQLITE_CANTOPEN:
     case SQLITE_PERM:
     case SQLITE_READONLY:

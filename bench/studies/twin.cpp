@@ -18,7 +18,7 @@ namespace mh {
 namespace {
 
 constexpr float kSamePlace_px = 3, kNear_px = 20;
-constexpr int kSameDescriptor_bits = 50;  // MatchConfig::max_distance_tight
+constexpr int kSameDescriptor_bits = 50;  // MatchConfig::max_distance
 
 bool has_return(float depth_m) {
   return std::isfinite(depth_m) && depth_m > 0;

@@ -47,7 +47,8 @@ typedef struct mh_setup {
   uint32_t version; /**< MH_SYSTEM_VERSION of the bench */
   mh_camera camera;
   uint64_t seed;        /**< of the trial */
-  const char* settings; /**< absolute path of the suite's `settings`; NULL if there is none */
+  const char* settings; /**< absolute path of the `settings` of this system's entry in the suite;
+                           NULL = none */
   int32_t class_count;
   const char* const* classes; /**< name of each class id; 0 is void (unknown) */
   char* message;              /**< MH_MESSAGE_SIZE characters: why a function failed */

@@ -51,7 +51,7 @@ struct DepthRange {
 /// object. Repeated up to three times.
 DepthRange foreground_depth(const DetectedBox& box, const Grid2d<float>& depth_m);
 
-/// Bytes for a cache, and back. @throws InputError if they are no such bytes.
+/// Bytes for a cache, and back. @throws InputError if the bytes are not a valid encoding.
 std::string encode(const Detected& detected);
 Detected decode_detected(std::string_view bytes);
 

@@ -28,16 +28,16 @@ class Detector {
   virtual const ClassNames& names() const = 0;
   /// One line for a person: "yolox, 80 classes, input 416 x 416".
   virtual std::string description() const = 0;
-  /// Checks that boxes of files are of this sequence's frames. @returns a note on those that are
-  /// not, or "". @throws InputError if none is
+  /// Checks that a box file's frames belong to this sequence. @returns a note that counts those
+  /// that do not, or "". @throws InputError if none does
   virtual std::string check_frames(std::span<const Stamp> /*stamps_ns*/) const { return ""; }
-  /// Digest of everything besides the image that decides what detect() returns; 0 if that is not
-  /// worth keeping in a cache.
+  /// Digest of everything besides the image that decides what detect() returns; 0 if detections
+  /// are not cached.
   virtual std::uint64_t digest() const = 0;
 };
 
 /// Opens a network or a file of boxes. A network is first imported and run once in a child process,
-/// where OpenCV's importers may crash or exhaust the memory. Sets OpenCV to one thread, as the
+/// because OpenCV's importers can crash or exhaust the memory. Sets OpenCV to one thread, as the
 /// program does: the same bits at any load, and nothing that a child could wait for.
 /// @throws InputError naming the file and what is wrong with it.
 std::unique_ptr<Detector> open_detector(const DetectorSpec& spec);

@@ -9,8 +9,9 @@
 #include "slam/map/map.hpp"
 #include "slam/semantics/candidate_selection.hpp"
 
-// Rules that use labels beyond the paper (the last settings of SemanticConfig). Each is off by
-// default, and off means: the paper's results, bit for bit.
+// Helpers of the rules that use labels beyond the paper (`label_mass`, and `candidates` and the
+// settings after it in SemanticConfig). `wider_search` is in candidate_trial.cpp; `label_mass` needs
+// no helper. With every rule off, results are the paper's, bit for bit.
 
 namespace mh {
 
@@ -21,8 +22,8 @@ namespace mh {
 /// by the smaller number of keypoints; 1 if no class is shared.
 double size_agreement(const Features& a, const Features& b);
 
-/// Two lists in turns: the first of a, the first of b, the second of a, and so on; what occurred
-/// before is left out. A list with itself is itself.
+/// Interleaves two lists (first of a, first of b, second of a, ...) and drops repeated keyframes.
+/// Interleaving a list with itself returns it unchanged.
 std::vector<Candidate<KeyframeId>> side_by_side(std::span<const Candidate<KeyframeId>> a,
                                                 std::span<const Candidate<KeyframeId>> b);
 

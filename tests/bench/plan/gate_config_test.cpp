@@ -83,6 +83,9 @@ TEST_F(GateDigest, SeesEachFileAndSettingThatMakesTheRuns) {
   EXPECT_NE(digest("trials: 3"), before);
   EXPECT_NE(digest("seed: 3"), before);
   EXPECT_NE(digest("protocol: {rewind_frames: 49}"), before);
+  const std::string graded = digest("graded: {distance_m: [0, 1], angle_deg: [0, 30]}");
+  EXPECT_NE(graded, before);
+  EXPECT_NE(digest("graded: {distance_m: [0, 2], angle_deg: [0, 30]}"), graded);
 }
 
 TEST_F(GateDigest, LeavesOutWhatAChangeMayChange) {

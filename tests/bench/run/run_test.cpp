@@ -16,7 +16,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "bench/metrics/trajectory_score.hpp"
+#include "bench/plan/suite.hpp"
 #include "bench/report/json.hpp"
+#include "bench/report/suite_json.hpp"
 #include "bench/report/sweep.hpp"
 #include "bench/report/table.hpp"
 #include "bench/report/topdown.hpp"
@@ -864,6 +866,26 @@ TEST(Results, PathsDoNotDependOnTheSuitesSpelling) {
   };
   for (const char* folder : {"", ".", "suites", "../suites", "/suites"})
     EXPECT_EQ(scene(folder), "../scenes/house.yaml") << folder;
+}
+
+TEST(Results, TellWhatASuiteAsks) {
+  const auto told = [](const char* suite) {
+    return suite_json(load_suite(fmt::format("{}/bench/suites/{}.yaml", MH_SOURCE_DIR, suite)));
+  };
+  const auto ci = told("ci");
+  EXPECT_EQ(ci["environments"][3]["kidnapped_tour"], "../scenarios/tours/kidnap_after.yaml");
+  EXPECT_EQ(ci["environments"][4]["query_scene"], "../scenarios/room_moved.yaml");
+  EXPECT_EQ(ci["environments"][2]["sensors"], "../scenarios/levels/fast_turn.yaml");
+  EXPECT_EQ(ci["environments"][8]["pedestrian"], "../scenarios/pedestrian.yaml");
+  EXPECT_FALSE(ci["environments"][0].contains("pedestrian"));
+  EXPECT_TRUE(ci["graded"].is_null());
+  EXPECT_TRUE(ci["episodes"].is_null());
+  EXPECT_EQ(ci["compare"].dump(), R"([["semantic","plain"]])");
+  EXPECT_GE(told("graded")["graded"]["distance_m"].size(), 3u);
+  EXPECT_EQ(told("four_arms")["compare"][3].dump(), R"(["semantic","released"])");
+  const auto kidnapped = told("kidnapped_harder")["episodes"];
+  EXPECT_GE(kidnapped["variants"].size(), 3u);
+  EXPECT_FALSE(kidnapped["goals"].empty());
 }
 
 TEST(Results, WhatHasNoPairsIsUnknownAndTheFamilyIsSuccessAndDistance) {
