@@ -137,11 +137,15 @@ CandidateSelection<KeyframeId> choose_candidates(const Map& map, const Query& qu
   const SemanticConfig& rules = config.semantics;
   CandidateSelection<KeyframeId> selection =
       select_keyframes(map, query.words.vector, rules, released);
-  if (rules.candidates == CandidateLists::kSideBySide)
-    selection.candidates =
-        side_by_side(selection.candidates,
-                     select_keyframes(map, words_alone(query.words.vector), rules).candidates);
-  if (rules.nearness > 0) prefer_near(selection.candidates, map, query.features, rules.nearness);
+  const auto prefer = [&](std::vector<Candidate<KeyframeId>>& candidates) {
+    if (rules.nearness > 0) prefer_near(candidates, map, query.features, rules.nearness);
+  };
+  prefer(selection.candidates);
+  if (rules.candidates == CandidateLists::kSideBySide) {
+    auto by_words = select_keyframes(map, words_alone(query.words.vector), rules).candidates;
+    prefer(by_words);  // before the lists are merged: their scores have different scales
+    selection.candidates = side_by_side(selection.candidates, by_words);
+  }
   return selection;
 }
 

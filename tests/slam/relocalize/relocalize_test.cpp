@@ -66,6 +66,29 @@ TEST_F(SelectKeyframes, ErasedKeyframesAreNoCandidates) {
   EXPECT_EQ(selection.candidates[0].keyframe, KeyframeId{2});
 }
 
+// Scores of the two lists have different scales: nearness orders each list, never both together.
+TEST(ChooseCandidates, NearnessKeepsTheTurnsOfTwoLists) {
+  const Map map = map_of({vector_of({5, 6}, {1, 2, 3, 13, 14, 15, 16, 17}),  // first by labels
+                          vector_of({7, 8}, {1, 2, 3, 4})});  // first by words, scored higher
+  const Features features;
+  const FeatureGrid grid(features.keypoints, Camera{});
+  WordIndex words;
+  words.vector = vector_of({5, 6}, {1, 2, 3, 4});
+  const auto chosen = [&](double nearness) {
+    SlamConfig config;
+    config.semantics.candidates = CandidateLists::kSideBySide;
+    config.semantics.nearness = nearness;
+    return choose_candidates(map, {features, grid, words}, config, nullptr).candidates;
+  };
+  for (const double nearness : {0.0, 2.0}) {  // no shared class has a size: every factor is 1
+    const auto candidates = chosen(nearness);
+    ASSERT_EQ(candidates.size(), 2u);
+    EXPECT_EQ(candidates[0].keyframe, KeyframeId{0});
+    EXPECT_EQ(candidates[1].keyframe, KeyframeId{1});
+    EXPECT_LT(candidates[0].score, candidates[1].score);
+  }
+}
+
 TEST(Relocalize, AnEmptyMapHasNoCandidate) {
   const Features features;
   const FeatureGrid grid(features.keypoints, Camera{});
