@@ -16,6 +16,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "bench/metrics/trajectory_score.hpp"
+#include "bench/plan/shipped.hpp"
 #include "bench/plan/suite.hpp"
 #include "bench/report/json.hpp"
 #include "bench/report/suite_json.hpp"
@@ -870,7 +871,7 @@ TEST(Results, PathsDoNotDependOnTheSuitesSpelling) {
 
 TEST(Results, TellWhatASuiteAsks) {
   const auto told = [](const char* suite) {
-    return suite_json(load_suite(fmt::format("{}/bench/suites/{}.yaml", MH_SOURCE_DIR, suite)));
+    return suite_json(load_suite(shipped_file(suite, Shipped::kSuite)));
   };
   const auto ci = told("ci");
   EXPECT_EQ(ci["environments"][3]["kidnapped_tour"], "../scenarios/tours/kidnap_after.yaml");
