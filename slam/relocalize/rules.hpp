@@ -10,8 +10,8 @@
 #include "slam/semantics/candidate_selection.hpp"
 
 // Helpers of the rules that use labels beyond the paper (`label_mass`, and `candidates` and the
-// settings after it in SemanticConfig). `wider_search` is in candidate_trial.cpp; `label_mass` needs
-// no helper. With every rule off, results are the paper's, bit for bit.
+// settings after it in SemanticConfig). `wider_search` is in candidate_trial.cpp; `label_mass`
+// needs no helper. With every rule off, results are the paper's, bit for bit.
 
 namespace mh {
 
