@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -8,6 +9,7 @@
 #include <set>
 #include <span>
 #include <sstream>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -40,14 +42,16 @@ struct FiledBoxes {
 };
 
 constexpr Stamp kSameStamp_ns = 1'000'000;
+constexpr double kLargestShare = 3;  // of the image, of YOLO's boxes: a larger number is pixels
 constexpr std::int64_t kMostFrames = 100'000'000;  // a larger number is a stamp in nanoseconds
 
 /// The boxes of a frame that a file calls "17" (an index) or "1305031229.528748" (a stamp, s).
 std::vector<FiledBox>& boxes_of(FiledBoxes& all, const std::string& frame,
                                 const std::string& place) {
   const bool digits = !frame.empty() && frame.find_first_not_of("0123456789") == frame.npos;
-  if (digits && frame.size() <= 18) {
-    const std::int64_t number = std::stoll(frame);
+  std::int64_t number = 0;
+  if (digits &&
+      std::from_chars(frame.data(), frame.data() + frame.size(), number).ec == std::errc()) {
     if (number < kMostFrames) return all.by_index[static_cast<std::size_t>(number)];
     return all.by_stamp[number];
   }
@@ -98,7 +102,9 @@ int whole(double value, const char* what, const std::string& place) {
 /// Calls visit(place, numbers) for each line that is neither empty nor a comment.
 template <class Visit>
 void for_each_line(const fs::path& file, const Visit& visit) {
-  std::istringstream text(read_text(file));
+  std::string lines = read_text(file);
+  if (lines.find('\n') == lines.npos) std::ranges::replace(lines, '\r', '\n');  // old Macs'
+  std::istringstream text(lines);
   int number = 0;
   for (std::string line; std::getline(text, line);) {
     const std::string place = fmt::format("{}:{}", file.string(), ++number);
@@ -126,6 +132,10 @@ void read_yolo_folder(const fs::path& folder, const ClassNames& names, FiledBoxe
                    .network_class = whole(v[0], "class", place),
                    .normalized = true};
       check(box, names, place);
+      if (std::ranges::any_of(std::span(v).subspan(1, 4),
+                              [](double share) { return std::abs(share) > kLargestShare; }))
+        throw InputError(fmt::format("{}: box {} {} {} {} is not in shares of the image", place,
+                                     v[1], v[2], v[3], v[4]));
       boxes.push_back(box);
     });
   }

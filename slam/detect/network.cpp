@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -147,6 +148,18 @@ Outputs forward(Imported& imported, const cv::Mat& input) {
   return out;
 }
 
+/// @throws InputError if an output is not a number anywhere: the weights are damaged.
+void check_numbers(const fs::path& file, const Outputs& out) {
+  for (const Tensor& tensor : out.tensors) {
+    const auto bad = std::ranges::find_if(tensor.values, [](float v) { return std::isnan(v); });
+    if (bad != tensor.values.end())
+      refuse(file, fmt::format("gives a value that is not a number (value {} of {})",
+                               bad - tensor.values.begin() + 1, tensor.values.size()));
+    if (std::ranges::none_of(tensor.values, [](float v) { return std::isfinite(v); }))
+      refuse(file, fmt::format("gives {} values, none of which is finite", tensor.values.size()));
+  }
+}
+
 void resolve_auto(DetectorSettings& s, Head head) {
   s.head = head;
   const bool yolox = head == Head::kYolox || head == Head::kYoloxDecoded,
@@ -158,16 +171,27 @@ void resolve_auto(DetectorSettings& s, Head head) {
   if (s.channels == Channels::kAuto) s.channels = yolox ? Channels::kBgr : Channels::kRgb;
 }
 
+/// Whether a head that the user names can be that of a network that looks like `seen`.
+bool may_be(Head named, Head seen, bool darknet) {
+  if ((named == Head::kDarknet) != darknet) return false;
+  const bool one_per_cell = seen == Head::kYolox || seen == Head::kYoloxDecoded;
+  return !(named == Head::kYolov5 && one_per_cell);
+}
+
 /// The head by name or by what a gray image gives, and the classes that it must have.
 void understand(const DetectorSpec& spec, const NetworkFiles& files, Imported& imported) {
   const std::vector<int> shape = {1, 3, imported.input.height, imported.input.width};
   const cv::Mat gray(shape, CV_32F, cv::Scalar::all(0.5));
   const Outputs out = with_opencv(spec.network, "run", [&] { return forward(imported, gray); });
+  check_numbers(spec.network, out);
   std::vector<std::string> shapes;
   for (const Tensor& tensor : out.tensors) shapes.push_back(shape_text(tensor));
-  const Head head = spec.settings.head != Head::kAuto
-                        ? spec.settings.head
-                        : recognize_head(out.tensors, imported.input, files.is_darknet);
+  const Head seen = recognize_head(out.tensors, imported.input, files.is_darknet);
+  const Head head = spec.settings.head != Head::kAuto ? spec.settings.head : seen;
+  if (head != Head::kAuto && !may_be(head, seen, files.is_darknet))
+    refuse(spec.network, fmt::format("its output ({}) is not that of head '{}' but of '{}'",
+                                     fmt::join(shapes, ", "), SettingsWriter::word_of(head),
+                                     SettingsWriter::word_of(seen)));
   if (head == Head::kAuto)
     refuse(
         spec.network,
@@ -198,6 +222,9 @@ Imported import(const DetectorSpec& spec, const NetworkFiles& files) {
                : cv::dnn::readNetFromONNX(files.network.data(), files.network.size());
   });
   if (imported.net.empty()) refuse(spec.network, "holds no network");
+  if (!files.is_darknet)
+    if (const std::string fault = onnx_weights_fault(files.network); !fault.empty())
+      refuse(spec.network, fault);
   if (files.is_darknet) check_weights(spec, imported.net, files.network);
   imported.net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
   imported.net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
@@ -259,6 +286,7 @@ class Network : public Detector {
     const cv::Mat input = network_input(color, imported_.input, at, settings);
     const std::scoped_lock lock(mutex_);
     const Outputs out = with_opencv(file_, "run", [&] { return forward(imported_, input); });
+    check_numbers(file_, out);
     Detected found;
     if (settings.head == Head::kSegmentation) {
       for (const Tensor& tensor : out.tensors)

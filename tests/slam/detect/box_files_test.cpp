@@ -67,6 +67,19 @@ TEST_F(BoxFiles, OfMotCountFromOne) {
   expect_chair(boxes->detect(image_, 3, 0));
 }
 
+TEST_F(BoxFiles, MayHaveTheLineEndsOfOldMacs) {
+  const auto boxes = open("a.csv", "4,-1,11,21,30,20,0.8,57,1\r5,-1,11,21,30,20,0.8,57,1\r");
+  expect_chair(boxes->detect(image_, 3, 0));
+  expect_chair(boxes->detect(image_, 4, 0));
+}
+
+TEST_F(BoxFiles, AreFoundByStampsOfTodayInNanoseconds) {
+  const auto boxes = open("a.json",
+                          "[{\"image_id\": 1305031229528748000, \"category_id\": 62, \"bbox\": "
+                          "[10, 20, 30, 20], \"score\": 0.8}]");
+  expect_chair(boxes->detect(image_, 7, 1305031229528748000));
+}
+
 TEST_F(BoxFiles, OutsideTheImageAreCutAndCounted) {
   const auto boxes =
       open("a.csv", "1,-1,-20,1,50,20,0.8,57\n1,-1,500,1,50,20,0.8,57\n1,-1,1,1,9,9,0.8,57\n");
@@ -111,6 +124,8 @@ TEST_F(BoxFiles, NameTheirFaultAndItsPlace) {
   says("a.csv", "one,-1,1,1,50,20,0.8,57\n", "'one' is not a number");
   says("a.csv", "", "holds no box");
   says("yolo/0.txt", "56 0.25 0.6 0.3 0.4 1.8\n", "0.txt:1: score 1.8 is outside [0, 1]");
+  says("yolo/0.txt", "56 320 240 100 80\n",
+       "0.txt:1: box 320 240 100 80 is not in shares of the image");
   says("other/first.txt", "56 0.25 0.6 0.3 0.4\n", "'first' is neither an index nor a stamp");
   says("a.json", "[{\"image_id\": 0, \"category_id\": 12, \"bbox\": [1,1,1,1], \"score\": 1}]",
        "entry 0: category_id 12 is none of COCO's");

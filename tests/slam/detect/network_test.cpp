@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include <filesystem>
+#include <limits>
 
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -188,6 +189,31 @@ TEST_F(Networks, AreRefusedInOneLine) {
   spec.network = folder_.path() / "missing.onnx";
   EXPECT_SAYS(refusal(spec), "missing.onnx");
   for (const std::string& text : {refusal(spec)}) EXPECT_EQ(text.find('\n'), text.npos);
+}
+
+// OpenCV would read beyond the weights' end, and give other boxes each time.
+TEST_F(Networks, WithFewerWeightsThanTheirShapeStatesAreRefused) {
+  const std::string whole = test::onnx_segmentation(8, 8, {1, 0, 0, 0, 0, 1});
+  std::string less = whole;
+  const std::size_t shape = less.find(std::string("\x08\x02\x08\x03\x08\x01\x08\x01", 8));
+  ASSERT_NE(shape, less.npos);
+  less[shape + 1] = '\x40';  // 64 x 3 x 1 x 1, with the weights of 2 x 3
+  EXPECT_SAYS(refusal(two_classes("less.onnx", less)),
+              "hold 6 values where their shape states 192");
+}
+
+TEST_F(Networks, WhoseValuesAreNoNumbersAreRefused) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_SAYS(refusal(two_classes("nan.onnx", test::onnx_segmentation(8, 8, {nan, 0, 0, 0, 0, 1}))),
+              "nan.onnx: gives a value that is not a number");
+}
+
+TEST_F(Networks, AreNotReadByAHeadThatTheyCannotHave) {
+  DetectorSpec spec = two_classes("yolox.onnx", test::onnx_detection(64, 32, {}));
+  for (const Head head : {Head::kYolov5, Head::kDarknet}) {
+    spec.settings.head = head;
+    EXPECT_SAYS(refusal(spec), "is not that of head '");
+  }
 }
 
 TEST_F(Networks, CutShortAnywhereNeverCrash) {
