@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/report/suite_json.hpp"
 
+#include <initializer_list>
+#include <optional>
 #include <utility>
 
 #include "bench/plan/shipped.hpp"
@@ -32,6 +34,14 @@ Json source_json(const Suite& suite, const std::filesystem::path& source) {
   return is_generated(source) ? source.string() : from_suite(suite, source);
 }
 
+/// Adds the sources that are given.
+void add_sources(
+    Json& json, const Suite& suite,
+    std::initializer_list<std::pair<const char*, std::optional<std::filesystem::path>>> sources) {
+  for (const auto& [key, source] : sources)
+    if (source) json[key] = source_json(suite, *source);
+}
+
 Json recorded_json(const Suite& suite, const Environment& e) {
   const auto name_of = [&](const std::string& sequence) {
     const auto [layout, path] = split_sequence(sequence);
@@ -56,10 +66,11 @@ Json environment_json(const Suite& suite, const Environment& e) {
                {"mapping_tour", source_json(suite, e.mapping_tour)},
                {"query_tour", e.query_tour ? source_json(suite, *e.query_tour) : Json()}};
   json.update(to_json(e.frame));
-  for (const auto& [key, source] :
-       {std::pair("query_scene", e.query_scene), std::pair("kidnapped_tour", e.kidnapped_tour),
-        std::pair("sensors", e.sensors), std::pair("pedestrian", e.pedestrian)})
-    if (source) json[key] = source_json(suite, *source);
+  add_sources(json, suite,
+              {{"query_scene", e.query_scene},
+               {"kidnapped_tour", e.kidnapped_tour},
+               {"sensors", e.sensors},
+               {"pedestrian", e.pedestrian}});
   return json;
 }
 
@@ -76,10 +87,9 @@ Json episodes_json(const Suite& suite) {
   Json variants = Json::array();
   for (const EpisodeVariant& variant : spec.variants) {
     Json json = {{"name", variant.name}};
-    for (const auto& [key, source] :
-         {std::pair("scene", variant.scene), std::pair("pedestrian", variant.pedestrian),
-          std::pair("level", variant.level)})
-      if (source) json[key] = source_json(suite, *source);
+    add_sources(
+        json, suite,
+        {{"scene", variant.scene}, {"pedestrian", variant.pedestrian}, {"level", variant.level}});
     variants.push_back(std::move(json));
   }
   return {{"starts", spec.starts},       {"seed", spec.seed},

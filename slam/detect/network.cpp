@@ -148,7 +148,7 @@ Outputs forward(Imported& imported, const cv::Mat& input) {
   return out;
 }
 
-/// @throws InputError if an output is not a number anywhere: the weights are damaged.
+/// @throws InputError if an output holds NaN or nothing finite: the weights are damaged.
 void check_numbers(const fs::path& file, const Outputs& out) {
   for (const Tensor& tensor : out.tensors) {
     const auto bad = std::ranges::find_if(tensor.values, [](float v) { return std::isnan(v); });
@@ -158,6 +158,13 @@ void check_numbers(const fs::path& file, const Outputs& out) {
     if (std::ranges::none_of(tensor.values, [](float v) { return std::isfinite(v); }))
       refuse(file, fmt::format("gives {} values, none of which is finite", tensor.values.size()));
   }
+}
+
+/// Runs the network on an input and checks what it gives. @throws InputError
+Outputs run(const fs::path& file, Imported& imported, const cv::Mat& input) {
+  Outputs out = with_opencv(file, "run", [&] { return forward(imported, input); });
+  check_numbers(file, out);
+  return out;
 }
 
 void resolve_auto(DetectorSettings& s, Head head) {
@@ -182,8 +189,7 @@ bool may_be(Head named, Head seen, bool darknet) {
 void understand(const DetectorSpec& spec, const NetworkFiles& files, Imported& imported) {
   const std::vector<int> shape = {1, 3, imported.input.height, imported.input.width};
   const cv::Mat gray(shape, CV_32F, cv::Scalar::all(0.5));
-  const Outputs out = with_opencv(spec.network, "run", [&] { return forward(imported, gray); });
-  check_numbers(spec.network, out);
+  const Outputs out = run(spec.network, imported, gray);
   std::vector<std::string> shapes;
   for (const Tensor& tensor : out.tensors) shapes.push_back(shape_text(tensor));
   const Head seen = recognize_head(out.tensors, imported.input, files.is_darknet);
@@ -285,8 +291,7 @@ class Network : public Detector {
         place_image(color.width(), color.height(), imported_.input, settings.letterbox);
     const cv::Mat input = network_input(color, imported_.input, at, settings);
     const std::scoped_lock lock(mutex_);
-    const Outputs out = with_opencv(file_, "run", [&] { return forward(imported_, input); });
-    check_numbers(file_, out);
+    const Outputs out = run(file_, imported_, input);
     Detected found;
     if (settings.head == Head::kSegmentation) {
       for (const Tensor& tensor : out.tensors)
