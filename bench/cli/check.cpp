@@ -16,6 +16,7 @@
 #include "bench/cli/set_option.hpp"
 #include "bench/provenance/digest.hpp"
 #include "bench/run/run.hpp"
+#include "bench/run/signal_watch.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -15,9 +16,9 @@
 
 #include "bench/cli/commands.hpp"
 #include "bench/cli/declarations.hpp"
-#include "bench/run/pool.hpp"
 #include "bench/run/run.hpp"
 #include "bench/run/run_process.hpp"
+#include "bench/run/signal_watch.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/legible.hpp"
@@ -53,6 +54,8 @@ bool has_commands(const CLI::App& app) {
 }
 
 int run(int argc, char** argv) {
+  // A file beyond `ulimit -f` is a failed write that is reported, not a silent end.
+  std::signal(SIGXFSZ, SIG_IGN);
   // Same bits at any load: OpenCV must not split its work by the number of processors.
   cv::setNumThreads(1);
   CLI::App app("Modelhouse: a simulation-backed test bench for object-aware visual SLAM.",

@@ -19,6 +19,7 @@
 #include "bench/plan/check_labels.hpp"
 #include "bench/plan/labels.hpp"
 #include "bench/provenance/digest.hpp"
+#include "bench/run/signal_watch.hpp"
 #include "bench/world/cached_detections.hpp"
 #include "scenes/recorded/ros/recorder.hpp"
 #include "scenes/scannet/files.hpp"
@@ -83,20 +84,23 @@ std::string settings_of(const RenderArguments& o, const Scene& scene, const Traj
   return json.dump(2) + "\n";
 }
 
-/// Images of two tours in one folder would look like one sequence.
-[[noreturn]] void refuse_folder(const fs::path& folder) {
-  throw InputError(
-      fmt::format("{}: holds a sequence already; name another folder", folder.string()));
+/// The first part of a sequence that a folder holds; empty if it holds none.
+fs::path part_of_sequence(const fs::path& folder) {
+  for (const char* part : {"rgb", "rgb.txt", "color", "intrinsic"})
+    if (fs::exists(folder / part)) return folder / part;
+  for (const char* whole : {"*.sens", "*.bag", "*.mcap"})
+    if (const auto files = list_folder(folder, whole); !files.empty())
+      return folder / files.front();
+  return {};
 }
 
+/// Images of two tours in one folder would look like one sequence.
 void refuse_older_sequence(const fs::path& folder) {
-  if (fs::exists(folder / "render.json")) return;  // compared when all settings are known
-  for (const char* part : {"rgb", "rgb.txt", "color", "intrinsic"})
-    if (fs::exists(folder / part)) refuse_folder(folder);
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    for (const char* whole : {".sens", ".bag", ".mcap"})
-      if (entry.path().extension() == whole) refuse_folder(folder);
+  if (!is_folder(folder) || fs::exists(folder / "render.json"))
+    return;  // compared when all settings are known
+  if (const fs::path part = part_of_sequence(folder); !part.empty())
+    throw InputError(fmt::format("{}: holds a sequence already ({}); name another folder",
+                                 folder.string(), part.filename().string()));
 }
 
 /// Names of the written files except images; empty for a folder whose render.json states what is
@@ -215,7 +219,8 @@ void run(RenderArguments options) {
       mounted != nullptr ? path_of(*mounted, *robot.equipment, driven) : driven.camera;
 
   const std::string settings = settings_of(options, scene, path, inputs);
-  if (fs::exists(out / "render.json")) {
+  const bool holds_frames = fs::exists(out / "render.json") && !part_of_sequence(out).empty();
+  if (holds_frames) {
     if (read_file(out / "render.json") != settings)
       throw InputError(fmt::format(
           "{}: already contains a sequence with other settings (see its render.json); name another "
@@ -224,6 +229,12 @@ void run(RenderArguments options) {
     options.sequence.resume = true;
   }
   write_atomically(out / "render.json", settings);
+  const bool goes_on = options.format == "tum" || options.format == "scannet-frames";
+  const SignalWatch watch;
+  const auto report = [&](double share) {
+    if (watch.signal() != 0) throw Interrupted{watch.signal(), goes_on};
+    progress.share(share);
+  };
   std::shared_ptr<const PedestrianScene> pedestrian_scene;
   if (pedestrian) pedestrian_scene = make_pedestrian_scene(scene, renderer, *pedestrian);
   const Shutter shutter =
@@ -241,7 +252,7 @@ void run(RenderArguments options) {
     const Clock::time_point start = Clock::now();
     RenderedSequence done{.frames = wanted.size()};
     write_scannet_recording(out, reported_camera, wanted.size(), [&](std::size_t k) {
-      progress.share(static_cast<double>(k) / static_cast<double>(wanted.size()));
+      report(static_cast<double>(k) / static_cast<double>(wanted.size()));
       const Clock::time_point begun = Clock::now();
       ExactFrame frame = exact_frame(shutter, sensors, options.sequence, wanted[k]);
       done.render_s += seconds_since(begun);
@@ -264,8 +275,8 @@ void run(RenderArguments options) {
   } else {
     writer = make_sequence_writer(options.format, out, reported_camera, options.png_compression);
   }
-  const RenderedSequence done = render_sequence(shutter, sensors, *writer, options.sequence,
-                                                [&](double share) { progress.share(share); });
+  const RenderedSequence done =
+      render_sequence(shutter, sensors, *writer, options.sequence, report);
   progress.end();
   if (options.json) print_json(done);
 }

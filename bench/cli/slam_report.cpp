@@ -142,7 +142,8 @@ void print_slam_report(const SlamReport& report) {
       fmt::print("ATE {:.4f} m (RMSE over {}, aligned by SE(3) without scale)\n",
                  e.ape_translation_m.rmse, counted(e.pairs, "pose"));
     else
-      fmt::print("ATE unknown: {} with a true one beside\n", counted(e.pairs, "pose"));
+      fmt::print("ATE unknown: {} a true one at the same time, too few or too straight to align\n",
+                 counted(e.pairs, "pose has", "poses have"));
   }
   fmt::print("\n{:<16}{:>8}{:>12}{:>12}\n", "time (ms)", "frames", "median", "95 % below");
   const auto row = [](std::string_view what, const std::vector<double>& ms) {

@@ -8,16 +8,10 @@
 #include <vector>
 
 #include "bench/plan/runs.hpp"
+#include "bench/run/signal_watch.hpp"
 #include "bench/store/store.hpp"
 
 namespace mh {
-
-/// Thrown when the user interrupted the work (Ctrl-C, SIGTERM): every process has ended, finished
-/// results are kept.
-struct Interrupted {
-  int signal = 0;
-  bool goes_on = true;  ///< whether the same command resumes from the finished results
-};
 
 /// A run and the key of its result.
 struct Job {

@@ -5,6 +5,13 @@
 
 namespace mh {
 
+/// Thrown when the user interrupted the work (Ctrl-C, SIGTERM): every process has ended, what is
+/// finished is kept.
+struct Interrupted {
+  int signal = 0;
+  bool goes_on = true;  ///< whether the same command resumes from what is finished
+};
+
 /// During its lifetime, records SIGINT and SIGTERM instead of terminating.
 class SignalWatch {
  public:

@@ -85,6 +85,7 @@ void for_each_process(const Work& work) {
   sigprocmask(SIG_SETMASK, &none, nullptr);
   signal(SIGPIPE, SIG_DFL);
   signal(SIGINT, SIG_DFL);
+  signal(SIGXFSZ, SIG_DFL);
   if (c.file_limit_bytes > 0) {
     const rlimit most{c.file_limit_bytes, c.file_limit_bytes};
     setrlimit(RLIMIT_FSIZE, &most);

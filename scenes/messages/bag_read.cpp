@@ -54,6 +54,10 @@ class BagFile : public MessageFile {
 
  private:
   [[noreturn]] void refuse(std::string_view all) const {
+    if (all.starts_with("#ROSBAG V2.0\r"))
+      throw InputError(fmt::format(
+          "{}: its first line ends in CR LF: it was transferred as text, which destroys a bag",
+          name()));
     if (all.starts_with("#ROSBAG V"))
       throw InputError(fmt::format("{}: is a bag of version {}, not 2.0: `rosbag fix` converts it",
                                    name(), all.substr(9, all.find('\n', 9) - 9).substr(0, 8)));

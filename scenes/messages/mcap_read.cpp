@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <libdeflate.h>
+
 #include <map>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -12,6 +15,8 @@ namespace mh {
 namespace {
 
 using mcap::Opcode;
+
+constexpr std::size_t kRecordHead = 9;  // opcode, length
 
 /// "sensor_msgs/Image" of either spelling.
 std::string common_type(std::string_view type) {
@@ -27,8 +32,10 @@ class McapFile : public MessageFile {
     const std::string_view all = this->bytes();
     if (!all.starts_with(mcap::kMagic))
       throw InputError(fmt::format("{}: is not an MCAP file", name));
-    read_records({all, mcap::kMagic.size(), MessagePlace::kFile, 0});
-    if (!ended_ && !leaves_out(kCut))
+    const std::size_t data_end = read_records({all, mcap::kMagic.size(), MessagePlace::kFile, 0});
+    if (ended_)
+      check_end(data_end);
+    else if (!leaves_out(kCut))
       leave_out("ends", all.size(), "it was cut short: what came before is used");
   }
 
@@ -41,34 +48,65 @@ class McapFile : public MessageFile {
     std::uint64_t chunk_at = 0;  ///< in the file
   };
 
-  void read_records(const Records& records) {
+  struct Record {
+    Opcode opcode{};
+    std::size_t content_at = 0;  ///< in the bytes that hold it
+    std::string_view content;
+    std::size_t end() const { return content_at + content.size(); }
+  };
+
+  /// nullopt if no whole record stands there.
+  static std::optional<Record> record_at(std::string_view bytes, std::size_t at) {
+    ByteReader from(bytes.substr(at));
+    if (from.left() < kRecordHead) return std::nullopt;
+    const auto opcode = static_cast<Opcode>(from.number<std::uint8_t>());
+    const auto size = from.number<std::uint64_t>();
+    if (size > from.left()) return std::nullopt;
+    return Record{opcode, at + kRecordHead, from.take(size)};
+  }
+
+  /// Reads until the data ends. @returns where the last record that was read ends
+  std::size_t read_records(const Records& records) {
     const bool in_chunk = records.chunk != MessagePlace::kFile;
-    for (std::size_t at = records.begin; at < records.bytes.size() && !ended_;) {
+    std::size_t at = records.begin;
+    while (at < records.bytes.size() && !ended_) {
       const std::uint64_t place = in_chunk ? records.chunk_at : at;
-      ByteReader from(records.bytes.substr(at));
-      if (from.left() < 9) return cut(in_chunk, place);
-      const auto opcode = static_cast<Opcode>(from.number<std::uint8_t>());
-      const auto size = from.number<std::uint64_t>();
-      if (size > from.left()) return cut(in_chunk, place);
-      const std::size_t content_at = at + 9;
-      const std::string_view content = from.take(size);
-      at = content_at + size;
+      const std::optional<Record> record = record_at(records.bytes, at);
+      if (!record) {
+        if (in_chunk) throw InputError("ends within a record");
+        leave_out(kCut, place, "a record is cut short; what came before is used");
+        break;
+      }
       try {
-        if (opcode == Opcode::kMessage)
-          read_message(content, {records.chunk, content_at, size});
-        else if (opcode == Opcode::kChunk && !in_chunk)
-          read_chunk(content, place);
+        if (record->opcode == Opcode::kMessage)
+          read_message(record->content,
+                       {records.chunk, record->content_at, record->content.size()});
+        else if (record->opcode == Opcode::kChunk && !in_chunk)
+          read_chunk(record->content, place);
         else
-          read_other(opcode, content);
+          read_other(*record, in_chunk);
       } catch (const InputError& error) {
         leave_out("damaged records left out", place, error.what());
       }
+      at = record->end();
     }
+    return at;
   }
 
-  void cut(bool in_chunk, std::uint64_t place) {
-    if (in_chunk) throw InputError("ends within a record");
-    leave_out(kCut, place, "a record is cut short; what came before is used");
+  /// Whether the file ends as one that was closed: a summary, a footer, the magic bytes.
+  void check_end(std::size_t at) {
+    const std::string_view all = bytes();
+    for (bool footer = footer_; !footer;) {
+      const std::optional<Record> record = record_at(all, at);
+      if (!record) return leave_out("ends", at, "it has no footer: it was not closed");
+      footer = record->opcode == Opcode::kFooter;
+      at = record->end();
+    }
+    if (all.substr(at, mcap::kMagic.size()) != mcap::kMagic)
+      return leave_out("ends", at, "its footer is not followed by MCAP's last bytes");
+    at += mcap::kMagic.size();
+    if (at < all.size())
+      leave_out("ends", at, fmt::format("{} bytes after its end are left out", all.size() - at));
   }
 
   void read_message(std::string_view content, MessagePlace place) {
@@ -98,8 +136,9 @@ class McapFile : public MessageFile {
     read_records({records.view, 0, number, at});
   }
 
-  void read_other(Opcode opcode, std::string_view content) {
-    ByteReader from(content);
+  void read_other(const Record& record, bool in_chunk) {
+    ByteReader from(record.content);
+    const Opcode opcode = record.opcode;
     if (opcode == Opcode::kSchema) {
       const auto id = from.number<std::uint16_t>();
       schemas_[id] = common_type(from.text());
@@ -112,15 +151,22 @@ class McapFile : public MessageFile {
       if (encoding == "cdr") channel.wire = ros::Wire::kCdr;
       if (encoding == "ros1") channel.wire = ros::Wire::kRos1;
       channels_by_id_[id] = this->channel(std::move(channel));
-    } else if (opcode == Opcode::kDataEnd || opcode == Opcode::kFooter) {
+    } else if (!in_chunk && opcode == Opcode::kDataEnd) {
       ended_ = true;
+      const std::string_view data = bytes().substr(0, record.content_at - kRecordHead);
+      const auto crc = from.number<std::uint32_t>();
+      if (crc != 0 && libdeflate_crc32(0, data.data(), data.size()) != crc)
+        leave_out("checksums", data.size(), "its data's CRC is another: some of it is damaged");
+    } else if (!in_chunk && opcode == Opcode::kFooter) {
+      ended_ = footer_ = true;
     }
   }
 
   const Visit& visit_;
   std::map<std::uint16_t, std::string> schemas_;  ///< types by id
   std::map<std::uint16_t, std::size_t> channels_by_id_;
-  bool ended_ = false;
+  bool ended_ = false;   ///< its data
+  bool footer_ = false;  ///< was met before any end of the data
 };
 
 }  // namespace

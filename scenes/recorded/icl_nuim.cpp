@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/recorded/icl_nuim.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -71,6 +72,16 @@ std::vector<RecordedFrame> read_frames(const fs::path& folder) {
   return frames;
 }
 
+void note_frames_without_pose(const ListedFrames& listed, const std::string& truth,
+                              std::vector<std::string>& notes) {
+  const auto without = std::ranges::count_if(listed.frames, [&](const RecordedFrame& frame) {
+    return !std::ranges::binary_search(*listed.truth, frame.stamp_ns, {}, &TimedPose::stamp_ns);
+  });
+  if (without > 0)
+    notes.push_back(fmt::format("{}: {} of {} frames have no pose: they are offered, not scored",
+                                truth, without, listed.frames.size()));
+}
+
 bool is_icl_nuim(const fs::path& folder) {
   return is_file(folder / "associations.txt") && !truth_files(folder).empty();
 }
@@ -87,7 +98,9 @@ OpenedRecording open_icl_nuim(const fs::path& folder, const RecordingConfig& con
                       .truth = read_truth(folder / truth.front()),
                       .depth_camera = {}};
   if (!config.calibration.empty()) listed.camera = config.read_camera(config.calibration);
-  return open_listed(std::move(listed));
+  std::vector<std::string> notes;
+  note_frames_without_pose(listed, (folder / truth.front()).string(), notes);
+  return open_listed(std::move(listed), true, std::move(notes));
 }
 
 }  // namespace

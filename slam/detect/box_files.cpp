@@ -17,6 +17,7 @@
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/legible.hpp"
 #include "slam/core/text_file.hpp"
 #include "slam/core/trajectory_io.hpp"
 #include "slam/detect/detector.hpp"
@@ -63,7 +64,9 @@ std::vector<FiledBox>& boxes_of(FiledBoxes& all, const std::string& frame,
   return all.by_stamp[std::llround(seconds * 1e6) * 1000];
 }
 
-void check(const FiledBox& box, const ClassNames& names, const std::string& place) {
+/// @param first_class  the number that the file gives to the first class
+void check(const FiledBox& box, const ClassNames& names, const std::string& place,
+           int first_class = 0) {
   for (const auto& [what, value] : {std::pair("left", box.left),
                                     {"top", box.top},
                                     {"width", box.width},
@@ -76,8 +79,9 @@ void check(const FiledBox& box, const ClassNames& names, const std::string& plac
   if (box.score < 0 || box.score > 1)
     throw InputError(fmt::format("{}: score {} is outside [0, 1]", place, box.score));
   if (box.network_class < 0 || static_cast<std::size_t>(box.network_class) >= names.size())
-    throw InputError(fmt::format("{}: class {} is none of the {} that are named", place,
-                                 box.network_class, names.size()));
+    throw InputError(
+        fmt::format("{}: class {} is none of the {} that are named, which count from {}", place,
+                    box.network_class + first_class, names.size(), first_class));
 }
 
 /// Numbers of a line, separated by blanks or commas. @throws InputError at any other word.
@@ -86,9 +90,13 @@ std::vector<double> numbers(std::string line, const std::string& place) {
   std::istringstream words(line);
   std::vector<double> all;
   for (std::string word; words >> word;) {
-    char* end = nullptr;
-    all.push_back(std::strtod(word.c_str(), &end));
-    if (*end != '\0') throw InputError(fmt::format("{}: '{}' is not a number", place, word));
+    const char *first = word.data() + (word.starts_with('+') ? 1 : 0),
+               *last = word.data() + word.size();
+    double value = 0;
+    if (const auto read = std::from_chars(first, last, value);
+        read.ec != std::errc() || read.ptr != last)
+      throw InputError(fmt::format("{}: '{}' is not a number", place, legible(word)));
+    all.push_back(value);
   }
   return all;
 }
@@ -157,7 +165,7 @@ void read_mot(const fs::path& file, const ClassNames& names, FiledBoxes& all) {
                  .height = v[5],
                  .score = v[6],
                  .network_class = whole(v[7], "class", place) - 1};
-    check(box, names, place);
+    check(box, names, place, 1);
     all.by_index[static_cast<std::size_t>(frame - 1)].push_back(box);
   });
 }
@@ -178,6 +186,11 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
     throw InputError(fmt::format("{}:{}: is not JSON (which has no NaN and no comments)",
                                  file.string(), 1 + std::ranges::count(before, '\n')));
   }
+  if (json.is_object() && json.contains("annotations"))
+    throw InputError(
+        fmt::format("{}: holds COCO's annotations; its results are needed, a list of {{image_id, "
+                    "category_id, bbox, score}}",
+                    file.string()));
   if (!json.is_array())
     throw InputError(fmt::format("{}: is not a list of COCO's results", file.string()));
   for (std::size_t i = 0; i < json.size(); ++i) {

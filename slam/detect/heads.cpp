@@ -9,8 +9,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "slam/core/error.hpp"
+
 namespace mh {
 namespace {
+
+constexpr float kMostScore = 1.001F;  // beyond rounding
 
 /// The cells of a head without anchors: those of each stride, row by row.
 struct Cell {
@@ -133,6 +137,11 @@ void decode_rows(Head head, const Matrix& m, const InputSize& input, double conf
     const bool finite = std::isfinite(box.x) && std::isfinite(box.y) && std::isfinite(box.width) &&
                         std::isfinite(box.height) && std::isfinite(best);
     if (!finite || box.width <= 0 || box.height <= 0) continue;
+    if (best > kMostScore)
+      throw InputError(
+          fmt::format("gives a score of {:.4g}, and scores are at most 1: its export lacks the "
+                      "sigmoid, or its head is another",
+                      best));
     box.scores.reserve(static_cast<std::size_t>(m.columns - first));
     for (int c = first; c < m.columns; ++c) {
       const float score = object * m.at(i, c);

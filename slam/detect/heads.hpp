@@ -38,7 +38,7 @@ struct Candidate {
 
 /// Returns the boxes of a detecting head whose best score is at least `confidence`, in the order of
 /// the output. A score is objectness times class probability, where a head has both. Values that
-/// are not finite make no box.
+/// are not finite make no box. @throws InputError if a score is more than 1.
 std::vector<Candidate> decode(Head head, std::span<const Tensor> outputs, const InputSize& input,
                               double confidence);
 

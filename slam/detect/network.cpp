@@ -30,6 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kUsualInput_px = 640;
+constexpr int kLargestInput_px = 8192;
 
 /// OpenCV's importers write what they think to stderr; what matters is in their exceptions.
 class Quiet {
@@ -78,7 +79,7 @@ int of_net(const std::string& config, std::string_view key) {
       continue;
     int value = 0;
     std::from_chars(line.data() + key.size() + 1, line.data() + line.size(), value);
-    return value > 0 && value <= 8192 ? value : 0;
+    return value > 0 && value <= kLargestInput_px ? value : 0;
   }
   return 0;
 }
@@ -116,6 +117,7 @@ NetworkFiles read_files(const DetectorSpec& spec) {
   files.network = read_file(spec.network);
   if (files.network.size() > std::size_t{std::numeric_limits<int>::max()})
     refuse(spec.network, "is larger than 2 GB");
+  if (files.network.empty()) refuse(spec.network, "is empty");
   if (files.is_darknet && files.network.size() < 20)
     refuse(spec.network, "is too short for weights of Darknet");
   return files;
@@ -195,9 +197,12 @@ void understand(const DetectorSpec& spec, const NetworkFiles& files, Imported& i
   const Head seen = recognize_head(out.tensors, imported.input, files.is_darknet);
   const Head head = spec.settings.head != Head::kAuto ? spec.settings.head : seen;
   if (head != Head::kAuto && !may_be(head, seen, files.is_darknet))
-    refuse(spec.network, fmt::format("its output ({}) is not that of head '{}' but of '{}'",
-                                     fmt::join(shapes, ", "), SettingsWriter::word_of(head),
-                                     SettingsWriter::word_of(seen)));
+    refuse(
+        spec.network,
+        fmt::format(
+            "its output ({}) is not that of head '{}'{}", fmt::join(shapes, ", "),
+            SettingsWriter::word_of(head),
+            seen == Head::kAuto ? "" : fmt::format(" but of '{}'", SettingsWriter::word_of(seen))));
   if (head == Head::kAuto)
     refuse(
         spec.network,
@@ -219,6 +224,18 @@ void understand(const DetectorSpec& spec, const NetworkFiles& files, Imported& i
                                    spec.network.string(), classes));
 }
 
+/// The size of the images that the network's own file states; 0 where it leaves it open.
+InputSize stated_input(const fs::path& file, const NetworkFiles& files) {
+  if (files.is_darknet) return {of_net(files.config, "width"), of_net(files.config, "height")};
+  const OnnxInput input = onnx_input(files.network).value_or(OnnxInput{});
+  if (input.images > 1)
+    refuse(file, fmt::format("takes {} images at once: export it with a batch of 1", input.images));
+  if (std::max(input.width, input.height) > std::uint64_t{kLargestInput_px})
+    refuse(file, fmt::format("its input is fixed to {} x {}: at most {} pixels are taken",
+                             input.width, input.height, kLargestInput_px));
+  return {static_cast<int>(input.width), static_cast<int>(input.height)};
+}
+
 Imported import(const DetectorSpec& spec, const NetworkFiles& files) {
   Imported imported{.net = {}, .outputs = {}, .input = {}, .settings = spec.settings, .names = {}};
   imported.net = with_opencv(spec.network, "import", [&] {
@@ -235,9 +252,7 @@ Imported import(const DetectorSpec& spec, const NetworkFiles& files) {
   imported.net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
   imported.net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
   imported.outputs = imported.net.getUnconnectedOutLayersNames();
-  const InputSize declared =
-      files.is_darknet ? InputSize{of_net(files.config, "width"), of_net(files.config, "height")}
-                       : onnx_input_size(files.network).value_or(InputSize{});
+  const InputSize declared = stated_input(spec.network, files);
   const auto side = [&](int named, int stated, const char* key) {
     if (named > 0 && stated > 0 && named != stated && !files.is_darknet)
       refuse(spec.network, fmt::format("its input is fixed to {} x {}: `{}: {}` cannot be",
@@ -299,9 +314,8 @@ class Network : public Detector {
           found.pixels = segmented(tensor, at, imported_.input, color.width(), color.height(),
                                    imported_.names, settings.confidence);
     } else {
-      found.boxes =
-          select_boxes(decode(settings.head, out.tensors, imported_.input, settings.confidence), at,
-                       color.width(), color.height(), imported_.names, settings);
+      found.boxes = select_boxes(candidates(out), at, color.width(), color.height(),
+                                 imported_.names, settings);
     }
     return found;
   }
@@ -314,6 +328,15 @@ class Network : public Detector {
   std::uint64_t digest() const override { return digest_; }
 
  private:
+  std::vector<Candidate> candidates(const Outputs& out) const {
+    const DetectorSettings& settings = imported_.settings;
+    try {
+      return decode(settings.head, out.tensors, imported_.input, settings.confidence);
+    } catch (const InputError& error) {
+      refuse(file_, error.what());
+    }
+  }
+
   mutable std::mutex mutex_;
   mutable Imported imported_;  // running a network changes its memory
   fs::path file_;

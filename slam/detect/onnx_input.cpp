@@ -160,15 +160,16 @@ std::string fault_of(std::string_view tensor) {
   return fmt::format("weights {} hold {} values where their shape states {}", name, held, values);
 }
 
-int size_of(const Field& dim) {
+/// 0 where a dimension is open: by a name, or by -1.
+std::uint64_t size_of(const Field& dim) {
   for (const Field& value : all(dim.bytes, kValue))
-    if (value.bytes.empty() && value.number <= 8192) return static_cast<int>(value.number);
+    if (value.is_number && static_cast<std::int64_t>(value.number) > 0) return value.number;
   return 0;
 }
 
 }  // namespace
 
-std::optional<InputSize> onnx_input_size(std::string_view model) {
+std::optional<OnnxInput> onnx_input(std::string_view model) {
   for (const Field& graph : all(model, kGraph))
     for (const Field& input : all(graph.bytes, kInput))
       for (const Field& type : all(input.bytes, kType))
@@ -177,7 +178,7 @@ std::optional<InputSize> onnx_input_size(std::string_view model) {
             const std::vector<Field> dims = all(shape.bytes, kDim);
             // Weights may be listed as inputs: an image has three channels, or leaves them open.
             if (dims.size() != 4 || (size_of(dims[1]) != 3 && size_of(dims[1]) != 0)) continue;
-            return InputSize{size_of(dims[3]), size_of(dims[2])};
+            return OnnxInput{size_of(dims[0]), size_of(dims[3]), size_of(dims[2])};
           }
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,9 +13,16 @@ struct InputSize {
   friend bool operator==(const InputSize&, const InputSize&) = default;
 };
 
-/// The image size that an ONNX model declares for its first input of four dimensions; nullopt if
-/// the bytes are no such model. OpenCV's importer knows it and does not say it.
-std::optional<InputSize> onnx_input_size(std::string_view model);
+/// The first input of four dimensions that an ONNX model declares.
+struct OnnxInput {
+  std::uint64_t images = 0;             ///< at once; 0: the network leaves it open
+  std::uint64_t width = 0, height = 0;  ///< of each; 0: likewise
+  friend bool operator==(const OnnxInput&, const OnnxInput&) = default;
+};
+
+/// nullopt if the bytes are no model with such an input. OpenCV's importer knows it and does not
+/// say it.
+std::optional<OnnxInput> onnx_input(std::string_view model);
 
 /// Says which weights of an ONNX model are not as many as their shape states, or are kept in
 /// another file: OpenCV's importer would read beyond their end. "" = none, or the bytes are no such

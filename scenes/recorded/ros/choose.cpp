@@ -122,7 +122,7 @@ class Chooser {
   }
 
   /// The calibration beside an image: /x/camera_info of /x/image_raw or /x/image_raw/compressed.
-  const ros::CameraInfo* calibration_of(const ImageTopic& image) const {
+  const Calibration* calibration_of(const ImageTopic& image) const {
     std::string folder = parent_of(image.name);
     for (int up = 0; up < 2; ++up, folder = parent_of(folder)) {
       const auto found = topics_.calibrations.find(folder + "/camera_info");
@@ -131,7 +131,7 @@ class Chooser {
     return topics_.calibrations.size() == 1 ? &topics_.calibrations.begin()->second : nullptr;
   }
 
-  const ros::CameraInfo* named_calibration(const std::string& name) const {
+  const Calibration* named_calibration(const std::string& name) const {
     const auto found = topics_.calibrations.find(name);
     if (found != topics_.calibrations.end()) return &found->second;
     throw InputError(fmt::format("{}: topic '{}' holds no sensor_msgs/CameraInfo; {}", file_, name,

@@ -129,7 +129,7 @@ bool is_rectified(const std::string& topic) {
 
 Camera camera_of(const ChosenTopics& chosen, const RosTopics& topics) {
   const ImageTopic& color = *chosen.color;
-  const ros::CameraInfo& info = *chosen.info;
+  const ros::CameraInfo& info = chosen.info->info;
   Camera camera;
   const std::array<double, 3> first = is_rectified(color.name)
                                           ? std::array{info.p[0], info.p[5], info.p[2]}
@@ -151,15 +151,16 @@ Camera camera_of(const ChosenTopics& chosen, const RosTopics& topics) {
   if (!is_rectified(color.name)) set_distortion(camera, info);
   camera.rate_hz = rate_of(color.images);
   const auto projector = topics.calibrations.find(ros::kProjectorInfoTopic);
-  if (projector != topics.calibrations.end() && projector->second.p[3] < 0 &&
-      projector->second.p[0] > 0)
-    camera.baseline_m = -projector->second.p[3] / projector->second.p[0];
+  if (projector != topics.calibrations.end() && projector->second.info.p[3] < 0 &&
+      projector->second.info.p[0] > 0)
+    camera.baseline_m = -projector->second.info.p[3] / projector->second.info.p[0];
   validate(camera);
   return camera;
 }
 
 Camera calibrated(const ChosenTopics& chosen, const RosTopics& topics,
-                  const RecordingConfig& config, const std::string& file) {
+                  const RecordingConfig& config, const std::string& file,
+                  std::vector<std::string>& notes) {
   if (!config.calibration.empty() && config.has_camera(config.calibration))
     return config.read_camera(config.calibration).camera;
   if (chosen.info == nullptr)
@@ -168,6 +169,11 @@ Camera calibrated(const ChosenTopics& chosen, const RosTopics& topics,
                     "(info=TOPIC) or a settings file by --settings, in a suite by "
                     "`settings:`",
                     file, chosen.color->name));
+  if (chosen.info->other_at_ns)
+    notes.push_back(
+        fmt::format("{}: the calibration of {} is another from {} ns on: the first is "
+                    "used for all frames",
+                    file, chosen.info->topic, *chosen.info->other_at_ns));
   try {
     return camera_of(chosen, topics);
   } catch (const InputError& error) {
@@ -192,7 +198,7 @@ void check_registered(const ChosenTopics& chosen, const std::string& file,
   constexpr double kSame_px = 1;
   if (chosen.info == nullptr || chosen.depth_info == nullptr) return;
   for (const std::size_t i : {0U, 2U, 4U, 5U})
-    if (std::abs(chosen.info->k[i] - chosen.depth_info->k[i]) > kSame_px) {
+    if (std::abs(chosen.info->info.k[i] - chosen.depth_info->info.k[i]) > kSame_px) {
       notes.push_back(
           fmt::format("{}: depth of {} has another calibration than color of {}: it is used as if "
                       "it were registered",
@@ -237,13 +243,14 @@ fs::path file_at(const fs::path& path, const char* pattern) {
   if (!is_folder(path)) return path;
   const std::vector<std::string> names = list_folder(path, pattern);
   if (names.size() == 1) return path / names.front();
-  throw InputError(fmt::format("{}: holds {} files {}; name one", path.string(),
-                               names.empty() ? "no" : "several", pattern));
+  if (names.empty()) throw InputError(fmt::format("{}: holds no file {}", path.string(), pattern));
+  throw InputError(fmt::format("{}: holds {} files {}: name one of them, {} for example",
+                               path.string(), names.size(), pattern, names.front()));
 }
 
-/// Whether a path is such a file, or a folder with one.
+/// Whether a path is such a file, or a folder of such.
 bool looks_like(const fs::path& path, const char* extension) {
-  if (is_folder(path)) return list_folder(path, std::string("*") + extension).size() == 1;
+  if (is_folder(path)) return !list_folder(path, std::string("*") + extension).empty();
   return path.extension() == extension && is_file(path);
 }
 
@@ -287,7 +294,7 @@ OpenedRecording open_messages(OpenMessages open, HeldBytes content, const std::s
         opened.notes.empty() ? "" : ": " + opened.notes.front().substr(name.size() + 2)));
   const ChosenTopics chosen = choose_topics(topics, names, sequence->file->channels(), name);
   check_registered(chosen, name, opened.notes);
-  sequence->of_color = calibrated(chosen, topics, config, name);
+  sequence->of_color = calibrated(chosen, topics, config, name, opened.notes);
   sequence->color = source_of(*chosen.color);
   sequence->depth = source_of(*chosen.depth);
   sequence->frames = paired(chosen, name, opened.notes);

@@ -22,7 +22,7 @@ std::string frame_name(const std::string& name) {
 SE3 rigid(const ros::Quaternion& q, const SE3& pose) {
   const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
   if (!(std::abs(norm - 1) < 0.1) || !pose.translation().allFinite())
-    throw InputError("a pose is not a rigid transform");
+    throw InputError("holds a pose that is no rigid transform");
   return pose;
 }
 SE3 rigid(const ros::Pose& pose) {
@@ -59,8 +59,7 @@ void RosTopics::add_known(const MessageChannel& channel, std::string_view messag
   if (type == ros::Image::kType || type == ros::CompressedImage::kType) {
     add_image(channel, message, place);
   } else if (type == ros::CameraInfo::kType) {
-    if (!calibrations.contains(channel.topic))
-      calibrations[channel.topic] = ros::parsed<ros::CameraInfo>(message, wire);
+    add_calibration(channel.topic, ros::parsed<ros::CameraInfo>(message, wire));
   } else if (type == ros::PoseStamped::kType) {
     const auto m = ros::parsed<ros::PoseStamped>(message, wire);
     add_pose(m.header, "", rigid(m.pose));
@@ -77,6 +76,20 @@ void RosTopics::add_known(const MessageChannel& channel, std::string_view messag
   }
 }
 
+void RosTopics::add_calibration(const std::string& topic, ros::CameraInfo info) {
+  const auto [entry, is_new] = calibrations.try_emplace(topic);
+  Calibration& known = entry->second;
+  if (is_new) {
+    known = {topic, std::move(info), {}};
+    return;
+  }
+  const ros::CameraInfo& first = known.info;
+  const bool same = info.width == first.width && info.height == first.height &&
+                    info.distortion_model == first.distortion_model && info.d == first.d &&
+                    info.k == first.k && info.p == first.p;
+  if (!same && !known.other_at_ns) known.other_at_ns = info.header.stamp.ns;
+}
+
 void RosTopics::add_image(const MessageChannel& channel, std::string_view message,
                           const MessagePlace& place) {
   const auto [entry, is_new] = images.try_emplace(channel.topic);
@@ -89,6 +102,7 @@ void RosTopics::add_image(const MessageChannel& channel, std::string_view messag
       if (is_new) topic.compressed = true, topic.encoding = m.format;
     } else {
       auto m = ros::parsed<ros::Image>(message, *channel.wire);
+      if (m.width == 0 || m.height == 0) throw InputError("has no pixels");
       header = std::move(m.header);
       if (is_new) {
         topic.encoding = m.encoding;

@@ -31,6 +31,13 @@ struct ImageTopic {
   std::vector<StoredImage> images;
 };
 
+/// A topic of calibrations.
+struct Calibration {
+  std::string topic;
+  ros::CameraInfo info;              ///< the first
+  std::optional<Stamp> other_at_ns;  ///< of the first that is another; nullopt: all are the same
+};
+
 /// A topic of poses: PoseStamped, PoseWithCovarianceStamped's like, TransformStamped, Odometry.
 struct PoseTopic {
   std::string parent, child;  ///< frames; child is empty where the type has none
@@ -47,7 +54,7 @@ struct TfEdge {
 /// What a file of messages holds for SLAM.
 struct RosTopics {
   std::map<std::string, ImageTopic> images;
-  std::map<std::string, ros::CameraInfo> calibrations;  ///< the first of each topic
+  std::map<std::string, Calibration> calibrations;
   std::map<std::string, PoseTopic> poses;
   std::map<std::string, TfEdge> tf;  ///< by the child's name
   std::size_t unreadable = 0;        ///< messages of these types that could not be parsed
@@ -61,6 +68,7 @@ struct RosTopics {
                  const MessagePlace& place);
   void add_image(const MessageChannel& channel, std::string_view message,
                  const MessagePlace& place);
+  void add_calibration(const std::string& topic, ros::CameraInfo info);
   void add_transform(const ros::TransformStamped& t, bool is_static);
 };
 
@@ -68,9 +76,9 @@ struct RosTopics {
 struct ChosenTopics {
   const ImageTopic* color = nullptr;
   const ImageTopic* depth = nullptr;
-  const ImageTopic* labels = nullptr;           ///< may be null
-  const ros::CameraInfo* info = nullptr;        ///< of color; may be null
-  const ros::CameraInfo* depth_info = nullptr;  ///< may be null
+  const ImageTopic* labels = nullptr;       ///< may be null
+  const Calibration* info = nullptr;        ///< of color; may be null
+  const Calibration* depth_info = nullptr;  ///< may be null
 };
 /// Chooses by name, otherwise by type and encoding.
 /// @throws InputError naming the file and its topics if there is none of a kind, or several.

@@ -288,6 +288,28 @@ TEST(BenchProcess, CtrlCEndsEverythingAndKeepsWhatIsFinished) {
   EXPECT_EQ(tables("stopped"), undisturbed());
 }
 
+TEST(BenchProcess, ARenderingThatIsInterruptedSaysWhetherItGoesOn) {
+  const std::string mesh = (test_folder() / "floor.obj").string();
+  std::ofstream(mesh) << "v 0 0 0\nv 5 0 0\nv 5 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n";
+  for (const bool one_file : {false, true}) {
+    const fs::path out = test_folder() / (one_file ? "of_mcap" : "of_tum");
+    const std::string render = "render " + mesh + " --motion handheld:0 --out " + out.string() +
+                               (one_file ? " --format mcap" : "");
+    Command command(render);
+    for (int i = 0; i < 3000 && command.running() && !fs::exists(out / "render.json"); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    command.signal(SIGINT);
+    EXPECT_EQ(command.wait(), 130) << errors();
+    EXPECT_NE(errors().find(one_file ? "nothing is kept" : "the same command resumes"),
+              std::string::npos)
+        << errors();
+    EXPECT_FALSE(fs::exists(out / "rgb.txt"));
+    EXPECT_FALSE(fs::exists(out / "of_mcap.mcap"));
+    for (const auto& entry : fs::directory_iterator(out))
+      EXPECT_FALSE(entry.path().filename().string().starts_with(".work.")) << entry.path();
+  }
+}
+
 TEST(BenchProcess, ACheckThatIsInterruptedGoesOn) {
   const fs::path place = test_folder() / "home" / "modelhouse" / "check";
   setenv("XDG_CACHE_HOME", (test_folder() / "home").c_str(), 1);

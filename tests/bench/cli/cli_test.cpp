@@ -468,6 +468,37 @@ TEST_F(CommandLine, ARecordingInScannetsFormatEndsAtAHundredPerCent) {
   EXPECT_EQ(content(folder_ / "s/s.sens"), sens);
 }
 
+TEST_F(CommandLine, ARenderingThatWroteNothingDoesNotBindTheNext) {
+  const fs::path mesh = write("m.obj", "v 0 0 0\nv 5 0 0\nv 5 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n");
+  const std::string out = (folder_ / "out").string();
+  const std::string render = "render " + mesh.string() +
+                             " --motion handheld:0 --frames 2 --robot " + robot_ + " --out " + out;
+  ASSERT_EQ(run(render + " --seed 1"), 0) << err_;
+  expect_refused(render + " --seed 2", "with other settings");
+  // As after Ctrl-C before the first frame.
+  for (const char* part : {"rgb", "rgb.txt", "depth", "label", "instance"})
+    fs::remove_all(folder_ / "out" / part);
+  EXPECT_EQ(run(render + " --seed 2"), 0) << err_;
+  fs::create_directories(folder_ / "foreign");
+  write("foreign/a.mcap", "mine");
+  expect_refused("render " + mesh.string() + " --motion handheld:0 --frames 1 --robot " + robot_ +
+                     " --format mcap --out " + (folder_ / "foreign").string(),
+                 "holds a sequence already (a.mcap)");
+}
+
+TEST_F(CommandLine, AFileBeyondTheLimitIsAnErrorNotASilentEnd) {
+  const fs::path mesh = write("m.obj", "v 0 0 0\nv 5 0 0\nv 5 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n");
+  const std::string command =
+      "bash -c 'ulimit -f 100; " + std::string(MH_EXECUTABLE) + " render " + mesh.string() +
+      " --motion handheld:0 --frames 3 --format mcap --robot " + robot_ + " --out " +
+      (folder_ / "out").string() + " 2>" + (folder_ / "said").string() + "'";
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 2);
+  EXPECT_NE(content(folder_ / "said").find("out.mcap: cannot be written: File too large"),
+            std::string::npos)
+      << content(folder_ / "said");
+}
+
 TEST_F(CommandLine, NobodysFilesAreOverwritten) {
   const fs::path mesh = write("m.obj", "v 0 0 0\nv 5 0 0\nv 5 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n");
   const std::string m = mesh.string(), f = folder_.string() + "/";

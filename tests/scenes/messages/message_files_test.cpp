@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <libdeflate.h>
+
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -7,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "scenes/messages/byte_reader.hpp"
@@ -185,6 +188,15 @@ class Mcap {
     c.raw(records);
     return record(mcap::Opcode::kChunk, c.bytes());
   }
+  /// Data's end, footer, magic.
+  Mcap& end(std::uint32_t crc_of_data = 0) {
+    ByteWriter data_end;
+    data_end.number(crc_of_data);
+    record(mcap::Opcode::kDataEnd, data_end.bytes());
+    record(mcap::Opcode::kFooter, std::string(20, '\0'));
+    bytes_.raw(mcap::kMagic);
+    return *this;
+  }
   std::string records() const { return bytes_.bytes().substr(mcap::kMagic.size()); }
   std::string bytes() const { return bytes_.bytes(); }
 
@@ -199,7 +211,7 @@ std::string note_of(const Read& read) {
 TEST(McapByHand, WithoutChunksAndSummaryIsRead) {
   Mcap file;
   file.channel(0, "/a", "std_msgs/msg/Bool", "cdr").message(0, "m");
-  const Read read = read_all(file.record(mcap::Opcode::kDataEnd, std::string(4, '\0')).bytes());
+  const Read read = read_all(file.end().bytes());
   ASSERT_EQ(read.messages.size(), 1u);
   EXPECT_EQ(read.messages[0], std::pair(std::string("/a"), std::string("m")));
   EXPECT_EQ(read.file->channels()[0].type, "std_msgs/Bool");
@@ -210,10 +222,32 @@ TEST(McapByHand, UnknownRecordsAndEncodingsArePassedOver) {
   Mcap file;
   file.record(static_cast<mcap::Opcode>(0x99), "of tomorrow");
   file.channel(3, "/json", "Anything", "json").message(3, "{}");
-  const Read read = read_all(file.record(mcap::Opcode::kDataEnd, "").bytes());
+  const Read read = read_all(file.end().bytes());
   ASSERT_EQ(read.file->channels().size(), 1u);
   EXPECT_FALSE(read.file->channels()[0].wire.has_value());
   EXPECT_EQ(note_of(read), "");
+}
+
+TEST(McapByHand, AnEndThatIsAnotherIsTold) {
+  Mcap file;
+  file.channel(0, "/a", "std_msgs/msg/Bool", "cdr").message(0, "m");
+  const auto expect_told = [](const std::string& bytes, const char* part) {
+    const Read read = read_all(bytes);
+    EXPECT_EQ(read.messages.size(), 1u);
+    EXPECT_NE(note_of(read).find(part), std::string::npos) << note_of(read);
+  };
+  const std::string whole = Mcap(file).end().bytes();
+  EXPECT_EQ(note_of(read_all(whole)), "");
+  expect_told(Mcap(file).record(mcap::Opcode::kDataEnd, std::string(4, '\0')).bytes(),
+              "it has no footer");
+  expect_told(whole.substr(0, whole.size() - 20), "it has no footer");
+  expect_told(whole.substr(0, whole.size() - 1), "is not followed by MCAP's last bytes");
+  expect_told(whole + whole,
+              fmt::format("{} bytes after its end are left out", whole.size()).c_str());
+  expect_told(Mcap(file).end(1).bytes(), "its data's CRC is another");
+  const std::string data = file.bytes();
+  EXPECT_EQ(
+      note_of(read_all(Mcap(file).end(libdeflate_crc32(0, data.data(), data.size())).bytes())), "");
 }
 
 TEST(McapByHand, LiesAreCounted) {
@@ -221,7 +255,7 @@ TEST(McapByHand, LiesAreCounted) {
   inside.channel(0, "/a", "std_msgs/msg/Bool", "cdr").message(0, "m");
   const std::string records = inside.records(), zstd = compress(records, "zstd");
   const auto expect_left_out = [&](const Mcap& file, const char* part) {
-    const Read read = read_all(Mcap(file).record(mcap::Opcode::kDataEnd, "").bytes());
+    const Read read = read_all(Mcap(file).end().bytes());
     EXPECT_TRUE(read.messages.empty());
     EXPECT_NE(note_of(read).find(part), std::string::npos) << note_of(read);
   };
@@ -255,6 +289,7 @@ TEST(Bag, OfAnotherKindIsRefusedByName) {
     }
   };
   expect_refused("#ROSBAG V1.2\n", "x.bag: is a bag of version 1.2, not 2.0");
+  expect_refused("#ROSBAG V2.0\r\n", "its first line ends in CR LF");
   expect_refused("SQLite format 3", "a ROS 2 bag in SQLite");
   expect_refused("", "x.bag: is not a ROS 1 bag");
   EXPECT_THROW(open_mcap(hold("MCAP"), "x.mcap", [](const auto&, auto, const auto&) {}),

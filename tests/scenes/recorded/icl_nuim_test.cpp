@@ -81,6 +81,15 @@ TEST_F(IclNuim, PosesAreReflectedIntoTheCamerasFrame) {
   EXPECT_NEAR(pose.rotation().determinant(), 1, 1e-12);
 }
 
+TEST_F(IclNuim, FramesWithoutAPoseAreCounted) {
+  write_truth("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n");
+  const OpenedRecording opened = open_sequence("icl_nuim:" + folder_.string(), {});
+  EXPECT_EQ(opened.sequence->size(), 3U);
+  ASSERT_EQ(opened.notes.size(), 1U);
+  EXPECT_NE(opened.notes[0].find("1 of 3 frames have no pose"), std::string::npos)
+      << opened.notes[0];
+}
+
 TEST_F(IclNuim, RefusesAFolderWithoutOneTruth) {
   EXPECT_NE(complaint().find("holds 0 .gt.freiburg files, one is needed"), std::string::npos)
       << complaint();

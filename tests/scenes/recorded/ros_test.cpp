@@ -217,6 +217,47 @@ TEST_P(RosRecording, WithoutLabelsWhereNoneAreWanted) {
   EXPECT_TRUE(opened.sequence->frame(0, RandomStream(0)).semantics.index.empty());
 }
 
+TEST_P(RosRecording, SeveralInAFolderNeedAName) {
+  record();
+  fs::copy_file(file(), folder_ / (std::string("second.") + GetParam()));
+  const std::string error = error_of([&] { open_sequence(folder_.string(), {}); });
+  EXPECT_NE(error.find("holds 2 files *."), std::string::npos) << error;
+}
+
+TEST_P(RosRecording, AnotherCalibrationMidwayIsTold) {
+  Foreign robot(wire());
+  robot.color("/image");
+  robot.depth("/depth");
+  robot.info("/camera_info");
+  robot.info("/camera_info");
+  ros::CameraInfo other{.header = robot.header(2), .height = 1, .width = 2};
+  other.k = {3, 0, 0.5, 0, 3, 0, 0, 0, 1};
+  robot.add("/camera_info", 2, other);
+  robot.write(writer());
+  const OpenedRecording opened = open();
+  EXPECT_EQ(opened.sequence->camera().fx_px, 2);
+  ASSERT_EQ(opened.notes.size(), 1U);
+  EXPECT_NE(opened.notes[0].find("the calibration of /camera_info is another from 66666667 ns on"),
+            std::string::npos)
+      << opened.notes[0];
+}
+
+TEST_P(RosRecording, ImagesWithoutPixelsAreCounted) {
+  Foreign robot(wire());
+  robot.add("/image", 0, ros::Image{robot.header(0), 0, 0, "bgr8", 0, 0, ""});
+  robot.color("/image");
+  robot.depth("/depth");
+  robot.info("/camera_info");
+  robot.write(writer());
+  const OpenedRecording opened = open();
+  EXPECT_EQ(opened.sequence->size(), kFrames);
+  ASSERT_EQ(opened.notes.size(), 1U);
+  EXPECT_NE(opened.notes[0].find("1 message cannot be read, the first: topic /image: a "
+                                 "sensor_msgs/Image has no pixels"),
+            std::string::npos)
+      << opened.notes[0];
+}
+
 TEST_P(RosRecording, TopicsAreFoundByType) {
   for (const bool big : {false, true}) {
     Foreign robot(wire());

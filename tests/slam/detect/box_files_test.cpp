@@ -119,7 +119,10 @@ TEST_F(BoxFiles, NameTheirFaultAndItsPlace) {
   };
   says("a.csv", "1,-1,1,1,50,20,0.8,57\n1,-1,nan,1,50,20,0.8,57\n", "a.csv:2: left is nan");
   says("a.csv", "1,-1,1,1,0,20,0.8,57\n", "a.csv:1: a box of 0 x 20 has no area");
-  says("a.csv", "1,-1,1,1,50,20,0.8,81\n", "class 80 is none of the 80");
+  says("a.csv", "1,-1,1,1,50,20,0.8,81\n",
+       "class 81 is none of the 80 that are named, which count from 1");
+  says("a.csv", "1,-1,0x40,1,50,20,0.8,57\n", "'0x40' is not a number");
+  says("a.csv", std::string("1,-1,4\0,1,50,20,0.8,57\n", 24), "is not a number");
   says("a.csv", "1,-1,1,1,50\n", "5 numbers, not frame");
   says("a.csv", "one,-1,1,1,50,20,0.8,57\n", "'one' is not a number");
   says("a.csv", "", "holds no box");
@@ -136,6 +139,7 @@ TEST_F(BoxFiles, NameTheirFaultAndItsPlace) {
   says("a.json", "[{\"image_id\"", "a.json:1: is not JSON");
   says("a.json", "[{\"image_id\": 0, \"category_id\": 1, \"bbox\": [1,1,1,1], \"score\": 1e999}]",
        "a.json: holds a number that is beyond a double's range");
+  says("a.json", R"({"images": [], "annotations": []})", "holds COCO's annotations");
   says("a.json", "{}", "is not a list of COCO's results");
 }
 

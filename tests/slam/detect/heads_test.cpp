@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/detect/heads.hpp"
+#include "slam/core/error.hpp"
 
 #include <gtest/gtest.h>
 
@@ -94,6 +95,14 @@ TEST(Decode, DarknetsBoxesAreSharesOfTheInputOfAllScales) {
   EXPECT_EQ(found[1].y, 8);
   EXPECT_EQ(found[1].width, 8);
   EXPECT_EQ(found[1].height, 16);
+}
+
+TEST(Decode, AScoreBeyondOneIsNone) {
+  Made made({1, 7, 42});
+  const std::vector<float> values = {10, 12, 4, 6, 3.5F, 0, 0};
+  for (std::size_t k = 0; k < values.size(); ++k) made.values[k * 42 + 5] = values[k];
+  const Tensor tensor = made.tensor();
+  EXPECT_THROW(decode(Head::kYolov8, {&tensor, 1}, kInput, 0.3), InputError);
 }
 
 TEST(Decode, ValuesThatAreNotFiniteMakeNoBox) {

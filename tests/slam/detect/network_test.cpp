@@ -174,11 +174,14 @@ TEST_F(Networks, AreRefusedInOneLine) {
   DetectorSpec spec = two_classes("a.onnx", "this is not a network");
   EXPECT_SAYS(refusal(spec), "a.onnx: OpenCV");
   spec = two_classes("empty.onnx", "");
-  EXPECT_SAYS(refusal(spec), "empty.onnx: ");
+  EXPECT_SAYS(refusal(spec), "empty.onnx: is empty");
   spec = two_classes("levitate.onnx", test::onnx_unknown_operator());
   EXPECT_SAYS(refusal(spec), "Levitate");
   spec = two_classes("other.onnx", test::onnx_segmentation(1, 1, {1, 0, 0, 0, 0, 1}));
   EXPECT_SAYS(refusal(spec), "its output (1 x 2 x 1 x 1)");
+  spec.settings.head = Head::kYolov5;
+  EXPECT_SAYS(refusal(spec), "its output (1 x 2 x 1 x 1) is not that of head 'yolov5'");
+  EXPECT_EQ(refusal(spec).find("auto"), std::string::npos) << refusal(spec);
   spec = two_classes("three.onnx", test::onnx_detection(64, 32, {.classes = {1, 0, 0}}));
   EXPECT_SAYS(refusal(spec), "two.names: names 2 classes, and ");
   spec.classes.clear();
@@ -186,9 +189,20 @@ TEST_F(Networks, AreRefusedInOneLine) {
   spec = two_classes("fixed.onnx", test::onnx_detection(64, 32, {}));
   spec.settings.width_px = 96;
   EXPECT_SAYS(refusal(spec), "its input is fixed to 64 x 32");
+  spec = two_classes("wide.onnx", test::onnx_segmentation(40000, 8, {1, 0, 0, 0, 0, 1}));
+  EXPECT_SAYS(refusal(spec), "its input is fixed to 40000 x 8: at most 8192 pixels");
   spec.network = folder_.path() / "missing.onnx";
   EXPECT_SAYS(refusal(spec), "missing.onnx");
   for (const std::string& text : {refusal(spec)}) EXPECT_EQ(text.find('\n'), text.npos);
+}
+
+TEST_F(Networks, ThatTakeSeveralImagesAtOnceAreRefused) {
+  std::string two = test::onnx_segmentation(8, 8, {1, 0, 0, 0, 0, 1});
+  const std::string shape("\x0a\x02\x08\x01\x0a\x02\x08\x03\x0a\x02\x08\x08", 12);  // 1 x 3 x 8
+  const auto at = two.find(shape);
+  ASSERT_NE(at, std::string::npos);
+  two[at + 3] = 2;
+  EXPECT_SAYS(refusal(two_classes("two.onnx", two)), "two.onnx: takes 2 images at once");
 }
 
 // OpenCV would read beyond the weights' end, and give other boxes each time.
