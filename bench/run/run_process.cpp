@@ -13,7 +13,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -23,6 +26,22 @@ extern char** environ;
 
 namespace mh {
 namespace {
+
+/// This process' environment, in which glibc asks for pages of 2 MB where it can: a run touches
+/// some 300 MB once, mostly textures, and spent a fifth of its time on their page faults. A setting
+/// of the user's own stays.
+std::vector<char*> with_large_pages() {
+  static std::string tunables = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
+  std::vector<char*> all;
+  bool is_set = false;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    all.push_back(*entry);
+    is_set = is_set || std::string_view(*entry).starts_with("GLIBC_TUNABLES=");
+  }
+  if (!is_set) all.push_back(tunables.data());
+  all.push_back(nullptr);
+  return all;
+}
 
 /// The last nonblank line, without the leading program name.
 std::string last_line(const std::filesystem::path& file) {
@@ -64,8 +83,9 @@ RunProcess::RunProcess(const std::filesystem::path& executable,
   std::vector<char*> argv;
   for (std::string& text : texts) argv.push_back(text.data());
   argv.push_back(nullptr);
-  const int error =
-      posix_spawn(&process_, executable.c_str(), &files, &attributes, argv.data(), environ);
+  std::vector<char*> environment = with_large_pages();
+  const int error = posix_spawn(&process_, executable.c_str(), &files, &attributes, argv.data(),
+                                environment.data());
   posix_spawn_file_actions_destroy(&files);
   posix_spawnattr_destroy(&attributes);
   close(pipe_ends[1]);

@@ -36,8 +36,7 @@ struct OpenedRecording {
   std::vector<std::string> notes;            ///< what could not be used, one line each
 };
 
-/// A recording layout. To add one: a file with its SequenceReader, a line in the table of
-/// open_sequence.cpp, docs/recordings.md, docs/scenes.md, a test.
+/// A recording layout. What adding one takes is listed in docs/recordings.md.
 struct SequenceReader {
   const char* name;   ///< the prefix in LAYOUT:PATH: "tum"
   const char* place;  ///< what follows it: "FOLDER"

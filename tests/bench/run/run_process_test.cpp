@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <future>
@@ -52,6 +53,26 @@ TEST(RunProcess, AProgramThatIsNotThereIsNamedWithTheReason) {
   } catch (const MachineError& e) {
     EXPECT_EQ(e.what(), none + ": cannot be started: No such file or directory");
   }
+}
+
+TEST(RunProcess, HasLargePagesUnlessTheUserSetsOtherwise) {
+  const TemporaryFolder folder(std::filesystem::temp_directory_path());
+  const auto tunables = [&] {
+    RunProcess process("/bin/sh", {"-c", "echo \"$GLIBC_TUNABLES\" >&2; exit 1"},
+                       folder.path() / "log");
+    for (;;)
+      if (auto end = process.poll()) return end->message;
+  };
+  const char* before = std::getenv("GLIBC_TUNABLES");
+  const std::string kept = before == nullptr ? "" : before;
+  unsetenv("GLIBC_TUNABLES");
+  EXPECT_EQ(tunables(), "glibc.malloc.hugetlb=1");
+  setenv("GLIBC_TUNABLES", "glibc.malloc.check=0", 1);
+  EXPECT_EQ(tunables(), "glibc.malloc.check=0");
+  if (before == nullptr)
+    unsetenv("GLIBC_TUNABLES");
+  else
+    setenv("GLIBC_TUNABLES", kept.c_str(), 1);
 }
 
 TEST(RunProcess, TellsHowItEndedAndItsLastWords) {
