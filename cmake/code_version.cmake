@@ -24,6 +24,7 @@ endfunction()
 
 digest_of(LIGHT scenes/*.cpp scenes/*.hpp scenes/categories/*.yaml sim/render/*.cpp sim/render/*.hpp slam/core/*.cpp
           slam/core/*.hpp)
+digest_of(DETECT slam/detect/*.cpp slam/detect/*.hpp slam/core/*.cpp slam/core/*.hpp)
 digest_of(RUN slam/*.cpp slam/*.hpp scenes/*.cpp scenes/*.hpp scenes/categories/*.yaml robots/*.cpp robots/*.hpp sim/*.cpp
           sim/*.hpp bench/protocol/*.cpp bench/protocol/*.hpp bench/metrics/*.cpp
           bench/metrics/*.hpp bench/systems/*.cpp bench/systems/*.hpp bench/world/*.cpp
@@ -87,6 +88,7 @@ file(CONFIGURE OUTPUT ${OUT} CONTENT
 "// Made by cmake/code_version.cmake.
 #pragma once
 #define MH_CODE_LIGHT \"${LIGHT}\"
+#define MH_CODE_DETECT \"${DETECT}\"
 #define MH_CODE_RUN \"${RUN}\"
 #define MH_CODE_AUDIT \"${AUDIT}\"
 #define MH_CODE_EPISODES \"${EPISODES}\"

@@ -10,6 +10,7 @@
 #include "bench/cli/progress.hpp"
 #include "bench/cli/set_option.hpp"
 #include "bench/cli/write_audit.hpp"
+#include "bench/run/signal_watch.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh::cli {
@@ -24,6 +25,7 @@ struct AuditArguments {
 };
 
 void run(AuditArguments options) {
+  interrupts_go_on();
   resolve(options.suite, Shipped::kSuite);
   SuiteOverrides overrides;
   overrides.set = options.set.values();

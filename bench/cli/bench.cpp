@@ -22,6 +22,7 @@
 #include "bench/episodes/report.hpp"
 #include "bench/protocol/config.hpp"
 #include "bench/run/run.hpp"
+#include "bench/run/signal_watch.hpp"
 #include "bench/run/slurm.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
@@ -140,6 +141,7 @@ void run_shares(const Suite& suite, const SuiteOverrides& overrides, BenchOption
 }
 
 void run(BenchArguments options) {
+  interrupts_go_on();
   resolve(options.suite, Shipped::kSuite);
   if (options.scene) resolve(*options.scene, Shipped::kScene);
   SuiteOverrides overrides;

@@ -15,6 +15,7 @@
 #include "bench/cli/progress.hpp"
 #include "bench/inputs/recorded_camera.hpp"
 #include "bench/studies/draw_detections.hpp"
+#include "bench/world/cached_detections.hpp"
 #include "scenes/image_file.hpp"
 #include "scenes/images/write_image.hpp"
 #include "scenes/recorded/frame_sequence.hpp"
@@ -90,6 +91,32 @@ void add_results(nlohmann::ordered_json& json, std::size_t frame, const Detected
                     {"score", box.score}});
 }
 
+constexpr const char* kResults = "detections.json";
+
+std::string image_name(std::size_t frame) {
+  return fmt::format("{:06}.png", frame);
+}
+
+/// An image beside the drawings could be taken for one of them.
+void require_sources_elsewhere(const DetectorArguments& options) {
+  std::error_code error;
+  for (const std::string& source : options.sources) {
+    const fs::path folder =
+        fs::path(source).has_parent_path() ? fs::path(source).parent_path() : ".";
+    if (is_image(source) && fs::equivalent(folder, options.out, error) && !error)
+      throw InputError(
+          fmt::format("{}: lies in the folder to write, {}: name another", source, options.out));
+  }
+}
+
+/// Removes what an earlier run of this command wrote, so that nothing of it stands beside the new.
+void remove_earlier(const fs::path& out) {
+  std::error_code error;
+  fs::remove(out / kResults, error);
+  for (const std::string& name : list_folder(out, "[0-9][0-9][0-9][0-9][0-9][0-9].png"))
+    fs::remove(out / name, error);
+}
+
 void run(DetectorArguments options) {
   resolve(options.settings, Shipped::kSettings);
   const auto spec = options.detector.spec();
@@ -97,16 +124,24 @@ void run(DetectorArguments options) {
   const Frames frames(options);
   const std::unique_ptr<Detector> detector = open_detector(*spec);
   const std::string unmatched = detector->check_frames(frames.stamps_ns());
-  const OutputFolder folder(options.out, "detector run", {"detections.json"});
   const fs::path out = options.out;
+  std::vector<std::size_t> wanted;
+  for (std::size_t i = 0; i < std::min(frames.size(), options.frames); i += options.every)
+    wanted.push_back(i);
+  require_sources_elsewhere(options);
+  std::vector<std::string> names = {kResults};
+  for (const std::size_t i : wanted) names.push_back(image_name(i));
+  const OutputFolder folder(out, "detector run", std::move(names));
+  if (folder.was_ours()) remove_earlier(out);
   Progress progress("detector run");
+  const KeepDetections in_cache = detections_in(
+      options.detector.opened_cache([&](const std::string& warning) { progress.say(warning); }));
   if (!unmatched.empty()) progress.say("warning: " + unmatched);
   std::map<std::string, std::size_t> count;
   std::vector<double> ms;
   auto results = nlohmann::ordered_json::array();
-  std::size_t boxes = 0, clipped = 0, skipped = 0;
-  const std::size_t last = std::min(frames.size(), options.frames);
-  for (std::size_t i = 0; i < last; i += options.every) {
+  std::size_t images = 0, boxes = 0, clipped = 0, skipped = 0;
+  for (const std::size_t i : wanted) {
     RgbdFrame frame;
     try {
       frame = frames.frame(i);
@@ -116,9 +151,20 @@ void run(DetectorArguments options) {
       continue;
     }
     const auto start = std::chrono::steady_clock::now();
-    const Detected found = detector->detect(frame.color, i, frame.stamp_ns);
-    ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-                     .count());
+    bool made = in_cache == nullptr || detector->digest() == 0;
+    const KeepDetections keep =
+        made ? nullptr : KeepDetections([&](const auto& key, const auto& make) {
+          return in_cache(key, [&] {
+            made = true;
+            return make();
+          });
+        });
+    const Detected found = detect_kept(*detector, frame, i, keep);
+    ++images;
+    if (made)
+      ms.push_back(
+          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+              .count());
     boxes += found.boxes.size();
     clipped += static_cast<std::size_t>(found.clipped);
     for (const DetectedBox& box : found.boxes)
@@ -128,17 +174,20 @@ void run(DetectorArguments options) {
     if (options.labels || !found.pixels.index.empty())
       labels = labels_of(found, frame.depth_m, frame.color.width(), frame.color.height(),
                          spec->settings.fill);
-    write_image(out / fmt::format("{:06}.png", i),
+    write_image(out / image_name(i),
                 draw_detections(frame.color, found.boxes, detector->names(), labels));
-    progress.share(static_cast<double>(i + 1) / static_cast<double>(last));
+    progress.share(static_cast<double>(i + 1) / static_cast<double>(wanted.back() + 1));
   }
   progress.end();
-  if (ms.empty())
+  if (images == 0)
     throw InputError(fmt::format("{}: no frame can be read", options.sources.front()));
-  write_atomically(out / "detections.json", results.dump(1) + "\n");
+  write_atomically(out / kResults, results.dump(1) + "\n");
   std::ranges::sort(ms);
-  fmt::print("{}\n{}, {}, {:.1f} ms an image (median, on the clock)\n", detector->description(),
-             counted(ms.size(), "image"), counted(boxes, "box", "boxes"), ms[ms.size() / 2]);
+  fmt::print("{}\n{}, {}", detector->description(), counted(images, "image"),
+             counted(boxes, "box", "boxes"));
+  if (!ms.empty()) fmt::print(", {:.1f} ms an image (median, on the clock)", ms[ms.size() / 2]);
+  if (ms.size() < images) fmt::print(", {} from the cache", images - ms.size());
+  fmt::print("\n");
   if (clipped > 0) fmt::print("{} reached beyond the image\n", counted(clipped, "box", "boxes"));
   if (skipped > 0) fmt::print("{} could not be read\n", counted(skipped, "frame"));
   std::vector<std::pair<std::string, std::size_t>> most(count.begin(), count.end());

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -27,6 +28,14 @@ struct DetectorOption {
     command.add_option("--detector-settings", settings, "Its settings (YAML), which may name it");
     command.add_option("--detector-cache", cache,
                        "Cache folder for what it finds; none: every image is run");
+  }
+  /// The cache of --detector-cache. @param say  receives a warning if it can keep nothing
+  Cache opened_cache(const std::function<void(const std::string&)>& say) const {
+    Cache opened(cache);
+    if (!cache.empty())
+      if (const std::string why = opened.why_unwritable(); !why.empty())
+        say("warning: the cache keeps nothing: " + why);
+    return opened;
   }
   bool is_given() const { return !file.empty() || !settings.empty(); }
   std::optional<DetectorSpec> spec() const {

@@ -30,6 +30,7 @@
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/read_record.hpp"
 
 namespace mh::cli {
 namespace {
@@ -130,13 +131,15 @@ void for_each_moment(const DetectorScoreArguments& options, const Robot& robot,
 
 /// Judges the detector, then the simulated one with the dials that were measured.
 Judged judge(const DetectorScoreArguments& options, const DetectorSpec& asked, Worst* worst) {
+  const Cache cache = options.detector.opened_cache(
+      [](const std::string& warning) { fmt::print(stderr, "detector: {}\n", warning); });
   DetectorSpec spec = asked;
   const double confidence = spec.settings.confidence;
   spec.settings.confidence = std::min(confidence, kLeastScore);
   const std::unique_ptr<Detector> detector = open_detector(spec);
   const Robot robot = load_robot(options.robot);
   const SensorConfig sensors = load_sensor_config(options.level);
-  const KeepDetections keep = detections_in(Cache(options.detector.cache));
+  const KeepDetections keep = detections_in(cache);
   DetectorJudge real(confidence);
   std::vector<RenderedFrame> exact;  // without what the simulated detector does not look at
   std::vector<SE3> poses;
@@ -157,7 +160,7 @@ Judged judge(const DetectorScoreArguments& options, const DetectorSpec& asked, W
   });
   Judged both{.real = real.score(), .simulated = {}};
   LabelConfig fitted = sensors.labels;
-  fitted.detector = both.real.dials;
+  fitted.detector = with_measured(fitted.detector, both.real.dials);
   DetectorJudge simulated(0);
   for (std::size_t i = 0; i < exact.size(); ++i)
     simulated.add(exact[i], as_detected(detect(exact[i], fitted, poses[i], RandomStream(i))));
@@ -177,8 +180,9 @@ void print_dials(const DetectorConfig& real, const DetectorConfig& simulated) {
   const DetectorConfig published;
   fmt::print("\n{:<16}{:>10}{:>12}{:>12}\n", "dial", "measured", "simulated", "YOLOv3");
   const auto line = [&](const char* name, double DetectorConfig::*dial) {
-    fmt::print("{:<16}{:>10.3f}{:>12.3f}{:>12.3f}\n", name, real.*dial, simulated.*dial,
-               published.*dial);
+    const auto figure = [](double v) { return std::isnan(v) ? "-" : fmt::format("{:.3f}", v); };
+    fmt::print("{:<16}{:>10}{:>12}{:>12}\n", name, figure(real.*dial), figure(simulated.*dial),
+               figure(published.*dial));
   };
   line("recall_small", &DetectorConfig::recall_small);
   line("recall_medium", &DetectorConfig::recall_medium);
@@ -236,19 +240,22 @@ void print_score(const Judged& judged) {
   print_dials(s.dials, judged.simulated->dials);
 }
 
+/// null for what is not known.
+nlohmann::ordered_json known(double v) {
+  return std::isnan(v) ? nlohmann::ordered_json() : nlohmann::ordered_json(v);
+}
+
 nlohmann::ordered_json to_json(const DetectorConfig& dials) {
-  return {{"recall_small", dials.recall_small}, {"recall_medium", dials.recall_medium},
-          {"recall_large", dials.recall_large}, {"confusion", dials.confusion},
-          {"false_alarms", dials.false_alarms}, {"box_sigma", dials.box_sigma}};
+  return {
+      {"recall_small", known(dials.recall_small)}, {"recall_medium", known(dials.recall_medium)},
+      {"recall_large", known(dials.recall_large)}, {"confusion", known(dials.confusion)},
+      {"false_alarms", known(dials.false_alarms)}, {"box_sigma", known(dials.box_sigma)}};
 }
 
 nlohmann::ordered_json to_json(const AveragePrecision& p) {
-  const auto value = [](double v) {
-    return std::isnan(v) ? nlohmann::ordered_json() : nlohmann::ordered_json(v);
-  };
-  return {{"truths", p.truths},     {"ap", value(p.ap)},       {"ap50", value(p.ap50)},
-          {"ap75", value(p.ap75)},  {"small", value(p.small)}, {"medium", value(p.medium)},
-          {"large", value(p.large)}};
+  return {{"truths", p.truths},     {"ap", known(p.ap)},       {"ap50", known(p.ap50)},
+          {"ap75", known(p.ap75)},  {"small", known(p.small)}, {"medium", known(p.medium)},
+          {"large", known(p.large)}};
 }
 
 std::string json_of(const Judged& judged) {
@@ -302,10 +309,34 @@ void score(DetectorScoreArguments options) {
 void fit(DetectorScoreArguments options) {
   const DetectorSpec spec = spec_of(options);
   resolve(options.base, Shipped::kLevel);
-  require_writable(options.out, {options.base, options.level, spec.network});
+  std::vector<fs::path> read = {options.base,
+                                options.level,
+                                options.robot,
+                                spec.network,
+                                spec.config,
+                                spec.classes,
+                                options.detector.settings};
+  read.insert(read.end(), options.scenes.begin(), options.scenes.end());
+  require_writable(options.out, read);
   SensorConfig level = load_sensor_config(options.base);
+  const ReadScope scope;
   const Judged judged = judge(options, spec, nullptr);
-  level.labels.detector = judged.real.dials;
+  require_not_read(options.out, scope.record());  // what scenes and robot are made of, too
+  if (judged.real.mean.truths == 0)
+    throw InputError(fmt::format("no object of COCO's classes is in the {}: nothing is measured",
+                                 counted(judged.real.images, "image")));
+  const DetectorConfig& measured = judged.real.dials;
+  level.labels.detector = with_measured(level.labels.detector, measured);
+  const auto warn_of = [&](const char* name, double value) {
+    if (std::isnan(value))
+      fmt::print(stderr, "detector: warning: {} was not measured: it stays as in {}\n", name,
+                 options.base);
+  };
+  warn_of("recall_small", measured.recall_small);
+  warn_of("recall_medium", measured.recall_medium);
+  warn_of("recall_large", measured.recall_large);
+  warn_of("confusion", measured.confusion);
+  warn_of("box_sigma", measured.box_sigma);
   write_atomically(
       options.out,
       fmt::format("# Level `{}` with the dials of the simulated detector as measured of {}\n"

@@ -9,6 +9,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -54,6 +55,8 @@ bool has_commands(const CLI::App& app) {
 }
 
 int run(int argc, char** argv) {
+  // Whoever started a run wants to know that it was killed, not a line about it.
+  if (argc < 2 || std::string_view(argv[1]) != "run-one") mh::tell_of_interrupts();
   // A file beyond `ulimit -f` is a failed write that is reported, not a silent end.
   std::signal(SIGXFSZ, SIG_IGN);
   // Same bits at any load: OpenCV must not split its work by the number of processors.
@@ -103,9 +106,7 @@ int run(int argc, char** argv) {
   } catch (const mh::cli::CheckFailed&) {
     return kCheckFailed;
   } catch (const mh::Interrupted& interrupted) {
-    fmt::print(stderr, "modelhouse: interrupted; {}\n",
-               interrupted.goes_on ? "finished results are kept; the same command resumes"
-                                   : "nothing is kept; the same command starts over");
+    fmt::print(stderr, "{}", mh::interrupted_line(interrupted.goes_on));
     return kInterrupted;
   } catch (const mh::InputChanged& error) {
     return fail(mh::kInputChangedCode, error.what());

@@ -171,8 +171,14 @@ void run(TwinArguments options) {
   const SensorConfig sensors = load_sensor_config(options.level);
   const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
   const OutputFolder folder(options.out, "twin", {kFiles.begin(), kFiles.end()});
-  const auto recorded = std::make_shared<const PosedFrames>(
-      std::move(opened.sequence), scene_from_recording(options), options.frames);
+  const auto recorded = [&] {
+    try {
+      return std::make_shared<const PosedFrames>(std::move(opened.sequence),
+                                                 scene_from_recording(options), options.frames);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}", options.recording, error.what()));
+    }
+  }();
   if (recorded->left_out() > 0)
     fmt::print(stderr, "twin: {} without a true pose left out\n",
                counted(recorded->left_out(), "frame"));

@@ -8,6 +8,9 @@ namespace mh {
 std::string_view code_of_light() {
   return MH_CODE_LIGHT;
 }
+std::string_view code_of_detections() {
+  return MH_CODE_DETECT;
+}
 std::string_view code_of_run() {
   return MH_CODE_RUN;
 }

@@ -7,6 +7,8 @@ namespace mh {
 
 /// Digest of the sources that determine a scene's baked light.
 std::string_view code_of_light();
+/// Digest of the sources that determine what a detector finds.
+std::string_view code_of_detections();
 /// Digest of the sources that determine a run's result.
 std::string_view code_of_run();
 /// Digest of the sources that determine an audit of it, in addition.

@@ -1,14 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/run/signal_watch.hpp"
 
+#include <unistd.h>
+
 #include <csignal>
+#include <cstring>
 
 namespace mh {
 namespace {
 
 volatile std::sig_atomic_t g_signal = 0;
+volatile std::sig_atomic_t g_goes_on = 0;
+
+/// Calls nothing that a signal's handler must not.
+void end_at_once(int) {
+  constexpr int kInterruptedCode = 130;
+  const char* line = interrupted_line(g_goes_on != 0);
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, line, std::strlen(line));
+  _exit(kInterruptedCode);
+}
 
 }  // namespace
+
+const char* interrupted_line(bool goes_on) {
+  return goes_on ? "modelhouse: interrupted; finished results are kept; the same command resumes\n"
+                 : "modelhouse: interrupted; nothing is kept; the same command starts over\n";
+}
+
+void tell_of_interrupts() {
+  for (const int number : {SIGINT, SIGTERM}) std::signal(number, end_at_once);
+}
+
+void interrupts_go_on() {
+  g_goes_on = 1;
+}
 
 SignalWatch::SignalWatch() : old_int_{}, old_term_{} {
   g_signal = 0;

@@ -12,6 +12,15 @@ struct Interrupted {
   bool goes_on = true;  ///< whether the same command resumes from what is finished
 };
 
+/// The line that an interrupted command ends with.
+const char* interrupted_line(bool goes_on);
+
+/// From now on SIGINT and SIGTERM end the program at once, with that line and code 130; where a
+/// SignalWatch lives, it decides.
+void tell_of_interrupts();
+/// The same command resumes from what is finished: what tell_of_interrupts() says from now on.
+void interrupts_go_on();
+
 /// During its lifetime, records SIGINT and SIGTERM instead of terminating.
 class SignalWatch {
  public:

@@ -32,8 +32,10 @@ ClassId usual_class(const RenderedFrame& exact, const DetectedBox& box) {
   return static_cast<ClassId>(std::ranges::max_element(count) - count.begin());
 }
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
 double share(std::size_t part, std::size_t all) {
-  return all == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(all);
+  return all == 0 ? kUnknown : static_cast<double>(part) / static_cast<double>(all);
 }
 
 }  // namespace
@@ -182,17 +184,25 @@ DetectorScore DetectorJudge::score() const {
     else if (outcome.found != kVoid)
       wrong += count;
   }
-  score.dials = {
-      .recall_small = share(found_of_size_[0], of_size_[0]),
-      .recall_medium = share(found_of_size_[1], of_size_[1]),
-      .recall_large = share(found_of_size_[2], of_size_[2]),
-      .confusion = share(wrong, right + wrong),
-      .false_alarms = std::min(8.0, share(alarms, images_)),
-      .box_sigma = sides_ > 0 ? std::sqrt(squared_strays_ / static_cast<double>(sides_)) : 0.0};
+  score.dials = {.recall_small = share(found_of_size_[0], of_size_[0]),
+                 .recall_medium = share(found_of_size_[1], of_size_[1]),
+                 .recall_large = share(found_of_size_[2], of_size_[2]),
+                 .confusion = share(wrong, right + wrong),
+                 .false_alarms = images_ == 0 ? kUnknown : std::min(8.0, share(alarms, images_)),
+                 .box_sigma = sides_ > 0 ? std::sqrt(squared_strays_ / static_cast<double>(sides_))
+                                         : kUnknown};
   score.box = {share(box_.right, box_.labeled), share(box_.right, box_.of_objects)};
   score.foreground = {share(foreground_.right, foreground_.labeled),
                       share(foreground_.right, foreground_.of_objects)};
   return score;
+}
+
+DetectorConfig with_measured(DetectorConfig dials, const DetectorConfig& measured) {
+  for (const auto dial : {&DetectorConfig::recall_small, &DetectorConfig::recall_medium,
+                          &DetectorConfig::recall_large, &DetectorConfig::confusion,
+                          &DetectorConfig::false_alarms, &DetectorConfig::box_sigma})
+    if (!std::isnan(measured.*dial)) dials.*dial = measured.*dial;
+  return dials;
 }
 
 std::vector<DetectedBox> as_detected(const std::vector<Detection>& detections) {

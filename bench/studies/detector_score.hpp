@@ -44,9 +44,12 @@ struct DetectorScore {
   std::map<std::pair<ClassId, ClassId>, std::size_t> false_alarms;
   std::size_t badly_placed =
       0;                       ///< overlap an object of their class by 0.1 to 0.5; no false alarms
-  DetectorConfig dials;        ///< of the simulated detector, as measured
-  LabelScore box, foreground;  ///< by BoxFill; zero where no depth was given
+  DetectorConfig dials;        ///< of the simulated detector; NaN where nothing measured it
+  LabelScore box, foreground;  ///< by BoxFill; NaN where nothing measured it
 };
+
+/// Dials, but for those that were measured (see DetectorScore::dials).
+DetectorConfig with_measured(DetectorConfig dials, const DetectorConfig& measured);
 
 /// Judges a detector by exact images. Objects are the visible parts of instances of COCO's classes;
 /// those of fewer than kMinBoxPixels pixels neither count nor are false.

@@ -6,12 +6,8 @@
 
 namespace mh {
 
-/// Keeps what detectors found in a cache; null for a cache without a folder.
-inline KeepDetections detections_in(const Cache& cache) {
-  if (cache.folder().empty()) return nullptr;
-  return [cache](const std::string& key, const std::function<std::string()>& make) {
-    return cache.get("detections", key, make);
-  };
-}
+/// Keeps what detectors found in a cache, by code and machine as well; null for a cache without a
+/// folder.
+KeepDetections detections_in(const Cache& cache);
 
 }  // namespace mh

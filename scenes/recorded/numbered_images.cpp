@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
@@ -27,7 +28,12 @@ std::map<int, fs::path> numbered_images(const fs::path& folder, std::string_view
     std::string_view digits = name;
     digits.remove_prefix(before.size());
     digits.remove_suffix(after.size());
-    if (const auto number = whole_number_of(digits)) images.try_emplace(*number, folder / name);
+    const auto number = whole_number_of(digits);
+    if (!number) continue;
+    const auto [entry, is_new] = images.try_emplace(*number, folder / name);
+    if (!is_new)
+      throw InputError(fmt::format("{}: has the same number as {}: one of them is too many",
+                                   (folder / name).string(), entry->second.filename().string()));
   }
   return images;
 }

@@ -115,7 +115,10 @@ std::optional<Trajectory> read_truth(const fs::path& folder, std::vector<std::st
   const SE3 base_from_color = base_from_camera(transforms);
   Trajectory poses = read_valid_poses(truth, notes);
   for (TimedPose& pose : poses) pose.world_from_camera = pose.world_from_camera * base_from_color;
-  if (poses.empty()) return std::nullopt;
+  if (poses.empty()) {
+    notes.push_back(fmt::format("{}: holds no pose: there is no truth", truth.string()));
+    return std::nullopt;
+  }
   return poses;
 }
 

@@ -82,9 +82,8 @@ RecordedCamera camera_of(const fs::path& folder, const RecordingConfig& config) 
 std::vector<std::string> lines_of(const fs::path& file) {
   std::istringstream text(read_text(file));
   std::vector<std::string> lines;
-  for (std::string line; std::getline(text, line);) lines.push_back(line);
-  while (!lines.empty() && lines.back().find_first_not_of(" \t\r") == std::string::npos)
-    lines.pop_back();
+  for (std::string line; std::getline(text, line);)
+    if (line.find_first_not_of(" \t\r") != std::string::npos) lines.push_back(line);
   return lines;
 }
 
@@ -123,6 +122,10 @@ OpenedRecording open_replica(const fs::path& folder, const RecordingConfig& conf
   if (!poses.poses().empty()) listed.truth = poses.poses();
   std::vector<std::string> notes;
   without_depth.note(folder, color.size(), notes);
+  const auto frames = static_cast<std::size_t>(color.rbegin()->first) + 1;
+  if (lines.size() > frames)
+    notes.push_back(fmt::format("{}: holds {} poses, and the last frame is number {}",
+                                trajectory.string(), lines.size(), frames - 1));
   poses.note(folder.string(), notes);
   return open_listed(std::move(listed), true, std::move(notes));
 }

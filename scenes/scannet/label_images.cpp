@@ -218,6 +218,9 @@ std::unique_ptr<LabelImages> find_label_images(const fs::path& folder, const std
   if (is_folder(folder / kind)) return std::make_unique<LabelFolder>(folder / kind);
   const std::vector<std::string> zips = list_folder(folder, fmt::format("*_2d-{}.zip", kind));
   if (zips.empty()) return nullptr;
+  if (zips.size() > 1)
+    throw InputError(fmt::format("{}: holds {} files of {} images ({}, {}, ...): one is needed",
+                                 folder.string(), zips.size(), kind, zips[0], zips[1]));
   const fs::path first = folder / zips.front();
   return open_label_zip(map_file(first, MapPages::kAsTouched), first.string());
 }

@@ -13,6 +13,7 @@
 #include "scenes/image_file.hpp"
 #include "scenes/scannet/frame_folder.hpp"
 #include "scenes/scannet/sens.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/text_file.hpp"
@@ -42,7 +43,9 @@ class ExtractedFolder : public Recording {
     info_.sensor = "extracted";
     info_.color = read_lens("color", announced(color_));
     info_.depth = read_lens("depth", announced(depth_));
-    for (const std::uint32_t number : numbers_) poses_.push_back(read_pose(number));
+    for (const std::uint32_t number : numbers_)
+      poses_.push_back(pose_or_none([&] { return read_pose(number); }));
+    note_faulty_poses();
     note_lonely("color", color_, depth_);
     note_lonely("depth", depth_, color_);
     if (missing_poses_ > 0)
@@ -199,6 +202,21 @@ RecordedLens lens_of(const Eigen::Matrix4d& intrinsics, const Eigen::Matrix4d& e
   RecordedLens result = lens;
   result.device_from_camera = *placed;
   return result;
+}
+
+std::optional<SE3> Recording::pose_or_none(const std::function<std::optional<SE3>()>& read) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    if (faulty_poses_++ == 0) first_faulty_pose_ = error.what();
+    return std::nullopt;
+  }
+}
+
+void Recording::note_faulty_poses() {
+  if (faulty_poses_ > 0)
+    notes_.push_back(fmt::format("{}; {} without truth", first_faulty_pose_,
+                                 counted(faulty_poses_, "such frame is", "such frames are")));
 }
 
 bool is_rotation(const Eigen::Matrix3d& matrix) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -60,7 +61,15 @@ class Recording {
   virtual std::vector<std::filesystem::path> files() const { return {}; }
 
  protected:
+  /// What `read` returns; nullopt, and counted, if it throws because it holds no pose.
+  std::optional<SE3> pose_or_none(const std::function<std::optional<SE3>()>& read);
+  void note_faulty_poses();
+
   std::vector<std::string> notes_;
+
+ private:
+  std::size_t faulty_poses_ = 0;
+  std::string first_faulty_pose_;
 };
 
 /// Opens a .sens file, a folder that contains one, or an extracted folder (color/ depth/ pose/

@@ -87,6 +87,7 @@ class SensFile : public Recording {
     for (std::uint64_t i = 0; i < frames; ++i) frames_.push_back(read_record(cursor, i));
     if (frames_.empty()) throw InputError(fmt::format("{}: holds no frame", name_));
     mend_stamps();
+    note_faulty_poses();
     note_bytes_left(cursor);
   }
 
@@ -147,12 +148,13 @@ class SensFile : public Recording {
     return size;
   }
 
-  FrameRecord read_record(Cursor& cursor, std::uint64_t index) const {
+  FrameRecord read_record(Cursor& cursor, std::uint64_t index) {
     const std::string frame = fmt::format("frame {}", index);
     cursor.need(16 * sizeof(float) + 4 * sizeof(std::uint64_t), frame);
     FrameRecord record;
+    const Eigen::Matrix4d pose = cursor.take_matrix("the pose");
     record.world_from_device =
-        pose_of(cursor.take_matrix("the pose"), fmt::format("{}: {}", name_, frame));
+        pose_or_none([&] { return pose_of(pose, fmt::format("{}: {}", name_, frame)); });
     const auto stamp_us = cursor.take<std::uint64_t>("the color stamp");
     if (stamp_us > static_cast<std::uint64_t>(std::numeric_limits<Stamp>::max() / 1000))
       cursor.fail(fmt::format("{}: a stamp of {} us", frame, stamp_us));

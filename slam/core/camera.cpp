@@ -16,8 +16,12 @@ void validate(const Camera& camera) {
   };
   require(camera.width_px > 0, "width_px", camera.width_px);
   require(camera.height_px > 0, "height_px", camera.height_px);
-  require(camera.fx_px > 0, "fx_px", camera.fx_px);
-  require(camera.fy_px > 0, "fy_px", camera.fy_px);
+  // A pinhole that sees less than 174 degrees and more than an arc minute.
+  const auto is_focal = [&](double f) {
+    return f > 0.05 * camera.width_px / 2 && f < 1e3 * camera.width_px;
+  };
+  require(is_focal(camera.fx_px), "fx_px", camera.fx_px);
+  require(is_focal(camera.fy_px), "fy_px", camera.fy_px);
   require(camera.cx_px >= 0 && camera.cx_px <= camera.width_px - 1, "cx_px", camera.cx_px);
   require(camera.cy_px >= 0 && camera.cy_px <= camera.height_px - 1, "cy_px", camera.cy_px);
   require(camera.rate_hz > 0, "rate_hz", camera.rate_hz);

@@ -222,6 +222,7 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
                                    own_names ? "the named classes, which count from 1" : "COCO's"));
     check(box, names, place);
     std::string frame = image.is_string() ? image.get<std::string>() : image.dump();
+    if (const auto slash = frame.rfind('/'); slash != frame.npos) frame.erase(0, slash + 1);
     for (const char* ending : {".png", ".jpg", ".jpeg"})
       if (frame.ends_with(ending)) frame.resize(frame.size() - std::string_view(ending).size());
     boxes_of(all, frame, place).push_back(box);

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <functional>
 #include <limits>
 #include <mutex>
 #include <optional>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,6 +18,8 @@
 #include "slam/core/files.hpp"
 #include "slam/core/guarded_child.hpp"
 #include "slam/core/settings_io.hpp"
+#include "slam/core/text_file.hpp"
+#include "slam/detect/darknet_config.hpp"
 #include "slam/detect/detector.hpp"
 #include "slam/detect/fit_image.hpp"
 #include "slam/detect/heads.hpp"
@@ -68,22 +68,6 @@ auto with_opencv(const fs::path& file, const char* what, const Work& work) {
   }
 }
 
-/// A whole number of the section [net] of a Darknet configuration; 0 if it is not there.
-int of_net(const std::string& config, std::string_view key) {
-  std::istringstream lines(config);
-  bool in_net = false;
-  for (std::string line; std::getline(lines, line);) {
-    std::erase_if(line, [](unsigned char c) { return std::isspace(c) != 0; });
-    if (line.starts_with('[')) in_net = line == "[net]" || line == "[network]";
-    if (!in_net || !line.starts_with(key) || line.size() <= key.size() || line[key.size()] != '=')
-      continue;
-    int value = 0;
-    std::from_chars(line.data() + key.size() + 1, line.data() + line.size(), value);
-    return value > 0 && value <= kLargestInput_px ? value : 0;
-  }
-  return 0;
-}
-
 /// Checks that Darknet's weights are as many as the layers take, which OpenCV does not: it would
 /// read beyond their end.
 void check_weights(const DetectorSpec& spec, cv::dnn::Net& net, std::string_view weights) {
@@ -97,7 +81,15 @@ void check_weights(const DetectorSpec& spec, cv::dnn::Net& net, std::string_view
   std::memcpy(version, weights.data(), sizeof version);
   const std::uint64_t head = version[0] * 10 + version[1] >= 2 ? 20 : 16;
   const std::uint64_t expected = head + 4 * values;
-  if (weights.size() == expected) return;
+  if (weights.size() == expected) {
+    for (std::uint64_t i = 0; i < values; ++i) {
+      float weight = 0;
+      std::memcpy(&weight, weights.data() + head + 4 * i, sizeof weight);
+      if (!std::isfinite(weight))
+        refuse(spec.network, fmt::format("weight {} of {} is not a finite number", i + 1, values));
+    }
+    return;
+  }
   refuse(spec.network, fmt::format("holds {} bytes where {} asks for {}: {}", weights.size(),
                                    spec.config.string(), expected,
                                    weights.size() < expected ? "it is truncated, or of another one"
@@ -113,7 +105,7 @@ struct NetworkFiles {
 NetworkFiles read_files(const DetectorSpec& spec) {
   NetworkFiles files;
   files.is_darknet = !spec.config.empty();
-  if (files.is_darknet) files.config = read_file(spec.config);
+  if (files.is_darknet) files.config = read_text(spec.config);
   files.network = read_file(spec.network);
   if (files.network.size() > std::size_t{std::numeric_limits<int>::max()})
     refuse(spec.network, "is larger than 2 GB");
@@ -225,8 +217,9 @@ void understand(const DetectorSpec& spec, const NetworkFiles& files, Imported& i
 }
 
 /// The size of the images that the network's own file states; 0 where it leaves it open.
-InputSize stated_input(const fs::path& file, const NetworkFiles& files) {
-  if (files.is_darknet) return {of_net(files.config, "width"), of_net(files.config, "height")};
+InputSize stated_input(const DetectorSpec& spec, const NetworkFiles& files) {
+  const fs::path& file = spec.network;
+  if (files.is_darknet) return darknet_input(files.config, spec.config);
   const OnnxInput input = onnx_input(files.network).value_or(OnnxInput{});
   if (input.images > 1)
     refuse(file, fmt::format("takes {} images at once: export it with a batch of 1", input.images));
@@ -238,7 +231,8 @@ InputSize stated_input(const fs::path& file, const NetworkFiles& files) {
 
 Imported import(const DetectorSpec& spec, const NetworkFiles& files) {
   Imported imported{.net = {}, .outputs = {}, .input = {}, .settings = spec.settings, .names = {}};
-  imported.net = with_opencv(spec.network, "import", [&] {
+  const InputSize declared = stated_input(spec, files);  // before OpenCV trusts what it states
+  imported.net = with_opencv(files.is_darknet ? spec.config : spec.network, "import", [&] {
     return files.is_darknet
                ? cv::dnn::readNetFromDarknet(files.config.data(), files.config.size(),
                                              files.network.data(), files.network.size())
@@ -252,11 +246,13 @@ Imported import(const DetectorSpec& spec, const NetworkFiles& files) {
   imported.net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
   imported.net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
   imported.outputs = imported.net.getUnconnectedOutLayersNames();
-  const InputSize declared = stated_input(spec.network, files);
   const auto side = [&](int named, int stated, const char* key) {
     if (named > 0 && stated > 0 && named != stated && !files.is_darknet)
       refuse(spec.network, fmt::format("its input is fixed to {} x {}: `{}: {}` cannot be",
                                        declared.width, declared.height, key, named));
+    if (files.is_darknet && named <= 0 && stated <= 0)
+      refuse(spec.config, fmt::format("section [net] states no {}: name it by `{}`",
+                                      key[0] == 'w' ? "width" : "height", key));
     return named > 0 ? named : stated > 0 ? stated : kUsualInput_px;
   };
   imported.input = {side(spec.settings.width_px, declared.width, "width_px"),
@@ -273,7 +269,7 @@ void try_in_child(const DetectorSpec& spec, const NetworkFiles& files) {
       .processor_s = 30 + static_cast<int>(files.network.size() >> 22),
       .memory_bytes = (std::uint64_t{4} << 30) + kMemoryPerByte * files.network.size()};
   in_child(
-      spec.network, limits,
+      files.is_darknet ? spec.config : spec.network, limits,
       [&]() -> std::function<void(PipeWriter&)> {
         import(spec, files);
         return [](PipeWriter&) {};

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/detect/onnx_input.hpp"
 
+#include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include <fmt/format.h>
@@ -86,6 +88,7 @@ constexpr std::uint64_t kGraph = 7, kInput = 11, kType = 2, kTensor = 1, kShape 
 constexpr std::uint64_t kNode = 1, kInitializer = 5, kAttribute = 5, kAttributeTensor = 5;
 constexpr std::uint64_t kDims = 1, kDataType = 2, kFloats = 4, kInt32s = 5, kInt64s = 7, kName = 8,
                         kRaw = 9, kDoubles = 10, kUint64s = 11, kLocation = 14;
+constexpr std::uint64_t kFloat = 1;  // TensorProto.DataType
 
 /// The varints of a repeated field, packed or one by one.
 std::vector<std::uint64_t> varints(std::string_view message, std::uint64_t tag) {
@@ -110,6 +113,17 @@ std::size_t bytes_of(std::string_view message, std::uint64_t tag) {
   std::size_t size = 0;
   for (const Field& field : all(message, tag)) size += field.bytes.size();
   return size;
+}
+
+/// Whether the 32-bit floats of a field hold one that is not a number.
+bool any_nan(std::string_view message, std::uint64_t tag) {
+  for (const Field& field : all(message, tag))
+    for (std::size_t at = 0; at + sizeof(float) <= field.bytes.size(); at += sizeof(float)) {
+      float value = 0;
+      std::memcpy(&value, field.bytes.data() + at, sizeof value);
+      if (std::isnan(value)) return true;
+    }
+  return false;
 }
 
 /// Bytes of one value of a TensorProto.DataType; 0 = none that weights have.
@@ -156,7 +170,10 @@ std::string fault_of(std::string_view tensor) {
               : bytes_of(tensor, kFloats) / 4 + bytes_of(tensor, kDoubles) / 8 +
                     varints(tensor, kInt32s).size() + varints(tensor, kInt64s).size() +
                     varints(tensor, kUint64s).size();
-  if (static_cast<double>(held) == values) return "";
+  if (static_cast<double>(held) == values) {
+    const bool nan = type == kFloat && (any_nan(tensor, kRaw) || any_nan(tensor, kFloats));
+    return nan ? fmt::format("weights {} hold a value that is not a number", name) : "";
+  }
   return fmt::format("weights {} hold {} values where their shape states {}", name, held, values);
 }
 

@@ -120,7 +120,14 @@ TEST_F(SensFile, SaysWhichFieldIsWrong) {
   EXPECT_TRUE(names(error(with(whole, kCount, std::uint64_t{1} << 62)), {"frame 3", "truncated"}));
   EXPECT_TRUE(names(error(with(whole, kDepthSize, std::uint64_t{1} << 62)),
                     {"frame 0's depth image", "truncated"}));
-  EXPECT_TRUE(names(error(with(whole, kFrame, 2.0F)), {"frame 0", "not a rotation"}));
+}
+
+TEST_F(SensFile, APoseThatIsNoneCostsItsFrameTheTruth) {
+  const auto recording = open_sens(hold(with(bytes(), kFrame, 2.0F)), "a.sens");
+  EXPECT_FALSE(recording->world_from_device(0).has_value());
+  EXPECT_TRUE(recording->world_from_device(2).has_value());
+  ASSERT_EQ(recording->notes().size(), 1U);
+  EXPECT_TRUE(names(recording->notes()[0], {"frame 0", "not a rotation", "1 such frame"}));
 }
 
 TEST_F(SensFile, ImagesThatAreNotWhatTheHeaderSaysAreRefused) {

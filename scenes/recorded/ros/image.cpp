@@ -99,6 +99,8 @@ Grid2d<float> compressed_depth(std::string_view message, ros::Wire wire) {
     std::memcpy(&head, png.data(), sizeof(head));
     png.remove_prefix(sizeof(head));
   }
+  constexpr std::size_t kBits = 24;  // offset in a PNG
+  if (png.size() > kBits && png[kBits] == 8) throw InputError("has 8 bits, depth needs 16");
   const auto values = decode_gray16(png);
   if (!values) throw InputError("is not a PNG of one channel");
   const bool inverse = image.format.starts_with("32FC1");

@@ -216,10 +216,21 @@ StampIndex index_of(const ImageTopic& topic) {
 
 std::vector<StoredFrame> paired(const ChosenTopics& chosen, const std::string& file,
                                 std::vector<std::string>& notes) {
+  std::vector<StoredImage> all_color = chosen.color->images;
+  const auto is_earlier = [](const StoredImage& a, const StoredImage& b) {
+    return a.stamp_ns < b.stamp_ns;
+  };
+  if (!std::ranges::is_sorted(all_color, is_earlier)) {
+    std::ranges::stable_sort(all_color, is_earlier);
+    notes.push_back(
+        fmt::format("{}: images of {} are not in the order of their stamps: they are "
+                    "sorted by them",
+                    file, chosen.color->name));
+  }
   const StampIndex depth_at = index_of(*chosen.depth);
   const StampIndex labels_at = chosen.labels ? index_of(*chosen.labels) : StampIndex({});
   std::vector<StoredFrame> frames;
-  for (const StoredImage& color : chosen.color->images) {
+  for (const StoredImage& color : all_color) {
     const auto depth = depth_at.nearest(color.stamp_ns);
     if (!depth) continue;
     StoredFrame frame{color, chosen.depth->images[*depth], {}};

@@ -310,6 +310,16 @@ TEST(BenchProcess, ARenderingThatIsInterruptedSaysWhetherItGoesOn) {
   }
 }
 
+TEST(BenchProcess, EveryCommandThatIsInterruptedSaysSo) {
+  ASSERT_TRUE(fs::exists(test_folder()));
+  Command command("scene statistics model_house");
+  std::this_thread::sleep_for(std::chrono::seconds(3));  // its work takes longer
+  command.signal(SIGINT);
+  EXPECT_EQ(command.wait(), 130) << errors();
+  EXPECT_NE(errors().find("modelhouse: interrupted; nothing is kept"), std::string::npos)
+      << errors();
+}
+
 TEST(BenchProcess, ACheckThatIsInterruptedGoesOn) {
   const fs::path place = test_folder() / "home" / "modelhouse" / "check";
   setenv("XDG_CACHE_HOME", (test_folder() / "home").c_str(), 1);

@@ -126,6 +126,55 @@ TEST_F(DetectorCommands, ScoreAndFitAgree) {
   EXPECT_NEAR(dials.recall_large, score["dials"]["recall_large"], 1e-6);
 }
 
+TEST_F(DetectorCommands, OverwriteNeitherInputsNorForeignFiles) {
+  fs::create_directories(path("mine"));
+  write_atomically(path("mine/000001.png"), "mine");
+  expect_refused("detector run " + path("room") + " " + network() + " --out " + path("mine"),
+                 "000001.png: is there already");
+  EXPECT_EQ(read_file(path("mine/000001.png")), "mine");
+  const std::string image = path("room/rgb/" + list_folder(path("room/rgb"), "*.png").front());
+  fs::copy_file(image, path("alone.png"));
+  expect_refused("detector run " + path("alone.png") + " " + network() + " --out " +
+                     fs::path(path("alone.png")).parent_path().string(),
+                 "alone.png: lies in the folder to write");
+  write_atomically(path("scene.yaml"), "mine");
+  expect_refused("detector fit " + network() + " --scenes " + path("scene.yaml") + " --out " +
+                     path("scene.yaml"),
+                 "scene.yaml: is read by this command");
+  expect_refused("detector fit " + network() + " --out " + path("two.yaml"),
+                 "two.yaml: is read by this command");
+}
+
+TEST_F(DetectorCommands, AShorterRunLeavesNothingOfALongerOne) {
+  const std::string cached = " " + network() + " --detector-cache " + path("cache_of_runs");
+  const std::string command = "detector run " + path("room") + cached + " --out " + path("shorter");
+  ASSERT_EQ(run(command + " --frames 3"), 0) << err_;
+  EXPECT_NE(out_.find("ms an image"), out_.npos) << out_;
+  write_atomically(path("shorter/foreign.png"), "mine");
+  ASSERT_EQ(run(command + " --frames 1"), 0) << err_;
+  EXPECT_NE(out_.find("1 from the cache"), out_.npos) << out_;
+  EXPECT_TRUE(fs::exists(path("shorter/000000.png")));
+  EXPECT_FALSE(fs::exists(path("shorter/000001.png")));
+  EXPECT_EQ(read_file(path("shorter/foreign.png")), "mine");
+}
+
+TEST_F(DetectorCommands, ACacheThatKeepsNothingIsTold) {
+  write_atomically(path("no_folder"), "a file");
+  slam("uncached", network() + " --detector-cache " + path("no_folder"));
+  EXPECT_NE(err_.find("warning: the cache keeps nothing"), err_.npos) << err_;
+}
+
+TEST_F(DetectorCommands, NothingIsFittedToNothing) {
+  write_atomically(path("floor.obj"), "v 0 0 0\nv 5 0 0\nv 5 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n");
+  const std::string floor =
+      network() + " --scenes " + path("floor.obj") + " --frames 2 --level ideal";
+  ASSERT_EQ(run("detector score " + floor + " --json"), 0) << err_;
+  EXPECT_TRUE(nlohmann::json::parse(out_)["dials"]["recall_small"].is_null()) << out_;
+  EXPECT_EQ(run("detector fit " + floor + " --out " + path("nothing.yaml")), 2);
+  EXPECT_NE(err_.find("nothing is measured"), err_.npos) << err_;
+  EXPECT_FALSE(fs::exists(path("nothing.yaml")));
+}
+
 TEST_F(DetectorCommands, RefuseInOneLine) {
   const std::string to = " --out " + path("refused");
   expect_refused("detector run " + path("room") + to, "no detector is named");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/image_file.hpp"
+#include "slam/core/files.hpp"
 #include "slam/core/read_record.hpp"
 #include "tests/scenes/recorded/made_folder.hpp"
 
@@ -61,6 +62,21 @@ TEST_F(Replica, PosesAndDepthAgree) {
       EXPECT_NEAR(z, near ? WallAndSquare::kSquare_m : WallAndSquare::kWall_m, 2e-4);
     }
   EXPECT_GT(on_square, 500);
+}
+
+TEST_F(Replica, BlankLinesAreNoPosesAndSurplusOnesAreTold) {
+  const std::string poses = read_file(folder_ / "room0/traj.txt");
+  const auto first = poses.find('\n') + 1;
+  write("room0/traj.txt", poses.substr(0, first) + "\n \n" + poses.substr(first) +
+                              matrix_text(world_from_camera(3), " "));
+  const OpenedRecording opened = open();
+  ASSERT_EQ(opened.sequence->truth()->size(), 3U);
+  EXPECT_TRUE(opened.sequence->truth()->at(2).world_from_camera.translation().isApprox(
+      world_from_camera(2).translation(), 1e-9));
+  ASSERT_EQ(opened.notes.size(), 1U);
+  EXPECT_NE(opened.notes[0].find("holds 4 poses, and the last frame is number 2"),
+            std::string::npos)
+      << opened.notes[0];
 }
 
 TEST_F(Replica, LinesBelongToFramesByNumber) {

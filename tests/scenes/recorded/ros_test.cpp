@@ -224,6 +224,42 @@ TEST_P(RosRecording, SeveralInAFolderNeedAName) {
   EXPECT_NE(error.find("holds 2 files *."), std::string::npos) << error;
 }
 
+TEST_P(RosRecording, ImagesOutOfOrderAreSortedByTheirStamps) {
+  Foreign robot(wire());
+  robot.info("/camera_info");
+  robot.depth("/depth");
+  // In the file, by time of receipt, the second image stands before the first.
+  for (const std::size_t i : {1U, 0U, 2U})
+    robot.add("/image",
+              i == 1   ? 0
+              : i == 0 ? 1
+                       : 2,
+              ros::Image{robot.header(i), 1, 2, "bgr8", 0, 6, "abcdef"});
+  robot.write(writer());
+  const OpenedRecording opened = open();
+  ASSERT_EQ(opened.sequence->size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(opened.sequence->stamp_ns(i), stamp_ns(i));
+  ASSERT_EQ(opened.notes.size(), 1U);
+  EXPECT_NE(opened.notes[0].find("not in the order of their stamps"), std::string::npos);
+}
+
+TEST_P(RosRecording, DepthOf8BitsIsNotRead) {
+  Foreign robot(wire());
+  robot.color("/image");
+  robot.info("/camera_info");
+  const std::string png = encode_png(Grid2d<std::uint8_t>(2, 1, std::uint8_t{9}));
+  for (std::size_t i = 0; i < kFrames; ++i)
+    robot.add("/depth/compressedDepth", i,
+              ros::CompressedImage{robot.header(i), "16UC1; compressedDepth png",
+                                   std::string(12, '\0') + png});
+  robot.write(writer());
+  const OpenedRecording opened = open();
+  EXPECT_NE(error_of([&] {
+              opened.sequence->frame(0, RandomStream(0));
+            }).find("has 8 bits, depth needs 16"),
+            std::string::npos);
+}
+
 TEST_P(RosRecording, AnotherCalibrationMidwayIsTold) {
   Foreign robot(wire());
   robot.color("/image");

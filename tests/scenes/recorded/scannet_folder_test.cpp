@@ -140,6 +140,28 @@ TEST_F(ScannetFolder, BothLayoutsHoldTheSameImages) {
             43);
 }
 
+TEST_F(ScannetFolder, APoseThatIsNoneIsCountedAndItsFrameOffered) {
+  RecordingInfo info;
+  info.depth = {16, 12, 20, 20, 7.5, 5.5, {}};
+  info.color = info.depth;
+  const RecordedMoment moment{.stamp_ns = 0,
+                              .color = Grid2d<Rgb8>(16, 12),
+                              .depth = Grid2d<std::uint16_t>(16, 12, std::uint16_t{2000}),
+                              .world_from_device = SE3()};
+  save_extracted(folder_, info, 3, [&](std::size_t) { return moment; });
+  write("pose/0.txt", "");
+  write("pose/1.txt", "0 0 0 0\n0 0 0 0\n0 0 0 0\n0 0 0 0\n");
+  std::vector<std::string> notes;
+  const auto sequence = open_scannet(folder_, notes);
+  EXPECT_EQ(sequence->size(), 3U);
+  EXPECT_EQ(sequence->truth()->size(), 1U);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("pose/0.txt: holds 0 numbers, 16 are needed; 2 such frames are without "
+                          "truth"),
+            std::string::npos)
+      << notes[0];
+}
+
 /// Color has twice the pixels, another center, and stands 10 cm to the right: a point at depth z
 /// is seen fx * 0.1 / z further left.
 TEST_F(ScannetFolder, ColorAndLabelsAreTakenWhereTheColorCameraSawThePixel) {

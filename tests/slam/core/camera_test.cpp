@@ -36,9 +36,13 @@ TEST(Camera, EachNumberHasItsRangeAndIsNamedOutsideIt) {
       EXPECT_EQ(with(member, bad),
                 std::string("camera: ") + name + " = " + std::to_string(bad) + " is out of range");
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = HUGE_VAL;
-  for (const auto& [member, name] : {std::pair(&Camera::fx_px, "fx_px"),
-                                     {&Camera::fy_px, "fy_px"},
-                                     {&Camera::rate_hz, "rate_hz"},
+  for (const auto& [member, name] :
+       {std::pair(&Camera::fx_px, "fx_px"), {&Camera::fy_px, "fy_px"}}) {
+    for (const double good : {16.1, 639999.0}) EXPECT_EQ(with(member, good), "") << name;
+    for (const double bad : {0.0, 1e-9, 15.9, 640001.0, -1.0, kNan, kInfinity})
+      EXPECT_TRUE(with(member, bad).starts_with(std::string("camera: ") + name + " = ")) << bad;
+  }
+  for (const auto& [member, name] : {std::pair(&Camera::rate_hz, "rate_hz"),
                                      {&Camera::baseline_m, "baseline_m"},
                                      {&Camera::disparity_sigma_px, "disparity_sigma_px"}}) {
     EXPECT_EQ(with(member, std::numeric_limits<double>::min()), "") << name;

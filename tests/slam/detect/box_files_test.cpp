@@ -45,6 +45,13 @@ void expect_chair(const Detected& found) {
   EXPECT_EQ(found.boxes[0].classes.most_probable(), *class_by_name("chair"));
 }
 
+TEST_F(BoxFiles, AnImagesFolderIsNoPartOfItsName) {
+  const auto boxes = open(
+      "a.json",
+      R"([{"image_id": "rgb/3.png", "category_id": 62, "bbox": [10, 20, 30, 20], "score": 0.8}])");
+  expect_chair(boxes->detect(image_, 3, 0));
+}
+
 TEST_F(BoxFiles, OfCocoAreFoundByIndexOrStamp) {
   const auto by_index = open(
       "a.json", R"([{"image_id": 3, "category_id": 62, "bbox": [10, 20, 30, 20], "score": 0.8}])");

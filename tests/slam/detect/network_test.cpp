@@ -4,6 +4,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <cstring>
 #include <filesystem>
 #include <limits>
 
@@ -219,7 +220,7 @@ TEST_F(Networks, WithFewerWeightsThanTheirShapeStatesAreRefused) {
 TEST_F(Networks, WhoseValuesAreNoNumbersAreRefused) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_SAYS(refusal(two_classes("nan.onnx", test::onnx_segmentation(8, 8, {nan, 0, 0, 0, 0, 1}))),
-              "nan.onnx: gives a value that is not a number");
+              "nan.onnx: weights 'weights' hold a value that is not a number");
 }
 
 TEST_F(Networks, AreNotReadByAHeadThatTheyCannotHave) {
@@ -250,6 +251,38 @@ TEST_F(Networks, CutShortAnywhereNeverCrash) {
     write("a.cfg", config.substr(0, size));
     EXPECT_NE(refusal(spec), "") << config.substr(0, size);
   }
+}
+
+TEST_F(Networks, OfDarknetAreRefusedByTheConfigurationsLine) {
+  DetectorSpec spec = two_classes("a.weights", test::darknet_weights());
+  const std::string good = test::darknet_config(64, 32);
+  const auto with = [&](const std::string& old, const std::string& instead) {
+    std::string text = good;
+    text.replace(text.find(old), old.size(), instead);
+    spec.config = write("a.cfg", text);
+    return refusal(spec);
+  };
+  spec.config = write("a.cfg", good);
+  EXPECT_EQ(refusal(spec), "");
+  spec.config = write("a.cfg", "\xef\xbb\xbf" + good);
+  EXPECT_EQ(open_detector(spec)->description(), "darknet, 2 classes, input 64 x 32");
+  EXPECT_SAYS(with("width=64", "width=9000"), "a.cfg:2: width = 9000: a side is a whole number");
+  EXPECT_SAYS(with("width=64", "Width=64"), "a.cfg: section [net] states no width");
+  EXPECT_SAYS(with("mask=0,1,2", "mask=0,1,3"), "mask = 0,1,3: there is no anchor 3 among 3");
+  EXPECT_SAYS(with("mask=0,1,2", "mask=-3,1,2"), "there is no anchor -3 among 3");
+  EXPECT_SAYS(with("8,8, 16", "-8,8, 16"), "a side of a box is positive");
+  EXPECT_SAYS(with("8,8, 16", "nan,8, 16"), "'nan' is not a number");
+  EXPECT_SAYS(with("[convolutional]", "[convolute]"), "a.cfg: ");
+}
+
+TEST_F(Networks, WithWeightsThatAreNoNumbersAreRefused) {
+  DetectorSpec spec = two_classes("a.weights", "");
+  spec.config = write("a.cfg", test::darknet_config(64, 32));
+  std::string weights = test::darknet_weights();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  std::memcpy(weights.data() + weights.size() - sizeof nan, &nan, sizeof nan);
+  write("a.weights", weights);
+  EXPECT_SAYS(refusal(spec), "is not a finite number");
 }
 
 TEST_F(Networks, DetectionsAreKeptByContent) {
