@@ -57,6 +57,6 @@ ClassDistribution our_classes(std::span<const float> scores, int best, const Cla
 /// of the pixels with the same best class and about the same certainty (steps of a quarter), its
 /// three most probable classes. Pixels of which no class reaches `confidence` are void.
 SemanticImage segmented(const Tensor& output, const Placement& at, const InputSize& input,
-                        int width, int height, const ClassNames& names, double confidence);
+                        const InputSize& of_image, const ClassNames& names, double confidence);
 
 }  // namespace mh

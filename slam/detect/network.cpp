@@ -307,7 +307,7 @@ class Network : public Detector {
     if (settings.head == Head::kSegmentation) {
       for (const Tensor& tensor : out.tensors)
         if (tensor.shape.size() == 4)
-          found.pixels = segmented(tensor, at, imported_.input, color.width(), color.height(),
+          found.pixels = segmented(tensor, at, imported_.input, {color.width(), color.height()},
                                    imported_.names, settings.confidence);
     } else {
       found.boxes = select_boxes(candidates(out), at, color.width(), color.height(),

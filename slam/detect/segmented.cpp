@@ -76,7 +76,8 @@ Cells our_cells(const Tensor& output, const ClassNames& names) {
 }  // namespace
 
 SemanticImage segmented(const Tensor& output, const Placement& at, const InputSize& input,
-                        int width, int height, const ClassNames& names, double confidence) {
+                        const InputSize& of_image, const ClassNames& names, double confidence) {
+  const auto [width, height] = of_image;
   const Cells cells = our_cells(output, names);
   const std::size_t n = cells.ids.size();
   const double per_cell_x = static_cast<double>(cells.width) / input.width,

@@ -214,16 +214,16 @@ TEST(Segmented, TakesProbabilitiesOrValuesAndInterpolates) {
   for (const std::size_t cell : {1U, 3U}) made.values[cell] = 0.1F, made.values[4 + cell] = 0.9F;
   const InputSize input{8, 8};
   const Placement at = place_image(16, 16, input, Letterbox::kStretch);
-  const SemanticImage image = segmented(made.tensor(), at, input, 16, 16, names, 0.25);
+  const SemanticImage image = segmented(made.tensor(), at, input, {16, 16}, names, 0.25);
   EXPECT_EQ(image.at(0, 8).most_probable(), 5);
   EXPECT_EQ(image.at(15, 8).most_probable(), 7);
   EXPECT_NEAR(image.at(0, 8).entries[0].second, 0.9, 0.1);
   EXPECT_EQ(image.at(7, 0).most_probable(), 5);
   EXPECT_EQ(image.at(8, 0).most_probable(), 7);
   for (float& value : made.values) value = 100 * value - 40;  // no longer shares of 1
-  EXPECT_GT(segmented(made.tensor(), at, input, 16, 16, names, 0.25).at(0, 8).entries[0].second,
+  EXPECT_GT(segmented(made.tensor(), at, input, {16, 16}, names, 0.25).at(0, 8).entries[0].second,
             0.95);
-  const SemanticImage strict = segmented(made.tensor(), at, input, 16, 16, names, 1.0);
+  const SemanticImage strict = segmented(made.tensor(), at, input, {16, 16}, names, 1.0);
   EXPECT_TRUE(strict.at(7, 8).entries.empty());
 }
 
