@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/studies/vocabulary_training.hpp"
 
+#include <unistd.h>
+
 #include <cmath>
 #include <stdexcept>
 
@@ -59,7 +61,7 @@ TEST(TrainVocabulary, RefusesNonsense) {
 
 class ImageList : public testing::Test {
  protected:
-  ImageList() : folder_(fs::path(testing::TempDir()) / "image_list") {
+  ImageList() : folder_(fs::path(testing::TempDir()) / fmt::format("image_list_{}", getpid())) {
     fs::remove_all(folder_);
     make_output_folder(folder_ / "images");
     for (int i = 0; i < 3; ++i) {
