@@ -131,8 +131,9 @@ void add_scannet(std::vector<HostileCase>& cases) {
   const auto sens = [&](const std::string& name, std::uint64_t name_size, std::uint32_t width,
                         std::uint64_t frames, std::uint64_t color_bytes, const std::string& says) {
     const std::array<float, 16> unit{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    const std::string head = raw(std::uint32_t{4}) + raw(name_size) + "name" + raw(unit) +
-                             raw(unit) + raw(unit) + raw(unit) +
+    const std::array<float, 16> lens{50, 0, 31, 0, 0, 50, 23, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    const std::string head = raw(std::uint32_t{4}) + raw(name_size) + "name" + raw(lens) +
+                             raw(unit) + raw(lens) + raw(unit) +
                              raw(std::array<std::int32_t, 2>{2, 1}) +
                              raw(std::array<std::uint32_t, 4>{width, 48, width, 48}) + raw(1000.0F);
     cases.push_back({name,
