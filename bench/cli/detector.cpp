@@ -134,8 +134,16 @@ void run(DetectorArguments options) {
   const OutputFolder folder(out, "detector run", std::move(names));
   if (folder.was_ours()) remove_earlier(out);
   Progress progress("detector run");
-  const KeepDetections in_cache = detections_in(
-      options.detector.opened_cache([&](const std::string& warning) { progress.say(warning); }));
+  const KeepDetections in_cache = detections_in(options.detector.opened_cache("detector run"));
+  bool made = false;  // by the network, not taken from the cache
+  KeepDetections keep;
+  if (in_cache != nullptr && detector->digest() != 0)
+    keep = [&](const std::string& key, const auto& make) {
+      return in_cache(key, [&] {
+        made = true;
+        return make();
+      });
+    };
   if (!unmatched.empty()) progress.say("warning: " + unmatched);
   std::map<std::string, std::size_t> count;
   std::vector<double> ms;
@@ -151,14 +159,7 @@ void run(DetectorArguments options) {
       continue;
     }
     const auto start = std::chrono::steady_clock::now();
-    bool made = in_cache == nullptr || detector->digest() == 0;
-    const KeepDetections keep =
-        made ? nullptr : KeepDetections([&](const auto& key, const auto& make) {
-          return in_cache(key, [&] {
-            made = true;
-            return make();
-          });
-        });
+    made = keep == nullptr;
     const Detected found = detect_kept(*detector, frame, i, keep);
     ++images;
     if (made)

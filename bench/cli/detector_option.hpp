@@ -3,7 +3,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -29,12 +28,13 @@ struct DetectorOption {
     command.add_option("--detector-cache", cache,
                        "Cache folder for what it finds; none: every image is run");
   }
-  /// The cache of --detector-cache. @param say  receives a warning if it can keep nothing
-  Cache opened_cache(const std::function<void(const std::string&)>& say) const {
+  /// The cache of --detector-cache; warns on stderr if it can keep nothing.
+  /// @param command  as which it warns
+  Cache opened_cache(const char* command) const {
     Cache opened(cache);
     if (!cache.empty())
       if (const std::string why = opened.why_unwritable(); !why.empty())
-        say("warning: the cache keeps nothing: " + why);
+        fmt::print(stderr, "{}: warning: the cache keeps nothing: {}\n", command, why);
     return opened;
   }
   bool is_given() const { return !file.empty() || !settings.empty(); }

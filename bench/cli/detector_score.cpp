@@ -131,8 +131,7 @@ void for_each_moment(const DetectorScoreArguments& options, const Robot& robot,
 
 /// Judges the detector, then the simulated one with the dials that were measured.
 Judged judge(const DetectorScoreArguments& options, const DetectorSpec& asked, Worst* worst) {
-  const Cache cache = options.detector.opened_cache(
-      [](const std::string& warning) { fmt::print(stderr, "detector: {}\n", warning); });
+  const Cache cache = options.detector.opened_cache("detector");
   DetectorSpec spec = asked;
   const double confidence = spec.settings.confidence;
   spec.settings.confidence = std::min(confidence, kLeastScore);

@@ -31,7 +31,7 @@ enum ExitCode {
   kCheckFailed = 1,
   kBadInput = mh::kBadInputCode,
   kMachineFailed = 3,
-  kInterrupted = 130
+  kInterrupted = mh::kInterruptedCode
 };
 
 int fail(int code, std::string message) {

@@ -180,14 +180,12 @@ void run(RenderArguments options) {
   if (const auto spec = options.detector.spec()) {
     const std::shared_ptr<const Detector> detector =
         noted(inputs, "detector", source_of(*spec), [&] { return open_detector(*spec); });
-    options.sequence.relabel =
-        [detector, fill = spec->settings.fill,
-         keep = detections_in(options.detector.opened_cache([](const std::string& warning) {
-           fmt::print(stderr, "render: {}\n", warning);
-         }))](RgbdFrame& frame, std::size_t i) {
-          frame.semantics = labels_of(detect_kept(*detector, frame, i, keep), frame.depth_m,
-                                      frame.color.width(), frame.color.height(), fill);
-        };
+    options.sequence.relabel = [detector, fill = spec->settings.fill,
+                                keep = detections_in(options.detector.opened_cache("render"))](
+                                   RgbdFrame& frame, std::size_t i) {
+      frame.semantics = labels_of(detect_kept(*detector, frame, i, keep), frame.depth_m,
+                                  frame.color.width(), frame.color.height(), fill);
+    };
     options.sequence.labels = LabelMode::kNone;
   }
   const MountedCamera* const mounted = find_camera(options, robot);

@@ -165,8 +165,7 @@ void run(SlamArguments options) {
       fmt::print(stderr, "slam: warning: {}\n", note);
     source.frames = std::make_unique<DetectedSequence>(
         std::shared_ptr<const Sequence>(std::move(source.frames)), detector, spec->settings.fill,
-        detections_in(options.detector.opened_cache(
-            [](const std::string& warning) { fmt::print(stderr, "slam: {}\n", warning); })));
+        detections_in(options.detector.opened_cache("slam")));
   }
   std::optional<Trajectory> named_truth;
   if (!options.truth.empty()) named_truth = read_trajectory(options.truth);

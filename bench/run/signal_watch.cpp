@@ -14,7 +14,6 @@ volatile std::sig_atomic_t g_goes_on = 0;
 
 /// Calls nothing that a signal's handler must not.
 void end_at_once(int) {
-  constexpr int kInterruptedCode = 130;
   const char* line = interrupted_line(g_goes_on != 0);
   [[maybe_unused]] const auto written = write(STDERR_FILENO, line, std::strlen(line));
   _exit(kInterruptedCode);

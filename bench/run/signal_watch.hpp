@@ -12,6 +12,8 @@ struct Interrupted {
   bool goes_on = true;  ///< whether the same command resumes from what is finished
 };
 
+inline constexpr int kInterruptedCode = 130;  ///< exit code
+
 /// The line that an interrupted command ends with.
 const char* interrupted_line(bool goes_on);
 

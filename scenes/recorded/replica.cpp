@@ -122,10 +122,10 @@ OpenedRecording open_replica(const fs::path& folder, const RecordingConfig& conf
   if (!poses.poses().empty()) listed.truth = poses.poses();
   std::vector<std::string> notes;
   without_depth.note(folder, color.size(), notes);
-  const auto frames = static_cast<std::size_t>(color.rbegin()->first) + 1;
-  if (lines.size() > frames)
+  const auto last = static_cast<std::size_t>(color.rbegin()->first);
+  if (lines.size() > last + 1)
     notes.push_back(fmt::format("{}: holds {} poses, and the last frame is number {}",
-                                trajectory.string(), lines.size(), frames - 1));
+                                trajectory.string(), lines.size(), last));
   poses.note(folder.string(), notes);
   return open_listed(std::move(listed), true, std::move(notes));
 }

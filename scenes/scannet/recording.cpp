@@ -2,7 +2,6 @@
 #include "scenes/scannet/recording.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 #include <utility>
@@ -16,6 +15,7 @@
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/number_in.hpp"
 #include "slam/core/text_file.hpp"
 
 namespace mh {
@@ -170,12 +170,11 @@ Eigen::Matrix4d parse_matrix(const std::string& text, const std::string& what) {
   for (int i = 0; i < 16; ++i) {
     if (!(words >> word))
       throw InputError(fmt::format("{}: holds {} numbers, 16 are needed", what, i));
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size())
+    const auto value = number_in(word);
+    if (!value)
       throw InputError(
           fmt::format("{}: number {}: '{}' is not a number", what, i + 1, word.substr(0, 40)));
-    matrix(i / 4, i % 4) = value;
+    matrix(i / 4, i % 4) = *value;
   }
   if (words >> word) throw InputError(fmt::format("{}: holds more than 16 numbers", what));
   return matrix;

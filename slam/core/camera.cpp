@@ -16,7 +16,7 @@ void validate(const Camera& camera) {
   };
   require(camera.width_px > 0, "width_px", camera.width_px);
   require(camera.height_px > 0, "height_px", camera.height_px);
-  // A pinhole that sees less than 174 degrees and more than an arc minute.
+  // A pinhole that sees less than 174 degrees and more than three arc minutes.
   const auto is_focal = [&](double f) {
     return f > 0.05 * camera.width_px / 2 && f < 1e3 * camera.width_px;
   };

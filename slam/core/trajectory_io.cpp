@@ -16,6 +16,7 @@
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/number_in.hpp"
 #include "slam/core/text_file.hpp"
 
 namespace mh {
@@ -58,15 +59,10 @@ struct Place {
 };
 
 double parse_number(const std::string& word, const char* field, const Place& place) {
-  double value = 0;
-  // from_chars does not accept a leading plus.
-  const char* begin = word.data() + (word.starts_with('+') ? 1 : 0);
-  const char* end = word.data() + word.size();
-  const auto [stop, error] = std::from_chars(begin, end, value);
-  if (error != std::errc() || stop != end)
-    place.fail(fmt::format("{}: '{}' is not a number", field, word));
-  if (!std::isfinite(value)) place.fail(fmt::format("{}: '{}' is not finite", field, word));
-  return value;
+  const auto value = number_in(without_plus(word));
+  if (!value) place.fail(fmt::format("{}: '{}' is not a number", field, word));
+  if (!std::isfinite(*value)) place.fail(fmt::format("{}: '{}' is not finite", field, word));
+  return *value;
 }
 
 /// Calls `use` with the words of each line that is neither empty nor a comment.

@@ -18,6 +18,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/legible.hpp"
+#include "slam/core/number_in.hpp"
 #include "slam/core/text_file.hpp"
 #include "slam/core/trajectory_io.hpp"
 #include "slam/detect/detector.hpp"
@@ -90,13 +91,9 @@ std::vector<double> numbers(std::string line, const std::string& place) {
   std::istringstream words(line);
   std::vector<double> all;
   for (std::string word; words >> word;) {
-    const char *first = word.data() + (word.starts_with('+') ? 1 : 0),
-               *last = word.data() + word.size();
-    double value = 0;
-    if (const auto read = std::from_chars(first, last, value);
-        read.ec != std::errc() || read.ptr != last)
-      throw InputError(fmt::format("{}: '{}' is not a number", place, legible(word)));
-    all.push_back(value);
+    const auto value = number_in(without_plus(word));
+    if (!value) throw InputError(fmt::format("{}: '{}' is not a number", place, legible(word)));
+    all.push_back(*value);
   }
   return all;
 }

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
+#include <cmath>
 #include <map>
 #include <sstream>
 #include <string_view>
@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
+#include "slam/core/number_in.hpp"
 
 namespace mh {
 namespace {
@@ -57,11 +58,10 @@ std::vector<double> numbers_of(const fs::path& file, const std::string& key, con
   std::vector<double> numbers;
   std::istringstream words(stated.value);
   for (std::string word; std::getline(words, word, ',');) {
-    double value = 0;
-    const auto read = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (read.ec != std::errc() || read.ptr != word.data() + word.size() || value - value != 0)
+    const auto value = number_in(word);
+    if (!value || !std::isfinite(*value))
       refuse(file, key, stated, fmt::format("'{}' is not a number", word));
-    numbers.push_back(value);
+    numbers.push_back(*value);
   }
   return numbers;
 }

@@ -138,6 +138,12 @@ class Foreign {
     info.distortion_model = "plumb_bob";
     add(topic, 0, info);
   }
+  /// All that a camera needs: /image, /depth and /camera_info.
+  void camera() {
+    color("/image");
+    depth("/depth");
+    info("/camera_info");
+  }
   void tf(std::size_t i, const char* parent, const char* child, const SE3& pose,
           const char* topic = "/tf") {
     add(topic, i, ros::TfMessage{{ros::transform_message(stamp_ns(i), parent, child, pose)}});
@@ -262,9 +268,7 @@ TEST_P(RosRecording, DepthOf8BitsIsNotRead) {
 
 TEST_P(RosRecording, AnotherCalibrationMidwayIsTold) {
   Foreign robot(wire());
-  robot.color("/image");
-  robot.depth("/depth");
-  robot.info("/camera_info");
+  robot.camera();
   robot.info("/camera_info");
   ros::CameraInfo other{.header = robot.header(2), .height = 1, .width = 2};
   other.k = {3, 0, 0.5, 0, 3, 0, 0, 0, 1};
@@ -281,9 +285,7 @@ TEST_P(RosRecording, AnotherCalibrationMidwayIsTold) {
 TEST_P(RosRecording, ImagesWithoutPixelsAreCounted) {
   Foreign robot(wire());
   robot.add("/image", 0, ros::Image{robot.header(0), 0, 0, "bgr8", 0, 0, ""});
-  robot.color("/image");
-  robot.depth("/depth");
-  robot.info("/camera_info");
+  robot.camera();
   robot.write(writer());
   const OpenedRecording opened = open();
   EXPECT_EQ(opened.sequence->size(), kFrames);
@@ -377,9 +379,7 @@ TEST_P(RosRecording, DepthIsOfTheColorsCamera) {
 
 TEST_P(RosRecording, FramesWithoutLabelsAreCounted) {
   Foreign robot(wire());
-  robot.color("/image");
-  robot.depth("/depth");
-  robot.info("/camera_info");
+  robot.camera();
   robot.add("/ids", 0, ros::Image{robot.header(0), 1, 2, "mono8", 0, 2, std::string("\1\2", 2)});
   robot.write(writer());
   RecordingConfig config = with_topics("labels=/ids");
@@ -403,9 +403,7 @@ TEST_P(RosRecording, GrayImagesServeWhereNoColorIs) {
 
 TEST_P(RosRecording, ACompressedImageGivesWayToItsTwin) {
   Foreign robot(wire());
-  robot.color("/image");
-  robot.depth("/depth");
-  robot.info("/camera_info");
+  robot.camera();
   const std::string png = encode_png(Grid2d<std::uint8_t>(2, 1, std::uint8_t{9}));
   for (std::size_t i = 0; i < kFrames; ++i)
     robot.add("/image/compressed", i, ros::CompressedImage{robot.header(i), "png", png});
@@ -418,9 +416,7 @@ TEST_P(RosRecording, ACompressedImageGivesWayToItsTwin) {
 
 TEST_P(RosRecording, TruthComesFromTfThroughWhatIsFixed) {
   Foreign robot(wire());
-  robot.color("/image");
-  robot.depth("/depth");
-  robot.info("/camera_info");
+  robot.camera();
   robot.tf(0, "/body", "/cam_optical", shift(0, 0, 1), "/tf_static");
   for (std::size_t i = 0; i < kFrames; ++i)
     robot.tf(i, "world", "body", shift(static_cast<double>(i), 0, 0));
@@ -436,9 +432,7 @@ TEST_P(RosRecording, TruthComesFromTfThroughWhatIsFixed) {
 
 TEST_P(RosRecording, OdometryIsNoTruth) {
   Foreign robot(wire());
-  robot.color("/image");
-  robot.depth("/depth");
-  robot.info("/camera_info");
+  robot.camera();
   for (std::size_t i = 0; i < kFrames; ++i) {
     robot.tf(i, "odom", "cam_optical", shift(1, 0, 0));
     robot.add("/odom", i, ros::Odometry{{0, {stamp_ns(i)}, "odom"}, "cam_optical", {}, {}});
@@ -461,9 +455,7 @@ TEST_P(RosRecording, DepthOfAnotherSizeIsRefused) {
 
 TEST_P(RosRecording, AFrameThatCannotBeReadIsTheOnlyOne) {
   Foreign robot(wire());
-  robot.color("/image");
-  robot.info("/camera_info");
-  robot.depth("/depth");
+  robot.camera();
   robot.add("/image", kFrames, ros::Image{robot.header(kFrames), 1, 2, "bgr8", 0, 6, "abc"});
   robot.add("/depth", kFrames, ros::Image{robot.header(kFrames), 1, 2, "16UC1", 0, 4, "abcd"});
   robot.write(writer());
