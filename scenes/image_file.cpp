@@ -204,6 +204,16 @@ std::optional<Grid2d<std::uint16_t>> decode_gray16(std::string_view bytes) {
   return image;
 }
 
+Grid2d<std::uint16_t> decode_depth16(std::string_view bytes) {
+  const cv::Mat units = decode_image(bytes);
+  if (units.depth() == CV_8U) throw InputError("has 8 bits, depth needs 16");
+  if (units.type() != CV_16UC1)
+    throw InputError(fmt::format("has {} channels, depth needs one of 16 bits", units.channels()));
+  Grid2d<std::uint16_t> image(units.cols, units.rows);
+  units.copyTo(cv::Mat(units.rows, units.cols, CV_16UC1, image.data()));
+  return image;
+}
+
 std::string encode_jpeg(const Grid2d<Rgb8>& image, int quality) {
   const cv::Mat rgb(image.height(), image.width(), CV_8UC3, const_cast<Rgb8*>(image.data()));
   cv::Mat bgr;

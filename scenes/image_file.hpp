@@ -57,6 +57,10 @@ std::optional<Grid2d<Rgb8>> decode_color(std::string_view bytes);
 /// Decodes an image of one channel, 8 or 16 bits; nullopt if the bytes are not such an image.
 std::optional<Grid2d<std::uint16_t>> decode_gray16(std::string_view bytes);
 
+/// Decodes a depth image: one channel of 16 bits. Fewer bits hold no millimeters.
+/// @throws InputError stating what it is instead, to be appended to a file's name.
+Grid2d<std::uint16_t> decode_depth16(std::string_view bytes);
+
 /// @param quality  of the JPEG, 1 to 100
 std::string encode_jpeg(const Grid2d<Rgb8>& image, int quality);
 std::string encode_png(const Grid2d<std::uint16_t>& image);

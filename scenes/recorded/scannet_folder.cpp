@@ -107,6 +107,7 @@ class ScannetSequence : public Sequence {
     }
     note_missing_labels(notes);
     class_of_id_ = load_class_map(table);
+    note_foreign_ids(table, notes);
   }
 
   bool has_labels() const { return labels_ != nullptr; }
@@ -159,6 +160,24 @@ class ScannetSequence : public Sequence {
       notes.push_back(
           fmt::format("{}: {} of {} frames have no labels there (the first is frame {})",
                       labels_->place(), missing, size(), first));
+  }
+
+  /// Ids of another table look like a room of nothing: the first frame with labels tells.
+  void note_foreign_ids(const fs::path& table, std::vector<std::string>& notes) const {
+    for (std::size_t i = 0; i < size(); ++i) {
+      const std::uint32_t number = recording_->number(i);
+      const auto ids = labels_->contains(number) ? labels_->read(number) : std::nullopt;
+      if (!ids || std::ranges::all_of(*ids, [](std::uint16_t id) { return id == 0; })) continue;
+      const bool any = std::ranges::any_of(*ids, [&](std::uint16_t id) {
+        return id < class_of_id_.size() && class_of_id_[id] != kVoid;
+      });
+      if (!any)
+        notes.push_back(
+            fmt::format("{}: none of frame {}'s label ids has a class in {}: are they "
+                        "of another table?",
+                        labels_->place(), number, table.string()));
+      return;
+    }
   }
 
   Grid2d<Rgb8> color_at(const Grid2d<Rgb8>& image, const cv::Mat& columns,

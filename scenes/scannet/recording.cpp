@@ -74,18 +74,12 @@ class ExtractedFolder : public Recording {
     const fs::path color_file = color_.file(numbers_[index]);
     const fs::path depth_file = depth_.file(numbers_[index]);
     auto color = decode_color(read_whole(color_file));
-    const std::string depth_bytes = read_whole(depth_file);
-    constexpr std::size_t kBits = 24;  // offset in a PNG
-    if (depth_bytes.size() > kBits && depth_bytes[kBits] == 8)
-      throw InputError(fmt::format("{}: has 8 bits, depth needs 16", depth_file.string()));
-    auto depth = decode_gray16(depth_bytes);
+    auto depth = depth_in(depth_file);
     if (!color)
       throw InputError(fmt::format("{}: is not an image of 3 x 8 bits", color_file.string()));
-    if (!depth)
-      throw InputError(fmt::format("{}: is not an image of 16 bits", depth_file.string()));
     check_size(*color, info_.color, color_file);
-    check_size(*depth, info_.depth, depth_file);
-    return {stamp_ns(index), std::move(*color), std::move(*depth), poses_[index]};
+    check_size(depth, info_.depth, depth_file);
+    return {stamp_ns(index), std::move(*color), std::move(depth), poses_[index]};
   }
 
  private:
@@ -94,6 +88,15 @@ class ExtractedFolder : public Recording {
     if (const char* fault = image_fault(bytes))
       throw InputError(fmt::format("{}: {}", file.string(), fault));
     return bytes;
+  }
+
+  static Grid2d<std::uint16_t> depth_in(const fs::path& file) {
+    const std::string bytes = read_file(file);
+    try {
+      return decode_depth16(bytes);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+    }
   }
 
   ImageSize announced(const NumberedFiles& files) const {
@@ -106,9 +109,13 @@ class ExtractedFolder : public Recording {
     return *size;
   }
 
-  RecordedLens read_lens(const std::string& which, const ImageSize& size) const {
+  RecordedLens read_lens(const std::string& which, const ImageSize& size) {
     const fs::path intrinsics = folder_ / "intrinsic" / ("intrinsic_" + which + ".txt");
     const fs::path extrinsics = folder_ / "intrinsic" / ("extrinsic_" + which + ".txt");
+    if (!is_there(extrinsics))
+      notes_.push_back(
+          fmt::format("{}: is absent: the {} camera is taken to be the device's origin",
+                      extrinsics.string(), which));
     return lens_of(read_matrix(intrinsics),
                    is_there(extrinsics) ? read_matrix(extrinsics) : Eigen::Matrix4d::Identity(),
                    static_cast<int>(size.width), static_cast<int>(size.height),

@@ -43,8 +43,8 @@ class Cursor {
   }
   void need(std::uint64_t size, const std::string& what) const {
     if (size > bytes_.size() - at_)
-      fail(fmt::format("is truncated: {} needs {} bytes, {} are left", what, size,
-                       bytes_.size() - at_));
+      fail(fmt::format("is truncated: it ends within {}, which needs {} bytes ({} are left)", what,
+                       size, bytes_.size() - at_));
   }
   std::size_t left() const { return bytes_.size() - at_; }
   template <class T>

@@ -255,6 +255,15 @@ TEST_F(Extracted, TakesPartOfTheFramesAndPaddedNames) {
   EXPECT_TRUE(names(recording->notes()[1], {"1 of 2 frames", "pose/"}));
 }
 
+TEST_F(Extracted, ALensWithoutAPlaceIsToldToBeTheDevices) {
+  save_extracted(folder_, info(), 1, moment);
+  fs::remove(folder_ / "intrinsic/extrinsic_color.txt");
+  const auto recording = open_recording(folder_);
+  ASSERT_EQ(recording->notes().size(), 1U);
+  EXPECT_TRUE(names(recording->notes()[0], {"extrinsic_color.txt", "absent", "color camera"}));
+  EXPECT_TRUE(recording->info().color.device_from_camera.translation().isZero());
+}
+
 TEST_F(Extracted, APoseThatIsNoneIsToldAndCostsItsFrameTheTruth) {
   save_extracted(folder_, info(), 3, moment);
   const auto note = [&](const char* pose) {
@@ -296,6 +305,8 @@ TEST_F(Extracted, NamesTheFileThatIsWrong) {
   }
   const std::string depth = read_file(folder_ / "depth/1.png");
   write("depth/1.png", encode_png(Grid2d<std::uint8_t>(8, 6)));
+  EXPECT_TRUE(names(error(), {"depth/1.png", "8 bits"}));
+  write("depth/1.png", read_file(folder_ / "color/1.jpg"));
   EXPECT_TRUE(names(error(), {"depth/1.png", "8 bits"}));
   write("depth/1.png", depth);
   write("color/1.jpg", "no image");

@@ -99,13 +99,10 @@ Grid2d<float> compressed_depth(std::string_view message, ros::Wire wire) {
     std::memcpy(&head, png.data(), sizeof(head));
     png.remove_prefix(sizeof(head));
   }
-  constexpr std::size_t kBits = 24;  // offset in a PNG
-  if (png.size() > kBits && png[kBits] == 8) throw InputError("has 8 bits, depth needs 16");
-  const auto values = decode_gray16(png);
-  if (!values) throw InputError("is not a PNG of one channel");
+  const Grid2d<std::uint16_t> values = decode_depth16(png);
   const bool inverse = image.format.starts_with("32FC1");
-  Grid2d<float> depth_m(values->width(), values->height());
-  std::ranges::transform(*values, depth_m.begin(), [&](std::uint16_t v) {
+  Grid2d<float> depth_m(values.width(), values.height());
+  std::ranges::transform(values, depth_m.begin(), [&](std::uint16_t v) {
     if (!inverse) return meters_of(v);
     return v == 0 ? 0.0F : meters_of(head.a / (static_cast<float>(v) - head.b));
   });

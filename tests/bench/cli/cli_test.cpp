@@ -158,7 +158,7 @@ TEST_F(CommandLine, ASlipIsToldWhatItMayHaveMeant) {
            {"bench model_house --jbos 2",
             "modelhouse bench takes no --jbos; did you mean '--jobs'?"},
            {"drive model_house --robto pepper", "takes no --robto; did you mean '--robot'?"},
-           {"bench model_hose", "did you mean 'model_house'? There are: ci"},
+           {"bench model_hose", "did you mean 'model_house'? There are: "},
            {"export x --format cvs", "'cvs' is not one of csv, json, latex; did you mean 'csv'?"},
            {"evaluate a b --align se2", "did you mean 'se3'?"},
            {"drive model_hose auto",

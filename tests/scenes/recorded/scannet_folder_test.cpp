@@ -87,6 +87,18 @@ TEST_F(ScannetFolder, WithoutALabelTableLabelsAreLeftOutWithANote) {
   EXPECT_TRUE(names(notes[0], {"labels are left out"}));
 }
 
+TEST_F(ScannetFolder, ATableThatKnowsNoneOfTheIdsIsTold) {
+  write_scannet_recording(folder_ / "s", camera_, 1, [&](std::size_t i) { return frame(i); });
+  write("other.yaml", "900: chair\n");
+  const auto notes = [&](const RecordingConfig& config) {
+    return kScannetReader.open(folder_ / "s", config).notes;
+  };
+  EXPECT_TRUE(notes({}).empty());
+  const auto told = notes({.classes = folder_ / "other.yaml"});
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_TRUE(names(told[0], {"s_2d-label-filt.zip", "frame 0", "other.yaml"}));
+}
+
 TEST_F(ScannetFolder, SaysWhichFileIsWrongAndWhichLabelsAreMissing) {
   write_scannet_recording(folder_ / "s", camera_, 2, [&](std::size_t i) { return frame(i); });
   const fs::path table = folder_ / "s" / "scannetv2-labels.combined.tsv";
