@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/audit/ask_again.hpp"
 #include "bench/audit/retrieval.hpp"
 #include "bench/audit/trials.hpp"
 #include "bench/protocol/query.hpp"
@@ -57,7 +58,7 @@ class RunAuditor {
         frozen_(frozen),
         camera_(frozen.camera),
         truth_(true_map(frozen.map, world, camera_)),
-        mapped_scores_(frozen.tracker.released_scores) {}
+        again_(run.spec, world, frozen) {}
 
   RunAudit audit(const std::function<void(double)>& progress) {
     RunAudit made;
@@ -66,12 +67,10 @@ class RunAuditor {
     const double pieces = static_cast<double>(asked_.size() * spec_.points.size());
     double done = 0;
     for (std::size_t p = 0; p < spec_.points.size(); ++p) {
-      set_query_settings(frozen_, spec_.points[p]);
-      // Under NeighborScores::kAsReleased answers depend on those before: the run's order is kept.
-      ReleasedScores released = mapped_scores_;
+      again_.begin(spec_.points[p]);
       for (Asked& asked : asked_) {
         asked.frame.words.reset();
-        queries(made.points[p], asked.set).push_back(audit_query(asked, p, released));
+        queries(made.points[p], asked.set).push_back(audit_query(asked, p));
         progress(++done / pieces);
       }
     }
@@ -87,10 +86,8 @@ class RunAuditor {
 
   Asked prepare_query(QuerySet set, std::size_t place) {
     const QueryScore& score = queries(run_.points.front(), set)[place];
-    const Sequence& sequence = *sequence_of(world_, set);
-    const Presentation first = presentation(query_stream(spec_, set), score.answer.index,
-                                            /*attempt=*/0, spec_.protocol.attempts);
-    PreparedFrame frame = prepared(sequence, score.answer.index, first.noise);
+    const Presentation first = again_.first(set, score.answer.index);
+    PreparedFrame frame = again_.prepared(again_.frame(set, score.answer.index, first.noise));
     const SE3& pose = *score.true_world_from_camera;
     TrueView view =
         look(*scene_at(*world_.simulated, set, score.stamp_ns), camera_, pose, frame.features);
@@ -123,13 +120,13 @@ class RunAuditor {
                              [&](KeyframeId k) { return asked.co_visible[k.value]; });
   }
 
-  QueryAudit audit_query(Asked& asked, std::size_t p, ReleasedScores& released) {
+  QueryAudit audit_query(Asked& asked, std::size_t p) {
     const QueryScore& score = queries(run_.points[p], asked.set)[asked.place];
     QueryAudit audit{
         .frame = score.answer.index, .correct = score.correct, .attempts = score.answer.attempts};
-    const Retrieved retrieved = retrieve(asked, released, audit);
-    answer_first(asked, score, released, audit);
-    repeat_attempts(asked, score, released);
+    const Retrieved retrieved = retrieve(asked, audit);
+    answer_first(asked, score, audit);
+    again_.leave(asked.set, score.answer);
     audit.keyframes = static_cast<int>(truth_.live.size());
     if (!asked.best_in_view.empty())
       audit.best_co_visible = asked.co_visible[asked.best_in_view.front().value];
@@ -148,13 +145,9 @@ class RunAuditor {
     return audit;
   }
 
-  Retrieved retrieve(Asked& asked, ReleasedScores released, QueryAudit& audit) {
-    const StepObservers unobserved;
-    const Query query = with_words(asked.frame, frozen_, unobserved);
-    const auto selection = choose_candidates(frozen_.map, query, frozen_.config, &released);
-    Retrieved retrieved;
-    for (const auto& candidate : selection.candidates)
-      retrieved.candidates.push_back(candidate.keyframe);
+  Retrieved retrieve(Asked& asked, QueryAudit& audit) {
+    Retrieved retrieved{.candidates = again_.candidates(asked.frame), .by_similarity = {}};
+    const Query query = with_words(asked.frame, frozen_, StepObservers());
     std::vector<InvertedIndex::Score> scores = frozen_.map.sharing(query.words.vector);
     std::ranges::stable_sort(scores, std::greater(), &InvertedIndex::Score::similarity);
     for (const auto& s : scores) retrieved.by_similarity.push_back(s.keyframe);
@@ -163,10 +156,11 @@ class RunAuditor {
   }
 
   /// Asks the system as the run did, with its decisions traced.
-  void answer_first(Asked& asked, const QueryScore& score, ReleasedScores& released,
-                    QueryAudit& audit) {
+  void answer_first(Asked& asked, const QueryScore& score, QueryAudit& audit) {
     DecisionTrace decisions;
-    const auto [pose, stage] = ask(asked.frame, asked.first.draws, released, &decisions);
+    StepObservers observers;
+    observers.decisions = &decisions;
+    const auto [pose, stage] = again_.ask(asked.frame, asked.first.draws, observers);
     audit.stage = stage;
     audit.first_answered = pose.has_value();
     audit.first_correct = pose && is_correct(asked, *pose);
@@ -195,31 +189,6 @@ class RunAuditor {
     for (const KeyframeId k : truth_.live)
       match_landmarks(frozen_.map.at(k), query, context, Matcher::kRelocalizationWords);
     return audit_of(asked, decisions)[static_cast<std::size_t>(MatchStage::kWords)];
-  }
-
-  std::pair<std::optional<SE3>, RelocalizationStage> ask(PreparedFrame& frame, RandomStream draws,
-                                                         ReleasedScores& released,
-                                                         DecisionTrace* decisions) const {
-    Tracker lost;
-    lost.released_scores = released;
-    StepReport report;
-    StepObservers observers;
-    observers.decisions = decisions;
-    const auto located = locate(frozen_, lost, frame, draws, observers, report);
-    released = std::move(lost.released_scores);
-    if (!located) return {std::nullopt, report.relocalization};
-    return {located->tracked.camera_from_world.inverse(), report.relocalization};
-  }
-
-  /// The run's further attempts, where they leave something to the queries after them.
-  void repeat_attempts(const Asked& asked, const QueryScore& score, ReleasedScores& released) {
-    if (frozen_.config.relocalize.neighbor_scores != NeighborScores::kAsReleased) return;
-    for (int attempt = 1; attempt < score.answer.attempts; ++attempt) {
-      const auto [noise, draws] = presentation(query_stream(spec_, asked.set), score.answer.index,
-                                               attempt, spec_.protocol.attempts);
-      PreparedFrame frame = prepared(*sequence_of(world_, asked.set), score.answer.index, noise);
-      ask(frame, draws, released, nullptr);
-    }
   }
 
   std::pair<MatchEnd, MatchEnd> ends_of(const Asked& asked, const MatchDecision& d) const {
@@ -295,19 +264,13 @@ class RunAuditor {
             angle_between_rad(own, other) * 180.0 / std::numbers::pi};
   }
 
-  PreparedFrame prepared(const Sequence& sequence, std::size_t index, RandomStream noise) const {
-    const RgbdFrame frame = usable_frame(sequence, index, noise);
-    return prepare(frame.stamp_ns, extract(frame, frozen_.camera, frozen_.config.features), frozen_,
-                   Tracker{});
-  }
-
   const RunResult& run_;
   const RunSpec& spec_;
   const World& world_;
   SlamState& frozen_;
   TrueCamera camera_;
   TrueMap truth_;
-  ReleasedScores mapped_scores_;
+  AskAgain again_;
   std::vector<Asked> asked_;
 };
 

@@ -42,8 +42,10 @@ void add_replays(std::vector<PagesSource>& sources, const ReportArguments& optio
       names.push_back(run.spec.name);
       const bool by_name = std::ranges::count(options.replay, run.spec.name) > 0;
       const bool can = run.spec.system.takes_settings() && !run.spec.environment.is_recorded();
-      if (is_asked(run) && (can || by_name))
-        source.replay_of[run.spec.name] = replay_json(run.spec, run.estimate, tools);
+      if (!is_asked(run) || (!can && !by_name)) continue;
+      Replay replay = make_replay(run.spec, run.estimate, tools);
+      source.replay_of[run.spec.name] = std::move(replay.scene);
+      source.views_of[run.spec.name] = std::move(replay.views);
     }
   for (const std::string& word : options.replay)
     if (std::ranges::count(names, word) == 0)

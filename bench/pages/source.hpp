@@ -29,7 +29,7 @@ struct PagesSource {
   nlohmann::ordered_json audit = {};         ///< the folder's audit.json, or null
   std::string audit_csv = {};                ///< the folder's audit.csv: a line per query
   /// What was recorded of runs by running them again (bench/replay), by name.
-  std::map<std::string, nlohmann::ordered_json> replay_of = {};
+  std::map<std::string, nlohmann::ordered_json> replay_of = {}, views_of = {};
 };
 
 /// Reads a results folder or file. A damaged file, one of another version and one without a suite

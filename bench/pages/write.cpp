@@ -109,8 +109,12 @@ void write_source(Pieces& pieces, const std::string& place, const PagesSource& s
   pieces.put(place + "/audit", audit_tables_json(source));
   pieces.put(place + "/reproduction", source.reproduction);
   std::size_t next = 0;
-  for (const auto& [name, replay] : source.replay_of)
-    pieces.put(fmt::format("{}/replay{}", place, next++), replay);
+  for (const auto& [name, replay] : source.replay_of) {
+    pieces.put(fmt::format("{}/replay{}", place, next), replay);
+    if (const auto views = source.views_of.find(name); views != source.views_of.end())
+      pieces.put(fmt::format("{}/views{}", place, next), views->second);
+    ++next;
+  }
   const std::vector<RunResult>& runs = source.results.runs;
   for (std::size_t first = 0; first < runs.size(); first += kRunsOfFile) {
     Json list = Json::array();
@@ -164,6 +168,8 @@ WrittenPages write_pages(const fs::path& out, std::span<const PagesSource> sourc
     write_source(pieces, std::to_string(s), source, moments_for(runs, budget));
     Json replays = Json::array();
     for (const auto& [name, replay] : source.replay_of) replays.push_back(name);
+    Json views = Json::array();
+    for (const auto& [name, view] : source.views_of) views.push_back(name);
     folders.push_back({{"name", source.name},
                        {"problem", source.problem.empty() ? Json() : Json(source.problem)},
                        {"suite", source.suite ? Json(source.suite->name) : Json()},
@@ -172,7 +178,8 @@ WrittenPages write_pages(const fs::path& out, std::span<const PagesSource> sourc
                        {"missing", source.results.missing.size()},
                        {"audit", source.audit.is_object()},
                        {"runs_of_file", kRunsOfFile},
-                       {"replays", std::move(replays)}});
+                       {"replays", std::move(replays)},
+                       {"views", std::move(views)}});
   }
   pieces.put("index", {{"format", "modelhouse-report-1"}, {"folders", folders}});
   WrittenPages written{out / "index.html", pieces.files(), pieces.bytes()};

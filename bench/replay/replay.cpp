@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <meshoptimizer.h>
 
 #include "bench/audit/audit.hpp"
+#include "bench/replay/packed.hpp"
+#include "bench/replay/views.hpp"
 #include "scenes/mesh_io/seen_colors.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/labels.hpp"
@@ -17,27 +20,6 @@ namespace mh {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Bytes as text of four characters for three (RFC 4648).
-std::string base64(const std::vector<std::uint8_t>& bytes) {
-  static constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < left ? bytes[i + k] : 0U);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += k <= left ? kDigits[group >> (18 - 6 * k) & 63U] : '=';
-  }
-  return text;
-}
-
-/// Appends a number, the lowest byte first.
-void put(std::vector<std::uint8_t>& bytes, std::uint32_t value, int count) {
-  for (int i = 0; i < count; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
-}
 
 /// What a mesh of so many parts takes in base64: 9 bytes a vertex, 12 a triangle.
 std::size_t bytes_of(std::size_t vertices, std::size_t triangles) {
@@ -153,7 +135,7 @@ Json mesh_json(const Scene& whole) {
           {"indices", base64(indices)}};
 }
 
-Json replay_json(const RunSpec& spec, const Trajectory& estimate, const ReplayTools& tools) {
+Replay make_replay(const RunSpec& spec, const Trajectory& estimate, const ReplayTools& tools) {
   require_auditable(spec);
   const World world = build_world(spec, tools.threads, tools.cache, tools.say);
   SlamState frozen;
@@ -164,11 +146,12 @@ Json replay_json(const RunSpec& spec, const Trajectory& estimate, const ReplayTo
     return a.stamp_ns == b.stamp_ns &&
            a.world_from_camera.translation() == b.world_from_camera.translation();
   };
-  return {{"run", spec.name},
-          {"same", std::ranges::equal(run.estimate, estimate, is_same)},
-          {"mesh", mesh_json(*world.simulated->scene)},
-          {"landmarks", landmarks_json(frozen.map, to_dock)},
-          {"keyframes", keyframes_json(frozen.map, to_dock)}};
+  Json scene = {{"run", spec.name},
+                {"same", std::ranges::equal(run.estimate, estimate, is_same)},
+                {"mesh", mesh_json(*world.simulated->scene)},
+                {"landmarks", landmarks_json(frozen.map, to_dock)},
+                {"keyframes", keyframes_json(frozen.map, to_dock)}};
+  return {.scene = std::move(scene), .views = views_json(run, world, frozen)};
 }
 
 }  // namespace mh

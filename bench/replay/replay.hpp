@@ -28,12 +28,16 @@ struct ReplayTools {
   std::function<void(std::string_view)> say = [](std::string_view) {};
 };
 
-/// Executes a run again and records what its result does not hold: the scene's mesh, the landmarks
-/// of the finished map with their classes, its keyframes. Runs repeat bit for bit; `same` states
-/// whether this one gave the positions that the result holds (a results file rounds orientations).
+/// What a run's result does not hold.
+struct Replay {
+  nlohmann::ordered_json scene;  ///< mesh, landmarks with their classes, keyframes
+  nlohmann::ordered_json views;  ///< views_json()
+};
+
+/// Executes a run again and records it. Runs repeat bit for bit; `same` in the scene states whether
+/// this one gave the positions that the result holds (a results file rounds orientations).
 /// @param estimate  of the result
 /// @throws InputError naming the run if it is of a recording or of an outside system.
-nlohmann::ordered_json replay_json(const RunSpec& spec, const Trajectory& estimate,
-                                   const ReplayTools& tools);
+Replay make_replay(const RunSpec& spec, const Trajectory& estimate, const ReplayTools& tools);
 
 }  // namespace mh

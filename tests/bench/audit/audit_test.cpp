@@ -9,77 +9,12 @@
 #include "bench/audit/summary.hpp"
 #include "bench/audit/write.hpp"
 #include "bench/provenance/json_fields.hpp"
-#include "sim/world/sequence.hpp"
-#include "slam/config/slam.hpp"
 #include "slam/core/error.hpp"
 #include "slam/pipeline/map_file.hpp"
-#include "tests/bench/audit/box_room_renderer.hpp"
-#include "tests/slam/pipeline/box_room_slam.hpp"
+#include "tests/bench/audit/box_room_run.hpp"
 
-namespace mh {
+namespace mh::testing_support {
 namespace {
-
-using testing_support::BoxRoom;
-using testing_support::BoxRoomRenderer;
-using testing_support::kFrame_ns;
-
-constexpr int kTurn = 240;  // frames of a whole turn; the tours see a part of it
-
-Trajectory tour(int first, int last, const Eigen::Vector3d& moved_m = Eigen::Vector3d::Zero()) {
-  Trajectory path;
-  for (int i = first; i < last; ++i) {
-    const SE3 pose = BoxRoom::round_trip(i, kTurn);
-    path.push_back({i * kFrame_ns, SE3(pose.rotation(), pose.translation() + moved_m)});
-  }
-  return path;
-}
-
-/// The room is mapped over a third of a turn. The second tour is another path through it, or
-/// through `elsewhere`.
-World world(Trajectory second = tour(10, 70, {0.15, -0.1, 0.05}),
-            std::shared_ptr<const Renderer> elsewhere = nullptr) {
-  World made;
-  SimulatedPlace& place = made.simulated.emplace();
-  place.scene = std::make_shared<Scene>();
-  place.renderer = std::make_shared<BoxRoomRenderer>();
-  place.second_renderer = std::move(elsewhere);
-  place.robot.camera = BoxRoom::camera();
-  place.mapping.camera = tour(0, 80);
-  place.second.emplace().camera = std::move(second);
-  place.sensors = exact_sensors();
-  made.vocabulary = testing_support::vocabulary();
-  simulate(made, LabelMode::kExact);
-  return made;
-}
-
-RunSpec spec(std::vector<SemanticConfig> points = {SemanticConfig{}}) {
-  RunSpec made;
-  made.name = "semantic-exact-room-0";
-  made.environment.name = made.environment.category = "room";
-  made.labels = LabelMode::kExact;
-  made.seed = 3;
-  made.slam = testing_support::box_room_settings(points.front());
-  made.points = std::move(points);
-  made.protocol.test_interval = 10;
-  return made;
-}
-
-RunTools quick() {
-  return {.occupancy = false};
-}
-
-struct Audited {
-  SlamState frozen;
-  RunResult run;
-  RunAudit audit;
-};
-
-Audited audited(const RunSpec& of, const World& in) {
-  Audited made;
-  made.run = run_with_map(of, in, quick(), made.frozen);
-  made.audit = audit_run(made.run, in, made.frozen);
-  return made;
-}
 
 /// Digests of everything that a run showed and answered.
 std::vector<std::uint64_t> bits_of(const RunResult& run) {
@@ -283,4 +218,4 @@ TEST(AuditFiles, HaveOneRowPerQueryAndEveryFigure) {
 }
 
 }  // namespace
-}  // namespace mh
+}  // namespace mh::testing_support

@@ -194,6 +194,7 @@ async function use(browser, report) {
     await checkCharts(page, `${report} query`);
   }
   await replay(page, go, report);
+  await views(page, go, report);
   await go("figures");
   if ((await page.locator("figure.chart").count()) > 0)
     for (const kind of ["SVG", "PNG"]) {
@@ -206,6 +207,39 @@ async function use(browser, report) {
       expect(good && bytes.length > 1500, `${report}: saved ${kind} is ${bytes.length} bytes`);
     }
   await context.close();
+}
+
+/** The number of marks that a picture states, by kind. */
+const marksOf = (page) => page.locator("canvas.picture").first().evaluate((canvas) => JSON.parse(canvas.dataset.marks));
+/** Whether anything is drawn there beside the gap between two pictures. */
+const isDrawn = (page) =>
+  page.locator("canvas.picture").first().evaluate((canvas) => {
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    const colors = new Set();
+    for (let i = 0; i < data.length; i += 4) colors.add(data[i] * 65536 + data[i + 1] * 256 + data[i + 2]);
+    return colors.size > 3;
+  });
+
+/** Where a run was recorded: its last keyframe, and its queries beside their candidates. */
+async function views(page, go, report) {
+  const run = await firstRun(page, go);
+  await go(`${run}?t=1000`);
+  if (!(await page.evaluate(() => globalThis.modelhouse.index.folders[0].views.length > 0))) return;
+  await page.waitForSelector(".replay .views", { timeout: 20000 });
+  const last = page.locator(".replay .views");
+  expect((await last.getAttribute("data-keyframe")) === "0", `${report}: another keyframe than the last one is shown`);
+  expect((await marksOf(page)).keypoints === 2, `${report}: a keyframe shows ${JSON.stringify(await marksOf(page))}`);
+  await page.getByLabel("Moment of the tour, ms").fill("2000");
+  expect((await last.getAttribute("data-keyframe")) === "1", `${report}: the keyframe does not follow the moment`);
+  await page.locator("td a").first().click();
+  await page.waitForSelector(".query canvas.picture");
+  const first = await marksOf(page);
+  expect(first.pairs === 2 && first.right === 1 && first.wrong === 1, `${report}: a query shows ${JSON.stringify(first)}`);
+  await page.waitForTimeout(200);
+  expect(await isDrawn(page), `${report}: a query's picture stays empty`);
+  await page.getByLabel("Candidate").selectOption("1");
+  expect((await marksOf(page)).pairs === 0, `${report}: the second candidate shows the first one's matches`);
+  measured.views = (measured.views ?? 0) + 1;
 }
 
 /** Play, step, scrub, and a link to a moment. */

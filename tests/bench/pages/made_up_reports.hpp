@@ -10,6 +10,8 @@
 
 #include "bench/metrics/trajectory_score.hpp"
 #include "bench/pages/source.hpp"
+#include "bench/replay/packed.hpp"
+#include "scenes/image_file.hpp"
 #include "tests/bench/results/made_up_results.hpp"
 
 namespace mh {
@@ -105,6 +107,61 @@ inline std::vector<RunResult> made_up_runs(const Suite& suite, std::size_t frame
     runs.push_back(std::move(run));
   }
   return runs;
+}
+
+/// A replay of the first run: two keyframes, and pictures of them and of its queries.
+inline void put_replay(PagesSource& source) {
+  using Json = nlohmann::ordered_json;
+  const RunResult& run = source.results.runs.front();
+  const std::string jpeg = base64(encode_jpeg(Grid2d<Rgb8>(64, 48, Rgb8{90, 120, 150}), 80));
+  const auto packed = [](std::initializer_list<std::pair<std::uint32_t, int>> numbers) {
+    std::vector<std::uint8_t> bytes;
+    for (const auto& [value, size] : numbers) put(bytes, value, size);
+    return base64(bytes);
+  };
+  const std::string keypoints =
+      packed({{100, 2}, {80, 2}, {5, 1}, {1, 1}, {300, 2}, {200, 2}, {7, 1}, {0, 1}});
+  const std::string pairs = packed({{100, 2},
+                                    {80, 2},
+                                    {150, 2},
+                                    {90, 2},
+                                    {1, 1},
+                                    {300, 2},
+                                    {200, 2},
+                                    {200, 2},
+                                    {210, 2},
+                                    {2 | 4, 1}});
+  Json keyframes = Json::array(), views = Json::array(), queries = Json::array();
+  for (const std::size_t i : {0U, 40U}) {
+    const Eigen::Vector3d at = run.truth[i].world_from_camera.translation() * 1e3;
+    keyframes.push_back(
+        {std::lround(at.x()), std::lround(at.y()), std::lround(at.z()), 0, 0, 0, 10000});
+    views.push_back({{"frame", i},
+                     {"ms", run.truth[i].stamp_ns / 1'000'000},
+                     {"jpeg", jpeg},
+                     {"keypoints", keypoints}});
+  }
+  for (const QueryScore& q : run.points.front().held_out)
+    queries.push_back(
+        {{"set", "held_out"},
+         {"frame", q.answer.index},
+         {"stage", "pnp"},
+         {"jpeg", jpeg},
+         {"keypoints", keypoints},
+         {"candidates", {{{"keyframe", 1}, {"pairs", pairs}}, {{"keyframe", 0}, {"pairs", ""}}}}});
+  source.replay_of[run.spec.name] = {
+      {"run", run.spec.name},
+      {"same", true},
+      {"mesh", nullptr},
+      {"landmarks",
+       {{"mm", {500, 500, 900}},
+        {"class", {5}},
+        {"classes", {{"5", {{"name", "chair"}, {"color", "#bcbd22"}}}}}}},
+      {"keyframes", std::move(keyframes)}};
+  source.views_of[run.spec.name] = {{"width_px", 64},
+                                    {"height_px", 48},
+                                    {"keyframes", std::move(views)},
+                                    {"queries", std::move(queries)}};
 }
 
 /// What each run of a source cost.

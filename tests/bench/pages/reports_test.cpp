@@ -303,6 +303,7 @@ class InTheBrowser : public Reports {
     PagesSource rooms = source_of_suite(suite);
     rooms.audit = {
         {"rows", {{{"system", "semantic"}, {"wrong_candidates", 0.1}, {"few_matches", 0.05}}}}};
+    put_replay(rooms);
     write("rooms", rooms);
     PagesSource later = rooms;
     later.name = "after";

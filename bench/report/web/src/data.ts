@@ -29,6 +29,7 @@ export interface Folder {
   audit: boolean;
   runs_of_file: number;
   replays: string[]; // names of runs
+  views: string[]; // those of them whose pictures were recorded
 }
 export interface Sentence {
   text: string;

@@ -10,6 +10,8 @@ import { Chart } from "../view/Chart";
 import { DataTable } from "../view/DataTable";
 import { Facts, Missing, PerFolder, Piece } from "../view/parts";
 import { Replay } from "../view/Replay";
+import { QueryViews } from "../view/Views";
+import type { WrittenViews } from "../views";
 import { RunFromAbove } from "./figures";
 
 const kUsual = [
@@ -90,7 +92,7 @@ function Tracking({ run }: { run: RunPaths }): JSX.Element {
 }
 
 /** Everything that is known of one query. */
-function Query({ queries, row, place }: { queries: Table; row: number; place: number }): JSX.Element {
+function Query({ queries, row, place, views }: { queries: Table; row: number; place: number; views: string | null }): JSX.Element {
   const run = queries.text("run", row);
   const own = queries.where({ run });
   const i = own.indexOf(row);
@@ -105,6 +107,13 @@ function Query({ queries, row, place }: { queries: Table; row: number; place: nu
         {go(near(-1), "← the one before")} {go(near(1), "the next →")}
       </p>
       <Facts facts={queries.columns.filter((c) => !c.hidden && c.key !== "run" && queries.shown(c, row) !== "").map((c): [string, string] => [heading(c), queries.shown(c, row)])} />
+      {views && (queries.number("point", row) ?? 0) === 0 ? (
+        <Piece<WrittenViews> piece={views}>{(seen) => <QueryViews key={row} views={seen} set={queries.text("query_set", row)} frame={queries.number("frame", row) ?? -1} />}</Piece>
+      ) : (
+        <p class="note">
+          {views ? "Pictures are recorded of the first parameter point alone." : `Its picture beside those of its candidates is not in this report: modelhouse report --replay ${run} adds it.`}
+        </p>
+      )}
     </section>
   );
 }
@@ -119,6 +128,8 @@ function RunBody({ folder, place, row, runs, chosen }: { folder: Folder; place: 
       </>
     );
   const file = Math.floor(row / folder.runs_of_file);
+  const replay = folder.replays.indexOf(name);
+  const views = folder.views.includes(name) ? `${place}/views${replay}` : null;
   return (
     <Piece<RunPaths[]> piece={`${place}/paths${file}`}>
       {(paths) => {
@@ -142,10 +153,10 @@ function RunBody({ folder, place, row, runs, chosen }: { folder: Folder; place: 
                       ["tour", `${run.frames} frames${run.length_m === null ? "" : `, ${run.length_m.toFixed(1)} m`}${run.cut ? ", shortened" : ""}`],
                     ]}
                   />
-                  {at !== null && <Query queries={queries} row={at} place={place} />}
+                  {at !== null && <Query queries={queries} row={at} place={place} views={views} />}
                   <RunFromAbove key={`${name} ${at}`} run={run} queries={queries} chosen={at} />
                   <h2>Replay</h2>
-                  <Replay run={run} queries={queries} rows={own.filter((r) => (queries.number("point", r) ?? 0) === 0)} piece={folder.replays.includes(name) ? `${place}/replay${folder.replays.indexOf(name)}` : null} />
+                  <Replay run={run} queries={queries} rows={own.filter((r) => (queries.number("point", r) ?? 0) === 0)} piece={replay >= 0 ? `${place}/replay${replay}` : null} views={views} />
                   <Tracking run={run} />
                   <h2>Queries</h2>
                   {own.length === 0 ? (

@@ -6,13 +6,16 @@ import { type RunPaths, type Table, load } from "../data";
 import type { ReplayData, ReplayView } from "../replay_types";
 import { currentRoute, note } from "../route";
 import { colorOf, ink, useTheme } from "../theme";
-import { Choice, Missing } from "./parts";
+import type { WrittenViews } from "../views";
+import { LastKeyframe } from "./Views";
+import { Choice, Missing, Piece } from "./parts";
 
 interface Props {
   run: RunPaths;
   queries: Table;
   rows: number[];
   piece: string | null; // of what was recorded by running it again; null: it was not
+  views: string | null; // the piece of what it saw then
 }
 
 let script: Promise<void> | null = null;
@@ -43,7 +46,7 @@ function placesOf(queries: Table, rows: number[]): { truths: Place3[]; right: Pl
   return made;
 }
 
-function Player({ run, queries, rows, piece, onFail }: Props & { onFail: (why: string) => void }): JSX.Element {
+function Player({ run, queries, rows, piece, views, onFail }: Props & { onFail: (why: string) => void }): JSX.Element {
   const theme = useTheme();
   const canvas = useRef<HTMLCanvasElement>(null);
   const view = useRef<ReplayView | null>(null);
@@ -171,7 +174,8 @@ function Player({ run, queries, rows, piece, onFail }: Props & { onFail: (why: s
           ))}
         </ul>
       )}
-      {!data && !piece && <p class="note">Scene, keyframes and landmarks are not in this report: modelhouse report --replay {run.name} adds them.</p>}
+      {data && views && <Piece<WrittenViews> piece={views}>{(seen) => <LastKeyframe views={seen} ms={ms} classes={data.landmarks.classes} />}</Piece>}
+      {!data && !piece && <p class="note">Scene, keyframes, landmarks and pictures are not in this report: modelhouse report --replay {run.name} adds them.</p>}
     </section>
   );
 }

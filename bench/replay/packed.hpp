@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mh {
+
+/// Appends a number, the lowest byte first.
+void put(std::vector<std::uint8_t>& bytes, std::uint32_t value, int count);
+
+/// Bytes as text of four characters for three (RFC 4648).
+std::string base64(const std::vector<std::uint8_t>& bytes);
+std::string base64(std::string_view bytes);
+
+}  // namespace mh
