@@ -65,37 +65,47 @@ void run(const ReportArguments& options) {
              static_cast<double>(written.bytes) / 1e6, written.index.string());
 }
 
-struct PlotOptions {
+struct PlotArguments {
   std::string results, out;
   PlotOrder order;
 };
 
-void draw(const PlotOptions& options) {
+void draw(const PlotArguments& options) {
   require_writable(options.out, {options.results});
   write_plot(options.out, read_source(options.results), options.order);
 }
 
 void add_plot(CLI::App& app) {
-  auto options = std::make_shared<PlotOptions>();
+  auto options = std::make_shared<PlotArguments>();
   CLI::App* command = app.add_subcommand(
-      "plot", "A figure for a paper: PDF, vectors, fonts embedded, as wide as a column.");
+      "plot",
+      "A figure or table for a paper: PDF (vectors, fonts embedded) or PNG, as wide as a column.");
   command->add_option("results", options->results, "Folder of `bench`")->required();
+  CLI::Option* figure =
+      command
+          ->add_option("--figure", options->order.figure,
+                       "Of the paper: 2, a run from above; 3, boxes by density of objects; 4, "
+                       "error against frames; 5, a run on the grid of its map")
+          ->check(CLI::IsMember({2, 3, 4, 5}));
   command
-      ->add_option("--figure", options->order.figure,
-                   "Of the paper: 2 or 5, a run from above; 3, boxes by density of objects; 4, "
-                   "error against frames")
-      ->required()
-      ->check(CLI::IsMember({2, 3, 4, 5}));
+      ->add_option("--table", options->order.table,
+                   "Of the paper: 1, by category; 2, relocalization")
+      ->check(CLI::IsMember({1, 2}))
+      ->excludes(figure);
   command->add_option("--run", options->order.run, "Of figures 2 and 5 (default: the first)");
   command->add_option("--measure", options->order.measure,
                       "Of figure 3: ate_rmse_m, held_out.success, ...");
-  command->add_option("--width", options->order.width_cm, "Of the figure, cm")
+  command->add_option("--width", options->order.width_cm, "Of a figure, cm")
       ->check(number_between(2.0, 100.0));
-  command->add_option("--out", options->out, "PDF file")->required();
+  command->add_option("--out", options->out, "File: .pdf or .png")->required();
   command->footer(
       "Example:\n  modelhouse plot out/table1_quick --figure 3 --out figure3.pdf\n"
       "Needs gnuplot (Debian: gnuplot-nox).");
-  command->callback([options] { draw(*options); });
+  command->callback([options, command, figure] {
+    if (figure->empty() && command->get_option("--table")->empty())
+      throw InputError("plot: either --figure or --table says what to draw");
+    draw(*options);
+  });
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ void plot(const SensorsArguments& options) {
   }
   progress.share(1);
   progress.end();
-  write_image(file, draw_plots("Sensor models: published (lines) and measured (dots)", plots));
+  write_plots(file, {"Sensor models: published (lines) and measured (dots)", plots});
   fmt::print("{}\n", file.string());
 }
 

@@ -2,18 +2,15 @@
 #include "bench/pages/plot.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 
 #include <fmt/format.h>
 
+#include "bench/drawing/gnuplot.hpp"
 #include "bench/pages/curves.hpp"
-#include "bench/plan/outside_program.hpp"
+#include "bench/pages/tables.hpp"
 #include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/legible.hpp"
 #include "slam/core/suggest.hpp"
-#include "slam/core/temporary_folder.hpp"
 
 namespace mh {
 namespace {
@@ -25,13 +22,6 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kInks[] = {"#0065a3", "#d98a00", "#00805d", "#b4568c", "#3a9bd9", "#a33f00"};
 const char* ink_of(std::size_t i) {
   return kInks[i % std::size(kInks)];
-}
-
-/// A text as gnuplot's single quotes hold it: nothing in it is interpreted.
-std::string gnuplot_text(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : legible(text)) quoted += c == '\'' ? std::string("''") : std::string(1, c);
-  return quoted + "'";
 }
 
 /// A table that was written for pages.
@@ -59,17 +49,14 @@ class PlotTable {
   const Json& json_;
 };
 
-std::string beginning(const PlotOrder& order, const fs::path& pdf, double height_cm) {
-  return fmt::format(
-      "set terminal pdfcairo size {}cm,{}cm font 'DejaVu Sans,8' fontscale 0.8 linewidth 1\n"
-      "set output {}\nset key outside top center horizontal noenhanced samplen 2\nset border "
-      "3\nset tics nomirror "
-      "out scale 0.5\nset grid linecolor '#dddddd' linewidth 0.5\n",
-      order.width_cm, height_cm, gnuplot_text(pdf.string()));
+std::string beginning(const PlotOrder& order, const fs::path& file, double height_cm) {
+  return gnuplot_terminal(file, order.width_cm, height_cm) +
+         "set key outside top center horizontal noenhanced samplen 2\nset border 3\nset tics "
+         "nomirror out scale 0.5\nset grid linecolor '#dddddd' linewidth 0.5\n";
 }
 
 /// Figure 3: boxes by group and system, means as open diamonds.
-std::string by_density(const PagesSource& source, const PlotOrder& order, const fs::path& pdf) {
+std::string by_density(const PagesSource& source, const PlotOrder& order, const fs::path& file) {
   const std::vector<Row> rows =
       make_rows(*source.suite, source.results.runs, source.results.failed);
   const Json json = density_json(*source.suite, rows);
@@ -94,7 +81,7 @@ std::string by_density(const PagesSource& source, const PlotOrder& order, const 
       data[{static_cast<std::size_t>(known - systems.begin()), table.text("group", row)}] +=
           fmt::format("{}\n", scale * *value);
   }
-  std::string script = beginning(order, pdf, 0.75 * order.width_cm), plots, ticks;
+  std::string script = beginning(order, file, 0.75 * order.width_cm), plots, ticks;
   std::size_t block = 0;
   for (std::size_t g = 0; g < json.at("groups").size(); ++g) {
     const std::string group = json.at("groups").at(g);
@@ -129,7 +116,7 @@ std::string by_density(const PagesSource& source, const PlotOrder& order, const 
 }
 
 /// Figure 4: error against frames, and below it the environments still counted.
-std::string by_frame(const PagesSource& source, const PlotOrder& order, const fs::path& pdf) {
+std::string by_frame(const PagesSource& source, const PlotOrder& order, const fs::path& file) {
   const Json json = error_by_frame_json(source);
   if (json.is_null())
     throw InputError(
@@ -150,7 +137,7 @@ std::string by_frame(const PagesSource& source, const PlotOrder& order, const fs
                                  table.number("high", row).value_or(error),
                                  table.number("scenes", row).value_or(0));
   }
-  std::string script = beginning(order, pdf, order.width_cm), errors, counts;
+  std::string script = beginning(order, file, order.width_cm), errors, counts;
   for (std::size_t a = 0; a < arms.size(); ++a) {
     script += fmt::format("$a{} << EOD\n{}EOD\n", a, arms[a].second);
     errors += fmt::format(
@@ -171,8 +158,25 @@ std::string by_frame(const PagesSource& source, const PlotOrder& order, const fs
                       errors, counts);
 }
 
-/// Figures 2 and 5: true and estimated path, x and o of the queries.
-std::string from_above(const PagesSource& source, const PlotOrder& order, const fs::path& pdf) {
+/// Rectangles of cells in a state, by rows: middle and extent in each direction.
+std::string cells_in(const OccupancyGrid& grid, std::int8_t state) {
+  std::string text;
+  const double half_m = 0.5 * grid.resolution_m;
+  for (int y = 0; y < grid.cells.height(); ++y)
+    for (int x = 0; x < grid.cells.width(); ++x) {
+      if (grid.cells(x, y) != state) continue;
+      const int first = x;
+      while (x + 1 < grid.cells.width() && grid.cells(x + 1, y) == state) ++x;
+      const Eigen::Vector2d from = grid.center_m(first, y), to = grid.center_m(x, y);
+      text += fmt::format("{} {} {} {} {} {}\n", 0.5 * (from.x() + to.x()), from.y(),
+                          from.x() - half_m, to.x() + half_m, from.y() - half_m, to.y() + half_m);
+    }
+  return text;
+}
+
+/// Figure 2: true and estimated path, x and o of the queries. Figure 5: the same on the grid of the
+/// run's map.
+std::string from_above(const PagesSource& source, const PlotOrder& order, const fs::path& file) {
   const std::vector<RunResult>& runs = source.results.runs;
   const auto run =
       order.run.empty()
@@ -201,12 +205,23 @@ std::string from_above(const PagesSource& source, const PlotOrder& order, const 
         (q.correct ? right : wrong) += place(to_dock * q.answer.world_from_camera->translation());
     }
   }
-  std::string script = beginning(order, pdf, 0.9 * order.width_cm), plots;
-  const auto add = [&](const char* name, const std::string& data, const std::string& style) {
+  std::string script = beginning(order, file, 0.9 * order.width_cm), plots;
+  const auto add = [&](const char* name, const std::string& data, const std::string& style,
+                       const char* columns = "1:2") {
     if (data.empty()) return;
     script += fmt::format("${} << EOD\n{}EOD\n", name, data);
-    plots += fmt::format("{}${} using 1:2 {}", plots.empty() ? "" : ", ", name, style);
+    plots += fmt::format("{}${} using {} {}", plots.empty() ? "" : ", ", name, columns, style);
   };
+  if (order.figure == 5) {
+    const auto grid = grid_of(source, *run);
+    if (!grid)
+      throw InputError(fmt::format("{}: left no grid, which figure 5 shows", run->spec.name));
+    const std::string style = "with boxxyerror fillstyle solid noborder fillcolor rgb ";
+    add("free", cells_in(*grid, kFreeCell), style + "'#e9edf0' notitle", "1:2:3:4:5:6");
+    add("occupied", cells_in(*grid, kOccupiedCell), style + "'#8a8f98' title 'obstacle'",
+        "1:2:3:4:5:6");
+    script += "unset grid\n";
+  }
   add("truth", truth, "with lines linewidth 1 linecolor rgb 'black' title 'true path'");
   add("estimate", estimate,
       "with lines linewidth 1.5 dashtype 2 linecolor rgb '#0065a3' title 'estimated path'");
@@ -226,36 +241,99 @@ std::string from_above(const PagesSource& source, const PlotOrder& order, const 
          plots + "\n";
 }
 
+/// A cell as a reader sees it.
+std::string cell_of(const Json& column, std::size_t row) {
+  const Json& value = column.at("values").at(row);
+  if (value.is_null()) return "";
+  if (column.contains("words")) return column.at("words").at(value.get<std::size_t>());
+  const bool share = column.value("unit", "") == "%";
+  return fmt::format("{:.{}f}", value.get<double>() * (share ? 100 : 1),
+                     column.value("decimals", 0));
+}
+
+/// A table: of table 1 what the paper's shows, of table 2 everything; columns without a value are
+/// left out. As wide as it needs to be.
+std::string table_script(const PagesSource& source, const PlotOrder& order, const fs::path& file) {
+  const std::vector<CategoryRow> rows = make_category_rows(
+      *source.suite, make_rows(*source.suite, source.results.runs, source.results.failed));
+  const Json json =
+      order.table == 1 ? table1_json(*source.suite, rows) : table2_json(*source.suite, rows);
+  if (json.is_null() || json.at("rows") == 0)
+    throw InputError(
+        fmt::format("{}: table {} cannot be drawn: {}", source.name, order.table,
+                    order.table == 1 ? "the suite has one environment" : "no queries were asked"));
+  const auto count = json.at("rows").get<std::size_t>();
+  static const std::vector<std::string> kOfTable1 = {"category",
+                                                     "system",
+                                                     "labels",
+                                                     "scenes",
+                                                     "ate_rmse_m",
+                                                     "rpe_second_m",
+                                                     "held_out.success",
+                                                     "held_out.correct",
+                                                     "held_out.distance_mean_m",
+                                                     "second_tour.success",
+                                                     "second_tour.correct",
+                                                     "second_tour.distance_mean_m"};
+  constexpr double kLetter_cm = 0.142, kGap_cm = 0.45, kLine_cm = 0.42;
+  double width_cm = 0.2;
+  const double height_cm = kLine_cm * (static_cast<double>(count) + 3.2);
+  std::string labels;
+  const auto put = [&](const std::string& text, double x_cm, double line, bool left, bool bold) {
+    labels += fmt::format("set label {} at {},{} {} noenhanced font '{},8'\n", gnuplot_text(text),
+                          x_cm, kLine_cm * line, left ? "left" : "right",
+                          bold ? "DejaVu Sans:Bold" : "DejaVu Sans");
+  };
+  for (const Json& column : json.at("columns")) {
+    const std::string key = column.at("key");
+    if (order.table == 1 && std::ranges::count(kOfTable1, key) == 0) continue;
+    if (key == "remark") continue;
+    std::vector<std::string> cells;
+    for (std::size_t row = 0; row < count; ++row) cells.push_back(cell_of(column, row));
+    if (std::ranges::all_of(cells, &std::string::empty)) continue;
+    const std::string unit = column.value("unit", "");
+    std::string title = column.at("title");
+    if (!unit.empty() && !title.ends_with(" " + unit)) title += ", " + unit;
+    std::size_t longest = title.size() + title.size() / 5;  // bold letters are wider
+    for (const std::string& cell : cells) longest = std::max(longest, cell.size());
+    const double column_cm = kLetter_cm * static_cast<double>(longest);
+    const bool left = column.contains("words");
+    const double at_cm = left ? width_cm : width_cm + column_cm;
+    put(title, at_cm, 2.0, left, true);
+    for (std::size_t row = 0; row < count; ++row)
+      put(cells[row], at_cm, 3.2 + static_cast<double>(row), left, false);
+    width_cm += column_cm + kGap_cm;
+  }
+  put(json.at("title"), 0.2, 0.8, true, true);
+  return gnuplot_terminal(file, width_cm, height_cm) + labels +
+         fmt::format(
+             "unset border\nunset tics\nunset key\nset margins 0,0,0,0\nset xrange [0:{0}]\n"
+             "set yrange [{1}:0]\nset arrow from 0.1,{2} to {3},{2} nohead linewidth 1\n"
+             "plot -1 notitle\n",
+             width_cm, height_cm, 2.55 * kLine_cm, width_cm - 0.1);
+}
+
 }  // namespace
 
-std::string plot_script(const PagesSource& source, const PlotOrder& order, const fs::path& pdf) {
+std::string plot_script(const PagesSource& source, const PlotOrder& order, const fs::path& file) {
   if (!source.suite) throw InputError(fmt::format("{}: {}", source.name, source.problem));
+  if (order.table != 0) return table_script(source, order, file);
   switch (order.figure) {
     case 2:
     case 5:
-      return from_above(source, order, pdf);
+      return from_above(source, order, file);
     case 3:
-      return by_density(source, order, pdf);
+      return by_density(source, order, file);
     case 4:
-      return by_frame(source, order, pdf);
+      return by_frame(source, order, file);
     default:
       throw InputError(fmt::format("figure {} is not drawn; 2, 3, 4 and 5 are", order.figure));
   }
 }
 
-void write_plot(const fs::path& pdf, const PagesSource& source, const PlotOrder& order) {
-  const TemporaryFolder work(fs::temp_directory_path());
-  const fs::path script = work.path() / "figure.gnuplot", errors = work.path() / "errors.txt";
-  write_atomically(pdf, [&](const fs::path& temporary) {
-    write_atomically(script, plot_script(source, order, fs::absolute(temporary)));
-    const int ended = std::system(fmt::format("gnuplot {} > {} 2>&1", shell_quoted(script.string()),
-                                              shell_quoted(errors.string()))
-                                      .c_str());
-    if (ended == 0 && is_file(temporary)) return;
-    const std::string said = is_file(errors) ? legible(read_file(errors)) : std::string();
-    throw MachineError(fmt::format("gnuplot cannot draw the figure (Debian: gnuplot-nox): {}",
-                                   said.substr(0, 300)));
-  });
+void write_plot(const fs::path& file, const PagesSource& source, const PlotOrder& order) {
+  draw_by_gnuplot(file,
+                  [&](const fs::path& temporary) { return plot_script(source, order, temporary); });
 }
 
 }  // namespace mh

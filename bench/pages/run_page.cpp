@@ -34,28 +34,24 @@ Json path_json(const Trajectory& path, const SE3& to, Stamp start_ns, std::size_
 }
 
 /// Cells as pairs of value and number of repeats; null if the run left no grid.
-Json grid_json(const std::filesystem::path& folder) {
-  if (folder.empty() || !is_file(folder / "map.yaml")) return nullptr;
-  try {
-    const OccupancyGrid grid = load_map_server(folder / "map.yaml");
-    Json cells = Json::array();
-    int value = 0;
-    std::size_t count = 0;
-    const auto end = [&] {
-      if (count > 0) cells.push_back(value), cells.push_back(count);
-    };
-    for (int y = 0; y < grid.cells.height(); ++y)
-      for (int x = 0; x < grid.cells.width(); ++x) {
-        if (grid.cells(x, y) != value) end(), value = grid.cells(x, y), count = 0;
-        ++count;
-      }
-    end();
-    return {{"width", grid.cells.width()}, {"height", grid.cells.height()},
-            {"cell_m", grid.resolution_m}, {"x_m", grid.origin_m.x()},
-            {"y_m", grid.origin_m.y()},    {"cells", cells}};
-  } catch (const InputError&) {
-    return nullptr;
-  }
+Json grid_json(const std::optional<OccupancyGrid>& left) {
+  if (!left) return nullptr;
+  const OccupancyGrid& grid = *left;
+  Json cells = Json::array();
+  int value = 0;
+  std::size_t count = 0;
+  const auto end = [&] {
+    if (count > 0) cells.push_back(value), cells.push_back(count);
+  };
+  for (int y = 0; y < grid.cells.height(); ++y)
+    for (int x = 0; x < grid.cells.width(); ++x) {
+      if (grid.cells(x, y) != value) end(), value = grid.cells(x, y), count = 0;
+      ++count;
+    }
+  end();
+  return {{"width", grid.cells.width()}, {"height", grid.cells.height()},
+          {"cell_m", grid.resolution_m}, {"x_m", grid.origin_m.x()},
+          {"y_m", grid.origin_m.y()},    {"cells", cells}};
 }
 
 Json calls_page_json(const MappingOutcome& mapping, Stamp start_ns, std::size_t moments) {
@@ -95,23 +91,22 @@ Json run_page_json(const PagesSource& source, const RunResult& run, std::size_t 
   Json inputs = Json::object();
   for (const InputDigest& input : run.place.inputs) inputs[input.name] = hex(input.digest);
   const bool has_settings = run.spec.system.takes_settings();
-  return {
-      {"name", run.spec.name},
-      {"scene", run.place.scene},
-      {"robot", run.place.robot},
-      {"length_m", json_of(run.place.mapping.length_m)},
-      {"frames", run.place.mapping.frames},
-      {"cut", run.place.cut},
-      {"truth", path_json(run.truth, SE3(), start_ns, moments)},
-      {"estimate", path_json(run.estimate, run.frames.dock_from_estimate, start_ns, moments)},
-      {"calls", calls_page_json(run.mapping, start_ns, moments)},
-      {"loops", run.mapping.loops.size()},
-      {"skipped", json_of(run.mapping.skipped)},
-      {"grid", grid_json(source.folder.empty() ? source.folder : source.folder / run.spec.name)},
-      {"inputs", inputs},
-      {"trajectory_digest", hex(digest(run.estimate))},
-      {"seed", run.spec.seed},
-      {"settings", has_settings ? to_json(run.spec.slam) : Json()}};
+  return {{"name", run.spec.name},
+          {"scene", run.place.scene},
+          {"robot", run.place.robot},
+          {"length_m", json_of(run.place.mapping.length_m)},
+          {"frames", run.place.mapping.frames},
+          {"cut", run.place.cut},
+          {"truth", path_json(run.truth, SE3(), start_ns, moments)},
+          {"estimate", path_json(run.estimate, run.frames.dock_from_estimate, start_ns, moments)},
+          {"calls", calls_page_json(run.mapping, start_ns, moments)},
+          {"loops", run.mapping.loops.size()},
+          {"skipped", json_of(run.mapping.skipped)},
+          {"grid", grid_json(grid_of(source, run))},
+          {"inputs", inputs},
+          {"trajectory_digest", hex(digest(run.estimate))},
+          {"seed", run.spec.seed},
+          {"settings", has_settings ? to_json(run.spec.slam) : Json()}};
 }
 
 }  // namespace mh

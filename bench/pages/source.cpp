@@ -82,4 +82,15 @@ PagesSource read_source(const fs::path& path) {
   return source;
 }
 
+std::optional<OccupancyGrid> grid_of(const PagesSource& source, const RunResult& run) {
+  if (!run.grid.cells.empty()) return run.grid;
+  const std::filesystem::path file = source.folder / run.spec.name / "map.yaml";
+  if (source.folder.empty() || !is_file(file)) return std::nullopt;
+  try {
+    return load_map_server(file);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace mh

@@ -32,6 +32,10 @@ struct PagesSource {
   std::map<std::string, nlohmann::ordered_json> replay_of = {}, views_of = {};
 };
 
+/// The grid of a run's map, of the results or from its folder; nullopt if there is none, or if it
+/// is damaged.
+std::optional<OccupancyGrid> grid_of(const PagesSource& source, const RunResult& run);
+
 /// Reads a results folder or file. A damaged file, one of another version and one without a suite
 /// give a source with a problem. @throws InputError if there is nothing to read.
 PagesSource read_source(const std::filesystem::path& folder);

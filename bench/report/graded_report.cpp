@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "bench/drawing/plot.hpp"
 #include "bench/provenance/json_fields.hpp"
 #include "bench/report/comparisons_text.hpp"
 #include "bench/report/text_table.hpp"
@@ -115,9 +114,9 @@ std::string graded_image_name(const Labels& labels, const std::filesystem::path&
   return fmt::format("graded-{}-{}.png", name(labels), level_name(level));
 }
 
-std::vector<GradedImage> draw_graded_curves(const Suite& suite, std::span<const Row> rows) {
+std::vector<GradedChart> graded_charts(const Suite& suite, std::span<const Row> rows) {
   const std::vector<GradedCurve> curves = graded_curves(suite, rows);
-  std::vector<GradedImage> images;
+  std::vector<GradedChart> charts;
   for (auto first = curves.begin(); first != curves.end();) {
     auto end = first;
     std::vector<Plot> plots;
@@ -134,7 +133,7 @@ std::vector<GradedImage> draw_graded_curves(const Suite& suite, std::span<const 
           const double aside =
               0.012 * range *
               (static_cast<double>(s) - 0.5 * static_cast<double>(suite.systems.size() - 1));
-          const cv::Point2d at(0.5 * (bin.low + bin.high) + aside, 100 * share->success);
+          const Series::Point at{0.5 * (bin.low + bin.high) + aside, 100 * share->success};
           line.points.push_back(at);
           dots.points.push_back(at);
           dots.bars.emplace_back(100 * share->low, 100 * share->high);
@@ -145,13 +144,13 @@ std::vector<GradedImage> draw_graded_curves(const Suite& suite, std::span<const 
       plots.push_back(std::move(plot));
     }
     const std::filesystem::path& level = suite.levels[first->level];
-    images.push_back({graded_image_name(first->labels, level),
-                      draw_plots(fmt::format("{}: graded queries, {}, level {}", suite.name,
-                                             with_labels(first->labels), level_name(level)),
-                                 plots)});
+    charts.push_back({graded_image_name(first->labels, level),
+                      {fmt::format("{}: graded queries, {}, level {}", suite.name,
+                                   with_labels(first->labels), level_name(level)),
+                       std::move(plots)}});
     first = end;
   }
-  return images;
+  return charts;
 }
 
 }  // namespace mh

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
-#include <opencv2/core/mat.hpp>
 
+#include "bench/drawing/plot.hpp"
 #include "bench/results/graded.hpp"
 
 namespace mh {
@@ -23,10 +23,10 @@ nlohmann::ordered_json graded_json(const Suite& suite, std::span<const Row> rows
 std::string graded_image_name(const Labels& labels, const std::filesystem::path& level);
 
 /// The curves of one level and kind of labels: a panel each, a line per system with 95 % intervals.
-struct GradedImage {
+struct GradedChart {
   std::string file;  ///< its name
-  cv::Mat image;
+  PlotPage page;
 };
-std::vector<GradedImage> draw_graded_curves(const Suite& suite, std::span<const Row> rows);
+std::vector<GradedChart> graded_charts(const Suite& suite, std::span<const Row> rows);
 
 }  // namespace mh

@@ -9,30 +9,16 @@
 
 #include <fmt/format.h>
 
-#include "bench/drawing/canvas.hpp"
 #include "slam/config/by_name.hpp"
 #include "slam/config/slam.hpp"
 
 namespace mh {
 namespace {
 
-constexpr double kPanelWidth = 400, kPanelHeight = 340, kSweepMargin = 24, kSweepHeader = 62,
-                 kSweepFooter = 30;
-constexpr int kColumns = 3;
-constexpr Rgb8 kSweepInk = {40, 43, 50}, kGray = {110, 115, 125}, kFrame = {214, 39, 40};
-constexpr Rgb8 kWhite = {255, 255, 255};
-
 struct Shades {
-  Rgb8 low, high;
-  Rgb8 at(double share) const {
-    const auto mix = [&](std::uint8_t a, std::uint8_t b) {
-      return static_cast<std::uint8_t>(std::lround(a + share * (double(b) - double(a))));
-    };
-    return {mix(low.r, high.r), mix(low.g, high.g), mix(low.b, high.b)};
-  }
+  const char *low, *high;
 };
-constexpr Shades kMoreIsBetter = {{236, 243, 251}, {8, 69, 148}},
-                 kLessIsBetter = {{253, 243, 231}, {166, 54, 3}};
+constexpr Shades kMoreIsBetter = {"#ecf3fb", "#084594"}, kLessIsBetter = {"#fdf3e7", "#a63603"};
 
 /// The measure that a panel shows for each point.
 struct PanelMeasure {
@@ -73,7 +59,6 @@ struct Values {
         any = true;
       }
   }
-  double share(double value) const { return most > least ? (value - least) / (most - least) : 0; }
 };
 
 /// The values that a setting takes in a sweep, and how they are written.
@@ -103,27 +88,7 @@ std::map<double, std::string> weights_of_labels(const SweepResult& result, std::
   return texts;
 }
 
-/// The place of a panel, with space for the numbers on its axes.
-struct Box {
-  double left, right, top, bottom;
-  explicit Box(cv::Point2d corner)
-      : left(corner.x + 62),
-        right(corner.x + kPanelWidth - 16),
-        top(corner.y + 30),
-        bottom(corner.y + kPanelHeight - 48) {}
-};
-
-void draw_names(Canvas& canvas, const Box& box, const std::string& title, std::string_view across,
-                std::string_view up) {
-  canvas.text(title, {box.left, box.top - 12}, 9.5, kSweepInk, Canvas::Align::kLeft, true);
-  canvas.text(std::string(across), {(box.left + box.right) / 2, box.bottom + 38}, 9, kGray,
-              Canvas::Align::kCenter);
-  if (!up.empty())
-    canvas.text(std::string(up), {box.left - 8, box.top - 12}, 9, kGray, Canvas::Align::kRight);
-}
-
 struct Panel {
-  cv::Point2d corner;
   const SweepResult& result;
   std::string across, up;  ///< the settings along the axes; up is empty if only one is varied
   std::string title;
@@ -132,87 +97,49 @@ struct Panel {
   std::optional<std::size_t> framed;  ///< the highlighted point
 };
 
-/// Draws a cell per point.
-void draw_grid(Canvas& canvas, const Panel& panel) {
-  const auto& [corner, result, across, up, title, measure, values, framed] = panel;
-  const Box box(corner);
-  const auto xs = distinct(result, across);
-  const auto ys = up.empty() ? std::map<double, std::string>{{0, ""}} : distinct(result, up);
-  const double width = (box.right - box.left) / static_cast<double>(xs.size());
-  const double height = (box.bottom - box.top) / static_cast<double>(ys.size());
-  const auto place = [](const std::map<double, std::string>& list, double value) {
-    return static_cast<double>(std::distance(list.begin(), list.find(value)));
-  };
-  const auto corner_of = [&](const SlamConfig& point) {
-    const double row = up.empty() ? 0 : place(ys, setting_value(point, up));
-    return cv::Point2d(box.left + width * place(xs, setting_value(point, across)),
-                       box.bottom - height * (row + 1));
-  };
-  draw_names(canvas, box, title, shown_name(across), shown_name(up));
-  double column = 0, row = 0;
-  const auto below_x = weights_of_labels(result, across), below_y = weights_of_labels(result, up);
-  const auto number = [&](double value, const std::string& text,
-                          const std::map<double, std::string>& below, cv::Point2d at,
-                          Canvas::Align align) {
-    canvas.text(text, at, 8, kGray, align);
-    if (const auto more = below.find(value); more != below.end())
-      canvas.text(more->second, at + cv::Point2d(0, 10), 6.5, kGray, align);
-  };
-  for (const auto& [value, text] : xs)
-    number(value, text, below_x, {box.left + width * (column++ + 0.5), box.bottom + 14},
-           Canvas::Align::kCenter);
-  for (const auto& [value, text] : ys)
-    if (!up.empty())
-      number(value, text, below_y, {box.left - 8, box.bottom - height * (row++ + 0.5) + 4},
-             Canvas::Align::kRight);
-  for (std::size_t i = 0; i < result.points.size(); ++i) {
-    if (!values.of[i]) continue;
-    const double share = values.share(*values.of[i]);
-    const cv::Point2d at = corner_of(result.points[i]);
-    canvas.fill(at.x, at.y, width, height, measure.shades.at(share));
-    canvas.text(fmt::format("{:.{}f}", *values.of[i], measure.digits),
-                {at.x + width / 2, at.y + height / 2 + 4}, 8.5, share > 0.5 ? kWhite : kSweepInk,
-                Canvas::Align::kCenter);
+/// What a setting's values are called on an axis, with what labels weighed below.
+ShadedField::Ticks ticks(const SweepResult& result, const std::string& name, bool cells) {
+  if (name.empty()) return {};
+  const auto below = weights_of_labels(result, name);
+  ShadedField::Ticks list;
+  const auto values = distinct(result, name);
+  for (const auto& [value, text] : values) {
+    const auto more = below.find(value);
+    // Dots stand where their values are: those of the ends are written.
+    if (!cells && value != values.begin()->first && value != values.rbegin()->first) continue;
+    list.emplace_back(cells ? static_cast<double>(list.size()) : value,
+                      more == below.end() ? text : text + "\n" + more->second);
   }
-  if (!framed) return;
-  const cv::Point2d a = corner_of(result.points[*framed]), b(a.x + width, a.y + height);
-  for (const auto& [from, to] : {std::pair(a, cv::Point2d(b.x, a.y)),
-                                 {cv::Point2d(b.x, a.y), b},
-                                 {b, cv::Point2d(a.x, b.y)},
-                                 {cv::Point2d(a.x, b.y), a}})
-    canvas.line(from, to, kFrame, 2);
+  return list;
 }
 
-/// Draws a dot per point over two of its settings.
-void draw_dots(Canvas& canvas, const Panel& panel) {
-  const auto& [corner, result, across, up, title, measure, values, framed] = panel;
-  const Box box(corner);
-  const auto xs = distinct(result, across), ys = distinct(result, up);
-  const auto share = [](const std::map<double, std::string>& list, double value) {
-    const double low = list.begin()->first, range = list.rbegin()->first - low;
-    return range > 0 ? (value - low) / range : 0.5;
+/// A cell per point in a grid, otherwise a dot per point over two of its settings.
+Plot panel_plot(const Panel& panel, bool cells) {
+  const auto& [result, across, up, title, measure, values, framed] = panel;
+  ShadedField field{.cells = cells,
+                    .marks = {},
+                    .x_ticks = ticks(result, across, cells),
+                    .y_ticks = ticks(result, up, cells),
+                    .low_color = measure.shades.low,
+                    .high_color = measure.shades.high};
+  const auto at = [&](const SlamConfig& point, const std::string& name) {
+    if (name.empty()) return 0.0;
+    const double value = setting_value(point, name);
+    if (!cells) return value;
+    const auto all = distinct(result, name);
+    return static_cast<double>(std::distance(all.begin(), all.find(value)));
   };
-  constexpr double kInset = 10;  // so that the border cuts no dot
-  const auto at = [&](const SlamConfig& point) {
-    return cv::Point2d(
-        box.left + kInset +
-            share(xs, setting_value(point, across)) * (box.right - box.left - 2 * kInset),
-        box.bottom - kInset -
-            share(ys, setting_value(point, up)) * (box.bottom - box.top - 2 * kInset));
-  };
-  draw_names(canvas, box, title, shown_name(across), shown_name(up));
-  canvas.fill(box.left, box.top, box.right - box.left, box.bottom - box.top, {246, 247, 249});
-  const auto number = [&](const auto& entry, cv::Point2d where, Canvas::Align align) {
-    canvas.text(entry.second, where, 8, kGray, align);
-  };
-  number(*xs.begin(), {box.left, box.bottom + 16}, Canvas::Align::kLeft);
-  number(*xs.rbegin(), {box.right, box.bottom + 16}, Canvas::Align::kRight);
-  number(*ys.begin(), {box.left - 8, box.bottom}, Canvas::Align::kRight);
-  number(*ys.rbegin(), {box.left - 8, box.top + 10}, Canvas::Align::kRight);
-  for (std::size_t i = 0; i < result.points.size(); ++i)
-    if (values.of[i])
-      canvas.disc(at(result.points[i]), 6, measure.shades.at(values.share(*values.of[i])));
-  if (framed) canvas.ring(at(result.points[*framed]), 9, kFrame, 2);
+  for (std::size_t i = 0; i < result.points.size(); ++i) {
+    if (!values.of[i]) continue;
+    if (framed == i) field.framed = field.marks.size();
+    field.marks.push_back({at(result.points[i], across), at(result.points[i], up), *values.of[i],
+                           cells ? fmt::format("{:.{}f}", *values.of[i], measure.digits) : ""});
+  }
+  return {title,
+          std::string(shown_name(across)),
+          up.empty() ? "" : std::string(shown_name(up)),
+          {},
+          std::move(field)};
 }
 
 bool is_grid(const SweepResult& result, const std::vector<std::string>& varied) {
@@ -250,58 +177,36 @@ std::string sweep_image_name(const Suite& suite, const SweepResult& result) {
                      level_name(suite.levels[result.level]));
 }
 
-cv::Mat draw_sweep(const Suite& suite, std::span<const Row> rows, const SweepResult& result) {
+PlotPage sweep_chart(const Suite& suite, std::span<const Row> rows, const SweepResult& result) {
   const std::vector<std::string>& varied = suite.sweep.varied;
   const bool grid = is_grid(result, varied);
-  struct Block {
-    QuerySet set;
-    BestPoint best;
-  };
-  std::vector<Block> blocks;
-  for (const QuerySet set : kQuerySets)
-    if (const auto best = best_point(suite, rows, result, set)) blocks.push_back({set, *best});
-
   std::vector<std::pair<std::string, std::string>> pairs;  // across, up
   for (std::size_t i = 0; i < varied.size(); ++i)
     for (std::size_t j = i + 1; j < varied.size(); ++j) pairs.emplace_back(varied[j], varied[i]);
   const std::vector<PanelMeasure> all = panel_measures();
-  const std::size_t panels = grid ? all.size() : pairs.size();
-  const auto lines = static_cast<int>((panels + kColumns - 1) / kColumns);
-  const double block_height = lines * kPanelHeight + kSweepFooter;
-
-  Canvas canvas(
-      static_cast<int>(2 * kSweepMargin + kColumns * kPanelWidth),
-      static_cast<int>(kSweepHeader + static_cast<double>(blocks.size()) * block_height + 16));
-  canvas.text(fmt::format("{}: {}, {}, level {}, map: {}", suite.name,
-                          suite.systems[result.system].name, with_labels(result.labels),
-                          level_name(suite.levels[result.level]), name(suite.sweep.map)),
-              {kSweepMargin, 34}, 14, kSweepInk, Canvas::Align::kLeft, true);
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const auto& [set, best] = blocks[b];
-    const double top = kSweepHeader + static_cast<double>(b) * block_height;
-    for (std::size_t i = 0; i < panels; ++i) {
-      const cv::Point2d corner(kSweepMargin + static_cast<double>(i % kColumns) * kPanelWidth,
-                               top + static_cast<double>(i / kColumns) * kPanelHeight);
+  PlotPage page{fmt::format("{}: {}, {}, level {}, map: {}", suite.name,
+                            suite.systems[result.system].name, with_labels(result.labels),
+                            level_name(suite.levels[result.level]), name(suite.sweep.map)),
+                {}};
+  for (const QuerySet set : kQuerySets) {
+    const auto best = best_point(suite, rows, result, set);
+    if (!best) continue;
+    for (std::size_t i = 0; i < (grid ? all.size() : pairs.size()); ++i) {
       const PanelMeasure& measure = grid ? all[i] : all.front();
       const Values values(result, set, measure);
-      const std::string title = grid ? fmt::format("{}: {}", name(set), measure.title)
-                                     : fmt::format("{}: {:.1f} to {:.1f} % correct", name(set),
-                                                   values.least, values.most);
-      std::optional<std::size_t> framed;
-      if ((!grid || i == 0) && best.equals < result.points.size()) framed = best.point;
-      if (grid)
-        draw_grid(canvas, {corner, result, varied.back(), varied.size() > 1 ? varied.front() : "",
-                           title, measure, values, framed});
-      else
-        draw_dots(canvas, {corner, result, pairs[i].first, pairs[i].second, title, measure, values,
-                           framed});
+      Panel panel{result, grid ? varied.back() : pairs[i].first, "", "", measure, values, {}};
+      if (!grid || varied.size() > 1) panel.up = grid ? varied.front() : pairs[i].second;
+      panel.title = grid ? fmt::format("{}: {}", name(set), measure.title)
+                         : fmt::format("{}: {:.1f} to {:.1f} % correct", name(set), values.least,
+                                       values.most);
+      if ((!grid || i == 0) && best->equals < result.points.size()) panel.framed = best->point;
+      page.plots.push_back(panel_plot(panel, grid));
     }
-    canvas.text(caption(result, set, varied, best),
-                {kSweepMargin + 8, top + lines * kPanelHeight + 12}, 9, kSweepInk);
+    page.caption += caption(result, set, varied, *best) + "\n";
   }
-  canvas.text("framed: most correct answers, chosen by these same queries: confirm it on others",
-              {kSweepMargin + 8, static_cast<double>(canvas.height()) - 10}, 8, kGray);
-  return canvas.finish();
+  page.caption +=
+      "framed: most correct answers, chosen by these same queries: confirm it on others";
+  return page;
 }
 
 }  // namespace mh

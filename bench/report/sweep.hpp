@@ -4,18 +4,17 @@
 #include <span>
 #include <string>
 
-#include <opencv2/core/mat.hpp>
-
+#include "bench/drawing/plot.hpp"
 #include "bench/results/sweep.hpp"
 
 namespace mh {
 
-/// Draws the answers over a sweep: for each query set, the shares of correct and of false positive
+/// The answers over a sweep: for each query set, the shares of correct and of false positive
 /// answers and the mean distance. A grid over one or two parameters is a heat map with its values;
 /// anything else shows each pair of parameters, with a dot per point. The point with the most
 /// correct answers is framed; its difference from the suite's own settings is printed below with
 /// its 95 % interval.
-cv::Mat draw_sweep(const Suite& suite, std::span<const Row> rows, const SweepResult& result);
+PlotPage sweep_chart(const Suite& suite, std::span<const Row> rows, const SweepResult& result);
 
 /// "sweep-semantic-exact-pepper.png"
 std::string sweep_image_name(const Suite& suite, const SweepResult& result);

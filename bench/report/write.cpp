@@ -15,6 +15,7 @@
 #include "bench/report/topdown.hpp"
 #include "scenes/images/png.hpp"
 #include "scenes/images/write_image.hpp"
+#include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/trajectory_io.hpp"
 #include "slam/occupancy/objects.hpp"
@@ -44,6 +45,15 @@ std::string identity_of_views(const World& world, const RunSpec& spec) {
     for (const char* seen : {"scene", "robot", "mapping_tour", "kidnapped_tour"})
       if (input.name == seen) text += fmt::format("{} {} ", seen, hex(input.digest));
   return text_key(text);
+}
+
+/// Without gnuplot the results stand without charts, which a report shows as well.
+void draw_chart(const fs::path& file, const PlotPage& page) {
+  try {
+    write_plots(file, page);
+  } catch (const MachineError& error) {
+    fmt::print(stderr, "bench: warning: {}\n", error.what());
+  }
 }
 
 }  // namespace
@@ -101,12 +111,11 @@ std::string write_results(const fs::path& folder, const Suite& suite,
   write_atomically(folder / "reproduction.json", reproduction_json(suite, runs).dump(2) + "\n");
   write_atomically(folder / "times.txt", times_table(suite, runs));
   const std::vector<Row> rows = make_rows(suite, runs);
-  for (const GradedImage& drawn : draw_graded_curves(suite, rows))
-    write_image(folder / drawn.file, drawn.image);
-  if (parameter_points(suite).size() > 1) {
+  for (const GradedChart& chart : graded_charts(suite, rows))
+    draw_chart(folder / chart.file, chart.page);
+  if (parameter_points(suite).size() > 1)
     for (const SweepResult& result : sweep_results(suite, rows))
-      write_image(folder / sweep_image_name(suite, result), draw_sweep(suite, rows, result));
-  }
+      draw_chart(folder / sweep_image_name(suite, result), sweep_chart(suite, rows, result));
   write_atomically(folder / "table.txt", table);
   write_atomically(folder / "results.json",
                    results_json(suite, runs, failed, missing).dump(2) + "\n");

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace mh {
+
+// Charts are drawn by gnuplot, since Debian packages it, it needs no window, and its whole input is
+// one script that anybody can change.
+
+/// A text as gnuplot holds it: nothing in it is interpreted, lines break at '\n'.
+std::string gnuplot_text(const std::string& text);
+
+/// The first lines of a script: what is written, by the file's extension (.pdf: vectors, fonts
+/// embedded; else a PNG of 192 pixels to the inch), and where.
+std::string gnuplot_terminal(const std::filesystem::path& file, double width_cm, double height_cm);
+
+/// Draws a file; readers see the old one or the complete new one.
+/// @param script  receives the path to name in gnuplot_terminal()
+/// @throws InputError naming the file if it is neither .pdf nor .png; MachineError if gnuplot is
+/// missing or fails.
+void draw_by_gnuplot(const std::filesystem::path& file,
+                     const std::function<std::string(const std::filesystem::path&)>& script);
+
+}  // namespace mh
