@@ -131,7 +131,6 @@ OutputFolder::OutputFolder(const fs::path& folder, const std::string& command,
   for (fs::path p = folder; !p.empty() && !fs::exists(p, error); p = p.parent_path())
     made_.push_back(p);
   make_output_folder(folder);
-  was_ours_ = ours;
   if (ours) return;
   write_atomically(folder / kMark, (mark.empty() ? std::string(kMarkHead) : mark) + line);
   mark_before_ = mark;

@@ -50,8 +50,6 @@ class OutputFolder {
   OutputFolder(const std::filesystem::path& folder, const std::string& command,
                std::vector<std::string> names);
   ~OutputFolder();
-  /// Whether the same command wrote there before.
-  bool was_ours() const { return was_ours_; }
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
@@ -60,7 +58,6 @@ class OutputFolder {
 
   const std::filesystem::path folder_;
   const std::vector<std::string> names_;
-  bool was_ours_ = false;
   std::optional<std::string> mark_before_;   // previous .modelhouse; set if it was changed
   std::vector<std::filesystem::path> made_;  // innermost first
 };

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <sstream>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,7 +23,10 @@
 #include "scenes/recorded/open_sequence.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/temporary_folder.hpp"
+#include "slam/core/text_file.hpp"
 
 namespace mh::cli {
 namespace {
@@ -93,28 +97,69 @@ void add_results(nlohmann::ordered_json& json, std::size_t frame, const Detected
 
 constexpr const char* kResults = "detections.json";
 
+constexpr const char* kDrawn = "drawn.txt";
+
 std::string image_name(std::size_t frame) {
   return fmt::format("{:06}.png", frame);
 }
+bool is_image_name(const std::string& name) {
+  return name.size() >= 10 && name.ends_with(".png") &&
+         std::ranges::all_of(name.substr(0, name.size() - 4),
+                             [](char c) { return c >= '0' && c <= '9'; });
+}
 
-/// An image beside the drawings could be taken for one of them.
-void require_sources_elsewhere(const DetectorArguments& options) {
+/// What a command reads could be taken for what it writes.
+void require_read_elsewhere(const DetectorArguments& options, const DetectorSpec& spec) {
+  std::vector<fs::path> read = {
+      spec.network,    spec.config, spec.classes, spec.boxes, options.detector.settings,
+      options.settings};
+  for (const std::string& source : options.sources)
+    if (is_image(source)) read.emplace_back(source);
   std::error_code error;
-  for (const std::string& source : options.sources) {
-    const fs::path folder =
-        fs::path(source).has_parent_path() ? fs::path(source).parent_path() : ".";
-    if (is_image(source) && fs::equivalent(folder, options.out, error) && !error)
-      throw InputError(
-          fmt::format("{}: lies in the folder to write, {}: name another", source, options.out));
+  for (const fs::path& file : read) {
+    if (file.empty()) continue;
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    for (const fs::path& place : {folder, file})  // boxes may be a folder
+      if (fs::equivalent(place, options.out, error) && !error)
+        throw InputError(fmt::format("{}: lies in the folder to write, {}: name another",
+                                     file.string(), options.out));
   }
 }
 
-/// Removes what an earlier run of this command wrote, so that nothing of it stands beside the new.
-void remove_earlier(const fs::path& out) {
+/// What an earlier run of this command drew, as it noted.
+std::vector<std::string> drawn_earlier(const fs::path& out) {
+  std::vector<std::string> names;
+  if (!is_file(out / kDrawn)) return names;
+  std::istringstream lines(read_text(out / kDrawn));
+  for (std::string line; std::getline(lines, line);)
+    if (const std::string name = line.substr(0, line.find(' ')); is_image_name(name))
+      names.push_back(name);
+  return names;
+}
+
+/// @throws InputError naming the file if one of a drawing's name is not from an earlier run.
+void require_no_other_images(const fs::path& out, const std::vector<std::size_t>& wanted) {
+  const std::vector<std::string> earlier = drawn_earlier(out);
+  for (const std::size_t i : wanted)
+    if (const std::string name = image_name(i);
+        is_there(out / name) && std::ranges::count(earlier, name) == 0)
+      throw InputError(
+          fmt::format("{}: is there already, and not from `modelhouse detector run`: name another "
+                      "folder",
+                      (out / name).string()));
+}
+
+/// Puts a finished result in the place of an earlier one.
+void replace_earlier(const fs::path& work, const fs::path& out, const std::string& results,
+                     const std::string& drawn) {
   std::error_code error;
-  fs::remove(out / kResults, error);
-  for (const std::string& name : list_folder(out, "[0-9][0-9][0-9][0-9][0-9][0-9].png"))
-    fs::remove(out / name, error);
+  for (const std::string& name : drawn_earlier(out)) fs::remove(out / name, error);
+  for (const std::string& name : list_folder(work, "*.png")) {
+    fs::rename(work / name, out / name, error);
+    if (error) throw_unwritable(out / name, error.value());
+  }
+  write_atomically(out / kDrawn, drawn);
+  write_atomically(out / kResults, results);
 }
 
 void run(DetectorArguments options) {
@@ -128,11 +173,10 @@ void run(DetectorArguments options) {
   std::vector<std::size_t> wanted;
   for (std::size_t i = 0; i < std::min(frames.size(), options.frames); i += options.every)
     wanted.push_back(i);
-  require_sources_elsewhere(options);
-  std::vector<std::string> names = {kResults};
-  for (const std::size_t i : wanted) names.push_back(image_name(i));
-  const OutputFolder folder(out, "detector run", std::move(names));
-  if (folder.was_ours()) remove_earlier(out);
+  require_read_elsewhere(options, *spec);
+  require_no_other_images(out, wanted);
+  const OutputFolder folder(out, "detector run", {kResults, kDrawn});
+  const TemporaryFolder work(out);  // an earlier result stays until this one is whole
   Progress progress("detector run");
   const KeepDetections in_cache = detections_in(options.detector.opened_cache("detector run"));
   bool made = false;  // by the network, not taken from the cache
@@ -148,6 +192,7 @@ void run(DetectorArguments options) {
   std::map<std::string, std::size_t> count;
   std::vector<double> ms;
   auto results = nlohmann::ordered_json::array();
+  std::string drawn;
   std::size_t images = 0, boxes = 0, clipped = 0, skipped = 0;
   for (const std::size_t i : wanted) {
     RgbdFrame frame;
@@ -175,14 +220,15 @@ void run(DetectorArguments options) {
     if (options.labels || !found.pixels.index.empty())
       labels = labels_of(found, frame.depth_m, frame.color.width(), frame.color.height(),
                          spec->settings.fill);
-    write_image(out / image_name(i),
+    drawn += fmt::format("{} {}\n", image_name(i), counted(found.boxes.size(), "box", "boxes"));
+    write_image(work.path() / image_name(i),
                 draw_detections(frame.color, found.boxes, detector->names(), labels));
     progress.share(static_cast<double>(i + 1) / static_cast<double>(wanted.back() + 1));
   }
   progress.end();
   if (images == 0)
     throw InputError(fmt::format("{}: no frame can be read", options.sources.front()));
-  write_atomically(out / kResults, results.dump(1) + "\n");
+  replace_earlier(work.path(), out, results.dump(1) + "\n", drawn);
   std::ranges::sort(ms);
   fmt::print("{}\n{}, {}", detector->description(), counted(images, "image"),
              counted(boxes, "box", "boxes"));
@@ -214,7 +260,8 @@ void add_detector(CLI::App& app) {
   options->detector.add_to(*r, "--network,--detector");
   r->add_option("--settings", options->settings,
                 "Calibration of the recording (YAML), or the name of a shipped one");
-  r->add_option("--out", options->out, "Folder for images and detections.json (COCO's results)")
+  r->add_option("--out", options->out,
+                "Folder for images, their list drawn.txt, and detections.json (COCO's results)")
       ->required();
   r->add_flag("--labels", options->labels, "Draws the labels of the pixels beside each frame");
   r->add_option("--frames", options->frames, "Only the first so many frames")

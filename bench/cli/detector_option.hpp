@@ -42,7 +42,12 @@ struct DetectorOption {
     if (!is_given()) return std::nullopt;
     DetectorSpec spec;
     if (!file.empty()) spec = detector_from_file(file);
+    const DetectorSpec named = spec;
     if (!settings.empty()) load_detector_settings(settings, spec);
+    if (!file.empty() && (spec.network != named.network || spec.boxes != named.boxes))
+      throw InputError(fmt::format("{} is named, and {} names {}: one of them says what is run",
+                                   file, settings,
+                                   (spec.network.empty() ? spec.boxes : spec.network).string()));
     return spec;
   }
 };

@@ -283,6 +283,9 @@ DetectorSpec spec_of(DetectorScoreArguments& options) {
   resolve(options.level, Shipped::kLevel);
   resolve(options.robot, Shipped::kRobot);
   for (std::string& name : options.scenes) resolve(name, Shipped::kScene);
+  for (auto name = options.scenes.begin(); name != options.scenes.end(); ++name)
+    if (std::find(options.scenes.begin(), name, *name) != name)
+      throw InputError(fmt::format("--scenes: {} is named twice", *name));
   const auto spec = options.detector.spec();
   if (!spec) throw InputError("no detector is named: --network does");
   if (spec->network.empty())
@@ -305,6 +308,16 @@ void score(DetectorScoreArguments options) {
   write_image(fs::path(options.out) / "missed.png", worst.sheet(open_detector(spec)->names()));
 }
 
+/// A level may replace a level, but no other file.
+bool is_level(const fs::path& file) {
+  try {
+    load_sensor_config(file);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 void fit(DetectorScoreArguments options) {
   const DetectorSpec spec = spec_of(options);
   resolve(options.base, Shipped::kLevel);
@@ -317,6 +330,9 @@ void fit(DetectorScoreArguments options) {
                                 options.detector.settings};
   read.insert(read.end(), options.scenes.begin(), options.scenes.end());
   require_writable(options.out, read);
+  if (is_file(options.out) && !is_level(options.out))
+    throw InputError(
+        fmt::format("{}: is not a sensor level: name another file to write", options.out));
   SensorConfig level = load_sensor_config(options.base);
   const ReadScope scope;
   const Judged judged = judge(options, spec, nullptr);

@@ -168,7 +168,11 @@ void run(SlamArguments options) {
         detections_in(options.detector.opened_cache("slam")));
   }
   std::optional<Trajectory> named_truth;
-  if (!options.truth.empty()) named_truth = read_trajectory(options.truth);
+  if (!options.truth.empty()) {
+    named_truth = read_trajectory(options.truth);
+    if (const std::string note = truth_of_another_time(*source.frames, *named_truth); !note.empty())
+      source.settings.notes.push_back(fmt::format("{}: {}", options.truth, note));
+  }
   const OutputFolder folder(options.out, "slam", {kSlamFiles.begin(), kSlamFiles.end()});
   for (const char* name : kSlamFiles) {
     const fs::path file = fs::path(options.out) / name;

@@ -10,10 +10,10 @@ namespace mh {
 
 /// What is drawn for a paper.
 struct PlotOrder {
-  int figure = 3;   ///< of the paper: 2 (a run from above), 3 (by density), 4 (by frames), 5 (a run
-                    ///< on the grid of its map)
-  int table = 0;    ///< of the paper, 1 or 2, in the place of a figure
-  std::string run;  ///< of figures 2 and 5; empty: the first
+  int figure = 3;  ///< of the paper: 2 (a run from above), 3 (by density), 4 (by frames), 5 (a run
+                   ///< on the grid of its map)
+  int table = 0;   ///< of the paper, 1 or 2, in the place of a figure
+  std::string run = {};                ///< of figures 2 and 5; empty: the first
   std::string measure = "ate_rmse_m";  ///< of figure 3: the key of a column
   double width_cm = 8.5;               ///< a column of a paper
 };

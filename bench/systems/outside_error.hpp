@@ -3,6 +3,7 @@
 
 #include "slam/core/error.hpp"
 #include "slam/core/trajectory.hpp"
+#include "slam/core/trajectory_io.hpp"
 
 namespace mh {
 
@@ -12,13 +13,10 @@ struct OutsideError : MachineError {
   using MachineError::MachineError;
 };
 
-/// A coordinate beyond this in an outside program's pose is garbage: no tour goes that far, and
-/// sums of squared errors stay finite.
-inline constexpr double kFarthest_m = 1e6;
-
-/// Whether a coordinate exceeds kFarthest_m.
+/// Whether a coordinate of an outside program's pose exceeds kFarthestPose_m: garbage, and sums of
+/// squared errors would not stay finite.
 inline bool is_too_far(const TimedPose& pose) {
-  return !(pose.world_from_camera.translation().cwiseAbs().maxCoeff() <= kFarthest_m);
+  return !(pose.world_from_camera.translation().cwiseAbs().maxCoeff() <= kFarthestPose_m);
 }
 
 }  // namespace mh

@@ -20,8 +20,8 @@ SE3 told_pose(const std::array<double, 7>& v, const Refuse& refuse) {
   if (!std::ranges::all_of(v, [](double x) { return std::isfinite(x); }))
     refuse(fmt::format("gave a pose of {}: a number is not finite", text));
   for (std::size_t k = 0; k < 3; ++k)
-    if (std::abs(v[k]) > kFarthest_m)
-      refuse(fmt::format("gave a pose more than {:g} m away: {}", kFarthest_m, text));
+    if (std::abs(v[k]) > kFarthestPose_m)
+      refuse(fmt::format("gave a pose more than {:g} m away: {}", kFarthestPose_m, text));
   const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
   if (std::abs(rotation.norm() - 1.0) > 0.1)
     refuse(fmt::format("gave a pose whose quaternion has norm {:g}", rotation.norm()));
@@ -99,7 +99,7 @@ void OutsideSystem::take(const Trajectory& finished) {
   for (const TimedPose& pose : finished) {
     const std::string at = format_stamp(pose.stamp_ns);
     if (is_too_far(pose))
-      fail(fmt::format("gave a pose more than {:g} m away in its trajectory, at {}", kFarthest_m,
+      fail(fmt::format("gave a pose more than {:g} m away in its trajectory, at {}", kFarthestPose_m,
                        at));
     if (!shown_.contains(pose.stamp_ns))
       fail(fmt::format("gave a pose at {} in its trajectory, a frame that it never saw", at));

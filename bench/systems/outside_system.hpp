@@ -17,7 +17,7 @@ namespace mh {
 /// Receives what is wrong with an answer; throws an OutsideError.
 using Refuse = std::function<void(const std::string& what)>;
 
-/// Converts [x, y, z, qx, qy, qz, qw] to a transform. Refuses coordinates beyond kFarthest_m,
+/// Converts [x, y, z, qx, qy, qz, qw] to a transform. Refuses coordinates beyond kFarthestPose_m,
 /// non-finite values and a quaternion far from unit length.
 SE3 told_pose(const std::array<double, 7>& values, const Refuse& refuse);
 

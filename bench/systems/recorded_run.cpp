@@ -45,7 +45,7 @@ Trajectory with_frame_stamps(Trajectory trajectory, std::span<const Stamp> frame
   std::optional<Stamp> first_strange;
   for (TimedPose& pose : trajectory) {
     if (is_too_far(pose))
-      child.fail(fmt::format("wrote a pose more than {:g} m away, at {}", kFarthest_m,
+      child.fail(fmt::format("wrote a pose more than {:g} m away, at {}", kFarthestPose_m,
                              format_stamp(pose.stamp_ns)));
     const std::optional<Stamp> frame = frame_of(pose.stamp_ns, frames);
     if (!frame && ++strange == 1) first_strange = pose.stamp_ns;

@@ -30,7 +30,7 @@ std::vector<Stamp> write_dataset(const std::filesystem::path& folder, const Came
 /// @returns the program's trajectory with the frames' own stamps
 /// @throws InputError if validate(program) does; OutsideError if the program fails, or its
 ///         trajectory is missing, malformed, or contains a non-finite number, a pose beyond
-///         kFarthest_m, a stamp that matches no frame or two poses for one frame.
+///         kFarthestPose_m, a stamp that matches no frame or two poses for one frame.
 Trajectory run_on_dataset(const OutsideProgram& program, const std::filesystem::path& folder,
                           std::span<const Stamp> stamps, std::uint64_t seed,
                           const std::filesystem::path& log);

@@ -229,12 +229,13 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
 }
 
 /// Replaces the labels of both sequences by a detector's.
-void add_detector(World& world, const DetectorSpec& spec, const Cache& cache) {
+void add_detector(World& world, const DetectorSpec& spec, const Cache& cache, const Say& say) {
   const std::shared_ptr<const Detector> detector =
       noted(world.inputs, "detector", source_of(spec), [&] { return open_detector(spec); });
   for (std::shared_ptr<const Sequence>* sequence : {&world.mapping, &world.second, &world.graded})
     if (*sequence != nullptr) {
-      detector->check_frames(stamps_of(**sequence));
+      if (const std::string note = detector->check_frames(stamps_of(**sequence)); !note.empty())
+        if (say) say("warning: " + note);
       *sequence = std::make_shared<DetectedSequence>(std::move(*sequence), detector,
                                                      spec.settings.fill, detections_in(cache));
     }
@@ -247,7 +248,7 @@ World build_world(const RunSpec& spec, int threads, const Cache& cache, const Sa
   World world = spec.environment.is_recorded() ? open_recordings(spec)
                                                : build(spec, threads, cache, say, baked);
   if (world.simulated) simulate(world, spec.labels.mode, images);
-  if (spec.labels.detector) add_detector(world, *spec.labels.detector, cache);
+  if (spec.labels.detector) add_detector(world, *spec.labels.detector, cache, say);
   std::ranges::move(inputs_of_program(spec), std::back_inserter(world.inputs));
   std::ranges::sort(world.inputs, {}, &InputDigest::name);
   return world;

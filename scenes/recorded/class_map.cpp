@@ -43,6 +43,12 @@ ClassMap load_class_map(const std::filesystem::path& file) {
   return map;
 }
 
+bool knows_none(const Grid2d<std::uint16_t>& ids, const ClassMap& map) {
+  const auto has_class = [&](std::uint16_t id) { return id < map.size() && map[id] != kVoid; };
+  return std::ranges::any_of(ids, [](std::uint16_t id) { return id != 0; }) &&
+         std::ranges::none_of(ids, has_class);
+}
+
 SemanticImage one_hot(const Grid2d<std::uint16_t>& ids, const ClassMap* map) {
   SemanticImage semantics;
   semantics.index = Grid2d<std::uint8_t>(ids.width(), ids.height());

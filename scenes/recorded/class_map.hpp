@@ -18,6 +18,9 @@ using ClassMap = std::vector<ClassId>;
 /// (.tsv). @throws InputError naming file and line.
 ClassMap load_class_map(const std::filesystem::path& file);
 
+/// Whether an image has ids other than 0, and none of them has a class.
+bool knows_none(const Grid2d<std::uint16_t>& ids, const ClassMap& map);
+
 /// A label image as exact distributions, one per class.
 /// @param map  meaning of the ids; null: they are our classes
 /// @throws InputError "class N is unknown" on an id beyond ours.

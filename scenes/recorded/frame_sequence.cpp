@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/image_file.hpp"
 #include "scenes/recorded/class_map.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -55,8 +56,14 @@ class FramesInMemory : public Sequence {
 ListedFrames list_tum_folder(const fs::path& folder, const RecordedCamera& camera,
                              std::vector<std::string>* notes) {
   ListedFrames listed{camera, load_tum_folder(folder, notes), {}, {}, {}};
+  std::error_code error;
   for (const char* name : {"groundtruth.txt", "groundtruth.csv"})
-    if (!listed.truth && is_file(folder / name)) listed.truth = read_trajectory(folder / name);
+    if (!listed.truth && is_file(folder / name))
+      listed.truth = read_trajectory(folder / name);
+    else if (!listed.truth && notes != nullptr &&
+             fs::exists(fs::symlink_status(folder / name, error)))
+      notes->push_back(
+          fmt::format("{}: is not a file: there is no truth in it", (folder / name).string()));
   return listed;
 }
 
@@ -75,6 +82,21 @@ fs::path calibration_of(const fs::path& folder, const RecordingConfig& config) {
                   folder.string()));
 }
 
+/// Ids of another table look like a place of nothing: the first labels tell.
+void note_foreign_labels(const ListedFrames& listed, const fs::path& classes,
+                         std::vector<std::string>& notes) {
+  const auto first = std::ranges::find_if(
+      listed.frames, [](const RecordedFrame& frame) { return !frame.classes.empty(); });
+  if (first == listed.frames.end()) {
+    notes.push_back(fmt::format("{}: has no use: the recording has no labels", classes.string()));
+    return;
+  }
+  const auto ids = decode_gray16(read_file(first->classes));
+  if (ids && knows_none(*ids, *listed.classes))
+    notes.push_back(fmt::format("{}: none of its ids has a class in {}: are they of another table?",
+                                first->classes.string(), classes.string()));
+}
+
 OpenedRecording open_tum(const fs::path& folder, const RecordingConfig& config) {
   if (!is_folder(folder)) throw InputError(fmt::format("{}: is not a folder", folder.string()));
   if (!is_tum_folder(folder))
@@ -83,7 +105,10 @@ OpenedRecording open_tum(const fs::path& folder, const RecordingConfig& config) 
   std::vector<std::string> notes;
   ListedFrames listed =
       list_tum_folder(folder, config.read_camera(calibration_of(folder, config)), &notes);
-  if (!config.classes.empty()) listed.classes = load_class_map(config.classes);
+  if (!config.classes.empty()) {
+    listed.classes = load_class_map(config.classes);
+    note_foreign_labels(listed, config.classes, notes);
+  }
   return open_listed(std::move(listed), config.labels, std::move(notes));
 }
 

@@ -10,11 +10,11 @@
 
 #include "scenes/recorded/frame_sequence.hpp"
 #include "scenes/recorded/tum_list.hpp"
+#include "scenes/recorded/valid_poses.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/text_file.hpp"
-#include "slam/core/trajectory_io.hpp"
 
 namespace mh {
 namespace {
@@ -52,8 +52,8 @@ std::vector<std::string> truth_files(const fs::path& folder) {
   return list_folder(folder, "*.gt.freiburg");
 }
 
-Trajectory read_truth(const fs::path& file) {
-  Trajectory truth = read_tum(file);
+Trajectory read_truth(const fs::path& file, std::vector<std::string>& notes) {
+  Trajectory truth = read_valid_poses(file, notes);
   for (TimedPose& pose : truth)
     pose = {stamp_of_number(pose.stamp_ns), reflected(pose.world_from_camera)};
   return truth;
@@ -92,13 +92,13 @@ OpenedRecording open_icl_nuim(const fs::path& folder, const RecordingConfig& con
   if (truth.size() != 1)
     throw InputError(fmt::format("{}: holds {}, one is needed", folder.string(),
                                  counted(truth.size(), ".gt.freiburg file")));
+  std::vector<std::string> notes;
   ListedFrames listed{.camera = {.camera = icl_nuim_camera()},
                       .frames = read_frames(folder),
                       .classes = {},
-                      .truth = read_truth(folder / truth.front()),
+                      .truth = read_truth(folder / truth.front(), notes),
                       .depth_camera = {}};
   if (!config.calibration.empty()) listed.camera = config.read_camera(config.calibration);
-  std::vector<std::string> notes;
   note_frames_without_pose(listed, (folder / truth.front()).string(), notes);
   return open_listed(std::move(listed), true, std::move(notes));
 }

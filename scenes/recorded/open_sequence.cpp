@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -16,7 +17,9 @@
 #include "scenes/recorded/seven_scenes.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/interpolate.hpp"
 #include "slam/core/read_record.hpp"
+#include "slam/core/trajectory_io.hpp"
 
 namespace mh {
 namespace {
@@ -37,6 +40,22 @@ void note_content(const fs::path& file) {
 }
 
 }  // namespace
+
+std::string truth_of_another_time(const Sequence& frames, const Trajectory& truth) {
+  if (truth.empty()) return "";
+  Stamp first_ns = std::numeric_limits<Stamp>::max(), last_ns = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Stamp stamp_ns = frames.stamp_ns(i);
+    if (interpolated_pose(truth, stamp_ns, kMaxTruthGap_ns)) return "";
+    first_ns = std::min(first_ns, stamp_ns);
+    last_ns = std::max(last_ns, stamp_ns);
+  }
+  return fmt::format(
+      "no frame has a true pose at its time, so that nothing is scored: frames are from {} s to {} "
+      "s, true poses from {} s to {} s",
+      format_stamp(first_ns), format_stamp(last_ns), format_stamp(truth.front().stamp_ns),
+      format_stamp(truth.back().stamp_ns));
+}
 
 std::span<const SequenceReader* const> sequence_readers() {
   return kReaders;
@@ -80,12 +99,19 @@ OpenedRecording open_sequence(const std::string& source, const RecordingConfig& 
   if (!config.topics.empty() && !reader.has_topics)
     throw InputError(fmt::format("{}: topics '{}': a recording of layout '{}' has none",
                                  path.string(), config.topics, reader.name));
-  if (!ReadScope::is_open()) return reader.open(path, config);
+  const auto open = [&] {
+    OpenedRecording opened = reader.open(path, config);
+    if (const Trajectory* truth = opened.sequence->truth())
+      if (const std::string note = truth_of_another_time(*opened.sequence, *truth); !note.empty())
+        opened.notes.push_back(fmt::format("{}: {}", path.string(), note));
+    return opened;
+  };
+  if (!ReadScope::is_open()) return open();
   OpenedRecording opened;
   std::uint64_t all = 0;
   {
     const ReadScope scope(ReadScope::Outer::kIgnores);
-    opened = reader.open(path, config);
+    opened = open();
     std::ranges::for_each(opened.files, note_content);
     all = digest(scope.record());
   }

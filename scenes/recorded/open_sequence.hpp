@@ -72,4 +72,7 @@ const SequenceReader& reader_of(const std::string& source);
 /// @throws InputError naming file and place.
 OpenedRecording open_sequence(const std::string& source, const RecordingConfig& config);
 
+/// States that the true poses are of another time than every frame; "" if they are not.
+std::string truth_of_another_time(const Sequence& frames, const Trajectory& truth);
+
 }  // namespace mh

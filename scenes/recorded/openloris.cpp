@@ -51,6 +51,12 @@ RecordedCamera read_sensors(const fs::path& file) {
   camera.cx_px = k[1];
   camera.fy_px = k[2];
   camera.cy_px = k[3];
+  if (auto model = color.find("distortion_model")) {
+    const std::string name = model->as_string();
+    for (const char* other : {"equidistant", "fisheye", "kannala", "omni", "fov"})
+      if (name.find(other) != std::string::npos)
+        model->fail(fmt::format("'{}' is read of no lens but radial-tangential ones", name));
+  }
   if (auto distortion = color.find("distortion_coefficients")) {
     const YamlReader data = distortion->at("data");
     std::vector<double> d = data.as_numbers();
@@ -104,12 +110,16 @@ SE3 base_from_camera(const fs::path& file) {
 
 std::optional<Trajectory> read_truth(const fs::path& folder, std::vector<std::string>& notes) {
   const fs::path truth = folder / "groundtruth.txt", transforms = folder / "trans_matrix.yaml";
-  if (!is_file(truth)) return std::nullopt;
+  if (!is_there(truth)) return std::nullopt;
+  if (!is_file(truth)) {
+    notes.push_back(fmt::format("{}: is not a file: there is no truth", truth.string()));
+    return std::nullopt;
+  }
   if (!is_file(transforms)) {
     notes.push_back(
-        fmt::format("{}: is missing: where the camera is on the robot is unknown, and "
+        fmt::format("{}: is {}: where the camera is on the robot is unknown, and "
                     "groundtruth.txt is not used",
-                    transforms.string()));
+                    transforms.string(), is_there(transforms) ? "not a file" : "missing"));
     return std::nullopt;
   }
   const SE3 base_from_color = base_from_camera(transforms);

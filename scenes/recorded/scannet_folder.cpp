@@ -87,10 +87,21 @@ class ScannetSequence : public Sequence {
       throw InputError(fmt::format("{}: depth {}", path.string(), error.what()));
     }
     std::ranges::copy(recording_->notes(), std::back_inserter(notes));
+    constexpr double kFar_m = 1;
+    const RecordingInfo& info = recording_->info();
+    const SE3 apart = info.color.device_from_camera.inverse() * info.depth.device_from_camera;
+    if (const double far_m = apart.translation().norm(); far_m > kFar_m)
+      notes.push_back(
+          fmt::format("{}: its extrinsics put {:g} m between the color and the depth camera: are "
+                      "they in meters?",
+                      path.string(), far_m));
     const SE3& device_from_camera = recording_->info().depth.device_from_camera;
     for (std::size_t i = 0; i < recording_->size(); ++i)
       if (const auto world_from_device = recording_->world_from_device(i))
         truth_.push_back({recording_->stamp_ns(i), *world_from_device * device_from_camera});
+    if (truth_.empty())
+      notes.push_back(
+          fmt::format("{}: no frame has a valid pose: there is no truth", path.string()));
     for (const ClassInfo& info : classes()) palette_.push_back(ClassDistribution::one_hot(info.id));
     fs::path folder = is_folder(path) ? path : path.parent_path();
     if (folder.empty()) folder = ".";
@@ -168,10 +179,7 @@ class ScannetSequence : public Sequence {
       const std::uint32_t number = recording_->number(i);
       const auto ids = labels_->contains(number) ? labels_->read(number) : std::nullopt;
       if (!ids || std::ranges::all_of(*ids, [](std::uint16_t id) { return id == 0; })) continue;
-      const bool any = std::ranges::any_of(*ids, [&](std::uint16_t id) {
-        return id < class_of_id_.size() && class_of_id_[id] != kVoid;
-      });
-      if (!any)
+      if (knows_none(*ids, class_of_id_))
         notes.push_back(
             fmt::format("{}: none of frame {}'s label ids has a class in {}: are they "
                         "of another table?",

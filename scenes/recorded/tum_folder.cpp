@@ -14,6 +14,7 @@
 #include "scenes/images/write_image.hpp"
 #include "scenes/recorded/nearest_stamp.hpp"
 #include "scenes/recorded/tum_list.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/text_file.hpp"
@@ -56,6 +57,10 @@ class ByStamp {
   StampIndex index_;
 };
 
+std::string form_of(int type) {
+  return fmt::format("{} of {} bits", counted(CV_MAT_CN(type), "channel"), 8 * CV_ELEM_SIZE1(type));
+}
+
 /// Reads a frame's image. Its declared format is checked before anything is decoded.
 cv::Mat read_frame_image(const fs::path& file, std::initializer_list<int> types,
                          const Camera& camera) {
@@ -73,7 +78,8 @@ cv::Mat read_frame_image(const fs::path& file, std::initializer_list<int> types,
     throw InputError(fmt::format("{}: {}", file.string(), error.what()));
   }
   if (std::ranges::find(types, image.type()) == types.end())
-    throw InputError(fmt::format("{}: has the wrong number of bits or channels", file.string()));
+    throw InputError(fmt::format("{}: has {}, needs {}", file.string(), form_of(image.type()),
+                                 form_of(*types.begin())));
   check_size(image.cols, image.rows);
   return image;
 }
@@ -109,6 +115,11 @@ std::vector<RecordedFrame> load_tum_folder(const fs::path& folder,
   if (frames.empty())
     throw InputError(
         fmt::format("{}: no color image has a depth image within 0.02 s", folder.string()));
+  const auto unlabeled = std::ranges::count_if(
+      frames, [](const RecordedFrame& frame) { return frame.classes.empty(); });
+  if (notes != nullptr && is_there(folder / "label.txt") && unlabeled > 0)
+    notes->push_back(fmt::format("{}: {} of {} frames have no label image within 0.02 s",
+                                 (folder / "label.txt").string(), unlabeled, frames.size()));
   if (notes != nullptr && frames.size() < color.size())
     notes->push_back(
         fmt::format("{}: {} of {} color images have no depth image within 0.02 s "

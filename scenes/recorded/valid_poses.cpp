@@ -21,12 +21,14 @@ Trajectory read_valid_poses(const std::filesystem::path& file, std::vector<std::
   std::string line;
   for (int number = 1; std::getline(text, line); ++number) {
     if (line.substr(0, line.find('#')).find_first_not_of(" \t\r") == std::string::npos) continue;
-    const std::string where = fmt::format("{}:{}", file.string(), number);
     try {
-      const TimedPose pose = parse_tum(line, where).front();
+      // Blank lines before it, so that messages count as the file does.
+      const TimedPose pose =
+          parse_tum(std::string(static_cast<std::size_t>(number - 1), '\n') + line, file.string())
+              .front();
       if (!poses.empty() && pose.stamp_ns <= poses.back().stamp_ns)
-        throw InputError(fmt::format("{}: stamp: {} does not come after {}", where,
-                                     format_stamp(pose.stamp_ns),
+        throw InputError(fmt::format("{}:{}: stamp: {} does not come after {}", file.string(),
+                                     number, format_stamp(pose.stamp_ns),
                                      format_stamp(poses.back().stamp_ns)));
       poses.push_back(pose);
     } catch (const InputError& error) {

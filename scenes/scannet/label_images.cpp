@@ -22,6 +22,8 @@ constexpr zip_uint64_t kLargestEntry = 1U << 28;
 
 Grid2d<std::uint16_t> decode(std::string_view bytes, const std::string& name) {
   if (const char* fault = image_fault(bytes)) throw InputError(fmt::format("{}: {}", name, fault));
+  if (!bytes.starts_with("\x89PNG"))
+    throw InputError(fmt::format("{}: is no PNG image, whose ids are exact", name));
   auto image = decode_gray16(bytes);
   if (!image) throw InputError(fmt::format("{}: is not an image of one channel", name));
   return std::move(*image);

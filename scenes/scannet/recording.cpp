@@ -17,6 +17,7 @@
 #include "slam/core/files.hpp"
 #include "slam/core/number_in.hpp"
 #include "slam/core/text_file.hpp"
+#include "slam/core/trajectory_io.hpp"
 
 namespace mh {
 namespace {
@@ -116,10 +117,12 @@ class ExtractedFolder : public Recording {
       notes_.push_back(
           fmt::format("{}: is absent: the {} camera is taken to be the device's origin",
                       extrinsics.string(), which));
-    return lens_of(read_matrix(intrinsics),
-                   is_there(extrinsics) ? read_matrix(extrinsics) : Eigen::Matrix4d::Identity(),
-                   static_cast<int>(size.width), static_cast<int>(size.height),
-                   intrinsics.string());
+    const Eigen::Matrix4d placed =
+        is_there(extrinsics) ? read_matrix(extrinsics) : Eigen::Matrix4d::Identity();
+    if (!pose_of(placed, extrinsics.string()))
+      throw InputError(fmt::format("{}: a number is not finite", extrinsics.string()));
+    return lens_of(read_matrix(intrinsics), placed, static_cast<int>(size.width),
+                   static_cast<int>(size.height), intrinsics.string());
   }
 
   void note_lonely(const char* which, const NumberedFiles& files, const NumberedFiles& others) {
@@ -240,8 +243,7 @@ std::optional<SE3> pose_of(const Eigen::Matrix4d& matrix, const std::string& wha
     throw InputError(fmt::format("{}: the upper left 3 x 3 of a pose is not a rotation", what));
   if (!(matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).isZero(1e-6))
     throw InputError(fmt::format("{}: the last row of a pose is not 0 0 0 1", what));
-  constexpr double kFarthest_m = 1e6;
-  if (const double far_m = matrix.topRightCorner<3, 1>().cwiseAbs().maxCoeff(); far_m > kFarthest_m)
+  if (const double far_m = matrix.topRightCorner<3, 1>().cwiseAbs().maxCoeff(); far_m > kFarthestPose_m)
     throw InputError(fmt::format("{}: a pose lies {:g} m from the origin", what, far_m));
   return SE3(Eigen::Quaterniond(rotation), matrix.topRightCorner<3, 1>());
 }

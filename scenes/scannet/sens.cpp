@@ -33,6 +33,11 @@ constexpr std::uint64_t kDeflateLimit = 1032;  // the maximum expansion of a def
 enum ColorKind : std::int32_t { kRawColor = 0, kPng = 1, kJpeg = 2 };
 enum DepthKind : std::int32_t { kRawDepth = 0, kZlib = 1 };
 
+/// The file ends too early.
+struct Truncated : InputError {
+  using InputError::InputError;
+};
+
 /// Takes values from the front of the bytes.
 class Cursor {
  public:
@@ -43,10 +48,13 @@ class Cursor {
   }
   void need(std::uint64_t size, const std::string& what) const {
     if (size > bytes_.size() - at_)
-      fail(fmt::format("is truncated: it ends within {}, which needs {} bytes ({} are left)", what,
-                       size, bytes_.size() - at_));
+      throw Truncated(
+          fmt::format("{}: byte {}: is truncated: it ends within {}, which needs {} bytes ({} are "
+                      "left)",
+                      name_, at_, what, size, bytes_.size() - at_));
   }
   std::size_t left() const { return bytes_.size() - at_; }
+  void end() { at_ = bytes_.size(); }
   template <class T>
   T take(const char* what) {
     need(sizeof(T), what);
@@ -84,7 +92,7 @@ class SensFile : public Recording {
   SensFile(HeldBytes bytes, const std::string& name) : held_(std::move(bytes)), name_(name) {
     Cursor cursor(held_.view, name_);
     const std::uint64_t frames = read_header(cursor);
-    for (std::uint64_t i = 0; i < frames; ++i) frames_.push_back(read_record(cursor, i));
+    read_frames(cursor, frames);
     if (frames_.empty()) throw InputError(fmt::format("{}: holds no frame", name_));
     mend_stamps();
     note_faulty_poses();
@@ -146,6 +154,18 @@ class SensFile : public Recording {
       cursor.fail(fmt::format("{} images of {} x {}: sides must be 1 to {} pixels", which,
                               size.width, size.height, kLongestSide_px));
     return size;
+  }
+
+  /// A recording that was cut short is used as far as its frames are whole.
+  void read_frames(Cursor& cursor, std::uint64_t frames) {
+    for (std::uint64_t i = 0; i < frames; ++i) try {
+        frames_.push_back(read_record(cursor, i));
+      } catch (const Truncated& error) {
+        if (frames_.empty()) throw;
+        notes_.push_back(fmt::format("{}; {} of {} frames are used", error.what(), i, frames));
+        cursor.end();
+        return;
+      }
   }
 
   FrameRecord read_record(Cursor& cursor, std::uint64_t index) {

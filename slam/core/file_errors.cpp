@@ -15,6 +15,9 @@ void throw_unwritable(const fs::path& file, int error) {
   if (error == ENOSPC || error == EDQUOT)
     throw DiskFullError(
         fmt::format("{}: the disk is full: make room and run again", file.string()));
+  if (error == EFBIG)
+    throw MachineError(fmt::format("{}: cannot be written: {}", file.string(),
+                                   std::generic_category().message(error)));
   throw InputError(fmt::format("{}: cannot be written{}", file.string(),
                                error == 0 ? "" : ": " + std::generic_category().message(error)));
 }

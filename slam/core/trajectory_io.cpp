@@ -16,6 +16,7 @@
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/legible.hpp"
 #include "slam/core/number_in.hpp"
 #include "slam/core/text_file.hpp"
 
@@ -54,7 +55,7 @@ struct Place {
   int line;
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(fmt::format("{}:{}: {}", file, line, what));
+    throw InputError(fmt::format("{}:{}: {}", file, line, legible(what)));
   }
 };
 
@@ -114,6 +115,8 @@ void add_pose(Trajectory& trajectory, Stamp stamp_ns, const Eigen::Vector3d& pos
               const Eigen::Quaterniond& rotation, const Place& place) {
   if (std::abs(rotation.norm() - 1.0) > 0.1)
     place.fail(fmt::format("quaternion: norm {:g}, expected 1", rotation.norm()));
+  if (const double far_m = position_m.cwiseAbs().maxCoeff(); far_m > kFarthestPose_m)
+    place.fail(fmt::format("position: lies {:g} m from the origin", far_m));
   trajectory.push_back({stamp_ns, SE3(rotation, position_m)});
 }
 

@@ -28,8 +28,8 @@ class Detector {
   virtual const ClassNames& names() const = 0;
   /// One line for a person: "yolox, 80 classes, input 416 x 416".
   virtual std::string description() const = 0;
-  /// Checks that a box file's frames belong to this sequence. @returns a note that counts those
-  /// that do not, or "". @throws InputError if none does
+  /// Checks that a box file's frames belong to this sequence, and that a class is one of ours.
+  /// @returns a note on what is without use, or "". @throws InputError if no frame belongs
   virtual std::string check_frames(std::span<const Stamp> /*stamps_ns*/) const { return ""; }
   /// Digest of everything besides the image that decides what detect() returns; 0 if detections
   /// are not cached.

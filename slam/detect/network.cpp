@@ -14,6 +14,7 @@
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
 
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/guarded_child.hpp"
@@ -294,6 +295,12 @@ class Network : public Detector {
                fmt::format("OpenCV {} input {} x {}", CV_VERSION, imported_.input.width,
                            imported_.input.height);
     digest_ = XXH3_64bits_withSeed(decides.data(), decides.size(), digest_);
+  }
+
+  std::string check_frames(std::span<const Stamp>) const override {
+    if (std::ranges::any_of(imported_.names.ids, [](ClassId id) { return id != kVoid; })) return "";
+    return fmt::format("{}: none of its {} has the name of a class of ours: all labels stay void",
+                       file_.string(), counted(imported_.names.size(), "class", "classes"));
   }
 
   Detected detect(const Grid2d<Rgb8>& color, std::size_t, Stamp) const override {

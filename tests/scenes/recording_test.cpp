@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/scannet/recording.hpp"
 
+#include <set>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -101,12 +103,22 @@ TEST_F(SensFile, ReadsBackWhatItWrote) {
   EXPECT_TRUE(names(error_of([&] { open_recording(folder_); }), {"2 .sens files"}));
 }
 
-TEST_F(SensFile, AnyTruncationIsAnErrorThatNamesTheFile) {
+TEST_F(SensFile, CutAnywhereTheFramesBeforeAreUsed) {
   const std::string whole = bytes();
   EXPECT_EQ(error(whole), "");
   const std::size_t frames_end = whole.size() - 8;  // then come inertial measurements, unread
-  for (std::size_t size = 0; size < frames_end; size += 13)
-    EXPECT_TRUE(names(error(whole.substr(0, size)), {"a.sens", "truncated"})) << size;
+  std::set<std::size_t> used;
+  for (std::size_t size = 0; size < frames_end; size += 13) {
+    std::vector<std::string> notes;
+    const std::string refused = error_of([&] {
+      const auto recording = open_sens(hold(whole.substr(0, size)), "a.sens");
+      notes = recording->notes();
+      used.insert(recording->size());
+      recording->frame(recording->size() - 1);
+    });
+    EXPECT_TRUE(names(notes.empty() ? refused : notes.front(), {"a.sens", "truncated"})) << size;
+  }
+  EXPECT_EQ(used, (std::set<std::size_t>{1, 2})) << "without a whole frame it is refused";
 }
 
 TEST_F(SensFile, SaysWhichFieldIsWrong) {
@@ -117,7 +129,9 @@ TEST_F(SensFile, SaysWhichFieldIsWrong) {
   EXPECT_TRUE(names(error(with(whole, kKinds + 4, std::int32_t{2})), {"depth compression 2"}));
   EXPECT_TRUE(names(error(with(whole, kSizes, std::uint32_t{100000})), {"100000 x 8"}));
   EXPECT_TRUE(names(error(with(whole, kMatrices, 0.0F)), {"color camera", "fx 0"}));
-  EXPECT_TRUE(names(error(with(whole, kCount, std::uint64_t{1} << 62)), {"frame 3", "truncated"}));
+  const auto more = open_sens(hold(with(whole, kCount, std::uint64_t{1} << 62)), "a.sens");
+  EXPECT_EQ(more->size(), 3U);
+  EXPECT_TRUE(names(more->notes().at(0), {"frame 3", "truncated", "3 of 4611686018427387904"}));
   EXPECT_TRUE(names(error(with(whole, kDepthSize, std::uint64_t{1} << 62)),
                     {"frame 0's depth image", "truncated"}));
 }
@@ -277,6 +291,15 @@ TEST_F(Extracted, APoseThatIsNoneIsToldAndCostsItsFrameTheTruth) {
   EXPECT_TRUE(names(note("1 0 0 0 0 1 0 0 0 0 1 0 5 5 5 5\n"), {"pose/0.txt", "last row"}));
   EXPECT_TRUE(names(note("1 0 0 1e30 0 1 0 0 0 0 1 0 0 0 0 1\n"), {"pose/0.txt", "1e+30 m"}));
   EXPECT_TRUE(names(note("1 0 0 0 0 x"), {"pose/0.txt", "number 6", "'x'"}));
+}
+
+TEST_F(Extracted, ABadExtrinsicIsNamedAsTheFileThatItIs) {
+  save_extracted(folder_, info(), 1, moment);
+  for (const char* matrix :
+       {"2 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n", "-inf 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"}) {
+    write("intrinsic/extrinsic_color.txt", matrix);
+    EXPECT_TRUE(names(error_of([&] { open_recording(folder_); }), {"extrinsic_color.txt"}));
+  }
 }
 
 TEST_F(Extracted, NamesTheFileThatIsWrong) {

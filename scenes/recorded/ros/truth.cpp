@@ -7,8 +7,10 @@
 
 #include "scenes/recorded/ros/names.hpp"
 #include "scenes/recorded/ros/topics.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/interpolate.hpp"
+#include "slam/core/trajectory_io.hpp"
 
 namespace mh {
 namespace {
@@ -109,11 +111,16 @@ std::optional<Trajectory> by_topic(const RosTopics& topics, const PoseTopic& top
   return ordered(std::move(truth));
 }
 
-}  // namespace
-
-std::optional<Trajectory> true_trajectory(const RosTopics& topics, const TopicNames& names,
-                                          const ImageTopic& color, std::vector<std::string>& notes,
-                                          const std::string& file) {
+std::optional<Trajectory> find_truth(const RosTopics& topics, const TopicNames& names,
+                                     const ImageTopic& color, std::vector<std::string>& notes,
+                                     const std::string& file) {
+  if (names.truth == "/tf") {
+    auto truth = by_tf(topics, color);
+    if (!truth)
+      throw InputError(fmt::format(
+          "{}: tf leads from neither 'world' nor 'map' to the camera's '{}'", file, color.frame));
+    return truth;
+  }
   if (!names.truth.empty()) {
     const auto named = topics.poses.find(names.truth);
     if (named == topics.poses.end())
@@ -143,6 +150,24 @@ std::optional<Trajectory> true_trajectory(const RosTopics& topics, const TopicNa
   auto truth = by_tf(topics, color);
   if (truth)
     notes.push_back(fmt::format("{}: truth is taken from tf, for '{}'", file, color.frame));
+  return truth;
+}
+
+}  // namespace
+
+std::optional<Trajectory> true_trajectory(const RosTopics& topics, const TopicNames& names,
+                                          const ImageTopic& color, std::vector<std::string>& notes,
+                                          const std::string& file) {
+  auto truth = find_truth(topics, names, color, notes, file);
+  if (!truth) return truth;
+  const auto is_far = [](const TimedPose& pose) {
+    return pose.world_from_camera.translation().cwiseAbs().maxCoeff() > kFarthestPose_m;
+  };
+  if (const std::size_t far = std::erase_if(*truth, is_far); far > 0)
+    notes.push_back(fmt::format(
+        "{}: {} more than {:g} m from the origin and {} left out of the truth", file,
+        counted(far, "true pose lies", "true poses lie"), kFarthestPose_m, far == 1 ? "is" : "are"));
+  if (truth->empty()) return std::nullopt;
   return truth;
 }
 

@@ -143,6 +143,14 @@ TEST_F(DetectorCommands, OverwriteNeitherInputsNorForeignFiles) {
                  "scene.yaml: is read by this command");
   expect_refused("detector fit " + network() + " --out " + path("two.yaml"),
                  "two.yaml: is read by this command");
+  write_atomically(path("notes.yaml"), "mine: 1\n");
+  expect_refused("detector fit " + network() + " --scenes office --out " + path("notes.yaml"),
+                 "notes.yaml: is not a sensor level");
+  expect_refused("detector score " + network() + " --scenes office office", "is named twice");
+  write_atomically(path("named.yaml"), "network: " + path("chairs.onnx") + "\n");
+  expect_refused("detector run " + path("room") + " --detector missing.onnx --detector-settings " +
+                     path("named.yaml") + " --out " + path("none"),
+                 "one of them says what is run");
 }
 
 TEST_F(DetectorCommands, AShorterRunLeavesNothingOfALongerOne) {
@@ -151,11 +159,32 @@ TEST_F(DetectorCommands, AShorterRunLeavesNothingOfALongerOne) {
   ASSERT_EQ(run(command + " --frames 3"), 0) << err_;
   EXPECT_NE(out_.find("ms an image"), out_.npos) << out_;
   write_atomically(path("shorter/foreign.png"), "mine");
+  write_atomically(path("shorter/000900.png"), "mine");
   ASSERT_EQ(run(command + " --frames 1"), 0) << err_;
   EXPECT_NE(out_.find("1 from the cache"), out_.npos) << out_;
   EXPECT_TRUE(fs::exists(path("shorter/000000.png")));
   EXPECT_FALSE(fs::exists(path("shorter/000001.png")));
   EXPECT_EQ(read_file(path("shorter/foreign.png")), "mine");
+  EXPECT_EQ(read_file(path("shorter/000900.png")), "mine");
+  write_atomically(path("shorter/000002.png"), "mine");
+  expect_refused(command + " --frames 3", "000002.png: is there already");
+  EXPECT_EQ(read_file(path("shorter/000002.png")), "mine");
+  // Its own result is no input.
+  expect_refused("detector run " + path("room") + " --detector " + path("shorter/detections.json") +
+                     " --out " + path("shorter"),
+                 "detections.json: lies in the folder to write");
+}
+
+TEST_F(DetectorCommands, AnInterruptedRunLeavesTheResultBeforeIt) {
+  const std::string command =
+      "detector run " + path("room") + " " + network() + " --frames 2 --out " + path("kept");
+  ASSERT_EQ(run(command), 0) << err_;
+  const std::string before = read_file(path("kept/detections.json"));
+  // One frame is fewer bytes than this limit, a run's images are more: writing fails midway.
+  const std::string limited = "sh -c 'ulimit -f 1; " MH_EXECUTABLE " " + command + "'";
+  EXPECT_EQ(std::system((limited + " >/dev/null 2>&1").c_str()) / 256, 3);
+  EXPECT_EQ(read_file(path("kept/detections.json")), before);
+  EXPECT_TRUE(fs::exists(path("kept/000001.png")));
 }
 
 TEST_F(DetectorCommands, ACacheThatKeepsNothingIsTold) {

@@ -5,11 +5,13 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "bench/pages/page_table.hpp"
+#include "bench/pages/plot.hpp"
 #include "bench/pages/verdict.hpp"
 #include "bench/pages/write.hpp"
 #include "slam/core/temporary_folder.hpp"
@@ -234,6 +236,81 @@ TEST_F(Reports, OfAStudyOf4020RunsStaySmall) {
   const WrittenPages written = write_pages(out(), std::array{source});
   EXPECT_LT(written.bytes, 25'000'000U);
   RecordProperty("megabytes", std::to_string(written.bytes / 1'000'000));
+}
+
+// ---- for papers ---------------------------------------------------------------------------------
+
+class Plotted : public Reports {
+ protected:
+  Plotted() {
+    Suite suite = made_up_suite(work_.path(), {"bath", "kitchen", "lobby"});
+    int seed = 0;
+    for (Environment& e : suite.environments)
+      e.scene = fmt::format("generated:bathroom:{}", seed++);
+    source_ = source_of_suite(suite);
+    OccupancyGrid& grid = source_.results.runs.front().grid;
+    grid.resolution_m = 0.5;
+    grid.origin_m = {-3, -3};
+    grid.cells = Grid2d<std::int8_t>(12, 12, kFreeCell);
+    for (int x = 2; x < 6; ++x) grid.cells(x, 3) = kOccupiedCell;
+  }
+  std::string script(const PlotOrder& order) const {
+    return plot_script(source_, order, work_.path() / "plot.pdf");
+  }
+  /// Colors of a PNG that gnuplot drew.
+  std::size_t colors_of(const PlotOrder& order) const {
+    const fs::path file = work_.path() / "plot.png";
+    write_plot(file, source_, order);
+    const auto image = decode_color(read_file(file));
+    std::set<std::uint32_t> colors;
+    for (const Rgb8 c : image.value()) colors.insert(c.r << 16U | c.g << 8U | c.b);
+    return colors.size();
+  }
+  PagesSource source_{.name = "made up", .folder = {}};
+};
+
+TEST_F(Plotted, FiguresHoldTheNumbersOfTheResults) {
+  const RunResult& run = source_.results.runs.front();
+  EXPECT_NE(script({.figure = 3}).find(fmt::format("{}\n", *run.trajectory.ate_rmse_m)),
+            std::string::npos);
+  const Eigen::Vector3d at = run.truth[7].world_from_camera.translation();
+  EXPECT_NE(script({.figure = 2}).find(fmt::format("\n{} {}\n", at.x(), at.y())),
+            std::string::npos);
+  // Four occupied cells of 0.5 m from x = -2 on, in the row from y = -1.5 on.
+  EXPECT_NE(script({.figure = 5}).find("\n-1 -1.25 -2 0 -1.5 -1\n"), std::string::npos);
+  EXPECT_EQ(script({.figure = 2}).find("boxxyerror"), std::string::npos);
+  for (const int figure : {2, 3, 4, 5}) EXPECT_GT(colors_of({.figure = figure}), 8U) << figure;
+}
+
+TEST_F(Plotted, TablesAreThoseOfThePages) {
+  for (const int table : {1, 2}) {
+    EXPECT_GT(colors_of({.table = table}), 8U);
+    const std::string text = script({.table = table});
+    for (const char* word : {"'semantic'", "'plain'", table == 1 ? "'ATE m'" : "'success, %'"})
+      EXPECT_NE(text.find(word), std::string::npos) << table << word;
+  }
+  EXPECT_NE(script({.table = 2}).find("'published, other data'"), std::string::npos);
+  EXPECT_NE(script({.table = 2}).find("'79.25'"), std::string::npos);
+}
+
+TEST_F(Plotted, WhatTheResultsLackIsNamed) {
+  const auto error = [&](const PlotOrder& order) -> std::string {
+    try {
+      script(order);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  source_.results.runs[1].grid = {};
+  EXPECT_NE(error({.figure = 5, .run = source_.results.runs[1].spec.name}).find("left no grid"),
+            std::string::npos);
+  EXPECT_NE(error({.figure = 2, .run = "nobody"}).find("no run 'nobody'"), std::string::npos);
+  source_ = source_of({"den"});
+  EXPECT_NE(error({.table = 1}).find("one environment"), std::string::npos);
+  EXPECT_NE(error({.figure = 3}).find("no environment was generated"), std::string::npos);
+  source_.results.runs.clear();
+  EXPECT_NE(error({.figure = 2}).find("no finished run"), std::string::npos);
 }
 
 // ---- in a browser -------------------------------------------------------------------------------

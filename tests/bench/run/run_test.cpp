@@ -454,19 +454,20 @@ TEST(Sweep, TheBestPointIsComparedWithTheSuitesOwnSettings) {
   EXPECT_NE(table.find("held_out: 100.00% at each of 4 points"), std::string::npos) << table;
   runs[0].points[0].held_out = runs[0].points[2].held_out;
   EXPECT_NE(results_table(place.suite, runs).find("; 2 points are equal\n"), std::string::npos);
-  const cv::Mat image = draw_sweep(place.suite, rows, results[0]);
-  EXPECT_GT(image.cols, 1000);
+  const PlotPage page = sweep_chart(place.suite, rows, results[0]);
+  ASSERT_EQ(page.plots.size(), 6U) << "three measures of two sets of queries";
+  const ShadedField& field = page.plots[0].field.value();
+  EXPECT_TRUE(field.cells);
+  EXPECT_EQ(field.framed, 2U);
+  ASSERT_EQ(field.marks.size(), 4U);
+  EXPECT_EQ(field.marks[2].value, 100);
+  EXPECT_EQ(field.marks[2].text, "100.0");
+  EXPECT_EQ(field.marks[2].x, 0) << "alpha 0.7, the first of two";
+  EXPECT_EQ(field.marks[2].y, 1) << "gamma 1, the second";
+  EXPECT_NE(page.caption.find("most correct answers at gamma 1, alpha 0.7: 100.0 %"),
+            std::string::npos)
+      << page.caption;
   EXPECT_EQ(sweep_image_name(place.suite, results[0]), "sweep-semantic-exact-fake.png");
-}
-
-/// Number of areas of this color in an image, not counting specks.
-int areas_of(const cv::Mat& image, const cv::Scalar& bgr) {
-  cv::Mat is_it, components, statistics, middles;
-  cv::inRange(image, bgr, bgr, is_it);
-  const int count = cv::connectedComponentsWithStats(is_it, components, statistics, middles);
-  int areas = 0;
-  for (int k = 1; k < count; ++k) areas += statistics.at<int>(k, cv::CC_STAT_AREA) > 10'000 ? 1 : 0;
-  return areas;
 }
 
 TEST(Sweep, OfMoreThanTwoSettingsEachPairHasAPanel) {
@@ -483,13 +484,16 @@ TEST(Sweep, OfMoreThanTwoSettingsEachPairHasAPanel) {
     place.suite.sweep.points.push_back(point);
   }
   const std::vector<RunResult> runs = place.run();
-  const cv::Scalar ground(249, 247, 246);  // BGR
   for (const auto& [settings, pairs] : {std::pair(std::size_t{4}, 6), {3, 3}, {2, 1}}) {
     place.suite.sweep.varied.resize(settings);
     const std::vector<Row> rows = make_rows(place.suite, runs);
-    const cv::Mat image = draw_sweep(place.suite, rows, sweep_results(place.suite, rows).front());
-    const int sets = 2;  // held out, second tour
-    EXPECT_EQ(areas_of(image, ground), sets * pairs) << settings;
+    const PlotPage page = sweep_chart(place.suite, rows, sweep_results(place.suite, rows).front());
+    const std::size_t sets = 2;  // held out, second tour
+    EXPECT_EQ(page.plots.size(), sets * static_cast<std::size_t>(pairs)) << settings;
+    for (const Plot& plot : page.plots) {
+      EXPECT_FALSE(plot.field.value().cells);
+      EXPECT_EQ(plot.field->marks.size(), 3U);
+    }
   }
 }
 

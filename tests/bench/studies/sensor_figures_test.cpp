@@ -74,7 +74,8 @@ TEST(SensorFigures, WhatWasMeasuredLiesOnWhatWasPublished) {
     if (plot.title == "Detector: how well boxes lie") {
       // One figure is published: of the boxes that lie better than 0.5, so many better than 0.75.
       const auto& dots = plot.series[1].points;
-      EXPECT_EQ(dots[0], cv::Point2d(0.5, 1.0));
+      EXPECT_EQ(dots[0].x, 0.5);
+      EXPECT_EQ(dots[0].y, 1.0);
       EXPECT_EQ(dots[5].x, 0.75);
       EXPECT_NEAR(dots[5].y, value_at(plot.series[0], 0.7499999), 0.02);
       EXPECT_NEAR(value_at(plot.series[0], 0.7499999), 34.4 / 57.9, 1e-6);

@@ -90,6 +90,16 @@ TEST_F(IclNuim, FramesWithoutAPoseAreCounted) {
       << opened.notes[0];
 }
 
+TEST_F(IclNuim, ALineThatIsNoPoseCostsItsFrameTheTruth) {
+  write_truth("0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n2 1e300 0 0 0 0 0 1\n");
+  const OpenedRecording opened = open_sequence("icl_nuim:" + folder_.string(), {});
+  EXPECT_EQ(opened.sequence->truth()->size(), 1U);
+  ASSERT_FALSE(opened.notes.empty());
+  EXPECT_NE(opened.notes[0].find("2 lines are left out"), std::string::npos) << opened.notes[0];
+  EXPECT_NE(opened.notes[0].find(".gt.freiburg:2: tx: 'nan'"), std::string::npos)
+      << opened.notes[0];
+}
+
 TEST_F(IclNuim, RefusesAFolderWithoutOneTruth) {
   EXPECT_NE(complaint().find("holds 0 .gt.freiburg files, one is needed"), std::string::npos)
       << complaint();

@@ -12,6 +12,7 @@
 
 #include "bench/inputs/recorded_camera.hpp"
 #include "scenes/image_file.hpp"
+#include "scenes/recorded/open_sequence.hpp"
 #include "scenes/recorded/tum_folder.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/random.hpp"
@@ -128,6 +129,38 @@ TEST_F(TumFolder, NamesWhatIsWrong) {
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("rgb.txt: lists no image"), std::string::npos);
   }
+}
+
+TEST_F(TumFolder, WhatHasNoUseIsTold) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "rgb.txt") << "0.1 a.png\n";
+  std::ofstream(folder_ / "depth.txt") << "0.1 b.png\n";
+  std::ofstream(folder_ / "label.txt") << "9.1 c.png\n";
+  std::ofstream(folder_ / "classes.yaml") << "900: chair\n";
+  std::ofstream(folder_ / "groundtruth.txt") << "77 0 0 0 0 0 0 1\n";
+  Grid2d<std::uint8_t> ids(8, 6, std::uint8_t{5});
+  std::ofstream(folder_ / "c.png", std::ios::binary) << encode_png(ids);
+  const auto notes = [&](const fs::path& classes) {
+    RecordingConfig config{.calibration = "x", .classes = classes};
+    config.read_camera = [&](const fs::path&) { return RecordedCamera{camera_, 5000}; };
+    std::string all;
+    for (const std::string& note : open_sequence("tum:" + folder_.string(), config).notes)
+      all += note + "\n";
+    return all;
+  };
+  EXPECT_NE(notes("").find("label.txt: 1 of 1 frames have no label image"), std::string::npos);
+  EXPECT_NE(notes("").find("no frame has a true pose at its time"), std::string::npos) << notes("");
+  const fs::path classes = folder_ / "classes.yaml";
+  EXPECT_NE(notes(classes).find("has no use: the recording has no labels"), std::string::npos);
+  std::ofstream(folder_ / "label.txt") << "0.1 c.png\n";
+  EXPECT_NE(notes(classes).find("c.png: none of its ids has a class"), std::string::npos)
+      << notes(classes);
+  fs::remove(folder_ / "groundtruth.txt");
+  fs::create_directories(folder_ / "groundtruth.txt");
+  EXPECT_EQ(notes("").find("its time"), std::string::npos);
+  EXPECT_NE(notes("").find("groundtruth.txt: is not a file"), std::string::npos) << notes("");
+  std::ofstream(folder_ / "classes.yaml") << "5: chair\n";
+  EXPECT_EQ(notes(classes).find("none of its ids"), std::string::npos);
 }
 
 TEST_F(TumFolder, KeepsTheOrderOfStampsThatGoBack) {

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// `modelhouse bench` on a suite with episodes and `modelhouse episode`, as a user starts them.
+#include <algorithm>
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "slam/core/temporary_folder.hpp"
+#include "tests/bench/cli/small_suite.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::content;
+
+class EpisodeCommands : public testing::Test {
+ protected:
+  EpisodeCommands() { write_suite("sofa"); }
+
+  void write_suite(const std::string& goal) const {
+    const std::string root = MH_SOURCE_DIR;
+    std::ofstream(suite()) << "robot: " << root << "/robots/pepper/pepper.yaml\nenvironments:\n"
+                           << "- {category: room, scene: " << root
+                           << "/bench/scenarios/room.yaml, mapping_tour: " << root
+                           << "/bench/scenarios/tours/room.yaml}\nvocabulary: " << root
+                           << "/assets/vocabulary.mhvoc\nlevels: [" << root
+                           << "/sim/sensors/levels/pepper.yaml]\nsystems: [plain]\nlabels: "
+                              "[exact]\nprotocol: {test_interval: 0}\nepisodes: {starts: 2, "
+                              "limit_s: 25, goals: ["
+                           << goal << "]}\n";
+  }
+  int run(const std::string& arguments) const {
+    const std::string to = work_.path().string();
+    return test::code_of(std::system(("XDG_CACHE_HOME=" MH_TEST_CACHE " " MH_EXECUTABLE " " +
+                                      arguments + " >" + to + "/stdout 2>" + to + "/stderr")
+                                         .c_str()));
+  }
+  std::string said() const { return content(work_.path() / "stderr"); }
+  fs::path suite() const { return work_.path() / "small.yaml"; }
+  std::string out(const char* name) const { return (work_.path() / name).string(); }
+
+  TemporaryFolder work_{fs::temp_directory_path()};
+};
+
+TEST_F(EpisodeCommands, OneEpisodeIsTheOneThatTheSuiteScored) {
+  const std::string cache = " --cache " MH_TEST_CACHE "/modelhouse-cache";
+  ASSERT_EQ(run("bench " + suite().string() + " --jobs 2 --out " + out("all") + cache), 0)
+      << said();
+  EXPECT_NE(content(out("all") + "/table.txt").find("2 kidnappings"), std::string::npos);
+  const std::string text = content(out("all") + "/episodes.json");
+  ASSERT_FALSE(text.empty());
+
+  ASSERT_EQ(run("episode " + suite().string() + " --start 1 --json --out " + out("one") + cache), 0)
+      << said();
+  const json one = json::parse(content(work_.path() / "stdout"));
+  const std::string digest = one.at("digest").dump();
+  EXPECT_NE(text.find(digest), std::string::npos) << "another episode than the suite's: " << digest;
+  EXPECT_EQ(json::parse(content(out("one") + "/episode.json")), one);
+  EXPECT_NE(content(out("one") + "/log.txt").find("s  "), std::string::npos);
+  EXPECT_TRUE(content(out("one") + "/strip.png").starts_with("\x89PNG"));
+
+  // Done once: the second time nothing is driven.
+  ASSERT_EQ(run("bench " + suite().string() + " --out " + out("all") + cache), 0) << said();
+  EXPECT_EQ(content(out("all") + "/episodes.json"), text);
+}
+
+TEST_F(EpisodeCommands, WhatCannotBeMeantIsOneClearError) {
+  const auto refused = [&](const std::string& arguments, const std::string& part) {
+    EXPECT_EQ(run(arguments), 2) << said();
+    const std::string all = said();
+    const auto at = all.find("modelhouse: error: ");
+    ASSERT_NE(at, std::string::npos) << all;
+    EXPECT_NE(all.find(part, at), std::string::npos) << all;
+    EXPECT_EQ(std::ranges::count(all.substr(at), '\n'), 1) << all;
+  };
+  const std::string episode = "episode " + suite().string() + " --out " + out("none");
+  refused(episode + " --system semantik", "'semantik' is not in");
+  refused(episode + " --start x", "--start");
+  refused("episode " + std::string(MH_SOURCE_DIR) + "/bench/suites/ci.yaml --out " + out("none"),
+          "episodes");
+  write_suite("soaf");
+  refused(episode, "soaf");
+  EXPECT_FALSE(fs::exists(out("none") + "/episode.json"));
+}
+
+}  // namespace
+}  // namespace mh
