@@ -8,6 +8,7 @@
 #include "scenes/recorded/open_sequence.hpp"
 #include "sim/world/scene_sequence.hpp"
 #include "slam/core/error.hpp"
+#include "slam/features/undistort.hpp"
 
 namespace mh::cli {
 namespace {
@@ -91,6 +92,11 @@ Source open_source(const SourceOptions& options) {
   config.read_camera = camera_reader(&settings);
   config.has_camera = settings_have_camera;
   OpenedRecording opened = open_sequence(source, config);
+  try {
+    require_undistortable(opened.sequence->camera());
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", source, error.what()));
+  }
   if (!settings.has_camera)
     return {settings_beside(options, *opened.sequence, opened.notes), std::move(opened.sequence)};
   settings.notes.insert(settings.notes.end(), opened.notes.begin(), opened.notes.end());

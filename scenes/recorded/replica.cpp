@@ -41,8 +41,8 @@ RecordedCamera read_camera_file(const fs::path& file) {
     if (found == json["camera"].end())
       throw InputError(fmt::format("{}: camera: key '{}' is missing", file.string(), key));
     if (!found->is_number() || !(found->get<double>() > 0) || !(found->get<double>() < 1e6))
-      throw InputError(fmt::format("{}: camera: {}: {} is not a positive number", file.string(),
-                                   key, found->dump().substr(0, 40)));
+      throw InputError(fmt::format("{}: camera: {}: {} is not a number between 0 and 1e6",
+                                   file.string(), key, found->dump().substr(0, 40)));
     return found->get<double>();
   };
   RecordedCamera recorded;

@@ -243,7 +243,8 @@ std::optional<SE3> pose_of(const Eigen::Matrix4d& matrix, const std::string& wha
     throw InputError(fmt::format("{}: the upper left 3 x 3 of a pose is not a rotation", what));
   if (!(matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).isZero(1e-6))
     throw InputError(fmt::format("{}: the last row of a pose is not 0 0 0 1", what));
-  if (const double far_m = matrix.topRightCorner<3, 1>().cwiseAbs().maxCoeff(); far_m > kFarthestPose_m)
+  if (const double far_m = matrix.topRightCorner<3, 1>().cwiseAbs().maxCoeff();
+      far_m > kFarthestPose_m)
     throw InputError(fmt::format("{}: a pose lies {:g} m from the origin", what, far_m));
   return SE3(Eigen::Quaterniond(rotation), matrix.topRightCorner<3, 1>());
 }

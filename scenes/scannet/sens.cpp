@@ -136,7 +136,7 @@ class SensFile : public Recording {
       cursor.fail(fmt::format("depth compression {} is not one of 0 raw, 1 zlib", depth_kind_));
     const ImageSize color = take_size(cursor, "color"), depth = take_size(cursor, "depth");
     info_.depth_per_meter = cursor.take<float>("the depth shift");
-    if (!(info_.depth_per_meter > 0) || info_.depth_per_meter > 1e6)
+    if (!(info_.depth_per_meter >= 1e-3) || info_.depth_per_meter > 1e6)
       cursor.fail(fmt::format("a depth shift of {}", info_.depth_per_meter));
     info_.color = lens_of(color_intrinsics, color_extrinsics, static_cast<int>(color.width),
                           static_cast<int>(color.height), name_ + ": color camera");

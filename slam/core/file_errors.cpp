@@ -33,7 +33,9 @@ const char* why_unreadable(const fs::path& file) {
     case fs::file_type::not_found:
       return "no such file";
     case fs::file_type::none:
-      return error == std::errc::permission_denied ? "no permission" : "the system refuses";
+      return error == std::errc::permission_denied               ? "no permission"
+             : error == std::errc::too_many_symbolic_link_levels ? "its links lead in a circle"
+                                                                 : "the system refuses";
     default:
       return "it is not a file";
   }

@@ -15,8 +15,8 @@ inline constexpr double kFarthestPose_m = 1e6;
 /// world), '#' starts a comment. Stamps are read exactly, digit by digit, to nanoseconds;
 /// quaternions are normalized.
 /// @throws InputError "file:line: place: value" on a wrong count of numbers, a malformed or
-/// non-finite number, a position beyond kFarthestPose_m, a negative stamp, a quaternion whose norm is
-/// more than 0.1 from 1, a stamp that does not increase, or a file without poses.
+/// non-finite number, a position beyond kFarthestPose_m, a negative stamp, a quaternion whose norm
+/// is more than 0.1 from 1, a stamp that does not increase, or a file without poses.
 Trajectory read_tum(const std::filesystem::path& file);
 /// Parses the same from text; `name` names the file in messages.
 Trajectory parse_tum(const std::string& text, const std::string& name);

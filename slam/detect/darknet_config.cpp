@@ -92,15 +92,33 @@ void check_anchors(const fs::path& file, const Section& layer) {
              fmt::format("there is no anchor {} among {}", index, sides.size() / 2));
 }
 
+/// Checks that a layer takes what layers before it made: by number, or, negative, counted backward.
+void check_sources(const fs::path& file, const Section& layer, int number) {
+  for (const char* key : {"layers", "from"}) {
+    const auto stated = layer.values.find(key);
+    if (stated == layer.values.end()) continue;
+    for (const double from : numbers_of(file, key, stated->second)) {
+      const double index = from < 0 ? number + from : from;
+      if (index < 0 || index >= number || from != static_cast<int>(from))
+        refuse(file, key, stated->second,
+               fmt::format("no layer before this one is number {}", index));
+    }
+  }
+}
+
 }  // namespace
 
 InputSize darknet_input(const std::string& config, const fs::path& file) {
   InputSize size;
-  for (const Section& section : sections_of(config))
-    if (section.name == "[net]" || section.name == "[network]")
+  int layers = 0;
+  for (const Section& section : sections_of(config)) {
+    if (section.name == "[net]" || section.name == "[network]") {
       size = {side_of(file, section, "width"), side_of(file, section, "height")};
-    else
-      check_anchors(file, section);
+      continue;
+    }
+    check_anchors(file, section);
+    check_sources(file, section, layers++);
+  }
   return size;
 }
 

@@ -164,9 +164,10 @@ std::optional<Trajectory> true_trajectory(const RosTopics& topics, const TopicNa
     return pose.world_from_camera.translation().cwiseAbs().maxCoeff() > kFarthestPose_m;
   };
   if (const std::size_t far = std::erase_if(*truth, is_far); far > 0)
-    notes.push_back(fmt::format(
-        "{}: {} more than {:g} m from the origin and {} left out of the truth", file,
-        counted(far, "true pose lies", "true poses lie"), kFarthestPose_m, far == 1 ? "is" : "are"));
+    notes.push_back(
+        fmt::format("{}: {} more than {:g} m from the origin and {} left out of the truth", file,
+                    counted(far, "true pose lies", "true poses lie"), kFarthestPose_m,
+                    far == 1 ? "is" : "are"));
   if (truth->empty()) return std::nullopt;
   return truth;
 }

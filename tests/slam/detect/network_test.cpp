@@ -270,6 +270,9 @@ TEST_F(Networks, OfDarknetAreRefusedByTheConfigurationsLine) {
   EXPECT_SAYS(with("width=64", "Width=64"), "a.cfg: section [net] states no width");
   EXPECT_SAYS(with("mask=0,1,2", "mask=0,1,3"), "mask = 0,1,3: there is no anchor 3 among 3");
   EXPECT_SAYS(with("mask=0,1,2", "mask=-3,1,2"), "there is no anchor -3 among 3");
+  EXPECT_SAYS(with("[yolo]", "[route]\nlayers=-9\n[yolo]"),
+              "layers = -9: no layer before this one");
+  EXPECT_SAYS(with("[yolo]", "[shortcut]\nfrom=7\n[yolo]"), "from = 7: no layer before this one");
   EXPECT_SAYS(with("8,8, 16", "-8,8, 16"), "a side of a box is positive");
   EXPECT_SAYS(with("8,8, 16", "nan,8, 16"), "'nan' is not a number");
   EXPECT_SAYS(with("[convolutional]", "[convolute]"), "a.cfg: ");
