@@ -110,9 +110,7 @@ bool is_image_name(const std::string& name) {
 
 /// What a command reads could be taken for what it writes.
 void require_read_elsewhere(const DetectorArguments& options, const DetectorSpec& spec) {
-  std::vector<fs::path> read = {
-      spec.network,    spec.config, spec.classes, spec.boxes, options.detector.settings,
-      options.settings};
+  std::vector<fs::path> read = {spec.boxes};
   for (const std::string& source : options.sources)
     if (is_image(source)) read.emplace_back(source);
   std::error_code error;

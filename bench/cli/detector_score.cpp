@@ -15,6 +15,7 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/detector_option.hpp"
+#include "bench/cli/level_file.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/studies/detector_score.hpp"
 #include "bench/studies/draw_detections.hpp"
@@ -308,16 +309,6 @@ void score(DetectorScoreArguments options) {
   write_image(fs::path(options.out) / "missed.png", worst.sheet(open_detector(spec)->names()));
 }
 
-/// A level may replace a level, but no other file.
-bool is_level(const fs::path& file) {
-  try {
-    load_sensor_config(file);
-    return true;
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
 void fit(DetectorScoreArguments options) {
   const DetectorSpec spec = spec_of(options);
   resolve(options.base, Shipped::kLevel);
@@ -330,9 +321,7 @@ void fit(DetectorScoreArguments options) {
                                 options.detector.settings};
   read.insert(read.end(), options.scenes.begin(), options.scenes.end());
   require_writable(options.out, read);
-  if (is_file(options.out) && !is_level(options.out))
-    throw InputError(
-        fmt::format("{}: is not a sensor level: name another file to write", options.out));
+  require_no_other_than_level(options.out);
   SensorConfig level = load_sensor_config(options.base);
   const ReadScope scope;
   const Judged judged = judge(options, spec, nullptr);

@@ -66,7 +66,7 @@ class ViewsOf {
       };
       list.push_back({{"frame", index},
                       {"ms", (keyframe.stamp_ns - run_.truth.front().stamp_ns) / 1'000'000},
-                      {"jpeg", picture(usable_frame(*world_.mapping, index, noise))},
+                      {"jpeg", image(usable_frame(*world_.mapping, index, noise))},
                       {"keypoints", keypoints(keyframe.features, flag_of)}});
     }
     return list;
@@ -100,7 +100,7 @@ class ViewsOf {
     return {{"set", name(set)},
             {"frame", score.answer.index},
             {"stage", name(answer.stage)},
-            {"jpeg", picture(frame)},
+            {"jpeg", image(frame)},
             {"keypoints", keypoints(prepared.features, [](std::size_t) { return 0U; })},
             {"candidates", std::move(tried)}};
   }
@@ -136,7 +136,7 @@ class ViewsOf {
     return base64(bytes);
   }
 
-  /// Where the picture shows a keypoint, tenths of a pixel: its lens is that of the camera.
+  /// Where the image shows a keypoint, tenths of a pixel: its lens is that of the camera.
   void put_pixel(const Keypoint& keypoint, std::vector<std::uint8_t>& bytes) const {
     const Camera& c = frozen_.camera;
     const Eigen::Vector3d ray = c.unproject(keypoint.u_px, keypoint.v_px, 1.0);
@@ -147,7 +147,7 @@ class ViewsOf {
     }
   }
 
-  std::string picture(const RgbdFrame& frame) const {
+  std::string image(const RgbdFrame& frame) const {
     constexpr int kQuality = 72;
     const Grid2d<Rgb8>& color = frame.color;
     const cv::Mat whole(color.height(), color.width(), CV_8UC3, const_cast<Rgb8*>(color.data()));
@@ -164,7 +164,7 @@ class ViewsOf {
   TrueCamera camera_;
   TrueMap truth_;
   AskAgain again_;
-  double scale_;  ///< of pictures
+  double scale_;  ///< of images
   std::map<KeyframeId, std::size_t> place_of_;
 };
 

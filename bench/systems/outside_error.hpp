@@ -2,8 +2,6 @@
 #pragma once
 
 #include "slam/core/error.hpp"
-#include "slam/core/trajectory.hpp"
-#include "slam/core/trajectory_io.hpp"
 
 namespace mh {
 
@@ -12,11 +10,5 @@ namespace mh {
 struct OutsideError : MachineError {
   using MachineError::MachineError;
 };
-
-/// Whether a coordinate of an outside program's pose exceeds kFarthestPose_m: garbage, and sums of
-/// squared errors would not stay finite.
-inline bool is_too_far(const TimedPose& pose) {
-  return !(pose.world_from_camera.translation().cwiseAbs().maxCoeff() <= kFarthestPose_m);
-}
 
 }  // namespace mh

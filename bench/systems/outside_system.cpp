@@ -98,9 +98,6 @@ void OutsideSystem::take(const Trajectory& finished) {
   std::map<Stamp, SE3> poses;
   for (const TimedPose& pose : finished) {
     const std::string at = format_stamp(pose.stamp_ns);
-    if (is_too_far(pose))
-      fail(fmt::format("gave a pose more than {:g} m away in its trajectory, at {}",
-                       kFarthestPose_m, at));
     if (!shown_.contains(pose.stamp_ns))
       fail(fmt::format("gave a pose at {} in its trajectory, a frame that it never saw", at));
     if (!poses.emplace(pose.stamp_ns, pose.world_from_camera).second)

@@ -493,7 +493,7 @@ TEST_F(CommandLine, AFileBeyondTheLimitIsAnErrorNotASilentEnd) {
       " --motion handheld:0 --frames 3 --format mcap --robot " + robot_ + " --out " +
       (folder_ / "out").string() + " 2>" + (folder_ / "said").string() + "'";
   const int status = std::system(command.c_str());
-  EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 2);
+  EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 3);
   EXPECT_NE(content(folder_ / "said").find("out.mcap: cannot be written: File too large"),
             std::string::npos)
       << content(folder_ / "said");

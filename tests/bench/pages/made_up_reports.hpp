@@ -109,7 +109,7 @@ inline std::vector<RunResult> made_up_runs(const Suite& suite, std::size_t frame
   return runs;
 }
 
-/// A replay of the first run: two keyframes, and pictures of them and of its queries.
+/// A replay of the first run: two keyframes, and images of them and of its queries.
 inline void put_replay(PagesSource& source) {
   using Json = nlohmann::ordered_json;
   const RunResult& run = source.results.runs.front();

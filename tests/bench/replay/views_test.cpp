@@ -57,19 +57,19 @@ class Views : public testing::Test {
   Json json_ = views_json(a_.run, in_, a_.frozen);
 };
 
-TEST_F(Views, OfAKeyframeAreItsPictureAndItsFeatures) {
+TEST_F(Views, OfAKeyframeAreItsImageAndItsFeatures) {
   std::size_t place = 0;
   for (const Keyframe& keyframe : a_.frozen.map.keyframes()) {
     if (keyframe.erased) continue;
     const Json& view = json_.at("keyframes").at(place++);
     EXPECT_EQ(in_.mapping->stamp_ns(view.at("frame").get<std::size_t>()), keyframe.stamp_ns);
-    const auto picture = decode_color(bytes_of(view.at("jpeg").get<std::string>()));
-    ASSERT_TRUE(picture);
-    EXPECT_EQ(picture->width(), json_.at("width_px").get<int>());
-    EXPECT_EQ(picture->height(), json_.at("height_px").get<int>());
+    const auto image = decode_color(bytes_of(view.at("jpeg").get<std::string>()));
+    ASSERT_TRUE(image);
+    EXPECT_EQ(image->width(), json_.at("width_px").get<int>());
+    EXPECT_EQ(image->height(), json_.at("height_px").get<int>());
     const std::string points = bytes_of(view.at("keypoints").get<std::string>());
     ASSERT_EQ(points.size(), 6 * keyframe.features.size());
-    const double scale = static_cast<double>(picture->width()) / in_.mapping->camera().width_px;
+    const double scale = static_cast<double>(image->width()) / in_.mapping->camera().width_px;
     for (std::size_t i = 0; i < keyframe.features.size(); ++i) {
       const Keypoint& keypoint = keyframe.features.keypoints[i];
       EXPECT_NEAR(pixel(points, 6 * i), (keypoint.u_px + 0.5) * scale - 0.5, 0.06);
