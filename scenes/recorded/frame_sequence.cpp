@@ -56,12 +56,10 @@ class FramesInMemory : public Sequence {
 ListedFrames list_tum_folder(const fs::path& folder, const RecordedCamera& camera,
                              std::vector<std::string>* notes) {
   ListedFrames listed{camera, load_tum_folder(folder, notes), {}, {}, {}};
-  std::error_code error;
   for (const char* name : {"groundtruth.txt", "groundtruth.csv"})
     if (!listed.truth && is_file(folder / name))
       listed.truth = read_trajectory(folder / name);
-    else if (!listed.truth && notes != nullptr &&
-             fs::exists(fs::symlink_status(folder / name, error)))
+    else if (!listed.truth && notes != nullptr && is_there(folder / name))
       notes->push_back(
           fmt::format("{}: is not a file: there is no truth in it", (folder / name).string()));
   return listed;

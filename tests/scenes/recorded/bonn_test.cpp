@@ -73,7 +73,7 @@ TEST_F(Bonn, LinesThatAreNoPoseAreCounted) {
   write_truth("0 0 0 0 0 0 0 1\n0.01 nan 0 0 0 0 0 1\n0.02 0 0 0\n");
   const OpenedRecording opened = open();
   EXPECT_EQ(opened.sequence->truth()->size(), 1U);
-  ASSERT_EQ(opened.notes.size(), 1U);
+  ASSERT_FALSE(opened.notes.empty());
   EXPECT_NE(opened.notes[0].find("groundtruth.txt: 2 lines are left out"), std::string::npos)
       << opened.notes[0];
   EXPECT_NE(opened.notes[0].find("groundtruth.txt:2: tx"), std::string::npos) << opened.notes[0];
