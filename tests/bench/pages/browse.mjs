@@ -237,7 +237,7 @@ async function views(page, go, report) {
   expect(first.pairs === 2 && first.right === 1 && first.wrong === 1, `${report}: a query shows ${JSON.stringify(first)}`);
   await page.waitForTimeout(200);
   expect(await isDrawn(page), `${report}: a query's picture stays empty`);
-  await page.getByLabel("Candidate").selectOption("1");
+  await page.locator(".query .views select").selectOption("1");
   expect((await marksOf(page)).pairs === 0, `${report}: the second candidate shows the first one's matches`);
   measured.views = (measured.views ?? 0) + 1;
 }
