@@ -117,7 +117,7 @@ std::vector<RecordedFrame> load_tum_folder(const fs::path& folder,
         fmt::format("{}: no color image has a depth image within 0.02 s", folder.string()));
   const auto unlabeled = std::ranges::count_if(
       frames, [](const RecordedFrame& frame) { return frame.classes.empty(); });
-  if (notes != nullptr && is_there(folder / "label.txt") && unlabeled > 0)
+  if (notes != nullptr && !labels.empty() && unlabeled > 0)
     notes->push_back(fmt::format("{}: {} of {} frames have no label image within 0.02 s",
                                  (folder / "label.txt").string(), unlabeled, frames.size()));
   if (notes != nullptr && frames.size() < color.size())
