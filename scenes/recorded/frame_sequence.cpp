@@ -89,10 +89,14 @@ void note_foreign_labels(const ListedFrames& listed, const fs::path& classes,
     notes.push_back(fmt::format("{}: has no use: the recording has no labels", classes.string()));
     return;
   }
-  const auto ids = decode_gray16(read_file(first->classes));
-  if (ids && knows_none(*ids, *listed.classes))
-    notes.push_back(fmt::format("{}: none of its ids has a class in {}: are they of another table?",
-                                first->classes.string(), classes.string()));
+  try {
+    const auto ids = decode_gray16(read_file(first->classes));
+    if (ids && knows_none(*ids, *listed.classes))
+      notes.push_back(
+          fmt::format("{}: none of its ids has a class in {}: are they of another table?",
+                      first->classes.string(), classes.string()));
+  } catch (const InputError&) {  // its frame is skipped, not the recording
+  }
 }
 
 OpenedRecording open_tum(const fs::path& folder, const RecordingConfig& config) {

@@ -175,17 +175,18 @@ class ScannetSequence : public Sequence {
 
   /// Ids of another table look like a room of nothing: the first frame with labels tells.
   void note_foreign_ids(const fs::path& table, std::vector<std::string>& notes) const {
-    for (std::size_t i = 0; i < size(); ++i) {
-      const std::uint32_t number = recording_->number(i);
-      const auto ids = labels_->contains(number) ? labels_->read(number) : std::nullopt;
-      if (!ids || std::ranges::all_of(*ids, [](std::uint16_t id) { return id == 0; })) continue;
-      if (knows_none(*ids, class_of_id_))
-        notes.push_back(
-            fmt::format("{}: none of frame {}'s label ids has a class in {}: are they "
-                        "of another table?",
-                        labels_->place(), number, table.string()));
-      return;
-    }
+    for (std::size_t i = 0; i < size(); ++i) try {
+        const std::uint32_t number = recording_->number(i);
+        const auto ids = labels_->read(number);
+        if (!ids || std::ranges::all_of(*ids, [](std::uint16_t id) { return id == 0; })) continue;
+        if (knows_none(*ids, class_of_id_))
+          notes.push_back(
+              fmt::format("{}: none of frame {}'s label ids has a class in {}: are they "
+                          "of another table?",
+                          labels_->place(), number, table.string()));
+        return;
+      } catch (const InputError&) {  // its frame is skipped, not the recording
+      }
   }
 
   Grid2d<Rgb8> color_at(const Grid2d<Rgb8>& image, const cv::Mat& columns,

@@ -94,9 +94,15 @@ TEST_F(ScannetFolder, ATableThatKnowsNoneOfTheIdsIsTold) {
     return kScannetReader.open(folder_ / "s", config).notes;
   };
   EXPECT_TRUE(notes({}).empty());
-  const auto told = notes({.classes = folder_ / "other.yaml"});
+  const auto told = notes({.calibration = {}, .classes = folder_ / "other.yaml"});
   ASSERT_EQ(told.size(), 1U);
   EXPECT_TRUE(names(told[0], {"s_2d-label-filt.zip", "frame 0", "other.yaml"}));
+  // A damaged image of labels costs its frame, not the recording.
+  write("d/a.sens", read_file(folder_ / "s" / "s.sens"));
+  write("d/label-filt/0.png", "no image");
+  EXPECT_TRUE(
+      kScannetReader.open(folder_ / "d", {.calibration = {}, .classes = folder_ / "other.yaml"})
+          .notes.empty());
 }
 
 TEST_F(ScannetFolder, SaysWhichFileIsWrongAndWhichLabelsAreMissing) {

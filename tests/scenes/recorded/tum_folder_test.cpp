@@ -155,6 +155,9 @@ TEST_F(TumFolder, WhatHasNoUseIsTold) {
   std::ofstream(folder_ / "label.txt") << "0.1 c.png\n";
   EXPECT_NE(notes(classes).find("c.png: none of its ids has a class"), std::string::npos)
       << notes(classes);
+  fs::remove(folder_ / "c.png");  // costs its frame the labels, not the recording
+  EXPECT_EQ(notes(classes).find("none of its ids"), std::string::npos);
+  std::ofstream(folder_ / "c.png", std::ios::binary) << encode_png(ids);
   fs::remove(folder_ / "groundtruth.txt");
   fs::create_directories(folder_ / "groundtruth.txt");
   EXPECT_EQ(notes("").find("its time"), std::string::npos);
