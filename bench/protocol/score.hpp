@@ -14,42 +14,43 @@ namespace mh {
 /// Which mapped frame anchors a query's true pose in the map.
 enum class NearestBy {
   kTime,   ///< held-out frames: the mapped frame nearest in time
-  kPlace,  ///< another tour: the mapped frame truly nearest, 1 rad equivalent to 1 m
+  kPlace,  ///< another tour: the mapped frame nearest by true pose, 1 rad counted as 1 m
 };
 
-/// The mapped frame, by index into `truth` (the mapping sequence) and its estimate.
+/// What a query's true pose is measured from: a mapped frame or, with QueryTruth::kInterpolated, the
+/// estimate at the query's own time.
 struct Anchor {
   SE3 estimate;  ///< world_from_camera of the system
   SE3 truth;     ///< world_from_camera, true
   Stamp stamp_ns = 0;
 };
 
-/// A query's moment and its camera's true pose, absent if unknown.
+/// A query's time and its camera's true pose, absent if unknown.
 struct QueryMoment {
   Stamp stamp_ns = 0;
   std::optional<SE3> true_world_from_camera = {};
   QueryMoment(Stamp stamp, const std::optional<SE3>& truth)
       : stamp_ns(stamp), true_world_from_camera(truth) {}
-  // NOLINTNEXTLINE(google-explicit-constructor): a pose of the truth is a query's whole moment
+  // NOLINTNEXTLINE(google-explicit-constructor): a timed true pose has both parts of a moment
   QueryMoment(const TimedPose& truth) : QueryMoment(truth.stamp_ns, truth.world_from_camera) {}
 };
 
 /// Exact pose of the query camera in the system's own map: the anchor's estimated pose composed
 /// with the true motion from the anchor to the query. Drift of the map elsewhere has no effect (the
-/// paper's 0.02 m, at an APE of 0.2 m, shows that its distance was local too).
+/// paper's Table 1 has distances of 0.02 m beside an APE of 0.2 m, so that they must be local too).
 SE3 local_truth(const Anchor& anchor, const SE3& true_world_from_camera);
 
 /// Returns the anchor of a query; nullopt if nothing was mapped. Ties go to the earlier frame.
 std::optional<Anchor> nearest_mapped(const Trajectory& estimate, const Trajectory& mapping_truth,
                                      const TimedPose& true_query, NearestBy by);
 
-/// Returns a query's moment with its true camera pose, by a true trajectory.
+/// Returns a query's time with its true camera pose, by a true trajectory.
 /// @param truth  may be null: unknown
 QueryMoment moment_of(Stamp stamp_ns, const Trajectory* truth);
 
-/// Returns the anchor that config.truth prescribes. Interpolation is for held-out frames: a query
-/// anchored by place has no neighbors in time and is compared as by kLocal. Only interpolation
-/// needs no truth.
+/// Returns the anchor that config.truth prescribes. Interpolation applies to held-out frames: a
+/// query of another tour has no neighbors in time and is scored as by kLocal. Interpolation works
+/// without truth, kLocal does not.
 std::optional<Anchor> find_anchor(const Trajectory& estimate, const Trajectory& mapping_truth,
                                   const QueryMoment& query, NearestBy by,
                                   const ProtocolConfig& config);
@@ -86,8 +87,8 @@ void fields(S& score, Visit& v) {
   v("grade", grade);
 }
 
-/// Whether an answer can be judged: there is a truth, or a distance without one
-/// (QueryTruth::kInterpolated).
+/// Whether an answer can be judged: the query's true pose is known, or a distance was computed
+/// without it (QueryTruth::kInterpolated).
 inline bool is_judged(const QueryScore& q) {
   return q.true_world_from_camera.has_value() || q.distance_m.has_value();
 }

@@ -24,7 +24,8 @@ struct RecordingConfig {
   std::string topics = {};
   /// Reads a calibration file, for layouts that keep one. @throws InputError
   std::function<RecordedCamera(const std::filesystem::path&)> read_camera = {};
-  /// Whether such a file has a camera: for layouts that store one, which it then replaces.
+  /// Whether a calibration file defines a camera. If so, it replaces the one that the recording
+  /// stores, in layouts that store one.
   std::function<bool(const std::filesystem::path&)> has_camera = {};
 };
 
@@ -36,7 +37,7 @@ struct OpenedRecording {
   std::vector<std::string> notes;            ///< what could not be used, one line each
 };
 
-/// A recording layout. What adding one takes is listed in docs/recordings.md.
+/// A recording layout. To add one, see docs/recordings.md.
 struct SequenceReader {
   const char* name;   ///< the prefix in LAYOUT:PATH: "tum"
   const char* place;  ///< what follows it: "FOLDER"
@@ -53,7 +54,7 @@ struct SequenceReader {
 /// Every layout, in the order in which they are tried on a path.
 std::span<const SequenceReader* const> sequence_readers();
 
-/// "tum:FOLDER or scannet:FOLDER": what a user may name.
+/// Every accepted form, for messages: "tum:FOLDER, scannet:FOLDER, ...".
 std::string sequence_forms();
 
 /// Splits a recording's name into the layout ("" if none is named) and the path.
@@ -66,13 +67,13 @@ std::string join_sequence(const std::string& layout, const std::filesystem::path
 /// @throws InputError if it is neither named nor recognized.
 const SequenceReader& reader_of(const std::string& source);
 
-/// Opens a recording, "LAYOUT:PATH" or a path whose layout is recognized. An open ReadScope
-/// records one observation: the digest of all files of the recording, images included, which reads
-/// them all.
+/// Opens a recording, "LAYOUT:PATH" or a path whose layout is recognized. If a
+/// ReadScope is open, it records one observation, the digest of all files of the recording, images
+/// included: computing it reads every file.
 /// @throws InputError naming file and place.
 OpenedRecording open_sequence(const std::string& source, const RecordingConfig& config);
 
-/// States that the true poses are of another time than every frame; "" if they are not.
+/// Returns a message if the ground truth has poses but none near the time of any frame; otherwise "".
 std::string truth_of_another_time(const Sequence& frames, const Trajectory& truth);
 
 }  // namespace mh

@@ -5,7 +5,7 @@
 
 namespace mh {
 
-/// Brown-Conrady ("plumb bob") lens distortion, the order of OpenCV and ROS.
+/// Brown-Conrady ("plumb bob") lens distortion, coefficients in the order of OpenCV and ROS.
 struct Distortion {
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
   bool none() const { return k1 == 0 && k2 == 0 && p1 == 0 && p2 == 0 && k3 == 0; }
@@ -20,12 +20,13 @@ struct Camera {
   double cx_px = 319.5, cy_px = 239.5;
   Distortion distortion;
   double rate_hz = 30.0;
-  /// Baseline of the depth sensor's triangulation: a depth z has disparity fx * b / z, which sets
-  /// its weight. 0.075 m: PrimeSense, Khoshelham and Elberink, Sensors 2012.
+  /// Baseline of the depth sensor's triangulation: a depth z has disparity fx * b / z, whose error
+  /// determines how much the depth weighs. 0.075 m: Khoshelham and Elberink, Sensors 2012.
   double baseline_m = 0.075;
-  /// Standard deviation of that disparity in addition to the keypoint's own (1 px at octave 0,
-  /// scaled with the octave: a misplaced keypoint reads its depth at the wrong pixel). 0.1 px: an
-  /// Xtion's 0.0019 z^2 m, Nguyen et al., 3DIMPVT 2012, at fx = 577 px.
+  /// Standard deviation of the measured disparity. The keypoint's own uncertainty is added to it
+  /// (1 px at octave 0, more at higher octaves), because a misplaced keypoint reads its depth at
+  /// the wrong pixel. 0.1 px: a Kinect's 0.0019 z^2 m (Nguyen et al., 3DIMPVT 2012) is 0.08 px at
+  /// fx = 577 px, rounded up.
   double disparity_sigma_px = 0.1;
 
   /// Projects a point to its (undistorted) pixel. @pre z is positive.
@@ -46,8 +47,9 @@ struct Camera {
   friend bool operator==(const Camera&, const Camera&) = default;
 };
 
-/// @throws InputError naming the field when a size or focal length is not positive, or the
-/// principal point is outside the image.
+/// @throws InputError naming the first field that is out of range: sizes, rate, baseline and
+/// disparity_sigma_px must be positive, the focal lengths plausible for the image's size, and the
+/// principal point inside the image.
 void validate(const Camera& camera);
 
 }  // namespace mh

@@ -44,7 +44,7 @@ struct DepthModel {
 /// Averages the depth of each pixel with those of its eight neighbors that lie on the same surface:
 /// within three standard deviations of the noise. A pixel with fewer than two such neighbors floats
 /// between two surfaces, as the sensor makes them at edges, and becomes one without a return.
-/// @param noise_per_m  the standard deviation is this times the squared depth. 0.0019: an Xtion's,
+/// @param noise_per_m  the standard deviation is this times the squared depth. 0.0019: a Kinect's,
 /// Nguyen et al., 3DIMPVT 2012
 Grid2d<float> smoothed_depth(const Grid2d<float>& depth_m, double noise_per_m = 0.0019);
 

@@ -10,7 +10,8 @@
 
 namespace mh {
 
-/// A feature whose position is known only from the last frame's depth: not a landmark of the map.
+/// A feature whose position is known only from the last frame's depth: not a landmark of the map
+/// (a "temporal point" of ORB-SLAM2).
 struct PassingPoint {
   std::uint32_t feature;
   Eigen::Vector3d position_in_world;
@@ -23,7 +24,7 @@ struct TrackedPose {
   int inliers = 0;
   Matrix6d information = Matrix6d::Zero();  ///< see PoseEstimate
   bool unsure = false;                      ///< the image alone does not determine the pose
-  std::vector<PassingPoint> passing = {};   ///< inliers of the motion model that have no landmark
+  std::vector<PassingPoint> passing = {};   ///< inliers of track_motion() without a landmark
 };
 
 /// Estimates a frame's pose from the last frame and a motion guess: the last frame's landmarks, and
@@ -32,9 +33,10 @@ struct TrackedPose {
 std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& last, const SE3& guess,
                                         const SlamContext& context);
 
-/// Counts how many of the last frame's points (as in track_motion) the guess puts where a keypoint
-/// can be: if there are few, the frame cannot be tracked from the last one, however well its motion
-/// is known. The border is that of the finest level.
+/// Counts the last frame's points (as in track_motion) that the guess projects far enough inside
+/// the image for a keypoint to be detected there. If there are few, the frame cannot be tracked
+/// from the last one, however well its motion is known. The border is that of the finest pyramid
+/// level.
 int count_that_can_be_found(const LastFrame& last, const SE3& guess, const Map& map,
                             const Camera& camera);
 
@@ -74,9 +76,9 @@ bool needs_keyframe(const TrackedPose& tracked, const Features& features, Keyfra
 
 /// Optimizes a pose over matched landmarks and collects the inliers, per feature; the common last
 /// step of all tracking stages.
-/// @param passing  additional observations where the feature has no landmark; never inliers. In a
-///                 young map, landmarks alone may cover a narrow part of the image, in which
-///                 rotation and translation look alike.
+/// @param passing  additional observations for features without a landmark: they constrain the pose
+///                 but are not counted in `inliers`. In a young map, landmarks alone may cover a
+///                 narrow part of the image, in which rotation and translation look alike.
 std::optional<TrackedPose> optimize_matches(const Query& query,
                                             const std::vector<LandmarkId>& landmarks,
                                             std::span<const PassingPoint> passing, const SE3& guess,
