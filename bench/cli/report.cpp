@@ -37,16 +37,26 @@ void add_replays(std::vector<PagesSource>& sources, const ReportArguments& optio
     });
   };
   std::vector<std::string> names{"all", "failed"};
+  std::size_t without = 0;
   for (PagesSource& source : sources)
     for (const RunResult& run : source.results.runs) {
       names.push_back(run.spec.name);
       const bool by_name = std::ranges::count(options.replay, run.spec.name) > 0;
       const bool can = run.spec.system.takes_settings() && !run.spec.environment.is_recorded();
-      if (!is_asked(run) || (!can && !by_name)) continue;
+      if (!is_asked(run)) continue;
+      if (!can && !by_name) {
+        ++without;
+        continue;
+      }
       Replay replay = make_replay(run.spec, run.estimate, tools);
       source.replay_of[run.spec.name] = std::move(replay.scene);
       source.views_of[run.spec.name] = std::move(replay.views);
     }
+  if (without > 0)
+    fmt::print(
+        stderr,
+        "report: {} of recordings or outside systems, which cannot be run again for a replay\n",
+        counted(without, "run is", "runs are"));
   for (const std::string& word : options.replay)
     if (std::ranges::count(names, word) == 0)
       throw InputError(fmt::format("--replay: no run is named '{}'{}", word, hint(word, names)));
@@ -63,6 +73,9 @@ void run(const ReportArguments& options) {
       fmt::print(stderr, "report: {}: {}\n", source.name, source.problem);
   fmt::print("{} in {}, {:.1f} MB: open {}\n", counted(written.files, "file"), options.out,
              static_cast<double>(written.bytes) / 1e6, written.index.string());
+  const auto holds_nothing = [](const PagesSource& s) { return !s.suite && s.audit.is_null(); };
+  if (std::ranges::all_of(sources, holds_nothing))
+    throw InputError("report: none of the results could be read: the pages say why");
 }
 
 struct PlotArguments {

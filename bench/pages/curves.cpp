@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "bench/pages/page_table.hpp"
+#include "bench/pages/tables.hpp"
 #include "bench/results/graded.hpp"
 #include "bench/results/sweep.hpp"
 #include "scenes/generate/generate.hpp"
@@ -107,12 +108,14 @@ Json density_json(const Suite& suite, std::span<const Row> rows) {
                   "Per environment the median over trials; objects per 10 m² of floor.");
   for (const Row& row : rows) {
     const auto density = density_of.find(row.environment);
-    if (density == density_of.end() || row.parameters != 0 || row.trials.empty()) continue;
+    if (density == density_of.end() || row.parameters != 0 || row.trials.empty() ||
+        !is_own_row(suite, row.system, row.labels))
+      continue;
     table.begin_row();
     table.text({"environment", "environment"}, suite.environments[row.environment].name);
     table.text({"system", "system"}, suite.systems[row.system].name);
     table.text({"level", "level"}, level_name(suite.levels[row.level]));
-    table.text({"labels", "labels"}, name(row.labels));
+    table.text({"labels", "labels"}, labels_seen(suite, row.system, row.labels));
     table.number({"density", "objects per 10 m²", "", 1}, density->second);
     table.text({"group", "group"}, density_group_name(density_group(density->second)));
     table.figures(figures_of(row.trajectory));
@@ -145,6 +148,7 @@ Json sweep_pages_json(const Suite& suite, std::span<const Row> rows) {
         table.text({"level", "level"}, level_name(suite.levels[result.level]));
         table.text({"labels", "labels"}, name(result.labels));
         table.text({"query_set", "queries"}, name(set));
+        table.number({"point", "point"}, static_cast<double>(p));
         for (const std::string& varied : suite.sweep.varied)
           table.text({"at:" + varied, std::string(shown_name(varied))}, shown_value(at, varied));
         table.number({"asked", "asked"}, asked);
@@ -167,16 +171,19 @@ Json sweep_pages_json(const Suite& suite, std::span<const Row> rows) {
       const SystemSpec& system = suite.systems[result.system];
       const Comparison& c = found->to_reference;
       best.push_back(fmt::format(
-          "{}, {}, {}: most correct answers at {} ({:.2f} %){}", system.name,
+          "{}, {}, {}: most correct answers at {}{} ({:.2f} %){}", system.name,
           with_labels(result.labels), name(set),
           shown_point(suite.sweep, settings_of(system, result.points[found->point])),
+          found->equals > 1 ? fmt::format(", one of {} equal points", found->equals) : "",
           100 * summary(result.answers[found->point], set).correct.value_or(0),
           c.pairs == 0 || !std::isfinite(c.low)
               ? std::string(".")
-              : fmt::format("; {:+.2f} percentage points, 95 % interval {:+.2f} to {:+.2f}, from "
-                            "the suite's own settings. Chosen by the same queries: confirm it on "
-                            "others.",
-                            100 * c.difference, 100 * c.low, 100 * c.high)));
+              : fmt::format(
+                    "; {:+.2f} percentage points, 95 % interval {:+.2f} to {:+.2f}, from {}. "
+                    "Chosen by the same queries: confirm it on others.",
+                    100 * c.difference, 100 * c.low, 100 * c.high,
+                    shown_point(suite.sweep,
+                                settings_of(system, result.points[found->reference])))));
     }
   if (table.rows() == 0) return nullptr;
   Json varied = Json::array();

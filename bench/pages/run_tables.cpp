@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <map>
 #include <sstream>
 #include <tuple>
@@ -7,6 +8,7 @@
 
 #include "bench/pages/page_table.hpp"
 #include "bench/pages/tables.hpp"
+#include "bench/plan/parameters.hpp"
 #include "bench/report/wording.hpp"
 
 namespace mh {
@@ -99,6 +101,18 @@ Causes causes_in(const std::string& csv) {
   return causes;
 }
 
+/// The settings of a run's points, as the suite's sweep varies them.
+std::vector<std::string> points_of(const PagesSource& source, const RunResult& run) {
+  std::vector<std::string> points;
+  for (const SemanticConfig& point : run.spec.points) {
+    SlamConfig at = *run.spec.slam;
+    at.semantics = point;
+    points.push_back(shown_point(source.suite->sweep, at));
+  }
+  points.resize(run.points.size());
+  return points;
+}
+
 const char* outcome(const QueryScore& q) {
   return !q.success      ? "unanswered"
          : !is_judged(q) ? "answered, not judged"
@@ -109,7 +123,9 @@ const char* outcome(const QueryScore& q) {
 }  // namespace
 
 Json runs_json(const PagesSource& source) {
-  PageTable table("Runs", "Metrics at the first parameter point of each run.");
+  const bool sweeps = std::ranges::any_of(
+      source.results.runs, [](const RunResult& run) { return run.points.size() > 1; });
+  PageTable table("Runs", sweeps ? "Metrics at the first point of the sweep." : "");
   for (const RunResult& run : source.results.runs) {
     identify(table, run.spec, run.mapping.gave_up ? "gave up" : "done");
     if (!run.points.empty())
@@ -131,7 +147,8 @@ Json runs_json(const PagesSource& source) {
 Json queries_json(const PagesSource& source) {
   PageTable table("Queries", "Distance and angle to the local truth (docs/protocol.md).");
   const Causes causes = causes_in(source.audit_csv);
-  for (const RunResult& run : source.results.runs)
+  for (const RunResult& run : source.results.runs) {
+    const std::vector<std::string> points = points_of(source, run);
     for (std::size_t p = 0; p < run.points.size(); ++p)
       for (const QuerySet set : kQuerySets)
         for (const QueryScore& q : queries(run.points[p], set)) {
@@ -141,7 +158,10 @@ Json queries_json(const PagesSource& source) {
           table.text({"system", "system"}, run.spec.system.name);
           table.text({"labels", "labels"}, name(run.spec.labels));
           table.text({"level", "level"}, level_name(run.spec.level));
-          if (run.points.size() > 1) table.number({"point", "point"}, static_cast<double>(p));
+          if (run.points.size() > 1) {
+            table.number({"point", "point"}, static_cast<double>(p));
+            table.text({"settings", "settings"}, points[p]);
+          }
           table.text({"query_set", "queries"}, name(set));
           table.number({"frame", "frame"}, static_cast<double>(q.answer.index));
           table.text({"outcome", "outcome"}, outcome(q));
@@ -173,6 +193,7 @@ Json queries_json(const PagesSource& source) {
           place("true", q.true_world_from_camera, SE3());
           place("estimated", q.answer.world_from_camera, run.frames.dock_from_estimate);
         }
+  }
   return table.json();
 }
 

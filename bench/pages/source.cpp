@@ -50,7 +50,7 @@ void read_costs(const Store& store, PagesSource& source) {
 PagesSource read_source(const fs::path& path) {
   if (!is_there(path)) throw InputError(fmt::format("{}: no such results folder", path.string()));
   PagesSource source;
-  source.folder = is_folder(path) ? path : path.parent_path();
+  source.folder = is_folder(path) ? path : fs::absolute(path).parent_path();
   const fs::path named = fs::absolute(source.folder).lexically_normal();
   source.name = (named.filename().empty() ? named.parent_path() : named).filename().string();
   source.reproduction = json_file(source.folder / "reproduction.json");

@@ -27,14 +27,38 @@ void begin(PageTable& table, const Suite& suite, const CategoryRow& row) {
   table.begin_row();
   table.text(kSystem, suite.systems[row.system].name);
   table.text(kLevel, level_name(suite.levels[row.level]));
-  table.text(kLabels, name(row.labels));
+  table.text(kLabels, labels_seen(suite, row.system, row.labels));
 }
 
-bool is_whole_suite(const CategoryRow& row) {
-  return row.category == kAllCategories && row.parameters == 0;
+bool is_whole_suite(const Suite& suite, const CategoryRow& row) {
+  return row.category == kAllCategories && row.parameters == 0 &&
+         is_own_row(suite, row.system, row.labels);
+}
+
+/// A key of audit.json as a heading: "matches.words.with_xi" -> "matches: words: with xi".
+std::string shown_key(const std::string& path) {
+  std::string text;
+  for (const char c : path) text += c == '_' ? " " : c == '.' ? ": " : std::string(1, c);
+  return text;
 }
 
 }  // namespace
+
+std::string labels_seen(const Suite& suite, std::size_t system, const Labels& labels) {
+  return suite.systems[system].sees_labels() ? name(labels) : "none";
+}
+
+bool is_own_row(const Suite& suite, std::size_t system, const Labels& labels) {
+  return suite.systems[system].sees_labels() || labels == suite.labels.front();
+}
+
+std::string definitions_text(const Suite& suite) {
+  return fmt::format(
+      "Success: a pose was returned, right or wrong. Correct: returned, and within {:g} m and "
+      "{:g}° "
+      "of the true pose. False positive: returned, and not correct.",
+      suite.protocol.correct_distance_m, suite.protocol.correct_angle_deg);
+}
 
 Json table1_json(const Suite& suite, std::span<const CategoryRow> rows) {
   if (suite.environments.size() < 2) return nullptr;
@@ -42,12 +66,9 @@ Json table1_json(const Suite& suite, std::span<const CategoryRow> rows) {
                   "Per environment the median over trials, then the mean over environments. The "
                   "paper's own figures by category are not part of this program.");
   for (const CategoryRow& row : rows) {
-    if (row.parameters != 0) continue;
-    table.begin_row();
+    if (row.parameters != 0 || !is_own_row(suite, row.system, row.labels)) continue;
+    begin(table, suite, row);
     table.text({"category", "category"}, row.category);
-    table.text(kSystem, suite.systems[row.system].name);
-    table.text(kLevel, level_name(suite.levels[row.level]));
-    table.text(kLabels, name(row.labels));
     table.number({"scenes", "environments"}, static_cast<double>(row.scenes));
     if (row.scenes > 0) table.figures(figures_of(row.trajectory));
     for (const QuerySet set : kQuerySets)
@@ -63,17 +84,17 @@ Json table1_json(const Suite& suite, std::span<const CategoryRow> rows) {
 
 Json table2_json(const Suite& suite, std::span<const CategoryRow> rows) {
   PageTable table("Table 2: relocalization",
-                  "Over all environments of the suite. Published, other data: a real house of "
-                  "60 m², labels from YOLOv3's boxes.");
-  const PageColumn queries{"query_set", "queries"}, count{"queries", "of an environment", "", 1},
-      success{"success", "success", "%", 2}, correct{"correct", "correct", "%", 2},
-      false_positive{"false_positive", "false pos.", "%", 2},
+                  "Over all environments of the suite. " + definitions_text(suite) +
+                      " Published, other data: a real house of 60 m², labels from YOLOv3's boxes.");
+  const PageColumn queries{"query_set", "queries"},
+      count{"queries", "queries per environment", "", 1}, success{"success", "success", "%", 2},
+      correct{"correct", "correct", "%", 2}, false_positive{"false_positive", "false pos.", "%", 2},
       mean_m{"distance_mean_m", "mean distance", "m", 4},
       median_m{"distance_median_m", "median distance", "m", 4}, remark{"remark", "remark"};
   for (const QuerySet set : kQuerySets)
     for (const CategoryRow& row : rows) {
       const QuerySummary& s = summary(row, set);
-      if (!is_whole_suite(row) || s.queries == 0) continue;
+      if (!is_whole_suite(suite, row) || s.queries == 0) continue;
       begin(table, suite, row);
       table.text(queries, name(set));
       table.number(count, s.queries);
@@ -107,7 +128,8 @@ Json candidates_json(const Suite& suite, std::span<const CategoryRow> rows) {
   for (const QuerySet set : kQuerySets)
     for (const CategoryRow& row : rows) {
       const QuerySummary& s = summary(row, set);
-      if (!is_whole_suite(row) || s.queries == 0 || !s.keyframes || *s.keyframes <= 0) continue;
+      if (!is_whole_suite(suite, row) || s.queries == 0 || !s.keyframes || *s.keyframes <= 0)
+        continue;
       const auto share = [&](const std::optional<double>& count) {
         return count ? std::optional(*count / *s.keyframes) : std::nullopt;
       };
@@ -148,9 +170,9 @@ Json audit_tables_json(const PagesSource& source) {
         for (const auto& [inner, next] : value.items())
           put(path.empty() ? inner : path + "." + inner, next);
       else if (value.is_string())
-        table.text({path, path}, value.get_ref<const std::string&>());
+        table.text({path, shown_key(path)}, value.get_ref<const std::string&>());
       else if (value.is_number())
-        table.number({path, path, "", is_share ? 3 : 0}, value.get<double>());
+        table.number({path, shown_key(path), "", is_share ? 3 : 0}, value.get<double>());
     };
     for (const Json& row : source.audit.at(key)) {
       table.begin_row();

@@ -10,6 +10,16 @@
 
 namespace mh {
 
+/// The labels that a system sees: "none" if it looks at none.
+std::string labels_seen(const Suite& suite, std::size_t system, const Labels& labels);
+
+/// Whether a row holds answers that no other one repeats: a system that sees no labels has the same
+/// in the rows of every kind.
+bool is_own_row(const Suite& suite, std::size_t system, const Labels& labels);
+
+/// What the words of the tables mean, with the suite's thresholds.
+std::string definitions_text(const Suite& suite);
+
 /// The paper's Table 1: a row per category and system; null for a suite of one environment.
 nlohmann::ordered_json table1_json(const Suite& suite, std::span<const CategoryRow> rows);
 

@@ -10,6 +10,8 @@
 #include "bench/pages/run_page.hpp"
 #include "bench/pages/tables.hpp"
 #include "bench/pages/verdict.hpp"
+#include "bench/plan/parameters.hpp"
+#include "bench/plan/runs.hpp"
 #include "bench/plan/shipped.hpp"
 #include "bench/report/graded_report.hpp"
 #include "bench/report/suite_json.hpp"
@@ -70,6 +72,12 @@ Json remarks_json(const PagesSource& source) {
   return remarks;
 }
 
+/// Where tables and figures are if the suite sweeps settings; otherwise null.
+Json first_point(const PagesSource& source) {
+  if (!source.suite || source.suite->sweep.points.empty()) return nullptr;
+  return shown_point(source.suite->sweep, parameter_points(*source.suite).front());
+}
+
 Json suite_facts(const Suite& suite) {
   Json systems = Json::array(), labels = Json::array(), levels = Json::array();
   for (const SystemSpec& system : suite.systems) systems.push_back(system.name);
@@ -93,6 +101,7 @@ void write_source(Pieces& pieces, const std::string& place, const PagesSource& s
     const std::vector<Row> rows = make_rows(suite, source.results.runs, source.results.failed);
     const std::vector<CategoryRow> categories = make_category_rows(suite, rows);
     overview["suite"] = suite_facts(suite);
+    overview["definitions"] = definitions_text(suite);
     overview["verdicts"] = verdicts_json(suite, rows);
     overview["table1"] = table1_json(suite, categories);
     overview["table2"] = table2_json(suite, categories);
@@ -177,6 +186,7 @@ WrittenPages write_pages(const fs::path& out, std::span<const PagesSource> sourc
                        {"failed", source.results.failed.size()},
                        {"missing", source.results.missing.size()},
                        {"audit", source.audit.is_object()},
+                       {"first_point", first_point(source)},
                        {"runs_of_file", kRunsOfFile},
                        {"replays", std::move(replays)},
                        {"views", std::move(views)}});

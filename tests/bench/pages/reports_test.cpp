@@ -76,6 +76,18 @@ class Reports : public testing::Test {
     suite.trials = 10;
     return source_of_suite(suite, 60, 10);
   }
+  /// A suite with a sweep over two settings.
+  Suite sweep() const {
+    const fs::path file = work_.path() / "sweep.yaml";
+    write_atomically(file,
+                     "environments:\n- {name: den, category: rooms, scene: d.yaml, "
+                     "mapping_tour: t.yaml}\nrobot: r.yaml\nvocabulary: v.mhvoc\n"
+                     "levels: [pepper.yaml]\nsystems: [semantic, plain]\nlabels: [exact]\n"
+                     "parameters: {map: fixed, semantics.gamma: [0, 0.5, 1, 2], "
+                     "semantics.xi: [1, 1.5, 2]}\n");
+    return parse_suite(read_file(file), file, {}, false);
+  }
+
   fs::path out() const { return work_.path() / "report"; }
 
   TemporaryFolder work_{fs::temp_directory_path()};
@@ -219,6 +231,35 @@ TEST_F(Reports, SayWhatIsMissing) {
   EXPECT_EQ(ReadTable{piece(out(), "0/runs")}.text("error", 2), "out of memory");
 }
 
+TEST_F(Reports, OfASweepSayAtWhichPointTheyAre) {
+  write_pages(out(), std::array{source_of_suite(sweep())});
+  EXPECT_EQ(piece(out(), "index").at("folders").at(0).at("first_point"), "gamma 0, xi 1");
+  const Json json = piece(out(), "0/queries");
+  const ReadTable queries{json};
+  std::set<std::string> settings;
+  for (std::size_t row = 0; row < json.at("rows"); ++row)
+    settings.insert(queries.text("settings", row));
+  EXPECT_TRUE(settings.contains("gamma 0.5, xi 1.5"));
+  EXPECT_EQ(settings.size(), 13U) << "12 points, and none for the plain system";
+  write_pages(out(), std::array{source_of({"den"})});
+  EXPECT_TRUE(piece(out(), "index").at("folders").at(0).at("first_point").is_null());
+}
+
+TEST_F(Reports, ASystemThatSeesNoLabelsHasOneRowWhateverTheLabels) {
+  Suite suite = made_up_suite(work_.path(), {"den"});
+  suite.labels = {LabelMode::kExact, LabelMode::kBoxes};
+  write_pages(out(), std::array{source_of_suite(suite)});
+  const Json json = piece(out(), "0/overview").at("table2");
+  const ReadTable table{json};
+  std::vector<std::string> seen;
+  for (std::size_t row = 0; row < json.at("rows"); ++row)
+    if (table.text("query_set", row) == "held_out")
+      seen.push_back(table.text("system", row) + " " + table.text("labels", row));
+  EXPECT_EQ(seen, (std::vector<std::string>{"semantic exact", "semantic boxes", "plain none"}));
+  EXPECT_NE(json.at("note").get<std::string>().find("Success: a pose was returned, right or wrong"),
+            std::string::npos);
+}
+
 TEST_F(Reports, OfAFileThatIsNoResultsFileSayWhy) {
   const fs::path folder = work_.path() / "old";
   fs::create_directories(folder);
@@ -355,18 +396,6 @@ class InTheBrowser : public Reports {
   }
   static fs::path root() { return fs::path(MH_BROWSER) / "reports"; }
 
-  /// A suite with a sweep over two settings.
-  Suite sweep() const {
-    const fs::path file = work_.path() / "sweep.yaml";
-    write_atomically(file,
-                     "environments:\n- {name: den, category: rooms, scene: d.yaml, "
-                     "mapping_tour: t.yaml}\nrobot: r.yaml\nvocabulary: v.mhvoc\n"
-                     "levels: [pepper.yaml]\nsystems: [semantic, plain]\nlabels: [exact]\n"
-                     "parameters: {map: fixed, semantics.gamma: [0, 0.5, 1, 2], "
-                     "semantics.xi: [1, 1.5, 2]}\n");
-    return parse_suite(read_file(file), file, {}, false);
-  }
-
   void write_all() const {
     fs::remove_all(root());
     Suite suite = made_up_suite(work_.path(), {"bath", "kitchen", "lobby", "office", "study"});
@@ -396,7 +425,10 @@ class InTheBrowser : public Reports {
     bare.cost_of.clear();
     bare.results.failed.push_back({bare.results.runs[0].spec, kHostile});
     write("odd-bare", bare);
-    write("odd-older", {.name = "older", .folder = {}, .problem = "results.sqlite: is older"});
+    write("odd-older", {.name = "older",
+                        .folder = {},
+                        .problem = "out/model_house/results.sqlite: has schema 13 of an older "
+                                   "modelhouse, this one reads 17: move it away and run again"});
     write("large", large_study());
   }
 };

@@ -29,7 +29,8 @@ export interface Folder {
   audit: boolean;
   runs_of_file: number;
   replays: string[]; // names of runs
-  views: string[]; // those of them whose pictures were recorded
+  views: string[]; // those of them whose images were recorded
+  first_point: string | null; // of a sweep: where everything but the page Sweeps is
 }
 export interface Sentence {
   text: string;
@@ -46,6 +47,7 @@ export interface Sentence {
 }
 export interface Overview {
   remarks: string[];
+  definitions?: string;
   suite?: {
     name: string;
     trials: number;

@@ -38,6 +38,10 @@ function App(): JSX.Element {
   useEffect(() => {
     document.title = `${found?.[1] ?? route.page[2] ?? "Report"}: ${names}`;
   }, [path]);
+  useEffect(() => {
+    // A phone shows a part of the navigation: the page that is open is in it.
+    document.querySelector("nav [aria-current]")?.scrollIntoView({ inline: "center", block: "nearest" });
+  }, [path]);
   const first = useRef(true);
   useEffect(() => {
     if (!first.current) {

@@ -3,14 +3,16 @@ import * as Plot from "@observablehq/plot";
 import type { JSX } from "preact";
 import { useCallback, useMemo } from "preact/hooks";
 import { type Audit, Table, type WrittenTable } from "../data";
-import { armStyle } from "../view/arm";
-import { ink } from "../theme";
+import { colorOf, ink } from "../theme";
 import { Chart } from "../view/Chart";
 import { DataTable } from "../view/DataTable";
 import { Missing, PerFolder, Piece } from "../view/parts";
 
 const kCauses = ["wrong_candidates", "nothing_in_sight", "few_matches", "false_answer", "few_inliers"];
 const kUsual = ["level", "system", "labels", "settings", "query_set", "set", "environment", "queries", "correct", "first_correct", ...kCauses, "by_any", "by_nearest", "without_false", "with_true_pose", "average_precision"];
+
+/** The fifth color is too near the first for parts of one bar. */
+const colorOfCause = (i: number) => colorOf(i === 4 ? 5 : i);
 
 /** Keys of audit.json's rows: plain, or within an object. */
 function keyOf(table: Table, name: string): string | undefined {
@@ -37,14 +39,14 @@ function Causes({ table }: { table: Table }): JSX.Element | null {
   const causes = kCauses.map((c) => c.replaceAll("_", " "));
   const make = useCallback(
     (width: number): Plot.PlotOptions => ({
-      height: 80 + 40 * names.length,
+      height: 80 + (width > 600 ? 40 : 64) * names.length,
       marginLeft: width > 600 ? 260 : 20,
       marginTop: 24,
       x: { label: "share of queries, %", grid: true },
-      y: { label: null, domain: names, axis: width > 600 ? "left" : null },
+      y: { label: null, domain: names, axis: width > 600 ? "left" : null, padding: width > 600 ? 0.15 : 0.5 },
       marks: [
-        Plot.barX(bars, Plot.stackX({ y: "of", x: "share", z: "cause", order: causes, fill: (b: { cause: string }) => armStyle(causes.indexOf(b.cause)).color, stroke: ink().paper, className: "m-cause" })),
-        ...(width > 600 ? [] : [Plot.text(names, { x: 0, y: (n: string) => n, text: (n: string) => n, textAnchor: "start", dx: 4 })]),
+        Plot.barX(bars, Plot.stackX({ y: "of", x: "share", z: "cause", order: causes, fill: (b: { cause: string }) => colorOfCause(causes.indexOf(b.cause)), stroke: ink().paper, className: "m-cause" })),
+        ...(width > 600 ? [] : [Plot.text(names, { x: 0, y: (n: string) => n, text: (n: string) => n, textAnchor: "start", dy: -24, lineWidth: Math.floor((width - 40) / 8), textOverflow: "ellipsis" })]),
       ],
     }),
     [bars],
@@ -54,7 +56,7 @@ function Causes({ table }: { table: Table }): JSX.Element | null {
     <Chart
       title="First causes of failures"
       about="Share of queries (%) by the first cause that holds, exact truth. Source: audit.json."
-      legend={causes.map((name, i) => ({ name, color: armStyle(i).color }))}
+      legend={causes.map((name, i) => ({ name, color: colorOfCause(i) }))}
       marks={{ cause: bars.filter((b) => b.share >= 0).length }}
       make={make}
     />

@@ -5,73 +5,94 @@ import type { JSX } from "preact";
 import { useCallback, useMemo, useState } from "preact/hooks";
 import { type Folder, Table, type WrittenTable } from "../data";
 import { linkTo } from "../route";
-import { armStyle } from "../view/arm";
+import { armStyle, armsOf, nameMargin } from "../view/arm";
 import { Chart } from "../view/Chart";
 import { DataTable } from "../view/DataTable";
 import { Choice, Missing, PerFolder, Piece } from "../view/parts";
 
-function Counts({ table, rows, by, title, about }: { table: Table; rows: number[]; by: string; title: string; about: string }): JSX.Element | null {
+/** In the order in which a query meets them: results.sqlite's stages, audit.csv's causes. */
+const kOrder = ["none", "no candidate", "matches", "pnp", "inliers", "verified", "nothing in sight", "wrong candidates", "few matches", "few inliers", "false answer"];
+
+interface CountsProps {
+  table: Table;
+  asked: number[]; // rows of all queries
+  rows: number[]; // of those that failed
+  by: string;
+  title: string;
+  about: string;
+}
+function Counts({ table, asked, rows, by, title, about }: CountsProps): JSX.Element | null {
+  const arms = useMemo(() => armsOf(table, asked), [table, asked]);
   const bars = useMemo(() => {
-    const counts = new Map<string, { what: string; system: string; count: number }>();
+    const counts = new Map<string, { what: string; arm: string; count: number; of: number }>();
     for (const row of rows) {
       const what = table.text(by, row).replaceAll("_", " ") || "not reported";
-      const system = table.text("system", row);
-      const bar = counts.get(`${what} ${system}`) ?? { what, system, count: 0 };
-      counts.set(`${what} ${system}`, { ...bar, count: bar.count + 1 });
+      const arm = arms.name(row);
+      const bar = counts.get(`${what} ${arm}`) ?? { what, arm, count: 0, of: asked.filter((q) => arms.name(q) === arm).length };
+      counts.set(`${what} ${arm}`, { ...bar, count: bar.count + 1 });
     }
-    return [...counts.values()];
+    return [...counts.values()].map((bar) => ({ ...bar, share: (100 * bar.count) / bar.of }));
   }, [table, rows, by]);
-  const systems = table.words("system");
+  const whats = [...new Set(bars.map((b) => b.what))].sort((a, b) => kOrder.indexOf(a) - kOrder.indexOf(b));
   const make = useCallback(
-    (): Plot.PlotOptions => ({
-      height: 80 + 26 * systems.length * new Set(bars.map((b) => b.what)).size,
-      marginLeft: 128,
-      marginTop: 22,
-      fy: { label: null, padding: 0.15 },
-      y: { axis: null, domain: systems, padding: 0.08 },
-      x: { label: "queries", grid: true, tickFormat: (d: number) => (Number.isInteger(d) ? String(d) : "") },
-      marks: [
-        Plot.barX(bars, { fy: "what", y: "system", x: "count", fill: (b: { system: string }) => armStyle(systems.indexOf(b.system)).color, className: "m-count" }),
-        Plot.text(bars, { fy: "what", y: "system", x: "count", text: "count", dx: 5, textAnchor: "start" }),
-        Plot.ruleX([0]),
-      ],
-    }),
+    (width: number): Plot.PlotOptions => {
+      const { margin, fitted } = nameMargin(whats, width);
+      return {
+        height: 80 + 26 * arms.names.length * whats.length,
+        marginLeft: margin,
+        marginTop: 22,
+        marginRight: 44,
+        fy: { label: null, padding: 0.15, domain: whats, tickFormat: fitted },
+        y: { axis: null, domain: arms.names, padding: 0.08 },
+        x: { label: "share of the queries asked, %", grid: true },
+        marks: [
+          Plot.barX(bars, { fy: "what", y: "arm", x: "share", fill: (b: { arm: string }) => armStyle(arms.names.indexOf(b.arm)).color, className: "m-count" }),
+          Plot.text(bars, { fy: "what", y: "arm", x: "share", text: (b: { count: number; of: number }) => `${b.count} of ${b.of}`, dx: 5, textAnchor: "start" }),
+          Plot.ruleX([0]),
+        ],
+      };
+    },
     [bars],
   );
   if (bars.length === 0) return null;
-  return <Chart title={title} about={about} legend={systems.map((name, i) => ({ name, color: armStyle(i).color }))} marks={{ count: bars.length }} make={make} />;
+  return <Chart title={title} about={about} legend={arms.names.map((name, i) => ({ name, color: armStyle(i).color }))} marks={{ count: bars.length }} make={make} />;
 }
 
 function FailuresOf({ folder, place, written }: { folder: Folder; place: number; written: WrittenTable }): JSX.Element {
   const table = useMemo(() => new Table(written), [written]);
   const sets = table.words("query_set");
   const [set, setSet] = useState(sets[0] ?? "");
-  const rows = useMemo(
-    () => table.where({ query_set: set }).filter((row) => ["unanswered", "false positive"].includes(table.text("outcome", row)) && (table.number("point", row) ?? 0) === 0),
-    [table, set],
-  );
+  const asked = useMemo(() => table.where({ query_set: set }).filter((row) => (table.number("point", row) ?? 0) === 0), [table, set]);
+  const rows = useMemo(() => asked.filter((row) => ["unanswered", "false positive"].includes(table.text("outcome", row))), [asked]);
   if (table.rows === 0) return <Missing>No queries were asked: nothing could fail to be answered.</Missing>;
   const unanswered = rows.filter((row) => table.text("outcome", row) === "unanswered");
   const wrong = rows.length - unanswered.length;
-  const asked = table.where({ query_set: set }).filter((row) => (table.number("point", row) ?? 0) === 0).length;
   return (
     <>
       <div class="choices">
         <Choice label="Queries" options={sets.map((key) => ({ key, title: key.replaceAll("_", " ") }))} value={set} onPick={setSet} />
       </div>
       <p>
-        {unanswered.length} unanswered and {wrong} answered wrongly, of {asked} queries{table.has("point") ? ", at the first parameter point" : ""}.
+        {unanswered.length} unanswered and {wrong} answered wrongly, of {asked.length} queries.
       </p>
       <div class="charts">
         {table.has("stage") ? (
-          <Counts table={table} rows={rows} by="stage" title="Failures by stage" about="Number of queries by the furthest stage that any attempt reached; verified: a wrong pose was returned. Source: results.sqlite." />
+          <Counts table={table} asked={asked} rows={rows} by="stage" title="Failures by stage" about="Share of queries (%), and their number, by the furthest stage that any attempt reached; verified: a wrong pose was returned. Source: results.sqlite." />
         ) : (
           <Missing>No system reported how far its relocalization got.</Missing>
         )}
         {table.has("cause") ? (
-          <Counts table={table} rows={rows} by="cause" title="Failures by first cause" about="Number of queries by the first cause that the audit found, by exact truth. Source: audit.csv." />
+          <Counts table={table} asked={asked} rows={rows} by="cause" title="Failures by first cause" about="Share of queries (%), and their number, by the first cause that the audit found, by exact truth. Source: audit.csv." />
         ) : (
-          <Missing>Causes are not known: the folder holds no audit (modelhouse bench --audit, or modelhouse audit into this folder).</Missing>
+          <Missing>
+            {folder.audit ? (
+              <>
+                audit.csv is missing or names no cause for these queries: shares by cause are on the page <a href={linkTo(["audit"])}>Audit</a>.
+              </>
+            ) : (
+              "Causes are not known: the folder holds no audit (modelhouse bench --audit, or modelhouse audit into this folder)."
+            )}
+          </Missing>
         )}
       </div>
       {rows.length === 0 ? (
@@ -81,6 +102,7 @@ function FailuresOf({ folder, place, written }: { folder: Folder; place: number;
           id={`fail-${place}`}
           table={table}
           rows={rows}
+          usual={["run", "frame", "outcome", "stage", "cause", "distance_m", "angle_deg", "attempts", "final"]}
           link={(row) => ({ column: "frame", href: linkTo(["run", String(place), table.text("run", row)], { query: row }) })}
         />
       )}

@@ -5,10 +5,10 @@ import { useCallback, useMemo, useState } from "preact/hooks";
 import { type Figures, type RunPaths, Table, type WrittenTable, heading, folders } from "../data";
 import { linkTo } from "../route";
 import { ink, kSymbols } from "../theme";
-import { armStyle } from "../view/arm";
+import { armStyle, armsOf } from "../view/arm";
 import { Chart } from "../view/Chart";
 import { DataTable } from "../view/DataTable";
-import { Choice, Missing, PerFolder, Piece, systemsOf } from "../view/parts";
+import { Choice, Missing, PerFolder, Piece } from "../view/parts";
 import { queryPlaces, topView } from "../view/topview";
 import { GradedCurves } from "./graded";
 
@@ -25,54 +25,52 @@ function useArm(table: Table): { rows: number[]; picker: JSX.Element | null; arm
   return { rows, picker, arm: arms.length > 1 ? `level ${level}` : (arms[0] ?? "") };
 }
 
-function armOf(table: Table, row: number): string {
-  const labels = table.words("labels");
-  const system = table.text("system", row);
-  return labels.length > 1 && table.text("labels", row) !== "none" ? `${system}, ${table.text("labels", row)}` : system;
-}
-
 function Density({ density }: { density: NonNullable<Figures["density"]> }): JSX.Element {
   const table = useMemo(() => new Table(density.table), [density]);
   const measures = table.columns.filter((c) => !c.isText && ["ate_rmse_m", "rpe_frame_rmse_m", "held_out.success", "held_out.distance_mean_m", "second_tour.success", "graded.success"].includes(c.key));
   const [key, setKey] = useState(measures[0]?.key ?? "");
   const { rows, picker, arm } = useArm(table);
   const column = table.column(key);
-  const systems = systemsOf(table);
+  const { name: armOf, names } = useMemo(() => armsOf(table, rows), [table, rows]);
   const values = useMemo(
     () =>
       rows.flatMap((row) => {
         const value = table.number(key, row);
         if (value === null) return [];
-        return [{ group: table.text("group", row), system: table.text("system", row), value: column?.unit === "%" ? 100 * value : value }];
+        return [{ group: table.text("group", row), arm: armOf(row), value: column?.unit === "%" ? 100 * value : value }];
       }),
     [rows, key],
   );
   const means = useMemo(() => {
-    const of = new Map<string, { group: string; system: string; sum: number; count: number }>();
+    const of = new Map<string, { group: string; arm: string; sum: number; count: number }>();
     for (const v of values) {
-      const at = `${v.group} ${v.system}`;
-      const sum = of.get(at) ?? { group: v.group, system: v.system, sum: 0, count: 0 };
+      const at = `${v.group} ${v.arm}`;
+      const sum = of.get(at) ?? { group: v.group, arm: v.arm, sum: 0, count: 0 };
       of.set(at, { ...sum, sum: sum.sum + v.value, count: sum.count + 1 });
     }
     return [...of.values()].map((m) => ({ ...m, mean: m.sum / m.count }));
   }, [values]);
   const make = useCallback(
     (width: number): Plot.PlotOptions => {
-      const color = (d: { system: string }) => systems.find((s) => s.name === d.system)?.color ?? "gray";
+      const color = (d: { arm: string }) => armStyle(names.indexOf(d.arm)).color;
+      // Quartiles of fewer than five values say nothing: their dots and mean stand alone.
+      const boxed = values.filter((v) => (means.find((m) => m.group === v.group && m.arm === v.arm)?.count ?? 0) >= 5);
+      const empty = density.groups.filter((group) => values.every((v) => v.group !== group));
       return {
         height: 340,
         marginTop: 26,
         fx: { domain: density.groups, label: "objects per 10 m² of floor", padding: 0.08, axis: "bottom" },
-        x: { domain: systems.map((s) => s.name), axis: null, padding: 0.15 },
+        x: { domain: names, axis: null, padding: 0.15 },
         y: { zero: true, nice: true, insetTop: 16, axis: null },
         marginBottom: 46,
         marks: [
           Plot.gridY({ facetAnchor: null }),
           Plot.axisY({ facetAnchor: "left", label: column ? heading(column) : "" }),
-          Plot.boxY(values, { fx: "group", x: "system", y: "value", fill: color, fillOpacity: 0.35, stroke: color, r: 0 }),
-          Plot.dot(values, { fx: "group", x: "system", y: "value", fill: color, r: 2.2, className: "m-environment" }),
-          Plot.dot(means, { fx: "group", x: "system", y: "mean", symbol: "diamond", fill: ink().paper, stroke: ink().text, strokeWidth: 1.5, r: 5, className: "m-mean" }),
-          Plot.text(means, { fx: "group", x: "system", frameAnchor: "top", dy: -12, fontSize: width < 480 ? 9 : 11, text: (d: { count: number }) => `n ${d.count}` }),
+          Plot.boxY(boxed, { fx: "group", x: "arm", y: "value", fill: color, fillOpacity: 0.35, stroke: color, r: 0 }),
+          Plot.dot(values, { fx: "group", x: "arm", y: "value", fill: color, r: 2.2, className: "m-environment" }),
+          Plot.dot(means, { fx: "group", x: "arm", y: "mean", symbol: "diamond", fill: ink().paper, stroke: ink().text, strokeWidth: 1.5, r: 5, className: "m-mean" }),
+          Plot.text(empty, { fx: (group: string) => group, frameAnchor: "middle", text: () => "none", fill: ink().faint }),
+          Plot.text(means, { fx: "group", x: "arm", frameAnchor: "top", dy: -12, fontSize: width < 480 ? 9 : 11, text: (d: { count: number }) => `n ${d.count}` }),
         ],
       };
     },
@@ -89,8 +87,8 @@ function Density({ density }: { density: NonNullable<Figures["density"]> }): JSX
       ) : (
         <Chart
           title="Figure 3: by density of objects"
-          about={`${column ? heading(column) : ""}, ${arm}: a dot per environment (median over trials), boxes with medians, diamonds are means, n environments. Source: results.sqlite; objects counted by the grammar of each generated scene.`}
-          legend={systems.map((s) => ({ ...s, dash: "0" }))}
+          about={`${column ? heading(column) : ""}, ${arm}: a dot per environment (median over trials), boxes with medians from five environments on, diamonds are means, n environments. Source: results.sqlite; objects counted by the grammar of each generated scene.`}
+          legend={names.map((name, i) => ({ name, color: armStyle(i).color }))}
           marks={{ environment: values.length, mean: means.length }}
           make={make}
         />
@@ -102,10 +100,11 @@ function Density({ density }: { density: NonNullable<Figures["density"]> }): JSX
 function ByFrame({ written }: { written: WrittenTable }): JSX.Element {
   const table = useMemo(() => new Table(written), [written]);
   const { rows, picker, arm } = useArm(table);
+  const { name: armOf } = useMemo(() => armsOf(table, rows), [table, rows]);
   const points = useMemo(
     () =>
       rows.map((row) => ({
-        arm: armOf(table, row),
+        arm: armOf(row),
         frame: table.number("frame", row) ?? 0,
         error: table.number("error_m", row) ?? 0,
         low: table.number("low", row),
@@ -118,6 +117,7 @@ function ByFrame({ written }: { written: WrittenTable }): JSX.Element {
   const legend = names.map((name, i) => ({ ...armStyle(i), name }));
   const style = (name: string) => legend.find((entry) => entry.name === name);
   const banded = points.filter((p) => p.low !== null);
+  const most = Math.max(0, ...points.map((p) => p.scenes));
   const make = useCallback(
     (): Plot.PlotOptions => ({
       height: 320,
@@ -141,9 +141,10 @@ function ByFrame({ written }: { written: WrittenTable }): JSX.Element {
       height: 170,
       marginTop: 24,
       x: { label: "frame of the tour", grid: true },
-      y: { label: "environments still counted", grid: true, zero: true },
-      marks: names.map((name) =>
-        Plot.line(points.filter((p) => p.arm === name), { x: "frame", y: "scenes", curve: "step", className: "m-counted", stroke: style(name)?.color, strokeWidth: 2, strokeDasharray: style(name)?.dash }),
+      // Lines that coincide are drawn beside one another.
+      y: { label: "environments still counted", grid: true, domain: [0, most + 1], ticks: Math.min(5, most + 1), tickFormat: (d: number) => (Number.isInteger(d) ? String(d) : "") },
+      marks: names.map((name, i) =>
+        Plot.line(points.filter((p) => p.arm === name), { x: "frame", y: "scenes", dy: 3 * (i - (names.length - 1) / 2), curve: "step", className: "m-counted", stroke: style(name)?.color, strokeWidth: 2, strokeDasharray: style(name)?.dash }),
       ),
     }),
     [points],
@@ -153,14 +154,14 @@ function ByFrame({ written }: { written: WrittenTable }): JSX.Element {
       <div class="choices">{picker}</div>
       <Chart
         title="Figure 4: error against frames"
-        about={`Mean position error (m) over windows of 30 frames after SE(3) alignment, ${arm}; bands are 95 % intervals over environments. Source: results.sqlite.`}
+        about={`Mean position error (m) over windows of 30 frames after SE(3) alignment, ${arm}; ${banded.length > 0 ? "bands are 95 % intervals over environments" : "one environment: no interval"}. Source: results.sqlite.`}
         legend={legend}
         marks={{ window: points.length }}
         make={make}
       />
       <Chart
         title="Figure 4: environments still counted"
-        about="Number of environments whose tour reaches the frame and is tracked there. Source: results.sqlite."
+        about="Number of environments whose tour reaches the frame and is tracked there; lines of equal numbers stand beside one another. Source: results.sqlite."
         legend={legend}
         marks={{ "counted": names.length }}
         make={makeCounts}
@@ -208,6 +209,9 @@ export function RunFromAbove({ run, queries, chosen = null }: { run: RunPaths | 
   const legend = [
     ...(run.truth ? [{ name: "true path", color: ink().text }] : []),
     ...(run.estimate ? [{ name: "estimated path", color: armStyle(0).color, dash: "5 3" }] : []),
+    ...(found.truths.length > 0 ? [{ name: "true place of a query; × alone: not answered", color: ink().text, mark: "×" }] : []),
+    ...(found.answers.some((a) => !a.wrong) ? [{ name: "its answer, correct", color: armStyle(2).color, mark: "○" }] : []),
+    ...(found.answers.some((a) => a.wrong) ? [{ name: "its answer, false", color: armStyle(5).color, mark: "□" }] : []),
   ];
   return (
     <>
@@ -215,7 +219,7 @@ export function RunFromAbove({ run, queries, chosen = null }: { run: RunPaths | 
       {missing.length > 0 && <Missing>{missing.join(" ")}</Missing>}
       <Chart
         title={`From above: ${run.name}`}
-        about={`x and y in m, in the frame of the dock${rows.length > 0 ? "; × true place of a query, ○ its answer (green correct, red false), a line between both" : ""}. Source: results.sqlite${run.grid ? ", map.pgm" : ""}.`}
+        about={`x and y in m, in the frame of the dock${rows.length > 0 ? "; a line joins a query's true place and its answer" : ""}. Source: results.sqlite${run.grid ? ", map.pgm" : ""}.`}
         legend={legend}
         marks={{ path: Number((run.truth?.ms.length ?? 0) > 1) + Number((run.estimate?.ms.length ?? 0) > 1), query: found.truths.length, answer: found.answers.length }}
         make={make}
@@ -230,6 +234,7 @@ export function FiguresPage(): JSX.Element {
   return (
     <>
       <h1>Figures of the paper</h1>
+      <p class="note">The paper: Spatial Perception by Object-Aware Visual Scene Representation. Its figures are drawn here from this bench's own runs.</p>
       <PerFolder>
         {(folder, place) =>
           folder.suite === null ? null : (

@@ -63,8 +63,11 @@ function Differences({ sentences, unit }: { sentences: Sentence[]; unit: string 
                   text: "what",
                   frameAnchor: "left",
                   dy: -14,
-                  lineWidth: 26,
+                  lineWidth: Math.floor((width - 40) / 8),
                   textOverflow: "ellipsis",
+                  stroke: ink().paper,
+                  strokeWidth: 5,
+                  fill: ink().text,
                 }),
               ]),
         ],
@@ -87,15 +90,16 @@ function Differences({ sentences, unit }: { sentences: Sentence[]; unit: string 
   );
 }
 
-function Verdict({ verdicts }: { verdicts: NonNullable<Overview["verdicts"]> }): JSX.Element {
+function Verdict({ verdicts, definitions, systems }: { verdicts: NonNullable<Overview["verdicts"]>; definitions: string; systems: number }): JSX.Element {
   const [first, ...others] = verdicts.sentences;
-  if (!first) return <Missing>This suite compares no two systems.</Missing>;
+  if (!first) return <Missing>{systems > 1 ? "Nothing can be compared: no queries were asked, and no run has both a true and an estimated path." : "This suite compares no two systems."}</Missing>;
   const undecided = others.filter((s) => s.in_family && !s.decided);
   const decided = others.filter((s) => s.in_family && s.decided);
   const table = new Table(verdicts.table);
   return (
     <>
       <p class={first.decided ? "verdict decided" : "verdict"}>{first.text}</p>
+      <p class="note">{definitions}</p>
       {decided.length > 0 && (
         <>
           <h3>Also decided</h3>
@@ -142,7 +146,7 @@ export function OverviewPage(): JSX.Element {
                     ]}
                   />
                 )}
-                {overview.verdicts && <Verdict verdicts={overview.verdicts} />}
+                {overview.verdicts && <Verdict verdicts={overview.verdicts} definitions={overview.definitions ?? ""} systems={overview.suite?.systems.length ?? 0} />}
                 {overview.remarks.length > 0 && folder.problem === null && (
                   <ul class="remarks">{overview.remarks.map((remark) => <li key={remark}>{remark}</li>)}</ul>
                 )}

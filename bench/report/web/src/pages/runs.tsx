@@ -82,7 +82,7 @@ function Tracking({ run }: { run: RunPaths }): JSX.Element {
   return (
     <Chart
       title="Tracking"
-      about={`Inliers of a frame over time (s); triangles are the ${keyframes.length} frames that became keyframes, red lines the ${lost.length} where tracking was lost. Source: results.sqlite, table calls.`}
+      about={`Inliers of a frame over time (s); triangles are the ${keyframes.length} frames that became keyframes, orange lines the ${lost.length} where tracking was lost. Source: results.sqlite, table calls.`}
       legend={[{ name: "inliers", color: colorOf(0) }, ...(lost.length > 0 ? [{ name: "lost", color: colorOf(5) }] : [])]}
       marks={{ keyframe: keyframes.length, lost: lost.length }}
       make={make}
@@ -111,7 +111,7 @@ function Query({ queries, row, place, views }: { queries: Table; row: number; pl
         <Piece<WrittenViews> piece={views}>{(seen) => <QueryViews key={row} views={seen} set={queries.text("query_set", row)} frame={queries.number("frame", row) ?? -1} />}</Piece>
       ) : (
         <p class="note">
-          {views ? "Pictures are recorded of the first parameter point alone." : `Its picture beside those of its candidates is not in this report: modelhouse report --replay ${run} adds it.`}
+          {views ? "Images are recorded of the first parameter point alone." : `Its image beside those of its candidates is not in this report: modelhouse report --replay ${run} adds it.`}
         </p>
       )}
     </section>

@@ -6,7 +6,7 @@ import { useCallback, useMemo } from "preact/hooks";
 import { Table, type WrittenTable } from "../data";
 import { linkTo } from "../route";
 import { ink } from "../theme";
-import { armStyle } from "../view/arm";
+import { armStyle, armsOf, nameMargin } from "../view/arm";
 import { Chart } from "../view/Chart";
 import { DataTable } from "../view/DataTable";
 import { Missing, PerFolder, Piece } from "../view/parts";
@@ -19,28 +19,28 @@ const kStages: [string, string][] = [
 ];
 
 function Stages({ table, rows }: { table: Table; rows: number[] }): JSX.Element {
-  const systems = table.words("system");
+  const arms = useMemo(() => armsOf(table, rows), [table, rows]);
   const bars = useMemo(
     () =>
-      systems.flatMap((system) => {
-        const own = rows.filter((row) => table.text("system", row) === system && table.number("cpu_s", row) !== null);
+      arms.names.flatMap((arm) => {
+        const own = rows.filter((row) => arms.name(row) === arm && table.number("cpu_s", row) !== null);
         if (own.length === 0) return [];
         const mean = (key: string) => own.reduce((sum, row) => sum + (table.number(key, row) ?? 0), 0) / own.length;
         const parts = { slam_s: mean("slam_s"), frames_s: mean("frames_s"), products_s: mean("products_s") };
         const rest = Math.max(0, mean("cpu_s") - parts.slam_s - parts.frames_s - parts.products_s);
-        return kStages.map(([key, stage]) => ({ system, stage, seconds: key === "rest" ? rest : parts[key as keyof typeof parts] }));
+        return kStages.map(([key, stage]) => ({ arm, stage, seconds: key === "rest" ? rest : parts[key as keyof typeof parts] }));
       }),
     [table, rows],
   );
   const make = useCallback(
-    (): Plot.PlotOptions => ({
-      height: 90 + 52 * systems.length,
-      marginLeft: 110,
+    (width: number): Plot.PlotOptions => ({
+      height: 90 + 52 * arms.names.length,
+      marginLeft: nameMargin(arms.names, width).margin,
       marginTop: 22,
       x: { label: "CPU time of a run, s", grid: true },
-      y: { label: null, domain: systems },
+      y: { label: null, domain: arms.names, tickFormat: nameMargin(arms.names, width).fitted },
       marks: [
-        Plot.barX(bars, Plot.stackX({ y: "system", x: "seconds", z: "stage", order: kStages.map(([, stage]) => stage), fill: (b: { stage: string }) => armStyle(kStages.findIndex(([, s]) => s === b.stage)).color, stroke: ink().paper, className: "m-stage" })),
+        Plot.barX(bars, Plot.stackX({ y: "arm", x: "seconds", z: "stage", order: kStages.map(([, stage]) => stage), fill: (b: { stage: string }) => armStyle(kStages.findIndex(([, s]) => s === b.stage)).color, stroke: ink().paper, className: "m-stage" })),
         Plot.ruleX([0]),
       ],
     }),
@@ -49,7 +49,7 @@ function Stages({ table, rows }: { table: Table; rows: number[] }): JSX.Element 
   return (
     <Chart
       title="Processor time by stage"
-      about="CPU seconds of a run's process, mean over the runs of each system. Source: results.sqlite, table times."
+      about="CPU seconds of a run's process, mean over the runs of each system (with its labels and level, where there are several). Source: results.sqlite, table times."
       legend={kStages.map(([, name], i) => ({ name, color: armStyle(i).color }))}
       marks={{ stage: bars.length }}
       make={make}
@@ -58,25 +58,25 @@ function Stages({ table, rows }: { table: Table; rows: number[] }): JSX.Element 
 }
 
 function Spread({ table, rows, measure, title, unit, about }: { table: Table; rows: number[]; measure: string; title: string; unit: string; about: string }): JSX.Element | null {
-  const systems = table.words("system");
+  const arms = useMemo(() => armsOf(table, rows), [table, rows]);
   const dots = useMemo(
     () =>
       rows.flatMap((row) => {
         const value = table.number(measure, row);
-        return value === null ? [] : [{ system: table.text("system", row), value }];
+        return value === null ? [] : [{ arm: arms.name(row), value }];
       }),
     [table, rows, measure],
   );
   const make = useCallback(
-    (): Plot.PlotOptions => ({
-      height: 90 + 46 * systems.length,
-      marginLeft: 110,
+    (width: number): Plot.PlotOptions => ({
+      height: 90 + 46 * arms.names.length,
+      marginLeft: nameMargin(arms.names, width).margin,
       marginTop: 22,
       x: { label: unit, grid: true, zero: true },
-      y: { label: null, domain: systems },
+      y: { label: null, domain: arms.names, tickFormat: nameMargin(arms.names, width).fitted },
       marks: [
-        Plot.boxX(dots, { x: "value", y: "system", fill: ink().grid, stroke: ink().faint, r: 0 }),
-        Plot.dot(dots, { x: "value", y: "system", fill: (d: { system: string }) => armStyle(systems.indexOf(d.system)).color, fillOpacity: 0.7, r: 3, className: "m-run" }),
+        Plot.boxX(dots, { x: "value", y: "arm", fill: ink().grid, stroke: ink().faint, r: 0 }),
+        Plot.dot(dots, { x: "value", y: "arm", fill: (d: { arm: string }) => armStyle(arms.names.indexOf(d.arm)).color, fillOpacity: 0.7, r: 3, className: "m-run" }),
       ],
     }),
     [dots],
@@ -85,7 +85,7 @@ function Spread({ table, rows, measure, title, unit, about }: { table: Table; ro
   return <Chart title={title} about={about} marks={{ run: dots.length }} make={make} />;
 }
 
-const kCostColumns = ["run", "environment", "system", "labels", "wall_s", "cpu_s", "slam_s", "frames_s", "products_s", "max_rss_mb", "track_ms.median", "track_ms.p95", "relocalize_ms.median", "relocalize_ms.p95", "host", "jobs"];
+const kCostColumns = ["run", "wall_s", "cpu_s", "slam_s", "max_rss_mb", "track_ms.median", "relocalize_ms.median", "host", "jobs"];
 
 export function SpeedPage(): JSX.Element {
   return (

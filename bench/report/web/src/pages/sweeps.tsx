@@ -79,13 +79,18 @@ function Response({ view, across, other }: { view: View; across: Column; other: 
           const v = table.number(`${measure.key}.${end}`, row);
           return v === null ? null : inUnit(measure, v);
         };
-        return [{ x: Number(table.text(across.key, row)), value: inUnit(measure, value), low: bound("low"), high: bound("high"), other: other ? `${other.title} ${table.text(other.key, row)}` : "all" }];
+        const name = other ? `${other.title} ${table.text(other.key, row)}` : "all";
+        return [{ x: Number(table.text(across.key, row)), value: inUnit(measure, value), low: bound("low"), high: bound("high"), other: name }];
       }),
     [view, across],
   );
   const names = [...new Set(points.map((p) => p.other))];
   const lines = names.length <= 6;
   const bounded = points.filter((p) => p.low !== null);
+  // Curves that coincide stand beside one another.
+  const xs = points.map((p) => p.x);
+  const apart = lines ? 0.012 * (Math.max(...xs) - Math.min(...xs)) : 0;
+  const shift = (name: string) => (names.indexOf(name) - (names.length - 1) / 2) * apart;
   const make = useCallback(
     (): Plot.PlotOptions => ({
       height: 300,
@@ -93,7 +98,7 @@ function Response({ view, across, other }: { view: View; across: Column; other: 
       x: { label: across.title, grid: true, nice: true },
       y: { label: heading(measure), grid: true, nice: true },
       marks: names.flatMap((name, i) => {
-        const own = points.filter((p) => p.other === name).sort((a, b) => a.x - b.x);
+        const own = points.filter((p) => p.other === name).map((p) => ({ ...p, x: p.x + shift(name) })).sort((a, b) => a.x - b.x);
         const { color, dash } = lines ? armStyle(i) : armStyle(0);
         return [
           Plot.ruleX(own.filter((p) => p.low !== null), { x: "x", y1: "low", y2: "high", stroke: color, strokeOpacity: 0.5, className: "m-interval" }),
@@ -108,7 +113,7 @@ function Response({ view, across, other }: { view: View; across: Column; other: 
   return (
     <Chart
       title={`Response to ${across.title}`}
-      about={`${heading(measure)}${bounded.length > 0 ? " with Wilson's 95 % intervals" : ""}. ${view.about}`}
+      about={`${heading(measure)}${bounded.length > 0 ? " with Wilson's 95 % intervals" : ""}${lines && names.length > 1 ? "; curves are drawn slightly apart, so that equal ones are seen" : ""}. ${view.about}`}
       legend={lines && other ? names.map((name, i) => ({ name, ...armStyle(i) })) : []}
       marks={{ point: points.length, interval: bounded.length }}
       make={make}
@@ -160,7 +165,7 @@ export function SweepsPage(): JSX.Element {
   return (
     <>
       <h1>Sweeps</h1>
-      <PerFolder>
+      <PerFolder allPoints>
         {(folder, place) =>
           folder.suite === null ? null : (
             <Piece<Figures> piece={`${place}/figures`}>

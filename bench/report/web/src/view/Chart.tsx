@@ -10,7 +10,7 @@ export interface LegendEntry {
   name: string;
   color: string;
   dash?: string;
-  symbol?: Plot.Markish | string;
+  mark?: string; // a letter in the place of a line
 }
 
 interface Props {
@@ -83,17 +83,25 @@ export function Chart({ title, about, legend = [], marks, make, wide }: Props): 
         <ul class="legend">
           {legend.map((entry) => (
             <li key={entry.name}>
-              <svg width="26" height="12" aria-hidden="true">
-                <line
-                  x1="1"
-                  x2="25"
-                  y1="6"
-                  y2="6"
-                  stroke={entry.color}
-                  stroke-width="3"
-                  stroke-dasharray={entry.dash ?? kDashes[0]}
-                />
-              </svg>
+              {entry.mark ? (
+                <svg width="14" height="14" aria-hidden="true">
+                  <text x="7" y="12" text-anchor="middle" font-size="15" font-weight="bold" fill={entry.color}>
+                    {entry.mark}
+                  </text>
+                </svg>
+              ) : (
+                <svg width="26" height="12" aria-hidden="true">
+                  <line
+                    x1="1"
+                    x2="25"
+                    y1="6"
+                    y2="6"
+                    stroke={entry.color}
+                    stroke-width="3"
+                    stroke-dasharray={entry.dash ?? kDashes[0]}
+                  />
+                </svg>
+              )}
               {entry.name}
             </li>
           ))}

@@ -2,9 +2,7 @@
 // What pages share: pieces of data on their way, what is missing, folders side by side.
 import type { ComponentChildren, JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
-import { type Folder, type Table, folders, load } from "../data";
-import { colorOf, kDashes } from "../theme";
-import type { LegendEntry } from "./Chart";
+import { type Folder, folders, load } from "../data";
 
 /** A piece of data: undefined while it loads, an Error if it is missing. */
 export function usePiece<T>(piece: string): T | Error | undefined {
@@ -42,29 +40,26 @@ export function Missing({ children }: { children: ComponentChildren }): JSX.Elem
 /** The same for each results folder, side by side where there is room. */
 export function PerFolder({
   children,
+  allPoints = false,
 }: {
   children: (folder: Folder, place: number) => ComponentChildren;
+  allPoints?: boolean; // the page shows every point of a sweep
 }): JSX.Element {
   return (
+    <>
+    {folders.length > 1 && <p class="note">Each folder's charts have axes of their own: compare numbers, not lengths.</p>}
     <div class={folders.length > 1 ? "folders several" : "folders"}>
       {folders.map((folder, place) => (
         <section key={place} class="folder" aria-label={folder.name}>
           {folders.length > 1 && <h2 class="folder-name">{folder.name}</h2>}
           {folder.problem !== null && <Missing>{folder.problem}</Missing>}
+          {folder.first_point !== null && !allPoints && <p class="remarks">This suite sweeps settings. What stands here is at its first point, {folder.first_point}; the page Sweeps shows all.</p>}
           {children(folder, place)}
         </section>
       ))}
     </div>
+    </>
   );
-}
-
-/** Colors and dashes of the systems of a table, by the order of their first rows. */
-export function systemsOf(table: Table): LegendEntry[] {
-  return table.words("system").map((name, i) => ({
-    name,
-    color: colorOf(i),
-    dash: kDashes[i % kDashes.length],
-  }));
 }
 
 interface ChoiceProps {

@@ -114,7 +114,6 @@ export function topView(
         strokeWidth: 1.6,
         strokeDasharray: "5 3",
         className: "m-path",
-
       }),
     );
   marks.push(
@@ -139,7 +138,7 @@ export function topView(
     Plot.dot(found.answers, {
       x: "x",
       y: "y",
-      symbol: "circle",
+      symbol: (d: { wrong: boolean }) => (d.wrong ? "square" : "circle"),
       stroke: (d: { wrong: boolean }) => (d.wrong ? colorOf(5) : colorOf(2)),
       strokeWidth: 2,
       r: 4.5,
@@ -158,6 +157,7 @@ export function topView(
     x: { domain: x, label: "x, m", grid: !grid },
     y: { domain: y, label: "y, m", grid: !grid },
     color: { type: "identity" } as Plot.ScaleOptions,
+    symbol: { domain: ["circle", "square"], range: ["circle", "square"] } as Plot.ScaleOptions,
     marks,
   };
 }
