@@ -103,12 +103,11 @@ void refuse_older_sequence(const fs::path& folder) {
                                  folder.string(), part.filename().string()));
 }
 
-/// Names of the written files except images; empty for a folder whose render.json states what is
-/// there.
+/// Names of the written files and folders.
 std::vector<std::string> names_written(const fs::path& out) {
-  if (fs::exists(out / "render.json")) return {};
   const std::string name = name_of_folder(out);
-  std::vector<std::string> names{"associations.txt",
+  std::vector<std::string> names{"render.json",
+                                 "associations.txt",
                                  "groundtruth.txt",
                                  "camera.yaml",
                                  "camera_info.yaml",

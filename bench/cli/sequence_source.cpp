@@ -87,8 +87,10 @@ Source open_source(const SourceOptions& options) {
     return {settings_beside(options, *frames, notes), std::move(frames)};
   }
   Settings settings;
-  RecordingConfig config{
-      .calibration = options.settings, .classes = options.classes, .topics = options.topics};
+  RecordingConfig config{.calibration = options.settings,
+                         .classes = options.classes,
+                         .labels = options.labels,
+                         .topics = options.topics};
   config.read_camera = camera_reader(&settings);
   config.has_camera = settings_have_camera;
   OpenedRecording opened = open_sequence(source, config);

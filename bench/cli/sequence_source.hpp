@@ -23,6 +23,7 @@ struct SourceOptions {
   SceneFrameOption frame;
   std::string tour, robot, level;
   std::uint64_t seed = 0;
+  bool labels = true;  ///< false: a recording's own labels are not read
 
   bool is_scene() const { return source.starts_with(kSceneSource); }
   void add_to(CLI::App& command);

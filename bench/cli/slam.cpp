@@ -156,6 +156,7 @@ void run(SlamArguments options) {
   resolve(options.vocabulary, Shipped::kVocabulary);
   resolve(options.settings, Shipped::kSettings);
   const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
+  options.labels = !options.plain && !options.detector.spec();  // those would not be looked at
   Source source = open_source(options);
   // Before the work, so that a mistake costs no time.
   if (const auto spec = options.detector.spec()) {

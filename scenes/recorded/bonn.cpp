@@ -73,15 +73,19 @@ OpenedRecording open_bonn(const fs::path& folder, const RecordingConfig& config)
                       .classes = {},
                       .truth = {},
                       .depth_camera = {}};
-  if (!config.classes.empty()) listed.classes = load_class_map(config.classes);
   if (const fs::path file = folder / "groundtruth.txt"; is_file(file)) {
     Trajectory truth = read_valid_poses(file, notes);
     for (TimedPose& pose : truth)
       pose.world_from_camera =
           exchanged_axes() * pose.world_from_camera * exchanged_axes() * markers_from_camera();
-    if (!truth.empty()) listed.truth = std::move(truth);
+    if (truth.empty())
+      notes.push_back(fmt::format("{}: holds no pose: there is no truth", file.string()));
+    else
+      listed.truth = std::move(truth);
+  } else {
+    note_no_file(file, notes);
   }
-  return open_listed(std::move(listed), config.labels, std::move(notes));
+  return open_listed(std::move(listed), config, std::move(notes));
 }
 
 }  // namespace

@@ -43,10 +43,24 @@ ClassMap load_class_map(const std::filesystem::path& file) {
   return map;
 }
 
-bool knows_none(const Grid2d<std::uint16_t>& ids, const ClassMap& map) {
+void note_foreign_ids(const LabelsOfFrames& labels, const ClassMap& map,
+                      const std::filesystem::path& table, std::vector<std::string>& notes) {
+  const auto is_zero = [](std::uint16_t id) { return id == 0; };
   const auto has_class = [&](std::uint16_t id) { return id < map.size() && map[id] != kVoid; };
-  return std::ranges::any_of(ids, [](std::uint16_t id) { return id != 0; }) &&
-         std::ranges::none_of(ids, has_class);
+  for (std::size_t i = 0; i < labels.frames; ++i) try {
+      const auto ids = labels.read(i);
+      if (!ids || std::ranges::all_of(*ids, is_zero)) continue;
+      if (std::ranges::none_of(*ids, has_class))
+        notes.push_back(
+            fmt::format("{}: none of its ids has a class in {}: are they of another table?",
+                        labels.place(i), table.string()));
+      return;
+    } catch (const InputError&) {  // its frame is skipped, not the recording
+    }
+}
+
+std::string no_labels_note(const std::filesystem::path& table) {
+  return fmt::format("{}: has no use: the recording has no labels", table.string());
 }
 
 SemanticImage one_hot(const Grid2d<std::uint16_t>& ids, const ClassMap* map) {

@@ -3,6 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "slam/core/grid2d.hpp"
@@ -18,8 +21,21 @@ using ClassMap = std::vector<ClassId>;
 /// (.tsv). @throws InputError naming file and line.
 ClassMap load_class_map(const std::filesystem::path& file);
 
-/// Whether an image has ids other than 0, and none of them has a class.
-bool knows_none(const Grid2d<std::uint16_t>& ids, const ClassMap& map);
+/// Label images of a recording, by index of the frame.
+struct LabelsOfFrames {
+  std::size_t frames = 0;
+  /// nullopt: the frame has none. @throws InputError if they cannot be read
+  std::function<std::optional<Grid2d<std::uint16_t>>(std::size_t)> read;
+  std::function<std::string(std::size_t)> place;  ///< for messages
+};
+
+/// Ids of another table look like a place of nothing. Notes it if the first labels that can be read
+/// and show anything hold no id with a class.
+void note_foreign_ids(const LabelsOfFrames& labels, const ClassMap& map,
+                      const std::filesystem::path& table, std::vector<std::string>& notes);
+
+/// What is said of a table beside a recording without labels.
+std::string no_labels_note(const std::filesystem::path& table);
 
 /// A label image as exact distributions, one per class.
 /// @param map  meaning of the ids; null: they are our classes

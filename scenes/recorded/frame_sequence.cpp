@@ -10,6 +10,7 @@
 
 #include "scenes/image_file.hpp"
 #include "scenes/recorded/class_map.hpp"
+#include "scenes/recorded/valid_poses.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/trajectory_io.hpp"
@@ -59,9 +60,8 @@ ListedFrames list_tum_folder(const fs::path& folder, const RecordedCamera& camer
   for (const char* name : {"groundtruth.txt", "groundtruth.csv"})
     if (!listed.truth && is_file(folder / name))
       listed.truth = read_trajectory(folder / name);
-    else if (!listed.truth && notes != nullptr && is_there(folder / name))
-      notes->push_back(
-          fmt::format("{}: is not a file: there is no truth in it", (folder / name).string()));
+    else if (!listed.truth && notes != nullptr)
+      note_no_file(folder / name, *notes);
   return listed;
 }
 
@@ -80,25 +80,6 @@ fs::path calibration_of(const fs::path& folder, const RecordingConfig& config) {
                   folder.string()));
 }
 
-/// Ids of another table look like a place of nothing: the first labels tell.
-void note_foreign_labels(const ListedFrames& listed, const fs::path& classes,
-                         std::vector<std::string>& notes) {
-  const auto first = std::ranges::find_if(
-      listed.frames, [](const RecordedFrame& frame) { return !frame.classes.empty(); });
-  if (first == listed.frames.end()) {
-    notes.push_back(fmt::format("{}: has no use: the recording has no labels", classes.string()));
-    return;
-  }
-  try {
-    const auto ids = decode_gray16(read_file(first->classes));
-    if (ids && knows_none(*ids, *listed.classes))
-      notes.push_back(
-          fmt::format("{}: none of its ids has a class in {}: are they of another table?",
-                      first->classes.string(), classes.string()));
-  } catch (const InputError&) {  // its frame is skipped, not the recording
-  }
-}
-
 OpenedRecording open_tum(const fs::path& folder, const RecordingConfig& config) {
   if (!is_folder(folder)) throw InputError(fmt::format("{}: is not a folder", folder.string()));
   if (!is_tum_folder(folder))
@@ -107,26 +88,36 @@ OpenedRecording open_tum(const fs::path& folder, const RecordingConfig& config) 
   std::vector<std::string> notes;
   ListedFrames listed =
       list_tum_folder(folder, config.read_camera(calibration_of(folder, config)), &notes);
-  if (!config.classes.empty()) {
-    listed.classes = load_class_map(config.classes);
-    note_foreign_labels(listed, config.classes, notes);
-  }
-  return open_listed(std::move(listed), config.labels, std::move(notes));
+  return open_listed(std::move(listed), config, std::move(notes));
 }
 
 }  // namespace
 
 const SequenceReader kTumReader{"tum", "FOLDER", is_tum_folder, open_tum, nullptr};
 
-OpenedRecording open_listed(ListedFrames listed, bool labels, std::vector<std::string> notes) {
+OpenedRecording open_listed(ListedFrames listed, const RecordingConfig& config,
+                            std::vector<std::string> notes) {
   OpenedRecording opened;
   opened.notes = std::move(notes);
+  // Read even where labels are left out: what is read depends on the recording alone.
+  if (!config.classes.empty()) listed.classes = load_class_map(config.classes);
   for (RecordedFrame& frame : listed.frames) {
     for (const fs::path* file : {&frame.color, &frame.depth, &frame.classes})
       if (!file->empty()) opened.files.push_back(*file);
     opened.has_labels = opened.has_labels || !frame.classes.empty();
-    if (!labels) frame.classes.clear();
+    if (!config.labels) frame.classes.clear();
   }
+  if (!config.classes.empty() && !opened.has_labels)
+    opened.notes.push_back(no_labels_note(config.classes));
+  else if (!config.classes.empty())
+    note_foreign_ids({.frames = listed.frames.size(),
+                      .read =
+                          [&](std::size_t i) {
+                            const fs::path& file = listed.frames[i].classes;
+                            return file.empty() ? std::nullopt : decode_gray16(read_file(file));
+                          },
+                      .place = [&](std::size_t i) { return listed.frames[i].classes.string(); }},
+                     *listed.classes, config.classes, opened.notes);
   opened.sequence = std::make_unique<ListedSequence>(std::move(listed));
   return opened;
 }

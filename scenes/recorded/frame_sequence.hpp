@@ -24,8 +24,9 @@ struct ListedFrames {
   std::optional<DepthCamera> depth_camera;  ///< absent: depth is registered to color in the files
 };
 
-/// @param labels  false: frames come without
-OpenedRecording open_listed(ListedFrames listed, bool labels = true,
+/// The last step of opening files of images: loads the class map, leaves labels out if they are not
+/// wanted, and notes a class map without use or of another table.
+OpenedRecording open_listed(ListedFrames listed, const RecordingConfig& config,
                             std::vector<std::string> notes = {});
 
 /// Opens a folder in TUM's layout, recorded by that camera.

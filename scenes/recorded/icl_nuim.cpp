@@ -98,9 +98,13 @@ OpenedRecording open_icl_nuim(const fs::path& folder, const RecordingConfig& con
                       .classes = {},
                       .truth = read_truth(folder / truth.front(), notes),
                       .depth_camera = {}};
-  if (!config.calibration.empty()) listed.camera = config.read_camera(config.calibration);
+  if (!config.calibration.empty()) {
+    const double depth_per_meter = listed.camera.depth_per_meter;
+    listed.camera = config.read_camera(config.calibration);
+    listed.camera.depth_per_meter = depth_per_meter;
+  }
   note_frames_without_pose(listed, (folder / truth.front()).string(), notes);
-  return open_listed(std::move(listed), true, std::move(notes));
+  return open_listed(std::move(listed), config, std::move(notes));
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/recorded/openloris.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -53,8 +55,11 @@ RecordedCamera read_sensors(const fs::path& file) {
   camera.cy_px = k[3];
   if (auto model = color.find("distortion_model")) {
     const std::string name = model->as_string();
+    std::string lower = name;
+    std::ranges::transform(lower, lower.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     for (const char* other : {"equidistant", "fisheye", "kannala", "omni", "fov"})
-      if (name.find(other) != std::string::npos)
+      if (lower.find(other) != std::string::npos)
         model->fail(fmt::format("'{}' is read of no lens but radial-tangential ones", name));
   }
   if (auto distortion = color.find("distortion_coefficients")) {
@@ -172,7 +177,7 @@ OpenedRecording open_openloris(const fs::path& folder, const RecordingConfig& co
                       .classes = {},
                       .truth = read_truth(folder, notes),
                       .depth_camera = {}};
-  return open_listed(std::move(listed), true, std::move(notes));
+  return open_listed(std::move(listed), config, std::move(notes));
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ OpenedRecording open_replica(const fs::path& folder, const RecordingConfig& conf
     notes.push_back(fmt::format("{}: holds {} poses, and the last frame is number {}",
                                 trajectory.string(), lines.size(), last));
   poses.note(folder.string(), notes);
-  return open_listed(std::move(listed), true, std::move(notes));
+  return open_listed(std::move(listed), config, std::move(notes));
 }
 
 }  // namespace

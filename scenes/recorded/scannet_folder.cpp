@@ -118,7 +118,14 @@ class ScannetSequence : public Sequence {
     }
     note_missing_labels(notes);
     class_of_id_ = load_class_map(table);
-    note_foreign_ids(table, notes);
+    note_foreign_ids({.frames = size(),
+                      .read = [&](std::size_t i) { return labels_->read(recording_->number(i)); },
+                      .place =
+                          [&](std::size_t i) {
+                            return fmt::format("{}: the label image of frame {}", labels_->place(),
+                                               recording_->number(i));
+                          }},
+                     class_of_id_, table, notes);
   }
 
   bool has_labels() const { return labels_ != nullptr; }
@@ -171,22 +178,6 @@ class ScannetSequence : public Sequence {
       notes.push_back(
           fmt::format("{}: {} of {} frames have no labels there (the first is frame {})",
                       labels_->place(), missing, size(), first));
-  }
-
-  /// Ids of another table look like a room of nothing: the first frame with labels tells.
-  void note_foreign_ids(const fs::path& table, std::vector<std::string>& notes) const {
-    for (std::size_t i = 0; i < size(); ++i) try {
-        const std::uint32_t number = recording_->number(i);
-        const auto ids = labels_->read(number);
-        if (!ids || std::ranges::all_of(*ids, [](std::uint16_t id) { return id == 0; })) continue;
-        if (knows_none(*ids, class_of_id_))
-          notes.push_back(
-              fmt::format("{}: none of frame {}'s label ids has a class in {}: are they "
-                          "of another table?",
-                          labels_->place(), number, table.string()));
-        return;
-      } catch (const InputError&) {  // its frame is skipped, not the recording
-      }
   }
 
   Grid2d<Rgb8> color_at(const Grid2d<Rgb8>& image, const cv::Mat& columns,

@@ -109,6 +109,13 @@ OpenedRecording open_seven_scenes(const fs::path& path, const RecordingConfig& c
   if (!camera.camera.distortion.none())
     throw InputError(fmt::format("{}: the color camera of 7-Scenes must have no distortion",
                                  config.calibration.string()));
+  const Camera released = seven_scenes_color();
+  if (camera.camera.width_px != released.width_px || camera.camera.height_px != released.height_px)
+    throw InputError(
+        fmt::format("{}: is of {} x {}; the depth camera of 7-Scenes, from which depth is "
+                    "registered, has {} x {}",
+                    config.calibration.string(), camera.camera.width_px, camera.camera.height_px,
+                    released.width_px, released.height_px));
   camera.depth_per_meter = 1000;
   camera.no_depth = 65535;
   Reading reading;
@@ -124,7 +131,7 @@ OpenedRecording open_seven_scenes(const fs::path& path, const RecordingConfig& c
                       .truth = {},
                       .depth_camera = depth};
   if (!truth.empty()) listed.truth = std::move(truth);
-  return open_listed(std::move(listed), true, reading.notes(path));
+  return open_listed(std::move(listed), config, reading.notes(path));
 }
 
 Camera camera_of_kinect(double focal_px) {

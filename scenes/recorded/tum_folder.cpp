@@ -62,9 +62,14 @@ std::string form_of(int type) {
 }
 
 /// Reads a frame's image. Its declared format is checked before anything is decoded.
+enum class Pixels { kColorOrDepth, kIds };
+
 cv::Mat read_frame_image(const fs::path& file, std::initializer_list<int> types,
-                         const Camera& camera) {
+                         const Camera& camera, Pixels pixels = Pixels::kColorOrDepth) {
   const std::string bytes = read_file(file);
+  if (pixels == Pixels::kIds && bytes.starts_with("\xff\xd8"))
+    throw InputError(fmt::format(
+        "{}: is a JPEG image, whose ids are not exact: labels must be PNG images", file.string()));
   const auto check_size = [&](std::int64_t width, std::int64_t height) {
     if (width != camera.width_px || height != camera.height_px)
       throw InputError(fmt::format("{}: is {} x {}, the camera has {} x {}", file.string(), width,
@@ -147,8 +152,8 @@ RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera
     }
   if (recorded.classes.empty()) return frame;
   const std::initializer_list<int> ours = {CV_8UC1}, foreign = {CV_8UC1, CV_16UC1};
-  const cv::Mat ids =
-      read_frame_image(recorded.classes, classes == nullptr ? ours : foreign, camera.camera);
+  const cv::Mat ids = read_frame_image(recorded.classes, classes == nullptr ? ours : foreign,
+                                       camera.camera, Pixels::kIds);
   try {
     frame.semantics = one_hot(widened(ids), classes);
   } catch (const InputError& error) {

@@ -8,6 +8,7 @@
 
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
 #include "slam/core/text_file.hpp"
 #include "slam/core/trajectory_io.hpp"
 
@@ -22,10 +23,7 @@ Trajectory read_valid_poses(const std::filesystem::path& file, std::vector<std::
   for (int number = 1; std::getline(text, line); ++number) {
     if (line.substr(0, line.find('#')).find_first_not_of(" \t\r") == std::string::npos) continue;
     try {
-      // Blank lines before it, so that messages count as the file does.
-      const TimedPose pose =
-          parse_tum(std::string(static_cast<std::size_t>(number - 1), '\n') + line, file.string())
-              .front();
+      const TimedPose pose = parse_tum(line, file.string(), number).front();
       if (!poses.empty() && pose.stamp_ns <= poses.back().stamp_ns)
         throw InputError(fmt::format("{}:{}: stamp: {} does not come after {}", file.string(),
                                      number, format_stamp(pose.stamp_ns),
@@ -39,6 +37,11 @@ Trajectory read_valid_poses(const std::filesystem::path& file, std::vector<std::
     notes.push_back(fmt::format("{}: {} left out of the truth; {}", file.string(),
                                 counted(left_out, "line is", "lines are"), first_fault));
   return poses;
+}
+
+void note_no_file(const std::filesystem::path& truth, std::vector<std::string>& notes) {
+  if (is_there(truth) && !is_file(truth))
+    notes.push_back(fmt::format("{}: is not a file: there is no truth in it", truth.string()));
 }
 
 }  // namespace mh

@@ -14,4 +14,7 @@ namespace mh {
 /// @throws InputError if the file cannot be read.
 Trajectory read_valid_poses(const std::filesystem::path& file, std::vector<std::string>& notes);
 
+/// Notes that a folder, say, stands where a file of true poses would.
+void note_no_file(const std::filesystem::path& truth, std::vector<std::string>& notes);
+
 }  // namespace mh

@@ -69,8 +69,9 @@ double parse_number(const std::string& word, const char* field, const Place& pla
 /// Calls `use` with the words of each line that is neither empty nor a comment.
 void for_each_line(const std::string& text, const std::string& name,
                    const std::function<void(const std::vector<std::string>&, const Place&)>& use,
-                   std::vector<std::string> (*words_of)(std::string_view) = split) {
-  int number = 0;
+                   std::vector<std::string> (*words_of)(std::string_view) = split,
+                   int first_line = 1) {
+  int number = first_line - 1;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     ++number;
@@ -178,10 +179,10 @@ std::string format_stamp(Stamp stamp_ns) {
   return fmt::format("{}.{:09}", stamp_ns / 1'000'000'000, stamp_ns % 1'000'000'000);
 }
 
-Trajectory parse_tum(const std::string& text, const std::string& name) {
+Trajectory parse_tum(const std::string& text, const std::string& name, int first_line) {
   static constexpr PoseFields kFields = {"tx", "ty", "tz", "qx", "qy", "qz", "qw"};
   Trajectory trajectory;
-  for_each_line(text, name, [&](const std::vector<std::string>& words, const Place& place) {
+  const auto read_line = [&](const std::vector<std::string>& words, const Place& place) {
     if (words.size() != 8)
       place.fail(fmt::format("pose: {}, expected 8 (stamp tx ty tz qx qy qz qw)",
                              counted(words.size(), "value")));
@@ -189,7 +190,8 @@ Trajectory parse_tum(const std::string& text, const std::string& name) {
     require_later(trajectory, stamp_ns, words[0], place);
     const std::array<double, 7> v = numbers_of(words, kFields, place);
     add_pose(trajectory, stamp_ns, {v[0], v[1], v[2]}, {v[6], v[3], v[4], v[5]}, place);
-  });
+  };
+  for_each_line(text, name, read_line, split, first_line);
   if (trajectory.empty()) throw InputError(fmt::format("{}: contains no poses", name));
   return trajectory;
 }

@@ -73,6 +73,19 @@ class RosSequence : public Sequence {
     return frame;
   }
 
+  LabelsOfFrames stored_labels() const {
+    return {.frames = frames.size(),
+            .read = [this](std::size_t i) -> std::optional<Grid2d<std::uint16_t>> {
+              if (!frames[i].labels) return std::nullopt;
+              return image(labels, *frames[i].labels, ids_in);
+            },
+            .place =
+                [this](std::size_t i) {
+                  return fmt::format("{}: topic {} at {} ns", file->name(), labels.name,
+                                     frames[i].labels->stamp_ns);
+                }};
+  }
+
  private:
   [[noreturn]] void fail(const ImageSource& source, const StoredImage& stored,
                          const char* why) const {
@@ -311,9 +324,15 @@ OpenedRecording open_messages(OpenMessages open, HeldBytes content, const std::s
   sequence->frames = paired(chosen, name, opened.notes);
   sequence->true_poses = true_trajectory(topics, names, *chosen.color, opened.notes, name);
   opened.has_labels = chosen.labels != nullptr;
+  // Read even where labels are left out: what is read depends on the recording alone.
+  if (!config.classes.empty()) {
+    sequence->classes = load_class_map(config.classes);
+    if (!opened.has_labels) opened.notes.push_back(no_labels_note(config.classes));
+  }
   if (chosen.labels != nullptr && config.labels) {
     sequence->labels = source_of(*chosen.labels);
-    if (!config.classes.empty()) sequence->classes = load_class_map(config.classes);
+    if (sequence->classes)
+      note_foreign_ids(sequence->stored_labels(), *sequence->classes, config.classes, opened.notes);
     const auto without = std::ranges::count_if(
         sequence->frames, [](const StoredFrame& frame) { return !frame.labels.has_value(); });
     if (without > 0)

@@ -484,6 +484,13 @@ TEST_F(CommandLine, ARenderingThatWroteNothingDoesNotBindTheNext) {
   expect_refused("render " + mesh.string() + " --motion handheld:0 --frames 1 --robot " + robot_ +
                      " --format mcap --out " + (folder_ / "foreign").string(),
                  "holds a sequence already (a.mcap)");
+  fs::create_directories(folder_ / "theirs");
+  for (const char* name : {"theirs/render.json", "theirs/groundtruth.txt"}) write(name, "mine");
+  expect_refused("render " + mesh.string() + " --motion handheld:0 --frames 1 --robot " + robot_ +
+                     " --out " + (folder_ / "theirs").string(),
+                 "render.json: is there already, and not from `modelhouse render`");
+  for (const char* name : {"theirs/render.json", "theirs/groundtruth.txt"})
+    EXPECT_EQ(content(folder_ / name), "mine") << name;
 }
 
 TEST_F(CommandLine, AFileBeyondTheLimitIsAnErrorNotASilentEnd) {

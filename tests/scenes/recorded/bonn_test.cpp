@@ -79,6 +79,11 @@ TEST_F(Bonn, LinesThatAreNoPoseAreCounted) {
   EXPECT_NE(notes.find("groundtruth.txt:2: tx"), std::string::npos) << notes;
   write_truth("0.01 nan 0 0 0 0 0 1\n");
   EXPECT_EQ(open().sequence->truth(), nullptr);
+  EXPECT_NE(open().notes.back().find("groundtruth.txt: holds no pose"), std::string::npos);
+  fs::remove(folder_ / kName / "groundtruth.txt");
+  fs::create_directories(folder_ / kName / "groundtruth.txt");
+  ASSERT_FALSE(open().notes.empty());
+  EXPECT_NE(open().notes.back().find("groundtruth.txt: is not a file"), std::string::npos);
   fs::remove(folder_ / kName / "rgb.txt");
   EXPECT_NE(complaint("bonn", kName).find("rgb.txt"), std::string::npos);
 }

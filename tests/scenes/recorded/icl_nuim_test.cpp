@@ -69,6 +69,20 @@ TEST_F(IclNuim, IsRecognizedAndReadWithItsPublishedCamera) {
   EXPECT_EQ(opened.files.size(), 6U);
 }
 
+TEST_F(IclNuim, AnotherCameraKeepsTheScaleOfItsDepth) {
+  write_truth("1 0 0 -2.25 0 0 0 1\n");
+  RecordingConfig config{.calibration = folder_ / "camera.yaml"};
+  config.read_camera = [](const fs::path&) {
+    RecordedCamera camera;
+    camera.camera.fx_px = 500;
+    camera.depth_per_meter = 1000;
+    return camera;
+  };
+  const OpenedRecording opened = open_sequence("icl_nuim:" + folder_.string(), config);
+  EXPECT_EQ(opened.sequence->camera().fx_px, 500);
+  EXPECT_EQ(opened.sequence->frame(0, RandomStream()).depth_m(7, 5), 1.5F);
+}
+
 // In the renderer's world y points up, and a turn to the left is one to the right: a camera that
 // moves up by 1 m and yaws moves by -1 m along y and yaws about the axis that points down.
 TEST_F(IclNuim, PosesAreReflectedIntoTheCamerasFrame) {

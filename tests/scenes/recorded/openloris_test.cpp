@@ -157,12 +157,16 @@ TEST_F(Openloris, BadCalibrationIsNamed) {
   write("sensors.yaml", sensors("61.1, 61.2, 43.3, 249"));
   EXPECT_NE(complaint("openloris").find("sensors.yaml:"), std::string::npos)
       << complaint("openloris");
-  std::string fisheye = sensors("61.1, 43.3, 61.2, 24.9");
+  const std::string fisheye = sensors("61.1, 43.3, 61.2, 24.9");
   const std::string usual = "radial-tangential";
-  fisheye.replace(fisheye.find(usual), usual.size(), "equidistant");
-  write("sensors.yaml", fisheye);
-  EXPECT_NE(complaint("openloris").find("'equidistant' is read of no lens"), std::string::npos)
-      << complaint("openloris");
+  for (const char* other : {"equidistant", "Kannala-Brandt"}) {
+    std::string foreign = fisheye;
+    foreign.replace(foreign.find(usual), usual.size(), other);
+    write("sensors.yaml", foreign);
+    EXPECT_NE(complaint("openloris").find(fmt::format("'{}' is read of no lens", other)),
+              std::string::npos)
+        << complaint("openloris");
+  }
   write("sensors.yaml", "%YAML:1.0\nother:\n   a: 1\n");
   EXPECT_NE(complaint("openloris").find("d400_color_optical_frame"), std::string::npos);
   write("sensors.yaml", sensors("61.1, 43.3, 61.2, 24.9"));

@@ -223,6 +223,39 @@ TEST_P(RosRecording, WithoutLabelsWhereNoneAreWanted) {
   EXPECT_TRUE(opened.sequence->frame(0, RandomStream(0)).semantics.index.empty());
 }
 
+// A run that looks at no labels would otherwise have another key than its plan.
+TEST_P(RosRecording, AClassMapIsReadEvenWhereLabelsAreLeftOut) {
+  record();
+  std::ofstream(folder_ / "classes.yaml") << "1: chair\n2: table\n";
+  const auto digest_of = [&](bool labels) {
+    RecordingConfig config;
+    config.labels = labels;
+    config.classes = folder_ / "classes.yaml";
+    const ReadScope scope;
+    open(config);
+    return digest(scope.record());
+  };
+  EXPECT_EQ(digest_of(true), digest_of(false));
+}
+
+TEST_P(RosRecording, AClassMapOfAnotherTableOrWithoutUseIsTold) {
+  record();
+  RecordingConfig config;
+  config.classes = folder_ / "classes.yaml";
+  std::ofstream(config.classes) << "200: chair\n";
+  const std::vector<std::string> notes = open(config).notes;
+  EXPECT_TRUE(std::ranges::any_of(notes, [](const std::string& note) {
+    return note.find("none of its ids has a class in") != std::string::npos;
+  }));
+  std::ofstream(config.classes) << "3: chair\n";
+  EXPECT_TRUE(open(config).notes.empty()) << open(config).notes.front();
+  Foreign robot(wire());
+  robot.camera();
+  robot.write(writer());
+  EXPECT_NE(open(config).notes.back().find("has no use: the recording has no labels"),
+            std::string::npos);
+}
+
 TEST_P(RosRecording, SeveralInAFolderNeedAName) {
   record();
   fs::copy_file(file(), folder_ / (std::string("second.") + GetParam()));

@@ -92,6 +92,24 @@ TEST_F(SevenScenes, DepthIsRegisteredToTheColorCamera) {
   EXPECT_GT(count[kOutside], 10'000) << "the color camera sees more";
 }
 
+TEST_F(SevenScenes, ACameraOfAnotherSizeIsRefused) {
+  write_sequence("seq-01", 1);
+  RecordingConfig config{.calibration = "half.yaml"};
+  config.read_camera = [](const fs::path&) {
+    RecordedCamera camera;
+    camera.camera.width_px = 320;
+    camera.camera.height_px = 240;
+    return camera;
+  };
+  try {
+    open_sequence((folder_ / "seq-01").string(), config);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("half.yaml: is of 320 x 240"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(SevenScenes, PixelsWithoutMeasurementHaveNoDepth) {
   write_sequence("seq-01", 1);
   write(name_of("seq-01", 0, "depth.png"), encode_png(Grid2d<std::uint16_t>(640, 480, 65535)));

@@ -76,6 +76,23 @@ TEST_F(TumFolder, ReadsBackWhatItWrote) {
   EXPECT_EQ(read_tum(folder_ / "groundtruth.txt").size(), 2u);
 }
 
+// Lossy compression makes classes that nobody wrote.
+TEST_F(TumFolder, LabelsThatAreNotExactAreRefused) {
+  TumWriter writer(folder_, camera_);
+  writer.add(0, exact(0, SE3()));
+  writer.finish();
+  const RecordedFrame listed = load_tum_folder(folder_).front();
+  std::ofstream(listed.classes, std::ios::binary) << encode_jpeg(Grid2d<Rgb8>(8, 6), 90);
+  try {
+    read_frame(listed, {camera_, 5000});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("is a JPEG image, whose ids are not exact"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(TumFolder, RedAndBlueAreExchangedWhereTheCameraSaysSo) {
   TumWriter writer(folder_, camera_);
   writer.add(0, exact(0, SE3()));
@@ -156,6 +173,8 @@ TEST_F(TumFolder, WhatHasNoUseIsTold) {
   EXPECT_NE(notes(classes).find("c.png: none of its ids has a class"), std::string::npos)
       << notes(classes);
   fs::remove(folder_ / "c.png");  // costs its frame the labels, not the recording
+  EXPECT_EQ(notes(classes).find("none of its ids"), std::string::npos);
+  std::ofstream(folder_ / "c.png", std::ios::binary) << encode_jpeg(Grid2d<Rgb8>(4, 4), 90);
   EXPECT_EQ(notes(classes).find("none of its ids"), std::string::npos);
   std::ofstream(folder_ / "c.png", std::ios::binary) << encode_png(ids);
   fs::remove(folder_ / "groundtruth.txt");
