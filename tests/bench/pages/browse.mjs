@@ -177,8 +177,9 @@ async function use(browser, report) {
   await go("overview");
   await page.getByRole("link", { name: "Figures" }).focus();
   await page.keyboard.press("Enter");
+  const followed = await page.waitForFunction(() => document.querySelector("h1").textContent === "Figures of the paper", undefined, { timeout: 20000 }).then(() => true, () => false);
+  expect(followed, `${report}: Enter follows no link`);
   await settled(page);
-  expect((await page.locator("h1").textContent()) === "Figures of the paper", `${report}: Enter follows no link`);
   // A failing query opens its run with that query chosen.
   await go("failures");
   const link = page.locator("td a").first();
