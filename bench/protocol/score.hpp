@@ -17,8 +17,8 @@ enum class NearestBy {
   kPlace,  ///< another tour: the mapped frame nearest by true pose, 1 rad counted as 1 m
 };
 
-/// What a query's true pose is measured from: a mapped frame or, with QueryTruth::kInterpolated, the
-/// estimate at the query's own time.
+/// What a query's true pose is measured from: a mapped frame or, with QueryTruth::kInterpolated,
+/// the estimate at the query's own time.
 struct Anchor {
   SE3 estimate;  ///< world_from_camera of the system
   SE3 truth;     ///< world_from_camera, true

@@ -73,7 +73,8 @@ const SequenceReader& reader_of(const std::string& source);
 /// @throws InputError naming file and place.
 OpenedRecording open_sequence(const std::string& source, const RecordingConfig& config);
 
-/// Returns a message if the ground truth has poses but none near the time of any frame; otherwise "".
+/// Returns a message if the ground truth has poses but none near the time of any frame; otherwise
+/// "".
 std::string truth_of_another_time(const Sequence& frames, const Trajectory& truth);
 
 }  // namespace mh
