@@ -26,7 +26,7 @@ struct DetectorOption {
         "boxes (COCO .json, MOT .csv, a folder of YOLO .txt)");
     command.add_option("--detector-settings", settings, "Its settings (YAML), which may name it");
     command.add_option("--detector-cache", cache,
-                       "Cache folder for what it finds; none: every image is run");
+                       "Cache folder for what it finds; without it, every image is run");
   }
   /// The cache of --detector-cache; warns on stderr if it can keep nothing.
   /// @param command  as which it warns

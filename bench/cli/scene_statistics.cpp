@@ -173,7 +173,8 @@ void add_scene_statistics(CLI::App& scene) {
   options->frame.add_to(*command);
   command->add_option("--jobs", options->threads, "Threads that bake light; changes no figure")
       ->check(CLI::Range(1, 1024));
-  command->add_option("--cache", options->cache, "Cache folder for baked light; none: bakes again");
+  command->add_option("--cache", options->cache,
+                      "Cache folder for baked light; without it, it is baked again");
   command->add_flag("--json", options->json, "Prints JSON, with the median of each scene");
   command->footer("Example:\n  modelhouse scene statistics --per-category 3 --frames 540");
   command->callback([options] { run(*options); });

@@ -258,7 +258,8 @@ void add_twin(CLI::App& app) {
   command->add_option("--seed", options->seed, "Of SLAM's draws");
   command->add_option("--jobs", options->threads, "Threads that bake light; changes no figure")
       ->check(CLI::Range(1, 1024));
-  command->add_option("--cache", options->cache, "Cache folder for baked light; none: bakes again");
+  command->add_option("--cache", options->cache,
+                      "Cache folder for baked light; without it, it is baked again");
   options->frame.add_to(*command);
   command->footer(
       "Example:\n  modelhouse twin scannet:scans/scene0000_00 scans/scene0000_00 --out out/twin");
