@@ -68,7 +68,7 @@ export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element 
     const shown = rows ?? Array.from({ length: table.rows }, (_, row) => row);
     return shown.length < 3 ? [] : open.slice(1).filter((c) => c.isText && shown.every((row) => table.text(c.key, row) === table.text(c.key, shown[0] ?? 0)));
   }, [table, rows]);
-  const said_once = same.map((c) => [c.title, table.text(c.key, (rows ?? [0])[0] ?? 0)] as const).filter(([, text]) => text !== "");
+  const saidOnce = same.map((c) => [c.title, table.text(c.key, (rows ?? [0])[0] ?? 0)] as const).filter(([, text]) => text !== "");
   const few = open.filter((c) => (!usual || usual.includes(c.key)) && !same.includes(c));
   const columns = all ? open : few;
   const found = useMemo(() => {
@@ -132,7 +132,7 @@ export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element 
           ))}
         </span>
       </div>
-      {!all && said_once.length > 0 && <p class="note">In every row: {said_once.map(([title, text]) => `${title} ${text}`).join("; ")}.</p>}
+      {!all && saidOnce.length > 0 && <p class="note">In every row: {saidOnce.map(([title, text]) => `${title} ${text}`).join("; ")}.</p>}
       <div class="scroll" tabIndex={0} role="region" aria-label={table.title}>
         <table>
           <caption class="unseen">{table.title}</caption>
