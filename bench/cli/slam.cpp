@@ -156,10 +156,11 @@ void run(SlamArguments options) {
   resolve(options.vocabulary, Shipped::kVocabulary);
   resolve(options.settings, Shipped::kSettings);
   const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
-  options.labels = !options.plain && !options.detector.spec();  // those would not be looked at
+  const auto spec = options.detector.spec();
+  options.labels = !options.plain && !spec;  // those would not be looked at
   Source source = open_source(options);
   // Before the work, so that a mistake costs no time.
-  if (const auto spec = options.detector.spec()) {
+  if (spec) {
     const std::shared_ptr<const Detector> detector = open_detector(*spec);
     fmt::print(stderr, "slam: labels from {}\n", detector->description());
     if (const std::string note = detector->check_frames(stamps_of(*source.frames)); !note.empty())

@@ -101,15 +101,15 @@ Causes causes_in(const std::string& csv) {
   return causes;
 }
 
-/// The settings of a run's points, as the suite's sweep varies them.
+/// The settings of a run's points, as the suite's sweep varies them; none of a single point.
 std::vector<std::string> points_of(const PagesSource& source, const RunResult& run) {
   std::vector<std::string> points;
+  if (run.points.size() < 2) return points;
   for (const SemanticConfig& point : run.spec.points) {
     SlamConfig at = *run.spec.slam;
     at.semantics = point;
     points.push_back(shown_point(source.suite->sweep, at));
   }
-  points.resize(run.points.size());
   return points;
 }
 

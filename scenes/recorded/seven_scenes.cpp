@@ -109,13 +109,14 @@ OpenedRecording open_seven_scenes(const fs::path& path, const RecordingConfig& c
   if (!camera.camera.distortion.none())
     throw InputError(fmt::format("{}: the color camera of 7-Scenes must have no distortion",
                                  config.calibration.string()));
-  const Camera released = seven_scenes_color();
-  if (camera.camera.width_px != released.width_px || camera.camera.height_px != released.height_px)
+  const DepthCamera depth = seven_scenes_depth();
+  if (camera.camera.width_px != depth.camera.width_px ||
+      camera.camera.height_px != depth.camera.height_px)
     throw InputError(
         fmt::format("{}: is of {} x {}; the depth camera of 7-Scenes, from which depth is "
                     "registered, has {} x {}",
                     config.calibration.string(), camera.camera.width_px, camera.camera.height_px,
-                    released.width_px, released.height_px));
+                    depth.camera.width_px, depth.camera.height_px));
   camera.depth_per_meter = 1000;
   camera.no_depth = 65535;
   Reading reading;
@@ -123,7 +124,6 @@ OpenedRecording open_seven_scenes(const fs::path& path, const RecordingConfig& c
     reading.add(folder);
   if (reading.frames().empty())
     throw InputError(fmt::format("{}: no color image has a depth image", path.string()));
-  const DepthCamera depth = seven_scenes_depth();
   Trajectory truth = reading.truth(depth.color_from_depth.inverse());
   ListedFrames listed{.camera = camera,
                       .frames = reading.frames(),

@@ -61,9 +61,9 @@ std::string form_of(int type) {
   return fmt::format("{} of {} bits", counted(CV_MAT_CN(type), "channel"), 8 * CV_ELEM_SIZE1(type));
 }
 
-/// Reads a frame's image. Its declared format is checked before anything is decoded.
 enum class Pixels { kColorOrDepth, kIds };
 
+/// Reads a frame's image. Its declared format is checked before anything is decoded.
 cv::Mat read_frame_image(const fs::path& file, std::initializer_list<int> types,
                          const Camera& camera, Pixels pixels = Pixels::kColorOrDepth) {
   const std::string bytes = read_file(file);

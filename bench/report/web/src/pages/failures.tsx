@@ -25,10 +25,12 @@ function Counts({ table, asked, rows, by, title, about }: CountsProps): JSX.Elem
   const arms = useMemo(() => armsOf(table, asked), [table, asked]);
   const bars = useMemo(() => {
     const counts = new Map<string, { what: string; arm: string; count: number; of: number }>();
+    const askedOf = new Map<string, number>();
+    for (const row of asked) askedOf.set(arms.name(row), (askedOf.get(arms.name(row)) ?? 0) + 1);
     for (const row of rows) {
       const what = table.text(by, row).replaceAll("_", " ") || "not reported";
       const arm = arms.name(row);
-      const bar = counts.get(`${what} ${arm}`) ?? { what, arm, count: 0, of: asked.filter((q) => arms.name(q) === arm).length };
+      const bar = counts.get(`${what} ${arm}`) ?? { what, arm, count: 0, of: askedOf.get(arm) ?? 0 };
       counts.set(`${what} ${arm}`, { ...bar, count: bar.count + 1 });
     }
     return [...counts.values()].map((bar) => ({ ...bar, share: (100 * bar.count) / bar.of }));
