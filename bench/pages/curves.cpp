@@ -47,25 +47,26 @@ std::vector<Sum> window_errors(const RunResult& run) {
 }
 
 struct Curve {
-  std::size_t place = 0;  ///< of the system in the suite
-  std::string system, level, labels;
+  std::size_t system = 0;
+  std::string level, labels;
   auto operator<=>(const Curve&) const = default;
 };
 
 }  // namespace
 
-Json error_by_frame_json(const PagesSource& source) {
+Json error_by_frame_json(const Suite& suite, std::span<const Row> rows) {
   // By curve, window and environment: over trials.
-  std::map<Curve, std::vector<std::map<std::string, Sum>>> all;
-  for (const RunResult& run : source.results.runs) {
-    const std::vector<Sum> windows = window_errors(run);
-    const auto place =
-        std::ranges::find(source.suite->systems, run.spec.system.name, &SystemSpec::name);
-    auto& curve = all[{static_cast<std::size_t>(place - source.suite->systems.begin()),
-                       run.spec.system.name, level_name(run.spec.level), name(run.spec.labels)}];
-    if (curve.size() < windows.size()) curve.resize(windows.size());
-    for (std::size_t w = 0; w < windows.size(); ++w)
-      if (windows[w].count > 0) curve[w][run.spec.environment.name].add(windows[w].mean());
+  std::map<Curve, std::vector<std::map<std::size_t, Sum>>> all;
+  for (const Row& row : rows) {
+    if (row.parameters != 0 || !is_own_row(suite, row.system, row.labels)) continue;
+    for (const Trial& trial : row.trials) {
+      const std::vector<Sum> windows = window_errors(*trial.run);
+      auto& curve = all[{row.system, level_name(suite.levels[row.level]),
+                         labels_seen(suite, row.system, row.labels)}];
+      if (curve.size() < windows.size()) curve.resize(windows.size());
+      for (std::size_t w = 0; w < windows.size(); ++w)
+        if (windows[w].count > 0) curve[w][row.environment].add(windows[w].mean());
+    }
   }
   PageTable table(
       "Figure 4: error against frames",
@@ -83,7 +84,7 @@ Json error_by_frame_json(const PagesSource& source) {
       std::optional<double> half;
       if (sum.count > 1) half = 1.96 * std::sqrt(squares.sum / (n - 1) / n);
       table.begin_row();
-      table.text({"system", "system"}, curve.system);
+      table.text({"system", "system"}, suite.systems[curve.system].name);
       table.text({"level", "level"}, curve.level);
       table.text({"labels", "labels"}, curve.labels);
       table.number({"frame", "frame"}, static_cast<double>(w * kWindow) + 0.5 * kWindow);

@@ -5,17 +5,17 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/pages/source.hpp"
 #include "bench/results/summary.hpp"
 
 namespace mh {
 
 /// The paper's Figure 4: for each system, level and kind of labels, the mean position error (m,
 /// after SE(3) alignment) over each kWindow frames of the tours, over the environments whose tours
-/// reach that far and are tracked there, with the number of these. Per environment the mean over
-/// trials; the 95 % interval is that of a mean of independent environments. Null without a truth.
+/// reach that far and are tracked there, with the number of these; of a sweep, at its first point.
+/// Per environment the mean over trials; the 95 % interval is that of a mean of independent
+/// environments. Null without a truth.
 inline constexpr std::size_t kWindow = 30;
-nlohmann::ordered_json error_by_frame_json(const PagesSource& source);
+nlohmann::ordered_json error_by_frame_json(const Suite& suite, std::span<const Row> rows);
 
 /// The paper's Figure 3: a row per environment and system with the objects per 10 m² of its floor.
 /// Only a generated environment states how many objects it holds; null if the suite has none.

@@ -117,7 +117,8 @@ std::string by_density(const PagesSource& source, const PlotOrder& order, const 
 
 /// Figure 4: error against frames, and below it the environments still counted.
 std::string by_frame(const PagesSource& source, const PlotOrder& order, const fs::path& file) {
-  const Json json = error_by_frame_json(source);
+  const Json json = error_by_frame_json(
+      *source.suite, make_rows(*source.suite, source.results.runs, source.results.failed));
   if (json.is_null())
     throw InputError(
         fmt::format("{}: no run has both a true and an estimated path: figure 4 "

@@ -107,7 +107,7 @@ void write_source(Pieces& pieces, const std::string& place, const PagesSource& s
     overview["table2"] = table2_json(suite, categories);
     figures = {{"candidates", candidates_json(suite, categories)},
                {"density", density_json(suite, rows)},
-               {"by_frame", error_by_frame_json(source)},
+               {"by_frame", error_by_frame_json(suite, rows)},
                {"sweep", sweep_pages_json(suite, rows)},
                {"graded", graded_json(suite, rows)}};
   }

@@ -76,15 +76,17 @@ class Reports : public testing::Test {
     suite.trials = 10;
     return source_of_suite(suite, 60, 10);
   }
-  /// A suite with a sweep over two settings.
-  Suite sweep() const {
+  /// A suite with a sweep over two settings of the queries, or as `parameters` says.
+  Suite sweep(const std::string& parameters =
+                  "map: fixed, semantics.gamma: [0, 0.5, 1, 2], "
+                  "semantics.xi: [1, 1.5, 2]") const {
     const fs::path file = work_.path() / "sweep.yaml";
     write_atomically(file,
                      "environments:\n- {name: den, category: rooms, scene: d.yaml, "
                      "mapping_tour: t.yaml}\nrobot: r.yaml\nvocabulary: v.mhvoc\n"
                      "levels: [pepper.yaml]\nsystems: [semantic, plain]\nlabels: [exact]\n"
-                     "parameters: {map: fixed, semantics.gamma: [0, 0.5, 1, 2], "
-                     "semantics.xi: [1, 1.5, 2]}\n");
+                     "parameters: {" +
+                         parameters + "}\n");
     return parse_suite(read_file(file), file, {}, false);
   }
 
@@ -245,6 +247,20 @@ TEST_F(Reports, OfASweepSayAtWhichPointTheyAre) {
   EXPECT_TRUE(piece(out(), "index").at("folders").at(0).at("first_point").is_null());
 }
 
+TEST_F(Reports, Figure4OfASweepThatMapsAnewIsOfItsFirstPoint) {
+  PagesSource source = source_of_suite(sweep("map: rebuilt, features.count: [500, 1000]"));
+  for (RunResult& run : source.results.runs)
+    if (run.spec.slam->features.count == 1000)
+      for (TimedPose& pose : run.estimate)
+        pose.world_from_camera =
+            SE3(Eigen::Matrix3d::Identity(), {5, 0, 0}) * pose.world_from_camera;
+  write_pages(out(), std::array{source});
+  const Json curve = piece(out(), "0/figures").at("by_frame");
+  ASSERT_GT(curve.at("rows"), 0);
+  for (std::size_t row = 0; row < curve.at("rows"); ++row)
+    EXPECT_LT(ReadTable{curve}.number("error_m", row).get<double>(), 1);
+}
+
 TEST_F(Reports, ASystemThatSeesNoLabelsHasOneRowWhateverTheLabels) {
   Suite suite = made_up_suite(work_.path(), {"den"});
   suite.labels = {LabelMode::kExact, LabelMode::kBoxes};
@@ -258,6 +274,12 @@ TEST_F(Reports, ASystemThatSeesNoLabelsHasOneRowWhateverTheLabels) {
   EXPECT_EQ(seen, (std::vector<std::string>{"semantic exact", "plain none", "semantic boxes"}));
   EXPECT_NE(json.at("note").get<std::string>().find("Success: a pose was returned, right or wrong"),
             std::string::npos);
+  const Json curve = piece(out(), "0/figures").at("by_frame");
+  std::set<std::string> curves;
+  for (std::size_t row = 0; row < curve.at("rows"); ++row)
+    curves.insert(ReadTable{curve}.text("system", row) + " " +
+                  ReadTable{curve}.text("labels", row));
+  EXPECT_EQ(curves, (std::set<std::string>{"semantic exact", "plain none", "semantic boxes"}));
 }
 
 TEST_F(Reports, OfAFileThatIsNoResultsFileSayWhy) {

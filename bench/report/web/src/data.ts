@@ -30,7 +30,7 @@ export interface Folder {
   runs_of_file: number;
   replays: string[]; // names of runs
   views: string[]; // those of them whose images were recorded
-  first_point: string | null; // of a sweep: where everything but the page Sweeps is
+  first_point: string | null; // of a sweep: where verdicts, tables and figures are
 }
 export interface Sentence {
   text: string;

@@ -235,7 +235,7 @@ export function FiguresPage(): JSX.Element {
     <>
       <h1>Figures of the paper</h1>
       <p class="note">The paper: Spatial Perception by Object-Aware Visual Scene Representation. Its figures are drawn here from this bench's own runs.</p>
-      <PerFolder>
+      <PerFolder points="first">
         {(folder, place) =>
           folder.suite === null ? null : (
             <Piece<Figures> piece={`${place}/figures`}>

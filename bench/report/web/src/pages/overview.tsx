@@ -128,7 +128,7 @@ export function OverviewPage(): JSX.Element {
   return (
     <>
       <h1>Overview</h1>
-      <PerFolder>
+      <PerFolder points="first">
         {(folder, place) => (
           <Piece<Overview> piece={`${place}/overview`}>
             {(overview) => (

@@ -35,7 +35,7 @@ export function ReproductionPage(): JSX.Element {
   return (
     <>
       <h1>Reproduction</h1>
-      <PerFolder allPoints>
+      <PerFolder points="all">
         {(folder, place) => (
           <>
             <Piece<Reproduction | null> piece={`${place}/reproduction`}>

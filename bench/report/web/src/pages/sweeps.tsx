@@ -165,7 +165,7 @@ export function SweepsPage(): JSX.Element {
   return (
     <>
       <h1>Sweeps</h1>
-      <PerFolder allPoints>
+      <PerFolder points="all">
         {(folder, place) =>
           folder.suite === null ? null : (
             <Piece<Figures> piece={`${place}/figures`}>

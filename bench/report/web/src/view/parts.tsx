@@ -40,10 +40,10 @@ export function Missing({ children }: { children: ComponentChildren }): JSX.Elem
 /** The same for each results folder, side by side where there is room. */
 export function PerFolder({
   children,
-  allPoints = false,
+  points = "runs",
 }: {
   children: (folder: Folder, place: number) => ComponentChildren;
-  allPoints?: boolean; // the page shows every point of a sweep
+  points?: "first" | "runs" | "all"; // which points of a sweep the page shows
 }): JSX.Element {
   return (
     <>
@@ -53,7 +53,8 @@ export function PerFolder({
         <section key={place} class="folder" aria-label={folder.name}>
           {folders.length > 1 && <h2 class="folder-name">{folder.name}</h2>}
           {folder.problem !== null && <Missing>{folder.problem}</Missing>}
-          {folder.first_point !== null && !allPoints && <p class="remarks">This suite sweeps settings. What stands here is at its first point, {folder.first_point}; the page Sweeps shows all.</p>}
+          {folder.first_point !== null && points === "first" && <p class="remarks">This suite sweeps settings. What stands here is at its first point, {folder.first_point}; the page Sweeps shows all.</p>}
+          {folder.first_point !== null && points === "runs" && <p class="remarks">This suite sweeps settings. Each run stands here at the first point that it maps for; the page Sweeps shows all.</p>}
           {children(folder, place)}
         </section>
       ))}
