@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/sensors/depth_noise.hpp"
 
-#include <immintrin.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -74,31 +73,61 @@ Grid2d<Surface> find_surfaces(const Grid2d<float>& depth_m, const Camera& camera
   const auto fx = static_cast<float>(camera.fx_px), fy = static_cast<float>(camera.fy_px);
   const auto cx = static_cast<float>(camera.cx_px), cy = static_cast<float>(camera.cy_px);
   Grid2d<Surface> surfaces(w, h);
+  std::vector<float> slopes_x(static_cast<std::size_t>(w), 0.0F), slopes_y(slopes_x),
+      cosines(slopes_x);
+  float *slope_x = slopes_x.data(), *slope_y = slopes_y.data(), *cosine = cosines.data();
   for (int y = 0; y < h; ++y) {
     const float* here = inverse.row(y).data();
     // In the outermost columns and rows the only available difference serves as both.
     const float* above = y > 0 ? here - w : here;
     const float* below = y + 1 < h ? here + w : here;
-    const bool border = y == 0 || y + 1 == h;
+    if (w > 1) slope_x[0] = here[1] - here[0], slope_x[w - 1] = here[w - 1] - here[w - 2];
+    for (int x = 1; x + 1 < w; ++x) slope_x[x] = gentler(here[x - 1], here[x], here[x + 1]);
+    if (y == 0 || y + 1 == h)
+      for (int x = 0; x < w; ++x) slope_y[x] = below[x] - above[x];
+    else
+      for (int x = 0; x < w; ++x) slope_y[x] = gentler(above[x], here[x], below[x]);
+    // The plane n . X = 1 through X = z d, d = (a, b, 1), so that n . d = 1/z.
     const float b = (static_cast<float>(y) - cy) / fy;
-    Surface* out = surfaces.row(y).data();
-    const auto fit = [&](int x, float slope_x) {
-      const float slope_y = border ? below[x] - above[x] : gentler(above[x], here[x], below[x]);
-      // The plane n . X = 1 through X = z d, d = (a, b, 1), so that n . d = 1/z.
+    for (int x = 0; x < w; ++x) {
       const float a = (static_cast<float>(x) - cx) / fx;
-      const float nx = slope_x * fx, ny = slope_y * fy, nz = here[x] - nx * a - ny * b;
+      const float nx = slope_x[x] * fx, ny = slope_y[x] * fy, nz = here[x] - nx * a - ny * b;
       const float squares = (nx * nx + ny * ny + nz * nz) * (a * a + b * b + 1.0F);
-      out[x] = {here[x], slope_x, slope_y, here[x] / std::sqrt(squares + 1e-30F)};
-    };
-    for (int x = 1; x + 1 < w; ++x) fit(x, gentler(here[x - 1], here[x], here[x + 1]));
-    fit(0, w > 1 ? here[1] - here[0] : 0.0F);
-    if (w > 1) fit(w - 1, here[w - 1] - here[w - 2]);
+      cosine[x] = here[x] / std::sqrt(squares + 1e-30F);
+    }
+    Surface* out = surfaces.row(y).data();
+    for (int x = 0; x < w; ++x) out[x] = {here[x], slope_x[x], slope_y[x], cosine[x]};
   }
   return surfaces;
 }
 
-/// Processes an image row by row; the passes over a row are separate, so that those without table
-/// lookups are vectorized.
+/// What is known of the pixels of a row: arrays, so that passes without table lookups are
+/// vectorized.
+struct Row {
+  explicit Row(std::size_t width)
+      : normal_x(width),
+        normal_y(width),
+        normal_z(width),
+        seen(width),
+        away_x(width),
+        away_y(width),
+        inverse_depth(width),
+        slope_x(width),
+        slope_y(width),
+        cosine(width),
+        by_incidence(width),
+        disparity_px(width),
+        column(width) {}
+  std::vector<float> normal_x, normal_y, normal_z;  ///< drawn: for the lateral and axial noise
+  std::vector<int> seen;              ///< index of the pixel whose surface each pixel sees
+  std::vector<float> away_x, away_y;  ///< from that pixel to this one, px
+  std::vector<float> inverse_depth, slope_x, slope_y, cosine;  ///< of that surface
+  std::vector<float> by_incidence;  ///< looked up: first the lateral sigma, then the angular part
+  std::vector<float> disparity_px;  ///< between camera and projector
+  std::vector<int> column;          ///< in the projector's image
+};
+
+/// Processes an image row by row, in one pass after the other over each.
 class DepthSensor {
  public:
   DepthSensor(const Grid2d<float>& depth_m, const Camera& camera, const DepthNoiseConfig& config,
@@ -107,12 +136,22 @@ class DepthSensor {
         surfaces_(find_surfaces(depth_m, camera)),
         config_(config),
         stream_(stream),
+        width_(depth_m.width()),
         steps_per_inverse_depth_(
             static_cast<float>(kDisparityStepsPerPx * camera.fx_px * camera.baseline_m)),
-        row_(static_cast<std::size_t>(depth_m.width())) {}
+        row_(static_cast<std::size_t>(width_)) {}
 
   void read_row(int y, std::span<float> depth) {
-    look(y, depth);
+    draw(y);
+    if (config_.lateral)
+      stray(y);
+    else
+      std::iota(row_.seen.begin(), row_.seen.end(), y * width_);
+    fetch_surfaces();
+    if (config_.lateral)
+      follow_planes(depth);
+    else
+      std::copy_n(depth_m_.row(y).begin(), width_, depth.begin());
     if (config_.grazing_holes) punch_holes(depth);
     if (config_.projector_shadow) cast_shadow(y, depth);
     if (config_.axial) add_axial_noise(depth);
@@ -123,90 +162,113 @@ class DepthSensor {
   }
 
  private:
-  struct Draw {
-    float normal;   // for the axial noise
-    float cosine;   // of the incidence on the surface seen
-    float angular;  // see IncidenceTable
-  };
-
-  /// Draws a row's random numbers and finds the surface that each pixel sees.
-  void look(int y, std::span<float> depth) {
-    const int w = depth_m_.width(), h = depth_m_.height();
-    const auto first = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(w);
-    std::copy_n(depth_m_.row(y).begin(), w, depth.begin());
-    for (int x = 0; x < w; ++x) {
+  void draw(int y) {
+    const auto first = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width_);
+    for (int x = 0; x < width_; ++x) {
       const std::uint64_t bits = stream_.bits(first + static_cast<std::uint64_t>(x));
-      const auto normal = [&](int k) {
-        return normals_[(bits >> (kNormalBits * k)) & kNormalMask];
-      };
-      const Surface* seen = &surfaces_(x, y);
-      if (config_.lateral) {
-        const float sigma = incidence_.lateral_px(seen->cosine);
-        const int sx = std::clamp(x + round(sigma * normal(0)), 0, w - 1);
-        const int sy = std::clamp(y + round(sigma * normal(1)), 0, h - 1);
-        seen = &surfaces_(sx, sy);
-        depth[static_cast<std::size_t>(x)] = depth_of(*seen, x - sx, y - sy);
-      }
-      row_[static_cast<std::size_t>(x)] = {normal(2), seen->cosine,
-                                           incidence_.angular(seen->cosine)};
+      row_.normal_x[x] = normals_[bits & kNormalMask];
+      row_.normal_y[x] = normals_[(bits >> kNormalBits) & kNormalMask];
+      row_.normal_z[x] = normals_[(bits >> (2 * kNormalBits)) & kNormalMask];
     }
   }
 
-  static int round(float value) { return _mm_cvt_ss2si(_mm_set_ss(value)); }
+  /// Lateral noise: which pixel's surface each pixel sees.
+  void stray(int y) {
+    const int w = width_, h = depth_m_.height();
+    const Surface* own = surfaces_.row(y).data();
+    float* sigma = row_.by_incidence.data();
+    for (int x = 0; x < w; ++x) sigma[x] = incidence_.lateral_px(own[x].cosine);
+    const float *nx = row_.normal_x.data(), *ny = row_.normal_y.data();
+    float *away_x = row_.away_x.data(), *away_y = row_.away_y.data();
+    int* seen = row_.seen.data();
+    for (int x = 0; x < w; ++x) {
+      const int sx = std::clamp(x + round(sigma[x] * nx[x]), 0, w - 1);
+      const int sy = std::clamp(y + round(sigma[x] * ny[x]), 0, h - 1);
+      seen[x] = sy * w + sx;
+      away_x[x] = static_cast<float>(x - sx);
+      away_y[x] = static_cast<float>(y - sy);
+    }
+  }
 
-  /// Depth of a surface some pixels away from where it was seen. Following its plane limits the
-  /// lateral noise to the edges: on a slope it would duplicate the axial noise.
-  static float depth_of(const Surface& seen, int dx, int dy) {
-    const float w = seen.inverse_depth;
-    const float moved =
-        w + seen.slope_x * static_cast<float>(dx) + seen.slope_y * static_cast<float>(dy);
-    // A thin object has no plane to follow.
-    const float limited = std::min(std::max(moved, 0.8F * w), 1.25F * w);
-    const float z = 1.0F / limited;
-    return w > 0.0F ? z : 0.0F;
+  /// To the nearest integer, a half to the even one.
+  static int round(float value) { return static_cast<int>(std::rint(value)); }
+
+  void fetch_surfaces() {
+    const Surface* surfaces = surfaces_.data();
+    for (int x = 0; x < width_; ++x) {
+      const Surface& s = surfaces[row_.seen[x]];
+      row_.inverse_depth[x] = s.inverse_depth;
+      row_.slope_x[x] = s.slope_x;
+      row_.slope_y[x] = s.slope_y;
+      row_.cosine[x] = s.cosine;
+    }
+  }
+
+  /// Depth of the surfaces seen, some pixels away from where they were seen. Following their planes
+  /// limits the lateral noise to the edges: on a slope it would duplicate the axial noise.
+  void follow_planes(std::span<float> depth) const {
+    const float *inverse = row_.inverse_depth.data(), *slope_x = row_.slope_x.data(),
+                *slope_y = row_.slope_y.data(), *dx = row_.away_x.data(), *dy = row_.away_y.data();
+    float* z = depth.data();
+    for (int x = 0; x < width_; ++x) {
+      const float w = inverse[x];
+      const float moved = w + slope_x[x] * dx[x] + slope_y[x] * dy[x];
+      // A thin object has no plane to follow.
+      const float limited = std::min(std::max(moved, 0.8F * w), 1.25F * w);
+      const float there = 1.0F / limited;
+      z[x] = w > 0.0F ? there : 0.0F;
+    }
   }
 
   void punch_holes(std::span<float> depth) const {
     const auto least = static_cast<float>(std::cos(kMaxIncidenceRad));
     for (std::size_t x = 0; x < depth.size(); ++x)
-      depth[x] = row_[x].cosine < least ? 0.0F : depth[x];
+      depth[x] = row_.cosine[x] < least ? 0.0F : depth[x];
   }
 
   /// What the projector sees of a row, nearest first: a pixel with disparity d is at column x - d
   /// of the projector's image. Pixels behind another are in its shadow.
   void cast_shadow(int y, std::span<float> depth) {
-    constexpr float kNothing = 0.0F;
     constexpr float kStep = 1.0F;  // px of disparity; a smooth surface does not shade itself
     const float focal_base = steps_per_inverse_depth_ / static_cast<float>(kDisparityStepsPerPx);
-    const int w = depth_m_.width();
+    const int w = width_;
     const Surface* row = surfaces_.row(y).data();
-    const auto column = [&](int x) {
-      return static_cast<float>(x) - focal_base * row[x].inverse_depth;
+    float* disparity = row_.disparity_px.data();
+    int* column = row_.column.data();
+    for (int x = 0; x < w; ++x) disparity[x] = focal_base * row[x].inverse_depth;
+    const auto find_columns = [&](float shift) {
+      for (int x = 0; x < w; ++x)
+        column[x] = static_cast<int>(std::floor(static_cast<float>(x) - disparity[x] + shift));
     };
-    // Columns left of the image matter too: the projector's image begins at 1 - w.
-    nearest_.assign(2 * static_cast<std::size_t>(w), kNothing);
-    const auto cell = [&](int u) { return &nearest_[static_cast<std::size_t>(u + w)]; };
+    // Columns left of the image matter too: the projector's image begins at -w. Where nothing
+    // returns, the disparity is 0 and covers nothing.
+    nearest_.assign(2 * static_cast<std::size_t>(w) + 1, 0.0F);
+    float* nearest = nearest_.data() + w;
+    find_columns(0.0F);
     for (int x = 0; x < w; ++x) {
-      if (row[x].inverse_depth <= 0.0F) continue;
-      const int u = static_cast<int>(std::floor(column(x)));
+      const int u = column[x];
       if (u < -w) continue;
-      for (int k = u; k <= std::min(u + 1, w - 1); ++k)
-        *cell(k) = std::max(*cell(k), focal_base * row[x].inverse_depth);
+      nearest[u] = std::max(nearest[u], disparity[x]);
+      nearest[u + 1] = std::max(nearest[u + 1], disparity[x]);
     }
+    find_columns(0.5F);
     for (int x = 0; x < w; ++x) {
-      const int u = static_cast<int>(std::floor(column(x) + 0.5F));
-      if (u >= -w && *cell(u) > focal_base * row[x].inverse_depth + kStep)
-        depth[static_cast<std::size_t>(x)] = 0.0F;
+      const int u = column[x];
+      const bool shaded = u >= -w && nearest[std::max(u, -w)] > disparity[x] + kStep;
+      depth[static_cast<std::size_t>(x)] = shaded ? 0.0F : depth[static_cast<std::size_t>(x)];
     }
   }
 
-  void add_axial_noise(std::span<float> depth) const {
+  void add_axial_noise(std::span<float> depth) {
+    float* angular = row_.by_incidence.data();
+    for (int x = 0; x < width_; ++x) angular[x] = incidence_.angular(row_.cosine[x]);
+    const float* normal = row_.normal_z.data();
     for (std::size_t x = 0; x < depth.size(); ++x) {
       const float away = depth[x] - static_cast<float>(kAxialNearest);
       const float sigma = static_cast<float>(kAxialFloor) +
                           static_cast<float>(kAxialSquare) * away * away +
-                          row_[x].angular / std::sqrt(std::max(depth[x], 1e-3F));
-      const float noisy = depth[x] + sigma * row_[x].normal;
+                          angular[x] / std::sqrt(std::max(depth[x], 1e-3F));
+      const float noisy = depth[x] + sigma * normal[x];
       depth[x] = depth[x] > 0.0F ? noisy : 0.0F;
     }
   }
@@ -223,8 +285,9 @@ class DepthSensor {
   Grid2d<Surface> surfaces_;
   DepthNoiseConfig config_;
   RandomStream stream_;
+  int width_;
   float steps_per_inverse_depth_;
-  std::vector<Draw> row_;
+  Row row_;
   std::vector<float> nearest_;  // disparity of what the projector sees, px
   const std::array<float, 1 << kNormalBits>& normals_ = normal_table();
   const IncidenceTable incidence_;

@@ -4,13 +4,16 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "sim/render/color.hpp"
+#include "sim/sensors/depth_noise.hpp"
 #include "sim/sensors/gaussian.hpp"
 #include "sim/sensors/lens.hpp"
+#include "sim/sensors/normal_table.hpp"
 #include "sim/sensors/processing.hpp"
 #include "sim/sensors/shutter.hpp"
 #include "slam/core/random.hpp"
@@ -109,6 +112,141 @@ TEST(Processing, IsThePlainOne) {
         const float level = std::clamp(curve(before.data()[i].*channel) + more, 0.0F, 255.0F);
         ASSERT_EQ(color.data()[i].*channel, static_cast<std::uint8_t>(std::lrint(level))) << i;
       }
+  }
+}
+
+/// The depth sensor one pixel at a time.
+class PlainDepthSensor {
+ public:
+  PlainDepthSensor(const Grid2d<float>& depth_m, const Camera& camera,
+                   const DepthNoiseConfig& config)
+      : depth_m_(depth_m), camera_(camera), config_(config) {}
+
+  float read(int x, int y, RandomStream stream) const {
+    const int w = depth_m_.width();
+    const std::uint64_t bits = stream.bits(static_cast<std::uint64_t>(y * w + x));
+    const auto normal = [&](int k) { return normal_table()[(bits >> (12 * k)) & 4095]; };
+    int sx = x, sy = y;
+    if (config_.lateral) {
+      const auto sigma = static_cast<float>(lateral_sigma_px(incidence(surface(x, y))));
+      sx = std::clamp(x + static_cast<int>(std::lrint(sigma * normal(0))), 0, w - 1);
+      sy =
+          std::clamp(y + static_cast<int>(std::lrint(sigma * normal(1))), 0, depth_m_.height() - 1);
+    }
+    const Surface seen = surface(sx, sy);
+    float z = depth_m_(x, y);
+    if (config_.lateral && seen.inverse > 0) {
+      const float moved = seen.inverse + seen.slope_x * static_cast<float>(x - sx) +
+                          seen.slope_y * static_cast<float>(y - sy);
+      z = 1.0F / std::clamp(moved, 0.8F * seen.inverse, 1.25F * seen.inverse);
+    } else if (config_.lateral) {
+      z = 0;
+    }
+    if (config_.grazing_holes && seen.cosine < static_cast<float>(std::cos(kMaxIncidenceRad)))
+      z = 0;
+    if (config_.projector_shadow && shaded(x, y)) z = 0;
+    if (config_.axial && z > 0) {
+      const float away = z - 0.4F;
+      const double theta = std::min(incidence(seen), kMaxIncidenceRad);
+      const double ratio = theta / (std::numbers::pi / 2.0 - theta);
+      const auto angular =
+          static_cast<float>(theta <= std::numbers::pi / 3.0 ? 0.0 : 0.0001 * (ratio * ratio));
+      const float sigma = 0.0012F + 0.0019F * away * away + angular / std::sqrt(z);
+      z += sigma * normal(2);
+    }
+    const auto steps_per_inverse_depth =
+        static_cast<float>(kDisparityStepsPerPx * camera_.fx_px * camera_.baseline_m);
+    if (config_.quantization && z > 0) {
+      const float steps = std::floor(steps_per_inverse_depth / z + 0.5F);
+      z = steps >= 1 ? steps_per_inverse_depth / steps : 0;
+    }
+    const auto nearest = static_cast<float>(config_.min_range_m);
+    return z >= nearest && z <= static_cast<float>(config_.max_range_m) ? z : 0;
+  }
+
+ private:
+  struct Surface {
+    float inverse, slope_x, slope_y, cosine;
+  };
+  float inverse(int x, int y) const { return depth_m_(x, y) > 0 ? 1.0F / depth_m_(x, y) : 0.0F; }
+  /// Along one axis: the gentler difference, or the only one at the image's border.
+  template <class At>
+  static float slope(At at, int i, int count) {
+    const float before = at(i) - at(std::max(i - 1, 0)),
+                after = at(std::min(i + 1, count - 1)) - at(i);
+    if (i == 0) return after;
+    if (i == count - 1) return before;
+    return std::abs(after) < std::abs(before) ? after : before;
+  }
+  Surface surface(int x, int y) const {
+    const float sx = slope([&](int i) { return inverse(i, y); }, x, depth_m_.width());
+    const float sy = slope([&](int i) { return inverse(x, i); }, y, depth_m_.height());
+    const auto f = [](double value) { return static_cast<float>(value); };
+    const float a = (f(x) - f(camera_.cx_px)) / f(camera_.fx_px);
+    const float b = (f(y) - f(camera_.cy_px)) / f(camera_.fy_px);
+    const float nx = sx * f(camera_.fx_px), ny = sy * f(camera_.fy_px);
+    const float nz = inverse(x, y) - nx * a - ny * b;
+    const float squares = (nx * nx + ny * ny + nz * nz) * (a * a + b * b + 1.0F);
+    return {inverse(x, y), sx, sy, inverse(x, y) / std::sqrt(squares + 1e-30F)};
+  }
+  /// In steps of 1/1024 of the cosine, as the sensor tabulates it.
+  static double incidence(const Surface& surface) {
+    return std::acos(
+        static_cast<double>(static_cast<int>(std::min(surface.cosine, 1.0F) * 1024 + 0.5F)) / 1024);
+  }
+  /// Whether another pixel of the row, more than 1 px of disparity nearer, covers this one's column
+  /// of the projector's image.
+  bool shaded(int x, int y) const {
+    const float focal_base =
+        static_cast<float>(kDisparityStepsPerPx * camera_.fx_px * camera_.baseline_m) /
+        static_cast<float>(kDisparityStepsPerPx);
+    const float disparity = focal_base * inverse(x, y);
+    const int own = static_cast<int>(std::floor(static_cast<float>(x) - disparity + 0.5F));
+    for (int other = 0; other < depth_m_.width(); ++other) {
+      const float d = focal_base * inverse(other, y);
+      const int u = static_cast<int>(std::floor(static_cast<float>(other) - d));
+      if ((own == u || own == u + 1) && own >= -depth_m_.width() && d > disparity + 1) return true;
+    }
+    return false;
+  }
+
+  const Grid2d<float>& depth_m_;
+  Camera camera_;
+  DepthNoiseConfig config_;
+};
+
+TEST(DepthNoise, IsThePlainOne) {
+  Camera camera;
+  camera.fx_px = camera.fy_px = 60;
+  for (const auto& [width, height] : {std::pair(1, 1), {2, 3}, {37, 23}, {75, 48}}) {
+    camera.width_px = width, camera.height_px = height;
+    camera.cx_px = 0.5 * width, camera.cy_px = 0.4 * height;
+    // A wall that turns away, a box before it, a hole, and single pixels close by.
+    Grid2d<float> depth_m(width, height);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const bool box = x > width / 3 && x < width / 2 && y > height / 4;
+        const bool hole = x > 2 * width / 3 && y < height / 5;
+        const bool speck =
+            RandomStream(5).bits(static_cast<std::uint64_t>(y * width + x)) % 50 == 0;
+        depth_m(x, y) = hole    ? 0
+                        : speck ? 0.1F
+                        : box   ? 1.3F
+                                : 2 + 0.1F * static_cast<float>(x * x) / 9;
+      }
+    for (int faults = 0; faults < 32; ++faults) {
+      DepthNoiseConfig config{.axial = (faults & 1) != 0,
+                              .lateral = (faults & 2) != 0,
+                              .quantization = (faults & 4) != 0,
+                              .grazing_holes = (faults & 8) != 0,
+                              .projector_shadow = (faults & 16) != 0};
+      const Grid2d<float> fast = noisy_depth(depth_m, camera, config, RandomStream(2));
+      const PlainDepthSensor plain(depth_m, camera, config);
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+          ASSERT_EQ(fast(x, y), plain.read(x, y, RandomStream(2)))
+              << faults << ": " << x << ' ' << y;
+    }
   }
 }
 
