@@ -14,6 +14,7 @@
 #include "bench/pages/plot.hpp"
 #include "bench/pages/verdict.hpp"
 #include "bench/pages/write.hpp"
+#include "slam/config/slam.hpp"
 #include "slam/core/temporary_folder.hpp"
 #include "source_dir.hpp"
 #include "tests/bench/pages/made_up_reports.hpp"

@@ -71,7 +71,8 @@ TEST_F(IclNuim, IsRecognizedAndReadWithItsPublishedCamera) {
 
 TEST_F(IclNuim, AnotherCameraKeepsTheScaleOfItsDepth) {
   write_truth("1 0 0 -2.25 0 0 0 1\n");
-  RecordingConfig config{.calibration = folder_ / "camera.yaml"};
+  RecordingConfig config;
+  config.calibration = folder_ / "camera.yaml";
   config.read_camera = [](const fs::path&) {
     RecordedCamera camera;
     camera.camera.fx_px = 500;

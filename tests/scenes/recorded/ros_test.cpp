@@ -303,7 +303,9 @@ TEST_P(RosRecording, AnotherCalibrationMidwayIsTold) {
   Foreign robot(wire());
   robot.camera();
   robot.info("/camera_info");
-  ros::CameraInfo other{.header = robot.header(2), .height = 1, .width = 2};
+  ros::CameraInfo other;
+  other.header = robot.header(2);
+  other.height = 1, other.width = 2;
   other.k = {3, 0, 0.5, 0, 3, 0, 0, 0, 1};
   robot.add("/camera_info", 2, other);
   robot.write(writer());

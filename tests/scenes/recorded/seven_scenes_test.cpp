@@ -94,7 +94,8 @@ TEST_F(SevenScenes, DepthIsRegisteredToTheColorCamera) {
 
 TEST_F(SevenScenes, ACameraOfAnotherSizeIsRefused) {
   write_sequence("seq-01", 1);
-  RecordingConfig config{.calibration = "half.yaml"};
+  RecordingConfig config;
+  config.calibration = "half.yaml";
   config.read_camera = [](const fs::path&) {
     RecordedCamera camera;
     camera.camera.width_px = 320;
