@@ -44,7 +44,8 @@ AnswerAgain AskAgain::ask(PreparedFrame& frame, RandomStream draws,
   StepReport report;
   const auto located = locate(frozen_, lost, frame, draws, observers, report);
   released_ = std::move(lost.released_scores);
-  AnswerAgain answer{.stage = report.relocalization};
+  AnswerAgain answer;
+  answer.stage = report.relocalization;
   if (located) answer.world_from_camera = located->tracked.camera_from_world.inverse();
   return answer;
 }

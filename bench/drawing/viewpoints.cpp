@@ -128,7 +128,7 @@ struct Seen {
 };
 
 Seen look(const Scene& scene, const Renderer& renderer, const Camera& camera, const SE3& pose) {
-  constexpr float kNear_m = 0.6F;
+  constexpr float kNearest_m = 0.6F;
   constexpr double kCube_m = 0.5;
   const RenderedFrame frame = renderer.render(camera, pose);
   Seen seen{.pose = pose, .objects = {}, .surface = {}, .ground = {}};
@@ -137,7 +137,7 @@ Seen look(const Scene& scene, const Renderer& renderer, const Camera& camera, co
   for (int y = 0; y < camera.height_px; ++y)
     for (int x = 0; x < camera.width_px; ++x) {
       const float depth = frame.depth_m(x, y);
-      if (depth < kNear_m) continue;  // also skips empty pixels
+      if (depth < kNearest_m) continue;  // also skips empty pixels
       ++good;
       ++pixels[frame.instances(x, y)];
       if (x % 3 != 0 || y % 3 != 0) continue;

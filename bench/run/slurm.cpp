@@ -120,7 +120,8 @@ fs::path share_folder(const fs::path& out, std::size_t share) {
 std::string task_script(const fs::path& executable, const fs::path& out,
                         const SlurmOptions& slurm) {
   std::string command = shell_quoted(executable.string());
-  for (const std::string& argument : slurm.arguments) command += " " + shell_quoted(argument);
+  for (const std::string& argument : slurm.arguments)
+    command.append(" ").append(shell_quoted(argument));
   return fmt::format(
       R"(#!/bin/sh
 # A share of a suite's runs: a task of the array that `modelhouse bench --slurm` submits.

@@ -102,7 +102,7 @@ class ScannetSequence : public Sequence {
     if (truth_.empty())
       notes.push_back(
           fmt::format("{}: no frame has a valid pose: there is no truth", path.string()));
-    for (const ClassInfo& info : classes()) palette_.push_back(ClassDistribution::one_hot(info.id));
+    for (const ClassInfo& c : classes()) palette_.push_back(ClassDistribution::one_hot(c.id));
     fs::path folder = is_folder(path) ? path : path.parent_path();
     if (folder.empty()) folder = ".";
     labels_ = find_label_images(folder, "label-filt");
