@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `modelhouse map grid|cost|objects|plan`: what a robot draws from a saved octree.
+// `modelhouse map grid|cost|objects|plan|messages`: what a robot draws from a saved octree.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -10,6 +10,7 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
+#include "bench/studies/map_messages.hpp"
 #include "robots/navigation/grid.hpp"
 #include "robots/navigation/plan.hpp"
 #include "slam/core/counted.hpp"
@@ -37,6 +38,11 @@ struct MapCostArguments {
 
 struct MapObjectsArguments {
   std::string map, name, out;
+};
+
+struct MapMessagesArguments {
+  std::string map, out;
+  ObstacleGridConfig band;
 };
 
 struct MapPlanArguments {
@@ -109,6 +115,18 @@ void run(const MapObjectsArguments& options) {
                o.score, o.center_m.x(), o.center_m.y(), o.center_m.z(), size_m.x(), size_m.y(),
                size_m.z());
   }
+}
+
+void run(const MapMessagesArguments& options) {
+  const std::string kind = std::filesystem::path(options.out).extension().string();
+  if (kind != ".mcap" && kind != ".bag")
+    throw InputError(options.out + ": its name ends neither in .mcap (ROS 2) nor in .bag (ROS 1)");
+  const VoxelMap map = VoxelMap::load_ot(options.map);
+  const MapStudy study{grid_of(map, options.map, options.band), find_objects(map)};
+  write_map_messages(kind == ".mcap" ? *write_mcap(options.out) : *write_bag(options.out), map,
+                     study);
+  fmt::print("{} x {} cells, {}, {}\n", study.grid.cells.width(), study.grid.cells.height(),
+             counted(study.objects.size(), "object"), counted(map.voxel_count(), "voxel"));
 }
 
 /// A goal next to an object: the place with the clearance that is nearest to its box.
@@ -228,6 +246,18 @@ void add_objects(CLI::App& map) {
   command->callback([options] { run(*options); });
 }
 
+void add_messages(CLI::App& map) {
+  auto options = std::make_shared<MapMessagesArguments>();
+  CLI::App* command = map.add_subcommand(
+      "messages", "A saved octree for RViz: grid, costs, objects as markers, voxels.");
+  command->add_option("map", options->map, "map.ot of `map build` or `bench`")->required();
+  command->add_option("--out", options->out, "File: NAME.mcap for ROS 2, NAME.bag for ROS 1")
+      ->required();
+  add_band(*command, options->band);
+  command->footer("Example:\n  modelhouse map messages out/map/map.ot --out out/map.mcap");
+  command->callback([options] { run(*options); });
+}
+
 void add_plan(CLI::App& map) {
   auto options = std::make_shared<MapPlanArguments>();
   CLI::App* command = map.add_subcommand("plan", "A way over the floor of a saved octree.");
@@ -257,6 +287,7 @@ void add_map(CLI::App& app) {
   add_cost(*map);
   add_objects(*map);
   add_plan(*map);
+  add_messages(*map);
 }
 
 }  // namespace mh::cli

@@ -63,6 +63,11 @@ class Definer {
     add("builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n");
     return "builtin_interfaces/Time";
   }
+  std::string type_of(const Duration&) {
+    if (wire_ == Wire::kRos1) return "duration";
+    add("builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n");
+    return "builtin_interfaces/Duration";
+  }
   template <class T>
   std::string type_of(const std::vector<T>&) {
     return type_of(T{}) + "[]";

@@ -20,6 +20,10 @@ struct Time {
   std::int64_t ns = 0;
 };
 
+struct Duration {
+  std::int64_t ns = 0;
+};
+
 /// uint8[], as a view of bytes that live elsewhere: those of an image are not copied.
 using Bytes = std::string_view;
 

@@ -22,6 +22,8 @@ enum class Wire : std::uint8_t { kRos1, kCdr };
 
 static_assert(std::endian::native == std::endian::little);
 
+inline constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
 template <class T>
 concept Number = std::is_arithmetic_v<T>;
 
@@ -61,10 +63,10 @@ class Serializer {
     out_.append(bytes);
   }
   void put(const Time& time) {
-    constexpr std::int64_t kSecond_ns = 1'000'000'000;
     put(static_cast<std::uint32_t>(time.ns / kSecond_ns));
     put(static_cast<std::uint32_t>(time.ns % kSecond_ns));
   }
+  void put(const Duration& time) { put(Time{time.ns}); }  // none is negative
   template <class T>
   void put(const std::vector<T>& list) {
     put(static_cast<std::uint32_t>(list.size()));
@@ -151,10 +153,15 @@ class Parser {
     std::uint32_t rest_ns = 0;
     get(seconds);
     get(rest_ns);
-    constexpr std::int64_t kSecond_ns = 1'000'000'000;
     time.ns = wire_ == Wire::kRos1 ? kSecond_ns * static_cast<std::uint32_t>(seconds)
                                    : kSecond_ns * seconds;
     time.ns += rest_ns;
+  }
+  void get(Duration& time) {
+    std::int32_t seconds = 0, rest_ns = 0;
+    get(seconds);
+    get(rest_ns);
+    time.ns = kSecond_ns * seconds + rest_ns;
   }
   template <class T>
   void get(std::vector<T>& list) {

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "scenes/messages/marker_types.hpp"
 #include "scenes/messages/message_writer.hpp"
 #include "scenes/recorded/ros/recorder.hpp"
 #include "sim/world/robot_messages.hpp"
@@ -44,7 +45,26 @@ ExactFrame frame(int i) {
   return frame;
 }
 
-/// Writes everything that a drive can hold.
+/// Adds a box with its name, and a list of two cubes.
+void write_markers(MessageWriter& file) {
+  ros::Marker box;
+  box.header = {0, {stamp_ns(0)}, "map"};
+  box.ns = "boxes";
+  box.text = "chair 2";
+  box.color = {0.25F, 0.5F, 1, 0.5F};
+  ros::Marker cubes = box;
+  cubes.type = ros::Marker::kCubeList;
+  cubes.points = {{1, 2, 3}, {4, 5, 6}};
+  cubes.colors = {{1, 0, 0, 1}, {0, 1, 0, 1}};
+  const auto write = [&]<class M>(const char* topic, const M& message) {
+    const std::uint16_t number = file.add_topic(topic_spec<M>(topic, file.wire(), true));
+    file.write(number, stamp_ns(0), ros::serialized(message, file.wire()));
+  };
+  write("/objects", ros::MarkerArray{{box}});
+  write("/voxels", cubes);
+}
+
+/// Writes everything that a drive and a map can hold.
 void write_drive(std::unique_ptr<MessageWriter> file) {
   auto equipment = std::make_shared<Equipment>();
   for (const char* name : {"front", "left", "right"})
@@ -68,6 +88,7 @@ void write_drive(std::unique_ptr<MessageWriter> file) {
   FloorGrid grid;
   grid.clearance_m = Grid2d<float>(3, 2, 1.0F);
   grid.occupant = Grid2d<InstanceId>(3, 2);
+  write_markers(*file);
   const ros::Wire wire = file->wire();
   Camera camera;
   camera.width_px = 8;
@@ -130,8 +151,10 @@ void expect_all_topics(const nlohmann::json& found, const char* infix) {
   expect_topic("/bumper/bow", "std_msgs/{}Bool", "");
   expect_topic("/imu/data", "sensor_msgs/{}Imu", "imu_link");
   expect_topic("/map", "nav_msgs/{}OccupancyGrid", "map", 1);
-  EXPECT_EQ(found.at("topics").size(), 22U);
-  EXPECT_EQ(found.at("messages"), 18 * kFrames + 4);
+  expect_topic("/objects", "visualization_msgs/{}MarkerArray", "", 1);
+  expect_topic("/voxels", "visualization_msgs/{}Marker", "map", 1);
+  EXPECT_EQ(found.at("topics").size(), 24U);
+  EXPECT_EQ(found.at("messages"), 18 * kFrames + 6);
   EXPECT_EQ(found.at("topics").at("/camera/depth_registered/image").at("bytes"),
             kFrames * 8 * 6 * 4);
 }
@@ -170,6 +193,11 @@ TEST_P(Readers, OfNpmDecodeEveryMessageOfOurMcap) {
   EXPECT_EQ(detection.at("bbox").at("size_x"), 3);
   EXPECT_EQ(detection.at("id"), "700");
   EXPECT_EQ(last("/map").at("info").at("width"), 3);
+  const nlohmann::json box = last("/objects").at("markers").at(0);
+  EXPECT_EQ(box.at("text"), "chair 2");
+  EXPECT_EQ(box.at("color").at("g"), 0.5);
+  EXPECT_EQ(last("/voxels").at("points").at(1).at("z"), 6);
+  EXPECT_EQ(last("/voxels").at("colors").at(1).at("g"), 1);
   EXPECT_EQ(last("/ground_truth/camera_pose").at("pose").at("position").at("y"), 2);
 }
 
