@@ -51,7 +51,12 @@ class Frames {
  public:
   Frames(const DetectorArguments& options) {
     if (std::ranges::all_of(options.sources, is_image)) {
+      if (!options.settings.empty())
+        throw InputError(fmt::format(
+            "--settings {}: is for a recording, and the sources are images", options.settings));
       images_ = options.sources;
+      for (const std::string& image : images_)
+        if (!is_there(image)) read_file(image);  // for its message: only a damaged one is skipped
       return;
     }
     if (options.sources.size() != 1)

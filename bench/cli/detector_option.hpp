@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -19,14 +20,15 @@ namespace mh::cli {
 struct DetectorOption {
   std::string file, settings, cache;
 
-  void add_to(CLI::App& command, const char* what = "--detector") {
-    command.add_option(
-        what, file,
-        "Real detector whose labels replace the frames': a network (.onnx, Darknet's .weights) or "
-        "boxes (COCO .json, MOT .csv, a folder of YOLO .txt)");
-    command.add_option("--detector-settings", settings, "Its settings (YAML), which may name it");
-    command.add_option("--detector-cache", cache,
-                       "Cache folder for what it finds; without it, every image is run");
+  std::vector<CLI::Option*> add_to(CLI::App& command, const char* what = "--detector") {
+    return {command.add_option(what, file,
+                               "Real detector whose labels replace the frames': a network (.onnx, "
+                               "Darknet's .weights) or boxes (COCO .json, MOT .csv, a folder of "
+                               "YOLO .txt)"),
+            command.add_option("--detector-settings", settings,
+                               "Its settings (YAML), which may name it"),
+            command.add_option("--detector-cache", cache,
+                               "Cache folder for what it finds; without it, every image is run")};
   }
   /// The cache of --detector-cache; warns on stderr if it can keep nothing.
   /// @param command  as which it warns
@@ -39,7 +41,11 @@ struct DetectorOption {
   }
   bool is_given() const { return !file.empty() || !settings.empty(); }
   std::optional<DetectorSpec> spec() const {
-    if (!is_given()) return std::nullopt;
+    if (!is_given()) {
+      if (!cache.empty())
+        throw InputError(fmt::format("--detector-cache {}: no detector is named", cache));
+      return std::nullopt;
+    }
     DetectorSpec spec;
     if (!file.empty()) spec = detector_from_file(file);
     const DetectorSpec named = spec;

@@ -77,10 +77,7 @@ Posed run_slam(const MapBuildArguments& options, const Source& source,
                    counted(state.map.keyframe_count(), "keyframe"));
   }
   progress.end();
-  if (state.map.empty())
-    throw InputError(options.source +
-                     ": nothing could be mapped: no frame showed 100 keypoints "
-                     "with depth to begin with");
+  if (state.map.empty()) throw InputError(nothing_mapped(options.source, *source.frames, 0, end));
   return posed_by(state);
 }
 

@@ -320,12 +320,13 @@ void add_render(CLI::App& app) {
       ->check(CLI::Range(1, 100000000));
   command->add_option("--renderer", options->renderer, "embree or osmesa")
       ->check(one_of_words({"embree", "osmesa"}));
-  command
-      ->add_option("--labels", options->labels,
-                   "exact, annotated, boxes or detector: what `label` holds, faults of the level "
-                   "with it")
-      ->check(one_of_words({"exact", "annotated", "boxes", "detector"}));
-  options->detector.add_to(*command);
+  CLI::Option* labels =
+      command
+          ->add_option("--labels", options->labels,
+                       "exact, annotated, boxes or detector: what `label` holds, faults of the "
+                       "level with it")
+          ->check(one_of_words({"exact", "annotated", "boxes", "detector"}));
+  for (CLI::Option* option : options->detector.add_to(*command)) labels->excludes(option);
   command->add_option("--seed", options->sequence.seed, "Seed of the noise")->check(seed_number());
   command
       ->add_option("--threads", options->sequence.threads,

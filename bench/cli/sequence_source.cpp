@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/cli/sequence_source.hpp"
 
+#include <algorithm>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "bench/cli/arguments.hpp"
 #include "bench/inputs/recorded_camera.hpp"
 #include "scenes/recorded/open_sequence.hpp"
 #include "sim/world/scene_sequence.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/features/undistort.hpp"
 
@@ -69,6 +73,26 @@ void SourceOptions::check() const {
     if (!value->empty())
       throw InputError(
           fmt::format("{} {}: is for scene:FILE, but the source is '{}'", name, *value, source));
+}
+
+std::string nothing_mapped(const std::string& source, const Sequence& frames, std::size_t first,
+                           std::size_t offered) {
+  std::string text = fmt::format(
+      "{}: nothing could be mapped: none of {} showed 100 keypoints with depth to begin with",
+      source, counted(offered, "frame"));
+  if (offered == 0) return text;
+  std::vector<float> depths_m;
+  try {
+    const RgbdFrame frame = frames.frame(first, RandomStream());
+    for (const float depth_m : frame.depth_m)
+      if (depth_m > 0) depths_m.push_back(depth_m);
+  } catch (const InputError&) {  // was told where it was skipped
+    return text;
+  }
+  if (depths_m.empty()) return text + " (the first image has no depth)";
+  const auto middle = depths_m.begin() + static_cast<std::ptrdiff_t>(depths_m.size() / 2);
+  std::ranges::nth_element(depths_m, middle);
+  return text + fmt::format(" (median depth of the first image: {:.3g} m)", *middle);
 }
 
 Source open_source(const SourceOptions& options) {

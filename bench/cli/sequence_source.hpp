@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -35,6 +36,11 @@ struct Source {
   Settings settings;
   std::unique_ptr<Sequence> frames;
 };
+
+/// Why no map came of a sequence, with the depth of its first image: a wrong unit shows there.
+/// @param first, offered  the frames that were given
+std::string nothing_mapped(const std::string& source, const Sequence& frames, std::size_t first,
+                           std::size_t offered);
 
 /// @throws InputError naming the file and the problem.
 Source open_source(const SourceOptions& options);

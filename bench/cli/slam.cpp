@@ -222,9 +222,7 @@ void run(SlamArguments options) {
   };
   const RunResult result = run_sequence(options, world, state, first, observers, watch);
   if (state.map.empty())
-    throw InputError(fmt::format(
-        "nothing could be mapped: none of {} showed 100 keypoints with depth to begin with",
-        counted(result.mapping.offered, "frame")));
+    throw InputError(nothing_mapped(options.source, *world.mapping, first, result.mapping.offered));
   if (!options.save_map.empty()) save_slam(options.save_map, state);
 
   const Trajectory* truth = world.mapping->truth();
@@ -270,7 +268,7 @@ void add_slam(CLI::App& app) {
   command->add_option("--frames", options->frames, "At most so many frames")
       ->default_str("all")
       ->check(CLI::Range(1, 100000000));
-  options->detector.add_to(*command);
+  const std::vector<CLI::Option*> detector = options->detector.add_to(*command);
   CLI::Option* gamma = command
                            ->add_option("--gamma", options->gamma,
                                         "Weight of a label, equation 1 (default: the settings')")
@@ -280,7 +278,9 @@ void add_slam(CLI::App& app) {
           ->add_option("--xi", options->xi,
                        "Penalty of labels that differ, equation 2 (default: the settings')")
           ->check(number_between(1.0, 1e6));
-  command->add_flag("--plain", options->plain, "Without semantics")->excludes(gamma, xi);
+  CLI::Option* plain = command->add_flag("--plain", options->plain, "Without semantics");
+  plain->excludes(gamma, xi);
+  for (CLI::Option* option : detector) plain->excludes(option);
   command->add_flag_callback(
       "--print-settings",
       [] {

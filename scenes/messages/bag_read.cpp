@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <map>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -41,6 +43,10 @@ T number(const Fields& fields, std::string_view name) {
   return ByteReader(bytes).number<T>();
 }
 
+Op op_of(const Fields& fields) {
+  return static_cast<Op>(number<std::uint8_t>(fields, "op"));
+}
+
 class BagFile : public MessageFile {
  public:
   BagFile(HeldBytes bytes, const std::string& name, const Visit& visit)
@@ -74,26 +80,39 @@ class BagFile : public MessageFile {
     std::uint64_t chunk_at = 0;  ///< in the file
   };
 
+  struct Record {
+    std::string_view header, data;
+    std::size_t end = 0;  ///< in the bytes that hold it
+  };
+
+  /// nullopt if no whole record stands there.
+  static std::optional<Record> record_at(std::string_view bytes, std::size_t at) {
+    ByteReader from(bytes.substr(at));
+    try {
+      const std::string_view header = from.text(), data = from.text();
+      return Record{header, data, bytes.size() - from.left()};
+    } catch (const InputError&) {
+      return std::nullopt;
+    }
+  }
+
   void read_records(const Records& records) {
     const bool in_chunk = records.chunk != MessagePlace::kFile;
     for (std::size_t at = records.begin; at < records.bytes.size();) {
       const std::uint64_t place = in_chunk ? records.chunk_at : at;
-      ByteReader from(records.bytes.substr(at));
-      std::string_view header, data;
-      try {
-        header = from.text();
-        data = from.text();
-      } catch (const InputError&) {
+      const std::optional<Record> record = record_at(records.bytes, at);
+      if (!record) {
         if (in_chunk) throw InputError("ends within a record");
         leave_out(kCut, place, "a record is cut short; what came before is used");
         return;
       }
-      at = records.bytes.size() - from.left();
+      const std::string_view data = record->data;
+      at = record->end;
       try {
-        const Fields fields = fields_of(header);
-        const auto op = static_cast<Op>(number<std::uint8_t>(fields, "op"));
+        const Fields fields = fields_of(record->header);
+        const Op op = op_of(fields);
         if (op == Op::kMessage)
-          read_message(fields, data, {records.chunk, at - data.size(), data.size()});
+          read_message(fields, data, {records.chunk, at - data.size(), data.size()}, place);
         else if (op == Op::kConnection)
           read_connection(fields, data);
         else if (op == Op::kChunk && !in_chunk)
@@ -104,6 +123,20 @@ class BagFile : public MessageFile {
         throw InputError(fmt::format("{}: is an encrypted bag, which is not read", name()));
       } catch (const InputError& error) {
         leave_out("damaged records left out", place, error.what());
+      }
+    }
+  }
+
+  /// Reads the connections that stand further on outside of chunks, as they do after the last one:
+  /// the only chunk that holds them may be damaged.
+  void read_connections_from(std::uint64_t at) {
+    if (std::exchange(connections_are_read_, true)) return;
+    while (const std::optional<Record> record = record_at(bytes(), at)) {
+      at = record->end;
+      try {
+        const Fields fields = fields_of(record->header);
+        if (op_of(fields) == Op::kConnection) read_connection(fields, record->data);
+      } catch (const InputError&) {  // is told where it is reached
       }
     }
   }
@@ -125,9 +158,13 @@ class BagFile : public MessageFile {
                                    .wire = ros::Wire::kRos1});
   }
 
-  void read_message(const Fields& fields, std::string_view data, const MessagePlace& place) {
-    const auto channel = channels_by_id_.find(number<std::uint32_t>(fields, "conn"));
-    if (channel == channels_by_id_.end()) throw InputError("a message is of no connection");
+  void read_message(const Fields& fields, std::string_view data, const MessagePlace& place,
+                    std::uint64_t file_at) {
+    const auto id = number<std::uint32_t>(fields, "conn");
+    if (!channels_by_id_.contains(id)) read_connections_from(file_at);
+    const auto channel = channels_by_id_.find(id);
+    if (channel == channels_by_id_.end())
+      return leave_out("messages left out", file_at, "a message is of no connection");
     count_message();
     visit_(channels()[channel->second], data, place);
   }
@@ -145,6 +182,7 @@ class BagFile : public MessageFile {
 
   const Visit& visit_;
   std::map<std::uint32_t, std::size_t> channels_by_id_;
+  bool connections_are_read_ = false;  ///< by read_connections_from()
   bool indexed_ = false;
 };
 

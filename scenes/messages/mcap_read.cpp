@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -79,8 +80,8 @@ class McapFile : public MessageFile {
       }
       try {
         if (record->opcode == Opcode::kMessage)
-          read_message(record->content,
-                       {records.chunk, record->content_at, record->content.size()});
+          read_message(record->content, {records.chunk, record->content_at, record->content.size()},
+                       place);
         else if (record->opcode == Opcode::kChunk && !in_chunk)
           read_chunk(record->content, place);
         else
@@ -91,6 +92,20 @@ class McapFile : public MessageFile {
       at = record->end();
     }
     return at;
+  }
+
+  /// Reads the channels that stand further on outside of chunks, as they do in a summary: the only
+  /// chunk that holds them may be damaged.
+  void read_channels_from(std::uint64_t at) {
+    if (std::exchange(channels_are_read_, true)) return;
+    while (const std::optional<Record> record = record_at(bytes(), at)) {
+      try {
+        if (record->opcode == Opcode::kSchema) read_schema(record->content);
+        if (record->opcode == Opcode::kChannel) read_channel(record->content);
+      } catch (const InputError&) {  // is told where it is reached
+      }
+      at = record->end();
+    }
   }
 
   /// Whether the file ends as one that was closed: a summary, a footer, the magic bytes.
@@ -109,12 +124,15 @@ class McapFile : public MessageFile {
       leave_out("ends", at, fmt::format("{} bytes after its end are left out", all.size() - at));
   }
 
-  void read_message(std::string_view content, MessagePlace place) {
+  void read_message(std::string_view content, MessagePlace place, std::uint64_t file_at) {
     constexpr std::size_t kHead = 22;  // channel, sequence, two stamps
     ByteReader from(content);
-    const auto channel = channels_by_id_.find(from.number<std::uint16_t>());
+    const auto id = from.number<std::uint16_t>();
     if (content.size() < kHead) throw InputError("a message ends too early");
-    if (channel == channels_by_id_.end()) throw InputError("a message is of no channel");
+    if (!channels_by_id_.contains(id)) read_channels_from(file_at);
+    const auto channel = channels_by_id_.find(id);
+    if (channel == channels_by_id_.end())
+      return leave_out("messages left out", file_at, "a message is of no channel");
     place.at += kHead;
     place.size -= kHead;
     count_message();
@@ -137,24 +155,15 @@ class McapFile : public MessageFile {
   }
 
   void read_other(const Record& record, bool in_chunk) {
-    ByteReader from(record.content);
     const Opcode opcode = record.opcode;
     if (opcode == Opcode::kSchema) {
-      const auto id = from.number<std::uint16_t>();
-      schemas_[id] = common_type(from.text());
+      read_schema(record.content);
     } else if (opcode == Opcode::kChannel) {
-      const auto id = from.number<std::uint16_t>();
-      const auto schema = schemas_.find(from.number<std::uint16_t>());
-      MessageChannel channel{.topic = std::string(from.text()), .type = {}, .wire = {}};
-      if (schema != schemas_.end()) channel.type = schema->second;
-      const std::string_view encoding = from.text();
-      if (encoding == "cdr") channel.wire = ros::Wire::kCdr;
-      if (encoding == "ros1") channel.wire = ros::Wire::kRos1;
-      channels_by_id_[id] = this->channel(std::move(channel));
+      read_channel(record.content);
     } else if (!in_chunk && opcode == Opcode::kDataEnd) {
       ended_ = true;
       const std::string_view data = bytes().substr(0, record.content_at - kRecordHead);
-      const auto crc = from.number<std::uint32_t>();
+      const auto crc = ByteReader(record.content).number<std::uint32_t>();
       // A damage that was found already is its reason.
       if (crc != 0 && notes().empty() && libdeflate_crc32(0, data.data(), data.size()) != crc)
         leave_out("checksums", data.size(), "its data's CRC is another: some of it is damaged");
@@ -163,11 +172,30 @@ class McapFile : public MessageFile {
     }
   }
 
+  void read_schema(std::string_view content) {
+    ByteReader from(content);
+    const auto id = from.number<std::uint16_t>();
+    schemas_[id] = common_type(from.text());
+  }
+
+  void read_channel(std::string_view content) {
+    ByteReader from(content);
+    const auto id = from.number<std::uint16_t>();
+    const auto schema = schemas_.find(from.number<std::uint16_t>());
+    MessageChannel channel{.topic = std::string(from.text()), .type = {}, .wire = {}};
+    if (schema != schemas_.end()) channel.type = schema->second;
+    const std::string_view encoding = from.text();
+    if (encoding == "cdr") channel.wire = ros::Wire::kCdr;
+    if (encoding == "ros1") channel.wire = ros::Wire::kRos1;
+    channels_by_id_[id] = this->channel(std::move(channel));
+  }
+
   const Visit& visit_;
   std::map<std::uint16_t, std::string> schemas_;  ///< types by id
   std::map<std::uint16_t, std::size_t> channels_by_id_;
-  bool ended_ = false;   ///< its data
-  bool footer_ = false;  ///< was met before any end of the data
+  bool channels_are_read_ = false;  ///< by read_channels_from()
+  bool ended_ = false;              ///< its data
+  bool footer_ = false;             ///< was met before any end of the data
 };
 
 }  // namespace

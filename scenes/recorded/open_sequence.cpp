@@ -81,10 +81,21 @@ std::string join_sequence(const std::string& layout, const fs::path& path) {
 
 const SequenceReader& reader_of(const std::string& source) {
   const auto [layout, path] = split_sequence(source);
-  for (const SequenceReader* reader : kReaders)
-    if (layout.empty() ? reader->recognizes(path) : layout == reader->name) return *reader;
+  for (const SequenceReader* reader : kReaders) {
+    if (layout.empty() ? !reader->recognizes(path) : layout != reader->name) continue;
+    if (layout.empty() && reader == &kBagReader && kMcapReader.recognizes(path))
+      throw InputError(fmt::format(
+          "{}: holds bags and MCAP files: name one of them, or bag:FOLDER or mcap:FOLDER",
+          path.string()));
+    return *reader;
+  }
   if (!is_there(path))
-    throw InputError(fmt::format("'{}' is not a folder, nor {}", source, sequence_forms()));
+    throw InputError(fmt::format("'{}' does not exist; a recording is a folder, or {}", source,
+                                 sequence_forms()));
+  if (is_folder(path) ? !list_folder(path, "*.db3").empty() : path.extension() == ".db3")
+    throw InputError(fmt::format(
+        "{}: is a ROS 2 bag in SQLite: `ros2 bag convert` makes an MCAP file of it, which is read",
+        path.string()));
   throw InputError(fmt::format("{}: {}; name its layout: {}", path.string(),
                                is_folder(path)
                                    ? "holds neither rgb.txt nor associations.txt nor anything else "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/recorded/seven_scenes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string_view>
@@ -37,6 +38,9 @@ std::vector<fs::path> folders_of(const fs::path& split) {
       throw InputError(fmt::format("{}: '{}' is not a sequence such as sequence1", split.string(),
                                    word.substr(0, 40)));
     folders.push_back(split.parent_path() / fmt::format("seq-{:02}", *number));
+    if (std::ranges::count(folders, folders.back()) > 1)
+      throw InputError(
+          fmt::format("{}: '{}': names its sequence a second time", split.string(), word));
     if (!is_folder(folders.back()))
       throw InputError(fmt::format(
           "{}: '{}': {} is not a folder{}", split.string(), word, folders.back().string(),

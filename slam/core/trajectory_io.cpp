@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -94,6 +95,64 @@ bool starts_with_letter(const std::string& word) {
   return !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) != 0;
 }
 
+/// The columns of a pose after its stamp, as files of poses are known to have them.
+constexpr std::string_view kScalarFirst = "x y z qw qx qy qz", kScalarLast = "x y z qx qy qz qw";
+
+/// What a line of names calls the seven columns after the first: "x y z qw qx qy qz" of
+/// "#timestamp, p_x [m], ..., q_w [], ...", without q where all begin alike. "" if it is none.
+std::string named_columns(std::string_view line) {
+  if (line.starts_with('#')) line.remove_prefix(1);
+  std::vector<std::string> names =
+      line.find(',') == std::string_view::npos ? split(line) : split_at_commas(line);
+  for (std::string& name : names) {
+    name.resize(std::min(name.find('['), name.size()));
+    name.resize(name.find_last_not_of(' ') + 1);
+    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  std::erase(names, "");
+  if (names.size() < 8) return "";
+  const auto stem = [](const std::string& name) { return name.substr(0, name.size() - 1); };
+  const std::span<std::string> columns = std::span(names).subspan(1, 7);
+  if (std::ranges::any_of(
+          columns, [](const std::string& name) { return name.back() < 'w' || name.back() > 'z'; }))
+    return "";
+  const auto w =
+      std::ranges::find(columns, 'w', [](const std::string& name) { return name.back(); });
+  if (w == columns.end()) return "";
+  const auto is_of_w = [&](const std::string& name) { return stem(name) == stem(*w); };
+  const char* mark = std::ranges::all_of(columns, is_of_w) ? "" : "q";
+  std::string text;
+  for (const std::string& name : columns)
+    text += fmt::format("{}{}{}", text.empty() ? "" : " ", is_of_w(name) ? mark : "", name.back());
+  return text;
+}
+
+/// Where w stands among the seven numbers after a stamp: as the lines of names before the first
+/// pose say, or else as `usual` does. @throws InputError naming the line if its order is unknown
+std::size_t place_of_w(const std::string& text, const std::string& name, std::string_view usual) {
+  const auto place_in = [](std::string_view columns) {
+    return static_cast<std::size_t>(std::ranges::count(columns.substr(0, columns.find('w')), ' '));
+  };
+  int number = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = std::string_view(text).substr(begin, end - begin);
+    begin = end + 1;
+    ++number;
+    const std::size_t first = line.find_first_not_of(kBlanks);
+    if (first == std::string_view::npos) continue;
+    const std::string columns = named_columns(line.substr(first));
+    if (columns == kScalarFirst || columns == kScalarLast || columns == "x y z w x y z" ||
+        columns == "x y z x y z w")
+      return place_in(columns);
+    if (!columns.empty())
+      Place{name, number}.fail(fmt::format("its columns are named {}: `{}` and `{}` are read",
+                                           columns, kScalarLast, kScalarFirst));
+    if (line[first] != '#') break;
+  }
+  return place_in(usual);
+}
+
 using PoseFields = std::array<const char*, 7>;
 
 /// The seven numbers after the stamp.
@@ -103,6 +162,12 @@ std::array<double, 7> numbers_of(const std::vector<std::string>& words, const Po
   for (std::size_t k = 0; k < values.size(); ++k)
     values[k] = parse_number(words[k + 1], fields[k], place);
   return values;
+}
+
+/// The rotation among the seven numbers.
+Eigen::Quaterniond rotation_of(const std::array<double, 7>& v, std::size_t w_at) {
+  const std::size_t x_at = w_at == 3 ? 4 : 3;
+  return {v[w_at], v[x_at], v[x_at + 1], v[x_at + 2]};
 }
 
 void require_later(const Trajectory& trajectory, Stamp stamp_ns, const std::string& word,
@@ -181,6 +246,7 @@ std::string format_stamp(Stamp stamp_ns) {
 
 Trajectory parse_tum(const std::string& text, const std::string& name, int first_line) {
   static constexpr PoseFields kFields = {"tx", "ty", "tz", "qx", "qy", "qz", "qw"};
+  const std::size_t w_at = place_of_w(text, name, kScalarLast);
   Trajectory trajectory;
   const auto read_line = [&](const std::vector<std::string>& words, const Place& place) {
     if (words.size() != 8)
@@ -189,7 +255,7 @@ Trajectory parse_tum(const std::string& text, const std::string& name, int first
     const Stamp stamp_ns = parse_stamp_at(words[0], place);
     require_later(trajectory, stamp_ns, words[0], place);
     const std::array<double, 7> v = numbers_of(words, kFields, place);
-    add_pose(trajectory, stamp_ns, {v[0], v[1], v[2]}, {v[6], v[3], v[4], v[5]}, place);
+    add_pose(trajectory, stamp_ns, {v[0], v[1], v[2]}, rotation_of(v, w_at), place);
   };
   for_each_line(text, name, read_line, split, first_line);
   if (trajectory.empty()) throw InputError(fmt::format("{}: contains no poses", name));
@@ -198,6 +264,7 @@ Trajectory parse_tum(const std::string& text, const std::string& name, int first
 
 Trajectory parse_euroc(const std::string& text, const std::string& name) {
   static constexpr PoseFields kFields = {"p x", "p y", "p z", "q w", "q x", "q y", "q z"};
+  const std::size_t w_at = place_of_w(text, name, kScalarFirst);
   Trajectory trajectory;
   bool is_first = true;
   const auto read_line = [&](const std::vector<std::string>& words, const Place& place) {
@@ -215,7 +282,7 @@ Trajectory parse_euroc(const std::string& text, const std::string& name) {
                       counted(words.size(), "value")));
     require_later(trajectory, stamp_ns, words[0], place);
     const std::array<double, 7> v = numbers_of(words, kFields, place);
-    add_pose(trajectory, stamp_ns, {v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}, place);
+    add_pose(trajectory, stamp_ns, {v[0], v[1], v[2]}, rotation_of(v, w_at), place);
   };
   for_each_line(text, name, read_line, split_at_commas);
   if (trajectory.empty()) throw InputError(fmt::format("{}: contains no poses", name));

@@ -37,32 +37,51 @@ struct FiledBox {
   bool normalized = false;  ///< in shares of the image, not pixels
 };
 
+/// The boxes of a frame, and what the file calls it, for messages.
+struct FrameBoxes {
+  std::string name;
+  std::vector<FiledBox> boxes;
+};
+
 /// Boxes by frame: by its index in the sequence, or by its stamp.
 struct FiledBoxes {
-  std::map<std::size_t, std::vector<FiledBox>> by_index;
-  std::map<Stamp, std::vector<FiledBox>> by_stamp;
+  std::map<std::size_t, FrameBoxes> by_index;
+  std::map<Stamp, FrameBoxes> by_stamp;
 };
 
 constexpr Stamp kSameStamp_ns = 1'000'000;
 constexpr double kLargestShare = 3;  // of the image, of YOLO's boxes: a larger number is pixels
-constexpr std::int64_t kMostFrames = 100'000'000;  // a larger number is a stamp in nanoseconds
+constexpr std::size_t kMostFrames = 100'000'000;  // a larger number is a stamp in nanoseconds
 
-/// The boxes of a frame that a file calls "17" (an index) or "1305031229.528748" (a stamp, s).
+/// The boxes of a frame that a file calls "17" or "1305031229.528748" (a stamp, s).
 std::vector<FiledBox>& boxes_of(FiledBoxes& all, const std::string& frame,
                                 const std::string& place) {
-  const bool digits = !frame.empty() && frame.find_first_not_of("0123456789") == frame.npos;
+  const auto named = [&](FrameBoxes& boxes) -> std::vector<FiledBox>& {
+    if (boxes.name.empty()) boxes.name = frame;
+    return boxes.boxes;
+  };
   std::int64_t number = 0;
+  const bool digits = !frame.empty() && frame.find_first_not_of("0123456789") == frame.npos;
   if (digits &&
-      std::from_chars(frame.data(), frame.data() + frame.size(), number).ec == std::errc()) {
-    if (number < kMostFrames) return all.by_index[static_cast<std::size_t>(number)];
-    return all.by_stamp[number];
-  }
+      std::from_chars(frame.data(), frame.data() + frame.size(), number).ec == std::errc())
+    return named(all.by_index[static_cast<std::size_t>(number)]);
   char* end = nullptr;
   const double seconds = std::strtod(frame.c_str(), &end);
   if (frame.empty() || *end != '\0' || !std::isfinite(seconds) || std::abs(seconds) > 9e9)
     throw InputError(
         fmt::format("{}: frame '{}' is neither an index nor a stamp in seconds", place, frame));
-  return all.by_stamp[std::llround(seconds * 1e6) * 1000];
+  return named(all.by_stamp[std::llround(seconds * 1e6) * 1000]);
+}
+
+/// Whole numbers of one file are of one kind: if one is beyond every index, all are stamps in ns.
+void move_stamps(FiledBoxes& all) {
+  if (all.by_index.empty() || all.by_index.rbegin()->first < kMostFrames) return;
+  for (auto& [number, filed] : all.by_index) {
+    FrameBoxes& frame = all.by_stamp[static_cast<Stamp>(number)];
+    frame.name = filed.name;
+    frame.boxes.insert(frame.boxes.end(), filed.boxes.begin(), filed.boxes.end());
+  }
+  all.by_index.clear();
 }
 
 /// @param first_class  the number that the file gives to the first class
@@ -86,13 +105,16 @@ void check(const FiledBox& box, const ClassNames& names, const std::string& plac
 }
 
 /// Numbers of a line, separated by blanks or commas. @throws InputError at any other word.
-std::vector<double> numbers(std::string line, const std::string& place) {
+/// @param columns  what a line is, for the message
+std::vector<double> numbers(std::string line, const std::string& place, const char* columns) {
   std::ranges::replace(line, ',', ' ');
   std::istringstream words(line);
   std::vector<double> all;
   for (std::string word; words >> word;) {
     const auto value = number_in(without_plus(word));
-    if (!value) throw InputError(fmt::format("{}: '{}' is not a number", place, legible(word)));
+    if (!value)
+      throw InputError(
+          fmt::format("{}: '{}' is not a number; each line is {}", place, legible(word), columns));
     all.push_back(*value);
   }
   return all;
@@ -106,7 +128,7 @@ int whole(double value, const char* what, const std::string& place) {
 
 /// Calls visit(place, numbers) for each line that is neither empty nor a comment.
 template <class Visit>
-void for_each_line(const fs::path& file, const Visit& visit) {
+void for_each_line(const fs::path& file, const char* columns, const Visit& visit) {
   std::string lines = read_text(file);
   if (lines.find('\n') == lines.npos) std::ranges::replace(lines, '\r', '\n');  // old Macs'
   std::istringstream text(lines);
@@ -114,21 +136,25 @@ void for_each_line(const fs::path& file, const Visit& visit) {
   for (std::string line; std::getline(text, line);) {
     const std::string place = fmt::format("{}:{}", file.string(), ++number);
     if (line.find_first_not_of(" \t\r") == line.npos || line[0] == '#') continue;
-    visit(place, numbers(line, place));
+    visit(place, numbers(line, place, columns));
   }
 }
+
+/// Among YOLO's text files: the names of their classes, as annotation programs write it.
+constexpr const char* kFolderClasses = "classes.txt";
 
 /// YOLO's text: FRAME.txt of lines "class x y width height [score]", center and size in shares of
 /// the image.
 void read_yolo_folder(const fs::path& folder, const ClassNames& names, FiledBoxes& all) {
   for (const std::string& name : list_folder(folder, "*.txt")) {
-    if (name == "classes.txt") continue;
+    if (name == kFolderClasses) continue;
     const fs::path file = folder / name;
     std::vector<FiledBox>& boxes = boxes_of(all, file.stem().string(), file.string());
-    for_each_line(file, [&](const std::string& place, const std::vector<double>& v) {
+    constexpr const char* kColumns = "class x y width height [score]";
+    for_each_line(file, kColumns, [&](const std::string& place, const std::vector<double>& v) {
       if (v.size() != 5 && v.size() != 6)
-        throw InputError(fmt::format("{}: {}, not class x y width height [score]", place,
-                                     counted(v.size(), "number")));
+        throw InputError(
+            fmt::format("{}: {}, not {}", place, counted(v.size(), "number"), kColumns));
       FiledBox box{.left = v[1] - v[3] / 2,
                    .top = v[2] - v[4] / 2,
                    .width = v[3],
@@ -149,11 +175,10 @@ void read_yolo_folder(const fs::path& folder, const ClassNames& names, FiledBoxe
 /// MOT: lines "frame,id,left,top,width,height,confidence,class[,visibility]"; frames and classes
 /// count from 1.
 void read_mot(const fs::path& file, const ClassNames& names, FiledBoxes& all) {
-  for_each_line(file, [&](const std::string& place, const std::vector<double>& v) {
+  constexpr const char* kColumns = "frame, id, left, top, width, height, confidence, class";
+  for_each_line(file, kColumns, [&](const std::string& place, const std::vector<double>& v) {
     if (v.size() < 8)
-      throw InputError(
-          fmt::format("{}: {}, not frame, id, left, top, width, height, confidence, class", place,
-                      counted(v.size(), "number")));
+      throw InputError(fmt::format("{}: {}, not {}", place, counted(v.size(), "number"), kColumns));
     const int frame = whole(v[0], "frame", place);
     if (frame < 1) throw InputError(fmt::format("{}: frame {}: they count from 1", place, frame));
     FiledBox box{.left = v[2] - 1,  // the upper left pixel is (1, 1)
@@ -163,7 +188,9 @@ void read_mot(const fs::path& file, const ClassNames& names, FiledBoxes& all) {
                  .score = v[6],
                  .network_class = whole(v[7], "class", place) - 1};
     check(box, names, place, 1);
-    all.by_index[static_cast<std::size_t>(frame - 1)].push_back(box);
+    FrameBoxes& of_frame = all.by_index[static_cast<std::size_t>(frame - 1)];
+    of_frame.name = std::to_string(frame);
+    of_frame.boxes.push_back(box);
   });
 }
 
@@ -229,9 +256,7 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
 class BoxesFromFiles : public Detector {
  public:
   explicit BoxesFromFiles(const DetectorSpec& spec)
-      : file_(spec.boxes),
-        settings_(spec.settings),
-        names_(spec.classes.empty() ? coco80() : load_class_names(spec.classes)) {
+      : file_(spec.boxes), settings_(spec.settings), names_(names_of(spec)) {
     const std::string ending = spec.boxes.extension().string();
     if (is_folder(spec.boxes)) {
       kind_ = "YOLO text";
@@ -249,8 +274,9 @@ class BoxesFromFiles : public Detector {
                       ".txt (YOLO)",
                       spec.boxes.string()));
     }
-    if (filed_.by_index.empty() && filed_.by_stamp.empty())
-      throw InputError(fmt::format("{}: holds no box", spec.boxes.string()));
+    move_stamps(filed_);
+    if (is_folder(spec.boxes) && frame_count() == 0)
+      throw InputError(fmt::format("{}: holds no .txt of a frame", spec.boxes.string()));
   }
 
   Detected detect(const Grid2d<Rgb8>& color, std::size_t index, Stamp stamp_ns) const override {
@@ -280,32 +306,46 @@ class BoxesFromFiles : public Detector {
   const ClassNames& names() const override { return names_; }
   std::string description() const override {
     std::size_t boxes = 0;
-    for (const auto& [frame, list] : filed_.by_index) boxes += list.size();
-    for (const auto& [frame, list] : filed_.by_stamp) boxes += list.size();
+    for (const auto& [frame, list] : filed_.by_index) boxes += list.boxes.size();
+    for (const auto& [frame, list] : filed_.by_stamp) boxes += list.boxes.size();
     return fmt::format("{}: {} of {}", kind_, counted(boxes, "box", "boxes"),
-                       counted(filed_.by_index.size() + filed_.by_stamp.size(), "frame"));
+                       counted(frame_count(), "frame"));
   }
   std::uint64_t digest() const override { return 0; }
   std::string check_frames(std::span<const Stamp> stamps_ns) const override {
-    const std::size_t all = filed_.by_index.size() + filed_.by_stamp.size();
-    std::set<const std::vector<FiledBox>*> found;
+    if (frame_count() == 0) return fmt::format("{}: holds no box", file_.string());
+    std::set<const FrameBoxes*> found;
     for (std::size_t i = 0; i < stamps_ns.size(); ++i)
-      for (const std::vector<FiledBox>* boxes : lists_of(i, stamps_ns[i])) found.insert(boxes);
+      for (const FrameBoxes* boxes : lists_of(i, stamps_ns[i])) found.insert(boxes);
     found.erase(nullptr);
-    const std::size_t matched = found.size();
-    if (matched == 0)
+    if (found.size() == frame_count()) return "";
+    const FrameBoxes* lost = nullptr;
+    const auto look = [&](const FrameBoxes& boxes) {
+      if (lost == nullptr && !found.contains(&boxes)) lost = &boxes;
+    };
+    for (const auto& [index, boxes] : filed_.by_index) look(boxes);
+    for (const auto& [stamp_ns, boxes] : filed_.by_stamp) look(boxes);
+    if (found.empty())
       throw InputError(fmt::format(
-          "{}: none of its {} is one of the sequence's {}: they are named by index from 0 or by "
-          "stamp",
-          file_.string(), counted(all, "frame"), stamps_ns.size()));
-    if (matched == all) return "";
-    return fmt::format("{}: {} of its {} are none of the sequence's {}", file_.string(),
-                       all - matched, counted(all, "frame"), stamps_ns.size());
+          "{}: none of its {} is one of the sequence's {}, the first is '{}': they are named by "
+          "index from 0 or by stamp",
+          file_.string(), counted(frame_count(), "frame"), stamps_ns.size(), lost->name));
+    return fmt::format("{}: {} of its {} are none of the sequence's {}, the first is '{}'",
+                       file_.string(), frame_count() - found.size(),
+                       counted(frame_count(), "frame"), stamps_ns.size(), lost->name);
   }
 
  private:
+  static ClassNames names_of(const DetectorSpec& spec) {
+    if (!spec.classes.empty()) return load_class_names(spec.classes);
+    const fs::path beside = spec.boxes / kFolderClasses;
+    return is_folder(spec.boxes) && is_there(beside) ? load_class_names(beside) : coco80();
+  }
+
+  std::size_t frame_count() const { return filed_.by_index.size() + filed_.by_stamp.size(); }
+
   /// The boxes of a frame under its index and under its stamp; null where there are none.
-  std::array<const std::vector<FiledBox>*, 2> lists_of(std::size_t index, Stamp stamp_ns) const {
+  std::array<const FrameBoxes*, 2> lists_of(std::size_t index, Stamp stamp_ns) const {
     const auto at = filed_.by_index.find(index);
     const auto near = filed_.by_stamp.lower_bound(stamp_ns - kSameStamp_ns);
     const bool is_near = near != filed_.by_stamp.end() && near->first <= stamp_ns + kSameStamp_ns;
@@ -314,8 +354,8 @@ class BoxesFromFiles : public Detector {
 
   std::vector<FiledBox> of_frame(std::size_t index, Stamp stamp_ns) const {
     std::vector<FiledBox> all;
-    for (const std::vector<FiledBox>* boxes : lists_of(index, stamp_ns))
-      if (boxes != nullptr) all.insert(all.end(), boxes->begin(), boxes->end());
+    for (const FrameBoxes* list : lists_of(index, stamp_ns))
+      if (list != nullptr) all.insert(all.end(), list->boxes.begin(), list->boxes.end());
     return all;
   }
 

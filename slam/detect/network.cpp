@@ -210,9 +210,16 @@ void understand(const DetectorSpec& spec, const NetworkFiles& files, Imported& i
   imported.names = spec.classes.empty() ? coco80() : load_class_names(spec.classes);
   if (imported.names.size() == static_cast<std::size_t>(classes)) return;
   if (spec.classes.empty())
-    refuse(spec.network, fmt::format("has {} classes, not COCO's 80: name them by `classes`, a "
-                                     "file of one name per line",
-                                     classes));
+    refuse(spec.network,
+           fmt::format(
+               "has {} classes, not COCO's 80: name them by `classes`, a file of one name "
+               "per line{}",
+               classes,
+               seen == Head::kAuto || seen == head
+                   ? ""
+                   : fmt::format("; or leave out `head: {}`, since its output looks like "
+                                 "that of '{}'",
+                                 SettingsWriter::word_of(head), SettingsWriter::word_of(seen))));
   refuse(spec.classes, fmt::format("names {} classes, and {} has {}", imported.names.size(),
                                    spec.network.string(), classes));
 }

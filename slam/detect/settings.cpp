@@ -39,8 +39,11 @@ void read_detector(YamlReader& mapping, const fs::path& folder, DetectorSpec& sp
   MappingReader read(mapping);
   fields(spec.settings, read);
   if (spec.network.empty() == spec.boxes.empty())
-    mapping.fail(spec.boxes.empty() ? "names neither `network` nor `boxes`"
-                                    : "names both `network` and `boxes`");
+    mapping.fail(spec.boxes.empty()
+                     ? "names neither `network` nor `boxes`"
+                     : fmt::format("`network` ({}) and `boxes` ({}) are both named: one of them "
+                                   "says what is run",
+                                   spec.network.string(), spec.boxes.string()));
   if (spec.network.extension() == ".weights" && spec.config.empty())
     spec.config = fs::path(spec.network).replace_extension(".cfg");
 }

@@ -126,6 +126,22 @@ TEST_F(DetectorCommands, ScoreAndFitAgree) {
   EXPECT_NEAR(dials.recall_large, score["dials"]["recall_large"], 1e-6);
 }
 
+TEST_F(DetectorCommands, RefuseWhatWouldHaveNoEffect) {
+  const std::string image =
+      path("room/" + std::string("rgb/") + list_folder(path("room/rgb"), "*.png").front());
+  const std::string out = " " + network() + " --out " + path("no");
+  expect_refused("detector run " + image + " " + path("none.png") + out, "none.png");
+  expect_refused("detector run " + image + out + " --settings " + path("room/camera.yaml"),
+                 "is for a recording, and the sources are images");
+  EXPECT_NE(run("render generated:bathroom:0 --frames 1 --labels boxes" + out), 0)
+      << "the detector's labels replace them";
+  write_atomically(path("both.yaml"), "boxes: some.json\n");
+  expect_refused("detector run " + image + " --detector " + path("chairs.onnx") +
+                     " --detector-settings " + path("both.yaml") + " --out " + path("no"),
+                 "some.json) are both named: one of them says what is run");
+  EXPECT_FALSE(fs::exists(path("no")));
+}
+
 TEST_F(DetectorCommands, OverwriteNeitherInputsNorForeignFiles) {
   fs::create_directories(path("mine"));
   write_atomically(path("mine/000001.png"), "mine");

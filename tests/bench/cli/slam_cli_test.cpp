@@ -203,7 +203,20 @@ TEST_F(SlamCommand, AMapAnswersByTheFactorsThatAreGiven) {
 
 TEST_F(SlamCommand, RefusesWhatItCannotUse) {
   const std::string out = " --out " + path("no");
-  expect_refused(path("nowhere") + out, "is not a folder, nor " + sequence_forms());
+  expect_refused(path("nowhere") + out,
+                 "does not exist; a recording is a folder, or " + sequence_forms());
+  fs::create_directories(folder_ / "ros2");
+  write_atomically(folder_ / "ros2/a_0.db3", "SQLite format 3");
+  expect_refused(path("ros2") + out, "is a ROS 2 bag in SQLite: `ros2 bag convert`");
+  expect_refused(path("ros2/a_0.db3") + out, "is a ROS 2 bag in SQLite: `ros2 bag convert`");
+  fs::create_directories(folder_ / "two");
+  write_atomically(folder_ / "two/a.bag", "");
+  write_atomically(folder_ / "two/a.mcap", "");
+  expect_refused(path("two") + out, "holds bags and MCAP files: name one of them");
+  expect_refused("mcap:" + path("two") + out, "a.mcap: is not an MCAP file");
+  EXPECT_NE(run(path("room") + out + " --plain --detector boxes.json"), 0) << "looks at no labels";
+  expect_refused(path("room") + out + " --detector-cache " + path("cache"),
+                 "--detector-cache " + path("cache") + ": no detector is named");
   fs::create_directories(folder_ / "empty");
   expect_refused(path("empty") + out, "holds neither rgb.txt nor associations.txt");
   expect_refused(path("room") + out + " --localize", "--localize needs a map");
@@ -242,7 +255,8 @@ TEST_F(SlamCommand, WithoutDepthNothingIsMappedAndThatIsReported) {
   }
   writer.finish();
   expect_refused(path("flat") + " --out " + path("no"),
-                 "nothing could be mapped: none of 5 frames");
+                 "nothing could be mapped: none of 5 frames showed 100 keypoints with depth to "
+                 "begin with (the first image has no depth)");
   EXPECT_FALSE(fs::exists(folder_ / "no/summary.json"));
 }
 

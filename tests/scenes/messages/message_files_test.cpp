@@ -136,6 +136,24 @@ TEST_P(MessageFiles, AWrongByteCostsNoMoreThanItsChunk) {
   EXPECT_GE(read.messages.size(), 20u);
 }
 
+TEST_P(MessageFiles, TheFirstChunksDamageDoesNotTakeTheOthersTopics) {
+  const auto written = write();
+  std::string bytes = read_file(file());
+  const std::size_t name = bytes.find("/text");  // none if it is compressed
+  if (name == std::string::npos) {
+    bytes[bytes.size() / 10] ^= 0x55;
+  } else {
+    for (std::size_t i = 0; i < 5; ++i) bytes[name - 1 - i] ^= 0x55;  // what tells where it begins
+  }
+  const Read read = read_all(bytes);
+  ASSERT_GE(read.messages.size(), 20u);
+  ASSERT_FALSE(read.file->notes().empty());
+  EXPECT_EQ(read.messages.back(), written.back());
+  EXPECT_EQ(read.messages.end()[-2], written.end()[-2]);
+  for (const std::string& note : read.file->notes())
+    EXPECT_EQ(note.find("messages left out"), std::string::npos) << note;
+}
+
 INSTANTIATE_TEST_SUITE_P(All, MessageFiles,
                          testing::Values(std::tuple(Kind::kMcap, ChunkCompression::kNone),
                                          std::tuple(Kind::kMcap, ChunkCompression::kLz4),

@@ -162,6 +162,29 @@ TEST(Euroc, EveryErrorNamesFileLineAndValue) {
             "f.csv:1: timestamp: '' is not a whole number of nanoseconds");
 }
 
+/// The quaternion (w, x, y, z) of the first pose.
+Eigen::Vector4d first_rotation(const Trajectory& trajectory) {
+  const Eigen::Quaterniond q = trajectory.at(0).world_from_camera.quaternion();
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
+TEST(Poses, AreInTheOrderThatTheirLineOfNamesStates) {
+  const Eigen::Vector4d expected(0.8, 0, 0, 0.6);
+  for (const char* text :
+       {"#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y "
+        "[],q_RS_z []\n1,1,2,3,0.8,0,0,0.6\n",
+        "timestamp,tx,ty,tz,qx,qy,qz,qw\n1,1,2,3,0,0,0.6,0.8\n",
+        "# made by a tool\n\n# t x y z Qx Qy Qz Qw, in ns\n1,1,2,3,0.8,0,0,0.6\n",
+        "# timestamp tx ty tz qw qx qy qz\n1 1 2 3 0.8 0 0 0.6\n",
+        "# timestamp tx ty tz qx qy qz qw\n1 1 2 3 0 0 0.6 0.8\n",
+        "# stamp and the pose of the camera in the world\n1 1 2 3 0 0 0.6 0.8\n"})
+    EXPECT_LT((first_rotation(parse_trajectory(text, "f.csv")) - expected).norm(), 1e-12) << text;
+  EXPECT_EQ(refusal_of(
+                [] { parse_trajectory("time,qx,qy,qz,qw,x,y,z\n1,0,0,0.6,0.8,1,2,3\n", "f.csv"); }),
+            "f.csv:1: its columns are named qx qy qz qw x y z: `x y z qx qy qz qw` and `x y z qw "
+            "qx qy qz` are read");
+}
+
 TEST(Kitti, RoundTripsAndCountsFrames) {
   const Trajectory written = some_trajectory();
   const auto file = std::filesystem::temp_directory_path() / "mh_metrics_round_trip.kitti";

@@ -87,6 +87,30 @@ TEST_F(BoxFiles, AreFoundByStampsOfTodayInNanoseconds) {
   expect_chair(boxes->detect(image_, 7, 1305031229528748000));
 }
 
+TEST_F(BoxFiles, OfStampsInNanosecondsThatBeginAtZeroAreFoundByStamp) {
+  const auto boxes = open("a.json",
+                          R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "score": 0.8},
+          {"image_id": 33333333, "category_id": 62, "bbox": [10, 20, 30, 20], "score": 0.8},
+          {"image_id": 133333333, "category_id": 1, "bbox": [1, 2, 3, 4], "score": 0.8}])");
+  expect_chair(boxes->detect(image_, 1, 33'333'333));
+  EXPECT_EQ(boxes->check_frames(std::vector<Stamp>{0, 33'333'333, 133'333'333}), "");
+}
+
+TEST_F(BoxFiles, OfYoloAreOfTheClassesThatStandAmongThem) {
+  fs::create_directories(folder_.path() / "yolo");
+  write_atomically(folder_.path() / "yolo/classes.txt", "sofa\nchair\n");
+  const auto boxes = open("yolo/000003.txt", "1 0.25 0.6 0.3 0.4 0.8\n");
+  expect_chair(boxes->detect(image_, 3, 0));
+  EXPECT_EQ(boxes->names().size(), 2U);
+}
+
+TEST_F(BoxFiles, MayHoldNoBox) {
+  for (const auto& boxes : {open("a.json", "[]"), open("a.csv", "")}) {
+    EXPECT_TRUE(boxes->detect(image_, 0, 0).boxes.empty());
+    EXPECT_NE(boxes->check_frames(std::vector<Stamp>{0}).find("holds no box"), std::string::npos);
+  }
+}
+
 TEST_F(BoxFiles, OutsideTheImageAreCutAndCounted) {
   const auto boxes =
       open("a.csv", "1,-1,-20,1,50,20,0.8,57\n1,-1,500,1,50,20,0.8,57\n1,-1,1,1,9,9,0.8,57\n");
@@ -109,7 +133,8 @@ TEST_F(BoxFiles, MustBeOfFramesOfTheSequence) {
       open("a.csv", "1,-1,1,1,9,9,0.8,57\n4,-1,1,1,9,9,0.8,57\n9,-1,1,1,9,9,0.8,57\n");
   const std::vector<Stamp> ten(10), five(5), none;
   EXPECT_EQ(by_index->check_frames(ten), "");
-  EXPECT_NE(by_index->check_frames(five).find("1 of its 3 frames are none of the sequence's 5"),
+  EXPECT_NE(by_index->check_frames(five).find(
+                "1 of its 3 frames are none of the sequence's 5, the first is '9'"),
             std::string::npos);
   EXPECT_THROW(by_index->check_frames(none), InputError);
   const auto by_stamp =
@@ -131,8 +156,7 @@ TEST_F(BoxFiles, NameTheirFaultAndItsPlace) {
   says("a.csv", "1,-1,0x40,1,50,20,0.8,57\n", "'0x40' is not a number");
   says("a.csv", std::string("1,-1,4\0,1,50,20,0.8,57\n", 24), "is not a number");
   says("a.csv", "1,-1,1,1,50\n", "5 numbers, not frame");
-  says("a.csv", "one,-1,1,1,50,20,0.8,57\n", "'one' is not a number");
-  says("a.csv", "", "holds no box");
+  says("a.csv", "one,-1,1,1,50,20,0.8,57\n", "'one' is not a number; each line is frame, id");
   says("yolo/0.txt", "56 0.25 0.6 0.3 0.4 1.8\n", "0.txt:1: score 1.8 is outside [0, 1]");
   says("yolo/0.txt", "56 320 240 100 80\n",
        "0.txt:1: box 320 240 100 80 is not in shares of the image");
