@@ -51,8 +51,24 @@ class PlotTable {
 
 std::string beginning(const PlotOrder& order, const fs::path& file, double height_cm) {
   return gnuplot_terminal(file, order.width_cm, height_cm) +
-         "set key outside top center horizontal noenhanced samplen 2\nset border 3\nset tics "
+         "set key outside top center horizontal noenhanced samplen 3\nset border 3\nset tics "
          "nomirror out scale 0.5\nset grid linecolor '#dddddd' linewidth 0.5\n";
+}
+
+/// A distance between ticks that leaves at most six of them: 1, 2 or 5 times a power of ten.
+double tick_step(double range) {
+  double step = 1;
+  for (std::size_t i = 0; range / step > 5; ++i) step *= i % 3 == 1 ? 2.5 : 2;
+  return step;
+}
+
+/// Whether one value would press the others to the axis: it is far beyond all but a few.
+bool needs_logarithm(std::vector<double> values) {
+  constexpr double kFar = 10;
+  if (values.empty() || std::ranges::min(values) <= 0) return false;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return std::ranges::max(values) > kFar * *middle;
 }
 
 /// Figure 3: boxes by group and system, means as open diamonds.
@@ -73,14 +89,19 @@ std::string by_density(const PagesSource& source, const PlotOrder& order, const 
   const double scale = column->at("unit") == "%" ? 100 : 1;
   std::vector<std::string> systems;
   std::map<std::pair<std::size_t, std::string>, std::string> data;  // by system, group
+  std::vector<double> values;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const std::string system = table.text("system", row);
     auto known = std::ranges::find(systems, system);
     if (known == systems.end()) known = systems.insert(known, system);
-    if (const auto value = table.number(order.measure, row))
+    if (const auto value = table.number(order.measure, row)) {
+      values.push_back(*value);
       data[{static_cast<std::size_t>(known - systems.begin()), table.text("group", row)}] +=
           fmt::format("{}\n", scale * *value);
+    }
   }
+  const bool logarithmic = scale == 1 && needs_logarithm(values);
+  const double step = 0.8 / static_cast<double>(systems.size());
   std::string script = beginning(order, file, 0.75 * order.width_cm), plots, ticks;
   std::size_t block = 0;
   for (std::size_t g = 0; g < json.at("groups").size(); ++g) {
@@ -90,14 +111,14 @@ std::string by_density(const PagesSource& source, const PlotOrder& order, const 
       const auto found = data.find({s, group});
       if (found == data.end()) continue;
       const double at =
-          static_cast<double>(g) + 0.3 * (static_cast<double>(s) - 0.5 * (systems.size() - 1.0));
+          static_cast<double>(g) + step * (static_cast<double>(s) - 0.5 * (systems.size() - 1.0));
       script += fmt::format("$d{0} << EOD\n{1}EOD\nstats $d{0} nooutput name 's{0}'\n", block,
                             found->second);
       plots += fmt::format(
-          "{0}$d{1} using ({2}):1:(0.24) with boxplot linecolor rgb '{3}' notitle, '+' using "
+          "{0}$d{1} using ({2}):1:({4}) with boxplot linecolor rgb '{3}' notitle, '+' using "
           "({2}):(s{1}_mean) every ::0::0 with points pointtype 12 pointsize 0.7 linecolor rgb "
           "'black' notitle",
-          block == 0 ? "" : ", ", block, at, ink_of(s));
+          block == 0 ? "" : ", ", block, at, ink_of(s), 0.8 * step);
       ++block;
     }
   }
@@ -105,14 +126,15 @@ std::string by_density(const PagesSource& source, const PlotOrder& order, const 
     plots += fmt::format(", 1/0 with lines linewidth 3 linecolor rgb '{}' title {}", ink_of(s),
                          gnuplot_text(systems[s]));
   const std::string unit = column->at("unit").get<std::string>();
-  return script +
-         fmt::format(
-             "set style boxplot outliers pointtype 7\nset style fill solid 0.25 border\n"
-             "set pointsize 0.25\nset xtics ({})\nset xrange [-0.6:{}]\nset yrange [0:*]\n"
-             "set xlabel 'objects per 10 m²'\nset ylabel {} noenhanced\nplot {}\n",
-             ticks, static_cast<double>(json.at("groups").size()) - 0.4,
-             gnuplot_text(column->at("title").get<std::string>() + (unit == "%" ? ", %" : "")),
-             plots);
+  std::string title = column->at("title").get<std::string>();
+  if (title.ends_with(" " + unit)) title.resize(title.size() - unit.size() - 1);
+  return script + fmt::format(
+                      "set style boxplot outliers pointtype 7\nset style fill solid 0.25 border\n"
+                      "set pointsize 0.25\nset xtics ({})\nset xrange [-0.6:{}]\n{}\n"
+                      "set xlabel 'objects per 10 m²'\nset ylabel {} noenhanced\nplot {}\n",
+                      ticks, static_cast<double>(json.at("groups").size()) - 0.4,
+                      logarithmic ? "set logscale y" : "set yrange [0:*]",
+                      gnuplot_text(unit.empty() ? title : title + ", " + unit), plots);
 }
 
 /// Figure 4: error against frames, and below it the environments still counted.
@@ -126,6 +148,7 @@ std::string by_frame(const PagesSource& source, const PlotOrder& order, const fs
                     source.name));
   const PlotTable table(json);
   std::vector<std::pair<std::string, std::string>> arms;
+  double last_frame = 1;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const std::string labels = table.text("labels", row);
     const std::string arm =
@@ -133,6 +156,7 @@ std::string by_frame(const PagesSource& source, const PlotOrder& order, const fs
     auto known = std::ranges::find(arms, arm, &std::pair<std::string, std::string>::first);
     if (known == arms.end()) known = arms.insert(known, {arm, ""});
     const double error = table.number("error_m", row).value_or(0);
+    last_frame = std::max(last_frame, table.number("frame", row).value_or(0));
     known->second += fmt::format("{} {} {} {} {}\n", table.number("frame", row).value_or(0), error,
                                  table.number("low", row).value_or(error),
                                  table.number("high", row).value_or(error),
@@ -151,12 +175,13 @@ std::string by_frame(const PagesSource& source, const PlotOrder& order, const fs
         "notitle",
         a == 0 ? "" : ", ", a, a + 1, ink_of(a));
   }
-  return script + fmt::format(
-                      "set multiplot\nset lmargin 11\nset size 1,0.66\nset origin 0,0.34\n"
-                      "set ylabel 'mean position error, m'\nset yrange [0:*]\nplot {}\n"
-                      "set size 1,0.36\nset origin 0,0\nset ylabel 'environments'\n"
-                      "set xlabel 'frame of the tour'\nplot {}\nunset multiplot\n",
-                      errors, counts);
+  return script +
+         fmt::format(
+             "set multiplot\nset lmargin 11\nset size 1,0.66\nset origin 0,0.34\n"
+             "set ylabel 'mean position error, m'\nset yrange [0:*]\nset xtics {}\nplot {}\n"
+             "set size 1,0.36\nset origin 0,0\nset ylabel 'environments'\n"
+             "set xlabel 'frame of the tour'\nplot {}\nunset multiplot\n",
+             tick_step(last_frame), errors, counts);
 }
 
 /// Rectangles of cells in a state, by rows: middle and extent in each direction.
