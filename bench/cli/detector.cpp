@@ -25,6 +25,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/legible.hpp"
 #include "slam/core/temporary_folder.hpp"
 #include "slam/core/text_file.hpp"
 
@@ -74,6 +75,10 @@ class Frames {
   std::vector<Stamp> stamps_ns() const {
     return sequence_ ? stamps_of(*sequence_)
                      : std::vector<Stamp>(images_.size(), RgbdFrame{}.stamp_ns);
+  }
+  /// " of FILE" of an image; "" of a recording's frame.
+  std::string source_of(std::size_t i) const {
+    return sequence_ ? "" : " of " + legible(images_[i]);
   }
   RgbdFrame frame(std::size_t i) const {
     if (sequence_) return sequence_->frame(i, RandomStream());
@@ -223,7 +228,8 @@ void run(DetectorArguments options) {
     if (options.labels || !found.pixels.index.empty())
       labels = labels_of(found, frame.depth_m, frame.color.width(), frame.color.height(),
                          spec->settings.fill);
-    drawn += fmt::format("{} {}\n", image_name(i), counted(found.boxes.size(), "box", "boxes"));
+    drawn += fmt::format("{} {}{}\n", image_name(i), counted(found.boxes.size(), "box", "boxes"),
+                         frames.source_of(i));
     write_image(work.path() / image_name(i),
                 draw_detections(frame.color, found.boxes, detector->names(), labels));
     progress.share(static_cast<double>(i + 1) / static_cast<double>(wanted.back() + 1));

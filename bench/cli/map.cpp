@@ -121,6 +121,9 @@ void run(const MapMessagesArguments& options) {
   const std::string kind = std::filesystem::path(options.out).extension().string();
   if (kind != ".mcap" && kind != ".bag")
     throw InputError(options.out + ": its name ends neither in .mcap (ROS 2) nor in .bag (ROS 1)");
+  if (is_there(options.out) && !holds_map_messages(options.out))
+    throw InputError(options.out +
+                     ": is there already, and not from `modelhouse map messages`: name another");
   const VoxelMap map = VoxelMap::load_ot(options.map);
   const MapStudy study{grid_of(map, options.map, options.band), find_objects(map)};
   write_map_messages(kind == ".mcap" ? *write_mcap(options.out) : *write_bag(options.out), map,

@@ -176,9 +176,9 @@ void run(RenderArguments options) {
   std::vector<InputDigest> inputs;
   const Robot robot =
       noted(inputs, "robot", options.robot, [&] { return load_robot(options.robot); });
+  std::shared_ptr<const Detector> detector;
   if (const auto spec = options.detector.spec()) {
-    const std::shared_ptr<const Detector> detector =
-        noted(inputs, "detector", source_of(*spec), [&] { return open_detector(*spec); });
+    detector = noted(inputs, "detector", source_of(*spec), [&] { return open_detector(*spec); });
     options.sequence.relabel = [detector, fill = spec->settings.fill,
                                 keep = detections_in(options.detector.opened_cache("render"))](
                                    RgbdFrame& frame, std::size_t i) {
@@ -217,6 +217,14 @@ void run(RenderArguments options) {
   const Trajectory path =
       mounted != nullptr ? path_of(*mounted, *robot.equipment, driven) : driven.camera;
 
+  if (detector != nullptr) {
+    progress.say("labels from " + detector->description());
+    std::vector<Stamp> stamps_ns;
+    for (std::size_t i = 0; i < std::min(options.sequence.frames, path.size()); ++i)
+      stamps_ns.push_back(path[i].stamp_ns);
+    if (const std::string note = detector->check_frames(stamps_ns); !note.empty())
+      progress.say("warning: " + note);
+  }
   const std::string settings = settings_of(options, scene, path, inputs);
   const bool holds_frames = fs::exists(out / "render.json") && !part_of_sequence(out).empty();
   if (holds_frames) {

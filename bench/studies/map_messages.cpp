@@ -1,16 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/studies/map_messages.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include <fmt/format.h>
 
 #include "bench/drawing/false_colors.hpp"
 #include "scenes/messages/marker_types.hpp"
+#include "scenes/messages/message_file.hpp"
 #include "scenes/messages/robot_types.hpp"
 #include "scenes/recorded/ros/names.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
 #include "slam/occupancy/cost_map.hpp"
 
 namespace mh {
 namespace {
+
+constexpr std::array kTopics = {"/map", "/global_costmap/costmap", "/objects", "/voxels"};
 
 ros::OccupancyGrid grid_message(const OccupancyGrid& grid) {
   ros::OccupancyGrid message;
@@ -80,11 +88,25 @@ void write_map_messages(MessageWriter& file, const VoxelMap& map, const MapStudy
     const std::uint16_t number = file.add_topic(topic_spec<M>(topic, file.wire(), true));
     file.write(number, 0, ros::serialized(message, file.wire()));
   };
-  write_once("/map", grid_message(study.grid));
-  write_once("/global_costmap/costmap", grid_message(as_published(cost_map(study.grid))));
-  write_once("/objects", objects_message(study.objects));
-  write_once("/voxels", voxels_message(map));
+  write_once(kTopics[0], grid_message(study.grid));
+  write_once(kTopics[1], grid_message(as_published(cost_map(study.grid))));
+  write_once(kTopics[2], objects_message(study.objects));
+  write_once(kTopics[3], voxels_message(map));
   file.finish();
+}
+
+bool holds_map_messages(const std::filesystem::path& file) {
+  const HeldBytes bytes = map_file(file, MapPages::kAsTouched);
+  const auto open = bytes.view.starts_with("#ROSBAG") ? open_bag : open_mcap;
+  try {
+    const auto held = open(bytes, file.string(), [](auto&&...) {});
+    return held->channels().size() == std::size(kTopics) &&
+           std::ranges::all_of(held->channels(), [](const MessageChannel& channel) {
+             return std::ranges::count(kTopics, channel.topic) > 0;
+           });
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 }  // namespace mh

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+
 #include "bench/studies/map_study.hpp"
 #include "scenes/messages/message_writer.hpp"
 
@@ -9,6 +11,10 @@ namespace mh {
 /// Writes what RViz and Foxglove show of a map, once each, in frame `map`, at time 0: `/map` (the
 /// grid), `/global_costmap/costmap` (its costs as Nav2 publishes them), `/objects` (a box and a
 /// name for each), `/voxels` (the occupied ones in the colors of their classes).
+/// @throws as the writer does
 void write_map_messages(MessageWriter& file, const VoxelMap& map, const MapStudy& study);
+
+/// Whether a file is one that write_map_messages() made, to be replaced.
+bool holds_map_messages(const std::filesystem::path& file);
 
 }  // namespace mh

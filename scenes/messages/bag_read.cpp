@@ -54,7 +54,7 @@ class BagFile : public MessageFile {
     const std::string_view all = this->bytes();
     if (!all.starts_with(bag::kMagic)) refuse(all);
     read_records({all, bag::kMagic.size(), MessagePlace::kFile, 0});
-    if (!indexed_ && !leaves_out(kCut))
+    if (index_at_ == 0 && !leaves_out(kCut))
       leave_out("ends", all.size(), "it was not closed: its messages are used as far as it goes");
   }
 
@@ -103,7 +103,11 @@ class BagFile : public MessageFile {
       const std::optional<Record> record = record_at(records.bytes, at);
       if (!record) {
         if (in_chunk) throw InputError("ends within a record");
-        leave_out(kCut, place, "a record is cut short; what came before is used");
+        if (index_at_ != 0 && at >= index_at_)
+          leave_out("ends", place,
+                    fmt::format("{} bytes after its end are left out", records.bytes.size() - at));
+        else
+          leave_out(kCut, place, "a record is cut short; what came before is used");
         return;
       }
       const std::string_view data = record->data;
@@ -119,6 +123,9 @@ class BagFile : public MessageFile {
           read_chunk(fields, data, place);
         else if (op == Op::kBagHeader && !in_chunk)
           read_bag_header(fields);
+        else if (op != Op::kIndex && op != Op::kChunkInfo)
+          throw InputError(
+              fmt::format("'op' is {}, a record of no known kind", static_cast<int>(op)));
       } catch (const Encrypted&) {
         throw InputError(fmt::format("{}: is an encrypted bag, which is not read", name()));
       } catch (const InputError& error) {
@@ -147,7 +154,7 @@ class BagFile : public MessageFile {
     if (const auto encryptor = fields.find("encryptor");
         encryptor != fields.end() && !encryptor->second.empty())
       throw Encrypted();
-    indexed_ = number<std::uint64_t>(fields, "index_pos") != 0;
+    index_at_ = number<std::uint64_t>(fields, "index_pos");
   }
 
   void read_connection(const Fields& fields, std::string_view data) {
@@ -183,7 +190,7 @@ class BagFile : public MessageFile {
   const Visit& visit_;
   std::map<std::uint32_t, std::size_t> channels_by_id_;
   bool connections_are_read_ = false;  ///< by read_connections_from()
-  bool indexed_ = false;
+  std::uint64_t index_at_ = 0;         ///< 0: it was not closed
 };
 
 }  // namespace

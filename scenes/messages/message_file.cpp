@@ -9,6 +9,7 @@
 
 #include "scenes/messages/decompress.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/legible.hpp"
 
 namespace mh {
 namespace {
@@ -35,7 +36,7 @@ std::vector<std::string> MessageFile::notes() const {
 
 void MessageFile::leave_out(const std::string& kind, std::uint64_t at, const std::string& why) {
   LeftOut& left = left_out_[kind];
-  if (left.count++ == 0) left.first = fmt::format("at byte {}: {}", at, why);
+  if (left.count++ == 0) left.first = fmt::format("at byte {}: {}", at, legible(why));
 }
 
 std::size_t MessageFile::channel(MessageChannel channel) {
@@ -91,8 +92,8 @@ HeldBytes MessageFile::read(const MessagePlace& place) const {
     content.view = content.view.substr(place.at, place.size);
     return content;
   } catch (const InputError& error) {
-    throw InputError(
-        fmt::format("{}: chunk at byte {} {}", name_, chunks_[place.chunk].at, error.what()));
+    throw InputError(fmt::format("{}: chunk at byte {} {}", name_, chunks_[place.chunk].at,
+                                 legible(error.what())));
   }
 }
 

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
@@ -99,7 +100,8 @@ bool starts_with_letter(const std::string& word) {
 constexpr std::string_view kScalarFirst = "x y z qw qx qy qz", kScalarLast = "x y z qx qy qz qw";
 
 /// What a line of names calls the seven columns after the first: "x y z qw qx qy qz" of
-/// "#timestamp, p_x [m], ..., q_w [], ...", without q where all begin alike. "" if it is none.
+/// "#timestamp, p_x [m], ..., q_w [], ...", without q where all begin alike; all of its names if
+/// four begin with q, but it is not understood. "" if it is none.
 std::string named_columns(std::string_view line) {
   if (line.starts_with('#')) line.remove_prefix(1);
   std::vector<std::string> names =
@@ -111,14 +113,18 @@ std::string named_columns(std::string_view line) {
   }
   std::erase(names, "");
   if (names.size() < 8) return "";
+  const auto is_of_quaternion = [](const std::string& name) { return name.starts_with('q'); };
+  const std::string all = std::ranges::count_if(names, is_of_quaternion) < 4
+                              ? ""
+                              : fmt::format("{}", fmt::join(names, " "));
   const auto stem = [](const std::string& name) { return name.substr(0, name.size() - 1); };
   const std::span<std::string> columns = std::span(names).subspan(1, 7);
   if (std::ranges::any_of(
           columns, [](const std::string& name) { return name.back() < 'w' || name.back() > 'z'; }))
-    return "";
+    return all;
   const auto w =
       std::ranges::find(columns, 'w', [](const std::string& name) { return name.back(); });
-  if (w == columns.end()) return "";
+  if (w == columns.end()) return all;
   const auto is_of_w = [&](const std::string& name) { return stem(name) == stem(*w); };
   const char* mark = std::ranges::all_of(columns, is_of_w) ? "" : "q";
   std::string text;

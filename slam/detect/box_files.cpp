@@ -253,10 +253,30 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
   }
 }
 
+constexpr std::string_view kMot = "MOT";
+
+/// @throws InputError at a setting that only a network takes, since it would have no effect
+void require_no_network_settings(const DetectorSpec& spec) {
+  const DetectorSettings &asked = spec.settings, usual;
+  const char* which = !spec.config.empty()                 ? "config"
+                      : asked.head != usual.head           ? "head"
+                      : asked.letterbox != usual.letterbox ? "letterbox"
+                      : asked.padding != usual.padding     ? "padding"
+                      : asked.normalize != usual.normalize ? "normalize"
+                      : asked.channels != usual.channels   ? "channels"
+                      : asked.width_px != usual.width_px   ? "width_px"
+                      : asked.height_px != usual.height_px ? "height_px"
+                                                           : nullptr;
+  if (which != nullptr)
+    throw InputError(fmt::format("{}: `{}` is a setting of networks, and this holds boxes",
+                                 spec.boxes.string(), which));
+}
+
 class BoxesFromFiles : public Detector {
  public:
   explicit BoxesFromFiles(const DetectorSpec& spec)
       : file_(spec.boxes), settings_(spec.settings), names_(names_of(spec)) {
+    require_no_network_settings(spec);
     const std::string ending = spec.boxes.extension().string();
     if (is_folder(spec.boxes)) {
       kind_ = "YOLO text";
@@ -265,7 +285,7 @@ class BoxesFromFiles : public Detector {
       kind_ = "COCO results";
       read_coco(spec.boxes, names_, !spec.classes.empty(), filed_);
     } else if (ending == ".csv" || ending == ".txt") {
-      kind_ = "MOT";
+      kind_ = kMot;
       read_mot(spec.boxes, names_, filed_);
     } else {
       if (!is_there(spec.boxes)) read_file(spec.boxes);  // for its message
@@ -314,11 +334,12 @@ class BoxesFromFiles : public Detector {
   std::uint64_t digest() const override { return 0; }
   std::string check_frames(std::span<const Stamp> stamps_ns) const override {
     if (frame_count() == 0) return fmt::format("{}: holds no box", file_.string());
+    const std::string unknown = names_.unknown_note(file_);
     std::set<const FrameBoxes*> found;
     for (std::size_t i = 0; i < stamps_ns.size(); ++i)
       for (const FrameBoxes* boxes : lists_of(i, stamps_ns[i])) found.insert(boxes);
     found.erase(nullptr);
-    if (found.size() == frame_count()) return "";
+    if (found.size() == frame_count()) return unknown;
     const FrameBoxes* lost = nullptr;
     const auto look = [&](const FrameBoxes& boxes) {
       if (lost == nullptr && !found.contains(&boxes)) lost = &boxes;
@@ -327,12 +348,13 @@ class BoxesFromFiles : public Detector {
     for (const auto& [stamp_ns, boxes] : filed_.by_stamp) look(boxes);
     if (found.empty())
       throw InputError(fmt::format(
-          "{}: none of its {} is one of the sequence's {}, the first is '{}': they are named by "
-          "index from 0 or by stamp",
-          file_.string(), counted(frame_count(), "frame"), stamps_ns.size(), lost->name));
-    return fmt::format("{}: {} of its {} are none of the sequence's {}, the first is '{}'",
+          "{}: none of its {} is one of the sequence's {}, the first is '{}': they are named by {}",
+          file_.string(), counted(frame_count(), "frame"), stamps_ns.size(), lost->name,
+          kind_ == kMot ? "number from 1" : "index from 0 or by stamp"));
+    return fmt::format("{}: {} of its {} are none of the sequence's {}, the first is '{}'{}",
                        file_.string(), frame_count() - found.size(),
-                       counted(frame_count(), "frame"), stamps_ns.size(), lost->name);
+                       counted(frame_count(), "frame"), stamps_ns.size(), lost->name,
+                       unknown.empty() ? "" : "; " + unknown);
   }
 
  private:
@@ -362,7 +384,7 @@ class BoxesFromFiles : public Detector {
   fs::path file_;
   DetectorSettings settings_;
   ClassNames names_;
-  const char* kind_ = "";
+  std::string_view kind_;
   FiledBoxes filed_;
 };
 

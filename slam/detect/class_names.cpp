@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/text_file.hpp"
 
@@ -67,6 +68,12 @@ ClassId class_named(std::string name) {
 }
 
 }  // namespace
+
+std::string ClassNames::unknown_note(const std::filesystem::path& of) const {
+  if (std::ranges::any_of(ids, [](ClassId id) { return id != kVoid; })) return "";
+  return fmt::format("{}: none of its {} has the name of a class of ours: all labels stay void",
+                     of.string(), counted(size(), "class", "classes"));
+}
 
 const ClassNames& coco80() {
   static const ClassNames kNames = [] {

@@ -15,6 +15,8 @@ struct ClassNames {
   std::vector<std::string> names;
   std::vector<ClassId> ids;  ///< the class of ours with that name; void where none fits
   std::size_t size() const { return names.size(); }
+  /// A line for the user if none of the classes is one of ours; otherwise "".
+  std::string unknown_note(const std::filesystem::path& of) const;
 };
 
 /// The 80 detection classes of COCO (Lin et al., ECCV 2014), in the order of its networks.

@@ -106,6 +106,9 @@ struct NetworkFiles {
 NetworkFiles read_files(const DetectorSpec& spec) {
   NetworkFiles files;
   files.is_darknet = !spec.config.empty();
+  if (files.is_darknet && spec.network.extension() == ".onnx")
+    refuse(spec.network,
+           fmt::format("is ONNX, which takes no `config` ({})", spec.config.string()));
   if (files.is_darknet) files.config = read_text(spec.config);
   files.network = read_file(spec.network);
   if (files.network.size() > std::size_t{std::numeric_limits<int>::max()})
@@ -220,8 +223,9 @@ void understand(const DetectorSpec& spec, const NetworkFiles& files, Imported& i
                    : fmt::format("; or leave out `head: {}`, since its output looks like "
                                  "that of '{}'",
                                  SettingsWriter::word_of(head), SettingsWriter::word_of(seen))));
-  refuse(spec.classes, fmt::format("names {} classes, and {} has {}", imported.names.size(),
-                                   spec.network.string(), classes));
+  refuse(spec.classes,
+         fmt::format("names {}, and {} has {}", counted(imported.names.size(), "class", "classes"),
+                     spec.network.string(), classes));
 }
 
 /// The size of the images that the network's own file states; 0 where it leaves it open.
@@ -305,9 +309,7 @@ class Network : public Detector {
   }
 
   std::string check_frames(std::span<const Stamp>) const override {
-    if (std::ranges::any_of(imported_.names.ids, [](ClassId id) { return id != kVoid; })) return "";
-    return fmt::format("{}: none of its {} has the name of a class of ours: all labels stay void",
-                       file_.string(), counted(imported_.names.size(), "class", "classes"));
+    return imported_.names.unknown_note(file_);
   }
 
   Detected detect(const Grid2d<Rgb8>& color, std::size_t, Stamp) const override {

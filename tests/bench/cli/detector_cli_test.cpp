@@ -139,6 +139,22 @@ TEST_F(DetectorCommands, RefuseWhatWouldHaveNoEffect) {
   expect_refused("detector run " + image + " --detector " + path("chairs.onnx") +
                      " --detector-settings " + path("both.yaml") + " --out " + path("no"),
                  "some.json) are both named: one of them says what is run");
+  write_atomically(path("head.yaml"), "head: yolov5\n");
+  write_atomically(path("far.csv"), "500,-1,10,10,50,50,0.9,57\n");
+  expect_refused("slam " + path("room") + " --detector " + path("far.csv") +
+                     " --detector-settings " + path("head.yaml") + " --out " + path("no"),
+                 "far.csv: `head` is a setting of networks, and this holds boxes");
+  write_atomically(path("config.yaml"), "classes: two.names\nconfig: two.names\n");
+  expect_refused("detector run " + image + " --detector " + path("chairs.onnx") +
+                     " --detector-settings " + path("config.yaml") + " --out " + path("no"),
+                 "chairs.onnx: is ONNX, which takes no `config`");
+  EXPECT_EQ(run("render generated:bathroom:0 --motion handheld:0 --frames 2 --detector " +
+                path("far.csv") + " --out " + path("no")),
+            2);
+  EXPECT_NE(err_.find("none of its 1 frame is one of the sequence's 2, the first is '500': they "
+                      "are named by number from 1"),
+            std::string::npos)
+      << err_;
   EXPECT_FALSE(fs::exists(path("no")));
 }
 

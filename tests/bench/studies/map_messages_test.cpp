@@ -13,6 +13,7 @@
 #include "scenes/messages/robot_types.hpp"
 #include "slam/core/temporary_folder.hpp"
 #include "slam/occupancy/cost_map.hpp"
+#include "source_dir.hpp"
 #include "tests/slam/occupancy/made_map.hpp"
 
 namespace mh {
@@ -53,6 +54,8 @@ TEST_P(MapMessages, HoldGridCostsObjectsAndVoxels) {
   ASSERT_EQ(study.objects.size(), 2U);
   const auto messages = written(map, study);
   ASSERT_EQ(messages.size(), 4U);
+  EXPECT_TRUE(holds_map_messages(work_.path() / "map"));
+  EXPECT_FALSE(holds_map_messages(std::string(MH_SOURCE_DIR) + "/tests/fuzz/seeds/bag/bz2.bag"));
 
   const auto grid = parsed<ros::OccupancyGrid>(messages, "/map");
   EXPECT_EQ(grid.header.frame_id, "map");

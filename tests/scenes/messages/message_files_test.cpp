@@ -289,6 +289,20 @@ TEST(McapByHand, LiesAreCounted) {
   expect_left_out(Mcap().record(mcap::Opcode::kChannel, "x"), "ends too early");
 }
 
+TEST(Bag, OfWhichSomethingFollowsOrARecordIsOfNoKindSaysSo) {
+  const std::string whole = read_file(std::string(MH_SOURCE_DIR) + "/tests/fuzz/seeds/bag/bz2.bag");
+  const Read longer = read_all(whole + whole);
+  EXPECT_EQ(longer.messages.size(), 6u);
+  EXPECT_NE(note_of(longer).find(fmt::format("{} bytes after its end are left out", whole.size())),
+            std::string::npos)
+      << note_of(longer);
+  std::string unknown = whole;
+  unknown[unknown.find("op=\x07", unknown.find("op=\x05")) + 3] = '\x1f';
+  EXPECT_NE(note_of(read_all(unknown)).find("'op' is 31, a record of no known kind"),
+            std::string::npos)
+      << note_of(read_all(unknown));
+}
+
 TEST(Bag, OfBz2ByRosIsRead) {
   const Read read =
       read_all(read_file(std::string(MH_SOURCE_DIR) + "/tests/fuzz/seeds/bag/bz2.bag"));

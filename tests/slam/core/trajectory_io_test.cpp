@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "slam/core/error.hpp"
@@ -183,6 +184,12 @@ TEST(Poses, AreInTheOrderThatTheirLineOfNamesStates) {
                 [] { parse_trajectory("time,qx,qy,qz,qw,x,y,z\n1,0,0,0.6,0.8,1,2,3\n", "f.csv"); }),
             "f.csv:1: its columns are named qx qy qz qw x y z: `x y z qx qy qz qw` and `x y z qw "
             "qx qy qz` are read");
+  for (const char* names : {"time,x,y,z,qi,qj,qk,qr", "id,time,tx,ty,tz,qx,qy,qz,qw"})
+    EXPECT_NE(refusal_of([&] {
+                parse_trajectory(fmt::format("{}\n1,1,2,3,0.8,0,0,0.6,1\n", names), "f.csv");
+              }).find("f.csv:1: its columns are named "),
+              std::string::npos)
+        << names;
 }
 
 TEST(Kitti, RoundTripsAndCountsFrames) {

@@ -104,6 +104,14 @@ TEST_F(BoxFiles, OfYoloAreOfTheClassesThatStandAmongThem) {
   EXPECT_EQ(boxes->names().size(), 2U);
 }
 
+TEST_F(BoxFiles, OfClassesThatAreNoneOfOursSaySo) {
+  fs::create_directories(folder_.path() / "strange");
+  write_atomically(folder_.path() / "strange/classes.txt", "dragon\n");
+  const auto boxes = open("strange/0.txt", "0 0.25 0.6 0.3 0.4 0.8\n");
+  EXPECT_NE(boxes->check_frames(std::vector<Stamp>{0}).find("none of its 1 class has the name"),
+            std::string::npos);
+}
+
 TEST_F(BoxFiles, MayHoldNoBox) {
   for (const auto& boxes : {open("a.json", "[]"), open("a.csv", "")}) {
     EXPECT_TRUE(boxes->detect(image_, 0, 0).boxes.empty());
