@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <memory>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -62,9 +63,36 @@ void add_replays(std::vector<PagesSource>& sources, const ReportArguments& optio
       throw InputError(fmt::format("--replay: no run is named '{}'{}", word, hint(word, names)));
 }
 
+/// Folders of one name are called by as much of their paths as tells them apart.
+void name_apart(std::vector<PagesSource>& sources) {
+  const auto tail = [](const PagesSource& source, std::size_t parts) {
+    const auto whole = std::filesystem::absolute(source.folder).lexically_normal();
+    std::filesystem::path name;
+    for (auto part = whole.end(); part != whole.begin() && parts > 0;)
+      if (!(--part)->empty()) name = name.empty() ? *part : *part / name, --parts;
+    return name.string();
+  };
+  for (std::size_t parts = 1; parts < 20; ++parts) {
+    std::set<std::string> names;
+    for (const PagesSource& source : sources) names.insert(tail(source, parts));
+    if (names.size() < sources.size()) continue;
+    if (parts > 1)
+      for (PagesSource& source : sources) source.name = tail(source, parts);
+    return;
+  }
+}
+
 void run(const ReportArguments& options) {
   std::vector<PagesSource> sources;
-  for (const std::string& folder : options.results) sources.push_back(read_source(folder));
+  for (const std::string& folder : options.results) {
+    PagesSource source = read_source(folder);
+    std::error_code error;
+    for (const PagesSource& other : sources)
+      if (std::filesystem::equivalent(source.folder, other.folder, error))
+        throw InputError(folder + ": is named twice");
+    sources.push_back(std::move(source));
+  }
+  name_apart(sources);
   const OutputFolder folder(options.out, "report", names_of_pages());
   if (!options.replay.empty()) add_replays(sources, options);
   const WrittenPages written = write_pages(options.out, sources);
@@ -117,6 +145,11 @@ void add_plot(CLI::App& app) {
   command->callback([options, command, figure] {
     if (figure->empty() && command->get_option("--table")->empty())
       throw InputError("plot: either --figure or --table says what to draw");
+    const int number = options->order.figure;
+    if (!options->order.run.empty() && number != 2 && number != 5)
+      throw InputError(fmt::format("--run {}: is for figures 2 and 5", options->order.run));
+    if (!command->get_option("--measure")->empty() && number != 3)
+      throw InputError(fmt::format("--measure {}: is for figure 3", options->order.measure));
     draw(*options);
   });
 }

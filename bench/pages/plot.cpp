@@ -218,13 +218,14 @@ std::string from_above(const PagesSource& source, const PlotOrder& order, const 
   const auto place = [](const Eigen::Vector3d& at) {
     return fmt::format("{} {}\n", at.x(), at.y());
   };
-  std::string truth, estimate, asked, right, wrong;
+  std::string truth, estimate, asked, right, wrong, queries;
   for (const TimedPose& pose : run->truth) truth += place(pose.world_from_camera.translation());
   for (const TimedPose& pose : run->estimate)
     estimate += place(to_dock * pose.world_from_camera.translation());
   if (!run->points.empty()) {
     const PointResult& point = run->points.front();
     const auto& list = point.second_tour.empty() ? point.held_out : point.second_tour;
+    queries = point.second_tour.empty() ? "held-out queries" : "queries of the second tour";
     for (const QueryScore& q : list) {
       if (q.true_world_from_camera) asked += place(q.true_world_from_camera->translation());
       if (q.answer.world_from_camera)
@@ -252,7 +253,7 @@ std::string from_above(const PagesSource& source, const PlotOrder& order, const 
   add("estimate", estimate,
       "with lines linewidth 1.5 dashtype 2 linecolor rgb '#0065a3' title 'estimated path'");
   add("asked", asked,
-      "with points pointtype 2 pointsize 0.5 linecolor rgb 'black' title 'queries'");
+      "with points pointtype 2 pointsize 0.5 linecolor rgb 'black' title " + gnuplot_text(queries));
   add("right", right,
       "with points pointtype 6 pointsize 0.6 linecolor rgb '#00805d' title 'correct answers'");
   add("wrong", wrong,

@@ -26,7 +26,8 @@ Json path_json(const Trajectory& path, const SE3& to, Stamp start_ns, std::size_
     t.push_back((pose.stamp_ns - start_ns) / 1'000'000);
     const SE3 placed = to * pose.world_from_camera;
     for (int i = 0; i < 3; ++i) p.push_back(std::lround(placed.translation()[i] * 1e3));
-    for (const double part : placed.quaternion().coeffs()) q.push_back(std::lround(part * 1e4));
+    const Eigen::Quaterniond turn = placed.quaternion();
+    for (const double part : turn.coeffs()) q.push_back(std::lround(part * 1e4));
   };
   for (std::size_t i = 0; i < path.size(); i += step) add(path[i]);
   if ((path.size() - 1) % step != 0) add(path.back());

@@ -13,11 +13,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A JSON file of a folder; null if it is missing or damaged.
-Json json_file(const fs::path& file) {
+/// A JSON file of the folder; null if it is missing or damaged, which is noted.
+Json json_file(PagesSource& source, const std::string& name) {
+  const fs::path file = source.folder / name;
   if (!is_file(file)) return nullptr;
   const Json json = Json::parse(read_file(file), nullptr, false);
-  return json.is_discarded() ? Json() : json;
+  if (!json.is_discarded()) return json;
+  source.damaged.push_back(name);
+  return nullptr;
 }
 
 double number_in(const Store::Value& value) {
@@ -53,8 +56,8 @@ PagesSource read_source(const fs::path& path) {
   source.folder = is_folder(path) ? path : fs::absolute(path).parent_path();
   const fs::path named = fs::absolute(source.folder).lexically_normal();
   source.name = (named.filename().empty() ? named.parent_path() : named).filename().string();
-  source.reproduction = json_file(source.folder / "reproduction.json");
-  source.audit = json_file(source.folder / "audit.json");
+  source.reproduction = json_file(source, "reproduction.json");
+  source.audit = json_file(source, "audit.json");
   if (is_file(source.folder / "audit.csv"))
     source.audit_csv = read_file(source.folder / "audit.csv");
   const fs::path file = is_folder(path) ? path / "results.sqlite" : path;

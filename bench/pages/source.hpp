@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -28,6 +29,8 @@ struct PagesSource {
   nlohmann::ordered_json reproduction = {};  ///< the folder's reproduction.json, or null
   nlohmann::ordered_json audit = {};         ///< the folder's audit.json, or null
   std::string audit_csv = {};                ///< the folder's audit.csv: a line per query
+  std::vector<std::string> damaged = {};     ///< files of the folder that could not be read
+  bool is_damaged(const std::string& file) const { return std::ranges::count(damaged, file) > 0; }
   /// What was recorded of runs by running them again (bench/replay), by name.
   std::map<std::string, nlohmann::ordered_json> replay_of = {}, views_of = {};
 };

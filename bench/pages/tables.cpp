@@ -35,6 +35,14 @@ bool is_whole_suite(const Suite& suite, const CategoryRow& row) {
          is_own_row(suite, row.system, row.labels);
 }
 
+/// Why a row's figures may not be taken as they are; "" if nothing is to be said.
+std::string remark_on(const Suite& suite, const CategoryRow& row, const QuerySummary& queries) {
+  std::string missing = incomplete(row);
+  if (!missing.empty() || suite.systems[row.system].sees_labels() || queries.success <= kSaturated)
+    return missing;
+  return "saturated: too many successes to show a difference";
+}
+
 /// A key of audit.json as a heading: "matches.words.with_xi" -> "matches: words: with xi".
 std::string shown_key(const std::string& path) {
   std::string text;
@@ -77,7 +85,7 @@ Json table1_json(const Suite& suite, std::span<const CategoryRow> rows) {
           if (figure.metric.in_overview)
             table.figures({figure}, fmt::format("{}.", name(set)),
                           fmt::format("{}: ", short_title(set)));
-    table.text({"remark", "remark"}, incomplete(row));
+    table.text({"remark", "remark"}, remark_on(suite, row, row.held_out));
   }
   return table.json();
 }
@@ -103,9 +111,7 @@ Json table2_json(const Suite& suite, std::span<const CategoryRow> rows) {
       table.number(false_positive, s.false_positive);
       table.number(mean_m, s.distance_mean_m);
       table.number(median_m, s.distance_median_m);
-      table.text(remark, !suite.systems[row.system].sees_labels() && s.success > kSaturated
-                             ? "saturated: too many successes to show a difference"
-                             : incomplete(row));
+      table.text(remark, remark_on(suite, row, s));
     }
   if (table.rows() == 0) return nullptr;  // no queries were asked
   for (const PublishedRow& row : kTable2) {

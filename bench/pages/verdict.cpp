@@ -20,11 +20,11 @@ bool is_share(const Comparison& c) {
                              [&](const char* word) { return c.what.starts_with(word); });
 }
 
-/// A signed amount with its unit: "+4.2 percentage points", "-0.0031 m".
+/// A signed amount with its unit: "+4.20 percentage points", "-3.10 mm".
 std::string amount(const Comparison& c, double value, bool with_unit = true) {
   if (is_share(c))
     return fmt::format("{:+.2f}{}", 100 * value, with_unit ? " percentage points" : "");
-  return fmt::format("{:+.4f}{}", value, with_unit ? " m" : "");
+  return fmt::format("{:+.2f}{}", 1000 * value, with_unit ? " mm" : "");
 }
 
 /// What the pairs are: "149 queries", "12 environments".
@@ -41,8 +41,11 @@ std::string needed_text(const Comparison& c, bool over_scenes) {
     return " These are too few to decide at the 5 % level, however large the difference.";
   if (!needed) return "";
   const bool of_scenes = over_scenes || c.clusters > 0;
-  return fmt::format(" If the true difference is the observed one, about {:.0f} {} would decide.",
-                     *needed, of_scenes ? "environments" : "queries");
+  constexpr double kMost = 10'000;
+  return fmt::format(" If the true difference is the observed one, {} {} would decide.",
+                     *needed > kMost ? fmt::format("more than {:.0f}", kMost)
+                                     : fmt::format("about {:.0f}", *needed),
+                     of_scenes ? "environments" : "queries");
 }
 
 /// One comparison with what it is of.
@@ -53,8 +56,21 @@ struct Judged {
   Comparison comparison;
 };
 
+/// What is compared, without a kind of labels that neither system sees, and without the unit that
+/// the amount has.
+std::string compared(const Suite& suite, const SystemPair& systems, const Comparison& c) {
+  std::string what = c.what;
+  if (const auto unit = what.find(", m,"); unit != std::string::npos) what.erase(unit, 3);
+  if (!suite.systems[systems.first].sees_labels() && !suite.systems[systems.second].sees_labels())
+    if (const auto labels = what.rfind(", ");
+        labels != std::string::npos && what.ends_with(" labels"))
+      what.resize(labels);
+  return what;
+}
+
 std::string sentence(const Suite& suite, const Judged& j) {
   Comparison c = j.comparison;
+  c.what = compared(suite, j.systems, c);
   std::ranges::replace(c.what, '_', ' ');
   const std::string& first = suite.systems[j.systems.first].name;
   const std::string& second = suite.systems[j.systems.second].name;
@@ -128,7 +144,7 @@ Json verdicts_json(const Suite& suite, std::span<const Row> rows) {
     sentences.push_back({{"text", sentence(suite, j)},
                          {"decided", v != Verdict::kUndecided},
                          {"in_family", c.in_family},
-                         {"what", c.what},
+                         {"what", compared(suite, j.systems, c)},
                          {"level", level_name(suite.levels[j.level])},
                          {"unit", unit},
                          {"first", suite.systems[j.systems.first].name},
@@ -137,7 +153,7 @@ Json verdicts_json(const Suite& suite, std::span<const Row> rows) {
                          {"low", page_number(known(c.low))},
                          {"high", page_number(known(c.high))}});
     table.begin_row();
-    table.text({"what", "compared"}, c.what);
+    table.text({"what", "compared"}, compared(suite, j.systems, c));
     table.text({"level", "level"}, level_name(suite.levels[j.level]));
     table.text({"first", "first"}, suite.systems[j.systems.first].name);
     table.text({"second", "second"}, suite.systems[j.systems.second].name);

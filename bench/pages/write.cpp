@@ -15,6 +15,7 @@
 #include "bench/plan/shipped.hpp"
 #include "bench/report/graded_report.hpp"
 #include "bench/report/suite_json.hpp"
+#include "bench/report/table.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -62,6 +63,14 @@ Json remarks_json(const PagesSource& source) {
   if (!r.failed.empty())
     remarks.push_back(
         fmt::format("{} failed; the figures are without them.", counted(r.failed.size(), "run")));
+  if (const auto gave_up =
+          std::ranges::count_if(r.runs, [](const RunResult& run) { return run.mapping.gave_up; });
+      gave_up > 0)
+    remarks.push_back(
+        fmt::format("{} gave up mapping (protocol: max_effort) after going back too often; the "
+                    "figures are with "
+                    "them.",
+                    counted(static_cast<std::size_t>(gave_up), "run")));
   if (!r.missing.empty())
     remarks.push_back(fmt::format("{} not made yet; the figures are without them.",
                                   counted(r.missing.size(), "run")));
@@ -69,6 +78,11 @@ Json remarks_json(const PagesSource& source) {
     remarks.push_back("One trial: this holds for these maps; other seeds draw other maps.");
   if (source.suite && std::ranges::any_of(source.suite->environments, &Environment::is_recorded))
     remarks.push_back("Recordings have one noise: trials differ in RANSAC's draws alone.");
+  if (source.suite)
+    for (const std::string& line : base_lines(*source.suite)) remarks.push_back(line);
+  for (const char* name : {"audit.json", "reproduction.json"})
+    if (source.is_damaged(name))
+      remarks.push_back(fmt::format("{} is damaged and left out.", name));
   return remarks;
 }
 

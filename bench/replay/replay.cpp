@@ -92,7 +92,8 @@ Json keyframes_json(const Map& map, const SE3& to_dock) {
     const SE3 pose = to_dock * keyframe.camera_from_world.inverse();
     Json one = Json::array();
     for (int i = 0; i < 3; ++i) one.push_back(std::lround(pose.translation()[i] * 1e3));
-    for (const double part : pose.quaternion().coeffs()) one.push_back(std::lround(part * 1e4));
+    const Eigen::Quaterniond turn = pose.quaternion();
+    for (const double part : turn.coeffs()) one.push_back(std::lround(part * 1e4));
     list.push_back(std::move(one));
   }
   return list;

@@ -5,6 +5,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bench/plan/parameters.hpp"
 #include "bench/plan/runs.hpp"
@@ -41,32 +42,9 @@ std::string recordings_text(const Suite& suite, std::span<const RunResult> runs)
   return text;
 }
 
-/// Whose rules relocalization follows, so that no figure stands without its base, and the systems
-/// with settings of their own.
 std::string base_text(const Suite& suite) {
-  if (std::ranges::none_of(suite.systems, &SystemSpec::takes_settings)) return "";
-  const RelocalizeConfig& relocalize = suite.slam->relocalize;
-  bool as_released = relocalize.neighbor_scores == NeighborScores::kAsReleased;
-  std::string variants;
-  for (const SystemSpec& system : suite.systems) {
-    if (system.settings.empty()) continue;
-    const SlamConfig own = settings_of(system, *suite.slam);
-    as_released |= own.relocalize.neighbor_scores == NeighborScores::kAsReleased;
-    std::vector<std::string> changes;
-    for (const auto& [setting, value] : system.settings)
-      changes.push_back(fmt::format("{} {}", shown_name(setting), shown_value(own, setting)));
-    variants +=
-        fmt::format("{}: {}, {}\n", system.name, name(system.kind), fmt::join(changes, ", "));
-  }
-  return fmt::format(
-      "{}{}{}{}",
-      relocalize.acceptance == Acceptance::kOrbSlam2
-          ? "\nbase: orb_slam2: poses of relocalization are accepted as ORB-SLAM2 accepts them\n"
-          : "\nbase: ours: poses of relocalization are accepted by the rule of docs/slam.md\n",
-      as_released ? "\nneighbor scores as ORB-SLAM2 released them: answers depend on the order of "
-                    "queries\n"
-                  : "",
-      variants.empty() ? "" : "\n", variants);
+  const std::vector<std::string> lines = base_lines(suite);
+  return lines.empty() ? "" : fmt::format("\n{}\n", fmt::join(lines, "\n"));
 }
 
 /// Why runs are missing from the table above.
@@ -91,6 +69,32 @@ std::string missing_text(std::span<const std::string> missing) {
 }
 
 }  // namespace
+
+std::vector<std::string> base_lines(const Suite& suite) {
+  if (std::ranges::none_of(suite.systems, &SystemSpec::takes_settings)) return {};
+  const RelocalizeConfig& relocalize = suite.slam->relocalize;
+  std::vector<std::string> lines{
+      relocalize.acceptance == Acceptance::kOrbSlam2
+          ? "base: orb_slam2: poses of relocalization are accepted as ORB-SLAM2 accepts them"
+          : "base: ours: poses of relocalization are accepted by the rule of docs/slam.md"};
+  bool as_released = relocalize.neighbor_scores == NeighborScores::kAsReleased;
+  std::vector<std::string> variants;
+  for (const SystemSpec& system : suite.systems) {
+    if (system.settings.empty()) continue;
+    const SlamConfig own = settings_of(system, *suite.slam);
+    as_released |= own.relocalize.neighbor_scores == NeighborScores::kAsReleased;
+    std::vector<std::string> changes;
+    for (const auto& [setting, value] : system.settings)
+      changes.push_back(fmt::format("{} {}", shown_name(setting), shown_value(own, setting)));
+    variants.push_back(
+        fmt::format("{}: {}, {}", system.name, name(system.kind), fmt::join(changes, ", ")));
+  }
+  if (as_released)
+    lines.emplace_back(
+        "neighbor scores as ORB-SLAM2 released them: answers depend on the order of queries");
+  lines.insert(lines.end(), variants.begin(), variants.end());
+  return lines;
+}
 
 std::string results_table(const Suite& suite, std::span<const RunResult> runs,
                           std::span<const FailedRun> failed, std::span<const std::string> missing) {

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "bench/results/summary.hpp"
 
@@ -15,6 +16,10 @@ namespace mh {
 std::string results_table(const Suite& suite, std::span<const RunResult> runs,
                           std::span<const FailedRun> failed = {},
                           std::span<const std::string> missing = {});
+
+/// Whose rules relocalization follows, so that no figure stands without its base, and the systems
+/// with settings of their own, a line each.
+std::vector<std::string> base_lines(const Suite& suite);
 
 /// How long the systems took.
 std::string times_table(const Suite& suite, std::span<const RunResult> runs);

@@ -99,38 +99,49 @@ bool starts_with_letter(const std::string& word) {
 /// The columns of a pose after its stamp, as files of poses are known to have them.
 constexpr std::string_view kScalarFirst = "x y z qw qx qy qz", kScalarLast = "x y z qx qy qz qw";
 
-/// What a line of names calls the seven columns after the first: "x y z qw qx qy qz" of
-/// "#timestamp, p_x [m], ..., q_w [], ...", without q where all begin alike; all of its names if
-/// four begin with q, but it is not understood. "" if it is none.
+/// The last letters of seven names of columns, "x y z qw qx qy qz" of "p_x ... q_w ...": without q
+/// where all names begin alike. "" if they are no names of a pose.
+std::string columns_of(std::span<const std::string> names) {
+  const auto stem = [](const std::string& name) { return name.substr(0, name.size() - 1); };
+  if (std::ranges::any_of(
+          names, [](const std::string& name) { return name.back() < 'w' || name.back() > 'z'; }))
+    return "";
+  const auto w = std::ranges::find(names, 'w', [](const std::string& name) { return name.back(); });
+  if (w == names.end()) return "";
+  const auto is_of_w = [&](const std::string& name) { return stem(name) == stem(*w); };
+  const char* mark = std::ranges::all_of(names, is_of_w) ? "" : "q";
+  std::string text;
+  for (const std::string& name : names)
+    text += fmt::format("{}{}{}", text.empty() ? "" : " ", is_of_w(name) ? mark : "", name.back());
+  return text;
+}
+
+bool is_known(std::string_view columns) {
+  return columns == kScalarFirst || columns == kScalarLast || columns == "x y z w x y z" ||
+         columns == "x y z x y z w";
+}
+
+/// What a line of names calls a pose's columns. Names between commas are all of a line, and the
+/// seven after the first count; if four of them begin with q, but they are not understood, all are
+/// returned. Among the words of a comment, names may stand anywhere. "" if there are none.
 std::string named_columns(std::string_view line) {
   if (line.starts_with('#')) line.remove_prefix(1);
-  std::vector<std::string> names =
-      line.find(',') == std::string_view::npos ? split(line) : split_at_commas(line);
+  const bool commas = line.find(',') != std::string_view::npos;
+  std::vector<std::string> names = commas ? split_at_commas(line) : split(line);
   for (std::string& name : names) {
     name.resize(std::min(name.find('['), name.size()));
     name.resize(name.find_last_not_of(' ') + 1);
     for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
   std::erase(names, "");
-  if (names.size() < 8) return "";
+  for (std::size_t first = 1; first + 7 <= names.size() && (!commas || first == 1); ++first)
+    if (const std::string columns = columns_of(std::span(names).subspan(first, 7));
+        commas ? !columns.empty() : is_known(columns))
+      return columns;
   const auto is_of_quaternion = [](const std::string& name) { return name.starts_with('q'); };
-  const std::string all = std::ranges::count_if(names, is_of_quaternion) < 4
-                              ? ""
-                              : fmt::format("{}", fmt::join(names, " "));
-  const auto stem = [](const std::string& name) { return name.substr(0, name.size() - 1); };
-  const std::span<std::string> columns = std::span(names).subspan(1, 7);
-  if (std::ranges::any_of(
-          columns, [](const std::string& name) { return name.back() < 'w' || name.back() > 'z'; }))
-    return all;
-  const auto w =
-      std::ranges::find(columns, 'w', [](const std::string& name) { return name.back(); });
-  if (w == columns.end()) return all;
-  const auto is_of_w = [&](const std::string& name) { return stem(name) == stem(*w); };
-  const char* mark = std::ranges::all_of(columns, is_of_w) ? "" : "q";
-  std::string text;
-  for (const std::string& name : columns)
-    text += fmt::format("{}{}{}", text.empty() ? "" : " ", is_of_w(name) ? mark : "", name.back());
-  return text;
+  const bool states =
+      commas && names.size() >= 8 && std::ranges::count_if(names, is_of_quaternion) >= 4;
+  return states ? fmt::format("{}", fmt::join(names, " ")) : "";
 }
 
 /// Where w stands among the seven numbers after a stamp: as the lines of names before the first
@@ -148,9 +159,7 @@ std::size_t place_of_w(const std::string& text, const std::string& name, std::st
     const std::size_t first = line.find_first_not_of(kBlanks);
     if (first == std::string_view::npos) continue;
     const std::string columns = named_columns(line.substr(first));
-    if (columns == kScalarFirst || columns == kScalarLast || columns == "x y z w x y z" ||
-        columns == "x y z x y z w")
-      return place_in(columns);
+    if (is_known(columns)) return place_in(columns);
     if (!columns.empty())
       Place{name, number}.fail(fmt::format("its columns are named {}: `{}` and `{}` are read",
                                            columns, kScalarLast, kScalarFirst));

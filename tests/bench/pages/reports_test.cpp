@@ -166,6 +166,14 @@ TEST_F(Reports, OfAResultsFileShowEstimatesInTheFrameOfTheTruth) {
   for (std::size_t i = 0; i < run.at("truth").at("mm").size(); ++i)  // the drift is 20 mm
     EXPECT_NEAR(run.at("truth").at("mm").at(i).get<int>(),
                 run.at("estimate").at("mm").at(i).get<int>(), 50);
+  const Trajectory& truth = read.results.runs.front().truth;
+  ASSERT_EQ(run.at("truth").at("turn").size(), 4 * truth.size());
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const Eigen::Quaterniond turn = truth[i].world_from_camera.quaternion();
+    for (std::size_t k = 0; k < 4; ++k)
+      EXPECT_NEAR(run.at("truth").at("turn").at(4 * i + k).get<double>(),
+                  1e4 * turn.coeffs()[static_cast<Eigen::Index>(k)], 1);
+  }
   const Json curve = piece(out(), "0/figures").at("by_frame");
   for (std::size_t row = 0; row < curve.at("rows"); ++row)
     EXPECT_LT(ReadTable{curve}.number("error_m", row).get<double>(), 0.02);

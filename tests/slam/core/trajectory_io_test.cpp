@@ -178,6 +178,7 @@ TEST(Poses, AreInTheOrderThatTheirLineOfNamesStates) {
         "# made by a tool\n\n# t x y z Qx Qy Qz Qw, in ns\n1,1,2,3,0.8,0,0,0.6\n",
         "# timestamp tx ty tz qw qx qy qz\n1 1 2 3 0.8 0 0 0.6\n",
         "# timestamp tx ty tz qx qy qz qw\n1 1 2 3 0 0 0.6 0.8\n",
+        "# an estimate of some run; timestamp tx ty tz qx qy qz qw\n1 1 2 3 0 0 0.6 0.8\n",
         "# stamp and the pose of the camera in the world\n1 1 2 3 0 0 0.6 0.8\n"})
     EXPECT_LT((first_rotation(parse_trajectory(text, "f.csv")) - expected).norm(), 1e-12) << text;
   EXPECT_EQ(refusal_of(

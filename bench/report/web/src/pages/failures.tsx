@@ -43,7 +43,7 @@ function Counts({ table, asked, rows, by, title, about }: CountsProps): JSX.Elem
         height: 80 + 26 * arms.names.length * whats.length,
         marginLeft: margin,
         marginTop: 22,
-        marginRight: 64,
+        marginRight: 96,
         fy: { label: null, padding: 0.15, domain: whats, tickFormat: fitted },
         y: { axis: null, domain: arms.names, padding: 0.08 },
         x: { label: "share of the queries asked, %", grid: true },

@@ -55,17 +55,21 @@ function Density({ density }: { density: NonNullable<Figures["density"]> }): JSX
       const color = (d: { arm: string }) => armStyle(names.indexOf(d.arm)).color;
       // Quartiles of fewer than five values say nothing: their dots and mean stand alone.
       const boxed = values.filter((v) => (means.find((m) => m.group === v.group && m.arm === v.arm)?.count ?? 0) >= 5);
+      // One value far beyond the others would press them to the axis; figures for papers do the same.
+      const sorted = values.map((v) => v.value).sort((a, b) => a - b);
+      const middle = sorted[Math.floor(sorted.length / 2)] ?? 0;
+      const log = column?.unit !== "%" && (sorted[0] ?? 0) > 0 && (sorted.at(-1) ?? 0) > 10 * middle;
       const empty = density.groups.filter((group) => values.every((v) => v.group !== group));
       return {
         height: 340,
         marginTop: 26,
         fx: { domain: density.groups, label: "objects per 10 m² of floor", padding: 0.08, axis: "bottom" },
         x: { domain: names, axis: null, padding: 0.15 },
-        y: { zero: true, nice: true, insetTop: 16, axis: null },
+        y: log ? { type: "log", nice: true, insetTop: 16, axis: null } : { zero: true, nice: true, insetTop: 16, axis: null },
         marginBottom: 46,
         marks: [
           Plot.gridY({ facetAnchor: null }),
-          Plot.axisY({ facetAnchor: "left", label: column ? heading(column) : "" }),
+          Plot.axisY({ facetAnchor: "left", label: column ? heading(column) : "", ...(log ? { ticks: 4, tickFormat: "~g" } : {}) }),
           Plot.boxY(boxed, { fx: "group", x: "arm", y: "value", fill: color, fillOpacity: 0.35, stroke: color, r: 0 }),
           Plot.dot(values, { fx: "group", x: "arm", y: "value", fill: color, r: 2.2, className: "m-environment" }),
           Plot.dot(means, { fx: "group", x: "arm", y: "mean", symbol: "diamond", fill: ink().paper, stroke: ink().text, strokeWidth: 1.5, r: 5, className: "m-mean" }),

@@ -26,7 +26,7 @@ function Differences({ sentences, unit }: { sentences: Sentence[]; unit: string 
             difference: of(s.difference) ?? 0,
             low: of(s.low),
             high: of(s.high),
-            decided: s.decided,
+            state: s.decided ? "decided" : s.in_family ? "undecided" : "not tested",
           };
         }),
     [sentences, unit],
@@ -34,16 +34,19 @@ function Differences({ sentences, unit }: { sentences: Sentence[]; unit: string 
   const bounded = shown.filter((d) => d.low !== null && d.high !== null);
   const make = useCallback(
     (width: number): Plot.PlotOptions => {
-      const left = width > 560 ? 30 + 6.4 * Math.max(...shown.map((d) => d.what.length)) : 20;
+      const room = 30 + 6.4 * Math.max(...shown.map((d) => d.what.length));
+      const beside = room < 0.45 * width; // names; otherwise above their intervals
+      const letters = Math.floor((width - 40) / 7);
+      const lines = beside ? 1 : Math.max(...shown.map((d) => Math.ceil(d.what.length / letters)));
       const ends = [0, ...shown.map((d) => d.difference), ...bounded.flatMap((d) => [d.low ?? 0, d.high ?? 0])];
       const spare = Math.max(unit === "%" ? 1 : 0.0005, 0.05 * (Math.max(...ends) - Math.min(...ends)));
-      const color = (d: { decided: boolean }) => (d.decided ? colorOf(0) : ink().faint);
+      const color = (d: { state: string }) => (d.state === "decided" ? colorOf(0) : ink().faint);
       return {
-        height: 60 + shown.length * (width > 560 ? 28 : 44),
-        marginLeft: left,
+        height: 60 + shown.length * (beside ? 28 : 30 + 15 * lines),
+        marginLeft: beside ? room : 20,
         marginTop: 24,
         x: { label: unit === "%" ? "difference, percentage points" : "difference, m", grid: true, domain: [Math.min(...ends) - spare, Math.max(...ends) + spare] },
-        y: { label: null, domain: shown.map((d) => d.what), axis: width > 560 ? "left" : null, padding: 0.4 },
+        y: { label: null, domain: shown.map((d) => d.what), axis: beside ? "left" : null, padding: 0.4 },
         marks: [
           Plot.ruleX([0], { stroke: ink().text }),
           Plot.ruleY(bounded, { y: "what", x1: "low", x2: "high", stroke: color, strokeWidth: 3, className: "m-interval" }),
@@ -52,19 +55,20 @@ function Differences({ sentences, unit }: { sentences: Sentence[]; unit: string 
             y: "what",
             fill: color,
             r: 5,
-            symbol: (d: { decided: boolean }) => (d.decided ? "circle" : "diamond"),
+            symbol: (d: { state: string }) => (d.state === "decided" ? "circle" : d.state === "undecided" ? "diamond" : "times"),
+            stroke: color,
             className: "m-difference",
           }),
-          ...(width > 560
+          ...(beside
             ? []
             : [
                 Plot.text(shown, {
                   y: "what",
                   text: "what",
                   frameAnchor: "left",
-                  dy: -14,
-                  lineWidth: Math.floor((width - 40) / 8),
-                  textOverflow: "ellipsis",
+                  lineAnchor: "bottom",
+                  dy: -9,
+                  lineWidth: (0.95 * (width - 40)) / 12,
                   stroke: ink().paper,
                   strokeWidth: 5,
                   fill: ink().text,
@@ -83,7 +87,7 @@ function Differences({ sentences, unit }: { sentences: Sentence[]; unit: string 
       title={unit === "%" ? "Differences of shares" : "Differences of distances"}
       about={`${pair ? `${first?.first} minus ${first?.second}` : "First minus second"}, ${
         unit === "%" ? "percentage points" : "m"
-      }, with 95 % bootstrap intervals; colored circles are decided, gray diamonds are not. Source: results.sqlite.`}
+      }, with 95 % bootstrap intervals; colored circles are decided, gray diamonds are not; gray crosses stand beside the declared family and were not tested. Source: results.sqlite.`}
       marks={{ difference: shown.length, interval: bounded.length }}
       make={make}
     />
@@ -146,10 +150,10 @@ export function OverviewPage(): JSX.Element {
                     ]}
                   />
                 )}
-                {overview.verdicts && <Verdict verdicts={overview.verdicts} definitions={overview.definitions ?? ""} systems={overview.suite?.systems.length ?? 0} />}
                 {overview.remarks.length > 0 && folder.problem === null && (
                   <ul class="remarks">{overview.remarks.map((remark) => <li key={remark}>{remark}</li>)}</ul>
                 )}
+                {overview.verdicts && <Verdict verdicts={overview.verdicts} definitions={overview.definitions ?? ""} systems={overview.suite?.systems.length ?? 0} />}
                 {overview.table2 ? (
                   <>
                     <h2>{new Table(overview.table2).title}</h2>

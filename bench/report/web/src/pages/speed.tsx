@@ -49,7 +49,7 @@ function Stages({ table, rows }: { table: Table; rows: number[] }): JSX.Element 
   return (
     <Chart
       title="Processor time by stage"
-      about="CPU seconds of a run's process, mean over the runs of each system (with its labels and level, where there are several). Source: results.sqlite, table times."
+      about="CPU seconds of a run's process, mean over the runs of each system (with its labels and level, where there are several). A scene's light is baked, and images are rendered, by the first run that needs them: the system that stands first in the suite bears that cost for all. Source: results.sqlite, table times."
       legend={kStages.map(([, name], i) => ({ name, color: armStyle(i).color }))}
       marks={{ stage: bars.length }}
       make={make}
