@@ -700,7 +700,8 @@ TEST_F(SuiteFile, RefusesDetectorsThatCannotBeMeant) {
     const std::string text = error("", "[pepper.yaml]", labels);
     EXPECT_NE(text.find(part), std::string::npos) << text;
   };
-  says("[{network: a.onnx, boxes: b.json}]", "names both `network` and `boxes`");
+  says("[{network: a.onnx, boxes: b.json}]",
+       "b.json) are both named: one of them says what is run");
   says("[{fill: box}]", "names neither `network` nor `boxes`");
   says("[{network: a.onnx, fil: box}]", "fil");
   says("[{network: a.onnx, fill: boxes}]", "'boxes' is not one of box, foreground");
