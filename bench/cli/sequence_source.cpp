@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/cli/sequence_source.hpp"
 
-#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "bench/cli/arguments.hpp"
 #include "bench/inputs/recorded_camera.hpp"
+#include "bench/results/statistics.hpp"
 #include "scenes/recorded/open_sequence.hpp"
 #include "sim/world/scene_sequence.hpp"
 #include "slam/core/counted.hpp"
@@ -81,7 +82,7 @@ std::string nothing_mapped(const std::string& source, const Sequence& frames, st
       "{}: nothing could be mapped: none of {} showed 100 keypoints with depth to begin with",
       source, counted(offered, "frame"));
   if (offered == 0) return text;
-  std::vector<float> depths_m;
+  std::vector<double> depths_m;
   try {
     const RgbdFrame frame = frames.frame(first, RandomStream());
     for (const float depth_m : frame.depth_m)
@@ -90,9 +91,8 @@ std::string nothing_mapped(const std::string& source, const Sequence& frames, st
     return text;
   }
   if (depths_m.empty()) return text + " (the first image has no depth)";
-  const auto middle = depths_m.begin() + static_cast<std::ptrdiff_t>(depths_m.size() / 2);
-  std::ranges::nth_element(depths_m, middle);
-  return text + fmt::format(" (median depth of the first image: {:.3g} m)", *middle);
+  return text +
+         fmt::format(" (median depth of the first image: {:.3g} m)", median(std::move(depths_m)));
 }
 
 Source open_source(const SourceOptions& options) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -30,7 +29,6 @@ struct PagesSource {
   nlohmann::ordered_json audit = {};         ///< the folder's audit.json, or null
   std::string audit_csv = {};                ///< the folder's audit.csv: a line per query
   std::vector<std::string> damaged = {};     ///< files of the folder that could not be read
-  bool is_damaged(const std::string& file) const { return std::ranges::count(damaged, file) > 0; }
   /// What was recorded of runs by running them again (bench/replay), by name.
   std::map<std::string, nlohmann::ordered_json> replay_of = {}, views_of = {};
 };

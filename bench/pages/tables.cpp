@@ -38,8 +38,7 @@ bool is_whole_suite(const Suite& suite, const CategoryRow& row) {
 /// Why a row's figures may not be taken as they are; "" if nothing is to be said.
 std::string remark_on(const Suite& suite, const CategoryRow& row, const QuerySummary& queries) {
   std::string missing = incomplete(row);
-  if (!missing.empty() || suite.systems[row.system].sees_labels() || queries.success <= kSaturated)
-    return missing;
+  if (!missing.empty() || !is_saturated(suite.systems[row.system], queries)) return missing;
   return "saturated: too many successes to show a difference";
 }
 

@@ -80,9 +80,8 @@ Json remarks_json(const PagesSource& source) {
     remarks.push_back("Recordings have one noise: trials differ in RANSAC's draws alone.");
   if (source.suite)
     for (const std::string& line : base_lines(*source.suite)) remarks.push_back(line);
-  for (const char* name : {"audit.json", "reproduction.json"})
-    if (source.is_damaged(name))
-      remarks.push_back(fmt::format("{} is damaged and left out.", name));
+  for (const std::string& file : source.damaged)
+    remarks.push_back(fmt::format("{} is damaged and left out.", file));
   return remarks;
 }
 

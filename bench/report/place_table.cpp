@@ -55,7 +55,7 @@ std::string paper_table(const Block& block) {
                                counted(std::lround(most_queries(block, set)), "query", "queries")));
     for (const Row* row : block.rows) {
       const QuerySummary& s = summary(*row, set);
-      const bool saturated = !block.system(row).sees_labels() && s.success > kSaturated;
+      const bool saturated = is_saturated(block.system(row), s);
       const std::string missing = incomplete(block.suite, *row);
       table.add(
           {"  " + block.system(row).name,

@@ -57,6 +57,11 @@ std::string incomplete(const CategoryRow& row) {
   return text;
 }
 
+bool is_saturated(const SystemSpec& system, const QuerySummary& queries) {
+  constexpr double kSaturated = 0.97;
+  return !system.sees_labels() && queries.success > kSaturated;
+}
+
 bool already_shown(const Suite& suite, const Row& row) {
   const auto first = std::ranges::find_if(suite.labels, [&](const Labels& labels) {
     return fits(suite.environments[row.environment], labels);

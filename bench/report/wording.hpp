@@ -11,8 +11,8 @@ namespace mh {
 
 // Text that the tables of results share.
 
-/// Above this success rate of a system without labels, labels have nothing left to gain.
-inline constexpr double kSaturated = 0.97;
+/// Whether a system without labels answers so many queries that labels have nothing left to gain.
+bool is_saturated(const SystemSpec& system, const QuerySummary& queries);
 
 /// "held out", "2nd tour", "graded"
 std::string_view short_title(QuerySet set);

@@ -2,7 +2,6 @@
 #include "scenes/recorded/valid_poses.hpp"
 
 #include <cstddef>
-#include <sstream>
 
 #include <fmt/format.h>
 
@@ -15,24 +14,11 @@
 namespace mh {
 
 Trajectory read_valid_poses(const std::filesystem::path& file, std::vector<std::string>& notes) {
-  std::istringstream text(read_text(file));
-  Trajectory poses;
   std::size_t left_out = 0;
   std::string first_fault;
-  std::string line;
-  for (int number = 1; std::getline(text, line); ++number) {
-    if (line.substr(0, line.find('#')).find_first_not_of(" \t\r") == std::string::npos) continue;
-    try {
-      const TimedPose pose = parse_tum(line, file.string(), number).front();
-      if (!poses.empty() && pose.stamp_ns <= poses.back().stamp_ns)
-        throw InputError(fmt::format("{}:{}: stamp: {} does not come after {}", file.string(),
-                                     number, format_stamp(pose.stamp_ns),
-                                     format_stamp(poses.back().stamp_ns)));
-      poses.push_back(pose);
-    } catch (const InputError& error) {
-      if (left_out++ == 0) first_fault = error.what();
-    }
-  }
+  Trajectory poses = parse_valid_tum(read_text(file), file.string(), [&](const InputError& error) {
+    if (left_out++ == 0) first_fault = error.what();
+  });
   if (left_out > 0)
     notes.push_back(fmt::format("{}: {} left out of the truth; {}", file.string(),
                                 counted(left_out, "line is", "lines are"), first_fault));

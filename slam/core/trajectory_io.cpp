@@ -71,9 +71,8 @@ double parse_number(const std::string& word, const char* field, const Place& pla
 /// Calls `use` with the words of each line that is neither empty nor a comment.
 void for_each_line(const std::string& text, const std::string& name,
                    const std::function<void(const std::vector<std::string>&, const Place&)>& use,
-                   std::vector<std::string> (*words_of)(std::string_view) = split,
-                   int first_line = 1) {
-  int number = first_line - 1;
+                   std::vector<std::string> (*words_of)(std::string_view) = split) {
+  int number = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     ++number;
@@ -259,11 +258,12 @@ std::string format_stamp(Stamp stamp_ns) {
   return fmt::format("{}.{:09}", stamp_ns / 1'000'000'000, stamp_ns % 1'000'000'000);
 }
 
-Trajectory parse_tum(const std::string& text, const std::string& name, int first_line) {
+Trajectory parse_valid_tum(const std::string& text, const std::string& name,
+                           const std::function<void(const InputError&)>& fault) {
   static constexpr PoseFields kFields = {"tx", "ty", "tz", "qx", "qy", "qz", "qw"};
   const std::size_t w_at = place_of_w(text, name, kScalarLast);
   Trajectory trajectory;
-  const auto read_line = [&](const std::vector<std::string>& words, const Place& place) {
+  const auto add_line = [&](const std::vector<std::string>& words, const Place& place) {
     if (words.size() != 8)
       place.fail(fmt::format("pose: {}, expected 8 (stamp tx ty tz qx qy qz qw)",
                              counted(words.size(), "value")));
@@ -272,7 +272,19 @@ Trajectory parse_tum(const std::string& text, const std::string& name, int first
     const std::array<double, 7> v = numbers_of(words, kFields, place);
     add_pose(trajectory, stamp_ns, {v[0], v[1], v[2]}, rotation_of(v, w_at), place);
   };
-  for_each_line(text, name, read_line, split, first_line);
+  for_each_line(text, name, [&](const std::vector<std::string>& words, const Place& place) {
+    try {
+      add_line(words, place);
+    } catch (const InputError& error) {
+      fault(error);
+    }
+  });
+  return trajectory;
+}
+
+Trajectory parse_tum(const std::string& text, const std::string& name) {
+  const auto refuse = [](const InputError& error) { throw InputError(error); };
+  Trajectory trajectory = parse_valid_tum(text, name, refuse);
   if (trajectory.empty()) throw InputError(fmt::format("{}: contains no poses", name));
   return trajectory;
 }

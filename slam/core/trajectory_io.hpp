@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
+#include "slam/core/error.hpp"
 #include "slam/core/trajectory.hpp"
 
 namespace mh {
@@ -18,8 +20,12 @@ inline constexpr double kFarthestPose_m = 1e6;
 /// non-finite number, a position beyond kFarthestPose_m, a negative stamp, a quaternion whose norm
 /// is more than 0.1 from 1, a stamp that does not increase, or a file without poses.
 Trajectory read_tum(const std::filesystem::path& file);
-/// Parses the same from text; `name` names the file in messages, `first_line` is its number there.
-Trajectory parse_tum(const std::string& text, const std::string& name, int first_line = 1);
+/// Parses the same from text; `name` names the file in messages.
+Trajectory parse_tum(const std::string& text, const std::string& name);
+/// The same, but a line that holds no valid pose is told to `fault` and left out; maybe none is
+/// left.
+Trajectory parse_valid_tum(const std::string& text, const std::string& name,
+                           const std::function<void(const InputError&)>& fault);
 /// EuRoC's ground truth, CSV: `timestamp, p x y z, q w x y z` (ns, m) and columns that are ignored;
 /// '#' starts a comment, a first line of words is skipped. The poses are those of the sensor or
 /// body that the file is about.

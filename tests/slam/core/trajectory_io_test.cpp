@@ -193,6 +193,18 @@ TEST(Poses, AreInTheOrderThatTheirLineOfNamesStates) {
         << names;
 }
 
+TEST(Poses, OfDirtyFilesAreReadByTheirLineOfNamesAndFaultsAreTold) {
+  std::vector<std::string> faults;
+  const Trajectory valid =
+      parse_valid_tum("# time tx ty tz qw qx qy qz\nnan\n1 1 2 3 0.8 0 0 0.6\n1 1 2 3 1 0 0 0\n",
+                      "f.txt", [&](const InputError& error) { faults.emplace_back(error.what()); });
+  ASSERT_EQ(valid.size(), 1U);
+  EXPECT_LT((first_rotation(valid) - Eigen::Vector4d(0.8, 0, 0, 0.6)).norm(), 1e-12);
+  ASSERT_EQ(faults.size(), 2U);
+  EXPECT_EQ(faults[0], "f.txt:2: pose: 1 value, expected 8 (stamp tx ty tz qx qy qz qw)");
+  EXPECT_EQ(faults[1], "f.txt:4: stamp: 1 does not come after 1.000000000");
+}
+
 TEST(Kitti, RoundTripsAndCountsFrames) {
   const Trajectory written = some_trajectory();
   const auto file = std::filesystem::temp_directory_path() / "mh_metrics_round_trip.kitti";
