@@ -64,7 +64,7 @@ std::vector<Comparison> comparisons_of(const Suite& suite, const std::vector<Epi
                                        const SystemPair& pair, const std::string& variant) {
   const std::string& first = suite.systems[pair.first].name;
   const std::string& second = suite.systems[pair.second].name;
-  const auto compared = [&](const char* what, bool shares, auto&& value) {
+  const auto compared = [&](const char* measure, bool shares, auto&& value) {
     std::vector<std::vector<PairedDifference>> places;
     for (const Environment& environment : suite.environments) {
       std::map<std::size_t, std::optional<double>> of_first, of_second;
@@ -81,9 +81,10 @@ std::vector<Comparison> comparisons_of(const Suite& suite, const std::vector<Epi
         if (const auto b = of_second.find(start); b != of_second.end())
           places.back().push_back(paired_difference(a, b->second));
     }
-    const std::string name = fmt::format("{}, {}: {} - {}", what, variant, first, second);
-    return places.size() == 1 ? compare_paired(name, places.front(), shares, suite.seed)
-                              : compare_clusters(name, places, shares, suite.seed);
+    Comparison c = places.size() == 1 ? compare_paired(places.front(), shares, suite.seed)
+                                      : compare_clusters(places, shares, suite.seed);
+    c.what = {measure, "", fmt::format("{}: {} - {}", variant, first, second), ""};
+    return c;
   };
   std::vector<Comparison> list{
       compared("success", true,
@@ -94,7 +95,7 @@ std::vector<Comparison> comparisons_of(const Suite& suite, const std::vector<Epi
 }
 
 Json json_of_comparison(const Comparison& c) {
-  return {{"what", c.what},
+  return {{"what", c.what.text()},
           {"pairs", c.pairs},
           {"difference", json_of(c.difference)},
           {"low", json_of(c.low)},
@@ -134,7 +135,7 @@ std::string episodes_table(const Suite& suite, const std::vector<EpisodeRun>& ru
       text += "\n";
       for (const Comparison& c : comparisons_of(suite, runs, pair, variant.name))
         text += fmt::format("  {}: {:+.3f} ({:+.3f} to {:+.3f}), {} pairs, p {:.3f}, Holm {:.3f}\n",
-                            c.what, c.difference, c.low, c.high, c.pairs, c.p, c.p_holm);
+                            c.what.text(), c.difference, c.low, c.high, c.pairs, c.p, c.p_holm);
     }
   return text;
 }

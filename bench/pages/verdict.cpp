@@ -16,8 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 bool is_share(const Comparison& c) {
-  return std::ranges::any_of(std::array{"success", "correct", "false positive", "pooled"},
-                             [&](const char* word) { return c.what.starts_with(word); });
+  return c.what.unit.empty();
 }
 
 /// A signed amount with its unit: "+4.20 percentage points", "-3.10 mm".
@@ -59,25 +58,23 @@ struct Judged {
 /// What is compared, without a kind of labels that neither system sees, and without the unit that
 /// the amount has.
 std::string compared(const Suite& suite, const SystemPair& systems, const Comparison& c) {
-  std::string what = c.what;
-  if (const auto unit = what.find(", m,"); unit != std::string::npos) what.erase(unit, 3);
+  Compared what = c.what;
+  what.unit.clear();
   if (!suite.systems[systems.first].sees_labels() && !suite.systems[systems.second].sees_labels())
-    if (const auto labels = what.rfind(", ");
-        labels != std::string::npos && what.ends_with(" labels"))
-      what.resize(labels);
-  return what;
+    what.labels.clear();
+  return what.text();
 }
 
 std::string sentence(const Suite& suite, const Judged& j) {
-  Comparison c = j.comparison;
-  c.what = compared(suite, j.systems, c);
-  std::ranges::replace(c.what, '_', ' ');
+  const Comparison& c = j.comparison;
+  std::string what = compared(suite, j.systems, c);
+  std::ranges::replace(what, '_', ' ');
   const std::string& first = suite.systems[j.systems.first].name;
   const std::string& second = suite.systems[j.systems.second].name;
   const bool over_scenes = j.environment.empty();
   if (c.pairs == 0)
     return fmt::format("{}: {} and {} cannot be compared: nothing that both have a value for.",
-                       c.what, first, second);
+                       what, first, second);
   const std::string interval =
       std::isfinite(c.low) && std::isfinite(c.high)
           ? fmt::format("95 % interval {} to {}", amount(c, c.low, false), amount(c, c.high, false))
@@ -86,10 +83,10 @@ std::string sentence(const Suite& suite, const Judged& j) {
   if (v != Verdict::kUndecided)
     return fmt::format("{} is better than {} in {}: {} ({}) over {}.",
                        v == Verdict::kFirstBetter ? first : second,
-                       v == Verdict::kFirstBetter ? second : first, c.what, amount(c, c.difference),
+                       v == Verdict::kFirstBetter ? second : first, what, amount(c, c.difference),
                        interval, pairs_text(c, over_scenes));
   return fmt::format("Undecided whether {} or {} is better in {}: {} ({}) over {}.{}", first,
-                     second, c.what, amount(c, c.difference), interval, pairs_text(c, over_scenes),
+                     second, what, amount(c, c.difference), interval, pairs_text(c, over_scenes),
                      needed_text(c, over_scenes));
 }
 
@@ -110,7 +107,7 @@ std::vector<Judged> judged(const Suite& suite, std::span<const Row> rows) {
   // Success first: the paper's first measure; what is judged before what is shown beside it.
   std::ranges::stable_sort(all, {}, [](const Judged& j) {
     const Comparison& c = j.comparison;
-    return std::array{c.pairs == 0, !c.what.starts_with("success"), !c.in_family};
+    return std::array{c.pairs == 0, c.what.measure != "success", !c.in_family};
   });
   return all;
 }

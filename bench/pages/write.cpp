@@ -91,17 +91,33 @@ Json first_point(const PagesSource& source) {
   return shown_point(source.suite->sweep, parameter_points(*source.suite).front());
 }
 
+Json levels_json(const Suite& suite) {
+  Json levels = Json::array();
+  for (const fs::path& level : suite.levels) levels.push_back(level_name(level));
+  return levels;
+}
+
+/// The systems of a suite with the labels that each sees: a page gives each one color.
+Json arms_json(const Suite& suite) {
+  Json arms = Json::array();
+  for (std::size_t s = 0; s < suite.systems.size(); ++s)
+    for (const Labels& mode : suite.labels)
+      if (is_own_row(suite, s, mode))
+        arms.push_back(
+            {{"system", suite.systems[s].name}, {"labels", labels_seen(suite, s, mode)}});
+  return arms;
+}
+
 Json suite_facts(const Suite& suite) {
-  Json systems = Json::array(), labels = Json::array(), levels = Json::array();
+  Json systems = Json::array(), labels = Json::array();
   for (const SystemSpec& system : suite.systems) systems.push_back(system.name);
   for (const Labels& mode : suite.labels) labels.push_back(name(mode));
-  for (const fs::path& level : suite.levels) levels.push_back(level_name(level));
   return {{"name", suite.name},
           {"trials", suite.trials},
           {"environments", suite.environments.size()},
           {"systems", systems},
           {"labels", labels},
-          {"levels", levels},
+          {"levels", levels_json(suite)},
           {"settings", suite_json(suite)}};
 }
 
@@ -201,6 +217,8 @@ WrittenPages write_pages(const fs::path& out, std::span<const PagesSource> sourc
                        {"audit", source.audit.is_object()},
                        {"first_point", first_point(source)},
                        {"runs_of_file", kRunsOfFile},
+                       {"arms", source.suite ? arms_json(*source.suite) : Json::array()},
+                       {"levels", source.suite ? levels_json(*source.suite) : Json::array()},
                        {"replays", std::move(replays)},
                        {"views", std::move(views)}});
   }

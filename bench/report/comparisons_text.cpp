@@ -18,7 +18,7 @@ struct PairNames {
 };
 
 std::string comparison_line(const PairNames& names, const Comparison& c) {
-  if (c.pairs == 0) return fmt::format("  {:<61} -  (no pairs)\n", c.what);
+  if (c.pairs == 0) return fmt::format("  {:<61} -  (no pairs)\n", c.what.text());
   const Verdict v = verdict(c);
   const std::string word =
       v == Verdict::kFirstBetter    ? names.first + " is better"
@@ -32,13 +32,13 @@ std::string comparison_line(const PairNames& names, const Comparison& c) {
           ? fmt::format("(outside the family; {} of {} as clusters)",
                         counted(c.pairs, "query", "queries"), counted(c.clusters, "scene"))
           : "(outside the family)";
-  return fmt::format("  {:<61} {:+.4f} {}  p = {:.4f} {}\n", c.what, c.difference, interval(c), c.p,
-                     corrected);
+  return fmt::format("  {:<61} {:+.4f} {}  p = {:.4f} {}\n", c.what.text(), c.difference,
+                     interval(c), c.p, corrected);
 }
 
 /// The line of a comparison of success for a suite that states a margin.
 std::string margin_line(const Suite& suite, const PairNames& names, const Comparison& c) {
-  if (!suite.non_inferiority_margin || c.pairs == 0 || !c.what.starts_with("success")) return "";
+  if (!suite.non_inferiority_margin || c.pairs == 0 || c.what.measure != "success") return "";
   const double margin = *suite.non_inferiority_margin;
   const std::string finding = fmt::format("{} is not worse", names.first);
   return fmt::format("  {:<61} {} by more than the {:.3f} stated beforehand\n", "",

@@ -58,7 +58,7 @@ Json comparison_json(const Suite& suite, const SystemPair& systems, const Compar
   const std::string& second = suite.systems[systems.second].name;
   const Verdict v = verdict(c);
   const auto known = [&](double value) { return c.pairs > 0 ? json_of(value) : Json(); };
-  return {{"what", c.what},
+  return {{"what", c.what.text()},
           {"first", first},
           {"second", second},
           {"pairs", c.pairs},
@@ -100,7 +100,7 @@ Json results_json(const Suite& suite, std::span<const RunResult> runs,
         Json json = comparison_json(suite, family.systems, c);
         json["level"] = level_name(suite.levels[family.level]);
         json["parameters"] = family.parameters;
-        if (suite.non_inferiority_margin && c.what.starts_with("success"))
+        if (suite.non_inferiority_margin && c.what.measure == "success")
           json["not_inferior"] = not_inferior(c, *suite.non_inferiority_margin);
         over_scenes.push_back(std::move(json));
       }

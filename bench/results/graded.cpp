@@ -81,8 +81,8 @@ std::optional<Comparison> compare(const std::vector<std::vector<PairedDifference
   std::vector<PairedDifference> all;
   for (const auto& scene : scenes) all.insert(all.end(), scene.begin(), scene.end());
   if (all.empty()) return std::nullopt;
-  return scenes.size() >= kFewestClusters ? compare_clusters("success", scenes, true, seed)
-                                          : compare_paired("success", all, true, seed);
+  return scenes.size() >= kFewestClusters ? compare_clusters(scenes, true, seed)
+                                          : compare_paired(all, true, seed);
 }
 
 GradedBin bin_in(const Suite& suite, const Block& block, const std::vector<std::size_t>& scenes,

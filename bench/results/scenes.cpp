@@ -91,8 +91,9 @@ std::vector<Comparison> compare(const std::vector<const Row*>& first,
                                 const std::vector<const Row*>& second, const Labels& labels,
                                 std::uint64_t seed) {
   std::vector<Comparison> comparisons;
-  const auto add = [&](const std::string& what, Difference between_rows, QuerySet set, bool shares,
+  const auto add = [&](const Compared& what, Difference between_rows, QuerySet set,
                        bool more_is_better, bool in_family) {
+    const bool shares = what.unit.empty();
     std::vector<PairedDifference> differences;
     std::size_t answers = 0;
     for (std::size_t i = 0; i < first.size(); ++i) {
@@ -101,33 +102,34 @@ std::vector<Comparison> compare(const std::vector<const Row*>& first,
       if (shares && differences.back().present)
         answers += shared_queries(*first[i], *second[i], set);
     }
-    comparisons.push_back(compare_scenes(what, differences, answers, seed));
+    comparisons.push_back(compare_scenes(differences, answers, seed));
+    comparisons.back().what = what;
     comparisons.back().more_is_better = more_is_better;
     comparisons.back().in_family = in_family;
     if (comparisons.back().pairs == 0) comparisons.pop_back();
   };
-  const auto add_pooled = [&](const std::string& what, auto pairs_of, QuerySet set) {
+  const auto add_pooled = [&](const Compared& what, auto pairs_of, QuerySet set) {
     std::vector<std::vector<PairedDifference>> scenes;
     for (std::size_t i = 0; i < first.size(); ++i)
       if (has_result(first[i]) && has_result(second[i]))
         scenes.push_back(pairs_of(*first[i], *second[i], set));
-    comparisons.push_back(compare_clusters(what, scenes, true, seed));
+    comparisons.push_back(compare_clusters(scenes, true, seed));
+    comparisons.back().what = what;
     comparisons.back().in_family = false;
     if (comparisons.back().pairs == 0) comparisons.pop_back();
   };
   for (const QuerySet set : kQuerySets) {
-    const auto what = [&](const char* measure) {
-      return fmt::format("{}, {}, {}", measure, name(set), with_labels(labels));
+    const auto what = [&](const char* measure, const char* unit = "") {
+      return Compared{measure, unit, std::string(name(set)), with_labels(labels)};
     };
-    add(what("success"), share<&QuerySummary::success>, set, true, true, true);
+    add(what("success"), share<&QuerySummary::success>, set, true, true);
     add_pooled(what("pooled success"), paired_success, set);
-    add(what("correct"), share<&QuerySummary::correct>, set, true, true, false);
+    add(what("correct"), share<&QuerySummary::correct>, set, true, false);
     add_pooled(what("pooled correct"), paired_correct, set);
-    add(what("false positive"), share<&QuerySummary::false_positive>, set, true, false, false);
-    add(what("distance where both answer, m"), distance, set, false, false, true);
+    add(what("false positive"), share<&QuerySummary::false_positive>, set, false, false);
+    add(what("distance where both answer", "m"), distance, set, false, true);
   }
-  add(fmt::format("ATE where both track, m, {}", with_labels(labels)), ate, QuerySet::kHeldOut,
-      false, false, true);
+  add({"ATE where both track", "m", "", with_labels(labels)}, ate, QuerySet::kHeldOut, false, true);
   return comparisons;
 }
 

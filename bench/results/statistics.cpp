@@ -58,10 +58,9 @@ struct Draws {
 
 /// Difference, interval and detectable difference by a circular block bootstrap.
 /// @param answers  yes-or-no observations behind the differences; 0: they are not shares
-Comparison resample(std::string what, std::span<const Unit> units, std::size_t answers,
-                    const Draws& draws) {
+Comparison resample(std::span<const Unit> units, std::size_t answers, const Draws& draws) {
   const auto& [block, seed, resamples] = draws;
-  Comparison c{.what = std::move(what)};
+  Comparison c;
   const std::size_t n = units.size();
   for (const Unit& unit : units) c.pairs += unit.count;
   std::vector<std::size_t> all(n);
@@ -102,6 +101,13 @@ void note_least_p(Comparison& c, std::size_t independent) {
 
 }  // namespace
 
+std::string Compared::text() const {
+  std::string all = measure;
+  for (const std::string* part : {&unit, &of, &labels})
+    if (!part->empty()) all += ", " + *part;
+  return all;
+}
+
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
@@ -121,14 +127,13 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-Comparison compare_paired(std::string what, std::span<const PairedDifference> queries, bool shares,
+Comparison compare_paired(std::span<const PairedDifference> queries, bool shares,
                           std::uint64_t seed, int resamples) {
   const auto block = std::max<std::size_t>(
       2, static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(queries.size())))));
   const auto known =
       static_cast<std::size_t>(std::ranges::count_if(queries, &PairedDifference::present));
-  Comparison c =
-      resample(std::move(what), one_by_one(queries), shares ? known : 0, {block, seed, resamples});
+  Comparison c = resample(one_by_one(queries), shares ? known : 0, {block, seed, resamples});
   std::vector<double> sums;  // of blocks with any known difference
   for (std::size_t first = 0; first < queries.size(); first += block) {
     const auto part = queries.subspan(first, std::min(block, queries.size() - first));
@@ -169,8 +174,8 @@ double sign_flip(std::span<const double> sums, std::uint64_t seed) {
   return (drawn + static_cast<double>(hits)) / (drawn + static_cast<double>(patterns));
 }
 
-Comparison compare_scenes(std::string what, std::span<const PairedDifference> scenes,
-                          std::size_t answers, std::uint64_t seed, int resamples) {
+Comparison compare_scenes(std::span<const PairedDifference> scenes, std::size_t answers,
+                          std::uint64_t seed, int resamples) {
   std::vector<PairedDifference> known;
   std::vector<double> differences;
   for (const PairedDifference& scene : scenes)
@@ -178,15 +183,13 @@ Comparison compare_scenes(std::string what, std::span<const PairedDifference> sc
       known.push_back(scene);
       differences.push_back(scene.difference);
     }
-  Comparison c =
-      resample(std::move(what), one_by_one(known), answers, {.seed = seed, .resamples = resamples});
+  Comparison c = resample(one_by_one(known), answers, {.seed = seed, .resamples = resamples});
   if (c.pairs >= kFewestPairs) c.p = wilcoxon_signed_rank(differences);
   note_least_p(c, c.pairs);
   return c;
 }
 
-Comparison compare_clusters(std::string what,
-                            std::span<const std::vector<PairedDifference>> clusters, bool shares,
+Comparison compare_clusters(std::span<const std::vector<PairedDifference>> clusters, bool shares,
                             std::uint64_t seed, int resamples) {
   std::vector<Unit> units;
   std::vector<double> sums;
@@ -199,8 +202,7 @@ Comparison compare_clusters(std::string what,
     sums.push_back(whole.sum);
     known += whole.count;
   }
-  Comparison c =
-      resample(std::move(what), units, shares ? known : 0, {.seed = seed, .resamples = resamples});
+  Comparison c = resample(units, shares ? known : 0, {.seed = seed, .resamples = resamples});
   c.clusters = units.size();
   if (c.clusters >= kFewestPairs) c.p = sign_flip(sums, seed);
   note_least_p(c, c.clusters);

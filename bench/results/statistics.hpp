@@ -27,9 +27,19 @@ inline PairedDifference paired_difference(const std::optional<double>& first,
   return first && second ? PairedDifference{*first - *second, true} : PairedDifference{};
 }
 
+/// What two systems are compared by.
+struct Compared {
+  std::string measure;  ///< "success", "distance where both answer"
+  std::string unit;     ///< "m"; empty for shares
+  std::string of;       ///< "held_out"; empty: the tour
+  std::string labels;   ///< "exact labels"; empty: of no kind in particular
+  /// In one line: "distance where both answer, m, held_out, exact labels".
+  std::string text() const;
+};
+
 /// Mean difference of two systems over the same queries.
 struct Comparison {
-  std::string what;  ///< e.g. "success, held-out, exact labels"
+  Compared what = {};
   bool more_is_better = true;
   bool in_family = true;     ///< false: shown alongside the declared family, never judged
   std::size_t pairs = 0;     ///< queries (or scenes) where both have a value; 0: unknown
@@ -56,8 +66,8 @@ double wilcoxon_signed_rank(std::span<const double> differences);
 /// left out; with fewer than 4 left the interval stays wide open.
 /// @param scenes   per scene, the difference of the two systems' medians over trials
 /// @param answers  yes-or-no answers behind the scenes' shares, in all; 0: they are not shares
-Comparison compare_scenes(std::string what, std::span<const PairedDifference> scenes,
-                          std::size_t answers, std::uint64_t seed, int resamples = 10000);
+Comparison compare_scenes(std::span<const PairedDifference> scenes, std::size_t answers,
+                          std::uint64_t seed, int resamples = 10000);
 
 /// Mean difference of two systems over the pooled queries of many scenes: each query counts the
 /// same, wherever it was asked. Queries of one scene depend on each other, so scenes are resampled
@@ -65,8 +75,7 @@ Comparison compare_scenes(std::string what, std::span<const PairedDifference> sc
 /// sums of scenes (signs by cluster: Canay, Romano and Shaikh, 2017). With fewer than 4 scenes the
 /// interval stays wide open; fewer than 6 cannot be significant.
 /// @param clusters  per scene, its paired queries
-Comparison compare_clusters(std::string what,
-                            std::span<const std::vector<PairedDifference>> clusters, bool shares,
+Comparison compare_clusters(std::span<const std::vector<PairedDifference>> clusters, bool shares,
                             std::uint64_t seed, int resamples = 10000);
 
 /// Two-sided p of a sign-flip test (Fisher, 1935) that sums are symmetric about 0: the share of
@@ -82,7 +91,7 @@ double sign_flip(std::span<const double> sums, std::uint64_t seed);
 /// patterns are as extreme as any. Deterministic: draws come from the seed. With fewer than 4 pairs
 /// the interval stays wide open.
 /// @param shares  whether the observations are yes or no
-Comparison compare_paired(std::string what, std::span<const PairedDifference> queries, bool shares,
+Comparison compare_paired(std::span<const PairedDifference> queries, bool shares,
                           std::uint64_t seed, int resamples = 10000);
 
 /// Whether Holm's correction includes it: part of the family, with at least one pair to compare.

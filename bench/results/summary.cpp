@@ -101,17 +101,14 @@ std::vector<Comparison> compare_rows(const Row& first, const Row& second, std::u
   std::vector<Comparison> comparisons;
   for (const QuerySet set : kQuerySets) {
     if (summary(first, set).queries == 0) continue;
-    const auto label = [&](const char* what) {
-      return fmt::format("{}, {}, {}", what, name(set), with_labels(first.labels));
+    const auto add = [&](const char* measure, const char* unit, Comparison c) -> Comparison& {
+      c.what = {measure, unit, std::string(name(set)), with_labels(first.labels)};
+      return comparisons.emplace_back(std::move(c));
     };
-    comparisons.push_back(
-        compare_paired(label("success"), paired_success(first, second, set), true, seed));
-    comparisons.push_back(
-        compare_paired(label("correct"), paired_correct(first, second, set), true, seed));
-    comparisons.back().in_family = false;
-    comparisons.push_back(
-        compare_distances(first, second, set, label("distance where both answer, m"), seed));
-    comparisons.back().more_is_better = false;
+    add("success", "", compare_paired(paired_success(first, second, set), true, seed));
+    add("correct", "", compare_correct(first, second, set, seed)).in_family = false;
+    add("distance where both answer", "m", compare_distances(first, second, set, seed))
+        .more_is_better = false;
   }
   return comparisons;
 }
@@ -266,10 +263,10 @@ std::vector<Family> compare_systems(const Suite& suite, std::span<const Row> row
   return families;
 }
 
-Comparison compare_distances(const Row& first, const Row& second, QuerySet set, std::string what,
+Comparison compare_distances(const Row& first, const Row& second, QuerySet set,
                              std::uint64_t seed) {
   const auto distance = [](const QueryScore& q) { return q.distance_m; };
-  return compare_paired(std::move(what), differences(first, second, set, distance), false, seed);
+  return compare_paired(differences(first, second, set, distance), false, seed);
 }
 
 std::size_t shared_queries(const Row& first, const Row& second, QuerySet set) {
@@ -278,7 +275,7 @@ std::size_t shared_queries(const Row& first, const Row& second, QuerySet set) {
 }
 
 Comparison compare_correct(const Row& first, const Row& second, QuerySet set, std::uint64_t seed) {
-  return compare_paired("correct", paired_correct(first, second, set), true, seed);
+  return compare_paired(paired_correct(first, second, set), true, seed);
 }
 
 std::array<std::optional<double>, 2> ate_over_common_frames(const Row& first, const Row& second) {

@@ -75,7 +75,7 @@ std::size_t shared_queries(const Row& first, const Row& second, QuerySet set);
 /// Compares distances over the queries that both answered, first minus second, by blocks of
 /// queries.
 Comparison compare_distances(const Row& first, const Row& second, QuerySet set,
-                             std::string what = "", std::uint64_t seed = 0);
+                             std::uint64_t seed = 0);
 
 /// Compares shares of correct answers in the same way.
 Comparison compare_correct(const Row& first, const Row& second, QuerySet set, std::uint64_t seed);

@@ -76,7 +76,7 @@ std::optional<BestPoint> best_point(const Suite& suite, std::span<const Row> row
       differences.push_back(paired_difference(summary(*a, set).correct, summary(*b, set).correct));
       answers += shared_queries(*a, *b, set);
     }
-  found.to_reference = compare_scenes("correct", differences, answers, suite.seed);
+  found.to_reference = compare_scenes(differences, answers, suite.seed);
   return found;
 }
 

@@ -159,6 +159,9 @@ async function use(browser, report) {
   const systems = await cells(page, "system");
   expect(systems.length > 0 && systems.length < before.length && systems.every((s) => s === "semantic"), `${report}: filtering by system`);
   expect(page.url().includes("q="), `${report}: a filter has no link`);
+  await table.getByRole("searchbox").fill("ate_m:9999");
+  expect((await cells(page, "ATE m")).length === 0, `${report}: filtering by a column with a blank in its name`);
+  await table.getByRole("searchbox").fill("system:semantic");
   await context.grantPermissions(["clipboard-read", "clipboard-write"]);
   for (const [format, sign] of [["CSV", /^run,/], ["Markdown", /^\| run /], ["LaTeX", /^\\begin\{tabular\}/]]) {
     await table.getByRole("button", { name: format, exact: true }).click();
@@ -196,7 +199,15 @@ async function use(browser, report) {
   }
   await replay(page, go, report);
   await views(page, go, report);
+  await colors(page, go, report);
   await go("figures");
+  const picked = page.getByLabel("Run", { exact: true }).last();
+  if ((await picked.count()) > 0 && (await picked.locator("option").count()) > 1) {
+    await picked.selectOption("1");
+    await page.reload();
+    await settled(page);
+    expect((await page.getByLabel("Run", { exact: true }).last().inputValue()) === "1", `${report}: a picked run has no link`);
+  }
   if ((await page.locator("figure.chart").count()) > 0)
     for (const kind of ["SVG", "PNG"]) {
       const [file] = await Promise.all([
@@ -208,6 +219,27 @@ async function use(browser, report) {
       expect(good && bytes.length > 1500, `${report}: saved ${kind} is ${bytes.length} bytes`);
     }
   await context.close();
+}
+
+/** A system has one color on all pages. */
+async function colors(page, go, report) {
+  const known = new Map();
+  const systems = await page.evaluate(() => globalThis.modelhouse.index.folders[0].arms.map((arm) => arm.system));
+  for (const place of ["figures", "failures"]) {
+    await go(place);
+    const legends = await page.evaluate(() =>
+      [...document.querySelector(".folder").querySelectorAll(".legend li")].map((li) => [
+        li.textContent.trim(),
+        li.querySelector("line, path, circle, rect")?.getAttribute("stroke") ?? li.querySelector("[fill]")?.getAttribute("fill"),
+      ]),
+    );
+    for (const [name, color] of legends) {
+      if (!systems.some((system) => name === system || name.startsWith(`${system}, `))) continue;
+      expect(color && (known.get(name) ?? color) === color, `${report} ${place}: ${name} is ${color}, elsewhere ${known.get(name)}`);
+      known.set(name, color);
+      measured.colors = (measured.colors ?? 0) + 1;
+    }
+  }
 }
 
 /** The number of marks that a picture states, by kind. */

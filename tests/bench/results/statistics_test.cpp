@@ -28,7 +28,7 @@ TEST(Median, LeavesOutWhatIsUnknown) {
 }
 
 TEST(ComparePaired, NoDifferenceIsNeverSignificant) {
-  const Comparison c = compare_paired("x", all_equal_to(0, 50), true, 1);
+  const Comparison c = compare_paired(all_equal_to(0, 50), true, 1);
   EXPECT_EQ(c.difference, 0);
   EXPECT_EQ(c.p, 1);
   EXPECT_DOUBLE_EQ(c.detectable, 3.0 / 50);  // the rule of three
@@ -36,7 +36,7 @@ TEST(ComparePaired, NoDifferenceIsNeverSignificant) {
 }
 
 TEST(ComparePaired, AConstantDifferenceIsFoundAndHasNoSpread) {
-  Comparison c[] = {compare_paired("x", all_equal_to(0.5, 50), false, 1)};
+  Comparison c[] = {compare_paired(all_equal_to(0.5, 50), false, 1)};
   holm(c);
   EXPECT_DOUBLE_EQ(c[0].low, 0.5);
   EXPECT_DOUBLE_EQ(c[0].high, 0.5);
@@ -52,8 +52,7 @@ TEST(ComparePaired, AnswersOfOneNeighborhoodCountLessThanTheirNumber) {
     runs.push_back({(i / 10) % 2 == 0 ? 1.0 : -0.9, true});
     mixed.push_back({i % 2 == 0 ? 1.0 : -0.9, true});
   }
-  const Comparison a = compare_paired("runs", runs, false, 1),
-                   b = compare_paired("mixed", mixed, false, 1);
+  const Comparison a = compare_paired(runs, false, 1), b = compare_paired(mixed, false, 1);
   EXPECT_DOUBLE_EQ(a.difference, b.difference);
   EXPECT_GT(a.detectable, 3 * b.detectable);
 }
@@ -61,20 +60,20 @@ TEST(ComparePaired, AnswersOfOneNeighborhoodCountLessThanTheirNumber) {
 TEST(ComparePaired, TooFewPairsDecideNothing) {
   std::vector<PairedDifference> few = all_equal_to(1, 3);
   few.resize(40);  // the others are absent
-  const Comparison c = compare_paired("x", few, true, 1);
+  const Comparison c = compare_paired(few, true, 1);
   EXPECT_EQ(c.pairs, 3u);
   EXPECT_EQ(verdict(c), Verdict::kUndecided);
 }
 
 TEST(ComparePaired, FewBlocksCannotBeSignificantHoweverClear) {
   // Blocks of two queries: five of them give 2 of 32 sign patterns at the least, six 2 of 64.
-  const Comparison five = compare_paired("x", all_equal_to(1, 10), true, 1);
+  const Comparison five = compare_paired(all_equal_to(1, 10), true, 1);
   EXPECT_DOUBLE_EQ(five.p, 2.0 / 32);
   EXPECT_TRUE(std::isinf(five.detectable)) << "too few to detect anything";
-  const Comparison six = compare_paired("x", all_equal_to(1, 12), true, 1);
+  const Comparison six = compare_paired(all_equal_to(1, 12), true, 1);
   EXPECT_DOUBLE_EQ(six.p, 2.0 / 64);
   EXPECT_DOUBLE_EQ(six.detectable, 3.0 / 12);
-  EXPECT_TRUE(std::isinf(compare_scenes("x", all_equal_to(1, 5), 5, 1).detectable));
+  EXPECT_TRUE(std::isinf(compare_scenes(all_equal_to(1, 5), 5, 1).detectable));
 }
 
 TEST(SignFlip, CountsThePatternsThatAreAsFarFromZero) {
@@ -103,7 +102,7 @@ double false_claims(std::size_t n, double carried) {
     std::vector<PairedDifference> queries;
     for (std::size_t i = 0; i < n; ++i)
       queries.push_back({noise.normal(i + 1) + carried * noise.normal(i), true});
-    Comparison c[] = {compare_paired("x", queries, false, 1, 300)};
+    Comparison c[] = {compare_paired(queries, false, 1, 300)};
     holm(c);
     claims += verdict(c[0]) == Verdict::kUndecided ? 0 : 1;
   }
@@ -119,8 +118,8 @@ TEST(ComparePaired, ClaimsWhereNothingDiffersStayNearFivePercent) {
 TEST(ComparePaired, IsAFunctionOfItsSeed) {
   std::vector<PairedDifference> values;
   for (int i = 0; i < 60; ++i) values.push_back({0.1 * (i * 37 % 11 - 4), i % 7 != 0});
-  EXPECT_EQ(compare_paired("x", values, false, 3).low, compare_paired("x", values, false, 3).low);
-  EXPECT_NE(compare_paired("x", values, false, 3).p, 0);
+  EXPECT_EQ(compare_paired(values, false, 3).low, compare_paired(values, false, 3).low);
+  EXPECT_NE(compare_paired(values, false, 3).p, 0);
 }
 
 TEST(Wilcoxon, AgreesWithCountingAllSigns) {
@@ -148,12 +147,12 @@ TEST(Wilcoxon, NearsTheNormalDistributionForManyScenes) {
 TEST(CompareScenes, ScenesAreIndependentAndThoseWithoutAValueAreLeftOut) {
   std::vector<PairedDifference> scenes = all_equal_to(0.1, 20);
   for (std::size_t i = 0; i < 20; i += 2) scenes[i].difference = 0.3;
-  const Comparison full = compare_scenes("x", scenes, 0, 1);
+  const Comparison full = compare_scenes(scenes, 0, 1);
   EXPECT_NEAR(full.difference, 0.2, 1e-12);
   EXPECT_NEAR(full.high - full.low, 2 * 1.96 * 0.1 / std::sqrt(20.0), 0.02);
   EXPECT_LT(full.p, 1e-4);
   scenes.push_back({99, false});
-  const Comparison same = compare_scenes("x", scenes, 0, 1);
+  const Comparison same = compare_scenes(scenes, 0, 1);
   EXPECT_EQ(same.pairs, 20u);
   EXPECT_EQ(same.low, full.low);
 }
@@ -161,15 +160,15 @@ TEST(CompareScenes, ScenesAreIndependentAndThoseWithoutAValueAreLeftOut) {
 // Six scenes of thirty queries each: that none of 180 answers differed bounds the share of those
 // that would by 3 / 180. 3 / 6, as if a scene were one answer, bounds nothing.
 TEST(CompareScenes, TheFloorOfWhatCanBeDetectedIsOfAnswersNotOfScenes) {
-  const Comparison same = compare_scenes("x", all_equal_to(0, 6), 6 * 30, 1);
+  const Comparison same = compare_scenes(all_equal_to(0, 6), 6 * 30, 1);
   EXPECT_DOUBLE_EQ(same.detectable, 3.0 / 180);
   std::vector<PairedDifference> scenes = all_equal_to(0, 6);
   for (std::size_t i = 0; i < 6; ++i) scenes[i].difference = i % 2 == 0 ? 0.1 : -0.1;
-  const Comparison spread = compare_scenes("x", scenes, 6 * 30, 1);
+  const Comparison spread = compare_scenes(scenes, 6 * 30, 1);
   // A scene's difference has a standard deviation of 0.1 (as resampled), the mean of six 0.1 /
   // 6^0.5.
   EXPECT_NEAR(spread.detectable, 2.8 * 0.1 / std::sqrt(6.0), 0.005);
-  EXPECT_EQ(compare_scenes("x", all_equal_to(0, 6), 0, 1).detectable, 0) << "no shares, no floor";
+  EXPECT_EQ(compare_scenes(all_equal_to(0, 6), 0, 1).detectable, 0) << "no shares, no floor";
 }
 
 /// Scenes of some pairs each, all of a scene's the same.
@@ -185,7 +184,7 @@ TEST(CompareClusters, EachQueryCountsTheSameAndScenesAreDrawnAsWholes) {
   std::vector<std::vector<PairedDifference>> scenes = scenes_of(std::vector<double>(9, 1.0), 1);
   scenes.push_back(all_equal_to(0, 90));
   scenes.back().resize(120);  // without a value: not counted
-  const Comparison c = compare_clusters("x", scenes, true, 1);
+  const Comparison c = compare_clusters(scenes, true, 1);
   EXPECT_DOUBLE_EQ(c.difference, 9.0 / 99);
   EXPECT_EQ(c.pairs, 99u);
   EXPECT_EQ(c.clusters, 10u);
@@ -196,8 +195,8 @@ TEST(CompareClusters, EachQueryCountsTheSameAndScenesAreDrawnAsWholes) {
 
 TEST(CompareClusters, QueriesOfOneSceneSayLittleMoreThanOne) {
   const std::vector<double> values{1, -1, 1, 0, 0, 1, -1, 0, 1, 0, 0, 1};
-  const Comparison ten = compare_clusters("x", scenes_of(values, 10), false, 1),
-                   one = compare_clusters("x", scenes_of(values, 1), false, 1);
+  const Comparison ten = compare_clusters(scenes_of(values, 10), false, 1),
+                   one = compare_clusters(scenes_of(values, 1), false, 1);
   EXPECT_EQ(ten.pairs, 120u);
   EXPECT_EQ(ten.difference, one.difference);
   EXPECT_EQ(ten.low, one.low);
@@ -205,12 +204,12 @@ TEST(CompareClusters, QueriesOfOneSceneSayLittleMoreThanOne) {
 }
 
 TEST(CompareClusters, FewScenesDecideNothing) {
-  EXPECT_TRUE(std::isinf(compare_clusters("x", scenes_of({1, 1, 1}, 50), true, 1).high));
-  const Comparison five = compare_clusters("x", scenes_of({1, 1, 1, 1, 1}, 50), true, 1);
+  EXPECT_TRUE(std::isinf(compare_clusters(scenes_of({1, 1, 1}, 50), true, 1).high));
+  const Comparison five = compare_clusters(scenes_of({1, 1, 1, 1, 1}, 50), true, 1);
   EXPECT_DOUBLE_EQ(five.p, 2.0 / 32);
   EXPECT_TRUE(std::isinf(five.detectable));
-  EXPECT_EQ(compare_clusters("x", {}, true, 1).pairs, 0u);
-  EXPECT_EQ(compare_clusters("x", scenes_of({1, 0}, 0), true, 1).p, 1);
+  EXPECT_EQ(compare_clusters({}, true, 1).pairs, 0u);
+  EXPECT_EQ(compare_clusters(scenes_of({1, 0}, 0), true, 1).p, 1);
 }
 
 // Scenes whose queries all share half of their noise, and no difference between the systems.
@@ -224,14 +223,14 @@ TEST(CompareClusters, ClaimsWhereNothingDiffersStayNearFivePercent) {
       for (std::size_t s = 0; s < count; ++s)
         for (std::size_t q = 0; q < 3 + s % 7; ++q)
           scenes[s].push_back({noise.normal(1000 * s) + noise.fork(s + 1).normal(q), true});
-      claims += compare_clusters("x", scenes, false, 1, 100).p < 0.05 ? 1 : 0;
+      claims += compare_clusters(scenes, false, 1, 100).p < 0.05 ? 1 : 0;
     }
     EXPECT_LE(static_cast<double>(claims) / kTrials, 0.07) << count << " scenes";
   }
 }
 
 TEST(Holm, CorrectsByRankAndStaysMonotone) {
-  std::vector<Comparison> family(3, {.what = "x", .pairs = 9});
+  std::vector<Comparison> family(3, {.pairs = 9});
   family[0].p = 0.04;
   family[1].p = 0.01;
   family[2].p = 0.03;
@@ -242,7 +241,7 @@ TEST(Holm, CorrectsByRankAndStaysMonotone) {
 }
 
 TEST(Holm, CountsNeitherWhatHasNoPairsNorWhatStandsBesideTheFamily) {
-  std::vector<Comparison> all(4, {.what = "x", .pairs = 9, .p = 0.01});
+  std::vector<Comparison> all(4, {.pairs = 9, .p = 0.01});
   all[1].pairs = 0;
   all[2].in_family = false;
   EXPECT_EQ(family_size(all), 2u);

@@ -348,13 +348,13 @@ TEST(Scenes, MeansAreOfMediansAndScenesArePaired) {
             (std::vector<std::string>{"fake 2 0.75", "hall 1 1", "all 3 0.8333333333333334"}));
   const std::vector<SceneFamily> families = compare_over_scenes(place.suite, rows);
   ASSERT_EQ(families.size(), 1u);
-  EXPECT_EQ(families[0].comparisons[0].what, "success, held_out, exact labels");
+  EXPECT_EQ(families[0].comparisons[0].what.text(), "success, held_out, exact labels");
   EXPECT_EQ(families[0].comparisons[0].pairs, 3u) << "scenes, not queries";
   EXPECT_NE(results_table(place.suite, runs).find("Wilcoxon"), std::string::npos);
 }
 
 TEST(Scenes, NotInferiorNeedsTheWholeIntervalAboveTheMargin) {
-  Comparison c{.what = "success", .pairs = 100};
+  Comparison c{.what = {"success", "", "", ""}, .pairs = 100};
   c.low = -0.03;
   EXPECT_TRUE(not_inferior(c, 0.05));
   EXPECT_FALSE(not_inferior(c, 0.03));

@@ -31,6 +31,8 @@ export interface Folder {
   replays: string[]; // names of runs
   views: string[]; // those of them whose images were recorded
   first_point: string | null; // of a sweep: where verdicts, tables and figures are
+  arms: { system: string; labels: string }[]; // in the suite's order; labels are "none" if it sees none
+  levels: string[];
 }
 export interface Sentence {
   text: string;

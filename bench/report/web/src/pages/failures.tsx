@@ -5,7 +5,7 @@ import type { JSX } from "preact";
 import { useCallback, useMemo, useState } from "preact/hooks";
 import { type Folder, Table, type WrittenTable } from "../data";
 import { linkTo } from "../route";
-import { armStyle, armsOf, nameMargin } from "../view/arm";
+import { armsOf, nameMargin } from "../view/arm";
 import { Chart } from "../view/Chart";
 import { DataTable } from "../view/DataTable";
 import { Choice, Missing, PerFolder, Piece } from "../view/parts";
@@ -14,6 +14,7 @@ import { Choice, Missing, PerFolder, Piece } from "../view/parts";
 const kOrder = ["none", "no candidate", "matches", "pnp", "inliers", "verified", "nothing in sight", "wrong candidates", "few matches", "few inliers", "false answer"];
 
 interface CountsProps {
+  folder: Folder;
   table: Table;
   asked: number[]; // rows of all queries
   rows: number[]; // of those that failed
@@ -21,8 +22,8 @@ interface CountsProps {
   title: string;
   about: string;
 }
-function Counts({ table, asked, rows, by, title, about }: CountsProps): JSX.Element | null {
-  const arms = useMemo(() => armsOf(table, asked), [table, asked]);
+function Counts({ folder, table, asked, rows, by, title, about }: CountsProps): JSX.Element | null {
+  const arms = useMemo(() => armsOf(folder, table, asked), [table, asked]);
   const bars = useMemo(() => {
     const counts = new Map<string, { what: string; arm: string; count: number; of: number }>();
     const askedOf = new Map<string, number>();
@@ -48,7 +49,7 @@ function Counts({ table, asked, rows, by, title, about }: CountsProps): JSX.Elem
         y: { axis: null, domain: arms.names, padding: 0.08 },
         x: { label: "share of the queries asked, %", grid: true },
         marks: [
-          Plot.barX(bars, { fy: "what", y: "arm", x: "share", fill: (b: { arm: string }) => armStyle(arms.names.indexOf(b.arm)).color, className: "m-count" }),
+          Plot.barX(bars, { fy: "what", y: "arm", x: "share", fill: (b: { arm: string }) => arms.style(b.arm).color, className: "m-count" }),
           Plot.text(bars, { fy: "what", y: "arm", x: "share", text: (b: { count: number; of: number }) => `${b.count} of ${b.of}`, dx: 5, textAnchor: "start" }),
           Plot.ruleX([0]),
         ],
@@ -57,7 +58,7 @@ function Counts({ table, asked, rows, by, title, about }: CountsProps): JSX.Elem
     [bars],
   );
   if (bars.length === 0) return null;
-  return <Chart title={title} about={about} legend={arms.names.map((name, i) => ({ name, color: armStyle(i).color }))} marks={{ count: bars.length }} make={make} />;
+  return <Chart title={title} about={about} legend={arms.names.map((name) => ({ name, color: arms.style(name).color }))} marks={{ count: bars.length }} make={make} />;
 }
 
 function FailuresOf({ folder, place, written }: { folder: Folder; place: number; written: WrittenTable }): JSX.Element {
@@ -79,12 +80,12 @@ function FailuresOf({ folder, place, written }: { folder: Folder; place: number;
       </p>
       <div class="charts">
         {table.has("stage") ? (
-          <Counts table={table} asked={asked} rows={rows} by="stage" title="Failures by stage" about="Share of queries (%), and their number, by the furthest stage that any attempt reached; verified: a wrong pose was returned. Source: results.sqlite." />
+          <Counts folder={folder} table={table} asked={asked} rows={rows} by="stage" title="Failures by stage" about="Share of queries (%), and their number, by the furthest stage that any attempt reached; verified: a wrong pose was returned. Source: results.sqlite." />
         ) : (
           <Missing>No system reported how far its relocalization got.</Missing>
         )}
         {table.has("cause") ? (
-          <Counts table={table} asked={asked} rows={rows} by="cause" title="Failures by first cause" about="Share of queries (%), and their number, by the first cause that the audit found, by exact truth. Source: audit.csv." />
+          <Counts folder={folder} table={table} asked={asked} rows={rows} by="cause" title="Failures by first cause" about="Share of queries (%), and their number, by the first cause that the audit found, by exact truth. Source: audit.csv." />
         ) : (
           <Missing>
             {folder.audit ? (

@@ -2,9 +2,9 @@
 import * as Plot from "@observablehq/plot";
 import type { JSX } from "preact";
 import { useCallback, useMemo, useState } from "preact/hooks";
-import { type Figures, type RunPaths, Table, type WrittenTable, heading, folders } from "../data";
-import { linkTo } from "../route";
-import { ink, kSymbols } from "../theme";
+import { type Figures, type Folder, type RunPaths, Table, type WrittenTable, heading, folders } from "../data";
+import { currentRoute, linkTo, note } from "../route";
+import { ink } from "../theme";
 import { armStyle, armsOf } from "../view/arm";
 import { Chart } from "../view/Chart";
 import { DataTable } from "../view/DataTable";
@@ -25,13 +25,13 @@ function useArm(table: Table): { rows: number[]; picker: JSX.Element | null; arm
   return { rows, picker, arm: arms.length > 1 ? `level ${level}` : (arms[0] ?? "") };
 }
 
-function Density({ density }: { density: NonNullable<Figures["density"]> }): JSX.Element {
+function Density({ folder, density }: { folder: Folder; density: NonNullable<Figures["density"]> }): JSX.Element {
   const table = useMemo(() => new Table(density.table), [density]);
   const measures = table.columns.filter((c) => !c.isText && ["ate_rmse_m", "rpe_frame_rmse_m", "held_out.success", "held_out.distance_mean_m", "second_tour.success", "graded.success"].includes(c.key));
   const [key, setKey] = useState(measures[0]?.key ?? "");
   const { rows, picker, arm } = useArm(table);
   const column = table.column(key);
-  const { name: armOf, names } = useMemo(() => armsOf(table, rows), [table, rows]);
+  const { name: armOf, names, style } = useMemo(() => armsOf(folder, table, rows), [table, rows]);
   const values = useMemo(
     () =>
       rows.flatMap((row) => {
@@ -52,7 +52,7 @@ function Density({ density }: { density: NonNullable<Figures["density"]> }): JSX
   }, [values]);
   const make = useCallback(
     (width: number): Plot.PlotOptions => {
-      const color = (d: { arm: string }) => armStyle(names.indexOf(d.arm)).color;
+      const color = (d: { arm: string }) => style(d.arm).color;
       // Quartiles of fewer than five values say nothing: their dots and mean stand alone.
       const boxed = values.filter((v) => (means.find((m) => m.group === v.group && m.arm === v.arm)?.count ?? 0) >= 5);
       // One value far beyond the others would press them to the axis; figures for papers do the same.
@@ -92,7 +92,7 @@ function Density({ density }: { density: NonNullable<Figures["density"]> }): JSX
         <Chart
           title="Figure 3: by density of objects"
           about={`${column ? heading(column) : ""}, ${arm}: a dot per environment (median over trials), boxes with medians from five environments on, diamonds are means, n environments. Source: results.sqlite; objects counted by the grammar of each generated scene.`}
-          legend={names.map((name, i) => ({ name, color: armStyle(i).color }))}
+          legend={names.map((name) => ({ name, color: style(name).color }))}
           marks={{ environment: values.length, mean: means.length }}
           make={make}
         />
@@ -101,10 +101,10 @@ function Density({ density }: { density: NonNullable<Figures["density"]> }): JSX
   );
 }
 
-function ByFrame({ written }: { written: WrittenTable }): JSX.Element {
+function ByFrame({ folder, written }: { folder: Folder; written: WrittenTable }): JSX.Element {
   const table = useMemo(() => new Table(written), [written]);
   const { rows, picker, arm } = useArm(table);
-  const { name: armOf } = useMemo(() => armsOf(table, rows), [table, rows]);
+  const { name: armOf, names, style } = useMemo(() => armsOf(folder, table, rows), [table, rows]);
   const points = useMemo(
     () =>
       rows.map((row) => ({
@@ -117,9 +117,7 @@ function ByFrame({ written }: { written: WrittenTable }): JSX.Element {
       })),
     [rows],
   );
-  const names = [...new Set(points.map((p) => p.arm))];
-  const legend = names.map((name, i) => ({ ...armStyle(i), name }));
-  const style = (name: string) => legend.find((entry) => entry.name === name);
+  const legend = names.map((name) => ({ ...style(name), name }));
   const banded = points.filter((p) => p.low !== null);
   const most = Math.max(0, ...points.map((p) => p.scenes));
   const make = useCallback(
@@ -130,11 +128,11 @@ function ByFrame({ written }: { written: WrittenTable }): JSX.Element {
       y: { label: "mean position error, m", grid: true, zero: true },
       marks: [
         ...names.flatMap((name) => [
-          Plot.areaY(banded.filter((p) => p.arm === name), { x: "frame", y1: "low", y2: "high", fill: style(name)?.color, fillOpacity: 0.18 }),
-          Plot.line(points.filter((p) => p.arm === name), { x: "frame", y: "error", stroke: style(name)?.color, strokeWidth: 2, strokeDasharray: style(name)?.dash }),
+          Plot.areaY(banded.filter((p) => p.arm === name), { x: "frame", y1: "low", y2: "high", fill: style(name).color, fillOpacity: 0.18 }),
+          Plot.line(points.filter((p) => p.arm === name), { x: "frame", y: "error", stroke: style(name).color, strokeWidth: 2, strokeDasharray: style(name).dash }),
         ]),
-        ...names.map((name, i) =>
-          Plot.dot(points.filter((p) => p.arm === name), { x: "frame", y: "error", fill: style(name)?.color, symbol: kSymbols[i % kSymbols.length], r: 2.6, className: "m-window" }),
+        ...names.map((name) =>
+          Plot.dot(points.filter((p) => p.arm === name), { x: "frame", y: "error", fill: style(name).color, symbol: style(name).symbol, r: 2.6, className: "m-window" }),
         ),
       ],
     }),
@@ -148,7 +146,7 @@ function ByFrame({ written }: { written: WrittenTable }): JSX.Element {
       // Lines that coincide are drawn beside one another.
       y: { label: "environments still counted", grid: true, domain: [0, most + 1], ticks: Math.min(5, most + 1), tickFormat: (d: number) => (Number.isInteger(d) ? String(d) : "") },
       marks: names.map((name, i) =>
-        Plot.line(points.filter((p) => p.arm === name), { x: "frame", y: "scenes", dy: 3 * (i - (names.length - 1) / 2), curve: "step", className: "m-counted", stroke: style(name)?.color, strokeWidth: 2, strokeDasharray: style(name)?.dash }),
+        Plot.line(points.filter((p) => p.arm === name), { x: "frame", y: "scenes", dy: 3 * (i - (names.length - 1) / 2), curve: "step", className: "m-counted", stroke: style(name).color, strokeWidth: 2, strokeDasharray: style(name).dash }),
       ),
     }),
     [points],
@@ -177,18 +175,24 @@ function ByFrame({ written }: { written: WrittenTable }): JSX.Element {
 /** Figure 2 or 5: one run from above. */
 function FromAbove({ place }: { place: number }): JSX.Element {
   const folder = folders[place];
-  const [chosen, setChosen] = useState(0);
+  const key = `run-${place}`;
+  const [name, setName] = useState(currentRoute().at.get(key) ?? "");
   if (!folder || folder.runs === 0) return <Missing>No run is finished: there is no path to show.</Missing>;
-  const file = Math.floor(chosen / folder.runs_of_file);
   return (
     <Piece<WrittenTable> piece={`${place}/runs`}>
       {(runs) => {
         const table = new Table(runs);
-        const options = Array.from({ length: Math.min(folder.runs, 4000) }, (_, row) => ({ key: String(row), title: table.text("run", row) }));
+        const options = Array.from({ length: folder.runs }, (_, row) => ({ key: String(row), title: table.text("run", row) }));
+        const chosen = Math.max(0, options.findIndex((option) => option.title === name));
+        const file = Math.floor(chosen / folder.runs_of_file);
+        const pick = (row: string) => {
+          setName(options[Number(row)]?.title ?? "");
+          note({ [key]: row === "0" ? "" : (options[Number(row)]?.title ?? "") });
+        };
         return (
           <>
             <div class="choices">
-              <Choice label="Run" options={options} value={String(chosen)} onPick={(key) => setChosen(Number(key))} />
+              <Choice label="Run" options={options} value={String(chosen)} onPick={pick} />
               <a href={linkTo(["run", String(place), table.text("run", chosen)])}>Its page</a>
             </div>
             <Piece<RunPaths[]> piece={`${place}/paths${file}`}>
@@ -223,7 +227,7 @@ export function RunFromAbove({ run, queries, chosen = null }: { run: RunPaths | 
       {missing.length > 0 && <Missing>{missing.join(" ")}</Missing>}
       <Chart
         title={`From above: ${run.name}`}
-        about={`x and y in m, in the frame of the dock${rows.length > 0 ? "; a line joins a query's true place and its answer" : ""}. Source: results.sqlite${run.grid ? ", map.pgm" : ""}.`}
+        about={`x and y in m, in the frame of the truth; the estimate is aligned by its first pose${rows.length > 0 ? "; a line joins a query's true place and its answer" : ""}. Source: results.sqlite${run.grid ? ", map.pgm" : ""}.`}
         legend={legend}
         marks={{ path: Number((run.truth?.ms.length ?? 0) > 1) + Number((run.estimate?.ms.length ?? 0) > 1), query: found.truths.length, answer: found.answers.length }}
         make={make}
@@ -248,12 +252,12 @@ export function FiguresPage(): JSX.Element {
                   <h2>Figures 2 and 5: a run from above</h2>
                   <FromAbove place={place} />
                   <h2>Figure 3: error by density of objects</h2>
-                  {figures.density ? <Density density={figures.density} /> : <Missing>No environment of this suite was generated, so that the number of its objects is unknown.</Missing>}
+                  {figures.density ? <Density folder={folder} density={figures.density} /> : <Missing>No environment of this suite was generated, so that the number of its objects is unknown.</Missing>}
                   <h2>Figure 4: error against frames</h2>
-                  {figures.by_frame ? <ByFrame written={figures.by_frame} /> : <Missing>No run has both a true and an estimated path.</Missing>}
+                  {figures.by_frame ? <ByFrame folder={folder} written={figures.by_frame} /> : <Missing>No run has both a true and an estimated path.</Missing>}
                   <h2>Section 3.3.3: candidates</h2>
                   {figures.candidates ? <DataTable id={`cand-${place}`} table={new Table(figures.candidates)} /> : <Missing>No system reported its candidates: no queries were asked, or the system reports a trajectory alone.</Missing>}
-                  <GradedCurves graded={figures.graded} />
+                  <GradedCurves folder={folder} graded={figures.graded} />
                 </>
               )}
             </Piece>

@@ -3,8 +3,8 @@
 import * as Plot from "@observablehq/plot";
 import type { JSX } from "preact";
 import { useCallback } from "preact/hooks";
-import { kSymbols } from "../theme";
-import { armStyle } from "../view/arm";
+import type { Folder } from "../data";
+import { styleOf } from "../view/arm";
 import { Chart } from "../view/Chart";
 
 interface Curve {
@@ -21,8 +21,9 @@ interface Curve {
   }[];
 }
 
-function GradedCurve({ curve }: { curve: Curve }): JSX.Element | null {
+function GradedCurve({ folder, curve }: { folder: Folder; curve: Curve }): JSX.Element | null {
   const names = [...new Set(curve.bins.flatMap((bin) => Object.keys(bin.systems)))];
+  const style = (name: string) => styleOf(folder, name, curve.labels, curve.level);
   const points = names.flatMap((name, i) =>
     curve.bins.flatMap((bin) => {
       const share = bin.systems[name];
@@ -37,13 +38,13 @@ function GradedCurve({ curve }: { curve: Curve }): JSX.Element | null {
       marginTop: 24,
       x: { label: `${curve.by}${curve.unit ? `, ${curve.unit}` : ""}` },
       y: { label: "success, %", domain: [0, 100], grid: true },
-      marks: names.flatMap((name, i) => {
+      marks: names.flatMap((name) => {
         const own = points.filter((p) => p.name === name);
-        const { color, dash } = armStyle(i);
+        const { color, dash, symbol } = style(name);
         return [
           Plot.ruleX(own, { x: "at", y1: "low", y2: "high", stroke: color, strokeWidth: 1.5, className: "m-interval" }),
           Plot.line(own, { x: "at", y: "success", stroke: color, strokeDasharray: dash, strokeWidth: 2 }),
-          Plot.dot(own, { x: "at", y: "success", fill: color, symbol: kSymbols[i % kSymbols.length], r: 4, className: "m-bin" }),
+          Plot.dot(own, { x: "at", y: "success", fill: color, symbol, r: 4, className: "m-bin" }),
         ];
       }),
     }),
@@ -54,19 +55,19 @@ function GradedCurve({ curve }: { curve: Curve }): JSX.Element | null {
     <Chart
       title={`Success by ${curve.by}${curve.category === "all" ? "" : `: ${curve.category}`}`}
       about={`Success in % with Wilson's 95 % intervals, level ${curve.level}, labels ${curve.labels}; ${curve.bins.reduce((sum, bin) => sum + bin.queries, 0)} queries. Source: results.sqlite.`}
-      legend={names.map((name, i) => ({ name, ...armStyle(i) }))}
+      legend={names.map((name) => ({ name, ...style(name) }))}
       marks={{ bin: points.length, interval: points.length }}
       make={make}
     />
   );
 }
 
-export function GradedCurves({ graded }: { graded: unknown }): JSX.Element | null {
+export function GradedCurves({ folder, graded }: { folder: Folder; graded: unknown }): JSX.Element | null {
   if (!Array.isArray(graded) || graded.length === 0) return null;
   return (
     <>
       <h2>Queries graded by distance and angle</h2>
-      <div class="charts">{(graded as Curve[]).map((curve, i) => <GradedCurve key={i} curve={curve} />)}</div>
+      <div class="charts">{(graded as Curve[]).map((curve, i) => <GradedCurve key={i} folder={folder} curve={curve} />)}</div>
     </>
   );
 }

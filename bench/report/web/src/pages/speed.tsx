@@ -3,7 +3,7 @@
 import * as Plot from "@observablehq/plot";
 import type { JSX } from "preact";
 import { useCallback, useMemo } from "preact/hooks";
-import { Table, type WrittenTable } from "../data";
+import { type Folder, Table, type WrittenTable } from "../data";
 import { linkTo } from "../route";
 import { ink } from "../theme";
 import { armStyle, armsOf, nameMargin } from "../view/arm";
@@ -18,8 +18,14 @@ const kStages: [string, string][] = [
   ["rest", "everything else"],
 ];
 
-function Stages({ table, rows }: { table: Table; rows: number[] }): JSX.Element {
-  const arms = useMemo(() => armsOf(table, rows), [table, rows]);
+interface Rows {
+  folder: Folder;
+  table: Table;
+  rows: number[];
+}
+
+function Stages({ folder, table, rows }: Rows): JSX.Element {
+  const arms = useMemo(() => armsOf(folder, table, rows), [table, rows]);
   const bars = useMemo(
     () =>
       arms.names.flatMap((arm) => {
@@ -57,8 +63,8 @@ function Stages({ table, rows }: { table: Table; rows: number[] }): JSX.Element 
   );
 }
 
-function Spread({ table, rows, measure, title, unit, about }: { table: Table; rows: number[]; measure: string; title: string; unit: string; about: string }): JSX.Element | null {
-  const arms = useMemo(() => armsOf(table, rows), [table, rows]);
+function Spread({ folder, table, rows, measure, title, unit, about }: Rows & { measure: string; title: string; unit: string; about: string }): JSX.Element | null {
+  const arms = useMemo(() => armsOf(folder, table, rows), [table, rows]);
   const dots = useMemo(
     () =>
       rows.flatMap((row) => {
@@ -76,7 +82,7 @@ function Spread({ table, rows, measure, title, unit, about }: { table: Table; ro
       y: { label: null, domain: arms.names, tickFormat: nameMargin(arms.names, width).fitted },
       marks: [
         Plot.boxX(dots, { x: "value", y: "arm", fill: ink().grid, stroke: ink().faint, r: 0 }),
-        Plot.dot(dots, { x: "value", y: "arm", fill: (d: { arm: string }) => armStyle(arms.names.indexOf(d.arm)).color, fillOpacity: 0.7, r: 3, className: "m-run" }),
+        Plot.dot(dots, { x: "value", y: "arm", fill: (d: { arm: string }) => arms.style(d.arm).color, fillOpacity: 0.7, r: 3, className: "m-run" }),
       ],
     }),
     [dots],
@@ -103,10 +109,10 @@ export function SpeedPage(): JSX.Element {
                   <>
                     <p class="note">Times differ from one execution to the next; those of different machines or loads do not compare.</p>
                     <div class="charts">
-                      {table.has("cpu_s") && <Stages table={table} rows={rows} />}
-                      <Spread table={table} rows={rows} measure="track_ms.median" title="Time to track a frame" unit="ms, median of a run" about="Wall time of a call, ms; a dot per run, boxes over runs. Source: results.sqlite, table times." />
-                      <Spread table={table} rows={rows} measure="relocalize_ms.median" title="Time to relocalize" unit="ms, median of a run" about="Wall time of a call with a query's frame, ms; a dot per run. Source: results.sqlite, table times." />
-                      <Spread table={table} rows={rows} measure="max_rss_mb" title="Memory" unit="MB, largest resident set" about="Largest resident set of a run's process, MB; a dot per run. Source: results.sqlite, table times." />
+                      {table.has("cpu_s") && <Stages folder={folder} table={table} rows={rows} />}
+                      <Spread folder={folder} table={table} rows={rows} measure="track_ms.median" title="Time to track a frame" unit="ms, median of a run" about="Wall time of a call, ms; a dot per run, boxes over runs. Source: results.sqlite, table times." />
+                      <Spread folder={folder} table={table} rows={rows} measure="relocalize_ms.median" title="Time to relocalize" unit="ms, median of a run" about="Wall time of a call with a query's frame, ms; a dot per run. Source: results.sqlite, table times." />
+                      <Spread folder={folder} table={table} rows={rows} measure="max_rss_mb" title="Memory" unit="MB, largest resident set" about="Largest resident set of a run's process, MB; a dot per run. Source: results.sqlite, table times." />
                     </div>
                     <h2>By run</h2>
                     <DataTable id={`cost-${place}`} table={table} rows={rows} usual={kCostColumns} link={(row) => ({ column: "run", href: linkTo(["run", String(place), table.text("run", row)]) })} />

@@ -39,6 +39,9 @@ function compare(table: Table, column: Column, down: boolean): (a: number, b: nu
   };
 }
 
+/** Words as they are compared: a blank in a column's name is written as "_". */
+const plain = (text: string) => text.toLowerCase().replaceAll(" ", "_");
+
 /** Rows that hold every word of a filter, in some cell that is shown; "column:word" in that one. */
 function matching(table: Table, columns: Column[], rows: number[], filter: string): number[] {
   const words = filter.toLowerCase().split(/\s+/).filter(Boolean);
@@ -46,7 +49,7 @@ function matching(table: Table, columns: Column[], rows: number[], filter: strin
   return rows.filter((row) =>
     words.every((word) => {
       const [, key, value] = /^([^:]+):(.+)$/.exec(word) ?? [];
-      const asked = key ? columns.filter((c) => c.key === key || c.title === key) : [];
+      const asked = key ? columns.filter((c) => [c.key, c.title, heading(c)].some((name) => plain(name) === key)) : [];
       if (asked.length > 0)
         return asked.some((c) => table.shown(c, row).toLowerCase().includes(value ?? ""));
       return columns.some((c) => table.shown(c, row).toLowerCase().includes(word));
@@ -100,6 +103,7 @@ export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element 
             type="search"
             value={filter}
             placeholder="words, or column:word"
+            title="Rows with all of these words. A word for one column: held-out_success:87, with _ for a blank."
             onInput={(event) => {
               setFilter(event.currentTarget.value);
               setMost(kFirst);

@@ -1,20 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Table } from "../data";
-import { colorOf, kDashes } from "../theme";
+import type { Folder, Table } from "../data";
+import { colorOf, kDashes, kSymbols } from "../theme";
 
-/** Color and dash of the i-th line of a chart. */
-export function armStyle(i: number): { color: string; dash: string } {
-  return { color: colorOf(i), dash: kDashes[i % kDashes.length] ?? "0" };
+export interface Style {
+  color: string;
+  dash: string;
+  symbol: (typeof kSymbols)[number];
+}
+
+/** Color, dash and symbol of the i-th line of a chart. */
+export function armStyle(i: number): Style {
+  return { color: colorOf(i), dash: kDashes[i % kDashes.length] ?? "0", symbol: kSymbols[i % kSymbols.length] ?? "circle" };
+}
+
+/** The style of a system with its labels at a level: the same on all pages of a folder. */
+export function styleOf({ arms, levels }: Folder, system: string, labels: string, level: string): Style {
+  const arm = arms.findIndex((a) => a.system === system && (a.labels === labels || a.labels === "none"));
+  return armStyle(Math.max(0, levels.indexOf(level)) * arms.length + Math.max(0, arm));
+}
+
+export interface Arms {
+  name: (row: number) => string;
+  names: string[]; // in the order of their first rows
+  style: (name: string) => Style;
 }
 
 /** What the rows of a table are of: the system, with its labels and the level where a table has
  * several of them. Rows of one arm may be counted together. */
-export function armsOf(table: Table, rows: number[]): { name: (row: number) => string; names: string[] } {
+export function armsOf(folder: Folder, table: Table, rows: number[]): Arms {
   const different = (key: string) => new Set(rows.map((row) => table.text(key, row)).filter((word) => word !== "none" && word !== "")).size > 1;
   const parts = ["labels", "level"].filter(different);
   const name = (row: number) =>
     [table.text("system", row), ...parts.map((key) => table.text(key, row)).filter((word) => word !== "none" && word !== "")].join(", ");
-  return { name, names: [...new Set(rows.map(name))] };
+  const styles = new Map<string, Style>();
+  for (const row of rows)
+    if (!styles.has(name(row))) styles.set(name(row), styleOf(folder, table.text("system", row), table.text("labels", row), table.text("level", row)));
+  return { name, names: [...styles.keys()], style: (of) => styles.get(of) ?? armStyle(0) };
 }
 
 /** Room for names left of a chart, and what of a name fits there. */
