@@ -45,16 +45,14 @@ const plain = (text: string) => text.toLowerCase().replaceAll(" ", "_");
 /** Rows that hold every word of a filter, in some cell that is shown; "column:word" in that one. */
 function matching(table: Table, columns: Column[], rows: number[], filter: string): number[] {
   const words = filter.toLowerCase().split(/\s+/).filter(Boolean);
-  if (words.length === 0) return rows;
-  return rows.filter((row) =>
-    words.every((word) => {
-      const [, key, value] = /^([^:]+):(.+)$/.exec(word) ?? [];
-      const asked = key ? columns.filter((c) => [c.key, c.title, heading(c)].some((name) => plain(name) === key)) : [];
-      if (asked.length > 0)
-        return asked.some((c) => table.shown(c, row).toLowerCase().includes(value ?? ""));
-      return columns.some((c) => table.shown(c, row).toLowerCase().includes(word));
-    }),
-  );
+  // What a word asks of a row, decided once for all rows.
+  const tests = words.map((word) => {
+    const [, key, value] = /^([^:]+):(.+)$/.exec(word) ?? [];
+    const named = key ? columns.filter((c) => [c.key, c.title, heading(c)].some((name) => plain(name) === key)) : [];
+    const [asked, part] = named.length > 0 ? [named, value ?? ""] : [columns, word];
+    return (row: number) => asked.some((c) => table.shown(c, row).toLowerCase().includes(part));
+  });
+  return rows.filter((row) => tests.every((test) => test(row)));
 }
 
 export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element {
@@ -103,7 +101,7 @@ export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element 
             type="search"
             value={filter}
             placeholder="words, or column:word"
-            title="Rows with all of these words. A word for one column: held-out_success:87, with _ for a blank."
+            title="Rows with all of these words. A word for one column: ate_m:0.01, with _ for a blank."
             onInput={(event) => {
               setFilter(event.currentTarget.value);
               setMost(kFirst);

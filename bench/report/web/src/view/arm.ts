@@ -33,8 +33,10 @@ export function armsOf(folder: Folder, table: Table, rows: number[]): Arms {
   const name = (row: number) =>
     [table.text("system", row), ...parts.map((key) => table.text(key, row)).filter((word) => word !== "none" && word !== "")].join(", ");
   const styles = new Map<string, Style>();
-  for (const row of rows)
-    if (!styles.has(name(row))) styles.set(name(row), styleOf(folder, table.text("system", row), table.text("labels", row), table.text("level", row)));
+  for (const row of rows) {
+    const of = name(row);
+    if (!styles.has(of)) styles.set(of, styleOf(folder, table.text("system", row), table.text("labels", row), table.text("level", row)));
+  }
   return { name, names: [...styles.keys()], style: (of) => styles.get(of) ?? armStyle(0) };
 }
 
