@@ -14,7 +14,7 @@ namespace mh {
 
 /// Answers one query in a frozen map, starting lost. Sessions of one system share no mutable state,
 /// so they may run in any order and concurrently. The exception is NeighborScores::kAsReleased,
-/// with which answers depend on the order of the sessions.
+/// under which answers depend on the order of the sessions.
 class RelocalizationSession {
  public:
   virtual ~RelocalizationSession() = default;
@@ -29,7 +29,8 @@ class QueryMemo {
   virtual ~QueryMemo() = default;
 };
 
-/// The interface through which the protocol drives a SLAM system under test. It sees only frames.
+/// The interface through which the protocol drives a SLAM system under test. The system sees
+/// frames and random streams, nothing else.
 class System {
  public:
   virtual ~System() = default;
@@ -53,7 +54,8 @@ class System {
   /// Loads a saved map instead of mapping.
   /// @param saved  from save() of a system with the same settings
   virtual void restore(const std::string&) {}
-  /// Each tracked frame once, ordered by stamp, as world_from_camera in the system's own world.
+  /// Returns the pose of each tracked frame once, ordered by stamp, as world_from_camera in the
+  /// system's own world.
   virtual Trajectory trajectory() const = 0;
   /// A new session that starts lost. Call freeze() first.
   virtual std::unique_ptr<RelocalizationSession> open_session() const = 0;

@@ -22,11 +22,11 @@ inline constexpr double kSecondsPerMs = 1e-3;
 /// and Elberink, "Accuracy and resolution of Kinect depth data", Sensors 2012. Range: ASUS Xtion
 /// data sheet.
 struct DepthNoiseConfig {
-  bool enabled = true;            ///< off: the exact depth at any range
-  bool axial = true;              ///< sigma_z(z, incidence)
-  bool lateral = true;            ///< ragged edges: lookups are displaced by sigma_L(incidence), px
-  bool quantization = true;       ///< 1/8 px disparity steps
-  bool grazing_holes = true;      ///< no return beyond kMaxIncidenceRad
+  bool enabled = true;        ///< off: the exact depth at any range
+  bool axial = true;          ///< sigma_z(z, incidence)
+  bool lateral = true;        ///< ragged edges: normal offsets of lookups, sigma_L(incidence) px
+  bool quantization = true;   ///< 1/8 px disparity steps
+  bool grazing_holes = true;  ///< no return beyond kMaxIncidenceRad
   bool projector_shadow = false;  ///< no return where the projector's light is blocked
   double min_range_m = 0.4;
   double max_range_m = 8.0;  ///< above min_range_m
@@ -72,8 +72,9 @@ void fields(C& c, Visit& v) {
   v("sigma", sigma, setting::kShare, "standard deviation, share of full scale");
 }
 
-/// Light is measured in electrons: shot noise of variance L * well (L = linear light, 1 at white)
-/// and read noise, both divided by the well, the electron count of a white pixel. Defaults: OV5640,
+/// Light is counted in electrons: shot noise has variance L * well (L = linear light, 1 at white),
+/// read noise the standard deviation read_noise_e; the noisy count is divided by the well, the
+/// electron count of a white pixel (well_e / gain). Defaults: OV5640,
 /// from Aldebaran's documentation of Pepper's 2D camera. Signal-to-noise ratio at most 36 dB: well
 /// of 10^3.6 = 3981 electrons. Dynamic range 68 dB: read noise of 3981 / 10^3.4 = 1.6 electrons.
 /// Model: Healey and Kondepudy, PAMI 1994.
@@ -83,7 +84,8 @@ struct ShotNoiseConfig {
   double read_noise_e = 1.6;
   double gain = 1.0;  ///< analog: a white pixel holds well_e / gain electrons
   /// The exposure (RenderedFrame) at which `gain` applies. At other exposures the gain scales in
-  /// proportion, so dark rooms are noisier. 0: the same gain at every exposure.
+  /// proportion, but never falls below 1, so dark rooms are noisier. 0: the same gain at every
+  /// exposure.
   double gain_at_exposure = 0.0;
   friend bool operator==(const ShotNoiseConfig&, const ShotNoiseConfig&) = default;
 };
@@ -250,7 +252,7 @@ void fields(C& c, Visit& v) {
     "fraction of frames that arrive black (blank) or not at all (dropped)");
 }
 
-/// A camera in somebody's hand passes along its path in less time: sim/world/travel.hpp, hurried().
+/// A handheld camera covers its path in less time: hurried(), sim/world/travel.hpp.
 struct HurryConfig {
   bool enabled = false;
   double speed = 1.0;  ///< multiple of the path's own
@@ -261,7 +263,7 @@ struct HurryConfig {
 template <Either<HurryConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, speed] = c;
-  v("enabled", enabled, setting::kSwitch, "a camera in somebody's hand is in a hurry");
+  v("enabled", enabled, setting::kSwitch, "a handheld camera moves faster along its path");
   v("speed", speed, setting::required({1, 10}),
     "multiple of the speed of the path; a robot that drives keeps its own");
 }

@@ -36,7 +36,7 @@ std::optional<std::size_t> frames_stated(const std::string& motion);
 /// drive, become NaN. @returns whether anything was cut off
 bool cut(DrivenPath& path, std::size_t max_frames);
 
-/// Returns the path of a camera in somebody's hand in less time, as the level's `hurry` says: poses
+/// Returns the path of a handheld camera in less time, as the level's `hurry` says: poses
 /// at the camera's rate, interpolated where a moment falls between two of them. A robot that drives
 /// keeps its own speed. @param motion  what `path` came from
 DrivenPath hurried(DrivenPath path, const std::string& motion, const SensorConfig& level,

@@ -56,7 +56,7 @@ StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream,
 StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStream stream,
                 const StepObservers& observers = {});
 
-/// @throws InputError naming both if a frame's stamp is not later than the last one's.
+/// @throws InputError naming both stamps if the frame's is not later than the last one's.
 void require_increasing_stamp(Stamp stamp_ns, std::optional<Stamp> last_ns);
 
 /// Prepares for input that jumps back in time: tracking is lost, earlier stamps are accepted, and
@@ -68,8 +68,8 @@ void rewind(SlamState& state);
 StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& frame,
                     RandomStream stream, const StepObservers& observers = {});
 
-/// Results that localizations of one frame, each from a lost tracker, can share if stream, xi and
-/// void policy are the same: features, words, attempts at candidates, refined poses. Changing the
+/// Results that localizations of one frame, each from a lost tracker, can share if the stream and
+/// trial_key() are the same: features, words, attempts at candidates, refined poses. Changing the
 /// settings that select candidates (gamma, alpha, beta, overlap) then repeats only the selection.
 class LocalizeMemo {
  public:
@@ -84,13 +84,14 @@ class LocalizeMemo {
 };
 
 /// localize() from a lost tracker that is discarded afterwards, reusing earlier results.
-/// @param memo  of the same frame, stream and map, and of the same xi and void policy
+/// @param memo  of the same frame, stream, map and trial_key()
 StepReport localize(const SlamState& frozen, const RgbdFrame& frame, RandomStream stream,
                     LocalizeMemo& memo);
 
 /// Changes the semantic settings that are used from now on to answer queries and extend the map. If
-/// gamma or the void policy changes, the keyframes' vectors (equation 1) are reweighted. A label
-/// mass is turned into the gamma that gives it on the keyframes of the map as it is.
+/// gamma or the void policy changes, the keyframes' vectors (equation 1) are reweighted. If
+/// `label_mass` is set, gamma becomes the one at which labels hold this share of the current
+/// keyframes' vectors on average.
 /// @throws InputError naming the setting that is out of range; the state is then unchanged.
 void set_query_settings(SlamState& state, const SemanticConfig& settings);
 

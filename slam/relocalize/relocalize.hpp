@@ -29,18 +29,20 @@ struct RelocalizationResult {
 std::vector<KeyframeId> neighborhood(const Map& map, KeyframeId k,
                                      const std::function<bool(KeyframeId)>& belongs = {});
 
-/// The similarity of each keyframe, by id, with the last query for which it passed equation 4; 0 =
-/// none yet (NeighborScores::kAsReleased).
+/// For each keyframe, indexed by id: its similarity to the last query for which it passed equation
+/// 4; 0 if there was none (NeighborScores::kAsReleased).
 using ReleasedScores = std::vector<double>;
 
-/// Algorithm 1 over the whole map. If the query has no label members, words are counted.
-/// @param released  updated and used in equation 5; null: each similarity is computed anew
+/// Algorithm 1 over the whole map. If the query's vector holds no label, equation 3 counts words,
+/// whatever `overlap` says.
+/// @param released  first receives this query's similarities, then supplies those of equation 5;
+/// null: each similarity is computed for this query
 CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedVector& query,
                                                 const SemanticConfig& config,
                                                 ReleasedScores* released = nullptr);
 
-/// Attempts of one query under one stream and one xi for the candidates tried so far: searches that
-/// merely choose other candidates can reuse them.
+/// The attempts at one query so far, by candidate, under one stream and one trial_key(). Searches
+/// that differ only in which candidates they choose can reuse them.
 using AttemptMemo = std::map<KeyframeId, CandidateAttempt>;
 
 /// Tries candidate keyframes in order: matching by words, PnP with RANSAC, refinement, guided
@@ -50,9 +52,10 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
                                     const SlamContext& context, RandomStream stream,
                                     PlaceMatchers matchers = {}, AttemptMemo* memo = nullptr);
 
-/// The candidates of relocalize(): select_keyframes() under RelocalizeConfig::neighbor_scores, and
-/// the rules of SemanticConfig beyond the paper.
-/// @param released  of earlier queries; used and updated if the settings say so. @pre not null then
+/// Chooses the candidates that relocalize() tries: select_keyframes(), with neighbors scored as
+/// RelocalizeConfig::neighbor_scores says, then `nearness` and `candidates` of SemanticConfig.
+/// @param released  of earlier queries. Read and updated only under NeighborScores::kAsReleased,
+/// and must then not be null
 CandidateSelection<KeyframeId> choose_candidates(const Map& map, const Query& query,
                                                  const SlamConfig& config,
                                                  ReleasedScores* released);
@@ -62,9 +65,11 @@ CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamC
                            RandomStream stream, const TrialGivens& givens = {});
 
 /// Localizes the camera in the map without an initial guess: Algorithm 1 chooses the candidates, in
-/// order of score. Depth is weighted by RelocalizeConfig::disparity_sigma_px: the pose is a
-/// starting point that the local map, weighting depth as the camera does, must confirm.
-/// @param released  of earlier queries; used and updated if the settings say so. @pre not null then
+/// order of score. With acceptance `ours`, candidates are tried at
+/// RelocalizeConfig::disparity_sigma_px or the camera's own sigma, whichever is larger. The pose is
+/// provisional: the caller must confirm it in the local map, at the camera's own sigma.
+/// @param released  of earlier queries. Read and updated only under NeighborScores::kAsReleased,
+/// and must then not be null
 RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,
                                 AttemptMemo* memo = nullptr, ReleasedScores* released = nullptr);
 

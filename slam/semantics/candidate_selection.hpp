@@ -24,13 +24,14 @@ struct CandidateSelection {
   int c1 = 0, c2 = 0, c3 = 0;
 };
 
-/// Algorithm 1. Comparisons are strict, as printed. The paper leaves two points open: if several
-/// keyframes are replaced by the same best neighbor, it is kept once, with the highest score; if
-/// neighbors are equally similar, the smallest key wins.
+/// Algorithm 1. Comparisons are strict, as in the paper. The paper leaves two points open: if
+/// several keyframes are replaced by the same best neighbor, it is kept once, with the highest
+/// score; if neighbors are equally similar, the smallest key wins.
 /// @param keyframes   all keyframes of the map.
 /// @param overlap     overlap(k) -> n of equation 3, 0 = nothing shared.
 /// @param neighbors  neighbors(k) -> range of keyframes: k itself and its neighbors.
-/// @param similarity  similarity(k) -> similarity of the view and keyframe k, at least 0, larger =
+/// @param similarity  similarity(k) -> similarity between the view and keyframe k, at least 0,
+/// larger =
 ///                    more similar: the paper's ||L_f, L_k||_1, see augmented_vector.hpp.
 /// @param alpha, beta thresholds of equations 4 and 6, in [0, 1).
 template <class Key, class Overlap, class Neighbors, class Similarity>
