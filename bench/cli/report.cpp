@@ -167,7 +167,7 @@ void add_report(CLI::App& app) {
   command->add_option("--out", options->out, "Folder for the pages")->required();
   command->add_option("--replay", options->replay,
                       "Runs to run again, so that their pages show scene and landmarks: names, "
-                      "`failed` or `all`");
+                      "`failed` (runs with a query that was not answered correctly) or `all`");
   command->add_option("--cache", options->cache,
                       "Cache folder for light and maps (default: $XDG_CACHE_HOME/modelhouse)");
   command->footer(

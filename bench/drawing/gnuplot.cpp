@@ -56,13 +56,14 @@ std::string gnuplot_text(const std::string& text) {
 }
 
 std::string gnuplot_terminal(const fs::path& file, double width_cm, double height_cm) {
-  const auto pixels = [](double cm) { return std::lround(cm / 2.54 * 192); };
+  const auto pixels = [](double cm) { return std::lround(cm / 2.54 * 300); };
   const std::string terminal =
       file.extension() == ".pdf"
           ? fmt::format("pdfcairo size {}cm,{}cm font 'DejaVu Sans,8' fontscale 0.8 linewidth 1",
                         width_cm, height_cm)
           : fmt::format(
-                "pngcairo size {},{} font 'DejaVu Sans,8' fontscale 2 linewidth 2 pointscale 2",
+                "pngcairo size {},{} font 'DejaVu Sans,8' fontscale 3.1 linewidth 3.1 pointscale "
+                "3.1",
                 pixels(width_cm), pixels(height_cm));
   return fmt::format("set terminal {}\nset output {}\n", terminal, gnuplot_text(file.string()));
 }

@@ -14,7 +14,7 @@ namespace mh {
 std::string gnuplot_text(const std::string& text);
 
 /// The first lines of a script: what is written, by the file's extension (.pdf: vectors, fonts
-/// embedded; else a PNG of 192 pixels to the inch), and where.
+/// embedded; else a PNG of 300 pixels to the inch), and where.
 std::string gnuplot_terminal(const std::filesystem::path& file, double width_cm, double height_cm);
 
 /// Draws a file; readers see the old one or the complete new one.

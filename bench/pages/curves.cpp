@@ -10,6 +10,7 @@
 
 #include "bench/pages/page_table.hpp"
 #include "bench/pages/tables.hpp"
+#include "bench/report/wording.hpp"
 #include "bench/results/graded.hpp"
 #include "bench/results/sweep.hpp"
 #include "scenes/generate/generate.hpp"
@@ -46,6 +47,17 @@ std::vector<Sum> window_errors(const RunResult& run) {
   return windows;
 }
 
+/// The 97.5 % quantile of Student's t, by Abramowitz and Stegun, 26.7.5: within 0.1 % from 4
+/// degrees of freedom on.
+double student_t(double degrees_of_freedom) {
+  const double z = 1.959964, n = degrees_of_freedom, z2 = z * z;
+  return z * (1 + (z2 + 1) / (4 * n) + ((5 * z2 + 16) * z2 + 3) / (96 * n * n) +
+              (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * n * n * n));
+}
+
+/// A mean over fewer environments says nothing of the others, of which the curve's beginning is.
+constexpr std::size_t kFewestCounted = 5;
+
 struct Curve {
   std::size_t system = 0;
   std::string level, labels;
@@ -71,8 +83,9 @@ Json error_by_frame_json(const Suite& suite, std::span<const Row> rows) {
   PageTable table(
       "Figure 4: error against frames",
       fmt::format("Mean position error after SE(3) alignment over windows of {} frames, "
-                  "over the environments still counted; 95 % interval of the mean.",
-                  kWindow));
+                  "over the environments still counted, as far as they are at least {}, or all; "
+                  "95 % interval of the mean by Student's t.",
+                  kWindow, kFewestCounted));
   for (const auto& [curve, windows] : all)
     for (std::size_t w = 0; w < windows.size(); ++w) {
       if (windows[w].empty()) continue;
@@ -82,13 +95,16 @@ Json error_by_frame_json(const Suite& suite, std::span<const Row> rows) {
         squares.add(std::pow(trials.mean() - sum.mean(), 2));
       const double n = static_cast<double>(sum.count);
       std::optional<double> half;
-      if (sum.count > 1) half = 1.96 * std::sqrt(squares.sum / (n - 1) / n);
+      if (sum.count >= kFewestCounted)
+        half = student_t(n - 1) * std::sqrt(squares.sum / (n - 1) / n);
+      const bool enough = sum.count >= std::min(kFewestCounted, windows.front().size());
       table.begin_row();
       table.text({"system", "system"}, suite.systems[curve.system].name);
       table.text({"level", "level"}, curve.level);
       table.text({"labels", "labels"}, curve.labels);
       table.number({"frame", "frame"}, static_cast<double>(w * kWindow) + 0.5 * kWindow);
-      table.number({"error_m", "mean error", "m", 4}, sum.mean());
+      table.number({"error_m", "mean error", "m", 4},
+                   enough ? std::optional(sum.mean()) : std::nullopt);
       table.number({"low", "low", "m", 4},
                    half ? std::optional(std::max(0.0, sum.mean() - *half)) : std::nullopt);
       table.number({"high", "high", "m", 4},
@@ -123,7 +139,7 @@ Json density_json(const Suite& suite, std::span<const Row> rows) {
     for (const QuerySet set : kQuerySets)
       if (summary(row, set).queries > 0)
         table.figures(figures_of(summary(row, set)), fmt::format("{}.", name(set)),
-                      fmt::format("{}: ", name(set)));
+                      fmt::format("{}: ", short_title(set)));
   }
   Json groups = Json::array();
   for (int g = 0; g < kDensityGroups; ++g) groups.push_back(density_group_name(g));

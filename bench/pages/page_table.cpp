@@ -100,4 +100,8 @@ std::string script_of(const std::string& piece, const Json& json) {
                      script_json(json));
 }
 
+bool is_script_of_data(std::string_view content) {
+  return content.starts_with("(globalThis.modelhouse?\?={})[");
+}
+
 }  // namespace mh

@@ -69,5 +69,7 @@ std::string script_json(const nlohmann::ordered_json& json);
 
 /// A script file that puts a piece of data into the registry under its name.
 std::string script_of(const std::string& piece, const nlohmann::ordered_json& json);
+/// Whether a file is such a script.
+bool is_script_of_data(std::string_view content);
 
 }  // namespace mh

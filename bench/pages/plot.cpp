@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "bench/drawing/gnuplot.hpp"
 #include "bench/pages/curves.hpp"
 #include "bench/pages/tables.hpp"
+#include "bench/results/placed.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/suggest.hpp"
 
@@ -23,6 +25,24 @@ constexpr const char* kInks[] = {"#0065a3", "#d98a00", "#00805d", "#b4568c", "#3
 const char* ink_of(std::size_t i) {
   return kInks[i % std::size(kInks)];
 }
+
+/// The arms that a table has rows of, in the suite's order, each with the ink of its place there.
+class InkOfArms {
+ public:
+  explicit InkOfArms(const Suite& suite) : suite_(suite), arms_(arms_of(suite)) {}
+  /// @throws std::out_of_range for a row of no arm
+  std::size_t place(const std::string& system, const std::string& labels) const {
+    for (std::size_t i = 0; i < arms_.size(); ++i)
+      if (suite_.systems[arms_[i].system].name == system && arms_[i].labels == labels) return i;
+    throw std::out_of_range(system);
+  }
+  const std::string& name(std::size_t place) const { return arms_[place].name; }
+  std::size_t count() const { return arms_.size(); }
+
+ private:
+  const Suite& suite_;
+  std::vector<Arm> arms_;
+};
 
 /// A table that was written for pages.
 class PlotTable {
@@ -87,31 +107,32 @@ std::string by_density(const PagesSource& source, const PlotOrder& order, const 
     throw InputError(
         fmt::format("{}: no figures named '{}' (--measure)", source.name, order.measure));
   const double scale = column->at("unit") == "%" ? 100 : 1;
-  std::vector<std::string> systems;
-  std::map<std::pair<std::size_t, std::string>, std::string> data;  // by system, group
+  const InkOfArms arms(*source.suite);
+  std::map<std::pair<std::size_t, std::string>, std::string> data;  // by arm, group
+  std::map<std::string, std::size_t> most_in;                       // environments, by group
   std::vector<double> values;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    const std::string system = table.text("system", row);
-    auto known = std::ranges::find(systems, system);
-    if (known == systems.end()) known = systems.insert(known, system);
+  for (std::size_t row = 0; row < table.rows(); ++row)
     if (const auto value = table.number(order.measure, row)) {
       values.push_back(*value);
-      data[{static_cast<std::size_t>(known - systems.begin()), table.text("group", row)}] +=
-          fmt::format("{}\n", scale * *value);
+      std::string& of = data[{arms.place(table.text("system", row), table.text("labels", row)),
+                              table.text("group", row)}];
+      of += fmt::format("{}\n", scale * *value);
+      std::size_t& most = most_in[table.text("group", row)];
+      most = std::max(most, static_cast<std::size_t>(std::ranges::count(of, '\n')));
     }
-  }
   const bool logarithmic = scale == 1 && needs_logarithm(values);
-  const double step = 0.8 / static_cast<double>(systems.size());
+  const double step = 0.8 / static_cast<double>(arms.count());
   std::string script = beginning(order, file, 0.75 * order.width_cm), plots, ticks;
   std::size_t block = 0;
   for (std::size_t g = 0; g < json.at("groups").size(); ++g) {
     const std::string group = json.at("groups").at(g);
-    ticks += fmt::format("{}{} {}", g == 0 ? "" : ", ", gnuplot_text(group), g);
-    for (std::size_t s = 0; s < systems.size(); ++s) {
+    const std::string counted = fmt::format("{}\nn {}", group, most_in[group]);
+    ticks += fmt::format("{}{} {}", g == 0 ? "" : ", ", gnuplot_text(counted), g);
+    for (std::size_t s = 0; s < arms.count(); ++s) {
       const auto found = data.find({s, group});
       if (found == data.end()) continue;
       const double at =
-          static_cast<double>(g) + step * (static_cast<double>(s) - 0.5 * (systems.size() - 1.0));
+          static_cast<double>(g) + step * (static_cast<double>(s) - 0.5 * (arms.count() - 1.0));
       script += fmt::format("$d{0} << EOD\n{1}EOD\nstats $d{0} nooutput name 's{0}'\n", block,
                             found->second);
       plots += fmt::format(
@@ -122,16 +143,17 @@ std::string by_density(const PagesSource& source, const PlotOrder& order, const 
       ++block;
     }
   }
-  for (std::size_t s = 0; s < systems.size(); ++s)
+  for (std::size_t s = 0; s < arms.count(); ++s)
     plots += fmt::format(", 1/0 with lines linewidth 3 linecolor rgb '{}' title {}", ink_of(s),
-                         gnuplot_text(systems[s]));
+                         gnuplot_text(arms.name(s)));
   const std::string unit = column->at("unit").get<std::string>();
   std::string title = column->at("title").get<std::string>();
   if (title.ends_with(" " + unit)) title.resize(title.size() - unit.size() - 1);
   return script + fmt::format(
                       "set style boxplot outliers pointtype 7\nset style fill solid 0.25 border\n"
                       "set pointsize 0.25\nset xtics ({})\nset xrange [-0.6:{}]\n{}\n"
-                      "set xlabel 'objects per 10 m²'\nset ylabel {} noenhanced\nplot {}\n",
+                      "set bmargin 4.5\nset xlabel 'objects per 10 m²' offset 0,-0.9\n"
+                      "set ylabel {} noenhanced\nplot {}\n",
                       ticks, static_cast<double>(json.at("groups").size()) - 0.4,
                       logarithmic ? "set logscale y" : "set yrange [0:*]",
                       gnuplot_text(unit.empty() ? title : title + ", " + unit), plots);
@@ -147,41 +169,47 @@ std::string by_frame(const PagesSource& source, const PlotOrder& order, const fs
                     "cannot be drawn",
                     source.name));
   const PlotTable table(json);
-  std::vector<std::pair<std::string, std::string>> arms;
-  double last_frame = 1;
+  const InkOfArms arms(*source.suite);
+  std::vector<std::string> data(arms.count());
+  double last_frame = 1, most_scenes = 1;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    const std::string labels = table.text("labels", row);
-    const std::string arm =
-        table.text("system", row) + (labels == "none" ? "" : ", " + labels + " labels");
-    auto known = std::ranges::find(arms, arm, &std::pair<std::string, std::string>::first);
-    if (known == arms.end()) known = arms.insert(known, {arm, ""});
-    const double error = table.number("error_m", row).value_or(0);
-    last_frame = std::max(last_frame, table.number("frame", row).value_or(0));
-    known->second += fmt::format("{} {} {} {} {}\n", table.number("frame", row).value_or(0), error,
-                                 table.number("low", row).value_or(error),
-                                 table.number("high", row).value_or(error),
-                                 table.number("scenes", row).value_or(0));
+    const double frame = table.number("frame", row).value_or(0),
+                 scenes = table.number("scenes", row).value_or(0);
+    last_frame = std::max(last_frame, frame);
+    most_scenes = std::max(most_scenes, scenes);
+    const auto cell = [&](const char* key) {
+      const auto value = table.number(key, row);
+      return value ? fmt::format("{}", *value) : std::string("NaN");
+    };
+    data[arms.place(table.text("system", row), table.text("labels", row))] +=
+        fmt::format("{} {} {} {} {}\n", frame, cell("error_m"), cell("low"), cell("high"), scenes);
   }
   std::string script = beginning(order, file, order.width_cm), errors, counts;
-  for (std::size_t a = 0; a < arms.size(); ++a) {
-    script += fmt::format("$a{} << EOD\n{}EOD\n", a, arms[a].second);
+  for (std::size_t a = 0; a < arms.count(); ++a) {
+    if (data[a].empty()) continue;
+    script += fmt::format("$a{} << EOD\n{}EOD\n", a, data[a]);
     errors += fmt::format(
         "{0}$a{1} using 1:3:4 with filledcurves fillcolor rgb '{2}' fillstyle transparent solid "
         "0.2 noborder notitle, $a{1} using 1:2 with lines linewidth 2 dashtype {3} linecolor rgb "
         "'{2}' title {4}",
-        a == 0 ? "" : ", ", a, ink_of(a), a + 1, gnuplot_text(arms[a].first));
+        errors.empty() ? "" : ", ", a, ink_of(a), a + 1, gnuplot_text(arms.name(a)));
+    // Lines that coincide are drawn beside one another.
     counts += fmt::format(
-        "{}$a{} using 1:5 with steps linewidth 2 dashtype {} linecolor rgb '{}' "
+        "{}$a{} using 1:($5+{}) with steps linewidth 2 dashtype {} linecolor rgb '{}' "
         "notitle",
-        a == 0 ? "" : ", ", a, a + 1, ink_of(a));
+        counts.empty() ? "" : ", ", a,
+        0.008 * most_scenes * (static_cast<double>(a) - 0.5 * (arms.count() - 1.0)), a + 1,
+        ink_of(a));
   }
   return script +
          fmt::format(
              "set multiplot\nset lmargin 11\nset size 1,0.66\nset origin 0,0.34\n"
-             "set ylabel 'mean position error, m'\nset yrange [0:*]\nset xtics {}\nplot {}\n"
-             "set size 1,0.36\nset origin 0,0\nset ylabel 'environments'\n"
-             "set xlabel 'frame of the tour'\nplot {}\nunset multiplot\n",
-             tick_step(last_frame), errors, counts);
+             "set ylabel 'mean position error, m'\nset yrange [0:*]\nset xtics {}\n"
+             "set xrange [0:{}]\nplot {}\n"
+             "set size 1,0.36\nset origin 0,0\nset ylabel 'environments'\nset ytics {}\n"
+             "set yrange [0:{}]\nset xlabel 'frame of the tour'\nplot {}\nunset multiplot\n",
+             tick_step(last_frame), last_frame, errors, tick_step(most_scenes), 1.1 * most_scenes,
+             counts);
 }
 
 /// Rectangles of cells in a state, by rows: middle and extent in each direction.
@@ -218,7 +246,7 @@ std::string from_above(const PagesSource& source, const PlotOrder& order, const 
   const auto place = [](const Eigen::Vector3d& at) {
     return fmt::format("{} {}\n", at.x(), at.y());
   };
-  std::string truth, estimate, asked, right, wrong, queries;
+  std::string truth, estimate, asked, right, wrong, errors, queries;
   for (const TimedPose& pose : run->truth) truth += place(pose.world_from_camera.translation());
   for (const TimedPose& pose : run->estimate)
     estimate += place(to_dock * pose.world_from_camera.translation());
@@ -226,10 +254,15 @@ std::string from_above(const PagesSource& source, const PlotOrder& order, const 
     const PointResult& point = run->points.front();
     const auto& list = point.second_tour.empty() ? point.held_out : point.second_tour;
     queries = point.second_tour.empty() ? "held-out queries" : "queries of the second tour";
+    const QuerySet set = point.second_tour.empty() ? QuerySet::kHeldOut : QuerySet::kSecondTour;
     for (const QueryScore& q : list) {
       if (q.true_world_from_camera) asked += place(q.true_world_from_camera->translation());
-      if (q.answer.world_from_camera)
-        (q.correct ? right : wrong) += place(to_dock * q.answer.world_from_camera->translation());
+      const auto answer = answer_in_truth(*run, set, q);
+      if (!answer) continue;
+      (q.false_positive ? wrong : right) += place(answer->translation());
+      if (q.true_world_from_camera)
+        errors +=
+            place(q.true_world_from_camera->translation()) + place(answer->translation()) + "\n";
     }
   }
   std::string script = beginning(order, file, 0.9 * order.width_cm), plots;
@@ -252,18 +285,18 @@ std::string from_above(const PagesSource& source, const PlotOrder& order, const 
   add("truth", truth, "with lines linewidth 1 linecolor rgb 'black' title 'true path'");
   add("estimate", estimate,
       "with lines linewidth 1.5 dashtype 2 linecolor rgb '#0065a3' title 'estimated path'");
+  add("errors", errors, "with lines linewidth 1 linecolor rgb '#777777' notitle");
   add("asked", asked,
       "with points pointtype 2 pointsize 0.5 linecolor rgb 'black' title " + gnuplot_text(queries));
   add("right", right,
       "with points pointtype 6 pointsize 0.6 linecolor rgb '#00805d' title 'correct answers'");
   add("wrong", wrong,
-      "with points pointtype 8 pointsize 0.7 linecolor rgb '#a33f00' title 'false answers'");
+      "with points pointtype 4 pointsize 0.7 linecolor rgb '#a33f00' title 'false answers'");
   if (plots.empty())
     throw InputError(
         fmt::format("{}: neither a true nor an estimated path is known", run->spec.name));
   return script +
-         "set size ratio -1\nset xtics rotate by 90 right\nset key outside top center "
-         "horizontal\nset xlabel 'x, m'\n"
+         "set size ratio -1\nset key outside top center horizontal\nset xlabel 'x, m'\n"
          "set ylabel 'y, m'\nplot " +
          plots + "\n";
 }
@@ -314,7 +347,6 @@ std::string table_script(const PagesSource& source, const PlotOrder& order, cons
   for (const Json& column : json.at("columns")) {
     const std::string key = column.at("key");
     if (order.table == 1 && std::ranges::count(kOfTable1, key) == 0) continue;
-    if (key == "remark") continue;
     std::vector<std::string> cells;
     for (std::size_t row = 0; row < count; ++row) cells.push_back(cell_of(column, row));
     if (std::ranges::all_of(cells, &std::string::empty)) continue;

@@ -92,6 +92,7 @@ Json run_page_json(const PagesSource& source, const RunResult& run, std::size_t 
   Json inputs = Json::object();
   for (const InputDigest& input : run.place.inputs) inputs[input.name] = hex(input.digest);
   const bool has_settings = run.spec.system.takes_settings();
+  const auto grid = grid_of(source, run);
   return {{"name", run.spec.name},
           {"scene", run.place.scene},
           {"robot", run.place.robot},
@@ -103,7 +104,8 @@ Json run_page_json(const PagesSource& source, const RunResult& run, std::size_t 
           {"calls", calls_page_json(run.mapping, start_ns, moments)},
           {"loops", run.mapping.loops.size()},
           {"skipped", json_of(run.mapping.skipped)},
-          {"grid", grid_json(grid_of(source, run))},
+          {"grid", grid_json(grid)},
+          {"grid_damaged", !grid && is_file(source.folder / run.spec.name / "map.yaml")},
           {"inputs", inputs},
           {"trajectory_digest", hex(digest(run.estimate))},
           {"seed", run.spec.seed},

@@ -10,6 +10,8 @@
 #include "bench/pages/tables.hpp"
 #include "bench/plan/parameters.hpp"
 #include "bench/report/wording.hpp"
+#include "bench/results/placed.hpp"
+#include "slam/config/slam.hpp"
 
 namespace mh {
 namespace {
@@ -145,7 +147,9 @@ Json runs_json(const PagesSource& source) {
 }
 
 Json queries_json(const PagesSource& source) {
-  PageTable table("Queries", "Distance and angle to the local truth (docs/protocol.md).");
+  PageTable table("Queries",
+                  "Distance and angle are measured from the nearest mapped frame, so that a bent "
+                  "map is no error of its answers (docs/protocol.md).");
   const Causes causes = causes_in(source.audit_csv);
   for (const RunResult& run : source.results.runs) {
     const std::vector<std::string> points = points_of(source, run);
@@ -191,7 +195,7 @@ Json queries_json(const PagesSource& source) {
                            std::round(at[i] * 1e3) / 1e3);
           };
           place("true", q.true_world_from_camera, SE3());
-          place("estimated", q.answer.world_from_camera, run.frames.dock_from_estimate);
+          place("estimated", answer_in_truth(run, set, q), SE3());
         }
   }
   return table.json();

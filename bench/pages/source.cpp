@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/pages/source.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
@@ -14,11 +16,15 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// A JSON file of the folder; null if it is missing or damaged, which is noted.
-Json json_file(PagesSource& source, const std::string& name) {
+/// @param keys  what it must hold
+Json json_file(PagesSource& source, const std::string& name,
+               std::initializer_list<const char*> keys) {
   const fs::path file = source.folder / name;
   if (!is_file(file)) return nullptr;
   const Json json = Json::parse(read_file(file), nullptr, false);
-  if (!json.is_discarded()) return json;
+  if (json.is_object() &&
+      std::ranges::all_of(keys, [&](const char* key) { return json.contains(key); }))
+    return json;
   source.damaged.push_back(name);
   return nullptr;
 }
@@ -56,8 +62,10 @@ PagesSource read_source(const fs::path& path) {
   source.folder = is_folder(path) ? path : fs::absolute(path).parent_path();
   const fs::path named = fs::absolute(source.folder).lexically_normal();
   source.name = (named.filename().empty() ? named.parent_path() : named).filename().string();
-  source.reproduction = json_file(source, "reproduction.json");
-  source.audit = json_file(source, "audit.json");
+  source.reproduction =
+      json_file(source, "reproduction.json",
+                {"command", "commit", "code", "build_and_machine", "seeds", "inputs"});
+  source.audit = json_file(source, "audit.json", {"rows"});
   if (is_file(source.folder / "audit.csv"))
     source.audit_csv = read_file(source.folder / "audit.csv");
   const fs::path file = is_folder(path) ? path / "results.sqlite" : path;

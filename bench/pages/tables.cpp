@@ -59,11 +59,24 @@ bool is_own_row(const Suite& suite, std::size_t system, const Labels& labels) {
   return suite.systems[system].sees_labels() || labels == suite.labels.front();
 }
 
+std::vector<Arm> arms_of(const Suite& suite) {
+  std::vector<Arm> arms;
+  for (std::size_t s = 0; s < suite.systems.size(); ++s)
+    for (const Labels& labels : suite.labels)
+      if (is_own_row(suite, s, labels)) {
+        const std::string seen = labels_seen(suite, s, labels);
+        const bool tells = suite.labels.size() > 1 && seen != "none";
+        arms.push_back({s, seen, suite.systems[s].name + (tells ? ", " + seen : "")});
+      }
+  return arms;
+}
+
 std::string definitions_text(const Suite& suite) {
   return fmt::format(
       "Success: a pose was returned, right or wrong. Correct: returned, and within {:g} m and "
       "{:g}° "
-      "of the true pose. False positive: returned, and not correct.",
+      "of the true pose, measured from the nearest mapped frame: a bent map is no error of its "
+      "answers. False positive: returned, and not correct.",
       suite.protocol.correct_distance_m, suite.protocol.correct_angle_deg);
 }
 
@@ -91,7 +104,7 @@ Json table1_json(const Suite& suite, std::span<const CategoryRow> rows) {
 
 Json table2_json(const Suite& suite, std::span<const CategoryRow> rows) {
   PageTable table("Table 2: relocalization",
-                  "Over all environments of the suite. " + definitions_text(suite) +
+                  "Means over all environments of the suite. " + definitions_text(suite) +
                       " Published, other data: a real house of 60 m², labels from YOLOv3's boxes.");
   const PageColumn queries{"query_set", "queries"},
       count{"queries", "queries per environment", "", 1}, success{"success", "success", "%", 2},

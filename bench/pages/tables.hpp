@@ -10,6 +10,15 @@
 
 namespace mh {
 
+/// A system with the labels that it sees, and how pages and plots call it: "semantic, exact" or
+/// "semantic" if there is one kind.
+struct Arm {
+  std::size_t system = 0;
+  std::string labels, name;
+};
+/// In the suite's order, in which they have their colors.
+std::vector<Arm> arms_of(const Suite& suite);
+
 /// The labels that a system sees: "none" if it looks at none.
 std::string labels_seen(const Suite& suite, std::size_t system, const Labels& labels);
 

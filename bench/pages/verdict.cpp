@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "bench/pages/page_table.hpp"
+#include "bench/report/wording.hpp"
 #include "slam/core/counted.hpp"
 
 namespace mh {
@@ -34,17 +35,22 @@ std::string pairs_text(const Comparison& c, bool over_scenes) {
   return over_scenes ? counted(c.pairs, "environment") : counted(c.pairs, "query", "queries");
 }
 
+/// "about 812 environments"
+std::string needed_pairs(const Comparison& c, double needed, bool over_scenes) {
+  constexpr double kMost = 10'000;
+  return fmt::format(
+      "{} {}",
+      needed > kMost ? fmt::format("more than {:.0f}", kMost) : fmt::format("about {:.0f}", needed),
+      over_scenes || c.clusters > 0 ? "environments" : "queries");
+}
+
 std::string needed_text(const Comparison& c, bool over_scenes) {
   const auto needed = pairs_to_decide(c);
   if (!std::isfinite(c.detectable))
     return " These are too few to decide at the 5 % level, however large the difference.";
   if (!needed) return "";
-  const bool of_scenes = over_scenes || c.clusters > 0;
-  constexpr double kMost = 10'000;
-  return fmt::format(" If the true difference is the observed one, {} {} would decide.",
-                     *needed > kMost ? fmt::format("more than {:.0f}", kMost)
-                                     : fmt::format("about {:.0f}", *needed),
-                     of_scenes ? "environments" : "queries");
+  return fmt::format(" If the true difference is the observed one, {} would decide.",
+                     needed_pairs(c, *needed, over_scenes));
 }
 
 /// One comparison with what it is of.
@@ -53,7 +59,26 @@ struct Judged {
   std::size_t level = 0;
   std::string environment;  ///< empty: over all of them
   Comparison comparison;
+  bool saturated = false;  ///< both systems answer nearly everything
 };
+
+/// Whether both systems answer so many of the queries that no difference could show.
+bool both_answer_all(std::span<const Row> rows, const Judged& j, const Suite& suite) {
+  if (j.comparison.what.measure != "success") return false;
+  const auto share = [&](std::size_t system) {
+    std::vector<double> shares;
+    for (const Row& row : rows)
+      for (const QuerySet set : kQuerySets)
+        if (row.system == system && row.level == j.level && row.parameters == 0 &&
+            name(set) == j.comparison.what.of &&
+            with_labels(row.labels) == j.comparison.what.labels && !row.trials.empty() &&
+            (j.environment.empty() || suite.environments[row.environment].name == j.environment) &&
+            summary(row, set).queries > 0)
+          shares.push_back(summary(row, set).success);
+    return mean(shares);
+  };
+  return share(j.systems.first) > kSaturated && share(j.systems.second) > kSaturated;
+}
 
 /// What is compared, without a kind of labels that neither system sees, and without the unit that
 /// the amount has.
@@ -85,9 +110,12 @@ std::string sentence(const Suite& suite, const Judged& j) {
                        v == Verdict::kFirstBetter ? first : second,
                        v == Verdict::kFirstBetter ? second : first, what, amount(c, c.difference),
                        interval, pairs_text(c, over_scenes));
-  return fmt::format("Undecided whether {} or {} is better in {}: {} ({}) over {}.{}", first,
-                     second, what, amount(c, c.difference), interval, pairs_text(c, over_scenes),
-                     needed_text(c, over_scenes));
+  return fmt::format(
+      "Undecided whether {} or {} is better in {}{}: {} ({}) over {}.{}", first, second, what,
+      c.more_is_better ? "" : " (less is better)", amount(c, c.difference), interval,
+      pairs_text(c, over_scenes),
+      j.saturated ? " Saturated: both answer nearly everything, so that no difference can show."
+                  : needed_text(c, over_scenes));
 }
 
 std::vector<Judged> judged(const Suite& suite, std::span<const Row> rows) {
@@ -104,6 +132,7 @@ std::vector<Judged> judged(const Suite& suite, std::span<const Row> rows) {
         all.push_back(
             {family.systems, family.level, suite.environments[family.environment].name, c});
   }
+  for (Judged& j : all) j.saturated = both_answer_all(rows, j, suite);
   // Success first: the paper's first measure; what is judged before what is shown beside it.
   std::ranges::stable_sort(all, {}, [](const Judged& j) {
     const Comparison& c = j.comparison;
@@ -129,7 +158,7 @@ std::string verdict_sentence(const Suite& suite, const SystemPair& systems, cons
 Json verdicts_json(const Suite& suite, std::span<const Row> rows) {
   PageTable table("What differs between the systems",
                   "First minus second, 95 % bootstrap intervals, p corrected by Holm over the "
-                  "declared family; shares in percentage points, distances in m.");
+                  "declared family; shares in percentage points, distances in mm.");
   Json sentences = Json::array();
   for (const Judged& j : judged(suite, rows)) {
     const Comparison& c = j.comparison;
@@ -154,14 +183,20 @@ Json verdicts_json(const Suite& suite, std::span<const Row> rows) {
     table.text({"level", "level"}, level_name(suite.levels[j.level]));
     table.text({"first", "first"}, suite.systems[j.systems.first].name);
     table.text({"second", "second"}, suite.systems[j.systems.second].name);
-    table.number({"pairs", "pairs"}, static_cast<double>(c.pairs));
-    table.number({"difference", "difference", "", 4}, known(c.difference));
-    table.number({"low", "low", "", 4}, known(c.low));
-    table.number({"high", "high", "", 4}, known(c.high));
-    table.number({"p", "p", "", 4}, known(c.p));
-    table.number({"p_holm", "p (Holm)", "", 4}, counts(c) ? std::optional(c.p_holm) : std::nullopt);
-    table.number({"detectable", "detectable", "", 4}, known(c.detectable));
-    table.number({"needed", "would decide", "", 0}, pairs_to_decide(c));
+    const bool over_scenes = j.environment.empty();
+    const auto scaled = [&](double value) {
+      return known((is_share(c) ? 100 : 1000) * value);  // points, mm
+    };
+    table.text({"over", "over"}, c.pairs > 0 ? pairs_text(c, over_scenes) : "");
+    table.text({"unit", "unit"}, is_share(c) ? "points" : "mm");
+    table.number({"difference", "difference", "", 2}, scaled(c.difference));
+    table.number({"low", "low", "", 2}, scaled(c.low));
+    table.number({"high", "high", "", 2}, scaled(c.high));
+    table.number({"p", "p", "", 5}, known(c.p));
+    table.number({"p_holm", "p (Holm)", "", 5}, counts(c) ? std::optional(c.p_holm) : std::nullopt);
+    table.number({"detectable", "detectable", "", 2}, scaled(c.detectable));
+    const auto needed = pairs_to_decide(c);
+    table.text({"needed", "would decide"}, needed ? needed_pairs(c, *needed, over_scenes) : "");
     table.text({"verdict", "verdict"}, !c.in_family               ? "beside the family"
                                        : v == Verdict::kUndecided ? "undecided"
                                        : v == Verdict::kFirstBetter

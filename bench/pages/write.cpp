@@ -51,6 +51,14 @@ class Pieces {
   std::uintmax_t bytes_ = 0;
 };
 
+/// Removes the data of an earlier report, and no other file.
+void remove_earlier_data(const fs::path& folder) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (is_file(entry.path()) && is_script_of_data(read_file(entry.path())))
+      fs::remove(entry.path(), error);
+}
+
 /// What a reader must know before any figure.
 Json remarks_json(const PagesSource& source) {
   Json remarks = Json::array();
@@ -61,18 +69,17 @@ Json remarks_json(const PagesSource& source) {
         "Shortened to the first {} of each tour: a quick look, no result of this suite.",
         counted(source.suite->max_frames.value_or(0), "frame")));
   if (!r.failed.empty())
-    remarks.push_back(
-        fmt::format("{} failed; the figures are without them.", counted(r.failed.size(), "run")));
+    remarks.push_back(fmt::format("{} failed; the figures do not include them.",
+                                  counted(r.failed.size(), "run")));
   if (const auto gave_up =
           std::ranges::count_if(r.runs, [](const RunResult& run) { return run.mapping.gave_up; });
       gave_up > 0)
     remarks.push_back(
         fmt::format("{} gave up mapping (protocol: max_effort) after going back too often; the "
-                    "figures are with "
-                    "them.",
+                    "figures include what they mapped until then.",
                     counted(static_cast<std::size_t>(gave_up), "run")));
   if (!r.missing.empty())
-    remarks.push_back(fmt::format("{} not made yet; the figures are without them.",
+    remarks.push_back(fmt::format("{} not made yet; the figures do not include them.",
                                   counted(r.missing.size(), "run")));
   if (source.suite && source.suite->trials == 1)
     remarks.push_back("One trial: this holds for these maps; other seeds draw other maps.");
@@ -80,6 +87,10 @@ Json remarks_json(const PagesSource& source) {
     remarks.push_back("Recordings have one noise: trials differ in RANSAC's draws alone.");
   if (source.suite)
     for (const std::string& line : base_lines(*source.suite)) remarks.push_back(line);
+  if (source.reproduction.is_object() &&
+      source.reproduction.value("commit", "").ends_with("-dirty"))
+    remarks.push_back(fmt::format("Made by a program with changes that were not committed ({}).",
+                                  source.reproduction.value("commit", "")));
   for (const std::string& file : source.damaged)
     remarks.push_back(fmt::format("{} is damaged and left out.", file));
   return remarks;
@@ -100,11 +111,8 @@ Json levels_json(const Suite& suite) {
 /// The systems of a suite with the labels that each sees: a page gives each one color.
 Json arms_json(const Suite& suite) {
   Json arms = Json::array();
-  for (std::size_t s = 0; s < suite.systems.size(); ++s)
-    for (const Labels& mode : suite.labels)
-      if (is_own_row(suite, s, mode))
-        arms.push_back(
-            {{"system", suite.systems[s].name}, {"labels", labels_seen(suite, s, mode)}});
+  for (const Arm& arm : arms_of(suite))
+    arms.push_back({{"system", suite.systems[arm.system].name}, {"labels", arm.labels}});
   return arms;
 }
 
@@ -195,8 +203,7 @@ std::vector<std::string> names_of_pages() {
 WrittenPages write_pages(const fs::path& out, std::span<const PagesSource> sources,
                          std::size_t budget) {
   make_output_folder(out);
-  std::error_code error;
-  fs::remove_all(out / "data", error);
+  remove_earlier_data(out / "data");
   Pieces pieces(out / "data");
   std::size_t runs = 0;
   for (const PagesSource& source : sources) runs += source.results.runs.size();
@@ -215,6 +222,7 @@ WrittenPages write_pages(const fs::path& out, std::span<const PagesSource> sourc
                        {"failed", source.results.failed.size()},
                        {"missing", source.results.missing.size()},
                        {"audit", source.audit.is_object()},
+                       {"damaged", source.damaged},
                        {"first_point", first_point(source)},
                        {"runs_of_file", kRunsOfFile},
                        {"arms", source.suite ? arms_json(*source.suite) : Json::array()},

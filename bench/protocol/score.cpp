@@ -9,11 +9,7 @@
 namespace mh {
 namespace {
 
-double separation(const TimedPose& mapped, const TimedPose& query, NearestBy by) {
-  if (by == NearestBy::kTime)
-    return static_cast<double>(std::abs(mapped.stamp_ns - query.stamp_ns)) * 1e-9;
-  const SE3& a = mapped.world_from_camera;
-  const SE3& b = query.world_from_camera;
+double apart_in_place(const SE3& a, const SE3& b) {
   return (a.translation() - b.translation()).norm() + angle_between_rad(a, b);
 }
 
@@ -29,9 +25,11 @@ std::optional<Anchor> nearest_mapped(const Trajectory& estimate, const Trajector
   std::optional<Anchor> best;
   double best_separation = std::numeric_limits<double>::infinity();
   for (const TimedPose& pose : estimate) {
+    double s = static_cast<double>(std::abs(pose.stamp_ns - true_query.stamp_ns)) * 1e-9;
+    if (by == NearestBy::kTime && s >= best_separation) continue;
     const auto truth = interpolated_pose(mapping_truth, pose.stamp_ns, kMaxTruthGap_ns);
     if (!truth) continue;
-    const double s = separation({pose.stamp_ns, *truth}, true_query, by);
+    if (by == NearestBy::kPlace) s = apart_in_place(*truth, true_query.world_from_camera);
     if (s >= best_separation) continue;
     best_separation = s;
     best = Anchor{pose.world_from_camera, *truth, pose.stamp_ns};

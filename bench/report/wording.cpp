@@ -58,7 +58,6 @@ std::string incomplete(const CategoryRow& row) {
 }
 
 bool is_saturated(const SystemSpec& system, const QuerySummary& queries) {
-  constexpr double kSaturated = 0.97;
   return !system.sees_labels() && queries.success > kSaturated;
 }
 

@@ -11,6 +11,9 @@ namespace mh {
 
 // Text that the tables of results share.
 
+/// From this share of answered queries on nothing is left to gain.
+inline constexpr double kSaturated = 0.97;
+
 /// Whether a system without labels answers so many queries that labels have nothing left to gain.
 bool is_saturated(const SystemSpec& system, const QuerySummary& queries);
 

@@ -10,6 +10,7 @@
 
 #include "bench/inputs/run_key.hpp"
 #include "bench/provenance/digest.hpp"
+#include "bench/results/placed.hpp"
 #include "bench/systems/conversation.hpp"
 #include "bench/systems/finished_map.hpp"
 #include "bench/systems/library.hpp"
@@ -119,13 +120,13 @@ class QueryRound {
   /// point p.
   void put(System& frozen, std::size_t first, std::size_t end,
            const std::vector<std::vector<QueryScore>*>& scores, WorkDone& work) const {
-    const NearestBy by = set_ == QuerySet::kHeldOut ? NearestBy::kTime : NearestBy::kPlace;
     for (const std::size_t index : asked_frames(set_, frames_, spec_.protocol)) {
       const Trajectory* truth = run_.truth.empty() ? nullptr : frames_.truth();
       const QueryMoment moment = moment_of(frames_.stamp_ns(index), truth);
       // If there is a truth, skip frames without one: no answer to them could be judged.
       if (truth != nullptr && !moment.true_world_from_camera) continue;
-      const auto anchor = find_anchor(run_.estimate, run_.truth, moment, by, spec_.protocol);
+      const auto anchor =
+          find_anchor(run_.estimate, run_.truth, moment, nearest_by(set_), spec_.protocol);
       const bool once = end - first == 1;  // nothing to share
       const FramesMadeOnce shared(frames_);
       const Sequence& frames = once ? static_cast<const Sequence&>(frames_) : shared;
@@ -247,6 +248,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     const ProcessorTimer timer(run.products_s);
     if (!tools.occupancy) return;
     mapper.update(run.estimate, run.frames.dock_from_estimate);
+    mapper.associate_detections();
     run.volume = std::make_shared<const VoxelMap>(std::move(mapper).take_map());
   };
 

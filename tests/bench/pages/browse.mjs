@@ -200,16 +200,8 @@ async function use(browser, report) {
   await replay(page, go, report);
   await views(page, go, report);
   await colors(page, go, report);
+  await links(page, go, report);
   await go("figures");
-  // By the text before it: the accessible name of a choice holds its options, too.
-  const picked = page.locator("label.choice", { hasText: /^Run / }).last().locator("select");
-  if ((await picked.count()) > 0 && (await picked.locator("option").count()) > 1) {
-    await picked.selectOption("1");
-    await page.reload();
-    await settled(page);
-    expect((await picked.inputValue()) === "1", `${report}: a picked run has no link`);
-    measured.picked = (measured.picked ?? 0) + 1;
-  }
   if ((await page.locator("figure.chart").count()) > 0)
     for (const kind of ["SVG", "PNG"]) {
       const [file] = await Promise.all([
@@ -221,6 +213,28 @@ async function use(browser, report) {
       expect(good && bytes.length > 1500, `${report}: saved ${kind} is ${bytes.length} bytes`);
     }
   await context.close();
+}
+
+/** A choice on Figures outlives a reload, and a link to another state of an open page is followed. */
+async function links(page, go, report) {
+  await go("figures");
+  const picked = () => page.locator("label.choice", { hasText: /^Run/ }).last().locator("select");
+  if ((await picked().count()) > 0 && (await picked().locator("option").count()) > 1) {
+    await picked().selectOption("1");
+    await page.reload();
+    await settled(page);
+    expect((await picked().inputValue()) === "1", `${report}: a picked run has no link`);
+    measured.picked = (measured.picked ?? 0) + 1;
+  }
+  await page.evaluate(() => (location.hash = "#/runs"));
+  await page.waitForSelector("section.table");
+  await settled(page);
+  const place = await page.evaluate(() => globalThis.modelhouse.index.folders.length - 1);
+  await page.evaluate((at) => (location.hash = `#/runs?runs-${at}.q=system:semantic`), place);
+  const followed = await page
+    .waitForFunction(() => [...document.querySelectorAll("section.table input[type=search]")].at(-1).value === "system:semantic", undefined, { timeout: 5000 })
+    .then(() => true, () => false);
+  expect(followed, `${report}: a link into an open page is not followed`);
 }
 
 /** A system has one color on all pages. */

@@ -14,6 +14,7 @@
 #include "bench/pages/plot.hpp"
 #include "bench/pages/verdict.hpp"
 #include "bench/pages/write.hpp"
+#include "bench/results/placed.hpp"
 #include "slam/config/slam.hpp"
 #include "slam/core/temporary_folder.hpp"
 #include "source_dir.hpp"
@@ -188,6 +189,75 @@ TEST_F(Reports, StateTheVerdictWithItsIntervalAndWhatWouldDecideIt) {
   EXPECT_NE(text.find("success"), std::string::npos) << text;
   EXPECT_NE(text.find("95 % interval"), std::string::npos) << text;
   EXPECT_NE(text.find("6 environments"), std::string::npos) << text;
+}
+
+TEST_F(Reports, ComparisonsAreInPercentagePointsAndMillimetersAsTheirSentencesAre) {
+  write_pages(out(), std::array{source_of({"a", "b", "c", "d", "e", "f"})});
+  const Json verdicts = piece(out(), "0/overview").at("verdicts");
+  const Json& sentences = verdicts.at("sentences");
+  const ReadTable table{verdicts.at("table")};
+  ASSERT_EQ(table.json.at("rows"), sentences.size());
+  std::set<std::string> units;
+  for (std::size_t i = 0; i < sentences.size(); ++i) {
+    const bool share = sentences[i].at("unit") == "%";
+    units.insert(table.text("unit", i));
+    EXPECT_EQ(table.text("unit", i), share ? "points" : "mm");
+    EXPECT_NEAR(table.number("difference", i).get<double>(),
+                (share ? 100 : 1000) * sentences[i].at("difference").get<double>(), 1e-3);
+  }
+  EXPECT_EQ(units.size(), 2u);
+}
+
+TEST_F(Reports, WrittenAgainLeaveForeignFilesAlone) {
+  write_pages(out(), std::array{source_of({"den"}), source_of({"hall"})});
+  write_atomically(out() / "data/mine.csv", "a,b\n");
+  write_atomically(out() / "data/own.js", "alert(1)");
+  fs::create_directories(out() / "data/folder");
+  EXPECT_TRUE(fs::exists(out() / "data/1-runs.js"));
+  write_pages(out(), std::array{source_of({"den"})});
+  EXPECT_FALSE(fs::exists(out() / "data/1-runs.js")) << "of the earlier report";
+  for (const char* name : {"mine.csv", "own.js", "folder"})
+    EXPECT_TRUE(fs::exists(out() / "data" / name)) << name;
+}
+
+TEST_F(Reports, CurvesEndWhereFewEnvironmentsAreLeft) {
+  PagesSource source = source_of({"a", "b", "c", "d", "e", "f"});
+  // Of the plain system two tours are half as long.
+  int shortened = 0;
+  for (RunResult& run : source.results.runs) {
+    if (run.spec.system.sees_labels() || shortened == 2) continue;
+    run.truth.resize(run.truth.size() / 2);
+    run.estimate.resize(run.estimate.size() / 2);
+    ++shortened;
+  }
+  write_pages(out(), std::array{source});
+  const Json json = piece(out(), "0/figures").at("by_frame");
+  const ReadTable curve{json};
+  std::size_t ended = 0;
+  for (std::size_t row = 0; row < json.at("rows"); ++row) {
+    const bool few = curve.number("scenes", row) == 4;
+    ended += few ? 1 : 0;
+    EXPECT_EQ(curve.number("error_m", row).is_null(), few);
+    EXPECT_EQ(curve.number("low", row).is_null(), few);
+  }
+  EXPECT_EQ(ended, 2u);
+}
+
+TEST_F(Reports, DrawAnswersAsFarFromTheTruthAsTheyWereScored) {
+  const PagesSource source = source_of({"den"});
+  RunResult run = source.results.runs.front();
+  const SE3 answer =
+      run.estimate[40].world_from_camera * SE3(Eigen::Matrix3d::Identity(), {0.3, 0.1, 0});
+  const QueryMoment moment(run.truth[45].stamp_ns, run.truth[45].world_from_camera);
+  const auto anchor = find_anchor(run.estimate, run.truth, moment, NearestBy::kPlace, {});
+  QueryAnswer answered;
+  answered.world_from_camera = answer;
+  const QueryScore q = score(answered, moment, anchor, run.frames.truth_from_estimate, {});
+  const auto drawn = answer_in_truth(run, QuerySet::kSecondTour, q);
+  ASSERT_TRUE(drawn);
+  EXPECT_NEAR((drawn->translation() - run.truth[45].world_from_camera.translation()).norm(),
+              *q.distance_m, 1e-9);
+  EXPECT_FALSE(answer_in_truth(run, QuerySet::kSecondTour, QueryScore{}));
 }
 
 TEST(PairsToDecide, GrowWithTheSquareOfWhatIsMissing) {

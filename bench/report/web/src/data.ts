@@ -33,6 +33,7 @@ export interface Folder {
   first_point: string | null; // of a sweep: where verdicts, tables and figures are
   arms: { system: string; labels: string }[]; // in the suite's order; labels are "none" if it sees none
   levels: string[];
+  damaged: string[]; // files beside the results
 }
 export interface Sentence {
   text: string;
@@ -101,6 +102,7 @@ export interface RunPaths {
   } | null;
   loops: number;
   grid: { width: number; height: number; cell_m: number; x_m: number; y_m: number; cells: number[] } | null;
+  grid_damaged: boolean;
   inputs: Record<string, string>;
   trajectory_digest: string;
   seed: number;
@@ -127,8 +129,12 @@ export function load<T>(piece: string): Promise<T> {
     found = new Promise<T>((resolve, reject) => {
       const script = document.createElement("script");
       script.src = `data/${piece.replaceAll("/", "-")}.js`;
-      script.onload = () => resolve(globalThis.modelhouse?.[piece] as T);
-      script.onerror = () => reject(new Error(`data/${piece} is missing`));
+      script.onload = () => {
+        const value = globalThis.modelhouse?.[piece];
+        if (value === undefined) reject(new Error(`${script.getAttribute("src")} is damaged`));
+        else resolve(value as T);
+      };
+      script.onerror = () => reject(new Error(`${script.getAttribute("src")} is missing`));
       document.head.append(script);
     });
     waiting.set(piece, found);

@@ -39,6 +39,18 @@ export function note(changes: Record<string, string>): void {
   history.replaceState(null, "", hash);
 }
 
+/** A choice that stands in the address, as long as it is not the first one: so it has a link, and
+ * the way back leads to it. @param key  unique on its page */
+export function useNoted(key: string, first: string): [string, (value: string) => void] {
+  const { at } = useRoute();
+  const [, redraw] = useState(0);
+  const set = (value: string) => {
+    note({ [key]: value === first ? "" : value });
+    redraw((n) => n + 1);
+  };
+  return [currentRoute().at.get(key) ?? at.get(key) ?? first, set];
+}
+
 export function useRoute(): Route {
   const [route, setRoute] = useState(currentRoute);
   useEffect(() => {

@@ -82,7 +82,7 @@ export function AuditPage(): JSX.Element {
       <PerFolder>
         {(folder, place) =>
           !folder.audit ? (
-            <Missing>This folder holds no audit.json. The command modelhouse audit SUITE --out FOLDER writes one, modelhouse bench SUITE --audit beside the results.</Missing>
+            <Missing>{folder.damaged.includes("audit.json") ? "audit.json is damaged." : "This folder holds no audit.json."} The command modelhouse audit SUITE --out FOLDER writes one, modelhouse bench SUITE --audit beside the results.</Missing>
           ) : (
             <Piece<Audit> piece={`${place}/audit`}>
               {(audit) => <>{audit.tables.map((written, i) => <AuditTable key={i} written={written} id={`audit-${place}-${i}`} />)}</>}

@@ -2,9 +2,9 @@
 // Queries without a correct answer: by stage, by cause, each a link to its run.
 import * as Plot from "@observablehq/plot";
 import type { JSX } from "preact";
-import { useCallback, useMemo, useState } from "preact/hooks";
+import { useCallback, useMemo } from "preact/hooks";
 import { type Folder, Table, type WrittenTable } from "../data";
-import { linkTo } from "../route";
+import { linkTo, useNoted } from "../route";
 import { armsOf, nameMargin } from "../view/arm";
 import { Chart } from "../view/Chart";
 import { DataTable } from "../view/DataTable";
@@ -61,12 +61,18 @@ function Counts({ folder, table, asked, rows, by, title, about }: CountsProps): 
   return <Chart title={title} about={about} legend={arms.names.map((name) => ({ name, color: arms.style(name).color }))} marks={{ count: bars.length }} make={make} />;
 }
 
+const kFailed = ["unanswered", "false positive"];
+
 function FailuresOf({ folder, place, written }: { folder: Folder; place: number; written: WrittenTable }): JSX.Element {
   const table = useMemo(() => new Table(written), [written]);
   const sets = table.words("query_set");
-  const [set, setSet] = useState(sets[0] ?? "");
+  // At first the set with the most failures.
+  const failures = (key: string) => table.where({ query_set: key }).filter((row) => kFailed.includes(table.text("outcome", row))).length;
+  const usual = useMemo(() => [...sets].sort((a, b) => failures(b) - failures(a))[0] ?? "", [table]);
+  const [picked, setSet] = useNoted(`set-${place}`, usual);
+  const set = sets.includes(picked) ? picked : usual;
   const asked = useMemo(() => table.where({ query_set: set }).filter((row) => (table.number("point", row) ?? 0) === 0), [table, set]);
-  const rows = useMemo(() => asked.filter((row) => ["unanswered", "false positive"].includes(table.text("outcome", row))), [asked]);
+  const rows = useMemo(() => asked.filter((row) => kFailed.includes(table.text("outcome", row))), [asked]);
   if (table.rows === 0) return <Missing>No queries were asked: nothing could fail to be answered.</Missing>;
   const unanswered = rows.filter((row) => table.text("outcome", row) === "unanswered");
   const wrong = rows.length - unanswered.length;
@@ -93,7 +99,7 @@ function FailuresOf({ folder, place, written }: { folder: Folder; place: number;
                 audit.csv is missing or names no cause for these queries: shares by cause are on the page <a href={linkTo(["audit"])}>Audit</a>.
               </>
             ) : (
-              "Causes are not known: the folder holds no audit (modelhouse bench --audit, or modelhouse audit into this folder)."
+              `Causes are not known: ${folder.damaged.includes("audit.json") ? "audit.json is damaged" : "the folder holds no audit"} (modelhouse bench --audit, or modelhouse audit into this folder).`
             )}
           </Missing>
         )}

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import * as Plot from "@observablehq/plot";
 import type { JSX } from "preact";
-import { useCallback, useMemo, useState } from "preact/hooks";
+import { useCallback, useMemo } from "preact/hooks";
 import { type Figures, type Folder, type RunPaths, Table, type WrittenTable, heading, folders } from "../data";
-import { currentRoute, linkTo, note } from "../route";
+import { linkTo, useNoted } from "../route";
 import { ink } from "../theme";
 import { armStyle, armsOf } from "../view/arm";
 import { Chart } from "../view/Chart";
@@ -12,11 +12,11 @@ import { Choice, Missing, PerFolder, Piece } from "../view/parts";
 import { queryPlaces, topView } from "../view/topview";
 import { GradedCurves } from "./graded";
 
-/** Rows of the level and labels that a reader picked, where there are several. */
-function useArm(table: Table): { rows: number[]; picker: JSX.Element | null; arm: string } {
+/** Rows of the level that a reader picked, where there are several. @param key  of the choice */
+function useArm(table: Table, noted: string): { rows: number[]; picker: JSX.Element | null; arm: string } {
   const arms = [...new Set(Array.from({ length: table.rows }, (_, r) => `${table.text("level", r)}, ${table.text("labels", r)}`))];
   const levels = table.words("level");
-  const [level, setLevel] = useState(levels[0] ?? "");
+  const [level, setLevel] = useNoted(noted, levels[0] ?? "");
   const rows = useMemo(() => table.where({ level }), [table, level]);
   const picker =
     levels.length > 1 ? (
@@ -28,8 +28,9 @@ function useArm(table: Table): { rows: number[]; picker: JSX.Element | null; arm
 function Density({ folder, density }: { folder: Folder; density: NonNullable<Figures["density"]> }): JSX.Element {
   const table = useMemo(() => new Table(density.table), [density]);
   const measures = table.columns.filter((c) => !c.isText && ["ate_rmse_m", "rpe_frame_rmse_m", "held_out.success", "held_out.distance_mean_m", "second_tour.success", "graded.success"].includes(c.key));
-  const [key, setKey] = useState(measures[0]?.key ?? "");
-  const { rows, picker, arm } = useArm(table);
+  const place = folders.indexOf(folder);
+  const [key, setKey] = useNoted(`measure-${place}`, measures[0]?.key ?? "");
+  const { rows, picker, arm } = useArm(table, `level3-${place}`);
   const column = table.column(key);
   const { name: armOf, names, style } = useMemo(() => armsOf(folder, table, rows), [table, rows]);
   const values = useMemo(
@@ -51,7 +52,7 @@ function Density({ folder, density }: { folder: Folder; density: NonNullable<Fig
     return [...of.values()].map((m) => ({ ...m, mean: m.sum / m.count }));
   }, [values]);
   const make = useCallback(
-    (width: number): Plot.PlotOptions => {
+    (): Plot.PlotOptions => {
       const color = (d: { arm: string }) => style(d.arm).color;
       // Quartiles of fewer than five values say nothing: their dots and mean stand alone.
       const boxed = values.filter((v) => (means.find((m) => m.group === v.group && m.arm === v.arm)?.count ?? 0) >= 5);
@@ -59,6 +60,11 @@ function Density({ folder, density }: { folder: Folder; density: NonNullable<Fig
       const sorted = values.map((v) => v.value).sort((a, b) => a - b);
       const middle = sorted[Math.floor(sorted.length / 2)] ?? 0;
       const log = column?.unit !== "%" && (sorted[0] ?? 0) > 0 && (sorted.at(-1) ?? 0) > 10 * middle;
+      const counted = density.groups.flatMap((group) => {
+        const n = means.filter((m) => m.group === group).map((m) => m.count);
+        const [least, most] = [Math.min(...n), Math.max(...n)];
+        return n.length === 0 ? [] : [{ group, count: least === most ? `n ${most}` : `n ${least}–${most}` }];
+      });
       const empty = density.groups.filter((group) => values.every((v) => v.group !== group));
       return {
         height: 340,
@@ -74,7 +80,7 @@ function Density({ folder, density }: { folder: Folder; density: NonNullable<Fig
           Plot.dot(values, { fx: "group", x: "arm", y: "value", fill: color, r: 2.2, className: "m-environment" }),
           Plot.dot(means, { fx: "group", x: "arm", y: "mean", symbol: "diamond", fill: ink().paper, stroke: ink().text, strokeWidth: 1.5, r: 5, className: "m-mean" }),
           Plot.text(empty, { fx: (group: string) => group, frameAnchor: "middle", text: () => "none", fill: ink().faint }),
-          Plot.text(means, { fx: "group", x: "arm", frameAnchor: "top", dy: -12, fontSize: width < 480 ? 9 : 11, text: (d: { count: number }) => `n ${d.count}` }),
+          Plot.text(counted, { fx: "group", frameAnchor: "top", dy: -12, text: "count" }),
         ],
       };
     },
@@ -103,23 +109,24 @@ function Density({ folder, density }: { folder: Folder; density: NonNullable<Fig
 
 function ByFrame({ folder, written }: { folder: Folder; written: WrittenTable }): JSX.Element {
   const table = useMemo(() => new Table(written), [written]);
-  const { rows, picker, arm } = useArm(table);
+  const { rows, picker, arm } = useArm(table, `level4-${folders.indexOf(folder)}`);
   const { name: armOf, names, style } = useMemo(() => armsOf(folder, table, rows), [table, rows]);
-  const points = useMemo(
+  const counted = useMemo(
     () =>
       rows.map((row) => ({
         arm: armOf(row),
         frame: table.number("frame", row) ?? 0,
-        error: table.number("error_m", row) ?? 0,
+        error: table.number("error_m", row),
         low: table.number("low", row),
         high: table.number("high", row),
         scenes: table.number("scenes", row) ?? 0,
       })),
     [rows],
   );
+  const points = counted.filter((p) => p.error !== null);
   const legend = names.map((name) => ({ ...style(name), name }));
   const banded = points.filter((p) => p.low !== null);
-  const most = Math.max(0, ...points.map((p) => p.scenes));
+  const most = Math.max(0, ...counted.map((p) => p.scenes));
   const make = useCallback(
     (): Plot.PlotOptions => ({
       height: 320,
@@ -146,7 +153,7 @@ function ByFrame({ folder, written }: { folder: Folder; written: WrittenTable })
       // Lines that coincide are drawn beside one another.
       y: { label: "environments still counted", grid: true, domain: [0, most + 1], ticks: Math.min(5, most + 1), tickFormat: (d: number) => (Number.isInteger(d) ? String(d) : "") },
       marks: names.map((name, i) =>
-        Plot.line(points.filter((p) => p.arm === name), { x: "frame", y: "scenes", dy: 3 * (i - (names.length - 1) / 2), curve: "step", className: "m-counted", stroke: style(name).color, strokeWidth: 2, strokeDasharray: style(name).dash }),
+        Plot.line(counted.filter((p) => p.arm === name), { x: "frame", y: "scenes", dy: 3 * (i - (names.length - 1) / 2), curve: "step", className: "m-counted", stroke: style(name).color, strokeWidth: 2, strokeDasharray: style(name).dash }),
       ),
     }),
     [points],
@@ -156,7 +163,7 @@ function ByFrame({ folder, written }: { folder: Folder; written: WrittenTable })
       <div class="choices">{picker}</div>
       <Chart
         title="Figure 4: error against frames"
-        about={`Mean position error (m) over windows of 30 frames after SE(3) alignment, ${arm}; ${banded.length > 0 ? "bands are 95 % intervals over environments" : "one environment: no interval"}. Source: results.sqlite.`}
+        about={`Mean position error (m) over windows of 30 frames after SE(3) alignment, ${arm}; ${banded.length > 0 ? "bands are 95 % intervals over environments; curves end where fewer than five of them are left" : "too few environments for an interval"}. Source: results.sqlite.`}
         legend={legend}
         marks={{ window: points.length }}
         make={make}
@@ -175,8 +182,7 @@ function ByFrame({ folder, written }: { folder: Folder; written: WrittenTable })
 /** Figure 2 or 5: one run from above. */
 function FromAbove({ place }: { place: number }): JSX.Element {
   const folder = folders[place];
-  const key = `run-${place}`;
-  const [name, setName] = useState(currentRoute().at.get(key) ?? "");
+  const [name, setName] = useNoted(`run-${place}`, "");
   if (!folder || folder.runs === 0) return <Missing>No run is finished: there is no path to show.</Missing>;
   return (
     <Piece<WrittenTable> piece={`${place}/runs`}>
@@ -185,10 +191,7 @@ function FromAbove({ place }: { place: number }): JSX.Element {
         const options = Array.from({ length: folder.runs }, (_, row) => ({ key: String(row), title: table.text("run", row) }));
         const chosen = Math.max(0, options.findIndex((option) => option.title === name));
         const file = Math.floor(chosen / folder.runs_of_file);
-        const pick = (row: string) => {
-          setName(options[Number(row)]?.title ?? "");
-          note({ [key]: row === "0" ? "" : (options[Number(row)]?.title ?? "") });
-        };
+        const pick = (row: string) => setName(row === "0" ? "" : (options[Number(row)]?.title ?? ""));
         return (
           <>
             <div class="choices">
@@ -208,12 +211,14 @@ function FromAbove({ place }: { place: number }): JSX.Element {
 export function RunFromAbove({ run, queries, chosen = null }: { run: RunPaths | undefined; queries: Table; chosen?: number | null }): JSX.Element {
   const rows = useMemo(() => (run ? queries.where({ run: run.name }).filter((row) => (queries.number("point", row) ?? 0) === 0) : []), [run, queries]);
   const sets = [...new Set(rows.map((row) => queries.text("query_set", row)))];
-  const [set, setSet] = useState(chosen === null ? (sets[0] ?? "") : queries.text("query_set", chosen));
+  const usual = sets.includes("second_tour") ? "second_tour" : (sets[0] ?? "");
+  const [picked, setSet] = useNoted(`set-${run?.name ?? ""}`, chosen === null ? usual : queries.text("query_set", chosen));
+  const set = sets.includes(picked) ? picked : usual;
   const found = useMemo(() => queryPlaces(queries, rows.filter((row) => queries.text("query_set", row) === set)), [rows, set]);
   const make = useCallback((width: number) => topView(run as RunPaths, found, width, chosen), [run, found, chosen]);
   if (!run) return <Missing>This run left no path.</Missing>;
   if (!run.truth && !run.estimate) return <Missing>Neither a true nor an estimated path is known: nothing was mapped.</Missing>;
-  const missing = [run.truth ? "" : "The true path is unknown.", run.estimate ? "" : "Nothing was mapped.", run.grid ? "" : "The run's folder holds no occupancy grid.", rows.length > 0 ? "" : "No queries were asked."].filter(Boolean);
+  const missing = [run.truth ? "" : "The true path is unknown.", run.estimate ? "" : "Nothing was mapped.", run.grid ? "" : run.grid_damaged ? "The run's occupancy grid (map.yaml, map.pgm) is damaged." : "The run's folder holds no occupancy grid.", rows.length > 0 ? "" : "No queries were asked."].filter(Boolean);
   const legend = [
     ...(run.truth ? [{ name: "true path", color: ink().text }] : []),
     ...(run.estimate ? [{ name: "estimated path", color: armStyle(0).color, dash: "5 3" }] : []),
@@ -227,7 +232,7 @@ export function RunFromAbove({ run, queries, chosen = null }: { run: RunPaths | 
       {missing.length > 0 && <Missing>{missing.join(" ")}</Missing>}
       <Chart
         title={`From above: ${run.name}`}
-        about={`x and y in m, in the frame of the truth; the estimate is aligned by its first pose${rows.length > 0 ? "; a line joins a query's true place and its answer" : ""}. Source: results.sqlite${run.grid ? ", map.pgm" : ""}.`}
+        about={`x and y in m, in the frame of the truth; the estimate is aligned by its first pose${rows.length > 0 ? "; a line joins a query's true place and its answer, which is drawn as it was scored: relative to the nearest mapped frame" : ""}. Source: results.sqlite${run.grid ? ", map.pgm" : ""}.`}
         legend={legend}
         marks={{ path: Number((run.truth?.ms.length ?? 0) > 1) + Number((run.estimate?.ms.length ?? 0) > 1), query: found.truths.length, answer: found.answers.length }}
         make={make}

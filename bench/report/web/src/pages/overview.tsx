@@ -96,7 +96,7 @@ function Differences({ sentences, unit }: { sentences: Sentence[]; unit: string 
 
 function Verdict({ verdicts, definitions, systems }: { verdicts: NonNullable<Overview["verdicts"]>; definitions: string; systems: number }): JSX.Element {
   const [first, ...others] = verdicts.sentences;
-  if (!first) return <Missing>{systems > 1 ? "Nothing can be compared: no queries were asked, and no run has both a true and an estimated path." : "This suite compares no two systems."}</Missing>;
+  if (!first) return <Missing>{systems > 1 ? "Nothing can be compared: no environment has queries or paths of both systems of a pair." : "This suite compares no two systems."}</Missing>;
   const undecided = others.filter((s) => s.in_family && !s.decided);
   const decided = others.filter((s) => s.in_family && s.decided);
   const table = new Table(verdicts.table);

@@ -41,7 +41,7 @@ export function ReproductionPage(): JSX.Element {
             <Piece<Reproduction | null> piece={`${place}/reproduction`}>
               {(made) =>
                 made === null ? (
-                  <Missing>This folder holds no reproduction.json, so that command, commit and machine are unknown.</Missing>
+                  <Missing>{folder.damaged.includes("reproduction.json") ? "reproduction.json is damaged" : "This folder holds no reproduction.json"}, so that command, commit and machine are unknown.</Missing>
                 ) : (
                   <>
                     <Command text={made.command} />

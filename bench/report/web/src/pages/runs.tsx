@@ -82,7 +82,7 @@ function Tracking({ run }: { run: RunPaths }): JSX.Element {
   return (
     <Chart
       title="Tracking"
-      about={`Inliers of a frame over time (s); triangles are the ${keyframes.length} frames that became keyframes, orange lines the ${lost.length} where tracking was lost. Source: results.sqlite, table calls.`}
+      about={`Inliers of a frame over time (s); triangles are the ${keyframes.length} frames that became keyframes when they were tracked${lost.length > 0 ? `, orange lines the ${lost.length} where tracking was lost` : ""}. Source: results.sqlite, table calls.`}
       legend={[{ name: "inliers", color: colorOf(0) }, ...(lost.length > 0 ? [{ name: "lost", color: colorOf(5) }] : [])]}
       marks={{ keyframe: keyframes.length, lost: lost.length }}
       make={make}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A table that sorts, filters and copies. Its state stands in the address, so that it has a link.
 import type { JSX } from "preact";
-import { useMemo, useState } from "preact/hooks";
+import { useEffect, useMemo, useState } from "preact/hooks";
 import { type Column, type Table, heading } from "../data";
 import { currentRoute, note } from "../route";
 import { type Format, tableText } from "./copy";
@@ -42,17 +42,28 @@ function compare(table: Table, column: Column, down: boolean): (a: number, b: nu
 /** Words as they are compared: a blank in a column's name is written as "_". */
 const plain = (text: string) => text.toLowerCase().replaceAll(" ", "_");
 
-/** Rows that hold every word of a filter, in some cell that is shown; "column:word" in that one. */
+/** Rows that hold every word of a filter, in some cell that is shown; "column:word" in that one.
+ * A column's name may itself hold a colon. */
 function matching(table: Table, columns: Column[], rows: number[], filter: string): number[] {
   const words = filter.toLowerCase().split(/\s+/).filter(Boolean);
-  // What a word asks of a row, decided once for all rows.
+  if (words.length === 0) return rows;
+  const named = columns.flatMap((column) =>
+    [column.key, column.title, heading(column)].map((name) => ({ column, name: `${plain(name)}:` })),
+  );
   const tests = words.map((word) => {
-    const [, key, value] = /^([^:]+):(.+)$/.exec(word) ?? [];
-    const named = key ? columns.filter((c) => [c.key, c.title, heading(c)].some((name) => plain(name) === key)) : [];
-    const [asked, part] = named.length > 0 ? [named, value ?? ""] : [columns, word];
-    return (row: number) => asked.some((c) => table.shown(c, row).toLowerCase().includes(part));
+    const asked = named.filter(({ name }) => word.startsWith(name) && word.length > name.length);
+    if (asked.length > 0)
+      return (row: number) => asked.some(({ column, name }) => plain(table.shown(column, row)).includes(word.slice(name.length)));
+    return (row: number) => columns.some((c) => plain(table.shown(c, row)).includes(word));
   });
   return rows.filter((row) => tests.every((test) => test(row)));
+}
+
+/** The first word of a filter that names a column which does not exist. */
+function unknownColumn(columns: Column[], filter: string): string | null {
+  const names = columns.flatMap((c) => [c.key, c.title, heading(c)].map((name) => `${plain(name)}:`));
+  const word = filter.toLowerCase().split(/\s+/).find((w) => /^[^:]+:./.test(w) && names.every((name) => !w.startsWith(name)));
+  return word ? (word.split(":")[0] ?? null) : null;
 }
 
 export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element {
@@ -63,6 +74,18 @@ export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element 
   const [most, setMost] = useState(kFirst);
   const [said, setSaid] = useState("");
 
+  useEffect(() => {
+    // A link to another state of a page that is already open.
+    const follow = () => {
+      const now = currentRoute().at;
+      setFilter(now.get(`${id}.q`) ?? "");
+      setSorting(sortingIn(now.get(`${id}.sort`)));
+      setAll(now.get(`${id}.all`) === "1");
+    };
+    addEventListener("hashchange", follow);
+    return () => removeEventListener("hashchange", follow);
+  }, [id]);
+
   const open = table.columns.filter((c) => !c.hidden);
   // A text that is the same in all rows is said once, above them.
   const same = useMemo(() => {
@@ -72,6 +95,7 @@ export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element 
   const saidOnce = same.map((c) => [c.title, table.text(c.key, (rows ?? [0])[0] ?? 0)] as const).filter(([, text]) => text !== "");
   const few = open.filter((c) => (!usual || usual.includes(c.key)) && !same.includes(c));
   const columns = all ? open : few;
+  const unknown = unknownColumn(open, filter);
   const found = useMemo(() => {
     const every = rows ?? Array.from({ length: table.rows }, (_, row) => row);
     const kept = matching(table, open, every, filter);
@@ -101,16 +125,17 @@ export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element 
             type="search"
             value={filter}
             placeholder="words, or column:word"
-            title="Rows with all of these words. A word for one column: ate_m:0.01, with _ for a blank."
+            title="Rows with all of these words. A word for one column: ate_m:0.01, with _ for a blank in its name."
             onInput={(event) => {
               setFilter(event.currentTarget.value);
               setMost(kFirst);
+              setSaid("");
               note({ [`${id}.q`]: event.currentTarget.value });
             }}
           />
         </label>
         <span class="count" role="status">
-          {found.length} of {rows?.length ?? table.rows} rows{said && `. ${said}`}
+          {found.length} of {rows?.length ?? table.rows} rows{unknown !== null && `. No column is named '${unknown}'`}{said && `. ${said}`}
         </span>
         {few.length < open.length && (
           <label class="check">

@@ -80,7 +80,7 @@ export function LastKeyframe({ views, ms, classes }: { views: WrittenViews; ms: 
 }
 
 const kTruths = [
-  { truth: "right", title: "right" },
+  { truth: "right", title: "correct" },
   { truth: "wrong", title: "wrong" },
   { truth: "unknown", title: "not on a surface" },
 ] as const;
@@ -147,7 +147,7 @@ export function QueryViews({ views, set, frame }: { views: WrittenViews; set: st
         {keyframe ? (
           <>
             <span class="note">
-              Left the query (first attempt, which ended at stage {query.stage.replaceAll("_", " ")}), right candidate {query.candidates.indexOf(candidate!) + 1}, frame {keyframe.frame}. Matches by words: right if both ends show the same surface. Dashed: the {penalized} whose labels differ (equation 2).
+              On the left the query (first attempt, which ended at stage {query.stage.replaceAll("_", " ")}), on the right candidate {query.candidates.indexOf(candidate!) + 1}, frame {keyframe.frame}. Lines are matches by words, correct if both ends show the same surface. Dashed: the {penalized} whose labels differ (equation 2).
             </span>
             <ul class="legend">
               {kTruths.map(({ truth, title }) => (

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Folder, Table } from "../data";
+import { type Folder, type Table, folders } from "../data";
 import { colorOf, kDashes, kSymbols } from "../theme";
 
 export interface Style {
@@ -13,10 +13,16 @@ export function armStyle(i: number): Style {
   return { color: colorOf(i), dash: kDashes[i % kDashes.length] ?? "0", symbol: kSymbols[i % kSymbols.length] ?? "circle" };
 }
 
-/** The style of a system with its labels at a level: the same on all pages of a folder. */
-export function styleOf({ arms, levels }: Folder, system: string, labels: string, level: string): Style {
-  const arm = arms.findIndex((a) => a.system === system && (a.labels === labels || a.labels === "none"));
-  return armStyle(Math.max(0, levels.indexOf(level)) * arms.length + Math.max(0, arm));
+const armKey = (system: string, labels: string) => `${system}\n${labels}`;
+/** Of all folders, each once, in the order of the first that has it. */
+const kArms = [...new Set(folders.flatMap((folder) => folder.arms.map((arm) => armKey(arm.system, arm.labels))))];
+const kLevels = [...new Set(folders.flatMap((folder) => folder.levels))];
+
+/** The style of a system with its labels at a level: the same on all pages, and in all folders. */
+export function styleOf(folder: Folder, system: string, labels: string, level: string): Style {
+  const seen = folder.arms.find((arm) => arm.system === system && (arm.labels === labels || arm.labels === "none"));
+  const arm = kArms.indexOf(armKey(system, seen?.labels ?? labels));
+  return armStyle(Math.max(0, kLevels.indexOf(level)) * kArms.length + Math.max(0, arm));
 }
 
 export interface Arms {

@@ -11,9 +11,10 @@ const kLatex: Record<string, string> = {
   "\\": "\\textbackslash{}",
   "~": "\\textasciitilde{}",
   "^": "\\textasciicircum{}",
+  "²": "$^2$",
 };
 function latexCell(text: string): string {
-  return text.replace(/[\\~^]/g, (c) => kLatex[c] ?? c).replace(/(?<!\\textbackslash)[&%$#_]/g, "\\$&").replaceAll("²", "$^2$");
+  return text.replace(/[\\~^²&%$#_{}]/g, (c) => kLatex[c] ?? `\\${c}`);
 }
 function markdownCell(text: string): string {
   return text.replace(/[\\|<>*_`]/g, "\\$&").replaceAll("\n", " ");

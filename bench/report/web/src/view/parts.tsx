@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What pages share: pieces of data on their way, what is missing, folders side by side.
-import type { ComponentChildren, JSX } from "preact";
+import { Component, type ComponentChildren, type JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { type Folder, folders, load } from "../data";
 
@@ -29,7 +29,18 @@ export function Piece<T>({ piece, children }: PieceProps<T>): JSX.Element {
   const found = usePiece<T>(piece);
   if (found === undefined) return <p class="loading">Loading …</p>;
   if (found instanceof Error) return <Missing>{found.message}.</Missing>;
-  return <>{children(found)}</>;
+  return <Guarded>{children(found)}</Guarded>;
+}
+
+/** Says so where a part of a page cannot be drawn, in place of the whole page. */
+class Guarded extends Component<{ children: ComponentChildren }, { error: string | null }> {
+  override state = { error: null as string | null };
+  override componentDidCatch(error: Error): void {
+    this.setState({ error: error.message });
+  }
+  override render(): JSX.Element {
+    return this.state.error === null ? <>{this.props.children}</> : <Missing>This cannot be shown, its data are damaged: {this.state.error}.</Missing>;
+  }
 }
 
 /** States what is not there, in place of an empty chart. */
@@ -55,7 +66,7 @@ export function PerFolder({
           {folder.problem !== null && <Missing>{folder.problem}</Missing>}
           {folder.first_point !== null && points === "first" && <p class="remarks">This suite sweeps settings. What stands here is at its first point, {folder.first_point}; the page Sweeps shows all.</p>}
           {folder.first_point !== null && points === "runs" && <p class="remarks">This suite sweeps settings. Each run stands here at the first point that it maps for; the page Sweeps shows all.</p>}
-          {children(folder, place)}
+          <Guarded>{children(folder, place)}</Guarded>
         </section>
       ))}
     </div>
